@@ -1,0 +1,58 @@
+/// @file
+/// A small persistent fork-join pool for the inside of a step (oneTBB serves coarse work). Workers
+/// spin briefly between calls, then back off to sleep, so that an idle simulation costs nothing.
+#pragma once
+
+#include <memory>
+#include <type_traits>
+
+namespace sinew {
+
+/// `size()` threads including the caller. One call runs at a time; the pool is not re-entrant.
+/// Work is given to threads by number, never by race, so that results do not depend on timing.
+class ThreadPool {
+ public:
+  /// @param threads total number of threads, the caller included; >= 1. Throws Error
+  /// (out-of-range) otherwise.
+  explicit ThreadPool(int threads = 1);
+  ~ThreadPool();
+  ThreadPool(const ThreadPool&) = delete;
+  ThreadPool& operator=(const ThreadPool&) = delete;
+
+  int size() const;
+
+  /// Calls work(thread) once on every thread, thread = 0 .. size()-1 (0 is the caller), and returns
+  /// when all are done. Allocates nothing. `work` must not throw.
+  template <typename Work>
+  void run(Work&& work) {
+    using Callable = std::remove_reference_t<Work>;
+    run_raw([](void* context, int thread) { (*static_cast<Callable*>(context))(thread); },
+            const_cast<void*>(static_cast<const void*>(&work)));
+  }
+
+  /// Calls work(begin, end, thread) on contiguous parts of [0, count), one part a thread, multiples
+  /// of `grain` except the last; a single part on the caller when count <= grain.
+  template <typename Work>
+  void for_range(int count, int grain, Work&& work) {
+    const int parts = size();
+    if (parts == 1 || count <= grain) {
+      if (count > 0) work(0, count, 0);
+      return;
+    }
+    const int grains = (count + grain - 1) / grain;
+    run([&](int thread) {
+      const int begin = static_cast<int>(static_cast<long>(grains) * thread / parts) * grain;
+      const int end = static_cast<int>(static_cast<long>(grains) * (thread + 1) / parts) * grain;
+      if (begin < end && begin < count) work(begin, end < count ? end : count, thread);
+    });
+  }
+
+ private:
+  using RawWork = void (*)(void* context, int thread);
+  void run_raw(RawWork work, void* context);
+
+  struct Shared;
+  std::unique_ptr<Shared> shared_;
+};
+
+}  // namespace sinew

@@ -1,0 +1,46 @@
+/// @file
+/// Material points: where a point of space sits inside a mesh of tetrahedra.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+
+#include "sinew/core/types.hpp"
+#include "sinew/mesh/mesh.hpp"
+
+namespace sinew::mesh {
+
+/// What to do with a point that lies in no element.
+enum class Outside {
+  error,    ///< throw Error(point-outside-mesh) naming the point, its distance and the nearest element
+  nearest,  ///< extrapolate from the nearest element (its barycentric weights, some negative)
+};
+
+/// x = sum_k weights[k] * nodes[k]; weights sum to 1.
+struct EmbeddedPoint {
+  std::array<NodeId, 4> nodes{};
+  std::array<double, 4> weights{};
+  int element = -1;       ///< tetrahedron that carries the point
+  double distance = 0.0;  ///< m, from the nearest element; 0 inside
+};
+
+/// Finds the tetrahedron that holds a point (bounding-volume tree; O(log n) a query). Ties on faces
+/// go to the lowest element number, so that results do not depend on the tree.
+class Embedder {
+ public:
+  explicit Embedder(const Mesh& mesh);
+  ~Embedder();
+  Embedder(Embedder&&) noexcept;
+  Embedder& operator=(Embedder&&) noexcept;
+
+  /// @param point (3,) m, in the mesh's rest frame.
+  /// @param what names the point in the error message ("via point 3 of cable long_0").
+  EmbeddedPoint locate(const Vector3& point, Outside outside, const std::string& what) const;
+
+ private:
+  struct Tree;
+  std::unique_ptr<Tree> tree_;
+};
+
+}  // namespace sinew::mesh

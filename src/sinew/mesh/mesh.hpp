@@ -1,0 +1,44 @@
+/// @file
+/// A volume mesh as simulation needs it: nodes, tetrahedra, hexahedra, named sets. Lengths in m.
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "sinew/core/types.hpp"
+
+namespace sinew::mesh {
+
+/// Four node numbers; positively oriented: (x1-x0) . ((x2-x0) x (x3-x0)) > 0, as VTK and Gmsh.
+using Tetrahedron = std::array<NodeId, 4>;
+/// Eight node numbers in VTK_HEXAHEDRON order.
+using Hexahedron = std::array<NodeId, 8>;
+/// Three node numbers, counter-clockwise seen from outside.
+using Triangle = std::array<NodeId, 3>;
+
+/// Immutable once loaded and checked. Node order is the file's, unused nodes included.
+struct Mesh {
+  std::string name;  ///< file name or what made it, for messages
+  Points nodes;      ///< (n, 3) m
+  std::vector<Tetrahedron> tetrahedra;
+  std::vector<Hexahedron> hexahedra;
+  std::vector<Triangle> triangles;  ///< surface triangles that the file holds; may be empty
+
+  /// Named sets from physical groups or integer cell/point data ("name" or "name:value").
+  std::map<std::string, std::vector<NodeId>> node_sets;
+  std::map<std::string, std::vector<NodeId>> tetrahedron_sets;  ///< positions in `tetrahedra`
+  std::map<std::string, std::vector<NodeId>> triangle_sets;     ///< positions in `triangles`
+
+  int node_count() const { return static_cast<int>(nodes.rows()); }
+};
+
+/// A closed or open triangle surface. Lengths in m.
+struct Surface {
+  std::string name;
+  Points nodes;  ///< (n, 3) m
+  std::vector<Triangle> triangles;
+};
+
+}  // namespace sinew::mesh

@@ -1,0 +1,75 @@
+/// @file
+/// Dense strictly convex quadratic programs, solved by a dual active-set method. Knows no physics.
+#pragma once
+
+#include <memory>
+#include <string_view>
+
+#include "sinew/core/types.hpp"
+
+namespace sinew::qp {
+
+/// min 1/2 x^T G x + g^T x   s.t.   lower <= x <= upper,   row_lower <= C x <= row_upper.
+/// Infinite limits are allowed; equal limits make an equality. G is (n, n), symmetric positive
+/// definite (only its lower triangle is read); C is (m, n).
+struct QuadraticProgram {
+  MatrixX hessian;
+  VectorX gradient;
+  VectorX lower, upper;
+  MatrixX rows;
+  VectorX row_lower, row_upper;
+
+  /// All sized, hessian zero, every limit infinite.
+  static QuadraticProgram sized(int variables, int constraints);
+};
+
+enum class QpStatus {
+  optimal,
+  infeasible,       ///< no x meets all limits
+  not_convex,       ///< G is not positive definite to working precision
+  iteration_limit,  ///< settings.max_iterations reached; x is the last iterate
+  not_finite,       ///< NaN or infinity in the problem's data
+};
+std::string_view qp_status_name(QpStatus status);
+
+struct QpSettings {
+  double tolerance = 1e-11;  ///< feasibility, relative to the size of limits and of C x
+  int max_iterations = 0;    ///< 0: 10 (n + m) + 100
+  bool warm_start = true;    ///< begin from the last solve's active set
+};
+
+/// Multipliers follow G x + g = y + C^T z with y, z > 0 at a lower limit, < 0 at an upper one.
+struct QpResult {
+  QpStatus status = QpStatus::optimal;
+  VectorX x;                ///< (n,)
+  VectorX bound_multiplier; ///< (n,) y
+  VectorX row_multiplier;   ///< (m,) z
+  int iterations = 0;
+  int active = 0;  ///< active limits at the solution
+};
+
+/// Holds the workspace and the last active set; solve() allocates nothing once sized.
+class QpSolver {
+ public:
+  QpSolver();
+  QpSolver(int variables, int constraints, QpSettings settings = {});
+  ~QpSolver();
+  QpSolver(QpSolver&&) noexcept;
+  QpSolver& operator=(QpSolver&&) noexcept;
+
+  /// Throws Error(wrong-shape) when the problem is not of the solver's size, and
+  /// Error(contradictory-limits) when a lower limit exceeds its upper one.
+  const QpResult& solve(const QuadraticProgram& problem);
+  /// Forgets the active set of the last solve.
+  void reset();
+
+ private:
+  struct Workspace;
+  std::unique_ptr<Workspace> work_;
+};
+
+/// Largest violation of the KKT conditions, each scaled to be relative: stationarity, feasibility,
+/// sign of multipliers, complementarity. Independent of how the result was found; for tests.
+double kkt_residual(const QuadraticProgram& problem, const QpResult& result);
+
+}  // namespace sinew::qp
