@@ -1,0 +1,85 @@
+/// @file
+/// Where an effector is asked to be at each moment: a place, or a path travelled at constant speed.
+#pragma once
+
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "sinew/core/types.hpp"
+
+namespace sinew::inverse {
+
+/// center + radius (cos(a) e1 + sin(a) e2), a = start_angle + 2 pi t / period, counter-clockwise
+/// about `normal`. e1 is the world's x axis made perpendicular to the normal (its y axis when x is
+/// within 25 degrees of the normal); e2 = normal x e1.
+struct Circle {
+  Vector3 center = Vector3::Zero();   ///< m
+  double radius = 0.0;                ///< m, > 0
+  Vector3 normal = Vector3::UnitZ();  ///< any length but zero
+  double period = 1.0;                ///< s a turn, > 0
+  double start_angle = 0.0;           ///< rad
+};
+
+/// Straight lines through `points` at constant speed. An open path is travelled once and its end
+/// held; a closed one returns to its first point and repeats for ever.
+struct Polyline {
+  Points points;        ///< (n, 3) m, n >= 2
+  double period = 0.0;  ///< s for the whole path once, > 0
+  bool closed = false;  ///< adds the line from the last point to the first
+};
+
+/// A position over time. Immutable; reading it allocates nothing and is thread-safe. For an
+/// orientation effector the three numbers are a rotation vector (rad) instead of a position.
+class Target {
+ public:
+  /// The origin for ever.
+  Target() = default;
+
+  /// One position for ever. Throws Error(not-finite).
+  static Target fixed(const Vector3& position);
+  /// Throws Error(out-of-range) for a radius or period that is not positive or a zero normal,
+  /// Error(not-finite).
+  static Target circle(const Circle& circle);
+  /// Throws Error(too-few-points) for fewer than two points, Error(out-of-range) for a period that
+  /// is not positive or a path of zero length, Error(not-finite). Repeated points are allowed.
+  static Target polyline(const Polyline& polyline);
+  /// Straight lines between samples; the first position holds before, the last one after.
+  /// @param times (n,) s, increasing, >= 0.
+  /// @param positions (n, 3) m.
+  /// Throws Error(too-few-points), Error(wrong-length), Error(non-monotonic-time),
+  /// Error(not-finite).
+  static Target trajectory(std::vector<double> times, Points positions);
+
+  /// The length of a polyline (m), closing line included: period = length / speed.
+  static double length(const Points& points, bool closed);
+
+  /// The position at `time` (s): (3,) m.
+  Vector3 at(double time) const;
+
+  /// When the target has shown all it has (s): 0 when fixed, one turn of a circle or closed
+  /// polyline, the end of an open polyline or trajectory.
+  double end_time() const;
+
+ private:
+  struct Fixed {
+    Vector3 position = Vector3::Zero();
+  };
+  struct Turn {
+    Vector3 center, first, second;  ///< m; first and second are the radius times e1 and e2
+    double period = 1.0, start_angle = 0.0;
+  };
+  struct Path {
+    std::vector<double> times;  ///< (n,) s when each point is reached
+    Points points;              ///< (n, 3) m
+    bool repeats = false;
+    Vector3 at(double time) const;
+  };
+  using Form = std::variant<Fixed, Turn, Path>;
+
+  explicit Target(Form form) : form_(std::move(form)) {}
+
+  Form form_;
+};
+
+}  // namespace sinew::inverse

@@ -1,0 +1,210 @@
+/// @file
+/// What a scene file says, as plain structs in SI units. The parser fills them, the builder makes a
+/// simulation of them. In-class defaults are the documented ones (a test holds them equal). Every
+/// part keeps its Place, so that what is found wrong later (a point outside the mesh, an unknown
+/// set) can still name file:line:column. Maps of the file are vectors here, in the file's order.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sinew/core/error.hpp"
+#include "sinew/core/types.hpp"
+#include "sinew/inverse/target.hpp"
+#include "sinew/linalg/factorisation.hpp"
+#include "sinew/mesh/embedding.hpp"
+#include "sinew/scene/node.hpp"
+#include "sinew/sim/signal.hpp"
+
+namespace sinew::scene {
+
+inline constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+
+enum class Integrator { quasi_static, backward_euler };
+enum class Method { one_linearisation, newton };
+enum class Tangent { rotated, exact };
+enum class MaterialModel { linear, corotational };
+enum class MassDistribution { volume, even };
+enum class MassMatrix { lumped, consistent };
+enum class PullPoint { world, body };
+
+/// How each step is solved.
+struct SolverDescription {
+  Place place;
+  Method method = Method::one_linearisation;
+  Tangent tangent = Tangent::rotated;
+  double tolerance = 1e-8;        ///< Newton: residual relative to the loads
+  int max_iterations = 50;        ///< Newton
+  int threads = 1;                ///< inside a step
+  std::string backend = "block";  ///< a name of linalg::backends()
+  linalg::Ordering ordering = linalg::Ordering::fastest;
+};
+
+/// A mesh file, or one of the project's own shapes.
+struct MeshDescription {
+  Place place;
+  std::filesystem::path file;  ///< resolved against the scene's folder; empty for a shape
+  double unit = 1.0;           ///< m per unit of the file
+  Place unit_place;
+  std::string shape;  ///< "block", "cylinder", ...; empty for a file
+  std::map<std::string, double>
+      parameters;  ///< of the shape, those given only: m, or plain numbers
+};
+
+struct MaterialDescription {
+  Place place;
+  MaterialModel model = MaterialModel::corotational;
+  double young_modulus = 0.0;  ///< Pa
+  double poisson_ratio = 0.0;
+  Place young_modulus_place, poisson_ratio_place;
+};
+
+/// Nodes that do not move.
+struct FixedRegion {
+  enum class Kind { box, sphere, plane, set };
+  Place place;
+  Kind kind = Kind::box;
+  Vector3 lower = Vector3::Zero();    ///< box: m
+  Vector3 upper = Vector3::Zero();    ///< box: m
+  Vector3 point = Vector3::Zero();    ///< sphere: center; plane: a point of it; m
+  Vector3 normal = Vector3::UnitZ();  ///< plane: unit length
+  double radius = 0.0;                ///< sphere: m
+  double within = 1e-6;               ///< plane: m, nodes no farther from it are fixed
+  std::string set;                    ///< set: its name in the mesh
+};
+
+struct BodyDescription {
+  std::string name;
+  Place place;
+  MeshDescription mesh;
+  MaterialDescription material;
+  std::optional<double> mass;     ///< kg, total; not together with density
+  std::optional<double> density;  ///< kg/m^3
+  Place mass_place;               ///< of whichever is given
+  MassDistribution mass_distribution = MassDistribution::volume;  ///< with `mass`
+  MassMatrix mass_matrix = MassMatrix::lumped;
+  double mass_damping = 0.0;       ///< 1/s, Rayleigh: damping matrix = mass_damping M + ...
+  double stiffness_damping = 0.0;  ///< s, ... + stiffness_damping K
+  std::vector<FixedRegion> fixed;
+};
+
+/// (n, 3) m, each row with the place where it was written (a scene line or a line of a CSV).
+struct PointList {
+  Place place;
+  Points points = Points(0, 3);
+  std::vector<Place> places;
+};
+
+/// Limits of an effort (N) or a motion (m).
+struct LimitDescription {
+  Place place;
+  double min = -kUnlimited;
+  double max = kUnlimited;
+  double rate = kUnlimited;  ///< largest change per second, >= 0
+};
+
+/// What an actuator is told: an effort (tension, force: N) or a motion (displacement: m) over time.
+struct CommandDescription {
+  enum class Kind { motion, effort };
+  Place place;
+  Kind kind = Kind::motion;
+  sim::Signal signal;
+};
+
+struct ActuatorDescription {
+  enum class Type { cable, force };
+  std::string name;
+  Place place;
+  Type type = Type::cable;
+  std::string body;
+  Place body_place;
+  mesh::Outside outside = mesh::Outside::error;
+  LimitDescription effort;  ///< cable: tension, min >= 0 (0 when not given); force: force
+  LimitDescription motion;  ///< displacement
+  std::optional<CommandDescription> command;  ///< none: slack (zero effort) until told
+  // cable
+  PointList points;  ///< the first is the pull point
+  PullPoint pull = PullPoint::world;
+  bool geometric_stiffness = false;
+  // force
+  Vector3 point = Vector3::Zero();  ///< m
+  Place point_place;
+  Vector3 direction = Vector3::UnitZ();  ///< unit length
+};
+
+/// Something on the robot whose motion matters.
+struct EffectorDescription {
+  enum class Kind { point, points, set, orientation };
+  std::string name;
+  Place place;
+  Kind kind = Kind::point;
+  std::string body;
+  Place body_place;
+  PointList points;  ///< point: 1; points: their mean is meant; orientation: 3
+  std::string set;   ///< set: mean of the nodes of this set of the mesh
+  Place set_place;
+  mesh::Outside outside = mesh::Outside::error;
+  /// (k, 3) unit vectors along which the motion matters, k = 1 .. 3. For an orientation: axes of
+  /// the rotation vector.
+  Points directions = Points(Matrix3::Identity());
+};
+
+/// What a controller asks of one effector.
+struct TaskDescription {
+  std::string effector;
+  Place place;
+  inverse::Target target;  ///< m; for an orientation effector a rotation vector (rad)
+  Place target_place;
+  std::vector<double> weights = {1.0};  ///< one for all, or one per direction of the effector; >= 0
+};
+
+/// What the efforts are drawn to where several serve equally well.
+enum class Regularisation {
+  change,  ///< the efforts of the step before: no bias of the tip at rest
+  effort,  ///< zero, as published: biases the tip
+};
+
+struct ControllerDescription {
+  std::string name;
+  Place place;
+  std::vector<std::string> actuators;  ///< empty: all
+  std::vector<Place> actuator_places;
+  std::vector<TaskDescription> tasks;
+  Regularisation regularisation = Regularisation::change;
+  std::optional<double> epsilon;  ///< relative weight of the regularisation; none: the engine's
+};
+
+struct RecordDescription {
+  Place place;
+  int every = 1;       ///< steps per record
+  bool states = true;  ///< positions of all nodes, too
+};
+
+/// A whole scene.
+struct SceneDescription {
+  std::string name;  ///< file name without folder and extension, or what the caller said
+  Place place;
+  int version = 1;
+  Vector3 gravity = Vector3::Zero();  ///< m/s^2
+  Place gravity_place;
+  double time_step = 0.01;  ///< s
+  Integrator integrator = Integrator::quasi_static;
+  SolverDescription solver;
+  std::optional<double> duration;  ///< s
+  std::vector<BodyDescription> bodies;
+  std::vector<ActuatorDescription> actuators;
+  std::vector<EffectorDescription> effectors;
+  std::vector<ControllerDescription> controllers;
+  RecordDescription record;
+  Node tree;  ///< what this was read from, for to_yaml() and overrides
+
+  /// `duration`, or else the end of the longest signal and target; 0 when there is neither.
+  double run_duration() const;
+};
+
+}  // namespace sinew::scene
