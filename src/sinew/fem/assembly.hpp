@@ -1,0 +1,71 @@
+/// @file
+/// Internal forces and tangent stiffness of a finite-element body at given positions.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "sinew/core/thread_pool.hpp"
+#include "sinew/core/types.hpp"
+#include "sinew/fem/fem_model.hpp"
+
+namespace sinew::fem {
+
+/// Which derivative of the internal force goes into the matrix.
+enum class Tangent {
+  none,     ///< forces and energy only; the matrix is left as it was
+  rotated,  ///< R K0 R^T, rotation held fixed: what real-time codes use; positive semi-definite
+  exact,    ///< second derivative of the energy, rotation's derivative included; may be indefinite
+};
+
+/// matrix = stiffness K + mass M. An integrator says what it needs by these weights; element code
+/// never knows which integrator runs. (h^2 + h beta, 1 + h alpha) is backward Euler with Rayleigh
+/// damping alpha M + beta K; (1, 0) is quasi-static.
+struct AssemblyWeights {
+  Tangent tangent = Tangent::rotated;
+  double stiffness = 1.0;
+  double mass = 0.0;
+};
+
+/// Data of one simulation. Nothing allocates after construction; results are the same bit for bit
+/// for any number of threads.
+class Assembly {
+ public:
+  /// @param model what is assembled.
+  /// @param pool runs the loops; must outlive this object.
+  Assembly(std::shared_ptr<const FemModel> model, ThreadPool& pool);
+  ~Assembly();
+  Assembly(Assembly&&) noexcept;
+
+  const FemModel& model() const { return *model_; }
+
+  /// Forces, energy, volume ratios and (unless tangent is none) the matrix, at `positions`.
+  /// @param positions (n, 3) m, all mesh nodes, fixed ones included.
+  /// @param weights what the matrix is to be.
+  void evaluate(const Points& positions, const AssemblyWeights& weights);
+
+  /// (3 free,) N: f(q) = dU/dq, the internal force on the left of M a + f = p.
+  std::span<const double> forces() const;
+  /// kBlockStride * pattern().blocks() doubles, layout of linalg::BlockPattern, N/m for (1, 0).
+  std::span<const double> matrix() const;
+  /// Adds a 3x3 block to the matrix, after evaluate().
+  /// @param free_i,free_j free numbers of row and column; for free_i < free_j the transpose is
+  /// added to the stored block, for free_i > free_j the caller does not add (j, i) too. A diagonal
+  /// block must be symmetric.
+  /// @param k (3, 3), already weighted. Throws Error(internal) if the pair is not in the pattern.
+  void add_block(int free_i, int free_j, const Matrix3& k);
+
+  double strain_energy() const;         ///< U, J
+  double minimum_volume_ratio() const;  ///< smallest det F; <= 0: an element is inverted
+  int worst_element() const;            ///< the tetrahedron that has it
+  std::size_t bytes() const;            ///< memory held by this object; the model not counted
+
+ private:
+  struct Workspace;
+  std::shared_ptr<const FemModel> model_;
+  ThreadPool* pool_;
+  std::unique_ptr<Workspace> work_;
+};
+
+}  // namespace sinew::fem

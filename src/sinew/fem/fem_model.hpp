@@ -1,0 +1,96 @@
+/// @file
+/// What never changes while a finite-element body runs: mesh, materials, masses, which nodes are
+/// free, the pattern of the matrix, and the lists by which element parts are gathered into it.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "sinew/core/types.hpp"
+#include "sinew/linalg/block_pattern.hpp"
+#include "sinew/material/elastic_constants.hpp"
+#include "sinew/mesh/mesh.hpp"
+
+namespace sinew::fem {
+
+struct ElementBatches;
+struct GatherLists;
+
+enum class MassMatrix {
+  lumped,      ///< diagonal: a quarter of every tetrahedron's mass at each of its nodes
+  consistent,  ///< integral of rho N_i N_j: m/20 (1 + delta_ij) a tetrahedron
+};
+
+/// A part of the mesh made of one material.
+struct Region {
+  material::ElasticConstants constants;
+  material::Law law = material::Law::corotational;
+  double density = 0.0;          ///< kg/m^3, >= 0
+  std::vector<NodeId> elements;  ///< positions in mesh.tetrahedra; empty: all of them
+};
+
+struct FemModelSettings {
+  std::vector<Region> regions;      ///< every tetrahedron stands in exactly one
+  std::vector<NodeId> fixed_nodes;  ///< removed from the system; any order, repeats allowed
+  MassMatrix mass = MassMatrix::lumped;
+  std::optional<double> total_mass;  ///< kg, > 0; scales the densities (by volume if all are 0)
+  bool even_mass = false;            ///< total_mass / n at each node used, as published codes do
+  /// Further groups of nodes that may couple (the nodes of a cable segment, for its geometric
+  /// stiffness); mesh node numbers, fixed ones are skipped.
+  std::vector<std::vector<NodeId>> couplings;
+};
+
+/// Immutable and shareable between simulations and threads. "Free" nodes are those that belong to a
+/// tetrahedron and are not fixed, numbered in mesh order; unused nodes never move.
+class FemModel {
+ public:
+  /// Throws Error: no-volume-elements, unsupported-element (hexahedra), empty-list (no region),
+  /// invalid-material, out-of-range (density, mass), index-out-of-range (element, node),
+  /// conflicting-keys (a tetrahedron in two regions; even mass without a total or with a
+  /// consistent matrix), empty-region (a tetrahedron in none), zero-volume, inverted-element,
+  /// everything-fixed.
+  FemModel(std::shared_ptr<const mesh::Mesh> mesh, const FemModelSettings& settings);
+  ~FemModel();
+  FemModel(const FemModel&) = delete;
+  FemModel& operator=(const FemModel&) = delete;
+
+  const mesh::Mesh& mesh() const { return *mesh_; }
+  std::shared_ptr<const mesh::Mesh> shared_mesh() const { return mesh_; }
+  /// Blocks over free nodes; element and coupling cliques together.
+  const linalg::BlockPattern& pattern() const { return pattern_; }
+
+  int free_count() const { return static_cast<int>(free_nodes_.size()); }
+  std::span<const NodeId> free_nodes() const { return free_nodes_; }  ///< free number -> mesh node
+  std::span<const NodeId> free_index() const { return free_index_; }  ///< mesh node -> free or -1
+
+  /// (n,) kg at each mesh node: row sums of the mass matrix before any node is removed.
+  const VectorX& lumped_mass() const { return lumped_mass_; }
+  double total_mass() const { return total_mass_; }  ///< kg
+  double volume() const { return volume_; }          ///< m^3 at rest
+  bool has_consistent_mass() const { return !mass_blocks_.empty(); }
+
+  /// y = M x over free nodes.
+  /// @param x (3 free,) for instance velocities in m/s.
+  /// @param y (3 free,) for instance momentum in kg m/s; not the same memory as x.
+  void apply_mass(std::span<const double> x, std::span<double> y) const;
+
+  const ElementBatches& elements() const { return *elements_; }  ///< for Assembly
+  const GatherLists& gather() const { return *gather_; }         ///< for Assembly
+  /// (blocks,) kg: block b of M is mass_blocks[b] I. Empty when lumped.
+  std::span<const double> mass_blocks() const { return mass_blocks_; }
+
+ private:
+  std::shared_ptr<const mesh::Mesh> mesh_;
+  std::vector<NodeId> free_nodes_, free_index_;
+  linalg::BlockPattern pattern_;
+  std::unique_ptr<const ElementBatches> elements_;
+  std::unique_ptr<const GatherLists> gather_;
+  VectorX lumped_mass_;
+  std::vector<double> mass_blocks_;
+  double total_mass_ = 0.0;
+  double volume_ = 0.0;
+};
+
+}  // namespace sinew::fem
