@@ -1,0 +1,7 @@
+#include "sinew/constraint/constraint.hpp"
+
+namespace sinew::constraint {
+
+void Constraint::curve(const Placement&, std::span<mechanics::RowCurvature>) const {}
+
+}  // namespace sinew::constraint

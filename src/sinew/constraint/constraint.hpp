@@ -1,0 +1,68 @@
+/// @file
+/// Constraints couple material points of one or several bodies by rows of H. A row's effort lambda
+/// (N, Pa) and motion delta (m, m^3) are conjugate: lambda . delta is work done on the bodies.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sinew/core/types.hpp"
+#include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/rows.hpp"
+
+namespace sinew::constraint {
+
+/// Where the material points of all bodies are now.
+class Placement {
+ public:
+  explicit Placement(std::span<const std::unique_ptr<mechanics::Body>> bodies) : bodies_(bodies) {}
+  /// (3,) m.
+  Vector3 position(const mechanics::MaterialPoint& point) const {
+    return bodies_[static_cast<std::size_t>(point.body)]->position(point.point);
+  }
+  /// (3,) m/s.
+  Vector3 velocity(const mechanics::MaterialPoint& point) const {
+    return bodies_[static_cast<std::size_t>(point.body)]->velocity(point.point);
+  }
+
+ private:
+  std::span<const std::unique_ptr<mechanics::Body>> bodies_;
+};
+
+/// Immutable once declared; the numbers of a simulation live in its RowValues.
+class Constraint {
+ public:
+  virtual ~Constraint() = default;
+
+  /// Appends this constraint's rows (and pairs of points that its curvature couples) to the world's
+  /// and remembers where they start. Called once, when the model is built.
+  virtual void declare(mechanics::RowPattern& rows,
+                       std::vector<mechanics::RowCurvature>& curvatures) = 0;
+  /// Writes directions and delta of its rows for the current placement.
+  virtual void linearise(const Placement& placement, mechanics::RowValues& values) const = 0;
+  /// Writes the curvature of its declared pairs for the current placement.
+  virtual void curve(const Placement& placement,
+                     std::span<mechanics::RowCurvature> curvatures) const;
+
+  const std::string& name() const { return name_; }
+  int first_row() const { return first_row_; }
+  int row_count() const { return row_count_; }
+  int first_curvature() const { return first_curvature_; }
+  int curvature_count() const { return curvature_count_; }
+
+ protected:
+  explicit Constraint(std::string name) : name_(std::move(name)) {}
+
+  int first_row_ = -1;
+  int row_count_ = 0;
+  int first_curvature_ = -1;
+  int curvature_count_ = 0;
+
+ private:
+  std::string name_;
+};
+
+}  // namespace sinew::constraint

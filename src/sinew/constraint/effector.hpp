@@ -1,0 +1,83 @@
+/// @file
+/// Effectors: what is steered or watched. Rows without effort.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "sinew/constraint/constraint.hpp"
+
+namespace sinew::constraint {
+
+/// A place whose rows say how it moves. `delta` of a row is the coordinate itself.
+class Effector : public Constraint {
+ public:
+  /// Where it is: (3,) m for positions; the rotation vector since rest, rad, for orientations.
+  virtual Vector3 value(const Placement& placement) const = 0;
+  /// Unit directions of its rows in the world (rows, each (3,)).
+  const std::vector<Vector3>& directions() const { return directions_; }
+  /// What delta must become for the effector to meet `target` (given as value() is): (rows,).
+  virtual void target_delta(const Placement& placement, const Vector3& target,
+                            Eigen::Ref<VectorX> delta) const = 0;
+  /// "m" or "rad".
+  virtual const char* unit() const = 0;
+
+ protected:
+  Effector(std::string name, std::vector<Vector3> directions);
+  std::vector<Vector3> directions_;
+  int first_entry_ = -1;
+};
+
+/// A material point, or the mean of a set attached as one point, along chosen directions.
+class PointEffector : public Effector {
+ public:
+  /// @param name for messages.
+  /// @param point the attached point.
+  /// @param directions one row each; empty means x, y and z. Normalised here.
+  PointEffector(std::string name, mechanics::MaterialPoint point,
+                std::vector<Vector3> directions = {});
+
+  void declare(mechanics::RowPattern& rows,
+               std::vector<mechanics::RowCurvature>& curvatures) override;
+  void linearise(const Placement& placement, mechanics::RowValues& values) const override;
+  Vector3 value(const Placement& placement) const override;
+  void target_delta(const Placement& placement, const Vector3& target,
+                    Eigen::Ref<VectorX> delta) const override;
+  const char* unit() const override { return "m"; }
+  const mechanics::MaterialPoint& point() const { return point_; }
+
+ private:
+  mechanics::MaterialPoint point_;
+};
+
+/// Orientation of the frame through three points a, b, c: e1 along b - a, e3 normal to the triangle,
+/// e2 = e3 x e1. Rows are the rotation's components about the world's axes; value() is the rotation
+/// vector of R = E(now) E(rest)^T. The Jacobian follows from de1 = omega x e1 and the motion of c
+/// along e3: omega = omega_1 e1 + omega_2 e2 + omega_3 e3 with
+///   omega_3 = e2.(b'-a')/|b-a|,  omega_2 = -e3.(b'-a')/|b-a|,
+///   omega_1 = (e3.(c'-a') + alpha omega_2)/beta,   c - a = alpha e1 + beta e2.
+class OrientationEffector : public Effector {
+ public:
+  /// @param name for messages.
+  /// @param points a, b, c.
+  /// @param rest_positions of a, b, c, m. Throws Error(degenerate-orientation) when collinear.
+  OrientationEffector(std::string name, std::array<mechanics::MaterialPoint, 3> points,
+                      const std::array<Vector3, 3>& rest_positions);
+
+  void declare(mechanics::RowPattern& rows,
+               std::vector<mechanics::RowCurvature>& curvatures) override;
+  void linearise(const Placement& placement, mechanics::RowValues& values) const override;
+  Vector3 value(const Placement& placement) const override;
+  void target_delta(const Placement& placement, const Vector3& target,
+                    Eigen::Ref<VectorX> delta) const override;
+  const char* unit() const override { return "rad"; }
+
+ private:
+  Matrix3 rotation(const Placement& placement) const;
+
+  std::array<mechanics::MaterialPoint, 3> points_;
+  Matrix3 rest_frame_;
+};
+
+}  // namespace sinew::constraint

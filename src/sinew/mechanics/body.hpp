@@ -1,0 +1,123 @@
+/// @file
+/// What every model of a robot can do, whatever its coordinates: linearise, condense onto constraint
+/// rows, and move. Finite elements, reduced models, rods and constant-curvature arms are Bodies.
+///
+/// One step of a body, in the order of the calls:
+///   begin_step   remembers q_start and v_start
+///   linearise    A and b = p - f(q) - inertia - damping at the current q       (assembly)
+///   condense     factorises A bordered by its part of H: W and H A^-1 b        (factorisation)
+///   solve_motion dq = A^-1 (b + H^T lambda)                                    (correction)
+///   apply_motion q <- q_before (+) scale dq, and says how well that went
+///   end_step     velocities follow
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "sinew/core/thread_pool.hpp"
+#include "sinew/core/types.hpp"
+#include "sinew/linalg/factorisation.hpp"
+#include "sinew/mechanics/integrator.hpp"
+#include "sinew/mechanics/rows.hpp"
+#include "sinew/mesh/embedding.hpp"
+
+namespace sinew::mechanics {
+
+/// Which derivative of the internal force is used.
+enum class Tangent {
+  real_time,  ///< what the body offers for one linearisation a step (corotational: R K0 R^T); SPD
+  exact,      ///< the exact derivative df/dq, which may be indefinite
+};
+
+/// What a body looks at when it linearises.
+struct LinearisationRequest {
+  StepWeights weights;
+  Tangent tangent = Tangent::real_time;
+  /// Rows' curvature will be added (see add_curvature); costs a wider pattern.
+  bool with_curvature = false;
+};
+
+class Body;
+
+/// Immutable once finished; shared by all simulations of the same robot.
+class BodyModel {
+ public:
+  virtual ~BodyModel() = default;
+  virtual const std::string& name() const = 0;
+
+  /// Attaches a material point given by its rest position (3,) m. Building only.
+  /// @param outside what to do with a point in no element.
+  /// @param what names the point in error messages.
+  /// @return the point's number. Throws Error(point-outside-mesh).
+  virtual int attach(const Vector3& rest_position, mesh::Outside outside,
+                     const std::string& what) = 0;
+  /// Attaches the weighted mean of nodes (weights sum to 1). Building only.
+  virtual int attach_nodes(std::span<const NodeId> nodes, std::span<const double> weights) = 0;
+  /// Rest position (3,) m of an attached point.
+  virtual Vector3 rest_position(int point) const = 0;
+
+  /// Ends building: fixes which rows touch the body and plans the factorisation.
+  /// @param body this body's position in the world.
+  /// @param rows the rows of all constraints of the world.
+  /// @param curvatures the pairs of points that add_curvature may be given.
+  /// @param settings for the factorisation.
+  virtual void finish(int body, const RowPattern& rows, std::span<const RowCurvature> curvatures,
+                      const linalg::FactorisationSettings& settings) = 0;
+
+  /// A body at rest with its own state and workspace.
+  virtual std::unique_ptr<Body> create(ThreadPool& pool) const = 0;
+};
+
+/// How a proposed motion turned out.
+struct MotionReport {
+  bool finite = true;              ///< no NaN or infinity in the new state
+  double smallest_volume_ratio = 1.0;  ///< min det F over the elements; <= 0 means inverted
+  int worst_element = -1;          ///< where
+};
+
+/// The state and workspace of one body in one simulation. Nothing allocates after construction.
+class Body {
+ public:
+  virtual ~Body() = default;
+  virtual const BodyModel& model() const = 0;
+
+  /// Position (3,) m and velocity (3,) m/s of an attached point.
+  virtual Vector3 position(int point) const = 0;
+  virtual Vector3 velocity(int point) const = 0;
+
+  virtual void begin_step() = 0;
+  virtual void linearise(const LinearisationRequest& request) = 0;
+  /// Adds effort-weighted curvature of a row (geometric stiffness): A -= effort d2(delta)/dq2.
+  /// Between linearise (with_curvature) and condense.
+  virtual void add_curvature(const RowCurvature& curvature, double effort) = 0;
+  /// Factorises with this body's part of H.
+  virtual linalg::FactorStatus condense(const RowValues& rows) = 0;
+  /// Adds this body's W (rows, rows) and H A^-1 b (rows,) to those of the world.
+  virtual void add_compliance(MatrixX& compliance, VectorX& free_motion) const = 0;
+  /// |b + H^T effort|, N, over this body with the last linearisation and rows; b alone where the
+  /// rows are not yet condensed.
+  virtual double residual(const RowValues& rows, std::span<const double> effort) const = 0;
+  virtual void solve_motion(std::span<const double> effort) = 0;
+  virtual MotionReport apply_motion(double scale) = 0;
+  virtual void end_step(const StepWeights& weights) = 0;
+
+  /// q and v as one array, for hashing, saving and resetting.
+  virtual std::size_t state_size() const = 0;
+  virtual void save_state(std::span<double> state) const = 0;
+  virtual void load_state(std::span<const double> state) = 0;
+
+  /// Number of negative pivots of the last condensation.
+  virtual int negative_pivots() const = 0;
+  /// A force scale, N, against which residuals are judged: sum of |internal| and |outside| forces.
+  virtual double force_scale() const = 0;
+  /// Stored energy (J): strain; kinetic; gravity's potential with respect to rest.
+  virtual double strain_energy() = 0;
+  virtual double kinetic_energy() const = 0;
+  virtual double gravity_energy() const = 0;
+  /// Bytes of this body's own data, the model not counted.
+  virtual std::size_t bytes() const = 0;
+};
+
+}  // namespace sinew::mechanics

@@ -1,0 +1,57 @@
+/// @file
+/// Rows of the constraint Jacobian H in terms of material points: what constraints write and bodies
+/// read. Row k of H is sum over its entries of direction . (motion of the entry's point), so that
+/// the motion conjugate to the row's effort changes by d(delta_k) = sum direction_e . dx_e.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sinew/core/types.hpp"
+
+namespace sinew::mechanics {
+
+/// A point fixed in a body's material: which body of the world, and the number that the body gave
+/// it when it was attached.
+struct MaterialPoint {
+  std::int32_t body = -1;   ///< position in the world's list of bodies
+  std::int32_t point = -1;  ///< number returned by BodyModel::attach
+};
+
+/// Which points each row touches; fixed when the model is built. Entry e of row k stands at
+/// row_start[k] <= e < row_start[k + 1].
+struct RowPattern {
+  std::vector<std::int32_t> row_start{0};
+  std::vector<MaterialPoint> point;
+
+  int rows() const { return static_cast<int>(row_start.size()) - 1; }
+  int entries() const { return static_cast<int>(point.size()); }
+  /// Closes a row that consists of `points`; returns its number.
+  int add_row(const std::vector<MaterialPoint>& points) {
+    point.insert(point.end(), points.begin(), points.end());
+    row_start.push_back(entries());
+    return rows() - 1;
+  }
+};
+
+/// Second derivative of a row: effort * stiffness couples points `first` and `second` of a row's
+/// body (a loaded cable's geometric stiffness). The matrix d(delta)/d(x_first)d(x_second) is
+/// `curvature`, 1/m; the pair (second, first) is its transpose and is not listed.
+struct RowCurvature {
+  std::int32_t row = -1;
+  MaterialPoint first, second;
+  Matrix3 curvature = Matrix3::Zero();
+};
+
+/// The numbers of one linearisation, in the layout of RowPattern. Allocated once.
+struct RowValues {
+  std::vector<Vector3> direction;  ///< one per entry; dimensionless for motions in m
+  VectorX delta;                   ///< (rows,) value of the row's motion at the current state, m
+
+  void resize(const RowPattern& pattern) {
+    direction.assign(static_cast<std::size_t>(pattern.entries()), Vector3::Zero());
+    delta.setZero(pattern.rows());
+  }
+};
+
+}  // namespace sinew::mechanics
