@@ -1,0 +1,55 @@
+# Short names for what is done often; `make` lists them. The work is in CMakePresets.json and scripts/.
+# `make JOBS=2 ...` limits how many compilers run at once, `make PYTHON=...` picks an interpreter.
+PREFIX ?= /usr/local
+
+.DEFAULT_GOAL := help
+.PHONY: help setup build demo test validate bench docs format format-check lint \
+        asan tsan portable install clean
+
+help:  ## list these targets
+	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  \1|\2/p' Makefile | column -t -s '|'
+
+setup:  ## install the Debian packages that are missing (root or sudo)
+	@scripts/setup.sh
+
+build:  ## optimised build: build/release/bin/sinew and build/release/python
+	@scripts/build.sh release
+
+demo: setup build  ## a soft trunk follows a circle by inverse control: a table and a picture
+	@scripts/demo.sh
+
+test: setup  ## build, and run all C++ and Python tests
+	@scripts/test.sh release
+
+validate: build  ## numbers against their references: docs/scorecard.md
+	@build/release/bin/sinew validate
+
+bench: build  ## the time of a step, stage by stage, beside other solvers
+	@scripts/bench.sh
+
+docs:  ## API reference in docs/api/html, where a warning is an error
+	@scripts/docs.sh
+
+format:  ## format all C++ sources in place
+	@scripts/format.sh
+
+format-check:  ## fail when a C++ source is not formatted
+	@scripts/format.sh --check
+
+lint: format-check  ## format check and clang-tidy on all C++ sources
+	@scripts/lint.sh
+
+asan:  ## build and run the C++ tests with the address and undefined-behaviour sanitizers
+	@scripts/test.sh asan
+
+tsan:  ## build and run the C++ tests with the thread sanitizer
+	@scripts/test.sh tsan
+
+portable:  ## build and run all tests without this machine's own instruction set
+	@scripts/test.sh portable
+
+install: build  ## install to PREFIX (/usr/local)
+	@cmake --install build/release --prefix $(PREFIX)
+
+clean:  ## remove everything built
+	@rm -rf build docs/api dist

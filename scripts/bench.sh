@@ -1,0 +1,16 @@
+#!/bin/sh
+# Runs every benchmark program of the release build, one after the other. Arguments go to each:
+#   scripts/bench.sh --benchmark_filter=trunk
+set -eu
+cd "$(dirname "$0")/.."
+found=no
+for program in build/release/bin/bench_*; do
+  [ -x "$program" ] || continue
+  found=yes
+  echo "== $(basename "$program")"
+  "$program" "$@"
+done
+if [ "$found" = no ]; then
+  echo "bench: no program build/release/bin/bench_* was built; run 'make build' first" >&2
+  exit 1
+fi

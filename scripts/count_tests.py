@@ -1,0 +1,50 @@
+#!/usr/bin/env python3
+"""Sums up the results that scripts/test.sh left in a folder, as one line: "N passed, N failed".
+
+A C++ test program that ended without a report (a crash) counts as one failure, and so does a suite
+without any test. Skipped tests are counted apart, when there are some.
+"""
+
+import sys
+import xml.etree.ElementTree as xml
+from pathlib import Path
+
+
+def cases(path):
+    """The outcomes ("passed", "failed", "skipped") by test name in a JUnit or GoogleTest report."""
+    outcomes = []
+    for case in xml.parse(path).getroot().iter("testcase"):
+        skipped = case.find("skipped") is not None or case.get("status") in ("notrun", "disabled")
+        failed = (
+            case.find("failure") is not None
+            or case.find("error") is not None
+            or case.get("status") == "fail"
+        )
+        outcome = "failed" if failed else "skipped" if skipped else "passed"
+        outcomes.append((case.get("name"), outcome))
+    return outcomes
+
+
+def main(folder):
+    """Prints the sums; returns 1 if anything failed or nothing ran."""
+    count = {"passed": 0, "failed": 0, "skipped": 0}
+    reported = {path.stem: cases(path) for path in (folder / "gtest").glob("*.xml")}
+    programs = cases(folder / "ctest.xml") if (folder / "ctest.xml").exists() else []
+    for name, outcome in programs:
+        inside = reported.get(f"test_{name}", [])
+        # A program can fail although each of its tests passed (a leak found at its end).
+        if not inside or (outcome == "failed" and all(o != "failed" for _, o in inside)):
+            count[outcome] += 1
+        for _, outcome in inside:
+            count[outcome] += 1
+    if (folder / "pytest.xml").exists():
+        for _, outcome in cases(folder / "pytest.xml"):
+            count[outcome] += 1
+
+    skipped = f", {count['skipped']} skipped" if count["skipped"] else ""
+    print(f"{count['passed']} passed, {count['failed']} failed{skipped}")
+    return 1 if count["failed"] or not count["passed"] else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(Path(sys.argv[1])))

@@ -1,0 +1,20 @@
+#!/bin/sh
+# clang-tidy (.clang-tidy) on the project's own sources, several at once:
+#   scripts/lint.sh [FILE...]      all sources when none is named
+set -eu
+cd "$(dirname "$0")/.."
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+if ! cmake --preset lint >"$log" 2>&1; then
+  cat "$log" >&2
+  exit 1
+fi
+if [ $# -eq 0 ]; then
+  # shellcheck disable=SC2046  # one word a file: no source has blanks in its name
+  set -- $("${PYTHON:-/usr/bin/python3}" -c '
+import json, os
+root = os.getcwd() + os.sep
+names = {entry["file"] for entry in json.load(open("build/lint/compile_commands.json"))}
+print(*sorted(n[len(root):] for n in names if n.startswith(root) and not n.startswith(root + "build")))')
+fi
+printf '%s\0' "$@" | xargs -0 -P "${JOBS:-$(scripts/jobs.sh)}" -n 1 clang-tidy -p build/lint --quiet

@@ -1,0 +1,80 @@
+#!/bin/sh
+# Installs the Debian packages that Sinew needs and that are missing; does nothing when none is.
+#   scripts/setup.sh             everything: library, program, Python, tests, documentation, lint
+#   scripts/setup.sh --minimal   what the library, the program and the Python package need
+#   scripts/setup.sh --list      prints the packages, one a line, and ends
+# Runs as root or with sudo. SINEW_SKIP_SETUP=1 leaves the machine as it is.
+set -eu
+
+minimal="build-essential cmake ninja-build pkg-config
+  libeigen3-dev libmetis-dev libsuitesparse-dev libtbb-dev libhdf5-dev libyaml-cpp-dev
+  libpugixml-dev libassimp-dev libcli11-dev libfmt-dev nlohmann-json3-dev zlib1g-dev
+  python3 python3-dev python3-numpy python3-pip python3-venv python3-setuptools python3-wheel
+  pybind11-dev"
+further="git libgtest-dev libgmock-dev libbenchmark-dev
+  python3-scipy python3-matplotlib python3-meshio python3-h5py python3-tqdm python3-yaml
+  python3-pytest python3-cvxopt python3-jsonschema
+  gmsh doxygen graphviz clang clang-format clang-tidy libclang-rt-dev"
+
+packages="$minimal $further"
+list_only=no
+for argument in "$@"; do
+  case $argument in
+    --minimal) packages=$minimal ;;
+    --list) list_only=yes ;;
+    -h|--help) sed -n '2,6s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    *) echo "setup: unknown option '$argument'; see scripts/setup.sh --help" >&2; exit 2 ;;
+  esac
+done
+
+if [ "$list_only" = yes ]; then
+  printf '%s\n' $packages
+  exit 0
+fi
+if [ "${SINEW_SKIP_SETUP:-0}" = 1 ]; then
+  echo "setup: skipped (SINEW_SKIP_SETUP=1)"
+  exit 0
+fi
+if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
+  echo "setup: this is not a Debian system, so nothing is installed. Sinew needs what these Debian"
+  echo "setup: 12 packages hold; the build names what it does not find:"
+  printf '%s\n' $packages | sed 's/^/  /'
+  exit 0
+fi
+
+installed=$(dpkg-query -W -f='${binary:Package} ${db:Status-Status}\n' $packages 2>/dev/null |
+            sed -n 's/^\([^ :]*\)[^ ]* installed$/\1/p' || true)
+missing=""
+for package in $packages; do
+  printf '%s\n' "$installed" | grep -qx "$package" || missing="$missing $package"
+done
+if [ -z "$missing" ]; then
+  echo "setup: all $(printf '%s\n' $packages | wc -l) packages are installed"
+  exit 0
+fi
+
+as_root=""
+if [ "$(id -u)" -ne 0 ]; then
+  if ! command -v sudo >/dev/null; then
+    echo "setup: these packages are missing, and there is neither root nor sudo to install them:" >&2
+    echo "  apt-get install$missing" >&2
+    exit 1
+  fi
+  as_root="sudo"
+fi
+
+# apt-get's output is shown only when it fails.
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+apt() {
+  if ! $as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq -y \
+      -o Dpkg::Use-Pty=0 -o DPkg::Lock::Timeout=300 -o Acquire::Retries=3 "$@" >"$log" 2>&1; then
+    cat "$log" >&2
+    echo "setup: 'apt-get $*' failed; its output is above" >&2
+    exit 1
+  fi
+}
+echo "setup: installing$missing"
+apt update
+apt install --no-install-recommends $missing
+echo "setup: done"
