@@ -13,7 +13,8 @@ namespace sinew::mesh {
 
 /// What to do with a point that lies in no element.
 enum class Outside {
-  error,    ///< throw Error(point-outside-mesh) naming the point, its distance and the nearest element
+  error,    ///< throw Error(point-outside-mesh) naming the point, its distance and the nearest
+            ///< element
   nearest,  ///< extrapolate from the nearest element (its barycentric weights, some negative)
 };
 

@@ -18,6 +18,14 @@ using Hexahedron = std::array<NodeId, 8>;
 /// Three node numbers, counter-clockwise seen from outside.
 using Triangle = std::array<NodeId, 3>;
 
+/// What reading and checking did to a mesh, for `sinew info`.
+struct LoadNotes {
+  std::string format;          ///< "VTK legacy 2.0, binary"; empty for meshes made in the program
+  double unit = 1.0;           ///< m per file unit
+  int reordered_elements = 0;  ///< elements of the opposite node ordering, turned round
+  int passed_over_cells = 0;   ///< vertices, lines, quadrilaterals and the like that the file holds
+};
+
 /// Immutable once loaded and checked. Node order is the file's, unused nodes included.
 struct Mesh {
   std::string name;  ///< file name or what made it, for messages
@@ -29,7 +37,10 @@ struct Mesh {
   /// Named sets from physical groups or integer cell/point data ("name" or "name:value").
   std::map<std::string, std::vector<NodeId>> node_sets;
   std::map<std::string, std::vector<NodeId>> tetrahedron_sets;  ///< positions in `tetrahedra`
+  std::map<std::string, std::vector<NodeId>> hexahedron_sets;   ///< positions in `hexahedra`
   std::map<std::string, std::vector<NodeId>> triangle_sets;     ///< positions in `triangles`
+
+  LoadNotes notes;
 
   int node_count() const { return static_cast<int>(nodes.rows()); }
 };

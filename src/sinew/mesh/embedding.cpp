@@ -1,0 +1,199 @@
+#include "sinew/mesh/embedding.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include "sinew/core/error.hpp"
+#include "sinew/mesh/distance.hpp"
+#include "sinew/mesh/quality.hpp"
+
+namespace sinew::mesh {
+
+namespace {
+
+using Box = Eigen::AlignedBox3d;
+
+/// A weight this little below zero still counts as inside: rounding of a point on the surface.
+constexpr double kWeightTolerance = 1e-9;
+/// Distances that differ by less than this share of the mesh's size are equal.
+constexpr double kDistanceTolerance = 1e-10;
+constexpr int kLeafSize = 4;
+
+/// Tree node: children 2k+1.. are stored by number; a leaf has the elements order[begin, end).
+struct Branch {
+  Box box;
+  int begin = 0, end = 0;
+  int left = -1, right = -1;
+};
+
+}  // namespace
+
+struct Embedder::Tree {
+  std::string name;
+  std::vector<Corners> corners;
+  std::vector<Tetrahedron> nodes;
+  std::vector<int> order;
+  std::vector<Branch> branches;
+  double tolerance = 0.0;  // m
+
+  explicit Tree(const Mesh& mesh);
+  int build(const std::vector<Box>& boxes, int begin, int end);
+
+  /// Calls visit(element) for the elements of all leaves whose box is within reach() of the point.
+  template <typename Reach, typename Visit>
+  void visit_near(const Vector3& point, const Reach& reach, const Visit& visit) const;
+
+  int find_inside(const Vector3& point) const;
+  std::pair<int, double> find_nearest(const Vector3& point) const;
+};
+
+Embedder::Tree::Tree(const Mesh& mesh) : name(mesh.name), nodes(mesh.tetrahedra) {
+  if (nodes.empty()) {
+    throw Error(ErrorKind::no_volume_elements, {.file = mesh.name},
+                "the mesh has no tetrahedra to embed points in");
+  }
+  std::vector<Box> boxes(nodes.size());
+  Box all;
+  for (std::size_t e = 0; e < nodes.size(); ++e) {
+    corners.push_back(corners_of(mesh, static_cast<int>(e)));
+    for (const Vector3& corner : corners[e]) boxes[e].extend(corner);
+    all.extend(boxes[e]);
+  }
+  tolerance = kDistanceTolerance * all.diagonal().norm();
+  order.resize(nodes.size());
+  std::iota(order.begin(), order.end(), 0);
+  branches.reserve(2 * nodes.size());
+  build(boxes, 0, static_cast<int>(nodes.size()));
+}
+
+int Embedder::Tree::build(const std::vector<Box>& boxes, int begin, int end) {
+  const int number = static_cast<int>(branches.size());
+  Branch branch{.box = {}, .begin = begin, .end = end};
+  Box centres;
+  for (int i = begin; i < end; ++i) {
+    const Box& box = boxes[static_cast<std::size_t>(order[static_cast<std::size_t>(i)])];
+    branch.box.extend(box);
+    centres.extend(box.center());
+  }
+  branches.push_back(branch);
+  if (end - begin <= kLeafSize) return number;
+  Eigen::Index axis = 0;
+  centres.sizes().maxCoeff(&axis);
+  const int middle = begin + (end - begin) / 2;
+  std::nth_element(order.begin() + begin, order.begin() + middle, order.begin() + end,
+                   [&](int a, int b) {
+                     const auto key = [&](int e) {
+                       const Box& box = boxes[static_cast<std::size_t>(e)];
+                       return std::pair(box.min()[axis] + box.max()[axis], e);
+                     };
+                     return key(a) < key(b);
+                   });
+  const int left = build(boxes, begin, middle);
+  const int right = build(boxes, middle, end);
+  branches[static_cast<std::size_t>(number)].left = left;
+  branches[static_cast<std::size_t>(number)].right = right;
+  return number;
+}
+
+template <typename Reach, typename Visit>
+void Embedder::Tree::visit_near(const Vector3& point, const Reach& reach,
+                                const Visit& visit) const {
+  const auto distance = [&](int branch) {
+    return branches[static_cast<std::size_t>(branch)].box.exteriorDistance(point);
+  };
+  std::vector<int> stack{0};
+  while (!stack.empty()) {
+    const Branch& branch = branches[static_cast<std::size_t>(stack.back())];
+    stack.pop_back();
+    if (branch.box.exteriorDistance(point) > reach()) continue;
+    if (branch.left < 0) {
+      for (int i = branch.begin; i < branch.end; ++i) visit(order[static_cast<std::size_t>(i)]);
+      continue;
+    }
+    // The nearer child is popped first.
+    const bool left_first = distance(branch.left) <= distance(branch.right);
+    stack.push_back(left_first ? branch.right : branch.left);
+    stack.push_back(left_first ? branch.left : branch.right);
+  }
+}
+
+int Embedder::Tree::find_inside(const Vector3& point) const {
+  int found = -1;
+  visit_near(
+      point, [this] { return tolerance; },
+      [&](int e) {
+        if (found >= 0 && e > found) return;
+        const auto weights = barycentric_weights(point, corners[static_cast<std::size_t>(e)]);
+        if (*std::min_element(weights.begin(), weights.end()) >= -kWeightTolerance) found = e;
+      });
+  return found;
+}
+
+std::pair<int, double> Embedder::Tree::find_nearest(const Vector3& point) const {
+  double best = std::numeric_limits<double>::infinity();
+  visit_near(
+      point, [&] { return best; },
+      [&](int e) {
+        best = std::min(best, distance_to_tetrahedron(point, corners[static_cast<std::size_t>(e)]));
+      });
+  // A nearest edge or corner belongs to several elements: take the one that needs the mildest
+  // extrapolation, then the lowest number.
+  int chosen = -1;
+  double mildest = -std::numeric_limits<double>::infinity();
+  visit_near(
+      point, [&] { return best + tolerance; },
+      [&](int e) {
+        const Corners& x = corners[static_cast<std::size_t>(e)];
+        if (distance_to_tetrahedron(point, x) > best + tolerance) return;
+        const auto weights = barycentric_weights(point, x);
+        const double least = *std::min_element(weights.begin(), weights.end());
+        const bool same = std::abs(least - mildest) <= kWeightTolerance;
+        if ((!same && least > mildest) || (same && e < chosen)) {
+          mildest = least;
+          chosen = e;
+        }
+      });
+  return {chosen, best};
+}
+
+Embedder::Embedder(const Mesh& mesh) : tree_(std::make_unique<Tree>(mesh)) {}
+Embedder::~Embedder() = default;
+Embedder::Embedder(Embedder&&) noexcept = default;
+Embedder& Embedder::operator=(Embedder&&) noexcept = default;
+
+EmbeddedPoint Embedder::locate(const Vector3& point, Outside outside,
+                               const std::string& what) const {
+  if (!point.allFinite()) {
+    throw Error(
+        ErrorKind::not_finite, {.item = what},
+        fmt::format("the point ({}, {}, {}) is not finite", point.x(), point.y(), point.z()));
+  }
+  int element = tree_->find_inside(point);
+  double distance = 0.0;
+  if (element < 0) {
+    std::tie(element, distance) = tree_->find_nearest(point);
+    if (outside == Outside::error) {
+      throw Error(
+          ErrorKind::point_outside_mesh, {.item = what},
+          fmt::format("the point ({:.6g}, {:.6g}, {:.6g}) m lies {:.3g} m outside {} (the nearest "
+                      "element is tetrahedron {})",
+                      point.x(), point.y(), point.z(), distance,
+                      tree_->name.empty() ? "the mesh" : tree_->name, element),
+          "move it inside, check its unit, or write `outside: nearest` to extrapolate");
+    }
+  }
+  const auto e = static_cast<std::size_t>(element);
+  return {.nodes = tree_->nodes[e],
+          .weights = barycentric_weights(point, tree_->corners[e]),
+          .element = element,
+          .distance = distance};
+}
+
+}  // namespace sinew::mesh

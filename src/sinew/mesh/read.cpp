@@ -1,0 +1,68 @@
+#include "sinew/mesh/read.hpp"
+
+#include <cmath>
+#include <fstream>
+
+#include <fmt/format.h>
+
+#include "sinew/core/error.hpp"
+#include "sinew/mesh/check.hpp"
+#include "sinew/mesh/vtk_legacy.hpp"
+
+namespace sinew::mesh {
+
+namespace {
+
+void scale(Mesh& mesh, double unit) {
+  if (!std::isfinite(unit) || unit <= 0.0) {
+    throw Error(ErrorKind::out_of_range, {.file = mesh.name},
+                fmt::format("a unit of {} m makes no sense", unit), "give a positive length");
+  }
+  mesh.nodes *= unit;
+  mesh.notes.unit = unit;
+}
+
+}  // namespace
+
+std::string read_file(const std::filesystem::path& path) {
+  std::error_code problem;
+  const auto status = std::filesystem::status(path, problem);
+  if (!std::filesystem::exists(status)) {
+    throw Error(
+        ErrorKind::file_not_found, {.file = path.string()}, "there is no such file",
+        fmt::format("paths are relative to {}", std::filesystem::current_path(problem).string()));
+  }
+  std::ifstream stream(path, std::ios::binary);
+  if (!std::filesystem::is_regular_file(status) || !stream) {
+    throw Error(ErrorKind::file_unreadable, {.file = path.string()},
+                std::filesystem::is_directory(status) ? "this is a folder, not a file"
+                                                      : "the file cannot be opened",
+                "check the path and its permissions");
+  }
+  std::string bytes(static_cast<std::size_t>(std::filesystem::file_size(path, problem)), '\0');
+  stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(stream.gcount()));
+  return bytes;
+}
+
+Mesh parse_mesh(std::string_view bytes, const std::string& name) {
+  if (bytes.starts_with("# vtk DataFile")) return read_vtk_legacy(bytes, name);
+  throw Error(ErrorKind::unknown_format, {.file = name},
+              "this is none of the mesh formats that are read",
+              "give a VTK legacy (.vtk), VTU (.vtu) or Gmsh (.msh, version 2.2 or 4.1) file");
+}
+
+Mesh read_mesh_unchecked(const std::filesystem::path& path, const ReadOptions& options) {
+  Mesh mesh = parse_mesh(read_file(path), path.string());
+  scale(mesh, options.unit);
+  return mesh;
+}
+
+Mesh read_mesh(const std::filesystem::path& path, const ReadOptions& options) {
+  Mesh mesh = read_mesh_unchecked(path, options);
+  check(mesh, {.allow_several_components = options.allow_several_components,
+               .unit_given = options.unit_given || options.unit != 1.0});
+  return mesh;
+}
+
+}  // namespace sinew::mesh
