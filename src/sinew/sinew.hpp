@@ -2,6 +2,7 @@
 /// All of Sinew's public interface in one include.
 #pragma once
 
+#include "sinew/core/build_info.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/core/thread_pool.hpp"
 #include "sinew/core/types.hpp"
