@@ -41,9 +41,9 @@ struct QpSettings {
 /// Multipliers follow G x + g = y + C^T z with y, z > 0 at a lower limit, < 0 at an upper one.
 struct QpResult {
   QpStatus status = QpStatus::optimal;
-  VectorX x;                ///< (n,)
-  VectorX bound_multiplier; ///< (n,) y
-  VectorX row_multiplier;   ///< (m,) z
+  VectorX x;                 ///< (n,)
+  VectorX bound_multiplier;  ///< (n,) y
+  VectorX row_multiplier;    ///< (m,) z
   int iterations = 0;
   int active = 0;  ///< active limits at the solution
 };

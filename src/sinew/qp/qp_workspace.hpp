@@ -1,0 +1,78 @@
+/// @file
+/// The dual active-set method itself: working set, iterate and the steps between them.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sinew/qp/active_set_factors.hpp"
+#include "sinew/qp/constraint_rows.hpp"
+#include "sinew/qp/quadratic_program.hpp"
+
+namespace sinew::qp {
+
+/// A constraint that holds as an equality at the moment.
+struct ActiveConstraint {
+  int constraint = 0;
+  int side = 0;  ///< +1 at the lower limit, -1 at the upper one, 0 for an equality: any sign
+  bool violates(double multiplier) const { return side * multiplier < 0.0; }
+};
+
+/// The state between the steps of the method is always a "solution pair": x minimises the objective
+/// over the active constraints taken as equalities, and all their multipliers have the right sign.
+/// A step takes up the most violated constraint and restores a pair with a larger objective, so no
+/// active set comes twice. A warm start makes a pair from the last active set by leaving out what
+/// has become dependent and dropping what has a multiplier of the wrong sign; in the worst case
+/// nothing is left and the start is cold.
+/// Source: Goldfarb and Idnani, Math. Programming 27 (1983) 1-33, sections 3 and 4.
+struct QpSolver::Workspace {
+  Workspace(int variables, int constraints, QpSettings chosen);
+
+  void solve(const QuadraticProgram& problem);
+  void reset() { active.clear(); }
+
+  int variables;
+  QpSettings settings;
+  QpResult result;
+
+ private:
+  /// What became of a constraint that was to be added.
+  enum class Addition { added, redundant, infeasible, out_of_iterations };
+
+  QpStatus load_and_factorise(const QuadraticProgram& problem);
+  QpStatus run(const QuadraticProgram& problem);
+  void start_from_last_set();
+  /// Makes a solution pair of the active set, dropping what is on the wrong side; then refines it.
+  void settle(const QuadraticProgram& problem, bool refine);
+  void solve_subproblem();
+  void refine_subproblem(const QuadraticProgram& problem);
+  bool drop_worst_multiplier();
+  int violated_side(int c, double* violation) const;
+  int most_violated(int* side) const;
+  Addition add_constraint(int c, int side);
+  int blocking_multiplier(int c, int side, double* step) const;
+  bool is_contradiction(int c, int side);
+  void project(int c);
+  void activate(int c, int side, double multiplier);
+  void deactivate(int position);
+  double active_limit(const ActiveConstraint& entry) const;
+  void measure_iterate();
+  void write_result(QpStatus status);
+
+  ConstraintRows constraints;
+  ActiveSetFactors factors;
+  std::vector<ActiveConstraint> active;
+  std::vector<ActiveConstraint> last_set;  ///< (n) the active set that a warm start goes through
+  std::vector<std::uint8_t> state;  ///< per constraint: 0 idle, 1 active, 2 met within rounding
+  VectorX x;                        ///< (stride)
+  VectorX gradient;                 ///< (stride) g, padded
+  VectorX multipliers;              ///< (stride) of the active constraints, in their order
+  VectorX values;                   ///< (stride) limits of the active constraints
+  VectorX residual, correction, multiplier_correction;
+  double objective_size = 0.0;  ///< |L^-1 g|
+  double iterate_size = 0.0;    ///< |L^-1 g| + max |x_i| sqrt(G_ii): what rounding is relative to
+  int iterations = 0;
+  int iteration_limit = 0;
+};
+
+}  // namespace sinew::qp
