@@ -20,16 +20,17 @@ enum class Tangent {
 };
 
 /// matrix = stiffness K + mass M. An integrator says what it needs by these weights; element code
-/// never knows which integrator runs. (h^2 + h beta, 1 + h alpha) is backward Euler with Rayleigh
-/// damping alpha M + beta K; (1, 0) is quasi-static.
+/// never knows which integrator runs. (1, 0) is quasi-static; (h^2 + h beta, 1 + h alpha) is
+/// backward Euler in velocities with Rayleigh damping alpha M + beta K.
 struct AssemblyWeights {
   Tangent tangent = Tangent::rotated;
   double stiffness = 1.0;
   double mass = 0.0;
 };
 
-/// Data of one simulation. Nothing allocates after construction; results are the same bit for bit
-/// for any number of threads.
+/// Data of one simulation. Results are the same bit for bit for any number of threads. Nothing
+/// allocates after construction, save that the first exact tangent takes its workspace (384 bytes
+/// an element, which simulations that never ask for it do without) unless `reserve` has.
 class Assembly {
  public:
   /// @param model what is assembled.
@@ -40,15 +41,21 @@ class Assembly {
 
   const FemModel& model() const { return *model_; }
 
+  /// Takes the workspace that `tangent` needs, so that evaluate() does not.
+  void reserve(Tangent tangent);
+
   /// Forces, energy, volume ratios and (unless tangent is none) the matrix, at `positions`.
   /// @param positions (n, 3) m, all mesh nodes, fixed ones included.
   /// @param weights what the matrix is to be.
+  /// Throws Error(wrong-shape) unless positions has a row for every mesh node. Positions that are
+  /// not finite are seen by minimum_volume_ratio() = -infinity.
   void evaluate(const Points& positions, const AssemblyWeights& weights);
 
   /// (3 free,) N: f(q) = dU/dq, the internal force on the left of M a + f = p.
   std::span<const double> forces() const;
   /// kBlockStride * pattern().blocks() doubles, layout of linalg::BlockPattern, N/m for (1, 0).
   std::span<const double> matrix() const;
+  std::span<double> matrix();  ///< the same, for a caller that adds to it
   /// Adds a 3x3 block to the matrix, after evaluate().
   /// @param free_i,free_j free numbers of row and column; for free_i < free_j the transpose is
   /// added to the stored block, for free_i > free_j the caller does not add (j, i) too. A diagonal
@@ -63,6 +70,9 @@ class Assembly {
 
  private:
   struct Workspace;
+  void evaluate_elements(const Points& positions, Tangent tangent);
+  void gather(const AssemblyWeights& weights);
+
   std::shared_ptr<const FemModel> model_;
   ThreadPool* pool_;
   std::unique_ptr<Workspace> work_;

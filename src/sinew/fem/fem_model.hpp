@@ -76,8 +76,9 @@ class FemModel {
   /// @param y (3 free,) for instance momentum in kg m/s; not the same memory as x.
   void apply_mass(std::span<const double> x, std::span<double> y) const;
 
-  const ElementBatches& elements() const { return *elements_; }  ///< for Assembly
-  const GatherLists& gather() const { return *gather_; }         ///< for Assembly
+  const ElementBatches& elements() const { return *elements_; }     ///< for Assembly
+  const GatherLists& gather() const { return *gather_; }            ///< for Assembly
+  std::span<const double> free_mass() const { return free_mass_; }  ///< (free,) kg, lumped
   /// (blocks,) kg: block b of M is mass_blocks[b] I. Empty when lumped.
   std::span<const double> mass_blocks() const { return mass_blocks_; }
 
@@ -88,7 +89,7 @@ class FemModel {
   std::unique_ptr<const ElementBatches> elements_;
   std::unique_ptr<const GatherLists> gather_;
   VectorX lumped_mass_;
-  std::vector<double> mass_blocks_;
+  std::vector<double> free_mass_, mass_blocks_;
   double total_mass_ = 0.0;
   double volume_ = 0.0;
 };

@@ -1,0 +1,166 @@
+#include "sinew/fem/assembly.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "sinew/core/error.hpp"
+#include "sinew/fem/block_gather.hpp"
+#include "sinew/fem/element_kernel.hpp"
+
+namespace sinew::fem {
+
+namespace {
+
+using material::kLanes;
+constexpr int kNodeGrain = 256;  // below this a thread's wake-up costs more than the work
+
+/// Columns of the matrix split so that threads have equal numbers of contributions.
+std::vector<int> split_columns(const FemModel& model, int threads) {
+  const linalg::BlockPattern& pattern = model.pattern();
+  const std::vector<std::int32_t>& start = model.gather().contribution_start;
+  std::vector<int> splits(static_cast<std::size_t>(threads) + 1, pattern.nodes);
+  splits[0] = 0;
+  int column = 0;
+  for (int thread = 1; thread < threads; ++thread) {
+    const auto share = static_cast<std::int64_t>(start.back()) * thread / threads;
+    const auto before = [&](int j) {
+      return start[static_cast<std::size_t>(pattern.column_start[static_cast<std::size_t>(j)])];
+    };
+    while (column < pattern.nodes && before(column) < share) ++column;
+    splits[static_cast<std::size_t>(thread)] = column;
+  }
+  return splits;
+}
+
+std::size_t bytes_of(const auto& vector) { return vector.capacity() * sizeof(vector[0]); }
+
+}  // namespace
+
+struct Assembly::Workspace {
+  std::vector<LaneRow> force_records, rotated_records, exact_records;  // eight doubles a row
+  std::vector<double> points;                                          // (n, 4) m
+  std::vector<double> forces, matrix;
+  std::vector<double> batch_energy;          // one a batch
+  std::vector<SmallestRatio> thread_ratios;  // one a thread
+  std::vector<int> column_splits;
+  double energy = 0.0;
+  SmallestRatio smallest{1.0, 0};
+
+  double* records(Tangent tangent) {
+    if (tangent == Tangent::none) return nullptr;
+    return (tangent == Tangent::exact ? exact_records : rotated_records)[0].value;
+  }
+};
+
+Assembly::Assembly(std::shared_ptr<const FemModel> model, ThreadPool& pool)
+    : model_(std::move(model)), pool_(&pool), work_(std::make_unique<Workspace>()) {
+  const auto batches = static_cast<std::size_t>(model_->elements().batches());
+  work_->force_records.resize(kForceRecord * batches);
+  work_->rotated_records.resize(kRotatedRecord * batches);
+  work_->points.resize(4 * static_cast<std::size_t>(model_->mesh().node_count()));
+  work_->forces.resize(3 * static_cast<std::size_t>(model_->free_count()));
+  work_->matrix.resize(linalg::kBlockStride * static_cast<std::size_t>(model_->pattern().blocks()));
+  work_->batch_energy.resize(batches);
+  work_->thread_ratios.resize(static_cast<std::size_t>(pool.size()));
+  work_->column_splits = split_columns(*model_, pool.size());
+}
+
+Assembly::~Assembly() = default;
+Assembly::Assembly(Assembly&&) noexcept = default;
+
+void Assembly::reserve(Tangent tangent) {
+  if (tangent != Tangent::exact || !work_->exact_records.empty()) return;
+  work_->exact_records.resize(kExactRecord *
+                              static_cast<std::size_t>(model_->elements().batches()));
+}
+
+void Assembly::evaluate(const Points& positions, const AssemblyWeights& weights) {
+  if (positions.rows() != model_->mesh().node_count()) {
+    throw Error(ErrorKind::wrong_shape, {.file = {}, .item = "positions"},
+                fmt::format("there are {} rows for {} nodes", positions.rows(),
+                            model_->mesh().node_count()),
+                "give one row for every node of the mesh");
+  }
+  reserve(weights.tangent);
+  evaluate_elements(positions, weights.tangent);
+  gather(weights);
+}
+
+void Assembly::evaluate_elements(const Points& positions, Tangent tangent) {
+  Workspace& work = *work_;
+  const int nodes = static_cast<int>(positions.rows());
+  pool_->for_range(nodes, kNodeGrain, [&](int begin, int end, int) {
+    for (Eigen::Index i = begin; i < end; ++i) {
+      for (Eigen::Index c = 0; c < 3; ++c) {
+        work.points[static_cast<std::size_t>(4 * i + c)] = positions(i, c);
+      }
+    }
+  });
+  const SmallestRatio none{std::numeric_limits<double>::infinity(), -1};
+  std::ranges::fill(work.thread_ratios, none);
+  const ElementBatches& elements = model_->elements();
+  const ElementOutput output{work.force_records[0].value, work.records(tangent),
+                             work.batch_energy.data()};
+  pool_->for_range(elements.batches(), 1, [&](int begin, int end, int thread) {
+    work.thread_ratios[static_cast<std::size_t>(thread)] =
+        evaluate_batches(elements, begin, end, work.points.data(), tangent, output);
+  });
+  work.energy = 0.0;
+  for (const double energy : work.batch_energy) work.energy += energy;
+  work.smallest = none;
+  for (const SmallestRatio& ratio : work.thread_ratios) {  // ascending slots: the first wins ties
+    if (ratio.value < work.smallest.value) work.smallest = ratio;
+  }
+}
+
+void Assembly::gather(const AssemblyWeights& weights) {
+  Workspace& work = *work_;
+  const FemModel& model = *model_;
+  const bool consistent = model.has_consistent_mass();
+  const double* records = work.records(weights.tangent);
+  pool_->run([&](int thread) {
+    const int begin = work.column_splits[static_cast<std::size_t>(thread)];
+    const int end = work.column_splits[static_cast<std::size_t>(thread) + 1];
+    gather_forces(model.gather(), begin, end, work.force_records[0].value, work.forces.data());
+    gather_blocks(model.gather(), model.pattern(), begin, end, records, weights,
+                  consistent ? nullptr : model.free_mass().data(),
+                  consistent ? model.mass_blocks().data() : nullptr, work.matrix.data());
+  });
+}
+
+std::span<const double> Assembly::forces() const { return work_->forces; }
+std::span<const double> Assembly::matrix() const { return work_->matrix; }
+std::span<double> Assembly::matrix() { return work_->matrix; }
+
+void Assembly::add_block(int free_i, int free_j, const Matrix3& k) {
+  const int block = model_->pattern().find(free_i, free_j);
+  if (block < 0) {
+    throw Error(ErrorKind::internal, {},
+                fmt::format("block ({}, {}) is not in the pattern", free_i, free_j),
+                "declare the coupling when the model is made");
+  }
+  double* target = work_->matrix.data() + linalg::kBlockStride * static_cast<std::size_t>(block);
+  for (int c = 0; c < 3; ++c) {
+    for (int r = 0; r < 3; ++r) target[4 * c + r] += free_i >= free_j ? k(r, c) : k(c, r);
+  }
+}
+
+double Assembly::strain_energy() const { return work_->energy; }
+double Assembly::minimum_volume_ratio() const { return work_->smallest.value; }
+
+int Assembly::worst_element() const {
+  const std::int32_t slot = work_->smallest.slot;
+  return slot < 0 ? -1 : model_->elements().tetrahedron[static_cast<std::size_t>(slot)];
+}
+
+std::size_t Assembly::bytes() const {
+  const Workspace& work = *work_;
+  return sizeof(Assembly) + sizeof(Workspace) + bytes_of(work.force_records) +
+         bytes_of(work.rotated_records) + bytes_of(work.exact_records) + bytes_of(work.points) +
+         bytes_of(work.forces) + bytes_of(work.matrix) + bytes_of(work.batch_energy) +
+         bytes_of(work.thread_ratios) + bytes_of(work.column_splits);
+}
+
+}  // namespace sinew::fem

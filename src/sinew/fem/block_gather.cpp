@@ -1,0 +1,132 @@
+#include "sinew/fem/block_gather.hpp"
+
+#include "sinew/fem/element_kernel.hpp"
+#include "sinew/fem/transpose.hpp"
+
+namespace sinew::fem {
+
+namespace {
+
+/// A 3x3 block by columns; fourth rows are padding.
+struct Block {
+  Quad column[3] = {};
+
+  /// += x y^T.
+  SINEW_INLINE void add_product(const Quad& x, const double* y) {
+    for (int c = 0; c < 3; ++c) column[c] += x * y[c];
+  }
+  SINEW_INLINE void add(double scale, const Block& other) {
+    for (int c = 0; c < 3; ++c) column[c] += scale * other.column[c];
+  }
+  SINEW_INLINE void add_transposed(const Block& other) {
+    const Quad &c0 = other.column[0], &c1 = other.column[1], &c2 = other.column[2], zero = {};
+    const Quad even = __builtin_shufflevector(c0, c1, 0, 4, 2, 6);
+    const Quad odd = __builtin_shufflevector(c0, c1, 1, 5, 3, 7);
+    const Quad even2 = __builtin_shufflevector(c2, zero, 0, 4, 2, 6);
+    const Quad odd2 = __builtin_shufflevector(c2, zero, 1, 5, 3, 7);
+    column[0] += __builtin_shufflevector(even, even2, 0, 1, 4, 5);
+    column[1] += __builtin_shufflevector(odd, odd2, 0, 1, 4, 5);
+    column[2] += __builtin_shufflevector(even, even2, 2, 3, 6, 7);
+  }
+  /// target = scale * this + diagonal I, padding 0.
+  SINEW_INLINE void store(double scale, double diagonal, double* target) const {
+    const Quad unit[3] = {{diagonal, 0, 0, 0}, {0, diagonal, 0, 0}, {0, 0, diagonal, 0}};
+    for (int c = 0; c < 3; ++c) {
+      store_quad(target + 4 * c, without_padding(scale * column[c]) + unit[c]);
+    }
+  }
+};
+
+/// sum h_a h_b^T over contributions begin .. end-1.
+template <int record>
+SINEW_INLINE Block outer_products(const GatherLists& lists, std::int32_t begin, std::int32_t end,
+                                  const double* records) {
+  Block sum;
+  for (std::int32_t k = begin; k < end; ++k) {
+    const std::uint32_t code = lists.contributions[static_cast<std::size_t>(k)];
+    const double* at = records + std::size_t{record} * (code >> 4);
+    sum.add_product(load_quad(at + (code & 12)), at + 4 * (code & 3));
+  }
+  return sum;
+}
+
+/// sum (kappa/mu) ((h_a . p_b) G - p_b p_a^T) over contributions begin .. end-1.
+SINEW_INLINE Block rotation_terms(const GatherLists& lists, std::int32_t begin, std::int32_t end,
+                                  const double* records) {
+  Block sum;
+  for (std::int32_t k = begin; k < end; ++k) {
+    const std::uint32_t code = lists.contributions[static_cast<std::size_t>(k)];
+    const double* at = records + std::size_t{kExactRecord} * (code >> 4);
+    const double pair = at[kPairPosition[code & 15]];
+    const Quad p = load_quad(at + kStretchedPosition + 4 * (code & 3)) * at[kKappaPosition];
+    sum.add_product(p, at + kStretchedPosition + (code & 12));
+    for (int c = 0; c < 3; ++c) sum.column[c] += pair * load_quad(at + kColumnsPosition + 4 * c);
+  }
+  return sum;
+}
+
+/// K without its constant diagonal.
+template <Tangent tangent>
+SINEW_INLINE Block gather_block(const GatherLists& lists, std::size_t block,
+                                const double* records) {
+  constexpr int kRecord = tangent == Tangent::exact ? kExactRecord : kRotatedRecord;
+  const std::int32_t first = lists.contribution_start[block];
+  Block result;
+  if constexpr (tangent == Tangent::exact) {
+    result = rotation_terms(lists, first, lists.contribution_start[block + 1], records);
+  }
+  std::int32_t begin = first;
+  for (std::int32_t r = lists.run_start[block]; r < lists.run_start[block + 1]; ++r) {
+    const ContributionRun& run = lists.runs[static_cast<std::size_t>(r)];
+    const Block products = outer_products<kRecord>(lists, begin, run.end, records);
+    result.add(run.ratio, products);
+    if constexpr (tangent == Tangent::rotated) result.add_transposed(products);
+    begin = run.end;
+  }
+  return result;
+}
+
+template <Tangent tangent>
+void gather_columns(const GatherLists& lists, const linalg::BlockPattern& pattern, int begin,
+                    int end, const double* records, const AssemblyWeights& weights,
+                    const double* node_mass, const double* block_mass, double* matrix) {
+  const double diagonal = weights.stiffness * (tangent == Tangent::exact ? 2.0 : 1.0);
+  for (auto j = static_cast<std::size_t>(begin); j < static_cast<std::size_t>(end); ++j) {
+    const auto first = static_cast<std::size_t>(pattern.column_start[j]);
+    const auto last = static_cast<std::size_t>(pattern.column_start[j + 1]);
+    for (std::size_t b = first; b < last; ++b) {
+      double mass = b == first && node_mass != nullptr ? node_mass[j] : 0.0;
+      if (block_mass != nullptr) mass = block_mass[b];
+      gather_block<tangent>(lists, b, records)
+          .store(weights.stiffness, diagonal * lists.diagonal_stiffness[b] + weights.mass * mass,
+                 matrix + linalg::kBlockStride * b);
+    }
+  }
+}
+
+}  // namespace
+
+void gather_blocks(const GatherLists& lists, const linalg::BlockPattern& pattern, int begin,
+                   int end, const double* records, const AssemblyWeights& weights,
+                   const double* node_mass, const double* block_mass, double* matrix) {
+  if (weights.tangent == Tangent::exact) {
+    gather_columns<Tangent::exact>(lists, pattern, begin, end, records, weights, node_mass,
+                                   block_mass, matrix);
+  } else if (weights.tangent == Tangent::rotated) {
+    gather_columns<Tangent::rotated>(lists, pattern, begin, end, records, weights, node_mass,
+                                     block_mass, matrix);
+  }
+}
+
+void gather_forces(const GatherLists& lists, int begin, int end, const double* records,
+                   double* forces) {
+  for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+    Quad sum = {};
+    for (std::int32_t k = lists.force_start[i]; k < lists.force_start[i + 1]; ++k) {
+      sum += load_quad(records + std::size_t{4} * lists.force_parts[static_cast<std::size_t>(k)]);
+    }
+    for (std::size_t c = 0; c < 3; ++c) forces[3 * i + c] = sum[c];
+  }
+}
+
+}  // namespace sinew::fem

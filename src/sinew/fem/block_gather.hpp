@@ -1,0 +1,25 @@
+/// @file
+/// Assembly by gathering: sums element records into blocks and nodal forces.
+#pragma once
+
+#include "sinew/fem/assembly.hpp"
+#include "sinew/fem/gather_lists.hpp"
+
+namespace sinew::fem {
+
+/// Writes the blocks in columns begin .. end-1 of the pattern as stiffness K + mass M.
+/// @param records element records of the tangent that `weights` names.
+/// @param node_mass (free,) kg, lumped; nullptr if `block_mass` is given.
+/// @param block_mass (blocks,) kg, consistent; nullptr if `node_mass` is given.
+/// @param matrix layout of linalg::BlockPattern.
+void gather_blocks(const GatherLists& lists, const linalg::BlockPattern& pattern, int begin,
+                   int end, const double* records, const AssemblyWeights& weights,
+                   const double* node_mass, const double* block_mass, double* matrix);
+
+/// Writes the internal forces of free nodes begin .. end-1.
+/// @param records kForceRecord doubles a slot.
+/// @param forces (3 free,) N.
+void gather_forces(const GatherLists& lists, int begin, int end, const double* records,
+                   double* forces);
+
+}  // namespace sinew::fem

@@ -1,0 +1,49 @@
+/// @file
+/// From positions to what each tetrahedron contributes, eight at a time. No element matrix is ever
+/// formed: with h_a = sqrt(V mu) R g_a the rotated stiffness of nodes (a, b) is
+///   K_ab = V mu (g_a . g_b) I + h_b h_a^T + (lambda/mu) h_a h_b^T,
+/// and the exact one, with p_a = G h_a, G and kappa as in material/response.hpp,
+///   K_ab = 2 V mu (g_a . g_b) I + (lambda/mu) h_a h_b^T + (kappa/mu) ((h_a . p_b) G - p_b p_a^T).
+/// The first term does not change, so that an element's record holds a few vectors alone.
+#pragma once
+
+#include <cstdint>
+
+#include "sinew/fem/assembly.hpp"
+#include "sinew/fem/element_batches.hpp"
+
+namespace sinew::fem {
+
+/// Doubles in a record, by slot; 3-vectors are padded to four so that each is one load.
+inline constexpr int kForceRecord = 16;    ///< f_0 . f_1 . f_2 . f_3 . : V P g_a in N, padding 0
+inline constexpr int kRotatedRecord = 16;  ///< h_0 . h_1 . h_2 . h_3 . , padding 0
+/// h_0..h_3 | p_0..p_3 | columns of G | unused quad; the scalars of kPairPosition and
+/// kKappaPosition stand where padding would.
+inline constexpr int kExactRecord = 48;
+inline constexpr int kStretchedPosition = 16;  ///< p_0
+inline constexpr int kColumnsPosition = 32;    ///< first column of G
+inline constexpr int kKappaPosition = 43;      ///< -kappa/mu
+/// kPairPosition[4 a + b]: where (kappa/mu) h_a . p_b stands; symmetric in a and b.
+inline constexpr std::uint8_t kPairPosition[16] = {3,  19, 23, 27, 19, 7,  31, 35,
+                                                   23, 31, 11, 39, 27, 35, 39, 15};
+
+/// The smallest det F seen, and its slot (the lowest of equals).
+struct SmallestRatio {
+  double value;
+  std::int32_t slot;
+};
+
+/// Where batches write. Record arrays are 64-byte aligned.
+struct ElementOutput {
+  double* forces;   ///< kForceRecord a slot
+  double* records;  ///< kRotatedRecord or kExactRecord a slot; not touched for Tangent::none
+  double* energy;   ///< one a batch, J
+};
+
+/// Evaluates batches begin .. end-1.
+/// @param points (n, 4) m, positions padded to four.
+/// Positions that are not finite give a smallest ratio of minus infinity.
+SmallestRatio evaluate_batches(const ElementBatches& elements, int begin, int end,
+                               const double* points, Tangent tangent, const ElementOutput& output);
+
+}  // namespace sinew::fem

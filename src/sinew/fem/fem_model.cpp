@@ -1,0 +1,184 @@
+#include "sinew/fem/fem_model.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "sinew/core/error.hpp"
+#include "sinew/fem/element_batches.hpp"
+#include "sinew/fem/gather_lists.hpp"
+#include "sinew/fem/mass.hpp"
+
+namespace sinew::fem {
+
+namespace {
+
+void check_mesh(const mesh::Mesh& mesh) {
+  const Place place{.file = mesh.name, .item = {}};
+  if (!mesh.hexahedra.empty()) {
+    throw Error(ErrorKind::unsupported_element, place,
+                fmt::format("the mesh has {} hexahedra", mesh.hexahedra.size()),
+                "give a mesh of tetrahedra alone");
+  }
+  if (mesh.tetrahedra.empty()) {
+    throw Error(ErrorKind::no_volume_elements, place, "the mesh has no tetrahedra",
+                "mesh the volume, not only its surface");
+  }
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+    for (const NodeId node : mesh.tetrahedra[t]) {
+      if (node >= 0 && node < mesh.node_count()) continue;
+      throw Error(ErrorKind::index_out_of_range, place,
+                  fmt::format("tetrahedron {} names node {} of {}", t, node, mesh.node_count()),
+                  "nodes count from 0");
+    }
+  }
+}
+
+/// Region of each tetrahedron.
+std::vector<std::int32_t> assign_regions(const mesh::Mesh& mesh,
+                                         const std::vector<Region>& regions) {
+  const auto fail = [&](ErrorKind kind, const std::string& message, const std::string& remedy) {
+    throw Error(kind, {.file = mesh.name, .item = "material"}, message, remedy);
+  };
+  if (regions.empty()) fail(ErrorKind::empty_list, "there is no material", "give one");
+  std::vector<std::int32_t> result(mesh.tetrahedra.size(), -1);
+  const auto count = static_cast<NodeId>(result.size());
+  for (std::size_t r = 0; r < regions.size(); ++r) {
+    regions[r].constants.validate("material");
+    std::vector<NodeId> all(regions[r].elements.empty() ? result.size() : 0);
+    std::iota(all.begin(), all.end(), 0);
+    for (const NodeId t : regions[r].elements.empty() ? all : regions[r].elements) {
+      if (t < 0 || t >= count) {
+        fail(ErrorKind::index_out_of_range,
+             fmt::format("region {} names tetrahedron {} of {}", r, t, count), "count from 0");
+      }
+      std::int32_t& region = result[static_cast<std::size_t>(t)];
+      if (region >= 0) {
+        fail(ErrorKind::conflicting_keys,
+             fmt::format("tetrahedron {} is in regions {} and {}", t, region, r),
+             "let regions not overlap");
+      }
+      region = static_cast<std::int32_t>(r);
+    }
+  }
+  const auto none = std::ranges::find(result, -1);
+  if (none != result.end()) {
+    fail(ErrorKind::empty_region,
+         fmt::format("tetrahedron {} has no material", none - result.begin()),
+         "let the regions cover every tetrahedron");
+  }
+  return result;
+}
+
+void check_node(NodeId node, const mesh::Mesh& mesh, const char* what) {
+  if (node >= 0 && node < mesh.node_count()) return;
+  throw Error(ErrorKind::index_out_of_range, {.file = mesh.name, .item = what},
+              fmt::format("node {} of {}", node, mesh.node_count()), "nodes count from 0");
+}
+
+/// Mesh node -> free number, or -1 where fixed or unused.
+std::vector<NodeId> number_free_nodes(const mesh::Mesh& mesh,
+                                      const std::vector<NodeId>& fixed_nodes) {
+  std::vector<NodeId> result(static_cast<std::size_t>(mesh.node_count()), -1);
+  for (const mesh::Tetrahedron& tetrahedron : mesh.tetrahedra) {
+    for (const NodeId node : tetrahedron) result[static_cast<std::size_t>(node)] = 0;
+  }
+  for (const NodeId node : fixed_nodes) {
+    check_node(node, mesh, "fixed");
+    result[static_cast<std::size_t>(node)] = -1;
+  }
+  NodeId next = 0;
+  for (NodeId& number : result) {
+    if (number == 0) number = next++;
+  }
+  if (next == 0) {
+    throw Error(ErrorKind::everything_fixed, {.file = mesh.name, .item = "fixed"},
+                fmt::format("all {} nodes are fixed", mesh.node_count()),
+                "fix a smaller region, and check its unit");
+  }
+  return result;
+}
+
+linalg::BlockPattern make_pattern(const mesh::Mesh& mesh, std::span<const NodeId> free_index,
+                                  int free_count,
+                                  const std::vector<std::vector<NodeId>>& couplings) {
+  std::vector<std::int32_t> starts{0}, members;
+  const auto add = [&](const auto& clique) {
+    for (const NodeId node : clique) {
+      check_node(node, mesh, "couplings");
+      const NodeId free = free_index[static_cast<std::size_t>(node)];
+      if (free >= 0) members.push_back(free);
+    }
+    starts.push_back(static_cast<std::int32_t>(members.size()));
+  };
+  for (const mesh::Tetrahedron& tetrahedron : mesh.tetrahedra) add(tetrahedron);
+  for (const std::vector<NodeId>& coupling : couplings) add(coupling);
+  return linalg::BlockPattern::from_cliques(free_count, starts, members);
+}
+
+std::vector<double> element_volumes(const mesh::Mesh& mesh, const ElementBatches& elements) {
+  std::vector<double> result(mesh.tetrahedra.size());
+  for (std::size_t slot = 0; slot < elements.tetrahedron.size(); ++slot) {
+    if (elements.tetrahedron[slot] < 0) continue;
+    result[static_cast<std::size_t>(elements.tetrahedron[slot])] =
+        elements.constants[slot / material::kLanes].volume.value[slot % material::kLanes];
+  }
+  return result;
+}
+
+}  // namespace
+
+FemModel::FemModel(std::shared_ptr<const mesh::Mesh> mesh, const FemModelSettings& settings)
+    : mesh_(std::move(mesh)) {
+  check_mesh(*mesh_);
+  const std::vector<std::int32_t> region_of = assign_regions(*mesh_, settings.regions);
+  free_index_ = number_free_nodes(*mesh_, settings.fixed_nodes);
+  for (NodeId node = 0; node < mesh_->node_count(); ++node) {
+    if (free_index_[static_cast<std::size_t>(node)] >= 0) free_nodes_.push_back(node);
+  }
+  pattern_ = make_pattern(*mesh_, free_index_, free_count(), settings.couplings);
+  elements_ = std::make_unique<const ElementBatches>(
+      make_element_batches(*mesh_, settings.regions, region_of));
+  gather_ = std::make_unique<const GatherLists>(
+      make_gather_lists(*elements_, settings.regions, free_index_, pattern_));
+
+  const std::vector<double> volumes = element_volumes(*mesh_, *elements_);
+  volume_ = std::accumulate(volumes.begin(), volumes.end(), 0.0);
+  const std::vector<double> masses = element_masses(settings, region_of, volumes);
+  lumped_mass_ = lumped_masses(*mesh_, settings, masses);
+  total_mass_ = lumped_mass_.sum();
+  free_mass_.reserve(free_nodes_.size());
+  for (const NodeId node : free_nodes_) free_mass_.push_back(lumped_mass_[node]);
+  if (settings.mass == MassMatrix::consistent) {
+    mass_blocks_ = consistent_mass_blocks(*mesh_, free_index_, pattern_, masses);
+  }
+}
+
+FemModel::~FemModel() = default;
+
+void FemModel::apply_mass(std::span<const double> x, std::span<double> y) const {
+  using Rows = Eigen::Map<Points>;
+  using ConstRows = Eigen::Map<const Points>;
+  const ConstRows in(x.data(), free_count(), 3);
+  Rows out(y.data(), free_count(), 3);
+  if (!has_consistent_mass()) {
+    for (Eigen::Index i = 0; i < free_count(); ++i) {
+      out.row(i) = free_mass_[static_cast<std::size_t>(i)] * in.row(i);
+    }
+    return;
+  }
+  out.setZero();
+  for (Eigen::Index j = 0; j < free_count(); ++j) {
+    const auto column = static_cast<std::size_t>(j);
+    for (auto b = static_cast<std::size_t>(pattern_.column_start[column]);
+         b < static_cast<std::size_t>(pattern_.column_start[column + 1]); ++b) {
+      const Eigen::Index i = pattern_.row[b];
+      out.row(i) += mass_blocks_[b] * in.row(j);
+      if (i != j) out.row(j) += mass_blocks_[b] * in.row(i);
+    }
+  }
+}
+
+}  // namespace sinew::fem

@@ -1,0 +1,129 @@
+#include "sinew/fem/gather_lists.hpp"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "sinew/core/error.hpp"
+
+namespace sinew::fem {
+
+namespace {
+
+using material::kLanes;
+
+struct Part {
+  std::int32_t block;
+  std::uint32_t code;
+  double ratio;
+  double stiffness;  // V mu g_a . g_b
+};
+
+std::array<NodeId, 4> free_nodes_of(const ElementBatches& elements, std::size_t slot,
+                                    std::span<const NodeId> free_index) {
+  std::array<NodeId, 4> result{};
+  const std::size_t first = 4 * kLanes * (slot / kLanes) + slot % kLanes;
+  for (std::size_t a = 0; a < 4; ++a) {
+    result[a] = free_index[static_cast<std::size_t>(elements.nodes[first + kLanes * a])];
+  }
+  return result;
+}
+
+Vector3 gradient(const BatchConstants& batch, std::size_t lane, std::size_t a) {
+  Vector3 g;
+  for (int c = 0; c < 3; ++c) {
+    const auto of = [&](int k) { return batch.gradient[k][c].value[lane]; };
+    g[c] = a == 0 ? -(of(0) + of(1) + of(2)) : of(static_cast<int>(a) - 1);
+  }
+  return g;
+}
+
+/// Appends the blocks in the lower triangle to which a slot contributes.
+void append_parts(const ElementBatches& elements, std::span<const Region> regions, std::size_t slot,
+                  const std::array<NodeId, 4>& free, const linalg::BlockPattern& pattern,
+                  std::vector<Part>& parts) {
+  const BatchConstants& batch = elements.constants[slot / kLanes];
+  const std::size_t lane = slot % kLanes;
+  const material::ElasticConstants& constants =
+      regions[static_cast<std::size_t>(elements.region[slot])].constants;
+  const double scale = batch.volume.value[lane] * batch.mu.value[lane];
+  for (std::size_t a = 0; a < 4; ++a) {
+    for (std::size_t b = 0; b < 4; ++b) {
+      if (free[b] < 0 || free[a] < free[b]) continue;
+      const auto code = static_cast<std::uint32_t>(16 * slot + 4 * a + b);
+      parts.push_back({static_cast<std::int32_t>(pattern.find(free[a], free[b])), code,
+                       constants.first_lame() / constants.shear_modulus(),
+                       scale * gradient(batch, lane, a).dot(gradient(batch, lane, b))});
+    }
+  }
+}
+
+void write_blocks(std::vector<Part>& parts, int blocks, GatherLists& lists) {
+  std::ranges::sort(parts, [](const Part& p, const Part& q) {
+    if (p.block != q.block) return p.block < q.block;
+    return p.ratio != q.ratio ? p.ratio < q.ratio : p.code < q.code;
+  });
+  lists.contributions.reserve(parts.size());
+  lists.diagonal_stiffness.assign(static_cast<std::size_t>(blocks), 0.0);
+  std::size_t next = 0;
+  for (int block = 0; block < blocks; ++block) {
+    lists.run_start.push_back(static_cast<std::int32_t>(lists.runs.size()));
+    lists.contribution_start.push_back(static_cast<std::int32_t>(next));
+    for (bool first = true; next < parts.size() && parts[next].block == block; first = false) {
+      const Part& part = parts[next++];
+      if (first || lists.runs.back().ratio != part.ratio) lists.runs.push_back({0, part.ratio});
+      lists.contributions.push_back(part.code);
+      lists.runs.back().end = static_cast<std::int32_t>(next);
+      lists.diagonal_stiffness[static_cast<std::size_t>(block)] += part.stiffness;
+    }
+  }
+  lists.run_start.push_back(static_cast<std::int32_t>(lists.runs.size()));
+  lists.contribution_start.push_back(static_cast<std::int32_t>(next));
+}
+
+void write_forces(const std::vector<std::array<NodeId, 4>>& free, int nodes, GatherLists& lists) {
+  lists.force_start.assign(static_cast<std::size_t>(nodes) + 1, 0);
+  for (const auto& element : free) {
+    for (const NodeId node : element) {
+      if (node >= 0) ++lists.force_start[static_cast<std::size_t>(node) + 1];
+    }
+  }
+  std::partial_sum(lists.force_start.begin(), lists.force_start.end(), lists.force_start.begin());
+  lists.force_parts.resize(static_cast<std::size_t>(lists.force_start.back()));
+  std::vector<std::int32_t> cursor = lists.force_start;
+  for (std::size_t slot = 0; slot < free.size(); ++slot) {
+    for (std::size_t a = 0; a < 4; ++a) {
+      if (free[slot][a] < 0) continue;
+      const auto place = cursor[static_cast<std::size_t>(free[slot][a])]++;
+      lists.force_parts[static_cast<std::size_t>(place)] = static_cast<std::uint32_t>(4 * slot + a);
+    }
+  }
+}
+
+}  // namespace
+
+GatherLists make_gather_lists(const ElementBatches& elements, std::span<const Region> regions,
+                              std::span<const NodeId> free_index,
+                              const linalg::BlockPattern& pattern) {
+  const std::size_t slots = elements.tetrahedron.size();
+  // 16 s + 4 a + b must fit 32 bits unsigned, and counts of contributions 31 bits
+  if (slots > (std::size_t{1} << 27)) {
+    throw Error(ErrorKind::size_limit, {}, fmt::format("the mesh has {} tetrahedra", slots),
+                "split it; at most 134 million fit one body");
+  }
+  GatherLists lists;
+  std::vector<Part> parts;
+  std::vector<std::array<NodeId, 4>> free(slots, {-1, -1, -1, -1});
+  for (std::size_t slot = 0; slot < slots; ++slot) {
+    if (elements.tetrahedron[slot] < 0) continue;
+    free[slot] = free_nodes_of(elements, slot, free_index);
+    append_parts(elements, regions, slot, free[slot], pattern, parts);
+  }
+  write_blocks(parts, pattern.blocks(), lists);
+  write_forces(free, pattern.nodes, lists);
+  return lists;
+}
+
+}  // namespace sinew::fem

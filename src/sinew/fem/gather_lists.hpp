@@ -1,0 +1,42 @@
+/// @file
+/// Who contributes to each 3x3 block of the matrix and to each node's force, so that assembly is a
+/// gather: every result is written once, by one thread, in a fixed order of summation.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sinew/fem/element_batches.hpp"
+#include "sinew/linalg/block_pattern.hpp"
+
+namespace sinew::fem {
+
+/// Contributions to one block by elements of equal lambda/mu, which factors out of their sum.
+struct ContributionRun {
+  std::int32_t end;  ///< one past its last entry in `contributions`; it begins where the last ended
+  double ratio;      ///< lambda / mu
+};
+
+struct GatherLists {
+  /// Element slot s couples local node a (row) with b (column): 16 s + 4 a + b.
+  std::vector<std::uint32_t> contributions;
+  std::vector<ContributionRun> runs;
+  /// Runs of block b: run_start[b] .. run_start[b+1]-1; its contributions begin at
+  /// contribution_start[b].
+  std::vector<std::int32_t> run_start, contribution_start;
+  /// (blocks,) sum of V mu g_a . g_b over a block's contributions, N/m.
+  std::vector<double> diagonal_stiffness;
+
+  /// Parts of free node i's force: force_parts[force_start[i] .. force_start[i+1]-1] = 4 s + a.
+  std::vector<std::int32_t> force_start;
+  std::vector<std::uint32_t> force_parts;
+};
+
+/// @param free_index mesh node -> free number or -1.
+/// Throws Error(size-limit) beyond 2^28 element slots.
+GatherLists make_gather_lists(const ElementBatches& elements, std::span<const Region> regions,
+                              std::span<const NodeId> free_index,
+                              const linalg::BlockPattern& pattern);
+
+}  // namespace sinew::fem

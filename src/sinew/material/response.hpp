@@ -1,0 +1,128 @@
+/// @file
+/// What a material law answers at a deformation gradient F = dx/dX, eight elements at a time, and
+/// the derivative of its stress.
+///
+/// With F = R S (polar_decomposition.hpp):
+///   corotational  psi = mu |F - R|^2 + lambda/2 (tr S - 3)^2
+///                 P   = 2 mu (F - R) + lambda (tr S - 3) R
+///   linear        psi = mu |e|^2 + lambda/2 (tr e)^2,   e = (F + F^T)/2 - I
+///                 P   = 2 mu e + lambda tr(e) I
+/// P = dpsi/dF is the first Piola-Kirchhoff stress; R drops out of its derivation because
+/// F : dR = S : R^T dR = 0 (symmetric times skew).
+///
+/// Tangents of the corotational law. Holding R fixed gives the rotated small-strain stiffness
+///   dP = mu (dF + R dF^T R) + lambda (R : dF) R.
+/// Exactly, R^T dR = [w]x with (tr(S) I - S) w = axial(R^T dF - dF^T R), so that
+///   dP = 2 mu dF + lambda (R : dF) R + (lambda (tr S - 3) - 2 mu) dR.
+/// For dF = u b^T seen by a test gradient v a^T, with r_a = R a, r_b = R b and
+/// G = tr(S) I - R S R^T, the identity [G a]x = det(G) G^-1 [a]x G^-1 turns the last term into
+/// products of vectors without an inverse:
+///   v . dP a = v . { 2 mu (a.b) I + lambda r_a r_b^T
+///                    + kappa ((r_a . G r_b) G - (G r_b)(G r_a)^T) } u,
+///   kappa = (lambda (tr S - 3) - 2 mu) / det G.
+/// The linear law is the same with R = S = I (G = 2 I), where both tangents agree.
+///
+/// Sources: law and P: Sifakis & Barbic, "FEM simulation of 3D deformable solids", SIGGRAPH 2012
+/// course, part I, sections 3.2 and 3.4; rotated stiffness: Muller & Gross, "Interactive virtual
+/// materials", Graphics Interface 2004, section 3; derivative of the rotation: McAdams et al.,
+/// "Efficient elasticity for character skinning", ACM Trans. Graph. 30(4), 2011, section 3, and
+/// Smith, de Goes, Kim, "Analytic eigensystems for isotropic distortion energies", ACM Trans.
+/// Graph. 38(1), 2019, section 5.1.
+#pragma once
+
+#include "sinew/material/elastic_constants.hpp"
+#include "sinew/material/lanes.hpp"
+#include "sinew/material/polar_decomposition.hpp"
+
+namespace sinew::material {
+
+/// Lame constants in every lane, Pa.
+struct LaneModuli {
+  Lanes mu, lambda;
+};
+
+/// A law's answer at F.
+struct Response {
+  Lanes3x3 stress;    ///< P, Pa
+  Lanes energy;       ///< psi, J/m^3
+  Lanes3x3 rotation;  ///< R (I for the linear law)
+  Lanes trace;        ///< tr S (3 for the linear law)
+  Lanes pair_sums;    ///< det G (8 for the linear law)
+  Lanes determinant;  ///< det F
+};
+
+/// What the exact tangent adds to R: G and kappa of this file's head.
+struct ExactTangent {
+  LanesSymmetric g;  ///< G = tr(S) I - R S R^T, without unit
+  Lanes kappa;       ///< (lambda (tr S - 3) - 2 mu) / det G, Pa
+};
+
+/// det G is held at or above this (it is 8 at rest), where the two smallest stretches cancel and
+/// the rotation has no derivative: the tangent stays finite.
+inline constexpr double kSmallestPairSums = 1e-9;
+
+template <Law law>
+SINEW_INLINE Response respond(const Lanes3x3& f, const LaneModuli& moduli);
+
+template <>
+SINEW_INLINE Response respond<Law::corotational>(const Lanes3x3& f, const LaneModuli& moduli) {
+  const PolarDecomposition polar = polar_decomposition(f);
+  Response result;
+  const Lanes growth = polar.trace - 3.0;
+  const Lanes pressure = moduli.lambda * growth;
+  Lanes distance = lanes(0.0);  // |F - R|^2, free of cancellation
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) {
+      const Lanes difference = f[r][c] - polar.rotation[r][c];
+      distance += difference * difference;
+      result.stress[r][c] = 2.0 * moduli.mu * difference + pressure * polar.rotation[r][c];
+    }
+  }
+  result.energy = moduli.mu * distance + 0.5 * pressure * growth;
+  result.rotation = polar.rotation;
+  result.trace = polar.trace;
+  result.pair_sums = polar.pair_sums;
+  result.determinant = polar.determinant;
+  return result;
+}
+
+template <>
+SINEW_INLINE Response respond<Law::linear>(const Lanes3x3& f, const LaneModuli& moduli) {
+  Response result;
+  const Lanes growth = f[0][0] + f[1][1] + f[2][2] - 3.0;
+  const Lanes pressure = moduli.lambda * growth;
+  Lanes square = lanes(0.0);
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) {
+      const Lanes strain = 0.5 * (f[r][c] + f[c][r]) - (r == c ? 1.0 : 0.0);
+      square += strain * strain;
+      result.stress[r][c] = 2.0 * moduli.mu * strain + (r == c ? pressure : lanes(0.0));
+      result.rotation[r][c] = lanes(r == c ? 1.0 : 0.0);
+    }
+  }
+  result.energy = moduli.mu * square + 0.5 * pressure * growth;
+  result.trace = lanes(3.0);
+  result.pair_sums = lanes(8.0);
+  result.determinant = determinant(f, cofactor(f));
+  return result;
+}
+
+template <Law law>
+SINEW_INLINE ExactTangent exact_tangent(const Lanes3x3& f, const LaneModuli& moduli,
+                                        const Response& at) {
+  const Lanes stiffening = moduli.lambda * (at.trace - 3.0) - 2.0 * moduli.mu;
+  const Lanes kappa = stiffening / maximum(at.pair_sums, lanes(kSmallestPairSums));
+  if constexpr (law == Law::linear) {
+    const Lanes zero = lanes(0.0), two = lanes(2.0);
+    return {{two, two, two, zero, zero, zero}, kappa};
+  }
+  const auto left_stretch = [&](int a, int b) {  // R S R^T = F R^T
+    return f[a][0] * at.rotation[b][0] + f[a][1] * at.rotation[b][1] + f[a][2] * at.rotation[b][2];
+  };
+  return {
+      {at.trace - left_stretch(0, 0), at.trace - left_stretch(1, 1), at.trace - left_stretch(2, 2),
+       -left_stretch(0, 1), -left_stretch(0, 2), -left_stretch(1, 2)},
+      kappa};
+}
+
+}  // namespace sinew::material
