@@ -60,8 +60,7 @@ Vector3 Cable::point(const Placement& placement, int i) const {
   return i == 0 ? *pull_point_ : placement.position(points_[static_cast<std::size_t>(i - 1)]);
 }
 
-void Cable::declare(mechanics::RowPattern& rows,
-                    std::vector<mechanics::RowCurvature>& curvatures) {
+void Cable::declare(mechanics::RowPattern& rows, std::vector<mechanics::RowCurvature>& curvatures) {
   first_entry_ = rows.entries();
   first_row_ = rows.add_row(points_);
   row_count_ = 1;
@@ -89,8 +88,7 @@ void Cable::linearise(const Placement& placement, mechanics::RowValues& values) 
       here = there;
     }
     if (i >= skip) {
-      values.direction[static_cast<std::size_t>(first_entry_ + i - skip)] =
-          next.direction - before;
+      values.direction[static_cast<std::size_t>(first_entry_ + i - skip)] = next.direction - before;
     }
     length += next.length;
     before = next.direction;
@@ -98,16 +96,14 @@ void Cable::linearise(const Placement& placement, mechanics::RowValues& values) 
   values.delta[first_row_] = rest_length_ - length;
 }
 
-void Cable::curve(const Placement& placement,
-                  std::span<mechanics::RowCurvature> curvatures) const {
+void Cable::curve(const Placement& placement, std::span<mechanics::RowCurvature> curvatures) const {
   const int skip = pull_point_ ? 1 : 0;
   for (auto& entry : curvatures) entry.curvature.setZero();
   // Diagonal pairs of sliding point k stand at 2 k, its pair with the next one at 2 k + 1.
   for (int i = 0; i + 1 < point_count(); ++i) {
     const Segment s = segment(point(placement, i), point(placement, i + 1));
     if (s.length <= kShortestSegment) continue;
-    const Matrix3 bend =
-        (Matrix3::Identity() - s.direction * s.direction.transpose()) / s.length;
+    const Matrix3 bend = (Matrix3::Identity() - s.direction * s.direction.transpose()) / s.length;
     const int k = i - skip;
     if (k >= 0) {
       curvatures[static_cast<std::size_t>(2 * k)].curvature -= bend;

@@ -11,9 +11,9 @@
 namespace sinew::constraint {
 
 /// One row: effort = tension T >= 0 (N), delta = L_0 - L (m), the length pulled out at the pull
-/// point. With u_i the unit vector of segment i, d(delta)/dx_i = u_i - u_{i-1}, so that H^T T is the
-/// force T (u_i - u_{i-1}) which a taut frictionless cable puts on via point i. The curvature of a
-/// segment of length l is d2(delta) = -(I - u u^T)/l on its two ends' relative motion.
+/// point. With u_i the unit vector of segment i, d(delta)/dx_i = u_i - u_{i-1}, so that H^T T is
+/// the force T (u_i - u_{i-1}) which a taut frictionless cable puts on via point i. The curvature
+/// of a segment of length l is d2(delta) = -(I - u u^T)/l on its two ends' relative motion.
 class Cable : public Constraint {
  public:
   /// @param name for messages.

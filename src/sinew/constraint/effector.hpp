@@ -51,10 +51,10 @@ class PointEffector : public Effector {
   mechanics::MaterialPoint point_;
 };
 
-/// Orientation of the frame through three points a, b, c: e1 along b - a, e3 normal to the triangle,
-/// e2 = e3 x e1. Rows are the rotation's components about the world's axes; value() is the rotation
-/// vector of R = E(now) E(rest)^T. The Jacobian follows from de1 = omega x e1 and the motion of c
-/// along e3: omega = omega_1 e1 + omega_2 e2 + omega_3 e3 with
+/// Orientation of the frame through three points a, b, c: e1 along b - a, e3 normal to the
+/// triangle, e2 = e3 x e1. Rows are the rotation's components about the world's axes; value() is
+/// the rotation vector of R = E(now) E(rest)^T. The Jacobian follows from de1 = omega x e1 and the
+/// motion of c along e3: omega = omega_1 e1 + omega_2 e2 + omega_3 e3 with
 ///   omega_3 = e2.(b'-a')/|b-a|,  omega_2 = -e3.(b'-a')/|b-a|,
 ///   omega_1 = (e3.(c'-a') + alpha omega_2)/beta,   c - a = alpha e1 + beta e2.
 class OrientationEffector : public Effector {

@@ -1,11 +1,13 @@
 /// @file
-/// What every model of a robot can do, whatever its coordinates: linearise, condense onto constraint
-/// rows, and move. Finite elements, reduced models, rods and constant-curvature arms are Bodies.
+/// What every model of a robot can do, whatever its coordinates: linearise, condense onto
+/// constraint rows, and move. Finite elements, reduced models, rods and constant-curvature arms are
+/// Bodies.
 ///
 /// One step of a body, in the order of the calls:
 ///   begin_step   remembers q_start and v_start
 ///   linearise    A and b = p - f(q) - inertia - damping at the current q       (assembly)
-///   condense     factorises A bordered by its part of H: W and H A^-1 b        (factorisation)
+///   take_rows    its part of H                                                 (compliance)
+///   condense     factorises A bordered by H: W and H A^-1 b                    (factorisation)
 ///   solve_motion dq = A^-1 (b + H^T lambda)                                    (correction)
 ///   apply_motion q <- q_before (+) scale dq, and says how well that went
 ///   end_step     velocities follow
@@ -37,6 +39,8 @@ struct LinearisationRequest {
   Tangent tangent = Tangent::real_time;
   /// Rows' curvature will be added (see add_curvature); costs a wider pattern.
   bool with_curvature = false;
+  /// Further linearisations of the same step may follow (Newton's iterations).
+  bool iterating = false;
 };
 
 class Body;
@@ -72,9 +76,9 @@ class BodyModel {
 
 /// How a proposed motion turned out.
 struct MotionReport {
-  bool finite = true;              ///< no NaN or infinity in the new state
+  bool finite = true;                  ///< no NaN or infinity in the new state
   double smallest_volume_ratio = 1.0;  ///< min det F over the elements; <= 0 means inverted
-  int worst_element = -1;          ///< where
+  int worst_element = -1;              ///< where
 };
 
 /// The state and workspace of one body in one simulation. Nothing allocates after construction.
@@ -92,14 +96,21 @@ class Body {
   /// Adds effort-weighted curvature of a row (geometric stiffness): A -= effort d2(delta)/dq2.
   /// Between linearise (with_curvature) and condense.
   virtual void add_curvature(const RowCurvature& curvature, double effort) = 0;
-  /// Factorises with this body's part of H.
-  virtual linalg::FactorStatus condense(const RowValues& rows) = 0;
+  /// Takes this body's part of H for what follows.
+  virtual void take_rows(const RowValues& rows) = 0;
+  /// |b + H^T effort|, N: how far the current state is from satisfying the step's equation.
+  virtual double residual(std::span<const double> effort) = 0;
+  /// Factorises A bordered by the rows taken.
+  virtual linalg::FactorStatus condense() = 0;
   /// Adds this body's W (rows, rows) and H A^-1 b (rows,) to those of the world.
   virtual void add_compliance(MatrixX& compliance, VectorX& free_motion) const = 0;
-  /// |b + H^T effort|, N, over this body with the last linearisation and rows; b alone where the
-  /// rows are not yet condensed.
-  virtual double residual(const RowValues& rows, std::span<const double> effort) const = 0;
+  /// Remembers b + H^T effort of the current linearisation, so that load stepping can take it away.
+  virtual void hold_imbalance(std::span<const double> effort) = 0;
+  /// From the next linearisation on, b is lessened by `share` of what was held; 0 ends it.
+  virtual void set_imbalance_share(double share) = 0;
+  /// dq = A^-1 (b + H^T effort).
   virtual void solve_motion(std::span<const double> effort) = 0;
+  /// State of the last linearisation moved by scale dq; may be called again with another scale.
   virtual MotionReport apply_motion(double scale) = 0;
   virtual void end_step(const StepWeights& weights) = 0;
 

@@ -1,6 +1,6 @@
 /// @file
-/// Time integrators as a few weights. The unknown of every step is the motion dq; an integrator says
-/// how much of mass and damping joins the stiffness in A = mass M + damping C + df/dq, so that
+/// Time integrators as a few weights. The unknown of every step is the motion dq; an integrator
+/// says how much of mass and damping joins the stiffness in A = mass M + damping C + df/dq, so that
 /// bodies never know which integrator runs.
 #pragma once
 
@@ -26,8 +26,8 @@ struct StepWeights {
   bool dynamic() const { return mass > 0.0; }
 };
 
-/// Backward Euler (Hairer & Wanner 1996, IV.3): M (v - v_start) = h (p - f - C v), q = q_start + h v,
-/// divided by h: mass = 1/h^2, momentum = damping = rate = 1/h. Quasi-static: all zero.
+/// Backward Euler (Hairer & Wanner 1996, IV.3): M (v - v_start) = h (p - f - C v), q = q_start + h
+/// v, divided by h: mass = 1/h^2, momentum = damping = rate = 1/h. Quasi-static: all zero.
 /// @param time_step h in s, > 0.
 StepWeights step_weights(Integrator integrator, double time_step);
 

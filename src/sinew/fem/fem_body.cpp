@@ -1,0 +1,321 @@
+#include "sinew/fem/fem_body.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/linalg/block_product.hpp"
+
+namespace sinew::fem {
+
+namespace {
+
+// A body whose nodes are this many of its sizes away has blown up.
+constexpr double kLargestSize = 1e3;
+
+std::span<double> span_of(VectorX& v) { return {v.data(), static_cast<std::size_t>(v.size())}; }
+std::span<const double> span_of(const VectorX& v) {
+  return {v.data(), static_cast<std::size_t>(v.size())};
+}
+
+}  // namespace
+
+struct FemBody::Numbers {
+  Numbers(const FemSystem& system_in, ThreadPool& pool)
+      : system(system_in),
+        assembly(system.elements, pool),
+        factorisation(system.plan->create(pool)),
+        border(3 * static_cast<std::size_t>(system.border.entries()), 0.0) {}
+
+  const FemSystem& system;
+  Assembly assembly;
+  std::unique_ptr<linalg::Factorisation> factorisation;
+  std::vector<double> border;
+  // Newton with stiffness damping: A at the start of the step, and the sum that is factorised.
+  std::vector<double> start_matrix, damped_matrix;
+  bool damped = false;
+};
+
+FemBody::FemBody(const FemBodyModel& model, ThreadPool& pool)
+    : model_(model),
+      pool_(pool),
+      positions_(model.mesh().nodes),
+      velocities_(Points::Zero(positions_.rows(), 3)),
+      external_forces_(velocities_),
+      start_positions_(positions_),
+      start_velocities_(velocities_),
+      plain_(std::make_unique<Numbers>(model.system(false), pool)),
+      active_(plain_.get()) {
+  const auto nodes = model.elements().free_nodes();
+  const auto size = 3 * static_cast<Eigen::Index>(nodes.size());
+  for (VectorX* v : {&right_, &motion_, &base_, &travel_, &momentum_, &scratch_, &imbalance_})
+    v->setZero(size);
+  gravity_force_.resize(size);
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    gravity_force_.segment<3>(3 * static_cast<Eigen::Index>(i)) =
+        model.elements().lumped_mass()[nodes[i]] * model.settings().gravity;
+  }
+  row_effort_.resize(model.rows().size());
+  const Vector3 extent = positions_.colwise().maxCoeff() - positions_.colwise().minCoeff();
+  const auto count = static_cast<double>(nodes.size());
+  blow_up_ =
+      kLargestSize * kLargestSize * count * extent.squaredNorm() + 4.0 * positions_.squaredNorm();
+}
+
+FemBody::~FemBody() = default;
+
+FemBody::Numbers& FemBody::numbers(bool with_curvature) {
+  const FemSystem& system = model_.system(with_curvature);
+  if (&system == &plain_->system) return *plain_;
+  if (!curved_) curved_ = std::make_unique<Numbers>(system, pool_);
+  return *curved_;
+}
+
+Vector3 FemBody::weighted(const Points& field, int point) const {
+  const auto& a = model_.attachment(point);
+  Vector3 sum = Vector3::Zero();
+  for (std::size_t k = 0; k < a.nodes.size(); ++k) {
+    sum += a.weights[k] * field.row(a.nodes[k]).transpose();
+  }
+  return sum;
+}
+
+Vector3 FemBody::position(int point) const { return weighted(positions_, point); }
+Vector3 FemBody::velocity(int point) const { return weighted(velocities_, point); }
+
+void FemBody::begin_step() {
+  start_positions_ = positions_;
+  start_velocities_ = velocities_;
+  first_linearisation_ = true;
+}
+
+void FemBody::linearise(const mechanics::LinearisationRequest& request) {
+  active_ = &numbers(request.with_curvature);
+  const auto& weights = request.weights;
+  const auto& damping = model_.settings().damping;
+  const double mass = weights.mass + damping.mass * weights.damping;
+  const double rate = damping.stiffness * weights.damping;
+  AssemblyWeights assembly{
+      request.tangent == mechanics::Tangent::exact ? Tangent::exact : Tangent::rotated, 1.0 + rate,
+      mass};
+  active_->damped = request.iterating && rate > 0.0;
+  if (active_->damped && !first_linearisation_) {
+    // A = K + rate K_start + mass M, where the stored A_start = (1 + rate) K_start + mass M.
+    assembly.stiffness = 1.0;
+    assembly.mass = mass / (1.0 + rate);
+  }
+  active_->assembly.evaluate(positions_, assembly);
+  if (active_->damped) add_frozen_damping(request);
+  form_right_side(request);
+  first_linearisation_ = false;
+}
+
+void FemBody::add_frozen_damping(const mechanics::LinearisationRequest& request) {
+  const auto matrix = active_->assembly.matrix();
+  if (first_linearisation_) {
+    active_->start_matrix.assign(matrix.begin(), matrix.end());
+    active_->damped_matrix = active_->start_matrix;
+    return;
+  }
+  const double rate = model_.settings().damping.stiffness * request.weights.damping;
+  const double share = rate / (1.0 + rate);
+  for (std::size_t i = 0; i < matrix.size(); ++i) {
+    active_->damped_matrix[i] = matrix[i] + share * active_->start_matrix[i];
+  }
+}
+
+// b = p - f - M (mass d - momentum v_start) - damping C d, with d the motion since the step began.
+void FemBody::form_right_side(const mechanics::LinearisationRequest& request) {
+  const auto nodes = model_.elements().free_nodes();
+  const auto forces = active_->assembly.forces();
+  double internal = 0.0;
+  double outside = 0.0;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const auto k = 3 * static_cast<Eigen::Index>(i);
+    const Eigen::Map<const Vector3> f(forces.data() + k);
+    const Vector3 p = gravity_force_.segment<3>(k) + external_forces_.row(nodes[i]).transpose();
+    right_.segment<3>(k) = p - f;
+    internal += f.squaredNorm();
+    outside += p.squaredNorm();
+  }
+  force_scale_ = std::sqrt(internal) + std::sqrt(outside);
+  if (imbalance_share_ != 0.0) right_ -= imbalance_share_ * imbalance_;
+  const auto& weights = request.weights;
+  if (!weights.dynamic()) return;
+
+  const auto& damping = model_.settings().damping;
+  const double mass = weights.mass + damping.mass * weights.damping;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const auto k = 3 * static_cast<Eigen::Index>(i);
+    travel_.segment<3>(k) = (positions_.row(nodes[i]) - start_positions_.row(nodes[i])).transpose();
+    momentum_.segment<3>(k) = weights.momentum * start_velocities_.row(nodes[i]).transpose() -
+                              mass * travel_.segment<3>(k);
+  }
+  active_->system.elements->apply_mass(span_of(momentum_), span_of(scratch_));
+  right_ += scratch_;
+  force_scale_ += scratch_.norm();
+  const double rate = damping.stiffness * weights.damping;
+  if (rate > 0.0 && !first_linearisation_ && active_->damped) {
+    // rate K_start d = rate / (1 + rate) (A_start d - mass M d)
+    const double share = rate / (1.0 + rate);
+    linalg::multiply(active_->system.elements->pattern(), active_->start_matrix, span_of(travel_),
+                     span_of(scratch_));
+    right_ -= share * scratch_;
+    active_->system.elements->apply_mass(span_of(travel_), span_of(scratch_));
+    right_ += share * mass * scratch_;
+  }
+}
+
+void FemBody::add_curvature(const mechanics::RowCurvature& curvature, double effort) {
+  const auto& first = model_.attachment(curvature.first.point);
+  const auto& second = model_.attachment(curvature.second.point);
+  const bool same = curvature.first.point == curvature.second.point;
+  const auto free = model_.elements().free_index();
+  for (std::size_t a = 0; a < first.nodes.size(); ++a) {
+    const auto i = free[static_cast<std::size_t>(first.nodes[a])];
+    if (i < 0) continue;
+    for (std::size_t b = 0; b < second.nodes.size(); ++b) {
+      const auto j = free[static_cast<std::size_t>(second.nodes[b])];
+      if (j < 0 || (same && i < j)) continue;
+      Matrix3 block = -effort * first.weights[a] * second.weights[b] * curvature.curvature;
+      // Off-diagonal pairs stand for themselves and their transpose.
+      if (!same && i == j) block = (block + block.transpose()).eval();
+      active_->assembly.add_block(i, j, block);
+    }
+  }
+}
+
+void FemBody::take_rows(const mechanics::RowValues& rows) {
+  std::ranges::fill(active_->border, 0.0);
+  for (const auto& s : active_->system.scatter) {
+    double* value = active_->border.data() + 3 * static_cast<std::size_t>(s.position);
+    const Vector3& direction = rows.direction[static_cast<std::size_t>(s.entry)];
+    for (int c = 0; c < 3; ++c) value[c] += s.weight * direction[c];
+  }
+}
+
+double FemBody::residual(std::span<const double> effort) {
+  scratch_ = right_;
+  const auto& border = active_->system.border;
+  for (std::size_t k = 0; k < model_.rows().size(); ++k) {
+    const double lambda = effort[static_cast<std::size_t>(model_.rows()[k])];
+    if (lambda == 0.0) continue;
+    for (auto e = border.row_start[k]; e < border.row_start[k + 1]; ++e) {
+      const double* value = active_->border.data() + 3 * static_cast<std::size_t>(e);
+      double* r = scratch_.data() + 3 * border.node[static_cast<std::size_t>(e)];
+      for (int c = 0; c < 3; ++c) r[c] += lambda * value[c];
+    }
+  }
+  return scratch_.norm();
+}
+
+void FemBody::hold_imbalance(std::span<const double> effort) {
+  residual(effort);
+  imbalance_ = scratch_;
+}
+
+linalg::FactorStatus FemBody::condense() {
+  const std::span<const double> matrix = active_->damped
+                                             ? std::span<const double>(active_->damped_matrix)
+                                             : std::span<const double>(active_->assembly.matrix());
+  return active_->factorisation->factorise(matrix, active_->border, span_of(right_));
+}
+
+void FemBody::add_compliance(MatrixX& compliance, VectorX& free_motion) const {
+  const MatrixX& own = active_->factorisation->compliance();
+  const VectorX& motion = active_->factorisation->free_motion();
+  const auto& rows = model_.rows();
+  for (std::size_t j = 0; j < rows.size(); ++j) {
+    const auto column = static_cast<Eigen::Index>(j);
+    free_motion[rows[j]] += motion[column];
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      compliance(rows[i], rows[j]) += own(static_cast<Eigen::Index>(i), column);
+    }
+  }
+}
+
+void FemBody::solve_motion(std::span<const double> effort) {
+  for (std::size_t k = 0; k < row_effort_.size(); ++k) {
+    row_effort_[k] = effort[static_cast<std::size_t>(model_.rows()[k])];
+  }
+  active_->factorisation->solve_with_effort(row_effort_, span_of(motion_));
+  const auto nodes = model_.elements().free_nodes();
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    base_.segment<3>(3 * static_cast<Eigen::Index>(i)) = positions_.row(nodes[i]).transpose();
+  }
+}
+
+mechanics::MotionReport FemBody::apply_motion(double scale) {
+  const auto nodes = model_.elements().free_nodes();
+  double sum = 0.0;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const auto k = 3 * static_cast<Eigen::Index>(i);
+    const Vector3 moved = base_.segment<3>(k) + scale * motion_.segment<3>(k);
+    positions_.row(nodes[i]) = moved;
+    sum += moved.squaredNorm();
+  }
+  mechanics::MotionReport report;
+  report.finite = std::isfinite(sum) && sum < blow_up_;
+  if (report.finite) {
+    const auto volume = active_->assembly.measure_volume(positions_);
+    report.smallest_volume_ratio = volume.smallest_ratio;
+    report.worst_element = volume.element;
+  }
+  return report;
+}
+
+void FemBody::end_step(const mechanics::StepWeights& weights) {
+  velocities_ = weights.rate * (positions_ - start_positions_);
+}
+
+std::size_t FemBody::state_size() const { return 2 * static_cast<std::size_t>(positions_.size()); }
+
+void FemBody::save_state(std::span<double> state) const {
+  std::copy_n(positions_.data(), positions_.size(), state.data());
+  std::copy_n(velocities_.data(), velocities_.size(), state.data() + positions_.size());
+}
+
+void FemBody::load_state(std::span<const double> state) {
+  std::copy_n(state.data(), positions_.size(), positions_.data());
+  std::copy_n(state.data() + positions_.size(), velocities_.size(), velocities_.data());
+}
+
+int FemBody::negative_pivots() const { return active_->factorisation->negative_pivots(); }
+
+double FemBody::strain_energy() {
+  plain_->assembly.evaluate(positions_, {Tangent::none, 1.0, 0.0});
+  return plain_->assembly.strain_energy();
+}
+
+double FemBody::kinetic_energy() const {
+  const auto nodes = model_.elements().free_nodes();
+  VectorX velocity(3 * static_cast<Eigen::Index>(nodes.size()));
+  VectorX momentum(velocity.size());
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    velocity.segment<3>(3 * static_cast<Eigen::Index>(i)) = velocities_.row(nodes[i]).transpose();
+  }
+  model_.elements().apply_mass(span_of(velocity), span_of(momentum));
+  return 0.5 * velocity.dot(momentum);
+}
+
+double FemBody::gravity_energy() const {
+  double energy = 0.0;
+  const auto nodes = model_.elements().free_nodes();
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const Vector3 moved =
+        (positions_.row(nodes[i]) - model_.mesh().nodes.row(nodes[i])).transpose();
+    energy -= gravity_force_.segment<3>(3 * static_cast<Eigen::Index>(i)).dot(moved);
+  }
+  return energy;
+}
+
+std::size_t FemBody::bytes() const {
+  auto total = sizeof(double) * static_cast<std::size_t>(5 * positions_.size() + 7 * right_.size());
+  for (const Numbers* n : {plain_.get(), curved_.get()}) {
+    if (n == nullptr) continue;
+    total += n->assembly.bytes() + n->factorisation->bytes() +
+             sizeof(double) * (n->border.size() + n->start_matrix.size() + n->damped_matrix.size());
+  }
+  return total;
+}
+
+}  // namespace sinew::fem

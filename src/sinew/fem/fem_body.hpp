@@ -1,0 +1,81 @@
+/// @file
+/// The state and workspace of a finite-element robot in one simulation.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "sinew/fem/assembly.hpp"
+#include "sinew/fem/fem_body_model.hpp"
+
+namespace sinew::fem {
+
+/// M a + C v + f(q) = p + H^T lambda over the free nodes, C = alpha M + beta K(q_start).
+class FemBody : public mechanics::Body {
+ public:
+  /// @param model must outlive the body. @param pool likewise.
+  FemBody(const FemBodyModel& model, ThreadPool& pool);
+  ~FemBody() override;
+
+  const mechanics::BodyModel& model() const override { return model_; }
+  const FemBodyModel& fem_model() const { return model_; }
+  Vector3 position(int point) const override;
+  Vector3 velocity(int point) const override;
+
+  void begin_step() override;
+  void linearise(const mechanics::LinearisationRequest& request) override;
+  void add_curvature(const mechanics::RowCurvature& curvature, double effort) override;
+  void take_rows(const mechanics::RowValues& rows) override;
+  double residual(std::span<const double> effort) override;
+  linalg::FactorStatus condense() override;
+  void hold_imbalance(std::span<const double> effort) override;
+  void set_imbalance_share(double share) override { imbalance_share_ = share; }
+  void add_compliance(MatrixX& compliance, VectorX& free_motion) const override;
+  void solve_motion(std::span<const double> effort) override;
+  mechanics::MotionReport apply_motion(double scale) override;
+  void end_step(const mechanics::StepWeights& weights) override;
+
+  std::size_t state_size() const override;
+  void save_state(std::span<double> state) const override;
+  void load_state(std::span<const double> state) override;
+
+  int negative_pivots() const override;
+  double force_scale() const override { return force_scale_; }
+  double strain_energy() override;
+  double kinetic_energy() const override;
+  double gravity_energy() const override;
+  std::size_t bytes() const override;
+
+  /// (n, 3) m, all mesh nodes in file order, fixed and unused ones included.
+  const Points& positions() const { return positions_; }
+  /// (n, 3) m/s.
+  const Points& velocities() const { return velocities_; }
+  /// (n, 3) N, dead loads added to gravity; zero unless set. Forces on fixed nodes do nothing.
+  Points& external_forces() { return external_forces_; }
+  const Points& external_forces() const { return external_forces_; }
+
+ private:
+  struct Numbers;  // assembly and factorisation of one FemSystem
+
+  Numbers& numbers(bool with_curvature);
+  void form_right_side(const mechanics::LinearisationRequest& request);
+  void add_frozen_damping(const mechanics::LinearisationRequest& request);
+  Vector3 weighted(const Points& field, int point) const;
+
+  const FemBodyModel& model_;
+  ThreadPool& pool_;
+  Points positions_, velocities_, external_forces_;
+  Points start_positions_, start_velocities_;
+  std::unique_ptr<Numbers> plain_, curved_;
+  Numbers* active_ = nullptr;
+
+  // Over free nodes, (3 free,).
+  VectorX gravity_force_, right_, motion_, base_, travel_, momentum_, scratch_, imbalance_;
+  std::vector<double> row_effort_;
+  double imbalance_share_ = 0.0;
+  double blow_up_ = 0.0;  // sum of squared positions, m^2, beyond which the state is taken as lost
+  bool first_linearisation_ = true;
+  double force_scale_ = 0.0;
+};
+
+}  // namespace sinew::fem

@@ -1,0 +1,129 @@
+#include "sinew/fem/fem_body_model.hpp"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "sinew/core/error.hpp"
+#include "sinew/fem/fem_body.hpp"
+
+namespace sinew::fem {
+
+FemBodyModel::FemBodyModel(FemBodySettings settings) : settings_(std::move(settings)) {
+  for (const double value : {settings_.damping.mass, settings_.damping.stiffness}) {
+    if (!(value >= 0.0)) {
+      throw Error(ErrorKind::out_of_range, {.item = "damping of body '" + settings_.name + "'"},
+                  fmt::format("a damping coefficient is {:g}", value), "give zero or more");
+    }
+  }
+  plain_.elements = std::make_shared<const FemModel>(settings_.mesh, settings_.elements);
+  embedder_ = std::make_unique<mesh::Embedder>(*settings_.mesh);
+}
+
+FemBodyModel::~FemBodyModel() = default;
+
+int FemBodyModel::attach(const Vector3& rest_position, mesh::Outside outside,
+                         const std::string& what) {
+  const mesh::EmbeddedPoint point = embedder_->locate(rest_position, outside, what);
+  return attach_nodes(point.nodes, point.weights);
+}
+
+int FemBodyModel::attach_nodes(std::span<const NodeId> nodes, std::span<const double> weights) {
+  attachments_.push_back({{nodes.begin(), nodes.end()}, {weights.begin(), weights.end()}});
+  return static_cast<int>(attachments_.size()) - 1;
+}
+
+Vector3 FemBodyModel::rest_position(int point) const {
+  Vector3 position = Vector3::Zero();
+  const Attachment& a = attachment(point);
+  for (std::size_t k = 0; k < a.nodes.size(); ++k) {
+    position += a.weights[k] * settings_.mesh->nodes.row(a.nodes[k]).transpose();
+  }
+  return position;
+}
+
+void FemBodyModel::finish(int body, const mechanics::RowPattern& rows,
+                          std::span<const mechanics::RowCurvature> curvatures,
+                          const linalg::FactorisationSettings& settings) {
+  body_ = body;
+  world_rows_ = rows;
+  factorisation_ = settings;
+  rows_.clear();
+  for (int row = 0; row < rows.rows(); ++row) {
+    const auto begin = rows.row_start[static_cast<std::size_t>(row)];
+    const auto end = rows.row_start[static_cast<std::size_t>(row) + 1];
+    const bool mine = std::any_of(rows.point.begin() + begin, rows.point.begin() + end,
+                                  [&](const auto& point) { return point.body == body; });
+    if (mine) rows_.push_back(row);
+  }
+  for (const auto& curvature : curvatures) {
+    if (curvature.first.body == body && curvature.second.body == body) {
+      coupled_points_.push_back({curvature.first.point, curvature.second.point});
+    }
+  }
+  plain_ = make_system(settings_.elements);
+}
+
+const FemSystem& FemBodyModel::system(bool with_curvature) const {
+  if (!with_curvature || coupled_points_.empty()) return plain_;
+  std::call_once(curved_once_, [this] {
+    FemModelSettings elements = settings_.elements;
+    for (const auto& pair : coupled_points_) {
+      std::vector<NodeId> clique = attachment(pair[0]).nodes;
+      const auto& other = attachment(pair[1]).nodes;
+      clique.insert(clique.end(), other.begin(), other.end());
+      std::ranges::sort(clique);
+      clique.erase(std::unique(clique.begin(), clique.end()), clique.end());
+      elements.couplings.push_back(std::move(clique));
+    }
+    curved_ = make_system(std::move(elements));
+  });
+  return curved_;
+}
+
+FemSystem FemBodyModel::make_system(FemModelSettings elements) const {
+  FemSystem system;
+  system.elements = elements.couplings.empty()
+                        ? plain_.elements
+                        : std::make_shared<const FemModel>(settings_.mesh, elements);
+  const auto free = system.elements->free_index();
+  for (const auto row : rows_) {
+    const auto begin = world_rows_.row_start[static_cast<std::size_t>(row)];
+    const auto end = world_rows_.row_start[static_cast<std::size_t>(row) + 1];
+    // Position of every free node that the row touches, ascending by node.
+    std::map<std::int32_t, std::int32_t> position;
+    for (auto entry = begin; entry < end; ++entry) {
+      const auto& point = world_rows_.point[static_cast<std::size_t>(entry)];
+      if (point.body != body_) continue;
+      for (const NodeId node : attachment(point.point).nodes) {
+        if (free[static_cast<std::size_t>(node)] >= 0) {
+          position[free[static_cast<std::size_t>(node)]] = 0;
+        }
+      }
+    }
+    for (auto& [node, place] : position) {
+      place = system.border.entries();
+      system.border.node.push_back(node);
+    }
+    system.border.row_start.push_back(system.border.entries());
+    for (auto entry = begin; entry < end; ++entry) {
+      const auto& point = world_rows_.point[static_cast<std::size_t>(entry)];
+      if (point.body != body_) continue;
+      const Attachment& a = attachment(point.point);
+      for (std::size_t k = 0; k < a.nodes.size(); ++k) {
+        const auto node = free[static_cast<std::size_t>(a.nodes[k])];
+        if (node >= 0) system.scatter.push_back({entry, position.at(node), a.weights[k]});
+      }
+    }
+  }
+  system.plan = linalg::analyse(system.elements->pattern(), system.border, factorisation_);
+  return system;
+}
+
+std::unique_ptr<mechanics::Body> FemBodyModel::create(ThreadPool& pool) const {
+  return std::make_unique<FemBody>(*this, pool);
+}
+
+}  // namespace sinew::fem

@@ -1,0 +1,96 @@
+/// @file
+/// A robot of finite elements as a BodyModel: elements, loads, attached points, and how constraint
+/// rows fall on its free nodes.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "sinew/fem/fem_model.hpp"
+#include "sinew/mechanics/body.hpp"
+
+namespace sinew::fem {
+
+/// C = mass M + stiffness K.
+struct RayleighDamping {
+  double mass = 0.0;       ///< 1/s, >= 0
+  double stiffness = 0.0;  ///< s, >= 0
+};
+
+struct FemBodySettings {
+  std::string name;
+  std::shared_ptr<const mesh::Mesh> mesh;
+  FemModelSettings elements;          ///< couplings are filled in by finish()
+  Vector3 gravity = Vector3::Zero();  ///< m/s^2
+  RayleighDamping damping;
+};
+
+/// What a body factorises: its elements on one pattern, bordered by its rows. A body has two, since
+/// the curvature of constraints (geometric stiffness) needs a wider pattern than most steps use.
+struct FemSystem {
+  /// border[3 position ..] += weight * direction[entry], for every free node of every entry.
+  struct Scatter {
+    std::int32_t entry = 0;     ///< in the world's RowValues
+    std::int32_t position = 0;  ///< in the border's entries
+    double weight = 0.0;
+  };
+  std::shared_ptr<const FemModel> elements;
+  linalg::BorderPattern border;
+  std::vector<Scatter> scatter;
+  std::shared_ptr<const linalg::FactorisationPlan> plan;
+};
+
+class FemBodyModel : public mechanics::BodyModel {
+ public:
+  /// Nodes and weights of an attached point: x = sum weights x_node.
+  struct Attachment {
+    std::vector<NodeId> nodes;
+    std::vector<double> weights;
+  };
+
+  /// Throws what FemModel does, and Error(out-of-range) for negative damping.
+  explicit FemBodyModel(FemBodySettings settings);
+  ~FemBodyModel() override;
+
+  const std::string& name() const override { return settings_.name; }
+  int attach(const Vector3& rest_position, mesh::Outside outside, const std::string& what) override;
+  int attach_nodes(std::span<const NodeId> nodes, std::span<const double> weights) override;
+  Vector3 rest_position(int point) const override;
+  void finish(int body, const mechanics::RowPattern& rows,
+              std::span<const mechanics::RowCurvature> curvatures,
+              const linalg::FactorisationSettings& settings) override;
+  std::unique_ptr<mechanics::Body> create(ThreadPool& pool) const override;
+
+  const mesh::Mesh& mesh() const { return *settings_.mesh; }
+  const FemModel& elements() const { return *plain_.elements; }
+  const FemBodySettings& settings() const { return settings_; }
+  const Attachment& attachment(int point) const {
+    return attachments_[static_cast<std::size_t>(point)];
+  }
+  /// World rows that touch this body, ascending.
+  const std::vector<std::int32_t>& rows() const { return rows_; }
+  /// The plain system, or the one whose pattern holds the rows' curvature (made at first use; safe
+  /// from several threads).
+  const FemSystem& system(bool with_curvature) const;
+
+ private:
+  FemSystem make_system(FemModelSettings elements) const;
+
+  FemBodySettings settings_;
+  std::unique_ptr<mesh::Embedder> embedder_;
+  std::vector<Attachment> attachments_;
+
+  int body_ = -1;
+  std::vector<std::int32_t> rows_;
+  mechanics::RowPattern world_rows_;
+  std::vector<std::array<std::int32_t, 2>> coupled_points_;
+  linalg::FactorisationSettings factorisation_;
+  FemSystem plain_;
+  mutable std::once_flag curved_once_;
+  mutable FemSystem curved_;
+};
+
+}  // namespace sinew::fem

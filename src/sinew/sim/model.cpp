@@ -1,0 +1,52 @@
+#include "sinew/sim/model.hpp"
+
+#include <fmt/format.h>
+
+#include "sinew/core/error.hpp"
+
+namespace sinew::sim {
+
+namespace {
+
+template <typename List, typename NameOf>
+int find_by_name(const List& list, std::string_view name, const char* what, NameOf name_of) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (name_of(list[i]) == name) return static_cast<int>(i);
+    names.push_back(name_of(list[i]));
+  }
+  const std::string near = nearest_word(name, names);
+  const std::string remedy = !near.empty()   ? fmt::format("did you mean '{}'?", near)
+                             : names.empty() ? fmt::format("the robot has no {}", what)
+                                             : fmt::format("there are: {}", fmt::join(names, ", "));
+  throw Error(ErrorKind::unknown_name, {.item = std::string(name)},
+              fmt::format("no {} is called '{}'", what, name), remedy);
+}
+
+}  // namespace
+
+int Model::body_index(std::string_view name) const {
+  return find_by_name(bodies_, name, "body", [](const auto& b) { return b->name(); });
+}
+
+int Model::actuator_index(std::string_view name) const {
+  return find_by_name(actuators_, name, "actuator", [](const auto& a) { return a.name; });
+}
+
+int Model::effector_index(std::string_view name) const {
+  return find_by_name(effectors_, name, "effector", [](const auto& e) { return e.name; });
+}
+
+const constraint::Effector& Model::effector(int index) const {
+  const auto& model = effectors_.at(static_cast<std::size_t>(index));
+  return dynamic_cast<const constraint::Effector&>(
+      *constraints_[static_cast<std::size_t>(model.constraint)]);
+}
+
+const constraint::Cable* Model::cable(int actuator) const {
+  const auto& model = actuators_.at(static_cast<std::size_t>(actuator));
+  return dynamic_cast<const constraint::Cable*>(
+      constraints_[static_cast<std::size_t>(model.constraint)].get());
+}
+
+}  // namespace sinew::sim

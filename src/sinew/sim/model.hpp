@@ -1,0 +1,85 @@
+/// @file
+/// A whole robot and its surroundings, ready to run: what never changes, shared by simulations.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sinew/constraint/cable.hpp"
+#include "sinew/constraint/effector.hpp"
+#include "sinew/constraint/point_force.hpp"
+#include "sinew/fem/fem_body_model.hpp"
+#include "sinew/mechanics/body.hpp"
+#include "sinew/sim/actuator.hpp"
+
+namespace sinew::sim {
+
+/// How many linearisations a step takes.
+enum class Method {
+  one_linearisation,  ///< one linear solve a step, as real-time codes do
+  newton,             ///< Newton's iterations to the tolerance
+};
+
+/// How each step is solved.
+struct StepSettings {
+  double time_step = 0.01;  ///< s, > 0
+  mechanics::Integrator integrator = mechanics::Integrator::quasi_static;
+  Method method = Method::one_linearisation;
+  mechanics::Tangent tangent = mechanics::Tangent::real_time;
+  double tolerance = 1e-8;  ///< Newton: residual relative to the loads, and motion to the size
+  int max_iterations = 50;  ///< Newton
+};
+
+/// An effector and where it is declared.
+struct EffectorModel {
+  std::string name;
+  Place place;
+  int constraint = -1;
+};
+
+/// Immutable; made by ModelBuilder. Several simulations and threads may share one.
+class Model {
+ public:
+  const std::vector<std::unique_ptr<mechanics::BodyModel>>& bodies() const { return bodies_; }
+  const std::vector<std::unique_ptr<constraint::Constraint>>& constraints() const {
+    return constraints_;
+  }
+  const std::vector<ActuatorModel>& actuators() const { return actuators_; }
+  const std::vector<EffectorModel>& effectors() const { return effectors_; }
+  const mechanics::RowPattern& rows() const { return rows_; }
+  const std::vector<mechanics::RowCurvature>& curvatures() const { return curvatures_; }
+  const StepSettings& step() const { return step_; }
+  /// Constraints whose curvature joins A in every step.
+  const std::vector<int>& stiffening_constraints() const { return stiffening_; }
+
+  /// Positions in the lists above. Throw Error(unknown-name) with a suggestion.
+  int body_index(std::string_view name) const;
+  int actuator_index(std::string_view name) const;
+  int effector_index(std::string_view name) const;
+
+  const constraint::Effector& effector(int index) const;
+  /// The cable of an actuator; null when it is none.
+  const constraint::Cable* cable(int actuator) const;
+  /// A length of the robot's size, m: the largest diagonal of its bodies at rest.
+  double size() const { return size_; }
+  /// Tells models apart: a hash of meshes, materials, rows and settings. Saved states carry it.
+  std::uint64_t fingerprint() const { return fingerprint_; }
+
+ private:
+  friend class ModelBuilder;
+
+  std::vector<std::unique_ptr<mechanics::BodyModel>> bodies_;
+  std::vector<std::unique_ptr<constraint::Constraint>> constraints_;
+  std::vector<ActuatorModel> actuators_;
+  std::vector<EffectorModel> effectors_;
+  mechanics::RowPattern rows_;
+  std::vector<mechanics::RowCurvature> curvatures_;
+  std::vector<int> stiffening_;
+  StepSettings step_;
+  double size_ = 1.0;
+  std::uint64_t fingerprint_ = 0;
+};
+
+}  // namespace sinew::sim

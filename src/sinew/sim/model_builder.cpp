@@ -1,0 +1,277 @@
+#include "sinew/sim/model_builder.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "sinew/core/error.hpp"
+#include "sinew/core/state_hash.hpp"
+
+namespace sinew::sim {
+
+namespace {
+
+void check_limits(const Limits& limits, const char* what, const ActuatorModel& actuator) {
+  Place place = actuator.place;
+  if (place.item.empty()) place.item = "actuator '" + actuator.name + "'";
+  if (limits.min > limits.max) {
+    throw Error(ErrorKind::contradictory_limits, place,
+                fmt::format("{}: min {:g} is above max {:g}", what, limits.min, limits.max),
+                "swap or widen them");
+  }
+  if (!(limits.rate >= 0.0)) {
+    throw Error(ErrorKind::out_of_range, place,
+                fmt::format("{}: rate {:g} is negative", what, limits.rate),
+                "give the largest change per second, zero or more");
+  }
+}
+
+void hash_points(StateHash& hash, const Points& points) {
+  hash.add({points.data(), static_cast<std::size_t>(points.size())});
+}
+
+}  // namespace
+
+ModelBuilder::ModelBuilder(StepSettings settings) : model_(std::make_unique<Model>()) {
+  if (!(settings.time_step > 0.0)) {
+    throw Error(ErrorKind::out_of_range, {.item = "time_step"},
+                fmt::format("the time step is {:g} s", settings.time_step),
+                "give a positive time such as 10 ms");
+  }
+  model_->step_ = settings;
+}
+
+mechanics::BodyModel& ModelBuilder::body(int index) {
+  return *model_->bodies_[static_cast<std::size_t>(index)];
+}
+
+void ModelBuilder::check_body(int index, const Place& place) const {
+  if (index < 0 || index >= static_cast<int>(model_->bodies_.size())) {
+    throw Error(ErrorKind::unknown_name, place, fmt::format("there is no body {}", index),
+                "add the body first");
+  }
+}
+
+int ModelBuilder::add_body(std::unique_ptr<mechanics::BodyModel> body) {
+  for (const auto& other : model_->bodies_) {
+    if (other->name() == body->name()) {
+      throw Error(ErrorKind::duplicate_key, {.item = body->name()},
+                  fmt::format("two bodies are called '{}'", body->name()), "rename one");
+    }
+  }
+  model_->bodies_.push_back(std::move(body));
+  return static_cast<int>(model_->bodies_.size()) - 1;
+}
+
+int ModelBuilder::add_fem_body(fem::FemBodySettings settings) {
+  auto body = std::make_unique<fem::FemBodyModel>(std::move(settings));
+  const auto& elements = body->elements();
+  const bool dynamic = model_->step_.integrator != mechanics::Integrator::quasi_static;
+  if (dynamic && !(elements.total_mass() > 0.0)) {
+    throw Error(ErrorKind::missing_mass, {.item = "body '" + body->name() + "'"},
+                "a dynamic integrator needs mass, and this body has none",
+                "give `mass` or `density`");
+  }
+  if (!dynamic && body->settings().elements.fixed_nodes.empty()) {
+    throw Error(ErrorKind::nothing_fixed, {.item = "body '" + body->name() + "'"},
+                "nothing holds this body, so it has no static equilibrium",
+                "fix a region of it, or choose a dynamic integrator");
+  }
+  const Points& nodes = body->mesh().nodes;
+  const Vector3 extent = nodes.colwise().maxCoeff() - nodes.colwise().minCoeff();
+  model_->size_ = model_->bodies_.empty() ? extent.norm() : std::max(model_->size_, extent.norm());
+  return add_body(std::move(body));
+}
+
+int ModelBuilder::add_actuator(ActuatorModel actuator,
+                               std::unique_ptr<constraint::Constraint> constraint) {
+  for (const auto& other : model_->actuators_) {
+    if (other.name == actuator.name) {
+      throw Error(ErrorKind::duplicate_key, actuator.place,
+                  fmt::format("two actuators are called '{}'", actuator.name), "rename one");
+    }
+  }
+  check_limits(actuator.effort, actuator.effort_name(), actuator);
+  check_limits(actuator.motion, ActuatorModel::motion_name(), actuator);
+  constraint->declare(model_->rows_, model_->curvatures_);
+  actuator.constraint = static_cast<int>(model_->constraints_.size());
+  actuator.row = constraint->first_row();
+  model_->constraints_.push_back(std::move(constraint));
+  model_->actuators_.push_back(std::move(actuator));
+  return static_cast<int>(model_->actuators_.size()) - 1;
+}
+
+int ModelBuilder::add_cable(const CableSettings& settings) {
+  check_body(settings.body, settings.place);
+  const auto at = [&](Eigen::Index i) {
+    const auto k = static_cast<std::size_t>(i);
+    return k < settings.point_places.size() ? settings.point_places[k] : settings.place;
+  };
+  if (settings.tension.min < 0.0) {
+    throw Error(
+        ErrorKind::out_of_range, settings.place,
+        fmt::format("tension: min {:g} N is negative; a cable cannot push", settings.tension.min),
+        "give zero or more");
+  }
+  std::vector<mechanics::MaterialPoint> points;
+  std::optional<Vector3> pull_point;
+  Points rest = settings.points;
+  for (Eigen::Index i = 0; i < rest.rows(); ++i) {
+    if (i == 0 && settings.pull_from_world) {
+      pull_point = Vector3(rest.row(0));
+      continue;
+    }
+    const std::string what = fmt::format("point {} of cable '{}'", i, settings.name);
+    try {
+      points.push_back(
+          {settings.body, body(settings.body).attach(rest.row(i), settings.outside, what)});
+    } catch (const Error& error) {
+      throw error.at(at(i));
+    }
+    rest.row(i) = body(settings.body).rest_position(points.back().point);
+  }
+  try {
+    auto cable =
+        std::make_unique<constraint::Cable>(settings.name, std::move(points), pull_point, rest);
+    const int index = add_actuator({settings.name, settings.place, ActuatorType::cable, -1, -1,
+                                    settings.tension, settings.displacement, settings.command},
+                                   std::move(cable));
+    if (settings.geometric_stiffness) {
+      model_->stiffening_.push_back(model_->actuators_[static_cast<std::size_t>(index)].constraint);
+    }
+    return index;
+  } catch (const Error& error) {
+    throw error.at(settings.place);
+  }
+}
+
+int ModelBuilder::add_force(const ForceSettings& settings) {
+  check_body(settings.body, settings.place);
+  try {
+    const int point = body(settings.body)
+                          .attach(settings.point, settings.outside,
+                                  fmt::format("the point of force '{}'", settings.name));
+    auto force = std::make_unique<constraint::PointForce>(
+        settings.name, mechanics::MaterialPoint{settings.body, point}, settings.direction,
+        body(settings.body).rest_position(point));
+    return add_actuator({settings.name, settings.place, ActuatorType::force, -1, -1, settings.force,
+                         settings.displacement, settings.command},
+                        std::move(force));
+  } catch (const Error& error) {
+    throw error.at(settings.place);
+  }
+}
+
+namespace {
+
+// The mean of points given by position, as one attached point.
+int attach_mean(mechanics::BodyModel& body, const EffectorSettings& settings) {
+  const auto what = [&](Eigen::Index i) {
+    return fmt::format("point {} of effector '{}'", i, settings.name);
+  };
+  if (settings.points.rows() == 1) {
+    return body.attach(settings.points.row(0), settings.outside, what(0));
+  }
+  auto* fem = dynamic_cast<fem::FemBodyModel*>(&body);
+  if (fem == nullptr) {
+    throw Error(ErrorKind::wrong_type, settings.place,
+                "the mean of several points needs a finite-element body", "give one point");
+  }
+  std::vector<NodeId> nodes;
+  std::vector<double> weights;
+  const double share = 1.0 / static_cast<double>(settings.points.rows());
+  for (Eigen::Index i = 0; i < settings.points.rows(); ++i) {
+    const int point = body.attach(settings.points.row(i), settings.outside, what(i));
+    const auto& a = fem->attachment(point);
+    for (std::size_t k = 0; k < a.nodes.size(); ++k) {
+      nodes.push_back(a.nodes[k]);
+      weights.push_back(share * a.weights[k]);
+    }
+  }
+  return body.attach_nodes(nodes, weights);
+}
+
+}  // namespace
+
+int ModelBuilder::add_effector(const EffectorSettings& settings) {
+  check_body(settings.body, settings.place);
+  for (const auto& other : model_->effectors_) {
+    if (other.name == settings.name) {
+      throw Error(ErrorKind::duplicate_key, settings.place,
+                  fmt::format("two effectors are called '{}'", settings.name), "rename one");
+    }
+  }
+  auto& on = body(settings.body);
+  std::unique_ptr<constraint::Effector> effector;
+  try {
+    if (settings.kind == EffectorSettings::Kind::orientation) {
+      std::array<mechanics::MaterialPoint, 3> points;
+      std::array<Vector3, 3> rest;
+      if (settings.points.rows() != 3) {
+        throw Error(
+            ErrorKind::wrong_length, settings.place,
+            fmt::format("an orientation needs three points, got {}", settings.points.rows()),
+            "give three points that span a triangle");
+      }
+      for (std::size_t k = 0; k < 3; ++k) {
+        const int point =
+            on.attach(settings.points.row(static_cast<Eigen::Index>(k)), settings.outside,
+                      fmt::format("point {} of effector '{}'", k, settings.name));
+        points[k] = {settings.body, point};
+        rest[k] = on.rest_position(point);
+      }
+      effector = std::make_unique<constraint::OrientationEffector>(settings.name, points, rest);
+    } else {
+      int point = -1;
+      if (settings.kind == EffectorSettings::Kind::nodes) {
+        if (settings.nodes.empty()) {
+          throw Error(ErrorKind::empty_region, settings.place, "the effector's set has no nodes",
+                      "name a set that has some");
+        }
+        const std::vector<double> weights(settings.nodes.size(),
+                                          1.0 / static_cast<double>(settings.nodes.size()));
+        point = on.attach_nodes(settings.nodes, weights);
+      } else {
+        if (settings.points.rows() == 0) {
+          throw Error(ErrorKind::too_few_points, settings.place, "the effector has no point",
+                      "give `point: x y z mm`");
+        }
+        point = attach_mean(on, settings);
+      }
+      effector = std::make_unique<constraint::PointEffector>(
+          settings.name, mechanics::MaterialPoint{settings.body, point}, settings.directions);
+    }
+  } catch (const Error& error) {
+    throw error.at(settings.place);
+  }
+  effector->declare(model_->rows_, model_->curvatures_);
+  model_->effectors_.push_back(
+      {settings.name, settings.place, static_cast<int>(model_->constraints_.size())});
+  model_->constraints_.push_back(std::move(effector));
+  return static_cast<int>(model_->effectors_.size()) - 1;
+}
+
+std::shared_ptr<const Model> ModelBuilder::build(const linalg::FactorisationSettings& settings) {
+  StateHash hash;
+  for (std::size_t i = 0; i < model_->bodies_.size(); ++i) {
+    auto& body = *model_->bodies_[i];
+    body.finish(static_cast<int>(i), model_->rows_, model_->curvatures_, settings);
+    if (const auto* fem = dynamic_cast<const fem::FemBodyModel*>(&body)) {
+      hash_points(hash, fem->mesh().nodes);
+      for (const auto& region : fem->settings().elements.regions) {
+        hash.add(region.constants.young_modulus);
+        hash.add(region.constants.poisson_ratio);
+      }
+      hash.add(static_cast<double>(fem->elements().free_count()));
+    }
+  }
+  hash.add(model_->step_.time_step);
+  for (const auto& point : model_->rows_.point) hash.add(static_cast<double>(point.point));
+  model_->fingerprint_ = hash.value();
+  std::shared_ptr<const Model> model = std::move(model_);
+  model_ = std::make_unique<Model>();
+  return model;
+}
+
+}  // namespace sinew::sim

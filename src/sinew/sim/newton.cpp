@@ -1,0 +1,138 @@
+#include "sinew/sim/newton.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sinew::sim {
+
+namespace {
+
+// A step may raise the merit by this factor: slender bodies stretch before they turn, and refusing
+// that costs more iterations than it saves.
+constexpr double kMeritGrowth = 50.0;
+constexpr int kMostHalvings = 12;
+
+class NewtonSolver {
+ public:
+  NewtonSolver(World& world, Law& law, const LawProblem& problem, std::span<double> effort,
+               const NewtonSettings& settings, StageClock& clock)
+      : world_(world),
+        law_(law),
+        problem_(problem),
+        effort_(effort),
+        settings_(settings),
+        clock_(clock) {}
+
+  NewtonReport run() {
+    linearise(settings_.request.tangent);
+    for (report_.iterations = 0; report_.iterations < settings_.max_iterations;) {
+      if (report_.iterations > 0 && converged()) return finish(NewtonStatus::converged);
+      if (!condense()) return finish(NewtonStatus::singular);
+      report_.law = law_.solve(problem_, effort_);
+      clock_.mark(Stage::law);
+      if (report_.law == LawStatus::failed) return finish(NewtonStatus::law_failed);
+      const NewtonStatus moved = move();
+      ++report_.iterations;
+      if (moved != NewtonStatus::converged) return finish(moved);
+    }
+    return finish(converged() ? NewtonStatus::converged : NewtonStatus::iteration_limit);
+  }
+
+ private:
+  void linearise(mechanics::Tangent tangent) {
+    auto request = settings_.request;
+    request.tangent = tangent;
+    world_.linearise(request);
+    clock_.mark(Stage::assembly);
+    world_.form_rows(effort_, settings_.curved);
+    clock_.mark(Stage::compliance);
+  }
+
+  // The exact tangent may be indefinite far from equilibrium; the real-time one is not.
+  bool condense() {
+    auto status = world_.condense();
+    ++report_.factorisations;
+    if (status != linalg::FactorStatus::positive_definite &&
+        settings_.request.tangent == mechanics::Tangent::exact) {
+      clock_.mark(Stage::factorisation);
+      linearise(mechanics::Tangent::real_time);
+      status = world_.condense();
+      ++report_.factorisations;
+      ++report_.tangent_fallbacks;
+    }
+    clock_.mark(Stage::factorisation);
+    return status != linalg::FactorStatus::singular;
+  }
+
+  // Both terms shrink in proportion to (1 - step length) along the Newton direction.
+  double merit() {
+    report_.residual = world_.residual(effort_);
+    const double scale = world_.force_scale() + 1e-300;
+    report_.relative_residual = report_.residual / scale;
+    report_.violation = law_.violation(problem_, effort_);
+    return report_.relative_residual + report_.violation / problem_.model.size();
+  }
+
+  bool converged() const {
+    return report_.relative_residual <= settings_.tolerance &&
+           report_.violation <= settings_.tolerance * problem_.model.size();
+  }
+
+  NewtonStatus move() {
+    const double before = merit();
+    world_.solve_motion(effort_);
+    bool inverted = false;
+    double scale = 1.0;
+    for (int halving = 0; halving <= kMostHalvings; ++halving, scale *= 0.5) {
+      report_.motion = world_.apply_motion(scale);
+      clock_.mark(Stage::correction);
+      inverted = !report_.motion.finite || !(report_.motion.smallest_volume_ratio > 0.0);
+      if (inverted) continue;
+      linearise(settings_.request.tangent);
+      const double after = merit();
+      if (converged() || after < kMeritGrowth * before) return NewtonStatus::converged;
+    }
+    return inverted ? NewtonStatus::inverted : NewtonStatus::stalled;
+  }
+
+  NewtonReport finish(NewtonStatus status) {
+    report_.status = status;
+    return report_;
+  }
+
+  World& world_;
+  Law& law_;
+  const LawProblem& problem_;
+  std::span<double> effort_;
+  const NewtonSettings& settings_;
+  StageClock& clock_;
+  NewtonReport report_;
+};
+
+}  // namespace
+
+std::string_view newton_status_name(NewtonStatus status) {
+  switch (status) {
+    case NewtonStatus::converged:
+      return "converged";
+    case NewtonStatus::iteration_limit:
+      return "iteration-limit";
+    case NewtonStatus::stalled:
+      return "stalled";
+    case NewtonStatus::inverted:
+      return "inverted";
+    case NewtonStatus::singular:
+      return "singular";
+    case NewtonStatus::law_failed:
+      return "law-failed";
+  }
+  return "unknown";
+}
+
+NewtonReport solve_newton(World& world, Law& law, const LawProblem& problem,
+                          std::span<double> effort, const NewtonSettings& settings,
+                          StageClock& clock) {
+  return NewtonSolver(world, law, problem, effort, settings, clock).run();
+}
+
+}  // namespace sinew::sim

@@ -1,0 +1,55 @@
+/// @file
+/// Newton's method on a step's equation and its law together: every iteration linearises,
+/// condenses, solves the law and moves, with a line search.
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "sinew/sim/law.hpp"
+#include "sinew/sim/stages.hpp"
+#include "sinew/sim/world.hpp"
+
+namespace sinew::sim {
+
+enum class NewtonStatus {
+  converged,
+  iteration_limit,  ///< settings.max_iterations reached
+  stalled,          ///< no step length lessens the residual
+  inverted,         ///< even a short step would turn an element inside out
+  singular,         ///< A cannot be factorised
+  law_failed,       ///< no efforts could be found
+};
+/// "converged", "iteration-limit", ...
+std::string_view newton_status_name(NewtonStatus status);
+
+struct NewtonSettings {
+  mechanics::LinearisationRequest request;
+  double tolerance =
+      1e-8;  ///< on the residual relative to the loads, and on delta relative to size
+  int max_iterations = 50;
+  std::span<const int> curved;  ///< constraints whose curvature joins A
+};
+
+struct NewtonReport {
+  NewtonStatus status = NewtonStatus::converged;
+  int iterations = 0;
+  double residual = 0.0;           ///< N, |p - f - ... + H^T lambda|
+  double relative_residual = 0.0;  ///< of the sum of the forces' norms
+  double violation = 0.0;          ///< m, of the law
+  int factorisations = 0;
+  int tangent_fallbacks = 0;  ///< iterations in which the exact tangent was indefinite
+  LawStatus law = LawStatus::solved;
+  mechanics::MotionReport motion;
+};
+
+/// Iterates from the world's current state. On return the bodies are linearised at the last state.
+/// @param world is moved. @param law chooses efforts. @param problem what the law is told; its
+///   references are kept up to date by `world`. @param effort (rows,) N, in and out.
+/// @param settings see there. @param clock gets the stages' times.
+NewtonReport solve_newton(World& world, Law& law, const LawProblem& problem,
+                          std::span<double> effort, const NewtonSettings& settings,
+                          StageClock& clock);
+
+}  // namespace sinew::sim

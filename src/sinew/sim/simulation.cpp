@@ -1,0 +1,281 @@
+#include "sinew/sim/simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "sinew/core/error.hpp"
+#include "sinew/core/state_hash.hpp"
+
+namespace sinew::sim {
+
+namespace {
+
+constexpr int kMostHalvings = 10;
+
+}  // namespace
+
+Simulation::Simulation(std::shared_ptr<const Model> model, int threads)
+    : model_(std::move(model)),
+      pool_(std::make_unique<ThreadPool>(threads)),
+      world_(model_, *pool_),
+      direct_(static_cast<int>(model_->actuators().size())),
+      actuators_(model_->actuators().size()),
+      ranges_(model_->actuators().size()),
+      effort_(static_cast<std::size_t>(model_->rows().rows()), 0.0) {
+  for (std::size_t i = 0; i < actuators_.size(); ++i) {
+    const ActuatorModel& actuator = model_->actuators()[i];
+    actuators_[i].command = actuator.command;
+    if (model_->cable(static_cast<int>(i)) != nullptr) all_cables_.push_back(actuator.constraint);
+  }
+  finish_step();
+  state_before_.resize(state_size());
+  first_state_.resize(state_size());
+  save_state(first_state_);
+}
+
+Simulation::~Simulation() = default;
+
+void Simulation::read_ranges(double time, double time_step) {
+  for (std::size_t i = 0; i < actuators_.size(); ++i) {
+    ranges_[i] = actuator_range(model_->actuators()[i], actuators_[i], time, time_step);
+  }
+}
+
+const StepReport& Simulation::step() {
+  clock_.start();
+  const double end = static_cast<double>(steps_ + 1) * model_->step().time_step;
+  read_ranges(end, model_->step().time_step);
+  save_state(state_before_);
+  world_.begin_step();
+  Law& law = law_ != nullptr ? *law_ : direct_;
+  const LawProblem problem{*model_,
+                           world_.placement(),
+                           ranges_,
+                           world_.compliance(),
+                           world_.delta_free(),
+                           world_.delta(),
+                           end,
+                           model_->step().time_step};
+  if (model_->step().method == Method::newton) {
+    step_newton(law, problem);
+  } else {
+    step_once(law, problem);
+  }
+  world_.end_step(mechanics::step_weights(model_->step().integrator, model_->step().time_step));
+  ++steps_;
+  finish_step();
+  clock_.mark(Stage::correction);
+  clock_.stop();
+  report_.times = times_;
+  return report_;
+}
+
+void Simulation::step_once(Law& law, const LawProblem& problem) {
+  const auto& settings = model_->step();
+  world_.linearise({mechanics::step_weights(settings.integrator, settings.time_step),
+                    settings.tangent, !model_->stiffening_constraints().empty(), false});
+  clock_.mark(Stage::assembly);
+  world_.form_rows(effort_, model_->stiffening_constraints());
+  report_.residual = world_.residual(effort_);
+  report_.relative_residual = report_.residual / (world_.force_scale() + 1e-300);
+  clock_.mark(Stage::compliance);
+  const auto status = world_.condense();
+  clock_.mark(Stage::factorisation);
+  if (status == linalg::FactorStatus::singular) {
+    fail(ErrorKind::singular_matrix, "the stiffness matrix is singular",
+         "fix a region of every body, or look for loose or crushed elements");
+  }
+  report_.law = law.solve(problem, effort_);
+  if (report_.law == LawStatus::failed) {
+    fail(ErrorKind::not_converged, "no efforts obey the law of this step",
+         "loosen the limits of the actuators");
+  }
+  report_.violation = law.violation(problem, effort_);
+  report_.iterations = 1;
+  clock_.mark(Stage::law);
+  world_.solve_motion(effort_);
+  move_soundly();
+}
+
+// Takes the motion, or the largest halving of it that inverts no element.
+void Simulation::move_soundly() {
+  const bool was_sound = volume_ratio_ > 0.0;
+  report_.scale = 1.0;
+  mechanics::MotionReport motion;
+  for (int halving = 0; halving <= kMostHalvings; ++halving, report_.scale *= 0.5) {
+    motion = world_.apply_motion(report_.scale);
+    if (motion.finite && (motion.smallest_volume_ratio > 0.0 || !was_sound)) {
+      volume_ratio_ = report_.smallest_volume_ratio = motion.smallest_volume_ratio;
+      return;
+    }
+  }
+  if (!motion.finite) {
+    fail(ErrorKind::diverged, "the motion of this step is not finite or out of all proportion",
+         "take a smaller time step, or check loads and material");
+  }
+  fail(ErrorKind::inverted_in_run,
+       fmt::format("element {} would turn inside out (det F = {:.3g}) even at {:.2g} of the motion",
+                   motion.worst_element, motion.smallest_volume_ratio, 2.0 * report_.scale),
+       "take a smaller time step, change commands more slowly, or refine the mesh there");
+}
+
+void Simulation::step_newton(Law& law, const LawProblem& problem) {
+  const auto& settings = model_->step();
+  const auto curved = std::span<const int>(model_->stiffening_constraints());
+  NewtonSettings newton{{mechanics::step_weights(settings.integrator, settings.time_step),
+                         settings.tangent, !curved.empty(), true},
+                        settings.tolerance,
+                        settings.max_iterations,
+                        curved};
+  const NewtonReport result = solve_newton(world_, law, problem, effort_, newton, clock_);
+  report_.law = result.law;
+  report_.residual = result.residual;
+  report_.relative_residual = result.relative_residual;
+  report_.violation = result.violation;
+  report_.iterations = result.iterations;
+  report_.newton = result.status;
+  report_.scale = 1.0;
+  volume_ratio_ = report_.smallest_volume_ratio = result.motion.smallest_volume_ratio;
+  if (result.status != NewtonStatus::converged) {
+    fail(
+        ErrorKind::not_converged,
+        fmt::format("Newton ended as '{}' after {} iterations, relative residual {:.3g}",
+                    newton_status_name(result.status), result.iterations, result.relative_residual),
+        "take a smaller time step, change commands more slowly, or allow more iterations");
+  }
+}
+
+void Simulation::fail(ErrorKind kind, const std::string& message, const std::string& remedy) {
+  load_state(state_before_, steps_);
+  std::string bodies;
+  for (const auto& body : model_->bodies()) bodies += (bodies.empty() ? "" : ", ") + body->name();
+  throw Error(
+      kind,
+      {.item = fmt::format("step {} (t = {:g} s), body {}", steps_ + 1,
+                           static_cast<double>(steps_ + 1) * model_->step().time_step, bodies)},
+      message, remedy);
+}
+
+// What actuators did, read off the state.
+void Simulation::finish_step() {
+  const VectorX& delta = world_.measure_delta();
+  for (std::size_t i = 0; i < actuators_.size(); ++i) {
+    ActuatorState& state = actuators_[i];
+    const ActuatorRange& range = ranges_[i];
+    const int row = model_->actuators()[i].row;
+    state.effort = effort_[static_cast<std::size_t>(row)];
+    state.motion = delta[row];
+    state.slack = model_->actuators()[i].type == ActuatorType::cable && !(state.effort > 0.0);
+    const bool winds = !range.owned && range.kind == CommandKind::motion && range.row >= 0;
+    state.wound = winds ? range.value : state.motion;
+  }
+}
+
+Vector3 Simulation::effector_value(int index) const {
+  return model_->effector(index).value(world_.placement());
+}
+
+void Simulation::command(int actuator, Command command) {
+  ActuatorState& state = actuators_.at(static_cast<std::size_t>(actuator));
+  if (state.owner != nullptr) {
+    throw Error(ErrorKind::actuator_owned,
+                {.item = model_->actuators()[static_cast<std::size_t>(actuator)].name},
+                "a controller owns this actuator", "detach the controller first");
+  }
+  state.command = std::move(command);
+}
+
+void Simulation::attach(Law& law, std::span<const int> actuators) {
+  if (law_ != nullptr && law_ != &law) {
+    throw Error(ErrorKind::actuator_owned, {.item = "controller"},
+                "another controller is attached to this simulation", "detach it first");
+  }
+  law_ = &law;
+  for (const int index : actuators) actuators_.at(static_cast<std::size_t>(index)).owner = &law;
+}
+
+void Simulation::detach(const Law& law) {
+  if (law_ != &law) return;
+  law_ = nullptr;
+  direct_.reset();
+  for (std::size_t i = 0; i < actuators_.size(); ++i) {
+    ActuatorState& state = actuators_[i];
+    if (state.owner != &law) continue;
+    state.owner = nullptr;
+    // The drive stays where it stands until it is told otherwise.
+    state.command = {CommandKind::motion, Signal::constant(state.motion)};
+  }
+}
+
+fem::FemBody& Simulation::fem_body(int index) {
+  return const_cast<fem::FemBody&>(std::as_const(*this).fem_body(index));
+}
+
+const fem::FemBody& Simulation::fem_body(int index) const {
+  const auto* body = dynamic_cast<const fem::FemBody*>(&world_.body(index));
+  if (body == nullptr) {
+    throw Error(ErrorKind::wrong_type, {.item = world_.body(index).model().name()},
+                "this body is not of finite elements", "ask for its own coordinates");
+  }
+  return *body;
+}
+
+std::uint64_t Simulation::state_hash() const {
+  std::vector<double> state(state_size());
+  save_state(state);
+  StateHash hash;
+  hash.add(state);
+  return hash.value();
+}
+
+std::size_t Simulation::bytes() const {
+  return world_.bytes() + sizeof(double) * (effort_.size() + 2 * state_before_.size()) +
+         actuators_.size() * (sizeof(ActuatorState) + sizeof(ActuatorRange));
+}
+
+std::size_t Simulation::state_size() const {
+  return world_.state_size() + effort_.size() + 2 * actuators_.size() + 1;
+}
+
+void Simulation::save_state(std::span<double> state) const {
+  world_.save_state(state.first(world_.state_size()));
+  auto rest = state.subspan(world_.state_size());
+  std::ranges::copy(effort_, rest.begin());
+  rest = rest.subspan(effort_.size());
+  for (std::size_t i = 0; i < actuators_.size(); ++i) {
+    rest[2 * i] = actuators_[i].motion;
+    rest[2 * i + 1] = actuators_[i].wound;
+  }
+  rest.back() = volume_ratio_;
+}
+
+void Simulation::load_state(std::span<const double> state, std::int64_t steps) {
+  world_.load_state(state.first(world_.state_size()));
+  auto rest = state.subspan(world_.state_size());
+  std::copy_n(rest.begin(), effort_.size(), effort_.begin());
+  rest = rest.subspan(effort_.size());
+  for (std::size_t i = 0; i < actuators_.size(); ++i) {
+    ActuatorState& actuator = actuators_[i];
+    actuator.motion = rest[2 * i];
+    actuator.wound = rest[2 * i + 1];
+    actuator.effort = effort_[static_cast<std::size_t>(model_->actuators()[i].row)];
+    actuator.slack = model_->actuators()[i].type == ActuatorType::cable && !(actuator.effort > 0.0);
+  }
+  volume_ratio_ = rest.back();
+  steps_ = steps;
+  direct_.reset();
+  if (law_ != nullptr) law_->reset();
+}
+
+void Simulation::reset() {
+  for (std::size_t i = 0; i < actuators_.size(); ++i) {
+    if (actuators_[i].owner == nullptr) actuators_[i].command = model_->actuators()[i].command;
+  }
+  load_state(first_state_, 0);
+  report_ = {};
+}
+
+}  // namespace sinew::sim

@@ -1,0 +1,134 @@
+/// @file
+/// A running robot: model, state, commands, and the step.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "sinew/sim/direct_law.hpp"
+#include "sinew/sim/newton.hpp"
+#include "sinew/sim/stages.hpp"
+#include "sinew/sim/world.hpp"
+
+namespace sinew::sim {
+
+/// What a step did.
+struct StepReport {
+  LawStatus law = LawStatus::solved;
+  /// One linearisation: of the state that the step began from, before it moved. Newton: of the end.
+  double residual = 0.0;           ///< N, |p - f - ... + H^T lambda|
+  double relative_residual = 0.0;  ///< of the sum of the forces' norms
+  double violation = 0.0;          ///< m, of the law by the motion at that state
+  int iterations = 1;              ///< linearisations
+  double scale = 1.0;  ///< of the motion; < 1 when it was cut back to keep elements from inverting
+  double smallest_volume_ratio = 1.0;  ///< min det F at the end of the step
+  NewtonStatus newton = NewtonStatus::converged;
+  StageTimes times;
+};
+
+struct StaticSettings {
+  double tolerance = 1e-10;  ///< residual relative to the loads; law's violation relative to size
+  int max_iterations = 60;   ///< of Newton in one load step
+  int max_load_steps = 256;  ///< smallest load step is its inverse
+};
+
+struct StaticReport {
+  NewtonStatus status = NewtonStatus::converged;
+  int iterations = 0;              ///< Newton's, over all load steps
+  int load_steps = 1;              ///< that were taken
+  double residual = 0.0;           ///< N
+  double relative_residual = 0.0;  ///< of the sum of the forces' norms
+  double violation = 0.0;          ///< m
+};
+
+/// One run of a model. Not thread-safe itself; any number may run side by side in threads.
+class Simulation {
+ public:
+  /// @param model shared. @param threads inside a step, >= 1. Throws Error(out-of-range).
+  explicit Simulation(std::shared_ptr<const Model> model, int threads = 1);
+  ~Simulation();
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
+
+  const Model& model() const { return *model_; }
+  std::shared_ptr<const Model> shared_model() const { return model_; }
+  int threads() const { return pool_->size(); }
+  double time() const { return static_cast<double>(steps_) * model_->step().time_step; }  ///< s
+  std::int64_t steps() const { return steps_; }
+
+  /// Advances one time step. Throws Error(diverged | inverted-in-run | singular-matrix |
+  /// not-converged) with the step, the body and the likely cause; the state is then that before the
+  /// step.
+  const StepReport& step();
+  const StepReport& report() const { return report_; }
+
+  /// Newton to the static equilibrium at the present inputs: commands at the present time, limits
+  /// on rates lifted, actuators of a controller held at their efforts; exact tangent, cables'
+  /// geometric stiffness, load stepping when needed. Velocities become zero; time stands still.
+  /// Throws Error(not-converged) and restores the state when there is none to be found.
+  StaticReport solve_static(const StaticSettings& settings = {});
+
+  /// Back to the start, bit for bit: state, time, commands of the model. Controllers stay attached.
+  void reset();
+
+  /// Tells an actuator what to do. Throws Error(actuator-owned) while a controller has it.
+  void command(int actuator, Command command);
+  const ActuatorState& actuator(int index) const {
+    return actuators_[static_cast<std::size_t>(index)];
+  }
+  /// Position (3,) m, or rotation vector (3,) rad, of an effector.
+  Vector3 effector_value(int index) const;
+
+  /// Gives a law the actuators that it chooses efforts for; it replaces the direct law in every
+  /// step until it is detached. One law at a time. Throws Error(actuator-owned).
+  void attach(Law& law, std::span<const int> actuators);
+  void detach(const Law& law);
+  const Law* attached_law() const { return law_; }
+
+  World& world() { return world_; }
+  const World& world() const { return world_; }
+  /// Throws Error(wrong-type) when the body is of another kind.
+  fem::FemBody& fem_body(int index);
+  const fem::FemBody& fem_body(int index) const;
+  std::span<const double> efforts() const { return effort_; }  ///< (rows,) N
+  std::span<const ActuatorRange> ranges() const { return ranges_; }
+
+  /// Over positions, velocities, efforts and drives: equal runs have equal hashes.
+  std::uint64_t state_hash() const;
+  /// Bytes that one more simulation of the same model takes.
+  std::size_t bytes() const;
+
+  /// State as numbers: bodies, efforts, drives; see state_io.hpp for files.
+  std::size_t state_size() const;
+  void save_state(std::span<double> state) const;
+  void load_state(std::span<const double> state, std::int64_t steps);
+
+ private:
+  void read_ranges(double time, double time_step);
+  void step_once(Law& law, const LawProblem& problem);
+  void step_newton(Law& law, const LawProblem& problem);
+  void move_soundly();
+  void finish_step();
+  [[noreturn]] void fail(ErrorKind kind, const std::string& message, const std::string& remedy);
+  NewtonReport equilibrate(const StaticSettings& settings, double share, StaticReport& report);
+
+  std::shared_ptr<const Model> model_;
+  std::unique_ptr<ThreadPool> pool_;
+  World world_;
+  DirectLaw direct_;
+  Law* law_ = nullptr;
+  std::vector<ActuatorState> actuators_;
+  std::vector<ActuatorRange> ranges_;
+  std::vector<double> effort_;
+  std::vector<double> state_before_, first_state_;
+  std::vector<int> all_cables_;
+  std::int64_t steps_ = 0;
+  double volume_ratio_ = 1.0;
+  StepReport report_;
+  StageTimes times_;
+  StageClock clock_{times_};
+};
+
+}  // namespace sinew::sim

@@ -1,0 +1,115 @@
+// Simulation::solve_static: Newton with the exact tangent and the cables' geometric stiffness, in
+// one go or, where that fails, along the path on which the imbalance of the start is taken away bit
+// by bit: r(q, lambda) = (1 - s) r_start, s from 0 to 1 (a convex homotopy; Allgower & Georg
+// 1990, 1.3).
+
+#include <algorithm>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "sinew/core/error.hpp"
+#include "sinew/sim/simulation.hpp"
+
+namespace sinew::sim {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Commands on the way from where the actuators stand (share 1) to where they are told to be (0).
+void blend(std::span<ActuatorRange> ranges, std::span<const ActuatorState> start,
+           std::span<const ActuatorRange> goal, double share) {
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    const double from = goal[i].kind == CommandKind::effort ? start[i].effort : start[i].motion;
+    ranges[i] = goal[i];
+    ranges[i].value = share * from + (1.0 - share) * goal[i].value;
+  }
+}
+
+}  // namespace
+
+NewtonReport Simulation::equilibrate(const StaticSettings& settings, double share,
+                                     StaticReport& report) {
+  world_.set_imbalance_share(share);
+  world_.begin_step();
+  const LawProblem problem{*model_,
+                           world_.placement(),
+                           ranges_,
+                           world_.compliance(),
+                           world_.delta_free(),
+                           world_.delta(),
+                           time(),
+                           kInfinity};
+  const NewtonSettings newton{{{}, mechanics::Tangent::exact, true, true},
+                              settings.tolerance,
+                              settings.max_iterations,
+                              all_cables_};
+  const NewtonReport result = solve_newton(world_, direct_, problem, effort_, newton, clock_);
+  report.iterations += result.iterations;
+  report.status = result.status;
+  report.residual = result.residual;
+  report.relative_residual = result.relative_residual;
+  report.violation = result.violation;
+  return result;
+}
+
+StaticReport Simulation::solve_static(const StaticSettings& settings) {
+  StaticReport report;
+  clock_.start();
+  save_state(state_before_);
+  const std::vector<ActuatorState> start = actuators_;
+  read_ranges(time(), kInfinity);
+  for (std::size_t i = 0; i < ranges_.size(); ++i) {
+    if (!ranges_[i].owned) continue;
+    ranges_[i].kind = CommandKind::effort;
+    ranges_[i].value = actuators_[i].effort;
+    ranges_[i].motion_min = -kInfinity;
+    ranges_[i].motion_max = kInfinity;
+  }
+  const std::vector<ActuatorRange> goal = ranges_;
+  direct_.reset();
+  NewtonReport last = equilibrate(settings, 0.0, report);
+
+  if (last.status != NewtonStatus::converged) {
+    load_state(state_before_, steps_);
+    world_.linearise({{}, mechanics::Tangent::exact, true, true});
+    world_.form_rows(effort_, all_cables_);
+    world_.hold_imbalance(effort_);
+    std::vector<double> sound = state_before_;
+    double share = 1.0;
+    double part = 0.25;
+    report.load_steps = 0;
+    while (share > 0.0 && part * settings.max_load_steps >= 1.0) {
+      const double next = std::max(0.0, share - part);
+      blend(ranges_, start, goal, next);
+      last = equilibrate(settings, next, report);
+      if (last.status == NewtonStatus::converged) {
+        share = next;
+        part *= 2.0;
+        ++report.load_steps;
+        save_state(sound);
+      } else {
+        load_state(sound, steps_);
+        part *= 0.5;
+      }
+    }
+    world_.set_imbalance_share(0.0);
+  }
+  if (last.status != NewtonStatus::converged) {
+    fail(ErrorKind::not_converged,
+         fmt::format("no static equilibrium was found: Newton ended as '{}' with a relative "
+                     "residual of {:.3g}, in load steps down to 1/{}",
+                     newton_status_name(last.status), last.relative_residual,
+                     settings.max_load_steps),
+         "approach the load through time steps; the robot may buckle on the way");
+  }
+  volume_ratio_ = last.motion.smallest_volume_ratio;
+  ranges_ = goal;
+  world_.begin_step();
+  world_.end_step({});
+  finish_step();
+  return report;
+}
+
+}  // namespace sinew::sim

@@ -1,0 +1,148 @@
+#include "sinew/sim/world.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace sinew::sim {
+
+namespace {
+
+std::vector<std::unique_ptr<mechanics::Body>> create_bodies(const Model& model, ThreadPool& pool) {
+  std::vector<std::unique_ptr<mechanics::Body>> bodies;
+  for (const auto& body : model.bodies()) bodies.push_back(body->create(pool));
+  return bodies;
+}
+
+}  // namespace
+
+World::World(std::shared_ptr<const Model> model, ThreadPool& pool)
+    : model_(std::move(model)),
+      bodies_(create_bodies(*model_, pool)),
+      placement_(bodies_),
+      curvatures_(model_->curvatures()) {
+  rows_.resize(model_->rows());
+  const int rows = model_->rows().rows();
+  compliance_.setZero(rows, rows);
+  delta_free_.setZero(rows);
+  measure_delta();
+}
+
+void World::begin_step() {
+  for (auto& body : bodies_) body->begin_step();
+}
+
+void World::linearise(const mechanics::LinearisationRequest& request) {
+  for (auto& body : bodies_) body->linearise(request);
+}
+
+const VectorX& World::measure_delta() {
+  for (const auto& constraint : model_->constraints()) constraint->linearise(placement_, rows_);
+  return rows_.delta;
+}
+
+void World::form_rows(std::span<const double> effort, std::span<const int> curved) {
+  measure_delta();
+  for (auto& body : bodies_) body->take_rows(rows_);
+  for (const int index : curved) {
+    const auto& constraint = *model_->constraints()[static_cast<std::size_t>(index)];
+    const std::span<mechanics::RowCurvature> pairs(
+        curvatures_.data() + constraint.first_curvature(),
+        static_cast<std::size_t>(constraint.curvature_count()));
+    constraint.curve(placement_, pairs);
+    for (const auto& pair : pairs) {
+      const double lambda = effort[static_cast<std::size_t>(pair.row)];
+      if (lambda != 0.0)
+        bodies_[static_cast<std::size_t>(pair.first.body)]->add_curvature(pair, lambda);
+    }
+  }
+}
+
+double World::residual(std::span<const double> effort) {
+  double sum = 0.0;
+  for (auto& body : bodies_) {
+    const double part = body->residual(effort);
+    sum += part * part;
+  }
+  return std::sqrt(sum);
+}
+
+double World::force_scale() const {
+  double scale = 0.0;
+  for (const auto& body : bodies_) scale += body->force_scale();
+  return scale;
+}
+
+void World::hold_imbalance(std::span<const double> effort) {
+  for (auto& body : bodies_) body->hold_imbalance(effort);
+}
+
+void World::set_imbalance_share(double share) {
+  for (auto& body : bodies_) body->set_imbalance_share(share);
+}
+
+linalg::FactorStatus World::condense() {
+  compliance_.setZero();
+  delta_free_ = rows_.delta;
+  auto worst = linalg::FactorStatus::positive_definite;
+  for (auto& body : bodies_) {
+    const auto status = body->condense();
+    worst = std::max(worst, status);
+    if (status != linalg::FactorStatus::singular) body->add_compliance(compliance_, delta_free_);
+  }
+  return worst;
+}
+
+void World::solve_motion(std::span<const double> effort) {
+  for (auto& body : bodies_) body->solve_motion(effort);
+}
+
+mechanics::MotionReport World::apply_motion(double scale) {
+  mechanics::MotionReport worst;
+  worst.smallest_volume_ratio = INFINITY;
+  for (auto& body : bodies_) {
+    const auto report = body->apply_motion(scale);
+    worst.finite = worst.finite && report.finite;
+    if (report.smallest_volume_ratio < worst.smallest_volume_ratio) {
+      worst.smallest_volume_ratio = report.smallest_volume_ratio;
+      worst.worst_element = report.worst_element;
+    }
+  }
+  return worst;
+}
+
+void World::end_step(const mechanics::StepWeights& weights) {
+  for (auto& body : bodies_) body->end_step(weights);
+}
+
+std::size_t World::state_size() const {
+  std::size_t size = 0;
+  for (const auto& body : bodies_) size += body->state_size();
+  return size;
+}
+
+void World::save_state(std::span<double> state) const {
+  std::size_t at = 0;
+  for (const auto& body : bodies_) {
+    body->save_state(state.subspan(at, body->state_size()));
+    at += body->state_size();
+  }
+}
+
+void World::load_state(std::span<const double> state) {
+  std::size_t at = 0;
+  for (const auto& body : bodies_) {
+    body->load_state(state.subspan(at, body->state_size()));
+    at += body->state_size();
+  }
+}
+
+std::size_t World::bytes() const {
+  std::size_t total = sizeof(double) * static_cast<std::size_t>(compliance_.size());
+  total += rows_.direction.size() * sizeof(Vector3) +
+           curvatures_.size() * sizeof(mechanics::RowCurvature);
+  for (const auto& body : bodies_) total += body->bytes();
+  return total;
+}
+
+}  // namespace sinew::sim

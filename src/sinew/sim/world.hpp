@@ -1,0 +1,66 @@
+/// @file
+/// All bodies of a simulation and the rows between them, as one linear system a step.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "sinew/sim/model.hpp"
+
+namespace sinew::sim {
+
+/// Data of one simulation below the level of commands and laws. Nothing allocates after
+/// construction, but for the first use of curvature.
+class World {
+ public:
+  /// @param model shared. @param pool must outlive the world.
+  World(std::shared_ptr<const Model> model, ThreadPool& pool);
+
+  void begin_step();
+  /// Assembly: every body at its current state.
+  void linearise(const mechanics::LinearisationRequest& request);
+  /// H and delta at the current placement, handed to the bodies; adds the curvature of
+  /// `curved` constraints at `effort`.
+  void form_rows(std::span<const double> effort, std::span<const int> curved);
+  /// |b + H^T effort| (N) and the scale (N) to judge it by.
+  double residual(std::span<const double> effort);
+  double force_scale() const;
+  /// For load stepping: see mechanics::Body.
+  void hold_imbalance(std::span<const double> effort);
+  void set_imbalance_share(double share);
+  /// W and delta_free. The worst status of any body.
+  linalg::FactorStatus condense();
+  void solve_motion(std::span<const double> effort);
+  /// The worst report of any body.
+  mechanics::MotionReport apply_motion(double scale);
+  void end_step(const mechanics::StepWeights& weights);
+
+  const MatrixX& compliance() const { return compliance_; }  ///< W (rows, rows), m/N
+  const VectorX& delta_free() const { return delta_free_; }  ///< (rows,) m
+  const VectorX& delta() const { return rows_.delta; }       ///< (rows,) m, as last formed
+  /// delta at the current placement, without forming the rows anew for the bodies.
+  const VectorX& measure_delta();
+  const mechanics::RowValues& rows() const { return rows_; }
+
+  const constraint::Placement& placement() const { return placement_; }
+  std::span<const std::unique_ptr<mechanics::Body>> bodies() const { return bodies_; }
+  mechanics::Body& body(int index) { return *bodies_[static_cast<std::size_t>(index)]; }
+  const mechanics::Body& body(int index) const { return *bodies_[static_cast<std::size_t>(index)]; }
+
+  std::size_t state_size() const;
+  void save_state(std::span<double> state) const;
+  void load_state(std::span<const double> state);
+  std::size_t bytes() const;
+
+ private:
+  std::shared_ptr<const Model> model_;
+  std::vector<std::unique_ptr<mechanics::Body>> bodies_;
+  constraint::Placement placement_;
+  mechanics::RowValues rows_;
+  std::vector<mechanics::RowCurvature> curvatures_;
+  MatrixX compliance_;
+  VectorX delta_free_;
+};
+
+}  // namespace sinew::sim
