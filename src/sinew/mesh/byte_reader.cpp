@@ -131,8 +131,15 @@ std::vector<std::int64_t> decode_integers(std::string_view block, ScalarType typ
   return decode<std::int64_t>(block, type, order);
 }
 
-ByteReader::ByteReader(std::string_view bytes, std::string name)
-    : bytes_(bytes), name_(std::move(name)) {}
+ByteReader::ByteReader(std::string_view bytes, std::string name, int first_line)
+    : bytes_(bytes), name_(std::move(name)), first_line_(first_line) {}
+
+bool ByteReader::skip_past(std::string_view text) {
+  const std::size_t found = bytes_.find(text, offset_);
+  if (found == std::string_view::npos) return false;
+  offset_ = found + text.size();
+  return true;
+}
 
 bool ByteReader::at_end() {
   while (offset_ < bytes_.size() && is_space(bytes_[offset_])) ++offset_;
@@ -225,7 +232,8 @@ std::size_t ByteReader::checked_count(std::int64_t count, std::size_t bytes_each
 Place ByteReader::place() const {
   if (binary_) return {.file = name_, .item = fmt::format("byte {}", offset_)};
   const auto end = bytes_.begin() + static_cast<std::ptrdiff_t>(offset_);
-  return {.file = name_, .line = 1 + static_cast<int>(std::count(bytes_.begin(), end, '\n'))};
+  return {.file = name_,
+          .line = first_line_ + static_cast<int>(std::count(bytes_.begin(), end, '\n'))};
 }
 
 void ByteReader::fail(ErrorKind kind, const std::string& message, const std::string& remedy) const {

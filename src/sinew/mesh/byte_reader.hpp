@@ -49,7 +49,8 @@ class ByteReader {
  public:
   /// @param bytes the whole file.
   /// @param name the file's name, for messages.
-  ByteReader(std::string_view bytes, std::string name);
+  /// @param first_line number of the line where `bytes` start in the file.
+  ByteReader(std::string_view bytes, std::string name, int first_line = 1);
 
   const std::string& name() const { return name_; }
   std::size_t offset() const { return offset_; }
@@ -88,6 +89,9 @@ class ByteReader {
   /// @param what what is counted: "points".
   std::size_t checked_count(std::int64_t count, std::size_t bytes_each, std::string_view what);
 
+  /// Moves past the next occurrence of `text`; false, without moving, when there is none.
+  bool skip_past(std::string_view text);
+
   /// From here on messages give byte offsets instead of lines.
   void mark_binary() { binary_ = true; }
 
@@ -105,6 +109,7 @@ class ByteReader {
   std::string_view bytes_;
   std::string name_;
   std::size_t offset_ = 0;
+  int first_line_ = 1;
   bool binary_ = false;
 };
 

@@ -7,7 +7,9 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/mesh/check.hpp"
+#include "sinew/mesh/gmsh.hpp"
 #include "sinew/mesh/vtk_legacy.hpp"
+#include "sinew/mesh/vtu.hpp"
 
 namespace sinew::mesh {
 
@@ -47,6 +49,12 @@ std::string read_file(const std::filesystem::path& path) {
 
 Mesh parse_mesh(std::string_view bytes, const std::string& name) {
   if (bytes.starts_with("# vtk DataFile")) return read_vtk_legacy(bytes, name);
+  if (bytes.starts_with("$MeshFormat") || bytes.starts_with("$Comments")) {
+    return read_gmsh(bytes, name);
+  }
+  if (bytes.substr(0, 4096).find("<VTKFile") != std::string_view::npos) {
+    return read_vtu(bytes, name);
+  }
   throw Error(ErrorKind::unknown_format, {.file = name},
               "this is none of the mesh formats that are read",
               "give a VTK legacy (.vtk), VTU (.vtu) or Gmsh (.msh, version 2.2 or 4.1) file");

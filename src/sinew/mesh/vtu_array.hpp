@@ -1,0 +1,74 @@
+/// @file
+/// The DataArray of VTK's XML files: from any encoding to numbers.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <pugixml.hpp>
+
+#include "sinew/mesh/byte_reader.hpp"
+
+namespace sinew::mesh {
+
+/// A VTU file taken apart: its XML, and where the appended data start.
+class VtuFile {
+ public:
+  /// @param bytes the whole file; the caller keeps it.
+  /// @param name its name, for messages.
+  VtuFile(std::string_view bytes, const std::string& name);
+
+  /// <VTKFile>.
+  pugi::xml_node root() const { return document_.child("VTKFile"); }
+
+  /// The values of a DataArray.
+  /// @param array the node; its text or appended data are read.
+  /// @param count number of values that it must have.
+  std::vector<double> doubles(pugi::xml_node array, std::size_t count) const;
+
+  /// As doubles(), for an array of integers.
+  std::vector<std::int64_t> integers(pugi::xml_node array, std::size_t count) const;
+
+  /// Values of an array whose number only the array itself tells.
+  std::vector<std::int64_t> all_integers(pugi::xml_node array) const;
+
+  /// The number type of an array. Throws Error(malformed-file) when it is none.
+  ScalarType type_of(pugi::xml_node array) const;
+
+  /// A count given as attribute of an element.
+  std::size_t count(pugi::xml_node node, const char* attribute) const;
+
+  /// Throws Error at the node's line.
+  [[noreturn]] void fail(ErrorKind kind, pugi::xml_node node, const std::string& message,
+                         const std::string& remedy = {}) const;
+
+ private:
+  void parse();
+  void find_appended(std::size_t tag);
+  void read_attributes();
+  int line_of(pugi::xml_node node) const;
+  bool is_ascii(pugi::xml_node array) const;
+  std::string block(pugi::xml_node array) const;
+  std::string raw_bytes(pugi::xml_node array, std::size_t skip, std::size_t most) const;
+  std::string plain_block(pugi::xml_node array) const;
+  std::string compressed_block(pugi::xml_node array) const;
+  std::size_t header_item(pugi::xml_node array, std::string_view header, std::size_t item) const;
+
+  template <typename Value, typename Decode, typename Parse>
+  std::vector<Value> values(pugi::xml_node array, const Decode& decode, const Parse& parse) const;
+  void check_size(pugi::xml_node array, std::size_t have, std::size_t count) const;
+
+  std::string_view bytes_;
+  std::string name_;
+  std::string_view xml_;       // what comes before the appended data
+  std::string_view appended_;  // after its leading underscore
+  bool appended_is_base64_ = false;
+  pugi::xml_document document_;
+  ByteOrder order_ = ByteOrder::little;
+  std::size_t header_bytes_ = 4;
+  bool compressed_ = false;
+};
+
+}  // namespace sinew::mesh
