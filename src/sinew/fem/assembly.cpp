@@ -88,7 +88,7 @@ void Assembly::evaluate(const Points& positions, const AssemblyWeights& weights)
   gather(weights);
 }
 
-void Assembly::evaluate_elements(const Points& positions, Tangent tangent) {
+void Assembly::load_positions(const Points& positions) {
   Workspace& work = *work_;
   const int nodes = static_cast<int>(positions.rows());
   pool_->for_range(nodes, kNodeGrain, [&](int begin, int end, int) {
@@ -98,6 +98,11 @@ void Assembly::evaluate_elements(const Points& positions, Tangent tangent) {
       }
     }
   });
+}
+
+void Assembly::evaluate_elements(const Points& positions, Tangent tangent) {
+  Workspace& work = *work_;
+  load_positions(positions);
   const SmallestRatio none{std::numeric_limits<double>::infinity(), -1};
   std::ranges::fill(work.thread_ratios, none);
   const ElementBatches& elements = model_->elements();
@@ -109,10 +114,27 @@ void Assembly::evaluate_elements(const Points& positions, Tangent tangent) {
   });
   work.energy = 0.0;
   for (const double energy : work.batch_energy) work.energy += energy;
-  work.smallest = none;
-  for (const SmallestRatio& ratio : work.thread_ratios) {  // ascending slots: the first wins ties
-    if (ratio.value < work.smallest.value) work.smallest = ratio;
+  find_smallest();
+}
+
+void Assembly::find_smallest() {
+  work_->smallest = {std::numeric_limits<double>::infinity(), -1};
+  for (const SmallestRatio& ratio : work_->thread_ratios) {  // ascending slots: the first wins ties
+    if (ratio.value < work_->smallest.value) work_->smallest = ratio;
   }
+}
+
+VolumeMeasure Assembly::measure_volume(const Points& positions) {
+  Workspace& work = *work_;
+  load_positions(positions);
+  std::ranges::fill(work.thread_ratios, SmallestRatio{std::numeric_limits<double>::infinity(), -1});
+  const ElementBatches& elements = model_->elements();
+  pool_->for_range(elements.batches(), 1, [&](int begin, int end, int thread) {
+    work.thread_ratios[static_cast<std::size_t>(thread)] =
+        measure_batches(elements, begin, end, work.points.data());
+  });
+  find_smallest();
+  return {minimum_volume_ratio(), worst_element()};
 }
 
 void Assembly::gather(const AssemblyWeights& weights) {

@@ -156,6 +156,19 @@ void evaluate_laws(const ElementBatches& elements, int begin, int end, const dou
   evaluate<Law::corotational, tangent>(elements, split, end, points, output, minimum);
 }
 
+SmallestRatio smallest(const LaneMinimum& minimum, const ElementBatches& elements) {
+  SmallestRatio result{std::numeric_limits<double>::infinity(), -1};
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const auto slot = static_cast<std::int32_t>(kLanes * minimum.batch[lane] + lane);
+    if (elements.tetrahedron[static_cast<std::size_t>(slot)] < 0) continue;
+    const double value = minimum.value[lane];
+    if (value < result.value || (value == result.value && slot < result.slot)) {
+      result = {value, slot};
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 SmallestRatio evaluate_batches(const ElementBatches& elements, int begin, int end,
@@ -172,16 +185,19 @@ SmallestRatio evaluate_batches(const ElementBatches& elements, int begin, int en
       evaluate_laws<Tangent::exact>(elements, begin, end, points, output, minimum);
       break;
   }
-  SmallestRatio result{std::numeric_limits<double>::infinity(), -1};
-  for (int lane = 0; lane < kLanes; ++lane) {
-    const auto slot = static_cast<std::int32_t>(kLanes * minimum.batch[lane] + lane);
-    if (elements.tetrahedron[static_cast<std::size_t>(slot)] < 0) continue;
-    const double value = minimum.value[lane];
-    if (value < result.value || (value == result.value && slot < result.slot)) {
-      result = {value, slot};
-    }
+  return smallest(minimum, elements);
+}
+
+SmallestRatio measure_batches(const ElementBatches& elements, int begin, int end,
+                              const double* points) {
+  LaneMinimum minimum;
+  for (std::int64_t b = begin; b < end; ++b) {
+    const BatchConstants& batch = elements.constants[static_cast<std::size_t>(b)];
+    const std::int32_t* nodes = elements.nodes.data() + 4 * kLanes * b;
+    const Lanes3x3 f = deformation_gradient(batch, nodes, points);
+    minimum.see(material::determinant(f, material::cofactor(f)), b);
   }
-  return result;
+  return smallest(minimum, elements);
 }
 
 }  // namespace sinew::fem

@@ -46,4 +46,8 @@ struct ElementOutput {
 SmallestRatio evaluate_batches(const ElementBatches& elements, int begin, int end,
                                const double* points, Tangent tangent, const ElementOutput& output);
 
+/// The smallest det F of batches begin .. end-1 alone.
+SmallestRatio measure_batches(const ElementBatches& elements, int begin, int end,
+                              const double* points);
+
 }  // namespace sinew::fem

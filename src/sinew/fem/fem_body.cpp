@@ -13,10 +13,6 @@ namespace {
 constexpr double kLargestSize = 1e3;
 
 std::span<double> span_of(VectorX& v) { return {v.data(), static_cast<std::size_t>(v.size())}; }
-std::span<const double> span_of(const VectorX& v) {
-  return {v.data(), static_cast<std::size_t>(v.size())};
-}
-
 }  // namespace
 
 struct FemBody::Numbers {

@@ -28,7 +28,7 @@ struct Sine {
 class Signal {
  public:
   /// Zero for ever.
-  Signal() = default;
+  Signal() : form_(Constant{0.0}) {}
 
   /// One value for ever. Throws Error(not-finite).
   static Signal constant(double value);
@@ -36,15 +36,16 @@ class Signal {
   static Signal ramp(const Ramp& ramp);
   /// Throws Error(not-finite) or Error(bad-signal) when period <= 0.
   static Signal sine(const Sine& sine);
-  /// Each value holds from its time until the next one's; the last one holds for ever.
+  /// Each value holds from its time (within a nanosecond, so that rounding of n h does not delay
+  /// it by a step) until the next one's; the last one holds for ever.
   /// @param steps pairs (time in s, value). The first time is 0, so that no moment is undefined.
   /// Throws Error(bad-signal) for no steps or a first time other than 0, Error(non-monotonic-time)
   /// when times do not increase, Error(not-finite).
   static Signal steps(const std::vector<std::pair<double, double>>& steps);
   /// Straight lines between samples; the first value holds before, the last one after.
-  /// @param times (n,) s, increasing, >= 0; @p values (n,). Throws as steps() does, and
-  /// Error(wrong-length) when the two differ in length.
+  /// @param times (n,) s, increasing, >= 0.
   /// @param values (n,) in the signal's unit.
+  /// Throws as steps() does, and Error(wrong-length) when the two differ in length.
   static Signal sampled(std::vector<double> times, std::vector<double> values);
 
   /// The value at `time` (s).
@@ -59,7 +60,7 @@ class Signal {
 
  private:
   struct Constant {
-    double value = 0.0;
+    double value;
   };
   struct Table {
     std::vector<double> times;

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "sinew/fem/fem_body.hpp"
 #include "sinew/sim/direct_law.hpp"
 #include "sinew/sim/newton.hpp"
 #include "sinew/sim/stages.hpp"
