@@ -11,7 +11,8 @@
 namespace sinew::linalg {
 
 /// Doubles stored per 3x3 block: three columns padded to four rows, so that a column is one vector
-/// load. Entry (r, c) of block b is values[12 b + 4 c + r]; values[12 b + 4 c + 3] is padding and 0.
+/// load. Entry (r, c) of block b is values[12 b + 4 c + r]; values[12 b + 4 c + 3] is padding and
+/// 0.
 inline constexpr int kBlockStride = 12;
 
 /// Lower triangle of the node graph by columns: block b in column_start[j] .. column_start[j+1]-1
@@ -27,13 +28,15 @@ struct BlockPattern {
   int find(int i, int j) const;
 
   /// The pattern with all diagonal blocks and every pair (i, j) that stands together in a clique
-  /// (an element's nodes, a cable segment's nodes). Cliques are rows of `members` split at `starts`.
+  /// (an element's nodes, a cable segment's nodes). Cliques are rows of `members` split at
+  /// `starts`.
   static BlockPattern from_cliques(int nodes, std::span<const std::int32_t> starts,
                                    std::span<const std::int32_t> members);
 };
 
-/// Rows of H with fixed patterns: entry e in row_start[k] .. row_start[k+1]-1 is row k's 3-vector at
-/// node[e]; its values are border_values[3 e .. 3 e + 2]. Nodes within a row are distinct, ascending.
+/// Rows of H with fixed patterns: entry e in row_start[k] .. row_start[k+1]-1 is row k's 3-vector
+/// at node[e]; its values are border_values[3 e .. 3 e + 2]. Nodes within a row are distinct,
+/// ascending.
 struct BorderPattern {
   std::vector<std::int32_t> row_start{0};
   std::vector<std::int32_t> node;

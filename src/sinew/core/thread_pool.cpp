@@ -1,0 +1,123 @@
+#include "sinew/core/thread_pool.hpp"
+
+#include <atomic>
+#include <cstdint>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "sinew/core/error.hpp"
+#include "sinew/core/spin_wait.hpp"
+
+namespace sinew {
+
+namespace {
+
+/// Pauses before a waiting thread gives its core away: about 20 us on a recent core, longer than
+/// the gap between two parallel sections of a step, shorter than anything a user would notice.
+constexpr int kPauses = 1000;
+/// Rounds (pauses and yields together) before a waiting thread goes to sleep.
+constexpr int kYields = 20;
+
+/// A counter on its own cache line.
+struct alignas(64) Ticket {
+  std::atomic<std::uint32_t> value{0};
+};
+
+/// Waits until `ticket` differs from `old` and returns the new value.
+std::uint32_t wait_for_change(const Ticket& ticket, std::uint32_t old, int pauses) {
+  SpinWait spin(pauses);
+  std::uint32_t now = ticket.value.load(std::memory_order_acquire);
+  while (now == old) {
+    if (spin.rounds() < pauses + kYields) {
+      spin.once();
+    } else {
+      ticket.value.wait(old, std::memory_order_acquire);
+    }
+    now = ticket.value.load(std::memory_order_acquire);
+  }
+  return now;
+}
+
+}  // namespace
+
+/// `call` is raised by the caller to start a round; `done[i]` by worker i when it has finished.
+/// `work`, `context` and `stop` are written before `call` is raised and read after it was seen.
+struct ThreadPool::Shared {
+  explicit Shared(int count) : threads(count), done(static_cast<std::size_t>(count)) {}
+
+  int threads;
+  int pauses = 0;
+  RawWork work = nullptr;
+  void* context = nullptr;
+  bool stop = false;
+  Ticket call;
+  std::vector<Ticket> done;
+  std::vector<std::thread> workers;
+
+  void serve(int thread) {
+    Ticket& mine = done[static_cast<std::size_t>(thread)];
+    std::uint32_t seen = 0;
+    while (true) {
+      seen = wait_for_change(call, seen, pauses);
+      if (stop) return;
+      work(context, thread);
+      mine.value.store(seen, std::memory_order_release);
+      mine.value.notify_one();
+    }
+  }
+
+  std::uint32_t raise() {
+    const std::uint32_t round = call.value.load(std::memory_order_relaxed) + 1;
+    call.value.store(round, std::memory_order_release);
+    call.value.notify_all();
+    return round;
+  }
+
+  void finish() {
+    stop = true;
+    raise();
+    for (std::thread& worker : workers) worker.join();
+  }
+};
+
+ThreadPool::ThreadPool(int threads) {
+  if (threads < 1) {
+    throw Error(ErrorKind::out_of_range, Place{.file = {}, .item = "threads"},
+                "the number of threads is " + std::to_string(threads),
+                "give at least 1 (the caller itself)");
+  }
+  shared_ = std::make_unique<Shared>(threads);
+  const auto cores = static_cast<int>(std::thread::hardware_concurrency());
+  shared_->pauses = threads <= cores ? kPauses : 0;
+  shared_->workers.reserve(static_cast<std::size_t>(threads));
+  try {
+    for (int thread = 1; thread < threads; ++thread) {
+      shared_->workers.emplace_back([shared = shared_.get(), thread] { shared->serve(thread); });
+    }
+  } catch (...) {
+    shared_->finish();
+    throw;
+  }
+}
+
+ThreadPool::~ThreadPool() { shared_->finish(); }
+
+int ThreadPool::size() const { return shared_->threads; }
+
+void ThreadPool::run_raw(RawWork work, void* context) {
+  Shared& shared = *shared_;
+  if (shared.threads == 1) {
+    work(context, 0);
+    return;
+  }
+  shared.work = work;
+  shared.context = context;
+  const std::uint32_t round = shared.raise();
+  work(context, 0);
+  for (int thread = 1; thread < shared.threads; ++thread) {
+    wait_for_change(shared.done[static_cast<std::size_t>(thread)], round - 1, shared.pauses);
+  }
+}
+
+}  // namespace sinew

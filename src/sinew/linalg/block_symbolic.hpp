@@ -1,0 +1,95 @@
+/// @file
+/// Everything about the block factorisation that does not depend on numbers: where each panel of L
+/// lies, which panels update which, and where every entry of A, H and b goes.
+///
+/// L is stored in panels, one a supernode, column-major:
+///
+///     panel row 0 .. 3w-1                 the supernode's own w nodes (lower triangle of L)
+///     (8 rows of zeros in split panels)   so that tiles of the diagonal block may run over
+///     panel row below .. below+3r-1       the r nodes below, ascending, border nodes last
+///     at least 7 rows of zeros            so that full-width tiles may run over the end
+///
+/// and the next column follows `leading` doubles later. The last panel is the border's: it is
+/// updated by all others and never factorised, and ends as -(H; b) A^-1 (H; b)^T.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sinew/linalg/block_pattern.hpp"
+#include "sinew/linalg/supernodes.hpp"
+
+namespace sinew::linalg {
+
+/// A stretch of rows that lie side by side in the source panel and in the target panel. Doubles.
+struct RowRun {
+  std::int32_t source;  ///< first row, counted from the first row of the update
+  std::int32_t target;  ///< first row in the target panel
+  std::int32_t length;
+};
+
+/// "Panel -= L_d(rows, :) S L_d(columns, :)^T": what one descendant d does to a panel.
+struct Update {
+  std::int32_t descendant;
+  std::int32_t first;    ///< panel row of the descendant where rows and columns begin
+  std::int32_t rows;     ///< doubles, columns included
+  std::int32_t columns;  ///< doubles; the first rows are the target's columns
+  std::int32_t run_begin, run_end;
+};
+
+/// One 3x3 block, or one 3-vector of a border row: where its numbers come from and go to.
+struct Placement {
+  std::int32_t source;  ///< first double in the caller's array
+  std::int32_t target;  ///< first double in the panel
+};
+
+/// A panel of L and the lists that fill it.
+struct Panel {
+  std::int32_t first = 0;    ///< first node, in elimination order
+  std::int32_t width = 0;    ///< nodes
+  std::int32_t below = 0;    ///< panel row of the first node below
+  std::int32_t height = 0;   ///< rows in use, padding at the end not counted
+  std::int32_t leading = 0;  ///< doubles from column to column
+  std::int64_t offset = 0;   ///< first double in the factor
+  std::int32_t parent = -1;  ///< panel of the first node below; the border's panel at a root
+  bool split = false;        ///< its rows are shared between threads
+  std::int32_t row_begin = 0, row_end = 0;  ///< the nodes below, in `rows`
+  std::int32_t border_row = 0;              ///< where the border nodes begin, in `rows`
+  std::int32_t update_begin = 0, update_end = 0;
+  std::int32_t straight_begin = 0, straight_end = 0;      ///< blocks placed as they are
+  std::int32_t transposed_begin = 0, transposed_end = 0;  ///< blocks placed transposed
+  std::int32_t border_begin = 0, border_end = 0;          ///< entries of H
+  std::int32_t right_row = 0;                             ///< panel row of b
+  double flops = 0;                                       ///< updates and factorisation
+};
+
+/// The whole symbolic factorisation.
+struct BlockSymbolic {
+  int nodes = 0;
+  int border_rows = 0;                 ///< m
+  int border_nodes = 0;                ///< groups of three that hold the m rows and b
+  std::vector<std::int32_t> order;     ///< node eliminated k-th
+  std::vector<std::int32_t> position;  ///< its inverse
+  std::vector<Panel> panels;           ///< the last one is the border's
+  std::vector<std::int32_t> rows;
+  std::vector<Update> updates;
+  std::vector<RowRun> runs;
+  std::vector<Placement> straight, transposed, border;
+  /// The border's updates are summed in this many groups of panels, then the groups in order, so
+  /// that the result does not depend on the number of threads. Group c has the panels
+  /// group_start[c] .. group_start[c+1]-1.
+  std::vector<std::int32_t> group_start;
+  std::int64_t doubles = 0;  ///< length of the factor, the border's panel not counted
+  std::int64_t entries = 0;  ///< doubles of L in use
+  double flops = 0;
+  int max_leading = 0;
+  int max_width = 0;  ///< doubles
+
+  BlockSymbolic(const BlockPattern& pattern, const BorderPattern& border_pattern, Ordering ordering,
+                const SupernodeSettings& settings);
+
+  int panel_count() const { return static_cast<int>(panels.size()) - 1; }
+  const Panel& border_panel() const { return panels.back(); }
+};
+
+}  // namespace sinew::linalg

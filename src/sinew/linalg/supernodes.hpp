@@ -1,0 +1,34 @@
+/// @file
+/// Supernodes: runs of columns of L with the same rows below, stored and computed as one dense
+/// panel. Columns whose patterns nearly agree are joined too, at the price of stored zeros.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sinew/linalg/elimination.hpp"
+
+namespace sinew::linalg {
+
+/// When columns are joined, and how wide a panel may be.
+struct SupernodeSettings {
+  /// A supernode joins its parent when that stores at most this many zero 3x3 blocks ..
+  int zero_blocks = 20;
+  /// .. or at most this fraction of the joined panel.
+  double zero_fraction = 0.0;
+  /// Widest panel in nodes; wider supernodes are split into equal parts.
+  int max_width = 32;
+};
+
+/// The columns in their final order, cut into supernodes. Children come before parents.
+struct SupernodePartition {
+  std::vector<std::int32_t> order;  ///< node eliminated k-th
+  std::vector<std::int32_t> start;  ///< supernode s has columns start[s] .. start[s+1]-1
+  /// Rows of supernode s below its own columns, ascending, as columns; border nodes are n, n+1, ..
+  std::vector<std::vector<std::int32_t>> rows;
+
+  SupernodePartition(const Elimination& elimination, const SupernodeSettings& settings);
+  int count() const { return static_cast<int>(start.size()) - 1; }
+};
+
+}  // namespace sinew::linalg
