@@ -1,0 +1,62 @@
+#include <array>
+#include <charconv>
+
+#include <fmt/format.h>
+
+#include "sinew/core/csv.hpp"
+
+namespace sinew {
+
+namespace {
+
+std::string quoted(const std::string& name) {
+  if (name.find_first_of(",;\"# \t\r\n") == std::string::npos) return name;
+  std::string text = "\"";
+  for (const char c : name) text += c == '"' || c == '\r' || c == '\n' ? '\'' : c;
+  return text + '"';
+}
+
+}  // namespace
+
+CsvWriter::CsvWriter(const std::filesystem::path& path, std::span<const std::string> names)
+    : path_(path.string()),
+      file_(std::fopen(path_.c_str(), "wb")),
+      columns_(static_cast<int>(names.size())) {
+  if (!file_ || names.empty()) {
+    throw Error(ErrorKind::file_unwritable, {.file = path_},
+                names.empty() ? "the table has no columns" : "the file cannot be created",
+                "check that its folder exists and is writable");
+  }
+  for (const std::string& name : names) {
+    if (!line_.empty()) line_ += ',';
+    line_ += quoted(name);
+  }
+  flush_line();
+}
+
+void CsvWriter::write_row(std::span<const double> values) {
+  if (values.size() != static_cast<std::size_t>(columns_)) {
+    throw Error(ErrorKind::wrong_columns, {.file = path_},
+                fmt::format("expected {} columns, got {}", columns_, values.size()),
+                "write as many values as the header has names");
+  }
+  std::array<char, 32> digits{};
+  for (const double value : values) {
+    if (!line_.empty()) line_ += ',';
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+    line_.append(digits.data(), end);
+  }
+  flush_line();
+}
+
+void CsvWriter::flush_line() {
+  line_ += '\n';
+  const std::size_t written = std::fwrite(line_.data(), 1, line_.size(), file_.get());
+  const bool good = written == line_.size() && std::fflush(file_.get()) == 0;
+  line_.clear();
+  if (good) return;
+  throw Error(ErrorKind::recording_failed, {.file = path_}, "the row cannot be written",
+              "check that the disk is not full; rows before it are on disk");
+}
+
+}  // namespace sinew
