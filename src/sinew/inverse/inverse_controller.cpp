@@ -1,0 +1,340 @@
+#include "sinew/inverse/inverse_controller.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "sinew/core/error.hpp"
+
+namespace sinew::inverse {
+
+namespace {
+
+using sim::ActuatorRange;
+using sim::CommandKind;
+
+// A limit is taken to bind when the solution comes this near, relative to its size.
+constexpr double kActive = 1e-9;
+
+bool near(double value, double limit) {
+  return std::isfinite(limit) && std::abs(value - limit) <= kActive * (1.0 + std::abs(limit));
+}
+
+double infinity_norm(const MatrixX& matrix) { return matrix.cwiseAbs().rowwise().sum().maxCoeff(); }
+
+}  // namespace
+
+std::string_view inverse_status_name(InverseStatus status) {
+  switch (status) {
+    case InverseStatus::on_target:
+      return "on-target";
+    case InverseStatus::rate_limited:
+      return "rate-limited";
+    case InverseStatus::out_of_reach:
+      return "out-of-reach";
+    case InverseStatus::limits_conflict:
+      return "limits-conflict";
+  }
+  return "unknown";
+}
+
+InverseController::InverseController(sim::Simulation& simulation, InverseSettings settings)
+    : simulation_(simulation), settings_(std::move(settings)) {
+  check_settings();
+  const sim::Model& model = simulation_.model();
+  std::vector<double> weights;
+  for (const Task& task : settings_.tasks) {
+    const auto& effector = model.effector(task.effector);
+    for (int k = 0; k < effector.row_count(); ++k) {
+      effector_rows_.push_back(effector.first_row() + k);
+      const auto which = task.weights.size() == 1 ? 0 : static_cast<std::size_t>(k);
+      weights.push_back(task.weights[which]);
+    }
+  }
+  const auto rows = static_cast<Eigen::Index>(effector_rows_.size());
+  const auto count = static_cast<Eigen::Index>(model.actuators().size());
+  row_weights_ = Eigen::Map<VectorX>(weights.data(), rows);
+  jacobian_.setZero(rows, count);
+  weighted_.setZero(rows, count);
+  residual_.setZero(rows);
+  goal_.setZero(rows);
+  scale_.setOnes(count);
+  scaled_effort_.setZero(count);
+  slack_.assign(static_cast<std::size_t>(count), false);
+  program_ = qp::QuadraticProgram::sized(static_cast<int>(count), static_cast<int>(count));
+  solver_ = qp::QpSolver(static_cast<int>(count), static_cast<int>(count));
+  efforts_.setZero(static_cast<Eigen::Index>(settings_.actuators.size()));
+  simulation_.attach(*this, settings_.actuators);
+  attached_ = true;
+}
+
+InverseController::~InverseController() { detach(); }
+
+void InverseController::detach() {
+  if (attached_) simulation_.detach(*this);
+  attached_ = false;
+}
+
+void InverseController::check_settings() {
+  const sim::Model& model = simulation_.model();
+  if (settings_.tasks.empty()) {
+    throw Error(ErrorKind::no_effectors, {.item = "controller"}, "there is no effector to steer",
+                "name at least one effector and its target");
+  }
+  if (settings_.actuators.empty()) {
+    settings_.actuators.resize(model.actuators().size());
+    std::iota(settings_.actuators.begin(), settings_.actuators.end(), 0);
+  }
+  if (settings_.actuators.empty()) {
+    throw Error(ErrorKind::no_actuators, {.item = "controller"}, "the robot has no actuators",
+                "add a cable");
+  }
+  for (const double value : {settings_.epsilon, settings_.largest_step, settings_.tolerance}) {
+    if (!(value > 0.0)) {
+      throw Error(
+          ErrorKind::out_of_range, {.item = "controller"},
+          fmt::format("epsilon, largest_step and tolerance must be positive; one is {:g}", value),
+          "leave it out for the default");
+    }
+  }
+  for (const Task& task : settings_.tasks) {
+    const auto& effector = model.effector(task.effector);
+    const auto given = static_cast<int>(task.weights.size());
+    if (given != 1 && given != effector.row_count()) {
+      throw Error(ErrorKind::wrong_length, {.item = "weights of '" + effector.name() + "'"},
+                  fmt::format("{} weights for {} directions", given, effector.row_count()),
+                  "give one weight, or one for each direction");
+    }
+    for (const double weight : task.weights) {
+      if (!(weight >= 0.0) || !std::isfinite(weight)) {
+        throw Error(ErrorKind::out_of_range, {.item = "weights of '" + effector.name() + "'"},
+                    fmt::format("a weight is {:g}", weight), "give zero or more");
+      }
+    }
+  }
+}
+
+InverseStatus InverseController::step() {
+  simulation_.step();
+  return status_;
+}
+
+void InverseController::set_target(int task, Target target) {
+  settings_.tasks.at(static_cast<std::size_t>(task)).target = std::move(target);
+}
+
+void InverseController::form_residual(const sim::LawProblem& problem) {
+  Eigen::Index at = 0;
+  for (const Task& task : settings_.tasks) {
+    const auto& effector = problem.model.effector(task.effector);
+    effector.target_delta(problem.placement, task.target.at(problem.time),
+                          goal_.segment(at, effector.row_count()));
+    at += effector.row_count();
+  }
+  // What is still to go from here, and how the free motion differs from here.
+  double to_go = 0.0;
+  for (Eigen::Index k = 0; k < residual_.size(); ++k) {
+    const int row = effector_rows_[static_cast<std::size_t>(k)];
+    const double gap = goal_[k] - problem.delta[row];
+    if (row_weights_[k] > 0.0) to_go += gap * gap;
+  }
+  const double most = settings_.largest_step * problem.model.size();
+  const double share = std::sqrt(to_go) > most ? most / std::sqrt(to_go) : 1.0;
+  shortened_ = share < 1.0;
+  for (Eigen::Index k = 0; k < residual_.size(); ++k) {
+    const int row = effector_rows_[static_cast<std::size_t>(k)];
+    const double step_goal = problem.delta[row] + share * (goal_[k] - problem.delta[row]);
+    residual_[k] = problem.delta_free[row] - step_goal;
+  }
+}
+
+void InverseController::form_objective(const sim::LawProblem& problem,
+                                       std::span<const double> effort) {
+  const auto& ranges = problem.actuators;
+  const auto count = static_cast<Eigen::Index>(ranges.size());
+  for (Eigen::Index j = 0; j < count; ++j) {
+    const ActuatorRange& range = ranges[static_cast<std::size_t>(j)];
+    const double own = problem.compliance(range.row, range.row);
+    const double limit = std::max(std::abs(range.effort_min), std::abs(range.effort_max));
+    scale_[j] = std::isfinite(limit) && limit > 0.0 ? limit
+                : own > 0.0                         ? problem.model.size() / own
+                                                    : 1.0;
+  }
+  for (Eigen::Index j = 0; j < count; ++j) {
+    const int column = ranges[static_cast<std::size_t>(j)].row;
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const int row = ranges[static_cast<std::size_t>(i)].row;
+      program_.rows(i, j) = scale_[j] * problem.compliance(row, column);
+    }
+    for (Eigen::Index k = 0; k < residual_.size(); ++k) {
+      const int row = effector_rows_[static_cast<std::size_t>(k)];
+      jacobian_(k, j) = scale_[j] * problem.compliance(row, column);
+      weighted_(k, j) = row_weights_[k] * jacobian_(k, j);
+    }
+  }
+  auto& hessian = program_.hessian;
+  hessian.noalias() = jacobian_.transpose() * weighted_;
+  program_.gradient.noalias() = weighted_.transpose() * residual_;
+  double regular_norm = 0.0;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    double sum = 0.0;
+    for (Eigen::Index j = 0; j < count; ++j) sum += std::abs(scale_[i] * program_.rows(i, j));
+    regular_norm = std::max(regular_norm, sum);
+  }
+  const double eps =
+      regular_norm > 0.0 ? settings_.epsilon * infinity_norm(hessian) / regular_norm : 1.0;
+  const bool change = settings_.regularisation == Regularisation::change;
+  const double keep = change ? 1.0 - settings_.relaxation : 0.0;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    for (Eigen::Index j = 0; j < count; ++j) {
+      const double regular = eps * scale_[i] * program_.rows(i, j);
+      const double before =
+          effort[static_cast<std::size_t>(ranges[static_cast<std::size_t>(j)].row)] / scale_[j];
+      hessian(i, j) += regular;
+      program_.gradient[i] -= keep * regular * before;
+    }
+  }
+}
+
+void InverseController::form_limits(const sim::LawProblem& problem) {
+  for (std::size_t k = 0; k < problem.actuators.size(); ++k) {
+    const ActuatorRange& range = problem.actuators[k];
+    const auto i = static_cast<Eigen::Index>(k);
+    const double free = problem.delta_free[range.row];
+    double low = range.effort_min;
+    double high = range.effort_max;
+    double from = range.motion_min;
+    double to = range.motion_max;
+    if (!range.owned) {
+      const bool by_effort = range.kind == CommandKind::effort;
+      if (by_effort || slack_[k]) low = high = by_effort ? range.value : range.effort_min;
+      from = to = range.value;
+      if (by_effort || slack_[k]) {
+        from = -INFINITY;
+        to = INFINITY;
+      }
+    }
+    program_.lower[i] = low / scale_[i];
+    program_.upper[i] = high / scale_[i];
+    program_.row_lower[i] = from - free;
+    program_.row_upper[i] = to - free;
+  }
+}
+
+sim::LawStatus InverseController::solve_program(const sim::LawProblem& problem) {
+  sim::LawStatus status = sim::LawStatus::solved;
+  for (std::size_t round = 0; round <= slack_.size(); ++round) {
+    form_limits(problem);
+    const qp::QpResult& result = solver_.solve(program_);
+    if (result.status == qp::QpStatus::infeasible) {
+      return sim::LawStatus::failed;
+    } else if (result.status != qp::QpStatus::optimal) {
+      return sim::LawStatus::failed;
+    } else {
+      scaled_effort_ = result.x;
+    }
+    if (!release_pushing_cables(problem)) break;
+  }
+  return status;
+}
+
+// A passive cable whose motion is commanded is an equality row without regard to its sign; one that
+// comes out at its least tension may be slack instead.
+bool InverseController::release_pushing_cables(const sim::LawProblem& problem) {
+  bool changed = false;
+  for (std::size_t k = 0; k < slack_.size(); ++k) {
+    const ActuatorRange& range = problem.actuators[k];
+    if (range.owned || range.kind != CommandKind::motion || slack_[k]) continue;
+    const auto i = static_cast<Eigen::Index>(k);
+    const double delta = problem.delta_free[range.row] + program_.rows.row(i).dot(scaled_effort_);
+    if (delta > range.value + kActive * problem.model.size()) {
+      slack_[k] = true;
+      changed = true;
+    }
+  }
+  return changed;
+}
+
+sim::LawStatus InverseController::solve(const sim::LawProblem& problem, std::span<double> effort) {
+  form_residual(problem);
+  form_objective(problem, effort);
+  std::fill(slack_.begin(), slack_.end(), false);
+  const sim::LawStatus status = solve_program(problem);
+  if (status == sim::LawStatus::failed) return status;
+  for (std::size_t k = 0; k < problem.actuators.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    effort[static_cast<std::size_t>(problem.actuators[k].row)] = scale_[i] * scaled_effort_[i];
+  }
+  for (std::size_t k = 0; k < settings_.actuators.size(); ++k) {
+    const auto& range = problem.actuators[static_cast<std::size_t>(settings_.actuators[k])];
+    efforts_[static_cast<Eigen::Index>(k)] = effort[static_cast<std::size_t>(range.row)];
+  }
+  judge(problem, status);
+  return status;
+}
+
+void InverseController::judge(const sim::LawProblem& problem, sim::LawStatus law) {
+  double left = 0.0;
+  for (Eigen::Index k = 0; k < residual_.size(); ++k) {
+    if (!(row_weights_[k] > 0.0)) continue;
+    const double gap = residual_[k] + jacobian_.row(k).dot(scaled_effort_);
+    left += gap * gap;
+  }
+  predicted_error_ = std::sqrt(left);
+  if (law == sim::LawStatus::limits_conflict) {
+    status_ = InverseStatus::limits_conflict;
+    return;
+  }
+  if (predicted_error_ <= settings_.tolerance) {
+    status_ = shortened_ ? InverseStatus::rate_limited : InverseStatus::on_target;
+    return;
+  }
+  bool rate_binds = false;
+  for (const int index : settings_.actuators) {
+    const auto k = static_cast<std::size_t>(index);
+    const ActuatorRange& range = problem.actuators[k];
+    const auto& model = problem.model.actuators()[k];
+    const auto i = static_cast<Eigen::Index>(index);
+    const double lambda = scale_[i] * scaled_effort_[i];
+    const double delta = problem.delta_free[range.row] + program_.rows.row(i).dot(scaled_effort_);
+    rate_binds = rate_binds ||
+                 (range.effort_max < model.effort.max && near(lambda, range.effort_max)) ||
+                 (range.effort_min > model.effort.min && near(lambda, range.effort_min)) ||
+                 (range.motion_max < model.motion.max && near(delta, range.motion_max)) ||
+                 (range.motion_min > model.motion.min && near(delta, range.motion_min));
+  }
+  status_ = rate_binds ? InverseStatus::rate_limited : InverseStatus::out_of_reach;
+}
+
+double InverseController::violation(const sim::LawProblem&, std::span<const double>) const {
+  return 0.0;
+}
+
+void InverseController::reset() { solver_.reset(); }
+
+double InverseController::error(int task) const {
+  const Task& asked = settings_.tasks.at(static_cast<std::size_t>(task));
+  const auto& effector = simulation_.model().effector(asked.effector);
+  const auto& placement = simulation_.world().placement();
+  VectorX goal(effector.row_count());
+  effector.target_delta(placement, asked.target.at(simulation_.time()), goal);
+  double sum = 0.0;
+  for (int k = 0; k < effector.row_count(); ++k) {
+    const double gap = goal[k] - simulation_.world().delta()[effector.first_row() + k];
+    sum += gap * gap;
+  }
+  return std::sqrt(sum);
+}
+
+double InverseController::error() const {
+  double worst = 0.0;
+  for (std::size_t k = 0; k < settings_.tasks.size(); ++k) {
+    worst = std::max(worst, error(static_cast<int>(k)));
+  }
+  return worst;
+}
+
+}  // namespace sinew::inverse
