@@ -1,0 +1,292 @@
+#include "sinew/linalg/factorisation.hpp"
+
+#include <gtest/gtest.h>
+
+#include "sinew/core/error.hpp"
+
+#include "mesh_matrices.hpp"
+
+namespace sinew::linalg {
+namespace {
+
+using testing::BlockSystem;
+using testing::RandomSettings;
+
+FactorisationSettings settings_of(const std::string& backend,
+                                  Ordering ordering = Ordering::fastest) {
+  FactorisationSettings settings;
+  settings.backend = backend;
+  settings.ordering = ordering;
+  return settings;
+}
+
+FactorStatus factorise(Factorisation& factorisation, const BlockSystem& system) {
+  return factorisation.factorise(system.matrix, system.rows, system.right);
+}
+
+std::span<double> view(VectorX& x) { return {x.data(), static_cast<std::size_t>(x.size())}; }
+
+VectorX move_with(Factorisation& factorisation, VectorX effort, int size) {
+  VectorX x(size);
+  factorisation.solve_with_effort(view(effort), view(x));
+  return x;
+}
+
+double relative_error(const MatrixX& found, const MatrixX& expected) {
+  return found.size() == 0 ? 0 : (found - expected).norm() / (expected.norm() + 1e-300);
+}
+
+/// Compares everything that a factorisation answers with dense LU of the same matrix.
+void expect_agrees_with_dense(Factorisation& factorisation, const BlockSystem& system,
+                              double tolerance) {
+  const MatrixX a = system.dense_matrix();
+  const MatrixX h = system.dense_rows();
+  const VectorX b = system.dense_right();
+  const Eigen::PartialPivLU<MatrixX> lu(a);
+  const MatrixX w = h * lu.solve(h.transpose());
+  EXPECT_LT(relative_error(factorisation.compliance(), w), tolerance);
+  EXPECT_EQ(factorisation.compliance(), factorisation.compliance().transpose());
+  EXPECT_LT(relative_error(factorisation.free_motion(), h * lu.solve(b)), tolerance);
+  EXPECT_NEAR(factorisation.free_energy(), b.dot(lu.solve(b)),
+              tolerance * b.norm() * lu.solve(b).norm());
+  VectorX effort(h.rows());
+  for (Eigen::Index k = 0; k < effort.size(); ++k) effort[k] = 0.3 * static_cast<double>(k) - 1;
+  const VectorX x = move_with(factorisation, effort, system.size());
+  EXPECT_LT(relative_error(x, lu.solve(b + h.transpose() * effort)), tolerance);
+  MatrixX right(b.size(), 5);
+  for (Eigen::Index c = 0; c < 5; ++c) {
+    for (Eigen::Index i = 0; i < b.size(); ++i)
+      right(i, c) = std::sin(static_cast<double>(i + c * c));
+  }
+  const MatrixX expected = lu.solve(right);
+  const std::span<double> inout(right.data(), static_cast<std::size_t>(right.size()));
+  factorisation.solve(inout, inout, 5);
+  EXPECT_LT(relative_error(right, expected), tolerance);
+}
+
+class RandomSystems : public ::testing::TestWithParam<int> {};
+
+TEST_P(RandomSystems, AgreeWithDense) {
+  const int nodes = GetParam();
+  ThreadPool pool(1);
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    RandomSettings random;
+    random.nodes = nodes;
+    random.cliques = seed % 3 == 0 ? nodes / 2 : 2 * nodes;  // sparse ones fall to pieces
+    random.clique_size = 2 + static_cast<int>(seed % 4);
+    random.rows = static_cast<int>(seed * 5 % 17) * (seed % 5 == 0 ? 0 : 1);
+    random.row_density = seed % 4 == 0 ? 1.0 : (seed % 4 == 1 ? 0.02 : 0.3);
+    random.seed = seed * 1000 + static_cast<unsigned>(nodes);
+    const BlockSystem system = testing::random_system(random);
+    for (const Ordering ordering : {Ordering::amd, Ordering::metis}) {
+      SCOPED_TRACE(::testing::Message() << "nodes " << nodes << " seed " << seed);
+      const auto plan = analyse(system.pattern, system.border, settings_of("block", ordering));
+      const auto factorisation = plan->create(pool);
+      EXPECT_EQ(factorise(*factorisation, system), FactorStatus::positive_definite);
+      EXPECT_EQ(factorisation->negative_pivots(), 0);
+      expect_agrees_with_dense(*factorisation, system, 1e-10);
+    }
+  }
+}
+
+TEST_P(RandomSystems, IndefiniteOnesHaveTheRightInertia) {
+  const int nodes = GetParam();
+  ThreadPool pool(1);
+  int indefinite = 0;
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    RandomSettings random;
+    random.nodes = nodes;
+    random.cliques = 2 * nodes;
+    random.clique_size = 3;
+    random.negative = 0.3;
+    random.rows = 7;
+    random.seed = seed;
+    const BlockSystem system = testing::random_system(random);
+    const auto plan = analyse(system.pattern, system.border, settings_of("block"));
+    const auto factorisation = plan->create(pool);
+    const FactorStatus status = factorise(*factorisation, system);
+    ASSERT_NE(status, FactorStatus::singular);
+    const VectorX eigenvalues =
+        Eigen::SelfAdjointEigenSolver<MatrixX>(system.dense_matrix(), Eigen::EigenvaluesOnly)
+            .eigenvalues();
+    const auto negatives = static_cast<int>((eigenvalues.array() < 0).count());
+    EXPECT_EQ(factorisation->negative_pivots(), negatives) << "seed " << seed;
+    EXPECT_EQ(status == FactorStatus::indefinite, negatives > 0);
+    indefinite += negatives > 0 ? 1 : 0;
+    expect_agrees_with_dense(*factorisation, system, 1e-7);
+  }
+  EXPECT_GT(indefinite, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Sizes, RandomSystems,
+                         ::testing::Values(1, 2, 3, 4, 5, 7, 8, 11, 13, 16, 17, 24, 31, 50, 77, 120,
+                                           200));
+
+TEST(Factorisation, AgreesWithDenseOnElasticMeshes) {
+  ThreadPool pool(1);
+  for (const BlockSystem& system :
+       {testing::elastic_block(1, 1, 3, 2), testing::elastic_block(2, 3, 9, 12),
+        testing::elastic_block(4, 4, 6, 5), testing::elastic_half_tube(2, 9, 10, 11)}) {
+    for (const std::string& backend : backends()) {
+      SCOPED_TRACE(backend);
+      const auto plan = analyse(system.pattern, system.border, settings_of(backend));
+      EXPECT_EQ(plan->backend(), backend);
+      const auto factorisation = plan->create(pool);
+      EXPECT_EQ(factorise(*factorisation, system), FactorStatus::positive_definite);
+      expect_agrees_with_dense(*factorisation, system, 1e-9);
+    }
+  }
+}
+
+TEST(Factorisation, BackendsAgree) {
+  const BlockSystem system = testing::elastic_block(5, 5, 20, 12);
+  ThreadPool pool(1);
+  MatrixX reference;
+  VectorX reference_motion;
+  for (const std::string& backend : backends()) {
+    const auto factorisation =
+        analyse(system.pattern, system.border, settings_of(backend))->create(pool);
+    ASSERT_EQ(factorise(*factorisation, system), FactorStatus::positive_definite);
+    const VectorX motion = move_with(*factorisation, VectorX::Ones(12), system.size());
+    if (reference.size() == 0) {
+      reference = factorisation->compliance();
+      reference_motion = motion;
+    }
+    EXPECT_LT(relative_error(factorisation->compliance(), reference), 1e-10) << backend;
+    EXPECT_LT(relative_error(motion, reference_motion), 1e-10) << backend;
+  }
+}
+
+TEST(Factorisation, IsTheSameBitForBitOnAnyNumberOfThreads) {
+  for (const BlockSystem& system :
+       {testing::elastic_block(3, 3, 40, 12), testing::elastic_block(14, 14, 14, 9),
+        testing::elastic_half_tube(2, 24, 24, 40), testing::elastic_block(1, 1, 1, 1)}) {
+    const auto plan = analyse(system.pattern, system.border, settings_of("block"));
+    MatrixX compliance;
+    VectorX motion(system.size());
+    VectorX solution(system.size());
+    for (const int threads : {1, 2, 3, 4}) {
+      ThreadPool pool(threads);
+      const auto factorisation = plan->create(pool);
+      for (int repeat = 0; repeat < 5; ++repeat) {
+        ASSERT_EQ(factorise(*factorisation, system), FactorStatus::positive_definite);
+        const VectorX x =
+            move_with(*factorisation, VectorX::Ones(system.border.rows()), system.size());
+        VectorX y(system.size());
+        factorisation->solve(system.right, view(y));
+        if (threads == 1 && repeat == 0) {
+          compliance = factorisation->compliance();
+          motion = x;
+          solution = y;
+        }
+        EXPECT_EQ(factorisation->compliance(), compliance) << threads << " threads";
+        EXPECT_EQ(x, motion) << threads << " threads";
+        EXPECT_EQ(y, solution) << threads << " threads";
+      }
+    }
+  }
+}
+
+TEST(Factorisation, LargeIndefiniteSystemOnThreadsHasSmallResidual) {
+  BlockSystem system = testing::elastic_block(14, 14, 14, 9);
+  for (int i = 0; i < system.pattern.nodes; ++i) system.add(i, i, -300.0 * Matrix3::Identity());
+  const auto plan = analyse(system.pattern, system.border, settings_of("block"));
+  int negatives = -1;
+  for (const int threads : {1, 4}) {
+    ThreadPool pool(threads);
+    const auto factorisation = plan->create(pool);
+    ASSERT_EQ(factorise(*factorisation, system), FactorStatus::indefinite);
+    if (negatives < 0) negatives = factorisation->negative_pivots();
+    EXPECT_EQ(factorisation->negative_pivots(), negatives);
+    VectorX x(system.size());
+    factorisation->solve(system.right, view(x));
+    const MatrixX a = system.dense_matrix();
+    EXPECT_LT((a * x - system.dense_right()).norm(), 1e-9 * a.norm() * x.norm());
+  }
+  const auto reference = analyse(system.pattern, system.border, settings_of("eigen-ldlt"));
+  ThreadPool pool(1);
+  const auto factorisation = reference->create(pool);
+  ASSERT_EQ(factorise(*factorisation, system), FactorStatus::indefinite);
+  EXPECT_EQ(factorisation->negative_pivots(), negatives);
+}
+
+TEST(Factorisation, FloatingBodyIsSingular) {
+  const auto mesh = testing::cell_mesh(2, 2, 5, [](const Vector3& p) { return Vector3(0.01 * p); });
+  const BlockSystem system = testing::elastic_system(mesh, 0, 3);
+  ThreadPool pool(1);
+  const auto factorisation =
+      analyse(system.pattern, system.border, settings_of("block"))->create(pool);
+  EXPECT_EQ(factorise(*factorisation, system), FactorStatus::singular);
+}
+
+TEST(Factorisation, ZeroRowAndNanAreSingularAndDoNotStick) {
+  const BlockSystem good = testing::elastic_block(2, 2, 6, 4);
+  ThreadPool pool(1);
+  const auto factorisation = analyse(good.pattern, good.border, settings_of("block"))->create(pool);
+  for (const double bad : {0.0, std::numeric_limits<double>::quiet_NaN()}) {
+    BlockSystem system = good;
+    for (int i = 0; i < system.pattern.nodes; ++i) {
+      const int block = system.pattern.find(i, 5);
+      if (block < 0) continue;
+      for (int e = 0; e < kBlockStride; ++e) {
+        system.matrix[static_cast<std::size_t>(kBlockStride * block + e)] = bad;
+      }
+    }
+    EXPECT_EQ(factorise(*factorisation, system), FactorStatus::singular);
+    EXPECT_EQ(factorise(*factorisation, good), FactorStatus::positive_definite);
+    expect_agrees_with_dense(*factorisation, good, 1e-9);
+  }
+}
+
+TEST(Factorisation, TakesNoNodesAndNoRows) {
+  ThreadPool pool(2);
+  for (const std::string& backend : backends()) {
+    const auto plan = analyse(BlockPattern{}, BorderPattern{}, settings_of(backend));
+    const auto factorisation = plan->create(pool);
+    EXPECT_EQ(factorisation->factorise({}, {}, {}), FactorStatus::positive_definite);
+    EXPECT_EQ(factorisation->compliance().size(), 0);
+    factorisation->solve_with_effort({}, {});
+    factorisation->solve({}, {});
+  }
+}
+
+TEST(Factorisation, PlanTellsWhatItCosts) {
+  const BlockSystem system = testing::elastic_block(4, 4, 30, 8);
+  const auto amd = analyse(system.pattern, system.border, settings_of("block", Ordering::amd));
+  const auto metis = analyse(system.pattern, system.border, settings_of("block", Ordering::metis));
+  EXPECT_EQ(amd->ordering(), "amd");
+  EXPECT_EQ(metis->ordering(), "metis");
+  const auto stored = static_cast<std::size_t>(9 * system.pattern.blocks() - 3 * system.size() / 3);
+  for (const auto& plan : {amd, metis}) {
+    EXPECT_GE(plan->factor_entries(), stored);
+    EXPECT_GT(plan->factor_flops(), static_cast<double>(plan->factor_entries()));
+    ThreadPool pool(1);
+    EXPECT_GE(plan->create(pool)->bytes(), plan->factor_entries() * sizeof(double));
+  }
+}
+
+TEST(Factorisation, RejectsWhatDoesNotFit) {
+  const BlockSystem system = testing::elastic_block(1, 1, 2, 2);
+  const auto kind_of = [&](const BlockPattern& pattern, const BorderPattern& border,
+                           const FactorisationSettings& settings) {
+    try {
+      analyse(pattern, border, settings);
+    } catch (const Error& error) {
+      return error.kind();
+    }
+    return ErrorKind::internal;
+  };
+  EXPECT_EQ(kind_of(system.pattern, system.border, settings_of("blok")), ErrorKind::unknown_choice);
+  FactorisationSettings no_threads;
+  no_threads.threads = 0;
+  EXPECT_EQ(kind_of(system.pattern, system.border, no_threads), ErrorKind::out_of_range);
+  BorderPattern border = system.border;
+  border.node.back() = system.pattern.nodes;
+  EXPECT_EQ(kind_of(system.pattern, border, {}), ErrorKind::index_out_of_range);
+  BlockPattern pattern = system.pattern;
+  std::swap(pattern.row[0], pattern.row[1]);
+  EXPECT_EQ(kind_of(pattern, system.border, {}), ErrorKind::index_out_of_range);
+}
+
+}  // namespace
+}  // namespace sinew::linalg
