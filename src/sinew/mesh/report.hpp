@@ -1,0 +1,65 @@
+/// @file
+/// What a mesh is like, for `sinew info` and for logs.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sinew/mesh/check.hpp"
+#include "sinew/mesh/mesh.hpp"
+#include "sinew/mesh/topology.hpp"
+
+namespace sinew::mesh {
+
+/// Counts of values in equal bins from `low` to `high`.
+struct Histogram {
+  double low = 0.0;
+  double high = 1.0;
+  std::vector<int> counts;
+};
+
+/// A named set and what it holds.
+struct SetSummary {
+  std::string name;
+  std::string kind;  ///< "nodes", "triangles", "tetrahedra", "hexahedra"
+  int size = 0;
+};
+
+/// Everything that is worth telling about a mesh. Lengths in m, volumes in m^3, angles in degrees.
+struct MeshReport {
+  std::string name;
+  LoadNotes notes;
+  int nodes = 0, tetrahedra = 0, hexahedra = 0, triangles = 0;
+  int unused_nodes = 0;
+  Vector3 low = Vector3::Zero();   ///< least corner of the bounding box of used nodes
+  Vector3 high = Vector3::Zero();  ///< largest corner
+  double volume = 0.0;
+  double surface_area = 0.0;
+
+  // Tetrahedra only; 0 and empty without them.
+  double shortest_edge = 0.0, mean_edge = 0.0, longest_edge = 0.0;
+  double least_radius_ratio = 0.0, mean_radius_ratio = 0.0;
+  int worst_tetrahedron = -1;  ///< the one with the least radius ratio
+  Histogram radius_ratio;      ///< 10 bins from 0 to 1
+  double least_dihedral = 0.0, largest_dihedral = 0.0;
+  Histogram dihedral;  ///< 9 bins from 0 to 180 degrees, six angles a tetrahedron
+
+  std::vector<SetSummary> sets;
+  Components components;
+  std::vector<Defect> defects;  ///< what check() would refuse
+};
+
+/// Describes a mesh, sound or not. Elements count as reordered only when `mesh.notes` says so.
+/// @param mesh to describe, after reorder_elements().
+/// @param options what passes as sound.
+MeshReport describe(const Mesh& mesh, const CheckOptions& options = {});
+
+/// The report as text for people: a dozen lines, lengths in a handy unit.
+/// @param report to print.
+std::string format_report(const MeshReport& report);
+
+/// A length with a handy unit: "195 mm", "1.2 m".
+/// @param metres the length.
+std::string format_length(double metres);
+
+}  // namespace sinew::mesh

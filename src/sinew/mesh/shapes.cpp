@@ -1,0 +1,209 @@
+#include "sinew/mesh/shapes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "sinew/core/error.hpp"
+#include "sinew/mesh/check.hpp"
+#include "sinew/mesh/sweep.hpp"
+
+namespace sinew::mesh {
+
+namespace {
+
+void require(bool holds, const std::string& shape, const std::string& message) {
+  if (!holds) {
+    throw Error(ErrorKind::out_of_range, {.item = shape}, message,
+                "give positive, finite lengths and at least one cell");
+  }
+}
+
+void require_length(double value, const std::string& shape, const char* what) {
+  require(std::isfinite(value) && value > 0.0, shape, fmt::format("{} = {} m", what, value));
+}
+
+void require_cells(int value, int least, const std::string& shape, const char* what) {
+  constexpr int kMost = 2000;
+  require(value >= least && value <= kMost, shape,
+          fmt::format("{} = {} (from {} to {})", what, value, least, kMost));
+}
+
+std::vector<double> even_heights(double height, int layers) {
+  std::vector<double> heights;
+  for (int k = 0; k <= layers; ++k) heights.push_back(height * k / layers);
+  return heights;
+}
+
+/// Adds the nodes of every layer whose section radius is `s` as a set.
+void add_wall_set(Mesh& mesh, const Section& section, double s, const std::string& name) {
+  const auto in_layer = static_cast<NodeId>(section.radius.size());
+  for (NodeId node = 0; node < mesh.node_count(); ++node) {
+    if (section.radius[static_cast<std::size_t>(node % in_layer)] == s) {
+      mesh.node_sets[name].push_back(node);
+    }
+  }
+}
+
+/// The grid of a block: node numbers, positions and sets.
+class BlockGrid {
+ public:
+  explicit BlockGrid(const BlockShape& shape) : shape_(shape) {
+    for (Eigen::Index a = 0; a < 3; ++a) require_length(shape.size[a], "block", "size");
+    require(shape.corner.allFinite(), "block", "the corner is not finite");
+    std::int64_t nodes = 1;
+    for (const int cells : shape.cells) {
+      require_cells(cells, 1, "block", "cells");
+      nodes *= cells + 1;
+    }
+    require(nodes < std::numeric_limits<NodeId>::max(), "block",
+            fmt::format("{} nodes are too many", nodes));
+  }
+
+  NodeId node(int i, int j, int k) const {
+    return (k * (shape_.cells[1] + 1) + j) * (shape_.cells[0] + 1) + i;
+  }
+
+  /// Corners of a cell in VTK_HEXAHEDRON order.
+  Hexahedron cell(int i, int j, int k) const {
+    return {
+        node(i, j, k),     node(i + 1, j, k),     node(i + 1, j + 1, k),     node(i, j + 1, k),
+        node(i, j, k + 1), node(i + 1, j, k + 1), node(i + 1, j + 1, k + 1), node(i, j + 1, k + 1)};
+  }
+
+  template <typename Visit>
+  void for_each_cell(const Visit& visit) const {
+    for (int k = 0; k < shape_.cells[2]; ++k) {
+      for (int j = 0; j < shape_.cells[1]; ++j) {
+        for (int i = 0; i < shape_.cells[0]; ++i) visit(cell(i, j, k));
+      }
+    }
+  }
+
+  Mesh nodes_and_sets() const {
+    Mesh mesh;
+    mesh.name = "block";
+    const auto [nx, ny, nz] = shape_.cells;
+    mesh.nodes.resize(node(nx, ny, nz) + 1, 3);
+    for (int k = 0; k <= nz; ++k) {
+      for (int j = 0; j <= ny; ++j) {
+        for (int i = 0; i <= nx; ++i) add_node(mesh, {i, j, k});
+      }
+    }
+    return mesh;
+  }
+
+ private:
+  void add_node(Mesh& mesh, const std::array<int, 3>& at) const {
+    constexpr std::array kNames = {"x", "y", "z"};
+    const NodeId number = node(at[0], at[1], at[2]);
+    for (std::size_t a = 0; a < 3; ++a) {
+      const auto axis = static_cast<Eigen::Index>(a);
+      mesh.nodes(number, axis) = shape_.corner[axis] + shape_.size[axis] * at[a] / shape_.cells[a];
+      if (at[a] == 0) mesh.node_sets[std::string(kNames[a]) + "_min"].push_back(number);
+      if (at[a] == shape_.cells[a]) {
+        mesh.node_sets[std::string(kNames[a]) + "_max"].push_back(number);
+      }
+    }
+  }
+
+  BlockShape shape_;
+};
+
+}  // namespace
+
+Mesh block(const BlockShape& shape) {
+  const BlockGrid grid(shape);
+  Mesh mesh = grid.nodes_and_sets();
+  // The six monotone paths along edges from corner 0 to corner 6 (Kuhn's triangulation).
+  constexpr std::array<std::size_t, 7> kRing = {1, 2, 3, 7, 4, 5, 1};
+  grid.for_each_cell([&](const Hexahedron& h) {
+    for (std::size_t k = 0; k < 6; ++k) {
+      mesh.tetrahedra.push_back({h[0], h[kRing[k]], h[kRing[k + 1]], h[6]});
+    }
+  });
+  return mesh;
+}
+
+Mesh hexahedral_block(const BlockShape& shape) {
+  const BlockGrid grid(shape);
+  Mesh mesh = grid.nodes_and_sets();
+  grid.for_each_cell([&](const Hexahedron& h) { mesh.hexahedra.push_back(h); });
+  return mesh;
+}
+
+Mesh cylinder(const CylinderShape& shape) {
+  require_length(shape.radius, "cylinder", "radius");
+  Mesh mesh = cone({.bottom_radius = shape.radius,
+                    .top_radius = shape.radius,
+                    .height = shape.height,
+                    .rings = shape.rings,
+                    .layers = shape.layers});
+  mesh.name = "cylinder";
+  return mesh;
+}
+
+Mesh cone(const ConeShape& shape) {
+  require_length(shape.bottom_radius, "cone", "bottom_radius");
+  require_length(shape.top_radius, "cone", "top_radius");
+  require_length(shape.height, "cone", "height");
+  require_cells(shape.rings, 1, "cone", "rings");
+  require_cells(shape.layers, 1, "cone", "layers");
+  const Section section = disc_section(shape.rings);
+  const auto profile = [&](double s, double z) {
+    return s * std::lerp(shape.bottom_radius, shape.top_radius, z / shape.height);
+  };
+  Mesh mesh = sweep(section, even_heights(shape.height, shape.layers), profile, "cone");
+  add_wall_set(mesh, section, 1.0, "side");
+  return mesh;
+}
+
+Mesh hollow_cylinder(const HollowCylinderShape& shape) {
+  const std::string name = "hollow cylinder";
+  require_length(shape.inner_radius, name, "inner_radius");
+  require_length(shape.outer_radius, name, "outer_radius");
+  require_length(shape.height, name, "height");
+  require(shape.outer_radius > shape.inner_radius, name,
+          fmt::format("outer_radius = {} m is not larger than inner_radius = {} m",
+                      shape.outer_radius, shape.inner_radius));
+  require_cells(shape.through, 1, name, "through");
+  require_cells(shape.around, 3, name, "around");
+  require_cells(shape.layers, 1, name, "layers");
+  const Section section = annulus_section(shape.through, shape.around);
+  const auto profile = [&](double s, double) {
+    return std::lerp(shape.inner_radius, shape.outer_radius, s);
+  };
+  Mesh mesh = sweep(section, even_heights(shape.height, shape.layers), profile, name);
+  add_wall_set(mesh, section, 0.0, "inner");
+  add_wall_set(mesh, section, 1.0, "outer");
+  return mesh;
+}
+
+Mesh trunk(const TrunkShape& shape) {
+  require_length(shape.height, "trunk", "height");
+  require_length(shape.bottom_radius, "trunk", "bottom_radius");
+  require_length(shape.top_radius, "trunk", "top_radius");
+  require(shape.groove_depth >= 0.0 && shape.groove_depth <= 0.6, "trunk",
+          fmt::format("groove_depth = {} (from 0 to 0.6)", shape.groove_depth));
+  require_cells(shape.bellows, 1, "trunk", "bellows");
+  require_cells(shape.layers_per_bellow, 2, "trunk", "layers_per_bellow");
+  require_cells(shape.rings, 1, "trunk", "rings");
+  const Section section = disc_section(shape.rings);
+  // Crests at both ends and between bellows; the wave fades towards the axis as s^3, so that the
+  // inside stays smooth.
+  const auto profile = [&](double s, double z) {
+    const double crest = std::lerp(shape.bottom_radius, shape.top_radius, z / shape.height);
+    const double phase = 2.0 * std::numbers::pi * shape.bellows * z / shape.height;
+    return crest * (s - 0.5 * shape.groove_depth * (1.0 - std::cos(phase)) * s * s * s);
+  };
+  const int layers = shape.bellows * shape.layers_per_bellow;
+  Mesh mesh = sweep(section, even_heights(shape.height, layers), profile, "trunk");
+  add_wall_set(mesh, section, 1.0, "side");
+  return mesh;
+}
+
+}  // namespace sinew::mesh

@@ -1,0 +1,82 @@
+/// @file
+/// Meshes that Sinew makes itself: structured, conforming, of good quality. Lengths in m.
+#pragma once
+
+#include <array>
+
+#include "sinew/mesh/mesh.hpp"
+
+namespace sinew::mesh {
+
+/// A box of Kuhn-split cubes: six tetrahedra a cell, all of one shape class when cells are cubes.
+struct BlockShape {
+  Vector3 corner = Vector3::Zero();    ///< m, the least corner
+  Vector3 size{0.1, 0.02, 0.02};       ///< m
+  std::array<int, 3> cells{10, 2, 2};  ///< along x, y, z
+};
+
+/// A circular solid along +z, its bottom at z = 0.
+struct CylinderShape {
+  double radius = 0.01;  ///< m
+  double height = 0.1;   ///< m
+  int rings = 2;         ///< rings of nodes round the axis; ring r has 6 r nodes
+  int layers = 10;       ///< along the axis
+};
+
+/// A frustum along +z, its bottom at z = 0.
+struct ConeShape {
+  double bottom_radius = 0.02;  ///< m
+  double top_radius = 0.01;     ///< m, > 0
+  double height = 0.1;          ///< m
+  int rings = 2;
+  int layers = 10;
+};
+
+/// A tube along +z, its bottom at z = 0.
+struct HollowCylinderShape {
+  double inner_radius = 0.008;  ///< m
+  double outer_radius = 0.012;  ///< m
+  double height = 0.05;         ///< m
+  int through = 2;              ///< cells through the wall
+  int around = 24;              ///< cells round the axis
+  int layers = 12;              ///< cells along the axis
+};
+
+/// An elephant-trunk robot: a tapered solid along +z whose outside is corrugated like bellows. The
+/// defaults give 703 nodes and 2592 tetrahedra; cables run inside up to the groove radius.
+struct TrunkShape {
+  double height = 0.195;         ///< m
+  double bottom_radius = 0.020;  ///< m, of the crests at z = 0
+  double top_radius = 0.0085;    ///< m, of the crests at the tip
+  double groove_depth = 0.25;    ///< depth of a groove over the local crest radius, 0 to 0.6
+  int bellows = 9;               ///< crests along the height
+  int layers_per_bellow = 4;     ///< even, >= 2
+  int rings = 2;
+};
+
+/// Sets: nodes `x_min`, `x_max`, `y_min`, `y_max`, `z_min`, `z_max`.
+/// @param shape its measures. Throws Error(out-of-range) when one is not positive.
+Mesh block(const BlockShape& shape);
+
+/// The same box of VTK hexahedra, with the same nodes and sets.
+/// @param shape as for block().
+Mesh hexahedral_block(const BlockShape& shape);
+
+/// Sets: nodes `bottom`, `top`, `side`.
+/// @param shape its measures. Throws Error(out-of-range) when one is not positive.
+Mesh cylinder(const CylinderShape& shape);
+
+/// Sets: nodes `bottom`, `top`, `side`.
+/// @param shape its measures. Throws Error(out-of-range) when one is not positive.
+Mesh cone(const ConeShape& shape);
+
+/// Sets: nodes `bottom`, `top`, `inner`, `outer`.
+/// @param shape its measures. Throws Error(out-of-range) when one is not positive or the inner
+/// radius is not the smaller one.
+Mesh hollow_cylinder(const HollowCylinderShape& shape);
+
+/// Sets: nodes `bottom`, `top`, `side`.
+/// @param shape its measures. Throws Error(out-of-range).
+Mesh trunk(const TrunkShape& shape = {});
+
+}  // namespace sinew::mesh

@@ -1,0 +1,212 @@
+#include "sinew/mesh/surface.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <Eigen/Geometry>
+#include <assimp/BaseImporter.h>
+#include <assimp/Importer.hpp>
+#include <assimp/importerdesc.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <fmt/format.h>
+
+#include "sinew/core/error.hpp"
+#include "sinew/mesh/duplicates.hpp"
+
+namespace sinew::mesh {
+
+namespace {
+
+constexpr std::array kExtensions = {"stl", "obj", "ply"};
+
+/// Leaves only the importers for the formats above: the others are not ours to vouch for.
+void keep_named_importers(Assimp::Importer& importer) {
+  for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
+    const aiImporterDesc* description = importer.GetImporterInfo(i);
+    const std::string extensions = description != nullptr ? description->mFileExtensions : "";
+    const bool named = std::any_of(kExtensions.begin(), kExtensions.end(),
+                                   [&](const char* wanted) { return extensions == wanted; });
+    if (named) continue;
+    const std::unique_ptr<Assimp::BaseImporter> removed(importer.GetImporter(i));
+    importer.UnregisterLoader(removed.get());
+  }
+}
+
+/// All triangles of the scene, vertices as the file has them.
+Surface collect(const aiScene& scene, const std::string& name) {
+  std::vector<double> coordinates;
+  Surface surface{.name = name, .nodes = {}, .triangles = {}};
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+    const aiMesh& part = *scene.mMeshes[m];
+    const auto first = static_cast<NodeId>(coordinates.size() / 3);
+    for (unsigned v = 0; v < part.mNumVertices; ++v) {
+      const aiVector3D& x = part.mVertices[v];
+      coordinates.insert(coordinates.end(), {double(x.x), double(x.y), double(x.z)});
+    }
+    for (unsigned f = 0; f < part.mNumFaces; ++f) {
+      const aiFace& face = part.mFaces[f];
+      if (face.mNumIndices != 3) continue;  // points and lines, which are no surface
+      const auto node = [&](unsigned k) { return first + static_cast<NodeId>(face.mIndices[k]); };
+      surface.triangles.push_back({node(0), node(1), node(2)});
+    }
+  }
+  surface.nodes = Eigen::Map<const Points>(coordinates.data(),
+                                           static_cast<Eigen::Index>(coordinates.size() / 3), 3);
+  return surface;
+}
+
+void require_finite(const Surface& surface) {
+  for (NodeId node = 0; node < static_cast<NodeId>(surface.nodes.rows()); ++node) {
+    if (surface.nodes.row(node).allFinite()) continue;
+    throw Error(ErrorKind::non_finite_node, {.file = surface.name},
+                fmt::format("vertex {} is not finite", node), "write the file again");
+  }
+}
+
+/// Makes vertices at the same place one, and drops what is then flat or unused.
+Surface welded(const Surface& raw, double tolerance) {
+  const std::vector<NodeId> lowest = weld_map(raw.nodes, {}, tolerance);
+  Surface surface{.name = raw.name, .nodes = {}, .triangles = {}};
+  std::vector<NodeId> number(lowest.size(), -1);
+  std::vector<NodeId> kept;
+  for (Triangle triangle : raw.triangles) {
+    for (NodeId& node : triangle) node = lowest[static_cast<std::size_t>(node)];
+    const auto [a, b, c] = triangle;
+    if (a == b || b == c || c == a) continue;
+    for (NodeId& node : triangle) {
+      NodeId& fresh = number[static_cast<std::size_t>(node)];
+      if (fresh < 0) {
+        fresh = static_cast<NodeId>(kept.size());
+        kept.push_back(node);
+      }
+      node = fresh;
+    }
+    surface.triangles.push_back(triangle);
+  }
+  surface.nodes.resize(static_cast<Eigen::Index>(kept.size()), 3);
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    surface.nodes.row(static_cast<Eigen::Index>(i)) = raw.nodes.row(kept[i]);
+  }
+  return surface;
+}
+
+std::string extension_of(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  if (!extension.empty()) extension.erase(0, 1);
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
+
+void check_size(const Surface& surface, const SurfaceOptions& options) {
+  constexpr double kLargest = 10.0;
+  if (options.unit_given || options.unit != 1.0) return;
+  const double size =
+      (surface.nodes.colwise().maxCoeff() - surface.nodes.colwise().minCoeff()).maxCoeff();
+  if (size <= kLargest) return;
+  throw Error(ErrorKind::suspicious_unit, {.file = surface.name},
+              fmt::format("the surface is {:.4g} m large, since no unit is given", size),
+              "give the unit, `unit: mm` if the file is in millimetres, or `unit: m` if it is "
+              "meant so");
+}
+
+}  // namespace
+
+Surface parse_surface(std::string_view bytes, const std::string& extension, const std::string& name,
+                      double weld_tolerance) {
+  const bool known = std::any_of(kExtensions.begin(), kExtensions.end(),
+                                 [&](const char* wanted) { return extension == wanted; });
+  if (!known) {
+    throw Error(ErrorKind::unknown_format, {.file = name},
+                fmt::format("surfaces are not read from `.{}` files", extension),
+                "give an STL, OBJ or PLY file");
+  }
+  Assimp::Importer importer;
+  keep_named_importers(importer);
+  const aiScene* scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(),
+                                                     aiProcess_Triangulate, extension.c_str());
+  if (scene == nullptr) {
+    throw Error(ErrorKind::malformed_file, {.file = name},
+                fmt::format("the surface cannot be read: {}", importer.GetErrorString()),
+                "write the file again");
+  }
+  const Surface raw = collect(*scene, name);
+  require_finite(raw);
+  Surface surface = welded(raw, weld_tolerance);
+  if (surface.triangles.empty()) {
+    throw Error(ErrorKind::empty_list, {.file = name}, "the file has no triangles",
+                "export the surface as triangles");
+  }
+  return surface;
+}
+
+Surface read_surface(const std::filesystem::path& path, const SurfaceOptions& options) {
+  Surface surface =
+      parse_surface(read_file(path), extension_of(path), path.string(), options.weld_tolerance);
+  surface.nodes *= options.unit;
+  check_size(surface, options);
+  return surface;
+}
+
+void require_closed(const Surface& surface) {
+  // Each directed edge once, and its opposite once.
+  std::vector<std::pair<NodeId, NodeId>> edges;
+  for (const auto& [a, b, c] : surface.triangles) {
+    edges.insert(edges.end(), {{a, b}, {b, c}, {c, a}});
+  }
+  std::sort(edges.begin(), edges.end());
+  int faults = 0;
+  std::pair<NodeId, NodeId> first;
+  for (auto edge = edges.begin(); edge != edges.end(); ++edge) {
+    const bool repeated = edge != edges.begin() && *edge == *(edge - 1);
+    const bool matched =
+        std::binary_search(edges.begin(), edges.end(), std::pair(edge->second, edge->first));
+    if (matched && !repeated) continue;
+    if (faults++ == 0) first = *edge;
+  }
+  if (faults == 0) return;
+  const Vector3 a = surface.nodes.row(first.first), b = surface.nodes.row(first.second);
+  throw Error(ErrorKind::surface_not_closed, {.file = surface.name},
+              fmt::format("{} edges do not have one triangle on either side, the first from "
+                          "({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}) m",
+                          faults, a.x(), a.y(), a.z(), b.x(), b.y(), b.z()),
+              "close the holes and let all triangles face outwards");
+}
+
+double enclosed_volume(const Surface& surface) {
+  // The divergence theorem; from the first node, so that a far origin costs no digits.
+  const Vector3 origin = surface.nodes.rows() > 0 ? Vector3(surface.nodes.row(0)) : Vector3::Zero();
+  double sum = 0.0;
+  for (const auto& [a, b, c] : surface.triangles) {
+    const Vector3 xa = Vector3(surface.nodes.row(a)) - origin;
+    const Vector3 xb = Vector3(surface.nodes.row(b)) - origin;
+    const Vector3 xc = Vector3(surface.nodes.row(c)) - origin;
+    sum += xa.dot(xb.cross(xc)) / 6.0;
+  }
+  return sum;
+}
+
+std::string format_stl(const Surface& surface, double scale) {
+  std::string bytes(80, ' ');
+  const auto append = [&](const auto& value) {
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
+  };
+  append(static_cast<std::uint32_t>(surface.triangles.size()));
+  for (const auto& [a, b, c] : surface.triangles) {
+    const Vector3 xa = surface.nodes.row(a), xb = surface.nodes.row(b), xc = surface.nodes.row(c);
+    const Vector3 normal = (xb - xa).cross(xc - xa).normalized();
+    for (const double value : normal) append(static_cast<float>(value));
+    for (const Vector3& x : {xa, xb, xc}) {
+      for (const double value : x) append(static_cast<float>(scale * value));
+    }
+    append(std::uint16_t{0});
+  }
+  return bytes;
+}
+
+}  // namespace sinew::mesh
