@@ -1,0 +1,199 @@
+#include "sinew/scene/build.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "sinew/mesh/selection.hpp"
+#include "sinew/scene/scene.hpp"
+#include "sinew/sim/model_builder.hpp"
+
+namespace sinew::scene {
+
+namespace {
+
+sim::Limits limits(const LimitDescription& description) {
+  return {description.min, description.max, description.rate};
+}
+
+sim::Command command(const ActuatorDescription& actuator) {
+  if (!actuator.command) return {};
+  const bool motion = actuator.command->kind == CommandDescription::Kind::motion;
+  return {motion ? sim::CommandKind::motion : sim::CommandKind::effort, actuator.command->signal};
+}
+
+mesh::Region region_of(const FixedRegion& fixed) {
+  switch (fixed.kind) {
+    case FixedRegion::Kind::box:
+      return mesh::BoxRegion{fixed.lower, fixed.upper};
+    case FixedRegion::Kind::sphere:
+      return mesh::SphereRegion{fixed.point, fixed.radius};
+    case FixedRegion::Kind::plane:
+      return mesh::PlaneRegion{fixed.point, fixed.normal, -fixed.within, fixed.within};
+    case FixedRegion::Kind::set:
+      return mesh::NamedRegion{fixed.set};
+  }
+  return mesh::NamedRegion{fixed.set};
+}
+
+fem::FemBodySettings fem_settings(const SceneDescription& scene, const BodyDescription& body) {
+  fem::FemBodySettings settings;
+  settings.name = body.name;
+  settings.mesh = std::make_shared<const mesh::Mesh>(make_mesh(body.mesh));
+  settings.gravity = scene.gravity;
+  settings.damping = {body.mass_damping, body.stiffness_damping};
+  fem::Region region;
+  region.constants = {body.material.young_modulus, body.material.poisson_ratio};
+  region.law = body.material.model == MaterialModel::linear ? material::Law::linear
+                                                            : material::Law::corotational;
+  region.density = body.density.value_or(0.0);
+  settings.elements.regions.push_back(std::move(region));
+  settings.elements.total_mass = body.mass;
+  settings.elements.even_mass = body.mass_distribution == MassDistribution::even;
+  settings.elements.mass = body.mass_matrix == MassMatrix::consistent ? fem::MassMatrix::consistent
+                                                                      : fem::MassMatrix::lumped;
+  for (const FixedRegion& fixed : body.fixed) {
+    try {
+      const auto nodes = mesh::select_nodes(*settings.mesh, region_of(fixed), fixed.place.item);
+      auto& all = settings.elements.fixed_nodes;
+      all.insert(all.end(), nodes.begin(), nodes.end());
+    } catch (const Error& error) {
+      throw error.at(fixed.place);
+    }
+  }
+  return settings;
+}
+
+void add_actuator(sim::ModelBuilder& builder, const ActuatorDescription& actuator, int body) {
+  if (actuator.type == ActuatorDescription::Type::cable) {
+    sim::CableSettings cable;
+    cable.name = actuator.name;
+    cable.place = actuator.place;
+    cable.body = body;
+    cable.points = actuator.points.points;
+    cable.point_places = actuator.points.places;
+    cable.pull_from_world = actuator.pull == PullPoint::world;
+    cable.outside = actuator.outside;
+    cable.tension = limits(actuator.effort);
+    cable.tension.min = std::max(cable.tension.min, 0.0);
+    cable.displacement = limits(actuator.motion);
+    cable.command = command(actuator);
+    cable.geometric_stiffness = actuator.geometric_stiffness;
+    builder.add_cable(cable);
+    return;
+  }
+  sim::ForceSettings force;
+  force.name = actuator.name;
+  force.place = actuator.place;
+  force.body = body;
+  force.point = actuator.point;
+  force.direction = actuator.direction;
+  force.outside = actuator.outside;
+  force.force = limits(actuator.effort);
+  force.displacement = limits(actuator.motion);
+  force.command = command(actuator);
+  builder.add_force(force);
+}
+
+void add_effector(sim::ModelBuilder& builder, const EffectorDescription& effector, int body,
+                  const mesh::Mesh& mesh) {
+  sim::EffectorSettings settings;
+  settings.name = effector.name;
+  settings.place = effector.place;
+  settings.body = body;
+  settings.points = effector.points.points;
+  settings.outside = effector.outside;
+  if (effector.kind == EffectorDescription::Kind::set) {
+    settings.kind = sim::EffectorSettings::Kind::nodes;
+    try {
+      settings.nodes = mesh::select_nodes(mesh, mesh::NamedRegion{effector.set}, effector.name);
+    } catch (const Error& error) {
+      throw error.at(effector.set_place);
+    }
+  } else if (effector.kind == EffectorDescription::Kind::orientation) {
+    settings.kind = sim::EffectorSettings::Kind::orientation;
+  }
+  for (Eigen::Index i = 0; i < effector.directions.rows(); ++i) {
+    settings.directions.emplace_back(effector.directions.row(i).transpose());
+  }
+  builder.add_effector(settings);
+}
+
+SceneController controller_of(const ControllerDescription& description, const sim::Model& model) {
+  SceneController controller{description.name, {}};
+  auto& settings = controller.settings;
+  for (const TaskDescription& task : description.tasks) {
+    settings.tasks.push_back({model.effector_index(task.effector), task.target, task.weights});
+  }
+  for (const std::string& name : description.actuators) {
+    settings.actuators.push_back(model.actuator_index(name));
+  }
+  settings.regularisation = description.regularisation == Regularisation::effort
+                                ? inverse::Regularisation::effort
+                                : inverse::Regularisation::change;
+  if (description.epsilon) settings.epsilon = *description.epsilon;
+  return controller;
+}
+
+sim::StepSettings step_settings(const SceneDescription& scene) {
+  sim::StepSettings step;
+  step.time_step = scene.time_step;
+  step.integrator = scene.integrator == Integrator::backward_euler
+                        ? mechanics::Integrator::backward_euler
+                        : mechanics::Integrator::quasi_static;
+  step.method =
+      scene.solver.method == Method::newton ? sim::Method::newton : sim::Method::one_linearisation;
+  step.tangent = scene.solver.tangent == Tangent::exact ? mechanics::Tangent::exact
+                                                        : mechanics::Tangent::real_time;
+  step.tolerance = scene.solver.tolerance;
+  step.max_iterations = scene.solver.max_iterations;
+  return step;
+}
+
+}  // namespace
+
+Robot build(SceneDescription description) {
+  sim::ModelBuilder builder(step_settings(description));
+  std::vector<std::shared_ptr<const mesh::Mesh>> meshes;
+  const auto body_index = [&](const std::string& name) {
+    const auto found = std::ranges::find(description.bodies, name, &BodyDescription::name);
+    return static_cast<int>(found - description.bodies.begin());
+  };
+  for (const BodyDescription& body : description.bodies) {
+    try {
+      auto settings = fem_settings(description, body);
+      meshes.push_back(settings.mesh);
+      builder.add_fem_body(std::move(settings));
+    } catch (const Error& error) {
+      throw error.at(body.place);
+    }
+  }
+  for (const ActuatorDescription& actuator : description.actuators) {
+    add_actuator(builder, actuator, body_index(actuator.body));
+  }
+  for (const EffectorDescription& effector : description.effectors) {
+    const int body = body_index(effector.body);
+    add_effector(builder, effector, body, *meshes[static_cast<std::size_t>(body)]);
+  }
+  linalg::FactorisationSettings factorisation;
+  factorisation.backend = description.solver.backend;
+  factorisation.ordering = description.solver.ordering;
+  factorisation.threads = description.solver.threads;
+  Robot robot;
+  robot.model = builder.build(factorisation);
+  for (const ControllerDescription& controller : description.controllers) {
+    robot.controllers.push_back(controller_of(controller, *robot.model));
+  }
+  robot.description = std::move(description);
+  return robot;
+}
+
+Robot load(const std::filesystem::path& path, const std::vector<std::string>& overrides) {
+  if (overrides.empty()) return build(parse_scene(path));
+  Node tree = read_yaml(path);
+  for (const std::string& assignment : overrides) apply_override(tree, assignment);
+  SceneDescription description = parse_scene_tree(std::move(tree), path.parent_path());
+  description.name = path.stem().string();
+  return build(std::move(description));
+}
+
+}  // namespace sinew::scene

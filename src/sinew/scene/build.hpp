@@ -1,0 +1,43 @@
+/// @file
+/// From what a scene says to what runs: meshes are read, regions chosen, models planned.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sinew/inverse/inverse_controller.hpp"
+#include "sinew/mesh/mesh.hpp"
+#include "sinew/scene/description.hpp"
+#include "sinew/sim/model.hpp"
+
+namespace sinew::scene {
+
+/// A controller of the scene, ready to be attached to a simulation of its model.
+struct SceneController {
+  std::string name;
+  inverse::InverseSettings settings;
+};
+
+/// A scene made ready. Any number of simulations may share `model`.
+struct Robot {
+  SceneDescription description;
+  std::shared_ptr<const sim::Model> model;
+  std::vector<SceneController> controllers;
+  int threads() const { return description.solver.threads; }
+};
+
+/// Builds everything a description names. Throws Error with the place in the scene of what is
+/// wrong: what mesh reading, FemModel and ModelBuilder throw.
+Robot build(SceneDescription description);
+
+/// Reads and builds a scene file.
+/// @param path the scene.
+/// @param overrides "path=value" each, applied before reading (see apply_override()).
+Robot load(const std::filesystem::path& path, const std::vector<std::string>& overrides = {});
+
+/// The mesh that a description names, file or shape; in m, checked.
+mesh::Mesh make_mesh(const MeshDescription& description);
+
+}  // namespace sinew::scene

@@ -1,0 +1,126 @@
+// Meshes of scenes: files, and the project's own shapes with cells of about the asked size.
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "sinew/mesh/read.hpp"
+#include "sinew/mesh/shapes.hpp"
+#include "sinew/scene/build.hpp"
+
+namespace sinew::scene {
+
+namespace {
+
+// Reads parameters by name, each with what it is when not given.
+class Parameters {
+ public:
+  explicit Parameters(const MeshDescription& description) : values_(description.parameters) {}
+
+  double get(const char* name, double otherwise) const {
+    const auto found = values_.find(name);
+    return found == values_.end() ? otherwise : found->second;
+  }
+  /// Cells of about element_size along a length; `otherwise` where no size is given.
+  int cells(double length, int otherwise) const {
+    const auto size = values_.find("element_size");
+    if (size == values_.end()) return otherwise;
+    return std::max(1, static_cast<int>(std::lround(length / size->second)));
+  }
+
+ private:
+  const std::map<std::string, double>& values_;
+};
+
+// Cells through a length so that they are about as wide as those across `width` in `across` cells.
+int matching(double length, double width, int across) {
+  return std::max(1, static_cast<int>(std::lround(length / width * across)));
+}
+
+mesh::Mesh make_block(const Parameters& p) {
+  mesh::BlockShape shape;
+  shape.size = {p.get("length", shape.size.x()), p.get("width", shape.size.y()),
+                p.get("height", shape.size.z())};
+  const double smallest = shape.size.minCoeff();
+  for (int c = 0; c < 3; ++c) {
+    shape.cells[static_cast<std::size_t>(c)] =
+        p.cells(shape.size[c], matching(shape.size[c], smallest, 2));
+  }
+  return mesh::block(shape);
+}
+
+mesh::Mesh make_cylinder(const Parameters& p) {
+  mesh::CylinderShape shape;
+  shape.radius = p.get("radius", shape.radius);
+  shape.height = p.get("height", shape.height);
+  shape.rings = p.cells(shape.radius, 2);
+  shape.layers = p.cells(shape.height, matching(shape.height, shape.radius, shape.rings));
+  return mesh::cylinder(shape);
+}
+
+mesh::Mesh make_cone(const Parameters& p) {
+  mesh::ConeShape shape;
+  shape.bottom_radius = p.get("base_radius", shape.bottom_radius);
+  shape.top_radius = p.get("tip_radius", shape.top_radius);
+  shape.height = p.get("height", shape.height);
+  const double radius = 0.5 * (shape.bottom_radius + shape.top_radius);
+  shape.rings = p.cells(radius, 2);
+  shape.layers = p.cells(shape.height, matching(shape.height, radius, shape.rings));
+  return mesh::cone(shape);
+}
+
+mesh::Mesh make_tube(const Parameters& p) {
+  mesh::HollowCylinderShape shape;
+  shape.inner_radius = p.get("inner_radius", shape.inner_radius);
+  shape.outer_radius = p.get("outer_radius", shape.outer_radius);
+  shape.height = p.get("height", shape.height);
+  const double wall = shape.outer_radius - shape.inner_radius;
+  const double girth = M_PI * (shape.inner_radius + shape.outer_radius);
+  shape.through = p.cells(wall, 2);
+  shape.around = std::max(6, p.cells(girth, matching(girth, wall, shape.through) / 2));
+  shape.layers = p.cells(shape.height, matching(shape.height, wall, shape.through) / 2);
+  return mesh::hollow_cylinder(shape);
+}
+
+mesh::Mesh make_trunk(const Parameters& p) {
+  mesh::TrunkShape shape;
+  shape.bottom_radius = p.get("base_radius", shape.bottom_radius);
+  shape.top_radius = p.get("tip_radius", shape.top_radius);
+  shape.height = p.get("height", shape.height);
+  shape.bellows = static_cast<int>(p.get("bellows", shape.bellows));
+  shape.groove_depth =
+      p.get("bellow_depth", shape.groove_depth * shape.bottom_radius) / shape.bottom_radius;
+  const double radius = 0.5 * (shape.bottom_radius + shape.top_radius);
+  shape.rings = p.cells(radius, shape.rings);
+  const double bellow = shape.height / shape.bellows;
+  shape.layers_per_bellow = 2 * std::max(1, (p.cells(bellow, shape.layers_per_bellow) + 1) / 2);
+  return mesh::trunk(shape);
+}
+
+mesh::Mesh make_shape(const MeshDescription& description) {
+  const Parameters parameters(description);
+  if (description.shape == "block") return make_block(parameters);
+  if (description.shape == "cylinder") return make_cylinder(parameters);
+  if (description.shape == "cone") return make_cone(parameters);
+  if (description.shape == "hollow-cylinder") return make_tube(parameters);
+  if (description.shape == "trunk") return make_trunk(parameters);
+  throw Error(ErrorKind::unknown_choice, description.place,
+              fmt::format("there is no shape '{}'", description.shape),
+              "block, cylinder, cone, hollow-cylinder or trunk");
+}
+
+}  // namespace
+
+mesh::Mesh make_mesh(const MeshDescription& description) {
+  try {
+    if (!description.shape.empty()) return make_shape(description);
+    mesh::ReadOptions options;
+    options.unit = description.unit;
+    options.unit_given = description.unit_place.line > 0 || description.unit != 1.0;
+    return mesh::read_mesh(description.file, options);
+  } catch (const Error& error) {
+    throw error.at(description.place);
+  }
+}
+
+}  // namespace sinew::scene
