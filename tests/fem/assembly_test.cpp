@@ -1,0 +1,366 @@
+#include "sinew/fem/assembly.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include "sinew/core/error.hpp"
+
+#include "allocation_counter.hpp"
+#include "block_mesh.hpp"
+#include "reference.hpp"
+
+namespace sinew::fem {
+namespace {
+
+constexpr double kEdge = 0.01;
+using material::Law;
+
+FemModelSettings settings_of(const mesh::Mesh& mesh, Law law = Law::corotational) {
+  FemModelSettings settings;
+  settings.regions.push_back(
+      {.constants = {450e3, 0.45}, .law = law, .density = 1070.0, .elements = {}});
+  settings.fixed_nodes = bottom_nodes(mesh, kEdge);
+  return settings;
+}
+
+/// Three materials and both laws, none filling whole batches.
+FemModelSettings mixed_settings(const mesh::Mesh& mesh) {
+  FemModelSettings settings;
+  settings.regions = {
+      {.constants = {450e3, 0.45}, .law = Law::corotational, .density = 1070.0, .elements = {}},
+      {.constants = {5e6, 0.3}, .law = Law::linear, .density = 1200.0, .elements = {}},
+      {.constants = {70e3, -0.2}, .law = Law::corotational, .density = 900.0, .elements = {}}};
+  for (NodeId t = 0; t < static_cast<NodeId>(mesh.tetrahedra.size()); ++t) {
+    settings.regions[static_cast<std::size_t>(t / 5 % 3)].elements.push_back(t);
+  }
+  settings.fixed_nodes = bottom_nodes(mesh, kEdge);
+  return settings;
+}
+
+Points moved(const mesh::Mesh& mesh, double size, unsigned seed = 1) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-size, size);
+  Points result = mesh.nodes;
+  for (double& x : result.reshaped()) x += kEdge * uniform(random);
+  return result;
+}
+
+struct Case {
+  const char* name;
+  int cells[3];
+  double motion;  // edges
+  bool mixed;
+};
+
+class AgainstReference : public testing::TestWithParam<std::tuple<Case, Tangent, MassMatrix>> {};
+
+TEST_P(AgainstReference, ForcesMatrixAndEnergyAgree) {
+  const auto& [given, tangent, mass] = GetParam();
+  const auto mesh = block_mesh(given.cells[0], given.cells[1], given.cells[2], kEdge, 0.15);
+  FemModelSettings settings = given.mixed ? mixed_settings(*mesh) : settings_of(*mesh);
+  settings.mass = mass;
+  const auto model = std::make_shared<const FemModel>(mesh, settings);
+  ThreadPool pool(1);
+  Assembly assembly(model, pool);
+  const Points positions = moved(*mesh, given.motion);
+  const AssemblyWeights weights{.tangent = tangent, .stiffness = 0.7, .mass = 3e5};
+  assembly.evaluate(positions, weights);
+  const Reference expected = reference(*model, settings, positions, weights);
+
+  const Eigen::Map<const VectorX> forces(assembly.forces().data(), 3 * model->free_count());
+  // where elements are inverted, the rotation itself is known to fewer digits
+  const double tolerance = expected.smallest_ratio > 0.0 ? 1e-13 : 1e-11;
+  const bool at_rest = given.motion == 0.0;  // then forces are small differences of E edge^2
+  const double force_scale =
+      at_rest ? 450e3 * kEdge * kEdge : expected.forces.cwiseAbs().maxCoeff();
+  EXPECT_LT((forces - expected.forces).cwiseAbs().maxCoeff(), tolerance * force_scale);
+  EXPECT_NEAR(assembly.strain_energy(), expected.energy, at_rest ? 1e-28 : 1e-12 * expected.energy);
+  EXPECT_NEAR(assembly.minimum_volume_ratio(), expected.smallest_ratio, 1e-12);
+  if (tangent == Tangent::none) return;
+  const MatrixX matrix = dense_matrix(assembly);
+  const double slack = tangent == Tangent::exact && expected.smallest_ratio < 0.0 ? 100.0 : 1.0;
+  EXPECT_LT((matrix - expected.matrix).cwiseAbs().maxCoeff(),
+            slack * tolerance * expected.matrix.cwiseAbs().maxCoeff());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Meshes, AgainstReference,
+    testing::Combine(testing::Values(Case{"one cell", {1, 1, 1}, 0.05, false},
+                                     Case{"at rest", {2, 2, 2}, 0.0, false},
+                                     Case{"five cells", {1, 1, 5}, 0.1, false},
+                                     Case{"block", {3, 2, 4}, 0.1, false},
+                                     Case{"three materials", {3, 3, 3}, 0.1, true},
+                                     Case{"inverted elements", {3, 2, 3}, 0.45, true}),
+                     testing::Values(Tangent::none, Tangent::rotated, Tangent::exact),
+                     testing::Values(MassMatrix::lumped, MassMatrix::consistent)));
+
+class EveryTangent : public testing::TestWithParam<Tangent> {};
+INSTANTIATE_TEST_SUITE_P(Tangents, EveryTangent,
+                         testing::Values(Tangent::none, Tangent::rotated, Tangent::exact));
+
+TEST_P(EveryTangent, ThreadsDoNotChangeABit) {
+  const auto mesh = block_mesh(4, 3, 12, kEdge, 0.1);
+  const FemModelSettings settings = mixed_settings(*mesh);
+  const auto model = std::make_shared<const FemModel>(mesh, settings);
+  const Points positions = moved(*mesh, 0.3);
+  ThreadPool one(1);
+  Assembly expected(model, one);
+  expected.evaluate(positions, {.tangent = GetParam(), .stiffness = 1.0, .mass = 2.0});
+  for (const int threads : {2, 3, 4, 7}) {
+    ThreadPool pool(threads);
+    Assembly assembly(model, pool);
+    assembly.evaluate(positions, {.tangent = GetParam(), .stiffness = 1.0, .mass = 2.0});
+    EXPECT_TRUE(std::ranges::equal(assembly.forces(), expected.forces())) << threads;
+    EXPECT_TRUE(
+        std::ranges::equal(std::as_const(assembly).matrix(), std::as_const(expected).matrix()))
+        << threads;
+    EXPECT_EQ(assembly.strain_energy(), expected.strain_energy()) << threads;
+    EXPECT_EQ(assembly.minimum_volume_ratio(), expected.minimum_volume_ratio()) << threads;
+    EXPECT_EQ(assembly.worst_element(), expected.worst_element()) << threads;
+  }
+}
+
+TEST_P(EveryTangent, EvaluationAllocatesNothing) {
+  const auto mesh = block_mesh(3, 3, 5, kEdge, 0.1);
+  const auto model = std::make_shared<const FemModel>(mesh, settings_of(*mesh));
+  for (const int threads : {1, 4}) {
+    ThreadPool pool(threads);
+    Assembly assembly(model, pool);
+    assembly.reserve(GetParam());
+    const Points positions = moved(*mesh, 0.4);  // through the fallback of the rotation too
+    const std::size_t before = allocation_count();
+    for (int k = 0; k < 3; ++k) assembly.evaluate(positions, {.tangent = GetParam()});
+    assembly.measure_volume(positions);
+    EXPECT_EQ(allocation_count(), before) << threads;
+  }
+}
+
+TEST(Assembly, TheCounterOfAllocationsCounts) {
+  const std::size_t before = allocation_count();
+  const auto model = std::make_unique<std::vector<double>>(100);
+  EXPECT_GE(allocation_count(), before + 2);
+}
+
+TEST(Assembly, ExactMatrixIsTheDerivativeOfTheForces) {
+  const auto mesh = block_mesh(2, 2, 3, kEdge, 0.1);
+  const auto model = std::make_shared<const FemModel>(mesh, mixed_settings(*mesh));
+  ThreadPool pool(1);
+  Assembly assembly(model, pool);
+  const Points positions = moved(*mesh, 0.1);
+  assembly.evaluate(positions, {.tangent = Tangent::exact});
+  const MatrixX matrix = dense_matrix(assembly);
+  constexpr double kStep = 1e-8;  // m, 1e-6 edges
+  double worst = 0.0;
+  for (int j = 0; j < model->free_count(); ++j) {
+    for (int c = 0; c < 3; ++c) {
+      VectorX difference = VectorX::Zero(matrix.rows());
+      for (const double sign : {1.0, -1.0}) {
+        Points there = positions;
+        there(model->free_nodes()[static_cast<std::size_t>(j)], c) += sign * kStep;
+        assembly.evaluate(there, {.tangent = Tangent::none});
+        difference += sign / (2.0 * kStep) *
+                      Eigen::Map<const VectorX>(assembly.forces().data(), matrix.rows());
+      }
+      worst = std::max(worst, (matrix.col(3 * j + c) - difference).cwiseAbs().maxCoeff());
+    }
+  }
+  EXPECT_LT(worst, 1e-7 * matrix.cwiseAbs().maxCoeff());
+}
+
+TEST(Assembly, ForcesAreTheDerivativeOfTheEnergy) {
+  const auto mesh = block_mesh(2, 2, 2, kEdge, 0.1);
+  const auto model = std::make_shared<const FemModel>(mesh, mixed_settings(*mesh));
+  ThreadPool pool(1);
+  Assembly assembly(model, pool);
+  const Points positions = moved(*mesh, 0.2);
+  assembly.evaluate(positions, {.tangent = Tangent::none});
+  const std::vector<double> forces(assembly.forces().begin(), assembly.forces().end());
+  const double scale = std::abs(*std::ranges::max_element(forces));
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    double difference = 0.0;
+    for (const double sign : {1.0, -1.0}) {
+      Points there = positions;
+      there(model->free_nodes()[i / 3], static_cast<Eigen::Index>(i % 3)) += sign * 1e-7;
+      assembly.evaluate(there, {.tangent = Tangent::none});
+      difference += sign * assembly.strain_energy() / 2e-7;
+    }
+    EXPECT_NEAR(forces[i], difference, 1e-7 * scale);
+  }
+}
+
+TEST(Assembly, RigidMotionsGiveNoForce) {
+  const auto mesh = block_mesh(3, 3, 6, kEdge, 0.2);
+  const auto model = std::make_shared<const FemModel>(mesh, settings_of(*mesh));
+  ThreadPool pool(1);
+  Assembly assembly(model, pool);
+  assembly.evaluate(moved(*mesh, 0.01), {.tangent = Tangent::none});
+  const double scale =
+      Eigen::Map<const VectorX>(assembly.forces().data(), 3 * model->free_count()).norm();
+  for (const double angle : {0.3, 1.5, 3.1, 3.14159265358979}) {
+    const Matrix3 turn =
+        Eigen::AngleAxisd(angle, Vector3(1.0, -2.0, 0.5).normalized()).toRotationMatrix();
+    Points positions = mesh->nodes * turn.transpose();
+    positions.rowwise() += Eigen::RowVector3d(0.1, -0.2, 0.05);
+    assembly.evaluate(positions, {.tangent = Tangent::none});
+    const Eigen::Map<const VectorX> forces(assembly.forces().data(), 3 * model->free_count());
+    EXPECT_LT(forces.norm(), 1e-12 * scale);
+    EXPECT_NEAR(assembly.minimum_volume_ratio(), 1.0, 1e-12);
+  }
+}
+
+/// A body that is turned as a whole has its forces and matrix turned with it.
+TEST(Assembly, ForcesAndMatrixTurnWithTheBody) {
+  const auto mesh = block_mesh(2, 2, 3, kEdge, 0.1);
+  const auto model = std::make_shared<const FemModel>(mesh, settings_of(*mesh));
+  ThreadPool pool(1);
+  Assembly assembly(model, pool);
+  const Points positions = moved(*mesh, 0.1);
+  const Matrix3 turn = Eigen::AngleAxisd(2.0, Vector3(1, 2, 3).normalized()).toRotationMatrix();
+  for (const Tangent tangent : {Tangent::rotated, Tangent::exact}) {
+    assembly.evaluate(positions, {.tangent = tangent});
+    const MatrixX before = dense_matrix(assembly);
+    MatrixX turns = MatrixX::Zero(before.rows(), before.cols());
+    for (int i = 0; i < model->free_count(); ++i) turns.block<3, 3>(3 * i, 3 * i) = turn;
+    const VectorX forces =
+        turns * Eigen::Map<const VectorX>(assembly.forces().data(), before.rows());
+    assembly.evaluate(positions * turn.transpose(), {.tangent = tangent});
+    const Eigen::Map<const VectorX> turned(assembly.forces().data(), before.rows());
+    EXPECT_LT((turned - forces).norm(), 1e-12 * forces.norm());
+    EXPECT_LT((dense_matrix(assembly) - turns * before * turns.transpose()).norm(),
+              1e-12 * before.norm());
+  }
+}
+
+/// Affine patch test: in a body of one material under a homogeneous deformation, interior nodes of
+/// a distorted mesh are in balance.
+TEST(Assembly, PassesTheAffinePatchTest) {
+  const auto mesh = block_mesh(4, 4, 4, kEdge);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(-0.2, 0.2);
+  FemModelSettings settings = settings_of(*mesh);
+  settings.fixed_nodes.clear();
+  const auto on_surface = [&](NodeId node) {
+    return (mesh->nodes.row(node).array() < 0.5 * kEdge).any() ||
+           (mesh->nodes.row(node).array() > 3.5 * kEdge).any();
+  };
+  for (NodeId node = 0; node < mesh->node_count(); ++node) {
+    if (on_surface(node)) settings.fixed_nodes.push_back(node);
+  }
+  for (NodeId node = 0; node < mesh->node_count(); ++node) {
+    if (on_surface(node)) continue;
+    for (int c = 0; c < 3; ++c) mesh->nodes(node, c) += kEdge * uniform(random);
+  }
+  Matrix3 gradient;
+  gradient << 1.2, 0.1, -0.2, 0.05, 0.9, 0.3, 0.1, -0.15, 1.1;
+  for (const Law law : {Law::linear, Law::corotational}) {
+    settings.regions[0].law = law;
+    const auto model = std::make_shared<const FemModel>(mesh, settings);
+    ASSERT_EQ(model->free_count(), 27);
+    ThreadPool pool(1);
+    Assembly assembly(model, pool);
+    assembly.evaluate(mesh->nodes * gradient.transpose(), {.tangent = Tangent::rotated});
+    const double scale = dense_matrix(assembly).cwiseAbs().maxCoeff() * kEdge;
+    for (const double force : assembly.forces()) EXPECT_NEAR(force, 0.0, 1e-13 * scale);
+  }
+}
+
+TEST(Assembly, MatricesAreSymmetricAndTheRotatedOneIsPositive) {
+  const auto mesh = block_mesh(2, 2, 4, kEdge, 0.1);
+  const auto model = std::make_shared<const FemModel>(mesh, settings_of(*mesh));
+  ThreadPool pool(1);
+  Assembly assembly(model, pool);
+  for (const Tangent tangent : {Tangent::rotated, Tangent::exact}) {
+    assembly.evaluate(moved(*mesh, 0.2), {.tangent = tangent});
+    const MatrixX matrix = dense_matrix(assembly);  // off-diagonal blocks symmetric by storage
+    EXPECT_LT((matrix - matrix.transpose()).cwiseAbs().maxCoeff(),
+              1e-15 * matrix.cwiseAbs().maxCoeff());
+    const double smallest =
+        Eigen::SelfAdjointEigenSolver<MatrixX>(matrix, Eigen::EigenvaluesOnly).eigenvalues()[0];
+    if (tangent == Tangent::rotated) {
+      EXPECT_GT(smallest, 0.0);
+    }
+  }
+}
+
+TEST(Assembly, BothTangentsAgreeAtRest) {
+  const auto mesh = block_mesh(2, 2, 3, kEdge, 0.2);
+  const auto model = std::make_shared<const FemModel>(mesh, mixed_settings(*mesh));
+  ThreadPool pool(1);
+  Assembly assembly(model, pool);
+  assembly.evaluate(mesh->nodes, {.tangent = Tangent::exact});
+  const MatrixX exact = dense_matrix(assembly);
+  assembly.evaluate(mesh->nodes, {.tangent = Tangent::rotated});
+  EXPECT_LT((exact - dense_matrix(assembly)).norm(), 1e-13 * exact.norm());
+}
+
+TEST(Assembly, BlocksAreAddedWhereTheyBelong) {
+  const auto mesh = block_mesh(2, 2, 2, kEdge);
+  FemModelSettings settings = settings_of(*mesh);
+  const NodeId corner = mesh->node_count() - 1;
+  settings.couplings = {{9, 13, corner, 0}};  // node 0 is fixed and skipped
+  const auto model = std::make_shared<const FemModel>(mesh, settings);
+  const auto free = [&](NodeId node) {
+    return model->free_index()[static_cast<std::size_t>(node)];
+  };
+  ThreadPool pool(1);
+  Assembly assembly(model, pool);
+  assembly.evaluate(mesh->nodes, {});
+  const MatrixX before = dense_matrix(assembly);
+  Matrix3 k;
+  k << 1, 2, 3, 4, 5, 6, 7, 8, 9;
+  assembly.add_block(free(9), free(corner), 1e3 * k);
+  assembly.add_block(free(corner), free(13), 1e3 * k);
+  const MatrixX change = dense_matrix(assembly) - before;
+  EXPECT_LT((change.block<3, 3>(3 * free(9), 3 * free(corner)) - 1e3 * k).norm(), 1e-9);
+  EXPECT_LT((change.block<3, 3>(3 * free(corner), 3 * free(13)) - 1e3 * k).norm(), 1e-9);
+  EXPECT_NEAR(change.norm(), 2e3 * k.norm(), 1e-9);
+  EXPECT_EQ(before.block(3 * free(9), 3 * free(corner), 3, 3).norm(), 0.0);
+  try {
+    assembly.add_block(free(10), free(corner), k);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::internal);
+  }
+}
+
+TEST(Assembly, FindsTheWorstElement) {
+  const auto mesh = block_mesh(3, 3, 3, kEdge);
+  const auto model = std::make_shared<const FemModel>(mesh, mixed_settings(*mesh));
+  ThreadPool pool(2);
+  Assembly assembly(model, pool);
+  Points positions = mesh->nodes;
+  const NodeId corner = mesh->node_count() - 1;
+  positions.row(corner) -= Eigen::RowVector3d::Constant(1.2 * kEdge);  // through its cell
+  assembly.evaluate(positions, {.tangent = Tangent::none});
+  EXPECT_LT(assembly.minimum_volume_ratio(), 0.0);
+  const auto& worst = mesh->tetrahedra[static_cast<std::size_t>(assembly.worst_element())];
+  EXPECT_NE(std::ranges::find(worst, corner), worst.end());
+  const VolumeMeasure measure = assembly.measure_volume(positions);
+  EXPECT_EQ(measure.smallest_ratio, assembly.minimum_volume_ratio());
+  EXPECT_EQ(measure.element, assembly.worst_element());
+
+  positions(corner, 1) = std::numeric_limits<double>::quiet_NaN();
+  assembly.evaluate(positions, {.tangent = Tangent::rotated});
+  EXPECT_EQ(assembly.minimum_volume_ratio(), -std::numeric_limits<double>::infinity());
+}
+
+TEST(Assembly, RefusesPositionsOfAnotherMesh) {
+  const auto mesh = block_mesh(1, 1, 1, kEdge);
+  const auto model = std::make_shared<const FemModel>(mesh, settings_of(*mesh));
+  ThreadPool pool(1);
+  Assembly assembly(model, pool);
+  try {
+    assembly.evaluate(Points::Zero(7, 3), {});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::wrong_shape);
+  }
+}
+
+}  // namespace
+}  // namespace sinew::fem
