@@ -34,7 +34,7 @@ struct Polyline {
 class Target {
  public:
   /// The origin for ever.
-  Target() = default;
+  Target() : form_(Fixed{Vector3::Zero()}) {}
 
   /// One position for ever. Throws Error(not-finite).
   static Target fixed(const Vector3& position);

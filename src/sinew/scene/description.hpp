@@ -50,6 +50,7 @@ struct MeshDescription {
   Place place;
   std::filesystem::path file;  ///< resolved against the scene's folder; empty for a shape
   double unit = 1.0;           ///< m per unit of the file
+  bool unit_given = false;     ///< whether the scene says what the unit is
   Place unit_place;
   std::string shape;  ///< "block", "cylinder", ...; empty for a file
   std::map<std::string, double>
@@ -149,8 +150,8 @@ struct EffectorDescription {
   std::string set;   ///< set: mean of the nodes of this set of the mesh
   Place set_place;
   mesh::Outside outside = mesh::Outside::error;
-  /// (k, 3) unit vectors along which the motion matters, k = 1 .. 3. For an orientation: axes of
-  /// the rotation vector.
+  /// (k, 3) unit vectors along which the motion matters, k = 1 .. 3; for an orientation always
+  /// x, y, z, the components of the rotation vector.
   Points directions = Points(Matrix3::Identity());
 };
 

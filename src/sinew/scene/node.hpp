@@ -96,7 +96,7 @@ std::string_view node_kind_name(Node::Kind kind);
 /// What a YAML document may cost at most, so that no file can exhaust time or memory.
 struct YamlLimits {
   std::size_t bytes = 4u << 20;
-  std::size_t nodes = 400'000;   ///< aliases expanded
+  std::size_t nodes = 200'000;   ///< aliases expanded
   std::size_t key_length = 200;  ///< bytes
   int depth = 32;
 };

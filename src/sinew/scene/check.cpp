@@ -1,0 +1,234 @@
+#include "sinew/scene/check.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "sinew/scene/values.hpp"
+
+namespace sinew::scene {
+
+namespace {
+
+class Checker {
+ public:
+  explicit Checker(const Node& scene) : scene_(scene) {}
+
+  // `extra` is the key that told a variants form; it is not in the table.
+  void check_map(const Node& map, const KeyTable& table, const std::string& extra) {
+    for (const Node::Entry& entry : map.entries()) {
+      if (entry.key == extra) continue;
+      const Key* key = table.find(entry.key);
+      if (key == nullptr) throw_unknown_key(entry.key, table, entry.key_place);
+      if (key->later) {
+        throw_later(fmt::format("'{}' ({})", key->name, key->description), "remove it",
+                    entry.key_place);
+      }
+      check_company(map, table, *key, entry.key_place);
+      check_value(entry.value, key->forms, key->example);
+    }
+    check_required(map, table);
+  }
+
+  void check_value(const Node& node, const std::vector<Form>& forms, const std::string& example) {
+    const Form& form = select_form(node, forms, example);
+    switch (form.shape) {
+      case Shape::quantity:
+        read_numbers(node, form);
+        return;
+      case Shape::unit:
+        read_unit(node, form);
+        return;
+      case Shape::integer:
+        read_integer(node, form);
+        return;
+      case Shape::boolean:
+        node.as_boolean();
+        return;
+      case Shape::choice:
+        read_choice(node, form);
+        return;
+      case Shape::text:
+      case Shape::file:
+        read_text(node);
+        return;
+      case Shape::reference:
+        check_name(read_text(node), form.refers_to, node.place());
+        return;
+      case Shape::samples:
+        read_samples(node, form);
+        return;
+      case Shape::list:
+        check_list(node, form, example);
+        return;
+      case Shape::names:
+        check_names(node, form, example);
+        return;
+      case Shape::table:
+      case Shape::variants:
+        check_map(node, table_of(node, form),
+                  form.shape == Shape::variants ? form.telltale : std::string());
+        return;
+    }
+  }
+
+ private:
+  // Keys that exclude each other, and keys that make sense only beside another.
+  void check_company(const Node& map, const KeyTable& table, const Key& key, const Place& place) {
+    if (!key.only_with.empty() && map.find(key.only_with) == nullptr) {
+      throw Error(ErrorKind::conflicting_keys, place,
+                  fmt::format("'{}' without '{}'", key.name, key.only_with),
+                  fmt::format("add {}, or remove {}", key.only_with, key.name));
+    }
+    const Alternatives* group = table.alternatives_of(key.name);
+    if (group == nullptr) return;
+    for (const std::string& other : group->keys) {
+      if (other == key.name) return;  // reported at the later of the two in the table
+      if (map.find(other) == nullptr) continue;
+      throw Error(ErrorKind::conflicting_keys, place,
+                  fmt::format("'{}' and '{}' exclude each other", other, key.name),
+                  "keep one of the two");
+    }
+  }
+
+  static void check_required(const Node& map, const KeyTable& table) {
+    for (const Key& key : table.keys) {
+      if (!key.required || map.find(key.name) != nullptr) continue;
+      throw Error(ErrorKind::missing_key, map.place(),
+                  fmt::format("'{}' is missing in {}", key.name, table.name),
+                  fmt::format("add for example {}: {}", key.name, key.example));
+    }
+    for (const Alternatives& group : table.alternatives) {
+      if (!group.required) continue;
+      const auto stands = [&](const std::string& key) { return map.find(key) != nullptr; };
+      if (std::any_of(group.keys.begin(), group.keys.end(), stands)) continue;
+      throw Error(ErrorKind::missing_key, map.place(),
+                  fmt::format("one of {} is missing in {}", join(group.keys), table.name),
+                  fmt::format("add for example {}: {}", group.keys.front(),
+                              table.find(group.keys.front())->example));
+    }
+  }
+
+  void check_list(const Node& node, const Form& form, const std::string& example) {
+    const auto count = static_cast<int>(node.items().size());
+    if (count == 0) {
+      throw Error(ErrorKind::empty_list, node.place(), "the list is empty",
+                  fmt::format("write for example {}", example));
+    }
+    for (const Node& item : node.items()) check_value(item, form.items, example);
+    if (count >= form.min_count && count <= form.max_count) return;
+    const std::string wanted = form.min_count == form.max_count ? fmt::format("{}", form.min_count)
+                               : form.max_count < (1 << 20)
+                                   ? fmt::format("{} to {}", form.min_count, form.max_count)
+                                   : fmt::format("at least {}", form.min_count);
+    throw Error(ErrorKind::wrong_length, node.place(),
+                fmt::format("the list has {} items instead of {}", count, wanted),
+                fmt::format("write for example {}", example));
+  }
+
+  void check_names(const Node& node, const Form& form, const std::string& example) {
+    if (static_cast<int>(node.entries().size()) < form.min_count) {
+      throw Error(ErrorKind::empty_list, node.place(), "the map is empty",
+                  fmt::format("write for example {}", example));
+    }
+    for (const Node::Entry& entry : node.entries()) {
+      check_spelling(entry);
+      if (!form.refers_to.empty()) check_name(entry.key, form.refers_to, entry.key_place);
+      check_value(entry.value, form.items, example);
+    }
+  }
+
+  // Names appear in dotted paths, in column headings and in file names.
+  static void check_spelling(const Node::Entry& entry) {
+    const auto allowed = [](char c) {
+      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+             c == '_' || c == '-';
+    };
+    if (!entry.key.empty() && std::all_of(entry.key.begin(), entry.key.end(), allowed)) return;
+    throw Error(ErrorKind::bad_argument, entry.key_place,
+                fmt::format("{} is no name", show(entry.key)),
+                "write names with letters, digits, '_' and '-'");
+  }
+
+  void check_name(const std::string& name, const std::string& section, const Place& place) {
+    auto [found, is_new] = names_.try_emplace(section);
+    if (is_new) {
+      for (std::string& known : names_under(scene_, section))
+        found->second.insert(std::move(known));
+    }
+    if (found->second.contains(name)) return;
+    throw_unknown_name(name, section, names_under(scene_, section), place);
+  }
+
+  const Node& scene_;
+  std::map<std::string, std::set<std::string>> names_;
+};
+
+void check_version(const Node& tree) {
+  const Node* version = tree.find("sinew");
+  if (version == nullptr || version->kind() != Node::Kind::number) return;
+  if (version->as_number() == 1.0) return;
+  throw Error(ErrorKind::unsupported_version, version->place(),
+              fmt::format("scene format {} is not known", version->spelling()),
+              "this version reads sinew: 1");
+}
+
+}  // namespace
+
+void check_scene(const Node& tree) {
+  if (!tree.is_map()) {
+    throw Error(ErrorKind::wrong_type, tree.place(),
+                fmt::format("a scene is a map, not {}", node_kind_name(tree.kind())),
+                "begin with the line sinew: 1");
+  }
+  check_version(tree);
+  Checker(tree).check_map(tree, grammar(), {});
+}
+
+const KeyTable& table_of(const Node& map, const Form& form) {
+  if (form.shape == Shape::table) return *form.table;
+  const Node* word = map.find(form.telltale);
+  if (word == nullptr) {
+    std::vector<std::string> words;
+    for (const Choice& choice : form.choices) {
+      if (!choice.later) words.push_back(choice.word);
+    }
+    throw Error(ErrorKind::missing_key, map.place(), fmt::format("'{}' is missing", form.telltale),
+                fmt::format("add {}: followed by one of {}", form.telltale, join(words)));
+  }
+  return *read_choice(*word, form).table;
+}
+
+void throw_unknown_key(const std::string& key, const KeyTable& table, const Place& place) {
+  const std::vector<std::string> known = table.key_names();
+  throw Error(ErrorKind::unknown_key, place,
+              fmt::format("unknown key {} in {}", show(key), table.name),
+              fmt::format("{}the keys here are {}", did_you_mean(key, known), join(known)));
+}
+
+void throw_later(const std::string& what, const std::string& instead, const Place& place) {
+  throw Error(ErrorKind::not_in_this_version, place, fmt::format("{} is not in this version", what),
+              instead);
+}
+
+void throw_unknown_name(const std::string& name, const std::string& section,
+                        const std::vector<std::string>& known, const Place& place) {
+  const std::string remedy = known.empty()
+                                 ? fmt::format("there is nothing under `{}`; add it there", section)
+                                 : fmt::format("{}under `{}` there are {}",
+                                               did_you_mean(name, known), section, join(known));
+  throw Error(ErrorKind::unknown_name, place,
+              fmt::format("{} is not under `{}`", show(name), section), remedy);
+}
+
+std::vector<std::string> names_under(const Node& scene, const std::string& section) {
+  std::vector<std::string> names;
+  if (const Node* map = scene.find(section)) {
+    for (const Node::Entry& entry : map->entries()) names.push_back(entry.key);
+  }
+  return names;
+}
+
+}  // namespace sinew::scene

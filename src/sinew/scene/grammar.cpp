@@ -1,0 +1,275 @@
+#include "sinew/scene/grammar.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "sinew/scene/grammar_forms.hpp"
+
+namespace sinew::scene {
+
+namespace {
+
+using namespace forms;
+
+Key later_key(const char* name, const char* description) {
+  return {.name = name, .forms = {text()}, .description = description, .later = true};
+}
+
+Form method_choice() {
+  return choice({{"one-linearisation", "One linear solution a step, for real time."},
+                 {"newton", "Iterates to equilibrium, with line search."}});
+}
+
+std::shared_ptr<const KeyTable> integrator_table() {
+  return make_table(
+      {.name = "integrator",
+       .description = "The integrator with its settings.",
+       .keys = {{.name = "type",
+                 .forms = {choice({{"quasi-static", "Always in equilibrium."},
+                                   {"backward-euler", "First order, damps."},
+                                   {"bdf2", "Second order.", true},
+                                   {"generalized-alpha", "Second order.", true}})},
+                 .example = "backward-euler",
+                 .description = "The integrator.",
+                 .required = true},
+                later_key("spectral_radius", "Of generalized-alpha: damping of fast motion.")}});
+}
+
+std::shared_ptr<const KeyTable> solver_table() {
+  return make_table(
+      {.name = "solver",
+       .description = "How each step is solved.",
+       .keys = {{.name = "method",
+                 .forms = {method_choice()},
+                 .example = "newton",
+                 .default_text = "one-linearisation",
+                 .description = "What a step does."},
+                {.name = "tangent",
+                 .forms = {choice({{"rotated", "The rotated stiffness of real-time codes."},
+                                   {"exact", "With the derivative of the rotation."}})},
+                 .example = "exact",
+                 .default_text = "rotated",
+                 .description = "The stiffness of corotational elements in a step. Static "
+                                "solutions use the exact one."},
+                {.name = "tolerance",
+                 .forms = {quantity(plain_number(), Range{0.0, 1.0, true, true})},
+                 .example = "1e-8",
+                 .default_text = "1e-8",
+                 .description = "Newton: residual force relative to the loads."},
+                {.name = "max_iterations",
+                 .forms = {integer(1, 100000)},
+                 .example = "50",
+                 .default_text = "50",
+                 .description = "Newton: iterations a step at most."},
+                {.name = "threads",
+                 .forms = {integer(1, 256)},
+                 .example = "4",
+                 .default_text = "1",
+                 .description = "Threads inside a step; results do not depend on it."},
+                {.name = "factorisation",
+                 .forms = {choice({{"block", "Our own, in 3x3 blocks."},
+                                   {"eigen-ldlt", "Eigen's SimplicialLDLT, for reference."},
+                                   {"eigen-llt", "Eigen's SimplicialLLT, for reference."}})},
+                 .example = "block",
+                 .default_text = "block",
+                 .description = "What factorises the matrix."},
+                {.name = "ordering",
+                 .forms = {choice({{"fastest", "Both are timed at the start."},
+                                   {"amd", "Approximate minimum degree."},
+                                   {"metis", "Nested dissection."}})},
+                 .example = "metis",
+                 .default_text = "fastest",
+                 .description = "How the unknowns are ordered."}}});
+}
+
+std::shared_ptr<const KeyTable> record_table() {
+  return make_table({.name = "record",
+                     .description = "What a run writes.",
+                     .keys = {{.name = "every",
+                               .forms = {integer(1, 1'000'000'000)},
+                               .example = "10",
+                               .default_text = "1",
+                               .description = "Steps from one record to the next."},
+                              {.name = "states",
+                               .forms = {boolean()},
+                               .example = "false",
+                               .default_text = "true",
+                               .description = "Records the positions of all nodes, too."}}});
+}
+
+std::vector<Key> world_keys() {
+  const Form integrators = choice({{"quasi-static", "Always in equilibrium; no inertia."},
+                                   {"backward-euler", "Dynamics; first order, damps."},
+                                   {"bdf2", "Dynamics; second order.", true},
+                                   {"generalized-alpha", "Dynamics; second order.", true}});
+  return {
+      {.name = "sinew",
+       .forms = {integer(1, std::numeric_limits<int>::max())},
+       .example = "1",
+       .description = "Version of the scene format: 1.",
+       .required = true},
+      {.name = "gravity",
+       .forms = {vector(acceleration())},
+       .example = "0 0 -9.81 m/s^2",
+       .default_text = "0 0 0 m/s^2",
+       .description = "Acceleration of free fall. Without: none."},
+      {.name = "time_step",
+       .forms = {quantity(time(), positive())},
+       .example = "10 ms",
+       .default_text = "10 ms",
+       .description = "Time from one step to the next."},
+      {.name = "duration",
+       .forms = {quantity(time(), positive())},
+       .example = "5 s",
+       .description = "How long a run lasts. Without: as long as its longest signal or target."},
+      {.name = "integrator",
+       .forms = {integrators, table(integrator_table())},
+       .example = "quasi-static",
+       .default_text = "quasi-static",
+       .description = "How time passes."},
+      {.name = "solver",
+       .forms = {table(solver_table()), method_choice()},
+       .example = "{method: newton}",
+       .default_text = "{}",
+       .description = "How each step is solved; a single word is its `method`."}};
+}
+
+KeyTable scene_table() {
+  KeyTable scene{.name = "scene", .description = "A scene file is one YAML map with these keys."};
+  scene.keys = world_keys();
+  scene.keys.push_back({.name = "bodies",
+                        .forms = {names(body_form(), 1)},
+                        .example = "{trunk: {type: fem, ...}}",
+                        .description = "The bodies, by names of your choice.",
+                        .required = true});
+  scene.keys.push_back({.name = "actuators",
+                        .forms = {names(actuator_form())},
+                        .example = "{long_0: {type: cable, ...}}",
+                        .description = "What moves them."});
+  scene.keys.push_back({.name = "effectors",
+                        .forms = {names(effector_form())},
+                        .example = "{tip: {body: trunk, point: 0 0 195 mm}}",
+                        .description = "What is watched and steered."});
+  scene.keys.push_back({.name = "controllers",
+                        .forms = {names(controller_form())},
+                        .example = "{follow: {type: inverse, effectors: {tip: ...}}}",
+                        .description = "What steers. A controller owns the actuators it drives."});
+  scene.keys.push_back({.name = "record",
+                        .forms = {table(record_table())},
+                        .example = "{every: 1, states: true}",
+                        .default_text = "{}",
+                        .description = "What a run writes."});
+  scene.keys.push_back(later_key("materials", "Materials by name."));
+  scene.keys.push_back(later_key("contacts", "Which bodies touch, and their friction."));
+  scene.keys.push_back(later_key("obstacles", "What surrounds the robot."));
+  scene.keys.push_back(later_key("joints", "Joints between bodies."));
+  scene.keys.push_back(later_key("sensors", "What the robot feels."));
+  scene.keys.push_back(later_key("estimators", "What is concluded from sensors."));
+  return scene;
+}
+
+std::string describe_numbers(const Form& form) {
+  if (form.max_count == 1) {
+    if (form.unit.empty()) return "a number";
+    if (form.unit == "rad") return "an angle (rad)";
+    return fmt::format("{} ({})", dimension_name(form.dimension), form.unit);
+  }
+  if (form.min_count != form.max_count) {
+    return fmt::format("{} to {} numbers", form.min_count, form.max_count);
+  }
+  return fmt::format("{} numbers{}{}", form.max_count, form.unit.empty() ? "" : ", in ", form.unit);
+}
+
+std::string describe_words(const Form& form) {
+  std::string words;
+  for (const Choice& word : form.choices) {
+    if (word.later) continue;
+    if (!words.empty()) words += " | ";
+    words += word.word;
+  }
+  return words;
+}
+
+}  // namespace
+
+const Key* KeyTable::find(std::string_view key) const {
+  const auto found =
+      std::find_if(keys.begin(), keys.end(), [&](const Key& k) { return k.name == key; });
+  return found == keys.end() ? nullptr : &*found;
+}
+
+std::vector<std::string> KeyTable::key_names() const {
+  std::vector<std::string> result;
+  for (const Key& key : keys) {
+    if (!key.later) result.push_back(key.name);
+  }
+  return result;
+}
+
+const Alternatives* KeyTable::alternatives_of(std::string_view key) const {
+  for (const Alternatives& group : alternatives) {
+    if (std::find(group.keys.begin(), group.keys.end(), key) != group.keys.end()) return &group;
+  }
+  return nullptr;
+}
+
+const KeyTable& grammar() {
+  static const KeyTable table = scene_table();
+  return table;
+}
+
+const Form& form_of(const KeyTable& table, std::string_view key, Shape shape) {
+  if (const Key* found = table.find(key)) {
+    for (const Form& form : found->forms) {
+      if (form.shape == shape) return form;
+    }
+  }
+  throw Error(ErrorKind::internal, {},
+              fmt::format("the grammar's {} has no such {}", table.name, key), "report this");
+}
+
+std::string describe(const Form& form) {
+  switch (form.shape) {
+    case Shape::quantity:
+      return describe_numbers(form);
+    case Shape::unit:
+      return fmt::format("a unit such as {}", form.unit);
+    case Shape::integer:
+      return "whole number";
+    case Shape::boolean:
+      return "true | false";
+    case Shape::text:
+      return "text";
+    case Shape::choice:
+      return describe_words(form);
+    case Shape::file:
+      return "path";
+    case Shape::reference:
+      return fmt::format("a name from `{}`", form.refers_to);
+    case Shape::list:
+      return fmt::format("list of ({})", describe(form.items));
+    case Shape::samples:
+      return fmt::format("list of [time, value in {}]", form.unit);
+    case Shape::table:
+      return fmt::format("map: {}", form.table->name);
+    case Shape::variants:
+      return fmt::format("map with {}: {}", form.telltale, describe_words(form));
+    case Shape::names:
+      return fmt::format("names, each with ({})", describe(form.items));
+  }
+  return {};
+}
+
+std::string describe(const std::vector<Form>& forms) {
+  std::string result;
+  for (const Form& form : forms) {
+    if (form.later) continue;
+    if (!result.empty()) result += ", or ";
+    result += describe(form);
+  }
+  return result;
+}
+
+}  // namespace sinew::scene

@@ -1,0 +1,204 @@
+// The tables of actuators, their limits and commands, and of effectors.
+#include "sinew/scene/grammar_forms.hpp"
+
+namespace sinew::scene::forms {
+
+namespace {
+
+std::shared_ptr<const KeyTable> limit_table(const Measure& measure, const Measure& rate,
+                                            const char* name, Range range, const char* least,
+                                            const char* example, const char* rate_example) {
+  return make_table({.name = std::string("limits of ") + name,
+                     .description = "What is left out is unlimited.",
+                     .keys = {{.name = "min",
+                               .forms = {quantity(measure, range)},
+                               .example = std::string("0 ") + measure.unit,
+                               .default_text = least,
+                               .description = "Least value."},
+                              {.name = "max",
+                               .forms = {quantity(measure, range)},
+                               .example = example,
+                               .description = "Greatest value."},
+                              {.name = "rate",
+                               .forms = {quantity(rate, positive())},
+                               .example = rate_example,
+                               .description = "Greatest change in time."}}});
+}
+
+// Limits and command of an actuator whose effort is a force called `effort`.
+std::vector<Key> drive_keys(const char* effort, Range effort_range, const char* least,
+                            const char* undriven) {
+  const std::string name = effort;
+  const auto effort_limits =
+      limit_table(force(), force_rate(), effort, effort_range, least, "20 N", "100 N/s");
+  const auto motion_limits =
+      limit_table(length(), speed(), "displacement", any(), "", "70 mm", "100 mm/s");
+  const auto limits =
+      make_table({.name = std::string("limits of a ") + (name == "tension" ? "cable" : "force"),
+                  .description = "What the actuator can do; commands and controllers obey.",
+                  .keys = {{.name = effort,
+                            .forms = {table(effort_limits)},
+                            .example = "{max: 20 N}",
+                            .default_text = "{}",
+                            .description = "Limits of the " + name + "."},
+                           {.name = "displacement",
+                            .forms = {table(motion_limits)},
+                            .example = "{min: 0 mm, max: 70 mm, rate: 100 mm/s}",
+                            .default_text = "{}",
+                            .description = "Limits of the displacement."}}});
+  const auto command = make_table(
+      {.name = std::string("command of a ") + (name == "tension" ? "cable" : "force"),
+       .description = "What the actuator is told: a value, or a signal over time.",
+       .keys = {{.name = "displacement",
+                 .forms = {quantity(length()), table(signal_table(length(), "10 mm"))},
+                 .example = "10 mm",
+                 .description = name == "tension" ? "Length of cable pulled in at the pull point."
+                                                  : "Motion of the point along the direction."},
+                {.name = effort,
+                 .forms = {quantity(force(), effort_range), table(signal_table(force(), "2 N"))},
+                 .example = "2 N",
+                 .description = "The " + name + "."}},
+       .alternatives = {{{"displacement", effort}, true}}});
+  return {{.name = "limits",
+           .forms = {table(limits)},
+           .example = "{displacement: {min: 0 mm, max: 70 mm}}",
+           .default_text = "{}",
+           .description = "What the actuator can do."},
+          {.name = "command",
+           .forms = {table(command)},
+           .example = "{displacement: 10 mm}",
+           .description = undriven}};
+}
+
+Key body_key() {
+  return {.name = "body",
+          .forms = {reference("bodies")},
+          .example = "trunk",
+          .description = "The body it belongs to.",
+          .required = true};
+}
+
+Key outside_key() {
+  return {.name = "outside",
+          .forms = {choice({{"error", "A point outside the mesh is refused."},
+                            {"nearest", "It is carried by the nearest element."}})},
+          .example = "nearest",
+          .default_text = "error",
+          .description = "What to do with points that lie outside the mesh."};
+}
+
+std::shared_ptr<const KeyTable> cable_table() {
+  KeyTable cable{
+      .name = "actuator: type cable",
+      .description =
+          "A cable that slides without friction through points of a body. It "
+          "pulls and never pushes.",
+      .keys = {body_key(),
+               {.name = "points",
+                .forms = {table(point_file_table()), list({vector(length())}, 2)},
+                .example = "[0 10 0 mm, 0 10 60 mm, 0 10 120 mm]",
+                .description = "The points it runs through, in the mesh at rest. The first "
+                               "is the pull point, the last the end that is tied.",
+                .required = true},
+               {.name = "pull",
+                .forms = {choice({{"world", "Does not move."}, {"body", "Moves with the body."}})},
+                .example = "world",
+                .default_text = "world",
+                .description = "What the pull point is fixed to."},
+               outside_key(),
+               {.name = "geometric_stiffness",
+                .forms = {boolean()},
+                .example = "true",
+                .default_text = "false",
+                .description = "Adds the stiffness of the loaded cable to every step; "
+                               "static solutions always have it."}}};
+  for (Key& key : drive_keys("tension", non_negative(), "0 N",
+                             "What it is told. Without: slack until told.")) {
+    cable.keys.push_back(std::move(key));
+  }
+  return make_table(std::move(cable));
+}
+
+std::shared_ptr<const KeyTable> force_table() {
+  KeyTable push{.name = "actuator: type force",
+                .description = "A force along a fixed direction of the world on a point of a body.",
+                .keys = {body_key(),
+                         {.name = "point",
+                          .forms = {vector(length())},
+                          .example = "0 0 195 mm",
+                          .description = "Where it acts, in the mesh at rest.",
+                          .required = true},
+                         {.name = "direction",
+                          .forms = {vector(plain_number())},
+                          .example = "1 0 0",
+                          .description = "Where it points; any length but zero.",
+                          .required = true},
+                         outside_key()}};
+  for (Key& key :
+       drive_keys("force", any(), "", "What it is told. Without: no force until told.")) {
+    push.keys.push_back(std::move(key));
+  }
+  return make_table(std::move(push));
+}
+
+}  // namespace
+
+std::shared_ptr<const KeyTable> point_file_table() {
+  return make_table({.name = "points: file",
+                     .description = "A CSV table with three columns, x y z, one point a line.",
+                     .keys = {{.name = "file",
+                               .forms = {file()},
+                               .example = "long_0.csv",
+                               .description = "Path of the table, relative to the scene file.",
+                               .required = true},
+                              {.name = "unit",
+                               .forms = {unit(length())},
+                               .example = "mm",
+                               .default_text = "m",
+                               .description = "The unit of its numbers."}}});
+}
+
+Form actuator_form() {
+  return variants("type",
+                  {{.word = "cable", .description = "A sliding cable.", .table = cable_table()},
+                   {.word = "force", .description = "A point force.", .table = force_table()},
+                   {.word = "pressure", .description = "A pressurised cavity.", .later = true},
+                   {.word = "spring", .description = "A spring or tendon.", .later = true}});
+}
+
+Form effector_form() {
+  const Form axis = choice(
+      {{"x", "The world's x axis."}, {"y", "The world's y axis."}, {"z", "The world's z axis."}});
+  return table(make_table(
+      {.name = "effector",
+       .description = "Something on a body whose motion matters: exactly one of point, points, "
+                      "set and orientation.",
+       .keys = {body_key(),
+                {.name = "point",
+                 .forms = {vector(length())},
+                 .example = "0 0 195 mm",
+                 .description = "A point, in the mesh at rest."},
+                {.name = "points",
+                 .forms = {table(point_file_table()), list({vector(length())})},
+                 .example = "[10 0 195 mm, -10 0 195 mm]",
+                 .description = "The mean of several points."},
+                {.name = "set",
+                 .forms = {text()},
+                 .example = "tip",
+                 .description = "The mean of the nodes of a named set of the mesh."},
+                {.name = "orientation",
+                 .forms = {list({vector(length())}, 3, 3)},
+                 .example = "[0 0 190 mm, 10 0 190 mm, 0 10 190 mm]",
+                 .description = "The rotation of the frame through three points, as a rotation "
+                                "vector from rest."},
+                {.name = "directions",
+                 .forms = {axis, list({axis, vector(plain_number())}, 1, 3)},
+                 .example = "[x, y]",
+                 .default_text = "[x, y, z]",
+                 .description = "Along what the motion matters: axes or vectors, independent of "
+                                "each other."},
+                outside_key()},
+       .alternatives = {{{"point", "points", "set", "orientation"}, true}}}));
+}
+
+}  // namespace sinew::scene::forms

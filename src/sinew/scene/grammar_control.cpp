@@ -1,0 +1,250 @@
+// The tables of signals, targets and controllers.
+#include "sinew/scene/grammar_forms.hpp"
+
+namespace sinew::scene::forms {
+
+namespace {
+
+std::shared_ptr<const KeyTable> ramp_table(const Measure& measure, const char* example) {
+  return make_table({.name = "ramp",
+                     .description = "From one value to another at constant speed, then held.",
+                     .keys = {{.name = "from",
+                               .forms = {quantity(measure)},
+                               .example = std::string("0 ") + measure.unit,
+                               .default_text = "0",
+                               .description = "Value until the start."},
+                              {.name = "to",
+                               .forms = {quantity(measure)},
+                               .example = example,
+                               .description = "Value at the end.",
+                               .required = true},
+                              {.name = "start",
+                               .forms = {quantity(time(), non_negative())},
+                               .example = "0.5 s",
+                               .default_text = "0 s",
+                               .description = "When it starts."},
+                              {.name = "duration",
+                               .forms = {quantity(time(), positive())},
+                               .example = "1 s",
+                               .description = "How long it takes.",
+                               .required = true}}});
+}
+
+std::shared_ptr<const KeyTable> sine_table(const Measure& measure, const char* example) {
+  return make_table({.name = "sine",
+                     .description = "mean + amplitude sin(2 pi t / period + phase).",
+                     .keys = {{.name = "mean",
+                               .forms = {quantity(measure)},
+                               .example = example,
+                               .default_text = "0",
+                               .description = "Value about which it swings."},
+                              {.name = "amplitude",
+                               .forms = {quantity(measure)},
+                               .example = example,
+                               .description = "Half of its range.",
+                               .required = true},
+                              {.name = "period",
+                               .forms = {quantity(time(), positive())},
+                               .example = "2 s",
+                               .description = "Time of one swing."},
+                              {.name = "frequency",
+                               .forms = {quantity(frequency(), positive())},
+                               .example = "0.5 Hz",
+                               .description = "Swings in a second."},
+                              {.name = "phase",
+                               .forms = {quantity(angle())},
+                               .example = "90 deg",
+                               .default_text = "0",
+                               .description = "Angle at time 0."}},
+                     .alternatives = {{{"period", "frequency"}, true}}});
+}
+
+Key path_file_key(const char* description) {
+  return {.name = "file", .forms = {file()}, .example = "path.csv", .description = description};
+}
+
+Key path_unit_key(const Measure& measure, const char* example) {
+  return {.name = "unit",
+          .forms = {unit(measure)},
+          .example = example,
+          .default_text = measure.unit,
+          .description = "The unit of the file's values; its times are in s.",
+          .only_with = "file"};
+}
+
+std::shared_ptr<const KeyTable> circle_table() {
+  return make_table(
+      {.name = "circle",
+       .description = "A circle at constant speed, counter-clockwise about its normal. It starts "
+                      "on the side of the x axis (of y, where the normal is near x).",
+       .keys = {{.name = "center",
+                 .forms = {vector(length())},
+                 .example = "0 0 190 mm",
+                 .description = "Its center.",
+                 .required = true},
+                {.name = "radius",
+                 .forms = {quantity(length(), positive())},
+                 .example = "30 mm",
+                 .description = "Its radius.",
+                 .required = true},
+                {.name = "normal",
+                 .forms = {vector(plain_number())},
+                 .example = "0 0 1",
+                 .default_text = "0 0 1",
+                 .description = "Its normal; any length but zero."},
+                {.name = "period",
+                 .forms = {quantity(time(), positive())},
+                 .example = "10 s",
+                 .description = "Time of one turn.",
+                 .required = true},
+                {.name = "start_angle",
+                 .forms = {quantity(angle())},
+                 .example = "90 deg",
+                 .default_text = "0",
+                 .description = "Where on the circle it starts."}}});
+}
+
+std::shared_ptr<const KeyTable> polyline_table() {
+  return make_table({.name = "polyline",
+                     .description = "Straight lines at constant speed; the end is held.",
+                     .keys = {{.name = "points",
+                               .forms = {table(point_file_table()), list({vector(length())}, 2)},
+                               .example = "[0 0 190 mm, 20 0 185 mm]",
+                               .description = "Its corners.",
+                               .required = true},
+                              {.name = "speed",
+                               .forms = {quantity(speed(), positive())},
+                               .example = "10 mm/s",
+                               .description = "Speed along it."},
+                              {.name = "period",
+                               .forms = {quantity(time(), positive())},
+                               .example = "5 s",
+                               .description = "Time for the whole path once."},
+                              {.name = "closed",
+                               .forms = {boolean()},
+                               .example = "true",
+                               .default_text = "false",
+                               .description = "Returns to the first corner and repeats."}},
+                     .alternatives = {{{"speed", "period"}, true}}});
+}
+
+std::shared_ptr<const KeyTable> target_table() {
+  return make_table({.name = "target",
+                     .description =
+                         "Where the effector shall be over time: exactly one of circle, polyline "
+                         "and file.",
+                     .keys = {{.name = "circle",
+                               .forms = {table(circle_table())},
+                               .example = "{center: 0 0 190 mm, radius: 30 mm, period: 10 s}",
+                               .description = "A circle."},
+                              {.name = "polyline",
+                               .forms = {table(polyline_table())},
+                               .example = "{points: [0 0 190 mm, 20 0 185 mm], speed: 10 mm/s}",
+                               .description = "Straight lines."},
+                              path_file_key("A CSV table with four columns, time x y z."),
+                              path_unit_key(length(), "mm")},
+                     .alternatives = {{{"circle", "polyline", "file"}, true}}});
+}
+
+std::shared_ptr<const KeyTable> rotation_table() {
+  return make_table({.name = "rotation",
+                     .description = "Rotation vectors over time.",
+                     .keys = {{.name = "file",
+                               .forms = {file()},
+                               .example = "turn.csv",
+                               .description = "A CSV table with four columns, time and the "
+                                              "components of the rotation vector.",
+                               .required = true},
+                              path_unit_key(angle(), "deg")}});
+}
+
+Form task_form() {
+  return table(make_table(
+      {.name = "task",
+       .description = "What is asked of one effector: target, or rotation for an orientation.",
+       .keys = {{.name = "target",
+                 .forms = {vector(length()), table(target_table())},
+                 .example = "0 0 190 mm",
+                 .description = "Where it shall be: a fixed position, or a path."},
+                {.name = "rotation",
+                 .forms = {vector(angle()), table(rotation_table())},
+                 .example = "0 0 10 deg",
+                 .description = "How an orientation effector shall be turned from rest: a rotation "
+                                "vector (axis times angle)."},
+                {.name = "weight",
+                 .forms = {numbers(1, 3, non_negative())},
+                 .example = "1 1 0.1",
+                 .default_text = "1",
+                 .description = "How much its error counts: one number, or one for each of its "
+                                "directions."}},
+       .alternatives = {{{"target", "rotation"}, true}}}));
+}
+
+std::shared_ptr<const KeyTable> regularisation_table() {
+  return make_table(
+      {.name = "regularisation",
+       .description = "Which efforts are chosen where several serve equally well.",
+       .keys = {{.name = "of",
+                 .forms = {choice({{"change", "Those nearest to the last ones; no bias at rest."},
+                                   {"effort", "The smallest; biases the effector."}})},
+                 .example = "change",
+                 .default_text = "change",
+                 .description = "What is kept small."},
+                {.name = "epsilon",
+                 .forms = {quantity(plain_number(), positive())},
+                 .example = "1e-5",
+                 .description = "Its weight relative to the tracking error. Without: chosen by "
+                                "the controller."}}});
+}
+
+}  // namespace
+
+std::shared_ptr<const KeyTable> signal_table(const Measure& measure, const char* value_example) {
+  const std::string value = value_example;
+  return make_table(
+      {.name = std::string("signal in ") + measure.unit,
+       .description = "A value over time: exactly one of ramp, sine, steps and file.",
+       .keys = {{.name = "ramp",
+                 .forms = {table(ramp_table(measure, value_example))},
+                 .example = "{to: " + value + ", duration: 1 s}",
+                 .description = "A ramp."},
+                {.name = "sine",
+                 .forms = {table(sine_table(measure, value_example))},
+                 .example = "{amplitude: " + value + ", period: 2 s}",
+                 .description = "A sine."},
+                {.name = "steps",
+                 .forms = {samples(measure)},
+                 .example = "[[0 s, 0 " + std::string(measure.unit) + "], [1 s, " + value + "]]",
+                 .description = "Jumps: pairs of time and value, the first at 0 s."},
+                path_file_key("A CSV table with two columns, time and value; straight lines "
+                              "between."),
+                path_unit_key(measure, measure.unit)},
+       .alternatives = {{{"ramp", "sine", "steps", "file"}, true}}});
+}
+
+Form controller_form() {
+  const auto inverse = make_table(
+      {.name = "controller: type inverse",
+       .description = "Finds, each step, the efforts that bring the effectors to their targets.",
+       .keys = {{.name = "effectors",
+                 .forms = {names(task_form(), 1, "effectors")},
+                 .example = "{tip: {target: 0 0 190 mm}}",
+                 .description = "What is asked of each effector, by its name.",
+                 .required = true},
+                {.name = "actuators",
+                 .forms = {list({reference("actuators")})},
+                 .example = "[long_0, long_1]",
+                 .description = "The actuators it drives. Without: all."},
+                {.name = "regularisation",
+                 .forms = {table(regularisation_table())},
+                 .example = "{of: change}",
+                 .default_text = "{}",
+                 .description = "Which efforts are chosen where several serve."}}});
+  return variants(
+      "type",
+      {{.word = "inverse", .description = "One-step inverse control.", .table = inverse},
+       {.word = "closed-loop", .description = "Inverse control with sensors.", .later = true},
+       {.word = "policy", .description = "A learnt policy.", .later = true}});
+}
+
+}  // namespace sinew::scene::forms

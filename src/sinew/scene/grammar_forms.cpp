@@ -1,0 +1,137 @@
+#include "sinew/scene/grammar_forms.hpp"
+
+namespace sinew::scene::forms {
+
+Measure plain_number() { return {dimension::kNone, ""}; }
+Measure length() { return {dimension::kLength, "m"}; }
+Measure time() { return {dimension::kTime, "s"}; }
+Measure angle() { return {dimension::kNone, "rad"}; }
+Measure acceleration() { return {dimension::kAcceleration, "m/s^2"}; }
+Measure stress() { return {dimension::kPressure, "Pa"}; }
+Measure mass() { return {dimension::kMass, "kg"}; }
+Measure density() { return {dimension::kDensity, "kg/m^3"}; }
+Measure force() { return {dimension::kForce, "N"}; }
+Measure frequency() { return {dimension::kFrequency, "1/s"}; }
+Measure speed() { return {dimension::kVelocity, "m/s"}; }
+Measure force_rate() { return {Dimension{1, 1, -3}, "N/s"}; }
+
+Range any() { return {}; }
+Range positive() { return {.min = 0.0, .above_min = true}; }
+Range non_negative() { return {.min = 0.0}; }
+
+Form quantity(const Measure& measure, Range range) {
+  Form form;
+  form.shape = Shape::quantity;
+  form.dimension = measure.dimension;
+  form.unit = measure.unit;
+  form.range = range;
+  return form;
+}
+
+Form vector(const Measure& measure, int count) {
+  Form form = quantity(measure);
+  form.min_count = count;
+  form.max_count = count;
+  return form;
+}
+
+Form numbers(int min_count, int max_count, Range range) {
+  Form form = quantity(plain_number(), range);
+  form.min_count = min_count;
+  form.max_count = max_count;
+  return form;
+}
+
+Form unit(const Measure& measure) {
+  Form form = quantity(measure, positive());
+  form.shape = Shape::unit;
+  return form;
+}
+
+Form integer(int min, int max) {
+  Form form;
+  form.shape = Shape::integer;
+  form.range.min = min;
+  form.range.max = max;
+  return form;
+}
+
+Form boolean() {
+  Form form;
+  form.shape = Shape::boolean;
+  return form;
+}
+
+Form text() { return {}; }
+
+Form file() {
+  Form form;
+  form.shape = Shape::file;
+  return form;
+}
+
+Form reference(const char* top_level_key) {
+  Form form;
+  form.shape = Shape::reference;
+  form.refers_to = top_level_key;
+  return form;
+}
+
+Form choice(std::vector<Choice> choices) {
+  Form form;
+  form.shape = Shape::choice;
+  form.choices = std::move(choices);
+  return form;
+}
+
+Form list(std::vector<Form> items, int min_count, int max_count) {
+  Form form;
+  form.shape = Shape::list;
+  form.items = std::move(items);
+  form.min_count = min_count;
+  form.max_count = max_count;
+  return form;
+}
+
+Form samples(const Measure& measure) {
+  Form form = quantity(measure);
+  form.shape = Shape::samples;
+  form.max_count = kAnyNumber;
+  return form;
+}
+
+Form table(std::shared_ptr<const KeyTable> table, const char* telltale) {
+  Form form;
+  form.shape = Shape::table;
+  form.table = std::move(table);
+  form.telltale = telltale;
+  return form;
+}
+
+Form variants(const char* telltale, std::vector<Choice> choices) {
+  Form form;
+  form.shape = Shape::variants;
+  form.telltale = telltale;
+  form.choices = std::move(choices);
+  return form;
+}
+
+Form names(Form item, int least, const char* refers_to) {
+  Form form;
+  form.shape = Shape::names;
+  form.min_count = least;
+  form.refers_to = refers_to;
+  form.items.push_back(std::move(item));
+  return form;
+}
+
+Form later(Form form) {
+  form.later = true;
+  return form;
+}
+
+std::shared_ptr<const KeyTable> make_table(KeyTable table) {
+  return std::make_shared<const KeyTable>(std::move(table));
+}
+
+}  // namespace sinew::scene::forms

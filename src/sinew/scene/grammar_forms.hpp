@@ -1,0 +1,70 @@
+/// @file
+/// Short constructors of forms, for writing the grammar's tables.
+#pragma once
+
+#include <initializer_list>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sinew/scene/grammar.hpp"
+
+namespace sinew::scene::forms {
+
+inline constexpr int kAnyNumber = 1 << 20;
+
+/// A dimension with a customary unit.
+struct Measure {
+  Dimension dimension;
+  const char* unit;
+};
+Measure plain_number();
+Measure length();
+Measure time();
+Measure angle();
+Measure acceleration();
+Measure stress();
+Measure mass();
+Measure density();
+Measure force();
+Measure frequency();
+Measure speed();
+Measure force_rate();
+
+Range any();
+Range positive();
+Range non_negative();
+
+Form quantity(const Measure& measure, Range range = any());
+/// `count` numbers with one unit.
+Form vector(const Measure& measure, int count = 3);
+Form unit(const Measure& measure);
+Form numbers(int min_count, int max_count, Range range);
+Form integer(int min, int max);
+Form boolean();
+Form text();
+Form file();
+Form reference(const char* top_level_key);
+Form choice(std::vector<Choice> choices);
+Form list(std::vector<Form> items, int min_count = 1, int max_count = kAnyNumber);
+Form samples(const Measure& measure);
+Form table(std::shared_ptr<const KeyTable> table, const char* telltale = "");
+Form variants(const char* telltale, std::vector<Choice> choices);
+/// At least `least` entries, whose names are free or, with `refers_to`, those of that top-level
+/// key.
+Form names(Form item, int least = 0, const char* refers_to = "");
+/// The same form, refused as belonging to a later version.
+Form later(Form form);
+
+std::shared_ptr<const KeyTable> make_table(KeyTable table);
+
+// The tables of each part, in the file of that part.
+std::shared_ptr<const KeyTable> signal_table(const Measure& measure, const char* value_example);
+std::shared_ptr<const KeyTable> point_file_table();
+Form body_form();
+Form actuator_form();
+Form effector_form();
+Form controller_form();
+
+}  // namespace sinew::scene::forms

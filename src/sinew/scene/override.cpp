@@ -1,0 +1,219 @@
+#include <charconv>
+
+#include <fmt/format.h>
+
+#include "sinew/scene/check.hpp"
+#include "sinew/scene/scene.hpp"
+#include "sinew/scene/values.hpp"
+
+namespace sinew::scene {
+
+namespace {
+
+std::vector<std::string> split_path(const std::string& path) {
+  std::vector<std::string> steps;
+  std::size_t begin = 0;
+  while (true) {
+    const std::size_t dot = path.find('.', begin);
+    steps.push_back(path.substr(begin, dot - begin));
+    if (dot == std::string::npos) return steps;
+    begin = dot + 1;
+  }
+}
+
+// Walks down a path through grammar and tree together; where it stands, `node` may be written in
+// any of `forms`.
+class Walker {
+ public:
+  Walker(Node& scene, Place place)
+      : scene_(scene), place_(std::move(place)), node_(&scene), forms_({forms_of_scene()}) {}
+
+  void enter(const std::string& step, bool last) {
+    if (node_->is_list()) {
+      enter_item(step);
+      return;
+    }
+    const Form form = map_form(step);
+    if (form.shape == Shape::names) {
+      enter_name(step, form);
+    } else {
+      enter_key(step, form, last);
+    }
+  }
+
+  void write(Node value) { *node_ = std::move(value); }
+
+ private:
+  static Form forms_of_scene() {
+    Form form;
+    form.shape = Shape::table;
+    // The grammar lives as long as the program, so nobody owns it here.
+    form.table = std::shared_ptr<const KeyTable>(std::shared_ptr<void>(), &grammar());
+    return form;
+  }
+
+  static bool offers(const Form& form, const Node& node, const std::string& step) {
+    if (form.shape == Shape::names) return true;
+    if (form.shape == Shape::table) return form.table->find(step) != nullptr;
+    if (form.shape != Shape::variants) return false;
+    if (step == form.telltale) return true;
+    const Node* word = node.find(form.telltale);
+    return word != nullptr && table_of(node, form).find(step) != nullptr;
+  }
+
+  // The form of a map here that has the key `step`; else the first map form, for its message.
+  Form map_form(const std::string& step) {
+    const Form* first = nullptr;
+    for (const Form& form : forms_) {
+      const bool is_map =
+          form.shape == Shape::table || form.shape == Shape::variants || form.shape == Shape::names;
+      if (!is_map) continue;
+      if (offers(form, *node_, step)) return form;
+      if (first == nullptr) first = &form;
+    }
+    if (first == nullptr) {
+      throw Error(ErrorKind::unknown_key, place_, fmt::format("there is nothing under {}", path_),
+                  fmt::format("{} takes {}", path_, describe(forms_)));
+    }
+    return *first;
+  }
+
+  void enter_item(const std::string& step) {
+    std::size_t index = 0;
+    const auto [end, status] = std::from_chars(step.data(), step.data() + step.size(), index);
+    if (status != std::errc() || end != step.data() + step.size() ||
+        index >= node_->items().size()) {
+      throw Error(ErrorKind::unknown_key, place_,
+                  fmt::format("{} is a list, and {} none of its items", path_, show(step)),
+                  fmt::format("write a number from 0 to {}",
+                              node_->items().empty() ? 0 : node_->items().size() - 1));
+    }
+    node_ = &node_->items()[index];
+    std::vector<Form> items;
+    for (const Form& form : forms_) {
+      if (form.shape == Shape::list)
+        items.insert(items.end(), form.items.begin(), form.items.end());
+    }
+    forms_ = std::move(items);
+    note(step);
+  }
+
+  void enter_name(const std::string& step, const Form& form) {
+    Node* below = node_->is_map() ? node_->find(step) : nullptr;
+    if (below == nullptr) {
+      std::vector<std::string> known;
+      for (const Node::Entry& entry : node_->entries()) known.push_back(entry.key);
+      throw_unknown_name(step, path_, known, place_);
+    }
+    node_ = below;
+    example_.clear();
+    forms_ = form.items;
+    note(step);
+  }
+
+  void enter_key(const std::string& step, const Form& form, bool last) {
+    if (form.shape == Shape::variants && step == form.telltale) {
+      forms_ = {};
+      descend(step, last);
+      return;
+    }
+    const KeyTable& table = form.shape == Shape::variants ? table_of(*node_, form) : *form.table;
+    const Key* key = table.find(step);
+    if (key == nullptr) throw_unknown_key(step, table, place_);
+    if (const Alternatives* group = table.alternatives_of(step)) {
+      for (const std::string& other : group->keys) {
+        if (other != step) node_->erase(other);
+      }
+    }
+    for (const Key& other : table.keys) {
+      if (!other.only_with.empty() && node_->find(other.only_with) == nullptr &&
+          other.only_with != step && other.name != step) {
+        node_->erase(other.name);
+      }
+    }
+    forms_ = key->forms;
+    descend(step, last);
+  }
+
+  // Into the value of a key; a map is made where a deeper path needs one.
+  void descend(const std::string& step, bool last) {
+    if (!node_->is_map()) *node_ = Node::map();
+    Node* below = node_->find(step);
+    if (below == nullptr) below = &node_->set(step, Node());
+    if (!last && below->is_scalar()) *below = Node::map();
+    node_ = below;
+    note(step);
+  }
+
+  void note(const std::string& step) { path_ += (path_.empty() ? "" : ".") + step; }
+
+  Node& scene_;
+  Place place_;
+  Node* node_;
+  std::vector<Form> forms_;
+  std::string path_;
+  std::string example_;
+};
+
+void absolute_paths(Node& node, const std::vector<Form>& forms,
+                    const std::filesystem::path& base_dir);
+
+void absolute_in_map(Node& map, const Form& form, const std::filesystem::path& base_dir) {
+  for (Node::Entry& entry : map.entries()) {
+    if (form.shape == Shape::names) {
+      absolute_paths(entry.value, form.items, base_dir);
+    } else if (const Key* key = table_of(map, form).find(entry.key)) {
+      absolute_paths(entry.value, key->forms, base_dir);
+    }
+  }
+}
+
+void absolute_paths(Node& node, const std::vector<Form>& forms,
+                    const std::filesystem::path& base_dir) {
+  const Form form = select_form(node, forms, {});
+  if (form.shape == Shape::file) {
+    const std::filesystem::path path = read_text(node);
+    if (path.is_relative()) {
+      Node absolute =
+          Node::text(std::filesystem::absolute(base_dir / path).lexically_normal().string());
+      absolute.set_place(node.place());
+      node = std::move(absolute);
+    }
+  } else if (form.shape == Shape::list) {
+    for (Node& item : node.items()) absolute_paths(item, form.items, base_dir);
+  } else if (node.is_map()) {
+    absolute_in_map(node, form, base_dir);
+  }
+}
+
+}  // namespace
+
+void apply_override(Node& tree, const std::string& assignment) {
+  const std::size_t equals = assignment.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    throw Error(ErrorKind::bad_argument, {"", 0, 0, "--set"},
+                fmt::format("{} is not an assignment", show(assignment)),
+                "write a path, '=' and a value: time_step=5ms");
+  }
+  const std::string path = assignment.substr(0, equals);
+  const Place place{"", 0, 0, "--set " + path};
+  Node value = parse_yaml(assignment.substr(equals + 1), "--set " + path);
+  Node changed = tree;
+  Walker walker(changed, place);
+  const std::vector<std::string> steps = split_path(path);
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    walker.enter(steps[i], i + 1 == steps.size());
+  }
+  walker.write(std::move(value));
+  changed.name_paths();
+  tree = std::move(changed);
+}
+
+void resolve_paths(Node& tree, const std::filesystem::path& base_dir) {
+  check_scene(tree);
+  for (Node::Entry& entry : tree.entries()) {
+    absolute_paths(entry.value, grammar().find(entry.key)->forms, base_dir);
+  }
+}
+
+}  // namespace sinew::scene

@@ -1,0 +1,192 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "sinew/scene/readers.hpp"
+
+namespace sinew::scene {
+
+namespace {
+
+sim::Signal read_ramp(const Fields& fields) {
+  sim::Ramp ramp;
+  fields.read("from", ramp.from);
+  fields.read("to", ramp.to);
+  fields.read("start", ramp.start);
+  fields.read("duration", ramp.duration);
+  return sim::Signal::ramp(ramp);
+}
+
+sim::Signal read_sine(const Fields& fields) {
+  sim::Sine sine;
+  fields.read("mean", sine.mean);
+  fields.read("amplitude", sine.amplitude);
+  fields.read("period", sine.period);
+  fields.read("phase", sine.phase);
+  double frequency = 0.0;
+  if (fields.read("frequency", frequency)) sine.period = 1.0 / frequency;
+  return sim::Signal::sine(sine);
+}
+
+sim::Signal read_steps(const Fields& fields) {
+  std::vector<std::pair<double, double>> steps;
+  for (const Sample& sample : read_samples(*fields.find("steps"), fields.form("steps"))) {
+    steps.emplace_back(sample.time, sample.value);
+  }
+  return sim::Signal::steps(steps);
+}
+
+sim::Signal read_sampled(const Fields& fields, const ReadContext& context) {
+  TimeTable table = read_time_table(fields, 1, context);
+  if (context.files == Files::ignore) return {};
+  std::vector<double> values(table.values.data(), table.values.data() + table.values.size());
+  return sim::Signal::sampled(std::move(table.times), std::move(values));
+}
+
+inverse::Target read_circle(const Fields& fields) {
+  inverse::Circle circle;
+  fields.read("center", circle.center);
+  fields.read("radius", circle.radius);
+  fields.read("normal", circle.normal);
+  fields.read("period", circle.period);
+  fields.read("start_angle", circle.start_angle);
+  return inverse::Target::circle(circle);
+}
+
+inverse::Target read_polyline(const Fields& fields, const ReadContext& context) {
+  inverse::Polyline polyline;
+  const PointList points = read_points(fields, "points", context);
+  if (points.points.rows() == 0 && context.files == Files::ignore) return {};
+  polyline.points = points.points;
+  fields.read("closed", polyline.closed);
+  fields.read("period", polyline.period);
+  double speed = 0.0;
+  if (fields.read("speed", speed)) {
+    const double length = inverse::Target::length(polyline.points, polyline.closed);
+    if (length == 0.0) {
+      throw Error(ErrorKind::out_of_range, points.place, "the polyline has no length",
+                  "give points that differ, or a fixed target");
+    }
+    polyline.period = length / speed;
+  }
+  return inverse::Target::polyline(polyline);
+}
+
+inverse::Target read_trajectory(const Fields& fields, const ReadContext& context) {
+  TimeTable table = read_time_table(fields, 3, context);
+  if (context.files == Files::ignore) return {};
+  return inverse::Target::trajectory(std::move(table.times), Points(table.values));
+}
+
+inverse::Target read_target(const Fields& task, const char* key, const ReadContext& context) {
+  Vector3 position;
+  if (task.form(key).shape == Shape::quantity) {
+    task.read(key, position);
+    return inverse::Target::fixed(position);
+  }
+  const Fields fields = task.below(key);
+  for (const Node::Entry& entry : fields.map().entries()) {
+    if (entry.key != "circle" && entry.key != "polyline" && entry.key != "file") continue;
+    return at_place(entry.value.place(), [&] {
+      if (entry.key == "circle") return read_circle(fields.below("circle"));
+      if (entry.key == "polyline") return read_polyline(fields.below("polyline"), context);
+      return read_trajectory(fields, context);
+    });
+  }
+  return {};
+}
+
+// A position is asked of points, a rotation of orientations.
+const char* target_key(const Fields& task, const EffectorDescription& effector) {
+  const bool turns = effector.kind == EffectorDescription::Kind::orientation;
+  const char* key = turns ? "rotation" : "target";
+  if (task.find(key) != nullptr) return key;
+  const char* given = turns ? "target" : "rotation";
+  throw Error(ErrorKind::conflicting_keys, task.place(given),
+              fmt::format("the effector '{}' measures {}", effector.name,
+                          turns ? "an orientation" : "a position"),
+              fmt::format("give it a {} instead of a {}", key, given));
+}
+
+TaskDescription read_task(const Node::Entry& entry, const Form& form, const ReadContext& context,
+                          const SceneDescription& scene) {
+  TaskDescription task;
+  task.effector = entry.key;
+  task.place = entry.key_place;
+  const Fields fields(entry.value, form);
+  const auto effector = std::find_if(scene.effectors.begin(), scene.effectors.end(),
+                                     [&](const auto& e) { return e.name == entry.key; });
+  const char* key = target_key(fields, *effector);
+  task.target = read_target(fields, key, context);
+  task.target_place = fields.place(key);
+  fields.read_numbers("weight", task.weights);
+  const auto directions = static_cast<std::size_t>(effector->directions.rows());
+  if (task.weights.size() != 1 && task.weights.size() != directions) {
+    throw Error(ErrorKind::wrong_length, fields.place("weight"),
+                fmt::format("{} weights for the {} direction{} of '{}'", task.weights.size(),
+                            directions, directions == 1 ? "" : "s", effector->name),
+                "give one weight, or one for each direction");
+  }
+  return task;
+}
+
+void read_regularisation(const Fields& fields, ControllerDescription& controller) {
+  const Fields values = fields.below("regularisation");
+  values.read_choice("of", controller.regularisation,
+                     {{"change", Regularisation::change}, {"effort", Regularisation::effort}});
+  double epsilon = 0.0;
+  if (values.read("epsilon", epsilon)) controller.epsilon = epsilon;
+}
+
+void read_driven(const Fields& fields, ControllerDescription& controller) {
+  const Node* actuators = fields.find("actuators");
+  if (actuators == nullptr) return;
+  for (const Node& name : actuators->items()) {
+    const auto& known = controller.actuators;
+    if (std::find(known.begin(), known.end(), name.spelling()) != known.end()) {
+      throw Error(ErrorKind::duplicate_key, name.place(),
+                  fmt::format("{} is named twice", show(name.spelling())), "name it once");
+    }
+    controller.actuators.push_back(name.spelling());
+    controller.actuator_places.push_back(name.place());
+  }
+}
+
+}  // namespace
+
+sim::Signal read_signal(const Fields& fields, std::string_view key, const ReadContext& context) {
+  double value = 0.0;
+  if (fields.form(key).shape == Shape::quantity) {
+    fields.read(key, value);
+    return sim::Signal::constant(value);
+  }
+  const Fields signal = fields.below(key);
+  if (signal.find("file") != nullptr) {
+    return at_place(signal.place("file"), [&] { return read_sampled(signal, context); });
+  }
+  if (signal.find("ramp") != nullptr) {
+    return at_place(signal.place("ramp"), [&] { return read_ramp(signal.below("ramp")); });
+  }
+  if (signal.find("sine") != nullptr) {
+    return at_place(signal.place("sine"), [&] { return read_sine(signal.below("sine")); });
+  }
+  return at_place(signal.place("steps"), [&] { return read_steps(signal); });
+}
+
+ControllerDescription read_controller(const Node::Entry& entry, const ReadContext& context,
+                                      const SceneDescription& scene) {
+  ControllerDescription controller;
+  controller.name = entry.key;
+  controller.place = entry.key_place;
+  const Form& form = form_of(grammar(), "controllers", Shape::names).items.front();
+  const Fields fields(entry.value, form);
+  read_driven(fields, controller);
+  read_regularisation(fields, controller);
+  const Form& tasks = fields.form("effectors");
+  for (const Node::Entry& task : fields.find("effectors")->entries()) {
+    controller.tasks.push_back(read_task(task, tasks.items.front(), context, scene));
+  }
+  return controller;
+}
+
+}  // namespace sinew::scene

@@ -1,0 +1,91 @@
+#include <fmt/format.h>
+
+#include "sinew/core/csv.hpp"
+#include "sinew/scene/readers.hpp"
+
+namespace sinew::scene {
+
+namespace {
+
+Place row_place(const Table& table, Eigen::Index row, const Place& written) {
+  return {table.place.file, table.lines[static_cast<std::size_t>(row)], 0, written.item};
+}
+
+// The table under `file`, its values times the unit under `unit` from column `first` on.
+Table read_scaled(const Fields& fields, int columns, Eigen::Index first,
+                  const ReadContext& context) {
+  const std::filesystem::path path = context.path(fields, "file");
+  CsvSettings settings;
+  settings.columns = columns;
+  Table table = at_place(fields.place("file"), [&] { return read_csv(path, settings); });
+  double unit = 1.0;
+  fields.read("unit", unit);
+  table.values.rightCols(table.values.cols() - first) *= unit;
+  return table;
+}
+
+}  // namespace
+
+std::filesystem::path ReadContext::path(const Fields& fields, std::string_view key) const {
+  std::string written;
+  fields.read(key, written);
+  std::filesystem::path path = base_dir / written;
+  if (files == Files::ignore) return path;
+  std::error_code status;
+  if (!std::filesystem::exists(path, status)) {
+    throw Error(ErrorKind::file_not_found, fields.place(key),
+                fmt::format("there is no file {}", show(written)),
+                fmt::format("paths are relative to the scene's folder; looked for {}",
+                            std::filesystem::absolute(path, status).lexically_normal().string()));
+  }
+  if (!std::filesystem::is_regular_file(path, status)) {
+    throw Error(ErrorKind::file_unreadable, fields.place(key),
+                fmt::format("{} is not a file", show(written)), "give the path of a file");
+  }
+  return path;
+}
+
+TimeTable read_time_table(const Fields& fields, int columns, const ReadContext& context) {
+  TimeTable result;
+  if (context.files == Files::ignore) return result;
+  const Table table = read_scaled(fields, columns + 1, 1, context);
+  for (Eigen::Index row = 0; row < table.values.rows(); ++row) {
+    const double time = table.values(row, 0);
+    if (row > 0 && time <= result.times.back()) {
+      throw Error(ErrorKind::non_monotonic_time, row_place(table, row, fields.place("file")),
+                  fmt::format("time {} s follows {} s", time, result.times.back()),
+                  "times in the first column must increase");
+    }
+    result.times.push_back(time);
+  }
+  result.values = table.values.rightCols(columns);
+  return result;
+}
+
+PointList read_points(const Fields& fields, std::string_view key, const ReadContext& context) {
+  PointList list;
+  list.place = fields.place(key);
+  const Node& node = *fields.find(key);
+  const Form& form = fields.form(key);
+  if (form.shape == Shape::list) {
+    list.points.resize(static_cast<Eigen::Index>(node.items().size()), 3);
+    for (const Node& item : node.items()) {
+      const std::vector<double> point = read_numbers(item, form.items.front());
+      list.points.row(static_cast<Eigen::Index>(list.places.size())) << point[0], point[1],
+          point[2];
+      list.places.push_back(item.place());
+    }
+    return list;
+  }
+  if (context.files == Files::ignore) return list;
+  const Fields file = fields.below(key);
+  list.place = file.place("file");
+  const Table table = read_scaled(file, 3, 0, context);
+  list.points = table.values;
+  for (Eigen::Index row = 0; row < table.values.rows(); ++row) {
+    list.places.push_back(row_place(table, row, list.place));
+  }
+  return list;
+}
+
+}  // namespace sinew::scene

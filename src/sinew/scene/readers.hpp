@@ -1,0 +1,57 @@
+/// @file
+/// Parts of the parser, one for each part of a scene; internal to this folder. Each takes a node
+/// that check_scene() accepted.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "sinew/scene/description.hpp"
+#include "sinew/scene/fields.hpp"
+#include "sinew/scene/node.hpp"
+#include "sinew/scene/scene.hpp"
+
+namespace sinew::scene {
+
+/// What relative paths are relative to, and whether files are opened.
+struct ReadContext {
+  std::filesystem::path base_dir;
+  Files files = Files::check;
+
+  /// The path under `key` of the fields, made absolute or relative to the working folder. Throws
+  /// Error(file-not-found) at its place when it is no readable file and files are checked.
+  std::filesystem::path path(const Fields& fields, std::string_view key) const;
+};
+
+BodyDescription read_body(const Node::Entry& entry, const ReadContext& context);
+ActuatorDescription read_actuator(const Node::Entry& entry, const ReadContext& context);
+EffectorDescription read_effector(const Node::Entry& entry, const ReadContext& context);
+/// Knows the effectors, which say how many weights and what kind of target there may be.
+ControllerDescription read_controller(const Node::Entry& entry, const ReadContext& context,
+                                      const SceneDescription& scene);
+
+/// The signal under `key`: a value, or a map of the signal table.
+sim::Signal read_signal(const Fields& fields, std::string_view key, const ReadContext& context);
+
+/// The points under `key`: a list of vectors, or a CSV table.
+PointList read_points(const Fields& fields, std::string_view key, const ReadContext& context);
+
+/// A CSV table of time and `columns` values, the values times `unit`.
+struct TimeTable {
+  std::vector<double> times;                                                      ///< (n,) s
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> values;  ///< (n, columns)
+};
+/// Reads the CSV under `file` with the unit under `unit`; empty when files are not opened.
+TimeTable read_time_table(const Fields& fields, int columns, const ReadContext& context);
+
+/// The value of `make()`; an Error without a place gets `place`.
+template <typename Make>
+auto at_place(const Place& place, Make&& make) {
+  try {
+    return make();
+  } catch (const Error& error) {
+    throw error.at(place);
+  }
+}
+
+}  // namespace sinew::scene

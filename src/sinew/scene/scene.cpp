@@ -1,0 +1,166 @@
+#include "sinew/scene/scene.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "sinew/scene/check.hpp"
+#include "sinew/scene/readers.hpp"
+
+namespace sinew::scene {
+
+namespace {
+
+void read_integrator(const Fields& fields, SceneDescription& scene) {
+  std::string word = "quasi-static";
+  if (fields.find("integrator") == nullptr) return;
+  if (fields.form("integrator").shape == Shape::choice) {
+    fields.read_word("integrator", word);
+  } else {
+    fields.below("integrator").read_word("type", word);
+  }
+  scene.integrator = word == "quasi-static" ? Integrator::quasi_static : Integrator::backward_euler;
+}
+
+void read_solver(const Fields& fields, SolverDescription& solver) {
+  const std::initializer_list<std::pair<const char*, Method>> methods = {
+      {"one-linearisation", Method::one_linearisation}, {"newton", Method::newton}};
+  solver.place = fields.place("solver");
+  if (fields.find("solver") != nullptr && fields.form("solver").shape == Shape::choice) {
+    fields.read_choice("solver", solver.method, methods);
+    return;
+  }
+  const Fields values = fields.below("solver");
+  values.read_choice("method", solver.method, methods);
+  values.read_choice("tangent", solver.tangent,
+                     {{"rotated", Tangent::rotated}, {"exact", Tangent::exact}});
+  values.read("tolerance", solver.tolerance);
+  values.read("max_iterations", solver.max_iterations);
+  values.read("threads", solver.threads);
+  values.read_word("factorisation", solver.backend);
+  values.read_choice("ordering", solver.ordering,
+                     {{"amd", linalg::Ordering::amd},
+                      {"metis", linalg::Ordering::metis},
+                      {"fastest", linalg::Ordering::fastest}});
+}
+
+void read_world(const Fields& fields, SceneDescription& scene) {
+  fields.read("sinew", scene.version);
+  fields.read("gravity", scene.gravity);
+  scene.gravity_place = fields.place("gravity");
+  fields.read("time_step", scene.time_step);
+  double duration = 0.0;
+  if (fields.read("duration", duration)) scene.duration = duration;
+  read_integrator(fields, scene);
+  read_solver(fields, scene.solver);
+  scene.record.place = fields.place("record");
+  const Fields record = fields.below("record");
+  record.read("every", scene.record.every);
+  record.read("states", scene.record.states);
+}
+
+template <typename Read>
+void for_entries(const Fields& fields, const char* key, Read&& read) {
+  const Node* map = fields.find(key);
+  if (map == nullptr) return;
+  for (const Node::Entry& entry : map->entries()) read(entry);
+}
+
+// What moves under gravity or by inertia must have a mass.
+void check_mass(const SceneDescription& scene) {
+  const bool needed =
+      scene.gravity != Vector3::Zero() || scene.integrator != Integrator::quasi_static;
+  if (!needed) return;
+  for (const BodyDescription& body : scene.bodies) {
+    if (body.mass || body.density) continue;
+    throw Error(ErrorKind::missing_mass, body.place,
+                fmt::format("'{}' has no mass, but there is {}", body.name,
+                            scene.integrator != Integrator::quasi_static ? "inertia" : "gravity"),
+                "add mass: 42 g, or density: 1070 kg/m^3");
+  }
+}
+
+// Every actuator has one owner.
+void check_owners(const SceneDescription& scene) {
+  std::map<std::string, std::string> owners;
+  for (const ControllerDescription& controller : scene.controllers) {
+    if (scene.actuators.empty()) {
+      throw Error(ErrorKind::no_actuators, controller.place,
+                  fmt::format("'{}' has nothing to drive", controller.name),
+                  "add actuators to the scene");
+    }
+    std::vector<std::string> driven = controller.actuators;
+    if (driven.empty()) {
+      for (const ActuatorDescription& actuator : scene.actuators) driven.push_back(actuator.name);
+    }
+    for (std::size_t i = 0; i < driven.size(); ++i) {
+      const auto [owner, is_new] = owners.emplace(driven[i], controller.name);
+      if (is_new) continue;
+      const bool named = !controller.actuators.empty();
+      throw Error(ErrorKind::actuator_owned,
+                  named ? controller.actuator_places[i] : controller.place,
+                  fmt::format("'{}' is driven by '{}' already", driven[i], owner->second),
+                  "give each controller its own list of actuators");
+    }
+  }
+}
+
+SceneDescription read_scene(const Node& tree, const ReadContext& context) {
+  SceneDescription scene;
+  scene.place = tree.place();
+  const Fields fields(tree, grammar());
+  read_world(fields, scene);
+  for_entries(fields, "bodies",
+              [&](const auto& entry) { scene.bodies.push_back(read_body(entry, context)); });
+  for_entries(fields, "actuators",
+              [&](const auto& entry) { scene.actuators.push_back(read_actuator(entry, context)); });
+  for_entries(fields, "effectors",
+              [&](const auto& entry) { scene.effectors.push_back(read_effector(entry, context)); });
+  for_entries(fields, "controllers", [&](const auto& entry) {
+    scene.controllers.push_back(read_controller(entry, context, scene));
+  });
+  check_mass(scene);
+  check_owners(scene);
+  return scene;
+}
+
+}  // namespace
+
+double SceneDescription::run_duration() const {
+  if (duration) return *duration;
+  double end = 0.0;
+  for (const ActuatorDescription& actuator : actuators) {
+    if (actuator.command) end = std::max(end, actuator.command->signal.end_time());
+  }
+  for (const ControllerDescription& controller : controllers) {
+    for (const TaskDescription& task : controller.tasks) {
+      end = std::max(end, task.target.end_time());
+    }
+  }
+  return end;
+}
+
+SceneDescription parse_scene(const std::filesystem::path& path) {
+  SceneDescription scene = parse_scene_tree(read_yaml(path), path.parent_path());
+  scene.name = path.stem().string();
+  return scene;
+}
+
+SceneDescription parse_scene_text(std::string_view text, const std::string& name,
+                                  const std::filesystem::path& base_dir, Files files) {
+  SceneDescription scene = parse_scene_tree(parse_yaml(text, name), base_dir, files);
+  scene.name = std::filesystem::path(name).stem().string();
+  return scene;
+}
+
+SceneDescription parse_scene_tree(Node tree, const std::filesystem::path& base_dir, Files files) {
+  tree.name_paths();
+  check_scene(tree);
+  SceneDescription scene = read_scene(tree, {base_dir, files});
+  scene.name = "scene";
+  scene.tree = std::move(tree);
+  return scene;
+}
+
+}  // namespace sinew::scene

@@ -1,0 +1,184 @@
+#include "sinew/sim/signal.hpp"
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "sinew/core/error.hpp"
+
+namespace sinew::sim {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+TEST(Signal, IsZeroUntilToldOtherwise) {
+  const Signal signal;
+  EXPECT_EQ(signal.value(3.0), 0.0);
+  EXPECT_EQ(signal.end_time(), 0.0);
+  EXPECT_TRUE(signal.is_constant());
+}
+
+TEST(Signal, ConstantHoldsForEver) {
+  const Signal signal = Signal::constant(0.01);
+  EXPECT_EQ(signal.value(-1.0), 0.01);
+  EXPECT_EQ(signal.value(1e9), 0.01);
+  EXPECT_EQ(signal.end_time(), 0.0);
+}
+
+TEST(Signal, RampIsStraightAndHeldAtBothEnds) {
+  const Signal signal = Signal::ramp({.from = 1.0, .to = 3.0, .start = 0.5, .duration = 2.0});
+  EXPECT_EQ(signal.value(0.0), 1.0);
+  EXPECT_EQ(signal.value(0.5), 1.0);
+  EXPECT_DOUBLE_EQ(signal.value(1.0), 1.5);
+  EXPECT_EQ(signal.value(2.5), 3.0);
+  EXPECT_EQ(signal.value(100.0), 3.0);
+  EXPECT_DOUBLE_EQ(signal.end_time(), 2.5);
+  EXPECT_FALSE(signal.is_constant());
+}
+
+TEST(Signal, SineHasMeanAmplitudePeriodAndPhase) {
+  const Signal signal =
+      Signal::sine({.mean = 2.0, .amplitude = 0.5, .period = 4.0, .phase = std::numbers::pi / 2.0});
+  EXPECT_DOUBLE_EQ(signal.value(0.0), 2.5);
+  EXPECT_NEAR(signal.value(1.0), 2.0, 1e-15);
+  EXPECT_DOUBLE_EQ(signal.value(2.0), 1.5);
+  EXPECT_NEAR(signal.value(4.0), 2.5, 1e-15);
+  EXPECT_EQ(signal.end_time(), 4.0);
+}
+
+TEST(Signal, StepsHoldUntilTheNext) {
+  const Signal signal = Signal::steps({{0.0, 1.0}, {1.0, 5.0}, {2.0, -1.0}});
+  EXPECT_EQ(signal.value(0.0), 1.0);
+  EXPECT_EQ(signal.value(0.999), 1.0);
+  EXPECT_EQ(signal.value(1.0), 5.0);
+  EXPECT_EQ(signal.value(7.0), -1.0);
+  EXPECT_EQ(signal.end_time(), 2.0);
+}
+
+TEST(Signal, RoundingOfStepTimesDelaysNoStep) {
+  // n h may fall an ulp short of the decimal that a user writes: every step must come at its step.
+  const double h = 0.01;
+  for (int n = 1; n < 2000; ++n) {
+    const double written = n / 100.0;
+    const Signal signal = Signal::steps({{0.0, 0.0}, {written, 1.0}});
+    ASSERT_EQ(signal.value(n * h), 1.0) << "step " << n;
+    ASSERT_EQ(signal.value((n - 1) * h), 0.0) << "step " << n;
+  }
+}
+
+TEST(Signal, SamplesAreJoinedByStraightLines) {
+  const Signal signal = Signal::sampled({1.0, 2.0, 4.0}, {10.0, 20.0, 0.0});
+  EXPECT_EQ(signal.value(0.0), 10.0);
+  EXPECT_EQ(signal.value(1.0), 10.0);
+  EXPECT_DOUBLE_EQ(signal.value(1.5), 15.0);
+  EXPECT_EQ(signal.value(2.0), 20.0);
+  EXPECT_DOUBLE_EQ(signal.value(3.0), 10.0);
+  EXPECT_EQ(signal.value(4.0), 0.0);
+  EXPECT_EQ(signal.value(9.0), 0.0);
+  EXPECT_EQ(signal.end_time(), 4.0);
+}
+
+TEST(Signal, OneSampleIsEnough) {
+  EXPECT_EQ(Signal::sampled({2.0}, {7.0}).value(0.0), 7.0);
+  EXPECT_EQ(Signal::sampled({2.0}, {7.0}).value(3.0), 7.0);
+}
+
+struct BadSignal {
+  const char* name;
+  std::function<Signal()> make;
+  ErrorKind kind;
+  const char* message;
+};
+
+class BadSignals : public testing::TestWithParam<BadSignal> {};
+
+TEST_P(BadSignals, AreRefused) {
+  try {
+    GetParam().make();
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error_kind_name(error.kind()), error_kind_name(GetParam().kind));
+    EXPECT_NE(error.message().find(GetParam().message), std::string::npos) << error.what();
+    EXPECT_FALSE(error.remedy().empty());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Signal, BadSignals,
+    testing::Values(BadSignal{"constant_nan", [] { return Signal::constant(kNan); },
+                              ErrorKind::not_finite, "nan"},
+                    BadSignal{"ramp_infinite",
+                              [] {
+                                return Signal::ramp({0.0, kInfinity, 0.0, 1.0});
+                              },
+                              ErrorKind::not_finite, "inf"},
+                    BadSignal{"ramp_backwards",
+                              [] {
+                                return Signal::ramp({0.0, 1.0, 0.0, -1.0});
+                              },
+                              ErrorKind::bad_signal, "-1"},
+                    BadSignal{"ramp_instant",
+                              [] {
+                                return Signal::ramp({0.0, 1.0, 0.0, 0.0});
+                              },
+                              ErrorKind::bad_signal, "lasts 0"},
+                    BadSignal{"ramp_early",
+                              [] {
+                                return Signal::ramp({0.0, 1.0, -0.5, 1.0});
+                              },
+                              ErrorKind::bad_signal, "-0.5"},
+                    BadSignal{"sine_period",
+                              [] {
+                                return Signal::sine({0.0, 1.0, 0.0, 0.0});
+                              },
+                              ErrorKind::bad_signal, "period is 0"},
+                    BadSignal{"sine_nan",
+                              [] {
+                                return Signal::sine({0.0, kNan, 1.0, 0.0});
+                              },
+                              ErrorKind::not_finite, "nan"},
+                    BadSignal{"steps_none", [] { return Signal::steps({}); }, ErrorKind::bad_signal,
+                              "no values"},
+                    BadSignal{"steps_late",
+                              [] {
+                                return Signal::steps({{1.0, 2.0}});
+                              },
+                              ErrorKind::bad_signal, "begin at 1 s"},
+                    BadSignal{"steps_equal",
+                              [] {
+                                return Signal::steps({{0.0, 1.0}, {0.0, 2.0}});
+                              },
+                              ErrorKind::non_monotonic_time, "0 s"},
+                    BadSignal{"steps_nan",
+                              [] {
+                                return Signal::steps({{0.0, 1.0}, {1.0, kNan}});
+                              },
+                              ErrorKind::not_finite, "nan"},
+                    BadSignal{"samples_back",
+                              [] {
+                                return Signal::sampled({0.0, 2.0, 1.0}, {0, 0, 0});
+                              },
+                              ErrorKind::non_monotonic_time, "1 s"},
+                    BadSignal{"samples_early",
+                              [] {
+                                return Signal::sampled({-1.0, 0.0}, {0, 0});
+                              },
+                              ErrorKind::bad_signal, "-1 s"},
+                    BadSignal{"samples_nan_time",
+                              [] {
+                                return Signal::sampled({kNan, 0.0}, {0, 0});
+                              },
+                              ErrorKind::not_finite, "nan"},
+                    BadSignal{"samples_length",
+                              [] {
+                                return Signal::sampled({0.0, 1.0}, {0.0});
+                              },
+                              ErrorKind::wrong_length, "2 times but 1"}),
+    [](const auto& test) { return test.param.name; });
+
+}  // namespace
+}  // namespace sinew::sim
