@@ -4,13 +4,13 @@
 set -eu
 cd "$(dirname "$0")/.."
 found=no
-for program in build/release/bin/bench_*; do
+for program in build/release/bin/*_benchmark; do
   [ -x "$program" ] || continue
   found=yes
   echo "== $(basename "$program")"
   "$program" "$@"
 done
 if [ "$found" = no ]; then
-  echo "bench: no program build/release/bin/bench_* was built; run 'make build' first" >&2
+  echo "bench: no program build/release/bin/*_benchmark was built; run 'make build' first" >&2
   exit 1
 fi

@@ -46,11 +46,52 @@ void embeds_a_point() {
   expect(std::abs(found.weights[0] - 0.4) < 1e-12, "a barycentric weight");
 }
 
+// A block that stands on z = 0 with a cable along its edge: pulled, it bends towards the cable; asked
+// for the place where it went, the controller finds the tension again.
+void bends_and_steers_a_beam() {
+  using namespace sinew;
+  sim::ModelBuilder builder;
+  const auto beam = std::make_shared<mesh::Mesh>(
+      mesh::block({.corner = {-0.01, -0.01, 0}, .size = {0.02, 0.02, 0.1}, .cells = {2, 2, 8}}));
+  fem::FemBodySettings body;
+  body.name = "beam";
+  body.mesh = beam;
+  body.elements.regions = {{.constants = {.young_modulus = 1e5, .poisson_ratio = 0.4}}};
+  body.elements.fixed_nodes =
+      mesh::select_nodes(*beam, mesh::NamedRegion{.name = "z_min"}, "the beam's foot");
+  builder.add_fem_body(body);
+  sim::CableSettings cable;
+  cable.name = "cable";
+  cable.points.resize(3, 3);
+  cable.points << 0.008, 0, 0, 0.008, 0, 0.05, 0.008, 0, 0.1;
+  builder.add_cable(cable);
+  sim::EffectorSettings tip;
+  tip.name = "tip";
+  tip.points.resize(1, 3);
+  tip.points << 0, 0, 0.1;
+  builder.add_effector(tip);
+  const auto model = builder.build();
+
+  sim::Simulation direct(model);
+  direct.command(0, {.kind = sim::CommandKind::effort, .signal = sim::Signal::constant(0.2)});
+  for (int i = 0; i < 20; ++i) direct.step();
+  const Vector3 reached = direct.effector_value(0);
+  expect(reached.x() > 1e-3 && std::abs(reached.y()) < 1e-3, "the way a cable bends a beam");
+
+  sim::Simulation steered(model);
+  inverse::InverseController controller(
+      steered, {.tasks = {{.effector = 0, .target = inverse::Target::fixed(reached)}}});
+  for (int i = 0; i < 40; ++i) controller.step();
+  expect(controller.status() == inverse::InverseStatus::on_target, "the controller's status");
+  expect(std::abs(controller.efforts()(0) - 0.2) < 2e-3, "the tension found again");
+}
+
 }  // namespace
 
 int main() {
   throws_the_librarys_errors();
   solves_a_quadratic_program();
   embeds_a_point();
+  bends_and_steers_a_beam();
   return EXIT_SUCCESS;
 }
