@@ -82,7 +82,8 @@ inline void contradict(QuadraticProgram& problem, const VectorX& feasible, Rando
     problem.rows.row(i) += factor * problem.rows.row(k);
     reach += factor * problem.row_upper[k];
   }
-  problem.row_lower[i] = reach + 1e-6 * (1.0 + std::abs(reach));
+  const double gap = random.chance(0.5) ? 1e-6 : random.uniform(0.05, 1.0);
+  problem.row_lower[i] = reach + gap * (1.0 + std::abs(reach));
   problem.row_upper[i] = std::numeric_limits<double>::infinity();
 }
 

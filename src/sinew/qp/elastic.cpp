@@ -19,10 +19,20 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Weight of the proximal term against the violation: steps reach 1/kProximal times the distance in
 /// which the steepest row would lose its violation.
 constexpr double kProximal = 1e-3;
+/// After this many steps, four steps with a term ever weaker stand between two steps with the full
+/// one, for the long way along a nearly level edge; only full steps tell the end, since weak ones
+/// are rounded more.
+constexpr int kFullSteps = 3;
+constexpr int kCycle = 5;
 /// A proximal step shorter than this, relative to that distance, ends the search.
 constexpr double kStill = 1e-9;
 /// Multipliers of the linear program below this, of one, are zero.
 constexpr double kMultiplier = 1e-7;
+
+double proximal_share(int step) {
+  const int weaker = step < kFullSteps ? 0 : (step - kFullSteps + 1) % kCycle;
+  return std::pow(0.1, weaker);
+}
 
 double excess(double value, double lower, double upper) {
   if (value < lower) return value - lower;
@@ -59,7 +69,7 @@ struct ElasticSolver::Workspace {
   bool minimise_violation();
   void load_bounds(const QuadraticProgram& problem);
   void load_rows();
-  void load_proximal_term();
+  void load_proximal_term(double share);
   double violation_at(const VectorX& x, int row) const;
   double worst_violation() const;
   double row_multiplier(int row) const;
@@ -256,15 +266,16 @@ void ElasticSolver::Workspace::load_rows() {
   }
 }
 
-void ElasticSolver::Workspace::load_proximal_term() {
-  const double stiffness = kProximal * steepest * steepest / violation_size;
+void ElasticSolver::Workspace::load_proximal_term(double share) {
+  const double slack_stiffness = share * kProximal / violation_size;
+  const double stiffness = slack_stiffness * steepest * steepest;
   for (int j = 0; j < variables; ++j) {
     program.hessian(j, j) = stiffness * scale[j] * scale[j];
     program.gradient[j] = -program.hessian(j, j) * point[j];
   }
   for (Eigen::Index k = 0; k < slacks.size(); ++k) {
-    program.hessian(variables + k, variables + k) = kProximal / violation_size;
-    program.gradient[variables + k] = 1.0 - kProximal / violation_size * slacks[k];
+    program.hessian(variables + k, variables + k) = slack_stiffness;
+    program.gradient[variables + k] = 1.0 - slack_stiffness * slacks[k];
   }
 }
 
@@ -296,7 +307,8 @@ bool ElasticSolver::Workspace::minimise_violation() {
   load_rows();
   const double reach = violation_size / steepest;
   for (int step = 0; step < settings.max_proximal_steps; ++step) {
-    load_proximal_term();
+    const double share = proximal_share(step);
+    load_proximal_term(share);
     ++result.programs;
     const QpResult& next = linear.solve(program);
     if (next.status != QpStatus::optimal) return false;
@@ -315,7 +327,7 @@ bool ElasticSolver::Workspace::minimise_violation() {
     bound_multiplier = next.bound_multiplier;
     row_multipliers = next.row_multiplier;
     const double rounding = 1e-12 * size;
-    if (moved <= kStill * reach + rounding &&
+    if (share == 1.0 && moved <= kStill * reach + rounding &&
         changed <= kStill * violation_size + rounding * steepest) {
       return true;
     }
