@@ -31,7 +31,7 @@ struct FemBody::Numbers {
   bool damped = false;
 };
 
-FemBody::FemBody(const FemBodyModel& model, ThreadPool& pool)
+FemBody::FemBody(const FemBodyModel& model, ThreadPool& pool, bool with_curvature)
     : model_(model),
       pool_(pool),
       positions_(model.mesh().nodes),
@@ -39,8 +39,7 @@ FemBody::FemBody(const FemBodyModel& model, ThreadPool& pool)
       external_forces_(velocities_),
       start_positions_(positions_),
       start_velocities_(velocities_),
-      plain_(std::make_unique<Numbers>(model.system(false), pool)),
-      active_(plain_.get()) {
+      active_(&numbers(with_curvature)) {
   const auto nodes = model.elements().free_nodes();
   const auto size = 3 * static_cast<Eigen::Index>(nodes.size());
   for (VectorX* v : {&right_, &motion_, &base_, &travel_, &momentum_, &scratch_, &imbalance_})
@@ -61,9 +60,9 @@ FemBody::~FemBody() = default;
 
 FemBody::Numbers& FemBody::numbers(bool with_curvature) {
   const FemSystem& system = model_.system(with_curvature);
-  if (&system == &plain_->system) return *plain_;
-  if (!curved_) curved_ = std::make_unique<Numbers>(system, pool_);
-  return *curved_;
+  auto& own = &system == &model_.system(false) ? plain_ : curved_;
+  if (!own) own = std::make_unique<Numbers>(system, pool_);
+  return *own;
 }
 
 Vector3 FemBody::weighted(const Points& field, int point) const {
@@ -278,8 +277,8 @@ void FemBody::load_state(std::span<const double> state) {
 int FemBody::negative_pivots() const { return active_->factorisation->negative_pivots(); }
 
 double FemBody::strain_energy() {
-  plain_->assembly.evaluate(positions_, {Tangent::none, 1.0, 0.0});
-  return plain_->assembly.strain_energy();
+  active_->assembly.evaluate(positions_, {Tangent::none, 1.0, 0.0});
+  return active_->assembly.strain_energy();
 }
 
 double FemBody::kinetic_energy() const {

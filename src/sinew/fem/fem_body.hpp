@@ -14,7 +14,8 @@ namespace sinew::fem {
 class FemBody : public mechanics::Body {
  public:
   /// @param model must outlive the body. @param pool likewise.
-  FemBody(const FemBodyModel& model, ThreadPool& pool);
+  /// @param with_curvature see mechanics::BodyModel::create().
+  FemBody(const FemBodyModel& model, ThreadPool& pool, bool with_curvature);
   ~FemBody() override;
 
   const mechanics::BodyModel& model() const override { return model_; }

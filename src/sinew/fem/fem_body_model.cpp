@@ -122,8 +122,8 @@ FemSystem FemBodyModel::make_system(FemModelSettings elements) const {
   return system;
 }
 
-std::unique_ptr<mechanics::Body> FemBodyModel::create(ThreadPool& pool) const {
-  return std::make_unique<FemBody>(*this, pool);
+std::unique_ptr<mechanics::Body> FemBodyModel::create(ThreadPool& pool, bool with_curvature) const {
+  return std::make_unique<FemBody>(*this, pool, with_curvature);
 }
 
 }  // namespace sinew::fem

@@ -35,7 +35,7 @@ struct InverseSettings {
   double epsilon = 1e-3;
   /// With Regularisation::change: share of it that still draws efforts to zero, so that cables that
   /// pull against each other let go in time.
-  double relaxation = 1e-3;
+  double relaxation = 1e-2;
   /// A target farther away than this part of the robot's size is approached by steps of that
   /// length, since beyond it the linearisation is worth nothing.
   double largest_step = 0.02;

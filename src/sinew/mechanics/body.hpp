@@ -71,7 +71,10 @@ class BodyModel {
                       const linalg::FactorisationSettings& settings) = 0;
 
   /// A body at rest with its own state and workspace.
-  virtual std::unique_ptr<Body> create(ThreadPool& pool) const = 0;
+  /// @param pool must outlive the body.
+  /// @param with_curvature workspace for this kind of linearisation is taken now, for the other kind
+  ///   when it is first asked for.
+  virtual std::unique_ptr<Body> create(ThreadPool& pool, bool with_curvature) const = 0;
 };
 
 /// How a proposed motion turned out.

@@ -27,6 +27,8 @@ struct StepSettings {
   double time_step = 0.01;  ///< s, > 0
   mechanics::Integrator integrator = mechanics::Integrator::quasi_static;
   Method method = Method::one_linearisation;
+  /// The exact tangent comes with the geometric stiffness of all cables, without which it says
+  /// little: a compressed robot's own tangent may be indefinite where the held robot is stable.
   mechanics::Tangent tangent = mechanics::Tangent::real_time;
   double tolerance = 1e-8;  ///< Newton: residual relative to the loads, and motion to the size
   int max_iterations = 50;  ///< Newton

@@ -137,7 +137,7 @@ int ModelBuilder::add_cable(const CableSettings& settings) {
     const int index = add_actuator({settings.name, settings.place, ActuatorType::cable, -1, -1,
                                     settings.tension, settings.displacement, settings.command},
                                    std::move(cable));
-    if (settings.geometric_stiffness) {
+    if (settings.geometric_stiffness || model_->step_.tangent == mechanics::Tangent::exact) {
       model_->stiffening_.push_back(model_->actuators_[static_cast<std::size_t>(index)].constraint);
     }
     return index;

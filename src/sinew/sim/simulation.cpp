@@ -89,6 +89,13 @@ void Simulation::step_once(Law& law, const LawProblem& problem) {
          "fix a region of every body, or look for loose or crushed elements");
   }
   report_.law = law.solve(problem, effort_);
+  if (report_.law == LawStatus::failed && status == linalg::FactorStatus::indefinite) {
+    fail(ErrorKind::not_converged,
+         fmt::format("the tangent stiffness has {} negative directions, so the robot is about to "
+                     "buckle",
+                     negative_pivots()),
+         "use the rotated tangent, which passes through, or lessen the load");
+  }
   if (report_.law == LawStatus::failed) {
     fail(ErrorKind::not_converged, "no efforts obey the law of this step",
          "loosen the limits of the actuators");
@@ -98,6 +105,12 @@ void Simulation::step_once(Law& law, const LawProblem& problem) {
   clock_.mark(Stage::law);
   world_.solve_motion(effort_);
   move_soundly();
+}
+
+int Simulation::negative_pivots() const {
+  int count = 0;
+  for (const auto& body : world_.bodies()) count += body->negative_pivots();
+  return count;
 }
 
 // Takes the motion, or the largest halving of it that inverts no element.

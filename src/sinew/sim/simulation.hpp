@@ -112,6 +112,7 @@ class Simulation {
   void step_newton(Law& law, const LawProblem& problem);
   void move_soundly();
   void finish_step();
+  int negative_pivots() const;
   [[noreturn]] void fail(ErrorKind kind, const std::string& message, const std::string& remedy);
   NewtonReport equilibrate(const StaticSettings& settings, double share, StaticReport& report);
 

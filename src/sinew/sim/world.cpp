@@ -10,7 +10,8 @@ namespace {
 
 std::vector<std::unique_ptr<mechanics::Body>> create_bodies(const Model& model, ThreadPool& pool) {
   std::vector<std::unique_ptr<mechanics::Body>> bodies;
-  for (const auto& body : model.bodies()) bodies.push_back(body->create(pool));
+  const bool curved = !model.stiffening_constraints().empty();
+  for (const auto& body : model.bodies()) bodies.push_back(body->create(pool, curved));
   return bodies;
 }
 

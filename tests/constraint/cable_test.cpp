@@ -1,0 +1,167 @@
+#include "sinew/constraint/cable.hpp"
+
+#include <cmath>
+#include <random>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include "sinew/core/error.hpp"
+
+#include "../sim/robots.hpp"
+
+namespace sinew::constraint {
+namespace {
+
+// A bent beam, so that nothing is aligned by accident.
+class BentCable : public ::testing::Test {
+ protected:
+  BentCable() : model_(sinew::testing::beam()), simulation_(model_) {
+    std::mt19937 random(7);
+    std::normal_distribution<double> noise(0.0, 1e-3);
+    Points& forces = simulation_.fem_body(0).external_forces();
+    for (Eigen::Index i = 0; i < forces.size(); ++i) forces.data()[i] = 5.0 * noise(random);
+    simulation_.solve_static();
+  }
+  fem::FemBody& body() { return simulation_.fem_body(0); }
+  const Cable& cable() { return *model_->cable(0); }
+  // Moves all nodes by t times a fixed random direction.
+  void shift(double t) {
+    std::mt19937 random(11);
+    std::normal_distribution<double> noise(0.0, 1.0);
+    std::vector<double> state(body().state_size());
+    body().save_state(state);
+    for (std::size_t i = 0; i < state.size() / 2; ++i) state[i] += t * noise(random);
+    body().load_state(state);
+  }
+  // Sum over the cable's entries of direction . d(point)/dt along that direction.
+  double directional(const mechanics::RowValues& rows, const Points& before, const Points& after,
+                     double t) {
+    double sum = 0.0;
+    for (int e = 0; e < 5; ++e) {  // the world pull point has no entry
+      sum += rows.direction[static_cast<std::size_t>(e)].dot(
+          (after.row(e + 1) - before.row(e + 1)).transpose() / t);
+    }
+    return sum;
+  }
+
+  std::shared_ptr<const sim::Model> model_;
+  sim::Simulation simulation_;
+};
+
+TEST_F(BentCable, DirectionsAreTheDerivativeOfTheMotion) {
+  const double t = 1e-6;
+  auto& world = simulation_.world();
+  const Points middle = cable().points(world.placement());
+  world.measure_delta();
+  const mechanics::RowValues rows = world.rows();
+  shift(t);
+  const double ahead = world.measure_delta()[0];
+  const Points after = cable().points(world.placement());
+  shift(-2 * t);
+  const double behind = world.measure_delta()[0];
+  const double difference = (ahead - behind) / (2 * t);
+  EXPECT_NEAR(directional(rows, middle, after, t), difference, 1e-6 * std::abs(difference));
+}
+
+TEST_F(BentCable, CurvatureIsTheDerivativeOfTheDirections) {
+  const double t = 1e-6;
+  auto& world = simulation_.world();
+  std::vector<mechanics::RowCurvature> pairs(
+      model_->curvatures().begin(), model_->curvatures().begin() + cable().curvature_count());
+  cable().curve(world.placement(), pairs);
+  const Points middle = cable().points(world.placement());
+  shift(t);
+  const Points after = cable().points(world.placement());
+  world.measure_delta();
+  const auto ahead = world.rows().direction;
+  shift(-2 * t);
+  world.measure_delta();
+  const auto behind = world.rows().direction;
+  const Points velocity = (after - middle) / t;
+  for (int point = 0; point < 5; ++point) {
+    Vector3 expected = Vector3::Zero();
+    for (const auto& pair : pairs) {
+      const int first = pair.first.point - pairs[0].first.point;
+      const int second = pair.second.point - pairs[0].first.point;
+      if (first == point) expected += pair.curvature * velocity.row(second + 1).transpose();
+      if (second == point && first != second) {
+        expected += pair.curvature.transpose() * velocity.row(first + 1).transpose();
+      }
+    }
+    const auto e = static_cast<std::size_t>(point);
+    const Vector3 difference = (ahead[e] - behind[e]) / (2 * t);
+    EXPECT_LT((expected - difference).norm(), 1e-5 * (1.0 + difference.norm())) << point;
+  }
+}
+
+TEST_F(BentCable, MotionIsTheLengthPulledOut) {
+  const auto& placement = simulation_.world().placement();
+  EXPECT_NEAR(simulation_.world().measure_delta()[0],
+              cable().rest_length() - cable().length(placement), 1e-15);
+}
+
+TEST(Cable, StraightCableHasNoWrapAndARightAngleHasOne) {
+  const auto model = sinew::testing::beam();
+  sim::Simulation simulation(model);
+  EXPECT_NEAR(model->cable(0)->wrap(simulation.world().placement()), 0.0, 1e-12);
+
+  sim::ModelBuilder builder;
+  fem::FemBodySettings body;
+  body.name = "block";
+  const auto mesh = std::make_shared<const mesh::Mesh>(
+      mesh::block({.size = {0.1, 0.1, 0.1}, .cells = {2, 2, 2}}));
+  body.mesh = mesh;
+  body.elements.regions = {{{1e5, 0.3}, material::Law::corotational, 1000.0, {}}};
+  body.elements.fixed_nodes = mesh->node_sets.at("x_min");
+  builder.add_fem_body(std::move(body));
+  sim::CableSettings cable;
+  cable.name = "corner";
+  cable.points.resize(3, 3);
+  cable.points << 0.01, 0.05, 0.05, 0.05, 0.05, 0.05, 0.05, 0.05, 0.09;
+  builder.add_cable(cable);
+  const auto corner = builder.build();
+  sim::Simulation bent(corner);
+  EXPECT_NEAR(corner->cable(0)->wrap(bent.world().placement()), EIGEN_PI / 2, 1e-12);
+  EXPECT_NEAR(corner->cable(0)->rest_length(), 0.08, 1e-15);
+}
+
+ErrorKind kind_of(const sim::CableSettings& cable) {
+  sim::ModelBuilder builder;
+  fem::FemBodySettings body;
+  body.name = "block";
+  const auto mesh = std::make_shared<const mesh::Mesh>(
+      mesh::block({.size = {0.1, 0.1, 0.1}, .cells = {2, 2, 2}}));
+  body.mesh = mesh;
+  body.elements.regions = {{{1e5, 0.3}, material::Law::corotational, 1000.0, {}}};
+  body.elements.fixed_nodes = mesh->node_sets.at("x_min");
+  builder.add_fem_body(std::move(body));
+  try {
+    builder.add_cable(cable);
+  } catch (const Error& error) {
+    EXPECT_FALSE(error.remedy().empty());
+    return error.kind();
+  }
+  return ErrorKind::internal;
+}
+
+TEST(Cable, DefectsAreErrorsAtLoad) {
+  sim::CableSettings cable;
+  cable.name = "bad";
+  cable.points.resize(1, 3);
+  cable.points << 0.01, 0.05, 0.05;
+  EXPECT_EQ(kind_of(cable), ErrorKind::too_few_points);
+  cable.points.resize(3, 3);
+  cable.points << 0.01, 0.05, 0.05, 0.05, 0.05, 0.05, 0.05, 0.05, 0.05;
+  EXPECT_EQ(kind_of(cable), ErrorKind::degenerate_cable);
+  cable.points.row(2) << 0.05, 0.05, 0.2;
+  EXPECT_EQ(kind_of(cable), ErrorKind::point_outside_mesh);
+  cable.points.row(2) << 0.05, 0.05, 0.09;
+  cable.tension = {.min = 3.0, .max = 2.0};
+  EXPECT_EQ(kind_of(cable), ErrorKind::contradictory_limits);
+  cable.tension = {.min = -1.0};
+  EXPECT_EQ(kind_of(cable), ErrorKind::out_of_range);
+}
+
+}  // namespace
+}  // namespace sinew::constraint

@@ -1,0 +1,77 @@
+// Small robots that the tests of sim, constraint and inverse share.
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "sinew/mesh/shapes.hpp"
+#include "sinew/sim/model_builder.hpp"
+#include "sinew/sim/simulation.hpp"
+
+namespace sinew::testing {
+
+/// A clamped silicone beam along x, 100 x 20 x 20 mm, with four cables along its edges at 6 mm from
+/// the axis (up, left, down, right) and its tip as effector.
+struct BeamOptions {
+  sim::StepSettings step;
+  Vector3 gravity = Vector3::Zero();
+  fem::RayleighDamping damping;
+  int cables = 4;
+  sim::Limits tension{.min = 0.0};
+  sim::Limits displacement;
+  bool pull_from_world = true;
+  bool geometric_stiffness = false;
+  bool clamped = true;
+  fem::MassMatrix mass = fem::MassMatrix::lumped;
+  material::Law law = material::Law::corotational;
+  linalg::FactorisationSettings factorisation;
+};
+
+inline std::shared_ptr<const sim::Model> beam(const BeamOptions& options = {}) {
+  sim::ModelBuilder builder(options.step);
+  fem::FemBodySettings body;
+  body.name = "beam";
+  const auto mesh = std::make_shared<const mesh::Mesh>(
+      mesh::block({.corner = {0.0, -0.01, -0.01}, .size = {0.1, 0.02, 0.02}, .cells = {10, 2, 2}}));
+  body.mesh = mesh;
+  body.gravity = options.gravity;
+  body.damping = options.damping;
+  body.elements.regions = {{{200e3, 0.4}, options.law, 1070.0, {}}};
+  body.elements.mass = options.mass;
+  if (options.clamped) body.elements.fixed_nodes = mesh->node_sets.at("x_min");
+  const int beam = builder.add_fem_body(std::move(body));
+  for (int k = 0; k < options.cables; ++k) {
+    sim::CableSettings cable;
+    cable.name = "cable_" + std::to_string(k);
+    cable.body = beam;
+    cable.points.resize(6, 3);
+    const double angle = k * EIGEN_PI / 2;
+    for (int i = 0; i < 6; ++i) {
+      cable.points.row(i) << (i == 0 ? 0.0 : 0.002 + 0.019 * i), 0.006 * std::sin(angle),
+          0.006 * std::cos(angle);
+    }
+    cable.pull_from_world = options.pull_from_world;
+    cable.tension = options.tension;
+    cable.displacement = options.displacement;
+    cable.geometric_stiffness = options.geometric_stiffness;
+    builder.add_cable(cable);
+  }
+  sim::EffectorSettings tip;
+  tip.name = "tip";
+  tip.body = beam;
+  tip.points.resize(1, 3);
+  tip.points << 0.1, 0.0, 0.0;
+  builder.add_effector(tip);
+  return builder.build(options.factorisation);
+}
+
+inline sim::Command pull(double metres) {
+  return {sim::CommandKind::motion, sim::Signal::constant(metres)};
+}
+inline sim::Command tension(double newtons) {
+  return {sim::CommandKind::effort, sim::Signal::constant(newtons)};
+}
+
+}  // namespace sinew::testing
