@@ -237,7 +237,7 @@ std::string describe(const Form& form) {
     case Shape::unit:
       return fmt::format("a unit such as {}", form.unit);
     case Shape::integer:
-      return "whole number";
+      return "a whole number";
     case Shape::boolean:
       return "true | false";
     case Shape::text:
@@ -245,19 +245,19 @@ std::string describe(const Form& form) {
     case Shape::choice:
       return describe_words(form);
     case Shape::file:
-      return "path";
+      return "a path";
     case Shape::reference:
       return fmt::format("a name from `{}`", form.refers_to);
     case Shape::list:
-      return fmt::format("list of ({})", describe(form.items));
+      return fmt::format("a list of ({})", describe(form.items));
     case Shape::samples:
-      return fmt::format("list of [time, value in {}]", form.unit);
+      return fmt::format("a list of [time in s, value in {}]", form.unit);
     case Shape::table:
-      return fmt::format("map: {}", form.table->name);
+      return fmt::format("a map ({})", form.table->name);
     case Shape::variants:
-      return fmt::format("map with {}: {}", form.telltale, describe_words(form));
+      return fmt::format("a map with {}: {}", form.telltale, describe_words(form));
     case Shape::names:
-      return fmt::format("names, each with ({})", describe(form.items));
+      return fmt::format("a map of names to ({})", describe(form.items));
   }
   return {};
 }

@@ -116,7 +116,7 @@ Node Node::plain(std::string spelling) {
 
 double Node::as_number() const {
   if (kind_ != Kind::number) {
-    throw Error(ErrorKind::wrong_type, place_, fmt::format("{} is not a number", spelling_),
+    throw Error(ErrorKind::wrong_type, place_, fmt::format("'{}' is not a number", spelling_),
                 "write a number");
   }
   std::string_view digits = spelling_;
@@ -139,7 +139,7 @@ double Node::as_number() const {
 
 bool Node::as_boolean() const {
   if (kind_ != Kind::boolean) {
-    throw Error(ErrorKind::wrong_type, place_, fmt::format("{} is not true or false", spelling_),
+    throw Error(ErrorKind::wrong_type, place_, fmt::format("'{}' is not true or false", spelling_),
                 "write true or false");
   }
   return spelling_[0] == 't' || spelling_[0] == 'T';

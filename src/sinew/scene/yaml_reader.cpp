@@ -178,6 +178,8 @@ class TreeBuilder : public YAML::EventHandler {
       parent.node.append(std::move(node));
       return;
     }
+    // An empty value has no mark of its own: the parser gives that of what follows.
+    if (node.kind() == Node::Kind::null) node.set_place(parent.key_place);
     parent.node.entries().push_back(
         {std::move(parent.key), std::move(parent.key_place), std::move(node)});
     parent.has_key = false;
@@ -239,6 +241,25 @@ void check_text(std::string_view text, const std::string& name, const YamlLimits
               "save the file as plain UTF-8 text");
 }
 
+// Tabs in the indentation are YAML's most frequent trap, and the parser's words for it are obscure.
+[[noreturn]] void throw_syntax(std::string_view text, const std::string& name,
+                               const YAML::Exception& error) {
+  Place place = place_of(name, error.mark);
+  std::size_t begin = 0;
+  for (int line = 1; line < place.line && begin < text.size(); ++line) {
+    begin = text.find('\n', begin);
+    begin = begin == std::string_view::npos ? text.size() : begin + 1;
+  }
+  const std::size_t first = text.find_first_not_of(' ', begin);
+  if (place.line > 0 && first != std::string_view::npos && text[first] == '\t') {
+    place.column = static_cast<int>(first - begin) + 1;
+    throw Error(ErrorKind::syntax_error, place, "a tab in the indentation",
+                "indent with spaces only");
+  }
+  throw Error(ErrorKind::syntax_error, place, fmt::format("not valid YAML: {}", error.msg),
+              "check indentation, colons, quotes and brackets");
+}
+
 }  // namespace
 
 Node parse_yaml(std::string_view text, const std::string& name, const YamlLimits& limits) {
@@ -254,9 +275,7 @@ Node parse_yaml(std::string_view text, const std::string& name, const YamlLimits
                   "a scene file holds one document");
     }
   } catch (const YAML::Exception& error) {
-    throw Error(ErrorKind::syntax_error, place_of(name, error.mark),
-                fmt::format("not valid YAML: {}", error.msg),
-                "check indentation (spaces only), colons and brackets");
+    throw_syntax(text, name, error);
   }
   Node tree = builder.take();
   if (tree.place().file.empty()) tree.set_place({name, 1, 1, {}});
