@@ -53,13 +53,14 @@ Table parse_csv(std::string_view bytes, const std::string& name, const CsvSettin
 class CsvWriter {
  public:
   /// Creates or replaces the file and writes the header. Throws Error(file-unwritable).
-  /// @param names one per column, at least one; names with commas or quotes are quoted.
+  /// `names` has one entry per column, at least one; those with commas or blanks are quoted.
   CsvWriter(const std::filesystem::path& path, std::span<const std::string> names);
 
   /// Appends one row. Allocates nothing after the first row. Throws Error(recording-failed) when
   /// the disk is full, and Error(wrong-columns) when the count differs from the header's.
   void write_row(std::span<const double> values);
 
+  /// Number of columns.
   int columns() const { return columns_; }
 
  private:

@@ -22,25 +22,25 @@ struct Dimension {
 
 /// The dimensions that scenes use.
 namespace dimension {
-inline constexpr Dimension kNone{};
-inline constexpr Dimension kLength{1, 0, 0};
-inline constexpr Dimension kArea{2, 0, 0};
-inline constexpr Dimension kVolume{3, 0, 0};
-inline constexpr Dimension kMass{0, 1, 0};
-inline constexpr Dimension kTime{0, 0, 1};
-inline constexpr Dimension kFrequency{0, 0, -1};  ///< also a rate and an angular velocity
-inline constexpr Dimension kVelocity{1, 0, -1};
-inline constexpr Dimension kAcceleration{1, 0, -2};
-inline constexpr Dimension kForce{1, 1, -2};
-inline constexpr Dimension kPressure{-1, 1, -2};  ///< also a stress and Young's modulus
-inline constexpr Dimension kEnergy{2, 1, -2};     ///< also a torque
-inline constexpr Dimension kPower{2, 1, -3};
-inline constexpr Dimension kDensity{-3, 1, 0};
-inline constexpr Dimension kStiffness{0, 1, -2};
-inline constexpr Dimension kDamping{0, 1, -1};
-inline constexpr Dimension kViscosity{-1, 1, -1};
-inline constexpr Dimension kVolumeRate{3, 0, -1};
-inline constexpr Dimension kPressureRate{-1, 1, -3};
+inline constexpr Dimension kNone{};                   ///< 1: ratios and angles
+inline constexpr Dimension kLength{1, 0, 0};          ///< m
+inline constexpr Dimension kArea{2, 0, 0};            ///< m^2
+inline constexpr Dimension kVolume{3, 0, 0};          ///< m^3
+inline constexpr Dimension kMass{0, 1, 0};            ///< kg
+inline constexpr Dimension kTime{0, 0, 1};            ///< s
+inline constexpr Dimension kFrequency{0, 0, -1};      ///< 1/s; also a rate and an angular velocity
+inline constexpr Dimension kVelocity{1, 0, -1};       ///< m/s
+inline constexpr Dimension kAcceleration{1, 0, -2};   ///< m/s^2
+inline constexpr Dimension kForce{1, 1, -2};          ///< N
+inline constexpr Dimension kPressure{-1, 1, -2};      ///< Pa; also a stress and Young's modulus
+inline constexpr Dimension kEnergy{2, 1, -2};         ///< J; also a torque
+inline constexpr Dimension kPower{2, 1, -3};          ///< W
+inline constexpr Dimension kDensity{-3, 1, 0};        ///< kg/m^3
+inline constexpr Dimension kStiffness{0, 1, -2};      ///< N/m
+inline constexpr Dimension kDamping{0, 1, -1};        ///< N s/m
+inline constexpr Dimension kViscosity{-1, 1, -1};     ///< Pa s
+inline constexpr Dimension kVolumeRate{3, 0, -1};     ///< m^3/s
+inline constexpr Dimension kPressureRate{-1, 1, -3};  ///< Pa/s
 }  // namespace dimension
 
 /// "a mass", "a density"; dimensions without a name as "a quantity in kg^2 m".
@@ -63,7 +63,7 @@ double parse_quantity(std::string_view text, Dimension expected, const Place& pl
 Vector3 parse_vector3(std::string_view text, Dimension expected, const Place& place = {});
 
 /// `count` numbers with one unit behind, as in parse_vector3: "-20 -20 0 20 20 20 mm".
-/// @param count how many numbers there must be; -1 for any number, at least one.
+/// `count` says how many numbers there must be; -1 stands for any number of them, at least one.
 /// Throws as parse_quantity.
 std::vector<double> parse_list(std::string_view text, Dimension expected, int count,
                                const Place& place = {});

@@ -19,9 +19,11 @@ struct Unit {
   double to_si(double value) const { return value * numerator / denominator; }
 };
 
+/// The product, its fraction in lowest terms where one part is a multiple of the other.
 Unit operator*(const Unit& a, const Unit& b);
+/// 1 / unit.
 Unit inverse(const Unit& unit);
-/// @param exponent between -9 and 9.
+/// The unit to an integer power.
 Unit power(const Unit& unit, int exponent);
 
 /// Parses a whole unit expression; empty text is the unit 1. Throws Error(unknown-unit) at `place`,

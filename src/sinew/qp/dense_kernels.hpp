@@ -10,6 +10,7 @@ namespace sinew::qp {
 /// Columns are padded to a multiple of this many doubles.
 constexpr int kColumnGrain = 4;
 
+/// `count` rounded up to whole registers.
 inline int padded_length(int count) {
   return (count + kColumnGrain - 1) / kColumnGrain * kColumnGrain;
 }

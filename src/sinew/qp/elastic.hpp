@@ -16,6 +16,7 @@ enum class ElasticMeasure {
   sum,    ///< the sum of weighted violations is least; as a rule few rows are relaxed
 };
 
+/// How an elastic solve ended.
 enum class ElasticStatus {
   optimal,          ///< every row is met
   relaxed,          ///< rows conflict; result.violation says which are relaxed and by how much
@@ -23,8 +24,10 @@ enum class ElasticStatus {
   not_finite,       ///< as in QpStatus
   iteration_limit,  ///< x keeps the bounds but need not be best
 };
+/// The status as it is printed: "iteration-limit".
 std::string_view elastic_status_name(ElasticStatus status);
 
+/// How ElasticSolver works.
 struct ElasticSettings {
   ElasticMeasure measure = ElasticMeasure::worst;
   QpSettings qp;  ///< of the quadratic programs solved on the way
@@ -33,6 +36,7 @@ struct ElasticSettings {
   int max_proximal_steps = 60;  ///< per stage; a handful suffices as a rule
 };
 
+/// What ElasticSolver found.
 struct ElasticResult {
   ElasticStatus status = ElasticStatus::optimal;
   QpResult qp;  ///< x and the multipliers of the problem with the relaxed limits
@@ -60,10 +64,9 @@ class ElasticSolver {
   ElasticSolver& operator=(ElasticSolver&&) noexcept;
 
   /// Allocates nothing. Throws as QpSolver::solve.
-  /// @param problem as for QpSolver.
   const ElasticResult& solve(const QuadraticProgram& problem);
   /// The same with weights, which make violations in different units comparable.
-  /// @param row_weight (m,) > 0 and finite, 1/(unit of the row): a violation of 1/weight counts as
+  /// `row_weight` (m,) is > 0 and finite, in 1/(unit of the row): a violation of 1/weight counts as
   /// 1. Throws Error(wrong-shape) or Error(out-of-range) otherwise.
   const ElasticResult& solve(const QuadraticProgram& problem, const VectorX& row_weight);
   /// Forgets the active sets of the last solve.

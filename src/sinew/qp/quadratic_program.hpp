@@ -23,6 +23,7 @@ struct QuadraticProgram {
   static QuadraticProgram sized(int variables, int constraints);
 };
 
+/// How a solve ended.
 enum class QpStatus {
   optimal,
   infeasible,       ///< no x meets all limits
@@ -30,8 +31,10 @@ enum class QpStatus {
   iteration_limit,  ///< settings.max_iterations reached; x is the last iterate
   not_finite,       ///< NaN or infinity in the problem's data
 };
+/// The status as it is printed: "iteration-limit".
 std::string_view qp_status_name(QpStatus status);
 
+/// How QpSolver works.
 struct QpSettings {
   double tolerance = 1e-11;  ///< feasibility, relative to the size of limits and of C x
   int max_iterations = 0;    ///< 0: 10 (n + m) + 100
