@@ -9,7 +9,7 @@
 #include "random_problem.hpp"
 
 namespace {
-thread_local long allocations = 0;
+[[maybe_unused]] thread_local long allocations = 0;
 }  // namespace
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
