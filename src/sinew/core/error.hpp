@@ -65,7 +65,7 @@ struct Place {
 /// `what()` reads "PLACE: MESSAGE; REMEDY [kind]".
 class Error : public std::runtime_error {
  public:
-  /// @param message says what is wrong and names the offending value.
+  /// @param kind,place,message what is wrong, where, and in words that name the offending value.
   /// @param remedy says what to write or do instead; may be empty.
   Error(ErrorKind kind, Place place, std::string message, std::string remedy = {});
 

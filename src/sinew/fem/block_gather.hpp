@@ -8,7 +8,8 @@
 namespace sinew::fem {
 
 /// Writes the blocks in columns begin .. end-1 of the pattern as stiffness K + mass M.
-/// @param records element records of the tangent that `weights` names.
+/// @param lists,pattern,begin,end what is gathered where, for these columns.
+/// @param records,weights element records of the tangent that `weights` names.
 /// @param node_mass (free,) kg, lumped; nullptr if `block_mass` is given.
 /// @param block_mass (blocks,) kg, consistent; nullptr if `node_mass` is given.
 /// @param matrix layout of linalg::BlockPattern.
@@ -17,6 +18,7 @@ void gather_blocks(const GatherLists& lists, const linalg::BlockPattern& pattern
                    const double* node_mass, const double* block_mass, double* matrix);
 
 /// Writes the internal forces of free nodes begin .. end-1.
+/// @param lists,begin,end what is gathered, for these nodes.
 /// @param records kForceRecord doubles a slot.
 /// @param forces (3 free,) N.
 void gather_forces(const GatherLists& lists, int begin, int end, const double* records,

@@ -41,7 +41,9 @@ struct ElementOutput {
 };
 
 /// Evaluates batches begin .. end-1.
+/// @param elements,begin,end which batches.
 /// @param points (n, 4) m, positions padded to four.
+/// @param tangent,output which derivative, and where everything is written.
 /// Positions that are not finite give a smallest ratio of minus infinity.
 SmallestRatio evaluate_batches(const ElementBatches& elements, int begin, int end,
                                const double* points, Tangent tangent, const ElementOutput& output);

@@ -11,6 +11,7 @@ namespace sinew::fem {
 
 /// (elements,) kg of each tetrahedron: rho V, scaled to the settings' total mass if that is given
 /// (spread by volume when every density is 0).
+/// @param settings,region_of densities and totals, and the region of each tetrahedron.
 /// @param volumes (elements,) m^3.
 /// Throws Error(out-of-range) for a negative or non-finite density or total.
 std::vector<double> element_masses(const FemModelSettings& settings,

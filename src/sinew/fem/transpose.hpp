@@ -51,6 +51,7 @@ SINEW_INLINE material::Lanes odd_pairs(const material::Lanes& a, const material:
 /// Eight points into x, y, z lanes.
 /// @param points (n, 4) padded positions.
 /// @param nodes eight node numbers.
+/// @param result x, y and z of the eight.
 SINEW_INLINE void load_points(const double* points, const std::int32_t* nodes,
                               material::Lanes (&result)[3]) {
   using namespace detail;

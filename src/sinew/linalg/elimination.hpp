@@ -33,6 +33,7 @@ struct Elimination {
   std::vector<std::int32_t> parent;             ///< of column k in the tree; -1 at a root
   std::vector<std::vector<std::int32_t>> rows;  ///< of column k below its diagonal, ascending
 
+  /// @param graph,first_order what is eliminated, and the order before it is made a postorder.
   /// @param border_of for each node the border nodes that touch it (0-based, ascending).
   Elimination(const NodeGraph& graph, const std::vector<std::int32_t>& first_order,
               const std::vector<std::vector<std::int32_t>>& border_of);

@@ -51,8 +51,8 @@ class BodyModel {
   virtual ~BodyModel() = default;
   virtual const std::string& name() const = 0;
 
-  /// Attaches a material point given by its rest position (3,) m. Building only.
-  /// @param outside what to do with a point in no element.
+  /// Attaches a material point. Building only.
+  /// @param rest_position,outside (3,) m, and what to do when it lies in no element.
   /// @param what names the point in error messages.
   /// @return the point's number. Throws Error(point-outside-mesh).
   virtual int attach(const Vector3& rest_position, mesh::Outside outside,

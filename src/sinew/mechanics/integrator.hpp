@@ -28,7 +28,7 @@ struct StepWeights {
 
 /// Backward Euler (Hairer & Wanner 1996, IV.3): M (v - v_start) = h (p - f - C v), q = q_start + h
 /// v, divided by h: mass = 1/h^2, momentum = damping = rate = 1/h. Quasi-static: all zero.
-/// @param time_step h in s, > 0.
+/// @param integrator,time_step which one, and h in s, > 0.
 StepWeights step_weights(Integrator integrator, double time_step);
 
 }  // namespace sinew::mechanics

@@ -35,7 +35,7 @@ class Embedder {
   Embedder(Embedder&&) noexcept;
   Embedder& operator=(Embedder&&) noexcept;
 
-  /// @param point (3,) m, in the mesh's rest frame.
+  /// @param point,outside (3,) m in the mesh's rest frame, and what to do when no element holds it.
   /// @param what names the point in the error message ("via point 3 of cable long_0").
   EmbeddedPoint locate(const Vector3& point, Outside outside, const std::string& what) const;
 

@@ -20,7 +20,7 @@ class VtuFile {
   /// @param name its name, for messages.
   VtuFile(std::string_view bytes, const std::string& name);
 
-  /// <VTKFile>.
+  /// The element `VTKFile`.
   pugi::xml_node root() const { return document_.child("VTKFile"); }
 
   /// The values of a DataArray.

@@ -69,6 +69,7 @@ struct ActuatorRange {
 };
 
 /// The range of the step from the state before it.
+/// @param model,state of one actuator, before the step.
 /// @param time the end of the step (s), at which the command is read.
 /// @param time_step s; infinity lifts the limits on rates.
 ActuatorRange actuator_range(const ActuatorModel& model, const ActuatorState& state, double time,
