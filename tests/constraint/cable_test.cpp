@@ -122,7 +122,7 @@ TEST(Cable, StraightCableHasNoWrapAndARightAngleHasOne) {
   builder.add_cable(cable);
   const auto corner = builder.build();
   sim::Simulation bent(corner);
-  EXPECT_NEAR(corner->cable(0)->wrap(bent.world().placement()), EIGEN_PI / 2, 1e-12);
+  EXPECT_NEAR(corner->cable(0)->wrap(bent.world().placement()), sinew::testing::kRightAngle, 1e-12);
   EXPECT_NEAR(corner->cable(0)->rest_length(), 0.08, 1e-15);
 }
 

@@ -12,6 +12,8 @@
 
 namespace sinew::testing {
 
+inline constexpr double kRightAngle = 1.57079632679489662;
+
 /// A clamped silicone beam along x, 100 x 20 x 20 mm, with four cables along its edges at 6 mm from
 /// the axis (up, left, down, right) and its tip as effector.
 struct BeamOptions {
@@ -47,7 +49,7 @@ inline std::shared_ptr<const sim::Model> beam(const BeamOptions& options = {}) {
     cable.name = "cable_" + std::to_string(k);
     cable.body = beam;
     cable.points.resize(6, 3);
-    const double angle = k * EIGEN_PI / 2;
+    const double angle = k * kRightAngle;
     for (int i = 0; i < 6; ++i) {
       cable.points.row(i) << (i == 0 ? 0.0 : 0.002 + 0.019 * i), 0.006 * std::sin(angle),
           0.006 * std::cos(angle);

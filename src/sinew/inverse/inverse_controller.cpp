@@ -66,6 +66,7 @@ InverseController::InverseController(sim::Simulation& simulation, InverseSetting
   slack_.assign(static_cast<std::size_t>(count), false);
   program_ = qp::QuadraticProgram::sized(static_cast<int>(count), static_cast<int>(count));
   solver_ = qp::QpSolver(static_cast<int>(count), static_cast<int>(count));
+  elastic_ = qp::ElasticSolver(static_cast<int>(count), static_cast<int>(count));
   efforts_.setZero(static_cast<Eigen::Index>(settings_.actuators.size()));
   simulation_.attach(*this, settings_.actuators);
   attached_ = true;
@@ -230,7 +231,12 @@ sim::LawStatus InverseController::solve_program(const sim::LawProblem& problem) 
     form_limits(problem);
     const qp::QpResult& result = solver_.solve(program_);
     if (result.status == qp::QpStatus::infeasible) {
-      return sim::LawStatus::failed;
+      const qp::ElasticResult& nearest = elastic_.solve(program_);
+      const bool usable = nearest.status == qp::ElasticStatus::optimal ||
+                          nearest.status == qp::ElasticStatus::relaxed;
+      if (!usable) return sim::LawStatus::failed;
+      scaled_effort_ = nearest.qp.x;
+      status = sim::LawStatus::limits_conflict;
     } else if (result.status != qp::QpStatus::optimal) {
       return sim::LawStatus::failed;
     } else {
@@ -313,7 +319,10 @@ double InverseController::violation(const sim::LawProblem&, std::span<const doub
   return 0.0;
 }
 
-void InverseController::reset() { solver_.reset(); }
+void InverseController::reset() {
+  solver_.reset();
+  elastic_.reset();
+}
 
 double InverseController::error(int task) const {
   const Task& asked = settings_.tasks.at(static_cast<std::size_t>(task));

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sinew/inverse/target.hpp"
+#include "sinew/qp/elastic.hpp"
 #include "sinew/qp/quadratic_program.hpp"
 #include "sinew/sim/simulation.hpp"
 
@@ -118,6 +119,7 @@ class InverseController : public sim::Law {
   bool shortened_ = false;
   qp::QuadraticProgram program_;
   qp::QpSolver solver_;
+  qp::ElasticSolver elastic_{0, 0};  // for steps in which limits contradict each other
   VectorX efforts_;
   double predicted_error_ = 0.0;
   InverseStatus status_ = InverseStatus::on_target;

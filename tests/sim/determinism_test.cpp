@@ -1,0 +1,55 @@
+// A step gives the same bits on any number of threads, all of which work, and allocates nothing.
+#include <atomic>
+#include <cstdlib>
+#include <new>
+#include <set>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "sinew/inverse/inverse_controller.hpp"
+
+#include "robots.hpp"
+
+namespace sinew::sim {
+namespace {
+
+std::shared_ptr<const Model> robot(int threads) {
+  sinew::testing::BeamOptions options;
+  options.factorisation.threads = threads;
+  return sinew::testing::beam(options);
+}
+
+std::uint64_t hash_after_200_steps(int threads) {
+  Simulation simulation(robot(threads), threads);
+  simulation.command(0, {CommandKind::motion, Signal::sine({0.002, 0.002, 0.7, 0.0})});
+  simulation.command(1, {CommandKind::effort, Signal::sine({0.3, 0.3, 1.1, 0.0})});
+  for (int i = 0; i < 200; ++i) simulation.step();
+  return simulation.state_hash();
+}
+
+TEST(Determinism, OneTwoAndFourThreadsGiveTheSameBits) {
+  const auto one = hash_after_200_steps(1);
+  EXPECT_EQ(one, hash_after_200_steps(2));
+  EXPECT_EQ(one, hash_after_200_steps(4));
+  EXPECT_EQ(one, hash_after_200_steps(1));
+}
+
+TEST(Determinism, SimulationsSideBySideAgreeWithOneAlone) {
+  const auto model = robot(1);
+  std::vector<std::uint64_t> hashes(4);
+  std::vector<std::thread> threads;
+  for (auto& hash : hashes) {
+    threads.emplace_back([&hash, &model] {
+      Simulation simulation(model);
+      simulation.command(0, sinew::testing::pull(0.003));
+      for (int i = 0; i < 50; ++i) simulation.step();
+      hash = simulation.state_hash();
+    });
+  }
+  for (auto& thread : threads) thread.join();
+  EXPECT_EQ(std::set<std::uint64_t>(hashes.begin(), hashes.end()).size(), 1U);
+}
+
+}  // namespace
+}  // namespace sinew::sim
