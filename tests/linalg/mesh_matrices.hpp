@@ -55,6 +55,23 @@ struct BlockSystem {
     return full;
   }
 
+  /// A x, block by block.
+  VectorX multiply(const VectorX& x) const {
+    VectorX y = VectorX::Zero(size());
+    for (int j = 0; j < pattern.nodes; ++j) {
+      for (int b = pattern.column_start[static_cast<std::size_t>(j)];
+           b < pattern.column_start[static_cast<std::size_t>(j) + 1]; ++b) {
+        const int i = pattern.row[static_cast<std::size_t>(b)];
+        const Eigen::Map<const Eigen::Matrix<double, 4, 3>> padded(matrix.data() +
+                                                                   kBlockStride * b);
+        const Matrix3 block = padded.topRows<3>();
+        y.segment<3>(3 * i) += block * x.segment<3>(3 * j);
+        if (i != j) y.segment<3>(3 * j) += block.transpose() * x.segment<3>(3 * i);
+      }
+    }
+    return y;
+  }
+
   MatrixX dense_rows() const {
     MatrixX full = MatrixX::Zero(border.rows(), size());
     for (int k = 0; k < border.rows(); ++k) {

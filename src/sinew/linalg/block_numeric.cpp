@@ -1,8 +1,12 @@
 #include "sinew/linalg/block_numeric.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstring>
 #include <numeric>
+
+#include "sinew/linalg/row_spread.hpp"
 
 namespace sinew::linalg {
 
@@ -10,38 +14,19 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-/// Rows of an update that are multiplied before they are spread: product and operands stay in the
-/// second cache.
-constexpr int kRowBlock = 96;
+/// Windows of rows of an update that are multiplied before they are spread: product and operands
+/// stay in the second cache.
+constexpr int kWindows = 12;
+constexpr int kRowBlock = 8 * kWindows;
 constexpr int kOverrun = 8;
 
 void place_straight(const double* block, double* to, long leading) {
-  for (int c = 0; c < 3; ++c) {
-    for (int r = 0; r < 3; ++r) to[c * leading + r] = block[4 * c + r];
-  }
+  for (int c = 0; c < 3; ++c) std::memcpy(to + c * leading, block + 4 * c, 3 * sizeof(double));
 }
 
 void place_transposed(const double* block, double* to, long leading) {
   for (int c = 0; c < 3; ++c) {
     for (int r = 0; r < 3; ++r) to[c * leading + r] = block[4 * r + c];
-  }
-}
-
-/// Subtracts product rows [begin, end) (counted from the update's first row) from the target.
-void spread(std::span<const RowRun> runs, const int* column_place, int columns, int begin, int end,
-            const double* product, long leading_product, double* panel, long leading) {
-  for (const RowRun& run : runs) {
-    const int first = std::max(run.source, begin);
-    const int last = std::min(run.source + run.length, end);
-    for (int j = 0; j < columns && j < last; j += 3) {
-      const int from = std::max(first, j);  // only the lower triangle of the square part
-      if (from >= last) continue;
-      const double* source = product + (from - begin) + j * leading_product;
-      double* target = panel + (run.target + from - run.source) + column_place[j / 3] * leading;
-      for (int c = 0; c < 3; ++c) {
-        subtract(target + c * leading, source + c * leading_product, last - from);
-      }
-    }
   }
 }
 
@@ -121,26 +106,32 @@ void BlockNumeric::apply(const Update& update, const Panel& target, double* pane
     multiply_subtract(product, update.rows, panel + row + row * leading, leading);
     return;
   }
-  std::vector<int>& column_place = scratch.column_place;
   int placed = 0;
-  int begin = update.rows;
-  int end = 0;
-  for (const RowRun& run : runs) {
-    for (int i = 0; i < run.length && 3 * placed < update.columns; i += 3) {
-      column_place[at(placed++)] = run.target + i;
+  for (auto run = runs.begin(); 3 * placed < update.columns; ++run) {
+    for (int i = 0; i < run->length && 3 * placed < update.columns; i += 3) {
+      scratch.column_place[at(placed++)] = run->target + i;
     }
-    const int first = std::max(run.target, row_begin);
-    const int last = std::min(run.target + run.length, row_end);
-    if (first >= last) continue;
-    begin = std::min(begin, run.source + first - run.target);
-    end = std::max(end, run.source + last - run.target);
   }
-  for (int block = begin; block < end; block += kRowBlock) {
-    const int block_end = std::min(block + kRowBlock, end);
-    const long leading_product = (block_end - block + kOverrun + 3) / 4 * 4;
-    multiply(product, block, block_end, scratch.product.data(), leading_product);
-    spread(runs, column_place.data(), update.columns, block, block_end, scratch.product.data(),
-           leading_product, panel, leading);
+  Spread spread;
+  spread.runs = runs;
+  spread.column_place = scratch.column_place.data();
+  spread.columns = update.columns;
+  spread.product = scratch.product.data();
+  spread.panel = panel;
+  spread.leading = leading;
+  const RowWindow* window = s.windows.data() + update.window_begin;
+  const RowWindow* last = s.windows.data() + update.window_end;
+  while (window != last && window->target < row_begin) ++window;
+  while (window != last && (last - 1)->target >= row_end) --last;
+  while (window != last) {
+    const RowWindow* const block_end = window + std::min<std::ptrdiff_t>(last - window, kWindows);
+    spread.windows = {window, block_end};
+    spread.begin = window->source;
+    spread.end = (block_end - 1)->source + std::popcount((block_end - 1)->mask);
+    spread.leading_product = (spread.end - spread.begin + kOverrun + 3) / 4 * 4;
+    multiply(product, spread.begin, spread.end, scratch.product.data(), spread.leading_product);
+    spread_rows(spread);
+    window = block_end;
   }
 }
 

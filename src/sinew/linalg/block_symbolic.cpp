@@ -14,11 +14,12 @@ std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// Zero rows behind a panel: one less than the widest vector of any instruction set in use.
 constexpr Index kTail = 7;
-/// Zero rows between the diagonal block and the rows below of a split panel.
+/// Least number of zero rows between the diagonal block and the rows below of a split panel, and
+/// what the first row below is a multiple of.
 constexpr Index kGap = 8;
 /// Work from which the rows of a panel are worth sharing between threads (flops).
-constexpr double kSplitFlops = 1.5e6;
-constexpr Index kSplitRows = 192;
+constexpr double kSplitFlops = 4e5;
+constexpr Index kSplitRows = 96;
 constexpr int kBorderGroups = 8;
 
 std::vector<std::vector<Index>> border_nodes_of(int nodes, const BorderPattern& border) {
@@ -36,11 +37,11 @@ std::vector<std::vector<Index>> border_nodes_of(int nodes, const BorderPattern& 
   return result;
 }
 
-/// Columns of `leading` doubles that do not fall on the same few cache sets.
+/// Whole cache lines, so that windows of 8 rows are aligned, and not a multiple of many: columns
+/// would fall on the same few cache sets.
 Index leading_dimension(Index height) {
-  Index leading = (height + kTail + 3) / 4 * 4;
-  if (leading % 128 == 0) leading += 4;
-  return leading;
+  const Index leading = (height + kTail + 7) / 8 * 8;
+  return leading % 64 == 0 ? leading + 8 : leading;
 }
 
 /// Builds the lists panel by panel.
@@ -148,7 +149,7 @@ class Builder {
     const auto under = 3 * static_cast<Index>(rows.size());
     panel.flops = flops;
     panel.split = flops > kSplitFlops && under >= kSplitRows;
-    panel.below = own + (panel.split ? kGap : 0);
+    panel.below = panel.split ? (own + 2 * kGap - 1) / kGap * kGap : own;
     panel.height = panel.below + under;
     panel.leading = leading_dimension(panel.height);
     panel.offset = s_.doubles;
@@ -194,12 +195,32 @@ class Builder {
           s_.runs.push_back({3 * (i - from.row_begin - range.begin), row, 3});
         }
       }
-      s_.updates.push_back({range.descendant, from.below + 3 * range.begin,
-                            3 * (from.row_end - from.row_begin - range.begin),
-                            3 * (range.end - range.begin), static_cast<Index>(first_run),
-                            static_cast<Index>(s_.runs.size())});
+      Update update{};
+      update.descendant = range.descendant;
+      update.first = from.below + 3 * range.begin;
+      update.rows = 3 * (from.row_end - from.row_begin - range.begin);
+      update.columns = 3 * (range.end - range.begin);
+      update.run_begin = static_cast<Index>(first_run);
+      update.run_end = static_cast<Index>(s_.runs.size());
+      update.window_begin = static_cast<Index>(s_.windows.size());
+      for (std::size_t r = first_run; r < s_.runs.size(); ++r) add_windows(s_.runs[r], update);
+      update.window_end = static_cast<Index>(s_.windows.size());
+      s_.updates.push_back(update);
     }
     target.update_end = static_cast<Index>(s_.updates.size());
+  }
+
+  void add_windows(const RowRun& run, const Update& update) {
+    for (Index i = 0; i < run.length; ++i) {
+      const Index row = run.target + i;
+      const Index start = row / 8 * 8;
+      if (static_cast<Index>(s_.windows.size()) == update.window_begin ||
+          s_.windows.back().target != start) {
+        s_.windows.push_back({run.source + i, start, 0});
+      }
+      RowWindow& window = s_.windows.back();
+      window.mask = static_cast<std::uint8_t>(window.mask | 1U << (row - start));
+    }
   }
 
   void add_blocks(Panel& panel, const std::vector<Block>& blocks) {

@@ -5,9 +5,10 @@
 /// L is stored in panels, one a supernode, column-major:
 ///
 ///     panel row 0 .. 3w-1                 the supernode's own w nodes (lower triangle of L)
-///     (8 rows of zeros in split panels)   so that tiles of the diagonal block may run over
-///     panel row below .. below+3r-1       the r nodes below, ascending, border nodes last
-///     at least 7 rows of zeros            so that full-width tiles may run over the end
+///     (8 to 15 rows of zeros in split     so that tiles of the diagonal block may run over, and
+///     the panels)                             rows below begin at a multiple of 8 panel row below
+///     .. below+3r-1       the r nodes below, ascending, border nodes last at least 7 rows of zeros
+///     so that full-width tiles may run over the end
 ///
 /// and the next column follows `leading` doubles later. The last panel is the border's: it is
 /// updated by all others and never factorised, and ends as -(H; b) A^-1 (H; b)^T.
@@ -28,6 +29,14 @@ struct RowRun {
   std::int32_t length;
 };
 
+/// Eight rows of a target panel, from a multiple of 8, and the rows of an update that fall on them:
+/// as rows ascend on both sides, they are consecutive in the source.
+struct RowWindow {
+  std::int32_t source;  ///< the first of them, counted from the first row of the update
+  std::int32_t target;  ///< first row of the window
+  std::uint8_t mask;    ///< bit r: row target + r receives one
+};
+
 /// "Panel -= L_d(rows, :) S L_d(columns, :)^T": what one descendant d does to a panel.
 struct Update {
   std::int32_t descendant;
@@ -35,6 +44,7 @@ struct Update {
   std::int32_t rows;     ///< doubles, columns included
   std::int32_t columns;  ///< doubles; the first rows are the target's columns
   std::int32_t run_begin, run_end;
+  std::int32_t window_begin, window_end;
 };
 
 /// One 3x3 block, or one 3-vector of a border row: where its numbers come from and go to.
@@ -73,7 +83,8 @@ struct BlockSymbolic {
   std::vector<Panel> panels;           ///< the last one is the border's
   std::vector<std::int32_t> rows;
   std::vector<Update> updates;
-  std::vector<RowRun> runs;
+  std::vector<RowRun> runs;        ///< of the updates
+  std::vector<RowWindow> windows;  ///< the same rows once more, for vectors of 8
   std::vector<Placement> straight, transposed, border;
   /// The border's updates are summed in this many groups of panels, then the groups in order, so
   /// that the result does not depend on the number of threads. Group c has the panels

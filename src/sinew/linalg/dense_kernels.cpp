@@ -75,11 +75,10 @@ void product_rows(const Product& p, int row_begin, int row_end, double* c, long 
     });
   };
   int column = 0;
-  const int columns = std::min(p.columns, row_end);
-  for (; column + kTileColumns <= columns; column += kTileColumns) {
+  for (; column + kTileColumns <= p.columns; column += kTileColumns) {
     strip.template operator()<kTileColumns>(column);
   }
-  if (column < columns) strip.template operator()<3>(column);
+  if (column < p.columns) strip.template operator()<3>(column);
 }
 
 /// What the substitution of C columns needs of their triangle: factor[k][j] = S_k L_jk for k < j,
@@ -304,14 +303,6 @@ void forward_panel(const double* panel, long leading, int columns, int height,
   for_strips(columns, [&]<int C>(int column) {
     forward_strip<C>(panel, leading, column, height, inverse, v);
   });
-}
-
-void subtract(double* target, const double* source, int count) {
-  int i = 0;
-  for (; i + kLanes <= count; i += kLanes) {
-    store(target + i, load(target + i) - load(source + i));
-  }
-  for (; i < count; ++i) target[i] -= source[i];
 }
 
 }  // namespace sinew::linalg

@@ -54,7 +54,4 @@ void backward_panel(const double* panel, long leading, int columns, int height,
 void forward_panel(const double* panel, long leading, int columns, int height,
                    const double* inverse, double* v);
 
-/// target[0..count) -= source[0..count).
-void subtract(double* target, const double* source, int count);
-
 }  // namespace sinew::linalg

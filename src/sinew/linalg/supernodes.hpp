@@ -13,11 +13,11 @@ namespace sinew::linalg {
 /// When columns are joined, and how wide a panel may be.
 struct SupernodeSettings {
   /// A supernode joins its parent when that stores at most this many zero 3x3 blocks ..
-  int zero_blocks = 20;
+  int zero_blocks = 24;
   /// .. or at most this fraction of the joined panel.
   double zero_fraction = 0.0;
   /// Widest panel in nodes; wider supernodes are split into equal parts.
-  int max_width = 32;
+  int max_width = 48;
 };
 
 /// The columns in their final order, cut into supernodes. Children come before parents.
