@@ -1,7 +1,6 @@
 #include "sinew/scene/grammar.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include <fmt/format.h>
 
@@ -17,9 +16,18 @@ Key later_key(const char* name, const char* description) {
   return {.name = name, .forms = {text()}, .description = description, .later = true};
 }
 
-Form method_choice() {
+Form method_choice(const char* short_for = "") {
   return choice({{"one-linearisation", "One linear solution a step, for real time."},
-                 {"newton", "Iterates to equilibrium, with line search."}});
+                 {"newton", "Iterates to equilibrium, with line search."}},
+                short_for);
+}
+
+Form integrator_choice(const char* short_for = "") {
+  return choice({{"quasi-static", "Always in equilibrium; no inertia."},
+                 {"backward-euler", "Dynamics; first order, damps."},
+                 {"bdf2", "Dynamics; second order.", true},
+                 {"generalized-alpha", "Dynamics; second order.", true}},
+                short_for);
 }
 
 std::shared_ptr<const KeyTable> integrator_table() {
@@ -27,10 +35,7 @@ std::shared_ptr<const KeyTable> integrator_table() {
       {.name = "integrator",
        .description = "The integrator with its settings.",
        .keys = {{.name = "type",
-                 .forms = {choice({{"quasi-static", "Always in equilibrium."},
-                                   {"backward-euler", "First order, damps."},
-                                   {"bdf2", "Second order.", true},
-                                   {"generalized-alpha", "Second order.", true}})},
+                 .forms = {integrator_choice()},
                  .example = "backward-euler",
                  .description = "The integrator.",
                  .required = true},
@@ -100,13 +105,9 @@ std::shared_ptr<const KeyTable> record_table() {
 }
 
 std::vector<Key> world_keys() {
-  const Form integrators = choice({{"quasi-static", "Always in equilibrium; no inertia."},
-                                   {"backward-euler", "Dynamics; first order, damps."},
-                                   {"bdf2", "Dynamics; second order.", true},
-                                   {"generalized-alpha", "Dynamics; second order.", true}});
   return {
       {.name = "sinew",
-       .forms = {integer(1, std::numeric_limits<int>::max())},
+       .forms = {integer(1, 1)},
        .example = "1",
        .description = "Version of the scene format: 1.",
        .required = true},
@@ -125,12 +126,12 @@ std::vector<Key> world_keys() {
        .example = "5 s",
        .description = "How long a run lasts. Without: as long as its longest signal or target."},
       {.name = "integrator",
-       .forms = {integrators, table(integrator_table())},
+       .forms = {integrator_choice("type"), table(integrator_table())},
        .example = "quasi-static",
        .default_text = "quasi-static",
        .description = "How time passes."},
       {.name = "solver",
-       .forms = {table(solver_table()), method_choice()},
+       .forms = {table(solver_table()), method_choice("method")},
        .example = "{method: newton}",
        .default_text = "{}",
        .description = "How each step is solved; a single word is its `method`."}};

@@ -61,7 +61,9 @@ struct Form {
   Range range;                  ///< of each number
   std::vector<Choice> choices;  ///< choice, variants
   std::string refers_to;        ///< reference, names: the top-level key whose names are meant
-  std::string telltale;         ///< table, variants: the key that tells this form by
+  /// table, variants: the key that tells this form by; choice: the key of the map form that a lone
+  /// word is short for
+  std::string telltale;
   std::shared_ptr<const KeyTable> table;  ///< table
   std::vector<Form> items;                ///< list, names: the forms of an item
   bool later = false;                     ///< belongs to a later version

@@ -6,7 +6,7 @@ namespace sinew::scene::forms {
 namespace {
 
 std::shared_ptr<const KeyTable> ramp_table(const Measure& measure, const char* example) {
-  return make_table({.name = "ramp",
+  return make_table({.name = std::string("ramp in ") + measure.unit,
                      .description = "From one value to another at constant speed, then held.",
                      .keys = {{.name = "from",
                                .forms = {quantity(measure)},
@@ -31,7 +31,7 @@ std::shared_ptr<const KeyTable> ramp_table(const Measure& measure, const char* e
 }
 
 std::shared_ptr<const KeyTable> sine_table(const Measure& measure, const char* example) {
-  return make_table({.name = "sine",
+  return make_table({.name = std::string("sine in ") + measure.unit,
                      .description = "mean + amplitude sin(2 pi t / period + phase).",
                      .keys = {{.name = "mean",
                                .forms = {quantity(measure)},

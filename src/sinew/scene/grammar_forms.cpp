@@ -77,10 +77,11 @@ Form reference(const char* top_level_key) {
   return form;
 }
 
-Form choice(std::vector<Choice> choices) {
+Form choice(std::vector<Choice> choices, const char* short_for) {
   Form form;
   form.shape = Shape::choice;
   form.choices = std::move(choices);
+  form.telltale = short_for;
   return form;
 }
 

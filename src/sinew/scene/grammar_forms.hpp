@@ -46,7 +46,8 @@ Form boolean();
 Form text();
 Form file();
 Form reference(const char* top_level_key);
-Form choice(std::vector<Choice> choices);
+/// `short_for`: the key of the map form of the same value that a lone word stands for.
+Form choice(std::vector<Choice> choices, const char* short_for = "");
 Form list(std::vector<Form> items, int min_count = 1, int max_count = kAnyNumber);
 Form samples(const Measure& measure);
 Form table(std::shared_ptr<const KeyTable> table, const char* telltale = "");

@@ -26,7 +26,7 @@ std::vector<std::string> split_path(const std::string& path) {
 class Walker {
  public:
   Walker(Node& scene, Place place)
-      : scene_(scene), place_(std::move(place)), node_(&scene), forms_({forms_of_scene()}) {}
+      : place_(std::move(place)), node_(&scene), forms_({form_of_scene()}) {}
 
   void enter(const std::string& step, bool last) {
     if (node_->is_list()) {
@@ -44,7 +44,7 @@ class Walker {
   void write(Node value) { *node_ = std::move(value); }
 
  private:
-  static Form forms_of_scene() {
+  static Form form_of_scene() {
     Form form;
     form.shape = Shape::table;
     // The grammar lives as long as the program, so nobody owns it here.
@@ -106,7 +106,6 @@ class Walker {
       throw_unknown_name(step, path_, known, place_);
     }
     node_ = below;
-    example_.clear();
     forms_ = form.items;
     note(step);
   }
@@ -120,19 +119,21 @@ class Walker {
     const KeyTable& table = form.shape == Shape::variants ? table_of(*node_, form) : *form.table;
     const Key* key = table.find(step);
     if (key == nullptr) throw_unknown_key(step, table, place_);
-    if (const Alternatives* group = table.alternatives_of(step)) {
-      for (const std::string& other : group->keys) {
-        if (other != step) node_->erase(other);
-      }
-    }
-    for (const Key& other : table.keys) {
-      if (!other.only_with.empty() && node_->find(other.only_with) == nullptr &&
-          other.only_with != step && other.name != step) {
-        node_->erase(other.name);
-      }
-    }
+    clear_alternatives(step, table);
     forms_ = key->forms;
     descend(step, last);
+  }
+
+  // Removes what `step` replaces, and what made sense only beside that.
+  void clear_alternatives(const std::string& step, const KeyTable& table) {
+    const Alternatives* group = table.alternatives_of(step);
+    if (group == nullptr) return;
+    for (const std::string& other : group->keys) {
+      if (other == step || !node_->erase(other)) continue;
+      for (const Key& key : table.keys) {
+        if (key.only_with == other) node_->erase(key.name);
+      }
+    }
   }
 
   // Into the value of a key; a map is made where a deeper path needs one.
@@ -140,19 +141,28 @@ class Walker {
     if (!node_->is_map()) *node_ = Node::map();
     Node* below = node_->find(step);
     if (below == nullptr) below = &node_->set(step, Node());
-    if (!last && below->is_scalar()) *below = Node::map();
+    if (!last && below->is_scalar()) *below = expanded(*below);
     node_ = below;
     note(step);
   }
 
+  // The map that stands for a scalar: the word of a short form keeps its meaning.
+  Node expanded(const Node& scalar) const {
+    Node map = Node::map();
+    for (const Form& form : forms_) {
+      if (form.shape == Shape::choice && !form.telltale.empty() && !scalar.spelling().empty()) {
+        map.set(form.telltale, scalar);
+      }
+    }
+    return map;
+  }
+
   void note(const std::string& step) { path_ += (path_.empty() ? "" : ".") + step; }
 
-  Node& scene_;
   Place place_;
   Node* node_;
   std::vector<Form> forms_;
   std::string path_;
-  std::string example_;
 };
 
 void absolute_paths(Node& node, const std::vector<Form>& forms,

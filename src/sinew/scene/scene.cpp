@@ -142,23 +142,20 @@ double SceneDescription::run_duration() const {
 }
 
 SceneDescription parse_scene(const std::filesystem::path& path) {
-  SceneDescription scene = parse_scene_tree(read_yaml(path), path.parent_path());
-  scene.name = path.stem().string();
-  return scene;
+  return parse_scene_tree(read_yaml(path), path.parent_path());
 }
 
 SceneDescription parse_scene_text(std::string_view text, const std::string& name,
                                   const std::filesystem::path& base_dir, Files files) {
-  SceneDescription scene = parse_scene_tree(parse_yaml(text, name), base_dir, files);
-  scene.name = std::filesystem::path(name).stem().string();
-  return scene;
+  return parse_scene_tree(parse_yaml(text, name), base_dir, files);
 }
 
 SceneDescription parse_scene_tree(Node tree, const std::filesystem::path& base_dir, Files files) {
   tree.name_paths();
   check_scene(tree);
   SceneDescription scene = read_scene(tree, {base_dir, files});
-  scene.name = "scene";
+  const std::filesystem::path file = tree.place().file;
+  scene.name = file.has_stem() ? file.stem().string() : "scene";
   scene.tree = std::move(tree);
   return scene;
 }

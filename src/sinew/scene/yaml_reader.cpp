@@ -132,8 +132,9 @@ class TreeBuilder : public YAML::EventHandler {
 
   void refuse_as_key(const YAML::Mark& mark) const {
     if (!awaits_key()) return;
-    throw Error(ErrorKind::syntax_error, place_of(file_, mark), "a key that is not a plain word",
-                "write keys as words, and quote values that hold ': ' or '{'");
+    throw Error(ErrorKind::syntax_error, place_of(file_, mark),
+                "a list, a map or nothing where a key should stand",
+                "close brackets and quotes, and write keys as words");
   }
 
   void open(Node node, const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor) {

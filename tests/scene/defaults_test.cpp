@@ -1,0 +1,205 @@
+// What the grammar says a key means when it is left out is what the structs' defaults say: writing
+// every documented default into a scene changes nothing of its description.
+#include <sstream>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "sinew/scene/check.hpp"
+#include "sinew/scene/grammar.hpp"
+#include "sinew/scene/scene.hpp"
+#include "sinew/scene/values.hpp"
+
+#include "scene_fixture.hpp"
+
+namespace sinew::scene {
+namespace {
+
+const char* const kSparse = R"(sinew: 1
+bodies:
+  a:
+    type: fem
+    mesh: {file: a.vtk}
+    material: {young_modulus: 1, poisson_ratio: 0}
+    mass: 1
+    fixed: {plane: {point: 0 0 0}}
+actuators:
+  ramp:
+    type: cable
+    body: a
+    points: [0 0 0, 0 0 1]
+    command: {tension: {ramp: {to: 1, duration: 1}}}
+  sine:
+    type: force
+    body: a
+    point: 0 0 1
+    direction: 1 0 0
+    command: {force: {sine: {amplitude: 1, period: 1}}}
+effectors:
+  tip: {body: a, point: 0 0 1}
+controllers:
+  follow:
+    type: inverse
+    effectors:
+      tip: {target: {circle: {center: 0 0 1, radius: 1, period: 1}}}
+  line:
+    type: inverse
+    actuators: [sine]
+    effectors:
+      tip: {target: {polyline: {points: [0 0 0, 0 0 1], period: 1}}}
+)";
+
+// The description as text, signals and targets by their values.
+class Dump {
+ public:
+  explicit Dump(const SceneDescription& scene) {
+    add(scene.gravity, scene.time_step, scene.integrator, scene.duration.value_or(-1));
+    add(scene.solver.method, scene.solver.tangent, scene.solver.tolerance);
+    add(scene.solver.max_iterations, scene.solver.threads, scene.solver.backend);
+    add(scene.solver.ordering, scene.record.every, scene.record.states);
+    for (const auto& body : scene.bodies) add_body(body);
+    for (const auto& actuator : scene.actuators) add_actuator(actuator);
+    for (const auto& effector : scene.effectors) add(effector.directions, effector.outside);
+    for (const auto& controller : scene.controllers) {
+      add(controller.regularisation, controller.epsilon.value_or(-1));
+      for (const auto& task : controller.tasks) {
+        for (const double weight : task.weights) add(weight);
+        for (const double time : {0.0, 0.3, 1.7}) add(task.target.at(time));
+      }
+    }
+  }
+  std::string text() const { return out_.str(); }
+
+ private:
+  void add_body(const BodyDescription& body) {
+    add(body.mesh.unit, body.material.model, body.mass_distribution, body.mass_matrix);
+    add(body.mass_damping, body.stiffness_damping, body.fixed[0].normal, body.fixed[0].within);
+  }
+  void add_actuator(const ActuatorDescription& actuator) {
+    add(actuator.outside, actuator.pull, actuator.geometric_stiffness);
+    for (const auto* limit : {&actuator.effort, &actuator.motion}) {
+      add(limit->min, limit->max, limit->rate);
+    }
+    for (const double time : {0.0, 0.3, 1.7}) add(actuator.command->signal.value(time));
+  }
+  template <typename... Values>
+  void add(const Values&... values) {
+    (write(values), ...);
+    out_ << '\n';
+  }
+  template <typename Value>
+  void write(const Value& value) {
+    if constexpr (std::is_enum_v<Value>) {
+      out_ << static_cast<int>(value) << ' ';
+    } else {
+      out_ << value << ' ';
+    }
+  }
+
+  std::ostringstream out_;
+};
+
+std::string dump(const Node& tree) {
+  return Dump(parse_scene_tree(tree, {}, Files::ignore)).text();
+}
+
+// Visits every key that is left out and has a default; sets it, compares, takes it away again.
+class Visitor {
+ public:
+  explicit Visitor(Node& scene) : scene_(scene), before_(dump(scene)) {}
+
+  void visit(Node& map, const KeyTable& table) {
+    for (const Key& key : table.keys) {
+      if (Node* present = map.find(key.name)) {
+        visit_value(*present, key.forms);
+      } else if (!key.default_text.empty() && applies(map, key)) {
+        Node value = parse_yaml(key.default_text, "default");
+        map.set(key.name, value);
+        EXPECT_EQ(dump(scene_), before_) << table.name << ": " << key.name;
+        ++tried_;
+        visit_value(*map.find(key.name), key.forms);
+        map.erase(key.name);
+      }
+    }
+  }
+  int tried() const { return tried_; }
+
+ private:
+  static bool applies(const Node& map, const Key& key) {
+    return key.only_with.empty() || map.find(key.only_with) != nullptr;
+  }
+
+  void visit_value(Node& node, const std::vector<Form>& forms) {
+    const Form& form = select_form(node, forms, {});
+    if (form.shape == Shape::names) {
+      for (Node::Entry& entry : node.entries()) visit_value(entry.value, form.items);
+    } else if (node.is_map()) {
+      visit(node, table_of(node, form));
+    }
+  }
+
+  Node& scene_;
+  std::string before_;
+  int tried_ = 0;
+};
+
+TEST(Defaults, DocumentedOnesAreThoseOfTheStructs) {
+  Node tree = parse_yaml(kSparse, "scene.yaml");
+  // Two controllers share actuators here, which is no matter of defaults.
+  tree.find("controllers")->find("follow")->set("actuators", parse_yaml("[ramp]", "x"));
+  Visitor visitor(tree);
+  visitor.visit(tree, grammar());
+  EXPECT_GT(visitor.tried(), 45);
+}
+
+// Each example of the grammar is what the grammar accepts.
+void check_examples(const KeyTable& table, int& count, int depth) {
+  if (depth > 8) return;
+  for (const Key& key : table.keys) {
+    if (key.later) continue;
+    EXPECT_FALSE(key.description.empty()) << table.name << ": " << key.name;
+    ASSERT_FALSE(key.example.empty()) << table.name << ": " << key.name;
+    if (key.example.find("...") == std::string::npos) {
+      const Node example = parse_yaml(key.example, key.name);
+      EXPECT_NO_THROW(select_form(example, key.forms, {})) << table.name << ": " << key.name;
+      const Form& form = select_form(example, key.forms, {});
+      if (form.shape == Shape::quantity) {
+        EXPECT_NO_THROW(read_numbers(example, form)) << table.name << ": " << key.name;
+      }
+      if (form.shape == Shape::choice) {
+        EXPECT_NO_THROW(read_choice(example, form)) << table.name << ": " << key.name;
+      }
+      if (form.shape == Shape::unit) {
+        EXPECT_NO_THROW(read_unit(example, form)) << table.name << ": " << key.name;
+      }
+      ++count;
+    }
+    for (const Form& form : key.forms) {
+      if (form.shape == Shape::table) check_examples(*form.table, count, depth + 1);
+      for (const Choice& choice : form.choices) {
+        if (choice.table) check_examples(*choice.table, count, depth + 1);
+      }
+      for (const Form& item : form.items) {
+        if (item.shape == Shape::table) check_examples(*item.table, count, depth + 1);
+        for (const Choice& choice : item.choices) {
+          if (choice.table) check_examples(*choice.table, count, depth + 1);
+        }
+      }
+    }
+  }
+}
+
+TEST(Grammar, ExamplesAreValid) {
+  int count = 0;
+  check_examples(grammar(), count, 0);
+  EXPECT_GT(count, 100);
+}
+
+TEST(Grammar, AsksForWhatItHas) {
+  EXPECT_THROW(form_of(grammar(), "no_such_key", Shape::text), Error);
+  EXPECT_THROW(form_of(grammar(), "time_step", Shape::boolean), Error);
+}
+
+}  // namespace
+}  // namespace sinew::scene
