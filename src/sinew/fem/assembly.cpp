@@ -8,6 +8,7 @@
 #include "sinew/core/error.hpp"
 #include "sinew/fem/block_gather.hpp"
 #include "sinew/fem/element_kernel.hpp"
+#include "sinew/linalg/aligned_buffer.hpp"
 
 namespace sinew::fem {
 
@@ -16,7 +17,7 @@ namespace {
 using material::kLanes;
 constexpr int kNodeGrain = 256;  // below this a thread's wake-up costs more than the work
 
-/// Columns of the matrix split so that threads have equal numbers of contributions.
+/// Visits to columns split so that threads have equal numbers of contributions.
 std::vector<int> split_columns(const FemModel& model, int threads) {
   const linalg::BlockPattern& pattern = model.pattern();
   const std::vector<std::int32_t>& start = model.gather().contribution_start;
@@ -26,7 +27,8 @@ std::vector<int> split_columns(const FemModel& model, int threads) {
   for (int thread = 1; thread < threads; ++thread) {
     const auto share = static_cast<std::int64_t>(start.back()) * thread / threads;
     const auto before = [&](int j) {
-      return start[static_cast<std::size_t>(pattern.column_start[static_cast<std::size_t>(j)])];
+      return start[static_cast<std::size_t>(
+          model.gather().block_visit[static_cast<std::size_t>(j)])];
     };
     while (column < pattern.nodes && before(column) < share) ++column;
     splits[static_cast<std::size_t>(thread)] = column;
@@ -39,9 +41,10 @@ std::size_t bytes_of(const auto& vector) { return vector.capacity() * sizeof(vec
 }  // namespace
 
 struct Assembly::Workspace {
-  std::vector<LaneRow> force_records, rotated_records, exact_records;  // eight doubles a row
-  std::vector<double> points;                                          // (n, 4) m
-  std::vector<double> forces, matrix;
+  linalg::AlignedBuffer force_records, rotated_records, exact_records;
+  linalg::AlignedBuffer points;  // (n, 4) m
+  linalg::AlignedBuffer matrix;
+  std::vector<double> forces;
   std::vector<double> batch_energy;          // one a batch
   std::vector<SmallestRatio> thread_ratios;  // one a thread
   std::vector<int> column_splits;
@@ -50,18 +53,19 @@ struct Assembly::Workspace {
 
   double* records(Tangent tangent) {
     if (tangent == Tangent::none) return nullptr;
-    return (tangent == Tangent::exact ? exact_records : rotated_records)[0].value;
+    return (tangent == Tangent::exact ? exact_records : rotated_records).data();
   }
 };
 
 Assembly::Assembly(std::shared_ptr<const FemModel> model, ThreadPool& pool)
     : model_(std::move(model)), pool_(&pool), work_(std::make_unique<Workspace>()) {
   const auto batches = static_cast<std::size_t>(model_->elements().batches());
-  work_->force_records.resize(kForceRecord * batches);
-  work_->rotated_records.resize(kRotatedRecord * batches);
-  work_->points.resize(4 * static_cast<std::size_t>(model_->mesh().node_count()));
+  work_->force_records = linalg::AlignedBuffer(kLanes * kForceRecord * batches);
+  work_->rotated_records = linalg::AlignedBuffer(kLanes * kRotatedRecord * batches);
+  work_->points = linalg::AlignedBuffer(4 * static_cast<std::size_t>(model_->mesh().node_count()));
   work_->forces.resize(3 * static_cast<std::size_t>(model_->free_count()));
-  work_->matrix.resize(linalg::kBlockStride * static_cast<std::size_t>(model_->pattern().blocks()));
+  work_->matrix = linalg::AlignedBuffer(linalg::kBlockStride *
+                                        static_cast<std::size_t>(model_->pattern().blocks()));
   work_->batch_energy.resize(batches);
   work_->thread_ratios.resize(static_cast<std::size_t>(pool.size()));
   work_->column_splits = split_columns(*model_, pool.size());
@@ -71,9 +75,9 @@ Assembly::~Assembly() = default;
 Assembly::Assembly(Assembly&&) noexcept = default;
 
 void Assembly::reserve(Tangent tangent) {
-  if (tangent != Tangent::exact || !work_->exact_records.empty()) return;
-  work_->exact_records.resize(kExactRecord *
-                              static_cast<std::size_t>(model_->elements().batches()));
+  if (tangent != Tangent::exact || work_->exact_records.size() > 0) return;
+  work_->exact_records = linalg::AlignedBuffer(
+      kLanes * kExactRecord * static_cast<std::size_t>(model_->elements().batches()));
 }
 
 void Assembly::evaluate(const Points& positions, const AssemblyWeights& weights) {
@@ -94,7 +98,7 @@ void Assembly::load_positions(const Points& positions) {
   pool_->for_range(nodes, kNodeGrain, [&](int begin, int end, int) {
     for (Eigen::Index i = begin; i < end; ++i) {
       for (Eigen::Index c = 0; c < 3; ++c) {
-        work.points[static_cast<std::size_t>(4 * i + c)] = positions(i, c);
+        work.points.data()[4 * i + c] = positions(i, c);
       }
     }
   });
@@ -106,7 +110,7 @@ void Assembly::evaluate_elements(const Points& positions, Tangent tangent) {
   const SmallestRatio none{std::numeric_limits<double>::infinity(), -1};
   std::ranges::fill(work.thread_ratios, none);
   const ElementBatches& elements = model_->elements();
-  const ElementOutput output{work.force_records[0].value, work.records(tangent),
+  const ElementOutput output{work.force_records.data(), work.records(tangent),
                              work.batch_energy.data()};
   pool_->for_range(elements.batches(), 1, [&](int begin, int end, int thread) {
     work.thread_ratios[static_cast<std::size_t>(thread)] =
@@ -145,7 +149,7 @@ void Assembly::gather(const AssemblyWeights& weights) {
   pool_->run([&](int thread) {
     const int begin = work.column_splits[static_cast<std::size_t>(thread)];
     const int end = work.column_splits[static_cast<std::size_t>(thread) + 1];
-    gather_forces(model.gather(), begin, end, work.force_records[0].value, work.forces.data());
+    gather_forces(model.gather(), begin, end, work.force_records.data(), work.forces.data());
     gather_blocks(model.gather(), model.pattern(), begin, end, records, weights,
                   consistent ? nullptr : model.free_mass().data(),
                   consistent ? model.mass_blocks().data() : nullptr, work.matrix.data());
@@ -153,8 +157,10 @@ void Assembly::gather(const AssemblyWeights& weights) {
 }
 
 std::span<const double> Assembly::forces() const { return work_->forces; }
-std::span<const double> Assembly::matrix() const { return work_->matrix; }
-std::span<double> Assembly::matrix() { return work_->matrix; }
+std::span<const double> Assembly::matrix() const {
+  return {work_->matrix.data(), work_->matrix.size()};
+}
+std::span<double> Assembly::matrix() { return {work_->matrix.data(), work_->matrix.size()}; }
 
 void Assembly::add_block(int free_i, int free_j, const Matrix3& k) {
   const int block = model_->pattern().find(free_i, free_j);
@@ -179,9 +185,9 @@ int Assembly::worst_element() const {
 
 std::size_t Assembly::bytes() const {
   const Workspace& work = *work_;
-  return sizeof(Assembly) + sizeof(Workspace) + bytes_of(work.force_records) +
-         bytes_of(work.rotated_records) + bytes_of(work.exact_records) + bytes_of(work.points) +
-         bytes_of(work.forces) + bytes_of(work.matrix) + bytes_of(work.batch_energy) +
+  return sizeof(Assembly) + sizeof(Workspace) + work.force_records.bytes() +
+         work.rotated_records.bytes() + work.exact_records.bytes() + work.points.bytes() +
+         bytes_of(work.forces) + work.matrix.bytes() + bytes_of(work.batch_energy) +
          bytes_of(work.thread_ratios) + bytes_of(work.column_splits);
 }
 

@@ -67,16 +67,16 @@ SINEW_INLINE Block rotation_terms(const GatherLists& lists, std::int32_t begin, 
 
 /// K without its constant diagonal.
 template <Tangent tangent>
-SINEW_INLINE Block gather_block(const GatherLists& lists, std::size_t block,
+SINEW_INLINE Block gather_block(const GatherLists& lists, std::size_t visit,
                                 const double* records) {
   constexpr int kRecord = tangent == Tangent::exact ? kExactRecord : kRotatedRecord;
-  const std::int32_t first = lists.contribution_start[block];
+  const std::int32_t first = lists.contribution_start[visit];
   Block result;
   if constexpr (tangent == Tangent::exact) {
-    result = rotation_terms(lists, first, lists.contribution_start[block + 1], records);
+    result = rotation_terms(lists, first, lists.contribution_start[visit + 1], records);
   }
   std::int32_t begin = first;
-  for (std::int32_t r = lists.run_start[block]; r < lists.run_start[block + 1]; ++r) {
+  for (std::int32_t r = lists.run_start[visit]; r < lists.run_start[visit + 1]; ++r) {
     const ContributionRun& run = lists.runs[static_cast<std::size_t>(r)];
     const Block products = outer_products<kRecord>(lists, begin, run.end, records);
     result.add(run.ratio, products);
@@ -91,14 +91,17 @@ void gather_columns(const GatherLists& lists, const linalg::BlockPattern& patter
                     int end, const double* records, const AssemblyWeights& weights,
                     const double* node_mass, const double* block_mass, double* matrix) {
   const double diagonal = weights.stiffness * (tangent == Tangent::exact ? 2.0 : 1.0);
-  for (auto j = static_cast<std::size_t>(begin); j < static_cast<std::size_t>(end); ++j) {
+  for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
+    const auto j = static_cast<std::size_t>(lists.column[k]);
     const auto first = static_cast<std::size_t>(pattern.column_start[j]);
     const auto last = static_cast<std::size_t>(pattern.column_start[j + 1]);
-    for (std::size_t b = first; b < last; ++b) {
+    auto visit = static_cast<std::size_t>(lists.block_visit[k]);
+    for (std::size_t b = first; b < last; ++b, ++visit) {
       double mass = b == first && node_mass != nullptr ? node_mass[j] : 0.0;
       if (block_mass != nullptr) mass = block_mass[b];
-      gather_block<tangent>(lists, b, records)
-          .store(weights.stiffness, diagonal * lists.diagonal_stiffness[b] + weights.mass * mass,
+      gather_block<tangent>(lists, visit, records)
+          .store(weights.stiffness,
+                 diagonal * lists.diagonal_stiffness[visit] + weights.mass * mass,
                  matrix + linalg::kBlockStride * b);
     }
   }
@@ -120,11 +123,12 @@ void gather_blocks(const GatherLists& lists, const linalg::BlockPattern& pattern
 
 void gather_forces(const GatherLists& lists, int begin, int end, const double* records,
                    double* forces) {
-  for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+  for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
     Quad sum = {};
-    for (std::int32_t k = lists.force_start[i]; k < lists.force_start[i + 1]; ++k) {
-      sum += load_quad(records + std::size_t{4} * lists.force_parts[static_cast<std::size_t>(k)]);
+    for (std::int32_t p = lists.force_start[k]; p < lists.force_start[k + 1]; ++p) {
+      sum += load_quad(records + std::size_t{4} * lists.force_parts[static_cast<std::size_t>(p)]);
     }
+    const auto i = static_cast<std::size_t>(lists.column[k]);
     for (std::size_t c = 0; c < 3; ++c) forces[3 * i + c] = sum[c];
   }
 }

@@ -7,7 +7,7 @@
 
 namespace sinew::fem {
 
-/// Writes the blocks in columns begin .. end-1 of the pattern as stiffness K + mass M.
+/// Writes the blocks of column visits begin .. end-1 as stiffness K + mass M.
 /// @param lists,pattern,begin,end what is gathered where, for these columns.
 /// @param records,weights element records of the tangent that `weights` names.
 /// @param node_mass (free,) kg, lumped; nullptr if `block_mass` is given.
@@ -17,7 +17,7 @@ void gather_blocks(const GatherLists& lists, const linalg::BlockPattern& pattern
                    int end, const double* records, const AssemblyWeights& weights,
                    const double* node_mass, const double* block_mass, double* matrix);
 
-/// Writes the internal forces of free nodes begin .. end-1.
+/// Writes the internal forces of the nodes of visits begin .. end-1.
 /// @param lists,begin,end what is gathered, for these nodes.
 /// @param records kForceRecord doubles a slot.
 /// @param forces (3 free,) N.

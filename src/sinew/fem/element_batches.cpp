@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include <Eigen/LU>
@@ -40,11 +41,16 @@ void check_volume(const mesh::Mesh& mesh, int tetrahedron, const Matrix3& edge) 
 
 /// Tetrahedra in the order of slots, each law filled up to whole batches with -1.
 std::vector<std::int32_t> slot_order(const mesh::Mesh& mesh, std::span<const Region> regions,
-                                     std::span<const std::int32_t> region_of) {
+                                     std::span<const std::int32_t> region_of,
+                                     std::span<const std::int32_t> rank) {
   std::vector<std::int32_t> order(mesh.tetrahedra.size());
   std::iota(order.begin(), order.end(), 0);
   const auto lowest = [&](std::int32_t t) {
-    return std::ranges::min(mesh.tetrahedra[static_cast<std::size_t>(t)]);
+    std::int32_t result = std::numeric_limits<std::int32_t>::max();
+    for (const NodeId node : mesh.tetrahedra[static_cast<std::size_t>(t)]) {
+      result = std::min(result, rank[static_cast<std::size_t>(node)]);
+    }
+    return result;
   };
   const auto law = [&](std::int32_t t) {
     return regions[static_cast<std::size_t>(region_of[static_cast<std::size_t>(t)])].law;
@@ -79,9 +85,10 @@ void set_lane(BatchConstants& batch, std::size_t lane, const Matrix3& edge, cons
 }  // namespace
 
 ElementBatches make_element_batches(const mesh::Mesh& mesh, std::span<const Region> regions,
-                                    std::span<const std::int32_t> region_of) {
+                                    std::span<const std::int32_t> region_of,
+                                    std::span<const std::int32_t> rank) {
   ElementBatches result;
-  result.tetrahedron = slot_order(mesh, regions, region_of);
+  result.tetrahedron = slot_order(mesh, regions, region_of, rank);
   const std::size_t slots = result.tetrahedron.size();
   result.constants.resize(slots / kLanes);
   result.nodes.resize(4 * slots);

@@ -10,6 +10,7 @@
 #include "sinew/fem/element_batches.hpp"
 #include "sinew/fem/gather_lists.hpp"
 #include "sinew/fem/mass.hpp"
+#include "sinew/fem/spatial_order.hpp"
 
 namespace sinew::fem {
 
@@ -139,10 +140,11 @@ FemModel::FemModel(std::shared_ptr<const mesh::Mesh> mesh, const FemModelSetting
     if (free_index_[static_cast<std::size_t>(node)] >= 0) free_nodes_.push_back(node);
   }
   pattern_ = make_pattern(*mesh_, free_index_, free_count(), settings.couplings);
+  const std::vector<std::int32_t> rank = spatial_ranks(mesh_->nodes);
   elements_ = std::make_unique<const ElementBatches>(
-      make_element_batches(*mesh_, settings.regions, region_of));
+      make_element_batches(*mesh_, settings.regions, region_of, rank));
   gather_ = std::make_unique<const GatherLists>(
-      make_gather_lists(*elements_, settings.regions, free_index_, pattern_));
+      make_gather_lists(*elements_, settings.regions, free_index_, rank, pattern_));
 
   const std::vector<double> volumes = element_volumes(*mesh_, *elements_);
   volume_ = std::accumulate(volumes.begin(), volumes.end(), 0.0);

@@ -15,10 +15,45 @@ namespace {
 using material::kLanes;
 
 struct Part {
-  std::int32_t block;
+  std::int32_t visit;  // block visit
   std::uint32_t code;
   double ratio;
   double stiffness;  // V mu g_a . g_b
+};
+
+/// In which order columns and their blocks are visited.
+struct BlockVisits {
+  const linalg::BlockPattern& pattern;
+  std::vector<std::int32_t> visit;  // column -> visit
+  const std::vector<std::int32_t>& block_visit;
+
+  BlockVisits(const linalg::BlockPattern& blocks, std::span<const NodeId> free_index,
+              std::span<const std::int32_t> rank, GatherLists& lists)
+      : pattern(blocks),
+        visit(static_cast<std::size_t>(blocks.nodes)),
+        block_visit(lists.block_visit) {
+    std::vector<std::int32_t> free_at(rank.size(), -1);  // rank -> free number
+    for (std::size_t node = 0; node < rank.size(); ++node) {
+      free_at[static_cast<std::size_t>(rank[node])] = free_index[node];
+    }
+    std::int32_t next = 0;
+    for (const std::int32_t free : free_at) {
+      if (free < 0) continue;
+      const auto j = static_cast<std::size_t>(free);
+      visit[j] = static_cast<std::int32_t>(lists.column.size());
+      lists.column.push_back(free);
+      lists.block_visit.push_back(next);
+      next += pattern.column_start[j + 1] - pattern.column_start[j];
+    }
+    lists.block_visit.push_back(next);
+  }
+
+  /// Visit of block (i, j), i >= j.
+  std::int32_t of(NodeId i, NodeId j) const {
+    const auto column = static_cast<std::size_t>(j);
+    return block_visit[static_cast<std::size_t>(visit[column])] + pattern.find(i, j) -
+           pattern.column_start[column];
+  }
 };
 
 std::array<NodeId, 4> free_nodes_of(const ElementBatches& elements, std::size_t slot,
@@ -42,7 +77,7 @@ Vector3 gradient(const BatchConstants& batch, std::size_t lane, std::size_t a) {
 
 /// Appends the blocks in the lower triangle to which a slot contributes.
 void append_parts(const ElementBatches& elements, std::span<const Region> regions, std::size_t slot,
-                  const std::array<NodeId, 4>& free, const linalg::BlockPattern& pattern,
+                  const std::array<NodeId, 4>& free, const BlockVisits& visits,
                   std::vector<Part>& parts) {
   const BatchConstants& batch = elements.constants[slot / kLanes];
   const std::size_t lane = slot % kLanes;
@@ -53,7 +88,7 @@ void append_parts(const ElementBatches& elements, std::span<const Region> region
     for (std::size_t b = 0; b < 4; ++b) {
       if (free[b] < 0 || free[a] < free[b]) continue;
       const auto code = static_cast<std::uint32_t>(16 * slot + 4 * a + b);
-      parts.push_back({static_cast<std::int32_t>(pattern.find(free[a], free[b])), code,
+      parts.push_back({visits.of(free[a], free[b]), code,
                        constants.first_lame() / constants.shear_modulus(),
                        scale * gradient(batch, lane, a).dot(gradient(batch, lane, b))});
     }
@@ -62,7 +97,7 @@ void append_parts(const ElementBatches& elements, std::span<const Region> region
 
 void write_blocks(std::vector<Part>& parts, int blocks, GatherLists& lists) {
   std::ranges::sort(parts, [](const Part& p, const Part& q) {
-    if (p.block != q.block) return p.block < q.block;
+    if (p.visit != q.visit) return p.visit < q.visit;
     return p.ratio != q.ratio ? p.ratio < q.ratio : p.code < q.code;
   });
   lists.contributions.reserve(parts.size());
@@ -71,7 +106,7 @@ void write_blocks(std::vector<Part>& parts, int blocks, GatherLists& lists) {
   for (int block = 0; block < blocks; ++block) {
     lists.run_start.push_back(static_cast<std::int32_t>(lists.runs.size()));
     lists.contribution_start.push_back(static_cast<std::int32_t>(next));
-    for (bool first = true; next < parts.size() && parts[next].block == block; first = false) {
+    for (bool first = true; next < parts.size() && parts[next].visit == block; first = false) {
       const Part& part = parts[next++];
       if (first || lists.runs.back().ratio != part.ratio) lists.runs.push_back({0, part.ratio});
       lists.contributions.push_back(part.code);
@@ -83,11 +118,15 @@ void write_blocks(std::vector<Part>& parts, int blocks, GatherLists& lists) {
   lists.contribution_start.push_back(static_cast<std::int32_t>(next));
 }
 
-void write_forces(const std::vector<std::array<NodeId, 4>>& free, int nodes, GatherLists& lists) {
-  lists.force_start.assign(static_cast<std::size_t>(nodes) + 1, 0);
+void write_forces(const std::vector<std::array<NodeId, 4>>& free, const BlockVisits& visits,
+                  GatherLists& lists) {
+  lists.force_start.assign(visits.visit.size() + 1, 0);
+  const auto visit = [&](NodeId node) {
+    return static_cast<std::size_t>(visits.visit[static_cast<std::size_t>(node)]);
+  };
   for (const auto& element : free) {
     for (const NodeId node : element) {
-      if (node >= 0) ++lists.force_start[static_cast<std::size_t>(node) + 1];
+      if (node >= 0) ++lists.force_start[visit(node) + 1];
     }
   }
   std::partial_sum(lists.force_start.begin(), lists.force_start.end(), lists.force_start.begin());
@@ -96,7 +135,7 @@ void write_forces(const std::vector<std::array<NodeId, 4>>& free, int nodes, Gat
   for (std::size_t slot = 0; slot < free.size(); ++slot) {
     for (std::size_t a = 0; a < 4; ++a) {
       if (free[slot][a] < 0) continue;
-      const auto place = cursor[static_cast<std::size_t>(free[slot][a])]++;
+      const auto place = cursor[visit(free[slot][a])]++;
       lists.force_parts[static_cast<std::size_t>(place)] = static_cast<std::uint32_t>(4 * slot + a);
     }
   }
@@ -106,6 +145,7 @@ void write_forces(const std::vector<std::array<NodeId, 4>>& free, int nodes, Gat
 
 GatherLists make_gather_lists(const ElementBatches& elements, std::span<const Region> regions,
                               std::span<const NodeId> free_index,
+                              std::span<const std::int32_t> rank,
                               const linalg::BlockPattern& pattern) {
   const std::size_t slots = elements.tetrahedron.size();
   // 16 s + 4 a + b must fit 32 bits unsigned, and counts of contributions 31 bits
@@ -114,15 +154,16 @@ GatherLists make_gather_lists(const ElementBatches& elements, std::span<const Re
                 "split it; at most 134 million fit one body");
   }
   GatherLists lists;
+  const BlockVisits visits(pattern, free_index, rank, lists);
   std::vector<Part> parts;
   std::vector<std::array<NodeId, 4>> free(slots, {-1, -1, -1, -1});
   for (std::size_t slot = 0; slot < slots; ++slot) {
     if (elements.tetrahedron[slot] < 0) continue;
     free[slot] = free_nodes_of(elements, slot, free_index);
-    append_parts(elements, regions, slot, free[slot], pattern, parts);
+    append_parts(elements, regions, slot, free[slot], visits, parts);
   }
   write_blocks(parts, pattern.blocks(), lists);
-  write_forces(free, pattern.nodes, lists);
+  write_forces(free, visits, lists);
   return lists;
 }
 
