@@ -1,6 +1,7 @@
 // Counts every allocation of the program: a numeric phase must not allocate.
 #include <atomic>
 #include <cstdlib>
+#include <memory>
 #include <new>
 
 #include <gtest/gtest.h>

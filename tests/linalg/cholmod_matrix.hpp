@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include <cholmod.h>
+#include <suitesparse/cholmod.h>
 
 #include "mesh_matrices.hpp"
 
