@@ -24,8 +24,8 @@ struct BatchConstants {
   LaneRow mu, lambda;      ///< Pa
 };
 
-/// Slot s = 8 batch + lane. Within a law, elements are sorted by their lowest node so that
-/// neighbours lie close together; no batch mixes laws. Lanes that fill up a batch repeat its last
+/// Slot s = 8 batch + lane. Within a law, elements are in spatial order so that neighbours lie
+/// close together; no batch mixes laws. Lanes that fill up a batch repeat its last
 /// element with V = 0 and nothing gathers from them.
 struct ElementBatches {
   std::vector<BatchConstants> constants;
@@ -39,8 +39,10 @@ struct ElementBatches {
 /// Sorts the tetrahedra into batches and computes their constants.
 /// @param mesh,regions what is batched.
 /// @param region_of region of each tetrahedron of the mesh.
+/// @param rank spatial rank of each node.
 /// Throws Error(zero-volume, inverted-element) naming the tetrahedron.
 ElementBatches make_element_batches(const mesh::Mesh& mesh, std::span<const Region> regions,
-                                    std::span<const std::int32_t> region_of);
+                                    std::span<const std::int32_t> region_of,
+                                    std::span<const std::int32_t> rank);
 
 }  // namespace sinew::fem

@@ -18,17 +18,22 @@ struct ContributionRun {
   double ratio;      ///< lambda / mu
 };
 
+/// Columns of the matrix, that is free nodes, are visited in spatial order; lists are in the order
+/// of visits, so that they are read once from front to back. Visit k is to column column[k]; its
+/// block at position column_start[column[k]] + m of the pattern is visit block_visit[k] + m.
 struct GatherLists {
+  std::vector<std::int32_t> column, block_visit;
   /// Element slot s couples local node a (row) with b (column): 16 s + 4 a + b.
   std::vector<std::uint32_t> contributions;
   std::vector<ContributionRun> runs;
-  /// Runs of block b: run_start[b] .. run_start[b+1]-1; its contributions begin at
-  /// contribution_start[b].
+  /// Runs of block visit q: run_start[q] .. run_start[q+1]-1; its contributions begin at
+  /// contribution_start[q].
   std::vector<std::int32_t> run_start, contribution_start;
-  /// (blocks,) sum of V mu g_a . g_b over a block's contributions, N/m.
+  /// (blocks,) by block visit: sum of V mu g_a . g_b over a block's contributions, N/m.
   std::vector<double> diagonal_stiffness;
 
-  /// Parts of free node i's force: force_parts[force_start[i] .. force_start[i+1]-1] = 4 s + a.
+  /// Parts of the force of visit k's node: force_parts[force_start[k] .. force_start[k+1]-1] =
+  /// 4 s + a.
   std::vector<std::int32_t> force_start;
   std::vector<std::uint32_t> force_parts;
 };
@@ -36,9 +41,11 @@ struct GatherLists {
 /// Lists what each block and each nodal force is summed from.
 /// @param elements,regions,pattern what is gathered, and into which blocks.
 /// @param free_index mesh node -> free number or -1.
+/// @param rank spatial rank of each mesh node.
 /// Throws Error(size-limit) beyond 2^28 element slots.
 GatherLists make_gather_lists(const ElementBatches& elements, std::span<const Region> regions,
                               std::span<const NodeId> free_index,
+                              std::span<const std::int32_t> rank,
                               const linalg::BlockPattern& pattern);
 
 }  // namespace sinew::fem
