@@ -20,6 +20,7 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   # GCC 12 takes dead vector branches of Eigen and of its own intrinsics for real ones (GCC bugs
   # 105593, 106247), depending on the instruction set. The sanitizers and clang-tidy look for these.
   target_compile_options(sinew_options INTERFACE
+                         -Wno-psabi  # wide vectors are only passed within inlined code
                          -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread
                          -Wno-maybe-uninitialized -Wno-uninitialized)
 endif()

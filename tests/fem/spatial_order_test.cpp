@@ -19,7 +19,8 @@ TEST(SpatialRanks, ArePermutations) {
 
 TEST(SpatialRanks, FollowTheCurveThroughACube) {
   Points corners(8, 3);
-  for (int i = 0; i < 8; ++i) corners.row(7 - i) << i & 1, i >> 1 & 1, i >> 2 & 1;
+  for (int i = 0; i < 8; ++i)
+    corners.row(7 - i) = Eigen::RowVector3d(i & 1, i >> 1 & 1, i >> 2 & 1);
   EXPECT_EQ(spatial_ranks(corners), (std::vector<std::int32_t>{7, 6, 5, 4, 3, 2, 1, 0}));
 }
 
