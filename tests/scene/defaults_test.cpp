@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "sinew/mesh/shapes.hpp"
 #include "sinew/scene/check.hpp"
 #include "sinew/scene/grammar.hpp"
 #include "sinew/scene/scene.hpp"
@@ -151,6 +152,22 @@ TEST(Defaults, DocumentedOnesAreThoseOfTheStructs) {
   Visitor visitor(tree);
   visitor.visit(tree, grammar());
   EXPECT_GT(visitor.tried(), 45);
+}
+
+TEST(Defaults, OfTheTrunkAreThoseOfItsShape) {
+  const Form& bodies = form_of(grammar(), "bodies", Shape::names);
+  const Form& shapes = form_of(*bodies.items[0].choices[0].table, "mesh", Shape::variants);
+  const mesh::TrunkShape trunk;
+  const auto documented = [&](const char* key) {
+    const Key& entry = *shapes.choices.back().table->find(key);
+    return read_numbers(parse_yaml(entry.default_text, key), entry.forms[0])[0];
+  };
+  ASSERT_EQ(shapes.choices.back().word, "trunk");
+  EXPECT_DOUBLE_EQ(documented("base_radius"), trunk.bottom_radius);
+  EXPECT_DOUBLE_EQ(documented("tip_radius"), trunk.top_radius);
+  EXPECT_DOUBLE_EQ(documented("height"), trunk.height);
+  EXPECT_EQ(documented("bellows"), trunk.bellows);
+  EXPECT_DOUBLE_EQ(trunk.groove_depth, 0.25) << "the page says: a quarter of base_radius";
 }
 
 // Each example of the grammar is what the grammar accepts.

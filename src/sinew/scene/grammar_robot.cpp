@@ -5,17 +5,26 @@ namespace sinew::scene::forms {
 
 namespace {
 
-Key shape_length(const char* name, const char* example, const char* description,
-                 bool required = true) {
+Key shape_length(const char* name, const char* example, const char* description) {
   return {.name = name,
           .forms = {quantity(length(), positive())},
           .example = example,
           .description = description,
-          .required = required};
+          .required = true};
+}
+
+Key optional_length(const char* name, const char* example, const char* default_text,
+                    const char* description) {
+  Key key = shape_length(name, example, description);
+  key.default_text = default_text;
+  key.required = false;
+  return key;
 }
 
 Key element_size() {
-  return shape_length("element_size", "5 mm", "Aimed edge length of the tetrahedra.", false);
+  return optional_length(
+      "element_size", "5 mm", "",
+      "Aimed edge length of the tetrahedra. Without: a few through the thinnest part.");
 }
 
 Choice shape(const char* word, const char* description, std::vector<Key> keys) {
@@ -28,31 +37,34 @@ Choice shape(const char* word, const char* description, std::vector<Key> keys) {
 }
 
 Form mesh_shape() {
-  return variants("shape",
-                  {shape("block", "A box from the origin along the axes, z upwards.",
-                         {shape_length("length", "100 mm", "Along x."),
-                          shape_length("width", "20 mm", "Along y."),
-                          shape_length("height", "20 mm", "Along z.")}),
-                   shape("cylinder", "A solid cylinder about z, its base at the origin.",
-                         {shape_length("radius", "15 mm", "Outer radius."),
-                          shape_length("height", "195 mm", "Along z.")}),
-                   shape("cone", "A solid truncated cone about z, its base at the origin.",
-                         {shape_length("base_radius", "20 mm", "Radius at z = 0."),
-                          shape_length("tip_radius", "8 mm", "Radius at the top."),
-                          shape_length("height", "195 mm", "Along z.")}),
-                   shape("hollow-cylinder", "A tube about z, its base at the origin.",
-                         {shape_length("inner_radius", "8 mm", "Radius of the bore."),
-                          shape_length("outer_radius", "15 mm", "Outer radius."),
-                          shape_length("height", "195 mm", "Along z.")}),
-                   shape("trunk", "A tapered trunk with bellows about z, its base at the origin.",
-                         {shape_length("base_radius", "20 mm", "Outer radius at z = 0.", false),
-                          shape_length("tip_radius", "12 mm", "Outer radius at the top.", false),
-                          shape_length("height", "195 mm", "Along z.", false),
-                          Key{.name = "bellows",
-                              .forms = {integer(1, 1000)},
-                              .example = "10",
-                              .description = "Number of bellows."},
-                          shape_length("bellow_depth", "4 mm", "Depth of the grooves.", false)})});
+  return variants(
+      "shape", {shape("block", "A box from the origin along the axes, z upwards.",
+                      {shape_length("length", "100 mm", "Along x."),
+                       shape_length("width", "20 mm", "Along y."),
+                       shape_length("height", "20 mm", "Along z.")}),
+                shape("cylinder", "A solid cylinder about z, its base at the origin.",
+                      {shape_length("radius", "15 mm", "Outer radius."),
+                       shape_length("height", "195 mm", "Along z.")}),
+                shape("cone", "A solid truncated cone about z, its base at the origin.",
+                      {shape_length("base_radius", "20 mm", "Radius at z = 0."),
+                       shape_length("tip_radius", "8 mm", "Radius at the top."),
+                       shape_length("height", "195 mm", "Along z.")}),
+                shape("hollow-cylinder", "A tube about z, its base at the origin.",
+                      {shape_length("inner_radius", "8 mm", "Radius of the bore."),
+                       shape_length("outer_radius", "15 mm", "Outer radius."),
+                       shape_length("height", "195 mm", "Along z.")}),
+                shape("trunk", "A tapered trunk with bellows about z, its base at the origin.",
+                      {optional_length("base_radius", "20 mm", "20 mm", "Outer radius at z = 0."),
+                       optional_length("tip_radius", "12 mm", "8.5 mm", "Outer radius at the top."),
+                       optional_length("height", "195 mm", "195 mm", "Along z."),
+                       Key{.name = "bellows",
+                           .forms = {integer(1, 1000)},
+                           .example = "10",
+                           .default_text = "9",
+                           .description = "Number of bellows."},
+                       optional_length("bellow_depth", "4 mm", "",
+                                       "Depth of the grooves at z = 0; less towards the tip, as "
+                                       "the radius. Without: a quarter of base_radius.")})});
 }
 
 std::shared_ptr<const KeyTable> mesh_file_table() {
