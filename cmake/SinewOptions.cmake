@@ -17,12 +17,12 @@ target_compile_options(sinew_options INTERFACE -Wall -Wextra -Wconversion -Wshad
                        # Designated initializers name what they set; the rest has its default.
                        -Wno-missing-field-initializers)
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
-  # GCC 12 takes dead vector branches of Eigen and of its own intrinsics for real ones (GCC bugs
-  # 105593, 106247), depending on the instruction set. The sanitizers and clang-tidy look for these.
+  # GCC 12 takes dead branches of Eigen, of its own intrinsics and of std::string for real ones (GCC
+  # bugs 105593, 106247, 105651), depending on the instruction set. The sanitizers and clang-tidy look for these.
   target_compile_options(sinew_options INTERFACE
                          -Wno-psabi  # wide vectors are only passed within inlined code
                          -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread
-                         -Wno-maybe-uninitialized -Wno-uninitialized)
+                         -Wno-maybe-uninitialized -Wno-uninitialized -Wno-restrict)
 endif()
 if(SINEW_WERROR)
   target_compile_options(sinew_options INTERFACE -Werror)
