@@ -121,7 +121,7 @@ TEST_F(Effectors, SeveralPointsMeanTheirMean) {
 }
 
 TEST_F(Effectors, ChosenDirectionsGiveOneRowEach) {
-  settings_.directions = {Vector3(0, 0, 2)};
+  settings_.directions.assign(1, Vector3(0, 0, 2));
   finish();
   EXPECT_EQ(effector().row_count(), 1);
   EXPECT_NEAR(simulation_->world().delta()[0], settings_.points.col(2).mean(), 1e-15);

@@ -64,10 +64,11 @@ TEST(Simulation, SlackCablesHaveExactlyNoTension) {
 TEST(Simulation, TensionAndLengthMayBeMixed) {
   Simulation simulation(beam());
   simulation.command(0, tension(0.5));
-  simulation.command(2, pull(0.0));
+  simulation.command(1, pull(0.002));
   run(simulation, 40);
   EXPECT_EQ(simulation.actuator(0).effort, 0.5);
-  EXPECT_NEAR(simulation.actuator(2).motion, 0.0, 1e-12);
+  EXPECT_NEAR(simulation.actuator(1).motion, 0.002, 1e-12);
+  EXPECT_GT(simulation.actuator(1).effort, 0.0);
   EXPECT_LT(simulation.report().violation, 1e-12);
 }
 
@@ -138,6 +139,7 @@ TEST(Simulation, NewtonStepsMeetTheEquationOfBackwardEuler) {
   options.damping = {.mass = 0.5, .stiffness = 0.01};
   options.step.integrator = mechanics::Integrator::backward_euler;
   options.step.method = Method::newton;
+  options.step.tangent = mechanics::Tangent::exact;
   options.step.tolerance = 1e-11;
   for (const auto mass : {fem::MassMatrix::lumped, fem::MassMatrix::consistent}) {
     options.mass = mass;
@@ -162,7 +164,7 @@ TEST(Simulation, RealTimeAndExactTangentLeadToTheSameStep) {
   options.step.tangent = mechanics::Tangent::exact;
   Simulation exact(beam(options));
   for (Simulation* simulation : {&rough, &exact}) {
-    simulation->command(0, pull(0.005));
+    simulation->command(0, {CommandKind::motion, Signal::ramp({0.0, 0.005, 0.0, 0.05})});
     run(*simulation, 5);
   }
   EXPECT_LT((rough.fem_body(0).positions() - exact.fem_body(0).positions()).cwiseAbs().maxCoeff(),
@@ -252,7 +254,7 @@ TEST(Simulation, SimulationsOfOneModelDoNotTouchEachOther) {
   Simulation first(model), second(model);
   first.command(0, pull(0.004));
   run(first, 10);
-  EXPECT_EQ(second.effector_value(0), Vector3(0.1, 0.0, 0.0));
+  EXPECT_LT((second.effector_value(0) - Vector3(0.1, 0.0, 0.0)).norm(), 1e-15);
 }
 
 TEST(Simulation, AHugePullIsCutBackAndNothingInverts) {
@@ -328,7 +330,7 @@ TEST(Simulation, ComplianceIsTheDerivativeOfTheStatics) {
     for (int i = 0; i < 4; ++i) {
       simulation.command(i, tension(at[static_cast<std::size_t>(i)] + (i == k ? more : 0.0)));
     }
-    simulation.solve_static({.tolerance = 1e-13});
+    simulation.solve_static({.tolerance = 1e-12});
     return VectorX(simulation.world().measure_delta());
   };
   settle(0, 0.0);

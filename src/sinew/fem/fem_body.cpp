@@ -26,8 +26,7 @@ struct FemBody::Numbers {
   Assembly assembly;
   std::unique_ptr<linalg::Factorisation> factorisation;
   std::vector<double> border;
-  // Newton with stiffness damping: A at the start of the step, and the sum that is factorised.
-  std::vector<double> start_matrix, damped_matrix;
+  std::vector<double> start_matrix;  // Newton with stiffness damping: A at the start of the step
   bool damped = false;
 };
 
@@ -108,13 +107,12 @@ void FemBody::add_frozen_damping(const mechanics::LinearisationRequest& request)
   const auto matrix = active_->assembly.matrix();
   if (first_linearisation_) {
     active_->start_matrix.assign(matrix.begin(), matrix.end());
-    active_->damped_matrix = active_->start_matrix;
     return;
   }
   const double rate = model_.settings().damping.stiffness * request.weights.damping;
   const double share = rate / (1.0 + rate);
   for (std::size_t i = 0; i < matrix.size(); ++i) {
-    active_->damped_matrix[i] = matrix[i] + share * active_->start_matrix[i];
+    matrix[i] += share * active_->start_matrix[i];
   }
 }
 
@@ -209,10 +207,8 @@ void FemBody::hold_imbalance(std::span<const double> effort) {
 }
 
 linalg::FactorStatus FemBody::condense() {
-  const std::span<const double> matrix = active_->damped
-                                             ? std::span<const double>(active_->damped_matrix)
-                                             : std::span<const double>(active_->assembly.matrix());
-  return active_->factorisation->factorise(matrix, active_->border, span_of(right_));
+  return active_->factorisation->factorise(active_->assembly.matrix(), active_->border,
+                                           span_of(right_));
 }
 
 void FemBody::add_compliance(MatrixX& compliance, VectorX& free_motion) const {
@@ -308,7 +304,7 @@ std::size_t FemBody::bytes() const {
   for (const Numbers* n : {plain_.get(), curved_.get()}) {
     if (n == nullptr) continue;
     total += n->assembly.bytes() + n->factorisation->bytes() +
-             sizeof(double) * (n->border.size() + n->start_matrix.size() + n->damped_matrix.size());
+             sizeof(double) * (n->border.size() + n->start_matrix.size());
   }
   return total;
 }

@@ -15,7 +15,8 @@ std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// A task is worth waiting a little for on the thread that has its operands in its cache (s).
 constexpr double kCacheBonus = 2e-6;
-constexpr int kPauses = 2000;
+/// Pauses before a waiting thread yields: a few microseconds, the length of a task.
+constexpr int kPauses = 300;
 
 void do_panel(BlockNumeric& numeric, int p, const BlockInput& input,
               BlockNumeric::Scratch& scratch) {

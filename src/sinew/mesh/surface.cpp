@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <vector>
 
@@ -12,17 +13,18 @@
 #include <assimp/BaseImporter.h>
 #include <assimp/Importer.hpp>
 #include <assimp/importerdesc.h>
-#include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
 #include "sinew/mesh/duplicates.hpp"
+#include "sinew/mesh/ply_guard.hpp"
 
 namespace sinew::mesh {
 
 namespace {
 
+constexpr std::size_t kReasonShown = 100;  // assimp quotes whole files
 constexpr std::array kExtensions = {"stl", "obj", "ply"};
 
 /// Leaves only the importers for the formats above: the others are not ours to vouch for.
@@ -38,6 +40,35 @@ void keep_named_importers(Assimp::Importer& importer) {
   }
 }
 
+/// Cuts a polygon into a fan from the first corner from which all triangles face the same way.
+void add_polygon(const std::vector<NodeId>& corners, const std::vector<double>& coordinates,
+                 Surface& surface) {
+  const std::size_t n = corners.size();
+  const auto position = [&](NodeId node) {
+    return Vector3(Eigen::Map<const Vector3>(&coordinates[3 * static_cast<std::size_t>(node)]));
+  };
+  for (std::size_t start = 0; start < n; ++start) {
+    std::vector<Triangle> fan;
+    Vector3 area = Vector3::Zero();
+    std::vector<Vector3> normals;
+    for (std::size_t k = 1; k + 1 < n; ++k) {
+      fan.push_back({corners[start], corners[(start + k) % n], corners[(start + k + 1) % n]});
+      const Vector3 origin = position(fan.back()[0]);
+      normals.push_back((position(fan.back()[1]) - origin).cross(position(fan.back()[2]) - origin));
+      area += normals.back();
+    }
+    const bool alike = std::all_of(normals.begin(), normals.end(), [&](const Vector3& normal) {
+      return !(normal.dot(area) < 0.0);
+    });
+    if (!alike) continue;
+    surface.triangles.insert(surface.triangles.end(), fan.begin(), fan.end());
+    return;
+  }
+  throw Error(ErrorKind::unsupported_element, {.file = surface.name},
+              fmt::format("a polygon of {} corners cannot be cut into a fan of triangles", n),
+              "export the surface as triangles");
+}
+
 /// All triangles of the scene, vertices as the file has them.
 Surface collect(const aiScene& scene, const std::string& name) {
   std::vector<double> coordinates;
@@ -51,14 +82,29 @@ Surface collect(const aiScene& scene, const std::string& name) {
     }
     for (unsigned f = 0; f < part.mNumFaces; ++f) {
       const aiFace& face = part.mFaces[f];
-      if (face.mNumIndices != 3) continue;  // points and lines, which are no surface
-      const auto node = [&](unsigned k) { return first + static_cast<NodeId>(face.mIndices[k]); };
-      surface.triangles.push_back({node(0), node(1), node(2)});
+      if (face.mNumIndices < 3) continue;  // points and lines, which are no surface
+      std::vector<NodeId> corners;
+      for (unsigned k = 0; k < face.mNumIndices; ++k) {
+        corners.push_back(first + static_cast<NodeId>(face.mIndices[k]));
+      }
+      add_polygon(corners, coordinates, surface);
     }
   }
   surface.nodes = Eigen::Map<const Points>(coordinates.data(),
                                            static_cast<Eigen::Index>(coordinates.size() / 3), 3);
   return surface;
+}
+
+/// A text file that was cut short at the end of a triangle would pass for a smaller surface.
+void require_whole_stl(std::string_view bytes, const std::string& name) {
+  constexpr std::size_t kHeader = 84, kTriangle = 50;
+  std::uint32_t count = 0;
+  if (bytes.size() >= kHeader) std::memcpy(&count, bytes.data() + 80, sizeof(count));
+  const bool binary = bytes.size() >= kHeader && bytes.size() == kHeader + kTriangle * count;
+  if (binary || !bytes.starts_with("solid")) return;
+  if (bytes.find("endsolid") != std::string_view::npos) return;
+  throw Error(ErrorKind::truncated_file, {.file = name}, "the text ends without `endsolid`",
+              "write the file again; it was probably cut short");
 }
 
 void require_finite(const Surface& surface) {
@@ -126,13 +172,17 @@ Surface parse_surface(std::string_view bytes, const std::string& extension, cons
                 fmt::format("surfaces are not read from `.{}` files", extension),
                 "give an STL, OBJ or PLY file");
   }
+  if (extension == "ply") require_whole_ply(bytes, name);
+  if (extension == "stl") require_whole_stl(bytes, name);
   Assimp::Importer importer;
   keep_named_importers(importer);
-  const aiScene* scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(),
-                                                     aiProcess_Triangulate, extension.c_str());
+  // No post-processing: its triangulation aborts the program on some damaged files.
+  const aiScene* scene =
+      importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, extension.c_str());
   if (scene == nullptr) {
     throw Error(ErrorKind::malformed_file, {.file = name},
-                fmt::format("the surface cannot be read: {}", importer.GetErrorString()),
+                fmt::format("the surface cannot be read: {}",
+                            std::string_view(importer.GetErrorString()).substr(0, kReasonShown)),
                 "write the file again");
   }
   const Surface raw = collect(*scene, name);

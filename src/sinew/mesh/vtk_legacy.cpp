@@ -80,8 +80,11 @@ class LegacyReader {
   RawMesh read() {
     header();
     while (!in_.at_end()) section();
-    if (!have_points_) {
-      in_.fail(ErrorKind::malformed_file, "the file has no POINTS section");
+    if (!have_points_) in_.fail(ErrorKind::malformed_file, "the file has no POINTS section");
+    if (!have_cells_ || !have_types_) {
+      in_.fail(ErrorKind::truncated_file,
+               fmt::format("the file has no {} section", have_cells_ ? "CELL_TYPES" : "CELLS"),
+               "write the file again; it was probably cut short");
     }
     return std::move(raw_);
   }
@@ -122,6 +125,7 @@ class LegacyReader {
     } else if (keyword == "cell_types") {
       const std::size_t count = line_count("cell types", 1);
       raw_.types = integers(count, ScalarType::int32, "cell types");
+      have_types_ = true;
     } else if (keyword == "point_data" || keyword == "cell_data") {
       fields_ = keyword == "point_data" ? &raw_.point_fields : &raw_.cell_fields;
       tuples_ = line_count("values", 0);
@@ -155,6 +159,7 @@ class LegacyReader {
   }
 
   void cells() {
+    have_cells_ = true;
     const std::int64_t first = in_.integer("the number of cells");
     const std::int64_t second = in_.integer("the size of the cells");
     end_of_header();
@@ -386,6 +391,8 @@ class LegacyReader {
   std::size_t tuples_ = 0;
   bool binary_ = false;
   bool have_points_ = false;
+  bool have_cells_ = false;
+  bool have_types_ = false;
 };
 
 }  // namespace

@@ -50,10 +50,12 @@ class VtuBuilder {
   template <typename Value>
   void array(const std::string& name, const char* type, int components,
              const std::vector<Value>& values) {
+    // Readers take an array without the attribute as plain scalars, with it as rows of one.
+    const std::string width =
+        components == 1 ? "" : fmt::format(" NumberOfComponents=\"{}\"", components);
     xml_ += fmt::format(
-        "        <DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" "
-        "offset=\"{}\"/>\n",
-        type, escaped(name), components, data_.size());
+        "        <DataArray type=\"{}\" Name=\"{}\"{} format=\"appended\" offset=\"{}\"/>\n", type,
+        escaped(name), width, data_.size());
     append_compressed(
         {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value)});
   }

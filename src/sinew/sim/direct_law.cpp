@@ -96,7 +96,13 @@ LawStatus DirectLaw::solve(const LawProblem& problem, std::span<double> effort) 
     scaled_effort_ = result.x;
     for (std::size_t i = 0; i < branch_.size(); ++i) {
       const auto k = static_cast<Eigen::Index>(i);
-      effort[static_cast<std::size_t>(problem.actuators[i].row)] = scale_[k] * scaled_effort_[k];
+      const bool held = branch_[i] == Branch::hold;
+      const Box box = box_of(problem.actuators[i], held);
+      // Scaling must not blur a limit: a slack cable's tension is zero, not nearly so.
+      double lambda = scale_[k] * scaled_effort_[k];
+      if (scaled_effort_[k] <= program_.lower[k]) lambda = box.lower;
+      if (scaled_effort_[k] >= program_.upper[k]) lambda = std::max(box.lower, box.upper);
+      effort[static_cast<std::size_t>(problem.actuators[i].row)] = lambda;
     }
     if (!switch_branches(problem)) return LawStatus::solved;
   }

@@ -1,0 +1,70 @@
+"""Simulates soft robots and steers them in real time.
+
+    import sinew
+    sim = sinew.load("trunk.yaml")
+    sim.actuator("long_0").displacement = 0.010     # m
+    sim.step(100)
+    sim.effector("tip").position                    # (3,) m
+
+SI units everywhere. docs/python.md is the guide.
+"""
+
+from . import errors, mesh
+from ._core import (
+    Actuator,
+    Body,
+    Circle,
+    Effector,
+    InverseController,
+    Limits,
+    Linearisation,
+    Polyline,
+    Ramp,
+    Samples,
+    Signal,
+    Simulation,
+    Sine,
+    StaticReport,
+    StepReport,
+    Steps,
+    Target,
+    Trajectory,
+    __version__,
+)
+from .errors import Error, Place, RunError
+from .scene import load, loads
+
+__all__ = [
+    "Actuator",
+    "Body",
+    "Circle",
+    "Effector",
+    "Error",
+    "InverseController",
+    "Limits",
+    "Linearisation",
+    "Place",
+    "Polyline",
+    "Ramp",
+    "RunError",
+    "Samples",
+    "Signal",
+    "Simulation",
+    "Sine",
+    "StaticReport",
+    "StepReport",
+    "Steps",
+    "Target",
+    "Trajectory",
+    "__version__",
+    "errors",
+    "load",
+    "loads",
+    "mesh",
+]
+
+# Names by which users know them, whatever module compiled them.
+for _name in __all__:
+    if isinstance(globals()[_name], type) and globals()[_name].__module__ == "sinew._core":
+        globals()[_name].__module__ = "sinew"
+del _name

@@ -1,0 +1,73 @@
+"""What sinew raises."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple, Union
+
+__all__ = ["Error", "Place", "RunError"]
+
+
+class Place(NamedTuple):
+    """Where something is wrong; what is unknown is empty or 0.
+
+    Attributes
+    ----------
+    file : str
+        The scene, table or mesh.
+    line, column : int
+        From 1.
+    item : str
+        The dotted path in the scene, as "bodies.trunk.mass", or the argument.
+    """
+
+    file: str = ""
+    line: int = 0
+    column: int = 0
+    item: str = ""
+
+    def __str__(self) -> str:
+        text = self.file
+        if self.line > 0:
+            text += f":{self.line}"
+            if self.column > 0:
+                text += f":{self.column}"
+        return ": ".join(part for part in (text, self.item) if part)
+
+
+class Error(Exception):
+    """Something wrong in what was given: a scene, a file, an argument.
+
+    Parameters
+    ----------
+    kind : str
+        Which error it is, as "unknown-name": stable, to be tested for.
+    place : Place or str
+        Where; a string is the item.
+    message : str
+        What is wrong, with the offending value.
+    remedy : str
+        What to do instead; may be empty.
+    """
+
+    #: What Simulation.run() recorded before it failed: dict of arrays; None elsewhere.
+    recorded: dict[str, Any] | None = None
+
+    def __init__(
+        self, kind: str, place: Union[Place, str], message: str, remedy: str = ""
+    ) -> None:
+        place = Place(item=place) if isinstance(place, str) else Place(*place)
+        super().__init__(kind, place, message, remedy)
+        self.kind = kind
+        self.place = place
+        self.message = message
+        self.remedy = remedy
+
+    def __str__(self) -> str:
+        text = ": ".join(part for part in (str(self.place), self.message) if part)
+        if self.remedy:
+            text += f"; {self.remedy}"
+        return f"{text} [{self.kind}]"
+
+
+class RunError(Error):
+    """A run that cannot go on: diverged, inverted-in-run, not-converged, singular-matrix."""

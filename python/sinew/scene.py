@@ -1,0 +1,126 @@
+"""Simulations from scenes."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable, Mapping
+from typing import Any, Optional, Union
+
+from . import _core
+from ._core import Simulation
+from .errors import Error
+
+__all__ = ["load", "loads"]
+
+Overrides = Union[str, Iterable[str], Mapping[str, Any], None]
+
+
+def load(
+    scene: Union[str, os.PathLike[str], Mapping[str, Any]],
+    *,
+    set: Overrides = None,  # noqa: A002 - the command line's --set
+    threads: Optional[int] = None,
+    folder: Union[str, os.PathLike[str]] = "",
+) -> Simulation:
+    """A simulation of a scene. Its first controller, if any, is attached.
+
+    Parameters
+    ----------
+    scene : path-like or dict
+        A YAML file, or the same structure as a dict of dicts, lists, numbers and text.
+    set : list of str or dict, optional
+        Values to change before the scene is read: ["time_step=5ms"] or {"time_step": "5 ms"}.
+    threads : int, optional
+        Threads inside a step; by default as the scene says, else 1. Results do not depend on it.
+    folder : path-like
+        Where relative paths in a dict start; the working folder by default. A file's start where
+        it is.
+
+    Returns
+    -------
+    Simulation
+
+    Raises
+    ------
+    Error
+        What is wrong, with file, line and column, and the remedy.
+
+    Examples
+    --------
+    >>> sim = sinew.load("trunk.yaml", set=["time_step=5ms"])
+    """
+    overrides = _assignments(set)
+    if isinstance(scene, Mapping):
+        return _core.load_tree(scene, overrides, os.fspath(folder), "scene", _count(threads))
+    if not isinstance(scene, (str, os.PathLike)):
+        raise Error(
+            "wrong-type",
+            "load(scene)",
+            f"a value of type {type(scene).__name__} is no scene",
+            "give the path of a YAML file, or a dict",
+        )
+    return _core.load_file(os.fspath(scene), overrides, _count(threads))
+
+
+def loads(
+    text: str,
+    *,
+    set: Overrides = None,  # noqa: A002
+    threads: Optional[int] = None,
+    folder: Union[str, os.PathLike[str]] = "",
+) -> Simulation:
+    """A simulation of a scene given as YAML text, such as Simulation.to_yaml() writes.
+
+    Parameters
+    ----------
+    text : str
+        YAML.
+    set, threads, folder
+        As for load().
+
+    Returns
+    -------
+    Simulation
+    """
+    return _core.load_text(text, _assignments(set), os.fspath(folder), "scene", _count(threads))
+
+
+def _count(threads: Optional[int]) -> Optional[int]:
+    if threads is None or (isinstance(threads, int) and not isinstance(threads, bool)):
+        return threads
+    raise Error("wrong-type", "load(threads)", f"{threads!r} is no count", "give 1 or more")
+
+
+def _assignments(overrides: Overrides) -> list[str]:
+    """Overrides as "path=value" each."""
+    if overrides is None:
+        return []
+    if isinstance(overrides, str):
+        return [overrides]
+    if isinstance(overrides, Mapping):
+        return [f"{path}={_spell(value)}" for path, value in overrides.items()]
+    assignments = list(overrides)
+    for assignment in assignments:
+        if not isinstance(assignment, str):
+            raise Error(
+                "wrong-type",
+                "load(set)",
+                f"{assignment!r} is no text",
+                'give "path=value" each, or a dict',
+            )
+    return assignments
+
+
+def _spell(value: Any) -> str:
+    """A value as YAML; JSON is a part of YAML."""
+    if isinstance(value, str):
+        return value
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    try:
+        return json.dumps(value)
+    except TypeError:
+        raise Error(
+            "wrong-type", "load(set)", f"{value!r} has no place in a scene", "use numbers and text"
+        ) from None

@@ -1,0 +1,262 @@
+#include <fmt/format.h>
+
+#include "sinew/fem/assembly.hpp"
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+
+namespace sinew::python {
+
+namespace {
+
+fem::FemBody& body(const Body& self) { return self.session->simulation().fem_body(self.index); }
+const fem::FemModel& elements(const Body& self) { return body(self).fem_model().elements(); }
+const std::string& name(const Body& self) { return body(self).fem_model().name(); }
+
+py::array points_view(const Body& self, const Points& points, bool writable = false) {
+  return view(points.data(), points.rows(), 3, py::cast(self.session), writable);
+}
+
+void set_external_forces(const Body& self, const py::object& value) {
+  const Points forces = to_points(value, fmt::format("body('{}').external_forces", name(self)), "N",
+                                  body(self).positions().rows());
+  const Session::Use use(*self.session);
+  body(self).external_forces() = forces;
+}
+
+Points positions_from(const Body& self, const py::object& positions, const char* what) {
+  if (positions.is_none()) return body(self).positions();
+  return to_points(positions, fmt::format("body('{}').{}(positions)", name(self), what), "m",
+                   body(self).positions().rows());
+}
+
+// Internal forces on free nodes as a row for every node.
+Array internal_forces(const Body& self, const py::object& positions) {
+  const Session::Use use(*self.session);
+  const Points at = positions_from(self, positions, "internal_forces");
+  ThreadPool pool;
+  fem::Assembly assembly(body(self).fem_model().system(false).elements, pool);
+  assembly.evaluate(at, {fem::Tangent::none, 1.0, 0.0});
+  Points forces = Points::Zero(at.rows(), 3);
+  const auto nodes = elements(self).free_nodes();
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    for (int c = 0; c < 3; ++c) {
+      forces(nodes[i], c) = assembly.forces()[3 * i + static_cast<std::size_t>(c)];
+    }
+  }
+  return copy(forces);
+}
+
+// The stored lower blocks as a whole matrix in block compressed rows of scipy.
+py::object stiffness(const Body& self, const py::object& positions, const std::string& tangent) {
+  if (tangent != "exact" && tangent != "real-time") {
+    throw Error(ErrorKind::unknown_choice, {.item = "stiffness(tangent)"},
+                fmt::format("there is no tangent '{}'", tangent), "use 'exact' or 'real-time'");
+  }
+  const Session::Use use(*self.session);
+  const Points at = positions_from(self, positions, "stiffness");
+  ThreadPool pool;
+  fem::Assembly assembly(body(self).fem_model().system(false).elements, pool);
+  assembly.evaluate(at,
+                    {tangent == "exact" ? fem::Tangent::exact : fem::Tangent::rotated, 1.0, 0.0});
+  const auto& pattern = elements(self).pattern();
+  const auto matrix = std::as_const(assembly).matrix();
+  std::vector<double> values;
+  std::vector<std::int32_t> rows, columns;
+  const auto add = [&](int block, int i, int j, bool transposed) {
+    for (int r = 0; r < 3; ++r) {
+      for (int c = 0; c < 3; ++c) {
+        const int at_entry = linalg::kBlockStride * block + (transposed ? 4 * r + c : 4 * c + r);
+        values.push_back(matrix[static_cast<std::size_t>(at_entry)]);
+        rows.push_back(3 * i + r);
+        columns.push_back(3 * j + c);
+      }
+    }
+  };
+  for (int j = 0; j < pattern.nodes; ++j) {
+    const auto column = static_cast<std::size_t>(j);
+    for (auto b = pattern.column_start[column]; b < pattern.column_start[column + 1]; ++b) {
+      const auto i = pattern.row[static_cast<std::size_t>(b)];
+      add(b, i, j, false);
+      if (i != j) add(b, j, i, true);
+    }
+  }
+  const auto size = 3 * pattern.nodes;
+  const auto make = py::module_::import("scipy.sparse").attr("csr_matrix");
+  const auto triples =
+      py::make_tuple(py::array(py::cast(values)),
+                     py::make_tuple(py::array(py::cast(rows)), py::array(py::cast(columns))));
+  return make(triples, py::arg("shape") = py::make_tuple(size, size));
+}
+
+// H: row k's work on node i is H[k, i] . dx_i.
+Array jacobian(const Body& self) {
+  const Session::Use use(*self.session);
+  const sim::World& world = self.session->simulation().world();
+  const auto& pattern = self.session->model().rows();
+  const auto nodes = body(self).positions().rows();
+  Array result({static_cast<Eigen::Index>(pattern.rows()), nodes, Eigen::Index{3}});
+  auto h = result.mutable_unchecked<3>();
+  std::fill_n(result.mutable_data(), result.size(), 0.0);
+  for (int k = 0; k < pattern.rows(); ++k) {
+    const auto row = static_cast<std::size_t>(k);
+    for (auto e = pattern.row_start[row]; e < pattern.row_start[row + 1]; ++e) {
+      const auto entry = static_cast<std::size_t>(e);
+      const auto& point = pattern.point[entry];
+      if (point.body != self.index) continue;
+      const auto& attachment = body(self).fem_model().attachment(point.point);
+      for (std::size_t a = 0; a < attachment.nodes.size(); ++a) {
+        for (int c = 0; c < 3; ++c) {
+          h(k, attachment.nodes[a], c) += attachment.weights[a] * world.rows().direction[entry][c];
+        }
+      }
+    }
+  }
+  return result;
+}
+
+py::array_t<bool> fixed(const Body& self) {
+  const auto free = elements(self).free_index();
+  py::array_t<bool> mask(static_cast<py::ssize_t>(free.size()));
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    mask.mutable_at(static_cast<py::ssize_t>(i)) = free[i] < 0;
+  }
+  return mask;
+}
+
+void bind_state(py::class_<Body>& type) {
+  type.def_property_readonly(
+          "positions", [](const Body& self) { return points_view(self, body(self).positions()); },
+          R"((n, 3) ndarray: positions of all nodes now, in the mesh's order (m).
+
+A live, read-only view: it shows every later step, keeps the simulation alive, and must not be read
+while another thread steps. Copy it to keep a moment: `body.positions.copy()`.)")
+      .def_property_readonly(
+          "velocities", [](const Body& self) { return points_view(self, body(self).velocities()); },
+          "(n, 3) ndarray: velocities of all nodes (m/s); zero in quasi-static runs. A live, "
+          "read-only view.")
+      .def_property(
+          "external_forces",
+          [](const Body& self) { return points_view(self, body(self).external_forces(), true); },
+          &set_external_forces,
+          R"((n, 3) ndarray: dead loads on the nodes beside gravity (N).
+
+A live, writable view: `body.external_forces[5] = [0, 0, -0.1]` acts from the next step on. They
+stay until changed; reset() sets them to zero. Forces on fixed nodes do nothing.)");
+}
+
+void bind_mesh_of(py::class_<Body>& type) {
+  type.def_property_readonly(
+          "rest_positions",
+          [](const Body& self) { return points_view(self, body(self).fem_model().mesh().nodes); },
+          "(n, 3) ndarray: positions of all nodes at rest (m). Read-only.")
+      .def_property_readonly(
+          "tetrahedra",
+          [](const Body& self) {
+            const auto& list = body(self).fem_model().mesh().tetrahedra;
+            return view<NodeId>(list.empty() ? nullptr : list.front().data(),
+                                static_cast<py::ssize_t>(list.size()), 4, py::cast(self.session));
+          },
+          "(m, 4) ndarray of int32: the nodes of every tetrahedron, positively oriented. "
+          "Read-only.")
+      .def_property_readonly("fixed", &fixed,
+                             "(n,) ndarray of bool: nodes that never move: fixed ones and those "
+                             "that belong to no element.")
+      .def_property_readonly(
+          "node_sets", [](const Body& self) { return body(self).fem_model().mesh().node_sets; },
+          "dict: named sets of nodes of the mesh.")
+      .def_property_readonly(
+          "mass", [](const Body& self) { return elements(self).total_mass(); },
+          "float: total mass (kg).")
+      .def_property_readonly(
+          "node_masses", [](const Body& self) { return copy(elements(self).lumped_mass()); },
+          "(n,) ndarray: mass lumped at every node (kg).")
+      .def_property_readonly(
+          "volume", [](const Body& self) { return elements(self).volume(); },
+          "float: volume at rest (m^3).");
+}
+
+template <typename Get>
+auto energy(Get get) {
+  return [get](const Body& self) {
+    const Session::Use use(*self.session);
+    return get(body(self));
+  };
+}
+
+void bind_mechanics(py::class_<Body>& type) {
+  type.def_property_readonly("strain_energy",
+                             energy([](fem::FemBody& b) { return b.strain_energy(); }),
+                             "float: elastic energy now (J).")
+      .def_property_readonly("kinetic_energy",
+                             energy([](fem::FemBody& b) { return b.kinetic_energy(); }),
+                             "float: energy of motion now (J).")
+      .def_property_readonly("gravity_energy",
+                             energy([](fem::FemBody& b) { return b.gravity_energy(); }),
+                             "float: gravity's potential with respect to rest (J).")
+      .def("internal_forces", &internal_forces, py::arg("positions") = py::none(),
+           R"(internal_forces($self, positions=None)
+--
+
+The elastic forces f(q) = dU/dq of the nodes; at equilibrium f = external + gravity + H^T effort.
+
+Parameters
+----------
+positions : (n, 3) array_like, optional
+    m; the present ones by default. The simulation is not changed.
+
+Returns
+-------
+(n, 3) ndarray
+    N; zero at nodes that never move.
+)")
+      .def("stiffness", &stiffness, py::arg("positions") = py::none(), py::kw_only(),
+           py::arg("tangent") = "exact",
+           R"(stiffness($self, positions=None, *, tangent='exact')
+--
+
+The elements' stiffness df/dq over free nodes, without the cables' part.
+
+Parameters
+----------
+positions : (n, 3) array_like, optional
+    m; the present ones by default. The simulation is not changed.
+tangent : {'exact', 'real-time'}
+    The derivative of the forces, or R K0 R^T as steps use it.
+
+Returns
+-------
+scipy.sparse.csr_matrix
+    (3 f, 3 f), N/m, for the f nodes with `~body.fixed` in order.
+)")
+      .def("jacobian", &jacobian,
+           R"(jacobian($self)
+--
+
+H at the present state: how the motion of every row follows from the motion of the nodes.
+
+Returns
+-------
+(rows, n, 3) ndarray
+    d(delta)/dx, dimensionless (1/m in rows of orientations); rows as `Simulation.rows`. The
+    forces of the actuators on the nodes are `np.einsum('k,knc', effort, H)`.
+)");
+}
+
+}  // namespace
+
+void bind_body(py::module_& module) {
+  py::class_<Body> type(module, "Body", "A body of finite elements. From Simulation.body().");
+  type.def_property_readonly(
+          "name", [](const Body& self) { return name(self); }, "str: as in the scene.")
+      .def("__repr__", [](const Body& self) {
+        return fmt::format("<sinew.Body '{}', {} nodes, {} tetrahedra>", name(self),
+                           body(self).positions().rows(),
+                           body(self).fem_model().mesh().tetrahedra.size());
+      });
+  bind_state(type);
+  bind_mesh_of(type);
+  bind_mechanics(type);
+}
+
+}  // namespace sinew::python

@@ -1,0 +1,332 @@
+#include <map>
+
+#include <fmt/format.h>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+
+namespace sinew::python {
+
+namespace {
+
+using inverse::InverseController;
+using inverse::InverseSettings;
+using inverse::Task;
+
+// What `controller.targets` returns: a live mapping from effectors to targets.
+struct Targets {
+  Controller controller;
+};
+
+const InverseController& law(const Controller& self) { return *self.attached->law; }
+
+const std::string& effector_name(const Controller& self, const Task& task) {
+  return self.session->model().effectors()[static_cast<std::size_t>(task.effector)].name;
+}
+
+void require_attached(const Controller& self) {
+  if (self.attached->attached) return;
+  throw Error(ErrorKind::bad_argument, {.item = "InverseController"},
+              "this controller is detached from its simulation",
+              "make a new one: sinew.InverseController(sim, targets=...)");
+}
+
+int task_of(const Controller& self, const std::string& name) {
+  std::vector<std::string> names;
+  const auto& tasks = law(self).settings().tasks;
+  for (std::size_t k = 0; k < tasks.size(); ++k) {
+    names.push_back(effector_name(self, tasks[k]));
+    if (names.back() == name) return static_cast<int>(k);
+  }
+  throw Error(ErrorKind::unknown_name, {.item = "targets"},
+              fmt::format("this controller does not steer '{}'", name),
+              fmt::format("it steers {}", fmt::join(names, ", ")));
+}
+
+std::string text_key(const py::handle& key, const char* place) {
+  if (py::isinstance<py::str>(key)) return py::str(key);
+  throw Error(ErrorKind::wrong_type, {.item = place},
+              fmt::format("the key {} is not text", std::string(py::repr(key))),
+              "name effectors by text");
+}
+
+py::dict to_dict(const py::handle& value, const char* place) {
+  if (py::isinstance<py::dict>(value)) return py::reinterpret_borrow<py::dict>(value);
+  throw Error(ErrorKind::wrong_type, {.item = place},
+              fmt::format("{} is no dict", std::string(py::repr(value)).substr(0, 60)),
+              "give a dict such as {'tip': [0.03, 0.0, 0.18]}");
+}
+
+std::vector<Task> to_tasks(const sim::Model& model, const py::handle& targets,
+                           const py::object& weights) {
+  std::vector<Task> tasks;
+  for (const auto& [key, value] : to_dict(targets, "InverseController(targets)")) {
+    const std::string name = text_key(key, "InverseController(targets)");
+    tasks.push_back(
+        {model.effector_index(name), to_target(value, fmt::format("targets['{}']", name)), {1.0}});
+  }
+  if (weights.is_none()) return tasks;
+  for (const auto& [key, value] : to_dict(weights, "InverseController(weights)")) {
+    const int effector = model.effector_index(text_key(key, "InverseController(weights)"));
+    const auto found = std::find_if(tasks.begin(), tasks.end(),
+                                    [&](const Task& task) { return task.effector == effector; });
+    if (found == tasks.end()) {
+      throw Error(ErrorKind::unknown_name, {.item = "InverseController(weights)"},
+                  fmt::format("'{}' has a weight but no target", std::string(py::str(key))),
+                  "add it to targets");
+    }
+    const std::string place = fmt::format("weights['{}']", std::string(py::str(key)));
+    const bool single = PyFloat_Check(value.ptr()) || PyLong_Check(value.ptr());
+    found->weights = single ? std::vector<double>{to_number(value, place, "no unit")}
+                            : to_list(value, place, "no unit");
+  }
+  return tasks;
+}
+
+std::vector<int> to_actuators(const sim::Model& model, const py::object& names) {
+  std::vector<int> actuators;
+  if (names.is_none()) return actuators;
+  if (py::isinstance<py::str>(names) || !py::isinstance<py::iterable>(names)) {
+    throw Error(ErrorKind::wrong_type, {.item = "InverseController(actuators)"},
+                fmt::format("{} is no list of names", std::string(py::repr(names))),
+                "give a list such as ['long_0', 'long_1']");
+  }
+  for (const auto& name : names) {
+    actuators.push_back(model.actuator_index(text_key(name, "InverseController(actuators)")));
+  }
+  if (actuators.empty()) {
+    throw Error(ErrorKind::no_actuators, {.item = "InverseController(actuators)"},
+                "the list is empty", "leave it out to use all actuators");
+  }
+  return actuators;
+}
+
+inverse::Regularisation to_regularisation(const std::string& word) {
+  if (word == "change") return inverse::Regularisation::change;
+  if (word == "effort") return inverse::Regularisation::effort;
+  throw Error(ErrorKind::unknown_choice, {.item = "InverseController(regularisation)"},
+              fmt::format("there is no regularisation '{}'", word), "use 'change' or 'effort'");
+}
+
+Controller make(const std::shared_ptr<Session>& session, const py::object& targets,
+                const py::object& actuators, const py::object& weights,
+                const std::string& regularisation, const py::object& epsilon,
+                const py::object& tolerance, const py::object& largest_step) {
+  InverseSettings settings;
+  settings.tasks = to_tasks(session->model(), targets, weights);
+  settings.actuators = to_actuators(session->model(), actuators);
+  settings.regularisation = to_regularisation(regularisation);
+  const auto read = [](const py::object& value, const char* place, const char* unit, double& to) {
+    if (!value.is_none()) to = to_number(value, place, unit);
+  };
+  read(epsilon, "InverseController(epsilon)", "no unit", settings.epsilon);
+  read(tolerance, "InverseController(tolerance)", "m", settings.tolerance);
+  read(largest_step, "InverseController(largest_step)", "no unit", settings.largest_step);
+  return {session, session->attach(std::move(settings), {})};
+}
+
+py::object get_target(const Targets& self, const std::string& name) {
+  const int task = task_of(self.controller, name);
+  const auto& target = law(self.controller).settings().tasks[static_cast<std::size_t>(task)].target;
+  if (target.end_time() == 0.0) return copy(target.at(0.0));
+  return py::cast(target);
+}
+
+void set_target(const Targets& self, const std::string& name, const py::object& value) {
+  const int task = task_of(self.controller, name);
+  auto target = to_target(value, fmt::format("targets['{}']", name));
+  const Session::Use use(*self.controller.session);
+  self.controller.attached->law->set_target(task, std::move(target));
+}
+
+py::list target_names(const Targets& self) {
+  py::list names;
+  for (const Task& task : law(self.controller).settings().tasks) {
+    names.append(effector_name(self.controller, task));
+  }
+  return names;
+}
+
+py::dict errors(const Controller& self) {
+  const Session::Use use(*self.session);
+  py::dict result;
+  const auto& tasks = law(self).settings().tasks;
+  for (std::size_t k = 0; k < tasks.size(); ++k) {
+    result[effector_name(self, tasks[k]).c_str()] = law(self).error(static_cast<int>(k));
+  }
+  return result;
+}
+
+std::vector<std::string> actuator_names(const Controller& self) {
+  std::vector<std::string> names;
+  for (const int index : law(self).settings().actuators) {
+    names.push_back(self.session->model().actuators()[static_cast<std::size_t>(index)].name);
+  }
+  return names;
+}
+
+void bind_mapping(py::module_& module) {
+  py::class_<Targets>(module, "Targets",
+                      "Where a controller's effectors are asked to be; a live mapping from names. "
+                      "Assign three numbers (m) or a Target at any time between steps.")
+      .def("__getitem__", &get_target, py::arg("name"))
+      .def("__setitem__", &set_target, py::arg("name"), py::arg("target"))
+      .def("__contains__", [](const Targets& self,
+                              const py::object& name) { return target_names(self).contains(name); })
+      .def("__len__", [](const Targets& self) { return target_names(self).size(); })
+      .def("__iter__", [](const Targets& self) { return py::iter(target_names(self)); })
+      .def("keys", &target_names, "keys($self)\n--\n\nNames of the effectors, as a list.")
+      .def("__repr__", [](const Targets& self) {
+        std::string text;
+        for (const auto& name : target_names(self)) {
+          text += fmt::format("{}'{}': {}", text.empty() ? "" : ", ", std::string(py::str(name)),
+                              std::string(py::repr(get_target(self, py::str(name)))));
+        }
+        return "{" + text + "}";
+      });
+}
+
+constexpr const char* kControllerDoc =
+    R"(InverseController(sim, targets, *, actuators=None, weights=None, regularisation='change', epsilon=None, tolerance=None, largest_step=None)
+--
+
+Finds the efforts that bring effectors to their targets, in every step.
+
+Minimises 1/2 |W_ea effort + delta_e - target|^2 + eps/2 (effort - last)^T W_aa (effort - last)
+within the actuators' limits on effort, stroke and rate. It owns its actuators until it is
+detached: by detach(), by Simulation.detach(), or at the end of a `with` block. Dropping the Python
+object does not detach it.
+
+Parameters
+----------
+sim : Simulation
+targets : dict
+    Effector names to where they should be: (3,) array_like (m; for an orientation effector the
+    rotation vector, rad), or a Circle, Polyline or Trajectory.
+actuators : list of str, optional
+    What it may use; all by default. The others obey their commands.
+weights : dict, optional
+    Effector names to one weight, or one for each of its directions; >= 0.
+regularisation : {'change', 'effort'}
+    What is kept small among efforts that serve equally well: their change, or the efforts
+    themselves, which biases the effector.
+epsilon : float, optional
+    Weight of the regularisation relative to the objective, > 0.
+tolerance : float, optional
+    m (or rad): an effector this near is on target.
+largest_step : float, optional
+    Targets farther than this part of the robot's size are approached in such steps.
+
+Raises
+------
+Error
+    actuator-owned while another controller is attached, unknown-name, no-effectors, wrong-shape,
+    not-finite, out-of-range.
+)";
+
+void bind_methods(py::class_<Controller>& type) {
+  type.def(py::init(&make), py::arg("sim"), py::arg("targets"), py::kw_only(),
+           py::arg("actuators") = py::none(), py::arg("weights") = py::none(),
+           py::arg("regularisation") = "change", py::arg("epsilon") = py::none(),
+           py::arg("tolerance") = py::none(), py::arg("largest_step") = py::none())
+      .def(
+          "step",
+          [](const Controller& self, std::int64_t n) {
+            require_attached(self);
+            self.session->advance(n);
+            return std::string(inverse_status_name(law(self).status()));
+          },
+          py::arg("n") = 1,
+          R"(step($self, n=1)
+--
+
+Solves for the efforts and advances the simulation, n times.
+
+Returns
+-------
+str
+    The status of the last step, see `status`.
+
+Raises
+------
+RunError
+    As Simulation.step().
+)")
+      .def(
+          "detach",
+          [](const Controller& self) {
+            if (self.attached->attached) self.session->detach(*self.attached);
+          },
+          R"(detach($self)
+--
+
+Gives the actuators back. Each holds the displacement where it stands until it is told otherwise.
+)")
+      .def("__enter__", [](const py::object& self) { return self; })
+      .def("__exit__", [](const Controller& self, const py::args&) {
+        if (self.attached->attached) self.session->detach(*self.attached);
+      });
+}
+
+template <typename Get>
+auto guarded(Get get) {
+  return [get](const Controller& self) {
+    const Session::Use use(*self.session);
+    return get(law(self));
+  };
+}
+
+void bind_results(py::class_<Controller>& type) {
+  type.def_property_readonly("status", guarded([](const InverseController& law) {
+                               return std::string(inverse_status_name(law.status()));
+                             }),
+                             "str: how the last step served the targets: 'on-target'; "
+                             "'rate-limited', still on the way; 'out-of-reach', as near as limits "
+                             "allow; 'limits-conflict'.")
+      .def_property_readonly(
+          "efforts", guarded([](const InverseController& law) { return copy(law.efforts()); }),
+          "(k,) ndarray: efforts chosen last (N), in the order of `actuators`. A copy.")
+      .def_property_readonly("actuators", &actuator_names, "list of str: what it owns.")
+      .def_property_readonly("error",
+                             guarded([](const InverseController& law) { return law.error(); }),
+                             "float: distance of the effectors from their targets now, the "
+                             "largest one (m or rad).")
+      .def_property_readonly("errors", &errors, "dict: `error` of every effector.")
+      .def_property_readonly("predicted_error", guarded([](const InverseController& law) {
+                               return law.predicted_error();
+                             }),
+                             "float: what the last linearisation left (m or rad).")
+      .def_property_readonly(
+          "attached", [](const Controller& self) { return self.attached->attached; },
+          "bool: whether it still owns its actuators.")
+      .def_property_readonly(
+          "name", [](const Controller& self) { return self.attached->name; },
+          "str: as in the scene; empty for one made from Python.")
+      .def_property(
+          "targets", [](const Controller& self) { return Targets{self}; },
+          [](const Controller& self, const py::object& targets) {
+            for (const auto& [key, value] : to_dict(targets, "targets")) {
+              set_target({self}, text_key(key, "targets"),
+                         py::reinterpret_borrow<py::object>(value));
+            }
+          },
+          "Targets: where the effectors are asked to be; `ik.targets['tip'] = [0.03, 0, 0.18]` "
+          "between steps steers from Python.")
+      .def("__repr__", [](const Controller& self) {
+        return fmt::format("<sinew.InverseController of {} actuators, {}>",
+                           law(self).settings().actuators.size(),
+                           self.attached->attached ? inverse_status_name(law(self).status())
+                                                   : std::string_view("detached"));
+      });
+}
+
+}  // namespace
+
+void bind_controller(py::module_& module) {
+  bind_mapping(module);
+  py::class_<Controller> type(module, "InverseController", kControllerDoc);
+  bind_methods(type);
+  bind_results(type);
+}
+
+}  // namespace sinew::python

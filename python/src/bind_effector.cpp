@@ -1,0 +1,89 @@
+#include <cstring>
+
+#include <fmt/format.h>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+
+namespace sinew::python {
+
+namespace {
+
+const constraint::Effector& model(const Effector& self) {
+  return self.session->model().effector(self.index);
+}
+
+bool is_orientation(const Effector& self) { return std::strcmp(model(self).unit(), "rad") == 0; }
+
+Array value(const Effector& self) {
+  const Session::Use use(*self.session);
+  return copy(self.session->simulation().effector_value(self.index));
+}
+
+Array value_of(const Effector& self, bool orientation) {
+  if (is_orientation(self) != orientation) {
+    const char* has = orientation ? "position" : "rotation";
+    const char* asked = orientation ? "rotation" : "position";
+    throw Error(ErrorKind::wrong_type,
+                {.item = fmt::format("effector('{}').{}", model(self).name(), asked)},
+                fmt::format("this effector measures a {}", has), fmt::format("use .{}", has));
+  }
+  return value(self);
+}
+
+// For positions the point's velocity; for orientations its rows, which are the angular velocity.
+Array velocity(const Effector& self) {
+  const Session::Use use(*self.session);
+  const sim::World& world = self.session->simulation().world();
+  if (const auto* point = dynamic_cast<const constraint::PointEffector*>(&model(self))) {
+    return copy(world.placement().velocity(point->point()));
+  }
+  const auto& pattern = self.session->model().rows();
+  Vector3 turn = Vector3::Zero();
+  for (int k = 0; k < model(self).row_count(); ++k) {
+    const auto row = static_cast<std::size_t>(model(self).first_row() + k);
+    for (auto e = pattern.row_start[row]; e < pattern.row_start[row + 1]; ++e) {
+      const auto entry = static_cast<std::size_t>(e);
+      turn[k] +=
+          world.rows().direction[entry].dot(world.placement().velocity(pattern.point[entry]));
+    }
+  }
+  return copy(turn);
+}
+
+Array directions(const Effector& self) {
+  const auto& rows = model(self).directions();
+  Points points(static_cast<Eigen::Index>(rows.size()), 3);
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    points.row(i) = rows[static_cast<std::size_t>(i)].transpose();
+  }
+  return copy(points);
+}
+
+}  // namespace
+
+void bind_effector(py::module_& module) {
+  py::class_<Effector>(module, "Effector",
+                       "Something on the robot whose motion matters. From Simulation.effector().")
+      .def_property_readonly(
+          "name", [](const Effector& self) { return model(self).name(); }, "str: as in the scene.")
+      .def_property_readonly(
+          "position", [](const Effector& self) { return value_of(self, false); },
+          "(3,) ndarray: where the point, or the mean of the points, is now (m). A copy.")
+      .def_property_readonly(
+          "rotation", [](const Effector& self) { return value_of(self, true); },
+          "(3,) ndarray: rotation vector since rest of an orientation effector (rad). A copy.")
+      .def_property_readonly("velocity", &velocity,
+                             "(3,) ndarray: velocity (m/s), or angular velocity of an orientation "
+                             "effector (rad/s); zero in quasi-static runs.")
+      .def_property_readonly("value", &value, "(3,) ndarray: position or rotation, by its kind.")
+      .def_property_readonly(
+          "unit", [](const Effector& self) { return model(self).unit(); }, "str: 'm' or 'rad'.")
+      .def_property_readonly("directions", &directions,
+                             "(k, 3) ndarray: unit directions along which its motion matters.")
+      .def("__repr__", [](const Effector& self) {
+        return fmt::format("<sinew.Effector '{}'>", model(self).name());
+      });
+}
+
+}  // namespace sinew::python

@@ -1,0 +1,116 @@
+#include <fmt/format.h>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+
+namespace sinew::python {
+
+namespace {
+
+using sim::StaticReport;
+using sim::StepReport;
+
+const char* law_status_name(sim::LawStatus status) {
+  switch (status) {
+    case sim::LawStatus::solved:
+      return "solved";
+    case sim::LawStatus::limits_conflict:
+      return "limits-conflict";
+    case sim::LawStatus::failed:
+      return "failed";
+  }
+  return "unknown";
+}
+
+py::dict times_of(const StepReport& report) {
+  py::dict times;
+  for (std::size_t i = 0; i < sim::kStageCount; ++i) {
+    times[sim::kStageNames[i]] = report.times.seconds[i];
+  }
+  times["total"] = report.times.total;
+  return times;
+}
+
+void bind_step_report(py::module_& module) {
+  py::class_<StepReport>(module, "StepReport", "What the last step did.")
+      .def_property_readonly(
+          "status", [](const StepReport& self) { return law_status_name(self.law); },
+          "str: 'solved'; 'limits-conflict' when limits contradict each other and the least "
+          "violation was taken.")
+      .def_readonly("residual", &StepReport::residual,
+                    "float: norm of the imbalance of forces (N). One linearisation: of the state "
+                    "that the step began from; Newton: of its end.")
+      .def_readonly("relative_residual", &StepReport::relative_residual,
+                    "float: residual over the sum of the forces' norms.")
+      .def_readonly("violation", &StepReport::violation,
+                    "float: how far the actuators are from their law at that state (m).")
+      .def_readonly("iterations", &StepReport::iterations, "int: linearisations in the step.")
+      .def_readonly("scale", &StepReport::scale,
+                    "float: 1, or less when the motion was cut back to keep elements from "
+                    "inverting.")
+      .def_readonly("smallest_volume_ratio", &StepReport::smallest_volume_ratio,
+                    "float: least det F of all elements at the end of the step.")
+      .def_property_readonly("times", &times_of,
+                             "dict: seconds in 'assembly', 'compliance', 'factorisation', 'law', "
+                             "'correction' and 'total'.")
+      .def("__repr__", [](const StepReport& self) {
+        return fmt::format("<StepReport {}, residual {:.3g} N, {} linearisation(s), {:.3g} ms>",
+                           law_status_name(self.law), self.residual, self.iterations,
+                           1e3 * self.times.total);
+      });
+}
+
+void bind_static_report(py::module_& module) {
+  py::class_<StaticReport>(module, "StaticReport", "How solve_static() came to equilibrium.")
+      .def_property_readonly(
+          "status",
+          [](const StaticReport& self) { return std::string(newton_status_name(self.status)); },
+          "str: 'converged'.")
+      .def_readonly("residual", &StaticReport::residual,
+                    "float: norm of the imbalance of forces left (N).")
+      .def_readonly("relative_residual", &StaticReport::relative_residual,
+                    "float: residual over the sum of the forces' norms.")
+      .def_readonly("violation", &StaticReport::violation,
+                    "float: how far the actuators are from their law (m).")
+      .def_readonly("iterations", &StaticReport::iterations,
+                    "int: Newton's iterations over all load steps.")
+      .def_readonly("load_steps", &StaticReport::load_steps, "int: load steps taken.")
+      .def("__repr__", [](const StaticReport& self) {
+        return fmt::format("<StaticReport {} in {} iterations, residual {:.3g} N>",
+                           newton_status_name(self.status), self.iterations, self.residual);
+      });
+}
+
+void bind_linearisation(py::module_& module) {
+  py::class_<Linearisation>(
+      module, "Linearisation",
+      "delta = delta_free + W @ effort: how the rows' motions follow from their efforts near one "
+      "state. Rows are actuators, then effectors' directions, as named in `rows`.")
+      .def_readonly("rows", &Linearisation::rows, "list of str: what every row belongs to.")
+      .def_property_readonly(
+          "W", [](const Linearisation& self) { return copy(self.compliance); },
+          "(rows, rows) ndarray: compliance, m/N (rad/N in rows of orientations). Symmetric.")
+      .def_property_readonly(
+          "delta", [](const Linearisation& self) { return copy(self.delta); },
+          "(rows,) ndarray: the rows' motions now: pull of a cable, coordinate of an effector (m).")
+      .def_property_readonly(
+          "delta_free", [](const Linearisation& self) { return copy(self.delta_free); },
+          "(rows,) ndarray: the motions without any effort, as the linearisation sees it (m).")
+      .def_property_readonly(
+          "effort", [](const Linearisation& self) { return copy(self.effort); },
+          "(rows,) ndarray: efforts now (N); 0 for effectors.")
+      .def_readonly("residual", &Linearisation::residual,
+                    "float: norm of the imbalance of forces at this state (N).")
+      .def_readonly("negative_pivots", &Linearisation::negative_pivots,
+                    "int: negative eigenvalues of the matrix; 0 where the equilibrium is stable.");
+}
+
+}  // namespace
+
+void bind_reports(py::module_& module) {
+  bind_step_report(module);
+  bind_static_report(module);
+  bind_linearisation(module);
+}
+
+}  // namespace sinew::python

@@ -1,0 +1,388 @@
+#include <fmt/format.h>
+
+#include "sinew/scene/scene.hpp"
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "tree.hpp"
+
+namespace sinew::python {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::shared_ptr<Session> build(scene::Node tree, const std::vector<std::string>& overrides,
+                               const fs::path& folder, const std::string& name,
+                               const std::optional<int>& threads) {
+  const py::gil_scoped_release release;
+  for (const std::string& assignment : overrides) scene::apply_override(tree, assignment);
+  auto description = scene::parse_scene_tree(std::move(tree), folder);
+  description.name = name;
+  if (threads) description.solver.threads = *threads;
+  auto robot = std::make_shared<const LoadedRobot>(
+      LoadedRobot{scene::build(std::move(description)), folder});
+  return std::make_shared<Session>(robot, robot->robot.threads());
+}
+
+std::shared_ptr<Session> load_file(const std::string& path,
+                                   const std::vector<std::string>& overrides,
+                                   const std::optional<int>& threads) {
+  return build(scene::read_yaml(path), overrides, fs::path(path).parent_path(),
+               fs::path(path).stem().string(), threads);
+}
+
+std::shared_ptr<Session> load_text(const std::string& text,
+                                   const std::vector<std::string>& overrides,
+                                   const std::string& folder, const std::string& name,
+                                   const std::optional<int>& threads) {
+  return build(scene::parse_yaml(text, name), overrides, folder, name, threads);
+}
+
+std::shared_ptr<Session> load_tree(const py::object& tree,
+                                   const std::vector<std::string>& overrides,
+                                   const std::string& folder, const std::string& name,
+                                   const std::optional<int>& threads) {
+  return build(to_tree(tree), overrides, folder, name, threads);
+}
+
+std::string to_yaml(const Session& self) {
+  scene::Node tree = self.robot().robot.description.tree;
+  scene::resolve_paths(tree, self.robot().folder);
+  return scene::to_yaml(tree);
+}
+
+py::dict all_actuators(const std::shared_ptr<Session>& self) {
+  py::dict result;
+  int index = 0;
+  for (const auto& actuator : self->model().actuators()) {
+    result[actuator.name.c_str()] = Actuator{{self, index++}};
+  }
+  return result;
+}
+
+py::dict all_effectors(const std::shared_ptr<Session>& self) {
+  py::dict result;
+  int index = 0;
+  for (const auto& effector : self->model().effectors()) {
+    result[effector.name.c_str()] = Effector{{self, index++}};
+  }
+  return result;
+}
+
+py::dict all_bodies(const std::shared_ptr<Session>& self) {
+  py::dict result;
+  int index = 0;
+  for (const auto& body : self->model().bodies()) {
+    result[body->name().c_str()] = Body{{self, index++}};
+  }
+  return result;
+}
+
+LinearisationChoice choice(const std::string& tangent, bool geometric_stiffness, bool statics) {
+  if (tangent != "exact" && tangent != "real-time") {
+    throw Error(ErrorKind::unknown_choice, {.item = "linearise(tangent)"},
+                fmt::format("there is no tangent '{}'", tangent), "use 'exact' or 'real-time'");
+  }
+  return {tangent == "exact" ? mechanics::Tangent::exact : mechanics::Tangent::real_time,
+          geometric_stiffness, statics};
+}
+
+sim::StaticReport solve_static(Session& self, double tolerance, int max_iterations,
+                               int max_load_steps) {
+  if (!(tolerance > 0.0) || max_iterations < 1 || max_load_steps < 1) {
+    throw Error(ErrorKind::out_of_range, {.item = "solve_static()"},
+                fmt::format("tolerance {:g}, max_iterations {} and max_load_steps {} must be "
+                            "positive",
+                            tolerance, max_iterations, max_load_steps),
+                "leave them out for the defaults");
+  }
+  return self.solve_static({tolerance, max_iterations, max_load_steps});
+}
+
+template <typename Get>
+auto guarded(Get get) {
+  return [get](const Session& self) {
+    const Session::Use use(self);
+    return get(self.simulation());
+  };
+}
+
+using Type = py::class_<Session, std::shared_ptr<Session>>;
+
+void bind_parts(Type& type) {
+  type.def(
+          "actuator",
+          [](const std::shared_ptr<Session>& self, const std::string& name) {
+            return Actuator{{self, self->model().actuator_index(name)}};
+          },
+          py::arg("name"),
+          R"(actuator($self, name)
+--
+
+An actuator by its name. Raises Error (unknown-name) with a suggestion.
+)")
+      .def(
+          "effector",
+          [](const std::shared_ptr<Session>& self, const std::string& name) {
+            return Effector{{self, self->model().effector_index(name)}};
+          },
+          py::arg("name"),
+          R"(effector($self, name)
+--
+
+An effector by its name. Raises Error (unknown-name) with a suggestion.
+)")
+      .def(
+          "body",
+          [](const std::shared_ptr<Session>& self, const std::string& name) {
+            return Body{{self, self->model().body_index(name)}};
+          },
+          py::arg("name"),
+          R"(body($self, name)
+--
+
+A body by its name. Raises Error (unknown-name) with a suggestion.
+)")
+      .def_property_readonly("actuators", &all_actuators,
+                             "dict: all actuators by name, in the scene's order.")
+      .def_property_readonly("effectors", &all_effectors,
+                             "dict: all effectors by name, in the scene's order.")
+      .def_property_readonly("bodies", &all_bodies,
+                             "dict: all bodies by name, in the scene's order.");
+}
+
+void bind_stepping(Type& type) {
+  type.def("step", &Session::advance, py::arg("n") = 1,
+           R"(step($self, n=1)
+--
+
+Advances n time steps. Other Python threads run meanwhile; Ctrl-C ends it between steps.
+
+Parameters
+----------
+n : int
+    >= 0.
+
+Raises
+------
+RunError
+    diverged, inverted-in-run, singular-matrix or not-converged, with the step, the body and the
+    likely cause; the state is then that before the step that failed.
+)")
+      .def("solve_static", &solve_static, py::kw_only(), py::arg("tolerance") = 1e-10,
+           py::arg("max_iterations") = 60, py::arg("max_load_steps") = 256,
+           R"(solve_static($self, *, tolerance=1e-10, max_iterations=60, max_load_steps=256)
+--
+
+Newton to the static equilibrium at the present inputs: exact tangent, cables' geometric stiffness.
+
+Limits on rates are lifted and the actuators of a controller hold their efforts. Velocities become
+zero; time stands still.
+
+Parameters
+----------
+tolerance : float
+    Residual relative to the loads, and violation of the actuators' law relative to the size.
+max_iterations : int
+    Of Newton in one load step.
+max_load_steps : int
+    Where one go fails, the load comes in parts, the least of which is its inverse.
+
+Returns
+-------
+StaticReport
+
+Raises
+------
+RunError
+    not-converged when no equilibrium is found; the state is then as before.
+)")
+      .def("run", &run, py::arg("duration") = py::none(), py::kw_only(),
+           py::arg("record") = py::none(), py::arg("every") = 1, py::arg("progress") = py::none(),
+           R"(run($self, duration=None, *, record=None, every=1, progress=None)
+--
+
+Steps for a while and returns what happened, the start included.
+
+Parameters
+----------
+duration : float, optional
+    s; by default the scene's, or the length of its signals and targets.
+record : list of str, optional
+    Which keys to return beside 'time'; by default all but the bodies' positions.
+every : int
+    Steps between records; the last step is always recorded.
+progress : callable, optional
+    Called with (steps done, all steps) about ten times a second. It may read the simulation and
+    command it.
+
+Returns
+-------
+dict of ndarray
+    'time' (k,) s; for every actuator 'NAME.tension' or 'NAME.force' (k,) N and
+    'NAME.displacement' (k,) m; for every effector 'NAME.position' (k, 3) m or 'NAME.rotation'
+    (k, 3) rad; 'residual' (k,) N; with a controller 'error' (k,) m; on request for every body
+    'NAME.positions' (k, n, 3) m.
+
+Raises
+------
+RunError
+    As step(). What was recorded until then is in the exception's `recorded`, as it is in that of
+    a KeyboardInterrupt.
+)");
+}
+
+void bind_state(Type& type) {
+  type.def("reset", &Session::reset,
+           R"(reset($self)
+--
+
+Back to the start, bit for bit: state, time, and the scene's commands; external forces become zero.
+Controllers stay attached and keep their targets.
+)")
+      .def("clone", &Session::clone,
+           R"(clone($self)
+--
+
+A further simulation of the same robot, at the same state, with the same commands and controller.
+
+It shares the model (mesh, symbolic factorisation) and costs `memory` bytes. The two may run side
+by side in threads.
+
+Returns
+-------
+Simulation
+)")
+      .def_property_readonly(
+          "state_hash", guarded([](const sim::Simulation& s) { return s.state_hash(); }),
+          "int: of positions, velocities, efforts and drives; equal runs have equal hashes, bit "
+          "for bit.")
+      .def_property_readonly("time", &Session::time, "float: s.")
+      .def_property_readonly("steps", &Session::steps, "int: steps taken since the start.")
+      .def_property_readonly(
+          "time_step", [](const Session& self) { return self.model().step().time_step; },
+          "float: s.")
+      .def_property_readonly(
+          "threads", [](const Session& self) { return self.simulation().threads(); },
+          "int: threads inside a step.")
+      .def_property_readonly("busy", &Session::busy,
+                             "bool: whether a step is under way in some thread.")
+      .def_property_readonly("report", guarded([](const sim::Simulation& s) { return s.report(); }),
+                             "StepReport: what the last step did.")
+      .def_property_readonly("memory", guarded([](const sim::Simulation& s) { return s.bytes(); }),
+                             "int: bytes of this simulation without the model that it shares.")
+      .def_property_readonly(
+          "name", [](const Session& self) { return self.robot().robot.description.name; },
+          "str: of the scene.")
+      .def("to_yaml", &to_yaml,
+           R"(to_yaml($self)
+--
+
+The scene as YAML, overrides included and paths absolute. Loaded again it gives the same robot.
+
+Returns
+-------
+str
+)");
+}
+
+void bind_linearisation(Type& type) {
+  type.def_property_readonly("rows", &Session::row_names,
+                             "list of str: the rows of H and W: actuators by name, effectors as "
+                             "'tip.x', in the scene's order.")
+      .def(
+          "linearise",
+          [](Session& self, const std::string& tangent, bool geometric_stiffness, bool statics) {
+            return self.linearise(choice(tangent, geometric_stiffness, statics));
+          },
+          py::kw_only(), py::arg("tangent") = "exact", py::arg("geometric_stiffness") = true,
+          py::arg("statics") = true,
+          R"(linearise($self, *, tangent='exact', geometric_stiffness=True, statics=True)
+--
+
+How motions follow from efforts near the present state, which is not changed.
+
+Parameters
+----------
+tangent : {'exact', 'real-time'}
+    The elements' stiffness: the derivative of the forces, or R K0 R^T as steps use it.
+geometric_stiffness : bool
+    Whether loaded cables add theirs.
+statics : bool
+    W of equilibrium, H K^-1 H^T; False: of the scene's integrator and time step.
+
+Returns
+-------
+Linearisation
+    `W`, `delta`, `delta_free`, `effort`, `rows`, `residual`, `negative_pivots`.
+
+Raises
+------
+RunError
+    singular-matrix.
+)")
+      .def(
+          "compliance",
+          [](Session& self, const std::string& tangent, bool geometric_stiffness, bool statics) {
+            return copy(self.linearise(choice(tangent, geometric_stiffness, statics)).compliance);
+          },
+          py::kw_only(), py::arg("tangent") = "exact", py::arg("geometric_stiffness") = true,
+          py::arg("statics") = true,
+          R"(compliance($self, *, tangent='exact', geometric_stiffness=True, statics=True)
+--
+
+W of linearise(): (rows, rows) ndarray, m/N, rows and columns as `rows`.
+)");
+}
+
+void bind_control(Type& type) {
+  type.def_property_readonly(
+          "controller",
+          [](const std::shared_ptr<Session>& self) -> py::object {
+            if (!self->controller()) return py::none();
+            return py::cast(Controller{self, self->controller()});
+          },
+          "InverseController or None: what is attached. A scene's first controller is, from the "
+          "start.")
+      .def(
+          "detach",
+          [](const std::shared_ptr<Session>& self) {
+            if (self->controller()) self->detach(*self->controller());
+          },
+          R"(detach($self)
+--
+
+Detaches the controller, if there is one. Its actuators hold where they stand until told otherwise.
+)");
+}
+
+}  // namespace
+
+void bind_simulation(py::module_& module) {
+  Type type(module, "Simulation",
+            R"(A running robot, from sinew.load().
+
+Positions are in the mesh file's node order, units are SI. One thread at a time may use a
+simulation (others get an Error of kind 'simulation-busy'); several simulations run side by side.)");
+  bind_parts(type);
+  bind_stepping(type);
+  bind_state(type);
+  bind_linearisation(type);
+  bind_control(type);
+  type.def("__repr__", [](const Session& self) {
+    return fmt::format("<sinew.Simulation '{}' at {:g} s: {} actuators, {} effectors>",
+                       self.robot().robot.description.name, self.time(),
+                       self.model().actuators().size(), self.model().effectors().size());
+  });
+  module.def("load_file", &load_file, py::arg("path"), py::arg("overrides"), py::arg("threads"),
+             "load_file(path, overrides, threads)\n--\n\nSee sinew.load().");
+  module.def("load_text", &load_text, py::arg("text"), py::arg("overrides"), py::arg("folder"),
+             py::arg("name"), py::arg("threads"),
+             "load_text(text, overrides, folder, name, threads)\n--\n\nSee sinew.loads().");
+  module.def("load_tree", &load_tree, py::arg("tree"), py::arg("overrides"), py::arg("folder"),
+             py::arg("name"), py::arg("threads"),
+             "load_tree(tree, overrides, folder, name, threads)\n--\n\nSee sinew.load().");
+}
+
+}  // namespace sinew::python

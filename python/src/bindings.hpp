@@ -1,0 +1,56 @@
+/// @file
+/// One function for each part of the module; module.cpp calls them in order. Docstrings start with
+/// "name($self, ...)\n--\n\n", from which Python's inspect and help() take the signature.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include "session.hpp"
+
+namespace sinew::python {
+
+namespace py = pybind11;
+
+void bind_signals(py::module_& module);
+void bind_targets(py::module_& module);
+void bind_reports(py::module_& module);
+void bind_actuator(py::module_& module);
+void bind_effector(py::module_& module);
+void bind_body(py::module_& module);
+void bind_simulation(py::module_& module);
+void bind_controller(py::module_& module);
+void bind_mesh(py::module_& module);
+
+/// A part of a simulation: keeps the whole alive.
+struct Part {
+  std::shared_ptr<Session> session;
+  int index = 0;
+};
+struct Actuator : Part {};
+struct Effector : Part {};
+struct Body : Part {};
+
+/// A controller with the simulation that it steers, which it keeps alive.
+struct Controller {
+  std::shared_ptr<Session> session;
+  std::shared_ptr<AttachedController> attached;
+};
+
+/// Runs and records; see Simulation.run in bind_simulation.cpp.
+py::dict run(const std::shared_ptr<Session>& session, const py::object& duration,
+             const py::object& record, std::int64_t every, const py::object& progress);
+
+/// A target from a Target object or three numbers. Throws Error(wrong-type | wrong-shape |
+/// not-finite).
+/// @param value from Python. @param place names the argument.
+inverse::Target to_target(const py::handle& value, const std::string& place);
+
+/// A signal from a Signal object, a number, or (n, 2) samples of time and value.
+/// @param value from Python. @param place names the argument. @param unit "N" or "m".
+sim::Signal to_signal(const py::handle& value, const std::string& place, const std::string& unit);
+
+}  // namespace sinew::python

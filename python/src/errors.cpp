@@ -1,0 +1,39 @@
+#include "errors.hpp"
+
+#include <string>
+
+namespace sinew::python {
+
+namespace {
+
+py::object make(const char* type, std::string_view kind, const Place& place,
+                const std::string& message, const std::string& remedy) {
+  const auto errors = py::module_::import("sinew.errors");
+  const auto python_place = errors.attr("Place")(place.file, place.line, place.column, place.item);
+  return errors.attr(type)(std::string(kind), python_place, message, remedy);
+}
+
+void raise(const py::object& error) { PyErr_SetObject(py::type::of(error).ptr(), error.ptr()); }
+
+}  // namespace
+
+py::object to_python(const Error& error) {
+  return make(error.is_run_failure() ? "RunError" : "Error", error_kind_name(error.kind()),
+              error.place(), error.message(), error.remedy());
+}
+
+void register_errors() {
+  py::register_local_exception_translator([](std::exception_ptr pointer) {
+    try {
+      if (pointer) std::rethrow_exception(pointer);
+    } catch (const Error& error) {
+      raise(to_python(error));
+    } catch (const SimulationBusy&) {
+      raise(make("Error", "simulation-busy", {.item = "simulation"},
+                 "another thread is using this simulation",
+                 "give every thread its own: sim.clone() shares the model"));
+    }
+  });
+}
+
+}  // namespace sinew::python

@@ -1,0 +1,24 @@
+/// @file
+/// How C++ errors become sinew.Error and sinew.RunError.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include "sinew/core/error.hpp"
+
+namespace sinew::python {
+
+namespace py = pybind11;
+
+/// Thrown when two threads use one simulation at the same time; becomes sinew.Error of kind
+/// "simulation-busy". It stands here since only Python can share a simulation by accident.
+struct SimulationBusy {};
+
+/// The Python exception for an error: an instance of sinew.Error, or sinew.RunError for a failed
+/// run.
+py::object to_python(const Error& error);
+
+/// Lets every bound function throw Error and SimulationBusy.
+void register_errors();
+
+}  // namespace sinew::python

@@ -1,0 +1,30 @@
+/// @file
+/// The extension module sinew._core; python/sinew/*.py puts the package around it.
+#include <string>
+
+#include "sinew/core/build_info.hpp"
+
+#include "bindings.hpp"
+#include "errors.hpp"
+
+PYBIND11_MODULE(_core, module) {
+  namespace python = sinew::python;
+  // Signatures come from the first line of the docstrings, in Python's own spelling.
+  pybind11::options options;
+  options.disable_function_signatures();
+
+  module.doc() = "The compiled part of sinew; import sinew instead.";
+  module.attr("__version__") = std::string(sinew::version());
+  module.attr("compiler") = std::string(sinew::compiler());
+  module.attr("instruction_set") = std::string(sinew::instruction_set());
+  python::register_errors();
+  python::bind_signals(module);
+  python::bind_targets(module);
+  python::bind_reports(module);
+  python::bind_mesh(module);
+  python::bind_actuator(module);
+  python::bind_effector(module);
+  python::bind_body(module);
+  python::bind_simulation(module);
+  python::bind_controller(module);
+}

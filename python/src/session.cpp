@@ -1,0 +1,183 @@
+#include "session.hpp"
+
+#include <chrono>
+#include <utility>
+
+#include <fmt/format.h>
+#include <pybind11/pybind11.h>
+
+#include "errors.hpp"
+
+namespace sinew::python {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr auto kSignalInterval = std::chrono::milliseconds(50);
+
+std::string direction_name(const Vector3& direction, int index) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (direction == Vector3::Unit(axis)) return {'.', "xyz"[axis]};
+  }
+  return fmt::format("[{}]", index);
+}
+
+std::vector<std::string> name_rows(const sim::Model& model) {
+  std::vector<std::string> names(static_cast<std::size_t>(model.rows().rows()));
+  for (const auto& actuator : model.actuators()) {
+    names[static_cast<std::size_t>(actuator.row)] = actuator.name;
+  }
+  for (std::size_t i = 0; i < model.effectors().size(); ++i) {
+    const auto& effector = model.effector(static_cast<int>(i));
+    for (int k = 0; k < effector.row_count(); ++k) {
+      names[static_cast<std::size_t>(effector.first_row() + k)] =
+          model.effectors()[i].name +
+          direction_name(effector.directions()[static_cast<std::size_t>(k)], k);
+    }
+  }
+  return names;
+}
+
+}  // namespace
+
+Session::Use::Use(const Session& session) : session_(session) {
+  if (session_.busy_.exchange(true, std::memory_order_acquire)) throw SimulationBusy{};
+}
+
+Session::Use::~Use() { session_.busy_.store(false, std::memory_order_release); }
+
+Session::Session(std::shared_ptr<const LoadedRobot> robot, int threads)
+    : robot_(std::move(robot)),
+      simulation_(robot_->robot.model, threads),
+      row_names_(name_rows(*robot_->robot.model)) {
+  const auto& controllers = robot_->robot.controllers;
+  if (!controllers.empty()) attach(controllers.front().settings, controllers.front().name);
+}
+
+std::shared_ptr<Session> Session::clone() const {
+  const Use use(*this);
+  auto other = std::make_shared<Session>(robot_, simulation_.threads());
+  if (other->controller_) other->detach(*other->controller_);
+  for (std::size_t i = 0; i < model().actuators().size(); ++i) {
+    const auto index = static_cast<int>(i);
+    other->simulation_.command(index, simulation_.actuator(index).command);
+  }
+  for (std::size_t i = 0; i < model().bodies().size(); ++i) {
+    const auto index = static_cast<int>(i);
+    other->simulation_.fem_body(index).external_forces() =
+        simulation_.fem_body(index).external_forces();
+  }
+  std::vector<double> state(simulation_.state_size());
+  simulation_.save_state(state);
+  other->simulation_.load_state(state, simulation_.steps());
+  other->steps_ = simulation_.steps();
+  if (controller_) other->attach(controller_->law->settings(), controller_->name);
+  return other;
+}
+
+void Session::check_loads() const {
+  for (std::size_t i = 0; i < model().bodies().size(); ++i) {
+    const auto& body = simulation_.fem_body(static_cast<int>(i));
+    if (body.external_forces().allFinite()) continue;
+    throw Error(ErrorKind::not_finite,
+                {.item = fmt::format("body('{}').external_forces", model().bodies()[i]->name())},
+                "a force is not a finite number", "write finite forces in N");
+  }
+}
+
+void Session::advance(std::int64_t count) {
+  if (count < 0) {
+    throw Error(ErrorKind::out_of_range, {.item = "step(n)"}, fmt::format("n is {}", count),
+                "give zero or more steps; reset() goes back to the start");
+  }
+  const Use use(*this);
+  check_loads();
+  for (std::int64_t done = 0; done < count;) {
+    {
+      const pybind11::gil_scoped_release release;
+      const auto pause = Clock::now() + kSignalInterval;
+      do {
+        simulation_.step();
+        steps_.store(simulation_.steps(), std::memory_order_relaxed);
+        ++done;
+      } while (done < count && Clock::now() < pause);
+    }
+    if (PyErr_CheckSignals() != 0) throw pybind11::error_already_set();
+  }
+}
+
+sim::StaticReport Session::solve_static(const sim::StaticSettings& settings) {
+  const Use use(*this);
+  check_loads();
+  const pybind11::gil_scoped_release release;
+  return simulation_.solve_static(settings);
+}
+
+void Session::reset() {
+  const Use use(*this);
+  for (std::size_t i = 0; i < model().bodies().size(); ++i) {
+    simulation_.fem_body(static_cast<int>(i)).external_forces().setZero();
+  }
+  simulation_.reset();
+  steps_ = 0;
+}
+
+Linearisation Session::linearise(const LinearisationChoice& choice) {
+  const Use use(*this);
+  check_loads();
+  std::vector<int> curved;
+  for (std::size_t i = 0; choice.geometric_stiffness && i < model().actuators().size(); ++i) {
+    if (model().cable(static_cast<int>(i)) != nullptr) {
+      curved.push_back(model().actuators()[i].constraint);
+    }
+  }
+  const auto weights = choice.of_statics ? mechanics::StepWeights{}
+                                         : mechanics::step_weights(model().step().integrator,
+                                                                   model().step().time_step);
+  sim::World& world = simulation_.world();
+  const pybind11::gil_scoped_release release;
+  world.begin_step();
+  world.linearise({weights, choice.tangent, !curved.empty(), false});
+  world.form_rows(simulation_.efforts(), curved);
+  Linearisation result;
+  result.residual = world.residual(simulation_.efforts());
+  if (world.condense() == linalg::FactorStatus::singular) {
+    throw Error(ErrorKind::singular_matrix, {.item = "linearise()"},
+                "the stiffness matrix is singular at this state",
+                "fix a region of every body, or try tangent='real-time'");
+  }
+  result.rows = row_names_;
+  result.compliance = world.compliance();
+  result.delta = world.delta();
+  result.delta_free = world.delta_free();
+  result.effort = Eigen::Map<const VectorX>(simulation_.efforts().data(),
+                                            static_cast<Eigen::Index>(row_names_.size()));
+  for (const auto& body : world.bodies()) result.negative_pivots += body->negative_pivots();
+  return result;
+}
+
+std::shared_ptr<AttachedController> Session::attach(inverse::InverseSettings settings,
+                                                    std::string name) {
+  const Use use(*this);
+  if (controller_) {
+    throw Error(ErrorKind::actuator_owned, {.item = "InverseController"},
+                controller_->name.empty()
+                    ? "another controller is attached to this simulation"
+                    : fmt::format("the scene's controller '{}' is attached", controller_->name),
+                "detach it first: sim.detach()");
+  }
+  auto made = std::make_shared<AttachedController>();
+  made->name = std::move(name);
+  made->law = std::make_unique<inverse::InverseController>(simulation_, std::move(settings));
+  controller_ = made;
+  return made;
+}
+
+void Session::detach(AttachedController& controller) {
+  const Use use(*this);
+  controller.law->detach();
+  controller.attached = false;
+  if (controller_.get() == &controller) controller_.reset();
+}
+
+}  // namespace sinew::python

@@ -1,0 +1,116 @@
+/// @file
+/// A simulation as Python holds it: the robot it came from, the simulation, the controller attached
+/// to it, and a guard against use from two threads at once.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sinew/inverse/inverse_controller.hpp"
+#include "sinew/scene/build.hpp"
+#include "sinew/sim/simulation.hpp"
+
+namespace sinew::python {
+
+/// A controller and the name that it has in the scene; empty for one made from Python.
+struct AttachedController {
+  std::string name;
+  std::unique_ptr<inverse::InverseController> law;
+  bool attached = true;
+};
+
+/// A scene made ready, and the folder that its relative paths start from.
+struct LoadedRobot {
+  scene::Robot robot;
+  std::filesystem::path folder;
+};
+
+/// W and what belongs to it, at one state.
+struct Linearisation {
+  std::vector<std::string> rows;  ///< names
+  MatrixX compliance;             ///< W (rows, rows), m/N
+  VectorX delta;                  ///< (rows,) m, now
+  VectorX delta_free;       ///< (rows,) m, with all efforts zero, as the linearisation sees it
+  VectorX effort;           ///< (rows,) N, now
+  double residual = 0.0;    ///< N, |p - f + H^T lambda|
+  int negative_pivots = 0;  ///< of A; 0: the equilibrium is stable
+};
+
+/// What linearise() is asked for.
+struct LinearisationChoice {
+  mechanics::Tangent tangent = mechanics::Tangent::exact;
+  bool geometric_stiffness = true;  ///< of all loaded cables
+  bool of_statics = true;           ///< false: of the scene's integrator and time step
+};
+
+/// See the file.
+class Session {
+ public:
+  /// Attaches the scene's first controller.
+  /// @param robot shared with clones. @param threads inside a step.
+  Session(std::shared_ptr<const LoadedRobot> robot, int threads);
+
+  /// Exclusive use for as long as it lives. Throws SimulationBusy when another thread has it.
+  class Use {
+   public:
+    explicit Use(const Session& session);
+    ~Use();
+    Use(const Use&) = delete;
+    Use& operator=(const Use&) = delete;
+
+   private:
+    const Session& session_;
+  };
+
+  /// Another simulation of the same robot at the same state, commands and controller included.
+  std::shared_ptr<Session> clone() const;
+
+  const LoadedRobot& robot() const { return *robot_; }
+  const sim::Model& model() const { return simulation_.model(); }
+  /// Only while a Use is held.
+  sim::Simulation& simulation() { return simulation_; }
+  const sim::Simulation& simulation() const { return simulation_; }
+
+  /// May be asked at any time, from any thread.
+  bool busy() const { return busy_.load(std::memory_order_acquire); }
+  std::int64_t steps() const { return steps_.load(std::memory_order_relaxed); }
+  double time() const { return static_cast<double>(steps()) * model().step().time_step; }
+
+  /// Advances `count` steps without the interpreter's lock; looks for Ctrl-C now and then. Throws
+  /// what sim::Simulation::step() does, and Error(not-finite) for external forces that are not.
+  void advance(std::int64_t count);
+  sim::StaticReport solve_static(const sim::StaticSettings& settings);
+  /// Simulation::reset(), and external forces set to zero.
+  void reset();
+  
+  
+  Linearisation linearise(const LinearisationChoice& choice);
+
+  /// Null when there is none.
+  const std::shared_ptr<AttachedController>& controller() const { return controller_; }
+  /// Attaches. Throws Error(actuator-owned) while another one is.
+  std::shared_ptr<AttachedController> attach(inverse::InverseSettings settings, std::string name);
+  /// Detaches `controller` if it is attached.
+  void detach(AttachedController& controller);
+
+  /// "long_0", "tip.x", ...: what every row of H and W belongs to.
+  const std::vector<std::string>& row_names() const { return row_names_; }
+
+ private:
+  void check_loads() const;
+
+  std::shared_ptr<const LoadedRobot> robot_;
+  sim::Simulation simulation_;
+  std::shared_ptr<AttachedController> controller_;
+  std::vector<std::string> row_names_;
+  std::atomic<std::int64_t> steps_{0};
+  mutable std::atomic<bool> busy_{false};
+};
+
+}  // namespace sinew::python

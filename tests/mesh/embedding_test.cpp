@@ -1,0 +1,158 @@
+// Points in elements: against brute force, on every kind of boundary, and outside.
+#include "sinew/mesh/embedding.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include <Eigen/Geometry>
+#include <gmock/gmock.h>
+
+#include "sinew/mesh/distance.hpp"
+#include "sinew/mesh/shapes.hpp"
+
+#include "support.hpp"
+
+namespace sinew::mesh {
+namespace {
+
+using test::error_text;
+using testing::AllOf;
+using testing::HasSubstr;
+
+Vector3 position(const Mesh& mesh, const EmbeddedPoint& at) {
+  Vector3 x = Vector3::Zero();
+  for (std::size_t k = 0; k < 4; ++k) x += at.weights[k] * mesh.nodes.row(at.nodes[k]).transpose();
+  return x;
+}
+
+/// Lowest element that holds the point, by trying all; -1 when none does.
+int brute_force_inside(const Mesh& mesh, const Vector3& point) {
+  for (int e = 0; e < static_cast<int>(mesh.tetrahedra.size()); ++e) {
+    const auto w = barycentric_weights(point, corners_of(mesh, e));
+    if (*std::min_element(w.begin(), w.end()) >= -1e-9) return e;
+  }
+  return -1;
+}
+
+double brute_force_distance(const Mesh& mesh, const Vector3& point) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int e = 0; e < static_cast<int>(mesh.tetrahedra.size()); ++e) {
+    least = std::min(least, distance_to_tetrahedron(point, corners_of(mesh, e)));
+  }
+  return least;
+}
+
+TEST(Embedding, AgreesWithBruteForceInsideAndOutside) {
+  const Mesh mesh = trunk();
+  const Embedder embedder(mesh);
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> side(-0.025, 0.025), up(-0.02, 0.22);
+  int inside = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Vector3 point(side(random), side(random), up(random));
+    const EmbeddedPoint at = embedder.locate(point, Outside::nearest, "p");
+    EXPECT_NEAR((position(mesh, at) - point).norm(), 0.0, 1e-12);
+    EXPECT_NEAR(at.weights[0] + at.weights[1] + at.weights[2] + at.weights[3], 1.0, 1e-9);
+    const int expected = brute_force_inside(mesh, point);
+    if (expected >= 0) {
+      ++inside;
+      EXPECT_EQ(at.element, expected);
+      EXPECT_EQ(at.distance, 0.0);
+    } else {
+      EXPECT_NEAR(at.distance, brute_force_distance(mesh, point), 1e-15);
+      EXPECT_NEAR(distance_to_tetrahedron(point, corners_of(mesh, at.element)), at.distance, 1e-10);
+    }
+  }
+  EXPECT_GT(inside, 300);
+  EXPECT_LT(inside, 1700);
+}
+
+TEST(Embedding, FindsNodesEdgesAndFacesAndTakesTheLowestElement) {
+  const Mesh mesh = block({.size = {0.1, 0.1, 0.1}, .cells = {3, 3, 3}});
+  const Embedder embedder(mesh);
+  for (const Tetrahedron& t : mesh.tetrahedra) {
+    const Vector3 a = mesh.nodes.row(t[0]), b = mesh.nodes.row(t[1]), c = mesh.nodes.row(t[2]);
+    for (const Vector3& point : {a, Vector3((a + b) / 2), Vector3((a + b + c) / 3)}) {
+      const EmbeddedPoint at = embedder.locate(point, Outside::error, "p");
+      EXPECT_EQ(at.element, brute_force_inside(mesh, point));
+      EXPECT_EQ(at.distance, 0.0);
+    }
+  }
+}
+
+TEST(Embedding, KeepsPointsOnTheSurfaceDespiteRounding) {
+  const Mesh mesh = block({.size = {0.1, 0.1, 0.195}, .cells = {1, 1, 7}});
+  const Embedder embedder(mesh);
+  for (const double z : {0.195, 195 * 1e-3, 195 / 1000.0, std::nextafter(0.195, 1.0)}) {
+    EXPECT_EQ(embedder.locate({0.05, 0.05, z}, Outside::error, "tip").distance, 0.0);
+  }
+}
+
+TEST(Embedding, NamesThePointItsDistanceAndTheRemedy) {
+  const Mesh mesh = block({.size = {0.1, 0.1, 0.1}, .cells = {2, 2, 2}});
+  const Embedder embedder(mesh);
+  const std::string text = error_text(ErrorKind::point_outside_mesh, [&] {
+    embedder.locate({0.05, 0.05, 0.125}, Outside::error, "via point 3 of cable long_0");
+  });
+  EXPECT_THAT(text,
+              AllOf(HasSubstr("via point 3 of cable long_0"), HasSubstr("(0.05, 0.05, 0.125)"),
+                    HasSubstr("0.025 m outside"), HasSubstr("outside: nearest")));
+  error_text(ErrorKind::not_finite, [&] {
+    embedder.locate({0, std::nan(""), 0}, Outside::nearest, "p");
+  });
+}
+
+TEST(Embedding, ExtrapolatesAffinelyFromTheNearestElement) {
+  const Mesh mesh = block({.size = {0.1, 0.1, 0.1}, .cells = {2, 2, 2}});
+  const Embedder embedder(mesh);
+  const Vector3 point(0.12, 0.13, 0.14);  // nearest to a corner that one cube has
+  const EmbeddedPoint at = embedder.locate(point, Outside::nearest, "p");
+  EXPECT_NEAR(at.distance, Vector3(0.02, 0.03, 0.04).norm(), 1e-15);
+  EXPECT_LT(*std::min_element(at.weights.begin(), at.weights.end()), 0.0);
+  Matrix3 map;  // an affine motion of the nodes carries the point along
+  map << 1.1, 0.2, 0.0, -0.3, 0.9, 0.1, 0.0, 0.4, 1.2;
+  Vector3 moved = Vector3::Zero();
+  for (std::size_t k = 0; k < 4; ++k) {
+    moved += at.weights[k] * (map * mesh.nodes.row(at.nodes[k]).transpose());
+  }
+  EXPECT_NEAR((moved - map * point).norm(), 0.0, 1e-14);
+}
+
+TEST(Embedding, TakesTheMildestExtrapolationAmongEquallyNearElements) {
+  // Six elements meet at the edge and corners; the chosen one has the least negative weight.
+  const Mesh mesh = block({.size = {0.1, 0.1, 0.1}, .cells = {1, 1, 1}});
+  const Embedder embedder(mesh);
+  const Vector3 point(0.15, 0.14, 0.13);
+  const EmbeddedPoint at = embedder.locate(point, Outside::nearest, "p");
+  const double chosen = *std::min_element(at.weights.begin(), at.weights.end());
+  for (int e = 0; e < 6; ++e) {
+    if (distance_to_tetrahedron(point, corners_of(mesh, e)) > at.distance + 1e-12) continue;
+    const auto w = barycentric_weights(point, corners_of(mesh, e));
+    EXPECT_GE(chosen, *std::min_element(w.begin(), w.end()) - 1e-12);
+  }
+}
+
+TEST(Embedding, NeedsTetrahedra) {
+  error_text(ErrorKind::no_volume_elements, [] { const Embedder embedder((Mesh())); });
+}
+
+TEST(NearestPointOnTriangle, CoversEveryRegion) {
+  const Vector3 a(0, 0, 0), b(1, 0, 0), c(0, 1, 0);
+  const auto near = [&](double x, double y) {
+    return nearest_point_on_triangle({x, y, 0.5}, a, b, c);
+  };
+  EXPECT_EQ(near(0.25, 0.25), Vector3(0.25, 0.25, 0));  // face
+  EXPECT_EQ(near(-1, -1), a);
+  EXPECT_EQ(near(3, -0.5), b);
+  EXPECT_EQ(near(-0.5, 3), c);
+  EXPECT_EQ(near(0.5, -1), Vector3(0.5, 0, 0));  // edges
+  EXPECT_EQ(near(-1, 0.5), Vector3(0, 0.5, 0));
+  EXPECT_EQ(near(1, 1), Vector3(0.5, 0.5, 0));
+  EXPECT_EQ(nearest_point_on_triangle({2, 1, 0}, a, b, Vector3(3, 0, 0)), Vector3(2, 0, 0));
+  EXPECT_EQ(nearest_point_on_triangle({2, 1, 0}, a, a, a), a);
+}
+
+}  // namespace
+}  // namespace sinew::mesh

@@ -1,0 +1,195 @@
+// Meshes of our own, their refinement, and picking parts of them.
+#include "sinew/mesh/shapes.hpp"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <gmock/gmock.h>
+
+#include "sinew/mesh/check.hpp"
+#include "sinew/mesh/embedding.hpp"
+#include "sinew/mesh/quality.hpp"
+#include "sinew/mesh/refine.hpp"
+#include "sinew/mesh/report.hpp"
+#include "sinew/mesh/selection.hpp"
+#include "sinew/mesh/surface.hpp"
+#include "sinew/mesh/topology.hpp"
+
+#include "support.hpp"
+
+namespace sinew::mesh {
+namespace {
+
+using test::error_text;
+using testing::HasSubstr;
+
+constexpr double kPi = std::numbers::pi;
+
+/// Sound, made in the positive order, closed, and its surface encloses its volume.
+MeshReport require_sound(Mesh mesh) {
+  check(mesh);
+  EXPECT_EQ(mesh.notes.reordered_elements, 0);
+  const Surface surface = boundary_surface(mesh);
+  EXPECT_NO_THROW(require_closed(surface));
+  EXPECT_NEAR(enclosed_volume(surface) / volume(mesh), 1.0, 1e-12);
+  return describe(mesh);
+}
+
+TEST(Shapes, BlockFillsItsBox) {
+  const MeshReport report =
+      require_sound(block({.corner = {1, 2, 3}, .size = {0.1, 0.2, 0.3}, .cells = {2, 3, 4}}));
+  EXPECT_NEAR(report.volume, 0.006, 1e-15);
+  EXPECT_EQ(report.nodes, 3 * 4 * 5);
+  EXPECT_EQ(report.tetrahedra, 6 * 2 * 3 * 4);
+  EXPECT_NEAR((report.low - Vector3(1, 2, 3)).norm(), 0.0, 1e-15);
+  EXPECT_NEAR((report.high - Vector3(1.1, 2.2, 3.3)).norm(), 0.0, 1e-15);
+}
+
+TEST(Shapes, HexahedralBlockMatchesTheTetrahedralOne) {
+  const BlockShape shape{.size = {0.1, 0.2, 0.3}, .cells = {2, 3, 4}};
+  const Mesh hexahedra = hexahedral_block(shape), tetrahedra = block(shape);
+  EXPECT_EQ(hexahedra.nodes, tetrahedra.nodes);
+  EXPECT_EQ(hexahedra.node_sets, tetrahedra.node_sets);
+  EXPECT_EQ(require_sound(hexahedra).hexahedra, 24);
+}
+
+TEST(Shapes, RoundSolidsHaveTheVolumeOfTheirPolygons) {
+  // The outline of `n` corners has the area n/2 sin(2 pi / n) r^2.
+  const auto polygon = [](int n) { return 0.5 * n * std::sin(2 * kPi / n); };
+  EXPECT_NEAR(
+      require_sound(cylinder({.radius = 0.01, .height = 0.1, .rings = 3, .layers = 5})).volume,
+      polygon(18) * 1e-4 * 0.1, 1e-15);
+  // A linear taper within straight prisms: V = h/3 (r0^2 + r0 r1 + r1^2) times the polygon's factor
+  // is met to second order in the layers, from the twisted faces of its tetrahedra.
+  const double taper = 0.1 / 3 * (4e-4 + 2e-4 + 1e-4) * polygon(12);
+  EXPECT_NEAR(require_sound(cone({})).volume / taper, 1.0, 2e-3);
+  const HollowCylinderShape tube{.around = 30};
+  EXPECT_NEAR(require_sound(hollow_cylinder(tube)).volume, polygon(30) * (1.44e-4 - 0.64e-4) * 0.05,
+              1e-15);
+}
+
+TEST(Shapes, AreOfGoodQuality) {
+  EXPECT_GT(require_sound(cylinder({})).least_radius_ratio, 0.3);
+  EXPECT_GT(require_sound(cone({})).least_radius_ratio, 0.3);
+  EXPECT_GT(require_sound(hollow_cylinder({})).least_radius_ratio, 0.3);
+}
+
+TEST(Shapes, TrunkHasBellowsAndRoomForCables) {
+  const Mesh mesh = trunk();
+  const MeshReport report = require_sound(mesh);
+  EXPECT_EQ(report.nodes, 703);
+  EXPECT_EQ(report.tetrahedra, 2592);
+  EXPECT_NEAR(report.high.z(), 0.195, 1e-15);
+  EXPECT_NEAR(report.high.x(), 0.020, 1e-4);
+  EXPECT_GT(report.least_radius_ratio, 0.1);
+  EXPECT_GT(report.least_dihedral, 10.0);
+  EXPECT_LT(report.largest_dihedral, 160.0);
+  const Embedder embedder(mesh);
+  EXPECT_EQ(embedder.locate({0, 0, 0.195}, Outside::error, "tip").distance, 0.0);
+  // Eight cables: the lines from 10 mm beside the axis to 2 mm, all inside.
+  for (int cable = 0; cable < 4; ++cable) {
+    for (int k = 0; k <= 40; ++k) {
+      const double z = 0.19 * k / 40, radius = 0.010 - 0.008 * z / 0.195;
+      const Vector3 via(radius * std::cos(cable * kPi / 2), radius * std::sin(cable * kPi / 2), z);
+      EXPECT_NO_THROW(embedder.locate(via, Outside::error, "via")) << via.transpose();
+    }
+  }
+}
+
+TEST(Shapes, RefuseMeasuresThatMakeNoBody) {
+  error_text(ErrorKind::out_of_range, [] { block({.size = {0.1, 0.0, 0.1}}); });
+  error_text(ErrorKind::out_of_range, [] { block({.cells = {1, 0, 1}}); });
+  error_text(ErrorKind::out_of_range, [] { cylinder({.radius = -1.0}); });
+  error_text(ErrorKind::out_of_range, [] { cone({.top_radius = 0.0}); });
+  error_text(ErrorKind::out_of_range, [] { hollow_cylinder({.inner_radius = 0.02}); });
+  error_text(ErrorKind::out_of_range, [] { trunk({.groove_depth = 0.9}); });
+  error_text(ErrorKind::out_of_range, [] { trunk({.height = std::nan("")}); });
+}
+
+TEST(Refine, KeepsVolumeOrientationAndQuality) {
+  const Mesh coarse = trunk();
+  const Mesh fine = refine(coarse);
+  EXPECT_EQ(fine.tetrahedra.size(), 8 * coarse.tetrahedra.size());
+  EXPECT_EQ(fine.nodes.topRows(coarse.node_count()), coarse.nodes);
+  EXPECT_NEAR(volume(fine) / volume(coarse), 1.0, 1e-12);
+  const double before = describe(coarse).least_radius_ratio;
+  const MeshReport first = require_sound(fine), second = require_sound(refine(fine));
+  EXPECT_GT(first.least_radius_ratio, 0.4 * before);
+  EXPECT_GT(second.least_radius_ratio, 0.4 * before) << "repeated refinement goes on as it began";
+}
+
+TEST(Refine, CarriesSets) {
+  Mesh coarse = block({.size = {0.2, 0.1, 0.1}, .cells = {4, 2, 2}});
+  coarse.tetrahedron_sets["left"] = {};
+  for (NodeId e = 0; e < static_cast<NodeId>(coarse.tetrahedra.size()); ++e) {
+    const auto corners = corners_of(coarse, e);
+    if ((corners[0] + corners[1] + corners[2] + corners[3]).x() / 4 < 0.1) {
+      coarse.tetrahedron_sets["left"].push_back(e);
+    }
+  }
+  coarse.triangles = boundary_surface(coarse).triangles;
+  coarse.triangle_sets["first"] = {0};
+  const Mesh fine = refine(coarse);
+  double left = 0.0;
+  for (const NodeId e : fine.tetrahedron_sets.at("left"))
+    left += signed_volume(corners_of(fine, e));
+  EXPECT_NEAR(left, 0.1 * 0.1 * 0.1, 1e-15);
+  EXPECT_EQ(fine.triangles.size(), 4 * coarse.triangles.size());
+  EXPECT_EQ(fine.triangle_sets.at("first").size(), 4u);
+  EXPECT_EQ(fine.node_sets.at("x_min").size(), 25u);
+  for (const NodeId node : fine.node_sets.at("x_min")) EXPECT_EQ(fine.nodes(node, 0), 0.0);
+  const Surface boundary = boundary_surface(fine);
+  EXPECT_EQ(boundary.triangles.size(), fine.triangles.size());
+  error_text(ErrorKind::unsupported_element, [] { refine(hexahedral_block({})); });
+}
+
+TEST(Selection, PicksNodesByPlace) {
+  const Mesh mesh = block({.size = {0.1, 0.1, 0.1}, .cells = {2, 2, 2}});
+  const auto count = [&](const Region& region) { return select_nodes(mesh, region, "r").size(); };
+  EXPECT_EQ(count(BoxRegion{{0, 0, 0}, {0.1, 0.1, 0}}), 9u);
+  EXPECT_EQ(count(BoxRegion{{0, 0, 0.1 + 1e-12}, {0.1, 0.1, 0.1 + 1e-12}}), 9u) << "rounding";
+  EXPECT_EQ(count(SphereRegion{{0.05, 0.05, 0.05}, 0.05}), 7u);
+  EXPECT_EQ(count(SphereRegion{{0.05, 0.05, 0.05}, 0.04}), 1u);
+  const double inf = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(count(PlaneRegion{{0, 0, 0.05}, {0, 0, 3}, -inf, 0.0}), 18u);
+  EXPECT_EQ(count(PlaneRegion{{0, 0, 0}, {1, 1, 0}, 0.05, 0.1}), 6u + 3u);
+  EXPECT_EQ(count(NamedRegion{"y_max"}), 9u);
+}
+
+TEST(Selection, ExplainsEmptyAndSenselessRegions) {
+  const Mesh mesh = block({.size = {0.1, 0.1, 0.1}, .cells = {2, 2, 2}});
+  const auto refused = [&](ErrorKind kind, const Region& region) {
+    return error_text(kind, [&] { select_nodes(mesh, region, "bodies.a.fixed[0]"); });
+  };
+  const std::string text = refused(ErrorKind::empty_region, BoxRegion{{-20, -20, 5}, {20, 20, 20}});
+  EXPECT_THAT(text, HasSubstr("(0, 0, 0) to (0.1, 0.1, 0.1) m"));
+  EXPECT_THAT(text, HasSubstr("bodies.a.fixed[0]"));
+  refused(ErrorKind::empty_region, SphereRegion{{1, 1, 1}, 0.1});
+  refused(ErrorKind::out_of_range, BoxRegion{{1, 0, 0}, {0, 1, 1}});
+  refused(ErrorKind::out_of_range, SphereRegion{{0, 0, 0}, 0.0});
+  refused(ErrorKind::out_of_range, PlaneRegion{{0, 0, 0}, {0, 0, 0}, 0, 1});
+  refused(ErrorKind::out_of_range, PlaneRegion{{0, 0, 0}, {0, 0, 1}, 1, 0});
+  refused(ErrorKind::not_finite, SphereRegion{{0, 0, std::nan("")}, 0.1});
+  EXPECT_THAT(refused(ErrorKind::unknown_set, NamedRegion{"z_mn"}),
+              HasSubstr("did you mean `z_mi"));
+  EXPECT_THAT(error_text(ErrorKind::unknown_set,
+                         [] { select_nodes(test::one_tetrahedron(), NamedRegion{"a"}, "r"); }),
+              HasSubstr("no sets"));
+}
+
+TEST(Selection, LeavesUnusedNodesOut) {
+  Mesh mesh = test::one_tetrahedron();
+  mesh.nodes.conservativeResize(5, 3);
+  mesh.nodes.row(4) << 0.5, 0.5, 0.5;
+  mesh.node_sets["stray"] = {4};
+  mesh.tetrahedron_sets["body"] = {0};
+  EXPECT_EQ(select_nodes(mesh, BoxRegion{{0, 0, 0}, {1, 1, 1}}, "r").size(), 4u);
+  error_text(ErrorKind::empty_region, [&] { select_nodes(mesh, NamedRegion{"stray"}, "r"); });
+  EXPECT_EQ(select_nodes(mesh, NamedRegion{"body"}, "r").size(), 4u);
+  EXPECT_EQ(select_tetrahedra(mesh, "body", "r").size(), 1u);
+  error_text(ErrorKind::unknown_set, [&] { select_tetrahedra(mesh, "bdy", "r"); });
+}
+
+}  // namespace
+}  // namespace sinew::mesh

@@ -1,0 +1,1 @@
+"""One module a case; see docs/validation.md for what each holds."""

@@ -1,0 +1,130 @@
+#!/usr/bin/python3
+"""Compares Sinew's numbers with references and writes docs/scorecard.md and its plots.
+
+    validation/run.py [CASE...]         all cases by default; --list names them
+    make validate                       builds first
+
+Needs the Python package: build/release/python is taken unless `sinew` can be imported already.
+Exit code: 0 when every check held, known misses aside; 1 when one was missed or a case stopped by an
+error; 2 for wrong arguments. The scorecard is written in any case, unless only some cases ran.
+"""
+
+from __future__ import annotations
+
+import argparse
+import concurrent.futures
+import importlib
+import importlib.util
+import multiprocessing
+import os
+import pathlib
+import sys
+import tempfile
+import time
+import traceback
+
+HERE = pathlib.Path(__file__).resolve().parent
+for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
+    os.environ.setdefault(variable, "1")  # cases run side by side
+sys.path.insert(0, str(HERE))
+if importlib.util.find_spec("sinew") is None:
+    sys.path.append(str(HERE.parent / "build" / "release" / "python"))
+
+from suite import scorecard  # noqa: E402
+from suite.case import MISSED, Case, Result  # noqa: E402
+
+
+def case_names() -> list[str]:
+    """In the order of the scorecard, which is that of the file names."""
+    return sorted(path.stem for path in (HERE / "cases").glob("*.py") if path.stem != "__init__")
+
+
+def run_case(name: str, images: pathlib.Path) -> Result:
+    """One case; what it raises is in the result."""
+    result = Result(name, title=name)
+    start = time.monotonic()
+    try:
+        module = importlib.import_module(f"cases.{name}")
+        result.title, result.setup, result.sources = module.TITLE, module.SETUP, module.SOURCES
+        with tempfile.TemporaryDirectory(prefix="sinew-validate-") as scratch:
+            case = Case(name, images, pathlib.Path(scratch), module.SOURCES)
+            result.checks, result.figures = case.checks, case.figures
+            module.run(case)
+    except Exception:
+        result.failure = traceback.format_exc()
+    result.seconds = time.monotonic() - start
+    return result
+
+
+def run_all(names: list[str], images: pathlib.Path, jobs: int) -> list[Result]:
+    """Side by side in processes, the longest first; says what has ended."""
+    cost = {name: getattr(importlib.import_module(f"cases.{name}"), "COST", 1) for name in names}
+    results = {}
+    context = multiprocessing.get_context("spawn")
+    with concurrent.futures.ProcessPoolExecutor(jobs, mp_context=context) as pool:
+        pending = {pool.submit(run_case, name, images): name
+                   for name in sorted(names, key=lambda n: -cost[n])}
+        for done in concurrent.futures.as_completed(pending):
+            result = done.result()
+            results[result.name] = result
+            tell(result, len(results), len(names))
+    return [results[name] for name in names]
+
+
+def tell(result: Result, done: int, count: int) -> None:
+    """A line for a case that ended, and what it missed."""
+    state = "stopped by an error" if result.failure else scorecard.totals([result])
+    print(f"[{done}/{count}] {result.name} ({result.seconds:.1f} s): {state}", flush=True)
+    for check in result.checks:
+        if check.verdict == MISSED:
+            print(f"    missed: {check.quantity}: {check.ours}, reference {check.reference}, "
+                  f"error {check.error}, tolerance {check.tolerance}", flush=True)
+    if result.failure:
+        print("    " + result.failure.strip().replace("\n", "\n    "), flush=True)
+
+
+def arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("cases", nargs="*", metavar="CASE", help="all by default")
+    parser.add_argument("--list", action="store_true", help="names the cases and ends")
+    parser.add_argument("--fast", action="store_true", help="only the cases that take seconds")
+    parser.add_argument("--out", type=pathlib.Path, default=HERE.parent / "docs",
+                        help="folder for scorecard.md and images/validation (default: docs)")
+    parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)),
+                        help="cases at once (default: one a core)")
+    chosen = parser.parse_args()
+    unknown = sorted(set(chosen.cases) - set(case_names()))
+    if unknown:
+        parser.error(f"there is no case {', '.join(unknown)}; --list names them")
+    if chosen.jobs < 1:
+        parser.error(f"--jobs is {chosen.jobs}; give 1 or more")
+    return chosen
+
+
+def main() -> int:
+    options = arguments()
+    names = [name for name in case_names() if not options.cases or name in options.cases]
+    try:
+        modules = {name: importlib.import_module(f"cases.{name}") for name in names}
+    except ImportError as error:
+        print(f"validation: {error}; build the Python package first: make build", file=sys.stderr)
+        return 1
+    if options.fast:
+        names = [name for name in names if getattr(modules[name], "COST", 1) <= 2]
+    if options.list:
+        for name in names:
+            print(f"{name:28} {modules[name].TITLE}")
+        return 0
+    images = options.out / "images" / "validation"
+    results = run_all(names, images, min(options.jobs, len(names)))
+    print(scorecard.totals(results))
+    if names == case_names():
+        scorecard.write(results, options.out / "scorecard.md", images)
+        print(f"written: {options.out / 'scorecard.md'}")
+    else:
+        print("only some cases ran: the scorecard is left as it is")
+    return 1 if any(result.failure or result.count(MISSED) for result in results) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,1 @@
+"""What every validation case stands on: checks and verdicts, scorecard, plots, robots."""
