@@ -153,6 +153,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Broken{"cell_sum", kLegacyHead + "CELLS 1 6\n4 0 1 2 3 0\nCELL_TYPES 1\n10\n",
                            ErrorKind::malformed_file, "announces 6"},
                     Broken{"missing_types", kLegacyHead + "CELLS 1 5\n4 0 1 2 3\n",
+                           ErrorKind::truncated_file, "no CELL_TYPES"},
+                    Broken{"few_types", kLegacyHead + "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 0\n",
                            ErrorKind::malformed_file, "0 cells have a type"},
                     Broken{"wrong_points_for_type",
                            kLegacyHead + "CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n10\n",

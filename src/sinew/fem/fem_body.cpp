@@ -26,7 +26,7 @@ struct FemBody::Numbers {
   Assembly assembly;
   std::unique_ptr<linalg::Factorisation> factorisation;
   std::vector<double> border;
-  std::vector<double> start_matrix;  // Newton with stiffness damping: A at the start of the step
+  std::vector<double> start_stiffness;  // rotated K at the start of the step, for damping
   bool damped = false;
 };
 
@@ -88,32 +88,23 @@ void FemBody::linearise(const mechanics::LinearisationRequest& request) {
   const auto& damping = model_.settings().damping;
   const double mass = weights.mass + damping.mass * weights.damping;
   const double rate = damping.stiffness * weights.damping;
-  AssemblyWeights assembly{
-      request.tangent == mechanics::Tangent::exact ? Tangent::exact : Tangent::rotated, 1.0 + rate,
-      mass};
-  active_->damped = request.iterating && rate > 0.0;
-  if (active_->damped && !first_linearisation_) {
-    // A = K + rate K_start + mass M, where the stored A_start = (1 + rate) K_start + mass M.
-    assembly.stiffness = 1.0;
-    assembly.mass = mass / (1.0 + rate);
+  const bool exact = request.tangent == mechanics::Tangent::exact;
+  // C = alpha M + beta K with the rotated K at the start of the step: positive semi-definite, so
+  // that damping damps, and constant, so that Newton's derivative is exact.
+  active_->damped = rate > 0.0 && (request.iterating || exact);
+  if (active_->damped && first_linearisation_) {
+    active_->assembly.evaluate(positions_, {Tangent::rotated, 1.0, 0.0});
+    const auto matrix = active_->assembly.matrix();
+    active_->start_stiffness.assign(matrix.begin(), matrix.end());
   }
-  active_->assembly.evaluate(positions_, assembly);
-  if (active_->damped) add_frozen_damping(request);
+  active_->assembly.evaluate(positions_, {exact ? Tangent::exact : Tangent::rotated,
+                                          active_->damped ? 1.0 : 1.0 + rate, mass});
+  if (active_->damped) {
+    const auto matrix = active_->assembly.matrix();
+    for (std::size_t i = 0; i < matrix.size(); ++i) matrix[i] += rate * active_->start_stiffness[i];
+  }
   form_right_side(request);
   first_linearisation_ = false;
-}
-
-void FemBody::add_frozen_damping(const mechanics::LinearisationRequest& request) {
-  const auto matrix = active_->assembly.matrix();
-  if (first_linearisation_) {
-    active_->start_matrix.assign(matrix.begin(), matrix.end());
-    return;
-  }
-  const double rate = model_.settings().damping.stiffness * request.weights.damping;
-  const double share = rate / (1.0 + rate);
-  for (std::size_t i = 0; i < matrix.size(); ++i) {
-    matrix[i] += share * active_->start_matrix[i];
-  }
 }
 
 // b = p - f - M (mass d - momentum v_start) - damping C d, with d the motion since the step began.
@@ -148,13 +139,9 @@ void FemBody::form_right_side(const mechanics::LinearisationRequest& request) {
   force_scale_ += scratch_.norm();
   const double rate = damping.stiffness * weights.damping;
   if (rate > 0.0 && !first_linearisation_ && active_->damped) {
-    // rate K_start d = rate / (1 + rate) (A_start d - mass M d)
-    const double share = rate / (1.0 + rate);
-    linalg::multiply(active_->system.elements->pattern(), active_->start_matrix, span_of(travel_),
-                     span_of(scratch_));
-    right_ -= share * scratch_;
-    active_->system.elements->apply_mass(span_of(travel_), span_of(scratch_));
-    right_ += share * mass * scratch_;
+    linalg::multiply(active_->system.elements->pattern(), active_->start_stiffness,
+                     span_of(travel_), span_of(scratch_));
+    right_ -= rate * scratch_;
   }
 }
 
@@ -304,7 +291,7 @@ std::size_t FemBody::bytes() const {
   for (const Numbers* n : {plain_.get(), curved_.get()}) {
     if (n == nullptr) continue;
     total += n->assembly.bytes() + n->factorisation->bytes() +
-             sizeof(double) * (n->border.size() + n->start_matrix.size());
+             sizeof(double) * (n->border.size() + n->start_stiffness.size());
   }
   return total;
 }

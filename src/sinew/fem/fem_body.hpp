@@ -60,7 +60,6 @@ class FemBody : public mechanics::Body {
 
   Numbers& numbers(bool with_curvature);
   void form_right_side(const mechanics::LinearisationRequest& request);
-  void add_frozen_damping(const mechanics::LinearisationRequest& request);
   Vector3 weighted(const Points& field, int point) const;
 
   const FemBodyModel& model_;
