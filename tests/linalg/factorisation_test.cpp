@@ -43,7 +43,8 @@ void expect_agrees_with_dense(Factorisation& factorisation, const BlockSystem& s
   const MatrixX h = system.dense_rows();
   const VectorX b = system.dense_right();
   const Eigen::PartialPivLU<MatrixX> lu(a);
-  const MatrixX w = h * lu.solve(h.transpose());
+  MatrixX w(h.rows(), h.rows());
+  if (h.rows() > 0) w = h * lu.solve(h.transpose());  // Eigen 3.4 does not solve for no columns
   EXPECT_LT(relative_error(factorisation.compliance(), w), tolerance);
   EXPECT_EQ(factorisation.compliance(), factorisation.compliance().transpose());
   EXPECT_LT(relative_error(factorisation.free_motion(), h * lu.solve(b)), tolerance);

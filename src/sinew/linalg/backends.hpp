@@ -14,7 +14,7 @@ using PlanPointer = std::shared_ptr<const FactorisationPlan>;
 PlanPointer make_block_plan(const BlockPattern& pattern, const BorderPattern& border,
                             const FactorisationSettings& settings);
 
-/// Eigen's SimplicialLDLT, as a reference.
+/// Eigen's SimplicialLDLT, as a reference; unlike ours, its solves allocate.
 PlanPointer make_eigen_ldlt_plan(const BlockPattern& pattern, const BorderPattern& border,
                                  const FactorisationSettings& settings);
 

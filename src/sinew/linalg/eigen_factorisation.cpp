@@ -72,7 +72,7 @@ class EigenFactorisation final : public Factorisation {
     if (solver_.info() != Eigen::Success) return FactorStatus::singular;
     fill_rows(border);
     const Eigen::Map<const VectorX> b(right.data(), matrix_.rows());
-    solved_rows_ = solver_.solve(rows_);
+    if (rows_.cols() > 0) solved_rows_ = solver_.solve(rows_);
     solved_right_ = solver_.solve(b);
     compliance_.noalias() = rows_.transpose() * solved_rows_;
     compliance_ = (0.5 * (compliance_ + compliance_.transpose())).eval();

@@ -88,6 +88,7 @@ std::shared_ptr<const FactorisationPlan> analyse(const BlockPattern& pattern,
 
 std::vector<std::string> backends() {
   std::vector<std::string> names;
+  names.reserve(kBackends.size());
   for (const Backend& backend : kBackends) names.emplace_back(backend.name);
   return names;
 }
