@@ -12,6 +12,10 @@ namespace {
 // A body whose nodes are this many of its sizes away has blown up.
 constexpr double kLargestSize = 1e3;
 
+// Residuals are judged relative to loads, but not to loads that strain a body less than this: at
+// rest there is nothing but rounding to compare with.
+constexpr double kLeastStrain = 1e-5;
+
 std::span<double> span_of(VectorX& v) { return {v.data(), static_cast<std::size_t>(v.size())}; }
 }  // namespace
 
@@ -49,6 +53,11 @@ FemBody::FemBody(const FemBodyModel& model, ThreadPool& pool, bool with_curvatur
         model.elements().lumped_mass()[nodes[i]] * model.settings().gravity;
   }
   row_effort_.resize(model.rows().size());
+  double modulus = 0.0;
+  for (const Region& region : model.settings().elements.regions) {
+    modulus = std::max(modulus, region.constants.young_modulus);
+  }
+  least_force_ = kLeastStrain * modulus * std::pow(model.elements().volume(), 2.0 / 3.0);
   const Vector3 extent = positions_.colwise().maxCoeff() - positions_.colwise().minCoeff();
   const auto count = static_cast<double>(nodes.size());
   blow_up_ =
@@ -121,7 +130,7 @@ void FemBody::form_right_side(const mechanics::LinearisationRequest& request) {
     internal += f.squaredNorm();
     outside += p.squaredNorm();
   }
-  force_scale_ = std::sqrt(internal) + std::sqrt(outside);
+  force_scale_ = least_force_ + std::sqrt(internal) + std::sqrt(outside);
   if (imbalance_share_ != 0.0) right_ -= imbalance_share_ * imbalance_;
   const auto& weights = request.weights;
   if (!weights.dynamic()) return;

@@ -76,6 +76,7 @@ class FemBody : public mechanics::Body {
   double blow_up_ = 0.0;  // sum of squared positions, m^2, beyond which the state is taken as lost
   bool first_linearisation_ = true;
   double force_scale_ = 0.0;
+  double least_force_ = 0.0;  // N
 };
 
 }  // namespace sinew::fem

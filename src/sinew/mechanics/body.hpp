@@ -124,7 +124,8 @@ class Body {
 
   /// Number of negative pivots of the last condensation.
   virtual int negative_pivots() const = 0;
-  /// A force scale, N, against which residuals are judged: sum of |internal| and |outside| forces.
+  /// A force scale, N, against which residuals are judged: sum of the norms of internal and outside
+  /// forces, and the force of a negligible strain, so that it is not zero at rest.
   virtual double force_scale() const = 0;
   /// Stored energy (J): strain; kinetic; gravity's potential with respect to rest.
   virtual double strain_energy() = 0;
