@@ -1,0 +1,35 @@
+/// @file
+/// States of simulations as files: versioned, checked, and of one model only.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "sinew/sim/simulation.hpp"
+
+namespace sinew::sim {
+
+/// The layout, little-endian: 8 bytes "SINEWST\n", format version (uint32), 4 bytes of zeros, the
+/// model's fingerprint (uint64), step count (int64), count of numbers (uint64), the numbers
+/// (float64: positions and velocities of every body, efforts, motions and drives), and a hash of
+/// the numbers (uint64). Commands are inputs, not state, and are not part of it.
+inline constexpr std::uint32_t kStateVersion = 1;
+
+/// The state as bytes.
+std::string format_state(const Simulation& simulation);
+
+/// Puts a state back, after which the run goes on bit for bit as it would have.
+/// @param bytes the whole file. @param name its name, for messages.
+/// Throws Error: state-corrupt (no state, truncated, damaged, not finite), state-version,
+/// state-mismatch; the simulation is then unchanged.
+void parse_state(Simulation& simulation, std::string_view bytes, const std::string& name);
+
+/// Writes the state; the file appears whole or not at all. Throws Error(file-unwritable).
+void save_state(const Simulation& simulation, const std::filesystem::path& path);
+
+/// Reads it back. Throws as parse_state(), and Error(file-not-found, file-unreadable).
+void load_state(Simulation& simulation, const std::filesystem::path& path);
+
+}  // namespace sinew::sim

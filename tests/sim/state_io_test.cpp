@@ -1,0 +1,99 @@
+#include "sinew/sim/state_io.hpp"
+
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "sinew/core/error.hpp"
+#include "sinew/core/state_hash.hpp"
+
+#include "robots.hpp"
+
+namespace sinew::sim {
+namespace {
+
+using sinew::testing::beam;
+using sinew::testing::pull;
+
+ErrorKind kind_of(Simulation& simulation, std::string_view bytes) {
+  const auto before = simulation.state_hash();
+  try {
+    parse_state(simulation, bytes, "test.state");
+  } catch (const Error& error) {
+    EXPECT_EQ(simulation.state_hash(), before) << "a refused state changes nothing";
+    EXPECT_EQ(error.place().file, "test.state");
+    return error.kind();
+  }
+  return ErrorKind::internal;
+}
+
+TEST(StateIo, ARunGoesOnBitForBit) {
+  const auto model = beam();
+  Simulation first(model), second(model);
+  first.command(0, pull(0.003));
+  second.command(0, pull(0.003));
+  for (int i = 0; i < 7; ++i) first.step();
+  const auto path = std::filesystem::temp_directory_path() / "sinew_state_io_test.state";
+  save_state(first, path);
+  load_state(second, path);
+  std::filesystem::remove(path);
+  EXPECT_EQ(second.steps(), 7);
+  EXPECT_EQ(second.state_hash(), first.state_hash());
+  for (int i = 0; i < 5; ++i) {
+    first.step();
+    second.step();
+  }
+  EXPECT_EQ(second.state_hash(), first.state_hash());
+}
+
+TEST(StateIo, WrongBytesAreRefused) {
+  Simulation simulation(beam());
+  const std::string good = format_state(simulation);
+  EXPECT_EQ(kind_of(simulation, ""), ErrorKind::state_corrupt);
+  EXPECT_EQ(kind_of(simulation, "hello, this is no state at all, but long enough for one"),
+            ErrorKind::state_corrupt);
+  EXPECT_EQ(kind_of(simulation, good.substr(0, good.size() - 1)), ErrorKind::state_corrupt);
+  EXPECT_EQ(kind_of(simulation, good + "x"), ErrorKind::state_corrupt);
+  std::string version = good;
+  version[8] = 9;
+  EXPECT_EQ(kind_of(simulation, version), ErrorKind::state_version);
+  std::string damaged = good;
+  damaged[100] = static_cast<char>(damaged[100] ^ 1);
+  EXPECT_EQ(kind_of(simulation, damaged), ErrorKind::state_corrupt);
+  sinew::testing::BeamOptions other;
+  other.cables = 3;
+  Simulation smaller(beam(other));
+  EXPECT_EQ(kind_of(smaller, good), ErrorKind::state_mismatch);
+}
+
+TEST(StateIo, NumbersThatAreNotFiniteAreRefused) {
+  Simulation simulation(beam());
+  std::string bytes = format_state(simulation);
+  const double nan = std::nan("");
+  std::memcpy(bytes.data() + 40, &nan, 8);
+  std::vector<double> state(simulation.state_size());
+  std::memcpy(state.data(), bytes.data() + 40, 8 * state.size());
+  const auto hash = hash_doubles(state);
+  std::memcpy(bytes.data() + bytes.size() - 8, &hash, 8);
+  EXPECT_EQ(kind_of(simulation, bytes), ErrorKind::state_corrupt);
+}
+
+TEST(StateIo, RandomDamageNeverPasses) {
+  Simulation simulation(beam());
+  const std::string good = format_state(simulation);
+  std::mt19937 random(5);
+  for (int i = 0; i < 2000; ++i) {
+    std::string bytes = good;
+    bytes[random() % bytes.size()] ^= static_cast<char>(1 + random() % 255);
+    if (bytes.substr(12, 4) != good.substr(12, 4) || bytes.substr(24, 8) != good.substr(24, 8)) {
+      continue;  // reserved bytes, or the step count, which any number may be
+    }
+    EXPECT_NE(kind_of(simulation, bytes), ErrorKind::internal) << i;
+  }
+}
+
+}  // namespace
+}  // namespace sinew::sim
