@@ -82,9 +82,9 @@ TEST(Shapes, TrunkHasBellowsAndRoomForCables) {
   EXPECT_EQ(report.tetrahedra, 2592);
   EXPECT_NEAR(report.high.z(), 0.195, 1e-15);
   EXPECT_NEAR(report.high.x(), 0.020, 1e-4);
-  EXPECT_GT(report.least_radius_ratio, 0.1);
-  EXPECT_GT(report.least_dihedral, 10.0);
-  EXPECT_LT(report.largest_dihedral, 160.0);
+  EXPECT_GT(report.least_radius_ratio, 0.45);
+  EXPECT_GT(report.least_dihedral, 20.0);
+  EXPECT_LT(report.largest_dihedral, 140.0);
   const Embedder embedder(mesh);
   EXPECT_EQ(embedder.locate({0, 0, 0.195}, Outside::error, "tip").distance, 0.0);
   // Eight cables: the lines from 10 mm beside the axis to 2 mm, all inside.

@@ -15,8 +15,6 @@
 
 #include "sinew/core/error.hpp"
 
-extern "C" char** environ;
-
 namespace sinew::mesh {
 
 namespace {
@@ -74,6 +72,7 @@ bool program_exists(const std::string& program) {
 
 ProcessResult run_program(const std::vector<std::string>& arguments) {
   std::vector<char*> argv;
+  argv.reserve(arguments.size() + 1);
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
   std::array<int, 2> ends{};

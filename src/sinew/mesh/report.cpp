@@ -127,7 +127,8 @@ void print_quality(const MeshReport& report, std::string& text) {
   text += fmt::format("edges        {} to {}, mean {}\n", format_length(report.shortest_edge),
                       format_length(report.longest_edge), format_length(report.mean_edge));
   text += fmt::format(
-      "quality      radius ratio {:.3f} to 1 is best, mean {:.3f}, worst tetrahedron {}\n",
+      "quality      radius ratio at least {:.3f} (1 is best), mean {:.3f}; worst is tetrahedron "
+      "{}\n",
       report.least_radius_ratio, report.mean_radius_ratio, report.worst_tetrahedron);
   text += fmt::format("             dihedral angles {:.1f} to {:.1f} degrees\n",
                       report.least_dihedral, report.largest_dihedral);
