@@ -18,7 +18,8 @@ target_compile_options(sinew_options INTERFACE -Wall -Wextra -Wconversion -Wshad
                        -Wno-missing-field-initializers)
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   # GCC 12 takes dead branches of Eigen, of its own intrinsics and of std::string for real ones (GCC
-  # bugs 105593, 106247, 105651), depending on the instruction set. The sanitizers and clang-tidy look for these.
+  # bugs 105593, 106247, 105651), depending on the instruction set. The sanitizers and clang-tidy
+  # look for the real ones.
   target_compile_options(sinew_options INTERFACE
                          -Wno-psabi  # wide vectors are only passed within inlined code
                          -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread
