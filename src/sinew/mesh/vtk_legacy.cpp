@@ -10,49 +10,11 @@
 
 #include "sinew/mesh/byte_reader.hpp"
 #include "sinew/mesh/raw_mesh.hpp"
+#include "sinew/mesh/vtk_legacy_values.hpp"
 
 namespace sinew::mesh {
 
 namespace {
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return result;
-}
-
-std::optional<ScalarType> scalar_type(std::string_view word) {
-  static constexpr std::pair<std::string_view, ScalarType> kNames[] = {
-      {"bit", ScalarType::bit},
-      {"char", ScalarType::int8},
-      {"signed_char", ScalarType::int8},
-      {"unsigned_char", ScalarType::uint8},
-      {"short", ScalarType::int16},
-      {"unsigned_short", ScalarType::uint16},
-      {"int", ScalarType::int32},
-      {"unsigned_int", ScalarType::uint32},
-      {"vtkidtype", ScalarType::int32},  // legacy files store it in 32 bits
-      {"long", ScalarType::int64},
-      {"unsigned_long", ScalarType::uint64},
-      {"vtktypeint8", ScalarType::int8},
-      {"vtktypeuint8", ScalarType::uint8},
-      {"vtktypeint16", ScalarType::int16},
-      {"vtktypeuint16", ScalarType::uint16},
-      {"vtktypeint32", ScalarType::int32},
-      {"vtktypeuint32", ScalarType::uint32},
-      {"vtktypefloat32", ScalarType::float32},
-      {"vtktypefloat64", ScalarType::float64},
-      {"vtktypeint64", ScalarType::int64},
-      {"vtktypeuint64", ScalarType::uint64},
-      {"float", ScalarType::float32},
-      {"double", ScalarType::float64},
-  };
-  const std::string wanted = lower(word);
-  for (const auto& [name, type] : kNames) {
-    if (name == wanted) return type;
-  }
-  return std::nullopt;
-}
 
 /// Undoes the percent-encoding of array names ("my%20set").
 std::string decoded_name(std::string_view text) {
@@ -71,9 +33,9 @@ std::string decoded_name(std::string_view text) {
   return name;
 }
 
-class LegacyReader {
+class LegacyReader : private LegacyValues {
  public:
-  LegacyReader(std::string_view bytes, const std::string& name) : in_(bytes, name) {
+  LegacyReader(std::string_view bytes, const std::string& name) : LegacyValues(bytes, name) {
     raw_.name = name;
   }
 
@@ -104,18 +66,17 @@ class LegacyReader {
                "write the file as version 2.0 to 5.1");
     }
     in_.line();  // the title may hold anything
-    const std::string encoding = lower(in_.word("the encoding, ASCII or BINARY"));
+    const std::string encoding = lower_case(in_.word("the encoding, ASCII or BINARY"));
     if (encoding != "ascii" && encoding != "binary") {
       in_.fail(ErrorKind::malformed_file,
                fmt::format("the third line must be ASCII or BINARY, got `{}`", encoding));
     }
-    binary_ = encoding == "binary";
-    if (binary_) in_.mark_binary();
+    if (encoding == "binary") set_binary();
     raw_.format = fmt::format("VTK legacy {}, {}", version.substr(0, 3), encoding);
   }
 
   void section() {
-    const std::string keyword = lower(in_.word("a section"));
+    const std::string keyword = lower_case(in_.word("a section"));
     if (keyword == "dataset") {
       dataset();
     } else if (keyword == "points") {
@@ -142,7 +103,7 @@ class LegacyReader {
   }
 
   void dataset() {
-    const std::string kind = lower(in_.word("the kind of dataset"));
+    const std::string kind = lower_case(in_.word("the kind of dataset"));
     if (kind == "unstructured_grid") return;
     in_.fail(ErrorKind::unknown_format,
              fmt::format("DATASET {} holds no volume mesh", kind.substr(0, 40)),
@@ -271,7 +232,7 @@ class LegacyReader {
     std::int64_t components = 1;
     ByteReader rest(in_.line(), in_.name());
     if (!rest.peek_word().empty()) components = rest.integer("the number of components");
-    if (lower(in_.peek_word()) == "lookup_table") {
+    if (lower_case(in_.peek_word()) == "lookup_table") {
       in_.word("LOOKUP_TABLE");
       in_.word("the name of the lookup table");
       end_of_header();
@@ -296,8 +257,9 @@ class LegacyReader {
   /// Reads an array; keeps it as integer field when it is one, has a name and one component.
   void array(const std::string& name, std::int64_t components, std::int64_t tuples,
              std::string_view type_name) {
-    const std::optional<ScalarType> type = scalar_type(type_name);
-    if (!type && lower(type_name) == "string" && !binary_) return skip_strings(components, tuples);
+    const std::optional<ScalarType> type = legacy_scalar_type(type_name);
+    if (!type && lower_case(type_name) == "string" && !binary_)
+      return skip_strings(components, tuples);
     if (!type) {
       in_.fail(ErrorKind::malformed_file,
                fmt::format("array `{}` has the unknown type `{}`", name, type_name.substr(0, 40)));
@@ -318,66 +280,6 @@ class LegacyReader {
     fields_->push_back({name, mask, integers(count, *type, "values")});
   }
 
-  std::size_t block_size(std::size_t count, ScalarType type) const {
-    return type == ScalarType::bit ? (count + 7) / 8 : count * bytes_of(type);
-  }
-
-  void skip(std::size_t count, ScalarType type) {
-    if (binary_) {
-      in_.block(block_size(count, type), "values");
-      return;
-    }
-    for (std::size_t i = 0; i < count; ++i) in_.number("a value");
-  }
-
-  void skip_strings(std::int64_t components, std::int64_t tuples) {
-    const std::size_t width = in_.checked_count(components, 1, "components");
-    const std::size_t count = in_.checked_count(tuples, width, "tuples");
-    in_.line();
-    for (std::size_t i = 0; i < count * width; ++i) in_.line();
-  }
-
-  std::vector<double> doubles(std::size_t count, ScalarType type, std::string_view what) {
-    if (binary_) {
-      return decode_doubles(in_.block(block_size(count, type), what), type, ByteOrder::big);
-    }
-    std::vector<double> values(count);
-    for (double& value : values) value = in_.number("a coordinate");
-    return values;
-  }
-
-  std::vector<std::int64_t> integers(std::size_t count, ScalarType type, std::string_view what) {
-    if (!is_integer(type)) {
-      in_.fail(ErrorKind::malformed_file, fmt::format("{} must be of an integer type", what));
-    }
-    if (binary_) {
-      auto values = decode_integers(in_.block(block_size(count, type), what), type, ByteOrder::big);
-      values.resize(count);
-      return values;
-    }
-    std::vector<std::int64_t> values(count);
-    for (auto& value : values) value = in_.integer("an integer");
-    return values;
-  }
-
-  /// Binary values start right after the line end; words may go on in the same line.
-  void end_of_header() {
-    if (binary_) in_.line();
-  }
-
-  ScalarType scalar(std::string_view what) {
-    const std::string_view word = in_.word(what);
-    const std::optional<ScalarType> type = scalar_type(word);
-    if (!type) {
-      in_.fail(ErrorKind::malformed_file,
-               fmt::format("{} is the unknown `{}`", what, word.substr(0, 40)));
-    }
-    return *type;
-  }
-
-  /// Least bytes of one number: a digit and a space in text.
-  std::size_t item_size(ScalarType type) const { return binary_ ? bytes_of(type) : 2; }
-
   /// The count that ends a keyword's line.
   std::size_t line_count(std::string_view what, std::size_t bytes_each) {
     const std::int64_t given = in_.integer("a count");
@@ -385,11 +287,9 @@ class LegacyReader {
     return in_.checked_count(given, bytes_each * item_size(ScalarType::int32), what);
   }
 
-  ByteReader in_;
   RawMesh raw_;
   std::vector<IntegerField>* fields_ = nullptr;
   std::size_t tuples_ = 0;
-  bool binary_ = false;
   bool have_points_ = false;
   bool have_cells_ = false;
   bool have_types_ = false;
