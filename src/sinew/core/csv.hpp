@@ -60,6 +60,10 @@ class CsvWriter {
   /// the disk is full, and Error(wrong-columns) when the count differs from the header's.
   void write_row(std::span<const double> values);
 
+  /// As above with words in the last columns (statuses); read_csv() reads numbers only.
+  /// @param values of the first columns. @param words without commas, quotes or line ends.
+  void write_row(std::span<const double> values, std::span<const std::string_view> words);
+
   /// Number of columns.
   int columns() const { return columns_; }
 

@@ -34,10 +34,12 @@ CsvWriter::CsvWriter(const std::filesystem::path& path, std::span<const std::str
   flush_line();
 }
 
-void CsvWriter::write_row(std::span<const double> values) {
-  if (values.size() != static_cast<std::size_t>(columns_)) {
+void CsvWriter::write_row(std::span<const double> values) { write_row(values, {}); }
+
+void CsvWriter::write_row(std::span<const double> values, std::span<const std::string_view> words) {
+  if (values.size() + words.size() != static_cast<std::size_t>(columns_)) {
     throw Error(ErrorKind::wrong_columns, {.file = path_},
-                fmt::format("expected {} columns, got {}", columns_, values.size()),
+                fmt::format("expected {} columns, got {}", columns_, values.size() + words.size()),
                 "write as many values as the header has names");
   }
   std::array<char, 32> digits{};
@@ -45,6 +47,10 @@ void CsvWriter::write_row(std::span<const double> values) {
     if (!line_.empty()) line_ += ',';
     const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
     line_.append(digits.data(), end);
+  }
+  for (const std::string_view word : words) {
+    if (!line_.empty()) line_ += ',';
+    line_ += word;
   }
   flush_line();
 }

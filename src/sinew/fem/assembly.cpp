@@ -15,7 +15,7 @@ namespace sinew::fem {
 namespace {
 
 using material::kLanes;
-constexpr int kNodeGrain = 256;  // below this a thread's wake-up costs more than the work
+constexpr int kNodeGrain = 4096;  // below this a thread's wake-up costs more than the work
 
 /// Visits to columns split so that threads have equal numbers of contributions.
 std::vector<int> split_columns(const FemModel& model, int threads) {
