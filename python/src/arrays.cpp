@@ -68,8 +68,9 @@ double to_number(const py::handle& value, const std::string& place, const std::s
 Array to_array(const py::handle& value, const std::string& place, const std::string& wanted) {
   py::array any = py::array::ensure(value);
   if (!any) PyErr_Clear();
+  const bool ragged = !any && PySequence_Check(value.ptr()) != 0;
   const char kind = any ? any.dtype().kind() : 'O';
-  if (kind == 'O' && any && any.ndim() >= 1 && any.size() > 0) {
+  if (ragged) {
     throw Error(ErrorKind::wrong_shape, {.item = place}, "the rows differ in length",
                 fmt::format("give an array of shape {}", wanted));
   }

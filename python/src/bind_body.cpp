@@ -239,7 +239,7 @@ Returns
 -------
 (rows, n, 3) ndarray
     d(delta)/dx, dimensionless (1/m in rows of orientations); rows as `Simulation.rows`. The
-    forces of the actuators on the nodes are `np.einsum('k,knc', effort, H)`.
+    forces of the actuators on the nodes are `np.einsum('k,knc->nc', effort, H)`.
 )");
 }
 

@@ -7,6 +7,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "errors.hpp"
 
 namespace sinew::python {
 
@@ -43,7 +44,7 @@ Signal samples(const py::handle& value, const char* place) {
     times.push_back(time);
     values.push_back(sample);
   }
-  return Signal::sampled(std::move(times), std::move(values));
+  return at_argument(place, [&] { return Signal::sampled(std::move(times), std::move(values)); });
 }
 
 void bind_base(py::module_& module) {
@@ -136,7 +137,8 @@ steps : (n, 2) array_like
     Time (s; the first is 0, increasing) and value (N or m).
 )")
       .def(py::init([](const py::object& steps) {
-             return Steps{Signal::steps(to_pairs(steps, "Steps"))};
+             return Steps{
+                 at_argument("Steps", [&] { return Signal::steps(to_pairs(steps, "Steps")); })};
            }),
            py::arg("steps"));
   py::class_<Samples, Signal>(module, "Samples", R"(Samples(samples)

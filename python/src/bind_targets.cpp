@@ -6,6 +6,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "errors.hpp"
 
 namespace sinew::python {
 
@@ -81,7 +82,7 @@ start_angle : float
              circle.period = to_number(period, "Circle(period)", "s");
              circle.normal = to_vector3(normal, "Circle(normal)", "m");
              circle.start_angle = to_number(start_angle, "Circle(start_angle)", "rad");
-             return Circle{Target::circle(circle)};
+             return Circle{at_argument("Circle", [&] { return Target::circle(circle); })};
            }),
            py::arg("center"), py::arg("radius"), py::kw_only(), py::arg("period"),
            py::arg("normal") = py::make_tuple(0.0, 0.0, 1.0), py::arg("start_angle") = 0.0);
@@ -102,12 +103,13 @@ period : float
 closed : bool
     Return to the first point and repeat for ever; an open path holds its end.
 )")
-      .def(
-          py::init([](const py::object& points, const py::object& period, bool closed) {
-            return Polyline{Target::polyline({to_points(points, "Polyline(points)", "m"),
-                                              to_number(period, "Polyline(period)", "s"), closed})};
-          }),
-          py::arg("points"), py::kw_only(), py::arg("period"), py::arg("closed") = false);
+      .def(py::init([](const py::object& points, const py::object& period, bool closed) {
+             return Polyline{at_argument("Polyline", [&] {
+               return Target::polyline({to_points(points, "Polyline(points)", "m"),
+                                        to_number(period, "Polyline(period)", "s"), closed});
+             })};
+           }),
+           py::arg("points"), py::kw_only(), py::arg("period"), py::arg("closed") = false);
   py::class_<Trajectory, Target>(module, "Trajectory", R"(Trajectory(times, positions)
 --
 
@@ -121,9 +123,10 @@ positions : (n, 3) array_like
     m.
 )")
       .def(py::init([](const py::object& times, const py::object& positions) {
-             return Trajectory{
-                 Target::trajectory(to_list(times, "Trajectory(times)", "s"),
-                                    to_points(positions, "Trajectory(positions)", "m"))};
+             return Trajectory{at_argument("Trajectory", [&] {
+               return Target::trajectory(to_list(times, "Trajectory(times)", "s"),
+                                         to_points(positions, "Trajectory(positions)", "m"));
+             })};
            }),
            py::arg("times"), py::arg("positions"));
 }

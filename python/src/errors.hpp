@@ -2,6 +2,9 @@
 /// How C++ errors become sinew.Error and sinew.RunError.
 #pragma once
 
+#include <string>
+#include <utility>
+
 #include <pybind11/pybind11.h>
 
 #include "sinew/core/error.hpp"
@@ -17,6 +20,17 @@ struct SimulationBusy {};
 /// The Python exception for an error: an instance of sinew.Error, or sinew.RunError for a failed
 /// run.
 py::object to_python(const Error& error);
+
+/// The value of `make()`; an Error without a place gets the argument's name.
+/// @param argument as "Ramp". @param make called once.
+template <typename Make>
+auto at_argument(const std::string& argument, Make&& make) {
+  try {
+    return make();
+  } catch (const Error& error) {
+    throw error.at({.item = argument});
+  }
+}
 
 /// Lets every bound function throw Error and SimulationBusy.
 void register_errors();

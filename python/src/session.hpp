@@ -88,8 +88,7 @@ class Session {
   sim::StaticReport solve_static(const sim::StaticSettings& settings);
   /// Simulation::reset(), and external forces set to zero.
   void reset();
-  
-  
+
   Linearisation linearise(const LinearisationChoice& choice);
 
   /// Null when there is none.

@@ -1,0 +1,146 @@
+"""Inverse control from Python."""
+
+import gc
+
+import numpy as np
+import pytest
+import sinew
+
+TARGET = [0.004, 0.003, 0.079]
+
+
+def test_reaches_its_target(sim):
+    ik = sinew.InverseController(sim, targets={"tip": TARGET})
+    ik.step(40)
+    assert ik.status == "on-target"
+    assert ik.error < 1e-6
+    assert sim.effector("tip").position == pytest.approx(TARGET, abs=1e-6)
+    assert ik.errors == {"tip": ik.error}
+    assert ik.actuators == ["east", "north", "west", "south", "push"]
+    assert ik.efforts == pytest.approx(
+        [sim.actuator(n).tension for n in ik.actuators[:4]] + [sim.actuator("push").force]
+    )
+
+
+def test_targets_from_python_each_step(sim):
+    ik = sinew.InverseController(sim, targets={"tip": [0, 0, 0.079]})
+    ik.step(10)
+    for angle in np.linspace(0, 1, 50):
+        ik.targets["tip"] = [0.003 * np.sin(angle), 0, 0.079]
+        ik.step()
+    assert ik.error < 1e-4
+    assert ik.targets["tip"] == pytest.approx([0.003 * np.sin(1), 0, 0.079])
+    ik.targets = {"tip": TARGET}
+    assert list(ik.targets) == ["tip"] and "tip" in ik.targets and len(ik.targets) == 1
+    ik.step(40)
+    assert ik.error < 1e-6
+
+
+def test_moving_targets(sim):
+    circle = sinew.Circle([0, 0, 0.078], 0.004, period=1.0)
+    assert circle.at(0.25) == pytest.approx([0, 0.004, 0.078])
+    ik = sinew.InverseController(sim, targets={"tip": circle})
+    result = sim.run(2.0)
+    assert result["error"][-100:].max() < 2e-4
+    assert ik.targets["tip"].end_time == 1.0
+    line = sinew.Polyline([[0, 0, 0.078], [0.004, 0, 0.078]], period=0.5)
+    assert line.at(0.25) == pytest.approx([0.002, 0, 0.078])
+    path = sinew.Trajectory([0, 1], [[0, 0, 0.078], [0, 0.004, 0.078]])
+    assert path.at(0.5) == pytest.approx([0, 0.002, 0.078])
+    for target in (line, path):
+        ik.targets["tip"] = target
+        ik.step(50)
+        assert ik.error < 1e-4
+
+
+def test_owns_its_actuators_until_detached(sim):
+    with sinew.InverseController(sim, targets={"tip": TARGET}) as ik:
+        ik.step(20)
+        assert sim.actuator("east").owned
+        for change in ("tension", "displacement"):
+            with pytest.raises(sinew.Error) as caught:
+                setattr(sim.actuator("east"), change, 0.0)
+            assert caught.value.kind == "actuator-owned"
+        assert sim.controller.attached
+    assert not ik.attached and sim.controller is None
+    # The drives hold where they stand.
+    before = sim.effector("tip").position
+    sim.step(30)
+    assert sim.effector("tip").position == pytest.approx(before, abs=1e-4)
+    sim.actuator("east").tension = 0.0
+    with pytest.raises(sinew.Error) as caught:
+        ik.step()
+    assert caught.value.kind == "bad-argument"
+    ik.detach()
+
+
+def test_uses_only_the_actuators_it_is_given(sim):
+    sim.actuator("push").force = 0.1
+    ik = sinew.InverseController(
+        sim, targets={"tip": [0, 0.004, 0.079]}, actuators=["north", "south"],
+        weights={"tip": [0.0, 1.0, 0.0]},
+    )
+    ik.step(40)
+    assert ik.actuators == ["north", "south"]
+    assert sim.effector("tip").position[1] == pytest.approx(0.004, abs=1e-5)
+    assert sim.actuator("push").force == pytest.approx(0.1)
+    sim.actuator("push").force = 0.2
+    ik.step(5)
+    assert sim.actuator("push").force == pytest.approx(0.2)
+
+
+def test_says_when_the_target_is_out_of_reach(sim):
+    ik = sinew.InverseController(sim, targets={"tip": [0, 0, 0.2]})
+    ik.step(60)
+    held = sim.effector("tip").position
+    ik.step(20)
+    assert ik.status == "out-of-reach"
+    assert sim.effector("tip").position == pytest.approx(held, abs=1e-5)
+    assert (ik.efforts[:4] >= 0).all()
+
+
+def test_the_scenes_controller_is_attached_on_load(follow):
+    sim = sinew.load(follow)
+    assert sim.controller.name == "follow"
+    with pytest.raises(sinew.Error) as caught:
+        sim.actuator("east").tension = 1.0
+    assert caught.value.kind == "actuator-owned"
+    with pytest.raises(sinew.Error) as caught:
+        sinew.InverseController(sim, targets={"tip": TARGET})
+    assert caught.value.kind == "actuator-owned" and "sim.detach()" in caught.value.remedy
+    result = sim.run()
+    assert result["time"][-1] == pytest.approx(2.0)
+    assert result["error"][-1] < 1e-4
+    sim.detach()
+    sim.detach()
+    assert sim.controller is None
+    sinew.InverseController(sim, targets={"tip": TARGET}).step()
+
+
+def test_stays_attached_when_the_object_is_dropped(sim):
+    ik = sinew.InverseController(sim, targets={"tip": TARGET})
+    ik.step()
+    del ik
+    gc.collect()
+    sim.step(40)
+    assert sim.controller.status == "on-target"
+    sim.controller.targets["tip"] = [0, 0.003, 0.079]
+    sim.step(40)
+    assert sim.controller.error < 1e-5
+
+
+def test_keeps_its_simulation_alive(scene):
+    ik = sinew.InverseController(sinew.load(scene), targets={"tip": TARGET})
+    gc.collect()
+    ik.step(40)
+    assert ik.status == "on-target"
+
+
+def test_reset_keeps_the_controller(sim):
+    ik = sinew.InverseController(sim, targets={"tip": TARGET})
+    ik.step(30)
+    first = sim.state_hash
+    sim.reset()
+    assert ik.attached
+    ik.step(30)
+    assert sim.state_hash == first
