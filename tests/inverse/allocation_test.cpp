@@ -1,0 +1,79 @@
+// A steady step allocates nothing, steered or not, on one thread or four.
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "sinew/inverse/inverse_controller.hpp"
+
+#include "../sim/robots.hpp"
+#include "../support/allocation_guard.hpp"
+
+namespace sinew::inverse {
+namespace {
+
+using sinew::testing::allocations;
+
+TEST(Allocation, IsSeenByTheGuard) {
+  if (!sinew::testing::counts_allocations()) return;
+  long before = allocations();
+  const std::vector<double> made(100, 1.0);
+  EXPECT_GT(allocations(), before) << made.size();
+  before = allocations();
+  const VectorX aligned = VectorX::Zero(1000);
+  EXPECT_GT(allocations(), before) << aligned.size();
+  before = allocations();
+  struct alignas(128) Wide {
+    double value[16];
+  };
+  const auto wide = std::make_unique<Wide>();
+  EXPECT_GT(allocations(), before) << wide->value[0];
+}
+
+class SteadyStep : public ::testing::TestWithParam<int> {
+ protected:
+  void expect_none(sinew::testing::BeamOptions options, bool steered) {
+    options.factorisation.threads = GetParam();
+    options.displacement = {.rate = 0.5};
+    sim::Simulation simulation(sinew::testing::beam(options), GetParam());
+    std::unique_ptr<InverseController> controller;
+    if (steered) {
+      const Target circle = Target::circle({Vector3(0.099, 0, 0), 0.004, Vector3::UnitX(), 0.5, 0});
+      controller = std::make_unique<InverseController>(
+          simulation, InverseSettings{.tasks = {{0, circle, {1.0}}}, .actuators = {}});
+    } else {
+      simulation.command(0, {sim::CommandKind::motion, sim::Signal::sine({0.001, 0.001, 0.3, 0})});
+      simulation.command(1, {sim::CommandKind::effort, sim::Signal::sine({0.1, 0.1, 0.4, 0})});
+    }
+    for (int i = 0; i < 20; ++i) simulation.step();
+    const long before = allocations();
+    for (int i = 0; i < 100; ++i) simulation.step();
+    EXPECT_EQ(allocations(), before);
+  }
+};
+
+TEST_P(SteadyStep, OfDirectQuasiStatics) { expect_none({}, false); }
+TEST_P(SteadyStep, OfInverseQuasiStatics) { expect_none({}, true); }
+TEST_P(SteadyStep, WithGeometricStiffness) {
+  sinew::testing::BeamOptions options;
+  options.geometric_stiffness = true;
+  expect_none(options, true);
+}
+TEST_P(SteadyStep, OfDampedDynamics) {
+  sinew::testing::BeamOptions options;
+  options.step.integrator = mechanics::Integrator::backward_euler;
+  options.damping = {.mass = 1.0, .stiffness = 0.01};
+  expect_none(options, false);
+}
+TEST_P(SteadyStep, OfNewtonDynamics) {
+  sinew::testing::BeamOptions options;
+  options.step.integrator = mechanics::Integrator::backward_euler;
+  options.step.method = sim::Method::newton;
+  options.step.tangent = mechanics::Tangent::exact;
+  options.damping = {.mass = 1.0, .stiffness = 0.01};
+  expect_none(options, false);
+}
+
+INSTANTIATE_TEST_SUITE_P(Threads, SteadyStep, ::testing::Values(1, 4));
+
+}  // namespace
+}  // namespace sinew::inverse

@@ -1,0 +1,215 @@
+#include "sinew/inverse/inverse_controller.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "sinew/core/error.hpp"
+
+#include "../sim/robots.hpp"
+
+namespace sinew::inverse {
+namespace {
+
+using sim::Simulation;
+using sinew::testing::beam;
+using sinew::testing::BeamOptions;
+
+InverseSettings to(const Vector3& place) {
+  return {.tasks = {{0, Target::fixed(place), {1.0}}}, .actuators = {}};
+}
+
+// A place that the tip can be at: where two known tensions put it.
+Vector3 reachable(std::shared_ptr<const sim::Model> model) {
+  Simulation simulation(std::move(model));
+  simulation.command(0, sinew::testing::tension(1.5));
+  simulation.command(1, sinew::testing::tension(0.8));
+  simulation.solve_static();
+  return simulation.effector_value(0);
+}
+
+TEST(InverseController, BringsTheTipToAPlaceThatItCanReach) {
+  const auto model = beam();
+  const Vector3 goal = reachable(model);
+  Simulation simulation(model);
+  InverseController controller(simulation, to(goal));
+  for (int i = 0; i < 300; ++i) controller.step();
+  EXPECT_EQ(controller.status(), InverseStatus::on_target);
+  EXPECT_LT(controller.error(), 5e-5);
+  EXPECT_NEAR(controller.error(), (simulation.effector_value(0) - goal).norm(), 1e-15);
+  EXPECT_LT(simulation.report().relative_residual, 1e-6);
+  for (int k = 0; k < 4; ++k) EXPECT_GE(simulation.actuator(k).effort, 0.0);
+}
+
+TEST(InverseController, PublishedRegularisationBiasesAndASmallerOneLess) {
+  const auto model = beam();
+  const Vector3 goal = reachable(model);
+  const auto bias = [&](Regularisation regularisation, double epsilon) {
+    Simulation simulation(model);
+    InverseSettings settings = to(goal);
+    settings.regularisation = regularisation;
+    settings.epsilon = epsilon;
+    InverseController controller(simulation, settings);
+    for (int i = 0; i < 400; ++i) controller.step();
+    return controller.error();
+  };
+  const double published = bias(Regularisation::effort, 1e-3);
+  const double smaller = bias(Regularisation::effort, 1e-5);
+  EXPECT_GT(published, 5.0 * smaller);
+  EXPECT_LT(bias(Regularisation::change, 1e-3), 0.1 * published);
+}
+
+TEST(InverseController, MeetsAJumpWithinTheRateLimits) {
+  BeamOptions options;
+  options.displacement = {.rate = 0.02};
+  const auto model = beam(options);
+  const Vector3 goal = reachable(model);
+  Simulation simulation(model);
+  InverseController controller(simulation, to(goal));
+  std::vector<double> before(4, 0.0);
+  bool limited = false;
+  for (int i = 0; i < 400; ++i) {
+    controller.step();
+    limited = limited || controller.status() == InverseStatus::rate_limited;
+    for (int k = 0; k < 4; ++k) {
+      const double moved =
+          std::abs(simulation.actuator(k).motion - before[static_cast<std::size_t>(k)]);
+      EXPECT_LE(moved, 0.0002 * 1.05) << "step " << i;  // what the linearisation cannot foresee
+      before[static_cast<std::size_t>(k)] = simulation.actuator(k).motion;
+    }
+  }
+  EXPECT_TRUE(limited);
+  EXPECT_EQ(controller.status(), InverseStatus::on_target);
+  EXPECT_LT(controller.error(), 1e-4);
+}
+
+TEST(InverseController, HoldsStillWhereTheTargetIsOutOfReach) {
+  BeamOptions options;
+  options.tension = {.min = 0.0, .max = 2.0};
+  Simulation simulation(beam(options));
+  InverseController controller(simulation, to({0.05, 0.08, 0.06}));
+  for (int i = 0; i < 500; ++i) controller.step();
+  EXPECT_EQ(controller.status(), InverseStatus::out_of_reach);
+  const double distance = controller.error();
+  double largest = 0.0, smallest = 1.0;
+  for (int i = 0; i < 100; ++i) {
+    controller.step();
+    EXPECT_EQ(controller.status(), InverseStatus::out_of_reach);
+    largest = std::max(largest, controller.error());
+    smallest = std::min(smallest, controller.error());
+  }
+  EXPECT_LT(largest - smallest, 1e-7) << "no chatter";
+  EXPECT_NEAR(largest, distance, 1e-4);
+  EXPECT_LE(simulation.actuator(0).effort, 2.0);
+}
+
+TEST(InverseController, KeepsLimitsOfTensionAndStroke) {
+  BeamOptions options;
+  options.tension = {.min = 0.05, .max = 1.0};
+  options.displacement = {.min = -0.0015, .max = 0.0015};
+  Simulation simulation(beam(options));
+  InverseController controller(simulation, to({0.09, 0.03, 0.0}));
+  for (int i = 0; i < 200; ++i) {
+    controller.step();
+    for (int k = 0; k < 4; ++k) {
+      EXPECT_GE(simulation.actuator(k).effort, 0.05 - 1e-12);
+      EXPECT_LE(simulation.actuator(k).effort, 1.0 + 1e-12);
+    }
+  }
+  for (int k = 0; k < 4; ++k) EXPECT_LE(std::abs(simulation.actuator(k).motion), 0.0015 + 1e-7);
+}
+
+TEST(InverseController, SaysWhenLimitsContradictEachOther) {
+  BeamOptions options;
+  options.tension = {.min = 3.0, .max = 4.0};          // pulls by several millimetres,
+  options.displacement = {.min = -1e-5, .max = 1e-5};  // which the strokes forbid
+  Simulation simulation(beam(options));
+  InverseController controller(simulation, to({0.099, 0.0, 0.0}));
+  controller.step();
+  EXPECT_EQ(controller.status(), InverseStatus::limits_conflict);
+  EXPECT_GE(simulation.actuator(0).effort, 3.0);
+}
+
+TEST(InverseController, LeavesOtherActuatorsToTheirCommands) {
+  Simulation simulation(beam());
+  InverseSettings settings = to({0.098, 0.004, 0.002});
+  settings.actuators = {1, 3};
+  simulation.command(0, sinew::testing::pull(0.001));
+  simulation.command(2, sinew::testing::tension(0.4));
+  InverseController controller(simulation, settings);
+  for (int i = 0; i < 100; ++i) controller.step();
+  EXPECT_NEAR(simulation.actuator(0).motion, 0.001, 1e-9);
+  EXPECT_DOUBLE_EQ(simulation.actuator(2).effort, 0.4);
+}
+
+TEST(InverseController, APassiveCableMayGoSlack) {
+  Simulation simulation(beam());
+  InverseSettings settings = to({0.098, 0.0, 0.012});
+  settings.actuators = {0};
+  for (int k : {1, 2, 3}) simulation.command(k, sinew::testing::pull(-0.01));
+  InverseController controller(simulation, settings);
+  for (int i = 0; i < 100; ++i) controller.step();
+  for (int k : {1, 2, 3}) EXPECT_EQ(simulation.actuator(k).effort, 0.0) << k;
+}
+
+TEST(InverseController, WeightsChooseWhatMatters) {
+  BeamOptions options;
+  options.tension = {.min = 0.0, .max = 1.0};
+  const auto miss = [&](const std::vector<double>& weights) {
+    Simulation simulation(beam(options));
+    InverseSettings settings = to({0.1, 0.03, 0.03});
+    settings.tasks[0].weights = weights;
+    InverseController controller(simulation, settings);
+    for (int i = 0; i < 300; ++i) controller.step();
+    const Vector3 gap = simulation.effector_value(0) - Vector3(0.1, 0.03, 0.03);
+    return Vector3(gap.cwiseAbs());
+  };
+  const Vector3 even = miss({1.0});
+  const Vector3 first = miss({100.0, 1.0, 1.0});
+  EXPECT_LT(first.x(), 0.9 * even.x());
+}
+
+ErrorKind kind_of(const auto& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error.kind();
+  }
+  return ErrorKind::internal;
+}
+
+TEST(InverseController, OwnsItsActuatorsUntilDetached) {
+  Simulation simulation(beam());
+  InverseController controller(simulation, to({0.1, 0.0, 0.0}));
+  EXPECT_EQ(kind_of([&] { simulation.command(0, sinew::testing::pull(0.001)); }),
+            ErrorKind::actuator_owned);
+  EXPECT_EQ(kind_of([&] {
+              InverseController second(simulation, to({0.1, 0, 0}));
+            }),
+            ErrorKind::actuator_owned);
+  controller.detach();
+  simulation.command(0, sinew::testing::pull(0.001));
+  for (int i = 0; i < 20; ++i) simulation.step();
+  EXPECT_NEAR(simulation.actuator(0).motion, 0.001, 1e-10);
+}
+
+TEST(InverseController, BadSettingsAreErrors) {
+  Simulation simulation(beam());
+  EXPECT_EQ(kind_of([&] { InverseController c(simulation, {}); }), ErrorKind::no_effectors);
+  InverseSettings weights = to({0.1, 0, 0});
+  weights.tasks[0].weights = {1.0, 2.0};
+  EXPECT_EQ(kind_of([&] { InverseController c(simulation, weights); }), ErrorKind::wrong_length);
+  weights.tasks[0].weights = {-1.0};
+  EXPECT_EQ(kind_of([&] { InverseController c(simulation, weights); }), ErrorKind::out_of_range);
+  InverseSettings epsilon = to({0.1, 0, 0});
+  epsilon.epsilon = 0.0;
+  EXPECT_EQ(kind_of([&] { InverseController c(simulation, epsilon); }), ErrorKind::out_of_range);
+  BeamOptions bare;
+  bare.cables = 0;
+  Simulation still(beam(bare));
+  EXPECT_EQ(kind_of([&] { InverseController c(still, to({0.1, 0, 0})); }), ErrorKind::no_actuators);
+}
+
+}  // namespace
+}  // namespace sinew::inverse
