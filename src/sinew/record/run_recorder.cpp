@@ -1,161 +1,152 @@
 #include "sinew/record/run_recorder.hpp"
 
-#include <chrono>
+#include <cerrno>
+#include <cstring>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "sinew/core/build_info.hpp"
-#include "sinew/core/error.hpp"
+#include "sinew/mesh/write.hpp"
+#include "sinew/record/run_states.hpp"
+#include "sinew/record/run_table.hpp"
 
 namespace sinew::record {
 
 namespace {
 
-double wall_seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+namespace fs = std::filesystem;
+
+[[noreturn]] void unwritable(const fs::path& path, const std::string& reason) {
+  throw Error(ErrorKind::file_unwritable, {.file = path.string()},
+              fmt::format("this cannot be written: {}", reason),
+              "choose another folder with --out, or change its permissions");
 }
 
-std::span<const double> flat(const Points& points) {
-  return {points.data(), static_cast<std::size_t>(points.size())};
+// Looks before anything is replaced, so that a run that cannot be recorded harms no older one.
+void require_writable(const fs::path& folder) {
+  std::error_code problem;
+  fs::create_directories(folder, problem);
+  if (problem) unwritable(folder, problem.message());
+  if (!fs::is_directory(folder)) unwritable(folder, "it is a file");
+  if (::access(folder.c_str(), W_OK | X_OK) != 0) unwritable(folder, std::strerror(errno));
+  for (const char* name : {"run.csv", "run.h5", "scene.yaml"}) {
+    const fs::path file = folder / name;
+    if (!fs::exists(file)) continue;
+    if (!fs::is_regular_file(file)) unwritable(file, "it is no regular file");
+    if (::access(file.c_str(), W_OK) != 0) unwritable(file, std::strerror(errno));
+  }
+}
+
+// A series of an older run would be taken for this one's.
+void remove_series(const fs::path& folder) {
+  std::error_code ignored;
+  std::vector<fs::path> stale;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    if (entry.path().extension() == ".pvd" && entry.path().stem().string().starts_with("run")) {
+      stale.push_back(entry.path());
+    }
+  }
+  for (const fs::path& list : stale) {
+    const std::string stem = list.stem().string();
+    std::vector<fs::path> steps;
+    for (const auto& entry : fs::directory_iterator(folder / stem, ignored)) {
+      if (entry.path().filename().string().starts_with(stem + "_") &&
+          entry.path().extension() == ".vtu") {
+        steps.push_back(entry.path());
+      }
+    }
+    for (const fs::path& step : steps) fs::remove(step, ignored);
+    fs::remove(folder / stem, ignored);  // only when nothing else is in it
+    fs::remove(list, ignored);
+  }
+}
+
+// run.pvd, or run_BODY.pvd each where there are several bodies.
+class ParaviewSeries {
+ public:
+  ParaviewSeries(const fs::path& folder, const sim::Simulation& simulation)
+      : simulation_(simulation) {
+    const auto& bodies = simulation.model().bodies();
+    for (const auto& body : bodies) {
+      lists_.emplace_back(folder /
+                          (bodies.size() == 1 ? "run.pvd" : "run_" + body->name() + ".pvd"));
+    }
+  }
+
+  void write() {
+    for (std::size_t b = 0; b < lists_.size(); ++b) {
+      const fem::FemBody& body = simulation_.fem_body(static_cast<int>(b));
+      const mesh::Mesh& mesh = body.fem_model().mesh();
+      mesh::VtuFields fields;
+      fields.positions = &body.positions();
+      const Points moved = body.positions() - mesh.nodes;
+      fields.points.push_back({"displacement", 3, {moved.data(), moved.data() + moved.size()}});
+      lists_[b].write(simulation_.time(), mesh, fields);
+    }
+  }
+
+ private:
+  const sim::Simulation& simulation_;
+  std::vector<mesh::PvdWriter> lists_;
+};
+
+RecordSettings checked(RecordSettings settings) {
+  if (settings.every < 1) {
+    throw Error(ErrorKind::out_of_range, {.item = "record.every"},
+                fmt::format("a frame every {} steps", settings.every), "write 1 or more");
+  }
+  require_writable(settings.folder);
+  return settings;
 }
 
 }  // namespace
 
+struct RunRecorder::Files {
+  Files(const sim::Simulation& run, const inverse::InverseController* controller,
+        RecordSettings what)
+      : simulation(run),
+        settings(checked(std::move(what))),
+        states(settings.folder / "run.h5", run, controller, settings),
+        table(settings.folder / "run.csv", run, controller) {
+    mesh::write_file(settings.folder / "scene.yaml", settings.scene);
+    remove_series(settings.folder);
+    if (settings.vtk) series.emplace(settings.folder, run);
+  }
+  void write() {
+    table.write();
+    states.write();
+    if (series) series->write();
+    ++frames;
+  }
+
+  const sim::Simulation& simulation;
+  RecordSettings settings;
+  RunStates states;  // first: a file that another program holds open stops everything
+  RunTable table;
+  std::optional<ParaviewSeries> series;
+  std::int64_t frames = 0;
+};
+
 RunRecorder::RunRecorder(const sim::Simulation& simulation,
                          const inverse::InverseController* controller, RecordSettings settings)
-    : simulation_(simulation), controller_(controller), settings_(std::move(settings)) {
-  std::error_code failure;
-  std::filesystem::create_directories(settings_.folder, failure);
-  if (failure) {
-    throw Error(ErrorKind::file_unwritable, {.file = settings_.folder.string()},
-                fmt::format("cannot make the folder: {}", failure.message()),
-                "choose another one with --out");
-  }
-  mesh::write_file(settings_.folder / "scene.yaml", settings_.scene);
-  const auto names = columns();
-  csv_ = std::make_unique<CsvWriter>(settings_.folder / "run.csv", names);
-  row_.reserve(names.size());
-  h5_ = std::make_unique<Hdf5Writer>(settings_.folder / "run.h5");
-  declare_arrays();
-  if (!settings_.vtk) return;
-  for (const auto& body : simulation_.model().bodies()) {
-    vtk_.push_back(std::make_unique<mesh::PvdWriter>(settings_.folder / (body->name() + ".pvd")));
-  }
+    : files_(std::make_unique<Files>(simulation, controller, std::move(settings))) {
+  files_->write();
+  files_->states.flush();
 }
 
 RunRecorder::~RunRecorder() = default;
 
-std::vector<std::string> RunRecorder::columns() const {
-  std::vector<std::string> names = {"time [s]"};
-  const auto& model = simulation_.model();
-  for (const auto& actuator : model.actuators()) {
-    names.push_back(fmt::format("{}.{} [N]", actuator.name, actuator.effort_name()));
-    names.push_back(fmt::format("{}.{} [m]", actuator.name, sim::ActuatorModel::motion_name()));
-  }
-  for (std::size_t i = 0; i < model.effectors().size(); ++i) {
-    const char* unit = model.effector(static_cast<int>(i)).unit();
-    for (const char axis : {'x', 'y', 'z'}) {
-      names.push_back(fmt::format("{}.{} [{}]", model.effectors()[i].name, axis, unit));
-    }
-  }
-  for (const char* name : {"residual [N]", "relative_residual", "violation [m]", "iterations",
-                           "scale", "volume_ratio"}) {
-    names.emplace_back(name);
-  }
-  if (controller_ != nullptr) {
-    for (const char* name : {"error [m]", "predicted_error [m]", "status"}) {
-      names.emplace_back(name);
-    }
-  }
-  return names;
+void RunRecorder::after_step() {
+  if (files_->simulation.steps() % files_->settings.every == 0) files_->write();
 }
 
-void RunRecorder::declare_arrays() {
-  h5_->text_attribute("sinew_version", std::string(version()));
-  h5_->number_attribute("format_version", 1.0);
-  h5_->number_attribute("time_step", simulation_.model().step().time_step);
-  h5_->text_attribute("scene", settings_.scene);
-  const auto& model = simulation_.model();
-  column_arrays_.push_back(h5_->growing("/time", {}, "s"));
-  for (const auto& actuator : model.actuators()) {
-    column_arrays_.push_back(h5_->growing("/actuators/" + actuator.name + "/effort", {}, "N"));
-    column_arrays_.push_back(h5_->growing("/actuators/" + actuator.name + "/motion", {}, "m"));
-  }
-  for (std::size_t i = 0; i < model.effectors().size(); ++i) {
-    column_arrays_.push_back(h5_->growing("/effectors/" + model.effectors()[i].name + "/position",
-                                          {3}, model.effector(static_cast<int>(i)).unit()));
-  }
-  for (std::size_t i = 0; i < model.bodies().size(); ++i) {
-    const auto& body = simulation_.fem_body(static_cast<int>(i));
-    const mesh::Mesh& mesh = body.fem_model().mesh();
-    const std::string root = "/mesh/" + model.bodies()[i]->name();
-    const auto nodes = static_cast<std::size_t>(mesh.node_count());
-    h5_->array(root + "/nodes", {nodes, 3}, flat(mesh.nodes));
-    h5_->array(
-        root + "/tetrahedra", {mesh.tetrahedra.size(), 4},
-        std::span<const std::int32_t>(mesh.tetrahedra.front().data(), 4 * mesh.tetrahedra.size()));
-    if (settings_.states) {
-      position_arrays_.push_back(
-          h5_->growing("/positions/" + model.bodies()[i]->name(), {nodes, 3}, "m"));
-    }
-  }
-}
+void RunRecorder::finish() { files_->states.flush(); }
 
-void RunRecorder::record() {
-  if (simulation_.steps() % settings_.every != 0) return;
-  const auto& model = simulation_.model();
-  row_.assign(1, simulation_.time());
-  std::size_t array = 0;
-  h5_->append(column_arrays_[array++], row_);
-  for (std::size_t i = 0; i < model.actuators().size(); ++i) {
-    const auto& state = simulation_.actuator(static_cast<int>(i));
-    row_.push_back(state.effort);
-    row_.push_back(state.motion);
-    h5_->append(column_arrays_[array++], {&state.effort, 1});
-    h5_->append(column_arrays_[array++], {&state.motion, 1});
-  }
-  for (std::size_t i = 0; i < model.effectors().size(); ++i) {
-    const Vector3 value = simulation_.effector_value(static_cast<int>(i));
-    row_.insert(row_.end(), value.data(), value.data() + 3);
-    h5_->append(column_arrays_[array++], {value.data(), 3});
-  }
-  const auto& report = simulation_.report();
-  for (const double value :
-       {report.residual, report.relative_residual, report.violation,
-        static_cast<double>(report.iterations), report.scale, report.smallest_volume_ratio}) {
-    row_.push_back(value);
-  }
-  if (controller_ != nullptr) {
-    row_.push_back(controller_->error());
-    row_.push_back(controller_->predicted_error());
-    row_.push_back(static_cast<double>(controller_->status()));
-  }
-  csv_->write_row(row_);
-  write_states();
-  ++frames_;
-  if (wall_seconds() - last_flush_ > 1.0) {
-    h5_->flush();
-    last_flush_ = wall_seconds();
-  }
-}
+std::int64_t RunRecorder::frames() const { return files_->frames; }
 
-void RunRecorder::write_states() {
-  for (std::size_t i = 0; i < position_arrays_.size(); ++i) {
-    h5_->append(position_arrays_[i], flat(simulation_.fem_body(static_cast<int>(i)).positions()));
-  }
-  for (std::size_t i = 0; i < vtk_.size(); ++i) {
-    const auto& body = simulation_.fem_body(static_cast<int>(i));
-    const mesh::Mesh& mesh = body.fem_model().mesh();
-    const Points moved = body.positions() - mesh.nodes;
-    mesh::VtuFields fields;
-    fields.positions = &body.positions();
-    fields.sets = false;
-    fields.points.push_back({"displacement", 3, {moved.data(), moved.data() + moved.size()}});
-    vtk_[i]->write(simulation_.time(), mesh, fields);
-  }
-}
-
-void RunRecorder::finish() { h5_->flush(); }
+const RecordSettings& RunRecorder::settings() const { return files_->settings; }
 
 }  // namespace sinew::record

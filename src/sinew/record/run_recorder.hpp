@@ -1,68 +1,75 @@
 /// @file
-/// Writes a run as it goes: run.csv, run.h5, and a VTU series for ParaView.
+/// What a run leaves behind: run.csv for reading, run.h5 for replay, the scene as it was run, and a
+/// series for ParaView.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
-#include <vector>
 
-#include "sinew/core/csv.hpp"
 #include "sinew/inverse/inverse_controller.hpp"
-#include "sinew/mesh/write.hpp"
-#include "sinew/record/hdf5_file.hpp"
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::record {
 
+/// Version of the layout of run.h5; readers refuse others.
+inline constexpr std::int64_t kRunFormatVersion = 1;
+
+/// What to record and where.
 struct RecordSettings {
-  std::filesystem::path folder;  ///< made when missing
-  int every = 1;                 ///< steps per record, >= 1
-  bool states = true;            ///< positions of all nodes into run.h5
-  bool vtk = false;              ///< a .pvd series per body
-  std::string scene;             ///< YAML text, kept in run.h5 and scene.yaml
+  std::filesystem::path
+      folder;              ///< made when it does not exist; files of an older run are replaced
+  std::string scene_name;  ///< kept in run.h5
+  std::string scene;       ///< the scene as resolved, YAML; kept in run.h5 and scene.yaml
+  int every = 1;           ///< steps per frame, >= 1
+  bool states = true;      ///< positions of all nodes in run.h5
+  bool vtk = false;        ///< run.pvd, a series of VTU files for ParaView
 };
 
-/// Columns of run.csv: time [s]; NAME.tension [N] (or .force) and NAME.displacement [m] of every
-/// actuator; NAME.x, .y, .z [m] of every effector (rotation vector [rad] for orientations);
-/// residual [N], relative_residual, violation [m], iterations, scale, volume_ratio; with a
-/// controller also error [m], predicted_error [m] and status (0 on-target, 1 rate-limited,
-/// 2 out-of-reach, 3 limits-conflict). run.h5 holds the same as arrays with a `unit` attribute,
-/// /positions/BODY (frames, n, 3) and /mesh/BODY. Every row is on disk when record() returns;
-/// run.h5 is flushed every second of wall time and at the end.
+/// Records one run. Nothing exists before the constructor, which first makes sure that everything
+/// can be written. After every frame run.csv is whole; run.h5 is at least twice a second, so that
+/// what was recorded outlives a crash.
+///
+/// run.csv, one row a frame, units in the headings: `time [s]`; per actuator `long_0.tension [N]`
+/// and `long_0.displacement [m]`; per effector `tip.x [m]` and so on (`rx [rad]` for orientations);
+/// per task of the controller `tip.target_x [m]` ... and `tip.error [m]`; then `residual [N]`,
+/// `relative_residual`, `iterations`, `scale` (of the motion, < 1 when a step was cut back),
+/// `smallest_volume_ratio`, and the statuses `law` and `controller` in words. The row at t = 0 is
+/// the start, before any step, whose statuses are `start`.
+///
+/// run.h5: /time (frames,) s; /positions/BODY (frames, n, 3) m; /velocities/BODY in dynamics, m/s;
+/// /actuators/NAME/{effort,motion} (frames,); /effectors/NAME/position (frames, 3);
+/// /controller/EFFECTOR/{target,error}; /report/{residual,...} (frames,);
+/// /mesh/BODY/{nodes,tetrahedra}; /scene, YAML text. Attributes of the file: format,
+/// format_version, sinew_version, scene_name, time_step, record_every, fingerprint; every series
+/// has its `unit`.
 class RunRecorder {
  public:
-  /// Creates the files. Throws Error(file-unwritable).
-  /// @param simulation that is recorded; must outlive the recorder.
-  /// @param controller that steers it, or null.
-  /// @param settings where and what.
+  /// Creates the files and records the present state as the first frame.
+  /// @param simulation must outlive the recorder. @param controller attached to it, or null; its
+  /// targets and errors are recorded. @param settings see there.
+  /// Throws Error(out-of-range) for `every` < 1, Error(file-unwritable), Error(recording-failed).
   RunRecorder(const sim::Simulation& simulation, const inverse::InverseController* controller,
               RecordSettings settings);
+  /// Closes all files; call finish() first to hear of a full disk.
   ~RunRecorder();
+  RunRecorder(const RunRecorder&) = delete;
+  RunRecorder& operator=(const RunRecorder&) = delete;
 
-  /// Call after every step (and once before the first); writes when it is due.
-  /// Throws Error(recording-failed).
-  void record();
-  /// Flushes everything. Throws Error(recording-failed).
+  /// To be called after every step; records it when it is due.
+  /// Throws Error(recording-failed), Error(file-unwritable); frames before stay readable.
+  void after_step();
+
+  /// Hands everything to the operating system. Throws Error(recording-failed).
   void finish();
-  int frames() const { return frames_; }
+
+  std::int64_t frames() const;
+  const RecordSettings& settings() const;
 
  private:
-  std::vector<std::string> columns() const;
-  void declare_arrays();
-  void write_states();
-
-  const sim::Simulation& simulation_;
-  const inverse::InverseController* controller_;
-  RecordSettings settings_;
-  std::unique_ptr<CsvWriter> csv_;
-  std::unique_ptr<Hdf5Writer> h5_;
-  std::vector<std::unique_ptr<mesh::PvdWriter>> vtk_;
-  std::vector<double> row_;
-  std::vector<int> column_arrays_, position_arrays_;
-  int frames_ = 0;
-  double last_flush_ = 0.0;
+  struct Files;
+  std::unique_ptr<Files> files_;
 };
 
 }  // namespace sinew::record

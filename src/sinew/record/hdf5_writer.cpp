@@ -1,0 +1,216 @@
+#include "sinew/record/hdf5_writer.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "sinew/record/hdf5_handle.hpp"
+
+namespace sinew::record {
+
+namespace {
+
+constexpr std::uint64_t kChunkBytes = 16384;  // of series whose frames are small
+
+using Extent = std::vector<hsize_t>;
+
+std::uint64_t volume(const std::vector<std::uint64_t>& shape) {
+  return std::accumulate(shape.begin(), shape.end(), std::uint64_t{1}, std::multiplies<>());
+}
+
+// Metadata stay in memory until they are flushed, so that a crash in between leaves the file as the
+// last flush made it.
+Hdf5Handle access_properties() {
+  Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5AC_cache_config_t cache;
+  cache.version = H5AC__CURR_CACHE_CONFIG_VERSION;
+  if (H5Pget_mdc_config(access.id(), &cache) >= 0) {
+    cache.evictions_enabled = false;
+    cache.incr_mode = H5C_incr__off;
+    cache.flash_incr_mode = H5C_flash_incr__off;
+    cache.decr_mode = H5C_decr__off;
+    H5Pset_mdc_config(access.id(), &cache);
+  }
+  return access;
+}
+
+Hdf5Handle text_type(std::string_view text) {
+  Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type.id(), std::max<std::size_t>(text.size(), 1));
+  H5Tset_strpad(type.id(), H5T_STR_NULLPAD);
+  H5Tset_cset(type.id(), H5T_CSET_UTF8);
+  return type;
+}
+
+}  // namespace
+
+struct Hdf5Writer::File {
+  struct Series {
+    Hdf5Handle dataset;
+    Hdf5Handle frame;  // the memory space of one frame
+    Extent extent;     // (frames, shape...)
+    std::uint64_t size = 0;
+  };
+
+  std::string path;
+  Hdf5Handle file;
+  Hdf5Handle links;  // makes the groups above a path
+  std::vector<Series> series;
+  std::chrono::steady_clock::time_point flushed = std::chrono::steady_clock::now();
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw Error(ErrorKind::recording_failed, {.file = path, .item = what},
+                fmt::format("the record cannot be written: {}", hdf5_reason()),
+                "check that the disk is not full; what was recorded before is readable");
+  }
+  void expect(bool good, const std::string& what) const {
+    if (!good) fail(what);
+  }
+  void write(const std::string& name, const Extent& shape, hid_t stored, hid_t type,
+             const void* values) {
+    const QuietHdf5 quiet;
+    const Hdf5Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
+                           H5Sclose);
+    const Hdf5Handle set(H5Dcreate2(file.id(), name.c_str(), stored, space.id(), links.id(),
+                                    H5P_DEFAULT, H5P_DEFAULT),
+                         H5Dclose);
+    expect(set.valid() && H5Dwrite(set.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0,
+           name);
+  }
+  void write_attribute(const std::string& object, const std::string& name, hid_t type,
+                       const void* value) {
+    const QuietHdf5 quiet;
+    const Hdf5Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+    const Hdf5Handle set(H5Acreate_by_name(file.id(), object.c_str(), name.c_str(), type,
+                                           space.id(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                         H5Aclose);
+    expect(set.valid() && H5Awrite(set.id(), type, value) >= 0, object + "@" + name);
+  }
+};
+
+Hdf5Writer::Hdf5Writer(const std::filesystem::path& path) : file_(std::make_unique<File>()) {
+  const QuietHdf5 quiet;
+  file_->path = path.string();
+  const Hdf5Handle access = access_properties();
+  file_->file =
+      Hdf5Handle(H5Fcreate(file_->path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), H5Fclose);
+  if (!file_->file.valid()) {
+    throw Error(ErrorKind::file_unwritable, {.file = file_->path},
+                fmt::format("the record cannot be created: {}", hdf5_reason()),
+                "check that its folder may be written to and that no program has the file open");
+  }
+  file_->links = Hdf5Handle(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+  H5Pset_create_intermediate_group(file_->links.id(), 1);
+}
+
+Hdf5Writer::~Hdf5Writer() {
+  // Closing flushes; on a full disk it fails again, as the run has been told already.
+  const QuietHdf5 quiet;
+  file_.reset();
+}
+Hdf5Writer::Hdf5Writer(Hdf5Writer&&) noexcept = default;
+Hdf5Writer& Hdf5Writer::operator=(Hdf5Writer&&) noexcept = default;
+
+void Hdf5Writer::attribute(const std::string& object, const std::string& name,
+                           std::string_view value) {
+  const Hdf5Handle type = text_type(value);
+  file_->write_attribute(object, name, type.id(), value.empty() ? "" : value.data());
+}
+
+void Hdf5Writer::attribute(const std::string& object, const std::string& name, double value) {
+  file_->write_attribute(object, name, H5T_NATIVE_DOUBLE, &value);
+}
+
+void Hdf5Writer::attribute(const std::string& object, const std::string& name, std::int64_t value) {
+  file_->write_attribute(object, name, H5T_NATIVE_INT64, &value);
+}
+
+void Hdf5Writer::group(const std::string& path) {
+  const QuietHdf5 quiet;
+  const Hdf5Handle made(
+      H5Gcreate2(file_->file.id(), path.c_str(), file_->links.id(), H5P_DEFAULT, H5P_DEFAULT),
+      H5Gclose);
+  file_->expect(made.valid(), path);
+}
+
+void Hdf5Writer::dataset(const std::string& path, const std::vector<std::uint64_t>& shape,
+                         std::span<const double> values) {
+  file_->expect(values.size() == volume(shape), path);
+  file_->write(path, Extent(shape.begin(), shape.end()), H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE,
+               values.data());
+}
+
+void Hdf5Writer::dataset(const std::string& path, const std::vector<std::uint64_t>& shape,
+                         std::span<const std::int32_t> values) {
+  file_->expect(values.size() == volume(shape), path);
+  file_->write(path, Extent(shape.begin(), shape.end()), H5T_STD_I32LE, H5T_NATIVE_INT32,
+               values.data());
+}
+
+void Hdf5Writer::text(const std::string& path, std::string_view text) {
+  const QuietHdf5 quiet;
+  const Hdf5Handle type = text_type(text);
+  const Hdf5Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Hdf5Handle set(H5Dcreate2(file_->file.id(), path.c_str(), type.id(), space.id(),
+                                  file_->links.id(), H5P_DEFAULT, H5P_DEFAULT),
+                       H5Dclose);
+  file_->expect(set.valid() && H5Dwrite(set.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT,
+                                        text.empty() ? "" : text.data()) >= 0,
+                path);
+}
+
+int Hdf5Writer::series(const std::string& path, const std::vector<std::uint64_t>& shape) {
+  const QuietHdf5 quiet;
+  File::Series made;
+  made.size = volume(shape);
+  made.extent.assign(shape.begin(), shape.end());
+  made.extent.insert(made.extent.begin(), 0);
+  Extent most = made.extent, chunk = made.extent;
+  most[0] = H5S_UNLIMITED;
+  chunk[0] =
+      std::max<hsize_t>(1, kChunkBytes / std::max<std::uint64_t>(1, made.size * sizeof(double)));
+  for (std::size_t i = 1; i < chunk.size(); ++i) chunk[i] = std::max<hsize_t>(chunk[i], 1);
+  const int rank = static_cast<int>(made.extent.size());
+  const Hdf5Handle space(H5Screate_simple(rank, made.extent.data(), most.data()), H5Sclose);
+  const Hdf5Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  H5Pset_chunk(creation.id(), rank, chunk.data());
+  made.dataset = Hdf5Handle(H5Dcreate2(file_->file.id(), path.c_str(), H5T_IEEE_F64LE, space.id(),
+                                       file_->links.id(), creation.id(), H5P_DEFAULT),
+                            H5Dclose);
+  Extent one = made.extent;
+  one[0] = 1;
+  made.frame = Hdf5Handle(H5Screate_simple(rank, one.data(), nullptr), H5Sclose);
+  file_->expect(made.dataset.valid() && made.frame.valid(), path);
+  file_->series.push_back(std::move(made));
+  return static_cast<int>(file_->series.size()) - 1;
+}
+
+void Hdf5Writer::append(int series, std::span<const double> values) {
+  const QuietHdf5 quiet;
+  File::Series& target = file_->series.at(static_cast<std::size_t>(series));
+  file_->expect(values.size() == target.size, "series");
+  Extent begin(target.extent.size(), 0), count = target.extent;
+  begin[0] = target.extent[0]++;
+  count[0] = 1;
+  file_->expect(H5Dset_extent(target.dataset.id(), target.extent.data()) >= 0, "series");
+  const Hdf5Handle space(H5Dget_space(target.dataset.id()), H5Sclose);
+  const bool written = H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, begin.data(), nullptr,
+                                           count.data(), nullptr) >= 0 &&
+                       H5Dwrite(target.dataset.id(), H5T_NATIVE_DOUBLE, target.frame.id(),
+                                space.id(), H5P_DEFAULT, values.data()) >= 0;
+  file_->expect(written, "series");
+}
+
+void Hdf5Writer::flush() {
+  const QuietHdf5 quiet;
+  file_->expect(H5Fflush(file_->file.id(), H5F_SCOPE_LOCAL) >= 0, "flush");
+  file_->flushed = std::chrono::steady_clock::now();
+}
+
+void Hdf5Writer::flush_after(std::chrono::milliseconds interval) {
+  if (std::chrono::steady_clock::now() - file_->flushed >= interval) flush();
+}
+
+}  // namespace sinew::record

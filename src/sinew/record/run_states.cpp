@@ -1,0 +1,130 @@
+#include "sinew/record/run_states.hpp"
+
+#include <chrono>
+
+#include <fmt/format.h>
+
+#include "sinew/core/build_info.hpp"
+
+namespace sinew::record {
+
+namespace {
+
+constexpr std::chrono::milliseconds kFlushInterval{500};
+
+std::span<const double> numbers(const Points& points) {
+  return {points.data(), static_cast<std::size_t>(points.size())};
+}
+
+}  // namespace
+
+RunStates::RunStates(const std::filesystem::path& path, const sim::Simulation& simulation,
+                     const inverse::InverseController* controller, const RecordSettings& settings)
+    : simulation_(simulation), controller_(controller), file_(path) {
+  describe(settings);
+  time_ = declare("/time", {}, "s");
+  declare_bodies(settings.states);
+  declare_actuators();
+  declare_effectors();
+  declare_report();
+}
+
+int RunStates::declare(const std::string& path, const std::vector<std::uint64_t>& shape,
+                       const char* unit) {
+  const int series = file_.series(path, shape);
+  file_.attribute(path, "unit", std::string_view(unit));
+  return series;
+}
+
+void RunStates::describe(const RecordSettings& settings) {
+  file_.attribute("/", "format", std::string_view("sinew-run"));
+  file_.attribute("/", "format_version", kRunFormatVersion);
+  file_.attribute("/", "sinew_version", version());
+  file_.attribute("/", "scene_name", settings.scene_name);
+  file_.attribute("/", "units", std::string_view("SI; every series names its own"));
+  file_.attribute("/", "time_step", simulation_.model().step().time_step);
+  file_.attribute("/", "record_every", static_cast<std::int64_t>(settings.every));
+  file_.attribute("/", "fingerprint", fmt::format("{:016x}", simulation_.model().fingerprint()));
+  file_.text("/scene", settings.scene);
+}
+
+void RunStates::declare_bodies(bool states) {
+  const sim::Model& model = simulation_.model();
+  const bool moving = model.step().integrator != mechanics::Integrator::quasi_static;
+  for (std::size_t b = 0; b < model.bodies().size(); ++b) {
+    const std::string& name = model.bodies()[b]->name();
+    const mesh::Mesh& mesh = simulation_.fem_body(static_cast<int>(b)).fem_model().mesh();
+    const auto nodes = static_cast<std::uint64_t>(mesh.node_count());
+    const std::string folder = "/mesh/" + name;
+    file_.dataset(folder + "/nodes", {nodes, 3}, numbers(mesh.nodes));
+    file_.attribute(folder + "/nodes", "unit", std::string_view("m"));
+    const NodeId* first = mesh.tetrahedra.empty() ? nullptr : mesh.tetrahedra[0].data();
+    file_.dataset(folder + "/tetrahedra", {mesh.tetrahedra.size(), 4},
+                  std::span<const std::int32_t>(first, 4 * mesh.tetrahedra.size()));
+    if (!states) continue;
+    positions_.push_back(declare("/positions/" + name, {nodes, 3}, "m"));
+    if (moving) velocities_.push_back(declare("/velocities/" + name, {nodes, 3}, "m/s"));
+  }
+}
+
+void RunStates::declare_actuators() {
+  file_.group("/actuators");
+  for (const sim::ActuatorModel& actuator : simulation_.model().actuators()) {
+    const std::string folder = "/actuators/" + actuator.name;
+    efforts_.push_back(declare(folder + "/effort", {}, "N"));
+    motions_.push_back(declare(folder + "/motion", {}, "m"));
+    file_.attribute(folder, "type", std::string_view(actuator_type_name(actuator.type)));
+  }
+}
+
+void RunStates::declare_effectors() {
+  const sim::Model& model = simulation_.model();
+  file_.group("/effectors");
+  for (std::size_t e = 0; e < model.effectors().size(); ++e) {
+    effectors_.push_back(declare("/effectors/" + model.effectors()[e].name + "/position", {3},
+                                 model.effector(static_cast<int>(e)).unit()));
+  }
+  if (controller_ == nullptr) return;
+  for (const inverse::Task& task : controller_->settings().tasks) {
+    const char* unit = model.effector(task.effector).unit();
+    const std::string folder =
+        "/controller/" + model.effectors()[static_cast<std::size_t>(task.effector)].name;
+    targets_.push_back(declare(folder + "/target", {3}, unit));
+    errors_.push_back(declare(folder + "/error", {}, unit));
+  }
+}
+
+void RunStates::declare_report() {
+  report_ = {declare("/report/residual", {}, "N"), declare("/report/relative_residual", {}, "1"),
+             declare("/report/iterations", {}, "1"), declare("/report/scale", {}, "1"),
+             declare("/report/smallest_volume_ratio", {}, "1")};
+}
+
+void RunStates::write() {
+  append(time_, simulation_.time());
+  for (std::size_t b = 0; b < positions_.size(); ++b) {
+    const fem::FemBody& body = simulation_.fem_body(static_cast<int>(b));
+    file_.append(positions_[b], numbers(body.positions()));
+    if (!velocities_.empty()) file_.append(velocities_[b], numbers(body.velocities()));
+  }
+  for (std::size_t a = 0; a < efforts_.size(); ++a) {
+    append(efforts_[a], simulation_.actuator(static_cast<int>(a)).effort);
+    append(motions_[a], simulation_.actuator(static_cast<int>(a)).motion);
+  }
+  for (std::size_t e = 0; e < effectors_.size(); ++e) {
+    append(effectors_[e], simulation_.effector_value(static_cast<int>(e)));
+  }
+  for (std::size_t t = 0; t < targets_.size(); ++t) {
+    append(targets_[t], controller_->settings().tasks[t].target.at(simulation_.time()));
+    append(errors_[t], controller_->error(static_cast<int>(t)));
+  }
+  const sim::StepReport& report = simulation_.report();
+  append(report_[0], report.residual);
+  append(report_[1], report.relative_residual);
+  append(report_[2], report.iterations);
+  append(report_[3], report.scale);
+  append(report_[4], report.smallest_volume_ratio);
+  file_.flush_after(kFlushInterval);
+}
+
+}  // namespace sinew::record

@@ -1,0 +1,45 @@
+/// @file
+/// run.h5: the frames of a run for replay and for h5py.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "sinew/inverse/inverse_controller.hpp"
+#include "sinew/record/hdf5_writer.hpp"
+#include "sinew/record/run_recorder.hpp"
+#include "sinew/sim/simulation.hpp"
+
+namespace sinew::record {
+
+/// Writes run.h5, laid out as RunRecorder says.
+class RunStates {
+ public:
+  /// @param path of the file. @param simulation,controller,settings as for RunRecorder.
+  RunStates(const std::filesystem::path& path, const sim::Simulation& simulation,
+            const inverse::InverseController* controller, const RecordSettings& settings);
+  /// Appends the present state as a frame.
+  void write();
+  void flush() { file_.flush(); }
+
+ private:
+  void describe(const RecordSettings& settings);
+  void declare_bodies(bool states);
+  void declare_actuators();
+  void declare_effectors();
+  void declare_report();
+  int declare(const std::string& path, const std::vector<std::uint64_t>& shape, const char* unit);
+  void append(int series, double value) { file_.append(series, {&value, 1}); }
+  void append(int series, const Vector3& value) { file_.append(series, {value.data(), 3}); }
+
+  const sim::Simulation& simulation_;
+  const inverse::InverseController* controller_;
+  Hdf5Writer file_;
+  int time_ = -1;
+  std::vector<int> positions_, velocities_, efforts_, motions_, effectors_, targets_, errors_;
+  std::array<int, 5> report_{};
+};
+
+}  // namespace sinew::record

@@ -1,0 +1,106 @@
+#include "sinew/record/run_table.hpp"
+
+#include <fmt/format.h>
+
+namespace sinew::record {
+
+namespace {
+
+constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
+
+void add_vector(std::vector<double>& values, const Vector3& vector) {
+  values.insert(values.end(), vector.data(), vector.data() + 3);
+}
+
+}  // namespace
+
+std::string_view law_status_name(sim::LawStatus status) {
+  switch (status) {
+    case sim::LawStatus::solved:
+      return "solved";
+    case sim::LawStatus::limits_conflict:
+      return "limits-conflict";
+    case sim::LawStatus::failed:
+      return "failed";
+  }
+  return "failed";
+}
+
+RunTable::RunTable(const std::filesystem::path& path, const sim::Simulation& simulation,
+                   const inverse::InverseController* controller)
+    : simulation_(simulation),
+      controller_(controller),
+      writer_(path, names(simulation, controller)) {}
+
+std::vector<std::string> RunTable::names(const sim::Simulation& simulation,
+                                         const inverse::InverseController* controller) {
+  const sim::Model& model = simulation.model();
+  std::vector<std::string> names = {"time [s]"};
+  for (const sim::ActuatorModel& actuator : model.actuators()) {
+    names.push_back(fmt::format("{}.{} [N]", actuator.name, actuator.effort_name()));
+    names.push_back(fmt::format("{}.{} [m]", actuator.name, sim::ActuatorModel::motion_name()));
+  }
+  const auto unit = [&](std::size_t effector) {
+    return std::string(model.effector(static_cast<int>(effector)).unit());
+  };
+  const auto axis = [&](std::size_t effector, const char* name) {
+    return (unit(effector) == "rad" ? "r" : "") + std::string(name);
+  };
+  for (std::size_t e = 0; e < model.effectors().size(); ++e) {
+    for (const char* name : kAxes) {
+      names.push_back(fmt::format("{}.{} [{}]", model.effectors()[e].name, axis(e, name), unit(e)));
+    }
+  }
+  if (controller != nullptr) {
+    for (const inverse::Task& task : controller->settings().tasks) {
+      const auto e = static_cast<std::size_t>(task.effector);
+      const std::string& effector = model.effectors()[e].name;
+      for (const char* name : kAxes) {
+        names.push_back(fmt::format("{}.target_{} [{}]", effector, axis(e, name), unit(e)));
+      }
+      names.push_back(fmt::format("{}.error [{}]", effector, unit(e)));
+    }
+  }
+  for (const char* name : {"residual [N]", "relative_residual", "iterations", "scale",
+                           "smallest_volume_ratio", "law", "controller"}) {
+    names.emplace_back(name);
+  }
+  return names;
+}
+
+void RunTable::collect() {
+  const sim::Model& model = simulation_.model();
+  values_.clear();
+  values_.push_back(simulation_.time());
+  for (std::size_t a = 0; a < model.actuators().size(); ++a) {
+    const sim::ActuatorState& state = simulation_.actuator(static_cast<int>(a));
+    values_.push_back(state.effort);
+    values_.push_back(state.motion);
+  }
+  for (std::size_t e = 0; e < model.effectors().size(); ++e) {
+    add_vector(values_, simulation_.effector_value(static_cast<int>(e)));
+  }
+  if (controller_ != nullptr) {
+    const auto& tasks = controller_->settings().tasks;
+    for (std::size_t t = 0; t < tasks.size(); ++t) {
+      add_vector(values_, tasks[t].target.at(simulation_.time()));
+      values_.push_back(controller_->error(static_cast<int>(t)));
+    }
+  }
+  const sim::StepReport& report = simulation_.report();
+  values_.insert(values_.end(),
+                 {report.residual, report.relative_residual, static_cast<double>(report.iterations),
+                  report.scale, report.smallest_volume_ratio});
+}
+
+void RunTable::write() {
+  collect();
+  const bool started = simulation_.steps() > 0;
+  words_[0] = started ? law_status_name(simulation_.report().law) : "start";
+  words_[1] = controller_ == nullptr ? "none"
+              : started              ? inverse::inverse_status_name(controller_->status())
+                                     : "start";
+  writer_.write_row(values_, words_);
+}
+
+}  // namespace sinew::record
