@@ -1,16 +1,44 @@
 #!/bin/sh
-# Runs every benchmark program of the release build, one after the other. Arguments go to each:
-#   scripts/bench.sh --benchmark_filter=trunk
+# The benchmarks of the release build: the whole step of an inverse controller, stage by stage, beside
+# Eigen's factorisation of the same matrix; then the kernels.
+#   scripts/bench.sh [--steps-only]
+# Published meshes are used where they are: SINEW_DATA=FOLDER, else ../shared/data. Figures go to
+# build/bench/*.json. Run it on an idle machine: threads that wait for busy cores cost milliseconds.
 set -eu
 cd "$(dirname "$0")/.."
-found=no
-for program in build/release/bin/*_benchmark; do
-  [ -x "$program" ] || continue
-  found=yes
-  echo "== $(basename "$program")"
-  "$program" "$@"
-done
-if [ "$found" = no ]; then
-  echo "bench: no program build/release/bin/*_benchmark was built; run 'make build' first" >&2
+program=build/release/bin/sinew
+if [ ! -x "$program" ]; then
+  echo "bench: $program was not built; run 'make build' first" >&2
   exit 1
 fi
+data=${SINEW_DATA:-../shared/data}
+out=build/bench
+scenes=$("${PYTHON:-/usr/bin/python3}" benchmarks/scenes.py "$out" --data "$data")
+
+whole_step() {  # SCENE STEPS WARM-UP NAME OPTION...
+  scene=$1; steps=$2; warm_up=$3; name=$4
+  shift 4
+  "$program" bench "$scene" --steps "$steps" --warm-up "$warm_up" --json "$out/$name.json" "$@"
+  echo
+}
+
+threads=$(nproc)
+[ "$threads" -le 4 ] || threads=4
+for scene in $scenes; do
+  name=$(basename "$scene" .yaml)
+  steps=400; warm_up=400
+  [ "$name" != multigait ] || { steps=40; warm_up=40; }
+  whole_step "$scene" "$steps" "$warm_up" "$name-1" --threads 1 --compare-eigen
+  [ "$threads" -eq 1 ] ||
+    whole_step "$scene" "$steps" "$warm_up" "$name-$threads" --threads "$threads"
+  case $name in
+    *trunk) whole_step "$scene" "$steps" "$warm_up" "$name-exact" --threads 1 --tangent exact ;;
+  esac
+done
+[ "${1:-}" != --steps-only ] || exit 0
+
+for kernel in build/release/bin/*_benchmark; do
+  [ -x "$kernel" ] || continue
+  echo "== $(basename "$kernel")"
+  "$kernel" "$@"
+done

@@ -25,6 +25,9 @@ std::uint64_t hash_after_200_steps(int threads) {
   simulation.command(0, {CommandKind::motion, Signal::sine({0.002, 0.002, 0.7, 0.0})});
   simulation.command(1, {CommandKind::effort, Signal::sine({0.3, 0.3, 1.1, 0.0})});
   for (int i = 0; i < 200; ++i) simulation.step();
+  for (int thread = 0; thread < threads; ++thread) {
+    EXPECT_GE(simulation.work_done(thread), 200) << "thread " << thread << " of " << threads;
+  }
   return simulation.state_hash();
 }
 

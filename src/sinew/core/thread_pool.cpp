@@ -25,6 +25,11 @@ struct alignas(64) Ticket {
   std::atomic<std::uint32_t> value{0};
 };
 
+/// A thread's count of parts on its own cache line.
+struct alignas(64) PartCount {
+  std::atomic<long> value{0};
+};
+
 /// Waits until `ticket` differs from `old` and returns the new value.
 std::uint32_t wait_for_change(const Ticket& ticket, std::uint32_t old, int pauses) {
   SpinWait spin(pauses);
@@ -45,7 +50,10 @@ std::uint32_t wait_for_change(const Ticket& ticket, std::uint32_t old, int pause
 /// `call` is raised by the caller to start a round; `done[i]` by worker i when it has finished.
 /// `work`, `context` and `stop` are written before `call` is raised and read after it was seen.
 struct ThreadPool::Shared {
-  explicit Shared(int count) : threads(count), done(static_cast<std::size_t>(count)) {}
+  explicit Shared(int count)
+      : threads(count),
+        done(static_cast<std::size_t>(count)),
+        parts(static_cast<std::size_t>(count)) {}
 
   int threads;
   int pauses = 0;
@@ -54,6 +62,7 @@ struct ThreadPool::Shared {
   bool stop = false;
   Ticket call;
   std::vector<Ticket> done;
+  std::vector<PartCount> parts;
   std::vector<std::thread> workers;
 
   void serve(int thread) {
@@ -105,6 +114,15 @@ ThreadPool::ThreadPool(int threads) {
 ThreadPool::~ThreadPool() { shared_->finish(); }
 
 int ThreadPool::size() const { return shared_->threads; }
+
+long ThreadPool::parts_done(int thread) const {
+  return shared_->parts[static_cast<std::size_t>(thread)].value.load(std::memory_order_relaxed);
+}
+
+void ThreadPool::add_parts(int thread, long count) {
+  auto& parts = shared_->parts[static_cast<std::size_t>(thread)].value;
+  parts.store(parts.load(std::memory_order_relaxed) + count, std::memory_order_relaxed);
+}
 
 void ThreadPool::run_raw(RawWork work, void* context) {
   Shared& shared = *shared_;

@@ -21,6 +21,11 @@ class ThreadPool {
 
   int size() const;
 
+  /// Parts of work that a thread has done so far, to show that all take part. Counted by
+  /// for_range() and by whoever calls add_parts(), each thread for itself.
+  long parts_done(int thread) const;
+  void add_parts(int thread, long count);
+
   /// Calls work(thread) once on every thread, thread = 0 .. size()-1 (0 is the caller), and returns
   /// when all are done. Allocates nothing. `work` must not throw.
   template <typename Work>
@@ -36,14 +41,20 @@ class ThreadPool {
   void for_range(int count, int grain, Work&& work) {
     const int parts = size();
     if (parts == 1 || count <= grain) {
-      if (count > 0) work(0, count, 0);
+      if (count > 0) {
+        add_parts(0, 1);
+        work(0, count, 0);
+      }
       return;
     }
     const int grains = (count + grain - 1) / grain;
     run([&](int thread) {
       const int begin = static_cast<int>(static_cast<long>(grains) * thread / parts) * grain;
       const int end = static_cast<int>(static_cast<long>(grains) * (thread + 1) / parts) * grain;
-      if (begin < end && begin < count) work(begin, end < count ? end : count, thread);
+      if (begin < end && begin < count) {
+        add_parts(thread, 1);
+        work(begin, end < count ? end : count, thread);
+      }
     });
   }
 

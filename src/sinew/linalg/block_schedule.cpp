@@ -179,7 +179,10 @@ void BlockSchedule::factorise(BlockNumeric& numeric, const BlockInput& input, Th
     }
   } else {
     ++round_;
-    pool.run([&](int thread) { run_thread(numeric, input, thread); });
+    pool.run([&](int thread) {
+      pool.add_parts(thread, static_cast<long>(lists_[at(thread)].size()));
+      run_thread(numeric, input, thread);
+    });
   }
   numeric.finish_border();
 }

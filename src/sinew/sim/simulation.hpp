@@ -56,6 +56,8 @@ class Simulation {
   const Model& model() const { return *model_; }
   std::shared_ptr<const Model> shared_model() const { return model_; }
   int threads() const { return pool_->size(); }
+  /// Parts of the steps' work that thread 0 .. threads()-1 has done so far.
+  long work_done(int thread) const { return pool_->parts_done(thread); }
   double time() const { return static_cast<double>(steps_) * model_->step().time_step; }  ///< s
   std::int64_t steps() const { return steps_; }
 
