@@ -29,8 +29,8 @@ class Hdf5Writer {
              std::span<const double> values);
   void array(const std::string& path, const std::vector<std::size_t>& shape,
              std::span<const std::int32_t> values);
-  /// Declares an array that grows by frames. @param frame_shape of one frame; {} for a number.
-  /// @param unit stored as attribute `unit`. @return its number for append().
+  /// Declares an array that grows by frames. @param path,frame_shape its name, and the shape of
+  /// one frame; {} for a number. @param unit stored as attribute `unit`. @return its number for append().
   int growing(const std::string& path, const std::vector<std::size_t>& frame_shape,
               const std::string& unit);
   /// Appends one frame. Throws Error(recording-failed).

@@ -21,7 +21,7 @@ inline constexpr std::uint32_t kStateVersion = 1;
 std::string format_state(const Simulation& simulation);
 
 /// Puts a state back, after which the run goes on bit for bit as it would have.
-/// @param bytes the whole file. @param name its name, for messages.
+/// @param simulation,bytes what is set, and the whole file. @param name its name, for messages.
 /// Throws Error: state-corrupt (no state, truncated, damaged, not finite), state-version,
 /// state-mismatch; the simulation is then unchanged.
 void parse_state(Simulation& simulation, std::string_view bytes, const std::string& name);
