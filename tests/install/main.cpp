@@ -46,8 +46,8 @@ void embeds_a_point() {
   expect(std::abs(found.weights[0] - 0.4) < 1e-12, "a barycentric weight");
 }
 
-// A block that stands on z = 0 with a cable along its edge: pulled, it bends towards the cable; asked
-// for the place where it went, the controller finds the tension again.
+// A block that stands on z = 0 with a cable along its edge: pulled, it bends towards the cable;
+// asked for the place where it went, the controller finds the tension again.
 void bends_and_steers_a_beam() {
   using namespace sinew;
   sim::ModelBuilder builder;

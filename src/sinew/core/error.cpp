@@ -12,6 +12,7 @@ namespace sinew {
 
 namespace {
 
+// clang-format off
 constexpr std::array kKindNames = {
     "file-not-found", "file-unreadable", "file-unwritable", "unknown-format", "truncated-file",
     "malformed-file", "size-limit", "bad-encoding",
@@ -31,6 +32,7 @@ constexpr std::array kKindNames = {
     "state-version", "state-mismatch", "state-corrupt",
     "unknown-option", "bad-argument", "wrong-shape", "tool-missing", "tool-failed",
     "internal"};
+// clang-format on
 static_assert(kKindNames.size() == static_cast<std::size_t>(ErrorKind::internal) + 1);
 
 std::string compose(ErrorKind kind, const Place& place, const std::string& message,

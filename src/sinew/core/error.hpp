@@ -12,7 +12,7 @@ namespace sinew {
 /// Every way in which input can be wrong or a run can end early. The kebab-case name
 /// (`error_kind_name`) is part of the interface: it is printed, and Python has it as `.kind`.
 enum class ErrorKind {
-  // files
+  // clang-format off
   file_not_found, file_unreadable, file_unwritable, unknown_format, truncated_file, malformed_file,
   size_limit, bad_encoding,
   // scene structure
@@ -39,7 +39,7 @@ enum class ErrorKind {
   state_version, state_mismatch, state_corrupt,
   // command line and Python
   unknown_option, bad_argument, wrong_shape, tool_missing, tool_failed,
-  // ours
+  // clang-format on
   internal,
 };
 

@@ -25,9 +25,9 @@ enum class FactorStatus {
 };
 
 /// `fastest` tries both when the plan is made and keeps the one whose factorisation is estimated to
-/// be faster, nested dissection (metis) if they are close, because it leaves more for threads to do.
-/// The estimate counts operations and list lengths and reads no clock: the same pattern gets the
-/// same order, and so the same bits, on every run and for any number of threads.
+/// be faster, nested dissection (metis) if they are close, because it leaves more for threads to
+/// do. The estimate counts operations and list lengths and reads no clock: the same pattern gets
+/// the same order, and so the same bits, on every run and for any number of threads.
 enum class Ordering { amd, metis, fastest };
 
 struct FactorisationSettings {

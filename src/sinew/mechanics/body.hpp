@@ -72,7 +72,7 @@ class BodyModel {
 
   /// A body at rest with its own state and workspace.
   /// @param pool must outlive the body.
-  /// @param with_curvature workspace for this kind of linearisation is taken now, for the other kind
+  /// @param with_curvature workspace for this kind of linearisation is taken now, for the other
   ///   when it is first asked for.
   virtual std::unique_ptr<Body> create(ThreadPool& pool, bool with_curvature) const = 0;
 };
