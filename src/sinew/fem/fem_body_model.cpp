@@ -78,12 +78,12 @@ const FemSystem& FemBodyModel::system(bool with_curvature) const {
       clique.erase(std::unique(clique.begin(), clique.end()), clique.end());
       elements.couplings.push_back(std::move(clique));
     }
-    curved_ = make_system(std::move(elements));
+    curved_ = make_system(elements);
   });
   return curved_;
 }
 
-FemSystem FemBodyModel::make_system(FemModelSettings elements) const {
+FemSystem FemBodyModel::make_system(const FemModelSettings& elements) const {
   FemSystem system;
   system.elements = elements.couplings.empty()
                         ? plain_.elements

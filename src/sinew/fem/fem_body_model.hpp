@@ -77,7 +77,7 @@ class FemBodyModel : public mechanics::BodyModel {
   const FemSystem& system(bool with_curvature) const;
 
  private:
-  FemSystem make_system(FemModelSettings elements) const;
+  FemSystem make_system(const FemModelSettings& elements) const;
 
   FemBodySettings settings_;
   std::unique_ptr<mesh::Embedder> embedder_;
