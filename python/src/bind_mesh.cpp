@@ -96,7 +96,8 @@ Returns
 str
 )")
       .def(
-          "write", [](const Mesh& self, const std::string& path) { mesh::write_vtu(path, self); },
+          "write",
+          [](const Mesh& self, const std::filesystem::path& path) { mesh::write_vtu(path, self); },
           py::arg("path"),
           R"(write($self, path)
 --
@@ -105,7 +106,7 @@ Writes a VTU file (binary, compressed; lengths in m) with the named sets.
 
 Parameters
 ----------
-path : str
+path : path-like
 )")
       .def("__repr__", [](const Mesh& self) {
         return fmt::format("<sinew.mesh.Mesh '{}', {} nodes, {} tetrahedra>", self.name,

@@ -95,9 +95,11 @@ duration : float
 )")
       .def(py::init([](const py::object& from, const py::object& to, const py::object& start,
                        const py::object& duration) {
-             return Ramp{
-                 Signal::ramp({number(from, "Ramp(from_)"), number(to, "Ramp(to)"),
-                               number(start, "Ramp(start)"), number(duration, "Ramp(duration)")})};
+             return Ramp{at_argument("Ramp", [&] {
+               return Signal::ramp({number(from, "Ramp(from_)"), number(to, "Ramp(to)"),
+                                    number(start, "Ramp(start)"),
+                                    number(duration, "Ramp(duration)")});
+             })};
            }),
            py::arg("from_"), py::arg("to"), py::kw_only(), py::arg("start") = 0.0,
            py::arg("duration") = 1.0);
@@ -115,14 +117,16 @@ period : float
 phase : float
     rad.
 )")
-      .def(py::init([](const py::object& amplitude, const py::object& period,
-                       const py::object& mean, const py::object& phase) {
-             return Sine{
-                 Signal::sine({number(mean, "Sine(mean)"), number(amplitude, "Sine(amplitude)"),
-                               number(period, "Sine(period)"), number(phase, "Sine(phase)")})};
-           }),
-           py::arg("amplitude"), py::arg("period"), py::kw_only(), py::arg("mean") = 0.0,
-           py::arg("phase") = 0.0);
+      .def(
+          py::init([](const py::object& amplitude, const py::object& period, const py::object& mean,
+                      const py::object& phase) {
+            return Sine{at_argument("Sine", [&] {
+              return Signal::sine({number(mean, "Sine(mean)"), number(amplitude, "Sine(amplitude)"),
+                                   number(period, "Sine(period)"), number(phase, "Sine(phase)")});
+            })};
+          }),
+          py::arg("amplitude"), py::arg("period"), py::kw_only(), py::arg("mean") = 0.0,
+          py::arg("phase") = 0.0);
 }
 
 void bind_tables(py::module_& module) {

@@ -254,6 +254,39 @@ Returns
 -------
 Simulation
 )")
+      .def("save_state", &Session::save_state, py::arg("path"),
+           R"(save_state($self, path)
+--
+
+Writes the state: positions, velocities, efforts, drives, time. Commands and external forces are
+inputs and are not part of it.
+
+Parameters
+----------
+path : path-like
+    The file appears whole or not at all.
+
+Raises
+------
+Error
+    file-unwritable.
+)")
+      .def("load_state", &Session::load_state, py::arg("path"),
+           R"(load_state($self, path)
+--
+
+Puts back what save_state() wrote for the same robot; commands stay as they are.
+
+Parameters
+----------
+path : path-like
+
+Raises
+------
+Error
+    file-not-found, state-corrupt, state-version, or state-mismatch for a file of another robot;
+    the state is then as before.
+)")
       .def_property_readonly(
           "state_hash", guarded([](const sim::Simulation& s) { return s.state_hash(); }),
           "int: of positions, velocities, efforts and drives; equal runs have equal hashes, bit "

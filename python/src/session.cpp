@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <pybind11/pybind11.h>
 
+#include "sinew/sim/state_io.hpp"
+
 #include "errors.hpp"
 
 namespace sinew::python {
@@ -120,6 +122,17 @@ void Session::reset() {
   }
   simulation_.reset();
   steps_ = 0;
+}
+
+void Session::load_state(const std::filesystem::path& path) {
+  const Use use(*this);
+  sim::load_state(simulation_, path);
+  steps_ = simulation_.steps();
+}
+
+void Session::save_state(const std::filesystem::path& path) const {
+  const Use use(*this);
+  sim::save_state(simulation_, path);
 }
 
 Linearisation Session::linearise(const LinearisationChoice& choice) {

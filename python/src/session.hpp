@@ -88,6 +88,9 @@ class Session {
   sim::StaticReport solve_static(const sim::StaticSettings& settings);
   /// Simulation::reset(), and external forces set to zero.
   void reset();
+  /// sim::load_state() and sim::save_state().
+  void load_state(const std::filesystem::path& path);
+  void save_state(const std::filesystem::path& path) const;
 
   Linearisation linearise(const LinearisationChoice& choice);
 
