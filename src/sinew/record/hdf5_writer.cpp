@@ -115,8 +115,13 @@ Hdf5Writer& Hdf5Writer::operator=(Hdf5Writer&&) noexcept = default;
 
 void Hdf5Writer::attribute(const std::string& object, const std::string& name,
                            std::string_view value) {
-  const Hdf5Handle type = text_type(value);
-  file_->write_attribute(object, name, type.id(), value.empty() ? "" : value.data());
+  // Of variable length, which h5py gives as str.
+  const Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type.id(), H5T_VARIABLE);
+  H5Tset_cset(type.id(), H5T_CSET_UTF8);
+  const std::string text(value);
+  const char* pointer = text.c_str();
+  file_->write_attribute(object, name, type.id(), &pointer);
 }
 
 void Hdf5Writer::attribute(const std::string& object, const std::string& name, double value) {

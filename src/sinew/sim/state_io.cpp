@@ -36,6 +36,13 @@ static_assert(sizeof(Header) == 40);
               "save the state again with save_state");
 }
 
+// The numbers between header and hash, whose count was checked.
+std::vector<double> numbers_of(std::string_view bytes) {
+  std::vector<double> numbers((bytes.size() - sizeof(Header)) / 8 - 1);
+  std::memcpy(numbers.data(), bytes.data() + sizeof(Header), 8 * numbers.size());
+  return numbers;
+}
+
 }  // namespace
 
 std::string format_state(const Simulation& simulation) {
@@ -55,11 +62,11 @@ std::string format_state(const Simulation& simulation) {
   return bytes;
 }
 
-void parse_state(Simulation& simulation, std::string_view bytes, const std::string& name) {
+bool is_state(std::string_view bytes) { return bytes.starts_with(kMagic); }
+
+StateHeader read_state_header(std::string_view bytes, const std::string& name) {
   Header header;
-  if (bytes.size() < sizeof header || bytes.substr(0, kMagic.size()) != kMagic) {
-    corrupt(name, "this is not a saved state");
-  }
+  if (bytes.size() < sizeof header || !is_state(bytes)) corrupt(name, "this is not a saved state");
   std::memcpy(&header, bytes.data(), sizeof header);
   if (header.version != kStateVersion) {
     throw Error(ErrorKind::state_version, {.file = name},
@@ -67,6 +74,24 @@ void parse_state(Simulation& simulation, std::string_view bytes, const std::stri
                             header.version, kStateVersion),
                 "save it again with this version of Sinew");
   }
+  const std::size_t rest = bytes.size() - sizeof header;
+  if (rest < 8 || rest % 8 != 0 || header.count != rest / 8 - 1) {
+    corrupt(name, fmt::format("{} bytes follow where {} numbers and their hash belong", rest,
+                              header.count));
+  }
+  if (header.steps < 0) corrupt(name, fmt::format("the step count is {}", header.steps));
+  const std::vector<double> state = numbers_of(bytes);
+  std::uint64_t hash = 0;
+  std::memcpy(&hash, bytes.data() + bytes.size() - sizeof hash, sizeof hash);
+  if (hash != hash_doubles(state)) corrupt(name, "the numbers do not fit their hash");
+  for (const double value : state) {
+    if (!std::isfinite(value)) corrupt(name, "a number is not finite");
+  }
+  return {header.version, header.fingerprint, header.steps, header.count};
+}
+
+void parse_state(Simulation& simulation, std::string_view bytes, const std::string& name) {
+  const StateHeader header = read_state_header(bytes, name);
   if (header.fingerprint != simulation.model().fingerprint() ||
       header.count != simulation.state_size()) {
     throw Error(ErrorKind::state_mismatch, {.file = name},
@@ -76,21 +101,7 @@ void parse_state(Simulation& simulation, std::string_view bytes, const std::stri
                             simulation.state_size()),
                 "load it into a simulation of the scene that it was saved from");
   }
-  const std::size_t size = simulation.state_size();
-  if (bytes.size() != sizeof header + 8 * size + 8) {
-    corrupt(name, fmt::format("the file has {} bytes where {} belong", bytes.size(),
-                              sizeof header + 8 * size + 8));
-  }
-  std::vector<double> state(size);
-  std::uint64_t hash = 0;
-  std::memcpy(state.data(), bytes.data() + sizeof header, 8 * size);
-  std::memcpy(&hash, bytes.data() + sizeof header + 8 * size, sizeof hash);
-  if (hash != hash_doubles(state)) corrupt(name, "the numbers do not fit their hash");
-  if (header.steps < 0) corrupt(name, fmt::format("the step count is {}", header.steps));
-  for (const double value : state) {
-    if (!std::isfinite(value)) corrupt(name, "a number is not finite");
-  }
-  simulation.load_state(state, header.steps);
+  simulation.load_state(numbers_of(bytes), header.steps);
 }
 
 void save_state(const Simulation& simulation, const std::filesystem::path& path) {

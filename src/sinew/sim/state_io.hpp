@@ -17,6 +17,22 @@ namespace sinew::sim {
 /// the numbers (uint64). Commands are inputs, not state, and are not part of it.
 inline constexpr std::uint32_t kStateVersion = 1;
 
+/// What a saved state says of itself.
+struct StateHeader {
+  std::uint32_t version = 0;
+  std::uint64_t fingerprint = 0;  ///< of the model
+  std::int64_t steps = 0;
+  std::uint64_t count = 0;  ///< numbers
+};
+
+/// Reads and checks a saved state without a simulation to put it into.
+/// @param bytes the whole file. @param name its name, for messages.
+/// Throws Error(state-corrupt), Error(state-version).
+StateHeader read_state_header(std::string_view bytes, const std::string& name);
+
+/// Whether bytes start as saved states do. @param bytes at least the first eight of a file.
+bool is_state(std::string_view bytes);
+
 /// The state as bytes.
 std::string format_state(const Simulation& simulation);
 

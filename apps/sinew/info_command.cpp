@@ -1,0 +1,288 @@
+// sinew info: what a file of any kind holds.
+#include <algorithm>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "sinew/core/quantity.hpp"
+#include "sinew/mesh/read.hpp"
+#include "sinew/mesh/report.hpp"
+#include "sinew/mesh/surface.hpp"
+#include "sinew/record/run_file.hpp"
+#include "sinew/scene/build.hpp"
+#include "sinew/sim/state_io.hpp"
+
+#include "arguments.hpp"
+#include "commands.hpp"
+#include "terminal.hpp"
+
+namespace sinew::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+struct InfoOptions {
+  std::string file;
+  std::optional<std::string> unit;
+  bool json = false;
+};
+
+// The same facts for people and for programs.
+struct Facts {
+  ordered_json json;
+  std::string text;
+};
+
+std::string size_text(const Vector3& size) {
+  return fmt::format("{} x {} x {}", mesh::format_length(size.x()), mesh::format_length(size.y()),
+                     mesh::format_length(size.z()));
+}
+
+ordered_json triple(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
+
+ordered_json histogram(const mesh::Histogram& histogram) {
+  return {{"low", histogram.low}, {"high", histogram.high}, {"counts", histogram.counts}};
+}
+
+ordered_json mesh_json(const mesh::MeshReport& report) {
+  ordered_json json = {{"kind", "mesh"},
+                       {"name", report.name},
+                       {"format", report.notes.format},
+                       {"nodes", report.nodes},
+                       {"unused_nodes", report.unused_nodes},
+                       {"tetrahedra", report.tetrahedra},
+                       {"hexahedra", report.hexahedra},
+                       {"triangles", report.triangles},
+                       {"reordered_elements", report.notes.reordered_elements},
+                       {"passed_over_cells", report.notes.passed_over_cells},
+                       {"low_m", triple(report.low)},
+                       {"high_m", triple(report.high)},
+                       {"volume_m3", report.volume},
+                       {"surface_area_m2", report.surface_area},
+                       {"components", report.components.element_count.size()}};
+  if (report.tetrahedra > 0) {
+    json["edge_m"] = {{"shortest", report.shortest_edge},
+                      {"mean", report.mean_edge},
+                      {"longest", report.longest_edge}};
+    json["radius_ratio"] = {{"least", report.least_radius_ratio},
+                            {"mean", report.mean_radius_ratio},
+                            {"worst_tetrahedron", report.worst_tetrahedron},
+                            {"histogram", histogram(report.radius_ratio)}};
+    json["dihedral_degrees"] = {{"least", report.least_dihedral},
+                                {"largest", report.largest_dihedral},
+                                {"histogram", histogram(report.dihedral)}};
+  }
+  json["sets"] = ordered_json::array();
+  for (const mesh::SetSummary& set : report.sets) {
+    json["sets"].push_back({{"name", set.name}, {"kind", set.kind}, {"size", set.size}});
+  }
+  json["defects"] = ordered_json::array();
+  for (const mesh::Defect& defect : report.defects) {
+    json["defects"].push_back({{"kind", error_kind_name(defect.kind)},
+                               {"message", defect.message},
+                               {"remedy", defect.remedy}});
+  }
+  return json;
+}
+
+Facts mesh_facts(const InfoOptions& options) {
+  mesh::ReadOptions settings;
+  if (options.unit) {
+    settings.unit = length_unit("--unit", *options.unit);
+    settings.unit_given = true;
+  }
+  mesh::Mesh mesh = mesh::read_mesh_unchecked(options.file, settings);
+  const auto inside = [&](NodeId node) { return node >= 0 && node < mesh.node_count(); };
+  const bool numbered =
+      std::ranges::all_of(mesh.tetrahedra,
+                          [&](const auto& tet) { return std::ranges::all_of(tet, inside); }) &&
+      std::ranges::all_of(mesh.hexahedra,
+                          [&](const auto& hex) { return std::ranges::all_of(hex, inside); });
+  if (numbered) mesh::reorder_elements(mesh);  // counts itself in the notes
+  const mesh::MeshReport report = mesh::describe(mesh, {.unit_given = settings.unit_given});
+  return {mesh_json(report), mesh::format_report(report)};
+}
+
+Facts surface_facts(const InfoOptions& options) {
+  mesh::SurfaceOptions settings;
+  settings.unit_given = true;  // described, not judged
+  if (options.unit) settings.unit = length_unit("--unit", *options.unit);
+  const mesh::Surface surface = mesh::read_surface(options.file, settings);
+  const Vector3 size =
+      (surface.nodes.colwise().maxCoeff() - surface.nodes.colwise().minCoeff()).transpose();
+  Facts facts;
+  facts.json = {{"kind", "surface"},
+                {"name", surface.name},
+                {"nodes", surface.nodes.rows()},
+                {"triangles", surface.triangles.size()},
+                {"size_m", triple(size)}};
+  facts.text = fmt::format("{}: surface\n  {} nodes, {} triangles\n  size {}\n", surface.name,
+                           surface.nodes.rows(), surface.triangles.size(), size_text(size));
+  try {
+    mesh::require_closed(surface);
+    const double volume = mesh::enclosed_volume(surface);
+    facts.json["closed"] = true;
+    facts.json["volume_m3"] = volume;
+    facts.text += fmt::format("  closed, encloses {:.6g} cm^3{}\n", 1e6 * std::abs(volume),
+                              volume < 0.0 ? "; its triangles face inwards" : "");
+  } catch (const Error& error) {
+    facts.json["closed"] = false;
+    facts.json["defect"] = error.message();
+    facts.text += fmt::format("  not closed: {}\n", error.message());
+  }
+  return facts;
+}
+
+void add_body(Facts& facts, const mechanics::BodyModel& model) {
+  const auto* body = dynamic_cast<const fem::FemBodyModel*>(&model);
+  if (body == nullptr) return;
+  facts.json["bodies"].push_back({{"name", body->name()},
+                                  {"nodes", body->mesh().node_count()},
+                                  {"free_nodes", body->elements().free_count()},
+                                  {"tetrahedra", body->mesh().tetrahedra.size()},
+                                  {"mass_kg", body->elements().total_mass()},
+                                  {"volume_m3", body->elements().volume()}});
+  facts.text += fmt::format("  body {}: {} nodes ({} free), {} tetrahedra, {:.4g} g, {:.4g} cm^3\n",
+                            body->name(), body->mesh().node_count(), body->elements().free_count(),
+                            body->mesh().tetrahedra.size(), 1e3 * body->elements().total_mass(),
+                            1e6 * body->elements().volume());
+}
+
+Facts scene_facts(const InfoOptions& options) {
+  const scene::Robot robot = scene::load(options.file);
+  const sim::Model& model = *robot.model;
+  const double duration = robot.description.run_duration();
+  Facts facts;
+  facts.json = {{"kind", "scene"},
+                {"name", robot.description.name},
+                {"time_step_s", model.step().time_step},
+                {"integrator", mechanics::integrator_name(model.step().integrator)},
+                {"duration_s", duration}};
+  facts.text = fmt::format(
+      "{}: scene, {}, {} a step, {}\n", robot.description.name,
+      mechanics::integrator_name(model.step().integrator),
+      format_quantity(model.step().time_step, dimension::kTime),
+      duration > 0.0 ? format_quantity(duration, dimension::kTime) : "without a duration");
+  for (const auto& body : model.bodies()) add_body(facts, *body);
+  for (std::size_t a = 0; a < model.actuators().size(); ++a) {
+    const sim::ActuatorModel& actuator = model.actuators()[a];
+    const constraint::Cable* cable = model.cable(static_cast<int>(a));
+    ordered_json entry = {{"name", actuator.name}, {"type", actuator_type_name(actuator.type)}};
+    if (cable != nullptr) entry["rest_length_m"] = cable->rest_length();
+    facts.json["actuators"].push_back(entry);
+    facts.text += fmt::format(
+        "  {} {}{}\n", actuator_type_name(actuator.type), actuator.name,
+        cable == nullptr ? ""
+                         : fmt::format(", {} long", mesh::format_length(cable->rest_length())));
+  }
+  for (const auto& effector : model.effectors()) {
+    facts.json["effectors"].push_back(effector.name);
+    facts.text += fmt::format("  effector {}\n", effector.name);
+  }
+  for (const auto& controller : robot.controllers) {
+    facts.json["controllers"].push_back(controller.name);
+    facts.text += fmt::format("  controller {}\n", controller.name);
+  }
+  return facts;
+}
+
+Facts run_facts(const InfoOptions& options) {
+  const record::RunFile run(options.file);
+  const double first = run.times().empty() ? 0.0 : run.times().front();
+  const double last = run.times().empty() ? 0.0 : run.times().back();
+  Facts facts;
+  facts.json = {{"kind", "run"},
+                {"scene", run.scene_name()},
+                {"sinew_version", run.sinew_version()},
+                {"frames", run.frames()},
+                {"first_time_s", first},
+                {"last_time_s", last},
+                {"time_step_s", run.time_step()},
+                {"states", run.has_states()},
+                {"bodies", run.bodies()},
+                {"actuators", run.actuators()},
+                {"effectors", run.effectors()}};
+  facts.text = fmt::format(
+      "{}: run of {} by Sinew {}\n  {} frames from {:g} s to {:g} s, {}\n  bodies: {}\n"
+      "  actuators: {}\n  effectors: {}\n",
+      options.file, run.scene_name(), run.sinew_version(), run.frames(), first, last,
+      run.has_states() ? "with positions of all nodes" : "without positions of nodes",
+      fmt::join(run.bodies(), ", "), fmt::join(run.actuators(), ", "),
+      fmt::join(run.effectors(), ", "));
+  return facts;
+}
+
+bool starts_as_state(const fs::path& path) {
+  std::string start(8, '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(start.data(), static_cast<std::streamsize>(start.size()));
+  return file.good() && sim::is_state(start);
+}
+
+Facts state_facts(const InfoOptions& options) {
+  const sim::StateHeader state =
+      sim::read_state_header(mesh::read_file(options.file), options.file);
+  Facts facts;
+  facts.json = {{"kind", "state"},
+                {"format_version", state.version},
+                {"model", fmt::format("{:016x}", state.fingerprint)},
+                {"steps", state.steps},
+                {"numbers", state.count}};
+  facts.text =
+      fmt::format("{}: saved state, format {}\n  model {:016x}\n  after {} steps, {} numbers\n",
+                  options.file, state.version, state.fingerprint, state.steps, state.count);
+  return facts;
+}
+
+Facts facts_of(const InfoOptions& options) {
+  const fs::path path(options.file);
+  if (fs::is_directory(path)) {
+    throw Error(ErrorKind::file_unreadable, {.file = options.file}, "this is a folder",
+                "name a file in it, such as run.h5");
+  }
+  std::string extension = path.extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (extension == ".yaml" || extension == ".yml") return scene_facts(options);
+  if (extension == ".stl" || extension == ".obj" || extension == ".ply") {
+    return surface_facts(options);
+  }
+  if (extension == ".h5" || record::RunFile::is_hdf5(path)) return run_facts(options);
+  if (starts_as_state(path)) return state_facts(options);
+  return mesh_facts(options);
+}
+
+int info(const InfoOptions& options) {
+  const Facts facts = facts_of(options);
+  if (options.json) {
+    fmt::print("{}\n", facts.json.dump(2));
+  } else {
+    fmt::print("{}", facts.text);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_info(CLI::App& app, Actions& actions) {
+  CLI::App* command =
+      app.add_subcommand("info", "Describe a mesh, surface, scene, recorded run or saved state");
+  const auto options = std::make_shared<InfoOptions>();
+  command->add_option("FILE", options->file, "The file")->required();
+  command->add_option("--unit", options->unit, "Unit of a mesh's lengths: mm")->type_name("UNIT");
+  command->add_flag("--json", options->json, "As JSON, in SI units");
+  command->footer(
+      "A mesh with defects is described, not refused.\n\n"
+      "Examples:\n"
+      "  sinew info finger.vtk --unit mm\n"
+      "  sinew info out/trunk/run.h5 --json");
+  actions[command] = [options] { return info(*options); };
+}
+
+}  // namespace sinew::cli

@@ -1,0 +1,102 @@
+// sinew mesh: a volume mesh from a closed surface, or one of our own shapes.
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "sinew/mesh/refine.hpp"
+#include "sinew/mesh/report.hpp"
+#include "sinew/mesh/tetrahedralise.hpp"
+#include "sinew/mesh/write.hpp"
+#include "sinew/scene/build.hpp"
+
+#include "arguments.hpp"
+#include "commands.hpp"
+
+namespace sinew::cli {
+
+namespace {
+
+constexpr int kMostRefinements = 4;
+
+struct MeshOptions {
+  std::string surface, shape, out;
+  std::optional<std::string> size, unit;
+  std::string gmsh = "gmsh";
+  int refine = 0;
+};
+
+mesh::Mesh from_shape(const MeshOptions& options) {
+  if (options.unit) {
+    throw Error(ErrorKind::bad_argument, {.item = "--unit"}, "a shape has no unit of its own",
+                "give --unit with a surface file only");
+  }
+  scene::MeshDescription description;
+  description.shape = options.shape;
+  description.place = {.item = "--shape"};
+  if (options.size) {
+    description.parameters["element_size"] =
+        positive_quantity("--size", *options.size, dimension::kLength);
+  }
+  return scene::make_mesh(description);
+}
+
+mesh::Mesh from_surface(const MeshOptions& options) {
+  mesh::TetrahedraliseOptions settings;
+  settings.program = options.gmsh;
+  if (!options.size) {
+    throw Error(ErrorKind::bad_argument, {.item = "--size"}, "the wanted edge length is missing",
+                "write for example --size 5mm");
+  }
+  settings.size = positive_quantity("--size", *options.size, dimension::kLength);
+  if (options.unit) {
+    settings.surface.unit = length_unit("--unit", *options.unit);
+    settings.surface.unit_given = true;
+  }
+  return mesh::tetrahedralise_surface(options.surface, {}, settings);
+}
+
+int make(const MeshOptions& options) {
+  if (options.surface.empty() == options.shape.empty()) {
+    throw Error(
+        ErrorKind::bad_argument, {.item = "mesh"},
+        options.surface.empty() ? "there is nothing to mesh" : "there are two things to mesh",
+        "give a surface file or --shape block|cylinder|cone|hollow-cylinder|trunk");
+  }
+  if (!options.out.ends_with(".vtu")) {
+    throw Error(ErrorKind::unknown_format, {.item = "-o"},
+                fmt::format("'{}' is no VTU file", options.out), "end its name in .vtu");
+  }
+  require_range("--refine", options.refine, 0, kMostRefinements);
+  mesh::Mesh mesh = options.shape.empty() ? from_surface(options) : from_shape(options);
+  for (int i = 0; i < options.refine; ++i) mesh = mesh::refine(mesh);
+  mesh::write_vtu(options.out, mesh);
+  fmt::print("{}written to {}, lengths in m\n", mesh::format_report(mesh::describe(mesh)),
+             options.out);
+  return 0;
+}
+
+}  // namespace
+
+void add_mesh(CLI::App& app, Actions& actions) {
+  CLI::App* command = app.add_subcommand("mesh", "Fill a surface with tetrahedra, or make a shape");
+  const auto options = std::make_shared<MeshOptions>();
+  command->add_option("SURFACE", options->surface, "Closed surface: STL, OBJ or PLY");
+  command->add_option("--shape", options->shape,
+                      "Make block, cylinder, cone, hollow-cylinder or trunk instead");
+  command->add_option("-o,--out", options->out, "VTU file to write")->required()->type_name("FILE");
+  command->add_option("--size", options->size, "Wanted edge length: 5mm")->type_name("LENGTH");
+  command->add_option("--unit", options->unit, "Unit of the surface file: mm")->type_name("UNIT");
+  command->add_option("--refine", options->refine, "Cut every tetrahedron in eight, N times")
+      ->type_name("N");
+  command->add_option("--gmsh", options->gmsh, "The Gmsh program that fills surfaces")
+      ->type_name("PROGRAM");
+  command->footer(
+      "Examples:\n"
+      "  sinew mesh finger.stl --unit mm --size 5mm -o finger.vtu\n"
+      "  sinew mesh --shape trunk -o trunk.vtu");
+  actions[command] = [options] { return make(*options); };
+}
+
+}  // namespace sinew::cli

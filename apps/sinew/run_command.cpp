@@ -1,0 +1,202 @@
+// sinew run: a scene from its start to its end, recorded.
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "sinew/record/run_recorder.hpp"
+#include "sinew/record/run_table.hpp"
+
+#include "arguments.hpp"
+#include "commands.hpp"
+#include "session.hpp"
+#include "terminal.hpp"
+
+namespace sinew::cli {
+
+namespace {
+
+constexpr double kMostSteps = 1e9;
+
+struct RunOptions {
+  SceneOptions scene;
+  std::optional<std::string> duration;
+  std::string out;
+  bool vtk = false;
+  bool quiet = false;
+};
+
+// What happened, for the table at the end.
+struct Tally {
+  std::int64_t steps = 0;
+  double wall = 0.0;  ///< s
+  double least_volume_ratio = 1.0;
+  std::int64_t cut_back = 0;
+  std::map<std::string, std::int64_t> statuses;
+  double judged_from = 0.0;  ///< s
+  std::int64_t judged = 0;
+  double error_sum = 0.0, error_max = 0.0;  ///< m or rad
+};
+
+void count(Tally& tally, Session& session) {
+  const sim::StepReport& report = session.simulation().report();
+  ++tally.steps;
+  tally.least_volume_ratio = std::min(tally.least_volume_ratio, report.smallest_volume_ratio);
+  tally.cut_back += report.scale < 1.0 ? 1 : 0;
+  const inverse::InverseController* controller = session.controller();
+  ++tally.statuses[std::string(controller != nullptr ? inverse_status_name(controller->status())
+                                                     : record::law_status_name(report.law))];
+  if (controller == nullptr || session.simulation().time() < tally.judged_from) return;
+  ++tally.judged;
+  tally.error_sum += controller->error();
+  tally.error_max = std::max(tally.error_max, controller->error());
+}
+
+std::int64_t step_count(double duration, double time_step) {
+  const double steps = std::round(duration / time_step);
+  if (steps > kMostSteps) {
+    throw Error(ErrorKind::out_of_range, {.item = "duration"},
+                fmt::format("{:g} s are {:g} steps of {:g} s", duration, steps, time_step),
+                "run for a shorter time or with a larger time step");
+  }
+  return std::max<std::int64_t>(1, static_cast<std::int64_t>(steps));
+}
+
+double run_duration(const scene::Robot& robot) {
+  const double duration = robot.description.run_duration();
+  if (duration > 0.0) return duration;
+  throw Error(ErrorKind::missing_key, {.file = robot.description.place.file, .item = "duration"},
+              "the scene says not how long to run, and no signal or target in it ends",
+              "add --duration 5s, or duration: 5 s to the scene");
+}
+
+// An error is of the largest of all tasks, in m where none of them is an orientation.
+std::string error_text(const Session& session, double error) {
+  for (const inverse::Task& task : session.controller()->settings().tasks) {
+    if (std::string_view(session.robot().model->effector(task.effector).unit()) != "m") {
+      return fmt::format("{:.4g} m or rad", error);
+    }
+  }
+  return fmt::format("{:.4f} mm", 1e3 * error);
+}
+
+std::vector<std::vector<std::string>> summary(const Tally& tally, Session& session) {
+  const double simulated =
+      static_cast<double>(tally.steps) * session.robot().model->step().time_step;
+  std::vector<std::vector<std::string>> rows;
+  rows.push_back({"steps", fmt::format("{}", tally.steps)});
+  rows.push_back({"simulated time", fmt::format("{:.3f} s", simulated)});
+  rows.push_back({"wall time", fmt::format("{:.3f} s", tally.wall)});
+  if (tally.wall > 0.0) {
+    rows.push_back({"real-time factor", fmt::format("{:.1f}", simulated / tally.wall)});
+  }
+  if (tally.judged > 0) {
+    const std::string from = fmt::format(" after {:g} s", tally.judged_from);
+    const double mean = tally.error_sum / static_cast<double>(tally.judged);
+    rows.push_back({"mean error" + from, error_text(session, mean)});
+    rows.push_back({"max error" + from, error_text(session, tally.error_max)});
+  }
+  for (const auto& [status, times] : tally.statuses) {
+    rows.push_back({"steps " + status, fmt::format("{}", times)});
+  }
+  if (tally.cut_back > 0) rows.push_back({"steps cut back", fmt::format("{}", tally.cut_back)});
+  rows.push_back({"smallest volume ratio", fmt::format("{:.3f}", tally.least_volume_ratio)});
+  return rows;
+}
+
+void advance(Session& session, record::RunRecorder& recorder, std::int64_t steps, bool quiet,
+             Tally& tally) {
+  const Interrupt interrupt;
+  ProgressBar bar(steps, !quiet);
+  while (tally.steps < steps && !Interrupt::requested()) {
+    session.step();
+    recorder.after_step();
+    count(tally, session);
+    if (!bar.due()) continue;
+    bar.update(tally.steps, session.controller() == nullptr
+                                ? fmt::format("t = {:.2f} s", session.simulation().time())
+                                : fmt::format("t = {:.2f} s, error {:.3f} mm",
+                                              session.simulation().time(), 1e3 * session.error()));
+  }
+}
+
+int run(const RunOptions& options) {
+  SceneOptions scene = options.scene;
+  if (options.duration) {
+    const double seconds = positive_quantity("--duration", *options.duration, dimension::kTime);
+    scene.overrides.push_back(fmt::format("duration={} s", seconds));
+  }
+  Session session(scene);
+  const double duration = run_duration(session.robot());
+  const std::int64_t steps = step_count(duration, session.robot().model->step().time_step);
+
+  Tally tally;
+  const double turn = session.first_turn();
+  tally.judged_from = turn > 0.0 && turn < 0.99 * duration ? turn : 0.5 * duration;
+
+  const scene::SceneDescription& description = session.robot().description;
+  record::RecordSettings settings;
+  settings.folder = options.out.empty() ? std::filesystem::path("out") / description.name
+                                        : std::filesystem::path(options.out);
+  settings.scene_name = description.name;
+  settings.scene = session.resolved_scene();
+  settings.every = description.record.every;
+  settings.states = description.record.states;
+  settings.vtk = options.vtk;
+  record::RunRecorder recorder(session.simulation(), session.controller(), settings);
+
+  const auto begin = std::chrono::steady_clock::now();
+  const auto finish = [&] {
+    tally.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    recorder.finish();
+    if (options.quiet) return;
+    auto rows = summary(tally, session);
+    rows.push_back({"recorded in", settings.folder.string()});
+    fmt::print("{}", format_table(rows));
+  };
+  try {
+    advance(session, recorder, steps, options.quiet, tally);
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::recording_failed) finish();
+    throw;
+  }
+  finish();
+  if (tally.steps < steps) {
+    fmt::print(stderr,
+               "sinew: interrupted at t = {:g} s of {:g} s; what was recorded is complete\n",
+               session.simulation().time(), duration);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, Actions& actions) {
+  CLI::App* command = app.add_subcommand("run", "Run a scene and record it");
+  const auto options = std::make_shared<RunOptions>();
+  add_scene_options(*command, options->scene);
+  command
+      ->add_option(
+          "--duration", options->duration,
+          "How long to simulate: 5s (default: the scene's duration, or its signals' length)")
+      ->type_name("TIME");
+  command->add_option("--out", options->out, "Folder for the record (default: out/<scene name>)")
+      ->type_name("DIR");
+  command->add_flag("--vtk", options->vtk, "Also write a series for ParaView, run.pvd");
+  command->add_flag("--quiet", options->quiet, "No progress bar and no summary");
+  command->footer(
+      "Writes DIR/run.csv, DIR/run.h5 and DIR/scene.yaml. Ctrl-C ends the run; what was recorded "
+      "is\n"
+      "then complete and readable.\n\n"
+      "Examples:\n"
+      "  sinew run trunk.yaml\n"
+      "  sinew run trunk.yaml --duration 5s --set actuators.long_0.command.displacement=10mm\n"
+      "  sinew run trunk.yaml --out results/first --vtk");
+  actions[command] = [options] { return run(*options); };
+}
+
+}  // namespace sinew::cli

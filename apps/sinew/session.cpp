@@ -1,0 +1,85 @@
+#include "session.hpp"
+
+#include <algorithm>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "sinew/scene/scene.hpp"
+
+#include "arguments.hpp"
+
+namespace sinew::cli {
+
+namespace {
+
+constexpr int kMostThreads = 256;
+
+scene::Robot load(const SceneOptions& options) {
+  std::vector<std::string> overrides = options.overrides;
+  if (options.threads) {
+    require_range("--threads", *options.threads, 1, kMostThreads);
+    overrides.push_back(fmt::format("solver.threads={}", *options.threads));
+  }
+  return scene::load(options.file, overrides);
+}
+
+// The controller to attach: none, the one that was named, or the first.
+const scene::SceneController* choose(const scene::Robot& robot, const std::string& name) {
+  if (name == "none" || (name.empty() && robot.controllers.empty())) return nullptr;
+  if (name.empty()) return &robot.controllers.front();
+  std::vector<std::string> known = {"none"};
+  for (const scene::SceneController& controller : robot.controllers) {
+    if (controller.name == name) return &controller;
+    known.push_back(controller.name);
+  }
+  const std::string nearest = nearest_word(name, known);
+  throw Error(ErrorKind::unknown_name, {.item = "--controller"},
+              fmt::format("the scene has no controller '{}'", name),
+              nearest.empty() ? fmt::format("choose among {}", fmt::join(known, ", "))
+                              : fmt::format("did you mean '{}'?", nearest));
+}
+
+}  // namespace
+
+Session::Session(const SceneOptions& options)
+    : robot_(load(options)), folder_(options.file.parent_path()) {
+  const scene::SceneController* chosen = choose(robot_, options.controller);
+  simulation_ = std::make_unique<sim::Simulation>(robot_.model, robot_.threads());
+  if (chosen == nullptr) return;
+  controller_name_ = chosen->name;
+  controller_ = std::make_unique<inverse::InverseController>(*simulation_, chosen->settings);
+}
+
+double Session::first_turn() const {
+  double end = 0.0;
+  if (!controller_) return end;
+  for (const inverse::Task& task : controller_->settings().tasks) {
+    end = std::max(end, task.target.end_time());
+  }
+  return end;
+}
+
+std::string Session::resolved_scene() const {
+  scene::Node tree = robot_.description.tree;
+  scene::resolve_paths(tree, std::filesystem::absolute(folder_));
+  return scene::to_yaml(tree);
+}
+
+void add_scene_options(CLI::App& command, SceneOptions& options) {
+  command.add_option("SCENE", options.file, "Scene file (YAML)")->required();
+  command
+      .add_option("--set", options.overrides,
+                  "Set a value of the scene: actuators.long_0.command.displacement=10mm; may be "
+                  "repeated")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false);
+  command.add_option("--threads", options.threads, "Threads inside a step (default: the scene's)")
+      ->type_name("N");
+  command
+      .add_option("--controller", options.controller,
+                  "Controller to attach, or none (default: the scene's first)")
+      ->type_name("NAME");
+}
+
+}  // namespace sinew::cli

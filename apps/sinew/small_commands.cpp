@@ -1,0 +1,114 @@
+// sinew view, schema, reference and validate: each a few lines.
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "sinew/core/error.hpp"
+#include "sinew/scene/reference.hpp"
+
+#include "commands.hpp"
+
+namespace sinew::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kInterpreter = "/usr/bin/python3";
+
+fs::path program_folder() {
+  std::error_code problem;
+  const fs::path self = fs::read_symlink("/proc/self/exe", problem);
+  return problem ? fs::path() : self.parent_path();
+}
+
+// The environment's choice, the tree that this program was built from, or the installed one.
+fs::path validation_script() {
+  std::vector<fs::path> folders;
+  if (const char* chosen = std::getenv("SINEW_VALIDATION_DIR")) {
+    folders = {chosen};
+  } else {
+    folders = {SINEW_VALIDATION_DEFAULT, program_folder().parent_path() / "share/sinew/validation"};
+  }
+  for (const fs::path& folder : folders) {
+    if (fs::exists(folder / "run.py")) return folder / "run.py";
+  }
+  throw Error(ErrorKind::tool_missing, {.file = (folders.front() / "run.py").string()},
+              "the validation cases are not there",
+              "run from a source tree, or set SINEW_VALIDATION_DIR to its folder 'validation'");
+}
+
+int validate(const std::vector<std::string>& cases) {
+  const std::string script = validation_script().string();
+  const fs::path package = program_folder().parent_path() / "python";
+  if (fs::exists(package)) {  // the package of the same build as this program
+    const char* before = std::getenv("PYTHONPATH");
+    const std::string path =
+        package.string() + (before == nullptr ? "" : ":" + std::string(before));
+    setenv("PYTHONPATH", path.c_str(), 1);
+  }
+  std::vector<char*> arguments;
+  std::vector<std::string> words = {kInterpreter, script};
+  words.insert(words.end(), cases.begin(), cases.end());
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  std::fflush(stdout);
+  execv(kInterpreter, arguments.data());
+  throw Error(ErrorKind::tool_missing, {.file = kInterpreter},
+              fmt::format("the interpreter cannot be started: {}", std::strerror(errno)),
+              "install Python: apt-get install python3 python3-numpy python3-matplotlib");
+}
+
+void add_page(CLI::App& app, Actions& actions, const char* name, const char* description,
+              std::string (*page)()) {
+  CLI::App* command = app.add_subcommand(name, description);
+  actions[command] = [page] {
+    const std::string text = page();
+    const bool written =
+        std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+    return written ? 0 : 1;
+  };
+}
+
+}  // namespace
+
+void add_view(CLI::App& app, Actions& actions) {
+  CLI::App* command = app.add_subcommand("view", "See a scene in the browser (a later version)");
+  command->allow_extras();
+  actions[command] = []() -> int {
+    throw Error(ErrorKind::not_in_this_version, {.item = "view"},
+                "the view in the browser is not in this version",
+                "use 'sinew run SCENE --vtk' and open run.pvd in ParaView");
+  };
+}
+
+void add_schema(CLI::App& app, Actions& actions) {
+  add_page(app, actions, "schema", "Print the JSON Schema of scene files, for editors",
+           scene::json_schema);
+  add_page(app, actions, "reference", "", scene::reference_page);
+  app.get_subcommand("reference")->group("");
+}
+
+void add_validate(CLI::App& app, Actions& actions) {
+  CLI::App* command =
+      app.add_subcommand("validate", "Compare Sinew's numbers with references: docs/scorecard.md");
+  const auto cases = std::make_shared<std::vector<std::string>>();
+  command->add_option("CASE", *cases, "Cases to run (default: all)");
+  command->allow_extras();  // options of the script itself: --list
+  command->footer("Example:\n  sinew validate --list");
+  actions[command] = [cases, command] {
+    std::vector<std::string> all = *cases;
+    for (const std::string& word : command->remaining()) all.push_back(word);
+    return validate(all);
+  };
+}
+
+}  // namespace sinew::cli

@@ -1,0 +1,51 @@
+/// @file
+/// What the program shows while it works, and how it is stopped.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace sinew::cli {
+
+/// While it lives, the first Ctrl-C or SIGTERM only raises a flag, so that work ends between two
+/// steps; a second one ends the program at once.
+class Interrupt {
+ public:
+  Interrupt();
+  ~Interrupt();
+  Interrupt(const Interrupt&) = delete;
+  Interrupt& operator=(const Interrupt&) = delete;
+
+  /// Whether one was received.
+  static bool requested();
+};
+
+/// A line on standard error that shows how far work has come; nothing unless that is a terminal.
+class ProgressBar {
+ public:
+  /// @param total amount of work. @param shown false: never drawn.
+  ProgressBar(std::int64_t total, bool shown);
+  ~ProgressBar();
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
+
+  /// Redraws at most ten times a second.
+  /// @param done of the work. @param note behind the bar.
+  void update(std::int64_t done, const std::string& note);
+  /// True when a call of update() would draw, so that its note is worth making.
+  bool due() const;
+
+ private:
+  std::int64_t total_;
+  bool shown_;
+  bool drawn_ = false;
+  std::chrono::steady_clock::time_point last_{};
+};
+
+/// Rows of text with columns under each other.
+/// @param rows of cells; the first column is set left, the others right.
+std::string format_table(const std::vector<std::vector<std::string>>& rows);
+
+}  // namespace sinew::cli

@@ -1,0 +1,56 @@
+/// @file
+/// Reads arrays out of an HDF5 file that may be damaged: types and sizes are looked at first.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "sinew/record/hdf5_handle.hpp"
+
+namespace sinew::record {
+
+/// An HDF5 file open for reading. Errors are malformed-file unless said otherwise.
+class Hdf5Reader {
+ public:
+  using Shape = std::vector<std::uint64_t>;
+
+  /// Throws Error: file-not-found, unknown-format.
+  /// @param path of the file.
+  explicit Hdf5Reader(const std::filesystem::path& path);
+
+  const std::string& path() const { return path_; }
+  bool has(const std::string& object) const;
+  /// Names in a group; none when there is no such group. @param group its path.
+  std::vector<std::string> names(const std::string& group) const;
+
+  /// Attributes of the file. @param name of the attribute. Text is empty when there is none.
+  std::string text_attribute(const std::string& name) const;
+  std::int64_t integer_attribute(const std::string& name) const;
+  double number_attribute(const std::string& name) const;
+
+  /// @param dataset its path. @return its extent.
+  Shape shape(const std::string& dataset) const;
+  /// A dataset of one text. @param dataset its path.
+  std::string text(const std::string& dataset) const;
+  /// The whole dataset, row by row. @param dataset its path. @param expected its extent.
+  std::vector<double> numbers(const std::string& dataset, const Shape& expected) const;
+  std::vector<std::int32_t> integers(const std::string& dataset, const Shape& expected) const;
+  /// Rows `begin` to `begin + count` of the first direction.
+  /// @param dataset its path. @param begin,count rows, within the extent.
+  std::vector<double> rows(const std::string& dataset, std::uint64_t begin,
+                           std::uint64_t count) const;
+  /// @param what is wrong with the file.
+  [[noreturn]] void fail(const std::string& what) const;
+
+ private:
+  Hdf5Handle open(const std::string& dataset) const;
+  void read_attribute(const std::string& name, hid_t type, H5T_class_t kind, void* value) const;
+  std::uint64_t volume(const std::string& dataset, const Shape& shape) const;
+
+  std::string path_;
+  Hdf5Handle file_;
+};
+
+}  // namespace sinew::record

@@ -1,0 +1,169 @@
+#include "sinew/record/run_file.hpp"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+
+#include <fmt/format.h>
+
+#include "sinew/record/hdf5_reader.hpp"
+#include "sinew/record/run_recorder.hpp"
+
+namespace sinew::record {
+
+namespace {
+
+constexpr std::uint64_t kMostFrames = std::uint64_t{1} << 28;
+
+void require_known(const std::string& file, const std::vector<std::string>& known,
+                   std::string_view name) {
+  if (std::find(known.begin(), known.end(), name) != known.end()) return;
+  const std::string nearest = nearest_word(name, known);
+  throw Error(ErrorKind::unknown_name, {.file = file}, fmt::format("the run has no '{}'", name),
+              nearest.empty() ? fmt::format("it has {}", fmt::join(known, ", "))
+                              : fmt::format("did you mean '{}'?", nearest));
+}
+
+}  // namespace
+
+struct RunFile::Content {
+  explicit Content(const std::filesystem::path& path) : file(path) {
+    if (file.text_attribute("format") != "sinew-run") {
+      throw Error(ErrorKind::unknown_format, {.file = file.path()},
+                  "this HDF5 file does not hold a run", "give a run.h5 that 'sinew run' wrote");
+    }
+    const std::int64_t format = file.integer_attribute("format_version");
+    if (format != kRunFormatVersion) {
+      throw Error(
+          ErrorKind::unsupported_version, {.file = file.path()},
+          fmt::format("the record has format {}, this program reads {}", format, kRunFormatVersion),
+          "use the version of Sinew that wrote it, or record the run again");
+    }
+    version = file.text_attribute("sinew_version");
+    name = file.text_attribute("scene_name");
+    scene = file.text("/scene");
+    time_step = file.number_attribute("time_step");
+    bodies = file.names("/mesh");
+    actuators = file.names("/actuators");
+    effectors = file.names("/effectors");
+    states = file.has("/positions");
+    frames = complete_frames();
+    times = file.rows("/time", 0, frames);
+  }
+
+  // A run that was cut off may have ended between two series of a frame.
+  std::uint64_t complete_frames() const {
+    std::vector<std::string> series = {"/time"};
+    for (const std::string& body : bodies) {
+      if (states) series.push_back("/positions/" + body);
+    }
+    for (const std::string& actuator : actuators) {
+      series.push_back("/actuators/" + actuator + "/effort");
+      series.push_back("/actuators/" + actuator + "/motion");
+    }
+    for (const std::string& effector : effectors) {
+      series.push_back("/effectors/" + effector + "/position");
+    }
+    std::uint64_t least = kMostFrames;
+    for (const std::string& one : series) {
+      const Hdf5Reader::Shape shape = file.shape(one);
+      if (shape.empty()) file.fail(fmt::format("{} is no series", one));
+      least = std::min(least, shape[0]);
+    }
+    return least;
+  }
+
+  Hdf5Reader file;
+  std::string version, name, scene;
+  double time_step = 0.0;
+  std::uint64_t frames = 0;
+  bool states = false;
+  std::vector<double> times;
+  std::vector<std::string> bodies, actuators, effectors;
+};
+
+RunFile::RunFile(const std::filesystem::path& path) : content_(std::make_unique<Content>(path)) {}
+RunFile::~RunFile() = default;
+RunFile::RunFile(RunFile&&) noexcept = default;
+RunFile& RunFile::operator=(RunFile&&) noexcept = default;
+
+bool RunFile::is_hdf5(const std::filesystem::path& path) {
+  constexpr std::string_view signature = "\x89HDF\r\n\x1a\n";
+  std::array<char, 8> start{};
+  std::ifstream file(path, std::ios::binary);
+  file.read(start.data(), start.size());
+  return file.good() && std::string_view(start.data(), start.size()) == signature;
+}
+
+const std::string& RunFile::sinew_version() const { return content_->version; }
+const std::string& RunFile::scene_name() const { return content_->name; }
+const std::string& RunFile::scene() const { return content_->scene; }
+double RunFile::time_step() const { return content_->time_step; }
+std::int64_t RunFile::frames() const { return static_cast<std::int64_t>(content_->frames); }
+const std::vector<double>& RunFile::times() const { return content_->times; }
+const std::vector<std::string>& RunFile::bodies() const { return content_->bodies; }
+const std::vector<std::string>& RunFile::actuators() const { return content_->actuators; }
+const std::vector<std::string>& RunFile::effectors() const { return content_->effectors; }
+bool RunFile::has_states() const { return content_->states; }
+
+mesh::Mesh RunFile::rest_mesh(std::string_view body) const {
+  const Hdf5Reader& file = content_->file;
+  require_known(file.path(), content_->bodies, body);
+  const std::string folder = "/mesh/" + std::string(body);
+  const auto nodes = file.shape(folder + "/nodes");
+  const auto elements = file.shape(folder + "/tetrahedra");
+  if (nodes.size() != 2 || elements.size() != 2) file.fail(folder + " holds no mesh");
+  const std::vector<double> numbers = file.numbers(folder + "/nodes", {nodes[0], 3});
+  const std::vector<std::int32_t> corners = file.integers(folder + "/tetrahedra", {elements[0], 4});
+  mesh::Mesh mesh;
+  mesh.name = file.path() + ": " + std::string(body);
+  mesh.nodes = Eigen::Map<const Points>(numbers.data(), static_cast<Eigen::Index>(nodes[0]), 3);
+  mesh.tetrahedra.resize(elements[0]);
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    if (corners[i] < 0 || static_cast<std::uint64_t>(corners[i]) >= nodes[0]) {
+      file.fail(fmt::format("{} has node {} of {}", folder, corners[i], nodes[0]));
+    }
+    mesh.tetrahedra[i / 4][i % 4] = corners[i];
+  }
+  return mesh;
+}
+
+Points RunFile::positions(std::string_view body, std::int64_t frame) const {
+  const Hdf5Reader& file = content_->file;
+  require_known(file.path(), content_->bodies, body);
+  if (!content_->states) {
+    throw Error(ErrorKind::missing_key, {.file = file.path()},
+                "the run was recorded without states",
+                "write record: {states: true} in the scene and run it again");
+  }
+  if (frame < 0 || frame >= frames()) {
+    throw Error(ErrorKind::out_of_range, {.file = file.path()},
+                fmt::format("there is no frame {}", frame),
+                fmt::format("the frames are 0 to {}", frames() - 1));
+  }
+  const std::string name = "/positions/" + std::string(body);
+  const auto shape = file.shape(name);
+  if (shape.size() != 3 || shape[2] != 3) file.fail(name + " holds no positions");
+  const std::vector<double> numbers = file.rows(name, static_cast<std::uint64_t>(frame), 1);
+  return Eigen::Map<const Points>(numbers.data(), static_cast<Eigen::Index>(shape[1]), 3);
+}
+
+std::vector<double> RunFile::actuator(std::string_view actuator, std::string_view what) const {
+  const Hdf5Reader& file = content_->file;
+  require_known(file.path(), content_->actuators, actuator);
+  const std::string name = fmt::format("/actuators/{}/{}", actuator, what);
+  if (file.shape(name).size() != 1) file.fail(name + " is no series of numbers");
+  return file.rows(name, 0, content_->frames);
+}
+
+Points RunFile::effector(std::string_view effector) const {
+  const Hdf5Reader& file = content_->file;
+  require_known(file.path(), content_->effectors, effector);
+  const std::string name = fmt::format("/effectors/{}/position", effector);
+  const auto shape = file.shape(name);
+  if (shape.size() != 2 || shape[1] != 3) file.fail(name + " holds no positions");
+  const std::vector<double> numbers = file.rows(name, 0, content_->frames);
+  return Eigen::Map<const Points>(numbers.data(), static_cast<Eigen::Index>(content_->frames), 3);
+}
+
+}  // namespace sinew::record
