@@ -241,6 +241,7 @@ mechanics::MotionReport FemBody::apply_motion(double scale) {
     sum += moved.squaredNorm();
   }
   mechanics::MotionReport report;
+  report.largest_move = scale * motion_.cwiseAbs().maxCoeff();
   report.finite = std::isfinite(sum) && sum < blow_up_;
   if (report.finite) {
     const auto volume = active_->assembly.measure_volume(positions_);

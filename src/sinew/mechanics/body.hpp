@@ -82,6 +82,7 @@ struct MotionReport {
   bool finite = true;                  ///< no NaN or infinity in the new state
   double smallest_volume_ratio = 1.0;  ///< min det F over the elements; <= 0 means inverted
   int worst_element = -1;              ///< where
+  double largest_move = 0.0;           ///< m, of any coordinate
 };
 
 /// The state and workspace of one body in one simulation. Nothing allocates after construction.

@@ -11,6 +11,10 @@ namespace {
 // that costs more iterations than it saves.
 constexpr double kMeritGrowth = 50.0;
 constexpr int kMostHalvings = 12;
+// Motions under this part of a robot's size are rounding, and then residuals under this part of its
+// forces may be.
+constexpr double kRounding = 1e-11;
+constexpr double kRoundedResidual = 1e-7;
 
 class NewtonSolver {
  public:
@@ -73,9 +77,14 @@ class NewtonSolver {
     return report_.relative_residual + report_.violation / problem_.model.size();
   }
 
+  // Where rounding keeps the residual above the tolerance, a full step that moves nothing by more
+  // than rounding does says that there is nothing left to find.
   bool converged() const {
-    return report_.relative_residual <= settings_.tolerance &&
-           report_.violation <= settings_.tolerance * problem_.model.size();
+    const double size = problem_.model.size();
+    const bool at_rest = full_step_ && report_.motion.largest_move <= kRounding * size &&
+                         report_.relative_residual <= kRoundedResidual;
+    return (report_.relative_residual <= settings_.tolerance || at_rest) &&
+           report_.violation <= std::max(settings_.tolerance, kRounding) * size;
   }
 
   NewtonStatus move() {
@@ -88,6 +97,7 @@ class NewtonSolver {
       clock_.mark(Stage::correction);
       inverted = !report_.motion.finite || !(report_.motion.smallest_volume_ratio > 0.0);
       if (inverted) continue;
+      full_step_ = halving == 0;
       linearise(settings_.request.tangent);
       const double after = merit();
       if (converged() || after < kMeritGrowth * before) return NewtonStatus::converged;
@@ -107,6 +117,7 @@ class NewtonSolver {
   const NewtonSettings& settings_;
   StageClock& clock_;
   NewtonReport report_;
+  bool full_step_ = false;
 };
 
 }  // namespace

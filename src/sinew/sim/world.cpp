@@ -104,6 +104,7 @@ mechanics::MotionReport World::apply_motion(double scale) {
   for (auto& body : bodies_) {
     const auto report = body->apply_motion(scale);
     worst.finite = worst.finite && report.finite;
+    worst.largest_move = std::max(worst.largest_move, report.largest_move);
     if (report.smallest_volume_ratio < worst.smallest_volume_ratio) {
       worst.smallest_volume_ratio = report.smallest_volume_ratio;
       worst.worst_element = report.worst_element;
