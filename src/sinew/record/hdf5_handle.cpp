@@ -1,5 +1,7 @@
 #include "sinew/record/hdf5_handle.hpp"
 
+#include <string_view>
+
 namespace sinew::record {
 
 std::string hdf5_reason() {
@@ -9,6 +11,12 @@ std::string hdf5_reason() {
     return 1;  // the first entry is the innermost: no need to go on
   };
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, take, &reason);
+  // The system's own words are the part worth telling: "..., error message = 'No space left', ...".
+  constexpr std::string_view kMark = "error message = '";
+  if (const auto at = reason.find(kMark); at != std::string::npos) {
+    const auto begin = at + kMark.size();
+    return reason.substr(begin, reason.find('\'', begin) - begin);
+  }
   return reason.empty() ? "no reason given" : reason;
 }
 

@@ -1,10 +1,13 @@
 #include "sinew/record/hdf5_writer.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <functional>
 #include <numeric>
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "sinew/record/hdf5_handle.hpp"
 
@@ -12,7 +15,8 @@ namespace sinew::record {
 
 namespace {
 
-constexpr std::uint64_t kChunkBytes = 16384;  // of series whose frames are small
+constexpr std::uint64_t kChunkBytes = 4096;   // of series whose frames are small
+constexpr std::uint64_t kHeadroom = 1 << 16;  // bytes for chunks and the library's own data
 
 using Extent = std::vector<hsize_t>;
 
@@ -58,15 +62,51 @@ struct Hdf5Writer::File {
   Hdf5Handle file;
   Hdf5Handle links;  // makes the groups above a path
   std::vector<Series> series;
+  haddr_t reserved = 0;  // bytes from the start that the disk has given
+  bool abandoned = false;
   std::chrono::steady_clock::time_point flushed = std::chrono::steady_clock::now();
 
-  [[noreturn]] void fail(const std::string& what) const {
+  [[noreturn]] void fail(const std::string& what, const std::string& reason) {
+    abandon();
     throw Error(ErrorKind::recording_failed, {.file = path, .item = what},
-                fmt::format("the record cannot be written: {}", hdf5_reason()),
+                fmt::format("the record cannot be written: {}", reason),
                 "check that the disk is not full; what was recorded before is readable");
   }
-  void expect(bool good, const std::string& what) const {
-    if (!good) fail(what);
+  void expect(bool good, const std::string& what) {
+    if (!good) fail(what, hdf5_reason());
+  }
+  int descriptor() const {
+    void* handle = nullptr;
+    const bool found = H5Fget_vfd_handle(file.id(), H5P_DEFAULT, &handle) >= 0 && handle != nullptr;
+    return found ? *static_cast<int*>(handle) : -1;
+  }
+  // From here on HDF5 writes into nothing: the file stays as the last flush left it, and closing
+  // succeeds (on a full disk it crashes otherwise, HDF5 1.10).
+  void abandon() {
+    const int kept = descriptor();
+    const int nothing = ::open("/dev/null", O_RDWR | O_CLOEXEC);
+    if (kept >= 0 && nothing >= 0) ::dup2(nothing, kept);
+    if (nothing >= 0) ::close(nothing);
+    abandoned = true;
+  }
+  haddr_t end() const {
+    haddr_t bytes = 0;
+    return H5Fget_eoa(file.id(), &bytes) >= 0 ? bytes : 0;
+  }
+  // Takes room from the disk before HDF5 needs it, so that none of its writes can fail half way.
+  /// @return what went wrong, as in errno; 0 for nothing.
+  int reserve(std::uint64_t more) {
+    const haddr_t wanted = end() + more;
+    if (wanted <= reserved) return 0;
+    const int problem = ::posix_fallocate(descriptor(), static_cast<off_t>(reserved),
+                                          static_cast<off_t>(wanted - reserved));
+    if (problem == 0) reserved = wanted;
+    return problem;
+  }
+  // HDF5 cuts the file to its own length when it flushes.
+  void release() {
+    reserved = end();
+    if (::ftruncate(descriptor(), static_cast<off_t>(reserved)) != 0) reserved = 0;
   }
   void write(const std::string& name, const Extent& shape, hid_t stored, hid_t type,
              const void* values) {
@@ -106,8 +146,13 @@ Hdf5Writer::Hdf5Writer(const std::filesystem::path& path) : file_(std::make_uniq
 }
 
 Hdf5Writer::~Hdf5Writer() {
-  // Closing flushes; on a full disk it fails again, as the run has been told already.
+  if (!file_) return;
   const QuietHdf5 quiet;
+  try {
+    flush();
+  } catch (const Error&) {
+    // The file stays as it was at the last flush; finish() is where a run hears of it.
+  }
   file_.reset();
 }
 Hdf5Writer::Hdf5Writer(Hdf5Writer&&) noexcept = default;
@@ -195,7 +240,13 @@ int Hdf5Writer::series(const std::string& path, const std::vector<std::uint64_t>
 void Hdf5Writer::append(int series, std::span<const double> values) {
   const QuietHdf5 quiet;
   File::Series& target = file_->series.at(static_cast<std::size_t>(series));
+  if (file_->abandoned) file_->fail("series", "an earlier frame could not be written");
   file_->expect(values.size() == target.size, "series");
+  if (const int problem = file_->reserve(values.size_bytes() + kHeadroom); problem != 0) {
+    // The frames so far still fit: room for them was taken when they were written.
+    if (file_->end() <= file_->reserved) H5Fflush(file_->file.id(), H5F_SCOPE_LOCAL);
+    file_->fail("series", std::strerror(problem));
+  }
   Extent begin(target.extent.size(), 0), count = target.extent;
   begin[0] = target.extent[0]++;
   count[0] = 1;
@@ -209,8 +260,12 @@ void Hdf5Writer::append(int series, std::span<const double> values) {
 }
 
 void Hdf5Writer::flush() {
+  if (file_->abandoned) return;
   const QuietHdf5 quiet;
+  const int problem = file_->reserve(0);
+  if (problem != 0) file_->fail("flush", std::strerror(problem));
   file_->expect(H5Fflush(file_->file.id(), H5F_SCOPE_LOCAL) >= 0, "flush");
+  file_->release();
   file_->flushed = std::chrono::steady_clock::now();
 }
 

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <span>
 #include <vector>
 
 #include <fmt/format.h>
@@ -36,6 +37,15 @@ static_assert(sizeof(Header) == 40);
               "save the state again with save_state");
 }
 
+std::uint64_t hash_of(const Header& header, std::span<const double> numbers) {
+  StateHash hash;
+  hash.add(header.fingerprint);
+  hash.add(static_cast<std::uint64_t>(header.steps));
+  hash.add(header.count);
+  hash.add(numbers);
+  return hash.value();
+}
+
 // The numbers between header and hash, whose count was checked.
 std::vector<double> numbers_of(std::string_view bytes) {
   std::vector<double> numbers((bytes.size() - sizeof(Header)) / 8 - 1);
@@ -54,7 +64,7 @@ std::string format_state(const Simulation& simulation) {
   header.fingerprint = simulation.model().fingerprint();
   header.steps = simulation.steps();
   header.count = state.size();
-  const std::uint64_t hash = hash_doubles(state);
+  const std::uint64_t hash = hash_of(header, state);
   std::string bytes(sizeof header + 8 * state.size() + sizeof hash, '\0');
   std::memcpy(bytes.data(), &header, sizeof header);
   std::memcpy(bytes.data() + sizeof header, state.data(), 8 * state.size());
@@ -74,6 +84,7 @@ StateHeader read_state_header(std::string_view bytes, const std::string& name) {
                             header.version, kStateVersion),
                 "save it again with this version of Sinew");
   }
+  if (header.reserved != 0) corrupt(name, "bytes that must be zero are not");
   const std::size_t rest = bytes.size() - sizeof header;
   if (rest < 8 || rest % 8 != 0 || header.count != rest / 8 - 1) {
     corrupt(name, fmt::format("{} bytes follow where {} numbers and their hash belong", rest,
@@ -83,7 +94,7 @@ StateHeader read_state_header(std::string_view bytes, const std::string& name) {
   const std::vector<double> state = numbers_of(bytes);
   std::uint64_t hash = 0;
   std::memcpy(&hash, bytes.data() + bytes.size() - sizeof hash, sizeof hash);
-  if (hash != hash_doubles(state)) corrupt(name, "the numbers do not fit their hash");
+  if (hash != hash_of(header, state)) corrupt(name, "the numbers do not fit their hash");
   for (const double value : state) {
     if (!std::isfinite(value)) corrupt(name, "a number is not finite");
   }

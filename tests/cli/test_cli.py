@@ -1,0 +1,352 @@
+"""The sinew program from outside: what it prints, writes and returns.
+
+    SINEW_PROGRAM=build/release/bin/sinew /usr/bin/python3 -m pytest tests/cli
+"""
+
+import csv
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import time
+
+import h5py
+import numpy as np
+import pytest
+
+PROGRAM = os.environ.get("SINEW_PROGRAM", "build/release/bin/sinew")
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+DONE, FAILED, WRONG = 0, 1, 2
+
+SCENE = """sinew: 1
+time_step: 10 ms
+{more}
+bodies:
+  beam:
+    type: fem
+    mesh: {{shape: block, length: 100 mm, width: 20 mm, height: 20 mm, element_size: 10 mm}}
+    material: {{model: corotational, young_modulus: 200 kPa, poisson_ratio: 0.4}}
+    density: 1070 kg/m^3
+    fixed: [{{set: x_min}}]
+actuators:
+  up:
+    type: cable
+    body: beam
+    points: ["0 10 16 mm", "30 10 16 mm", "60 10 16 mm", "98 10 16 mm"]
+    command: {{displacement: {{ramp: {{from: 0 mm, to: 4 mm, start: 0 s, duration: 0.1 s}}}}}}
+effectors:
+  tip: {{body: beam, point: 100 10 10 mm}}
+"""
+
+
+def sinew(*arguments, cwd=None, timeout=120):
+    """Runs the program to its end."""
+    words = [os.path.abspath(PROGRAM), *map(str, arguments)]
+    return subprocess.run(words, capture_output=True, text=True, cwd=cwd, timeout=timeout, check=False)
+
+
+@pytest.fixture(name="scene")
+def write_scene(tmp_path):
+    def write(more="", name="beam.yaml", replace=("", "")):
+        path = tmp_path / name
+        path.write_text(SCENE.format(more=more).replace(*replace) if replace[0] else SCENE.format(more=more))
+        return path
+
+    return write
+
+
+def rows_of(path):
+    with open(path, newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def test_run_records_what_was_asked(scene, tmp_path):
+    path = scene()
+    result = sinew("run", path, cwd=tmp_path)
+    assert result.returncode == DONE, result.stderr
+    assert result.stderr == "", "no progress bar unless there is a terminal"
+    assert "real-time factor" in result.stdout
+    folder = tmp_path / "out" / "beam"  # named after the scene
+    assert sorted(p.name for p in folder.iterdir()) == ["run.csv", "run.h5", "scene.yaml"]
+    rows = rows_of(folder / "run.csv")
+    assert len(rows) == 11, "the signal lasts 0.1 s: ten steps and the start"
+    assert float(rows[-1]["time [s]"]) == pytest.approx(0.1)
+    assert float(rows[-1]["up.displacement [m]"]) == pytest.approx(0.004, abs=2e-4)
+    assert float(rows[-1]["tip.z [m]"]) > 0.0101, "an upper cable bends the beam up"
+    with h5py.File(folder / "run.h5") as file:
+        assert file.attrs["format"] == "sinew-run"
+        assert file["positions/beam"].shape[0] == len(file["time"]) == 11
+        assert file["positions/beam"].attrs["unit"] == "m"
+        tip = [float(rows[-1][f"tip.{axis} [m]"]) for axis in "xyz"]
+        assert np.array_equal(file["effectors/tip/position"][-1], tip)
+        assert "velocities" not in file, "quasi-static"
+        assert file["scene"][()].decode() == (folder / "scene.yaml").read_text()
+
+
+def test_the_recorded_scene_runs_the_same(scene, tmp_path):
+    table = tmp_path / "pull.csv"
+    table.write_text("0, 0\n0.05, 3\n")
+    path = scene(replace=("{ramp: {from: 0 mm, to: 4 mm, start: 0 s, duration: 0.1 s}}",
+                          "{file: pull.csv, unit: mm}"))
+    first = sinew("run", path, "--out", tmp_path / "a", "--set", "time_step=5ms")
+    assert first.returncode == DONE, first.stderr
+    again = sinew("run", tmp_path / "a" / "scene.yaml", "--out", tmp_path / "b", cwd="/")
+    assert again.returncode == DONE, again.stderr
+    assert (tmp_path / "a" / "run.csv").read_bytes() == (tmp_path / "b" / "run.csv").read_bytes()
+    assert len(rows_of(tmp_path / "a" / "run.csv")) == 11
+
+
+def test_vtk_series(scene, tmp_path):
+    result = sinew("run", scene(), "--duration", "30ms", "--vtk", "--quiet", "--out", tmp_path / "o")
+    assert result.returncode == DONE, result.stderr
+    assert result.stdout == ""
+    assert len(list((tmp_path / "o" / "run").glob("*.vtu"))) == 4
+    assert (tmp_path / "o" / "run.pvd").read_text().count("DataSet") == 4
+
+
+def test_threads_give_the_same_bits(scene, tmp_path):
+    for threads in (1, 3):
+        done = sinew("run", scene(), "--threads", threads, "--out", tmp_path / str(threads))
+        assert done.returncode == DONE, done.stderr
+    assert (tmp_path / "1" / "run.csv").read_bytes() == (tmp_path / "3" / "run.csv").read_bytes()
+
+
+CONTROL = """
+controllers:
+  follow:
+    type: inverse
+    effectors: {tip: {target: {circle: {center: 97 10 10 mm, radius: 4 mm, normal: 1 0 0, period: 0.2 s}}}}
+"""
+
+
+def test_a_controller_is_attached_unless_none(scene, tmp_path):
+    path = scene()
+    path.write_text(path.read_text() + CONTROL)
+    steered = sinew("run", path, "--duration", "0.3 s", "--out", tmp_path / "a")
+    assert steered.returncode == DONE, steered.stderr
+    assert "mean error after 0.2 s" in steered.stdout
+    rows = rows_of(tmp_path / "a" / "run.csv")
+    assert rows[0]["controller"] == "start"
+    assert {r["controller"] for r in rows[1:]} <= {"on-target", "rate-limited", "out-of-reach"}
+    assert float(rows[5]["tip.target_x [m]"]) == pytest.approx(0.097)
+    direct = sinew("run", path, "--duration", "0.05 s", "--controller", "none", "--out", tmp_path / "b")
+    assert direct.returncode == DONE, direct.stderr
+    assert rows_of(tmp_path / "b" / "run.csv")[-1]["controller"] == "none"
+    wrong = sinew("run", path, "--controller", "folow")
+    assert wrong.returncode == WRONG and "did you mean 'follow'?" in wrong.stderr
+
+
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
+def test_interrupted_runs_end_cleanly(scene, tmp_path, how):
+    out = tmp_path / "o"
+    words = [os.path.abspath(PROGRAM), "run", str(scene()), "--duration", "1000s", "--out", str(out)]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        table = out / "run.csv"
+        for _ in range(600):
+            if table.exists() and table.read_text().count("\n") > 5:
+                break
+            time.sleep(0.05)
+        process.send_signal(how)
+        _, errors = process.communicate(timeout=60)
+        assert process.returncode == DONE
+        assert "interrupted" in errors
+    rows = rows_of(table)
+    with h5py.File(out / "run.h5") as file:
+        assert len(file["time"]) == len(rows) > 5
+        assert file["time"][-1] == float(rows[-1]["time [s]"])
+
+
+def test_a_run_that_fails_keeps_what_it_recorded(scene, tmp_path):
+    # A soft beam crushed by a force that no step can follow.
+    path = scene(replace=("command: {displacement: {ramp: {from: 0 mm, to: 4 mm, start: 0 s, duration: 0.1 s}}}",
+                          "command: {tension: {ramp: {from: 0 N, to: 1e7 N, start: 0.05 s, duration: 0.05 s}}}"))
+    result = sinew("run", path, "--duration", "1s", "--out", tmp_path / "o")
+    assert result.returncode == FAILED, result.stdout + result.stderr
+    assert result.stderr.startswith("sinew: error: step ")
+    assert "body beam" in result.stderr
+    rows = rows_of(tmp_path / "o" / "run.csv")
+    assert 6 <= len(rows) < 101
+    with h5py.File(tmp_path / "o" / "run.h5") as file:
+        assert len(file["time"]) == len(rows)
+        assert np.isfinite(file["positions/beam"][:]).all()
+
+
+def test_wrong_input_leaves_folders_alone(scene, tmp_path):
+    out = tmp_path / "o"
+    assert sinew("run", scene(), "--out", out).returncode == DONE
+    before = {p: p.read_bytes() for p in out.iterdir()}
+    broken = scene("gravity: 3 kg", name="broken.yaml")
+    for arguments in (["run", broken], ["run", scene(), "--set", "time_step=5 kg"],
+                      ["run", scene(), "--duration", "-1s"], ["run", tmp_path / "none.yaml"]):
+        assert sinew(*arguments, "--out", out).returncode == WRONG
+        assert sinew(*arguments, "--out", tmp_path / "new").returncode == WRONG
+    assert {p: p.read_bytes() for p in out.iterdir()} == before
+    assert not (tmp_path / "new").exists()
+
+
+def test_without_an_end_the_remedy_is_named(scene):
+    path = scene(replace=("{displacement: {ramp: {from: 0 mm, to: 4 mm, start: 0 s, duration: 0.1 s}}}",
+                          "{displacement: 1 mm}"))
+    result = sinew("run", path)
+    assert result.returncode == WRONG
+    assert "--duration 5s" in result.stderr and "[missing-key]" in result.stderr
+
+
+def test_a_full_disk_fails_the_run(scene, tmp_path):
+    # A file system of its own would need root; the limit on file sizes acts alike.
+    limited = f"ulimit -f 2000; trap '' XFSZ; exec '{os.path.abspath(PROGRAM)}' run '{scene()}' --duration 20s --out '{tmp_path}/o'"
+    result = subprocess.run(["bash", "-c", limited], capture_output=True, text=True, timeout=120, check=False)
+    assert result.returncode == FAILED, result.stderr
+    assert "[recording-failed]" in result.stderr
+    assert len(rows_of(tmp_path / "o" / "run.csv")) > 2
+    with h5py.File(tmp_path / "o" / "run.h5") as file:
+        assert len(file["time"]) >= 1
+        assert np.isfinite(file["positions/beam"][:]).all()
+
+
+WRONG_ARGUMENTS = [
+    ([], "bad-argument", "the commands are run"),
+    (["rnu"], "unknown-option", "did you mean 'run'?"),
+    (["run"], "bad-argument", "SCENE"),
+    (["run", "--durration", "5s", "a.yaml"], "unknown-option", "did you mean --duration?"),
+    (["bench", "a.yaml", "--step", "3"], "unknown-option", "did you mean --steps?"),
+    (["run", "a.yaml", "b.yaml"], "bad-argument", "b.yaml"),
+    (["run", "none.yaml"], "file-not-found", "none.yaml"),
+    (["run", "{scene}", "--duration", "5mm"], "wrong-dimension", "--duration"),
+    (["run", "{scene}", "--duration", "soon"], "not-a-number", "--duration"),
+    (["run", "{scene}", "--duration", "0s"], "out-of-range", "--duration"),
+    (["run", "{scene}", "--duration", "5 parsec"], "unknown-unit", "--duration"),
+    (["run", "{scene}", "--duration", "1e12 s"], "out-of-range", "steps"),
+    (["run", "{scene}", "--threads", "0"], "out-of-range", "--threads"),
+    (["run", "{scene}", "--set", "time_step"], "bad-argument", "time_step"),
+    (["run", "{scene}", "--set", "time_stp=1ms"], "unknown-key", "time_step"),
+    (["run", "{scene}", "--set", "actuators.upp.command.tension=1N"], "unknown-name", "up"),
+    (["run", "{scene}", "--controller", "x"], "unknown-name", "--controller"),
+    (["run", "{scene}", "--out", "/proc/nothing/here"], "file-unwritable", "--out"),
+    (["bench", "{scene}", "--steps", "0"], "out-of-range", "--steps"),
+    (["bench", "{scene}", "--steps", "many"], "bad-argument", "--steps"),
+    (["bench", "{scene}", "--tangent", "best"], "unknown-choice", "exact or rotated"),
+    (["info"], "bad-argument", "FILE"),
+    (["info", "none.vtu"], "file-not-found", "none.vtu"),
+    (["info", "{scene}", "--units", "mm"], "unknown-option", "did you mean --unit?"),
+    (["info", "{folder}"], "file-unreadable", "folder"),
+    (["info", "{junk}"], "unknown-format", "junk"),
+    (["info", "{junk}", "--unit", "kg"], "wrong-dimension", "--unit"),
+    (["mesh", "-o", "a.vtu"], "bad-argument", "--shape"),
+    (["mesh", "--shape", "torus", "-o", "a.vtu"], "unknown-choice", "torus"),
+    (["mesh", "--shape", "block", "-o", "a.msh"], "unknown-format", ".vtu"),
+    (["mesh", "--shape", "block", "-o", "/proc/nothing/a.vtu"], "file-unwritable", "/proc/nothing"),
+    (["mesh", "a.stl", "-o", "a.vtu"], "bad-argument", "--size"),
+    (["mesh", "none.stl", "-o", "a.vtu", "--size", "5mm"], "file-not-found", "none.stl"),
+    (["mesh", "--shape", "block", "--size", "-5mm", "-o", "a.vtu"], "out-of-range", "--size"),
+    (["view", "{scene}"], "not-in-this-version", "ParaView"),
+]
+
+
+@pytest.mark.parametrize("arguments, kind, words", WRONG_ARGUMENTS,
+                         ids=[" ".join(a) or "nothing" for a, _, _ in WRONG_ARGUMENTS])
+def test_wrong_arguments(arguments, kind, words, scene, tmp_path):
+    (tmp_path / "junk").write_bytes(b"\x00\x01junk")
+    names = {"scene": scene(), "folder": tmp_path, "junk": tmp_path / "junk"}
+    before = sorted(tmp_path.rglob("*"))
+    result = sinew(*(a.format(**names) for a in arguments), cwd=tmp_path)
+    assert result.returncode == WRONG, result.stdout + result.stderr
+    assert result.stderr.startswith("sinew: error: ") and f"[{kind}]" in result.stderr, result.stderr
+    assert words in result.stderr
+    assert result.stdout == ""
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+@pytest.mark.parametrize("command", [[], ["run"], ["bench"], ["info"], ["mesh"], ["validate"], ["schema"]],
+                         ids=lambda c: " ".join(c) or "sinew")
+def test_help(command):
+    result = sinew(*command, "--help")
+    assert result.returncode == DONE and result.stderr == ""
+    assert "sinew" in result.stdout
+
+
+def test_version():
+    assert sinew("--version").stdout.startswith("sinew 0.")
+
+
+def test_schema_and_reference_are_those_of_the_documentation():
+    schema = sinew("schema").stdout
+    assert json.loads(schema) == json.loads((ROOT / "docs" / "scene.schema.json").read_text())
+    assert sinew("reference").stdout.startswith("# ")
+
+
+def test_mesh_and_info(tmp_path):
+    made = sinew("mesh", "--shape", "block", "--size", "10mm", "-o", tmp_path / "b.vtu")
+    assert made.returncode == DONE, made.stderr
+    plain = sinew("info", tmp_path / "b.vtu")
+    assert plain.returncode == DONE and "radius ratio" in plain.stdout
+    facts = json.loads(sinew("info", tmp_path / "b.vtu", "--json").stdout)
+    assert facts["volume_m3"] == pytest.approx(0.1 * 0.02 * 0.02)
+    assert facts["nodes"] == 11 * 3 * 3 and facts["tetrahedra"] == 10 * 2 * 2 * 6
+    assert sum(facts["radius_ratio"]["histogram"]["counts"]) == facts["tetrahedra"]
+    assert facts["defects"] == []
+    assert {"x_min", "x_max"} <= {s["name"] for s in facts["sets"]}
+
+
+def test_info_reports_defects_and_does_not_fail(tmp_path):
+    path = tmp_path / "flat.vtk"
+    path.write_text("# vtk DataFile Version 3.0\nflat\nASCII\nDATASET UNSTRUCTURED_GRID\n"
+                    "POINTS 4 double\n0 0 0 1 0 0 0 1 0 1 1 0\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n")
+    result = sinew("info", path, "--json")
+    assert result.returncode == DONE, result.stderr
+    assert [d["kind"] for d in json.loads(result.stdout)["defects"]] == ["zero-volume"]
+    assert "zero" in sinew("info", path).stdout
+
+
+def test_info_of_every_kind(scene, tmp_path):
+    path = scene()
+    assert sinew("run", path, "--out", tmp_path / "o").returncode == DONE
+    run = json.loads(sinew("info", tmp_path / "o" / "run.h5", "--json").stdout)
+    assert run["kind"] == "run" and run["frames"] == 11 and run["bodies"] == ["beam"]
+    described = json.loads(sinew("info", path, "--json").stdout)
+    assert described["kind"] == "scene" and described["bodies"][0]["mass_kg"] == pytest.approx(0.0428)
+    stl = tmp_path / "t.stl"
+    stl.write_text("solid t\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+                   "endloop\nendfacet\nendsolid t\n")
+    surface = json.loads(sinew("info", stl, "--json", "--unit", "mm").stdout)
+    assert surface["kind"] == "surface" and surface["closed"] is False and surface["triangles"] == 1
+
+
+STAGES = ["assembly", "compliance", "factorisation", "law", "correction", "total"]
+
+
+def test_bench_writes_its_figures(scene, tmp_path):
+    path = scene()
+    path.write_text(path.read_text() + CONTROL)
+    result = sinew("bench", path, "--steps", "25", "--threads", "2", "--json", tmp_path / "b.json",
+                   "--compare-eigen", "--tangent", "rotated", cwd=tmp_path)
+    assert result.returncode == DONE, result.stderr
+    figures = json.loads((tmp_path / "b.json").read_text())
+    assert figures["steps"] == 25 and figures["threads"] == 2 and figures["machine"]
+    assert list(figures["stages"]) == STAGES
+    for stage in figures["stages"].values():
+        assert 0 <= stage["median_us"] <= stage["p95_us"]
+    total = figures["stages"]["total"]["median_us"]
+    assert total > figures["stages"]["assembly"]["median_us"] > 0
+    eigen = figures["eigen_simplicial_ldlt"]
+    assert eigen["ratio"] == pytest.approx(total / eigen["median_us"])
+    assert figures["bytes_per_simulation"] > 1000
+    assert "Eigen SimplicialLDLT" in result.stdout
+    assert not (tmp_path / "out").exists(), "nothing is recorded"
+
+
+def test_validate_passes_cases_on(tmp_path):
+    (tmp_path / "run.py").write_text("import sys\nprint(sys.argv[1:])\nsys.exit(3)\n")
+    result = subprocess.run([os.path.abspath(PROGRAM), "validate", "patch", "--list"], capture_output=True, text=True,
+                            env={**os.environ, "SINEW_VALIDATION_DIR": str(tmp_path)}, check=False)
+    assert result.returncode == 3
+    assert result.stdout.strip() == "['patch', '--list']"
+    nowhere = subprocess.run([os.path.abspath(PROGRAM), "validate"], capture_output=True, text=True,
+                             env={**os.environ, "SINEW_VALIDATION_DIR": "/nowhere"}, check=False)
+    assert nowhere.returncode == WRONG and "[tool-missing]" in nowhere.stderr
+
+
+if __name__ == "__main__":
+    sys.exit(pytest.main([__file__, "-q", "-p", "no:cacheprovider", *sys.argv[1:]]))

@@ -1,0 +1,257 @@
+#include "sinew/record/run_recorder.hpp"
+
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <sstream>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "sinew/core/csv.hpp"
+#include "sinew/mesh/read.hpp"
+#include "sinew/record/run_file.hpp"
+
+#include "sim/robots.hpp"
+
+namespace sinew::record {
+namespace {
+
+namespace fs = std::filesystem;
+using sinew::testing::beam;
+using sinew::testing::pull;
+
+/// A folder of its own for every test, removed at its end.
+class RunRecorderTest : public ::testing::Test {
+ protected:
+  RunRecorderTest() {
+    std::string pattern = (fs::temp_directory_path() / "sinew_record_XXXXXX").string();
+    folder_ = mkdtemp(pattern.data());
+  }
+  ~RunRecorderTest() override {
+    fs::permissions(folder_, fs::perms::owner_all);
+    fs::remove_all(folder_);
+  }
+
+  RecordSettings settings() const {
+    RecordSettings settings;
+    settings.folder = folder_ / "run";
+    settings.scene_name = "beam";
+    settings.scene = "sinew: 1\n";
+    return settings;
+  }
+  static std::string text(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    std::ostringstream content;
+    content << stream.rdbuf();
+    return content.str();
+  }
+  static std::vector<std::string> lines(const fs::path& file) {
+    std::istringstream stream(text(file));
+    std::vector<std::string> found;
+    for (std::string line; std::getline(stream, line);) found.push_back(line);
+    return found;
+  }
+  static std::vector<std::string> cells(const std::string& line) {
+    std::vector<std::string> found;
+    std::istringstream stream(line);
+    for (std::string cell; std::getline(stream, cell, ',');) found.push_back(cell);
+    return found;
+  }
+
+  fs::path folder_;
+};
+
+template <typename Action>
+ErrorKind kind_of(const Action& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error.kind();
+  }
+  return ErrorKind::internal;
+}
+
+// Records a pulled beam; returns positions of its nodes in every frame.
+std::vector<Points> record_pull(sim::Simulation& simulation, const RecordSettings& settings,
+                                int steps) {
+  simulation.command(0, pull(0.004));
+  RunRecorder recorder(simulation, nullptr, settings);
+  std::vector<Points> seen = {simulation.fem_body(0).positions()};
+  for (int i = 0; i < steps; ++i) {
+    simulation.step();
+    recorder.after_step();
+    if (simulation.steps() % settings.every == 0) {
+      seen.push_back(simulation.fem_body(0).positions());
+    }
+  }
+  recorder.finish();
+  return seen;
+}
+
+TEST_F(RunRecorderTest, StatesReadBackBitForBit) {
+  sim::Simulation simulation(beam());
+  const auto seen = record_pull(simulation, settings(), 6);
+  const RunFile run(folder_ / "run" / "run.h5");
+  EXPECT_EQ(run.scene(), "sinew: 1\n");
+  EXPECT_EQ(run.scene_name(), "beam");
+  EXPECT_EQ(run.time_step(), simulation.model().step().time_step);
+  ASSERT_EQ(run.frames(), 7);
+  for (int i = 0; i < 7; ++i) {
+    EXPECT_EQ(run.positions("beam", i), seen[static_cast<std::size_t>(i)]) << i;
+    EXPECT_NEAR(run.times()[static_cast<std::size_t>(i)], 0.01 * i, 1e-12);
+  }
+  EXPECT_EQ(run.actuator("cable_0", "motion").back(), simulation.actuator(0).motion);
+  EXPECT_EQ(run.actuator("cable_0", "effort").back(), simulation.actuator(0).effort);
+  EXPECT_GT(run.actuator("cable_0", "effort").back(), 0.0);
+  EXPECT_EQ(Vector3(run.effector("tip").row(6)), simulation.effector_value(0));
+  const mesh::Mesh mesh = run.rest_mesh("beam");
+  const mesh::Mesh& original = simulation.fem_body(0).fem_model().mesh();
+  EXPECT_EQ(mesh.nodes, original.nodes);
+  EXPECT_EQ(mesh.tetrahedra, original.tetrahedra);
+}
+
+TEST_F(RunRecorderTest, TheTableHasUnitsAndWords) {
+  sim::Simulation simulation(beam());
+  inverse::InverseSettings steering;
+  steering.tasks = {{0, inverse::Target::fixed({0.099, 0.0, 0.004}), {1.0}}};
+  inverse::InverseController controller(simulation, steering);
+  RunRecorder recorder(simulation, &controller, settings());
+  for (int i = 0; i < 5; ++i) {
+    simulation.step();
+    recorder.after_step();
+  }
+  const auto rows = lines(folder_ / "run" / "run.csv");
+  ASSERT_EQ(rows.size(), 7u);
+  const auto names = cells(rows[0]);
+  EXPECT_EQ(names.front(), "\"time [s]\"");
+  EXPECT_EQ(names[1], "\"cable_0.tension [N]\"");
+  EXPECT_EQ(names[2], "\"cable_0.displacement [m]\"");
+  EXPECT_EQ(names[9], "\"tip.x [m]\"");
+  EXPECT_EQ(names[12], "\"tip.target_x [m]\"");
+  EXPECT_EQ(names[15], "\"tip.error [m]\"");
+  EXPECT_EQ(names.back(), "controller");
+  const auto first = cells(rows[1]), last = cells(rows.back());
+  ASSERT_EQ(first.size(), names.size());
+  ASSERT_EQ(last.size(), names.size());
+  EXPECT_EQ(first.back(), "start");
+  EXPECT_EQ(last.back(), inverse::inverse_status_name(controller.status()));
+  EXPECT_EQ(last[last.size() - 2], "solved");
+  EXPECT_EQ(std::stod(last[15]), controller.error());
+  EXPECT_EQ(std::stod(last[12]), 0.099);
+  EXPECT_EQ(std::stod(last[9]), simulation.effector_value(0).x());
+}
+
+TEST_F(RunRecorderTest, EveryOtherStepAndNoStates) {
+  RecordSettings sparse = settings();
+  sparse.every = 2;
+  sparse.states = false;
+  sim::Simulation simulation(beam());
+  record_pull(simulation, sparse, 5);
+  const RunFile run(folder_ / "run" / "run.h5");
+  ASSERT_EQ(run.frames(), 3);
+  EXPECT_DOUBLE_EQ(run.times()[2], 0.04);
+  EXPECT_FALSE(run.has_states());
+  EXPECT_EQ(kind_of([&] { run.positions("beam", 0); }), ErrorKind::missing_key);
+  sparse.every = 0;
+  EXPECT_EQ(kind_of([&] { RunRecorder(simulation, nullptr, sparse); }), ErrorKind::out_of_range);
+}
+
+TEST_F(RunRecorderTest, DynamicsRecordVelocities) {
+  sinew::testing::BeamOptions options;
+  options.step.integrator = mechanics::Integrator::backward_euler;
+  options.gravity = {0.0, 0.0, -9.81};
+  sim::Simulation simulation(beam(options));
+  record_pull(simulation, settings(), 2);
+  EXPECT_NE(text(folder_ / "run" / "run.h5").find("velocities"), std::string::npos);
+}
+
+TEST_F(RunRecorderTest, ASeriesForParaviewReplacesAnOlderOne) {
+  sim::Simulation simulation(beam());
+  RecordSettings with_series = settings();
+  with_series.vtk = true;
+  const auto seen = record_pull(simulation, with_series, 3);
+  const fs::path run = folder_ / "run";
+  EXPECT_TRUE(fs::exists(run / "run.pvd"));
+  const mesh::Mesh last = mesh::read_mesh_unchecked(run / "run" / "run_000003.vtu");
+  EXPECT_LT((last.nodes - seen.back()).cwiseAbs().maxCoeff(), 1e-15);
+  simulation.reset();
+  record_pull(simulation, settings(), 1);  // without a series
+  EXPECT_FALSE(fs::exists(run / "run.pvd"));
+  EXPECT_FALSE(fs::exists(run / "run"));
+}
+
+TEST_F(RunRecorderTest, WhatCannotBeWrittenReplacesNothing) {
+  sim::Simulation simulation(beam());
+  record_pull(simulation, settings(), 2);
+  const fs::path run = folder_ / "run";
+  const std::string table = text(run / "run.csv");
+  fs::remove(run / "scene.yaml");
+  fs::create_directory(run / "scene.yaml");  // in the way
+  EXPECT_EQ(kind_of([&] { RunRecorder(simulation, nullptr, settings()); }),
+            ErrorKind::file_unwritable);
+  EXPECT_EQ(text(run / "run.csv"), table);
+  EXPECT_EQ(RunFile(run / "run.h5").frames(), 3);
+  std::ofstream(folder_ / "file") << "x";
+  RecordSettings wrong = settings();
+  wrong.folder = folder_ / "file";
+  EXPECT_EQ(kind_of([&] { RunRecorder(simulation, nullptr, wrong); }), ErrorKind::file_unwritable);
+}
+
+TEST_F(RunRecorderTest, AKilledRunIsReadable) {
+  const pid_t child = fork();
+  if (child == 0) {
+    sim::Simulation simulation(beam());
+    RunRecorder recorder(simulation, nullptr, settings());
+    for (int i = 0; i < 40; ++i) {
+      simulation.step();
+      recorder.after_step();
+      if (i == 29) recorder.finish();
+    }
+    kill(getpid(), SIGKILL);  // nothing is closed
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFSIGNALED(status));
+  EXPECT_EQ(lines(folder_ / "run" / "run.csv").size(), 42u) << "heading, start, 40 steps";
+  const RunFile run(folder_ / "run" / "run.h5");
+  ASSERT_GE(run.frames(), 31);
+  EXPECT_NEAR(run.times()[30], 0.3, 1e-12);
+  EXPECT_EQ(run.positions("beam", 30).rows(), run.rest_mesh("beam").nodes.rows());
+}
+
+TEST_F(RunRecorderTest, OtherFilesAreRefused) {
+  EXPECT_EQ(kind_of([&] { RunFile(folder_ / "none.h5"); }), ErrorKind::file_not_found);
+  std::ofstream(folder_ / "text.h5") << "no HDF5";
+  EXPECT_EQ(kind_of([&] { RunFile(folder_ / "text.h5"); }), ErrorKind::unknown_format);
+  EXPECT_FALSE(RunFile::is_hdf5(folder_ / "text.h5"));
+  sim::Simulation simulation(beam());
+  record_pull(simulation, settings(), 2);
+  EXPECT_TRUE(RunFile::is_hdf5(folder_ / "run" / "run.h5"));
+  const RunFile run(folder_ / "run" / "run.h5");
+  EXPECT_EQ(kind_of([&] { run.positions("beem", 0); }), ErrorKind::unknown_name);
+  EXPECT_EQ(kind_of([&] { run.positions("beam", 3); }), ErrorKind::out_of_range);
+  EXPECT_EQ(kind_of([&] { run.positions("beam", -1); }), ErrorKind::out_of_range);
+}
+
+TEST_F(RunRecorderTest, TruncatedFilesAreRefused) {
+  sim::Simulation simulation(beam());
+  record_pull(simulation, settings(), 2);
+  const std::string whole = text(folder_ / "run" / "run.h5");
+  const fs::path cut = folder_ / "cut.h5";
+  std::mt19937 random(7);
+  for (int i = 0; i < 40; ++i) {
+    std::ofstream(cut, std::ios::binary) << whole.substr(0, random() % whole.size());
+    const ErrorKind kind = kind_of([&] { RunFile(cut).positions("beam", 0); });
+    EXPECT_TRUE(kind == ErrorKind::unknown_format || kind == ErrorKind::malformed_file ||
+                kind == ErrorKind::unsupported_version)
+        << error_kind_name(kind);
+  }
+}
+
+}  // namespace
+}  // namespace sinew::record
