@@ -15,8 +15,8 @@ namespace sinew::record {
 
 namespace {
 
-constexpr std::uint64_t kChunkBytes = 4096;   // of series whose frames are small
-constexpr std::uint64_t kHeadroom = 1 << 16;  // bytes for chunks and the library's own data
+constexpr std::uint64_t kChunkBytes = 4096;  // of series whose frames are small
+constexpr std::uint64_t kHeadroom = 4096;    // bytes for the index of a series
 
 using Extent = std::vector<hsize_t>;
 
@@ -53,16 +53,19 @@ Hdf5Handle text_type(std::string_view text) {
 struct Hdf5Writer::File {
   struct Series {
     Hdf5Handle dataset;
-    Hdf5Handle frame;  // the memory space of one frame
-    Extent extent;     // (frames, shape...)
-    std::uint64_t size = 0;
+    Hdf5Handle frame;                // the memory space of one frame
+    Extent extent;                   // (frames, shape...)
+    std::uint64_t size = 0;          // numbers in a frame
+    std::uint64_t chunk_frames = 1;  // frames in a chunk
+    std::uint64_t chunk_bytes() const { return chunk_frames * size * sizeof(double); }
   };
 
   std::string path;
   Hdf5Handle file;
   Hdf5Handle links;  // makes the groups above a path
   std::vector<Series> series;
-  haddr_t reserved = 0;  // bytes from the start that the disk has given
+  haddr_t reserved = 0;       // bytes from the start that the disk has given
+  std::uint64_t pending = 0;  // bytes of chunks begun since the last flush
   bool abandoned = false;
   std::chrono::steady_clock::time_point flushed = std::chrono::steady_clock::now();
 
@@ -93,10 +96,11 @@ struct Hdf5Writer::File {
     haddr_t bytes = 0;
     return H5Fget_eoa(file.id(), &bytes) >= 0 ? bytes : 0;
   }
-  // Takes room from the disk before HDF5 needs it, so that none of its writes can fail half way.
+  // Takes room from the disk before HDF5 needs it, so that none of its writes can fail half way:
+  // for chunks that it still holds, and for growth of the index of every series.
   /// @return what went wrong, as in errno; 0 for nothing.
-  int reserve(std::uint64_t more) {
-    const haddr_t wanted = end() + more;
+  int reserve() {
+    const haddr_t wanted = end() + pending + kHeadroom * (series.size() + 16);
     if (wanted <= reserved) return 0;
     const int problem = ::posix_fallocate(descriptor(), static_cast<off_t>(reserved),
                                           static_cast<off_t>(wanted - reserved));
@@ -105,6 +109,7 @@ struct Hdf5Writer::File {
   }
   // HDF5 cuts the file to its own length when it flushes.
   void release() {
+    pending = 0;
     reserved = end();
     if (::ftruncate(descriptor(), static_cast<off_t>(reserved)) != 0) reserved = 0;
   }
@@ -221,6 +226,7 @@ int Hdf5Writer::series(const std::string& path, const std::vector<std::uint64_t>
   most[0] = H5S_UNLIMITED;
   chunk[0] =
       std::max<hsize_t>(1, kChunkBytes / std::max<std::uint64_t>(1, made.size * sizeof(double)));
+  made.chunk_frames = chunk[0];
   for (std::size_t i = 1; i < chunk.size(); ++i) chunk[i] = std::max<hsize_t>(chunk[i], 1);
   const int rank = static_cast<int>(made.extent.size());
   const Hdf5Handle space(H5Screate_simple(rank, made.extent.data(), most.data()), H5Sclose);
@@ -242,9 +248,10 @@ void Hdf5Writer::append(int series, std::span<const double> values) {
   File::Series& target = file_->series.at(static_cast<std::size_t>(series));
   if (file_->abandoned) file_->fail("series", "an earlier frame could not be written");
   file_->expect(values.size() == target.size, "series");
-  if (const int problem = file_->reserve(values.size_bytes() + kHeadroom); problem != 0) {
+  if (target.extent[0] % target.chunk_frames == 0) file_->pending += target.chunk_bytes();
+  if (const int problem = file_->reserve(); problem != 0) {
     // The frames so far still fit: room for them was taken when they were written.
-    if (file_->end() <= file_->reserved) H5Fflush(file_->file.id(), H5F_SCOPE_LOCAL);
+    H5Fflush(file_->file.id(), H5F_SCOPE_LOCAL);
     file_->fail("series", std::strerror(problem));
   }
   Extent begin(target.extent.size(), 0), count = target.extent;
@@ -262,7 +269,7 @@ void Hdf5Writer::append(int series, std::span<const double> values) {
 void Hdf5Writer::flush() {
   if (file_->abandoned) return;
   const QuietHdf5 quiet;
-  const int problem = file_->reserve(0);
+  const int problem = file_->reserve();
   if (problem != 0) file_->fail("flush", std::strerror(problem));
   file_->expect(H5Fflush(file_->file.id(), H5F_SCOPE_LOCAL) >= 0, "flush");
   file_->release();
