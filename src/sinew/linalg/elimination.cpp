@@ -1,6 +1,7 @@
 #include "sinew/linalg/elimination.hpp"
 
 #include <algorithm>
+#include <mutex>
 #include <numeric>
 #include <string>
 
@@ -41,6 +42,10 @@ std::vector<Index> metis(const NodeGraph& graph) {
   METIS_SetDefaultOptions(options.data());
   options[METIS_OPTION_SEED] = 1;
   options[METIS_OPTION_NUMBERING] = 0;
+  // METIS draws from the C library's one rand(), which it seeds first: orderings made at the same
+  // time would take each other's numbers and come out different every time.
+  static std::mutex one_at_a_time;
+  const std::scoped_lock lock(one_at_a_time);
   const int status = METIS_NodeND(&nodes, start.data(), neighbour.data(), nullptr, options.data(),
                                   order.data(), inverse.data());
   if (status != METIS_OK) fail("METIS", status);
