@@ -3,7 +3,8 @@
 # Eigen's factorisation of the same matrix; then the kernels.
 #   scripts/bench.sh [--steps-only]
 # Published meshes are used where they are: SINEW_DATA=FOLDER, else ../shared/data. Figures go to
-# build/bench/*.json. Run it on an idle machine: threads that wait for busy cores cost milliseconds.
+# build/bench/*.json, each run's own table to build/bench/*.txt. Run it on an idle machine: threads that
+# wait for busy cores cost milliseconds.
 set -eu
 cd "$(dirname "$0")/.."
 program=build/release/bin/sinew
@@ -15,11 +16,14 @@ data=${SINEW_DATA:-../shared/data}
 out=build/bench
 scenes=$("${PYTHON:-/usr/bin/python3}" benchmarks/scenes.py "$out" --data "$data")
 
+reports=""
 whole_step() {  # SCENE STEPS WARM-UP NAME OPTION...
   scene=$1; steps=$2; warm_up=$3; name=$4
   shift 4
-  "$program" bench "$scene" --steps "$steps" --warm-up "$warm_up" --json "$out/$name.json" "$@"
-  echo
+  echo "bench: $name" >&2
+  "$program" bench "$scene" --steps "$steps" --warm-up "$warm_up" --json "$out/$name.json" "$@" \
+    >"$out/$name.txt"
+  reports="$reports $out/$name.json"
 }
 
 threads=$(nproc)
@@ -35,6 +39,8 @@ for scene in $scenes; do
     *trunk) whole_step "$scene" "$steps" "$warm_up" "$name-exact" --threads 1 --tangent exact ;;
   esac
 done
+# shellcheck disable=SC2086  # one word a file: no name has blanks in it
+"${PYTHON:-/usr/bin/python3}" scripts/bench_report.py $reports
 [ "${1:-}" != --steps-only ] || exit 0
 
 for kernel in build/release/bin/*_benchmark; do
