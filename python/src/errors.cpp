@@ -23,17 +23,18 @@ py::object to_python(const Error& error) {
 }
 
 void register_errors() {
-  py::register_local_exception_translator([](std::exception_ptr pointer) {
-    try {
-      if (pointer) std::rethrow_exception(pointer);
-    } catch (const Error& error) {
-      raise(to_python(error));
-    } catch (const SimulationBusy&) {
-      raise(make("Error", "simulation-busy", {.item = "simulation"},
-                 "another thread is using this simulation",
-                 "give every thread its own: sim.clone() shares the model"));
-    }
-  });
+  py::register_local_exception_translator(
+      [](std::exception_ptr pointer) {  // NOLINT(performance-unnecessary-value-param): pybind11
+        try {
+          if (pointer) std::rethrow_exception(pointer);
+        } catch (const Error& error) {
+          raise(to_python(error));
+        } catch (const SimulationBusy&) {
+          raise(make("Error", "simulation-busy", {.item = "simulation"},
+                     "another thread is using this simulation",
+                     "give every thread its own: sim.clone() shares the model"));
+        }
+      });
 }
 
 }  // namespace sinew::python

@@ -119,6 +119,7 @@ std::vector<Column> choose_columns(Session& session, const py::object& record) {
                 "give a list such as ['tip.position']");
   }
   std::vector<std::string> names;
+  names.reserve(all.size());
   for (const Column& column : all) names.push_back(column.name);
   chosen.push_back(all.front());  // time
   for (const auto& item : record) {

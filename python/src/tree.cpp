@@ -28,7 +28,7 @@ Node to_map(const py::handle& value, const std::string& path, int depth) {
                   "name every entry by text");
     }
     const std::string key = py::str(pair[0]);
-    map.set(key, convert(pair[1], path.empty() ? key : path + "." + key, depth + 1));
+    map.set(key, convert(pair[1], path.empty() ? key : fmt::format("{}.{}", path, key), depth + 1));
   }
   return map;
 }
