@@ -33,8 +33,8 @@ struct InfoOptions {
   bool json = false;
 };
 
-// The same facts for people and for programs.
-struct Facts {
+// The same facts for people and for programs. (The JSON type's move asserts what cannot fail.)
+struct Facts {  // NOLINT(bugprone-exception-escape)
   ordered_json json;
   std::string text;
 };

@@ -58,6 +58,7 @@ int validate(const std::vector<std::string>& cases) {
   std::vector<char*> arguments;
   std::vector<std::string> words = {kInterpreter, script};
   words.insert(words.end(), cases.begin(), cases.end());
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   std::fflush(stdout);
