@@ -185,8 +185,9 @@ TEST(Simulation, FreeFallIsExactForBackwardEuler) {
   const double h = options.step.time_step;
   const double fall = -9.81 * h * h * n * (n + 1) / 2;
   const Points moved = simulation.fem_body(0).positions() - start;
-  EXPECT_NEAR(moved.col(2).maxCoeff(), fall, 1e-12);
-  EXPECT_NEAR(moved.col(2).minCoeff(), fall, 1e-12);
+  // Exact but for the rounding of 50 solves, which depends on how the library was compiled.
+  EXPECT_NEAR(moved.col(2).maxCoeff() / fall, 1.0, 1e-11);
+  EXPECT_NEAR(moved.col(2).minCoeff() / fall, 1.0, 1e-11);
   EXPECT_LT(moved.leftCols(2).cwiseAbs().maxCoeff(), 1e-12);
 }
 
