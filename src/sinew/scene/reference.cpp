@@ -49,7 +49,9 @@ class Page {
   std::string write() {
     text_ = kIntroduction;
     queue_ = {&grammar()};
-    for (std::size_t i = 0; i < queue_.size(); ++i) write_table(*queue_[i]);
+    // Writing a table puts those that it leads to at the end of the queue.
+    std::size_t next = 0;
+    while (next < queue_.size()) write_table(*queue_[next++]);
     return text_;
   }
 
