@@ -33,7 +33,9 @@ Segment segment(const Vector3& from, const Vector3& to) {
 
 Cable::Cable(std::string name, std::vector<mechanics::MaterialPoint> points,
              std::optional<Vector3> world_pull_point, const Points& placement_at_rest)
-    : Constraint(std::move(name)), points_(std::move(points)), pull_point_(std::move(world_pull_point)) {
+    : Constraint(std::move(name)),
+      points_(std::move(points)),
+      pull_point_(std::move(world_pull_point)) {
   if (point_count() < 2) {
     throw Error(ErrorKind::too_few_points, {.item = "cable '" + this->name() + "'"},
                 fmt::format("a cable needs at least two points, got {}", point_count()),
