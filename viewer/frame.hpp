@@ -1,0 +1,73 @@
+/// @file
+/// What is shown: a description once, then frames; and their bytes on the wire, as laid out in
+/// docs/view_protocol.md.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sinew/core/types.hpp"
+
+namespace sinew::viewer {
+
+/// The surface of a body, which alone is sent.
+struct Surface {
+  std::vector<NodeId> nodes;             ///< (v,) mesh node of each vertex
+  std::vector<float> rest;               ///< (3 v,) m
+  std::vector<std::uint32_t> triangles;  ///< (3 t,) vertices, outward by the right-hand rule
+};
+
+/// Everything that does not change while one robot is shown.
+struct Description {
+  std::string scene;               ///< JSON object: `scene` of the protocol
+  std::vector<Surface> surfaces;   ///< one a body
+  std::vector<std::string> fields; ///< names, in the order of BodyFrame::fields
+};
+
+struct BodyFrame {
+  std::vector<float> positions;            ///< (3 v,) m
+  std::vector<std::vector<float>> fields;  ///< (fields, v); one that nobody wants is empty
+};
+
+/// The mouse's spring.
+struct PullFrame {
+  Vector3 point = Vector3::Zero();   ///< m, on the body
+  Vector3 anchor = Vector3::Zero();  ///< m
+  double force = 0.0;                ///< N
+};
+
+/// One moment of a robot. Immutable once published.
+struct Frame {
+  std::uint64_t step = 0;
+  double time = 0.0;         ///< s
+  std::uint64_t hash = 0;    ///< of the state; 0 in a replay
+  std::uint64_t shape = 0;   ///< equal numbers: nothing but signals differs
+  std::vector<double> signals;  ///< as the description lists them, SI; NaN: no value
+  std::vector<BodyFrame> bodies;
+  std::vector<float> cables;     ///< (3 points,) m, all cables' points one after the other
+  std::vector<float> effectors;  ///< (3 effectors,) m
+  std::vector<float> targets;    ///< (3 effectors,) m; NaN where there is none
+  std::optional<PullFrame> pull;
+};
+
+/// Bytes of a surface: message kind 1. Throws Error(size-limit) beyond 2^32 bytes.
+/// @param surface,body the surface and its position among the bodies.
+/// @param generation which robot, as in the scene message.
+std::vector<std::byte> encode_surface(const Surface& surface, int body, std::uint16_t generation);
+
+/// What a connection already has or does not want.
+struct FrameChoice {
+  std::uint16_t generation = 0;
+  std::uint32_t sequence = 0;  ///< counts the frames sent to this connection
+  bool shape = true;           ///< false: positions have not changed since the last frame sent
+  int field = -1;              ///< in Description::fields; -1: none
+};
+
+/// Bytes of a frame: message kind 2.
+/// @param frame,choice what to send. @param bytes replaced; its memory is used again.
+void encode_frame(const Frame& frame, const FrameChoice& choice, std::vector<std::byte>& bytes);
+
+}  // namespace sinew::viewer
