@@ -112,6 +112,7 @@ void FemBody::linearise(const mechanics::LinearisationRequest& request) {
     const auto matrix = active_->assembly.matrix();
     for (std::size_t i = 0; i < matrix.size(); ++i) matrix[i] += rate * active_->start_stiffness[i];
   }
+  if (tether_) stiffen_by_tether();
   form_right_side(request);
   first_linearisation_ = false;
 }
@@ -131,6 +132,7 @@ void FemBody::form_right_side(const mechanics::LinearisationRequest& request) {
     outside += p.squaredNorm();
   }
   force_scale_ = least_force_ + std::sqrt(internal) + std::sqrt(outside);
+  if (tether_) pull_by_tether();
   if (imbalance_share_ != 0.0) right_ -= imbalance_share_ * imbalance_;
   const auto& weights = request.weights;
   if (!weights.dynamic()) return;
@@ -173,6 +175,20 @@ void FemBody::add_curvature(const mechanics::RowCurvature& curvature, double eff
   }
 }
 
+// A += stiffness w_a w_b I at the blocks of its nodes.
+void FemBody::stiffen_by_tether() {
+  const auto free = model_.elements().free_index();
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (std::size_t b = 0; b <= a; ++b) {
+      const double weight = tether_->weights[a] * tether_->weights[b];
+      const auto i = free[static_cast<std::size_t>(tether_->nodes[a])];
+      const auto j = free[static_cast<std::size_t>(tether_->nodes[b])];
+      if (weight == 0.0 || i < 0 || j < 0) continue;
+      active_->assembly.add_block(i, j, tether_->stiffness * weight * Matrix3::Identity());
+    }
+  }
+}
+
 void FemBody::take_rows(const mechanics::RowValues& rows) {
   std::ranges::fill(active_->border, 0.0);
   for (const auto& s : active_->system.scatter) {
@@ -195,6 +211,19 @@ double FemBody::residual(std::span<const double> effort) {
     }
   }
   return scratch_.norm();
+}
+
+void FemBody::add_row_forces(std::span<const double> effort, Points& forces) const {
+  const auto& border = active_->system.border;
+  for (std::size_t k = 0; k < model_.rows().size(); ++k) {
+    const double lambda = effort[static_cast<std::size_t>(model_.rows()[k])];
+    for (auto e = border.row_start[k]; e < border.row_start[k + 1]; ++e) {
+      const Eigen::Map<const Vector3> value(active_->border.data() +
+                                            3 * static_cast<std::size_t>(e));
+      const auto free = static_cast<std::size_t>(border.node[static_cast<std::size_t>(e)]);
+      forces.row(model_.elements().free_nodes()[free]) += lambda * value.transpose();
+    }
+  }
 }
 
 void FemBody::hold_imbalance(std::span<const double> effort) {

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "sinew/fem/assembly.hpp"
 #include "sinew/fem/fem_body_model.hpp"
+#include "sinew/fem/tether.hpp"
 
 namespace sinew::fem {
 
@@ -55,11 +57,25 @@ class FemBody : public mechanics::Body {
   Points& external_forces() { return external_forces_; }
   const Points& external_forces() const { return external_forces_; }
 
+  /// From the next step on; none lets go. An input as external forces are: not part of the state.
+  /// @param tether see there. Throws Error: index-out-of-range (node), out-of-range (weights,
+  /// stiffness), not-finite, bad-argument when the nodes are no face of an element.
+  void set_tether(const std::optional<Tether>& tether);
+  const std::optional<Tether>& tether() const { return tether_; }
+  /// Where the tether holds the body now, (3,) m. Only while there is one.
+  Vector3 tether_point() const;
+
+  /// Adds the force that rows put on each free node, as of the last linearisation.
+  /// @param effort (rows,) N of the world's rows. @param forces (n, 3) N, added to.
+  void add_row_forces(std::span<const double> effort, Points& forces) const;
+
  private:
   struct Numbers;  // assembly and factorisation of one FemSystem
 
   Numbers& numbers(bool with_curvature);
   void form_right_side(const mechanics::LinearisationRequest& request);
+  void stiffen_by_tether();
+  void pull_by_tether();
   Vector3 weighted(const Points& field, int point) const;
 
   const FemBodyModel& model_;
@@ -73,6 +89,7 @@ class FemBody : public mechanics::Body {
   VectorX gravity_force_, right_, motion_, base_, travel_, momentum_, scratch_, imbalance_;
   std::vector<double> row_effort_;
   double imbalance_share_ = 0.0;
+  std::optional<Tether> tether_;
   double blow_up_ = 0.0;  // sum of squared positions, m^2, beyond which the state is taken as lost
   bool first_linearisation_ = true;
   double force_scale_ = 0.0;

@@ -1,0 +1,161 @@
+#include "sinew/fem/nodal_fields.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/fem/element_batches.hpp"
+#include "sinew/material/response.hpp"
+
+namespace sinew::fem {
+
+namespace {
+
+using material::kLanes;
+using material::Lanes;
+using material::lanes;
+using material::Lanes3x3;
+using material::Law;
+
+// F = I + sum (u_a - u_0) g_a^T, from displacements, so that a small strain keeps its digits.
+Lanes3x3 gradient(const BatchConstants& batch, const std::int32_t* nodes, const Points& positions,
+                  const Points& rest) {
+  Lanes3x3 f{};
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const Vector3 origin = (positions.row(nodes[lane]) - rest.row(nodes[lane])).transpose();
+    for (int a = 1; a < 4; ++a) {
+      const auto node = nodes[kLanes * a + lane];
+      const Vector3 u = (positions.row(node) - rest.row(node)).transpose() - origin;
+      for (int r = 0; r < 3; ++r) {
+        for (int c = 0; c < 3; ++c) f[r][c][lane] += u[r] * batch.gradient[a - 1][c].value[lane];
+      }
+    }
+  }
+  for (int r = 0; r < 3; ++r) f[r][r] += 1.0;
+  return f;
+}
+
+// |dev m|^2 of the symmetric part.
+SINEW_INLINE Lanes deviator_square(const Lanes3x3& m) {
+  const Lanes mean = (m[0][0] + m[1][1] + m[2][2]) / 3.0;
+  Lanes square = lanes(0.0);
+  for (int r = 0; r < 3; ++r) {
+    const Lanes d = m[r][r] - mean;
+    square += d * d;
+    for (int c = 0; c < r; ++c) {
+      const Lanes s = 0.5 * (m[r][c] + m[c][r]);
+      square += 2.0 * s * s;
+    }
+  }
+  return square;
+}
+
+// R^T F - I.
+SINEW_INLINE Lanes3x3 biot_strain(const Lanes3x3& f, const Lanes3x3& rotation) {
+  Lanes3x3 e;
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) {
+      e[r][c] = rotation[0][r] * f[0][c] + rotation[1][r] * f[1][c] + rotation[2][r] * f[2][c] -
+                (r == c ? 1.0 : 0.0);
+    }
+  }
+  return e;
+}
+
+SINEW_INLINE Lanes3x3 cauchy_stress(const Lanes3x3& f, const material::Response& response) {
+  Lanes3x3 s;
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) {
+      s[r][c] = (response.stress[r][0] * f[c][0] + response.stress[r][1] * f[c][1] +
+                 response.stress[r][2] * f[c][2]) /
+                response.determinant;
+    }
+  }
+  return s;
+}
+
+template <Law law>
+Lanes von_mises_stress(const Lanes3x3& f, const material::LaneModuli& moduli) {
+  const material::Response response = material::respond<law>(f, moduli);
+  const Lanes3x3 s = law == Law::linear ? response.stress : cauchy_stress(f, response);
+  return material::square_root(1.5 * deviator_square(s));
+}
+
+template <Law law>
+Lanes equivalent_strain(const Lanes3x3& f, const material::LaneModuli& moduli) {
+  const material::Response response = material::respond<law>(f, moduli);
+  return material::square_root(2.0 / 3.0 * deviator_square(biot_strain(f, response.rotation)));
+}
+
+}  // namespace
+
+NodalFields::NodalFields(const FemBodyModel& model)
+    : model_(model),
+      shares_(static_cast<std::size_t>(model.mesh().nodes.rows()), 0.0),
+      forces_(Points::Zero(model.mesh().nodes.rows(), 3)) {
+  const ElementBatches& elements = model.elements().elements();
+  for (std::size_t slot = 0; slot < elements.tetrahedron.size(); ++slot) {
+    const std::size_t batch = slot / kLanes, lane = slot % kLanes;
+    for (std::size_t a = 0; a < 4; ++a) {
+      const auto node = elements.nodes[(4 * batch + a) * kLanes + lane];
+      shares_[static_cast<std::size_t>(node)] += elements.constants[batch].volume.value[lane];
+    }
+  }
+}
+
+void NodalFields::displacement(const FemBody& body, std::span<double> values) const {
+  const Points& rest = model_.mesh().nodes;
+  for (Eigen::Index i = 0; i < rest.rows(); ++i) {
+    values[static_cast<std::size_t>(i)] = (body.positions().row(i) - rest.row(i)).norm();
+  }
+}
+
+template <NodalFields::Measure measure>
+void NodalFields::evaluate(const FemBody& body, std::span<double> values) {
+  std::ranges::fill(values, 0.0);
+  const ElementBatches& elements = model_.elements().elements();
+  for (int b = 0; b < elements.batches(); ++b) {
+    const BatchConstants& batch = elements.constants[static_cast<std::size_t>(b)];
+    const std::int32_t* nodes = elements.nodes.data() + std::ptrdiff_t{4} * kLanes * b;
+    const Lanes3x3 f = gradient(batch, nodes, body.positions(), model_.mesh().nodes);
+    const material::LaneModuli moduli{material::load(batch.mu.value),
+                                      material::load(batch.lambda.value)};
+    const bool linear = b < elements.linear_batches;
+    Lanes value;
+    if constexpr (measure == Measure::strain) {
+      value = linear ? equivalent_strain<Law::linear>(f, moduli)
+                     : equivalent_strain<Law::corotational>(f, moduli);
+    } else {
+      value = linear ? von_mises_stress<Law::linear>(f, moduli)
+                     : von_mises_stress<Law::corotational>(f, moduli);
+    }
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const double volume = batch.volume.value[lane];
+      if (volume == 0.0) continue;  // fills up the batch
+      for (int a = 0; a < 4; ++a) {
+        values[static_cast<std::size_t>(nodes[kLanes * a + lane])] += volume * value[lane];
+      }
+    }
+  }
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (shares_[i] > 0.0) values[i] /= shares_[i];
+  }
+}
+
+void NodalFields::strain(const FemBody& body, std::span<double> values) {
+  evaluate<Measure::strain>(body, values);
+}
+
+void NodalFields::stress(const FemBody& body, std::span<double> values) {
+  evaluate<Measure::stress>(body, values);
+}
+
+void NodalFields::row_force(const FemBody& body, std::span<const double> effort,
+                            std::span<double> values) {
+  forces_.setZero();
+  body.add_row_forces(effort, forces_);
+  for (Eigen::Index i = 0; i < forces_.rows(); ++i) {
+    values[static_cast<std::size_t>(i)] = forces_.row(i).norm();
+  }
+}
+
+}  // namespace sinew::fem

@@ -1,0 +1,187 @@
+// A hand's spring on a robot, and what is seen on a deformed one.
+#include "sinew/fem/tether.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include "sinew/fem/nodal_fields.hpp"
+
+#include "robots.hpp"
+
+namespace sinew {
+namespace {
+
+// The three nodes of the first tetrahedron's face that lies at the beam's free end.
+fem::Tether end_tether(const mesh::Mesh& mesh, double stiffness, const Vector3& anchor) {
+  const double end = mesh.nodes.col(0).maxCoeff();
+  for (const auto& tetrahedron : mesh.tetrahedra) {
+    std::vector<NodeId> face;
+    for (const NodeId node : tetrahedron) {
+      if (mesh.nodes(node, 0) > end - 1e-9) face.push_back(node);
+    }
+    if (face.size() == 3) {
+      return {{face[0], face[1], face[2]}, {0.5, 0.3, 0.2}, anchor, stiffness};
+    }
+  }
+  ADD_FAILURE() << "no face at the end";
+  return {};
+}
+
+TEST(Tether, HoldsTheBodyAsTheSameForceWould) {
+  const auto model = testing::beam();
+  sim::Simulation held(model), pushed(model);
+  const auto tether = end_tether(held.fem_body(0).fem_model().mesh(), 30.0, {0.09, 0.01, 0.05});
+  held.fem_body(0).set_tether(tether);
+  held.solve_static();
+  const Vector3 force = tether.stiffness * (tether.anchor - held.fem_body(0).tether_point());
+  EXPECT_GT(force.norm(), 0.05);
+  for (std::size_t k = 0; k < 3; ++k) {
+    pushed.fem_body(0).external_forces().row(tether.nodes[k]) =
+        tether.weights[k] * force.transpose();
+  }
+  pushed.solve_static();
+  const double difference =
+      (held.fem_body(0).positions() - pushed.fem_body(0).positions()).cwiseAbs().maxCoeff();
+  EXPECT_LT(difference, 1e-9);
+}
+
+// Explicitly applied, a spring stiffer than the robot would throw it about ever farther.
+TEST(Tether, MayBeFarStifferThanTheRobot) {
+  sim::Simulation simulation(testing::beam());
+  fem::FemBody& body = simulation.fem_body(0);
+  const Vector3 anchor(0.095, 0.0, 0.03);
+  body.set_tether(end_tether(body.fem_model().mesh(), 1e6, anchor));
+  simulation.step();
+  EXPECT_LT((body.tether_point() - anchor).norm(), 1e-5);
+  for (int k = 0; k < 100; ++k) simulation.step();
+  EXPECT_LT((body.tether_point() - anchor).norm(), 1e-5);
+  EXPECT_LT(simulation.report().relative_residual, 1e-6);
+}
+
+TEST(Tether, LetsGoWithoutATrace) {
+  sim::Simulation simulation(testing::beam());
+  fem::FemBody& body = simulation.fem_body(0);
+  const auto at_rest = simulation.state_hash();
+  body.set_tether(end_tether(body.fem_model().mesh(), 100.0, {0.1, 0.0, 0.05}));
+  for (int k = 0; k < 20; ++k) simulation.step();
+  EXPECT_GT((body.positions() - body.fem_model().mesh().nodes).cwiseAbs().maxCoeff(), 1e-3);
+  body.set_tether(std::nullopt);
+  for (int k = 0; k < 60; ++k) simulation.step();
+  EXPECT_LT((body.positions() - body.fem_model().mesh().nodes).cwiseAbs().maxCoeff(), 1e-12);
+  simulation.reset();
+  EXPECT_EQ(simulation.state_hash(), at_rest);
+}
+
+TEST(Tether, RefusesWhatIsNoFace) {
+  sim::Simulation simulation(testing::beam());
+  fem::FemBody& body = simulation.fem_body(0);
+  const auto good = end_tether(body.fem_model().mesh(), 1.0, Vector3::Zero());
+  const auto expect = [&](auto&& change, ErrorKind kind) {
+    fem::Tether tether = good;
+    change(tether);
+    try {
+      body.set_tether(tether);
+      ADD_FAILURE() << "accepted; expected " << error_kind_name(kind);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), kind) << error.what();
+    }
+    EXPECT_FALSE(body.tether().has_value());
+  };
+  expect([](fem::Tether& t) { t.nodes[1] = -1; }, ErrorKind::index_out_of_range);
+  expect([](fem::Tether& t) { t.nodes[1] = 1 << 20; }, ErrorKind::index_out_of_range);
+  expect([](fem::Tether& t) { t.nodes[1] = t.nodes[0]; }, ErrorKind::bad_argument);
+  expect([](fem::Tether& t) { t.weights[0] = 0.7; }, ErrorKind::out_of_range);
+  expect([](fem::Tether& t) { t.stiffness = -1.0; }, ErrorKind::out_of_range);
+  expect([](fem::Tether& t) { t.anchor[2] = std::numeric_limits<double>::quiet_NaN(); },
+         ErrorKind::not_finite);
+}
+
+// One deformation gradient everywhere, set by hand, so that every node has the same strain.
+void deform(fem::FemBody& body, const Matrix3& gradient) {
+  std::vector<double> state(body.state_size());
+  body.save_state(state);
+  const Points& rest = body.fem_model().mesh().nodes;
+  for (Eigen::Index i = 0; i < rest.rows(); ++i) {
+    const Vector3 x = gradient * rest.row(i).transpose();
+    for (Eigen::Index c = 0; c < 3; ++c) state[static_cast<std::size_t>(3 * i + c)] = x[c];
+  }
+  body.load_state(state);
+}
+
+struct Fields {
+  std::vector<double> strain, stress;
+};
+
+Fields fields_under(const Matrix3& gradient, material::Law law) {
+  testing::BeamOptions options;
+  options.law = law;
+  sim::Simulation simulation(testing::beam(options));
+  fem::FemBody& body = simulation.fem_body(0);
+  deform(body, gradient);
+  fem::NodalFields fields(body.fem_model());
+  const auto nodes = static_cast<std::size_t>(body.positions().rows());
+  Fields result{std::vector<double>(nodes), std::vector<double>(nodes)};
+  fields.strain(body, result.strain);
+  fields.stress(body, result.stress);
+  return result;
+}
+
+void expect_everywhere(const std::vector<double>& values, double expected) {
+  for (const double value : values) {
+    ASSERT_NEAR(value, expected, 1e-9 * std::max(1.0, std::abs(expected)));
+  }
+}
+
+constexpr double kYoung = 200e3, kPoisson = 0.4;  // of the beam
+constexpr double kShear = kYoung / (2.0 * (1.0 + kPoisson));
+
+// Stretches s along the axes after any rotation: dev e from the stretches, Cauchy stress
+// (2 mu (s_i - 1) + lambda sum (s - 1)) s_i / (s_1 s_2 s_3).
+TEST(NodalFields, ArePrincipalStretchesWhateverTheRotation) {
+  const Vector3 s(1.2, 0.95, 0.9);
+  const Matrix3 rotation =
+      Eigen::AngleAxis<double>(1.1, Vector3(0.3, -0.5, 0.8).normalized()).toRotationMatrix();
+  const Fields fields = fields_under(rotation * s.asDiagonal(), material::Law::corotational);
+  const double lambda = kYoung * kPoisson / ((1.0 + kPoisson) * (1.0 - 2.0 * kPoisson));
+  const Vector3 e = s.array() - 1.0;
+  const auto deviator = [](const Vector3& v) -> Vector3 { return v.array() - v.mean(); };
+  const Vector3 cauchy = (2.0 * kShear * e.array() + lambda * e.sum()) * s.array() / s.prod();
+  expect_everywhere(fields.strain, std::sqrt(2.0 / 3.0) * deviator(e).norm());
+  expect_everywhere(fields.stress, std::sqrt(1.5) * deviator(cauchy).norm());
+}
+
+TEST(NodalFields, OfTheLinearLawInSimpleShear) {
+  Matrix3 gradient = Matrix3::Identity();
+  const double shear = 0.02;
+  gradient(0, 1) = shear;
+  const Fields fields = fields_under(gradient, material::Law::linear);
+  expect_everywhere(fields.strain, shear / std::sqrt(3.0));
+  expect_everywhere(fields.stress, std::sqrt(3.0) * kShear * shear);
+}
+
+TEST(NodalFields, CableForceIsWhatTheCablePutsOnTheBody) {
+  sim::Simulation simulation(testing::beam());
+  simulation.command(0, testing::tension(2.0));
+  simulation.step();
+  fem::NodalFields fields(simulation.fem_body(0).fem_model());
+  const auto nodes = static_cast<std::size_t>(simulation.fem_body(0).positions().rows());
+  std::vector<double> force(nodes), moved(nodes);
+  fields.row_force(simulation.fem_body(0), simulation.efforts(), force);
+  Points sum = Points::Zero(static_cast<Eigen::Index>(nodes), 3);
+  simulation.fem_body(0).add_row_forces(simulation.efforts(), sum);
+  // A straight cable along x, from the clamp to its anchor near the tip, pulls towards the clamp.
+  const Vector3 total = sum.colwise().sum();
+  EXPECT_NEAR(total.x(), -2.0, 0.05);
+  EXPECT_NEAR(total.y(), 0.0, 1e-9);
+  EXPECT_GT(*std::ranges::max_element(force), 0.1);
+  fields.displacement(simulation.fem_body(0), moved);
+  EXPECT_GT(*std::ranges::max_element(moved), 1e-4);
+}
+
+}  // namespace
+}  // namespace sinew
