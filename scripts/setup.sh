@@ -9,12 +9,18 @@ set -eu
 minimal="build-essential cmake ninja-build pkg-config
   libeigen3-dev libmetis-dev libsuitesparse-dev libtbb-dev libhdf5-dev libyaml-cpp-dev
   libpugixml-dev libassimp-dev libcli11-dev libfmt-dev nlohmann-json3-dev zlib1g-dev
+  libboost-dev
   python3 python3-dev python3-numpy python3-pip python3-venv python3-setuptools python3-wheel
   pybind11-dev"
 further="git libgtest-dev libgmock-dev libbenchmark-dev
   python3-scipy python3-matplotlib python3-meshio python3-h5py python3-tqdm python3-yaml
   python3-pytest python3-cvxopt python3-jsonschema
-  gmsh doxygen graphviz clang clang-format clang-tidy libclang-rt-dev"
+  gmsh doxygen graphviz clang clang-format clang-tidy libclang-rt-dev chromium"
+
+# The view's page is bundled by Node.js. One that did not come from Debian (and brings its own npm,
+# with which Debian's npm cannot be installed) is as good.
+command -v node >/dev/null || minimal="$minimal nodejs"
+command -v npm >/dev/null || minimal="$minimal npm"
 
 packages="$minimal $further"
 list_only=no
