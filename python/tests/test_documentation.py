@@ -6,10 +6,14 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
+
+import sinew
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = sorted((ROOT / "examples" / "python").glob("*.py"))
+SCENES = sorted((ROOT / "examples").rglob("*.yaml"))
 
 
 def test_the_guide(tmp_path, monkeypatch, capsys):
@@ -35,3 +39,15 @@ def test_examples(example, tmp_path):
     )
     assert result.returncode == 0, result.stderr
     assert len(result.stdout.splitlines()) >= 3
+
+
+@pytest.mark.parametrize("scene", SCENES, ids=lambda scene: str(scene.relative_to(ROOT)))
+def test_example_scenes(scene):
+    sim = sinew.load(scene)
+    start = {name: body.positions.copy() for name, body in sim.bodies.items()}
+    sim.step(round(1.0 / sim.time_step))
+    for name, body in sim.bodies.items():
+        moved = np.abs(body.positions - start[name]).max()
+        assert 1e-4 < moved < 0.5, f"{name} moved by {moved} m in a second"
+    if sim.controller is not None:
+        assert sim.controller.error < 1e-3
