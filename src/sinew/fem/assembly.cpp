@@ -40,8 +40,14 @@ std::size_t bytes_of(const auto& vector) { return vector.capacity() * sizeof(vec
 
 }  // namespace
 
+// Records are written and gathered within one evaluate(): they may stand in memory that is
+// somebody else's between two calls.
 struct Assembly::Workspace {
-  linalg::AlignedBuffer force_records, rotated_records, exact_records;
+  double* force_records = nullptr;
+  double* rotated_records = nullptr;
+  double* exact_records = nullptr;  // in the place of rotated_records where that is lent
+  std::span<double> lent;           // behind force_records
+  linalg::AlignedBuffer own_records, own_exact_records;
   linalg::AlignedBuffer points;  // (n, 4) m
   linalg::AlignedBuffer matrix;
   std::vector<double> forces;
@@ -53,15 +59,22 @@ struct Assembly::Workspace {
 
   double* records(Tangent tangent) {
     if (tangent == Tangent::none) return nullptr;
-    return (tangent == Tangent::exact ? exact_records : rotated_records).data();
+    return tangent == Tangent::exact ? exact_records : rotated_records;
   }
 };
 
-Assembly::Assembly(std::shared_ptr<const FemModel> model, ThreadPool& pool)
+Assembly::Assembly(std::shared_ptr<const FemModel> model, ThreadPool& pool, std::span<double> lent)
     : model_(std::move(model)), pool_(&pool), work_(std::make_unique<Workspace>()) {
   const auto batches = static_cast<std::size_t>(model_->elements().batches());
-  work_->force_records = linalg::AlignedBuffer(kLanes * kForceRecord * batches);
-  work_->rotated_records = linalg::AlignedBuffer(kLanes * kRotatedRecord * batches);
+  const std::size_t forces = kLanes * kForceRecord * batches;
+  const std::size_t rotated = kLanes * kRotatedRecord * batches;
+  if (lent.size() < forces + rotated) {
+    work_->own_records = linalg::AlignedBuffer(forces + rotated);
+    lent = {work_->own_records.data(), forces + rotated};
+  }
+  work_->force_records = lent.data();
+  work_->rotated_records = lent.data() + forces;
+  work_->lent = lent.subspan(forces);
   work_->points = linalg::AlignedBuffer(4 * static_cast<std::size_t>(model_->mesh().node_count()));
   work_->forces.resize(3 * static_cast<std::size_t>(model_->free_count()));
   work_->matrix = linalg::AlignedBuffer(linalg::kBlockStride *
@@ -75,9 +88,12 @@ Assembly::~Assembly() = default;
 Assembly::Assembly(Assembly&&) noexcept = default;
 
 void Assembly::reserve(Tangent tangent) {
-  if (tangent != Tangent::exact || work_->exact_records.size() > 0) return;
-  work_->exact_records = linalg::AlignedBuffer(
-      kLanes * kExactRecord * static_cast<std::size_t>(model_->elements().batches()));
+  if (tangent != Tangent::exact || work_->exact_records != nullptr) return;
+  const std::size_t size =
+      kLanes * kExactRecord * static_cast<std::size_t>(model_->elements().batches());
+  if (work_->lent.size() < size) work_->own_exact_records = linalg::AlignedBuffer(size);
+  const bool lent = work_->own_exact_records.size() == 0;
+  work_->exact_records = lent ? work_->lent.data() : work_->own_exact_records.data();
 }
 
 void Assembly::evaluate(const Points& positions, const AssemblyWeights& weights) {
@@ -110,8 +126,7 @@ void Assembly::evaluate_elements(const Points& positions, Tangent tangent) {
   const SmallestRatio none{std::numeric_limits<double>::infinity(), -1};
   std::ranges::fill(work.thread_ratios, none);
   const ElementBatches& elements = model_->elements();
-  const ElementOutput output{work.force_records.data(), work.records(tangent),
-                             work.batch_energy.data()};
+  const ElementOutput output{work.force_records, work.records(tangent), work.batch_energy.data()};
   pool_->for_range(elements.batches(), 1, [&](int begin, int end, int thread) {
     work.thread_ratios[static_cast<std::size_t>(thread)] =
         evaluate_batches(elements, begin, end, work.points.data(), tangent, output);
@@ -149,7 +164,7 @@ void Assembly::gather(const AssemblyWeights& weights) {
   pool_->run([&](int thread) {
     const int begin = work.column_splits[static_cast<std::size_t>(thread)];
     const int end = work.column_splits[static_cast<std::size_t>(thread) + 1];
-    gather_forces(model.gather(), begin, end, work.force_records.data(), work.forces.data());
+    gather_forces(model.gather(), begin, end, work.force_records, work.forces.data());
     gather_blocks(model.gather(), model.pattern(), begin, end, records, weights,
                   consistent ? nullptr : model.free_mass().data(),
                   consistent ? model.mass_blocks().data() : nullptr, work.matrix.data());
@@ -185,10 +200,10 @@ int Assembly::worst_element() const {
 
 std::size_t Assembly::bytes() const {
   const Workspace& work = *work_;
-  return sizeof(Assembly) + sizeof(Workspace) + work.force_records.bytes() +
-         work.rotated_records.bytes() + work.exact_records.bytes() + work.points.bytes() +
-         bytes_of(work.forces) + work.matrix.bytes() + bytes_of(work.batch_energy) +
-         bytes_of(work.thread_ratios) + bytes_of(work.column_splits);
+  return sizeof(Assembly) + sizeof(Workspace) + work.own_records.bytes() +
+         work.own_exact_records.bytes() + work.points.bytes() + bytes_of(work.forces) +
+         work.matrix.bytes() + bytes_of(work.batch_energy) + bytes_of(work.thread_ratios) +
+         bytes_of(work.column_splits);
 }
 
 }  // namespace sinew::fem

@@ -36,12 +36,14 @@ struct VolumeMeasure {
 
 /// Data of one simulation. Results are the same bit for bit for any number of threads. Nothing
 /// allocates after construction, save that the first exact tangent takes its workspace (384 bytes
-/// an element, which simulations that never ask for it do without) unless `reserve` has.
+/// an element, where none was lent) unless `reserve` has.
 class Assembly {
  public:
   /// @param model what is assembled.
   /// @param pool runs the loops; must outlive this object.
-  Assembly(std::shared_ptr<const FemModel> model, ThreadPool& pool);
+  /// @param lent memory on cache-line bounds for what is of no use after evaluate() (the elements'
+  ///   parts); must outlive this object. Where it is too small, the object takes its own.
+  Assembly(std::shared_ptr<const FemModel> model, ThreadPool& pool, std::span<double> lent = {});
   ~Assembly();
   Assembly(Assembly&&) noexcept;
 

@@ -22,13 +22,13 @@ std::span<double> span_of(VectorX& v) { return {v.data(), static_cast<std::size_
 struct FemBody::Numbers {
   Numbers(const FemSystem& system_in, ThreadPool& pool)
       : system(system_in),
-        assembly(system.elements, pool),
         factorisation(system.plan->create(pool)),
+        assembly(system.elements, pool, factorisation->spare_memory()),
         border(3 * static_cast<std::size_t>(system.border.entries()), 0.0) {}
 
   const FemSystem& system;
-  Assembly assembly;
   std::unique_ptr<linalg::Factorisation> factorisation;
+  Assembly assembly;  // works where the factor will stand: a linearisation ends the last factor
   std::vector<double> border;
   std::vector<double> start_stiffness;  // rotated K at the start of the step, for damping
   bool damped = false;
@@ -45,8 +45,7 @@ FemBody::FemBody(const FemBodyModel& model, ThreadPool& pool, bool with_curvatur
       active_(&numbers(with_curvature)) {
   const auto nodes = model.elements().free_nodes();
   const auto size = 3 * static_cast<Eigen::Index>(nodes.size());
-  for (VectorX* v : {&right_, &motion_, &base_, &travel_, &momentum_, &scratch_, &imbalance_})
-    v->setZero(size);
+  for (VectorX* v : {&right_, &motion_, &base_, &scratch_}) v->setZero(size);
   gravity_force_.resize(size);
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     gravity_force_.segment<3>(3 * static_cast<Eigen::Index>(i)) =
@@ -136,6 +135,8 @@ void FemBody::form_right_side(const mechanics::LinearisationRequest& request) {
   if (imbalance_share_ != 0.0) right_ -= imbalance_share_ * imbalance_;
   const auto& weights = request.weights;
   if (!weights.dynamic()) return;
+  travel_.resize(right_.size());
+  momentum_.resize(right_.size());
 
   const auto& damping = model_.settings().damping;
   const double mass = weights.mass + damping.mass * weights.damping;
@@ -284,6 +285,11 @@ void FemBody::end_step(const mechanics::StepWeights& weights) {
   velocities_ = weights.rate * (positions_ - start_positions_);
 }
 
+void FemBody::restart() {
+  positions_ = model_.mesh().nodes;
+  velocities_.setZero();
+}
+
 std::size_t FemBody::state_size() const { return 2 * static_cast<std::size_t>(positions_.size()); }
 
 void FemBody::save_state(std::span<double> state) const {
@@ -326,7 +332,9 @@ double FemBody::gravity_energy() const {
 }
 
 std::size_t FemBody::bytes() const {
-  auto total = sizeof(double) * static_cast<std::size_t>(5 * positions_.size() + 7 * right_.size());
+  const Eigen::Index free = gravity_force_.size() + right_.size() + motion_.size() + base_.size() +
+                            scratch_.size() + travel_.size() + momentum_.size() + imbalance_.size();
+  auto total = sizeof(double) * static_cast<std::size_t>(5 * positions_.size() + free);
   for (const Numbers* n : {plain_.get(), curved_.get()}) {
     if (n == nullptr) continue;
     total += n->assembly.bytes() + n->factorisation->bytes() +

@@ -38,6 +38,7 @@ class FemBody : public mechanics::Body {
   mechanics::MotionReport apply_motion(double scale) override;
   void end_step(const mechanics::StepWeights& weights) override;
 
+  void restart() override;
   std::size_t state_size() const override;
   void save_state(std::span<double> state) const override;
   void load_state(std::span<const double> state) override;
@@ -85,8 +86,9 @@ class FemBody : public mechanics::Body {
   std::unique_ptr<Numbers> plain_, curved_;
   Numbers* active_ = nullptr;
 
-  // Over free nodes, (3 free,).
-  VectorX gravity_force_, right_, motion_, base_, travel_, momentum_, scratch_, imbalance_;
+  // Over free nodes, (3 free,); travel and momentum from the first step of dynamics on, the
+  // imbalance from the first time that it is held.
+  VectorX gravity_force_, right_, motion_, base_, scratch_, travel_, momentum_, imbalance_;
   std::vector<double> row_effort_;
   double imbalance_share_ = 0.0;
   std::optional<Tether> tether_;

@@ -59,6 +59,8 @@ class BlockFactorisation final : public Factorisation {
     }
   }
 
+  std::span<double> spare_memory() override { return numeric_.panels(); }
+
   int negative_pivots() const override { return numeric_.negative_pivots(); }
 
   std::size_t bytes() const override {

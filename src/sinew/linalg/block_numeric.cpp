@@ -44,9 +44,14 @@ BlockNumeric::BlockNumeric(const BlockSymbolic& symbolic, int threads)
   const Panel& border = symbolic.border_panel();
   border_sums_ = AlignedBuffer(groups * 3 * at(border.width) * at(border.leading) + kOverrun);
   const std::size_t width = at(symbolic.max_width);
+  std::size_t signed_rows = 6 * width;  // what the diagonal block and the largest update ask for
+  for (const Update& update : symbolic.updates) {
+    const int depth = 3 * symbolic.panels[at(update.descendant)].width;
+    signed_rows = std::max(signed_rows, at(depth) * at(update.columns));
+  }
   for (Scratch& scratch : scratch_) {
     scratch.product = AlignedBuffer((kRowBlock + kOverrun) * width + kOverrun);
-    scratch.signed_rows = AlignedBuffer(width * std::max<std::size_t>(width, 6) + kOverrun);
+    scratch.signed_rows = AlignedBuffer(signed_rows + kOverrun);
     scratch.values = AlignedBuffer(at(symbolic.max_leading) + kOverrun);
     scratch.column_place.resize(width / 3);
   }

@@ -51,6 +51,11 @@ class BlockNumeric {
   /// x := L^-T (x + L_border^T weights), in elimination order. weights (3 border nodes,).
   void backward(double* x, const double* weights, Scratch& scratch) const;
 
+  /// Where the panels stand; assemble() clears them before it writes.
+  std::span<double> panels() {
+    return {factor_.data(), static_cast<std::size_t>(symbolic_->doubles)};
+  }
+
   const BlockSymbolic& symbolic() const { return *symbolic_; }
   Scratch& scratch(int thread) { return scratch_[static_cast<std::size_t>(thread)]; }
   /// Entry (i, j), i >= j, of the border's panel.

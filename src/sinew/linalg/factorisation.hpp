@@ -60,6 +60,11 @@ class Factorisation {
   /// `count` right sides stand one behind the other. In place allowed.
   virtual void solve(std::span<const double> right, std::span<double> x, int count = 1) = 0;
 
+  /// Memory for the caller to work in until it calls factorise(), which takes it back: the place
+  /// where the factor will stand. Writing to it ends what solve() and solve_with_effort() know. On
+  /// cache-line bounds; empty where a backend has none to lend.
+  virtual std::span<double> spare_memory() { return {}; }
+
   /// The number of negative pivots (inertia of A) of the last factorisation.
   virtual int negative_pivots() const = 0;
   /// Bytes held by this object alone (the plan not counted).

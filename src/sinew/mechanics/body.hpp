@@ -118,7 +118,9 @@ class Body {
   virtual MotionReport apply_motion(double scale) = 0;
   virtual void end_step(const StepWeights& weights) = 0;
 
-  /// q and v as one array, for hashing, saving and resetting.
+  /// Back to rest: the model's own q, v = 0. Inputs (outside forces) stay.
+  virtual void restart() = 0;
+  /// q and v as one array, for hashing and saving.
   virtual std::size_t state_size() const = 0;
   virtual void save_state(std::span<double> state) const = 0;
   virtual void load_state(std::span<const double> state) = 0;

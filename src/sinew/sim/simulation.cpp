@@ -32,8 +32,6 @@ Simulation::Simulation(std::shared_ptr<const Model> model, int threads)
   }
   finish_step();
   state_before_.resize(state_size());
-  first_state_.resize(state_size());
-  save_state(first_state_);
 }
 
 Simulation::~Simulation() = default;
@@ -245,7 +243,7 @@ std::uint64_t Simulation::state_hash() const {
 }
 
 std::size_t Simulation::bytes() const {
-  return world_.bytes() + sizeof(double) * (effort_.size() + 2 * state_before_.size()) +
+  return world_.bytes() + sizeof(double) * (effort_.size() + state_before_.size()) +
          actuators_.size() * (sizeof(ActuatorState) + sizeof(ActuatorRange));
 }
 
@@ -287,7 +285,14 @@ void Simulation::reset() {
   for (std::size_t i = 0; i < actuators_.size(); ++i) {
     if (actuators_[i].owner == nullptr) actuators_[i].command = model_->actuators()[i].command;
   }
-  load_state(first_state_, 0);
+  world_.restart();
+  std::ranges::fill(effort_, 0.0);
+  std::ranges::fill(ranges_, ActuatorRange{});
+  volume_ratio_ = 1.0;
+  steps_ = 0;
+  finish_step();
+  direct_.reset();
+  if (law_ != nullptr) law_->reset();
   report_ = {};
 }
 

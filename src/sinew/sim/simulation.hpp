@@ -126,7 +126,7 @@ class Simulation {
   std::vector<ActuatorState> actuators_;
   std::vector<ActuatorRange> ranges_;
   std::vector<double> effort_;
-  std::vector<double> state_before_, first_state_;
+  std::vector<double> state_before_;
   std::vector<int> all_cables_;
   std::int64_t steps_ = 0;
   double volume_ratio_ = 1.0;

@@ -131,6 +131,10 @@ void World::save_state(std::span<double> state) const {
   }
 }
 
+void World::restart() {
+  for (const auto& body : bodies_) body->restart();
+}
+
 void World::load_state(std::span<const double> state) {
   std::size_t at = 0;
   for (const auto& body : bodies_) {

@@ -48,6 +48,8 @@ class World {
   mechanics::Body& body(int index) { return *bodies_[static_cast<std::size_t>(index)]; }
   const mechanics::Body& body(int index) const { return *bodies_[static_cast<std::size_t>(index)]; }
 
+  /// Every body at rest, as after construction.
+  void restart();
   std::size_t state_size() const;
   void save_state(std::span<double> state) const;
   void load_state(std::span<const double> state);
