@@ -41,16 +41,10 @@ FemBody::FemBody(const FemBodyModel& model, ThreadPool& pool, bool with_curvatur
       velocities_(Points::Zero(positions_.rows(), 3)),
       external_forces_(velocities_),
       start_positions_(positions_),
-      start_velocities_(velocities_),
       active_(&numbers(with_curvature)) {
   const auto nodes = model.elements().free_nodes();
   const auto size = 3 * static_cast<Eigen::Index>(nodes.size());
   for (VectorX* v : {&right_, &motion_, &base_, &scratch_}) v->setZero(size);
-  gravity_force_.resize(size);
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    gravity_force_.segment<3>(3 * static_cast<Eigen::Index>(i)) =
-        model.elements().lumped_mass()[nodes[i]] * model.settings().gravity;
-  }
   row_effort_.resize(model.rows().size());
   double modulus = 0.0;
   for (const Region& region : model.settings().elements.regions) {
@@ -86,7 +80,6 @@ Vector3 FemBody::velocity(int point) const { return weighted(velocities_, point)
 
 void FemBody::begin_step() {
   start_positions_ = positions_;
-  start_velocities_ = velocities_;
   first_linearisation_ = true;
 }
 
@@ -125,7 +118,7 @@ void FemBody::form_right_side(const mechanics::LinearisationRequest& request) {
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const auto k = 3 * static_cast<Eigen::Index>(i);
     const Eigen::Map<const Vector3> f(forces.data() + k);
-    const Vector3 p = gravity_force_.segment<3>(k) + external_forces_.row(nodes[i]).transpose();
+    const Vector3 p = weight(nodes[i]) + external_forces_.row(nodes[i]).transpose();
     right_.segment<3>(k) = p - f;
     internal += f.squaredNorm();
     outside += p.squaredNorm();
@@ -143,8 +136,8 @@ void FemBody::form_right_side(const mechanics::LinearisationRequest& request) {
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const auto k = 3 * static_cast<Eigen::Index>(i);
     travel_.segment<3>(k) = (positions_.row(nodes[i]) - start_positions_.row(nodes[i])).transpose();
-    momentum_.segment<3>(k) = weights.momentum * start_velocities_.row(nodes[i]).transpose() -
-                              mass * travel_.segment<3>(k);
+    momentum_.segment<3>(k) =
+        weights.momentum * velocities_.row(nodes[i]).transpose() - mass * travel_.segment<3>(k);
   }
   active_->system.elements->apply_mass(span_of(momentum_), span_of(scratch_));
   right_ += scratch_;
@@ -326,15 +319,15 @@ double FemBody::gravity_energy() const {
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const Vector3 moved =
         (positions_.row(nodes[i]) - model_.mesh().nodes.row(nodes[i])).transpose();
-    energy -= gravity_force_.segment<3>(3 * static_cast<Eigen::Index>(i)).dot(moved);
+    energy -= weight(nodes[i]).dot(moved);
   }
   return energy;
 }
 
 std::size_t FemBody::bytes() const {
-  const Eigen::Index free = gravity_force_.size() + right_.size() + motion_.size() + base_.size() +
-                            scratch_.size() + travel_.size() + momentum_.size() + imbalance_.size();
-  auto total = sizeof(double) * static_cast<std::size_t>(5 * positions_.size() + free);
+  const Eigen::Index free = right_.size() + motion_.size() + base_.size() + scratch_.size() +
+                            travel_.size() + momentum_.size() + imbalance_.size();
+  auto total = sizeof(double) * static_cast<std::size_t>(4 * positions_.size() + free);
   for (const Numbers* n : {plain_.get(), curved_.get()}) {
     if (n == nullptr) continue;
     total += n->assembly.bytes() + n->factorisation->bytes() +

@@ -78,17 +78,21 @@ class FemBody : public mechanics::Body {
   void stiffen_by_tether();
   void pull_by_tether();
   Vector3 weighted(const Points& field, int point) const;
+  /// (3,) N on a mesh node.
+  Vector3 weight(NodeId node) const {
+    return model_.elements().lumped_mass()[node] * model_.settings().gravity;
+  }
 
   const FemBodyModel& model_;
   ThreadPool& pool_;
   Points positions_, velocities_, external_forces_;
-  Points start_positions_, start_velocities_;
+  Points start_positions_;  // of the step; velocities_ stay those of its start until it ends
   std::unique_ptr<Numbers> plain_, curved_;
   Numbers* active_ = nullptr;
 
   // Over free nodes, (3 free,); travel and momentum from the first step of dynamics on, the
   // imbalance from the first time that it is held.
-  VectorX gravity_force_, right_, motion_, base_, scratch_, travel_, momentum_, imbalance_;
+  VectorX right_, motion_, base_, scratch_, travel_, momentum_, imbalance_;
   std::vector<double> row_effort_;
   double imbalance_share_ = 0.0;
   std::optional<Tether> tether_;
