@@ -19,6 +19,7 @@ import multiprocessing
 import os
 import pathlib
 import sys
+from typing import NoReturn
 import tempfile
 import time
 import traceback
@@ -83,6 +84,12 @@ def tell(result: Result, done: int, count: int) -> None:
         print("    " + result.failure.strip().replace("\n", "\n    "), flush=True)
 
 
+def wrong(kind: str, place: str, message: str, remedy: str) -> NoReturn:
+    """Ends as the program does when it is given something wrong."""
+    print(f"sinew: error: {place}: {message}; {remedy} [{kind}]", file=sys.stderr)
+    sys.exit(2)
+
+
 def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("cases", nargs="*", metavar="CASE", help="all by default")
@@ -95,9 +102,10 @@ def arguments() -> argparse.Namespace:
     chosen = parser.parse_args()
     unknown = sorted(set(chosen.cases) - set(case_names()))
     if unknown:
-        parser.error(f"there is no case {', '.join(unknown)}; --list names them")
+        wrong("unknown-name", "CASE", f"there is no case {', '.join(unknown)}",
+              f"the cases are {', '.join(case_names())}")
     if chosen.jobs < 1:
-        parser.error(f"--jobs is {chosen.jobs}; give 1 or more")
+        wrong("out-of-range", "--jobs", f"--jobs is {chosen.jobs}", "give 1 or more")
     return chosen
 
 

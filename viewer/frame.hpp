@@ -22,9 +22,9 @@ struct Surface {
 
 /// Everything that does not change while one robot is shown.
 struct Description {
-  std::string scene;               ///< JSON object: `scene` of the protocol
-  std::vector<Surface> surfaces;   ///< one a body
-  std::vector<std::string> fields; ///< names, in the order of BodyFrame::fields
+  std::string scene;                ///< JSON object: `scene` of the protocol
+  std::vector<Surface> surfaces;    ///< one a body
+  std::vector<std::string> fields;  ///< names, in the order of BodyFrame::fields
 };
 
 struct BodyFrame {
@@ -42,9 +42,9 @@ struct PullFrame {
 /// One moment of a robot. Immutable once published.
 struct Frame {
   std::uint64_t step = 0;
-  double time = 0.0;         ///< s
-  std::uint64_t hash = 0;    ///< of the state; 0 in a replay
-  std::uint64_t shape = 0;   ///< equal numbers: nothing but signals differs
+  double time = 0.0;            ///< s
+  std::uint64_t hash = 0;       ///< of the state; 0 in a replay
+  std::uint64_t shape = 0;      ///< equal numbers: nothing but signals differs
   std::vector<double> signals;  ///< as the description lists them, SI; NaN: no value
   std::vector<BodyFrame> bodies;
   std::vector<float> cables;     ///< (3 points,) m, all cables' points one after the other

@@ -95,7 +95,7 @@ std::vector<NodeId> number_free_nodes(const mesh::Mesh& mesh,
     if (number == 0) number = next++;
   }
   if (next == 0) {
-    throw Error(ErrorKind::everything_fixed, {.file = mesh.name, .item = "fixed"},
+    throw Error(ErrorKind::everything_fixed, {.item = "fixed"},
                 fmt::format("all {} nodes are fixed", mesh.node_count()),
                 "fix a smaller region, and check its unit");
   }

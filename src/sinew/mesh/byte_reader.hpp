@@ -102,8 +102,9 @@ class ByteReader {
   /// @param kind kind of error.
   /// @param message what is wrong.
   /// @param remedy what to do.
-  [[noreturn]] void fail(ErrorKind kind, const std::string& message,
-                         const std::string& remedy = {}) const;
+  [[noreturn]] void fail(
+      ErrorKind kind, const std::string& message,
+      const std::string& remedy = "write the file again from the program that made it") const;
 
  private:
   std::string_view bytes_;

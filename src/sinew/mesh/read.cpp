@@ -47,6 +47,14 @@ std::string read_file(const std::filesystem::path& path) {
   return bytes;
 }
 
+namespace {
+
+bool is_surface_name(std::string_view name) {
+  return name.ends_with(".stl") || name.ends_with(".obj") || name.ends_with(".ply");
+}
+
+}  // namespace
+
 Mesh parse_mesh(std::string_view bytes, const std::string& name) {
   if (bytes.starts_with("# vtk DataFile")) return read_vtk_legacy(bytes, name);
   if (bytes.starts_with("$MeshFormat") || bytes.starts_with("$Comments")) {
@@ -54,6 +62,15 @@ Mesh parse_mesh(std::string_view bytes, const std::string& name) {
   }
   if (bytes.substr(0, 4096).find("<VTKFile") != std::string_view::npos) {
     return read_vtu(bytes, name);
+  }
+  if (bytes.empty()) {
+    throw Error(ErrorKind::truncated_file, {.file = name}, "the file is empty",
+                "write it again from the program that made it");
+  }
+  if (is_surface_name(name)) {
+    throw Error(ErrorKind::no_volume_elements, {.file = name},
+                "this is a surface, and a body needs tetrahedra",
+                fmt::format("fill it: sinew mesh {} -o FILE.vtu --size 5mm", name));
   }
   throw Error(ErrorKind::unknown_format, {.file = name},
               "this is none of the mesh formats that are read",

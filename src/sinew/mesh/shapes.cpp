@@ -18,8 +18,9 @@ namespace {
 
 void require(bool holds, const std::string& shape, const std::string& message) {
   if (!holds) {
-    throw Error(ErrorKind::out_of_range, {.item = shape}, message,
-                "give positive, finite lengths and at least one cell");
+    throw Error(
+        ErrorKind::out_of_range, {.item = shape}, message,
+        "give positive, finite lengths and an element size that they are not too large for");
   }
 }
 
