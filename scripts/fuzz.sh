@@ -1,15 +1,16 @@
 #!/bin/sh
 # Builds the fuzz targets with clang and runs each for a while: scripts/fuzz.sh [seconds each, 60]
-# A finding is left as build/fuzz/crash-*; smaller inputs come with -minimize_crash=1.
+# A finding is left as build/fuzz/crash-*; smaller inputs come with -minimize_crash=1. What a finding
+# shrinks to joins tests/fuzz/corpus, which every test run replays.
 set -eu
 cd "$(dirname "$0")/.."
 seconds=${1:-60}
 cmake --preset fuzz >/dev/null
 cmake --build build/fuzz --parallel "${JOBS:-$(scripts/jobs.sh)}" \
-  --target fuzz_vtk_legacy fuzz_vtu fuzz_gmsh fuzz_csv fuzz_scene
-for reader in vtk_legacy vtu gmsh csv scene; do
+  --target fuzz_vtk_legacy fuzz_vtu fuzz_gmsh fuzz_csv fuzz_scene fuzz_state
+for reader in vtk_legacy vtu gmsh csv scene state; do
   mkdir -p "build/fuzz/corpus/$reader"
   echo "fuzz: $reader, $seconds s"
   build/fuzz/bin/fuzz_$reader -max_total_time="$seconds" -max_len=65536 -timeout=10 -rss_limit_mb=4096 \
-    -artifact_prefix=build/fuzz/ -print_final_stats=0 -verbosity=0 "build/fuzz/corpus/$reader"
+    -artifact_prefix=build/fuzz/ -print_final_stats=0 -verbosity=0 "build/fuzz/corpus/$reader" "tests/fuzz/corpus/$reader"
 done

@@ -9,7 +9,8 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
   try {
-    static_cast<void>(sinew::scene::parse_scene_text(bytes, "fuzz", {}, scene::Files::ignore));
+    static_cast<void>(
+        sinew::scene::parse_scene_text(bytes, "fuzz", {}, sinew::scene::Files::ignore));
   } catch (const sinew::Error&) {
     // What a broken input deserves.
   }
