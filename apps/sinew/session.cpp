@@ -43,7 +43,7 @@ const scene::SceneController* choose(const scene::Robot& robot, const std::strin
 }  // namespace
 
 Session::Session(const SceneOptions& options)
-    : robot_(load(options)), folder_(options.file.parent_path()) {
+    : robot_(load(options)), folder_(std::filesystem::absolute(options.file).parent_path()) {
   const scene::SceneController* chosen = choose(robot_, options.controller);
   simulation_ = std::make_unique<sim::Simulation>(robot_.model, robot_.threads());
   if (chosen == nullptr) return;
@@ -62,7 +62,7 @@ double Session::first_turn() const {
 
 std::string Session::resolved_scene() const {
   scene::Node tree = robot_.description.tree;
-  scene::resolve_paths(tree, std::filesystem::absolute(folder_));
+  scene::resolve_paths(tree, folder_);
   return scene::to_yaml(tree);
 }
 

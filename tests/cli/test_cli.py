@@ -7,12 +7,14 @@ import csv
 import json
 import os
 import pathlib
+import shutil
 import signal
 import subprocess
 import sys
 import time
 
 import h5py
+import meshio
 import numpy as np
 import pytest
 
@@ -350,3 +352,68 @@ def test_validate_passes_cases_on(tmp_path):
 
 if __name__ == "__main__":
     sys.exit(pytest.main([__file__, "-q", "-p", "no:cacheprovider", *sys.argv[1:]]))
+
+
+DESIGN = """\
+sinew: 1
+gravity: 0 0 0 m/s^2            # this slender trunk would buckle under its weight if it stood upright; hang robots along +z or -z
+time_step: 10 ms
+integrator: quasi-static        # quasi-static | backward-euler | bdf2 | {type: generalized-alpha, spectral_radius: 0.8}
+bodies:
+  trunk:
+    type: fem
+    mesh: {file: trunk.vtk, unit: mm}
+    element: tet4               # tet4 | tet10 | hex8
+    material: {model: corotational, young_modulus: 450 kPa, poisson_ratio: 0.45}   # or: material: ecoflex-00-30
+    mass: 42 g                  # or density: 1070 kg/m^3
+    damping: {mass: 0.1 1/s, stiffness: 0.01 s}
+    fixed: [{box: -20 -20 0 20 20 20 mm}]
+actuators:
+  long_0:
+    type: cable                 # cable | pressure | spring | force
+    body: trunk
+    points: {file: long_0.csv, unit: mm}      # or an inline list of "x y z mm"; the first is the pull point
+    pull: world                               # world | body: what the pull point is fixed to
+    outside: nearest                          # a via point outside the mesh: error (default) | nearest
+    limits: {tension: {min: 0 N, max: 20 N}, displacement: {min: 0 mm, max: 70 mm, rate: 100 mm/s}}
+    command: {displacement: 0 mm}             # or tension; a value or a signal: {ramp: ..} {sine: ..} {steps: ..} {file: pull.csv}
+effectors:
+  tip: {body: trunk, point: 0 0 195 mm}
+controllers:
+  follow:
+    type: inverse
+    effectors:
+      tip: {target: {circle: {center: 0 0 190 mm, radius: 30 mm, normal: 0 0 1, period: 10 s}}}
+record: {every: 1, states: true}
+"""
+
+
+def write_vtk_in_millimetres(vtu, path):
+    """A VTU of ours, in m, as legacy VTK in mm."""
+    mesh = meshio.read(vtu)
+    cells = mesh.cells_dict["tetra"]
+    lines = ["# vtk DataFile Version 3.0", "trunk", "ASCII", "DATASET UNSTRUCTURED_GRID"]
+    lines += [f"POINTS {len(mesh.points)} double"]
+    lines += ["{:.17g} {:.17g} {:.17g}".format(*(1e3 * point)) for point in mesh.points]
+    lines += [f"CELLS {len(cells)} {5 * len(cells)}"]
+    lines += ["4 {} {} {} {}".format(*cell) for cell in cells]
+    lines += [f"CELL_TYPES {len(cells)}", *["10"] * len(cells)]
+    path.write_text("\n".join(lines) + "\n", encoding="ascii")
+
+
+def test_the_scene_of_the_documentation_runs_as_written(tmp_path):
+    assert sinew("mesh", "--shape", "trunk", "-o", tmp_path / "trunk.vtu").returncode == DONE
+    write_vtk_in_millimetres(tmp_path / "trunk.vtu", tmp_path / "trunk.vtk")
+    shutil.copy(ROOT / "examples" / "trunk" / "long_0.csv", tmp_path)
+    (tmp_path / "trunk.yaml").write_text(DESIGN, encoding="utf-8")
+    result = sinew("run", "trunk.yaml", cwd=tmp_path)
+    assert result.returncode == DONE, result.stderr
+    with open(tmp_path / "out" / "trunk" / "run.csv", newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == 1001  # one turn of the circle
+    tension = np.array([float(row["long_0.tension [N]"]) for row in rows])
+    pulled = np.array([float(row["long_0.displacement [m]"]) for row in rows])
+    assert tension.min() >= 0 and tension.max() > 0.05
+    assert pulled.max() <= 0.070 + 1e-9 and np.abs(np.diff(pulled)).max() <= 0.1 * 0.01 + 1e-9
+    with h5py.File(tmp_path / "out" / "trunk" / "run.h5") as file:
+        assert file["positions/trunk"].shape == (1001, 703, 3)

@@ -56,3 +56,31 @@ def linear_stiffness(nodes, tetrahedra, young, poisson) -> scipy.sparse.csr_matr
     columns = np.tile(dofs, (1, 12)).ravel()
     size = 3 * len(nodes)
     return scipy.sparse.csr_matrix((blocks.reshape(-1), (rows, columns)), shape=(size, size))
+
+
+def element_forces(corners, grads, volumes, young, poisson) -> np.ndarray:
+    """Forces (m, 4, 3) N of corotational tetrahedra at their corners' positions (m, 4, 3) m, all at
+    once; the rotation by singular values, F = U s V^T, R = U V^T."""
+    lam, mu = lame(young, poisson)
+    deformation = np.einsum("eai,eaj->eij", corners, grads)
+    left, stretches, right = np.linalg.svd(deformation)
+    if np.any(np.linalg.det(deformation) <= 0):
+        raise ValueError("inverted element")
+    trace = stretches.sum(axis=1) - 3
+    principal = 2 * mu * (stretches - 1) + lam * trace[:, None]
+    piola = np.einsum("eik,ek,ekj->eij", left, principal, right)
+    return np.einsum("e,eij,eaj->eai", volumes, piola, grads)
+
+
+def element_stiffness(corners, grads, volumes, young, poisson, step) -> np.ndarray:
+    """Tangents (m, 4, 3, 4, 3) N/m by central differences over `step` (m) of element_forces()."""
+    result = np.empty((len(corners), 4, 3, 4, 3))
+    for b in range(4):
+        for j in range(3):
+            moved = corners.copy()
+            moved[:, b, j] += step
+            ahead = element_forces(moved, grads, volumes, young, poisson)
+            moved[:, b, j] -= 2 * step
+            behind = element_forces(moved, grads, volumes, young, poisson)
+            result[:, :, :, b, j] = (ahead - behind) / (2 * step)
+    return result
