@@ -51,19 +51,19 @@ std::uint32_t wait_for_change(const Ticket& ticket, std::uint32_t old, int pause
 /// `work`, `context` and `stop` are written before `call` is raised and read after it was seen.
 struct ThreadPool::Shared {
   explicit Shared(int count)
-      : threads(count),
-        done(static_cast<std::size_t>(count)),
-        parts(static_cast<std::size_t>(count)) {}
+      : done(static_cast<std::size_t>(count)),
+        parts(static_cast<std::size_t>(count)),
+        threads(count) {}
 
-  int threads;
-  int pauses = 0;
-  RawWork work = nullptr;
-  void* context = nullptr;
-  bool stop = false;
-  Ticket call;
+  Ticket call;  // on a cache line of its own
   std::vector<Ticket> done;
   std::vector<PartCount> parts;
   std::vector<std::thread> workers;
+  RawWork work = nullptr;
+  void* context = nullptr;
+  int threads;
+  int pauses = 0;
+  bool stop = false;
 
   void serve(int thread) {
     Ticket& mine = done[static_cast<std::size_t>(thread)];

@@ -23,6 +23,7 @@ struct LaneMinimum {
   LaneMask batch{};
 
   SINEW_INLINE void see(const Lanes& ratio, std::int64_t in_batch) {
+    // NOLINTNEXTLINE(misc-redundant-expression): false where a lane is NaN
     const Lanes finite = ratio == ratio ? ratio : lanes(-std::numeric_limits<double>::infinity());
     const LaneMask smaller = finite < value;
     const LaneMask here = LaneMask{} + in_batch;

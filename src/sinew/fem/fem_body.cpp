@@ -315,11 +315,9 @@ double FemBody::kinetic_energy() const {
 
 double FemBody::gravity_energy() const {
   double energy = 0.0;
-  const auto nodes = model_.elements().free_nodes();
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const Vector3 moved =
-        (positions_.row(nodes[i]) - model_.mesh().nodes.row(nodes[i])).transpose();
-    energy -= weight(nodes[i]).dot(moved);
+  for (const NodeId node : model_.elements().free_nodes()) {
+    const Vector3 moved = (positions_.row(node) - model_.mesh().nodes.row(node)).transpose();
+    energy -= weight(node).dot(moved);
   }
   return energy;
 }
