@@ -362,7 +362,10 @@ def test_report(sim):
 def test_ctrl_c_ends_a_long_step(scene):
     code = textwrap.dedent(
         f"""
+        import signal
         import sinew
+        # Shells start what runs in the background with Ctrl-C ignored.
+        signal.signal(signal.SIGINT, signal.default_int_handler)
         sim = sinew.load({str(scene)!r})
         print("ready", flush=True)
         try:

@@ -7,6 +7,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 namespace sinew {
 namespace {
@@ -17,7 +18,8 @@ using ::testing::HasSubstr;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 std::filesystem::path scratch(const std::string& name) {
-  return std::filesystem::path(::testing::TempDir()) / ("sinew_csv_" + name);
+  return std::filesystem::path(::testing::TempDir()) /
+         ("sinew_csv_" + std::to_string(getpid()) + "_" + name);
 }
 
 MatrixX two_by_three() { return (MatrixX(2, 3) << 1, 2, 3, 4, 5, 6.5).finished(); }

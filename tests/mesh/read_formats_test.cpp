@@ -113,7 +113,7 @@ TEST(ReadMesh, SaysWhatIsWrongWithThePath) {
   test::write_text(scratch / "text.vtk", "hello");
   test::error_text(ErrorKind::unknown_format, [&] { read_mesh(scratch / "text.vtk"); });
   test::write_text(scratch / "empty.vtk", "");
-  test::error_text(ErrorKind::unknown_format, [&] { read_mesh(scratch / "empty.vtk"); });
+  test::error_text(ErrorKind::truncated_file, [&] { read_mesh(scratch / "empty.vtk"); });
   test::error_text(ErrorKind::out_of_range,
                    [&] { read_mesh(data_folder() / "cube_vtk42_ascii.vtk", {.unit = -1.0}); });
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "sinew/core/error.hpp"
 #include "sinew/core/state_hash.hpp"
@@ -37,7 +38,8 @@ TEST(StateIo, ARunGoesOnBitForBit) {
   first.command(0, pull(0.003));
   second.command(0, pull(0.003));
   for (int i = 0; i < 7; ++i) first.step();
-  const auto path = std::filesystem::temp_directory_path() / "sinew_state_io_test.state";
+  const auto path = std::filesystem::temp_directory_path() /
+                    ("sinew_state_io_" + std::to_string(getpid()) + ".state");
   save_state(first, path);
   load_state(second, path);
   std::filesystem::remove(path);
