@@ -3,6 +3,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -26,8 +27,8 @@ FemModelSettings settings_of(const mesh::Mesh& mesh) {
 }
 
 std::vector<NodeId> first_elements(int count) {
-  std::vector<NodeId> result;
-  for (NodeId t = 0; t < count; ++t) result.push_back(t);
+  std::vector<NodeId> result(static_cast<std::size_t>(count));
+  std::iota(result.begin(), result.end(), 0);
   return result;
 }
 

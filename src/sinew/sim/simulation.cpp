@@ -212,8 +212,7 @@ void Simulation::detach(const Law& law) {
   if (law_ != &law) return;
   law_ = nullptr;
   direct_.reset();
-  for (std::size_t i = 0; i < actuators_.size(); ++i) {
-    ActuatorState& state = actuators_[i];
+  for (ActuatorState& state : actuators_) {
     if (state.owner != &law) continue;
     state.owner = nullptr;
     // The drive stays where it stands until it is told otherwise.
