@@ -12,10 +12,12 @@ std::atomic<long> count{0};
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define SINEW_COUNTS_ALLOCATIONS 1
 extern "C" {
+// NOLINTBEGIN(bugprone-reserved-identifier): glibc calls them so
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t number, std::size_t size);
 void* __libc_realloc(void* block, std::size_t size);
 void* __libc_memalign(std::size_t alignment, std::size_t size);
+// NOLINTEND(bugprone-reserved-identifier)
 
 void* malloc(std::size_t size) {
   note();

@@ -31,6 +31,7 @@ constexpr std::array kKindNames = {
     "diverged", "inverted-in-run", "not-converged", "singular-matrix", "recording-failed",
     "state-version", "state-mismatch", "state-corrupt",
     "unknown-option", "bad-argument", "wrong-shape", "tool-missing", "tool-failed",
+    "address-in-use", "not-driving",
     "internal"};
 // clang-format on
 static_assert(kKindNames.size() == static_cast<std::size_t>(ErrorKind::internal) + 1);

@@ -39,6 +39,8 @@ enum class ErrorKind {
   state_version, state_mismatch, state_corrupt,
   // command line and Python
   unknown_option, bad_argument, wrong_shape, tool_missing, tool_failed,
+  // browser view
+  address_in_use, not_driving,
   // clang-format on
   internal,
 };
