@@ -12,6 +12,10 @@ find_package(pugixml REQUIRED)
 find_package(CLI11 REQUIRED)
 include(SinewSystemLibraries)
 
+if(SINEW_VIEWER)
+  find_package(Boost 1.74 REQUIRED)  # headers alone: Beast and Asio
+endif()
+
 if(SINEW_TESTS)
   find_package(GTest REQUIRED)
 endif()

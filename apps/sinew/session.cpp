@@ -42,6 +42,14 @@ const scene::SceneController* choose(const scene::Robot& robot, const std::strin
 
 }  // namespace
 
+LoadedScene load_scene(const SceneOptions& options) {
+  LoadedScene result{load(options), {}};
+  if (const auto* chosen = choose(result.robot, options.controller)) {
+    result.controller = chosen->name;
+  }
+  return result;
+}
+
 Session::Session(const SceneOptions& options)
     : robot_(load(options)), folder_(std::filesystem::absolute(options.file).parent_path()) {
   const scene::SceneController* chosen = choose(robot_, options.controller);

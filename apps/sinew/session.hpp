@@ -26,6 +26,17 @@ struct SceneOptions {
   std::string controller;  ///< a name, "none", or empty for the scene's first
 };
 
+/// A scene as the command line asks for it.
+struct LoadedScene {
+  scene::Robot robot;
+  std::string controller;  ///< to be attached; empty for none
+};
+
+/// Reads and builds. Throws what scene::load() does, and Error(unknown-name) for a controller that
+/// the scene does not have.
+/// @param options see there.
+LoadedScene load_scene(const SceneOptions& options);
+
 /// A robot, one simulation of it, and the controller that steers it.
 class Session {
  public:

@@ -1,4 +1,4 @@
-// sinew view, schema, reference and validate: each a few lines.
+// sinew schema, reference and validate: each a few lines.
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -80,16 +80,6 @@ void add_page(CLI::App& app, Actions& actions, const char* name, const char* des
 }
 
 }  // namespace
-
-void add_view(CLI::App& app, Actions& actions) {
-  CLI::App* command = app.add_subcommand("view", "See a scene in the browser (a later version)");
-  command->allow_extras();
-  actions[command] = []() -> int {
-    throw Error(ErrorKind::not_in_this_version, {.item = "view"},
-                "the view in the browser is not in this version",
-                "use 'sinew run SCENE --vtk' and open run.pvd in ParaView");
-  };
-}
 
 void add_schema(CLI::App& app, Actions& actions) {
   add_page(app, actions, "schema", "Print the JSON Schema of scene files, for editors",

@@ -1,0 +1,19 @@
+/// @file
+/// The page, kept within the library: nothing is ever read from disk for a browser.
+#pragma once
+
+#include <string_view>
+
+namespace sinew::viewer {
+
+/// A file of the page, compressed by gzip.
+struct Asset {
+  std::string_view path;  ///< "/app.js"
+  std::string_view content_type;
+  std::string_view bytes;
+};
+
+/// The file at a path; null when there is none.
+const Asset* find_asset(std::string_view path);
+
+}  // namespace sinew::viewer

@@ -1,0 +1,210 @@
+#include "describe.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "sinew/mesh/topology.hpp"
+
+namespace sinew::viewer {
+
+namespace {
+
+using Json = nlohmann::json;
+
+// Half as far again as a robot's size is a slider's end where a scene sets none.
+constexpr double kFarPull = 0.25;     // of the robot's size
+constexpr double kStrongPull = 10.0;  // N
+
+Json vector_json(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
+Json limit_json(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json quantity_json(const char* name, const char* unit, const sim::Limits& limits, double low,
+                   double high) {
+  return {{"name", name},
+          {"unit", unit},
+          {"min", limit_json(limits.min)},
+          {"max", limit_json(limits.max)},
+          {"rate", limit_json(limits.rate)},
+          {"low", std::isfinite(limits.min) ? limits.min : low},
+          {"high", std::isfinite(limits.max) ? limits.max : high}};
+}
+
+Json actuator_json(const sim::Model& model, const scene::Robot& robot, int index) {
+  const sim::ActuatorModel& actuator = model.actuators()[static_cast<std::size_t>(index)];
+  const double far = kFarPull * model.size();
+  const bool cable = actuator.type == sim::ActuatorType::cable;
+  Json quantities = Json::array();
+  const Json motion = quantity_json(sim::ActuatorModel::motion_name(), "m", actuator.motion,
+                                    cable ? 0.0 : -far, far);
+  const Json effort = quantity_json(actuator.effort_name(), "N", actuator.effort,
+                                    cable ? 0.0 : -kStrongPull, kStrongPull);
+  // What the scene commands comes first; else a cable's pull, a force's force.
+  const auto& command = robot.description.actuators[static_cast<std::size_t>(index)].command;
+  const bool by_motion = command ? command->kind == scene::CommandDescription::Kind::motion : cable;
+  quantities.push_back(by_motion ? motion : effort);
+  quantities.push_back(by_motion ? effort : motion);
+  const constraint::Cable* wire = model.cable(index);
+  std::size_t points = 0;
+  if (wire != nullptr) {
+    const auto& description = robot.description.actuators[static_cast<std::size_t>(index)];
+    points = static_cast<std::size_t>(description.points.points.rows());
+  }
+  return {{"name", actuator.name},
+          {"type", sim::actuator_type_name(actuator.type)},
+          {"body", robot.description.actuators[static_cast<std::size_t>(index)].body},
+          {"quantities", quantities},
+          {"points", points}};
+}
+
+Json effector_json(const sim::Model& model, int index) {
+  const constraint::Effector& effector = model.effector(index);
+  Json directions = Json::array();
+  for (const Vector3& direction : effector.directions())
+    directions.push_back(vector_json(direction));
+  return {{"name", model.effectors()[static_cast<std::size_t>(index)].name},
+          {"kind", std::string_view(effector.unit()) == "m" ? "point" : "orientation"},
+          {"directions", directions}};
+}
+
+Json body_json(const mechanics::BodyModel& model, const Surface& surface) {
+  const auto& fem = dynamic_cast<const fem::FemBodyModel&>(model);
+  return {{"name", model.name()},
+          {"vertices", surface.nodes.size()},
+          {"triangles", surface.triangles.size() / 3},
+          {"nodes", fem.mesh().nodes.rows()},
+          {"elements", fem.mesh().tetrahedra.size()}};
+}
+
+Json bounds_json(const sim::Model& model) {
+  Vector3 low = Vector3::Constant(std::numeric_limits<double>::infinity());
+  Vector3 high = -low;
+  for (const auto& body : model.bodies()) {
+    const Points& nodes = dynamic_cast<const fem::FemBodyModel&>(*body).mesh().nodes;
+    low = low.cwiseMin(nodes.colwise().minCoeff().transpose());
+    high = high.cwiseMax(nodes.colwise().maxCoeff().transpose());
+  }
+  return {vector_json(low), vector_json(high)};
+}
+
+Json signals_json(const sim::Model& model) {
+  Json list = Json::array();
+  for (const SignalInfo& signal : list_signals(model)) {
+    list.push_back({{"key", signal.key},
+                    {"label", signal.label},
+                    {"unit", signal.unit},
+                    {"group", signal.group}});
+  }
+  return list;
+}
+
+Json controllers_json(const scene::Robot& robot) {
+  Json list = Json::array();
+  for (const scene::SceneController& controller : robot.controllers) {
+    Json effectors = Json::array();
+    for (const inverse::Task& task : controller.settings.tasks) {
+      effectors.push_back(robot.model->effectors()[static_cast<std::size_t>(task.effector)].name);
+    }
+    list.push_back({{"name", controller.name}, {"type", "inverse"}, {"effectors", effectors}});
+  }
+  return list;
+}
+
+}  // namespace
+
+std::vector<SignalInfo> list_signals(const sim::Model& model) {
+  std::vector<SignalInfo> list;
+  for (const sim::ActuatorModel& actuator : model.actuators()) {
+    list.push_back({fmt::format("{}.{}", actuator.name, actuator.effort_name()), actuator.name, "N",
+                    "effort"});
+  }
+  for (const sim::ActuatorModel& actuator : model.actuators()) {
+    list.push_back({fmt::format("{}.{}", actuator.name, sim::ActuatorModel::motion_name()),
+                    actuator.name, "m", "motion"});
+  }
+  for (std::size_t i = 0; i < model.effectors().size(); ++i) {
+    const std::string& name = model.effectors()[i].name;
+    const std::string unit = model.effector(static_cast<int>(i)).unit();
+    for (const char* axis : {"x", "y", "z"}) {
+      const std::string key = fmt::format("{}.{}{}", name, unit == "m" ? "" : "r", axis);
+      list.push_back({key, key, unit, "effector"});
+    }
+  }
+  for (std::size_t i = 0; i < model.effectors().size(); ++i) {
+    const std::string& name = model.effectors()[i].name;
+    list.push_back({name + ".error", name, model.effector(static_cast<int>(i)).unit(), "error"});
+  }
+  for (const char* kind : {"strain", "kinetic", "gravity"}) {
+    list.push_back({fmt::format("energy.{}", kind), kind, "J", "energy"});
+  }
+  list.push_back({"time.step", "step", "s", "time"});
+  for (const char* stage : sim::kStageNames) {
+    list.push_back({fmt::format("time.{}", stage), stage, "s", "time"});
+  }
+  list.push_back({"real_time_factor", "real-time factor", "", "solver"});
+  list.push_back({"residual", "residual", "N", "solver"});
+  list.push_back({"smallest_volume_ratio", "smallest volume ratio", "", "solver"});
+  return list;
+}
+
+Surface surface_of(const mesh::Mesh& mesh) {
+  Surface result;
+  std::vector<int> vertex(static_cast<std::size_t>(mesh.nodes.rows()), -1);
+  for (const mesh::Triangle& triangle : mesh::boundary_surface(mesh).triangles) {
+    for (const NodeId node : triangle) {
+      int& number = vertex[static_cast<std::size_t>(node)];
+      if (number < 0) {
+        number = static_cast<int>(result.nodes.size());
+        result.nodes.push_back(node);
+        for (int c = 0; c < 3; ++c) {
+          result.rest.push_back(static_cast<float>(mesh.nodes(node, c)));
+        }
+      }
+      result.triangles.push_back(static_cast<std::uint32_t>(number));
+    }
+  }
+  return result;
+}
+
+Description describe(const scene::Robot& robot) {
+  const sim::Model& model = *robot.model;
+  Description result;
+  Json bodies = Json::array();
+  for (const auto& body : model.bodies()) {
+    const auto* fem = dynamic_cast<const fem::FemBodyModel*>(body.get());
+    if (fem == nullptr) {
+      throw Error(ErrorKind::wrong_type, {.item = body->name()},
+                  "this body is not of finite elements", "the view shows such bodies alone");
+    }
+    result.surfaces.push_back(surface_of(fem->mesh()));
+    bodies.push_back(body_json(*body, result.surfaces.back()));
+  }
+  Json actuators = Json::array(), effectors = Json::array();
+  for (std::size_t i = 0; i < model.actuators().size(); ++i) {
+    actuators.push_back(actuator_json(model, robot, static_cast<int>(i)));
+  }
+  for (std::size_t i = 0; i < model.effectors().size(); ++i) {
+    effectors.push_back(effector_json(model, static_cast<int>(i)));
+  }
+  result.fields = {"displacement", "strain", "stress", "force"};
+  const Json fields = {{{"name", "displacement"}, {"label", "Displacement"}, {"unit", "m"}},
+                       {{"name", "strain"}, {"label", "Equivalent strain"}, {"unit", ""}},
+                       {{"name", "stress"}, {"label", "Von Mises stress"}, {"unit", "Pa"}},
+                       {{"name", "force"}, {"label", "Actuators' force"}, {"unit", "N"}}};
+  const Json scene = {{"name", robot.description.name},
+                      {"time_step", model.step().time_step},
+                      {"gravity", vector_json(robot.description.gravity)},
+                      {"bounds", bounds_json(model)},
+                      {"bodies", bodies},
+                      {"fields", fields},
+                      {"actuators", actuators},
+                      {"effectors", effectors},
+                      {"controllers", controllers_json(robot)},
+                      {"signals", signals_json(model)}};
+  result.scene = scene.dump();
+  return result;
+}
+
+}  // namespace sinew::viewer

@@ -1,0 +1,116 @@
+#include "frame.hpp"
+
+#include <bit>
+#include <cstring>
+#include <limits>
+#include <span>
+
+#include <fmt/format.h>
+
+#include "sinew/core/error.hpp"
+
+namespace sinew::viewer {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "numbers are sent as they lie in memory");
+
+constexpr std::uint32_t kMagic = 0x31574e53;  // "SNW1"
+enum class Kind : std::uint16_t { surface = 1, frame = 2 };
+enum class Section : std::uint16_t { positions = 1, field, cables, effectors, targets, pull };
+
+/// Appends numbers to bytes.
+class Writer {
+ public:
+  explicit Writer(std::vector<std::byte>& bytes) : bytes_(bytes) { bytes_.clear(); }
+
+  template <typename T>
+  void put(T value) {
+    put(std::span<const T>(&value, 1));
+  }
+  template <typename T>
+  void put(std::span<const T> values) {
+    const std::size_t at = bytes_.size();
+    bytes_.resize(at + values.size_bytes());
+    if (!values.empty()) std::memcpy(bytes_.data() + at, values.data(), values.size_bytes());
+  }
+  void header(Kind kind, std::uint16_t generation) {
+    put(kMagic);
+    put(static_cast<std::uint16_t>(kind));
+    put(generation);
+  }
+  void section(Section section, std::size_t index, std::size_t bytes) {
+    put(static_cast<std::uint16_t>(section));
+    put(static_cast<std::uint16_t>(index));
+    put(static_cast<std::uint32_t>(bytes));
+  }
+  void section(Section kind, std::size_t index, const std::vector<float>& values) {
+    section(kind, index, values.size() * sizeof(float));
+    put(std::span<const float>(values));
+  }
+
+ private:
+  std::vector<std::byte>& bytes_;
+};
+
+void put_bodies(const Frame& frame, const FrameChoice& choice, Writer& writer) {
+  for (std::size_t b = 0; b < frame.bodies.size(); ++b) {
+    const BodyFrame& body = frame.bodies[b];
+    if (choice.shape) writer.section(Section::positions, b, body.positions);
+    if (choice.field < 0 || static_cast<std::size_t>(choice.field) >= body.fields.size()) continue;
+    const std::vector<float>& field = body.fields[static_cast<std::size_t>(choice.field)];
+    if (field.empty()) continue;
+    writer.section(Section::field, b, sizeof(std::uint32_t) + field.size() * sizeof(float));
+    writer.put(static_cast<std::uint32_t>(choice.field));
+    writer.put(std::span<const float>(field));
+  }
+}
+
+}  // namespace
+
+std::vector<std::byte> encode_surface(const Surface& surface, int body, std::uint16_t generation) {
+  constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max() / sizeof(float);
+  if (surface.rest.size() > kMost || surface.triangles.size() > kMost) {
+    throw Error(ErrorKind::size_limit, {.item = "surface"},
+                fmt::format("the surface has {} triangles", surface.triangles.size() / 3),
+                "show a coarser mesh");
+  }
+  std::vector<std::byte> bytes;
+  Writer writer(bytes);
+  writer.header(Kind::surface, generation);
+  writer.put(static_cast<std::uint32_t>(body));
+  writer.put(static_cast<std::uint32_t>(surface.rest.size() / 3));
+  writer.put(static_cast<std::uint32_t>(surface.triangles.size() / 3));
+  writer.put(std::uint32_t{0});
+  writer.put(std::span<const float>(surface.rest));
+  writer.put(std::span<const std::uint32_t>(surface.triangles));
+  return bytes;
+}
+
+void encode_frame(const Frame& frame, const FrameChoice& choice, std::vector<std::byte>& bytes) {
+  Writer writer(bytes);
+  writer.header(Kind::frame, choice.generation);
+  writer.put(choice.sequence);
+  writer.put(static_cast<std::uint32_t>(frame.signals.size()));
+  writer.put(frame.step);
+  writer.put(frame.time);
+  writer.put(frame.hash);
+  writer.put(std::span<const double>(frame.signals));
+  put_bodies(frame, choice, writer);
+  if (choice.shape) {
+    writer.section(Section::cables, 0, frame.cables);
+    writer.section(Section::effectors, 0, frame.effectors);
+  }
+  writer.section(Section::targets, 0, frame.targets);
+  if (frame.pull) {
+    const auto single = [](double value) { return static_cast<float>(value); };
+    std::vector<float> values;
+    for (const Vector3& v : {frame.pull->point, frame.pull->anchor}) {
+      for (int c = 0; c < 3; ++c) values.push_back(single(v[c]));
+    }
+    values.push_back(single(frame.pull->force));
+    writer.section(Section::pull, 0, values);
+  }
+}
+
+}  // namespace sinew::viewer

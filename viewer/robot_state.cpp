@@ -1,0 +1,348 @@
+#include "robot_state.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace sinew::viewer {
+
+namespace {
+
+using Json = nlohmann::json;
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr const char* kOwnController = "view";
+
+/// A limit counts as reached within this part of the range.
+constexpr double kAtLimit = 1e-6;
+
+bool at(double value, double limit, double scale) {
+  return std::isfinite(limit) &&
+         std::abs(value - limit) <= kAtLimit * std::max(scale, std::abs(limit));
+}
+
+Json trouble(const char* level, const char* kind, const std::string& subject,
+             const std::string& text) {
+  return {{"level", level}, {"kind", kind}, {"subject", subject}, {"text", text}};
+}
+
+void add_limits(const sim::ActuatorModel& model, const sim::ActuatorState& state, Json& list) {
+  const bool most = state.effort > 0.0 && at(state.effort, model.effort.max, 1e-3);
+  if (most) {
+    list.push_back(trouble(
+        "warning", "effort-limit", model.name,
+        fmt::format("{} is at its limit, {:.3g} N", model.effort_name(), model.effort.max)));
+  }
+  const bool far =
+      at(state.motion, model.motion.max, 1e-4) || at(state.motion, model.motion.min, 1e-4);
+  if (far && state.motion != 0.0) {
+    list.push_back(
+        trouble("warning", "motion-limit", model.name,
+                fmt::format("displacement is at its limit, {:.3g} mm", 1e3 * state.motion)));
+  }
+  if (state.slack) list.push_back(trouble("info", "slack", model.name, "the cable is slack"));
+}
+
+void add_controller(const inverse::InverseController& controller, const std::string& name,
+                    Json& list) {
+  const std::string kind(inverse::inverse_status_name(controller.status()));
+  switch (controller.status()) {
+    case inverse::InverseStatus::on_target:
+      break;
+    case inverse::InverseStatus::rate_limited:
+      list.push_back(trouble("info", "rate-limited", name, "on the way; rates are limited"));
+      break;
+    case inverse::InverseStatus::out_of_reach:
+      list.push_back(trouble(
+          "warning", "out-of-reach", name,
+          fmt::format("the target is out of reach by {:.3g} mm", 1e3 * controller.error())));
+      break;
+    case inverse::InverseStatus::limits_conflict:
+      list.push_back(trouble("error", "limits-conflict", name, "limits contradict each other"));
+      break;
+  }
+}
+
+}  // namespace
+
+RobotState::RobotState(scene::Robot robot, const std::string& controller)
+    : robot_(std::move(robot)),
+      description_(describe(robot_)),
+      simulation_(std::make_unique<sim::Simulation>(robot_.model, robot_.threads())),
+      first_controller_(controller) {
+  for (std::size_t b = 0; b < robot_.model->bodies().size(); ++b) {
+    const auto& body = simulation_->fem_body(static_cast<int>(b));
+    fields_.push_back(std::make_unique<fem::NodalFields>(body.fem_model()));
+  }
+  if (!controller.empty()) choose_controller(controller);
+}
+
+void RobotState::step() {
+  try {
+    simulation_->step();
+    ++shape_;
+  } catch (const Error& error) {
+    stopped_ = StoppedRun{simulation_->steps() + 1, std::string(error_kind_name(error.kind())),
+                          error.what(), error.remedy()};
+  }
+}
+
+void RobotState::reset() {
+  release();
+  targets_.clear();
+  detach();
+  simulation_->reset();
+  if (!first_controller_.empty()) choose_controller(first_controller_);
+  stopped_.reset();
+  ++shape_;
+}
+
+void RobotState::settle() {
+  simulation_->solve_static();
+  ++shape_;
+}
+
+void RobotState::command(const SetCommand& command) {
+  const int index = simulation_->model().actuator_index(command.actuator);
+  const sim::ActuatorModel& actuator =
+      simulation_->model().actuators()[static_cast<std::size_t>(index)];
+  const bool motion = command.kind == sim::CommandKind::motion;
+  const sim::Limits& limits = motion ? actuator.motion : actuator.effort;
+  if (command.value < limits.min || command.value > limits.max) {
+    throw Error(ErrorKind::out_of_range, {.item = command.actuator},
+                fmt::format("{:g} is beyond the limits {:g} to {:g}", command.value, limits.min,
+                            limits.max),
+                "stay within the limits of the scene");
+  }
+  simulation_->command(index, {command.kind, sim::Signal::constant(command.value)});
+}
+
+void RobotState::detach() {
+  controller_.reset();
+  controller_name_.clear();
+}
+
+void RobotState::attach(const std::string& name, const inverse::InverseSettings& settings) {
+  detach();
+  controller_ = std::make_unique<inverse::InverseController>(*simulation_, settings);
+  controller_name_ = name;
+}
+
+void RobotState::choose_controller(const std::optional<std::string>& name) {
+  if (!name) return detach();
+  std::vector<std::string> known;
+  for (const scene::SceneController& controller : robot_.controllers) {
+    if (controller.name == *name) return attach(*name, controller.settings);
+    known.push_back(controller.name);
+  }
+  throw Error(ErrorKind::unknown_name, {.item = "controller"},
+              fmt::format("the scene has no controller '{}'", *name),
+              known.empty() ? "the scene has none"
+                            : fmt::format("choose among {}", fmt::join(known, ", ")));
+}
+
+int RobotState::task_of(int effector) const {
+  if (!controller_) return -1;
+  const auto& tasks = controller_->settings().tasks;
+  const auto found = std::ranges::find(tasks, effector, &inverse::Task::effector);
+  return found == tasks.end() ? -1 : static_cast<int>(found - tasks.begin());
+}
+
+void RobotState::set_target(const SetTarget& target) {
+  const int effector = simulation_->model().effector_index(target.effector);
+  if (!target.position) {
+    targets_.erase(target.effector);
+    for (const scene::SceneController& controller : robot_.controllers) {
+      if (controller.name != controller_name_) continue;
+      const auto found =
+          std::ranges::find(controller.settings.tasks, effector, &inverse::Task::effector);
+      if (found == controller.settings.tasks.end()) continue;
+      controller_->set_target(task_of(effector), found->target);
+    }
+    if (controller_name_ == kOwnController) detach();
+    return;
+  }
+  if (task_of(effector) < 0) {
+    inverse::InverseSettings settings;
+    settings.tasks = {{effector, inverse::Target::fixed(*target.position), {1.0}}};
+    attach(kOwnController, settings);
+  } else {
+    controller_->set_target(task_of(effector), inverse::Target::fixed(*target.position));
+  }
+  targets_[target.effector] = *target.position;
+}
+
+void RobotState::pull(const Pull& pull) {
+  const int body = simulation_->model().body_index(pull.body);
+  const Surface& surface = description_.surfaces[static_cast<std::size_t>(body)];
+  fem::Tether tether;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const int vertex = pull.vertices[k];
+    if (static_cast<std::size_t>(vertex) >= surface.nodes.size()) {
+      throw Error(ErrorKind::index_out_of_range, {.item = "vertices"},
+                  fmt::format("vertex {} of {}", vertex, surface.nodes.size()),
+                  "name vertices of the surface");
+    }
+    tether.nodes[k] = surface.nodes[static_cast<std::size_t>(vertex)];
+    tether.weights[k] = pull.weights[static_cast<Eigen::Index>(k)];
+  }
+  tether.anchor = pull.anchor;
+  tether.stiffness = pull.stiffness;
+  if (pulled_ && *pulled_ != body) release();
+  simulation_->fem_body(body).set_tether(tether);
+  pulled_ = body;
+}
+
+void RobotState::release() {
+  if (pulled_) simulation_->fem_body(*pulled_).set_tether(std::nullopt);
+  pulled_.reset();
+}
+
+void RobotState::fill_signals(Frame& frame, double real_time_factor) {
+  const sim::Model& model = simulation_->model();
+  std::vector<double>& values = frame.signals;
+  for (std::size_t i = 0; i < model.actuators().size(); ++i) {
+    values.push_back(simulation_->actuator(static_cast<int>(i)).effort);
+  }
+  for (std::size_t i = 0; i < model.actuators().size(); ++i) {
+    values.push_back(simulation_->actuator(static_cast<int>(i)).motion);
+  }
+  for (std::size_t i = 0; i < model.effectors().size(); ++i) {
+    const Vector3 value = simulation_->effector_value(static_cast<int>(i));
+    values.insert(values.end(), {value.x(), value.y(), value.z()});
+  }
+  for (std::size_t i = 0; i < model.effectors().size(); ++i) {
+    const int task = task_of(static_cast<int>(i));
+    values.push_back(task < 0 ? kNone : controller_->error(task));
+  }
+  double strain = 0.0, kinetic = 0.0, gravity = 0.0;
+  for (std::size_t b = 0; b < model.bodies().size(); ++b) {
+    mechanics::Body& body = simulation_->world().body(static_cast<int>(b));
+    strain += body.strain_energy();
+    kinetic += body.kinetic_energy();
+    gravity += body.gravity_energy();
+  }
+  values.insert(values.end(), {strain, kinetic, gravity});
+  const sim::StepReport& report = simulation_->report();
+  values.push_back(report.times.total);
+  for (const double seconds : report.times.seconds) values.push_back(seconds);
+  values.insert(values.end(), {real_time_factor, report.residual, report.smallest_volume_ratio});
+}
+
+void RobotState::fill_body(std::size_t index, const std::array<bool, kFieldCount>& wanted,
+                           BodyFrame& frame) {
+  const fem::FemBody& body = simulation_->fem_body(static_cast<int>(index));
+  const Surface& surface = description_.surfaces[index];
+  frame.positions.reserve(3 * surface.nodes.size());
+  for (const NodeId node : surface.nodes) {
+    for (int c = 0; c < 3; ++c) {
+      frame.positions.push_back(static_cast<float>(body.positions()(node, c)));
+    }
+  }
+  frame.fields.resize(kFieldCount);
+  nodal_.resize(static_cast<std::size_t>(body.positions().rows()));
+  for (int f = 0; f < kFieldCount; ++f) {
+    if (!wanted[static_cast<std::size_t>(f)]) continue;
+    switch (static_cast<Field>(f)) {
+      case Field::displacement:
+        fields_[index]->displacement(body, nodal_);
+        break;
+      case Field::strain:
+        fields_[index]->strain(body, nodal_);
+        break;
+      case Field::stress:
+        fields_[index]->stress(body, nodal_);
+        break;
+      case Field::force:
+        fields_[index]->row_force(body, simulation_->efforts(), nodal_);
+        break;
+    }
+    for (const NodeId node : surface.nodes) {
+      frame.fields[static_cast<std::size_t>(f)].push_back(
+          static_cast<float>(nodal_[static_cast<std::size_t>(node)]));
+    }
+  }
+}
+
+void RobotState::fill_points(Frame& frame) const {
+  const sim::Model& model = simulation_->model();
+  const auto put = [](std::vector<float>& list, const Vector3& point) {
+    for (int c = 0; c < 3; ++c) list.push_back(static_cast<float>(point[c]));
+  };
+  for (std::size_t i = 0; i < model.actuators().size(); ++i) {
+    const constraint::Cable* cable = model.cable(static_cast<int>(i));
+    if (cable == nullptr) continue;
+    const Points points = cable->points(simulation_->world().placement());
+    for (Eigen::Index k = 0; k < points.rows(); ++k) put(frame.cables, points.row(k).transpose());
+  }
+  for (std::size_t i = 0; i < model.effectors().size(); ++i) {
+    const auto index = static_cast<int>(i);
+    const bool point = std::string_view(model.effector(index).unit()) == "m";
+    put(frame.effectors, point ? simulation_->effector_value(index) : Vector3::Constant(kNone));
+    const int task = task_of(index);
+    const bool aimed = point && task >= 0;
+    put(frame.targets,
+        aimed ? controller_->settings().tasks[static_cast<std::size_t>(task)].target.at(
+                    simulation_->time())
+              : Vector3::Constant(kNone));
+  }
+}
+
+std::shared_ptr<const Frame> RobotState::frame(const std::array<bool, kFieldCount>& wanted,
+                                               double real_time_factor) {
+  auto frame = std::make_shared<Frame>();
+  frame->step = static_cast<std::uint64_t>(simulation_->steps());
+  frame->time = simulation_->time();
+  frame->hash = simulation_->state_hash();
+  frame->shape = shape_;
+  fill_signals(*frame, real_time_factor);
+  frame->bodies.resize(description_.surfaces.size());
+  for (std::size_t b = 0; b < frame->bodies.size(); ++b) fill_body(b, wanted, frame->bodies[b]);
+  fill_points(*frame);
+  if (pulled_) {
+    const fem::FemBody& body = simulation_->fem_body(*pulled_);
+    const Vector3 point = body.tether_point();
+    frame->pull = {point, body.tether()->anchor,
+                   body.tether()->stiffness * (body.tether()->anchor - point).norm()};
+  }
+  return frame;
+}
+
+std::string RobotState::status_members() const {
+  const sim::Model& model = simulation_->model();
+  Json commands = Json::object(), targets = Json::object(), troubles = Json::array();
+  for (std::size_t i = 0; i < model.actuators().size(); ++i) {
+    const sim::ActuatorModel& actuator = model.actuators()[i];
+    const sim::ActuatorState& state = simulation_->actuator(static_cast<int>(i));
+    const bool motion = state.command.kind == sim::CommandKind::motion;
+    commands[actuator.name] = {
+        {"quantity", motion ? sim::ActuatorModel::motion_name() : actuator.effort_name()},
+        {"value", state.command.signal.value(simulation_->time())},
+        {"owned", state.owner != nullptr}};
+    add_limits(actuator, state, troubles);
+  }
+  for (const auto& [name, position] : targets_) {
+    targets[name] = {position.x(), position.y(), position.z()};
+  }
+  if (controller_) add_controller(*controller_, controller_name_, troubles);
+  if (simulation_->report().scale < 1.0) {
+    troubles.push_back(trouble("warning", "cut-back", "step",
+                               "the motion was cut back, or elements would have inverted"));
+  }
+  Json status = {{"controller", controller_ ? Json(controller_name_) : Json(nullptr)},
+                 {"commands", commands},
+                 {"targets", targets},
+                 {"troubles", troubles},
+                 {"stopped", nullptr}};
+  if (stopped_) {
+    status["stopped"] = {{"step", stopped_->step},
+                         {"kind", stopped_->kind},
+                         {"message", stopped_->message},
+                         {"remedy", stopped_->remedy}};
+  }
+  return status.dump();
+}
+
+}  // namespace sinew::viewer

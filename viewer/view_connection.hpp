@@ -1,0 +1,92 @@
+/// @file
+/// One browser's WebSocket: messages in, texts and the latest frame out.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <boost/asio/steady_timer.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+
+#include "frame.hpp"
+#include "message.hpp"
+
+namespace sinew::viewer {
+
+class ViewConnection;
+
+/// What a connection tells whoever looks after all of them. All on the server's thread.
+class Connections {
+ public:
+  virtual ~Connections() = default;
+  virtual void greet(ViewConnection& connection) = 0;
+  virtual void receive(ViewConnection& connection, const Message& message) = 0;
+  virtual void lose(ViewConnection& connection) = 0;
+  virtual std::uint16_t generation() const = 0;
+};
+
+/// Lives as long as something is under way on its socket.
+class ViewConnection : public std::enable_shared_from_this<ViewConnection> {
+ public:
+  using Socket = boost::beast::websocket::stream<boost::beast::tcp_stream>;
+
+  /// @param stream of an HTTP connection that asked for a WebSocket. @param owner is told of what
+  /// comes; outlives the connection. @param number tells connections apart.
+  ViewConnection(boost::beast::tcp_stream&& stream, std::shared_ptr<Connections> owner, int number);
+
+  void accept(const boost::beast::http::request<boost::beast::http::empty_body>& request);
+  /// Queues a text; a reader too slow for its queue is closed.
+  void send(std::string text);
+  /// Queues bytes that are never dropped (surfaces).
+  void send(std::shared_ptr<const std::vector<std::byte>> bytes);
+  /// The frame to be sent next; replaces one that was not sent yet.
+  void offer(std::shared_ptr<const Frame> frame);
+  /// Another robot is shown: nothing that was sent before counts.
+  void forget_shape() { last_shape_ = kNoShape; }
+  void close(boost::beast::websocket::close_code code, const std::string& reason);
+
+  int number() const { return number_; }
+  bool greeted() const { return greeted_; }
+  int field() const { return field_; }
+  void choose_field(int field);
+  int pending = 0;  ///< requests not yet answered
+
+ private:
+  using Text = std::string;
+  using Bytes = std::shared_ptr<const std::vector<std::byte>>;
+  static constexpr std::uint64_t kNoShape = ~std::uint64_t{0};
+
+  void read();
+  void on_read(boost::beast::error_code error);
+  bool within_rate();
+  void pump();
+  void on_written(boost::beast::error_code error);
+  void end();
+
+  Socket socket_;
+  std::shared_ptr<Connections> owner_;
+  int number_;
+  boost::asio::steady_timer hello_timer_;
+  boost::beast::flat_buffer incoming_;
+  std::deque<std::variant<Text, Bytes>> outgoing_;
+  std::size_t queued_ = 0;
+  std::shared_ptr<const Frame> frame_;
+  std::shared_ptr<const Frame> last_frame_;
+  std::vector<std::byte> bytes_;
+  std::uint64_t last_shape_ = kNoShape;
+  std::uint32_t sequence_ = 0;
+  int field_ = -1;
+  bool open_ = false, writing_ = false, sending_frame_ = false, closing_ = false, greeted_ = false,
+       lost_ = false;
+  double allowance_;
+  std::chrono::steady_clock::time_point last_message_;
+};
+
+}  // namespace sinew::viewer

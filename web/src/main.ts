@@ -1,0 +1,287 @@
+// The page: puts the connection, the robot, the controls and the plots together.
+import 'uplot/dist/uPlot.min.css';
+import './style.css';
+import {gradient, MAPS, told} from './colours';
+import {Connection} from './connection';
+import {button, make} from './dom';
+import {Panel} from './panel';
+import {Plots} from './plots';
+import type {Frame, Scene, Status} from './protocol';
+import {Robot3d} from './robot3d';
+
+const FROZEN = 2000;  // ms without a frame while playing
+const byId = (id: string) => document.getElementById(id)!;
+
+let scene: Scene | null = null;
+let mode = '';
+let status: Status | null = null;
+let latest: Frame | null = null;
+let fresh = false;
+let frames = 0, framesPerSecond = 0, frameAt = 0, countedAt = performance.now();
+let field: string | null = null;
+let range: [number, number] | null = null;  // fixed, or what is seen
+let seen: [number, number] = [0, 0];
+let map = MAPS[0];
+const costs: number[] = [];
+let pulled: {at: number; message: Record<string, unknown>} | null = null;
+let aimed: Record<string, unknown> | null = null;
+
+const notices = new Map<string, string>();
+
+function send(message: Record<string, unknown>): void {
+  connection.request(message).then(() => { notices.delete('request'); alerts(); },
+                                   (e: Error) => { notices.set('request', e.message); alerts(); });
+}
+
+const robot = new Robot3d(byId('stage'), {
+  pull: (body, vertices, weights, anchor) => {
+    pulled = {at: 0, message: {type: 'pull', body: scene!.bodies[body].name, vertices, weights, anchor,
+                               stiffness: panel.stiffness}};
+  },
+  release: () => { pulled = null; send({type: 'release'}); },
+  target: (effector, position) => {
+    aimed = {type: 'target', effector: scene!.effectors[effector].name, position};
+  },
+});
+const panel = new Panel(byId('panel'), send, () => connection.client);
+const plots = new Plots(byId('plots'));
+
+// ------------------------------------------------------------------------------------------ top bar
+
+const title = make('h1', {textContent: 'Sinew'});
+const numbers = make('span', {className: 'numbers'});
+const fields = make('select', {'aria-label': 'Colour by'});
+const maps = make('select', {'aria-label': 'Colour map'}, ...MAPS.map((m) => new Option(m, m)));
+const wire = button('Wire', 'Wireframe (w)', () => { robot.wireframe = wire.classList.toggle('on'); fresh = true; });
+const follow = button('Follow', 'Follow the effector (o)', () => { robot.follow = follow.classList.toggle('on'); });
+const theme = button('Dark', 'Light or dark (d)', () => setTheme(document.documentElement.dataset.theme !== 'dark'));
+fields.onchange = () => chooseField(fields.value === '' ? null : fields.value);
+maps.onchange = () => { map = maps.value; robot.map(map); legend(); };
+byId('top').append(title, make('label', {}, 'Colour ', fields), maps, wire, follow,
+                   button('Fit', 'See the whole robot (f)', () => robot.fit()),
+                   button('Picture', 'Save a picture (p)', picture), theme,
+                   button('?', 'Keyboard shortcuts (?)', help), numbers);
+
+function setTheme(dark: boolean): void {
+  document.documentElement.dataset.theme = dark ? 'dark' : 'light';
+  theme.classList.toggle('on', dark);
+  robot.theme();
+  if (scene) plots.setScene(scene);
+}
+
+function chooseField(name: string | null): void {
+  field = name;
+  fields.value = name ?? '';
+  robot.coloured = name !== null;
+  range = null;
+  connection.request({type: 'field', name}).catch(() => undefined);
+  fresh = true;
+  legend();
+}
+
+function picture(): void {
+  robot.draw();
+  const link = make('a', {href: robot.renderer.domElement.toDataURL('image/png'),
+                          download: `${scene?.name ?? 'sinew'}.png`});
+  link.click();
+}
+
+// ------------------------------------------------------------------------------------------- legend
+
+const low = make('span', {}), high = make('span', {}), bar = make('span', {className: 'bar'});
+const fixed = make('input', {type: 'checkbox', 'aria-label': 'Keep the range'});
+fixed.onchange = () => { range = fixed.checked ? [...seen] : null; };
+const name = make('div', {});
+byId('legend').append(name, bar, make('span', {className: 'ends'}, high, low),
+                      make('label', {className: 'line'}, fixed, 'keep the range'));
+
+function legend(): void {
+  const info = scene?.fields.find((f) => f.name === field);
+  byId('legend').style.display = info ? 'block' : 'none';
+  if (!info) return;
+  const [a, b] = range ?? seen;
+  name.textContent = info.label;
+  bar.style.background = gradient(map);
+  low.textContent = told(a, info.unit);
+  high.textContent = told(b, info.unit);
+}
+
+function measure(frame: Frame): void {
+  let a = Infinity, b = -Infinity;
+  for (const {values} of frame.fields.values()) {
+    for (const value of values) {
+      if (value < a) a = value;
+      if (value > b) b = value;
+    }
+  }
+  if (a <= b) seen = [a, b];
+}
+
+// ------------------------------------------------------------------------------------------- alerts
+
+function alerts(): void {
+  const list: [string, string, HTMLElement?][] = [];
+  const source = status?.source;
+  if (!connection.open) list.push(['error', notices.get('connection') || 'The program is not there; trying again.']);
+  if (source?.stopped) {
+    const {step, message, remedy} = source.stopped;
+    list.push(['error', `The run stopped at step ${step}: ${message}${remedy && !message.includes(remedy) ? `; ${remedy}` : ''}`,
+               button('Reset', 'Back to the start', () => panel.reset())]);
+  }
+  if (isFrozen()) list.push(['error', 'No frames for two seconds.']);
+  for (const [key, text] of notices) if (key !== 'connection') list.push(['warning', text]);
+  const troubles = source?.troubles ?? [];
+  for (const t of troubles.filter((x) => x.level !== 'info').slice(0, 5)) list.push([t.level, `${t.subject}: ${t.text}`]);
+  const slack = troubles.filter((t) => t.kind === 'slack').map((t) => t.subject);
+  if (slack.length > 0 && source?.controller === null) list.push(['info', `slack: ${slack.join(', ')}`]);
+  if (source?.slow) list.push(['warning', 'The simulation cannot keep up with real time.']);
+  const text = JSON.stringify(list.map(([level, what]) => [level, what]));
+  if (byId('alerts').dataset.text === text) return;
+  byId('alerts').dataset.text = text;
+  byId('alerts').replaceChildren(...list.map(([level, what, extra]) =>
+    make('div', {className: `alert ${level}`}, what + ' ', ...(extra ? [extra] : []))));
+}
+
+function isFrozen(): boolean {
+  return connection.open && !!status?.source.playing && performance.now() - frameAt > FROZEN;
+}
+
+// ----------------------------------------------------------------------------------------- keyboard
+
+const KEYS: [string, string, () => void][] = [
+  [' ', 'play or pause', () => panel.toggle()], ['s', 'step', () => panel.step()],
+  ['r', 'reset', () => panel.reset()], ['f', 'see the whole robot', () => robot.fit()],
+  ['w', 'wireframe', () => wire.click()], ['o', 'follow the effector', () => follow.click()],
+  ['c', 'next colouring', nextField], ['d', 'light or dark', () => theme.click()],
+  ['p', 'save a picture', picture], ['?', 'this list', help],
+];
+const dialog = make('dialog', {'aria-label': 'Keyboard shortcuts'});
+document.body.append(dialog);
+
+function nextField(): void {
+  const names = [null, ...(scene?.fields ?? []).map((f) => f.name)];
+  chooseField(names[(names.indexOf(field) + 1) % names.length]);
+}
+
+function help(): void {
+  if (dialog.open) return dialog.close();
+  const rows = KEYS.map(([key, what]) => make('tr', {}, make('td', {}, make('kbd', {textContent: key === ' ' ? 'space' : key})),
+                                              make('td', {textContent: what})));
+  const mouse = [['drag', 'turn'], ['right drag', 'move (on the robot: pull)'], ['wheel', 'zoom'],
+                 ['Shift drag', 'pull at the robot'], ['drag the arrows', 'move the target']];
+  rows.push(...mouse.map(([key, what]) => make('tr', {}, make('td', {}, make('kbd', {textContent: key})), make('td', {textContent: what}))));
+  dialog.replaceChildren(make('table', {}, ...rows), button('Close', 'Close', () => dialog.close()));
+  dialog.showModal();
+}
+
+addEventListener('keydown', (event) => {
+  const target = event.target as HTMLElement;
+  if (event.ctrlKey || event.metaKey || event.altKey || /INPUT|SELECT|TEXTAREA/.test(target.tagName)) return;
+  const found = KEYS.find(([key]) => key === event.key);
+  if (!found || (event.key === ' ' && target.tagName === 'BUTTON')) return;
+  event.preventDefault();
+  found[2]();
+});
+
+// --------------------------------------------------------------------------------------- connection
+
+const connection = new Connection({
+  scene: (next, what) => {
+    scene = next;
+    mode = what;
+    latest = null;
+    title.textContent = next.name;
+    title.title = Panel.size(next);
+    document.title = `${next.name} - Sinew`;
+    fields.replaceChildren(new Option('plain', ''), ...next.fields.map((f) => new Option(f.label, f.name)));
+    robot.scene(next);
+    panel.scene(next);
+    plots.setScene(next);
+    if (field !== null) chooseField(field);
+  },
+  surface: (surface) => robot.surface(surface),
+  frame: (frame) => {
+    const begin = performance.now();
+    ++frames;
+    frameAt = begin;
+    // A frame that is skipped may be the one with the positions.
+    if (fresh && latest) {
+      for (const [k, v] of latest.positions) if (!frame.positions.has(k)) frame.positions.set(k, v);
+      frame.cables ??= latest.cables;
+      frame.effectors ??= latest.effectors;
+    }
+    latest = frame;
+    fresh = true;
+    plots.add(frame);
+    costs.push(performance.now() - begin);
+  },
+  status: (next) => {
+    status = next;
+    panel.update(next);
+    robot.steerable(next.driver === connection.client);
+    alerts();
+  },
+  connected: (yes, why) => {
+    if (yes) notices.delete('connection');
+    else notices.set('connection', why ? `Disconnected: ${why}` : 'The program is not there; trying again.');
+    alerts();
+  },
+  notice: (_, text) => { notices.set('notice', text); alerts(); },
+});
+
+function tick(now: number): void {
+  requestAnimationFrame(tick);
+  const begin = performance.now();
+  if (fresh && latest && scene) {
+    fresh = false;
+    measure(latest);
+    robot.update(latest, ...(range ?? seen));
+    panel.follow(scene, latest.signals);
+    legend();
+  }
+  plots.draw(now);
+  if (pulled && now - pulled.at > 16) { send(pulled.message); pulled.at = now; }
+  if (aimed) { send(aimed); aimed = null; }
+  if (now - countedAt > 500) {
+    framesPerSecond = 1000 * frames / (now - countedAt);
+    frames = 0;
+    countedAt = now;
+    show();
+    alerts();
+  }
+  costs.push(performance.now() - begin);
+  if (costs.length > 600) costs.splice(0, 300);
+  robot.draw();
+}
+
+function signal(key: string): number {
+  const k = scene?.signals.findIndex((s) => s.key === key) ?? -1;
+  return k >= 0 && latest ? latest.signals[k] : NaN;
+}
+
+function show(): void {
+  if (!latest) return;
+  numbers.textContent = `t = ${latest.time.toFixed(2)} s, step ${latest.step}, `
+    + `${signal('real_time_factor').toFixed(2)} x real time, ${told(signal('time.step'), 's')} a step, `
+    + `${framesPerSecond.toFixed(0)} frames/s`;
+}
+
+requestAnimationFrame(tick);
+setTheme(matchMedia('(prefers-color-scheme: dark)').matches);
+
+/** For tests and scripts; stable. */
+const view = {
+  state: () => ({
+    connected: connection.open, client: connection.client, instance: connection.instance, mode,
+    driver: status?.driver ?? null, clients: status?.clients ?? 0, status: status?.source ?? null,
+    step: latest?.step ?? -1, time: latest?.time ?? NaN, hash: latest?.hash ?? '', sequence: latest?.sequence ?? -1,
+    signals: Object.fromEntries((scene?.signals ?? []).map((s, k) => [s.key, latest?.signals[k] ?? NaN])),
+    field, range: range ?? seen, framesPerSecond, frozen: isFrozen(),
+    scriptMs: costs.length ? [...costs].sort((a, b) => a - b)[costs.length >> 1] : NaN,
+  }),
+  scene: () => scene,
+  request: (message: Record<string, unknown>) => connection.request(message),
+  colour: chooseField,
+};
+declare global { interface Window { sinewView: typeof view } }
+window.sinewView = view;

@@ -1,0 +1,160 @@
+// The controls: run, view, actuators, targets, and how things stand.
+import {told} from './colours';
+import {button, make} from './dom';
+import type {Actuator, Effector, Quantity, Scene, Status} from './protocol';
+
+const SPEEDS: [number, string][] = [[0.1, '0.1 x'], [0.25, '0.25 x'], [0.5, '0.5 x'], [1, 'real time'],
+                                    [2, '2 x'], [5, '5 x'], [0, 'as fast as it can']];
+// Shown units of sliders: mm for m; N as it is.
+const SHOWN: Record<string, [number, string]> = {m: [1e3, 'mm'], N: [1, 'N']};
+
+export type Send = (message: Record<string, unknown>) => void;
+
+interface Row {box: HTMLElement; slider: HTMLInputElement; number: HTMLInputElement; quantity: Quantity}
+
+export class Panel {
+  private rows = new Map<string, Row>();
+  private targets = new Map<string, HTMLInputElement[]>();
+  private play = button('Play', 'Play or pause (space)', () => this.toggle());
+  private steps = make('input', {type: 'number', min: '1', max: '10000', value: '1', 'aria-label': 'Number of steps'});
+  private speed = make('select', {'aria-label': 'Speed'});
+  private controller = make('select', {'aria-label': 'Controller'});
+  private drive = button('Take over', 'Take over driving', () => this.send({type: 'drive', on: true}));
+  private who = make('span', {});
+  private status: Status | null = null;
+  stiffness = 20;  // N/m, of the hand's spring
+
+  constructor(private root: HTMLElement, private send: Send, private client: () => number) {
+    this.speed.append(...SPEEDS.map(([value, text]) => new Option(text, String(value))));
+    this.speed.value = '1';
+    this.speed.onchange = () => this.send({type: 'speed', factor: Number(this.speed.value)});
+    this.controller.onchange = () =>
+      this.send({type: 'controller', name: this.controller.value === '' ? null : this.controller.value});
+    this.steps.style.width = '72px';
+  }
+
+  toggle(): void { this.send({type: this.status?.source.playing ? 'pause' : 'play'}); }
+  step(): void { this.send({type: 'step', count: Math.max(1, Math.round(Number(this.steps.value) || 1))}); }
+  reset(): void { this.send({type: 'reset'}); }
+
+  scene(scene: Scene): void {
+    this.rows.clear();
+    this.targets.clear();
+    this.controller.replaceChildren(new Option('none (by hand)', ''),
+                                    ...scene.controllers.map((c) => new Option(c.name, c.name)));
+    const heading = (text: string) => make('h2', {textContent: text});
+    this.root.replaceChildren(
+      heading('Run'),
+      make('div', {className: 'line'}, this.play, button('Step', 'Advance by so many steps (s)', () => this.step()),
+           this.steps, button('Reset', 'Back to the start (r)', () => this.reset())),
+      make('div', {className: 'line'}, make('label', {}, 'Speed', this.speed),
+           button('Settle', 'Static equilibrium at the present inputs', () => this.send({type: 'settle'}))),
+      make('div', {className: 'line'}, this.who, this.drive),
+      ...(scene.actuators.length ? [heading('Actuators'), ...scene.actuators.map((a) => this.actuator(a))] : []),
+      heading('Control'), make('div', {className: 'line'}, make('label', {}, 'Controller', this.controller)),
+      ...scene.effectors.filter((e) => e.kind === 'point').map((e) => this.target(e)),
+      heading('Hand'), this.hand(),
+    );
+  }
+
+  private actuator(actuator: Actuator): HTMLElement {
+    const quantity = actuator.quantities[0];
+    const [scale, unit] = SHOWN[quantity.unit] ?? [1, quantity.unit];
+    const label = `${actuator.name}: ${quantity.name} in ${unit}`;
+    const range = {min: String(scale * quantity.low), max: String(scale * quantity.high), step: 'any'};
+    const slider = make('input', {type: 'range', ...range, value: '0', 'aria-label': label});
+    const number = make('input', {type: 'number', ...range, value: '0', 'aria-label': label});
+    const change = (input: HTMLInputElement) => {
+      const value = Math.min(Math.max(Number(input.value), scale * quantity.low), scale * quantity.high);
+      slider.value = number.value = String(Number(value.toPrecision(4)));
+      this.send({type: 'command', actuator: actuator.name, quantity: quantity.name, value: value / scale});
+    };
+    slider.oninput = () => change(slider);
+    number.onchange = () => change(number);
+    const name = make('span', {className: 'name', title: label}, actuator.name + ' ',
+                      make('i', {textContent: unit}));
+    const box = make('div', {className: 'row'}, name, slider, number);
+    this.rows.set(actuator.name, {box, slider, number, quantity});
+    return box;
+  }
+
+  private target(effector: Effector): HTMLElement {
+    const inputs = ['x', 'y', 'z'].map((axis) =>
+      make('input', {type: 'number', step: 'any', 'aria-label': `${effector.name}: target ${axis} in mm`,
+                     placeholder: axis}));
+    const send = () => {
+      if (inputs.some((input) => input.value === '')) return;
+      this.send({type: 'target', effector: effector.name, position: inputs.map((i) => Number(i.value) / 1e3)});
+    };
+    inputs.forEach((input) => { input.onchange = send; });
+    this.targets.set(effector.name, inputs);
+    const home = button(effector.name, `${effector.name}: back to the scene's own target`, () => {
+      inputs.forEach((input) => { input.value = ''; });
+      this.send({type: 'target', effector: effector.name, position: null});
+    });
+    return make('div', {className: 'xyz'}, home, ...inputs);
+  }
+
+  private hand(): HTMLElement {
+    const input = make('input', {type: 'number', min: '0.1', max: '10000', value: String(this.stiffness),
+                                 'aria-label': 'Stiffness of the hand in N/m'});
+    input.style.width = '80px';
+    input.onchange = () => { this.stiffness = Math.max(Number(input.value) || 20, 0.1); };
+    return make('div', {className: 'line'}, make('label', {}, 'Spring', input, 'N/m'),
+                make('span', {textContent: 'Shift and drag on the robot'}));
+  }
+
+  update(status: Status): void {
+    this.status = status;
+    const {source} = status;
+    const mine = status.driver === this.client();
+    this.play.textContent = source.playing ? 'Pause' : 'Play';
+    this.play.classList.toggle('on', source.playing);
+    this.speed.value = String(source.speed ?? 1);
+    if (source.controller !== null && ![...this.controller.options].some((o) => o.value === source.controller)) {
+      this.controller.append(new Option(source.controller, source.controller));
+    }
+    this.controller.value = source.controller ?? '';
+    this.who.textContent = mine ? `You drive; ${status.clients} connected`
+      : status.driver === null ? 'Nobody drives' : 'Another browser drives';
+    this.drive.hidden = mine;
+    for (const element of this.root.querySelectorAll<HTMLInputElement>('button, input, select')) {
+      if (element !== this.drive as unknown) element.disabled = !mine;
+    }
+    for (const [name, row] of this.rows) {
+      const command = source.commands?.[name];
+      if (!command) continue;
+      const limited = source.troubles.some((t) => t.subject === name && t.kind.endsWith('limit'));
+      row.box.classList.toggle('limit', limited);
+      row.slider.disabled = row.number.disabled = !mine || command.owned;
+      row.box.title = command.owned ? `controller ${source.controller} drives ${name}` : '';
+    }
+    for (const [name, inputs] of this.targets) {
+      const position = source.targets?.[name];
+      if (position && !inputs.includes(document.activeElement as HTMLInputElement)) {
+        inputs.forEach((input, k) => { input.value = (1e3 * position[k]).toFixed(2); });
+      }
+    }
+  }
+
+  /** Shows what the actuators do where a controller drives them, or what they are told. */
+  follow(scene: Scene, signals: Float64Array): void {
+    scene.actuators.forEach((actuator, k) => {
+      const row = this.rows.get(actuator.name);
+      const command = this.status?.source.commands?.[actuator.name];
+      if (!row || !command || document.activeElement === row.slider || document.activeElement === row.number) return;
+      const motion = row.quantity.name === 'displacement';
+      const offset = motion ? scene.actuators.length : 0;
+      const told = command.quantity === row.quantity.name && !command.owned;
+      const [scale] = SHOWN[row.quantity.unit] ?? [1];
+      const text = String(Number((scale * (told ? command.value : signals[offset + k])).toPrecision(4)));
+      if (row.number.value !== text) row.number.value = row.slider.value = text;
+    });
+  }
+
+  /** A scene's number for people. */
+  static size(scene: Scene): string {
+    return scene.bodies.map((b) => `${b.nodes} nodes, ${b.elements} elements`).join('; ')
+      + `, ${told(scene.time_step, 's')} a step`;
+  }
+}

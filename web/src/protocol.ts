@@ -1,0 +1,84 @@
+// What the program sends: docs/view_protocol.md in TypeScript. All numbers are SI.
+
+export interface Quantity {
+  name: string; unit: string; min: number | null; max: number | null; rate: number | null;
+  low: number; high: number;
+}
+export interface Actuator {name: string; type: string; body: string; quantities: Quantity[]; points: number}
+export interface Effector {name: string; kind: 'point' | 'orientation'; directions: number[][]}
+export interface Controller {name: string; type: string; effectors: string[]}
+export interface Signal {key: string; label: string; unit: string; group: string}
+export interface FieldInfo {name: string; label: string; unit: string}
+export interface Scene {
+  name: string; time_step: number; gravity: number[]; bounds: number[][];
+  bodies: {name: string; vertices: number; triangles: number; nodes: number; elements: number}[];
+  fields: FieldInfo[]; actuators: Actuator[]; effectors: Effector[]; controllers: Controller[];
+  signals: Signal[];
+}
+export interface Trouble {level: 'info' | 'warning' | 'error'; kind: string; subject: string; text: string}
+export interface SourceStatus {
+  playing: boolean; speed: number; slow: boolean; controller: string | null;
+  commands: Record<string, {quantity: string; value: number; owned: boolean}>;
+  targets: Record<string, number[]>; troubles: Trouble[];
+  stopped: {step: number; kind: string; message: string; remedy: string} | null;
+}
+export interface Status {clients: number; driver: number | null; source: SourceStatus}
+
+export interface Surface {body: number; rest: Float32Array; triangles: Uint32Array}
+export interface Frame {
+  sequence: number; step: number; time: number; hash: string; signals: Float64Array;
+  positions: Map<number, Float32Array>; fields: Map<number, {field: number; values: Float32Array}>;
+  cables?: Float32Array; effectors?: Float32Array; targets?: Float32Array; pull?: Float32Array;
+}
+
+const MAGIC = 0x31574e53;
+const SURFACE = 1, FRAME = 2;
+
+/** Reads a binary message; arrays are views of its bytes. */
+export function decode(buffer: ArrayBuffer): {generation: number; surface?: Surface; frame?: Frame} {
+  const view = new DataView(buffer);
+  if (buffer.byteLength < 8 || view.getUint32(0, true) !== MAGIC) throw new Error('no message of Sinew');
+  const kind = view.getUint16(4, true), generation = view.getUint16(6, true);
+  if (kind === SURFACE) return {generation, surface: decodeSurface(buffer, view)};
+  if (kind === FRAME) return {generation, frame: decodeFrame(buffer, view)};
+  throw new Error(`message of kind ${kind}`);
+}
+
+function decodeSurface(buffer: ArrayBuffer, view: DataView): Surface {
+  const vertices = view.getUint32(12, true), triangles = view.getUint32(16, true);
+  return {
+    body: view.getUint32(8, true),
+    rest: new Float32Array(buffer, 24, 3 * vertices),
+    triangles: new Uint32Array(buffer, 24 + 12 * vertices, 3 * triangles),
+  };
+}
+
+function decodeFrame(buffer: ArrayBuffer, view: DataView): Frame {
+  const count = view.getUint32(12, true);
+  const frame: Frame = {
+    sequence: view.getUint32(8, true),
+    step: Number(view.getBigUint64(16, true)),
+    time: view.getFloat64(24, true),
+    hash: view.getBigUint64(32, true).toString(16).padStart(16, '0'),
+    signals: new Float64Array(buffer, 40, count),
+    positions: new Map(), fields: new Map(),
+  };
+  for (let at = 40 + 8 * count; at + 8 <= buffer.byteLength;) {
+    const kind = view.getUint16(at, true), index = view.getUint16(at + 2, true);
+    const bytes = view.getUint32(at + 4, true);
+    at += 8;
+    if (kind === 2) {
+      frame.fields.set(index, {field: view.getUint32(at, true),
+                               values: new Float32Array(buffer, at + 4, bytes / 4 - 1)});
+    } else {
+      const values = new Float32Array(buffer, at, bytes / 4);
+      if (kind === 1) frame.positions.set(index, values);
+      if (kind === 3) frame.cables = values;
+      if (kind === 4) frame.effectors = values;
+      if (kind === 5) frame.targets = values;
+      if (kind === 6) frame.pull = values;
+    }
+    at += bytes;
+  }
+  return frame;
+}

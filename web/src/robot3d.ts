@@ -1,0 +1,310 @@
+// The robot in three dimensions: surfaces, cables, effectors, targets, ground, and what the mouse does.
+import {
+  AmbientLight, AxesHelper, Box3, BufferAttribute, BufferGeometry, Color, DirectionalLight, DoubleSide,
+  GridHelper, HemisphereLight, Line, LineBasicMaterial, LineDashedMaterial, Mesh, MeshBasicMaterial,
+  MeshStandardMaterial, Object3D, PerspectiveCamera, Plane, Raycaster, Scene as World, SphereGeometry,
+  Vector2, Vector3, WebGLRenderer,
+} from 'three';
+import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
+import {TransformControls} from 'three/addons/controls/TransformControls.js';
+import {linearTable, paint} from './colours';
+import type {Frame, Scene, Surface} from './protocol';
+
+const BODY_COLOURS = [0xd9a066, 0x7fa6c9, 0x9cb380];  // told apart by lightness too
+const SLACK = 0x8a8f98, TAUT = 0x0072b2, STRONG = 0xd55e00;  // Okabe and Ito 2008
+
+export interface Hand {
+  pull(body: number, vertices: number[], weights: number[], anchor: number[]): void;
+  release(): void;
+  target(effector: number, position: number[]): void;
+}
+
+interface Body {mesh: Mesh<BufferGeometry, MeshStandardMaterial>; wire: Mesh; colours: Float32Array}
+
+export class Robot3d {
+  readonly renderer: WebGLRenderer;
+  private world = new World();
+  private camera = new PerspectiveCamera(40, 1, 1e-4, 100);
+  private orbit: OrbitControls;
+  private gizmo: TransformControls;
+  private handle = new Object3D();
+  private robot = new Object3D();
+  private bodies: Body[] = [];
+  private cables: Line[] = [];
+  private cableCounts: number[] = [];
+  private cableSignals: number[] = [];
+  private effectors: Mesh[] = [];
+  private targets: Mesh[] = [];
+  private spring = new Line(new BufferGeometry(), new LineBasicMaterial({color: STRONG}));
+  private size = 0.2;
+  private table = linearTable('viridis');
+  private grabbed: {plane: Plane; body: number; vertices: number[]; weights: number[]} | null = null;
+  private dragging = false;
+  private steered = -1;
+  private bounds = new Box3();
+  follow = false;
+  wireframe = false;
+  coloured = false;
+
+  constructor(private stage: HTMLElement, private hand: Hand) {
+    this.renderer = new WebGLRenderer({antialias: true, preserveDrawingBuffer: true});
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    stage.append(this.renderer.domElement);
+    const canvas = this.renderer.domElement;
+    canvas.tabIndex = 0;
+    canvas.setAttribute('aria-label', 'The robot; drag to turn, Shift and drag on it to pull');
+    this.camera.up.set(0, 0, 1);
+    this.orbit = new OrbitControls(this.camera, canvas);
+    this.orbit.enableDamping = true;
+    this.orbit.dampingFactor = 0.2;
+    this.gizmo = new TransformControls(this.camera, canvas);
+    this.gizmo.setSize(0.6);
+    this.gizmo.attach(this.handle);
+    this.gizmo.addEventListener('dragging-changed', (event) => {
+      this.dragging = event.value as boolean;
+      this.orbit.enabled = !this.dragging;
+    });
+    this.gizmo.addEventListener('objectChange', () => {
+      if (this.steered >= 0) this.hand.target(this.steered, this.handle.position.toArray());
+    });
+    const helper = this.gizmo.getHelper();
+    helper.visible = false;
+    this.world.add(this.robot, this.handle, helper, this.spring);
+    this.world.add(new AmbientLight(0xffffff, 0.5), new HemisphereLight(0xffffff, 0x8090a0, 1.2));
+    const sun = new DirectionalLight(0xffffff, 1.8);
+    sun.position.set(1, -2, 3);
+    this.world.add(sun);
+    this.spring.frustumCulled = false;
+    canvas.addEventListener('pointerdown', (event) => this.press(event), true);
+    canvas.addEventListener('pointermove', (event) => this.move(event));
+    addEventListener('pointerup', () => this.letGo());
+    new ResizeObserver(() => this.resize()).observe(stage);
+    this.theme();
+  }
+
+  theme(): void {
+    const style = getComputedStyle(document.documentElement);
+    this.world.background = new Color(style.getPropertyValue('--stage').trim() || '#ffffff');
+  }
+
+  private resize(): void {
+    const {clientWidth: w, clientHeight: h} = this.stage;
+    this.renderer.setSize(w, h);
+    this.camera.aspect = w / Math.max(h, 1);
+    this.camera.updateProjectionMatrix();
+  }
+
+  scene(scene: Scene): void {
+    this.robot.clear();
+    this.bodies = [];
+    const [low, high] = scene.bounds.map((p) => new Vector3(...(p as [number, number, number])));
+    this.size = low.distanceTo(high);
+    this.bounds.set(low, high);
+    this.ground(low, high);
+    this.cables = [];
+    this.cableCounts = [];
+    this.cableSignals = [];
+    scene.actuators.forEach((actuator, index) => {
+      if (actuator.points === 0) return;
+      const line = new Line(new BufferGeometry(), new LineBasicMaterial({color: TAUT}));
+      line.frustumCulled = false;
+      line.renderOrder = 1;
+      line.geometry.setAttribute('position', new BufferAttribute(new Float32Array(3 * actuator.points), 3));
+      this.cables.push(line);
+      this.cableCounts.push(actuator.points);
+      this.cableSignals.push(index);
+      this.robot.add(line);
+    });
+    const ball = new SphereGeometry(0.014 * this.size, 20, 14);
+    const marks = (color: number, opacity: number) => scene.effectors.map(() => {
+      const mesh = new Mesh(ball, new MeshBasicMaterial({color, transparent: true, opacity, depthTest: false}));
+      mesh.renderOrder = 2;
+      mesh.visible = false;
+      this.robot.add(mesh);
+      return mesh;
+    });
+    this.effectors = marks(0x000000, 0.7);
+    this.targets = marks(STRONG, 0.8);
+    this.camera.near = 1e-3 * this.size;
+    this.camera.far = 50 * this.size;
+    this.fit();
+  }
+
+  private ground(low: Vector3, high: Vector3): void {
+    const span = 4 * Math.max(high.x - low.x, high.y - low.y, 0.3 * this.size);
+    const cell = 10 ** Math.floor(Math.log10(span / 4));
+    const cells = 2 * Math.ceil(span / cell / 2);
+    const grid = new GridHelper(cells * cell, cells, 0x888888, 0x888888);
+    grid.rotation.x = Math.PI / 2;
+    grid.position.set((low.x + high.x) / 2, (low.y + high.y) / 2, low.z);
+    grid.position.x = Math.round(grid.position.x / cell) * cell;
+    grid.position.y = Math.round(grid.position.y / cell) * cell;
+    const material = grid.material as LineBasicMaterial;
+    material.transparent = true;
+    material.opacity = 0.25;
+    const axes = new AxesHelper(0.15 * this.size);
+    this.robot.add(grid, axes);
+    this.stage.dataset.cell = `${cell}`;
+  }
+
+  surface(surface: Surface): void {
+    const geometry = new BufferGeometry();
+    geometry.setAttribute('position', new BufferAttribute(surface.rest.slice(), 3));
+    geometry.setIndex(new BufferAttribute(surface.triangles, 1));
+    const colours = new Float32Array(surface.rest.length);
+    geometry.setAttribute('color', new BufferAttribute(colours, 3));
+    geometry.computeVertexNormals();
+    const color = BODY_COLOURS[surface.body % BODY_COLOURS.length];
+    const material = new MeshStandardMaterial({color, roughness: 0.65, side: DoubleSide,
+                                               transparent: true, opacity: 0.82});
+    const mesh = new Mesh(geometry, material);
+    const wire = new Mesh(geometry, new MeshBasicMaterial({color: 0x222222, wireframe: true, transparent: true,
+                                                           opacity: 0.25}));
+    mesh.frustumCulled = wire.frustumCulled = false;
+    wire.visible = this.wireframe;
+    this.bodies[surface.body] = {mesh, wire, colours};
+    this.robot.add(mesh, wire);
+  }
+
+  map(name: string): void { this.table = linearTable(name); }
+
+  /** Takes a frame; field values are painted between low and high. */
+  update(frame: Frame, low: number, high: number): void {
+    for (const [index, positions] of frame.positions) {
+      const body = this.bodies[index];
+      const attribute = body?.mesh.geometry.getAttribute('position') as BufferAttribute | undefined;
+      if (!body || !attribute || attribute.array.length !== positions.length) continue;
+      (attribute.array as Float32Array).set(positions);
+      attribute.needsUpdate = true;
+      body.mesh.geometry.computeVertexNormals();
+      body.mesh.geometry.boundingSphere = null;
+      body.mesh.geometry.boundingBox = null;
+    }
+    for (const [index, {values}] of frame.fields) {
+      const body = this.bodies[index];
+      if (!body) continue;
+      paint(values, low, high, this.table, body.colours);
+      (body.mesh.geometry.getAttribute('color') as BufferAttribute).needsUpdate = true;
+    }
+    for (const body of this.bodies) {
+      const {material} = body.mesh;
+      if (material.vertexColors !== this.coloured) {
+        material.vertexColors = this.coloured;
+        material.needsUpdate = true;
+        const index = this.bodies.indexOf(body);
+        material.color.set(this.coloured ? 0xffffff : BODY_COLOURS[index % BODY_COLOURS.length]);
+      }
+      body.wire.visible = this.wireframe;
+    }
+    if (frame.cables) this.drawCables(frame.cables, frame.signals);
+    if (frame.effectors) this.place(this.effectors, frame.effectors);
+    if (frame.targets) this.place(this.targets, frame.targets);
+    this.steer();
+    this.drawSpring(frame.pull);
+  }
+
+  private drawCables(points: Float32Array, signals: Float64Array): void {
+    let at = 0;
+    this.cables.forEach((line, k) => {
+      const count = 3 * this.cableCounts[k];
+      const attribute = line.geometry.getAttribute('position') as BufferAttribute;
+      (attribute.array as Float32Array).set(points.subarray(at, at + count));
+      attribute.needsUpdate = true;
+      at += count;
+      const slack = !(signals[this.cableSignals[k]] > 0);
+      const dashed = line.material instanceof LineDashedMaterial;
+      if (slack !== dashed) {
+        (line.material as LineBasicMaterial).dispose();
+        line.material = slack
+          ? new LineDashedMaterial({color: SLACK, dashSize: 0.012 * this.size, gapSize: 0.012 * this.size})
+          : new LineBasicMaterial({color: TAUT});
+      }
+      if (slack) line.computeLineDistances();
+    });
+  }
+
+  private place(marks: Mesh[], points: Float32Array): void {
+    marks.forEach((mark, k) => {
+      mark.visible = Number.isFinite(points[3 * k]);
+      if (mark.visible) mark.position.fromArray(points, 3 * k);
+    });
+  }
+
+  /** Puts the gizmo at the first target, or at the first effector where nothing steers. */
+  private steer(): void {
+    const marks = this.targets.some((t) => t.visible) ? this.targets : this.effectors;
+    this.steered = marks.findIndex((m) => m.visible);
+    this.gizmo.getHelper().visible = this.steered >= 0 && this.gizmo.enabled;
+    if (this.steered >= 0 && !this.dragging) this.handle.position.copy(marks[this.steered].position);
+  }
+
+  steerable(yes: boolean): void {
+    this.gizmo.enabled = yes;
+    if (!yes) this.gizmo.getHelper().visible = false;
+  }
+
+  private drawSpring(pull: Float32Array | undefined): void {
+    this.spring.visible = pull !== undefined;
+    if (pull) this.spring.geometry.setAttribute('position', new BufferAttribute(pull.slice(0, 6), 3));
+  }
+
+  fit(): void {
+    const middle = this.bounds.getCenter(new Vector3());
+    this.orbit.target.copy(middle);
+    this.camera.position.copy(middle).add(new Vector3(0.9, -1.5, 0.5).multiplyScalar(1.25 * this.size));
+    this.orbit.update();
+  }
+
+  private ray(event: PointerEvent): Raycaster {
+    const box = this.renderer.domElement.getBoundingClientRect();
+    const caster = new Raycaster();
+    caster.setFromCamera(new Vector2(2 * (event.clientX - box.left) / box.width - 1,
+                                     1 - 2 * (event.clientY - box.top) / box.height), this.camera);
+    return caster;
+  }
+
+  // Shift and drag, or the right button, on the surface: a spring from there to the pointer.
+  private press(event: PointerEvent): void {
+    if (!event.shiftKey && event.button !== 2) return;
+    const caster = this.ray(event);
+    const hits = caster.intersectObjects(this.bodies.map((b) => b.mesh));
+    if (hits.length === 0 || !hits[0].face) return;
+    event.stopImmediatePropagation();
+    const {face, point, object} = hits[0];
+    const body = this.bodies.findIndex((b) => b.mesh === object);
+    const positions = this.bodies[body].mesh.geometry.getAttribute('position') as BufferAttribute;
+    const [a, b, c] = [face.a, face.b, face.c].map((v) => new Vector3().fromBufferAttribute(positions, v));
+    const area = (p: Vector3, q: Vector3, r: Vector3) =>
+      new Vector3().crossVectors(q.clone().sub(p), r.clone().sub(p)).length();
+    const parts = [area(point, b, c), area(a, point, c), area(a, b, point)];
+    const sum = parts[0] + parts[1] + parts[2];
+    const normal = this.camera.getWorldDirection(new Vector3());
+    this.grabbed = {
+      plane: new Plane().setFromNormalAndCoplanarPoint(normal, point), body,
+      vertices: [face.a, face.b, face.c], weights: parts.map((p) => p / sum),
+    };
+    this.orbit.enabled = false;
+  }
+
+  private move(event: PointerEvent): void {
+    if (!this.grabbed) return;
+    const anchor = this.ray(event).ray.intersectPlane(this.grabbed.plane, new Vector3());
+    const {body, vertices, weights} = this.grabbed;
+    if (anchor) this.hand.pull(body, vertices, weights, anchor.toArray());
+  }
+
+  private letGo(): void {
+    if (!this.grabbed) return;
+    this.grabbed = null;
+    this.orbit.enabled = true;
+    this.hand.release();
+  }
+
+  draw(): void {
+    if (this.follow && this.effectors[0]?.visible) {
+      this.orbit.target.lerp(this.effectors[0].position, 0.1);
+    }
+    this.orbit.update();
+    this.renderer.render(this.world, this.camera);
+  }
+}
