@@ -24,7 +24,7 @@ constexpr Seconds kFrameTime{1.0 / 60.0};
 constexpr Seconds kLargestLag{0.1};
 /// The real-time factor is measured over at least this long.
 constexpr Seconds kFactorTime{0.5};
-constexpr double kSlow = 0.95;
+constexpr double kSlow = 0.9;
 
 Clock::duration ticks(Seconds seconds) {
   return std::chrono::duration_cast<Clock::duration>(seconds);

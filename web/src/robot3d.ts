@@ -106,7 +106,7 @@ export class Robot3d {
     this.cableSignals = [];
     scene.actuators.forEach((actuator, index) => {
       if (actuator.points === 0) return;
-      const line = new Line(new BufferGeometry(), new LineBasicMaterial({color: TAUT}));
+      const line = new Line(new BufferGeometry(), new LineBasicMaterial({color: TAUT, depthTest: false}));
       line.frustumCulled = false;
       line.renderOrder = 1;
       line.geometry.setAttribute('position', new BufferAttribute(new Float32Array(3 * actuator.points), 3));
@@ -216,8 +216,8 @@ export class Robot3d {
       if (slack !== dashed) {
         (line.material as LineBasicMaterial).dispose();
         line.material = slack
-          ? new LineDashedMaterial({color: SLACK, dashSize: 0.012 * this.size, gapSize: 0.012 * this.size})
-          : new LineBasicMaterial({color: TAUT});
+          ? new LineDashedMaterial({color: SLACK, depthTest: false, dashSize: 0.012 * this.size, gapSize: 0.012 * this.size})
+          : new LineBasicMaterial({color: TAUT, depthTest: false});
       }
       if (slack) line.computeLineDistances();
     });

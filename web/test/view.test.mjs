@@ -1,0 +1,236 @@
+// The view in a real browser: SINEW_PROGRAM=... SINEW_PYTHON_PATH=... node --test web/test
+import assert from 'node:assert/strict';
+import {execFileSync, spawn} from 'node:child_process';
+import {dirname, join} from 'node:path';
+import {after, before, test} from 'node:test';
+import {fileURLToPath} from 'node:url';
+import {chromium} from 'playwright-core';
+
+const ROOT = join(dirname(fileURLToPath(import.meta.url)), '../..');
+const PROGRAM = process.env.SINEW_PROGRAM ?? join(ROOT, 'build/release/bin/sinew');
+const PACKAGE = process.env.SINEW_PYTHON_PATH ?? join(ROOT, 'build/release/python');
+const CHROMIUM = process.env.SINEW_CHROMIUM ?? '/usr/bin/chromium';
+const DIRECT = join(ROOT, 'examples/trunk/trunk.yaml');
+const STEERED = join(ROOT, 'examples/trunk/circle.yaml');
+
+let browser;
+const programs = new Set();
+
+before(async () => {
+  browser = await chromium.launch({executablePath: CHROMIUM, args: [
+    '--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
+    '--disable-background-networking', '--disable-component-update', '--disable-sync', '--no-first-run']});
+});
+after(async () => {
+  for (const program of programs) program.kill('SIGKILL');
+  await browser?.close();
+});
+
+/** Starts the program; resolves with it and its URL. */
+async function serve(scene, port = 0, ...more) {
+  const program = spawn(PROGRAM, ['view', scene, '--no-open', '--port', String(port), ...more]);
+  programs.add(program);
+  const url = await new Promise((resolve, reject) => {
+    let text = '', errors = '';
+    program.stderr.on('data', (data) => { errors += data; });
+    program.stdout.on('data', (data) => {
+      text += data;
+      const found = /http:\S+/.exec(text);
+      if (found) resolve(found[0]);
+    });
+    program.on('exit', (code) => reject(new Error(`sinew view ended with ${code}: ${errors}`)));
+  });
+  return {program, url, port: Number(new URL(url).port)};
+}
+
+async function stop({program}) {
+  const ended = new Promise((resolve) => program.on('exit', resolve));
+  program.kill('SIGINT');
+  const code = await ended;
+  programs.delete(program);
+  return code;
+}
+
+/** A page of the view that has had a frame; what its console says is kept. */
+async function open(url, errors = []) {
+  const page = await browser.newPage({viewport: {width: 1280, height: 800}});
+  page.on('console', (message) => { if (message.type() === 'error') errors.push(message.text()); });
+  page.on('pageerror', (error) => errors.push(error.message));
+  await page.goto(url);
+  await until(page, (s) => s.connected && s.sequence > 0 && s.status?.commands);
+  return page;
+}
+
+const state = (page) => page.evaluate(() => window.sinewView.state());
+const ask = (page, message) => page.evaluate((m) => window.sinewView.request(m), message);
+
+/** Waits until a page's state is as it should be. */
+async function until(page, holds, seconds = 20) {
+  for (let tries = 0; tries < 20 * seconds; ++tries) {
+    const now = await state(page).catch(() => null);
+    if (now && holds(now)) return now;
+    await new Promise((resolve) => setTimeout(resolve, 50));
+  }
+  assert.fail(`waited in vain; the page says ${JSON.stringify(await state(page))}`);
+}
+
+function python(code) {
+  return JSON.parse(execFileSync('/usr/bin/python3', ['-c', code], {
+    env: {...process.env, PYTHONPATH: PACKAGE}, encoding: 'utf8'}));
+}
+
+test('the page loads without an error and shows the robot', async () => {
+  const served = await serve(STEERED);
+  const errors = [];
+  const page = await open(served.url, errors);
+  await page.selectOption('[aria-label="Colour by"]', 'stress');
+  await until(page, (s) => s.field === 'stress' && s.range[1] > 1000);
+  assert.ok(await page.locator('#legend .bar').isVisible());
+  assert.match(await page.locator('#legend').innerText(), /Von Mises stress[\s\S]*kPa/);
+  // Drawn at all: the canvas holds many colours, and the robot's in its middle.
+  const colours = await page.evaluate(() => {
+    const canvas = document.querySelector('#stage canvas');
+    const copy = Object.assign(document.createElement('canvas'), {width: 128, height: 80});
+    const context = copy.getContext('2d');
+    context.drawImage(canvas, 0, 0, 128, 80);
+    const {data} = context.getImageData(0, 0, 128, 80);
+    const seen = new Set();
+    for (let i = 0; i < data.length; i += 4) seen.add(data[i] << 16 | data[i + 1] << 8 | data[i + 2]);
+    return seen.size;
+  });
+  assert.ok(colours > 40, `only ${colours} colours`);
+  const unlabelled = await page.evaluate(() => [...document.querySelectorAll('button, input, select')]
+    .filter((e) => !e.getAttribute('aria-label') && !e.closest('label')).length);
+  assert.equal(unlabelled, 0);
+  await page.keyboard.press('?');
+  assert.ok(await page.locator('dialog').isVisible());
+  assert.deepEqual(errors, []);
+  await page.close();
+  assert.equal(await stop(served), 0);
+});
+
+test('a slider does what Python does', async () => {
+  const served = await serve(DIRECT, 0, '--paused');
+  const page = await open(served.url);
+  await page.fill('input[type=number][aria-label^="long_2: tension"]', '1.5');
+  await page.keyboard.press('Enter');
+  await until(page, (s) => s.status.commands.long_2.value === 1.5);
+  await ask(page, {type: 'step', count: 120});
+  const here = await until(page, (s) => s.step === 120);
+  const there = python(`
+import json, sinew
+sim = sinew.load(${JSON.stringify(DIRECT)})
+sim.actuator("long_2").tension = 1.5
+sim.step(120)
+print(json.dumps({"tip": list(sim.effector("tip").position), "hash": f"{sim.state_hash:016x}"}))`);
+  ['x', 'y', 'z'].forEach((axis, k) => {
+    assert.ok(Math.abs(here.signals[`tip.${axis}`] - there.tip[k]) < 1e-6, `tip.${axis}`);
+  });
+  assert.ok(Math.abs(here.signals['tip.x']) + Math.abs(here.signals['tip.y']) > 1e-3, 'it has moved');
+  assert.equal(here.hash, there.hash);
+  await page.close();
+  await stop(served);
+});
+
+test('pause and step count exactly, and reset restores the start bit for bit', async () => {
+  const served = await serve(STEERED, 0, '--paused');
+  const page = await open(served.url);
+  const start = await state(page);
+  assert.equal(start.step, 0);
+  await ask(page, {type: 'step', count: 37});
+  const later = await until(page, (s) => s.step === 37);
+  assert.notEqual(later.hash, start.hash);
+  await page.keyboard.press(' ');
+  await until(page, (s) => s.step > 60);
+  await page.keyboard.press(' ');
+  const paused = await until(page, (s) => !s.status.playing);
+  await new Promise((resolve) => setTimeout(resolve, 400));
+  const still = await state(page);
+  assert.ok(still.step - paused.step <= 3, 'a pause holds');
+  await page.getByRole('button', {name: 'Back to the start (r)'}).click();
+  const again = await until(page, (s) => s.step === 0);
+  assert.equal(again.hash, start.hash);
+  await ask(page, {type: 'step', count: 37});
+  assert.equal((await until(page, (s) => s.step === 37)).hash, later.hash);
+  await page.close();
+  await stop(served);
+});
+
+test('the robot goes where its target is put', async () => {
+  const served = await serve(STEERED);
+  const page = await open(served.url);
+  for (const [axis, value] of [['x', 20], ['y', -10], ['z', 180]]) {
+    await page.fill(`[aria-label="tip: target ${axis} in mm"]`, String(value));
+    await page.keyboard.press('Tab');
+  }
+  const there = await until(page, (s) => s.status.targets.tip && s.signals['tip.error'] < 1e-4
+    && Math.abs(s.signals['tip.x'] - 0.02) < 2e-4);
+  assert.ok(Math.abs(there.signals['tip.y'] + 0.01) < 2e-4 && Math.abs(there.signals['tip.z'] - 0.18) < 2e-4);
+  // Out of reach is said plainly.
+  await page.fill('[aria-label="tip: target x in mm"]', '400');
+  await page.keyboard.press('Tab');
+  await until(page, (s) => s.status.troubles.some((t) => t.kind === 'out-of-reach'));
+  await page.getByText('out of reach').first().waitFor({timeout: 5000});
+  await page.close();
+  await stop(served);
+});
+
+test('a hand pulls the robot and lets go of it', async () => {
+  const served = await serve(DIRECT, 0, '--paused');
+  const page = await open(served.url);
+  const start = await state(page);
+  const canvas = await page.locator('#stage canvas').boundingBox();
+  const [x, y] = [canvas.x + canvas.width / 2, canvas.y + canvas.height / 2];
+  await page.mouse.move(x, y);
+  await page.keyboard.down('Shift');
+  await page.mouse.down();
+  await page.mouse.move(x + 120, y, {steps: 5});
+  await page.waitForTimeout(200);
+  await ask(page, {type: 'step', count: 20});
+  const pulled = await until(page, (s) => s.step === 20);
+  assert.ok(Math.abs(pulled.signals['tip.x'] - start.signals['tip.x']) > 1e-3, 'the tip follows the hand');
+  await page.mouse.up();
+  await page.keyboard.up('Shift');
+  await ask(page, {type: 'reset'});
+  await ask(page, {type: 'step', count: 20});
+  const free = await until(page, (s) => s.step === 20);
+  assert.ok(Math.abs(free.signals['tip.x'] - pulled.signals['tip.x']) > 1e-3, 'the hand let go');
+  await page.close();
+  await stop(served);
+});
+
+test('two browsers see the same, and one drives', async () => {
+  const served = await serve(STEERED);
+  const first = await open(served.url), second = await open(served.url);
+  await assert.rejects(ask(second, {type: 'pause'}), /another browser drives/);
+  await second.getByRole('button', {name: 'Take over driving'}).click();
+  await until(second, (s) => s.driver === s.client);
+  await ask(second, {type: 'pause'});
+  const here = await until(second, (s) => !s.status.playing);
+  await ask(second, {type: 'step', count: 3});
+  const [a, b] = [await until(first, (s) => s.step >= here.step + 3), await until(second, (s) => s.step >= here.step + 3)];
+  assert.equal(a.step, b.step);
+  assert.equal(a.hash, b.hash);
+  await first.close();
+  await second.close();
+  await stop(served);
+});
+
+test('frozen frames are noticed, and a restarted program is found again', async () => {
+  const served = await serve(STEERED);
+  const page = await open(served.url);
+  const {instance} = await state(page);
+  served.program.kill('SIGSTOP');
+  await until(page, (s) => s.frozen, 10);
+  assert.match(await page.locator('#alerts').innerText(), /No frames/);
+  served.program.kill('SIGCONT');
+  await until(page, (s) => !s.frozen);
+  served.program.kill('SIGKILL');
+  await until(page, (s) => !s.connected);
+  const again = await serve(STEERED, served.port);
+  const back = await until(page, (s) => s.connected && s.instance !== instance && s.sequence > 0);
+  assert.ok(back.step >= 0);
+  await until(page, (s) => s.step > back.step);
+  await page.close();
+  await stop(again);
+});
