@@ -35,7 +35,7 @@ class CMakeBuild(build_ext):
         build = Path(self.build_temp).resolve()
         configure = [
             "cmake", "-S", str(ROOT), "-B", str(build), "-G", "Ninja",
-            "-DCMAKE_BUILD_TYPE=Release", "-DSINEW_TESTS=OFF", "-DSINEW_BENCHMARKS=OFF",
+            "-DCMAKE_BUILD_TYPE=Release", "-DSINEW_TESTS=OFF", "-DSINEW_BENCHMARKS=OFF", "-DSINEW_VIEWER=OFF",
             "-DSINEW_PYTHON=ON", f"-DPython3_EXECUTABLE={sys.executable}",
             f"-DSINEW_NATIVE={os.environ.get('SINEW_NATIVE', 'ON')}",
         ]

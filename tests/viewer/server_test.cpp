@@ -1,0 +1,410 @@
+// The server against browsers that are well-behaved, slow, broken or hostile.
+#include "viewer/server.hpp"
+
+#include <atomic>
+#include <chrono>
+#include <future>
+#include <random>
+#include <thread>
+
+#include <boost/asio/connect.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/read.hpp>
+#include <boost/asio/write.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/websocket.hpp>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "sinew/core/error.hpp"
+
+namespace sinew::viewer {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace websocket = boost::beast::websocket;
+using Tcp = asio::ip::tcp;
+using Json = nlohmann::json;
+using namespace std::chrono_literals;
+
+/// A robot of one large surface that steps all the time.
+class FakeSource final : public Source {
+ public:
+  explicit FakeSource(std::size_t vertices = 30) {
+    description_.scene = R"({"name": "fake"})";
+    Surface surface;
+    surface.rest.assign(3 * vertices, 0.5F);
+    surface.triangles = {0, 1, 2};
+    description_.surfaces = {surface};
+    description_.fields = {"displacement"};
+    vertices_ = vertices;
+  }
+  ~FakeSource() override { stop(); }
+  std::string_view mode() const override { return "live"; }
+  const Description& description() const override { return description_; }
+  void start(Publisher& publisher) override {
+    publisher.publish_status(R"({"playing": true})");
+    thread_ = std::thread([this, &publisher] {
+      while (!stopping_) {
+        auto frame = std::make_shared<Frame>();
+        frame->step = frame->shape = static_cast<std::uint64_t>(++steps);
+        frame->bodies = {{std::vector<float>(3 * vertices_, static_cast<float>(steps)), {}}};
+        publisher.publish(frame);
+        std::this_thread::sleep_for(1ms);
+      }
+    });
+  }
+  void stop() override {
+    stopping_ = true;
+    if (thread_.joinable()) thread_.join();
+  }
+  void submit(const Request& request, std::function<void(Outcome)> done) override {
+    ++requests;
+    if (std::holds_alternative<Release>(request)) ++releases;
+    done({});
+  }
+  void fetch(std::string_view name, std::function<void(std::optional<Download>)> done) override {
+    if (name != "run.csv") return done(std::nullopt);
+    done(Download{"run.csv", "text/csv", "time\n0\n"});
+  }
+
+  std::atomic<int> steps{0}, requests{0}, releases{0};
+
+ private:
+  Description description_;
+  std::size_t vertices_;
+  std::atomic<bool> stopping_{false};
+  std::thread thread_;
+};
+
+class Shown {
+ public:
+  explicit Shown(std::size_t vertices = 30) {
+    auto source = std::make_unique<FakeSource>(vertices);
+    fake = source.get();
+    server = std::make_unique<Server>(ServerSettings{"127.0.0.1", 0}, std::move(source));
+    server->start();
+  }
+  FakeSource* fake;
+  std::unique_ptr<Server> server;
+};
+
+/// A browser's connection; every wait ends after ten seconds.
+class Client {
+ public:
+  explicit Client(std::uint16_t port) : socket_(io_) {
+    beast::get_lowest_layer(socket_).expires_after(10s);
+    beast::get_lowest_layer(socket_).connect(
+        Tcp::endpoint(asio::ip::make_address("127.0.0.1"), port));
+    host_ = "127.0.0.1:" + std::to_string(port);
+  }
+  void handshake(const std::string& target = "/view", const std::string& origin = {}) {
+    socket_.set_option(
+        websocket::stream_base::decorator([origin](websocket::request_type& request) {
+          if (!origin.empty()) request.set(beast::http::field::origin, origin);
+        }));
+    socket_.handshake(host_, target);
+  }
+  void say(const std::string& text) {
+    socket_.text(true);
+    socket_.write(asio::buffer(text));
+  }
+  void say_bytes(const std::string& bytes) {
+    socket_.binary(true);
+    socket_.write(asio::buffer(bytes));
+  }
+  void greet() {
+    handshake();
+    say(R"({"type": "hello", "protocol": 1})");
+  }
+  /// The next message; binary ones as "#" and the bytes.
+  std::string next() {
+    beast::flat_buffer buffer;
+    socket_.read(buffer);
+    const std::string text = beast::buffers_to_string(buffer.data());
+    return socket_.got_text() ? text : "#" + text;
+  }
+  Json next_json(const std::string& type) {
+    for (int k = 0; k < 10000; ++k) {
+      const std::string text = next();
+      if (text.front() == '#') continue;
+      Json message = Json::parse(text);
+      if (message["type"] == type) return message;
+    }
+    ADD_FAILURE() << "no " << type;
+    return {};
+  }
+  /// Step of the next frame.
+  std::uint64_t next_step() {
+    for (int k = 0; k < 10000; ++k) {
+      const std::string bytes = next();
+      if (bytes.front() != '#' || bytes[5] != 2) continue;
+      std::uint64_t step = 0;
+      std::memcpy(&step, bytes.data() + 17, sizeof step);
+      return step;
+    }
+    return 0;
+  }
+  /// Reads until the server closes; the reason.
+  std::string closed() {
+    try {
+      while (true) next();
+    } catch (const beast::system_error&) {
+      return std::string(socket_.reason().reason.data(), socket_.reason().reason.size());
+    }
+  }
+  beast::tcp_stream& raw() { return beast::get_lowest_layer(socket_); }
+
+ private:
+  asio::io_context io_;
+  websocket::stream<beast::tcp_stream> socket_;
+  std::string host_;
+};
+
+/// The status line of an answer to raw bytes.
+std::string raw_request(std::uint16_t port, const std::string& text) {
+  asio::io_context io;
+  Tcp::socket socket(io);
+  socket.connect(Tcp::endpoint(asio::ip::make_address("127.0.0.1"), port));
+  asio::write(socket, asio::buffer(text));
+  socket.shutdown(Tcp::socket::shutdown_send);
+  std::string answer;
+  beast::error_code error;
+  asio::read(socket, asio::dynamic_buffer(answer), error);
+  return answer.substr(0, answer.find("\r\n"));
+}
+
+std::string get(std::uint16_t port, const std::string& path, const std::string& more = {}) {
+  return raw_request(port, "GET " + path + " HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(port) +
+                               "\r\nConnection: close\r\n" + more + "\r\n");
+}
+
+TEST(Server, IntroducesItselfAndShowsFrames) {
+  const Shown shown;
+  Client client(shown.server->port());
+  client.greet();
+  const Json welcome = client.next_json("welcome");
+  EXPECT_EQ(welcome["protocol"], 1);
+  const Json scene = client.next_json("scene");
+  EXPECT_EQ(scene["mode"], "live");
+  EXPECT_EQ(scene["scene"]["name"], "fake");
+  const Json status = client.next_json("status");
+  EXPECT_EQ(status["driver"], welcome["client"]);
+  const auto first = client.next_step();
+  EXPECT_GT(client.next_step(), first);
+}
+
+TEST(Server, ServesThePageAndNothingElse) {
+  const Shown shown;
+  const auto port = shown.server->port();
+  for (const char* path : {"/", "/app.js", "/app.css", "/?token=x", "/download/run.csv"}) {
+    EXPECT_EQ(get(port, path), "HTTP/1.1 200 OK") << path;
+  }
+  for (const char* path :
+       {"/index.html", "/../../etc/passwd", "/..%2f..%2fetc/passwd", "//etc/passwd", "/app.js/../x",
+        "/%2e%2e/x", "/app.js%00", "/download/../../etc/passwd", "/download/", "/download/x",
+        "/view", "/viewer/server.cpp", "/.git/config", "http://127.0.0.1/etc/passwd"}) {
+    EXPECT_EQ(get(port, path), "HTTP/1.1 404 Not Found") << path;
+  }
+}
+
+TEST(Server, RefusesOtherHostsAndOrigins) {
+  const Shown shown;
+  const auto port = shown.server->port();
+  const std::string number = std::to_string(port);
+  const auto with_host = [&](const std::string& host) {
+    return raw_request(port, "GET / HTTP/1.1\r\nHost: " + host + "\r\nConnection: close\r\n\r\n");
+  };
+  EXPECT_EQ(with_host("localhost:" + number), "HTTP/1.1 200 OK");
+  for (const std::string& host :
+       {std::string("evil.example"), "evil.example:" + number, std::string("127.0.0.1"),
+        std::string("127.0.0.1:1"), "127.0.0.1.evil.example:" + number, std::string()}) {
+    EXPECT_EQ(with_host(host), "HTTP/1.1 403 Forbidden") << host;
+  }
+  Client good(port), bad(port), worse(port);
+  good.handshake("/view", "http://127.0.0.1:" + number);
+  EXPECT_THROW(bad.handshake("/view", "http://evil.example"), beast::system_error);
+  EXPECT_THROW(worse.handshake("/view", "null"), beast::system_error);
+}
+
+TEST(Server, AsksForItsTokenWhenBoundElsewhere) {
+  Server server({"0.0.0.0", 0}, std::make_unique<FakeSource>());
+  server.start();
+  const std::string url = server.url();
+  const std::string token = url.substr(url.find("?token="));
+  EXPECT_EQ(token.size(), std::string("?token=").size() + 32);
+  Client good(server.port()), none(server.port()), wrong(server.port());
+  good.handshake("/view" + token);
+  EXPECT_THROW(none.handshake("/view"), beast::system_error);
+  EXPECT_THROW(wrong.handshake("/view?token=" + std::string(32, '0')), beast::system_error);
+  EXPECT_EQ(get(server.port(), "/download/run.csv"), "HTTP/1.1 403 Forbidden");
+  EXPECT_EQ(get(server.port(), "/download/run.csv" + token), "HTTP/1.1 200 OK");
+}
+
+TEST(Server, LetsOneDrive) {
+  const Shown shown;
+  Client first(shown.server->port()), second(shown.server->port());
+  first.greet();
+  first.next_json("status");
+  second.greet();
+  second.next_json("status");
+  second.say(R"({"type": "play", "id": 1})");
+  EXPECT_EQ(second.next_json("reply")["error"]["kind"], "not-driving");
+  EXPECT_EQ(shown.fake->requests, 0);
+  second.say(R"({"type": "drive", "on": true, "id": 2})");
+  EXPECT_FALSE(second.next_json("reply").contains("error"));
+  second.say(R"({"type": "play", "id": 3})");
+  EXPECT_FALSE(second.next_json("reply").contains("error"));
+  EXPECT_EQ(shown.fake->requests, 1);
+  first.say(R"({"type": "play", "id": 4})");
+  EXPECT_EQ(first.next_json("reply")["error"]["kind"], "not-driving");
+  first.say(R"({"type": "field", "name": "heat", "id": 5})");
+  EXPECT_EQ(first.next_json("reply")["error"]["kind"], "unknown-name");
+}
+
+TEST(Server, ReleasesTheHandOfADriverThatGoes) {
+  const Shown shown;
+  {
+    Client client(shown.server->port());
+    client.greet();
+    client.next_json("status");
+  }
+  for (int k = 0; k < 100 && shown.fake->releases == 0; ++k) std::this_thread::sleep_for(20ms);
+  EXPECT_EQ(shown.fake->releases, 1);
+}
+
+TEST(Server, ClosesWithAReason) {
+  const Shown shown;
+  const auto closed = [&](auto&& misbehave) {
+    Client client(shown.server->port());
+    client.handshake();
+    misbehave(client);
+    return client.closed();
+  };
+  const std::string hello = R"({"type": "hello", "protocol": 1})";
+  EXPECT_EQ(closed([](Client& c) { c.say(R"({"type": "play"})"); }),
+            "the first message must be hello");
+  EXPECT_NE(closed([](Client& c) { c.say(R"({"type": "hello", "protocol": 2})"); }).find("reload"),
+            std::string::npos);
+  EXPECT_NE(closed([](Client& c) { c.say("nonsense"); }).find("not JSON"), std::string::npos);
+  EXPECT_EQ(closed([&](Client& c) {
+              c.say(hello);
+              c.say_bytes("\1\2\3");
+            }),
+            "only text is understood");
+  EXPECT_EQ(closed([&](Client& c) {
+              c.say(hello);
+              for (int k = 0; k < 1000; ++k) c.say(R"({"type": "ping"})");
+            }),
+            "too many messages");
+  // Too long for the protocol itself, which closes with a code of its own.
+  Client client(shown.server->port());
+  client.handshake();
+  client.say(hello);
+  client.say(std::string(kLongestMessage + 1, ' '));
+  client.closed();
+}
+
+// A browser that does not read costs nobody else anything, and gets the latest when it reads again.
+TEST(Server, GivesASlowBrowserTheLatestFrame) {
+  const Shown shown(200000);  // 2.4 MB a frame, more than sockets hold
+  Client slow(shown.server->port()), quick(shown.server->port());
+  slow.greet();
+  quick.greet();
+  quick.next_json("status");
+  const auto before = quick.next_step();
+  std::this_thread::sleep_for(1500ms);
+  const int steps = shown.fake->steps;
+  EXPECT_GT(quick.next_step(), before);
+  slow.next_json("status");
+  slow.next_step();  // what was on its way when it stopped reading
+  slow.next_step();
+  EXPECT_GE(static_cast<int>(slow.next_step()) + 5, steps) << "old frames were kept for it";
+}
+
+TEST(Server, BearsTenThousandBrokenMessages) {
+  const Shown shown;
+  Client witness(shown.server->port());
+  witness.greet();
+  witness.next_json("status");
+  std::mt19937 random(11);
+  const std::string sound =
+      R"({"type": "command", "actuator": "a", "quantity": "force", "value": 1})";
+  int closed = 0;
+  for (int k = 0; k < 10000; ++k) {
+    try {
+      Client client(shown.server->port());
+      if (k % 3 == 0) {  // not even a WebSocket
+        std::string noise(1 + random() % 200, ' ');
+        for (char& c : noise) c = static_cast<char>(random());
+        asio::write(client.raw().socket(), asio::buffer(noise));
+        ++closed;
+        continue;
+      }
+      client.handshake();
+      if (k % 3 == 1) {  // a broken frame
+        std::string frame(2 + random() % 20, ' ');
+        for (char& c : frame) c = static_cast<char>(random());
+        asio::write(client.raw().socket(), asio::buffer(frame));
+      } else {  // a broken message in a sound one's place
+        std::string text = sound;
+        text[random() % text.size()] = static_cast<char>('!' + random() % 90);
+        client.say(text);
+        client.closed();
+      }
+      ++closed;
+    } catch (const beast::system_error&) {
+      ++closed;
+    }
+  }
+  EXPECT_EQ(closed, 10000);
+  const int steps = shown.fake->steps;
+  EXPECT_GT(witness.next_step(), 0U);
+  witness.say(R"({"type": "ping", "id": 9})");
+  EXPECT_EQ(witness.next_json("reply")["id"], 9);
+  for (int k = 0; k < 200 && shown.fake->steps <= steps; ++k) std::this_thread::sleep_for(10ms);
+  EXPECT_GT(shown.fake->steps, steps);
+}
+
+TEST(Server, LimitsConnections) {
+  const Shown shown;
+  std::vector<std::unique_ptr<Client>> clients;
+  int refused = 0;
+  for (int k = 0; k < 60; ++k) {
+    clients.push_back(std::make_unique<Client>(shown.server->port()));
+    try {
+      clients.back()->handshake();
+    } catch (const beast::system_error&) {
+      ++refused;
+    }
+  }
+  EXPECT_GE(refused, 20);
+  EXPECT_LT(refused, 40);
+}
+
+TEST(Server, SaysThatAPortIsTaken) {
+  const Shown shown;
+  try {
+    const Server second({"127.0.0.1", shown.server->port()}, std::make_unique<FakeSource>());
+    ADD_FAILURE() << "two servers on one port";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::address_in_use);
+    EXPECT_NE(error.remedy().find("--port"), std::string::npos);
+  }
+  EXPECT_THROW(Server({"nowhere", 0}, std::make_unique<FakeSource>()), Error);
+}
+
+TEST(Server, StopsAtOnceWhateverBrowsersDo) {
+  auto shown = std::make_unique<Shown>(200000);
+  Client stuck(shown->server->port());
+  stuck.greet();
+  Client half(shown->server->port());  // connected, says nothing
+  std::this_thread::sleep_for(200ms);
+  auto stopped = std::async(std::launch::async, [&] { shown.reset(); });
+  ASSERT_EQ(stopped.wait_for(30s), std::future_status::ready) << "it waits for a browser";
+}
+
+}  // namespace
+}  // namespace sinew::viewer
