@@ -4,7 +4,7 @@ PREFIX ?= /usr/local
 
 .DEFAULT_GOAL := help
 .PHONY: help setup build demo test validate bench docs format format-check lint \
-        asan tsan portable install clean
+        asan tsan portable install clean view
 
 help:  ## list these targets
 	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  \1|\2/p' Makefile | column -t -s '|'
@@ -17,6 +17,9 @@ build:  ## optimised build: build/release/bin/sinew and build/release/python
 
 demo: setup build  ## a soft trunk follows a circle by inverse control: a table and a picture
 	@scripts/demo.sh
+
+view: build  ## the trunk follows its circle in the browser
+	@build/release/bin/sinew view examples/trunk/circle.yaml
 
 test: setup  ## build, and run all C++ and Python tests
 	@scripts/test.sh release

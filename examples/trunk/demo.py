@@ -121,7 +121,7 @@ def main():
     draw(sim, seen, arguments.picture)
     print(f"\npicture: {arguments.picture}")
     print("to see it move: build/release/bin/sinew run examples/trunk/circle.yaml --vtk, then open\n"
-          "out/circle/trunk.pvd in ParaView (the live browser view is not in this version)")
+          "out/circle/trunk.pvd in ParaView")
 
 
 if __name__ == "__main__":

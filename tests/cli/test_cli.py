@@ -243,7 +243,9 @@ WRONG_ARGUMENTS = [
     (["mesh", "a.stl", "-o", "a.vtu"], "bad-argument", "--size"),
     (["mesh", "none.stl", "-o", "a.vtu", "--size", "5mm"], "file-not-found", "none.stl"),
     (["mesh", "--shape", "block", "--size", "-5mm", "-o", "a.vtu"], "out-of-range", "--size"),
-    (["view", "{scene}"], "not-in-this-version", "ParaView"),
+    (["view", "{scene}", "--no-open", "--port", "99999"], "out-of-range", "65535"),
+    (["view", "{scene}", "--no-open", "--host", "nowhere"], "bad-argument", "127.0.0.1"),
+    (["view", "{scene}", "--no-open", "--speed", "1000"], "out-of-range", "100"),
 ]
 
 
