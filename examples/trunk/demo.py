@@ -120,8 +120,7 @@ def main():
     table(sim, seen)
     draw(sim, seen, arguments.picture)
     print(f"\npicture: {arguments.picture}")
-    print("to see it move: build/release/bin/sinew run examples/trunk/circle.yaml --vtk, then open\n"
-          "out/circle/trunk.pvd in ParaView")
+    print("to see it move, and to drive it: build/release/bin/sinew view examples/trunk/circle.yaml")
 
 
 if __name__ == "__main__":

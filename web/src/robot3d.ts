@@ -1,12 +1,15 @@
 // The robot in three dimensions: surfaces, cables, effectors, targets, ground, and what the mouse does.
 import {
   AmbientLight, AxesHelper, Box3, BufferAttribute, BufferGeometry, Color, DirectionalLight, DoubleSide,
-  GridHelper, HemisphereLight, Line, LineBasicMaterial, LineDashedMaterial, Mesh, MeshBasicMaterial,
+  GridHelper, HemisphereLight, Line, LineBasicMaterial, Mesh, MeshBasicMaterial,
   MeshStandardMaterial, Object3D, PerspectiveCamera, Plane, Raycaster, Scene as World, SphereGeometry,
   Vector2, Vector3, WebGLRenderer,
 } from 'three';
 import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
 import {TransformControls} from 'three/addons/controls/TransformControls.js';
+import {Line2} from 'three/addons/lines/Line2.js';
+import {LineGeometry} from 'three/addons/lines/LineGeometry.js';
+import {LineMaterial} from 'three/addons/lines/LineMaterial.js';
 import {linearTable, paint} from './colours';
 import type {Frame, Scene, Surface} from './protocol';
 
@@ -30,7 +33,7 @@ export class Robot3d {
   private handle = new Object3D();
   private robot = new Object3D();
   private bodies: Body[] = [];
-  private cables: Line[] = [];
+  private cables: Line2[] = [];
   private cableCounts: number[] = [];
   private cableSignals: number[] = [];
   private effectors: Mesh[] = [];
@@ -106,10 +109,12 @@ export class Robot3d {
     this.cableSignals = [];
     scene.actuators.forEach((actuator, index) => {
       if (actuator.points === 0) return;
-      const line = new Line(new BufferGeometry(), new LineBasicMaterial({color: TAUT, depthTest: false}));
+      // Drawn after the body and through it.
+      const material = new LineMaterial({color: TAUT, linewidth: 3, depthTest: false, transparent: true, opacity: 0.85,
+                                         dashSize: 0.012 * this.size, gapSize: 0.012 * this.size});
+      const line = new Line2(new LineGeometry(), material);
       line.frustumCulled = false;
       line.renderOrder = 1;
-      line.geometry.setAttribute('position', new BufferAttribute(new Float32Array(3 * actuator.points), 3));
       this.cables.push(line);
       this.cableCounts.push(actuator.points);
       this.cableSignals.push(index);
@@ -207,17 +212,12 @@ export class Robot3d {
     let at = 0;
     this.cables.forEach((line, k) => {
       const count = 3 * this.cableCounts[k];
-      const attribute = line.geometry.getAttribute('position') as BufferAttribute;
-      (attribute.array as Float32Array).set(points.subarray(at, at + count));
-      attribute.needsUpdate = true;
+      line.geometry.setPositions(points.subarray(at, at + count));
       at += count;
       const slack = !(signals[this.cableSignals[k]] > 0);
-      const dashed = line.material instanceof LineDashedMaterial;
-      if (slack !== dashed) {
-        (line.material as LineBasicMaterial).dispose();
-        line.material = slack
-          ? new LineDashedMaterial({color: SLACK, depthTest: false, dashSize: 0.012 * this.size, gapSize: 0.012 * this.size})
-          : new LineBasicMaterial({color: TAUT, depthTest: false});
+      if (slack !== line.material.dashed) {
+        line.material.dashed = slack;
+        line.material.color.set(slack ? SLACK : TAUT);
       }
       if (slack) line.computeLineDistances();
     });
