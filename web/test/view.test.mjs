@@ -222,7 +222,7 @@ test('frozen frames are noticed, and a restarted program is found again', async 
   const {instance} = await state(page);
   served.program.kill('SIGSTOP');
   await until(page, (s) => s.frozen, 10);
-  assert.match(await page.locator('#alerts').innerText(), /No frames/);
+  await page.getByText('No frames').waitFor({timeout: 5000});
   served.program.kill('SIGCONT');
   await until(page, (s) => !s.frozen);
   served.program.kill('SIGKILL');

@@ -1,0 +1,186 @@
+#include "source_thread.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace sinew::viewer {
+
+namespace {
+
+using Seconds = std::chrono::duration<double>;
+
+constexpr Seconds kFrameTime{1.0 / 60.0};
+/// A run that is this far behind the clock lets the clock go.
+constexpr Seconds kLargestLag{0.1};
+/// The real-time factor is measured over at least this long.
+constexpr Seconds kFactorTime{0.5};
+constexpr double kSlow = 0.9;
+
+std::chrono::steady_clock::duration ticks(Seconds seconds) {
+  return std::chrono::duration_cast<std::chrono::steady_clock::duration>(seconds);
+}
+
+}  // namespace
+
+SourceThread::~SourceThread() { end(); }
+
+void SourceThread::start(Publisher& publisher) {
+  publisher_ = &publisher;
+  thread_ = std::thread([this] { run(); });
+}
+
+void SourceThread::stop() { end(); }
+
+void SourceThread::end() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  wake_.notify_one();
+  if (thread_.joinable()) thread_.join();
+}
+
+bool SourceThread::stopping() {
+  const std::lock_guard lock(mutex_);
+  return stopping_;
+}
+
+void SourceThread::enqueue(std::function<void()> work) {
+  {
+    const std::lock_guard lock(mutex_);
+    queue_.push_back({std::move(work)});
+  }
+  wake_.notify_one();
+}
+
+void SourceThread::submit(const Request& request, std::function<void(Outcome)> done) {
+  enqueue([this, request, done = std::move(done)] { carry_out(request, done); });
+}
+
+void SourceThread::fetch(std::string_view name, std::function<void(std::optional<Download>)> done) {
+  enqueue([this, name = std::string(name), done = std::move(done)] { done(download(name)); });
+}
+
+void SourceThread::restart_clock() {
+  clock_start_ = Clock::now();
+  time_start_ = time();
+  factor_start_ = clock_start_;
+  factor_time_ = time_start_;
+}
+
+void SourceThread::run() {
+  restart_clock();
+  while (true) {
+    std::deque<Item> items;
+    {
+      std::unique_lock lock(mutex_);
+      const bool free_running = playing_ && speed_ == 0.0;
+      if (!free_running && queue_.empty() && !stopping_ && !dirty_) {
+        const auto called = [&] { return stopping_ || !queue_.empty(); };
+        if (playing_) {
+          const double next = time() + time_step() - time_start_;
+          wake_.wait_until(lock, clock_start_ + ticks(Seconds(next / speed_)), called);
+        } else {
+          wake_.wait(lock, called);
+        }
+      }
+      if (stopping_) return;
+      items.swap(queue_);
+    }
+    for (const Item& item : items) item.work();
+    if (playing_) catch_up();
+    measure_factor();
+    if (!dirty_) continue;
+    if (!playing_ || Clock::now() - last_publication_ >= kFrameTime) {
+      publish();
+    } else if (speed_ != 0.0) {
+      std::unique_lock lock(mutex_);
+      wake_.wait_until(lock, last_publication_ + ticks(kFrameTime),
+                       [&] { return stopping_ || !queue_.empty(); });
+    }
+  }
+}
+
+// Steps until simulated time has caught up with the clock, or a frame's time is over.
+void SourceThread::catch_up() {
+  const auto begin = Clock::now();
+  while (playing_) {
+    if (speed_ > 0.0) {
+      const double due = time_start_ + speed_ * Seconds(Clock::now() - clock_start_).count();
+      const double next = time() + time_step();
+      if (next > due + 1e-9) break;
+      if (Seconds((due - next) / speed_) > kLargestLag) restart_clock();
+    }
+    if (!advance()) playing_ = false;
+    dirty_ = true;
+    if (Clock::now() - begin >= kFrameTime) break;
+  }
+}
+
+void SourceThread::measure_factor() {
+  if (!playing_) {
+    factor_ = 0.0;
+    return;
+  }
+  const auto now = Clock::now();
+  const Seconds since = now - factor_start_;
+  if (since < kFactorTime) return;
+  factor_ = (time() - factor_time_) / since.count();
+  factor_start_ = now;
+  factor_time_ = time();
+}
+
+void SourceThread::carry_out(const Request& request, const std::function<void(Outcome)>& done) {
+  Outcome outcome;
+  try {
+    do_request(request);
+  } catch (const Error& error) {
+    outcome = error;
+  } catch (const std::exception& error) {
+    outcome = Error(ErrorKind::internal, {}, error.what(), "please report this");
+  }
+  dirty_ = true;
+  done(outcome);
+}
+
+void SourceThread::do_request(const Request& request) {
+  if (std::holds_alternative<Play>(request)) {
+    require_ready();
+    playing_ = true;
+    restart_clock();
+  } else if (std::holds_alternative<Pause>(request)) {
+    playing_ = false;
+  } else if (const auto* step = std::get_if<Step>(&request)) {
+    require_ready();
+    playing_ = false;
+    for (std::int64_t k = 0; k < step->count && !stopping() && advance(); ++k) {
+      dirty_ = true;
+      if (Clock::now() - last_publication_ >= kFrameTime) publish();
+    }
+    require_ready();
+  } else if (const auto* speed = std::get_if<Speed>(&request)) {
+    speed_ = speed->factor;
+    restart_clock();
+  } else {
+    handle(request);
+  }
+}
+
+void SourceThread::publish() {
+  std::array<bool, kFieldCount> wanted{};
+  for (int f = 0; f < kFieldCount; ++f) {
+    wanted[static_cast<std::size_t>(f)] = publisher_->wants_field(f);
+  }
+  publisher_->publish(frame(wanted, factor_));
+  last_publication_ = Clock::now();
+  dirty_ = false;
+  const bool slow = playing_ && speed_ > 0.0 && factor_ > 0.0 && factor_ < kSlow * speed_;
+  std::string status = fmt::format(R"({{"playing":{},"speed":{},"slow":{},{})", playing_, speed_,
+                                   slow, status_members().substr(1));
+  if (status == last_status_) return;
+  last_status_ = status;
+  publisher_->publish_status(std::move(status));
+}
+
+}  // namespace sinew::viewer

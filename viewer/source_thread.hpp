@@ -1,0 +1,86 @@
+/// @file
+/// A source with a thread of its own that goes on in time with the clock: what running robots and
+/// recorded runs have in common.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "describe.hpp"
+#include "source.hpp"
+
+namespace sinew::viewer {
+
+/// Requests are carried out between steps, in the order in which they came. All protected functions
+/// are called on the thread.
+class SourceThread : public Source {
+ public:
+  ~SourceThread() override;
+  void start(Publisher& publisher) override;
+  void stop() override;
+  void submit(const Request& request, std::function<void(Outcome)> done) override;
+  void fetch(std::string_view name, std::function<void(std::optional<Download>)> done) override;
+
+ protected:
+  /// @param playing,speed from the start on; speed 0: as fast as it can.
+  SourceThread(bool playing, double speed) : playing_(playing), speed_(speed) {}
+
+  virtual double time() const = 0;       ///< s, simulated
+  virtual double time_step() const = 0;  ///< s
+  /// Goes on by one step; false when that is not possible any more.
+  virtual bool advance() = 0;
+  /// Carries out a request other than play, pause, step and speed. Throws Error.
+  virtual void handle(const Request& request) = 0;
+  /// Throws Error when play and step are refused.
+  virtual void require_ready() const {}
+  virtual std::shared_ptr<const Frame> frame(const std::array<bool, kFieldCount>& wanted,
+                                             double real_time_factor) = 0;
+  /// JSON object of the status message without playing, speed and slow.
+  virtual std::string status_members() const = 0;
+  /// "run.csv" and the like; none unless overridden.
+  virtual std::optional<Download> download(std::string_view) { return std::nullopt; }
+
+  void pause() { playing_ = false; }
+  /// Time was changed other than by advance().
+  void restart_clock();
+  /// Ends the thread; for destructors of classes whose functions it calls.
+  void end();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct Item {
+    std::function<void()> work;
+  };
+
+  void run();
+  void carry_out(const Request& request, const std::function<void(Outcome)>& done);
+  void do_request(const Request& request);
+  void catch_up();
+  void measure_factor();
+  void publish();
+  bool stopping();
+  void enqueue(std::function<void()> work);
+
+  Publisher* publisher_ = nullptr;
+  std::thread thread_;
+  std::mutex mutex_;  // of the next three
+  std::condition_variable wake_;
+  std::deque<Item> queue_;
+  bool stopping_ = false;
+
+  // The thread's own.
+  bool playing_;
+  double speed_;
+  bool dirty_ = true;  ///< something has changed since the last frame
+  Clock::time_point clock_start_, factor_start_, last_publication_;
+  double time_start_ = 0.0, factor_time_ = 0.0;  ///< s, simulated
+  double factor_ = 0.0;
+  std::string last_status_;
+};
+
+}  // namespace sinew::viewer
