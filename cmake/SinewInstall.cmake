@@ -25,6 +25,10 @@ if(TARGET sinew)
   install(TARGETS sinew RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
 
+if(SINEW_VIEWER)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples DESTINATION ${CMAKE_INSTALL_DATADIR}/sinew)
+endif()
+
 if(SINEW_TESTS)
   # A small project outside this tree, built against an installed copy.
   add_test(NAME install COMMAND ${CMAKE_COMMAND}

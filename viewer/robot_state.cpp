@@ -174,6 +174,27 @@ void RobotState::set_target(const SetTarget& target) {
   targets_[target.effector] = *target.position;
 }
 
+// The layout is that of sim::Simulation::save_state().
+void RobotState::show(const RecordedState& recorded) {
+  std::vector<double> state(simulation_->state_size(), 0.0);
+  auto at = state.begin();
+  for (const Points& positions : recorded.positions) {
+    at = std::copy_n(positions.data(), positions.size(), at) + positions.size();
+  }
+  const sim::Model& model = simulation_->model();
+  for (std::size_t i = 0; i < model.actuators().size(); ++i) {
+    at[model.actuators()[i].row] = recorded.efforts[i];
+  }
+  at += model.rows().rows();
+  for (const double motion : recorded.motions) {
+    *at++ = motion;
+    *at++ = motion;
+  }
+  state.back() = 1.0;
+  simulation_->load_state(state, recorded.step);
+  ++shape_;
+}
+
 void RobotState::pull(const Pull& pull) {
   const int body = simulation_->model().body_index(pull.body);
   const Surface& surface = description_.surfaces[static_cast<std::size_t>(body)];

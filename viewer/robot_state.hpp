@@ -25,6 +25,13 @@ struct StoppedRun {
   std::string kind, message, remedy;
 };
 
+/// A moment of a recorded run.
+struct RecordedState {
+  std::vector<Points> positions;         ///< (n, 3) m a body, in the model's order
+  std::vector<double> efforts, motions;  ///< (actuators,) N and m
+  std::int64_t step = 0;
+};
+
 class RobotState {
  public:
   /// @param robot is simulated. @param controller as for LiveSettings.
@@ -42,6 +49,8 @@ class RobotState {
   void command(const SetCommand& command);
   void choose_controller(const std::optional<std::string>& name);
   void set_target(const SetTarget& target);
+  /// Puts a recorded moment in place of the present one; velocities are zero.
+  void show(const RecordedState& recorded);
   void pull(const Pull& pull);
   void release();
 

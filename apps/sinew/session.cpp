@@ -74,8 +74,8 @@ std::string Session::resolved_scene() const {
   return scene::to_yaml(tree);
 }
 
-void add_scene_options(CLI::App& command, SceneOptions& options) {
-  command.add_option("SCENE", options.file, "Scene file (YAML)")->required();
+void add_scene_options(CLI::App& command, SceneOptions& options, bool optional) {
+  command.add_option("SCENE", options.file, "Scene file (YAML)")->required(!optional);
   command
       .add_option("--set", options.overrides,
                   "Set a value of the scene: actuators.long_0.command.displacement=10mm; may be "

@@ -67,8 +67,9 @@ class Session {
   std::unique_ptr<inverse::InverseController> controller_;
 };
 
-/// Adds SCENE, --set, --threads and --controller to a command.
+/// Adds SCENE (which must be given unless `optional`), --set, --threads and --controller to a
+/// command.
 /// @param command to add to. @param options to fill.
-void add_scene_options(CLI::App& command, SceneOptions& options);
+void add_scene_options(CLI::App& command, SceneOptions& options, bool optional = false);
 
 }  // namespace sinew::cli

@@ -1,6 +1,7 @@
 // sinew view: a scene in the browser.
 #include <chrono>
 #include <cstdlib>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,7 +19,9 @@
 #include "terminal.hpp"
 
 #ifdef SINEW_HAS_VIEWER
+#include "viewer/gallery_source.hpp"
 #include "viewer/live_source.hpp"
+#include "viewer/replay_source.hpp"
 #include "viewer/server.hpp"
 #endif
 
@@ -50,18 +53,44 @@ void open_browser(const std::string& url) {
   static_cast<void>(posix_spawnp(&child, program.c_str(), nullptr, nullptr, words, environ));
 }
 
+// The tree that this program was built from, or the installed one.
+std::filesystem::path examples_folder() {
+  std::error_code problem;
+  const std::filesystem::path built = SINEW_EXAMPLES_DEFAULT;
+  if (std::filesystem::exists(built, problem)) return built;
+  const auto self = std::filesystem::read_symlink("/proc/self/exe", problem);
+  return self.parent_path().parent_path() / "share/sinew/examples";
+}
+
+using MakeSource = std::function<std::unique_ptr<viewer::Source>()>;
+
+/// What is shown: a scene that runs, or a run that was recorded.
+MakeSource source_of(const ViewOptions& options) {
+  const bool playing = !options.paused;
+  const double speed = options.speed;
+  if (options.scene.file.empty()) {
+    return [] {
+      return std::make_unique<viewer::GallerySource>(viewer::find_examples(examples_folder()));
+    };
+  }
+  if (viewer::is_recorded_run(options.scene.file)) {
+    return [=, path = options.scene.file] {
+      return std::make_unique<viewer::ReplaySource>(path, playing, speed);
+    };
+  }
+  return [=, scene = load_scene(options.scene)] {
+    return std::make_unique<viewer::LiveSource>(
+        scene.robot, viewer::LiveSettings{scene.controller, playing, speed});
+  };
+}
+
 // The port that was asked for; else the first free one from the usual one on.
-std::unique_ptr<viewer::Server> serve(const ViewOptions& options, const LoadedScene& scene) {
-  viewer::LiveSettings live;
-  live.controller = scene.controller;
-  live.playing = !options.paused;
-  live.speed = options.speed;
+std::unique_ptr<viewer::Server> serve(const ViewOptions& options, const MakeSource& source) {
   for (int k = 0;; ++k) {
     const int port = options.port.value_or(kDefaultPort + k);
     try {
       return std::make_unique<viewer::Server>(
-          viewer::ServerSettings{options.host, static_cast<std::uint16_t>(port)},
-          std::make_unique<viewer::LiveSource>(scene.robot, live));
+          viewer::ServerSettings{options.host, static_cast<std::uint16_t>(port)}, source());
     } catch (const Error& error) {
       const bool again = error.kind() == ErrorKind::address_in_use && !options.port;
       if (!again || k == kPortsToTry) throw;
@@ -76,11 +105,10 @@ int view(const ViewOptions& options) {
                 fmt::format("{:g} is out of range", options.speed),
                 "give 0.01 to 100 simulated seconds a second, or 0 for as fast as it can");
   }
-  const LoadedScene scene = load_scene(options.scene);
-  const std::unique_ptr<viewer::Server> server = serve(options, scene);
+  const std::unique_ptr<viewer::Server> server = serve(options, source_of(options));
   const Interrupt interrupt;
   server->start();
-  fmt::print("{} at {}\nCtrl-C ends it\n", scene.robot.description.name, server->url());
+  fmt::print("the view is at {}\nCtrl-C ends it\n", server->url());
   std::fflush(stdout);
   if (!options.no_open) open_browser(server->url());
   while (!Interrupt::requested()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
@@ -100,9 +128,10 @@ int view(const ViewOptions&) {
 }  // namespace
 
 void add_view(CLI::App& app, Actions& actions) {
-  CLI::App* command = app.add_subcommand("view", "See a scene run in the browser, and drive it");
+  CLI::App* command = app.add_subcommand(
+      "view", "See a scene run in the browser and drive it, or replay a recorded run");
   const auto options = std::make_shared<ViewOptions>();
-  add_scene_options(*command, options->scene);
+  add_scene_options(*command, options->scene, true);
   command
       ->add_option("--port", options->port,
                    "Port to listen on; 0: any that is free (default: 8080 or the next free one)")
@@ -120,9 +149,13 @@ void add_view(CLI::App& app, Actions& actions) {
   command->add_flag("--paused", options->paused, "Start paused");
   command->add_flag("--no-open", options->no_open, "Do not open a browser");
   command->footer(
+      "Without SCENE the examples are shown, to choose one. SCENE may also be the folder of a run\n"
+      "that 'sinew run' recorded.\n\n"
       "Examples:\n"
+      "  sinew view\n"
       "  sinew view examples/trunk/circle.yaml\n"
-      "  sinew view trunk.yaml --controller none --paused");
+      "  sinew view trunk.yaml --controller none --paused\n"
+      "  sinew view out/circle");
   actions[command] = [options] { return view(*options); };
 }
 

@@ -22,7 +22,8 @@ let field: string | null = null;
 let range: [number, number] | null = null;  // fixed, or what is seen
 let seen: [number, number] = [0, 0];
 let map = MAPS[0];
-const costs: number[] = [];
+const costs: number[] = [];  // ms of script a frame of the program
+let cost = 0;
 let pulled: {at: number; message: Record<string, unknown>} | null = null;
 let aimed: Record<string, unknown> | null = null;
 
@@ -195,7 +196,8 @@ const connection = new Connection({
     document.title = `${next.name} - Sinew`;
     fields.replaceChildren(new Option('plain', ''), ...next.fields.map((f) => new Option(f.label, f.name)));
     robot.scene(next);
-    panel.scene(next);
+    panel.scene(next, what);
+    byId('plots').hidden = what === 'gallery';
     plots.setScene(next);
     if (field !== null) chooseField(field);
   },
@@ -213,7 +215,7 @@ const connection = new Connection({
     latest = frame;
     fresh = true;
     plots.add(frame);
-    costs.push(performance.now() - begin);
+    cost += performance.now() - begin;
   },
   status: (next) => {
     status = next;
@@ -249,7 +251,8 @@ function tick(now: number): void {
     show();
     alerts();
   }
-  costs.push(performance.now() - begin);
+  if (cost > 0) costs.push(cost + performance.now() - begin);
+  cost = 0;
   if (costs.length > 600) costs.splice(0, 300);
   robot.draw();
 }
@@ -277,7 +280,7 @@ const view = {
     step: latest?.step ?? -1, time: latest?.time ?? NaN, hash: latest?.hash ?? '', sequence: latest?.sequence ?? -1,
     signals: Object.fromEntries((scene?.signals ?? []).map((s, k) => [s.key, latest?.signals[k] ?? NaN])),
     field, range: range ?? seen, framesPerSecond, frozen: isFrozen(),
-    scriptMs: costs.length ? [...costs].sort((a, b) => a - b)[costs.length >> 1] : NaN,
+    scriptMs: costs.length ? [...costs].sort((a, b) => a - b)[Math.floor(0.95 * costs.length)] : NaN,  // 95th percentile
   }),
   scene: () => scene,
   request: (message: Record<string, unknown>) => connection.request(message),

@@ -21,6 +21,8 @@ export class Panel {
   private controller = make('select', {'aria-label': 'Controller'});
   private drive = button('Take over', 'Take over driving', () => this.send({type: 'drive', on: true}));
   private who = make('span', {});
+  private time = make('input', {type: 'range', min: '0', step: '1', value: '0', className: 'time',
+                                'aria-label': 'Frame of the recorded run'});
   private status: Status | null = null;
   stiffness = 20;  // N/m, of the hand's spring
 
@@ -37,9 +39,11 @@ export class Panel {
   step(): void { this.send({type: 'step', count: Math.max(1, Math.round(Number(this.steps.value) || 1))}); }
   reset(): void { this.send({type: 'reset'}); }
 
-  scene(scene: Scene): void {
+  scene(scene: Scene, mode: string): void {
     this.rows.clear();
     this.targets.clear();
+    if (mode === 'gallery') return this.gallery(scene);
+    if (mode === 'replay') return this.replay(scene);
     this.controller.replaceChildren(new Option('none (by hand)', ''),
                                     ...scene.controllers.map((c) => new Option(c.name, c.name)));
     const heading = (text: string) => make('h2', {textContent: text});
@@ -55,6 +59,28 @@ export class Panel {
       ...scene.effectors.filter((e) => e.kind === 'point').map((e) => this.target(e)),
       heading('Hand'), this.hand(),
     );
+  }
+
+  private gallery(scene: Scene): void {
+    this.root.replaceChildren(make('h2', {textContent: 'Examples'}), ...(scene.examples ?? []).map((example) => {
+      const card = make('button', {type: 'button', className: 'example', 'aria-label': `Open ${example.name}`,
+                                   onclick: () => this.send({type: 'open', name: example.name})});
+      if (example.thumbnail) card.append(make('img', {src: example.thumbnail + location.search, alt: ''}));
+      card.append(make('b', {textContent: example.name}), make('span', {textContent: example.title}));
+      return card;
+    }), make('div', {className: 'line'}, this.who, this.drive));
+  }
+
+  private replay(scene: Scene): void {
+    this.time.max = String((scene.frames ?? 1) - 1);
+    this.time.oninput = () => this.send({type: 'seek', frame: Number(this.time.value)});
+    this.root.replaceChildren(
+      make('h2', {textContent: 'Recorded run'}),
+      make('div', {className: 'line'}, this.play, button('Step', 'Advance by so many frames (s)', () => this.step()),
+           this.steps, button('Reset', 'Back to the start (r)', () => this.reset())),
+      make('div', {className: 'line'}, make('label', {}, 'Speed', this.speed)), this.time,
+      make('div', {className: 'line'}, this.who, this.drive,
+           make('a', {href: `download/run.csv${location.search}`, textContent: 'run.csv'})));
   }
 
   private actuator(actuator: Actuator): HTMLElement {
@@ -115,6 +141,7 @@ export class Panel {
       this.controller.append(new Option(source.controller, source.controller));
     }
     this.controller.value = source.controller ?? '';
+    if (source.frame !== undefined && document.activeElement !== this.time) this.time.value = String(source.frame);
     this.who.textContent = mine ? `You drive; ${status.clients} connected`
       : status.driver === null ? 'Nobody drives' : 'Another browser drives';
     this.drive.hidden = mine;

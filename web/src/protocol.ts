@@ -14,6 +14,8 @@ export interface Scene {
   bodies: {name: string; vertices: number; triangles: number; nodes: number; elements: number}[];
   fields: FieldInfo[]; actuators: Actuator[]; effectors: Effector[]; controllers: Controller[];
   signals: Signal[];
+  frames?: number; duration?: number;
+  examples?: {name: string; title: string; thumbnail: string | null}[];
 }
 export interface Trouble {level: 'info' | 'warning' | 'error'; kind: string; subject: string; text: string}
 export interface SourceStatus {
@@ -21,6 +23,7 @@ export interface SourceStatus {
   commands: Record<string, {quantity: string; value: number; owned: boolean}>;
   targets: Record<string, number[]>; troubles: Trouble[];
   stopped: {step: number; kind: string; message: string; remedy: string} | null;
+  frame?: number;
 }
 export interface Status {clients: number; driver: number | null; source: SourceStatus}
 

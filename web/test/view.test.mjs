@@ -1,6 +1,8 @@
 // The view in a real browser: SINEW_PROGRAM=... SINEW_PYTHON_PATH=... node --test web/test
 import assert from 'node:assert/strict';
 import {execFileSync, spawn} from 'node:child_process';
+import {mkdtempSync, readFileSync, rmSync} from 'node:fs';
+import {tmpdir} from 'node:os';
 import {dirname, join} from 'node:path';
 import {after, before, test} from 'node:test';
 import {fileURLToPath} from 'node:url';
@@ -233,4 +235,46 @@ test('frozen frames are noticed, and a restarted program is found again', async 
   await until(page, (s) => s.step > back.step);
   await page.close();
   await stop(again);
+});
+
+test('a recorded run is played again, and sought', async () => {
+  const folder = mkdtempSync(join(tmpdir(), 'sinew-view-'));
+  execFileSync(PROGRAM, ['run', STEERED, '--duration', '1s', '--out', folder, '--quiet']);
+  const served = await serve(folder, 0, '--paused');
+  const page = await open(served.url);
+  const rows = readFileSync(join(folder, 'run.csv'), 'utf8').trim().split('\n').map((row) => row.split(','));
+  const column = rows[0].indexOf('"tip.x [m]"');
+  await page.locator('[aria-label="Frame of the recorded run"]').fill('60');
+  const there = await until(page, (s) => s.status.frame === 60 && s.step === 60);
+  assert.equal(there.mode, 'replay');
+  assert.ok(Math.abs(there.signals['tip.x'] - Number(rows[61][column])) < 1e-12);
+  await page.keyboard.press(' ');
+  await until(page, (s) => s.status.frame === 100 && !s.status.playing);
+  await assert.rejects(ask(page, {type: 'settle'}), /cannot be changed/);
+  const csv = await page.evaluate(() => fetch('download/run.csv').then((r) => r.text()));
+  assert.equal(csv.trim().split('\n').length, 102);
+  await page.close();
+  await stop(served);
+  rmSync(folder, {recursive: true});
+});
+
+test('the gallery shows the examples and opens one', async () => {
+  const program = spawn(PROGRAM, ['view', '--no-open', '--port', '0']);
+  programs.add(program);
+  const url = await new Promise((resolve) => program.stdout.on('data', (data) => {
+    const found = /http:\S+/.exec(String(data));
+    if (found) resolve(found[0]);
+  }));
+  const page = await browser.newPage({viewport: {width: 1280, height: 800}});
+  await page.goto(url);
+  await page.getByRole('button', {name: 'Open arm/square'}).waitFor();
+  const pictures = await page.evaluate(() => [...document.querySelectorAll('.example img')]
+    .filter((image) => image.complete && image.naturalWidth > 100).length);
+  assert.ok(pictures >= 4, `${pictures} thumbnails`);
+  await assert.rejects(ask(page, {type: 'open', name: '../../etc/passwd'}), /no example/);
+  await page.getByRole('button', {name: 'Open arm/square'}).click();
+  const opened = await until(page, (s) => s.mode === 'live' && s.step > 20);
+  assert.ok('cable_2.tension' in opened.signals);
+  await page.close();
+  await stop({program});
 });
