@@ -177,7 +177,8 @@ function help(): void {
 
 addEventListener('keydown', (event) => {
   const target = event.target as HTMLElement;
-  if (event.ctrlKey || event.metaKey || event.altKey || /INPUT|SELECT|TEXTAREA/.test(target.tagName)) return;
+  const typing = /INPUT|SELECT|TEXTAREA/.test(target.tagName) && (target as HTMLInputElement).type !== 'range';
+  if (event.ctrlKey || event.metaKey || event.altKey || typing) return;
   const found = KEYS.find(([key]) => key === event.key);
   if (!found || (event.key === ' ' && target.tagName === 'BUTTON')) return;
   event.preventDefault();
