@@ -65,10 +65,13 @@ class Server::Hub final : public Publisher,
                           public std::enable_shared_from_this<Server::Hub> {
  public:
   Hub(const ServerSettings& settings, std::unique_ptr<Source> source)
-      : acceptor_(io_), status_timer_(io_), source_(std::move(source)) {
+      : io_(std::make_unique<asio::io_context>(1)),
+        acceptor_(std::in_place, *io_),
+        status_timer_(std::in_place, *io_),
+        source_(std::move(source)) {
     for (auto& wish : wishes_) wish = 0;
     listen(settings);
-    const bool local = acceptor_.local_endpoint().address().is_loopback();
+    const bool local = acceptor_->local_endpoint().address().is_loopback();
     if (!local) token_ = random_hex(16);
     const std::string host =
         local ? fmt::format("127.0.0.1:{}", port()) : fmt::format("{}:{}", settings.host, port());
@@ -80,19 +83,22 @@ class Server::Hub final : public Publisher,
     thread_ = std::thread([self = shared_from_this()] {
       self->accept();
       self->source_->start(*self);
-      self->io_.run();
+      self->io_->run();
     });
   }
 
   void stop() {
     if (!thread_.joinable()) return;
-    io_.stop();
+    io_->stop();
     thread_.join();
     source_->stop();
     views_.clear();
+    status_timer_.reset();
+    acceptor_.reset();
+    io_.reset();  // and with it what waits in it, which holds this object
   }
 
-  std::uint16_t port() const { return acceptor_.local_endpoint().port(); }
+  std::uint16_t port() const { return port_; }
   const std::string& url() const { return url_; }
 
   // Publisher: any thread.
@@ -100,14 +106,14 @@ class Server::Hub final : public Publisher,
     const std::lock_guard lock(mutex_);
     latest_ = std::move(frame);
     if (std::exchange(delivery_posted_, true)) return;
-    asio::post(io_, [self = weak_from_this()] {
+    asio::post(*io_, [self = weak_from_this()] {
       if (auto hub = self.lock()) hub->deliver();
     });
   }
   void publish_status(std::string status) override {
     const std::lock_guard lock(mutex_);
     status_ = std::move(status);
-    asio::post(io_, [self = weak_from_this()] {
+    asio::post(*io_, [self = weak_from_this()] {
       if (auto hub = self.lock()) hub->tell_status();
     });
   }
@@ -115,7 +121,7 @@ class Server::Hub final : public Publisher,
     return field >= 0 && field < kMostFields && wishes_[static_cast<std::size_t>(field)] > 0;
   }
   void replace(std::function<std::unique_ptr<Source>()> next) override {
-    asio::post(io_, [self = weak_from_this(), next = std::move(next)] {
+    asio::post(*io_, [self = weak_from_this(), next = std::move(next)] {
       if (auto hub = self.lock()) hub->change_source(next);
     });
   }
@@ -162,7 +168,7 @@ class Server::Hub final : public Publisher,
   }
   void fetch(std::string_view name, std::function<void(std::optional<Download>)> done) override {
     source_->fetch(name, [this, done = std::move(done)](std::optional<Download> file) {
-      asio::post(io_, [done, file = std::move(file)]() mutable { done(std::move(file)); });
+      asio::post(*io_, [done, file = std::move(file)]() mutable { done(std::move(file)); });
     });
   }
   void open_view(beast::tcp_stream&& stream,
@@ -191,9 +197,10 @@ class Server::Hub final : public Publisher,
     if (field >= 0 && field < kMostFields) wishes_[static_cast<std::size_t>(field)] += change;
   }
 
-  asio::io_context io_{1};
-  Tcp::acceptor acceptor_;
-  asio::steady_timer status_timer_;
+  std::unique_ptr<asio::io_context> io_;
+  std::optional<Tcp::acceptor> acceptor_;
+  std::optional<asio::steady_timer> status_timer_;
+  std::uint16_t port_ = 0;
   std::unique_ptr<Source> source_;
   std::thread thread_;
   std::string token_, url_;
@@ -225,10 +232,10 @@ void Server::Hub::listen(const ServerSettings& settings) {
                 "give an address of this machine, such as 127.0.0.1 or 0.0.0.0");
   }
   const Tcp::endpoint endpoint(address, settings.port);
-  acceptor_.open(endpoint.protocol());
-  acceptor_.set_option(asio::socket_base::reuse_address(true));
-  acceptor_.bind(endpoint, error);
-  if (!error) acceptor_.listen(asio::socket_base::max_listen_connections, error);
+  acceptor_->open(endpoint.protocol());
+  acceptor_->set_option(asio::socket_base::reuse_address(true));
+  acceptor_->bind(endpoint, error);
+  if (!error) acceptor_->listen(asio::socket_base::max_listen_connections, error);
   if (error) {
     throw Error(
         error == asio::error::address_in_use ? ErrorKind::address_in_use : ErrorKind::bad_argument,
@@ -237,10 +244,11 @@ void Server::Hub::listen(const ServerSettings& settings) {
                     error.message()),
         "choose another --port, or 0 for any that is free");
   }
+  port_ = acceptor_->local_endpoint().port();
 }
 
 void Server::Hub::accept() {
-  acceptor_.async_accept([self = weak_from_this()](beast::error_code error, Tcp::socket socket) {
+  acceptor_->async_accept([self = weak_from_this()](beast::error_code error, Tcp::socket socket) {
     auto hub = self.lock();
     if (!hub || error == asio::error::operation_aborted) return;
     if (!error) {
@@ -277,8 +285,8 @@ void Server::Hub::tell_status() {
   if (status_waits_) return;
   if (now - last_status_ < limits::kStatusInterval) {
     status_waits_ = true;
-    status_timer_.expires_at(last_status_ + limits::kStatusInterval);
-    status_timer_.async_wait([self = weak_from_this()](beast::error_code error) {
+    status_timer_->expires_at(last_status_ + limits::kStatusInterval);
+    status_timer_->async_wait([self = weak_from_this()](beast::error_code error) {
       auto hub = self.lock();
       if (!hub || error) return;
       hub->status_waits_ = false;
@@ -378,7 +386,7 @@ void Server::Hub::receive(ViewConnection& view, const Message& message) {
                                     id = message.id](const Outcome& outcome) {
     auto hub = self.lock();
     if (!hub) return;
-    asio::post(hub->io_, [hub, number, id, outcome] {
+    asio::post(*hub->io_, [hub, number, id, outcome] {
       const auto found = hub->views_.find(number);
       if (found == hub->views_.end()) return;
       --found->second->pending;
