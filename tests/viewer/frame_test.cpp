@@ -1,0 +1,101 @@
+#include "viewer/frame.hpp"
+
+#include <cstring>
+
+#include <gtest/gtest.h>
+
+namespace sinew::viewer {
+namespace {
+
+template <typename T>
+T number(const std::vector<std::byte>& bytes, std::size_t at) {
+  T value{};
+  EXPECT_LE(at + sizeof value, bytes.size());
+  std::memcpy(&value, bytes.data() + at, sizeof value);
+  return value;
+}
+
+TEST(Frame, SurfaceStandsAsDocumented) {
+  Surface surface;
+  surface.rest = {1, 2, 3, 4, 5, 6, 7, 8, 9};
+  surface.triangles = {2, 1, 0};
+  const auto bytes = encode_surface(surface, 5, 7);
+  ASSERT_EQ(bytes.size(), 24U + 36U + 12U);
+  EXPECT_EQ(std::memcmp(bytes.data(), "SNW1", 4), 0);
+  EXPECT_EQ(number<std::uint16_t>(bytes, 4), 1);
+  EXPECT_EQ(number<std::uint16_t>(bytes, 6), 7);
+  EXPECT_EQ(number<std::uint32_t>(bytes, 8), 5U);
+  EXPECT_EQ(number<std::uint32_t>(bytes, 12), 3U);
+  EXPECT_EQ(number<std::uint32_t>(bytes, 16), 1U);
+  EXPECT_EQ(number<std::uint32_t>(bytes, 20), 0U);
+  EXPECT_EQ(number<float>(bytes, 24 + 4 * 8), 9.0F);
+  EXPECT_EQ(number<std::uint32_t>(bytes, 60), 2U);
+}
+
+Frame sample() {
+  Frame frame;
+  frame.step = 0x100000002ULL;
+  frame.time = 1.5;
+  frame.hash = 0xfedcba9876543210ULL;
+  frame.signals = {0.25, -3.0};
+  frame.bodies = {{{1, 2, 3}, {{}, {42}}}};
+  frame.cables = {1, 1, 1, 2, 2, 2};
+  frame.effectors = {7, 8, 9};
+  frame.targets = {4, 5, 6};
+  return frame;
+}
+
+/// (kind, index, bytes) of each section, and where its content begins.
+struct Part {
+  int kind, index;
+  std::size_t at, bytes;
+};
+std::vector<Part> parts(const std::vector<std::byte>& bytes, std::size_t signals) {
+  std::vector<Part> result;
+  for (std::size_t at = 40 + 8 * signals; at < bytes.size();) {
+    const Part part{number<std::uint16_t>(bytes, at), number<std::uint16_t>(bytes, at + 2), at + 8,
+                    number<std::uint32_t>(bytes, at + 4)};
+    result.push_back(part);
+    at = part.at + part.bytes;
+  }
+  return result;
+}
+
+TEST(Frame, StandsAsDocumented) {
+  std::vector<std::byte> bytes;
+  encode_frame(sample(), {.generation = 3, .sequence = 9, .shape = true, .field = 1}, bytes);
+  EXPECT_EQ(number<std::uint16_t>(bytes, 4), 2);
+  EXPECT_EQ(number<std::uint16_t>(bytes, 6), 3);
+  EXPECT_EQ(number<std::uint32_t>(bytes, 8), 9U);
+  EXPECT_EQ(number<std::uint32_t>(bytes, 12), 2U);
+  EXPECT_EQ(number<std::uint64_t>(bytes, 16), 0x100000002ULL);
+  EXPECT_EQ(number<double>(bytes, 24), 1.5);
+  EXPECT_EQ(number<std::uint64_t>(bytes, 32), 0xfedcba9876543210ULL);
+  EXPECT_EQ(number<double>(bytes, 48), -3.0);
+  const auto list = parts(bytes, 2);
+  ASSERT_EQ(list.size(), 5U);
+  EXPECT_EQ(list[0].kind, 1);
+  EXPECT_EQ(number<float>(bytes, list[0].at + 8), 3.0F);
+  EXPECT_EQ(list[1].kind, 2);
+  EXPECT_EQ(number<std::uint32_t>(bytes, list[1].at), 1U);
+  EXPECT_EQ(number<float>(bytes, list[1].at + 4), 42.0F);
+  EXPECT_EQ(list[2].kind, 3);
+  EXPECT_EQ(list[2].bytes, 24U);
+  EXPECT_EQ(list[3].kind, 4);
+  EXPECT_EQ(list[4].kind, 5);
+}
+
+TEST(Frame, LeavesOutWhatHasNotChanged) {
+  std::vector<std::byte> bytes;
+  Frame frame = sample();
+  frame.pull = PullFrame{{1, 2, 3}, {4, 5, 6}, 0.5};
+  encode_frame(frame, {.generation = 3, .sequence = 9, .shape = false, .field = 0}, bytes);
+  const auto list = parts(bytes, 2);
+  ASSERT_EQ(list.size(), 2U);
+  EXPECT_EQ(list[0].kind, 5);
+  EXPECT_EQ(list[1].kind, 6);
+  EXPECT_EQ(number<float>(bytes, list[1].at + 24), 0.5F);
+}
+
+}  // namespace
+}  // namespace sinew::viewer
