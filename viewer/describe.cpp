@@ -89,9 +89,9 @@ Json bounds_json(const sim::Model& model) {
   return {vector_json(low), vector_json(high)};
 }
 
-Json signals_json(const sim::Model& model) {
+Json signals_json(const std::vector<SignalInfo>& signals) {
   Json list = Json::array();
-  for (const SignalInfo& signal : list_signals(model)) {
+  for (const SignalInfo& signal : signals) {
     list.push_back({{"key", signal.key},
                     {"label", signal.label},
                     {"unit", signal.unit},
@@ -179,15 +179,20 @@ Description describe(const scene::Robot& robot) {
                   "this body is not of finite elements", "the view shows such bodies alone");
     }
     result.surfaces.push_back(surface_of(fem->mesh()));
+    result.surfaces.back().body = body->name();
     bodies.push_back(body_json(*body, result.surfaces.back()));
   }
   Json actuators = Json::array(), effectors = Json::array();
   for (std::size_t i = 0; i < model.actuators().size(); ++i) {
     actuators.push_back(actuator_json(model, robot, static_cast<int>(i)));
+    const std::size_t points = actuators.back()["points"];
+    if (points > 0) result.cables.push_back({model.actuators()[i].name, points});
   }
   for (std::size_t i = 0; i < model.effectors().size(); ++i) {
     effectors.push_back(effector_json(model, static_cast<int>(i)));
+    result.effectors.push_back(model.effectors()[i].name);
   }
+  result.signals = list_signals(model);
   result.fields = {"displacement", "strain", "stress", "force"};
   const Json fields = {{{"name", "displacement"}, {"label", "Displacement"}, {"unit", "m"}},
                        {{"name", "strain"}, {"label", "Equivalent strain"}, {"unit", ""}},
@@ -202,7 +207,7 @@ Description describe(const scene::Robot& robot) {
                       {"actuators", actuators},
                       {"effectors", effectors},
                       {"controllers", controllers_json(robot)},
-                      {"signals", signals_json(model)}};
+                      {"signals", signals_json(result.signals)}};
   result.scene = scene.dump();
   return result;
 }

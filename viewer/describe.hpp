@@ -16,14 +16,6 @@ namespace sinew::viewer {
 enum class Field { displacement, strain, stress, force };
 inline constexpr int kFieldCount = 4;
 
-/// One number of a frame's signals.
-struct SignalInfo {
-  std::string key;    ///< "long_0.tension"
-  std::string label;  ///< for people
-  std::string unit;   ///< SI; empty for plain numbers
-  std::string group;  ///< effort, motion, effector, error, energy, time or solver
-};
-
 /// In the order in which sources fill Frame::signals.
 std::vector<SignalInfo> list_signals(const sim::Model& model);
 

@@ -15,9 +15,24 @@ namespace sinew::viewer {
 
 /// The surface of a body, which alone is sent.
 struct Surface {
+  std::string body;                      ///< its name
   std::vector<NodeId> nodes;             ///< (v,) mesh node of each vertex
   std::vector<float> rest;               ///< (3 v,) m
   std::vector<std::uint32_t> triangles;  ///< (3 t,) vertices, outward by the right-hand rule
+};
+
+/// A polyline of every frame's Frame::cables.
+struct CableInfo {
+  std::string actuator;
+  std::size_t points = 0;
+};
+
+/// One number of a frame's signals.
+struct SignalInfo {
+  std::string key;    ///< "long_0.tension"
+  std::string label;  ///< for people
+  std::string unit;   ///< SI; empty for plain numbers
+  std::string group;  ///< effort, motion, effector, error, energy, time or solver
 };
 
 /// Everything that does not change while one robot is shown.
@@ -25,6 +40,9 @@ struct Description {
   std::string scene;                ///< JSON object: `scene` of the protocol
   std::vector<Surface> surfaces;    ///< one a body
   std::vector<std::string> fields;  ///< names, in the order of BodyFrame::fields
+  std::vector<CableInfo> cables;    ///< in the order of Frame::cables
+  std::vector<SignalInfo> signals;  ///< in the order of Frame::signals
+  std::vector<std::string> effectors;
 };
 
 struct BodyFrame {

@@ -31,9 +31,10 @@ std::string read_all(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-std::unique_ptr<Source> open_example(const fs::path& path) {
+std::unique_ptr<Source> open_example(const fs::path& path, const std::vector<Example>& examples) {
   scene::Robot robot = scene::load(path);
   LiveSettings settings;
+  settings.gallery = [examples] { return std::make_unique<GallerySource>(examples); };
   if (!robot.controllers.empty()) settings.controller = robot.controllers.front().name;
   return std::make_unique<LiveSource>(std::move(robot), settings);
 }
@@ -101,7 +102,7 @@ void GallerySource::submit(const Request& request, std::function<void(Outcome)> 
   try {
     if (const auto* open = std::get_if<Open>(&request)) {
       const fs::path path = find(open->name).scene;
-      publisher_->replace([path] { return open_example(path); });
+      publisher_->replace([path, examples = examples_] { return open_example(path, examples); });
     } else if (!std::holds_alternative<Release>(request)) {
       throw Error(ErrorKind::not_in_this_version, {}, "the gallery cannot do this",
                   "open an example first");

@@ -113,7 +113,7 @@ void HttpConnection::answer_download(std::string_view name) {
   auto self = shared_from_this();
   stream_.expires_never();
   door_->fetch(name, [self](std::optional<Download> file) {
-    self->stream_.expires_after(limits::kRequestTime);
+    self->stream_.expires_after(limits::kDownloadTime);
     if (!file) return self->refuse(http::status::not_found, "there is no such file");
     Response response(http::status::ok, self->parser_->get().version());
     response.set(http::field::content_type, file->content_type);

@@ -1,14 +1,58 @@
 #include "live_source.hpp"
 
+#include <boost/asio/post.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
 namespace sinew::viewer {
 
+namespace {
+
+std::optional<Steering> scene_controller(const scene::Robot& robot, const std::string& name) {
+  if (name.empty()) return std::nullopt;
+  std::vector<std::string> known;
+  for (const scene::SceneController& controller : robot.controllers) {
+    if (controller.name == name) return Steering{name, controller.settings};
+    known.push_back(controller.name);
+  }
+  throw Error(ErrorKind::unknown_name, {.item = "controller"},
+              fmt::format("the scene has no controller '{}'", name),
+              known.empty() ? "the scene has none"
+                            : fmt::format("choose among {}", fmt::join(known, ", ")));
+}
+
+}  // namespace
+
 LiveSource::LiveSource(scene::Robot robot, const LiveSettings& settings)
+    : LiveSource(robot, std::make_shared<sim::Simulation>(robot.model, robot.threads()),
+                 scene_controller(robot, settings.controller), settings) {}
+
+LiveSource::LiveSource(scene::Robot robot, std::shared_ptr<sim::Simulation> simulation,
+                       std::optional<Steering> first, const LiveSettings& settings)
     : SourceThread(settings.playing, settings.speed),
-      state_(std::move(robot), settings.controller) {}
+      state_(std::move(robot), std::move(simulation), std::move(first)),
+      description_(state_.description()),
+      gallery_(settings.gallery) {
+  auto scene = nlohmann::json::parse(description_.scene);
+  scene["gallery"] = static_cast<bool>(gallery_);
+  description_.scene = scene.dump();
+}
+
+void LiveSource::start(Publisher& publisher) {
+  publisher_ = &publisher;
+  SourceThread::start(publisher);
+}
+
+void LiveSource::stop() {
+  end();
+  writer_.join();
+}
 
 bool LiveSource::advance() {
   state_.step();
-  return !state_.stopped();
+  if (state_.stopped()) return false;
+  record();
+  return true;
 }
 
 void LiveSource::require_ready() const {
@@ -17,8 +61,53 @@ void LiveSource::require_ready() const {
               "reset it first");
 }
 
+void LiveSource::record() {
+  if (!recording_on_) return;
+  if (!recording_->add(*state_.frame({}, 0.0))) record(false);
+}
+
+void LiveSource::record(bool on) {
+  if (on) {
+    recording_ = std::make_shared<Recording>(description_, state_.robot().description.name);
+    recording_on_ = true;
+    return record();
+  }
+  if (!recording_on_) return;
+  recording_on_ = false;
+  const std::lock_guard lock(mutex_);
+  saved_ = recording_;
+}
+
+void LiveSource::fetch(std::string_view name, std::function<void(std::optional<Download>)> done) {
+  std::shared_ptr<const Recording> saved;
+  {
+    const std::lock_guard lock(mutex_);
+    saved = saved_;
+  }
+  const bool table = name == "run.csv";
+  if (!saved || (!table && name != "motion.glb")) return done(std::nullopt);
+  boost::asio::post(writer_, [saved, table, done = std::move(done)] {
+    try {
+      done(table ? Download{"run.csv", "text/csv; charset=utf-8", saved->csv()}
+                 : Download{"motion.glb", "model/gltf-binary", saved->glb()});
+    } catch (const std::exception&) {
+      done(std::nullopt);  // a motion too long for one file, or no memory for it
+    }
+  });
+}
+
+std::string LiveSource::status_members() const {
+  const std::string recording =
+      recording_ ? fmt::format(R"({{"on":{},"frames":{},"seconds":{:.3f},"bytes":{},"full":{}}})",
+                               recording_on_, recording_->rows(), recording_->seconds(),
+                               recording_->bytes(), recording_->full())
+                 : "null";
+  return fmt::format(R"({{"recording":{},{})", recording, state_.status_members().substr(1));
+}
+
 void LiveSource::handle(const Request& request) {
   if (std::holds_alternative<Reset>(request)) {
+    record(false);
     state_.reset();
     restart_clock();
   } else if (std::holds_alternative<Settle>(request)) {
@@ -33,6 +122,10 @@ void LiveSource::handle(const Request& request) {
     state_.pull(*pull);
   } else if (std::holds_alternative<Release>(request)) {
     state_.release();
+  } else if (const auto* recording = std::get_if<Record>(&request)) {
+    record(recording->on);
+  } else if (std::holds_alternative<ShowGallery>(request) && gallery_) {
+    publisher_->replace(gallery_);
   } else {
     throw Error(ErrorKind::not_in_this_version, {}, "a live robot cannot do this",
                 "see docs/view.md for what it can");

@@ -2,11 +2,16 @@
 /// A running robot, driven by a browser.
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <mutex>
 #include <string>
+
+#include <boost/asio/thread_pool.hpp>
 
 #include "sinew/scene/build.hpp"
 
+#include "recording.hpp"
 #include "robot_state.hpp"
 #include "source_thread.hpp"
 
@@ -16,18 +21,31 @@ struct LiveSettings {
   std::string controller;  ///< attached at the start: a name of the scene's, or empty for none
   bool playing = true;
   double speed = 1.0;  ///< simulated seconds a second; 0: as fast as it can
+  /// Where the page goes back to; none: nowhere.
+  std::function<std::unique_ptr<Source>()> gallery;
 };
 
-/// Steps a simulation.
-class LiveSource final : public SourceThread {
+/// Steps a simulation, and records it when asked to.
+class LiveSource : public SourceThread {
  public:
   /// @param robot is simulated with its own threads. @param settings see there.
   /// Throws Error(unknown-name) for a controller that the scene does not have.
   explicit LiveSource(scene::Robot robot, const LiveSettings& settings = {});
-  ~LiveSource() override { end(); }
+  /// A simulation that others own and leave alone between start() and stop().
+  /// @param robot,simulation what is shown. @param first in place of settings.controller.
+  LiveSource(scene::Robot robot, std::shared_ptr<sim::Simulation> simulation,
+             std::optional<Steering> first, const LiveSettings& settings);
+  ~LiveSource() override { LiveSource::stop(); }
 
   std::string_view mode() const override { return "live"; }
-  const Description& description() const override { return state_.description(); }
+  const Description& description() const override { return description_; }
+  void start(Publisher& publisher) override;
+  void stop() override;
+  /// "run.csv" and "motion.glb" of what was recorded, once the recording has ended.
+  void fetch(std::string_view name, std::function<void(std::optional<Download>)> done) override;
+
+  /// As RobotState's; only while the source does not run.
+  auto take_controller() { return state_.take_controller(); }
 
  protected:
   double time() const override { return state_.simulation().time(); }
@@ -39,10 +57,24 @@ class LiveSource final : public SourceThread {
                                      double real_time_factor) override {
     return state_.frame(wanted, real_time_factor);
   }
-  std::string status_members() const override { return state_.status_members(); }
+  std::string status_members() const override;
+
+  RobotState& state() { return state_; }
+  /// Appends the present state, when recording.
+  void record();
 
  private:
+  void record(bool on);
+
   RobotState state_;
+  Description description_;
+  std::function<std::unique_ptr<Source>()> gallery_;
+  Publisher* publisher_ = nullptr;
+  std::shared_ptr<Recording> recording_;  ///< under way, or ended
+  bool recording_on_ = false;
+  std::mutex mutex_;  // of saved_
+  std::shared_ptr<const Recording> saved_;
+  boost::asio::thread_pool writer_{1};  ///< makes files of what was recorded
 };
 
 }  // namespace sinew::viewer

@@ -9,6 +9,9 @@
 
 #include "sinew/scene/scene.hpp"
 
+#include "limits.hpp"
+#include "recording.hpp"
+
 namespace sinew::viewer {
 
 namespace {
@@ -42,7 +45,7 @@ ReplaySource::ReplaySource(const fs::path& path, bool playing, double speed)
     : SourceThread(playing, speed),
       folder_(file_of(path).parent_path()),
       file_(file_of(path)),
-      state_(recorded_robot(file_), ""),
+      state_(recorded_robot(file_)),
       description_(state_.description()) {
   for (const sim::ActuatorModel& actuator : state_.simulation().model().actuators()) {
     efforts_.push_back(file_.actuator(actuator.name, "effort"));
@@ -112,8 +115,24 @@ std::string ReplaySource::status_members() const {
   return status.dump();
 }
 
-// The run's own table; nothing else of its folder.
+// At most as many frames as the motion keeps.
+std::string ReplaySource::motion() {
+  Recording recording(description_, state_.robot().description.name);
+  const std::int64_t shown = at_, frames = file_.frames();
+  const std::int64_t stride =
+      1 + (frames - 1) / static_cast<std::int64_t>(limits::kMotionFrames);
+  for (at_ = 0; at_ < frames; at_ += stride) {
+    show();
+    static_cast<void>(recording.add(*state_.frame({}, 0.0)));
+  }
+  at_ = shown;
+  show();
+  return recording.glb();
+}
+
+// The run's own table, or its motion; nothing else of its folder.
 std::optional<Download> ReplaySource::download(std::string_view name) {
+  if (name == "motion.glb") return Download{"motion.glb", "model/gltf-binary", motion()};
   if (name != "run.csv") return std::nullopt;
   std::ifstream file(folder_ / "run.csv", std::ios::binary);
   if (!file) return std::nullopt;

@@ -38,6 +38,7 @@ class ReplaySource final : public SourceThread {
 
  private:
   void show();
+  std::string motion();
 
   std::filesystem::path folder_;
   record::RunFile file_;

@@ -67,16 +67,30 @@ void add_controller(const inverse::InverseController& controller, const std::str
 
 }  // namespace
 
-RobotState::RobotState(scene::Robot robot, const std::string& controller)
+RobotState::RobotState(scene::Robot robot, std::shared_ptr<sim::Simulation> simulation,
+                       std::optional<Steering> first)
     : robot_(std::move(robot)),
       description_(describe(robot_)),
-      simulation_(std::make_unique<sim::Simulation>(robot_.model, robot_.threads())),
-      first_controller_(controller) {
+      simulation_(std::move(simulation)),
+      first_(std::move(first)) {
   for (std::size_t b = 0; b < robot_.model->bodies().size(); ++b) {
     const auto& body = simulation_->fem_body(static_cast<int>(b));
     fields_.push_back(std::make_unique<fem::NodalFields>(body.fem_model()));
   }
-  if (!controller.empty()) choose_controller(controller);
+  if (first_) attach(first_->name, first_->settings);
+}
+
+RobotState::~RobotState() { release(); }
+
+void RobotState::observe(const std::string& name, inverse::InverseController* controller) {
+  observing_ = true;
+  controller_ = controller;
+  controller_name_ = controller == nullptr ? "" : name;
+}
+
+std::pair<std::string, std::unique_ptr<inverse::InverseController>> RobotState::take_controller() {
+  controller_ = nullptr;
+  return {controller_name_, std::move(own_)};
 }
 
 void RobotState::step() {
@@ -94,7 +108,7 @@ void RobotState::reset() {
   targets_.clear();
   detach();
   simulation_->reset();
-  if (!first_controller_.empty()) choose_controller(first_controller_);
+  if (first_) attach(first_->name, first_->settings);
   stopped_.reset();
   ++shape_;
 }
@@ -120,18 +134,26 @@ void RobotState::command(const SetCommand& command) {
 }
 
 void RobotState::detach() {
-  controller_.reset();
+  controller_ = nullptr;
+  own_.reset();
   controller_name_.clear();
 }
 
 void RobotState::attach(const std::string& name, const inverse::InverseSettings& settings) {
   detach();
-  controller_ = std::make_unique<inverse::InverseController>(*simulation_, settings);
+  own_ = std::make_unique<inverse::InverseController>(*simulation_, settings);
+  controller_ = own_.get();
   controller_name_ = name;
 }
 
 void RobotState::choose_controller(const std::optional<std::string>& name) {
+  if (observing_) {
+    throw Error(ErrorKind::not_in_this_version, {.item = "controller"},
+                "the script that steps this robot chooses its controller",
+                "attach or detach it in the script");
+  }
   if (!name) return detach();
+  if (first_ && first_->name == *name) return attach(*name, first_->settings);
   std::vector<std::string> known;
   for (const scene::SceneController& controller : robot_.controllers) {
     if (controller.name == *name) return attach(*name, controller.settings);
@@ -163,6 +185,11 @@ void RobotState::set_target(const SetTarget& target) {
     }
     if (controller_name_ == kOwnController) detach();
     return;
+  }
+  if (observing_ && task_of(effector) < 0) {
+    throw Error(ErrorKind::no_effectors, {.item = target.effector},
+                "no controller of the script steers this effector",
+                "attach one: sinew.InverseController(sim, {...})");
   }
   if (task_of(effector) < 0) {
     inverse::InverseSettings settings;

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sinew/fem/nodal_fields.hpp"
@@ -25,6 +26,12 @@ struct StoppedRun {
   std::string kind, message, remedy;
 };
 
+/// A controller that is not among the scene's, or its present targets are not the scene's.
+struct Steering {
+  std::string name;
+  inverse::InverseSettings settings;
+};
+
 /// A moment of a recorded run.
 struct RecordedState {
   std::vector<Points> positions;         ///< (n, 3) m a body, in the model's order
@@ -34,16 +41,32 @@ struct RecordedState {
 
 class RobotState {
  public:
-  /// @param robot is simulated. @param controller as for LiveSettings.
-  RobotState(scene::Robot robot, const std::string& controller);
+  /// @param robot,simulation what is shown, and what steps; a hand's spring is taken off it at the
+  ///   end. @param first attached now and by reset().
+  RobotState(scene::Robot robot, std::shared_ptr<sim::Simulation> simulation,
+             std::optional<Steering> first);
+  /// A simulation of its own, which nothing steers.
+  explicit RobotState(const scene::Robot& robot)
+      : RobotState(robot, std::make_shared<sim::Simulation>(robot.model, robot.threads()), {}) {}
+  ~RobotState();
+  RobotState(const RobotState&) = delete;
+  RobotState& operator=(const RobotState&) = delete;
 
   const Description& description() const { return description_; }
+  const scene::Robot& robot() const { return robot_; }
   const sim::Simulation& simulation() const { return *simulation_; }
   double time_step() const { return simulation_->model().step().time_step; }
   const std::optional<StoppedRun>& stopped() const { return stopped_; }
 
   /// One step; what it throws is kept as stopped().
   void step();
+  /// The simulation was stepped by others.
+  void moved() { ++shape_; }
+  /// Shows a controller that others attach and detach: from now on none is attached here.
+  /// @param name,controller null: nothing steers.
+  void observe(const std::string& name, inverse::InverseController* controller);
+  /// The controller that is attached, with its name: it stays attached.
+  std::pair<std::string, std::unique_ptr<inverse::InverseController>> take_controller();
   void reset();
   void settle();
   void command(const SetCommand& command);
@@ -72,10 +95,12 @@ class RobotState {
 
   scene::Robot robot_;
   Description description_;
-  std::unique_ptr<sim::Simulation> simulation_;
-  std::unique_ptr<inverse::InverseController> controller_;
+  std::shared_ptr<sim::Simulation> simulation_;
+  std::unique_ptr<inverse::InverseController> own_;
+  inverse::InverseController* controller_ = nullptr;  ///< own_, or one that others look after
   std::string controller_name_;
-  std::string first_controller_;
+  std::optional<Steering> first_;
+  bool observing_ = false;
   std::vector<std::unique_ptr<fem::NodalFields>> fields_;
   std::vector<double> nodal_;
   std::map<std::string, Vector3> targets_;

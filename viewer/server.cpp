@@ -28,6 +28,8 @@ using Json = nlohmann::json;
 namespace {
 
 constexpr int kMostFields = 16;
+constexpr int kUsualPort = 8080;
+constexpr int kPortsToTry = 20;  // after it
 
 std::string random_hex(int bytes) {
   std::random_device device;
@@ -224,6 +226,8 @@ class Server::Hub final : public Publisher,
 
 void Server::Hub::listen(const ServerSettings& settings) {
   beast::error_code error;
+  const int first = settings.port.value_or(kUsualPort);
+  const int last = settings.port ? first : first + kPortsToTry;
   const auto address =
       asio::ip::make_address(settings.host == "localhost" ? "127.0.0.1" : settings.host, error);
   if (error) {
@@ -231,17 +235,21 @@ void Server::Hub::listen(const ServerSettings& settings) {
                 fmt::format("'{}' is no address", settings.host),
                 "give an address of this machine, such as 127.0.0.1 or 0.0.0.0");
   }
-  const Tcp::endpoint endpoint(address, settings.port);
-  acceptor_->open(endpoint.protocol());
-  acceptor_->set_option(asio::socket_base::reuse_address(true));
-  acceptor_->bind(endpoint, error);
-  if (!error) acceptor_->listen(asio::socket_base::max_listen_connections, error);
+  for (int port = first; port <= last; ++port) {
+    const Tcp::endpoint endpoint(address, static_cast<std::uint16_t>(port));
+    acceptor_->open(endpoint.protocol());
+    acceptor_->set_option(asio::socket_base::reuse_address(true));
+    acceptor_->bind(endpoint, error);
+    if (!error) acceptor_->listen(asio::socket_base::max_listen_connections, error);
+    if (!error) break;
+    acceptor_->close();
+    if (error != asio::error::address_in_use) break;
+  }
   if (error) {
     throw Error(
         error == asio::error::address_in_use ? ErrorKind::address_in_use : ErrorKind::bad_argument,
         {.item = "--port"},
-        fmt::format("{}:{} cannot be listened on: {}", settings.host, settings.port,
-                    error.message()),
+        fmt::format("{}:{} cannot be listened on: {}", settings.host, first, error.message()),
         "choose another --port, or 0 for any that is free");
   }
   port_ = acceptor_->local_endpoint().port();
@@ -277,7 +285,7 @@ void Server::Hub::introduce(ViewConnection& view) {
     view.send(std::make_shared<const std::vector<std::byte>>(
         encode_surface(shown.surfaces[b], static_cast<int>(b), generation_)));
   }
-  view.forget_shape();
+  view.forget_frames();
 }
 
 void Server::Hub::tell_status() {
@@ -328,6 +336,7 @@ void Server::Hub::change_source(const std::function<std::unique_ptr<Source>()>& 
     status_ = "{}";
   }
   for (const auto& [number, view] : std::map(views_)) {
+    view->forget_frames();
     view->choose_field(-1);
     if (view->greeted()) introduce(*view);
   }

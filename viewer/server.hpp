@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "source.hpp"
@@ -12,7 +13,8 @@ namespace sinew::viewer {
 
 struct ServerSettings {
   std::string host = "127.0.0.1";  ///< address to listen on
-  std::uint16_t port = 8080;       ///< 0: any that is free
+  /// 0: any that is free; none: 8080, or the next free one.
+  std::optional<std::uint16_t> port;
 };
 
 /// One thread of its own serves all connections; the source has its own threads. Bound to another

@@ -70,6 +70,8 @@ void SourceThread::restart_clock() {
 }
 
 void SourceThread::run() {
+  publish();
+  begin();
   restart_clock();
   while (true) {
     std::deque<Item> items;

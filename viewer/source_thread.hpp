@@ -30,6 +30,8 @@ class SourceThread : public Source {
   /// @param playing,speed from the start on; speed 0: as fast as it can.
   SourceThread(bool playing, double speed) : playing_(playing), speed_(speed) {}
 
+  /// Once, after the first frame.
+  virtual void begin() {}
   virtual double time() const = 0;       ///< s, simulated
   virtual double time_step() const = 0;  ///< s
   /// Goes on by one step; false when that is not possible any more.

@@ -49,7 +49,11 @@ class ViewConnection : public std::enable_shared_from_this<ViewConnection> {
   /// The frame to be sent next; replaces one that was not sent yet.
   void offer(std::shared_ptr<const Frame> frame);
   /// Another robot is shown: nothing that was sent before counts.
-  void forget_shape() { last_shape_ = kNoShape; }
+  void forget_frames() {
+    last_shape_ = kNoShape;
+    frame_.reset();
+    last_frame_.reset();
+  }
   void close(boost::beast::websocket::close_code code, const std::string& reason);
 
   int number() const { return number_; }

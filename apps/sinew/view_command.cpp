@@ -1,16 +1,11 @@
 // sinew view: a scene in the browser.
 #include <chrono>
-#include <cstdlib>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <thread>
 
 #include <fmt/format.h>
-#include <spawn.h>
-#include <unistd.h>
-
 #include "sinew/core/error.hpp"
 
 #include "arguments.hpp"
@@ -19,6 +14,7 @@
 #include "terminal.hpp"
 
 #ifdef SINEW_HAS_VIEWER
+#include "viewer/browser.hpp"
 #include "viewer/gallery_source.hpp"
 #include "viewer/live_source.hpp"
 #include "viewer/replay_source.hpp"
@@ -29,9 +25,7 @@ namespace sinew::cli {
 
 namespace {
 
-constexpr int kDefaultPort = 8080;
 constexpr int kLastPort = 65535;
-constexpr int kPortsToTry = 20;
 
 struct ViewOptions {
   SceneOptions scene;
@@ -44,58 +38,27 @@ struct ViewOptions {
 
 #ifdef SINEW_HAS_VIEWER
 
-// Where there is a screen; a browser that does not start is no error.
-void open_browser(const std::string& url) {
-  if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return;
-  std::string program = "xdg-open", address = url;
-  char* const words[] = {program.data(), address.data(), nullptr};
-  pid_t child = 0;
-  static_cast<void>(posix_spawnp(&child, program.c_str(), nullptr, nullptr, words, environ));
-}
-
 // The tree that this program was built from, or the installed one.
 std::filesystem::path examples_folder() {
   std::error_code problem;
-  const std::filesystem::path built = SINEW_EXAMPLES_DEFAULT;
+  std::filesystem::path built = SINEW_EXAMPLES_DEFAULT;
   if (std::filesystem::exists(built, problem)) return built;
   const auto self = std::filesystem::read_symlink("/proc/self/exe", problem);
   return self.parent_path().parent_path() / "share/sinew/examples";
 }
 
-using MakeSource = std::function<std::unique_ptr<viewer::Source>()>;
-
-/// What is shown: a scene that runs, or a run that was recorded.
-MakeSource source_of(const ViewOptions& options) {
-  const bool playing = !options.paused;
-  const double speed = options.speed;
+/// What is shown: a scene that runs, a run that was recorded, or the examples.
+std::unique_ptr<viewer::Source> source_of(const ViewOptions& options) {
   if (options.scene.file.empty()) {
-    return [] {
-      return std::make_unique<viewer::GallerySource>(viewer::find_examples(examples_folder()));
-    };
+    return std::make_unique<viewer::GallerySource>(viewer::find_examples(examples_folder()));
   }
   if (viewer::is_recorded_run(options.scene.file)) {
-    return [=, path = options.scene.file] {
-      return std::make_unique<viewer::ReplaySource>(path, playing, speed);
-    };
+    return std::make_unique<viewer::ReplaySource>(options.scene.file, !options.paused,
+                                                  options.speed);
   }
-  return [=, scene = load_scene(options.scene)] {
-    return std::make_unique<viewer::LiveSource>(
-        scene.robot, viewer::LiveSettings{scene.controller, playing, speed});
-  };
-}
-
-// The port that was asked for; else the first free one from the usual one on.
-std::unique_ptr<viewer::Server> serve(const ViewOptions& options, const MakeSource& source) {
-  for (int k = 0;; ++k) {
-    const int port = options.port.value_or(kDefaultPort + k);
-    try {
-      return std::make_unique<viewer::Server>(
-          viewer::ServerSettings{options.host, static_cast<std::uint16_t>(port)}, source());
-    } catch (const Error& error) {
-      const bool again = error.kind() == ErrorKind::address_in_use && !options.port;
-      if (!again || k == kPortsToTry) throw;
-    }
-  }
+  const LoadedScene scene = load_scene(options.scene);
+  return std::make_unique<viewer::LiveSource>(
+      scene.robot, viewer::LiveSettings{scene.controller, !options.paused, options.speed, {}});
 }
 
 int view(const ViewOptions& options) {
@@ -105,14 +68,16 @@ int view(const ViewOptions& options) {
                 fmt::format("{:g} is out of range", options.speed),
                 "give 0.01 to 100 simulated seconds a second, or 0 for as fast as it can");
   }
-  const std::unique_ptr<viewer::Server> server = serve(options, source_of(options));
+  viewer::ServerSettings settings{options.host, std::nullopt};
+  if (options.port) settings.port = static_cast<std::uint16_t>(*options.port);
+  viewer::Server server(settings, source_of(options));
   const Interrupt interrupt;
-  server->start();
-  fmt::print("the view is at {}\nCtrl-C ends it\n", server->url());
+  server.start();
+  fmt::print("the view is at {}\nCtrl-C ends it\n", server.url());
   std::fflush(stdout);
-  if (!options.no_open) open_browser(server->url());
+  if (!options.no_open) viewer::open_browser(server.url());
   while (!Interrupt::requested()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  server->stop();
+  server.stop();
   return 0;
 }
 

@@ -29,7 +29,9 @@ from ._core import (
     Steps,
     Target,
     Trajectory,
+    View,
     __version__,
+    view,
 )
 from .errors import Error, Place, RunError
 from .scene import load, loads
@@ -56,11 +58,13 @@ __all__ = [
     "Steps",
     "Target",
     "Trajectory",
+    "View",
     "__version__",
     "errors",
     "load",
     "loads",
     "mesh",
+    "view",
 ]
 
 # Names by which users know them, whatever module compiled them.

@@ -25,6 +25,7 @@ void bind_body(py::module_& module);
 void bind_simulation(py::module_& module);
 void bind_controller(py::module_& module);
 void bind_mesh(py::module_& module);
+void bind_view(py::module_& module);
 
 /// A part of a simulation: keeps the whole alive.
 struct Part {

@@ -186,6 +186,26 @@ std::shared_ptr<AttachedController> Session::attach(inverse::InverseSettings set
   return made;
 }
 
+std::optional<inverse::InverseSettings> Session::lend_controller() {
+  if (!controller_) return std::nullopt;
+  controller_->law->detach();
+  return controller_->law->settings();
+}
+
+void Session::take_back(bool same, const std::string& name,
+                        std::unique_ptr<inverse::InverseController> law) {
+  if (controller_ && law && same) {
+    controller_->law = std::move(law);
+    return;
+  }
+  if (controller_) controller_->attached = false;
+  controller_.reset();
+  if (!law) return;
+  controller_ = std::make_shared<AttachedController>();
+  controller_->name = name;
+  controller_->law = std::move(law);
+}
+
 void Session::detach(AttachedController& controller) {
   const Use use(*this);
   controller.law->detach();

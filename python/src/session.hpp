@@ -101,6 +101,16 @@ class Session {
   /// Detaches `controller` if it is attached.
   void detach(AttachedController& controller);
 
+  /// For whoever steps the simulation while it holds a Use: detaches the controller, which Python
+  /// goes on to see as attached, and tells its settings; none without one.
+  std::optional<inverse::InverseSettings> lend_controller();
+  /// What came of it: null, or the controller that is attached now.
+  /// @param same whether it is the one that was lent. @param name of another one.
+  void take_back(bool same, const std::string& name,
+                 std::unique_ptr<inverse::InverseController> law);
+  /// After others have stepped.
+  void count_steps() { steps_ = simulation_.steps(); }
+
   /// "long_0", "tip.x", ...: what every row of H and W belongs to.
   const std::vector<std::string>& row_names() const { return row_names_; }
 

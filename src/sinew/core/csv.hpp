@@ -47,6 +47,11 @@ Table read_csv(const std::filesystem::path& path, const CsvSettings& settings = 
 /// The same for text in memory; `name` stands for the file in errors.
 Table parse_csv(std::string_view bytes, const std::string& name, const CsvSettings& settings = {});
 
+/// Appends a header line to a text; names with commas or blanks are quoted.
+void append_csv_header(std::string& text, std::span<const std::string> names);
+/// Appends a line of numbers, each the shortest text that reads back bit for bit.
+void append_csv_row(std::string& text, std::span<const double> values);
+
 /// Writes rows as they come. Each row is handed to the operating system before write_row returns,
 /// so the file of an interrupted run is whole up to its last row. Numbers are the shortest text
 /// that reads back bit for bit.

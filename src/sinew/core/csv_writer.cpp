@@ -16,7 +16,33 @@ std::string quoted(const std::string& name) {
   return text + '"';
 }
 
+void append_cells(std::string& text, std::span<const double> values) {
+  std::array<char, 32> digits{};
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (k > 0) text += ',';
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), values[k]).ptr;
+    text.append(digits.data(), end);
+  }
+}
+
+void append_names(std::string& text, std::span<const std::string> names) {
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (k > 0) text += ',';
+    text += quoted(names[k]);
+  }
+}
+
 }  // namespace
+
+void append_csv_header(std::string& text, std::span<const std::string> names) {
+  append_names(text, names);
+  text += '\n';
+}
+
+void append_csv_row(std::string& text, std::span<const double> values) {
+  append_cells(text, values);
+  text += '\n';
+}
 
 CsvWriter::CsvWriter(const std::filesystem::path& path, std::span<const std::string> names)
     : path_(path.string()),
@@ -27,10 +53,7 @@ CsvWriter::CsvWriter(const std::filesystem::path& path, std::span<const std::str
                 names.empty() ? "the table has no columns" : "the file cannot be created",
                 "check that its folder exists and is writable");
   }
-  for (const std::string& name : names) {
-    if (!line_.empty()) line_ += ',';
-    line_ += quoted(name);
-  }
+  append_names(line_, names);
   flush_line();
 }
 
@@ -42,12 +65,7 @@ void CsvWriter::write_row(std::span<const double> values, std::span<const std::s
                 fmt::format("expected {} columns, got {}", columns_, values.size() + words.size()),
                 "write as many values as the header has names");
   }
-  std::array<char, 32> digits{};
-  for (const double value : values) {
-    if (!line_.empty()) line_ += ',';
-    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
-    line_.append(digits.data(), end);
-  }
+  append_cells(line_, values);
   for (const std::string_view word : words) {
     if (!line_.empty()) line_ += ',';
     line_ += word;
