@@ -48,6 +48,13 @@ export function gradient(map: string): string {
 const PREFIXES: [number, string][] = [[1e9, 'G'], [1e6, 'M'], [1e3, 'k'], [1, ''], [1e-3, 'm'], [1e-6, 'u'],
                                       [1e-9, 'n']];
 
+/** The number that told() wrote: "12.3 mm" is 0.0123; NaN when it is none. */
+export function read(text: string): number {
+  const found = /^\s*([-+\d.eE]+)\s*([GMkmun]?)/.exec(text);
+  if (!found) return NaN;
+  return Number(found[1]) * (PREFIXES.find(([, prefix]) => prefix === found[2])?.[0] ?? 1);
+}
+
 /** A number of a unit as people write it: 0.0123 m is "12.3 mm". */
 export function told(value: number, unit: string, digits = 3): string {
   if (!Number.isFinite(value)) return '-';

@@ -1,7 +1,7 @@
 // The page: puts the connection, the robot, the controls and the plots together.
 import 'uplot/dist/uPlot.min.css';
 import './style.css';
-import {gradient, MAPS, told} from './colours';
+import {gradient, MAPS, read, told} from './colours';
 import {Connection} from './connection';
 import {button, make} from './dom';
 import {Panel} from './panel';
@@ -55,10 +55,11 @@ const fields = make('select', {'aria-label': 'Colour by'});
 const maps = make('select', {'aria-label': 'Colour map'}, ...MAPS.map((m) => new Option(m, m)));
 const wire = button('Wire', 'Wireframe (w)', () => { robot.wireframe = wire.classList.toggle('on'); fresh = true; });
 const follow = button('Follow', 'Follow the effector (o)', () => { robot.follow = follow.classList.toggle('on'); });
+const hands = button('Hand', 'Drag the robot itself, without Shift (h)', () => { robot.hands = hands.classList.toggle('on'); });
 const theme = button('Dark', 'Light or dark (d)', () => setTheme(document.documentElement.dataset.theme !== 'dark'));
 fields.onchange = () => chooseField(fields.value === '' ? null : fields.value);
 maps.onchange = () => { map = maps.value; robot.map(map); legend(); };
-byId('top').append(title, make('label', {}, 'Colour ', fields), maps, wire, follow,
+byId('top').append(title, make('label', {}, 'Colour ', fields), maps, wire, follow, hands,
                    button('Fit', 'See the whole robot (f)', () => robot.fit()),
                    button('Picture', 'Save a picture (p)', picture), theme,
                    button('?', 'Keyboard shortcuts (?)', help), numbers);
@@ -74,7 +75,7 @@ function chooseField(name: string | null): void {
   field = name;
   fields.value = name ?? '';
   robot.coloured = name !== null;
-  range = null;
+  keepRange(null);
   connection.request({type: 'field', name}).catch(() => undefined);
   fresh = true;
   legend();
@@ -91,10 +92,28 @@ function picture(): void {
 
 const low = make('span', {}), high = make('span', {}), bar = make('span', {className: 'bar'});
 const fixed = make('input', {type: 'checkbox', 'aria-label': 'Keep the range'});
-fixed.onchange = () => { range = fixed.checked ? [...seen] : null; };
+const ends = ['Lowest', 'Highest'].map((end) => make('input', {type: 'text', 'aria-label': `${end} value of the range`}));
+fixed.onchange = () => keepRange(fixed.checked ? [...seen] : null);
+ends.forEach((end) => { end.onchange = typedRange; });
 const name = make('div', {});
+const typed = make('div', {className: 'line', hidden: true}, ends[0], 'to', ends[1]);
 byId('legend').append(name, bar, make('span', {className: 'ends'}, high, low),
-                      make('label', {className: 'line'}, fixed, 'keep the range'));
+                      make('label', {className: 'line'}, fixed, 'keep the range'), typed);
+
+function keepRange(next: [number, number] | null): void {
+  range = next;
+  fixed.checked = next !== null;
+  typed.hidden = next === null;
+  const unit = scene?.fields.find((f) => f.name === field)?.unit ?? '';
+  next?.forEach((value, k) => { ends[k].value = told(value, unit, 4); });
+  fresh = true;
+}
+
+function typedRange(): void {
+  const [a, b] = ends.map((end) => read(end.value));
+  if (a < b) keepRange([a, b]);
+  else keepRange(range);
+}
 
 function legend(): void {
   const info = scene?.fields.find((f) => f.name === field);
@@ -129,7 +148,8 @@ function alerts(): void {
     list.push(['error', `The run stopped at step ${step}: ${message}${remedy && !message.includes(remedy) ? `; ${remedy}` : ''}`,
                button('Reset', 'Back to the start', () => panel.reset())]);
   }
-  if (isFrozen()) list.push(['error', 'No frames for two seconds.']);
+  if (isFrozen()) list.push(mode === 'follow' ? ['info', 'The script has not stepped for two seconds.']
+                                             : ['error', 'No frames for two seconds.']);
   for (const [key, text] of notices) if (key !== 'connection') list.push(['warning', text]);
   const troubles = source?.troubles ?? [];
   for (const t of troubles.filter((x) => x.level !== 'info').slice(0, 5)) list.push([t.level, `${t.subject}: ${t.text}`]);
@@ -153,8 +173,8 @@ const KEYS: [string, string, () => void][] = [
   [' ', 'play or pause', () => panel.toggle()], ['s', 'step', () => panel.step()],
   ['r', 'reset', () => panel.reset()], ['f', 'see the whole robot', () => robot.fit()],
   ['w', 'wireframe', () => wire.click()], ['o', 'follow the effector', () => follow.click()],
-  ['c', 'next colouring', nextField], ['d', 'light or dark', () => theme.click()],
-  ['p', 'save a picture', picture], ['?', 'this list', help],
+  ['h', 'drag the robot itself', () => hands.click()], ['c', 'next colouring', nextField], ['d', 'light or dark', () => theme.click()],
+  ['p', 'save a picture', picture], ['e', 'record, or end the recording', () => panel.record()], ['?', 'this list', help],
 ];
 const dialog = make('dialog', {'aria-label': 'Keyboard shortcuts'});
 document.body.append(dialog);
@@ -169,7 +189,8 @@ function help(): void {
   const rows = KEYS.map(([key, what]) => make('tr', {}, make('td', {}, make('kbd', {textContent: key === ' ' ? 'space' : key})),
                                               make('td', {textContent: what})));
   const mouse = [['drag', 'turn'], ['right drag', 'move (on the robot: pull)'], ['wheel', 'zoom'],
-                 ['Shift drag', 'pull at the robot'], ['drag the arrows', 'move the target']];
+                 ['Shift drag', 'pull at the robot'], ['drag the arrows', 'move the target'],
+                 ['click a ball', 'its arrows, where there are several']];
   rows.push(...mouse.map(([key, what]) => make('tr', {}, make('td', {}, make('kbd', {textContent: key})), make('td', {textContent: what}))));
   dialog.replaceChildren(make('table', {}, ...rows), button('Close', 'Close', () => dialog.close()));
   dialog.showModal();
@@ -199,6 +220,7 @@ const connection = new Connection({
     robot.scene(next);
     panel.scene(next, what);
     byId('plots').hidden = what === 'gallery';
+    byId('scale').textContent = what === 'gallery' ? '' : `grid ${byId('stage').dataset.cell}`;
     plots.setScene(next);
     if (field !== null) chooseField(field);
   },
@@ -286,6 +308,7 @@ const view = {
   scene: () => scene,
   request: (message: Record<string, unknown>) => connection.request(message),
   colour: chooseField,
+  arrows: () => robot.arrows(),
 };
 declare global { interface Window { sinewView: typeof view } }
 window.sinewView = view;

@@ -23,6 +23,8 @@ export class Panel {
   private who = make('span', {});
   private time = make('input', {type: 'range', min: '0', step: '1', value: '0', className: 'time',
                                 'aria-label': 'Frame of the recorded run'});
+  private recorder = button('Record', 'Record the run from now on', () => this.record());
+  private recorded = make('span', {className: 'recorded'});
   private status: Status | null = null;
   stiffness = 20;  // N/m, of the hand's spring
 
@@ -38,6 +40,7 @@ export class Panel {
   toggle(): void { this.send({type: this.status?.source.playing ? 'pause' : 'play'}); }
   step(): void { this.send({type: 'step', count: Math.max(1, Math.round(Number(this.steps.value) || 1))}); }
   reset(): void { this.send({type: 'reset'}); }
+  record(): void { this.send({type: 'record', on: !this.status?.source.recording?.on}); }
 
   scene(scene: Scene, mode: string): void {
     this.rows.clear();
@@ -47,15 +50,19 @@ export class Panel {
     this.controller.replaceChildren(new Option('none (by hand)', ''),
                                     ...scene.controllers.map((c) => new Option(c.name, c.name)));
     const heading = (text: string) => make('h2', {textContent: text});
+    const scripted = mode === 'follow';  // a script steps, resets and chooses the controller
     this.root.replaceChildren(
       heading('Run'),
       make('div', {className: 'line'}, this.play, button('Step', 'Advance by so many steps (s)', () => this.step()),
-           this.steps, button('Reset', 'Back to the start (r)', () => this.reset())),
-      make('div', {className: 'line'}, make('label', {}, 'Speed', this.speed),
-           button('Settle', 'Static equilibrium at the present inputs', () => this.send({type: 'settle'}))),
-      make('div', {className: 'line'}, this.who, this.drive),
+           this.steps, ...(scripted ? [] : [button('Reset', 'Back to the start (r)', () => this.reset())])),
+      make('div', {className: 'line'}, make('label', {}, 'Speed', this.speed), ...(scripted ? [] : [
+           button('Settle', 'Static equilibrium at the present inputs', () => this.send({type: 'settle'}))])),
+      make('div', {className: 'line'}, this.recorder, this.recorded),
+      make('div', {className: 'line'}, this.who, this.drive, ...(scene.gallery ? [
+           button('Examples', 'Back to the examples', () => this.send({type: 'gallery'}))] : [])),
       ...(scene.actuators.length ? [heading('Actuators'), ...scene.actuators.map((a) => this.actuator(a))] : []),
-      heading('Control'), make('div', {className: 'line'}, make('label', {}, 'Controller', this.controller)),
+      heading('Control'),
+      ...(scripted ? [] : [make('div', {className: 'line'}, make('label', {}, 'Controller', this.controller))]),
       ...scene.effectors.filter((e) => e.kind === 'point').map((e) => this.target(e)),
       heading('Hand'), this.hand(),
     );
@@ -80,11 +87,29 @@ export class Panel {
            this.steps, button('Reset', 'Back to the start (r)', () => this.reset())),
       make('div', {className: 'line'}, make('label', {}, 'Speed', this.speed)), this.time,
       make('div', {className: 'line'}, this.who, this.drive,
-           make('a', {href: `download/run.csv${location.search}`, textContent: 'run.csv'})));
+           ...this.files()));
   }
 
-  private actuator(actuator: Actuator): HTMLElement {
-    const quantity = actuator.quantities[0];
+  private files(): HTMLElement[] {
+    return ['run.csv', 'motion.glb'].map((name) =>
+      make('a', {href: `download/${name}${location.search}`, textContent: name, download: name}));
+  }
+
+  private showRecording(): void {
+    const {recording} = this.status!.source;
+    this.recorder.textContent = recording?.on ? 'Stop' : 'Record';
+    this.recorder.classList.toggle('on', !!recording?.on);
+    const text = !recording ? '' : `${recording.frames} steps, ${told(recording.seconds, 's')}, ${told(recording.bytes, 'B')}`
+      + (recording.full ? '; full' : '');
+    const key = text + recording?.on;
+    if (this.recorded.dataset.key === key) return;
+    this.recorded.dataset.key = key;
+    this.recorded.replaceChildren(...(recording && !recording.on ? this.files() : []), ' ', text);
+  }
+
+  // The unit is a button where there are two ways to command an actuator.
+  private actuator(actuator: Actuator, way = 0): HTMLElement {
+    const quantity = actuator.quantities[way];
     const [scale, unit] = SHOWN[quantity.unit] ?? [1, quantity.unit];
     const label = `${actuator.name}: ${quantity.name} in ${unit}`;
     const range = {min: String(scale * quantity.low), max: String(scale * quantity.high), step: 'any'};
@@ -97,9 +122,16 @@ export class Panel {
     };
     slider.oninput = () => change(slider);
     number.onchange = () => change(number);
-    const name = make('span', {className: 'name', title: label}, actuator.name + ' ',
-                      make('i', {textContent: unit}));
-    const box = make('div', {className: 'row'}, name, slider, number);
+    const limits = `${label}, ${range.min} to ${range.max}`;
+    const other = (way + 1) % actuator.quantities.length;
+    const mode = button(unit, `${actuator.name}: command by ${actuator.quantities[other].name}`, () => {
+      box.replaceWith(this.actuator(actuator, other));
+      if (this.status) this.update(this.status);
+    });
+    mode.className = 'unit';
+    slider.title = number.title = limits;
+    const name = make('span', {className: 'name', title: limits, textContent: actuator.name});
+    const box = make('div', {className: 'row'}, name, mode, slider, number);
     this.rows.set(actuator.name, {box, slider, number, quantity});
     return box;
   }
@@ -142,11 +174,12 @@ export class Panel {
     }
     this.controller.value = source.controller ?? '';
     if (source.frame !== undefined && document.activeElement !== this.time) this.time.value = String(source.frame);
+    this.showRecording();
     this.who.textContent = mine ? `You drive; ${status.clients} connected`
       : status.driver === null ? 'Nobody drives' : 'Another browser drives';
     this.drive.hidden = mine;
     for (const element of this.root.querySelectorAll<HTMLInputElement>('button, input, select')) {
-      if (element !== this.drive as unknown) element.disabled = !mine;
+      if (element !== this.drive as unknown && !element.classList.contains('unit')) element.disabled = !mine;
     }
     for (const [name, row] of this.rows) {
       const command = source.commands?.[name];

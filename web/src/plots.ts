@@ -1,6 +1,7 @@
 // Live plots of the signals that were chosen, by group, over the last seconds.
 import uPlot from 'uplot';
 import {told} from './colours';
+import {button, make} from './dom';
 import type {Frame, Scene} from './protocol';
 
 const WINDOW = 10;      // s
@@ -11,35 +12,37 @@ const TITLES: Record<string, string> = {
   time: 'Time of a step', solver: 'Solver',
 };
 
-export class Plots {
+const MOST = 3;  // plots at once
+const HEIGHT = 170, LOW = 120;  // px of a plot: alone, and among others
+
+/** The signals of one group; a click on a name in the legend hides or shows it. */
+class Plot {
+  readonly element = make('div', {});
+  group = '';
   private plot: uPlot | null = null;
   private columns: number[] = [];
   private data: number[][] = [];
   private unit = '';
-  private select: HTMLSelectElement;
-  private box: HTMLElement;
+  private select = make('select', {'aria-label': 'Signals to plot'});
+  private box = make('div', {className: 'plot'});
   private scene: Scene | null = null;
   private last = -1;
-  private drawn = 0;
 
-  constructor(private section: HTMLElement) {
-    this.select = document.createElement('select');
-    this.select.setAttribute('aria-label', 'Signals to plot');
+  constructor(...buttons: HTMLElement[]) {
     this.select.onchange = () => this.choose(this.select.value);
-    this.box = document.createElement('div');
-    this.box.className = 'plot';
-    section.append(this.select, this.box);
-    new ResizeObserver(() => this.resize()).observe(section);
+    this.element.append(make('div', {className: 'line'}, this.select, ...buttons), this.box);
   }
 
-  setScene(scene: Scene): void {
+  /** Shows a group, or the one that it showed where there is none of this name. */
+  setScene(scene: Scene, wanted: string): void {
     this.scene = scene;
     const groups = [...new Set(scene.signals.map((s) => s.group))];
     this.select.replaceChildren(...groups.map((g) => new Option(TITLES[g] ?? g, g)));
-    this.choose(groups[0] ?? '');
+    this.choose(groups.includes(wanted) ? wanted : groups[0] ?? '');
   }
 
-  choose(group: string): void {
+  private choose(group: string): void {
+    this.group = this.select.value = group;
     this.columns = [];
     this.scene?.signals.forEach((s, k) => { if (s.group === group) this.columns.push(k); });
     this.data = [[], ...this.columns.map(() => [] as number[])];
@@ -58,7 +61,11 @@ export class Plots {
       series: [{}, ...signals.map((s, k) => ({label: s.label, stroke: COLOURS[k % COLOURS.length],
                                                width: 1.5, dash: k >= COLOURS.length ? [5, 4] : undefined}))],
     }, this.data as uPlot.AlignedData, this.box);
-    this.resize();
+  }
+
+  end(): void {
+    this.plot?.destroy();
+    this.element.remove();
   }
 
   add(frame: Frame): void {
@@ -75,13 +82,57 @@ export class Plots {
     }
   }
 
+  draw(): void { this.plot?.setData(this.data as uPlot.AlignedData); }
+
+  resize(width: number, height: number): void { this.plot?.setSize({width: Math.max(width, 120), height}); }
+}
+
+/** Up to three plots, one above the other. */
+export class Plots {
+  private plots: Plot[] = [];
+  private scene: Scene | null = null;
+  private drawn = 0;
+
+  constructor(private section: HTMLElement) {
+    this.insert(new Plot(button('+', 'Another plot', () => this.another())));
+    new ResizeObserver(() => this.resize()).observe(section);
+  }
+
+  setScene(scene: Scene): void {
+    this.scene = scene;
+    for (const plot of this.plots) plot.setScene(scene, plot.group);
+    this.resize();
+  }
+
+  private insert(plot: Plot): void {
+    this.plots.push(plot);
+    this.section.append(plot.element);
+  }
+
+  private another(): void {
+    if (this.plots.length >= MOST || !this.scene) return;
+    const plot: Plot = new Plot(button('-', 'No longer this plot', () => {
+      plot.end();
+      this.plots = this.plots.filter((p) => p !== plot);
+      this.resize();
+    }));
+    const shown = this.plots.map((p) => p.group);
+    plot.setScene(this.scene, this.scene.signals.map((s) => s.group).find((g) => !shown.includes(g)) ?? '');
+    this.insert(plot);
+    this.resize();
+  }
+
+  add(frame: Frame): void { for (const plot of this.plots) plot.add(frame); }
+
   draw(now: number): void {
-    if (now - this.drawn < 100 || !this.plot) return;  // ten times a second is enough to read
+    if (now - this.drawn < 100) return;  // ten times a second is enough to read
     this.drawn = now;
-    this.plot.setData(this.data as uPlot.AlignedData);
+    for (const plot of this.plots) plot.draw();
   }
 
   private resize(): void {
-    this.plot?.setSize({width: Math.max(this.section.clientWidth - 16, 120), height: 170});
+    for (const plot of this.plots) {
+      plot.resize(this.section.clientWidth - 16, this.plots.length > 1 ? LOW : HEIGHT);
+    }
   }
 }

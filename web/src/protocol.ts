@@ -14,7 +14,7 @@ export interface Scene {
   bodies: {name: string; vertices: number; triangles: number; nodes: number; elements: number}[];
   fields: FieldInfo[]; actuators: Actuator[]; effectors: Effector[]; controllers: Controller[];
   signals: Signal[];
-  frames?: number; duration?: number;
+  frames?: number; duration?: number; gallery?: boolean;
   examples?: {name: string; title: string; thumbnail: string | null}[];
 }
 export interface Trouble {level: 'info' | 'warning' | 'error'; kind: string; subject: string; text: string}
@@ -24,6 +24,7 @@ export interface SourceStatus {
   targets: Record<string, number[]>; troubles: Trouble[];
   stopped: {step: number; kind: string; message: string; remedy: string} | null;
   frame?: number;
+  recording?: {on: boolean; frames: number; seconds: number; bytes: number; full: boolean} | null;
 }
 export interface Status {clients: number; driver: number | null; source: SourceStatus}
 

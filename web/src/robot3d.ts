@@ -1,25 +1,42 @@
 // The robot in three dimensions: surfaces, cables, effectors, targets, ground, and what the mouse does.
 import {
-  AmbientLight, AxesHelper, Box3, BufferAttribute, BufferGeometry, Color, DirectionalLight, DoubleSide,
-  GridHelper, HemisphereLight, Line, LineBasicMaterial, Mesh, MeshBasicMaterial,
+  AmbientLight, AxesHelper, Box3, BufferAttribute, BufferGeometry, CanvasTexture, Color, DirectionalLight,
+  DoubleSide, GridHelper, HemisphereLight, Line, LineBasicMaterial, Mesh, MeshBasicMaterial,
   MeshStandardMaterial, Object3D, PerspectiveCamera, Plane, Raycaster, Scene as World, SphereGeometry,
-  Vector2, Vector3, WebGLRenderer,
+  Sprite, SpriteMaterial, Vector2, Vector3, WebGLRenderer,
 } from 'three';
 import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
 import {TransformControls} from 'three/addons/controls/TransformControls.js';
 import {Line2} from 'three/addons/lines/Line2.js';
 import {LineGeometry} from 'three/addons/lines/LineGeometry.js';
 import {LineMaterial} from 'three/addons/lines/LineMaterial.js';
-import {linearTable, paint} from './colours';
+import {linearTable, paint, told} from './colours';
+import {make} from './dom';
 import type {Frame, Scene, Surface} from './protocol';
 
 const BODY_COLOURS = [0xd9a066, 0x7fa6c9, 0x9cb380];  // told apart by lightness too
+const GIZMO = 0.6;  // size of the target's arrows
 const SLACK = 0x8a8f98, TAUT = 0x0072b2, STRONG = 0xd55e00;  // Okabe and Ito 2008
 
 export interface Hand {
   pull(body: number, vertices: number[], weights: number[], anchor: number[]): void;
   release(): void;
   target(effector: number, position: number[]): void;
+}
+
+/** A text that always faces the camera, of the same size on the screen however far. */
+function caption(text: string): Sprite {
+  const canvas = make('canvas', {width: 256, height: 64});
+  const context = canvas.getContext('2d')!;
+  context.font = '40px system-ui, sans-serif';
+  context.textAlign = 'center';
+  context.textBaseline = 'middle';
+  context.fillStyle = '#7d8894';
+  context.fillText(text, 128, 34);
+  const sprite = new Sprite(new SpriteMaterial({map: new CanvasTexture(canvas), depthTest: false,
+                                                sizeAttenuation: false, transparent: true}));
+  sprite.scale.set(0.1, 0.025, 1);
+  return sprite;
 }
 
 interface Body {mesh: Mesh<BufferGeometry, MeshStandardMaterial>; wire: Mesh; colours: Float32Array}
@@ -44,15 +61,18 @@ export class Robot3d {
   private grabbed: {plane: Plane; body: number; vertices: number[]; weights: number[]} | null = null;
   private dragging = false;
   private steered = -1;
+  private chosen = -1;  // effector whose target was clicked
+  private force = make('div', {id: 'force', hidden: true});
   private bounds = new Box3();
   follow = false;
   wireframe = false;
   coloured = false;
+  hands = false;  // a plain drag on the robot pulls, as on a screen without keys
 
   constructor(private stage: HTMLElement, private hand: Hand) {
     this.renderer = new WebGLRenderer({antialias: true, preserveDrawingBuffer: true});
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
-    stage.append(this.renderer.domElement);
+    stage.append(this.renderer.domElement, this.force);
     const canvas = this.renderer.domElement;
     canvas.tabIndex = 0;
     canvas.setAttribute('aria-label', 'The robot; drag to turn, Shift and drag on it to pull');
@@ -61,7 +81,7 @@ export class Robot3d {
     this.orbit.enableDamping = true;
     this.orbit.dampingFactor = 0.2;
     this.gizmo = new TransformControls(this.camera, canvas);
-    this.gizmo.setSize(0.6);
+    this.gizmo.setSize(GIZMO);
     this.gizmo.attach(this.handle);
     this.gizmo.addEventListener('dragging-changed', (event) => {
       this.dragging = event.value as boolean;
@@ -130,6 +150,7 @@ export class Robot3d {
     });
     this.effectors = marks(0x000000, 0.7);
     this.targets = marks(STRONG, 0.8);
+    this.chosen = -1;
     this.camera.near = 1e-3 * this.size;
     this.camera.far = 50 * this.size;
     this.fit();
@@ -147,9 +168,14 @@ export class Robot3d {
     const material = grid.material as LineBasicMaterial;
     material.transparent = true;
     material.opacity = 0.25;
-    const axes = new AxesHelper(0.15 * this.size);
-    this.robot.add(grid, axes);
-    this.stage.dataset.cell = `${cell}`;
+    const length = Math.max(1, Math.round(0.2 * this.size / cell)) * cell;
+    this.robot.add(grid, new AxesHelper(length));
+    ['x', 'y', 'z'].forEach((axis, k) => {
+      const text = caption(`${axis} ${told(length, 'm')}`);
+      text.position.setComponent(k, 1.15 * length);
+      this.robot.add(text);
+    });
+    this.stage.dataset.cell = told(cell, 'm');
   }
 
   surface(surface: Surface): void {
@@ -233,7 +259,7 @@ export class Robot3d {
   /** Puts the gizmo at the first target, or at the first effector where nothing steers. */
   private steer(): void {
     const marks = this.targets.some((t) => t.visible) ? this.targets : this.effectors;
-    this.steered = marks.findIndex((m) => m.visible);
+    this.steered = marks[this.chosen]?.visible ? this.chosen : marks.findIndex((m) => m.visible);
     this.gizmo.getHelper().visible = this.steered >= 0 && this.gizmo.enabled;
     if (this.steered >= 0 && !this.dragging) this.handle.position.copy(marks[this.steered].position);
   }
@@ -245,7 +271,26 @@ export class Robot3d {
 
   private drawSpring(pull: Float32Array | undefined): void {
     this.spring.visible = pull !== undefined;
-    if (pull) this.spring.geometry.setAttribute('position', new BufferAttribute(pull.slice(0, 6), 3));
+    this.force.hidden = pull === undefined;
+    if (!pull) return;
+    this.spring.geometry.setAttribute('position', new BufferAttribute(pull.slice(0, 6), 3));
+    const [x, y] = this.screen(new Vector3().fromArray(pull, 3));
+    this.force.textContent = told(pull[6], 'N');
+    this.force.style.transform = `translate(${x + 12}px, ${y - 12}px)`;
+  }
+
+  /** Where a point is seen, CSS pixels of the stage. */
+  private screen(point: Vector3): [number, number] {
+    const seen = point.clone().project(this.camera);
+    return [(1 + seen.x) / 2 * this.stage.clientWidth, (1 - seen.y) / 2 * this.stage.clientHeight];
+  }
+
+  /** For tests: where the arrows of the target are seen, on their middle. */
+  arrows(): [number, number][] {
+    const at = this.handle.position;
+    const half = Math.tan(Math.PI * this.camera.fov / 360);
+    const reach = 0.3 * at.distanceTo(this.camera.position) * Math.min(1.9 * half, 7) * GIZMO / 4;
+    return [0, 1, 2].map((k) => this.screen(at.clone().setComponent(k, at.getComponent(k) + reach)));
   }
 
   fit(): void {
@@ -263,10 +308,16 @@ export class Robot3d {
     return caster;
   }
 
-  // Shift and drag, or the right button, on the surface: a spring from there to the pointer.
+  // Shift and drag, or the right button, on the surface: a spring from there to the pointer. A click on
+  // a target or an effector: its arrows.
   private press(event: PointerEvent): void {
-    if (!event.shiftKey && event.button !== 2) return;
+    if (this.gizmo.axis !== null && event.button === 0 && !event.shiftKey) return;
     const caster = this.ray(event);
+    for (const marks of [this.targets, this.effectors]) {
+      const mark = caster.intersectObjects(marks.filter((m) => m.visible))[0]?.object;
+      if (mark) this.chosen = marks.indexOf(mark as Mesh);
+    }
+    if (!this.hands && !event.shiftKey && event.button !== 2) return;
     const hits = caster.intersectObjects(this.bodies.map((b) => b.mesh));
     if (hits.length === 0 || !hits[0].face) return;
     event.stopImmediatePropagation();
