@@ -1,43 +1,89 @@
 #!/usr/bin/env node
-// Draws docs/images/view.png and the examples' thumbnails: node scripts/view_pictures.mjs, after
-// `make build`.
-import {spawn} from 'node:child_process';
+// Draws the pictures of docs/view.md (docs/images/view*.png) and the examples' thumbnails:
+// node scripts/view_pictures.mjs, after `make build`.
+import {execFileSync, spawn} from 'node:child_process';
+import {mkdtempSync, rmSync} from 'node:fs';
+import {tmpdir} from 'node:os';
 import {dirname, join} from 'node:path';
 import {fileURLToPath} from 'node:url';
 import {chromium} from '../web/node_modules/playwright-core/index.mjs';
 
 const root = join(dirname(fileURLToPath(import.meta.url)), '..');
 const program = process.env.SINEW_PROGRAM ?? join(root, 'build/release/bin/sinew');
+const circle = join(root, 'examples/trunk/circle.yaml');
 // Scene, the step at which it is drawn.
 const EXAMPLES = [['trunk/circle', 320], ['trunk/trunk', 250], ['arm/square', 420], ['beam/swing', 60]];
 const browser = await chromium.launch({executablePath: '/usr/bin/chromium', args: [
   '--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
   '--disable-background-networking', '--disable-component-update', '--disable-sync', '--no-first-run']});
 
-/** A page of a scene at a step, coloured by stress. */
-async function open(scene, step, width, height) {
-  const child = spawn(program, ['view', join(root, 'examples', `${scene}.yaml`), '--no-open', '--port', '0', '--paused']);
+/** A page of `sinew view WORDS...`; `act` does what is to be seen. */
+async function draw(file, words, {width = 1280, height = 800} = {}, act = async () => undefined) {
+  const child = spawn(program, ['view', ...words, '--no-open', '--port', '0', '--paused']);
   const url = await new Promise((resolve) => child.stdout.on('data', (data) => {
     const found = /http:\S+/.exec(String(data));
     if (found) resolve(found[0]);
   }));
   const page = await browser.newPage({viewport: {width, height}});
   await page.goto(url);
-  await page.waitForFunction(() => window.sinewView?.state().sequence > 0);
-  await page.selectOption('[aria-label="Colour by"]', 'stress');
-  for (let done = 0; done < step; done += 20) await page.evaluate(() => window.sinewView.request({type: 'step', count: 20}));
-  await page.waitForTimeout(500);
-  return {page, close: async () => { await page.close(); child.kill('SIGINT'); }};
+  await page.waitForFunction(() => window.sinewView?.state().connected && window.sinewView.scene());
+  await act(page);
+  await page.waitForTimeout(600);
+  await page.screenshot({path: join(root, file)});
+  await page.close();
+  child.kill('SIGINT');
 }
 
-const view = await open('trunk/circle', 620, 1280, 800);
-await view.page.screenshot({path: join(root, 'docs/images/view.png')});
-await view.close();
-for (const [scene, step] of EXAMPLES) {
-  const {page, close} = await open(scene, step, 360, 240);
-  await page.addStyleTag({content: '#top, #panel, #plots, #legend, #alerts { display: none !important; }'});
-  await page.waitForTimeout(300);
-  await page.screenshot({path: join(root, 'examples', `${scene}.png`)});
-  await close();
+const ask = (page, message) => page.evaluate((m) => window.sinewView.request(m), message);
+
+async function step(page, count) {
+  for (let done = 0; done < count; done += 20) await ask(page, {type: 'step', count: 20});
 }
+
+async function colour(page, field) {
+  await page.selectOption('[aria-label="Colour by"]', field);
+}
+
+await draw('docs/images/view.png', [circle], {}, async (page) => {
+  await colour(page, 'stress');
+  await step(page, 620);
+});
+await draw('docs/images/view_dark.png', [circle], {}, async (page) => {
+  await page.keyboard.press('d');
+  await colour(page, 'displacement');
+  await page.getByRole('button', {name: 'Another plot'}).click();
+  await page.selectOption('[aria-label="Signals to plot"] >> nth=1', 'error');
+  await page.keyboard.press('e');
+  await step(page, 500);
+  await page.check('[aria-label="Keep the range"]');
+});
+await draw('docs/images/view_reach.png', [circle], {}, async (page) => {
+  for (const [axis, value] of [['x', 100], ['y', 0], ['z', 160]]) {
+    await page.fill(`[aria-label="tip: target ${axis} in mm"]`, String(value));
+  }
+  await page.keyboard.press('Tab');
+  await step(page, 260);
+});
+const folder = mkdtempSync(join(tmpdir(), 'sinew-pictures-'));
+execFileSync(program, ['run', circle, '--duration', '4s', '--out', folder, '--quiet']);
+await draw('docs/images/view_replay.png', [folder], {}, async (page) => {
+  await colour(page, 'strain');
+  for (let frame = 0; frame <= 250; frame += 10) await ask(page, {type: 'seek', frame});
+});
+rmSync(folder, {recursive: true});
+await draw('docs/images/view_tablet.png', [circle], {width: 820, height: 1100}, async (page) => {
+  await colour(page, 'stress');
+  await step(page, 300);
+});
+for (const [scene, count] of EXAMPLES) {
+  await draw(`examples/${scene}.png`, [join(root, 'examples', `${scene}.yaml`)], {width: 600, height: 400}, async (page) => {
+    await colour(page, 'stress');
+    await step(page, count);
+    await page.addStyleTag({content: '#top, #panel, #plots, #legend, #alerts, #scale { display: none !important; }'});
+    await page.evaluate(() => window.sinewView.plain());
+  });
+}
+await draw('docs/images/view_gallery.png', [], {}, async (page) => {
+  await page.waitForFunction(() => [...document.querySelectorAll('.example img')].every((image) => image.complete));
+});
 await browser.close();

@@ -4,7 +4,9 @@ namespace sinew::viewer {
 
 FollowSource::FollowSource(scene::Robot robot, std::shared_ptr<sim::Simulation> simulation,
                            const LiveSettings& settings)
-    : LiveSource(std::move(robot), std::move(simulation), std::nullopt, settings) {}
+    : LiveSource(std::move(robot), std::move(simulation), std::nullopt, settings) {
+  state().observe({}, nullptr);
+}
 
 void FollowSource::stop() {
   {

@@ -8,18 +8,20 @@
 namespace sinew::viewer::limits {
 
 inline constexpr std::size_t kConnections = 32;  ///< open at once, pages and their views together
-inline constexpr std::size_t kRequestHeader = 8192;      ///< bytes of an HTTP request
-inline constexpr std::chrono::seconds kRequestTime{10};  ///< for a whole HTTP request
+inline constexpr std::size_t kRequestHeader = 8192;       ///< bytes of an HTTP request
+inline constexpr std::chrono::seconds kRequestTime{10};   ///< for a whole HTTP request
 inline constexpr std::chrono::minutes kDownloadTime{10};  ///< for a file to be saved
-inline constexpr std::chrono::seconds kHelloTime{5};     ///< for the first message of a view
-inline constexpr std::chrono::seconds kIdleTime{30};     ///< until a silent view is pinged
+inline constexpr std::chrono::seconds kHelloTime{5};      ///< for the first message of a view
+inline constexpr std::chrono::seconds kIdleTime{30};      ///< until a silent view is pinged
 inline constexpr double kMessagesPerSecond = 240.0;
 inline constexpr double kMessageBurst = 480.0;          ///< messages at once
 inline constexpr std::size_t kQueuedText = 256 * 1024;  ///< bytes not yet taken by a slow view
 inline constexpr std::size_t kPendingRequests = 256;    ///< of one view, not yet answered
-inline constexpr std::size_t kRecordedRows = std::size_t{128} << 20;    ///< bytes of run.csv's numbers
-inline constexpr std::size_t kRecordedMotion = std::size_t{128} << 20;  ///< bytes of motion.glb's positions
-inline constexpr std::size_t kMotionFrames = 600;  ///< beyond it every second one is dropped
+inline constexpr std::size_t kRecordedRows = std::size_t{128}
+                                             << 20;  ///< bytes of run.csv's numbers
+inline constexpr std::size_t kRecordedMotion = std::size_t{128}
+                                               << 20;  ///< bytes of motion.glb's positions
+inline constexpr std::size_t kMotionFrames = 600;      ///< beyond it every second one is dropped
 inline constexpr std::chrono::milliseconds kStatusInterval{100};
 
 }  // namespace sinew::viewer::limits

@@ -13,8 +13,8 @@
 namespace sinew::viewer {
 
 /// Keeps every step's numbers, and positions thirty times a simulated second. When the motion has
-/// as many frames as it may, every second one is dropped and half as many are kept from then on; the
-/// table is full when its memory is (see limits.hpp).
+/// as many frames as it may, every second one is dropped and half as many are kept from then on;
+/// the table is full when its memory is (see limits.hpp).
 class Recording {
  public:
   /// @param shown what frames that are added belong to; outlives the recording.

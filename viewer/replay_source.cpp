@@ -119,8 +119,7 @@ std::string ReplaySource::status_members() const {
 std::string ReplaySource::motion() {
   Recording recording(description_, state_.robot().description.name);
   const std::int64_t shown = at_, frames = file_.frames();
-  const std::int64_t stride =
-      1 + (frames - 1) / static_cast<std::int64_t>(limits::kMotionFrames);
+  const std::int64_t stride = 1 + (frames - 1) / static_cast<std::int64_t>(limits::kMotionFrames);
   for (at_ = 0; at_ < frames; at_ += stride) {
     show();
     static_cast<void>(recording.add(*state_.frame({}, 0.0)));

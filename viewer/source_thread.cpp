@@ -104,7 +104,13 @@ void SourceThread::run() {
   }
 }
 
-// Steps until simulated time has caught up with the clock, or a frame's time is over.
+bool SourceThread::asked() {
+  const std::lock_guard lock(mutex_);
+  return stopping_ || !queue_.empty();
+}
+
+// Steps until simulated time has caught up with the clock, a frame's time is over, or something is
+// asked for.
 void SourceThread::catch_up() {
   const auto begin = Clock::now();
   while (playing_) {
@@ -116,7 +122,7 @@ void SourceThread::catch_up() {
     }
     if (!advance()) playing_ = false;
     dirty_ = true;
-    if (Clock::now() - begin >= kFrameTime) break;
+    if (Clock::now() - begin >= kFrameTime || asked()) break;
   }
 }
 

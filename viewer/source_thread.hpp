@@ -66,6 +66,7 @@ class SourceThread : public Source {
   void measure_factor();
   void publish();
   bool stopping();
+  bool asked();
   void enqueue(std::function<void()> work);
 
   Publisher* publisher_ = nullptr;

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include <fmt/format.h>
+
 #include "sinew/core/error.hpp"
 
 #include "arguments.hpp"

@@ -156,9 +156,9 @@ void drive(const std::shared_ptr<Session>& session, const ViewOptions& options) 
     session->count_steps();
   } catch (...) {
     if (first) {
-      session->take_back(true, name,
-                         std::make_unique<inverse::InverseController>(session->simulation(),
-                                                                      first->settings));
+      session->take_back(
+          true, name,
+          std::make_unique<inverse::InverseController>(session->simulation(), first->settings));
     }
     throw;
   }
@@ -169,7 +169,8 @@ void drive(const std::shared_ptr<Session>& session, const ViewOptions& options) 
 #else
 
 [[noreturn]] void without_viewer() {
-  throw Error(ErrorKind::tool_missing, {.item = "view()"}, "this package was built without the view",
+  throw Error(ErrorKind::tool_missing, {.item = "view()"},
+              "this package was built without the view",
               "build it with SINEW_VIEWER=ON; Node.js is needed for that");
 }
 
@@ -187,8 +188,8 @@ void drive(const std::shared_ptr<Session>&, const ViewOptions&) { without_viewer
 #endif
 
 py::object open_view(const std::shared_ptr<Session>& session, bool block, std::optional<int> port,
-                const std::string& host, bool open_browser, bool paused,
-                std::optional<double> speed) {
+                     const std::string& host, bool open_browser, bool paused,
+                     std::optional<double> speed) {
   const ViewOptions options{open_browser, paused, host, port, speed};
   if (!block) return py::cast(std::make_unique<View>(session, options));
   drive(session, options);
@@ -231,11 +232,11 @@ Ends the view; the simulation stays as it is.
       .def("__exit__", [](View& self, const py::object&, const py::object&, const py::object&) {
         self.close();
       });
-  module.def("view", &open_view, py::arg("sim"), py::kw_only(), py::arg("block") = true,
-             py::arg("port") = py::none(), py::arg("host") = "127.0.0.1",
-             py::arg("open_browser") = true, py::arg("paused") = false,
-             py::arg("speed") = py::none(),
-             R"(view(sim, *, block=True, port=None, host='127.0.0.1', open_browser=True, paused=False, speed=None)
+  module.def(
+      "view", &open_view, py::arg("sim"), py::kw_only(), py::arg("block") = true,
+      py::arg("port") = py::none(), py::arg("host") = "127.0.0.1", py::arg("open_browser") = true,
+      py::arg("paused") = false, py::arg("speed") = py::none(),
+      R"(view(sim, *, block=True, port=None, host='127.0.0.1', open_browser=True, paused=False, speed=None)
 --
 
 Opens a simulation in the browser.

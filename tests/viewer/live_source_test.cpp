@@ -1,85 +1,17 @@
 // Running robots as they are shown: steps, clocks, commands, and runs that end before their time.
 #include "viewer/live_source.hpp"
 
-#include <condition_variable>
 #include <future>
-#include <mutex>
+#include <thread>
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
-#include "sinew/scene/build.hpp"
-#include "sinew/scene/scene.hpp"
+#include "robot_fixture.hpp"
 
 namespace sinew::viewer {
 namespace {
 
-using Json = nlohmann::json;
 using namespace std::chrono_literals;
-
-constexpr const char* kScene = R"(sinew: 1
-time_step: 10 ms
-bodies:
-  beam:
-    type: fem
-    mesh: {shape: block, length: 60 mm, width: 20 mm, height: 20 mm, element_size: 10 mm}
-    material: {model: corotational, young_modulus: 200 kPa, poisson_ratio: 0.4}
-    density: 1070 kg/m^3
-    fixed: [{set: x_min}]
-actuators:
-  up:
-    type: cable
-    body: beam
-    points: [0 10 16 mm, 30 10 16 mm, 58 10 16 mm]
-    limits: {tension: {min: 0 N, max: 20 N}}
-    command: {displacement: 0 mm}
-  push: {type: force, body: beam, point: 60 10 10 mm, direction: 1 0 0}
-effectors:
-  tip: {body: beam, point: 60 10 10 mm}
-controllers:
-  hold:
-    type: inverse
-    actuators: [up]
-    effectors:
-      tip: {target: {polyline: {points: [60 10 10 mm, 60 10 12 mm], period: 1 s}}}
-)";
-
-scene::Robot robot() { return scene::build(scene::parse_scene_text(kScene, "test", {})); }
-
-/// Keeps the last frame and status.
-class Watcher final : public Publisher {
- public:
-  void publish(std::shared_ptr<const Frame> next) override {
-    const std::lock_guard lock(mutex_);
-    frame_ = std::move(next);
-    ++frames_;
-  }
-  void publish_status(std::string next) override {
-    const std::lock_guard lock(mutex_);
-    status_ = std::move(next);
-  }
-  bool wants_field(int field) const override { return field == 2; }
-  void replace(std::function<std::unique_ptr<Source>()>) override {}
-
-  std::shared_ptr<const Frame> frame() const {
-    const std::lock_guard lock(mutex_);
-    return frame_;
-  }
-  Json status() const {
-    const std::lock_guard lock(mutex_);
-    return Json::parse(status_);
-  }
-  int frames() const {
-    const std::lock_guard lock(mutex_);
-    return frames_;
-  }
-
- private:
-  mutable std::mutex mutex_;
-  std::shared_ptr<const Frame> frame_;
-  std::string status_ = "{}";
-  int frames_ = 0;
-};
 
 /// A source and what it shows.
 struct Live {
@@ -111,10 +43,6 @@ struct Live {
   Watcher watcher;
   LiveSource source;
 };
-
-std::string kind(const Outcome& outcome) {
-  return outcome ? std::string(error_kind_name(outcome->kind())) : "";
-}
 
 TEST(LiveSource, StepsExactlyAndAsASimulationDoes) {
   Live live({.controller = "", .playing = false});
@@ -198,6 +126,56 @@ TEST(LiveSource, SaysWhyARunStoppedAndStartsAnew) {
   EXPECT_EQ(kind(live.ask(Reset{})), "");
   live.wait([&](const Frame& frame) { return frame.hash == start; });
   EXPECT_EQ(kind(live.ask(Step{3})), "");
+}
+
+TEST(LiveSource, RecordsEveryStepAndSavesAFile) {
+  Live live({.controller = "hold", .playing = false});
+  const auto save = [&](std::string_view name) {
+    std::promise<std::optional<Download>> file;
+    live.source.fetch(name, [&](std::optional<Download> got) { file.set_value(std::move(got)); });
+    return file.get_future().get();
+  };
+  EXPECT_FALSE(save("run.csv").has_value()) << "nothing was recorded";
+  live.ask(Step{3});
+  EXPECT_EQ(kind(live.ask(Record{true})), "");
+  live.ask(Step{10});
+  live.at(13);
+  EXPECT_EQ(live.watcher.status()["recording"]["frames"], 11);
+  EXPECT_FALSE(save("run.csv").has_value()) << "it has not ended";
+  EXPECT_EQ(kind(live.ask(Record{false})), "");
+  live.ask(Step{5});
+  const auto table = save("run.csv");
+  ASSERT_TRUE(table.has_value());
+  EXPECT_EQ(std::ranges::count(table->bytes, '\n'), 12);
+  const auto motion = save("motion.glb");
+  ASSERT_TRUE(motion.has_value());
+  EXPECT_EQ(motion->bytes.substr(0, 4), "glTF");
+  EXPECT_FALSE(save("../run.csv").has_value());
+}
+
+TEST(LiveSource, StepsASimulationOfOthersAndGivesItsControllerBack) {
+  const scene::Robot shown = robot();
+  const auto simulation = std::make_shared<sim::Simulation>(shown.model);
+  std::pair<std::string, std::unique_ptr<inverse::InverseController>> left;
+  {
+    Watcher watcher;
+    LiveSource source(shown, simulation, Steering{"mine", shown.controllers.at(0).settings},
+                      {.controller = "", .playing = true, .speed = 0.0, .gallery = {}});
+    source.start(watcher);
+    std::promise<Outcome> done;
+    source.submit(SetTarget{"tip", Vector3(0.06, 0.01, 0.011)},
+                  [&](const Outcome& outcome) { done.set_value(outcome); });
+    EXPECT_EQ(kind(done.get_future().get()), "");
+    source.stop();
+    left = source.take_controller();
+  }
+  EXPECT_EQ(left.first, "mine");
+  ASSERT_NE(left.second, nullptr);
+  EXPECT_EQ(left.second->settings().tasks.at(0).target.at(0.0), Vector3(0.06, 0.01, 0.011));
+  const auto before = simulation->steps();
+  simulation->step();
+  EXPECT_EQ(simulation->steps(), before + 1);
+  EXPECT_EQ(simulation->actuator(0).owner, left.second.get());
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 // The page: puts the connection, the robot, the controls and the plots together.
+import {Vector3} from 'three';
 import 'uplot/dist/uPlot.min.css';
 import './style.css';
 import {gradient, MAPS, read, told} from './colours';
@@ -44,8 +45,17 @@ const robot = new Robot3d(byId('stage'), {
     aimed = {type: 'target', effector: scene!.effectors[effector].name, position};
   },
 });
+const narrow = matchMedia('(max-width: 900px)');
+function cover(): void {
+  const side = (id: string) => byId(id).getBoundingClientRect();
+  const right = side('panel').width, left = side('plots').width;
+  if (mode === 'gallery') robot.cover(0, 0, 0, 0);
+  else if (narrow.matches) robot.cover(0, 0, side('top').bottom, side('panel').height);
+  else robot.cover(innerWidth - left - right > 300 ? left : 0, right, side('top').bottom, 0);
+}
 const panel = new Panel(byId('panel'), send, () => connection.client);
 const plots = new Plots(byId('plots'));
+new ResizeObserver(cover).observe(byId('panel'));
 
 // ------------------------------------------------------------------------------------------ top bar
 
@@ -217,9 +227,10 @@ const connection = new Connection({
     title.title = Panel.size(next);
     document.title = `${next.name} - Sinew`;
     fields.replaceChildren(new Option('plain', ''), ...next.fields.map((f) => new Option(f.label, f.name)));
+    document.body.classList.toggle('gallery', what === 'gallery');
     robot.scene(next);
     panel.scene(next, what);
-    byId('plots').hidden = what === 'gallery';
+    cover();
     byId('scale').textContent = what === 'gallery' ? '' : `grid ${byId('stage').dataset.cell}`;
     plots.setScene(next);
     if (field !== null) chooseField(field);
@@ -243,7 +254,7 @@ const connection = new Connection({
   status: (next) => {
     status = next;
     panel.update(next);
-    robot.steerable(next.driver === connection.client);
+    robot.steerable(next.driver === connection.client && mode !== 'replay');
     alerts();
   },
   connected: (yes, why) => {
@@ -309,6 +320,8 @@ const view = {
   request: (message: Record<string, unknown>) => connection.request(message),
   colour: chooseField,
   arrows: () => robot.arrows(),
+  screen: (x: number, y: number, z: number) => robot.screen(new Vector3(x, y, z)),
+  plain: () => robot.plain(),
 };
 declare global { interface Window { sinewView: typeof view } }
 window.sinewView = view;

@@ -69,13 +69,15 @@ export class Panel {
   }
 
   private gallery(scene: Scene): void {
-    this.root.replaceChildren(make('h2', {textContent: 'Examples'}), ...(scene.examples ?? []).map((example) => {
+    const cards = (scene.examples ?? []).map((example) => {
       const card = make('button', {type: 'button', className: 'example', 'aria-label': `Open ${example.name}`,
                                    onclick: () => this.send({type: 'open', name: example.name})});
       if (example.thumbnail) card.append(make('img', {src: example.thumbnail + location.search, alt: ''}));
       card.append(make('b', {textContent: example.name}), make('span', {textContent: example.title}));
       return card;
-    }), make('div', {className: 'line'}, this.who, this.drive));
+    });
+    this.root.replaceChildren(make('h2', {textContent: 'Examples'}), make('div', {className: 'examples'}, ...cards),
+                              make('div', {className: 'line'}, this.who, this.drive));
   }
 
   private replay(scene: Scene): void {

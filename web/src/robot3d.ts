@@ -61,6 +61,7 @@ export class Robot3d {
   private grabbed: {plane: Plane; body: number; vertices: number[]; weights: number[]} | null = null;
   private dragging = false;
   private steered = -1;
+  private covered = [0, 0, 0, 0];  // px; see cover()
   private chosen = -1;  // effector whose target was clicked
   private force = make('div', {id: 'force', hidden: true});
   private bounds = new Box3();
@@ -115,6 +116,22 @@ export class Robot3d {
     this.renderer.setSize(w, h);
     this.camera.aspect = w / Math.max(h, 1);
     this.camera.updateProjectionMatrix();
+    this.makeRoom();
+  }
+
+  /** What lies over the picture, px at each side: the middle of the rest is the picture's middle. */
+  cover(left: number, right: number, top: number, bottom: number): void {
+    const next = [left, right, top, bottom];
+    if (next.every((side, k) => side === this.covered[k])) return;
+    this.covered = next;
+    this.makeRoom();
+    this.fit();
+  }
+
+  private makeRoom(): void {
+    const {clientWidth: w, clientHeight: h} = this.stage;
+    const [left, right, top, bottom] = this.covered;
+    this.camera.setViewOffset(w, h, (right - left) / 2, (bottom - top) / 2, w, h);
   }
 
   scene(scene: Scene): void {
@@ -280,9 +297,17 @@ export class Robot3d {
   }
 
   /** Where a point is seen, CSS pixels of the stage. */
-  private screen(point: Vector3): [number, number] {
+  screen(point: Vector3): [number, number] {
     const seen = point.clone().project(this.camera);
     return [(1 + seen.x) / 2 * this.stage.clientWidth, (1 - seen.y) / 2 * this.stage.clientHeight];
+  }
+
+  /** For pictures: the robot alone, without arrows and captions. */
+  plain(): void {
+    this.steerable(false);
+    this.robot.traverse((part) => { if (part instanceof Sprite || part instanceof AxesHelper) part.visible = false; });
+    this.cover(0, 0, 0, 0);
+    this.fit();
   }
 
   /** For tests: where the arrows of the target are seen, on their middle. */
@@ -294,9 +319,13 @@ export class Robot3d {
   }
 
   fit(): void {
+    const {clientWidth: w, clientHeight: h} = this.stage;
+    const [left, right, top, bottom] = this.covered;
+    const free = Math.min(w - left - right, h - top - bottom) / Math.max(h, 1);
+    const distance = 0.6 * this.size / Math.tan(Math.PI * this.camera.fov / 360) / Math.max(free, 0.2);
     const middle = this.bounds.getCenter(new Vector3());
     this.orbit.target.copy(middle);
-    this.camera.position.copy(middle).add(new Vector3(0.9, -1.5, 0.5).multiplyScalar(1.25 * this.size));
+    this.camera.position.copy(middle).add(new Vector3(0.9, -1.5, 0.5).setLength(distance));
     this.orbit.update();
   }
 

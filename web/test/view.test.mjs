@@ -6,6 +6,7 @@ import {tmpdir} from 'node:os';
 import {dirname, join} from 'node:path';
 import {after, before, test} from 'node:test';
 import {fileURLToPath} from 'node:url';
+import validator from 'gltf-validator';
 import {chromium} from 'playwright-core';
 
 const ROOT = join(dirname(fileURLToPath(import.meta.url)), '../..');
@@ -74,6 +75,34 @@ async function until(page, holds, seconds = 20) {
     await new Promise((resolve) => setTimeout(resolve, 50));
   }
   assert.fail(`waited in vain; the page says ${JSON.stringify(await state(page))}`);
+}
+
+async function download(page, name) {
+  return Buffer.from(await page.evaluate(async (file) => {
+    const bytes = new Uint8Array(await (await fetch(`download/${file}`)).arrayBuffer());
+    return Array.from(bytes);
+  }, name));
+}
+
+/** Khronos' own checker has nothing to say of a GLB file. */
+async function valid(bytes) {
+  const {issues} = await validator.validateBytes(new Uint8Array(bytes));
+  assert.deepEqual(issues.messages.filter((m) => m.severity < 2), []);
+}
+
+/** The JSON of a GLB file, its times, and how far the first mesh moves at most. */
+function animation(bytes) {
+  const length = bytes.readUInt32LE(12);
+  const json = JSON.parse(bytes.subarray(20, 20 + length).toString());
+  const floats = (index) => {
+    const accessor = json.accessors[index], view = json.bufferViews[accessor.bufferView];
+    const count = accessor.count * (accessor.type === 'VEC3' ? 3 : 1);
+    const at = 28 + length + view.byteOffset;
+    return Array.from({length: count}, (_, k) => bytes.readFloatLE(at + 4 * k));
+  };
+  const {targets} = json.meshes[0].primitives[0];
+  const moved = Math.max(...floats(targets.at(-1).POSITION).map(Math.abs));
+  return {json, times: floats(json.animations[0].samplers[0].input), moved};
 }
 
 function python(code) {
@@ -168,6 +197,16 @@ test('the robot goes where its target is put', async () => {
   const there = await until(page, (s) => s.status.targets.tip && s.signals['tip.error'] < 1e-4
     && Math.abs(s.signals['tip.x'] - 0.02) < 2e-4);
   assert.ok(Math.abs(there.signals['tip.y'] + 0.01) < 2e-4 && Math.abs(there.signals['tip.z'] - 0.18) < 2e-4);
+  // By the arrow along z, drawn down with the mouse.
+  const [x, y] = await page.evaluate(() => window.sinewView.arrows()[2]);
+  await page.mouse.move(x, y, {steps: 4});
+  await page.waitForTimeout(200);
+  await page.mouse.down();
+  await page.mouse.move(x, y + 40, {steps: 12});
+  await page.mouse.up();
+  const down = await until(page, (s) => s.status.targets.tip[2] < 0.175 && s.signals['tip.error'] < 1e-4
+    && Math.abs(s.signals['tip.z'] - s.status.targets.tip[2]) < 2e-4);
+  assert.ok(Math.abs(down.status.targets.tip[0] - 0.02) < 1e-6, 'along the arrow only');
   // Out of reach is said plainly.
   await page.fill('[aria-label="tip: target x in mm"]', '400');
   await page.keyboard.press('Tab');
@@ -181,8 +220,7 @@ test('a hand pulls the robot and lets go of it', async () => {
   const served = await serve(DIRECT, 0, '--paused');
   const page = await open(served.url);
   const start = await state(page);
-  const canvas = await page.locator('#stage canvas').boundingBox();
-  const [x, y] = [canvas.x + canvas.width / 2, canvas.y + canvas.height / 2];
+  const [x, y] = await page.evaluate(() => window.sinewView.screen(0, 0, 0.1));
   await page.mouse.move(x, y);
   await page.keyboard.down('Shift');
   await page.mouse.down();
@@ -190,6 +228,7 @@ test('a hand pulls the robot and lets go of it', async () => {
   await page.waitForTimeout(200);
   await ask(page, {type: 'step', count: 20});
   const pulled = await until(page, (s) => s.step === 20);
+  assert.match(await page.locator('#force').innerText(), /^[\d.]+ m?N$/);
   assert.ok(Math.abs(pulled.signals['tip.x'] - start.signals['tip.x']) > 1e-3, 'the tip follows the hand');
   await page.mouse.up();
   await page.keyboard.up('Shift');
@@ -253,6 +292,9 @@ test('a recorded run is played again, and sought', async () => {
   await assert.rejects(ask(page, {type: 'settle'}), /cannot be changed/);
   const csv = await page.evaluate(() => fetch('download/run.csv').then((r) => r.text()));
   assert.equal(csv.trim().split('\n').length, 102);
+  const motion = await download(page, 'motion.glb');
+  await valid(motion);
+  assert.equal(animation(motion).times.length, 26);  // thirty a second, of steps of 10 ms
   await page.close();
   await stop(served);
   rmSync(folder, {recursive: true});
@@ -275,6 +317,76 @@ test('the gallery shows the examples and opens one', async () => {
   await page.getByRole('button', {name: 'Open arm/square'}).click();
   const opened = await until(page, (s) => s.mode === 'live' && s.step > 20);
   assert.ok('cable_2.tension' in opened.signals);
+  await page.getByRole('button', {name: 'Back to the examples'}).click();
+  await until(page, (s) => s.mode === 'gallery');
+  await page.getByRole('button', {name: 'Open trunk/trunk'}).click();
+  await until(page, (s) => s.mode === 'live' && 'long_0.tension' in s.signals && s.step > 5);
   await page.close();
   await stop({program});
+});
+
+test('what the page records can be saved', async () => {
+  const served = await serve(DIRECT, 0, '--paused');
+  const page = await open(served.url);
+  assert.equal((await page.evaluate(() => fetch('download/run.csv').then((r) => r.status))), 404);
+  await page.keyboard.press('e');
+  await until(page, (s) => s.status.recording?.on);
+  await ask(page, {type: 'step', count: 90});
+  await page.getByRole('button', {name: 'Record the run from now on'}).click();
+  const ended = await until(page, (s) => s.status.recording?.on === false);
+  assert.equal(ended.status.recording.frames, 91);
+  await page.getByRole('link', {name: 'motion.glb'}).waitFor();
+  const [saved] = await Promise.all([page.waitForEvent('download'), page.getByRole('link', {name: 'run.csv'}).click()]);
+  const rows = readFileSync(await saved.path(), 'utf8').trim().split('\n').map((row) => row.split(','));
+  assert.equal(rows.length, 92);
+  const last = (name) => Number(rows[91][rows[0].indexOf(`"${name}"`)]);
+  assert.equal(last('time [s]'), 0.9);
+  assert.equal(last('tip.x [m]'), ended.signals['tip.x']);
+  assert.equal(last('long_0.displacement [m]'), ended.signals['long_0.displacement']);
+  const motion = await download(page, 'motion.glb');
+  await valid(motion);
+  const {json, times, moved} = animation(motion);
+  assert.equal(json.meshes.length, 1 + 8);  // the trunk and its cables
+  assert.ok(Math.abs(times.at(-1) - 0.88) < 1e-6 && times.length === 23);
+  assert.ok(moved > 1e-3, `the trunk moves by ${moved} m`);
+  await page.close();
+  await stop(served);
+});
+
+test('a script of Python is watched, paused and helped', async () => {
+  const program = spawn('/usr/bin/python3', ['-u', '-c', `
+import sinew
+sim = sinew.load(${JSON.stringify(DIRECT)})
+with sinew.view(sim, block=False, port=0, open_browser=False, paused=True) as view:
+    while view.update() and sim.steps < 100000:
+        sim.step()
+        print(sim.steps, f"{sim.state_hash:016x}", sim.actuator("long_2").tension)
+`], {env: {...process.env, PYTHONPATH: PACKAGE}});
+  programs.add(program);
+  const lines = [];
+  const url = await new Promise((resolve, reject) => {
+    let text = '';
+    program.stdout.on('data', (data) => {
+      text += data;
+      lines.splice(0, lines.length, ...text.trim().split('\n').slice(1).map((line) => line.split(' ')));
+      const found = /http:\S+/.exec(text);
+      if (found) resolve(found[0]);
+    });
+    program.stderr.on('data', (data) => reject(new Error(String(data))));
+  });
+  const page = await open(url);
+  assert.equal((await state(page)).mode, 'follow');
+  await ask(page, {type: 'step', count: 7});
+  const here = await until(page, (s) => s.step === 7);
+  assert.deepEqual(lines.at(-1).slice(0, 2), ['7', here.hash]);
+  await ask(page, {type: 'command', actuator: 'long_2', quantity: 'tension', value: 0.25});
+  await ask(page, {type: 'step', count: 1});
+  await until(page, (s) => s.step === 8 && s.signals['long_2.tension'] === 0.25);
+  assert.equal(lines.at(-1)[2], '0.25');
+  await assert.rejects(ask(page, {type: 'reset'}), /script steps/);
+  await page.keyboard.press(' ');
+  await until(page, (s) => s.step > 40);
+  await page.close();
+  program.kill('SIGKILL');
+  programs.delete(program);
 });

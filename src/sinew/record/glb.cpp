@@ -180,8 +180,8 @@ class Builder {
   }
 
   int floats(const Floats& values, std::size_t width, const char* type, int target, bool bounds) {
-    const int accessor = add_view(std::as_bytes(std::span(values)), target, values.size() / width,
-                                  type, kFloat);
+    const int accessor =
+        add_view(std::as_bytes(std::span(values)), target, values.size() / width, type, kFloat);
     if (!bounds) return accessor;
     Json low = Json::array(), high = Json::array();
     for (std::size_t c = 0; c < width; ++c) {
@@ -204,13 +204,12 @@ class Builder {
   void finish(const std::string& name, Json primitive, Json targets,
               const std::array<float, 3>& colour, double roughness) {
     primitive["material"] = json_["materials"].size();
-    json_["materials"].push_back(
-        {{"name", name},
-         {"doubleSided", true},
-         {"pbrMetallicRoughness",
-          {{"baseColorFactor", {colour[0], colour[1], colour[2], 1.0}},
-           {"metallicFactor", 0.0},
-           {"roughnessFactor", roughness}}}});
+    json_["materials"].push_back({{"name", name},
+                                  {"doubleSided", true},
+                                  {"pbrMetallicRoughness",
+                                   {{"baseColorFactor", {colour[0], colour[1], colour[2], 1.0}},
+                                    {"metallicFactor", 0.0},
+                                    {"roughnessFactor", roughness}}}});
     const std::size_t count = targets.size();
     if (count > 0) primitive["targets"] = std::move(targets);
     Json mesh = {{"name", name}, {"primitives", {std::move(primitive)}}};

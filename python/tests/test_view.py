@@ -1,0 +1,111 @@
+"""sinew.view(): who steps, what the page's address serves, and what is left afterwards.
+
+The page itself, driving and watching a script, is tested in a browser (web/test).
+"""
+
+import gzip
+import os
+import signal
+import threading
+import urllib.error
+import urllib.request
+
+import pytest
+import sinew
+
+HERE = {"port": 0, "open_browser": False}
+
+
+def test_a_script_that_is_watched_gets_the_same_bits(scene):
+    watched, alone = sinew.load(scene), sinew.load(scene)
+    with sinew.view(watched, block=False, **HERE) as view:
+        assert not view.closed
+        for _ in range(30):
+            watched.step()
+            alone.step()
+            assert view.update()
+    assert view.closed
+    assert view.update() is False
+    view.close()  # once more does no harm
+    assert watched.state_hash == alone.state_hash
+
+
+def test_the_page_is_served_and_nothing_else(scene):
+    with sinew.view(sinew.load(scene), block=False, **HERE) as view:
+        with urllib.request.urlopen(view.url) as answer:
+            page = gzip.decompress(answer.read())
+        assert b"<title>Sinew</title>" in page
+        for path in ("../etc/passwd", "download/run.h5", "app.js.map"):
+            with pytest.raises(urllib.error.HTTPError):
+                urllib.request.urlopen(view.url + path)
+    with pytest.raises(urllib.error.URLError):
+        urllib.request.urlopen(view.url, timeout=2)
+
+
+def test_the_page_drives_until_interrupted(follow):
+    sim = sinew.load(follow)
+    controller = sim.controller
+    threading.Timer(0.7, os.kill, (os.getpid(), signal.SIGINT)).start()
+    assert sinew.view(sim, speed=0, **HERE) is None
+    steps = sim.steps
+    assert steps > 5
+    assert not sim.busy
+    # The controller that was attached before steers still, through the same handle.
+    assert controller.status in ("on-target", "rate-limited", "out-of-reach")
+    sim.step(3)
+    assert sim.steps == steps + 3
+    controller.targets["tip"] = (0.004, 0.0, 0.0775)
+    sim.step(200)
+    assert controller.error < 1e-3
+
+
+def test_ctrl_c_in_a_paused_script_closes_the_view(scene):
+    sim = sinew.load(scene)
+    view = sinew.view(sim, block=False, paused=True, **HERE)
+    threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
+    with pytest.raises(KeyboardInterrupt):
+        view.update()
+    assert view.closed
+    sim.step()
+    assert sim.steps == 1
+
+
+def test_a_script_may_change_its_controller(follow):
+    sim = sinew.load(follow)
+    with sinew.view(sim, block=False, **HERE) as view:
+        for k in range(20):
+            if k == 5:
+                sim.detach()
+            if k == 10:
+                sinew.InverseController(sim, {"tip": (0.004, 0.0, 0.0775)})
+            sim.step()
+            assert view.update()
+    assert sim.controller is not None
+
+
+def test_one_at_a_time(scene):
+    sim = sinew.load(scene)
+    with sinew.view(sim, block=False, **HERE) as view:
+        port = int(view.url.split(":")[2].rstrip("/"))
+        with pytest.raises(sinew.Error) as caught:
+            sinew.view(sinew.load(scene), block=False, port=port, open_browser=False)
+        assert caught.value.kind == "address-in-use"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "kind"),
+    [
+        ({"port": 70000}, "out-of-range"),
+        ({"speed": -1.0}, "out-of-range"),
+        ({"speed": float("nan")}, "out-of-range"),
+        ({"host": "nowhere at all"}, "bad-argument"),
+    ],
+)
+@pytest.mark.parametrize("block", [True, False])
+def test_broken_arguments(follow, arguments, kind, block):
+    sim = sinew.load(follow)
+    with pytest.raises(sinew.Error) as caught:
+        sinew.view(sim, block=block, **{**HERE, **arguments})
+    assert caught.value.kind == kind
+    sim.step()  # the simulation is as it was, its controller attached
+    assert sim.controller.status == "rate-limited" or sim.controller.status == "on-target"
