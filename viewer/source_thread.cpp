@@ -94,12 +94,11 @@ void SourceThread::run() {
     if (playing_) catch_up();
     measure_factor();
     if (!dirty_) continue;
-    if (!playing_ || Clock::now() - last_publication_ >= kFrameTime) {
+    if (!playing_ || Clock::now() >= frame_due_) {
       publish();
     } else if (speed_ != 0.0) {
       std::unique_lock lock(mutex_);
-      wake_.wait_until(lock, last_publication_ + ticks(kFrameTime),
-                       [&] { return stopping_ || !queue_.empty(); });
+      wake_.wait_until(lock, frame_due_, [&] { return stopping_ || !queue_.empty(); });
     }
   }
 }
@@ -164,7 +163,7 @@ void SourceThread::do_request(const Request& request) {
     playing_ = false;
     for (std::int64_t k = 0; k < step->count && !stopping() && advance(); ++k) {
       dirty_ = true;
-      if (Clock::now() - last_publication_ >= kFrameTime) publish();
+      if (Clock::now() >= frame_due_) publish();
     }
     require_ready();
   } else if (const auto* speed = std::get_if<Speed>(&request)) {
@@ -181,7 +180,8 @@ void SourceThread::publish() {
     wanted[static_cast<std::size_t>(f)] = publisher_->wants_field(f);
   }
   publisher_->publish(frame(wanted, factor_));
-  last_publication_ = Clock::now();
+  // Sixty a second on average, however late one of them is.
+  frame_due_ = std::max(frame_due_, Clock::now() - ticks(kFrameTime)) + ticks(kFrameTime);
   dirty_ = false;
   const bool slow = playing_ && speed_ > 0.0 && factor_ > 0.0 && factor_ < kSlow * speed_;
   std::string status = fmt::format(R"({{"playing":{},"speed":{},"slow":{},{})", playing_, speed_,

@@ -80,7 +80,7 @@ class SourceThread : public Source {
   bool playing_;
   double speed_;
   bool dirty_ = true;  ///< something has changed since the last frame
-  Clock::time_point clock_start_, factor_start_, last_publication_;
+  Clock::time_point clock_start_, factor_start_, frame_due_;
   double time_start_ = 0.0, factor_time_ = 0.0;  ///< s, simulated
   double factor_ = 0.0;
   std::string last_status_;
