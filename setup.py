@@ -3,7 +3,8 @@
     pip install --no-build-isolation .
 
 compiles for this machine's own instruction set; SINEW_NATIVE=OFF in the environment makes a wheel
-that other x86-64-v2 machines can use. JOBS limits how many compilers run at once.
+that other x86-64-v2 machines can use; SINEW_VIEWER=OFF leaves out the browser view. JOBS limits how
+many compilers run at once.
 """
 
 import os
@@ -33,9 +34,12 @@ class CMakeBuild(build_ext):
         if shutil.which("cmake") is None or shutil.which("ninja") is None:
             raise RuntimeError("cmake and ninja are needed; scripts/setup.sh --minimal installs them")
         build = Path(self.build_temp).resolve()
+        # The view's page is bundled by Node.js; without it the package lacks sinew.view().
+        bundler = "ON" if shutil.which("npm") else "OFF"
         configure = [
             "cmake", "-S", str(ROOT), "-B", str(build), "-G", "Ninja",
-            "-DCMAKE_BUILD_TYPE=Release", "-DSINEW_TESTS=OFF", "-DSINEW_BENCHMARKS=OFF", "-DSINEW_VIEWER=OFF",
+            "-DCMAKE_BUILD_TYPE=Release", "-DSINEW_TESTS=OFF", "-DSINEW_BENCHMARKS=OFF",
+            f"-DSINEW_VIEWER={os.environ.get('SINEW_VIEWER', bundler)}",
             "-DSINEW_PYTHON=ON", f"-DPython3_EXECUTABLE={sys.executable}",
             f"-DSINEW_NATIVE={os.environ.get('SINEW_NATIVE', 'ON')}",
         ]

@@ -48,3 +48,8 @@ for kernel in build/release/bin/*_benchmark; do
   echo "== $(basename "$kernel")"
   "$kernel" "$@"
 done
+
+if [ -e web/node_modules/playwright-core ] && [ -x "${SINEW_CHROMIUM:-/usr/bin/chromium}" ]; then
+  echo "== the view, in a browser"
+  node benchmarks/view.mjs | tee "$out/view.txt"
+fi

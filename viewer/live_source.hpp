@@ -32,7 +32,8 @@ class LiveSource : public SourceThread {
   /// Throws Error(unknown-name) for a controller that the scene does not have.
   explicit LiveSource(scene::Robot robot, const LiveSettings& settings = {});
   /// A simulation that others own and leave alone between start() and stop().
-  /// @param robot,simulation what is shown. @param first in place of settings.controller.
+  /// @param robot,simulation what is shown. @param first,settings the one in place of the
+  ///   other's controller.
   LiveSource(scene::Robot robot, std::shared_ptr<sim::Simulation> simulation,
              std::optional<Steering> first, const LiveSettings& settings);
   ~LiveSource() override { LiveSource::stop(); }

@@ -17,7 +17,8 @@ namespace sinew::viewer {
 /// the table is full when its memory is (see limits.hpp).
 class Recording {
  public:
-  /// @param shown what frames that are added belong to; outlives the recording.
+  /// @param shown what frames that are added belong to; outlives the recording. @param name of
+  ///   the motion.
   Recording(const Description& shown, std::string name);
 
   /// Appends a step. False, and nothing appended, when full.

@@ -60,9 +60,10 @@ class Source {
   /// been carried out (a step: when the steps are done) or refused: Error(not-in-this-version) for
   /// what this kind of source cannot do.
   virtual void submit(const Request& request, std::function<void(Outcome)> done) = 0;
-  /// Hands over a file; `done` gets none when there is no such file. Returns at once.
+  /// Hands over a file. Returns at once.
   /// @param name "run.csv", "motion.glb" or "thumbnail/NAME.png". Never a path: anything else is
   ///   no such file.
+  /// @param done called once, from any thread; with none when there is no such file.
   virtual void fetch(std::string_view name, std::function<void(std::optional<Download>)> done) = 0;
 };
 
