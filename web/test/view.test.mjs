@@ -1,7 +1,7 @@
 // The view in a real browser: SINEW_PROGRAM=... SINEW_PYTHON_PATH=... node --test web/test
 import assert from 'node:assert/strict';
 import {execFileSync, spawn} from 'node:child_process';
-import {mkdtempSync, readFileSync, rmSync} from 'node:fs';
+import {mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import {dirname, join} from 'node:path';
 import {after, before, test} from 'node:test';
@@ -135,6 +135,13 @@ test('the page loads without an error and shows the robot', async () => {
   assert.equal(unlabelled, 0);
   await page.keyboard.press('?');
   assert.ok(await page.locator('dialog').isVisible());
+  await page.keyboard.press('Escape');
+  const [picture] = await Promise.all([page.waitForEvent('download'), page.keyboard.press('p')]);
+  assert.deepEqual([...readFileSync(await picture.path()).subarray(0, 4)], [0x89, 0x50, 0x4e, 0x47]);
+  // What a first visit costs.
+  const sizes = await page.evaluate(() => Promise.all(['', 'app.js', 'app.css'].map(async (name) =>
+    Number((await fetch(name)).headers.get('content-length')))));
+  assert.ok(sizes.every((size) => size > 0) && sizes.reduce((a, b) => a + b) < 1e6, String(sizes));
   assert.deepEqual(errors, []);
   await page.close();
   assert.equal(await stop(served), 0);
@@ -351,6 +358,38 @@ test('what the page records can be saved', async () => {
   assert.ok(moved > 1e-3, `the trunk moves by ${moved} m`);
   await page.close();
   await stop(served);
+});
+
+test('a run that stopped says why, and starts anew', async () => {
+  const folder = mkdtempSync(join(tmpdir(), 'sinew-view-'));
+  const scene = join(folder, 'pushed.yaml');
+  writeFileSync(scene, `sinew: 1
+time_step: 10 ms
+bodies:
+  beam:
+    type: fem
+    mesh: {shape: block, length: 60 mm, width: 20 mm, height: 20 mm, element_size: 10 mm}
+    material: {model: corotational, young_modulus: 200 kPa, poisson_ratio: 0.4}
+    density: 1070 kg/m^3
+    fixed: [{set: x_min}]
+actuators:
+  up: {type: cable, body: beam, points: [0 10 16 mm, 30 10 16 mm, 58 10 16 mm]}
+  push: {type: force, body: beam, point: 60 10 10 mm, direction: 1 0 0}
+effectors:
+  tip: {body: beam, point: 60 10 10 mm}
+`);
+  const served = await serve(scene);
+  const page = await open(served.url);
+  await page.getByText('slack: up').waitFor();
+  await ask(page, {type: 'command', actuator: 'push', quantity: 'force', value: -1e6});
+  const stopped = await until(page, (s) => s.status.stopped);
+  await page.getByText(`The run stopped at step ${stopped.status.stopped.step}`).waitFor();
+  await page.locator('.alert').getByRole('button', {name: 'Back to the start'}).click();
+  await until(page, (s) => !s.status.stopped);
+  assert.equal(await page.locator('.alert.error').count(), 0);
+  await page.close();
+  await stop(served);
+  rmSync(folder, {recursive: true});
 });
 
 test('a script of Python is watched, paused and helped', async () => {
