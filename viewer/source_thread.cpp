@@ -179,16 +179,18 @@ void SourceThread::publish() {
   for (int f = 0; f < kFieldCount; ++f) {
     wanted[static_cast<std::size_t>(f)] = publisher_->wants_field(f);
   }
+  const bool slow = playing_ && speed_ > 0.0 && factor_ > 0.0 && factor_ < kSlow * speed_;
+  std::string status = fmt::format(R"({{"playing":{},"speed":{},"slow":{},{})", playing_, speed_,
+                                   slow, status_members().substr(1));
+  // The status first: whoever has a frame has the status that goes with it.
+  if (status != last_status_) {
+    last_status_ = status;
+    publisher_->publish_status(std::move(status));
+  }
   publisher_->publish(frame(wanted, factor_));
   // Sixty a second on average, however late one of them is.
   frame_due_ = std::max(frame_due_, Clock::now() - ticks(kFrameTime)) + ticks(kFrameTime);
   dirty_ = false;
-  const bool slow = playing_ && speed_ > 0.0 && factor_ > 0.0 && factor_ < kSlow * speed_;
-  std::string status = fmt::format(R"({{"playing":{},"speed":{},"slow":{},{})", playing_, speed_,
-                                   slow, status_members().substr(1));
-  if (status == last_status_) return;
-  last_status_ = status;
-  publisher_->publish_status(std::move(status));
 }
 
 }  // namespace sinew::viewer
