@@ -1,0 +1,283 @@
+#include "sinew/material/hyperelastic.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "sinew/core/error.hpp"
+
+namespace sinew::material {
+
+namespace {
+
+using Triple = std::array<double, 3>;
+constexpr std::array<int, 3> kAxes = {0, 1, 2};
+
+[[noreturn]] void fail(const std::string& what, const std::string& message,
+                       const std::string& remedy) {
+  throw Error(ErrorKind::invalid_material, {.item = what}, message, remedy);
+}
+
+std::size_t at(int axis) { return static_cast<std::size_t>(axis); }
+
+// First and second derivatives by e_i of sum_i b_i^a, with t_i = b_i^a and T their sum:
+//   a (t_i - T/3),   a^2 (delta_ij t_i - (t_i + t_j)/3 + T/9).
+struct PowerSum {
+  double value = 0.0;
+  Triple first{};
+  std::array<Triple, 3> second{};
+};
+
+PowerSum power_sum(const Triple& isochoric, double exponent) {
+  Triple t{};
+  double sum = 0.0;
+  for (const int i : kAxes) sum += t[at(i)] = std::pow(isochoric[at(i)], exponent);
+  PowerSum result;
+  result.value = sum;
+  for (const int i : kAxes) {
+    result.first[at(i)] = exponent * (t[at(i)] - sum / 3.0);
+    for (const int j : kAxes) {
+      const double own = i == j ? t[at(i)] : 0.0;
+      result.second[at(i)][at(j)] =
+          exponent * exponent * (own - (t[at(i)] + t[at(j)]) / 3.0 + sum / 9.0);
+    }
+  }
+  return result;
+}
+
+// Adds w f(s) for s a power sum: f' s_i and f' s_ij + f'' s_i s_j.
+void add(LogResponse& to, const PowerSum& s, double value, double slope, double curvature) {
+  to.energy += value;
+  for (const int i : kAxes) {
+    to.first[at(i)] += slope * s.first[at(i)];
+    for (const int j : kAxes) {
+      to.second[at(i)][at(j)] +=
+          slope * s.second[at(i)][at(j)] + curvature * s.first[at(i)] * s.first[at(j)];
+    }
+  }
+}
+
+void add_volumetric(LogResponse& to, double bulk_modulus, double ratio) {
+  const double pressure = bulk_modulus * (ratio - 1.0);  // U'
+  to.energy += 0.5 * pressure * (ratio - 1.0);
+  for (const int i : kAxes) {
+    to.first[at(i)] += pressure * ratio;
+    for (const int j : kAxes) {
+      to.second[at(i)][at(j)] += (pressure + bulk_modulus * ratio) * ratio;
+    }
+  }
+}
+
+LogResponse saint_venant(const Hyperelastic& law, const Triple& stretches) {
+  const double mu = law.saint_venant_shear, lambda = law.bulk_modulus - 2.0 / 3.0 * mu;
+  Triple strain{}, square{};
+  double trace = 0.0, squares = 0.0;
+  for (const int i : kAxes) {
+    square[at(i)] = stretches[at(i)] * stretches[at(i)];
+    strain[at(i)] = 0.5 * (square[at(i)] - 1.0);
+    trace += strain[at(i)];
+    squares += strain[at(i)] * strain[at(i)];
+  }
+  LogResponse result;
+  result.energy = 0.5 * lambda * trace * trace + mu * squares;
+  for (const int i : kAxes) {
+    const double stress = lambda * trace + 2.0 * mu * strain[at(i)];
+    result.first[at(i)] = square[at(i)] * stress;
+    for (const int j : kAxes) {
+      const double own = i == j ? 2.0 * stress + 2.0 * mu * square[at(i)] : 0.0;
+      result.second[at(i)][at(j)] = square[at(i)] * (own + lambda * square[at(j)]);
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+double Hyperelastic::shear_modulus() const {
+  if (saint_venant_shear > 0.0) return saint_venant_shear;
+  double sum = polynomial.empty() ? 0.0 : 2.0 * polynomial.front();
+  for (const PowerTerm& term : powers) {
+    sum += 0.5 * term.coefficient * term.exponent * term.exponent;
+  }
+  return sum;
+}
+
+double Hyperelastic::young_modulus() const {
+  const double mu = shear_modulus();
+  return 9.0 * bulk_modulus * mu / (3.0 * bulk_modulus + mu);
+}
+
+double Hyperelastic::poisson_ratio() const {
+  const double mu = shear_modulus();
+  return (3.0 * bulk_modulus - 2.0 * mu) / (6.0 * bulk_modulus + 2.0 * mu);
+}
+
+void Hyperelastic::validate(const std::string& what) const {
+  for (const PowerTerm& term : powers) {
+    if (!std::isfinite(term.coefficient) || !std::isfinite(term.exponent)) {
+      fail(what, "a coefficient is not finite", "give finite numbers");
+    }
+    if (term.exponent == 0.0) {
+      fail(what, "an exponent is 0", "give one that is not, for instance alpha = 2");
+    }
+  }
+  for (const double w : polynomial) {
+    if (!std::isfinite(w)) fail(what, "a coefficient is not finite", "give finite numbers");
+  }
+  const double mu = shear_modulus();
+  if (!(mu > 0.0) || !std::isfinite(mu)) {
+    fail(what, fmt::format("its initial shear modulus is {:g} Pa", mu),
+         "check the coefficients' signs, units, and the convention that they are published in");
+  }
+  if (!(bulk_modulus > 0.0) || !std::isfinite(bulk_modulus)) {
+    fail(what, fmt::format("its bulk modulus is {:g} Pa", bulk_modulus),
+         "give a bulk modulus above 0, or a Poisson's ratio below 0.5");
+  }
+}
+
+double bulk_modulus_of(double shear, double poisson_ratio) {
+  return 2.0 * shear * (1.0 + poisson_ratio) / (3.0 * (1.0 - 2.0 * poisson_ratio));
+}
+
+Hyperelastic neo_hookean(double shear_modulus) {
+  return {.powers = {{0.5 * shear_modulus, 2.0}}, .polynomial = {}};
+}
+
+Hyperelastic mooney_rivlin(double c10, double c01) {
+  return {.powers = {{c10, 2.0}, {c01, -2.0}}, .polynomial = {}};
+}
+
+Hyperelastic yeoh(const std::vector<double>& coefficients) {
+  return {.powers = {}, .polynomial = coefficients};
+}
+
+Hyperelastic ogden(const std::vector<OgdenTerm>& terms, OgdenConvention convention) {
+  Hyperelastic result;
+  for (const OgdenTerm& term : convert(terms, convention, OgdenConvention::mu_over_alpha)) {
+    result.powers.push_back({term.modulus / term.alpha, term.alpha});
+  }
+  return result;
+}
+
+// mu sum_k C_k / m^(2k-2) (I^k - 3^k), with I = 3 + x and I^k = sum_j binomial(k, j) 3^(k-j) x^j.
+Hyperelastic arruda_boyce(double shear_modulus, double locking_stretch) {
+  constexpr std::array<double, 5> kSeries = {1.0 / 2.0, 1.0 / 20.0, 11.0 / 1050.0, 19.0 / 7000.0,
+                                             519.0 / 673750.0};
+  Hyperelastic result;
+  result.polynomial.assign(kSeries.size(), 0.0);
+  for (std::size_t k = 1; k <= kSeries.size(); ++k) {
+    const double factor = shear_modulus * kSeries[k - 1] /
+                          std::pow(locking_stretch, 2.0 * static_cast<double>(k - 1));
+    double binomial = 1.0;
+    for (std::size_t j = 1; j <= k; ++j) {
+      binomial *= static_cast<double>(k - j + 1) / static_cast<double>(j);
+      result.polynomial[j - 1] += factor * binomial * std::pow(3.0, static_cast<double>(k - j));
+    }
+  }
+  return result;
+}
+
+Hyperelastic saint_venant_kirchhoff(double young_modulus, double poisson_ratio) {
+  Hyperelastic result;
+  result.saint_venant_shear = young_modulus / (2.0 * (1.0 + poisson_ratio));
+  result.bulk_modulus = young_modulus / (3.0 * (1.0 - 2.0 * poisson_ratio));
+  return result;
+}
+
+std::vector<OgdenTerm> convert(const std::vector<OgdenTerm>& terms, OgdenConvention from,
+                               OgdenConvention to) {
+  std::vector<OgdenTerm> result = terms;
+  if (from == to) return result;
+  // mu_1 / alpha = 2 mu_2 / alpha^2
+  for (OgdenTerm& term : result) {
+    const double ratio = 2.0 / term.alpha;
+    term.modulus *= to == OgdenConvention::mu_over_alpha ? ratio : 1.0 / ratio;
+  }
+  return result;
+}
+
+LogResponse respond(const Hyperelastic& law, const std::array<double, 3>& stretches,
+                    bool volumetric) {
+  if (law.saint_venant_shear > 0.0) return saint_venant(law, stretches);
+  const double ratio = stretches[0] * stretches[1] * stretches[2];
+  const double scale = 1.0 / std::cbrt(ratio);
+  const Triple isochoric = {scale * stretches[0], scale * stretches[1], scale * stretches[2]};
+  LogResponse result;
+  for (const PowerTerm& term : law.powers) {
+    const PowerSum sum = power_sum(isochoric, term.exponent);
+    add(result, sum, term.coefficient * (sum.value - 3.0), term.coefficient, 0.0);
+  }
+  if (!law.polynomial.empty()) {
+    const PowerSum sum = power_sum(isochoric, 2.0);
+    const double x = sum.value - 3.0;
+    double value = 0.0, slope = 0.0, curvature = 0.0;  // Horner, derivatives along with it
+    for (std::size_t k = law.polynomial.size(); k > 0; --k) {
+      curvature = curvature * x + 2.0 * slope;
+      slope = slope * x + value;
+      value = value * x + law.polynomial[k - 1];
+    }
+    // The polynomial begins with x: f = x value.
+    add(result, sum, x * value, value + x * slope, 2.0 * slope + x * curvature);
+  }
+  if (volumetric) add_volumetric(result, law.bulk_modulus, ratio);
+  return result;
+}
+
+std::array<double, 3> incompressible_stretches(DeformationMode mode, double stretch) {
+  switch (mode) {
+    case DeformationMode::uniaxial:
+      return {stretch, 1.0 / std::sqrt(stretch), 1.0 / std::sqrt(stretch)};
+    case DeformationMode::equibiaxial:
+      return {stretch, stretch, 1.0 / (stretch * stretch)};
+    case DeformationMode::planar:
+      return {stretch, 1.0, 1.0 / stretch};
+  }
+  return {1.0, 1.0, 1.0};
+}
+
+double nominal_stress(const Hyperelastic& law, DeformationMode mode, double stretch) {
+  // The last face is free: its Kirchhoff stress is the pressure to take off.
+  const LogResponse response = respond(law, incompressible_stretches(mode, stretch), false);
+  return (response.first[0] - response.first[2]) / stretch;
+}
+
+namespace {
+
+// Isochoric motions e_3 = -e_1 - e_2: the second derivative on them is positive definite.
+bool is_stable(const Hyperelastic& law, DeformationMode mode, double stretch) {
+  const auto h = respond(law, incompressible_stretches(mode, stretch), false).second;
+  const double a = h[0][0] - 2.0 * h[0][2] + h[2][2];
+  const double b = h[1][1] - 2.0 * h[1][2] + h[2][2];
+  const double c = h[0][1] - h[0][2] - h[1][2] + h[2][2];
+  return a > 0.0 && a * b - c * c > 0.0;
+}
+
+// The stretch at which stability ends, going from 1 to `end` in equal ratios, then by bisection.
+double end_of_stability(const Hyperelastic& law, DeformationMode mode, double end) {
+  constexpr int kSamples = 400, kBisections = 50;
+  double stable = 1.0;
+  for (int k = 1; k <= kSamples; ++k) {
+    double next = std::pow(end, static_cast<double>(k) / kSamples);
+    if (is_stable(law, mode, next)) {
+      stable = next;
+      continue;
+    }
+    for (int j = 0; j < kBisections; ++j) {
+      const double middle = 0.5 * (stable + next);
+      (is_stable(law, mode, middle) ? stable : next) = middle;
+    }
+    return stable;
+  }
+  return end;
+}
+
+}  // namespace
+
+std::pair<double, double> stable_range(const Hyperelastic& law, DeformationMode mode, double lowest,
+                                       double highest) {
+  if (!is_stable(law, mode, 1.0)) return {1.0, 1.0};
+  return {end_of_stability(law, mode, lowest), end_of_stability(law, mode, highest)};
+}
+
+}  // namespace sinew::material

@@ -1,0 +1,117 @@
+/// @file
+/// Isotropic energies of stretch in one canonical form, which all usual laws of rubber are cases
+/// of.
+///
+/// With principal stretches l_i, J = l_1 l_2 l_3 and the isochoric b_i = J^(-1/3) l_i,
+///   psi = sum_p c_p (b_1^a_p + b_2^a_p + b_3^a_p - 3) + sum_k w_k (I - 3)^k + U(J),
+///   I = b_1^2 + b_2^2 + b_3^2,   U = kappa/2 (J - 1)^2.
+///
+///   neo-Hookean    c = mu/2, a = 2
+///   Mooney-Rivlin  C10 (I - 3) + C01 (II - 3): c = C10, a = 2 and c = C01, a = -2, since
+///                  II = sum b_i^-2 where b_1 b_2 b_3 = 1
+///   Yeoh           w_k = C_k0 (Rubber Chem. Technol. 66, 1993, eq. 4)
+///   Ogden          sum mu_p/alpha_p (...): c = mu_p/alpha_p, a = alpha_p (Proc. R. Soc. A 326,
+///                  1972, eq. 28); codes also write sum 2 mu_p/alpha_p^2 (...)
+///   Arruda-Boyce   five terms of the inverse Langevin function's series in I (J. Mech. Phys.
+///                  Solids 41, 1993, eq. 27), rearranged to powers of I - 3
+///
+/// Saint Venant-Kirchhoff is not of this form (psi = lambda/2 (tr E)^2 + mu E : E with E the Green
+/// strain) and stands beside it.
+#pragma once
+
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace sinew::material {
+
+/// c (b_1^a + b_2^a + b_3^a - 3).
+struct PowerTerm {
+  double coefficient = 0.0;  ///< c, Pa
+  double exponent = 2.0;     ///< a, not 0
+};
+
+/// How an Ogden law's moduli are to be read.
+enum class OgdenConvention {
+  mu_over_alpha,             ///< sum mu/alpha (...), Ogden's own
+  two_mu_over_alpha_squared  ///< sum 2 mu/alpha^2 (...): mu adds up to the initial shear modulus
+};
+
+/// A modulus and an exponent as published.
+struct OgdenTerm {
+  double modulus = 0.0;  ///< mu, Pa
+  double alpha = 0.0;
+};
+
+/// See the file.
+struct Hyperelastic {
+  std::vector<PowerTerm> powers;
+  std::vector<double> polynomial;  ///< w_1, w_2, ... Pa
+  double bulk_modulus = 0.0;       ///< kappa, Pa; for Saint Venant-Kirchhoff that of small strain
+  /// Saint Venant-Kirchhoff with this shear modulus, Pa; 0: the canonical form.
+  double saint_venant_shear = 0.0;
+
+  /// mu_0 = 1/2 sum c a^2 + 2 w_1 (or that of Saint Venant-Kirchhoff), Pa.
+  double shear_modulus() const;
+  /// E_0 = 9 kappa mu_0 / (3 kappa + mu_0), Pa.
+  double young_modulus() const;
+  /// nu_0 = (3 kappa - 2 mu_0) / (6 kappa + 2 mu_0).
+  double poisson_ratio() const;
+  /// Throws Error(invalid-material) unless all numbers are finite, exponents are not zero, and
+  /// mu_0 > 0 and kappa > 0.
+  /// @param what names the material in the message.
+  void validate(const std::string& what) const;
+};
+
+/// kappa = 2 mu (1 + nu) / (3 (1 - 2 nu)). @param shear mu, Pa. @param poisson_ratio nu < 0.5.
+double bulk_modulus_of(double shear, double poisson_ratio);
+
+// Laws by their usual coefficients, in Pa; kappa is to be set.
+Hyperelastic neo_hookean(double shear_modulus);
+Hyperelastic mooney_rivlin(double c10, double c01);
+/// @param coefficients C10, C20, C30; trailing ones may be left out.
+Hyperelastic yeoh(const std::vector<double>& coefficients);
+/// @param terms,convention as published.
+Hyperelastic ogden(const std::vector<OgdenTerm>& terms, OgdenConvention convention);
+/// @param shear_modulus mu of the series. @param locking_stretch lambda_m > 1, where chains are
+///   straight.
+Hyperelastic arruda_boyce(double shear_modulus, double locking_stretch);
+Hyperelastic saint_venant_kirchhoff(double young_modulus, double poisson_ratio);
+
+/// Terms in the other convention: the same energy.
+std::vector<OgdenTerm> convert(const std::vector<OgdenTerm>& terms, OgdenConvention from,
+                               OgdenConvention to);
+
+/// Energy and its derivatives by logarithmic stretches e_i = ln l_i.
+struct LogResponse {
+  double energy = 0.0;                            ///< psi, J/m^3
+  std::array<double, 3> first{};                  ///< dpsi/de_i = l_i dpsi/dl_i, Pa (Kirchhoff)
+  std::array<std::array<double, 3>, 3> second{};  ///< d^2 psi/de_i de_j, Pa
+};
+
+/// At stretches l, all > 0. @param law,stretches what is asked. @param volumetric whether U counts.
+LogResponse respond(const Hyperelastic& law, const std::array<double, 3>& stretches,
+                    bool volumetric = true);
+
+/// Homogeneous tests that materials are fitted to and judged by.
+enum class DeformationMode {
+  uniaxial,     ///< l, l^-1/2, l^-1/2
+  equibiaxial,  ///< l, l, l^-2
+  planar,       ///< l, 1, 1/l (pure shear)
+};
+
+/// Stretches of an incompressible material. @param mode,stretch which, and l > 0.
+std::array<double, 3> incompressible_stretches(DeformationMode mode, double stretch);
+
+/// Force by undeformed area along l when incompressible (the free faces bear nothing), Pa.
+/// @param law,mode,stretch see there.
+double nominal_stress(const Hyperelastic& law, DeformationMode mode, double stretch);
+
+/// The range of stretches round 1 in which an incompressible material is stable after Drucker:
+/// d(Kirchhoff stress) : d(log strain) > 0 for every isochoric motion (Abaqus theory manual 4.6.1).
+/// @param law,mode what is judged. @param lowest,highest ends of the search.
+std::pair<double, double> stable_range(const Hyperelastic& law, DeformationMode mode,
+                                       double lowest = 0.1, double highest = 10.0);
+
+}  // namespace sinew::material
