@@ -8,6 +8,7 @@
 #include "sinew/core/error.hpp"
 #include "sinew/fem/block_gather.hpp"
 #include "sinew/fem/element_kernel.hpp"
+#include "sinew/fem/solid_kernel.hpp"
 #include "sinew/linalg/aligned_buffer.hpp"
 
 namespace sinew::fem {
@@ -46,13 +47,14 @@ struct Assembly::Workspace {
   double* force_records = nullptr;
   double* rotated_records = nullptr;
   double* exact_records = nullptr;  // in the place of rotated_records where that is lent
+  double* solid_blocks = nullptr;   // null without hyperelastic elements
   std::span<double> lent;           // behind force_records
-  linalg::AlignedBuffer own_records, own_exact_records;
+  linalg::AlignedBuffer own_records, own_exact_records, own_solid_blocks;
   linalg::AlignedBuffer points;  // (n, 4) m
   linalg::AlignedBuffer matrix;
   std::vector<double> forces;
-  std::vector<double> batch_energy;          // one a batch
-  std::vector<SmallestRatio> thread_ratios;  // one a thread
+  std::vector<double> batch_energy;          // one a batch, groups of solids behind the others
+  std::vector<SmallestRatio> thread_ratios;  // one a thread, for batches, then for each group
   std::vector<int> column_splits;
   double energy = 0.0;
   SmallestRatio smallest{1.0, 0};
@@ -66,7 +68,13 @@ struct Assembly::Workspace {
 Assembly::Assembly(std::shared_ptr<const FemModel> model, ThreadPool& pool, std::span<double> lent)
     : model_(std::move(model)), pool_(&pool), work_(std::make_unique<Workspace>()) {
   const auto batches = static_cast<std::size_t>(model_->elements().batches());
-  const std::size_t forces = kLanes * kForceRecord * batches;
+  std::size_t forces = kLanes * kForceRecord * batches, solid_batches = 0, solid_blocks = 0;
+  for (const SolidGroup& group : model_->solids()) {
+    const std::size_t slots = group.element.size();
+    forces += 4 * static_cast<std::size_t>(group.nodes) * slots;
+    solid_blocks += kSolidBlock * static_cast<std::size_t>(group.pairs()) * slots;
+    solid_batches += static_cast<std::size_t>(group.batches());
+  }
   const std::size_t rotated = kLanes * kRotatedRecord * batches;
   if (lent.size() < forces + rotated) {
     work_->own_records = linalg::AlignedBuffer(forces + rotated);
@@ -75,12 +83,17 @@ Assembly::Assembly(std::shared_ptr<const FemModel> model, ThreadPool& pool, std:
   work_->force_records = lent.data();
   work_->rotated_records = lent.data() + forces;
   work_->lent = lent.subspan(forces);
+  if (solid_blocks > 0) {
+    work_->own_solid_blocks = linalg::AlignedBuffer(solid_blocks);
+    work_->solid_blocks = work_->own_solid_blocks.data();
+  }
   work_->points = linalg::AlignedBuffer(4 * static_cast<std::size_t>(model_->mesh().node_count()));
   work_->forces.resize(3 * static_cast<std::size_t>(model_->free_count()));
   work_->matrix = linalg::AlignedBuffer(linalg::kBlockStride *
                                         static_cast<std::size_t>(model_->pattern().blocks()));
-  work_->batch_energy.resize(batches);
-  work_->thread_ratios.resize(static_cast<std::size_t>(pool.size()));
+  work_->batch_energy.resize(batches + solid_batches);
+  work_->thread_ratios.resize(static_cast<std::size_t>(pool.size()) *
+                              (1 + model_->solids().size()));
   work_->column_splits = split_columns(*model_, pool.size());
 }
 
@@ -127,10 +140,22 @@ void Assembly::evaluate_elements(const Points& positions, Tangent tangent) {
   std::ranges::fill(work.thread_ratios, none);
   const ElementBatches& elements = model_->elements();
   const ElementOutput output{work.force_records, work.records(tangent), work.batch_energy.data()};
-  pool_->for_range(elements.batches(), 1, [&](int begin, int end, int thread) {
-    work.thread_ratios[static_cast<std::size_t>(thread)] =
-        evaluate_batches(elements, begin, end, work.points.data(), tangent, output);
-  });
+  if (elements.batches() > 0) {
+    pool_->for_range(elements.batches(), 1, [&](int begin, int end, int thread) {
+      work.thread_ratios[static_cast<std::size_t>(thread)] =
+          evaluate_batches(elements, begin, end, work.points.data(), tangent, output);
+    });
+  }
+  SmallestRatio* ratios = work.thread_ratios.data();
+  SolidOutput solids{work.force_records, work.solid_blocks,
+                     work.batch_energy.data() + elements.batches()};
+  for (const SolidGroup& group : model_->solids()) {
+    ratios += pool_->size();
+    pool_->for_range(group.batches(), 1, [&](int begin, int end, int thread) {
+      ratios[thread] = evaluate_solids(group, begin, end, work.points.data(), tangent, solids);
+    });
+    solids.energy += group.batches();
+  }
   work.energy = 0.0;
   for (const double energy : work.batch_energy) work.energy += energy;
   find_smallest();
@@ -148,10 +173,19 @@ VolumeMeasure Assembly::measure_volume(const Points& positions) {
   load_positions(positions);
   std::ranges::fill(work.thread_ratios, SmallestRatio{std::numeric_limits<double>::infinity(), -1});
   const ElementBatches& elements = model_->elements();
-  pool_->for_range(elements.batches(), 1, [&](int begin, int end, int thread) {
-    work.thread_ratios[static_cast<std::size_t>(thread)] =
-        measure_batches(elements, begin, end, work.points.data());
-  });
+  if (elements.batches() > 0) {
+    pool_->for_range(elements.batches(), 1, [&](int begin, int end, int thread) {
+      work.thread_ratios[static_cast<std::size_t>(thread)] =
+          measure_batches(elements, begin, end, work.points.data());
+    });
+  }
+  SmallestRatio* ratios = work.thread_ratios.data();
+  for (const SolidGroup& group : model_->solids()) {
+    ratios += pool_->size();
+    pool_->for_range(group.batches(), 1, [&](int begin, int end, int thread) {
+      ratios[thread] = measure_solids(group, begin, end, work.points.data());
+    });
+  }
   find_smallest();
   return {minimum_volume_ratio(), worst_element()};
 }
@@ -161,11 +195,12 @@ void Assembly::gather(const AssemblyWeights& weights) {
   const FemModel& model = *model_;
   const bool consistent = model.has_consistent_mass();
   const double* records = work.records(weights.tangent);
+  const double* solids = work.solid_blocks;
   pool_->run([&](int thread) {
     const int begin = work.column_splits[static_cast<std::size_t>(thread)];
     const int end = work.column_splits[static_cast<std::size_t>(thread) + 1];
     gather_forces(model.gather(), begin, end, work.force_records, work.forces.data());
-    gather_blocks(model.gather(), model.pattern(), begin, end, records, weights,
+    gather_blocks(model.gather(), model.pattern(), begin, end, records, solids, weights,
                   consistent ? nullptr : model.free_mass().data(),
                   consistent ? model.mass_blocks().data() : nullptr, work.matrix.data());
   });
@@ -195,15 +230,24 @@ double Assembly::minimum_volume_ratio() const { return work_->smallest.value; }
 
 int Assembly::worst_element() const {
   const std::int32_t slot = work_->smallest.slot;
-  return slot < 0 ? -1 : model_->elements().tetrahedron[static_cast<std::size_t>(slot)];
+  if (slot < 0) return -1;
+  const auto& tetrahedra = model_->elements().tetrahedron;
+  if (static_cast<std::size_t>(slot) < tetrahedra.size()) {
+    return tetrahedra[static_cast<std::size_t>(slot)];
+  }
+  for (const SolidGroup& group : model_->solids()) {
+    const auto own = static_cast<std::size_t>(slot - group.first_slot);
+    if (own < group.element.size()) return group.element[own];
+  }
+  return -1;
 }
 
 std::size_t Assembly::bytes() const {
   const Workspace& work = *work_;
   return sizeof(Assembly) + sizeof(Workspace) + work.own_records.bytes() +
-         work.own_exact_records.bytes() + work.points.bytes() + bytes_of(work.forces) +
-         work.matrix.bytes() + bytes_of(work.batch_energy) + bytes_of(work.thread_ratios) +
-         bytes_of(work.column_splits);
+         work.own_exact_records.bytes() + work.own_solid_blocks.bytes() + work.points.bytes() +
+         bytes_of(work.forces) + work.matrix.bytes() + bytes_of(work.batch_energy) +
+         bytes_of(work.thread_ratios) + bytes_of(work.column_splits);
 }
 
 }  // namespace sinew::fem

@@ -14,9 +14,11 @@ namespace sinew::fem {
 
 /// Which derivative of the internal force goes into the matrix.
 enum class Tangent {
-  none,     ///< forces and energy only; the matrix is left as it was
-  rotated,  ///< R K0 R^T, rotation held fixed: what real-time codes use; positive semi-definite
-  exact,    ///< second derivative of the energy, rotation's derivative included; may be indefinite
+  none,  ///< forces and energy only; the matrix is left as it was
+  /// Positive semi-definite: R K0 R^T with the rotation held fixed, what real-time codes use; of
+  /// hyperelastic laws the projected derivative.
+  rotated,
+  exact,  ///< second derivative of the energy, rotation's derivative included; may be indefinite
 };
 
 /// matrix = stiffness K + mass M. An integrator says what it needs by these weights; element code
@@ -31,7 +33,7 @@ struct AssemblyWeights {
 /// The element whose volume shrank most.
 struct VolumeMeasure {
   double smallest_ratio = 1.0;  ///< det F
-  int element = -1;             ///< tetrahedron
+  int element = -1;             ///< of ElementList: tetrahedra, then hexahedra
 };
 
 /// Data of one simulation. Results are the same bit for bit for any number of threads. Nothing
@@ -77,7 +79,7 @@ class Assembly {
 
   double strain_energy() const;         ///< U, J
   double minimum_volume_ratio() const;  ///< smallest det F; <= 0: an element is inverted
-  int worst_element() const;            ///< the tetrahedron that has it
+  int worst_element() const;            ///< the element that has it
   std::size_t bytes() const;            ///< memory held by this object; the model not counted
 
  private:

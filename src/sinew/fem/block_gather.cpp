@@ -86,10 +86,27 @@ SINEW_INLINE Block gather_block(const GatherLists& lists, std::size_t visit,
   return result;
 }
 
+/// Adds the blocks of hyperelastic elements.
+SINEW_INLINE void add_solids(const GatherLists& lists, std::size_t visit, const double* solids,
+                             Block& sum) {
+  for (std::int64_t p = lists.solid_start[visit]; p < lists.solid_start[visit + 1]; ++p) {
+    const std::uint32_t code = lists.solid_parts[static_cast<std::size_t>(p)];
+    const double* at = solids + std::size_t{kSolidBlock} * (code >> 1);
+    Block part;
+    for (int c = 0; c < 3; ++c) part.column[c] = load_quad(at + 4 * c);
+    if ((code & 1) != 0) {
+      sum.add_transposed(part);
+    } else {
+      sum.add(1.0, part);
+    }
+  }
+}
+
 template <Tangent tangent>
 void gather_columns(const GatherLists& lists, const linalg::BlockPattern& pattern, int begin,
-                    int end, const double* records, const AssemblyWeights& weights,
-                    const double* node_mass, const double* block_mass, double* matrix) {
+                    int end, const double* records, const double* solids,
+                    const AssemblyWeights& weights, const double* node_mass,
+                    const double* block_mass, double* matrix) {
   const double diagonal = weights.stiffness * (tangent == Tangent::exact ? 2.0 : 1.0);
   for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
     const auto j = static_cast<std::size_t>(lists.column[k]);
@@ -99,10 +116,11 @@ void gather_columns(const GatherLists& lists, const linalg::BlockPattern& patter
     for (std::size_t b = first; b < last; ++b, ++visit) {
       double mass = b == first && node_mass != nullptr ? node_mass[j] : 0.0;
       if (block_mass != nullptr) mass = block_mass[b];
-      gather_block<tangent>(lists, visit, records)
-          .store(weights.stiffness,
-                 diagonal * lists.diagonal_stiffness[visit] + weights.mass * mass,
-                 matrix + linalg::kBlockStride * b);
+      Block block = gather_block<tangent>(lists, visit, records);
+      if (solids != nullptr) add_solids(lists, visit, solids, block);
+      block.store(weights.stiffness,
+                  diagonal * lists.diagonal_stiffness[visit] + weights.mass * mass,
+                  matrix + linalg::kBlockStride * b);
     }
   }
 }
@@ -110,14 +128,15 @@ void gather_columns(const GatherLists& lists, const linalg::BlockPattern& patter
 }  // namespace
 
 void gather_blocks(const GatherLists& lists, const linalg::BlockPattern& pattern, int begin,
-                   int end, const double* records, const AssemblyWeights& weights,
-                   const double* node_mass, const double* block_mass, double* matrix) {
+                   int end, const double* records, const double* solids,
+                   const AssemblyWeights& weights, const double* node_mass,
+                   const double* block_mass, double* matrix) {
   if (weights.tangent == Tangent::exact) {
-    gather_columns<Tangent::exact>(lists, pattern, begin, end, records, weights, node_mass,
+    gather_columns<Tangent::exact>(lists, pattern, begin, end, records, solids, weights, node_mass,
                                    block_mass, matrix);
   } else if (weights.tangent == Tangent::rotated) {
-    gather_columns<Tangent::rotated>(lists, pattern, begin, end, records, weights, node_mass,
-                                     block_mass, matrix);
+    gather_columns<Tangent::rotated>(lists, pattern, begin, end, records, solids, weights,
+                                     node_mass, block_mass, matrix);
   }
 }
 

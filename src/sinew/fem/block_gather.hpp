@@ -9,13 +9,15 @@ namespace sinew::fem {
 
 /// Writes the blocks of column visits begin .. end-1 as stiffness K + mass M.
 /// @param lists,pattern,begin,end what is gathered where, for these columns.
-/// @param records,weights element records of the tangent that `weights` names.
+/// @param records,solids,weights element records of the tangent that `weights` names, and blocks of
+///   hyperelastic elements (nullptr without).
 /// @param node_mass (free,) kg, lumped; nullptr if `block_mass` is given.
 /// @param block_mass (blocks,) kg, consistent; nullptr if `node_mass` is given.
 /// @param matrix layout of linalg::BlockPattern.
 void gather_blocks(const GatherLists& lists, const linalg::BlockPattern& pattern, int begin,
-                   int end, const double* records, const AssemblyWeights& weights,
-                   const double* node_mass, const double* block_mass, double* matrix);
+                   int end, const double* records, const double* solids,
+                   const AssemblyWeights& weights, const double* node_mass,
+                   const double* block_mass, double* matrix);
 
 /// Writes the internal forces of the nodes of visits begin .. end-1.
 /// @param lists,begin,end what is gathered, for these nodes.

@@ -43,8 +43,11 @@ void check_volume(const mesh::Mesh& mesh, int tetrahedron, const Matrix3& edge) 
 std::vector<std::int32_t> slot_order(const mesh::Mesh& mesh, std::span<const Region> regions,
                                      std::span<const std::int32_t> region_of,
                                      std::span<const std::int32_t> rank) {
-  std::vector<std::int32_t> order(mesh.tetrahedra.size());
-  std::iota(order.begin(), order.end(), 0);
+  std::vector<std::int32_t> order;
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+    const Region& region = regions[static_cast<std::size_t>(region_of[t])];
+    if (!region.hyperelastic) order.push_back(static_cast<std::int32_t>(t));
+  }
   const auto lowest = [&](std::int32_t t) {
     std::int32_t result = std::numeric_limits<std::int32_t>::max();
     for (const NodeId node : mesh.tetrahedra[static_cast<std::size_t>(t)]) {

@@ -1,5 +1,5 @@
 /// @file
-/// Constants of all tetrahedra, eight to a batch, one array a quantity (SoA).
+/// Constants of linear and corotational tetrahedra, eight to a batch, one array a quantity (SoA).
 #pragma once
 
 #include <cstdint>
@@ -36,7 +36,7 @@ struct ElementBatches {
   int batches() const { return static_cast<int>(constants.size()); }
 };
 
-/// Sorts the tetrahedra into batches and computes their constants.
+/// Sorts the tetrahedra whose region is not hyperelastic into batches and computes their constants.
 /// @param mesh,regions what is batched.
 /// @param region_of region of each tetrahedron of the mesh.
 /// @param rank spatial rank of each node.

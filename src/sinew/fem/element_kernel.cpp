@@ -1,7 +1,6 @@
 #include "sinew/fem/element_kernel.hpp"
 
-#include <limits>
-
+#include "sinew/fem/lane_minimum.hpp"
 #include "sinew/fem/transpose.hpp"
 #include "sinew/material/response.hpp"
 
@@ -10,27 +9,11 @@ namespace sinew::fem {
 namespace {
 
 using material::kLanes;
-using material::LaneMask;
 using material::Lanes;
 using material::lanes;
 using material::Lanes3x3;
 using material::LanesSymmetric;
 using material::Law;
-
-/// Smallest det F of each lane so far and the batch it was seen in.
-struct LaneMinimum {
-  Lanes value = lanes(std::numeric_limits<double>::infinity());
-  LaneMask batch{};
-
-  SINEW_INLINE void see(const Lanes& ratio, std::int64_t in_batch) {
-    // NOLINTNEXTLINE(misc-redundant-expression): false where a lane is NaN
-    const Lanes finite = ratio == ratio ? ratio : lanes(-std::numeric_limits<double>::infinity());
-    const LaneMask smaller = finite < value;
-    const LaneMask here = LaneMask{} + in_batch;
-    value = smaller ? finite : value;
-    batch = smaller ? here : batch;
-  }
-};
 
 SINEW_INLINE Lanes row(const LaneRow& source) { return material::load(source.value); }
 
@@ -157,19 +140,6 @@ void evaluate_laws(const ElementBatches& elements, int begin, int end, const dou
   evaluate<Law::corotational, tangent>(elements, split, end, points, output, minimum);
 }
 
-SmallestRatio smallest(const LaneMinimum& minimum, const ElementBatches& elements) {
-  SmallestRatio result{std::numeric_limits<double>::infinity(), -1};
-  for (int lane = 0; lane < kLanes; ++lane) {
-    const auto slot = static_cast<std::int32_t>(kLanes * minimum.batch[lane] + lane);
-    if (elements.tetrahedron[static_cast<std::size_t>(slot)] < 0) continue;
-    const double value = minimum.value[lane];
-    if (value < result.value || (value == result.value && slot < result.slot)) {
-      result = {value, slot};
-    }
-  }
-  return result;
-}
-
 }  // namespace
 
 SmallestRatio evaluate_batches(const ElementBatches& elements, int begin, int end,
@@ -186,7 +156,7 @@ SmallestRatio evaluate_batches(const ElementBatches& elements, int begin, int en
       evaluate_laws<Tangent::exact>(elements, begin, end, points, output, minimum);
       break;
   }
-  return smallest(minimum, elements);
+  return smallest(minimum, elements.tetrahedron, 0);
 }
 
 SmallestRatio measure_batches(const ElementBatches& elements, int begin, int end,
@@ -198,7 +168,7 @@ SmallestRatio measure_batches(const ElementBatches& elements, int begin, int end
     const Lanes3x3 f = deformation_gradient(batch, nodes, points);
     minimum.see(material::determinant(f, material::cofactor(f)), b);
   }
-  return smallest(minimum, elements);
+  return smallest(minimum, elements.tetrahedron, 0);
 }
 
 }  // namespace sinew::fem

@@ -48,7 +48,7 @@ FemBody::FemBody(const FemBodyModel& model, ThreadPool& pool, bool with_curvatur
   row_effort_.resize(model.rows().size());
   double modulus = 0.0;
   for (const Region& region : model.settings().elements.regions) {
-    modulus = std::max(modulus, region.constants.young_modulus);
+    modulus = std::max(modulus, region.young_modulus());
   }
   least_force_ = kLeastStrain * modulus * std::pow(model.elements().volume(), 2.0 / 3.0);
   const Vector3 extent = positions_.colwise().maxCoeff() - positions_.colwise().minCoeff();

@@ -10,6 +10,7 @@
 #include "sinew/fem/element_batches.hpp"
 #include "sinew/fem/gather_lists.hpp"
 #include "sinew/fem/mass.hpp"
+#include "sinew/fem/solid_elements.hpp"
 #include "sinew/fem/spatial_order.hpp"
 
 namespace sinew::fem {
@@ -18,48 +19,58 @@ namespace {
 
 void check_mesh(const mesh::Mesh& mesh) {
   const Place place{.file = mesh.name, .item = {}};
-  if (!mesh.hexahedra.empty()) {
-    throw Error(ErrorKind::unsupported_element, place,
-                fmt::format("the mesh has {} hexahedra", mesh.hexahedra.size()),
-                "give a mesh of tetrahedra alone");
-  }
-  if (mesh.tetrahedra.empty()) {
-    throw Error(ErrorKind::no_volume_elements, place, "the mesh has no tetrahedra",
+  const ElementList list(mesh);
+  if (list.count() == 0) {
+    throw Error(ErrorKind::no_volume_elements, place, "the mesh has no tetrahedra or hexahedra",
                 "mesh the volume, not only its surface");
   }
-  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
-    for (const NodeId node : mesh.tetrahedra[t]) {
+  for (int e = 0; e < list.count(); ++e) {
+    for (const NodeId node : list.nodes(e)) {
       if (node >= 0 && node < mesh.node_count()) continue;
       throw Error(ErrorKind::index_out_of_range, place,
-                  fmt::format("tetrahedron {} names node {} of {}", t, node, mesh.node_count()),
+                  fmt::format("{} names node {} of {}", list.name(e), node, mesh.node_count()),
                   "nodes count from 0");
     }
   }
 }
 
-/// Region of each tetrahedron.
+void check_region(const Region& region) {
+  if (region.hyperelastic) {
+    region.hyperelastic->validate("material");
+  } else {
+    region.constants.validate("material");
+  }
+}
+
+/// Region of each element.
 std::vector<std::int32_t> assign_regions(const mesh::Mesh& mesh,
                                          const std::vector<Region>& regions) {
   const auto fail = [&](ErrorKind kind, const std::string& message, const std::string& remedy) {
     throw Error(kind, {.file = mesh.name, .item = "material"}, message, remedy);
   };
   if (regions.empty()) fail(ErrorKind::empty_list, "there is no material", "give one");
-  std::vector<std::int32_t> result(mesh.tetrahedra.size(), -1);
-  const auto count = static_cast<NodeId>(result.size());
+  const ElementList list(mesh);
+  const auto count = static_cast<NodeId>(list.count());
+  std::vector<std::int32_t> result(static_cast<std::size_t>(count), -1);
   for (std::size_t r = 0; r < regions.size(); ++r) {
-    regions[r].constants.validate("material");
+    check_region(regions[r]);
     std::vector<NodeId> all(regions[r].elements.empty() ? result.size() : 0);
     std::iota(all.begin(), all.end(), 0);
-    for (const NodeId t : regions[r].elements.empty() ? all : regions[r].elements) {
-      if (t < 0 || t >= count) {
+    for (const NodeId e : regions[r].elements.empty() ? all : regions[r].elements) {
+      if (e < 0 || e >= count) {
         fail(ErrorKind::index_out_of_range,
-             fmt::format("region {} names tetrahedron {} of {}", r, t, count), "count from 0");
+             fmt::format("region {} names element {} of {}", r, e, count), "count from 0");
       }
-      std::int32_t& region = result[static_cast<std::size_t>(t)];
+      std::int32_t& region = result[static_cast<std::size_t>(e)];
       if (region >= 0) {
         fail(ErrorKind::conflicting_keys,
-             fmt::format("tetrahedron {} is in regions {} and {}", t, region, r),
+             fmt::format("{} is in regions {} and {}", list.name(e), region, r),
              "let regions not overlap");
+      }
+      if (!list.is_tetrahedron(e) && !regions[r].hyperelastic) {
+        fail(ErrorKind::unsupported_element,
+             fmt::format("{} has a linear or corotational material", list.name(e)),
+             "give hexahedra a hyperelastic one, for instance neo-hookean");
       }
       region = static_cast<std::int32_t>(r);
     }
@@ -67,8 +78,8 @@ std::vector<std::int32_t> assign_regions(const mesh::Mesh& mesh,
   const auto none = std::ranges::find(result, -1);
   if (none != result.end()) {
     fail(ErrorKind::empty_region,
-         fmt::format("tetrahedron {} has no material", none - result.begin()),
-         "let the regions cover every tetrahedron");
+         fmt::format("{} has no material", list.name(static_cast<int>(none - result.begin()))),
+         "let the regions cover every element");
   }
   return result;
 }
@@ -83,8 +94,9 @@ void check_node(NodeId node, const mesh::Mesh& mesh, const char* what) {
 std::vector<NodeId> number_free_nodes(const mesh::Mesh& mesh,
                                       const std::vector<NodeId>& fixed_nodes) {
   std::vector<NodeId> result(static_cast<std::size_t>(mesh.node_count()), -1);
-  for (const mesh::Tetrahedron& tetrahedron : mesh.tetrahedra) {
-    for (const NodeId node : tetrahedron) result[static_cast<std::size_t>(node)] = 0;
+  const ElementList list(mesh);
+  for (int e = 0; e < list.count(); ++e) {
+    for (const NodeId node : list.nodes(e)) result[static_cast<std::size_t>(node)] = 0;
   }
   for (const NodeId node : fixed_nodes) {
     check_node(node, mesh, "fixed");
@@ -114,17 +126,27 @@ linalg::BlockPattern make_pattern(const mesh::Mesh& mesh, std::span<const NodeId
     }
     starts.push_back(static_cast<std::int32_t>(members.size()));
   };
-  for (const mesh::Tetrahedron& tetrahedron : mesh.tetrahedra) add(tetrahedron);
+  const ElementList list(mesh);
+  for (int e = 0; e < list.count(); ++e) add(list.nodes(e));
   for (const std::vector<NodeId>& coupling : couplings) add(coupling);
   return linalg::BlockPattern::from_cliques(free_count, starts, members);
 }
 
-std::vector<double> element_volumes(const mesh::Mesh& mesh, const ElementBatches& elements) {
-  std::vector<double> result(mesh.tetrahedra.size());
+/// (elements,) m^3.
+std::vector<double> element_volumes(const mesh::Mesh& mesh, const ElementBatches& elements,
+                                    std::span<const SolidGroup> solids) {
+  std::vector<double> result(static_cast<std::size_t>(ElementList(mesh).count()));
   for (std::size_t slot = 0; slot < elements.tetrahedron.size(); ++slot) {
     if (elements.tetrahedron[slot] < 0) continue;
     result[static_cast<std::size_t>(elements.tetrahedron[slot])] =
         elements.constants[slot / material::kLanes].volume.value[slot % material::kLanes];
+  }
+  for (const SolidGroup& group : solids) {
+    for (std::size_t slot = 0; slot < group.element.size(); ++slot) {
+      if (group.element[slot] < 0) continue;
+      double& volume = result[static_cast<std::size_t>(group.element[slot])];
+      for (int q = 0; q < group.points; ++q) volume += group.weight(slot, q);
+    }
   }
   return result;
 }
@@ -143,10 +165,11 @@ FemModel::FemModel(std::shared_ptr<const mesh::Mesh> mesh, const FemModelSetting
   const std::vector<std::int32_t> rank = spatial_ranks(mesh_->nodes);
   elements_ = std::make_unique<const ElementBatches>(
       make_element_batches(*mesh_, settings.regions, region_of, rank));
+  solids_ = make_solid_groups(*mesh_, settings.regions, region_of, rank, *elements_);
   gather_ = std::make_unique<const GatherLists>(
-      make_gather_lists(*elements_, settings.regions, free_index_, rank, pattern_));
+      make_gather_lists(*elements_, solids_, settings.regions, free_index_, rank, pattern_));
 
-  const std::vector<double> volumes = element_volumes(*mesh_, *elements_);
+  const std::vector<double> volumes = element_volumes(*mesh_, *elements_, solids_);
   volume_ = std::accumulate(volumes.begin(), volumes.end(), 0.0);
   const std::vector<double> masses = element_masses(settings, region_of, volumes);
   lumped_mass_ = lumped_masses(*mesh_, settings, masses);
@@ -159,6 +182,8 @@ FemModel::FemModel(std::shared_ptr<const mesh::Mesh> mesh, const FemModelSetting
 }
 
 FemModel::~FemModel() = default;
+
+std::span<const SolidGroup> FemModel::solids() const { return solids_; }
 
 void FemModel::apply_mass(std::span<const double> x, std::span<double> y) const {
   using Rows = Eigen::Map<Points>;

@@ -11,15 +11,17 @@
 #include "sinew/core/types.hpp"
 #include "sinew/linalg/block_pattern.hpp"
 #include "sinew/material/elastic_constants.hpp"
+#include "sinew/material/hyperelastic.hpp"
 #include "sinew/mesh/mesh.hpp"
 
 namespace sinew::fem {
 
 struct ElementBatches;
 struct GatherLists;
+struct SolidGroup;
 
 enum class MassMatrix {
-  lumped,      ///< diagonal: a quarter of every tetrahedron's mass at each of its nodes
+  lumped,      ///< diagonal: integral of rho N_i, a quarter of a tetrahedron's mass at each node
   consistent,  ///< integral of rho N_i N_j: m/20 (1 + delta_ij) a tetrahedron
 };
 
@@ -27,12 +29,20 @@ enum class MassMatrix {
 struct Region {
   material::ElasticConstants constants;
   material::Law law = material::Law::corotational;
-  double density = 0.0;          ///< kg/m^3, >= 0
-  std::vector<NodeId> elements;  ///< positions in mesh.tetrahedra; empty: all of them
+  double density = 0.0;  ///< kg/m^3, >= 0
+  /// Positions in mesh.tetrahedra, and behind them in mesh.hexahedra; empty: all of them.
+  std::vector<NodeId> elements = {};
+  /// In place of constants and law; hexahedra need one.
+  std::optional<material::Hyperelastic> hyperelastic = std::nullopt;
+
+  /// E of small strain, Pa.
+  double young_modulus() const {
+    return hyperelastic ? hyperelastic->young_modulus() : constants.young_modulus;
+  }
 };
 
 struct FemModelSettings {
-  std::vector<Region> regions;      ///< every tetrahedron stands in exactly one
+  std::vector<Region> regions;      ///< every element stands in exactly one
   std::vector<NodeId> fixed_nodes;  ///< removed from the system; any order, repeats allowed
   MassMatrix mass = MassMatrix::lumped;
   std::optional<double> total_mass;  ///< kg, > 0; scales the densities (by volume if all are 0)
@@ -43,13 +53,14 @@ struct FemModelSettings {
 };
 
 /// Immutable and shareable between simulations and threads. "Free" nodes are those that belong to a
-/// tetrahedron and are not fixed, numbered in mesh order; unused nodes never move.
+/// element and are not fixed, numbered in mesh order; unused nodes never move.
 class FemModel {
  public:
-  /// Throws Error: no-volume-elements, unsupported-element (hexahedra), empty-list (no region),
+  /// Throws Error: no-volume-elements, unsupported-element (hexahedra that are not hyperelastic),
+  /// empty-list (no region),
   /// invalid-material, out-of-range (density, mass), index-out-of-range (element, node),
-  /// conflicting-keys (a tetrahedron in two regions; even mass without a total or with a
-  /// consistent matrix), empty-region (a tetrahedron in none), zero-volume, inverted-element,
+  /// conflicting-keys (an element in two regions; even mass without a total or with a
+  /// consistent matrix), empty-region (an element in none), zero-volume, inverted-element,
   /// everything-fixed.
   FemModel(std::shared_ptr<const mesh::Mesh> mesh, const FemModelSettings& settings);
   ~FemModel();
@@ -77,6 +88,7 @@ class FemModel {
   void apply_mass(std::span<const double> x, std::span<double> y) const;
 
   const ElementBatches& elements() const { return *elements_; }     ///< for Assembly
+  std::span<const SolidGroup> solids() const;                       ///< for Assembly
   const GatherLists& gather() const { return *gather_; }            ///< for Assembly
   std::span<const double> free_mass() const { return free_mass_; }  ///< (free,) kg, lumped
   /// (blocks,) kg: block b of M is mass_blocks[b] I. Empty when lumped.
@@ -87,6 +99,7 @@ class FemModel {
   std::vector<NodeId> free_nodes_, free_index_;
   linalg::BlockPattern pattern_;
   std::unique_ptr<const ElementBatches> elements_;
+  std::vector<SolidGroup> solids_;
   std::unique_ptr<const GatherLists> gather_;
   VectorX lumped_mass_;
   std::vector<double> free_mass_, mass_blocks_;

@@ -118,52 +118,116 @@ void write_blocks(std::vector<Part>& parts, int blocks, GatherLists& lists) {
   lists.contribution_start.push_back(static_cast<std::int32_t>(next));
 }
 
-void write_forces(const std::vector<std::array<NodeId, 4>>& free, const BlockVisits& visits,
+/// A node's share in a force record.
+struct ForcePart {
+  NodeId node;  // free number
+  std::uint32_t code;
+};
+
+void write_forces(const std::vector<ForcePart>& parts, const BlockVisits& visits,
                   GatherLists& lists) {
   lists.force_start.assign(visits.visit.size() + 1, 0);
   const auto visit = [&](NodeId node) {
     return static_cast<std::size_t>(visits.visit[static_cast<std::size_t>(node)]);
   };
-  for (const auto& element : free) {
-    for (const NodeId node : element) {
-      if (node >= 0) ++lists.force_start[visit(node) + 1];
-    }
-  }
+  for (const ForcePart& part : parts) ++lists.force_start[visit(part.node) + 1];
   std::partial_sum(lists.force_start.begin(), lists.force_start.end(), lists.force_start.begin());
-  lists.force_parts.resize(static_cast<std::size_t>(lists.force_start.back()));
+  lists.force_parts.resize(parts.size());
   std::vector<std::int32_t> cursor = lists.force_start;
-  for (std::size_t slot = 0; slot < free.size(); ++slot) {
-    for (std::size_t a = 0; a < 4; ++a) {
-      if (free[slot][a] < 0) continue;
-      const auto place = cursor[visit(free[slot][a])]++;
-      lists.force_parts[static_cast<std::size_t>(place)] = static_cast<std::uint32_t>(4 * slot + a);
+  for (const ForcePart& part : parts) {
+    const auto place = cursor[visit(part.node)]++;
+    lists.force_parts[static_cast<std::size_t>(place)] = part.code;
+  }
+}
+
+/// A block of a solid element's record in a block of the matrix.
+struct SolidPart {
+  std::int32_t visit;
+  std::uint32_t code;
+};
+
+void append_solids(const SolidGroup& group, std::span<const NodeId> free_index,
+                   const BlockVisits& visits, std::vector<SolidPart>& blocks,
+                   std::vector<ForcePart>& forces) {
+  const auto nodes = static_cast<std::size_t>(group.nodes);
+  std::vector<NodeId> free(nodes);
+  for (std::size_t slot = 0; slot < group.element.size(); ++slot) {
+    if (group.element[slot] < 0) continue;
+    const std::size_t first = slot / kLanes * nodes * kLanes + slot % kLanes;
+    for (std::size_t a = 0; a < nodes; ++a) {
+      free[a] = free_index[static_cast<std::size_t>(group.node[first + kLanes * a])];
+    }
+    const auto force = static_cast<std::size_t>(group.first_force) + nodes * slot;
+    const auto block = static_cast<std::size_t>(group.first_block) +
+                       static_cast<std::size_t>(group.pairs()) * slot;
+    for (std::size_t a = 0; a < nodes; ++a) {
+      if (free[a] < 0) continue;
+      forces.push_back({free[a], static_cast<std::uint32_t>(force + a)});
+      for (std::size_t b = 0; b < nodes; ++b) {
+        if (free[b] < 0 || free[a] < free[b]) continue;
+        const bool transposed = a > b;  // the record has (low, high)
+        const int pair =
+            SolidGroup::pair(static_cast<int>(std::min(a, b)), static_cast<int>(std::max(a, b)));
+        const std::size_t code =
+            2 * (block + static_cast<std::size_t>(pair)) + (transposed ? 1 : 0);
+        blocks.push_back({visits.of(free[a], free[b]), static_cast<std::uint32_t>(code)});
+      }
     }
   }
 }
 
+void write_solids(std::vector<SolidPart>& parts, int blocks, GatherLists& lists) {
+  if (parts.empty()) return;
+  std::ranges::sort(parts, [](const SolidPart& p, const SolidPart& q) {
+    return p.visit != q.visit ? p.visit < q.visit : p.code < q.code;
+  });
+  lists.solid_start.assign(static_cast<std::size_t>(blocks) + 1, 0);
+  lists.solid_parts.reserve(parts.size());
+  for (const SolidPart& part : parts) {
+    ++lists.solid_start[static_cast<std::size_t>(part.visit) + 1];
+    lists.solid_parts.push_back(part.code);
+  }
+  std::partial_sum(lists.solid_start.begin(), lists.solid_start.end(), lists.solid_start.begin());
+}
+
 }  // namespace
 
-GatherLists make_gather_lists(const ElementBatches& elements, std::span<const Region> regions,
-                              std::span<const NodeId> free_index,
+GatherLists make_gather_lists(const ElementBatches& elements, std::span<const SolidGroup> solids,
+                              std::span<const Region> regions, std::span<const NodeId> free_index,
                               std::span<const std::int32_t> rank,
                               const linalg::BlockPattern& pattern) {
   const std::size_t slots = elements.tetrahedron.size();
-  // 16 s + 4 a + b must fit 32 bits unsigned, and counts of contributions 31 bits
-  if (slots > (std::size_t{1} << 27)) {
-    throw Error(ErrorKind::size_limit, {}, fmt::format("the mesh has {} tetrahedra", slots),
-                "split it; at most 134 million fit one body");
+  std::size_t blocks = 0;
+  for (const SolidGroup& group : solids) {
+    blocks = static_cast<std::size_t>(group.first_block) +
+             group.element.size() * static_cast<std::size_t>(group.pairs());
+  }
+  // 16 s + 4 a + b and 2 block + 1 must fit 32 bits unsigned, and counts of contributions 31 bits
+  if (slots > (std::size_t{1} << 27) || blocks > (std::size_t{1} << 30)) {
+    throw Error(ErrorKind::size_limit, {},
+                fmt::format("the mesh has {} tetrahedra and {} blocks of hyperelastic elements",
+                            slots, blocks),
+                "split it; at most 134 million tetrahedra or a billion blocks fit one body");
   }
   GatherLists lists;
   const BlockVisits visits(pattern, free_index, rank, lists);
   std::vector<Part> parts;
-  std::vector<std::array<NodeId, 4>> free(slots, {-1, -1, -1, -1});
+  std::vector<SolidPart> solid_parts;
+  std::vector<ForcePart> forces;
   for (std::size_t slot = 0; slot < slots; ++slot) {
     if (elements.tetrahedron[slot] < 0) continue;
-    free[slot] = free_nodes_of(elements, slot, free_index);
-    append_parts(elements, regions, slot, free[slot], visits, parts);
+    const auto free = free_nodes_of(elements, slot, free_index);
+    append_parts(elements, regions, slot, free, visits, parts);
+    for (std::size_t a = 0; a < 4; ++a) {
+      if (free[a] >= 0) forces.push_back({free[a], static_cast<std::uint32_t>(4 * slot + a)});
+    }
+  }
+  for (const SolidGroup& group : solids) {
+    append_solids(group, free_index, visits, solid_parts, forces);
   }
   write_blocks(parts, pattern.blocks(), lists);
-  write_forces(free, visits, lists);
+  write_solids(solid_parts, pattern.blocks(), lists);
+  write_forces(forces, visits, lists);
   return lists;
 }
 

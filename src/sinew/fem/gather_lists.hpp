@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sinew/fem/element_batches.hpp"
+#include "sinew/fem/solid_elements.hpp"
 #include "sinew/linalg/block_pattern.hpp"
 
 namespace sinew::fem {
@@ -32,19 +33,24 @@ struct GatherLists {
   /// (blocks,) by block visit: sum of V mu g_a . g_b over a block's contributions, N/m.
   std::vector<double> diagonal_stiffness;
 
-  /// Parts of the force of visit k's node: force_parts[force_start[k] .. force_start[k+1]-1] =
-  /// 4 s + a.
+  /// Hyperelastic parts of block visit q: solid_parts[solid_start[q] .. solid_start[q+1]-1] =
+  /// 2 block + transposed. Both empty without such elements.
+  std::vector<std::int64_t> solid_start;
+  std::vector<std::uint32_t> solid_parts;
+
+  /// Parts of the force of visit k's node: force_parts[force_start[k] .. force_start[k+1]-1], in
+  /// vectors of four doubles: 4 s + a for batches, behind them those of solid groups.
   std::vector<std::int32_t> force_start;
   std::vector<std::uint32_t> force_parts;
 };
 
 /// Lists what each block and each nodal force is summed from.
-/// @param elements,regions,pattern what is gathered, and into which blocks.
+/// @param elements,solids,regions,pattern what is gathered, and into which blocks.
 /// @param free_index mesh node -> free number or -1.
 /// @param rank spatial rank of each mesh node.
 /// Throws Error(size-limit) beyond 2^28 element slots.
-GatherLists make_gather_lists(const ElementBatches& elements, std::span<const Region> regions,
-                              std::span<const NodeId> free_index,
+GatherLists make_gather_lists(const ElementBatches& elements, std::span<const SolidGroup> solids,
+                              std::span<const Region> regions, std::span<const NodeId> free_index,
                               std::span<const std::int32_t> rank,
                               const linalg::BlockPattern& pattern);
 

@@ -4,9 +4,12 @@
 #include <cmath>
 #include <numeric>
 
+#include <Eigen/LU>
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/fem/solid_elements.hpp"
+#include "sinew/mesh/hexahedron.hpp"
 
 namespace sinew::fem {
 
@@ -25,6 +28,52 @@ void check_masses(const FemModelSettings& settings) {
                 fmt::format("the total mass is {} kg", total),
                 "give a finite value above 0, for instance 42 g");
   }
+}
+
+/// Integral of N_a N_b over an element, as a share of its volume.
+class ElementMass {
+ public:
+  explicit ElementMass(std::size_t nodes) : nodes_(nodes), shares_(nodes * nodes, 0.0) {}
+  double& at(std::size_t a, std::size_t b) { return shares_[a * nodes_ + b]; }
+  double of(std::size_t a, std::size_t b) const { return shares_[a * nodes_ + b]; }
+  double row_sum(std::size_t a) const {
+    // A quarter, exactly, for tetrahedra.
+    if (nodes_ == 4) return 0.25;
+    double sum = 0.0;
+    for (std::size_t b = 0; b < nodes_; ++b) sum += of(a, b);
+    return sum;
+  }
+
+ private:
+  std::size_t nodes_;
+  std::vector<double> shares_;
+};
+
+/// 1/20 (1 + delta_ab) for tetrahedra; Gauss's rule for hexahedra, exact for parallelepipeds.
+ElementMass element_mass(const mesh::Mesh& mesh, const ElementList& list, int element) {
+  const auto nodes = list.nodes(element);
+  ElementMass result(nodes.size());
+  if (nodes.size() == 4) {
+    for (std::size_t a = 0; a < 4; ++a) {
+      for (std::size_t b = 0; b < 4; ++b) result.at(a, b) = a == b ? 0.1 : 0.05;
+    }
+    return result;
+  }
+  Eigen::Matrix<double, 8, 3> x;
+  for (int a = 0; a < 8; ++a) x.row(a) = mesh.nodes.row(nodes[static_cast<std::size_t>(a)]);
+  double volume = 0.0;
+  for (const Vector3& point : mesh::hexahedron_points()) {
+    const double weight = (x.transpose() * mesh::hexahedron_gradients(point)).determinant();
+    const auto shapes = mesh::hexahedron_shapes(point);
+    volume += weight;
+    for (std::size_t a = 0; a < 8; ++a) {
+      for (std::size_t b = 0; b < 8; ++b) result.at(a, b) += weight * shapes[a] * shapes[b];
+    }
+  }
+  for (std::size_t a = 0; a < 8; ++a) {
+    for (std::size_t b = 0; b < 8; ++b) result.at(a, b) /= volume;
+  }
+  return result;
 }
 
 }  // namespace
@@ -61,12 +110,15 @@ VectorX lumped_masses(const mesh::Mesh& mesh, const FemModelSettings& settings,
                 "choose the lumped mass matrix");
   }
   VectorX result = VectorX::Zero(mesh.node_count());
-  for (std::size_t t = 0; t < masses.size(); ++t) {
-    for (const NodeId node : mesh.tetrahedra[t]) {
+  const ElementList list(mesh);
+  for (int e = 0; e < list.count(); ++e) {
+    const auto nodes = list.nodes(e);
+    const ElementMass shares = element_mass(mesh, list, e);
+    for (std::size_t a = 0; a < nodes.size(); ++a) {
       if (settings.even_mass) {
-        result[node] = 1.0;
+        result[nodes[a]] = 1.0;
       } else {
-        result[node] += 0.25 * masses[t];
+        result[nodes[a]] += masses[static_cast<std::size_t>(e)] * shares.row_sum(a);
       }
     }
   }
@@ -79,13 +131,17 @@ std::vector<double> consistent_mass_blocks(const mesh::Mesh& mesh,
                                            const linalg::BlockPattern& pattern,
                                            std::span<const double> masses) {
   std::vector<double> result(static_cast<std::size_t>(pattern.blocks()), 0.0);
-  for (std::size_t t = 0; t < masses.size(); ++t) {
-    for (const NodeId a : mesh.tetrahedra[t]) {
-      const NodeId i = free_index[static_cast<std::size_t>(a)];
-      for (const NodeId b : mesh.tetrahedra[t]) {
-        const NodeId j = free_index[static_cast<std::size_t>(b)];
+  const ElementList list(mesh);
+  for (int e = 0; e < list.count(); ++e) {
+    const auto nodes = list.nodes(e);
+    const ElementMass shares = element_mass(mesh, list, e);
+    for (std::size_t a = 0; a < nodes.size(); ++a) {
+      const NodeId i = free_index[static_cast<std::size_t>(nodes[a])];
+      for (std::size_t b = 0; b < nodes.size(); ++b) {
+        const NodeId j = free_index[static_cast<std::size_t>(nodes[b])];
         if (j < 0 || i < j) continue;
-        result[static_cast<std::size_t>(pattern.find(i, j))] += masses[t] * (i == j ? 0.1 : 0.05);
+        result[static_cast<std::size_t>(pattern.find(i, j))] +=
+            masses[static_cast<std::size_t>(e)] * shares.of(a, b);
       }
     }
   }

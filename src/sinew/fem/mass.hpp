@@ -9,22 +9,22 @@
 
 namespace sinew::fem {
 
-/// (elements,) kg of each tetrahedron: rho V, scaled to the settings' total mass if that is given
+/// (elements,) kg of each element: rho V, scaled to the settings' total mass if that is given
 /// (spread by volume when every density is 0).
-/// @param settings,region_of densities and totals, and the region of each tetrahedron.
+/// @param settings,region_of densities and totals, and the region of each element.
 /// @param volumes (elements,) m^3.
 /// Throws Error(out-of-range) for a negative or non-finite density or total.
 std::vector<double> element_masses(const FemModelSettings& settings,
                                    std::span<const std::int32_t> region_of,
                                    std::span<const double> volumes);
 
-/// (n,) kg at each mesh node: a quarter of each tetrahedron around it, or the even share.
-/// Throws Error(conflicting-keys) for even masses without a total mass, or with a consistent
-/// matrix.
+/// (n,) kg at each mesh node: the integral of rho N_a (a quarter of each tetrahedron around it), or
+/// the even share. Throws Error(conflicting-keys) for even masses without a total mass, or with a
+/// consistent matrix.
 VectorX lumped_masses(const mesh::Mesh& mesh, const FemModelSettings& settings,
                       std::span<const double> masses);
 
-/// (blocks,) kg: the consistent mass matrix of linear tetrahedra, integral of rho N_i N_j =
+/// (blocks,) kg: the consistent mass matrix, integral of rho N_i N_j; for linear tetrahedra
 /// m/20 (1 + delta_ij) (Zienkiewicz, Taylor, Zhu, "The Finite Element Method", 6th ed., 2005,
 /// volume 1, section 16.2 and appendix on integration over tetrahedra).
 std::vector<double> consistent_mass_blocks(const mesh::Mesh& mesh,

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sinew/fem/element_batches.hpp"
+#include "sinew/fem/solid_kernel.hpp"
 #include "sinew/material/response.hpp"
 
 namespace sinew::fem {
@@ -86,6 +87,15 @@ Lanes equivalent_strain(const Lanes3x3& f, const material::LaneModuli& moduli) {
   return material::square_root(2.0 / 3.0 * deviator_square(biot_strain(f, response.rotation)));
 }
 
+/// Adds a value to all nodes of an element.
+void add_share(const SolidGroup& group, std::size_t slot, double value, std::span<double> nodes) {
+  const auto count = static_cast<std::size_t>(group.nodes);
+  const std::size_t first = slot / kLanes * count * kLanes + slot % kLanes;
+  for (std::size_t a = 0; a < count; ++a) {
+    nodes[static_cast<std::size_t>(group.node[first + kLanes * a])] += value;
+  }
+}
+
 }  // namespace
 
 NodalFields::NodalFields(const FemBodyModel& model)
@@ -99,6 +109,12 @@ NodalFields::NodalFields(const FemBodyModel& model)
       const auto node = elements.nodes[(4 * batch + a) * kLanes + lane];
       shares_[static_cast<std::size_t>(node)] += elements.constants[batch].volume.value[lane];
     }
+  }
+  for (const SolidGroup& group : model.elements().solids()) {
+    for (std::size_t slot = 0; slot < group.element.size(); ++slot) {
+      for (int q = 0; q < group.points; ++q) add_share(group, slot, group.weight(slot, q), shares_);
+    }
+    points_.resize(4 * static_cast<std::size_t>(model.mesh().nodes.rows()));
   }
 }
 
@@ -136,8 +152,34 @@ void NodalFields::evaluate(const FemBody& body, std::span<double> values) {
       }
     }
   }
+  add_solids(body, measure, values);
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (shares_[i] > 0.0) values[i] /= shares_[i];
+  }
+}
+
+void NodalFields::add_solids(const FemBody& body, Measure measure, std::span<double> values) {
+  if (model_.elements().solids().empty()) return;
+  for (Eigen::Index i = 0; i < body.positions().rows(); ++i) {
+    for (Eigen::Index c = 0; c < 3; ++c) {
+      points_[static_cast<std::size_t>(4 * i + c)] = body.positions()(i, c);
+    }
+  }
+  std::array<SolidMeasures, 8> measures;
+  for (const SolidGroup& group : model_.elements().solids()) {
+    const auto points = static_cast<std::size_t>(group.points);
+    for (int b = 0; b < group.batches(); ++b) {
+      measure_batch(group, b, points_.data(), std::span(measures).first(points));
+      for (std::size_t q = 0; q < points; ++q) {
+        const SolidMeasures& m = measures[q];
+        const LaneRow& value = measure == Measure::strain ? m.strain : m.von_mises;
+        for (std::size_t lane = 0; lane < kLanes; ++lane) {
+          if (m.weight.value[lane] == 0.0) continue;
+          add_share(group, kLanes * static_cast<std::size_t>(b) + lane,
+                    m.weight.value[lane] * value.value[lane], values);
+        }
+      }
+    }
   }
 }
 

@@ -18,6 +18,7 @@ namespace sinew::fem {
 ///   equivalent strain    sqrt(2/3 dev e : dev e)
 ///   von Mises stress     sqrt(3/2 dev s : dev s),  s = P F^T / det F (Cauchy; P for the linear
 ///   law)
+/// Of hyperelastic elements e = U - I with U the right stretch, at their points of integration.
 /// (von Mises 1913; e.g. Simo and Hughes, Computational Inelasticity, 1998, section 2.3).
 class NodalFields {
  public:
@@ -41,10 +42,12 @@ class NodalFields {
   enum class Measure { strain, stress };
   template <Measure measure>
   void evaluate(const FemBody& body, std::span<double> values);
+  void add_solids(const FemBody& body, Measure measure, std::span<double> values);
 
   const FemBodyModel& model_;
   std::vector<double> shares_;  // (n,) m^3: volume of the elements around a node
   Points forces_;
+  std::vector<double> points_;  // (n, 4) m, where there are hyperelastic elements
 };
 
 }  // namespace sinew::fem

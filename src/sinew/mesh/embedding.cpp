@@ -1,6 +1,7 @@
 #include "sinew/mesh/embedding.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -12,6 +13,7 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/mesh/distance.hpp"
+#include "sinew/mesh/hexahedron.hpp"
 #include "sinew/mesh/quality.hpp"
 
 namespace sinew::mesh {
@@ -26,6 +28,10 @@ constexpr double kWeightTolerance = 1e-9;
 constexpr double kDistanceTolerance = 1e-10;
 constexpr int kLeafSize = 4;
 
+/// A hexahedron as six tetrahedra round its diagonal 0-6, positively oriented.
+constexpr std::array<std::array<std::size_t, 4>, 6> kSplit = {
+    {{0, 1, 2, 6}, {0, 2, 3, 6}, {0, 3, 7, 6}, {0, 7, 4, 6}, {0, 4, 5, 6}, {0, 5, 1, 6}}};
+
 /// Tree node: children 2k+1.. are stored by number; a leaf has the elements order[begin, end).
 struct Branch {
   Box box;
@@ -37,8 +43,12 @@ struct Branch {
 
 struct Embedder::Tree {
   std::string name;
+  // Of tetrahedra, and behind them of hexahedra, six each.
   std::vector<Corners> corners;
   std::vector<Tetrahedron> nodes;
+  std::size_t tetrahedra = 0;
+  std::vector<Hexahedron> hexahedra;
+  std::vector<Eigen::Matrix<double, 8, 3>> hexahedron_corners;
   std::vector<int> order;
   std::vector<Branch> branches;
   double tolerance = 0.0;  // m
@@ -50,19 +60,42 @@ struct Embedder::Tree {
   template <typename Reach, typename Visit>
   void visit_near(const Vector3& point, const Reach& reach, const Visit& visit) const;
 
+  /// Element of the mesh that a tetrahedron of the search belongs to.
+  int owner(int part) const {
+    const auto p = static_cast<std::size_t>(part);
+    return static_cast<int>(p < tetrahedra ? p : tetrahedra + (p - tetrahedra) / kSplit.size());
+  }
+  std::string name_of(int element) const {
+    const auto e = static_cast<std::size_t>(element);
+    return e < tetrahedra ? fmt::format("tetrahedron {}", e)
+                          : fmt::format("hexahedron {}", e - tetrahedra);
+  }
   int find_inside(const Vector3& point) const;
   std::pair<int, double> find_nearest(const Vector3& point) const;
 };
 
-Embedder::Tree::Tree(const Mesh& mesh) : name(mesh.name), nodes(mesh.tetrahedra) {
+Embedder::Tree::Tree(const Mesh& mesh)
+    : name(mesh.name),
+      nodes(mesh.tetrahedra),
+      tetrahedra(mesh.tetrahedra.size()),
+      hexahedra(mesh.hexahedra) {
+  for (const Hexahedron& hexahedron : hexahedra) {
+    for (const auto& part : kSplit) {
+      nodes.push_back(
+          {hexahedron[part[0]], hexahedron[part[1]], hexahedron[part[2]], hexahedron[part[3]]});
+    }
+    Eigen::Matrix<double, 8, 3>& x = hexahedron_corners.emplace_back();
+    for (int a = 0; a < 8; ++a) x.row(a) = mesh.nodes.row(hexahedron[static_cast<std::size_t>(a)]);
+  }
   if (nodes.empty()) {
     throw Error(ErrorKind::no_volume_elements, {.file = mesh.name},
-                "the mesh has no tetrahedra to embed points in");
+                "the mesh has no elements to embed points in");
   }
   std::vector<Box> boxes(nodes.size());
   Box all;
   for (std::size_t e = 0; e < nodes.size(); ++e) {
-    corners.push_back(corners_of(mesh, static_cast<int>(e)));
+    Corners& own = corners.emplace_back();
+    for (std::size_t a = 0; a < 4; ++a) own[a] = mesh.nodes.row(nodes[e][a]).transpose();
     for (const Vector3& corner : corners[e]) boxes[e].extend(corner);
     all.extend(boxes[e]);
   }
@@ -175,25 +208,39 @@ EmbeddedPoint Embedder::locate(const Vector3& point, Outside outside,
         ErrorKind::not_finite, {.item = what},
         fmt::format("the point ({}, {}, {}) is not finite", point.x(), point.y(), point.z()));
   }
-  int element = tree_->find_inside(point);
+  int part = tree_->find_inside(point);
   double distance = 0.0;
-  if (element < 0) {
-    std::tie(element, distance) = tree_->find_nearest(point);
+  const bool inside = part >= 0;
+  if (!inside) {
+    std::tie(part, distance) = tree_->find_nearest(point);
     if (outside == Outside::error) {
       throw Error(
           ErrorKind::point_outside_mesh, {.item = what},
           fmt::format("the point ({:.6g}, {:.6g}, {:.6g}) m lies {:.3g} m outside {} (the nearest "
-                      "element is tetrahedron {})",
+                      "element is {})",
                       point.x(), point.y(), point.z(), distance,
-                      tree_->name.empty() ? "the mesh" : tree_->name, element),
+                      tree_->name.empty() ? "the mesh" : tree_->name,
+                      tree_->name_of(tree_->owner(part))),
           "move it inside, check its unit, or write `outside: nearest` to extrapolate");
     }
   }
-  const auto e = static_cast<std::size_t>(element);
-  return {.nodes = tree_->nodes[e],
-          .weights = barycentric_weights(point, tree_->corners[e]),
-          .element = element,
-          .distance = distance};
+  EmbeddedPoint result{
+      .nodes = {}, .weights = {}, .element = tree_->owner(part), .distance = distance};
+  const auto e = static_cast<std::size_t>(result.element);
+  if (inside && e >= tree_->tetrahedra) {
+    const std::size_t h = e - tree_->tetrahedra;
+    if (const auto local = hexahedron_coordinates(point, tree_->hexahedron_corners[h])) {
+      const auto shapes = hexahedron_shapes(*local);
+      result.nodes.assign(tree_->hexahedra[h].begin(), tree_->hexahedra[h].end());
+      result.weights.assign(shapes.begin(), shapes.end());
+      return result;
+    }
+  }
+  const auto p = static_cast<std::size_t>(part);
+  const auto weights = barycentric_weights(point, tree_->corners[p]);
+  result.nodes.assign(tree_->nodes[p].begin(), tree_->nodes[p].end());
+  result.weights.assign(weights.begin(), weights.end());
+  return result;
 }
 
 }  // namespace sinew::mesh

@@ -1,10 +1,10 @@
 /// @file
-/// Material points: where a point of space sits inside a mesh of tetrahedra.
+/// Material points: where a point of space sits inside a mesh of tetrahedra and hexahedra.
 #pragma once
 
-#include <array>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "sinew/core/types.hpp"
 #include "sinew/mesh/mesh.hpp"
@@ -15,19 +15,20 @@ namespace sinew::mesh {
 enum class Outside {
   error,    ///< throw Error(point-outside-mesh) naming the point, its distance and the nearest
             ///< element
-  nearest,  ///< extrapolate from the nearest element (its barycentric weights, some negative)
+  nearest,  ///< extrapolate linearly from the nearest element (some weights negative)
 };
 
 /// x = sum_k weights[k] * nodes[k]; weights sum to 1.
 struct EmbeddedPoint {
-  std::array<NodeId, 4> nodes{};
-  std::array<double, 4> weights{};
-  int element = -1;       ///< tetrahedron that carries the point
-  double distance = 0.0;  ///< m, from the nearest element; 0 inside
+  std::vector<NodeId> nodes;    ///< of the element, or four of a hexahedron's
+  std::vector<double> weights;  ///< as many
+  int element = -1;             ///< that carries the point: tetrahedra, then hexahedra
+  double distance = 0.0;        ///< m, from the nearest element; 0 inside
 };
 
-/// Finds the tetrahedron that holds a point (bounding-volume tree; O(log n) a query). Ties on faces
-/// go to the lowest element number, so that results do not depend on the tree.
+/// Finds the element that holds a point (bounding-volume tree; O(log n) a query). Ties on faces go
+/// to the lowest element number, so that results do not depend on the tree. Hexahedra are searched
+/// as six tetrahedra round the diagonal 0-6; points inside get trilinear weights.
 class Embedder {
  public:
   explicit Embedder(const Mesh& mesh);

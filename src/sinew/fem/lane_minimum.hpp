@@ -1,0 +1,48 @@
+/// @file
+/// The smallest volume ratio of many elements, eight at a time.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include "sinew/fem/element_kernel.hpp"
+#include "sinew/material/lanes.hpp"
+
+namespace sinew::fem {
+
+/// Smallest det F of each lane so far and the batch it was seen in.
+struct LaneMinimum {
+  material::Lanes value = material::lanes(std::numeric_limits<double>::infinity());
+  material::LaneMask batch{};
+
+  SINEW_INLINE void see(const material::Lanes& ratio, std::int64_t in_batch) {
+    const material::Lanes lost = material::lanes(-std::numeric_limits<double>::infinity());
+    // NOLINTNEXTLINE(misc-redundant-expression): false where a lane is NaN
+    const material::Lanes finite = ratio == ratio ? ratio : lost;
+    const material::LaneMask smaller = finite < value;
+    const material::LaneMask here = material::LaneMask{} + in_batch;
+    value = smaller ? finite : value;
+    batch = smaller ? here : batch;
+  }
+};
+
+/// The smallest over lanes, and its slot: the lowest of equals.
+/// @param minimum of batches. @param element of each slot, -1 where a lane only fills up.
+/// @param first_slot added to the slot.
+inline SmallestRatio smallest(const LaneMinimum& minimum, std::span<const std::int32_t> element,
+                              std::int64_t first_slot) {
+  SmallestRatio result{std::numeric_limits<double>::infinity(), -1};
+  for (int lane = 0; lane < material::kLanes; ++lane) {
+    const std::int64_t own = material::kLanes * minimum.batch[lane] + lane;
+    if (element[static_cast<std::size_t>(own)] < 0) continue;
+    const auto slot = static_cast<std::int32_t>(first_slot + own);
+    const double value = minimum.value[lane];
+    if (value < result.value || (value == result.value && slot < result.slot)) {
+      result = {value, slot};
+    }
+  }
+  return result;
+}
+
+}  // namespace sinew::fem

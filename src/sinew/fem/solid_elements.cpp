@@ -1,0 +1,157 @@
+#include "sinew/fem/solid_elements.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include <Eigen/LU>
+#include <fmt/format.h>
+
+#include "sinew/core/error.hpp"
+#include "sinew/mesh/hexahedron.hpp"
+
+namespace sinew::fem {
+
+namespace {
+
+using material::kLanes;
+
+struct PointConstants {
+  Eigen::Matrix<double, Eigen::Dynamic, 3> gradients;
+  double weight = 0.0;
+};
+
+Eigen::Matrix<double, Eigen::Dynamic, 3> rest_nodes(const mesh::Mesh& mesh,
+                                                    std::span<const NodeId> nodes) {
+  Eigen::Matrix<double, Eigen::Dynamic, 3> x(static_cast<Eigen::Index>(nodes.size()), 3);
+  for (std::size_t a = 0; a < nodes.size(); ++a) {
+    x.row(static_cast<Eigen::Index>(a)) = mesh.nodes.row(nodes[a]);
+  }
+  return x;
+}
+
+/// Local gradients (n, 3) and rest positions (n, 3) to gradients in space and the weight.
+PointConstants point_constants(const Eigen::Matrix<double, Eigen::Dynamic, 3>& local,
+                               const Eigen::Matrix<double, Eigen::Dynamic, 3>& x, double weight) {
+  const Matrix3 jacobian = x.transpose() * local;  // dX/dxi
+  return {local * jacobian.inverse(), weight * jacobian.determinant()};
+}
+
+std::vector<PointConstants> constants_of(const mesh::Mesh& mesh, std::span<const NodeId> nodes) {
+  const auto x = rest_nodes(mesh, nodes);
+  if (nodes.size() == 4) {
+    Eigen::Matrix<double, Eigen::Dynamic, 3> local(4, 3);
+    local << -1, -1, -1, 1, 0, 0, 0, 1, 0, 0, 0, 1;
+    return {point_constants(local, x, 1.0 / 6.0)};
+  }
+  std::vector<PointConstants> result;
+  for (const Vector3& point : mesh::hexahedron_points()) {
+    result.push_back(point_constants(mesh::hexahedron_gradients(point), x, 1.0));
+  }
+  return result;
+}
+
+void check_volumes(const mesh::Mesh& mesh, int element, std::span<const PointConstants> points) {
+  const ElementList list(mesh);
+  const auto x = rest_nodes(mesh, list.nodes(element));
+  const double size = (x.colwise().maxCoeff() - x.colwise().minCoeff()).maxCoeff();
+  for (const PointConstants& point : points) {
+    const bool flat = !(std::abs(point.weight) > 1e-14 * size * size * size);
+    if (!flat && point.weight > 0.0) continue;
+    throw Error(flat ? ErrorKind::zero_volume : ErrorKind::inverted_element,
+                {.file = mesh.name, .item = {}},
+                fmt::format("{} has a volume of {:g} m^3 at a point of integration",
+                            list.name(element), point.weight),
+                flat ? "remove or remesh it" : "check the order of its nodes, or remesh it");
+  }
+}
+
+/// Elements by (kind, region), each list in spatial order.
+std::map<std::pair<std::size_t, std::int32_t>, std::vector<std::int32_t>> sorted_elements(
+    const mesh::Mesh& mesh, std::span<const Region> regions,
+    std::span<const std::int32_t> region_of, std::span<const std::int32_t> rank) {
+  const ElementList list(mesh);
+  std::map<std::pair<std::size_t, std::int32_t>, std::vector<std::int32_t>> result;
+  for (int e = 0; e < list.count(); ++e) {
+    const std::int32_t region = region_of[static_cast<std::size_t>(e)];
+    if (!regions[static_cast<std::size_t>(region)].hyperelastic) continue;
+    result[{list.nodes(e).size(), region}].push_back(e);
+  }
+  const auto lowest = [&](std::int32_t element) {
+    std::int32_t least = std::numeric_limits<std::int32_t>::max();
+    for (const NodeId node : list.nodes(element)) {
+      least = std::min(least, rank[static_cast<std::size_t>(node)]);
+    }
+    return least;
+  };
+  for (auto& [kind, elements] : result) {
+    std::ranges::stable_sort(elements, {}, lowest);
+  }
+  return result;
+}
+
+void fill_group(SolidGroup& group, const mesh::Mesh& mesh,
+                const std::vector<std::int32_t>& elements) {
+  const ElementList list(mesh);
+  const std::size_t slots = (elements.size() + kLanes - 1) / kLanes * kLanes;
+  const auto nodes = static_cast<std::size_t>(group.nodes);
+  const auto rows = static_cast<std::size_t>(group.rows_per_point());
+  group.element.assign(slots, -1);
+  group.node.resize(nodes * slots);
+  group.constants.resize(slots / kLanes * static_cast<std::size_t>(group.points) * rows);
+  for (std::size_t slot = 0; slot < slots; ++slot) {
+    const bool filling = slot >= elements.size();
+    const std::int32_t element = filling ? elements.back() : elements[slot];
+    if (!filling) group.element[slot] = element;
+    const std::size_t batch = slot / kLanes, lane = slot % kLanes;
+    const auto members = list.nodes(element);
+    for (std::size_t a = 0; a < nodes; ++a) {
+      group.node[(batch * nodes + a) * kLanes + lane] = members[a];
+    }
+    const std::vector<PointConstants> points = constants_of(mesh, members);
+    if (!filling) check_volumes(mesh, element, points);
+    for (std::size_t q = 0; q < points.size(); ++q) {
+      LaneRow* row = &group.constants[(batch * points.size() + q) * rows];
+      for (std::size_t k = 0; k < 3 * nodes; ++k) {
+        row[k].value[lane] =
+            points[q].gradients(static_cast<Eigen::Index>(k / 3), static_cast<Eigen::Index>(k % 3));
+      }
+      row[3 * nodes].value[lane] = filling ? 0.0 : points[q].weight;
+    }
+  }
+}
+
+}  // namespace
+
+std::string ElementList::name(int element) const {
+  if (is_tetrahedron(element)) return fmt::format("tetrahedron {}", element);
+  return fmt::format("hexahedron {}", element - static_cast<int>(mesh_.tetrahedra.size()));
+}
+
+std::vector<SolidGroup> make_solid_groups(const mesh::Mesh& mesh, std::span<const Region> regions,
+                                          std::span<const std::int32_t> region_of,
+                                          std::span<const std::int32_t> rank,
+                                          const ElementBatches& batches) {
+  std::vector<SolidGroup> groups;
+  auto slot = static_cast<std::int64_t>(batches.tetrahedron.size());
+  std::int64_t force = 4 * slot, block = 0;
+  for (const auto& [kind, elements] : sorted_elements(mesh, regions, region_of, rank)) {
+    SolidGroup group;
+    group.nodes = static_cast<int>(kind.first);
+    group.points = kind.first == 8 ? 8 : 1;
+    group.law = *regions[static_cast<std::size_t>(kind.second)].hyperelastic;
+    group.first_slot = slot;
+    group.first_force = force;
+    group.first_block = block;
+    fill_group(group, mesh, elements);
+    const auto slots = static_cast<std::int64_t>(group.element.size());
+    slot += slots;
+    force += slots * group.nodes;
+    block += slots * group.pairs();
+    groups.push_back(std::move(group));
+  }
+  return groups;
+}
+
+}  // namespace sinew::fem

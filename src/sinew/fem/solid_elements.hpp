@@ -1,0 +1,88 @@
+/// @file
+/// Hyperelastic elements, tetrahedra and hexahedra, eight of one kind and one law to a batch.
+///
+/// The pressure is that of the element's mean dilatation (Nagtegaal, Parks, Rice, CMAME 4, 1974;
+/// in this energy-consistent form Simo, Taylor, Pister, CMAME 51, 1985, with constant pressure):
+///   U_e = integral of psi_iso(F) dV + V U(Jm),   Jm = 1/V integral of det F dV,
+///   f_a = integral of (P_iso + p cof F) g_a dV,   p = U'(Jm) = kappa (Jm - 1),
+///   K_ab = integral of g_a . (dP_iso/dF + p d(cof F)/dF) g_b dV + kappa/V b_a b_b^T,
+///   b_a = integral of cof F g_a dV,
+/// symmetric since it derives from an energy. A linear tetrahedron has one point: Jm is its J.
+/// Hexahedra have eight Gauss points and do not lock in volume (mixed form Q1P0, pressure and
+/// dilatation condensed). Saint Venant-Kirchhoff has no volumetric part to be set apart.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sinew/core/types.hpp"
+#include "sinew/fem/element_batches.hpp"
+#include "sinew/material/hyperelastic.hpp"
+
+namespace sinew::fem {
+
+struct Region;
+
+/// Doubles of a stiffness block in a record: three columns, padded to four.
+inline constexpr int kSolidBlock = 12;
+
+/// Elements of one kind and law. Slot s = 8 batch + lane; lanes that fill up a batch repeat its
+/// last element with weights 0.
+struct SolidGroup {
+  int nodes = 4;   ///< of an element: 4 or 8
+  int points = 1;  ///< of integration: 1 or 8
+  material::Hyperelastic law;
+  /// [batch][point][3 a + c]: g_a component c (1/m), then the point's weight w det J (m^3).
+  std::vector<LaneRow> constants;
+  std::vector<std::int32_t> node;     ///< [batch][a][lane]: mesh node of local node a
+  std::vector<std::int32_t> element;  ///< slot -> element of the mesh; -1: filling
+  std::int64_t first_slot = 0;   ///< among all slots of the body, those of ElementBatches first
+  std::int64_t first_force = 0;  ///< of its force records, in vectors of four doubles
+  std::int64_t first_block = 0;  ///< of its block records, in blocks of kSolidBlock doubles
+
+  int batches() const { return static_cast<int>(element.size()) / material::kLanes; }
+  int rows_per_point() const { return 3 * nodes + 1; }
+  int pairs() const { return nodes * (nodes + 1) / 2; }
+  /// m^3 of a point of integration.
+  double weight(std::size_t slot, int point) const {
+    const std::size_t batch = slot / material::kLanes;
+    const auto row = (batch * static_cast<std::size_t>(points) + static_cast<std::size_t>(point)) *
+                         static_cast<std::size_t>(rows_per_point()) +
+                     static_cast<std::size_t>(3 * nodes);
+    return constants[row].value[slot % material::kLanes];
+  }
+  /// Position of block (a, b), a <= b, in an element's record.
+  static int pair(int a, int b) { return b * (b + 1) / 2 + a; }
+};
+
+/// Volume elements of a mesh under one numbering: tetrahedra first, then hexahedra.
+class ElementList {
+ public:
+  explicit ElementList(const mesh::Mesh& mesh) : mesh_(mesh) {}
+  int count() const { return static_cast<int>(mesh_.tetrahedra.size() + mesh_.hexahedra.size()); }
+  bool is_tetrahedron(int element) const {
+    return static_cast<std::size_t>(element) < mesh_.tetrahedra.size();
+  }
+  std::span<const NodeId> nodes(int element) const {
+    const auto e = static_cast<std::size_t>(element);
+    if (is_tetrahedron(element)) return mesh_.tetrahedra[e];
+    return mesh_.hexahedra[e - mesh_.tetrahedra.size()];
+  }
+  /// "tetrahedron 7" or "hexahedron 3", as the mesh counts them.
+  std::string name(int element) const;
+
+ private:
+  const mesh::Mesh& mesh_;
+};
+
+/// Groups of all elements whose region is hyperelastic.
+/// @param mesh,regions,region_of,rank as for make_element_batches(); region_of over ElementList.
+/// @param batches of the other elements, after which slots and force records count on.
+/// Throws Error(zero-volume, inverted-element) naming the element.
+std::vector<SolidGroup> make_solid_groups(const mesh::Mesh& mesh, std::span<const Region> regions,
+                                          std::span<const std::int32_t> region_of,
+                                          std::span<const std::int32_t> rank,
+                                          const ElementBatches& batches);
+
+}  // namespace sinew::fem

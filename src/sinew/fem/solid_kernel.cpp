@@ -1,0 +1,285 @@
+#include "sinew/fem/solid_kernel.hpp"
+
+#include <limits>
+
+#include "sinew/fem/lane_minimum.hpp"
+#include "sinew/fem/transpose.hpp"
+#include "sinew/material/principal.hpp"
+
+namespace sinew::fem {
+
+namespace {
+
+using material::kLanes;
+using material::Lanes;
+using material::lanes;
+using material::Lanes3x3;
+
+/// A batch in hand.
+template <int N, int Q>
+struct Batch {
+  static constexpr int kRows = 3 * N + 1;
+
+  const LaneRow* constants;
+  Lanes x[N][3];  // relative to the first node: no digits are lost far from the origin
+
+  SINEW_INLINE Batch(const SolidGroup& group, std::int64_t batch, const double* points)
+      : constants(group.constants.data() + batch * Q * kRows) {
+    const std::int32_t* nodes = group.node.data() + batch * N * kLanes;
+    Lanes origin[3];
+    load_points(points, nodes, origin);
+    for (int a = 0; a < N; ++a) {
+      load_points(points, nodes + kLanes * a, x[a]);
+      for (int c = 0; c < 3; ++c) x[a][c] -= origin[c];
+    }
+  }
+  SINEW_INLINE Lanes gradient(int q, int a, int c) const {
+    return material::load(constants[q * kRows + 3 * a + c].value);
+  }
+  SINEW_INLINE Lanes weight(int q) const {
+    return material::load(constants[q * kRows + 3 * N].value);
+  }
+  SINEW_INLINE Lanes3x3 deformation(int q) const {
+    Lanes3x3 f{};
+    for (int a = 1; a < N; ++a) {
+      for (int c = 0; c < 3; ++c) {
+        const Lanes g = gradient(q, a, c);
+        for (int r = 0; r < 3; ++r) f[r][c] += x[a][r] * g;
+      }
+    }
+    return f;
+  }
+};
+
+SINEW_INLINE double sum(const Lanes& value) {
+  return ((value[0] + value[1]) + (value[2] + value[3])) +
+         ((value[4] + value[5]) + (value[6] + value[7]));
+}
+
+/// Volume and pressure of a batch's elements.
+struct Dilatation {
+  Lanes volume = lanes(0.0);  // V; 1 in lanes that only fill up
+  Lanes ratio = lanes(0.0);   // Jm
+  Lanes pressure = lanes(0.0);
+  Lanes energy = lanes(0.0);     // V U(Jm)
+  Lanes stiffness = lanes(0.0);  // kappa / V
+};
+
+template <int N, int Q>
+SINEW_INLINE Dilatation mean_dilatation(const Batch<N, Q>& batch, const Lanes3x3* f, double bulk,
+                                        LaneMinimum& minimum, std::int64_t number) {
+  Dilatation result;
+  for (int q = 0; q < Q; ++q) {
+    const Lanes j = material::determinant(f[q], material::cofactor(f[q]));
+    minimum.see(j, number);
+    result.volume += batch.weight(q);
+    result.ratio += batch.weight(q) * j;
+  }
+  const Lanes real = result.volume;
+  result.volume = real > 0.0 ? real : lanes(1.0);
+  result.ratio = real > 0.0 ? result.ratio / result.volume : lanes(1.0);
+  result.pressure = bulk * (result.ratio - 1.0);
+  result.energy = 0.5 * real * result.pressure * (result.ratio - 1.0);
+  result.stiffness = bulk / result.volume;
+  return result;
+}
+
+/// Stiffness and forces of eight elements, summed over points.
+template <int N>
+struct Sums {
+  static constexpr int kPairs = N * (N + 1) / 2;
+  Lanes force[N][3] = {};
+  Lanes spread[N][3] = {};  // b_a = dV/dx_a
+  Lanes block[kPairs][9] = {};
+
+  SINEW_INLINE void add_tangent(const material::Lanes9x9& a9, const Lanes (&g)[N][3],
+                                const Lanes& weight) {
+    for (int b = 0; b < N; ++b) {
+      Lanes t[9][3];  // (3 i + j, r): sum over c of A(i j, r c) g_b c
+      for (int ij = 0; ij < 9; ++ij) {
+        for (int r = 0; r < 3; ++r) {
+          t[ij][r] = weight * (a9.m[ij][3 * r] * g[b][0] + a9.m[ij][3 * r + 1] * g[b][1] +
+                               a9.m[ij][3 * r + 2] * g[b][2]);
+        }
+      }
+      for (int a = 0; a <= b; ++a) {
+        Lanes* k = block[SolidGroup::pair(a, b)];
+        for (int i = 0; i < 3; ++i) {
+          for (int r = 0; r < 3; ++r) {
+            k[3 * i + r] +=
+                g[a][0] * t[3 * i][r] + g[a][1] * t[3 * i + 1][r] + g[a][2] * t[3 * i + 2][r];
+          }
+        }
+      }
+    }
+  }
+  SINEW_INLINE void add_dilatation(const Lanes& stiffness) {
+    for (int b = 0; b < N; ++b) {
+      for (int a = 0; a <= b; ++a) {
+        Lanes* k = block[SolidGroup::pair(a, b)];
+        for (int i = 0; i < 3; ++i) {
+          const Lanes scaled = stiffness * spread[a][i];
+          for (int r = 0; r < 3; ++r) k[3 * i + r] += scaled * spread[b][r];
+        }
+      }
+    }
+  }
+  SINEW_INLINE void store_forces(double* records) const {
+    const Lanes zero = lanes(0.0);
+    for (int a = 0; a < N; a += 2) {
+      const Lanes rows[8] = {force[a][0],     force[a][1],     force[a][2],     zero,
+                             force[a + 1][0], force[a + 1][1], force[a + 1][2], zero};
+      store_records(rows, records + 4 * a, 4 * N);
+    }
+  }
+  SINEW_INLINE void store_blocks(double* records) const {
+    constexpr int kRecord = kSolidBlock * kPairs;
+    static_assert(kPairs % 2 == 0);
+    for (int pair = 0; pair < kPairs; pair += 2) {
+      Lanes rows[2 * kSolidBlock];
+      for (int k = 0; k < 2; ++k) {
+        for (int c = 0; c < 3; ++c) {  // by columns, padded
+          for (int r = 0; r < 3; ++r)
+            rows[kSolidBlock * k + 4 * c + r] = block[pair + k][3 * r + c];
+          rows[kSolidBlock * k + 4 * c + 3] = lanes(0.0);
+        }
+      }
+      for (int k = 0; k < 2 * kSolidBlock; k += 8) {
+        store_records(rows + k, records + kSolidBlock * pair + k, kRecord);
+      }
+    }
+  }
+};
+
+template <int N, int Q, Tangent kTangent>
+void evaluate(const SolidGroup& group, int begin, int end, const double* points,
+              const SolidOutput& output, LaneMinimum& minimum) {
+  const bool split = group.law.saint_venant_shear == 0.0;
+  for (std::int64_t b = begin; b < end; ++b) {
+    const Batch<N, Q> batch(group, b, points);
+    Lanes3x3 f[Q];
+    for (int q = 0; q < Q; ++q) f[q] = batch.deformation(q);
+    const Dilatation mean =
+        mean_dilatation(batch, f, split ? group.law.bulk_modulus : 0.0, minimum, b);
+    Sums<N> sums;
+    Lanes energy = mean.energy;
+    for (int q = 0; q < Q; ++q) {
+      const Lanes weight = batch.weight(q);
+      const material::Principal at = material::principal(f[q]);
+      material::LanesLogResponse response = material::respond(group.law, at);
+      energy += weight * response.energy;
+      const Lanes push = mean.pressure * at.determinant;  // p J: p cof F by logarithmic stretches
+      for (int i = 0; i < 3; ++i) {
+        response.first[i] += push;
+        for (int j = 0; j <= i; ++j) response.second[i][j] += push;
+      }
+      Lanes g[N][3];
+      for (int a = 0; a < N; ++a) {
+        for (int c = 0; c < 3; ++c) g[a][c] = batch.gradient(q, a, c);
+      }
+      const Lanes3x3 stress = material::first_piola(f[q], at, response);
+      const Lanes3x3 cof = material::cofactor(f[q]);
+      for (int a = 0; a < N; ++a) {
+        for (int r = 0; r < 3; ++r) {
+          sums.force[a][r] +=
+              weight * (stress[r][0] * g[a][0] + stress[r][1] * g[a][1] + stress[r][2] * g[a][2]);
+          sums.spread[a][r] +=
+              weight * (cof[r][0] * g[a][0] + cof[r][1] * g[a][1] + cof[r][2] * g[a][2]);
+        }
+      }
+      if constexpr (kTangent != Tangent::none) {
+        material::Lanes9x9 a9;
+        material::tangent(f[q], at, response, kTangent == Tangent::rotated, a9);
+        sums.add_tangent(a9, g, weight);
+      }
+    }
+    sums.store_forces(output.forces + 4 * (group.first_force + N * kLanes * b));
+    output.energy[b] = sum(energy);
+    if constexpr (kTangent != Tangent::none) {
+      if (split) sums.add_dilatation(mean.stiffness);
+      sums.store_blocks(output.blocks +
+                        kSolidBlock * (group.first_block + Sums<N>::kPairs * kLanes * b));
+    }
+  }
+}
+
+template <int N, int Q>
+void evaluate_kind(const SolidGroup& group, int begin, int end, const double* points,
+                   Tangent tangent, const SolidOutput& output, LaneMinimum& minimum) {
+  switch (tangent) {
+    case Tangent::none:
+      return evaluate<N, Q, Tangent::none>(group, begin, end, points, output, minimum);
+    case Tangent::rotated:
+      return evaluate<N, Q, Tangent::rotated>(group, begin, end, points, output, minimum);
+    case Tangent::exact:
+      return evaluate<N, Q, Tangent::exact>(group, begin, end, points, output, minimum);
+  }
+}
+
+template <int N, int Q>
+void measure(const SolidGroup& group, int begin, int end, const double* points,
+             LaneMinimum& minimum) {
+  for (std::int64_t b = begin; b < end; ++b) {
+    const Batch<N, Q> batch(group, b, points);
+    for (int q = 0; q < Q; ++q) {
+      const Lanes3x3 f = batch.deformation(q);
+      minimum.see(material::determinant(f, material::cofactor(f)), b);
+    }
+  }
+}
+
+template <int N, int Q>
+void measure_fields(const SolidGroup& group, int number, const double* points,
+                    std::span<SolidMeasures> result) {
+  const Batch<N, Q> batch(group, number, points);
+  for (int q = 0; q < Q; ++q) {
+    const material::Principal at = material::principal(batch.deformation(q));
+    const material::LanesLogResponse response = material::respond(group.law, at);
+    // Kirchhoff stresses and stretches share their axes; pressure has no deviator.
+    Lanes stress = lanes(0.0), stretch = lanes(0.0);
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3;
+      const Lanes s = response.first[i] - response.first[j], l = at.stretch[i] - at.stretch[j];
+      stress += s * s;
+      stretch += l * l;
+    }
+    SolidMeasures& to = result[static_cast<std::size_t>(q)];
+    material::store(to.weight.value, batch.weight(q));
+    material::store(to.strain.value, material::square_root(2.0 / 9.0 * stretch));
+    material::store(to.von_mises.value, material::square_root(0.5 * stress) / at.determinant);
+  }
+}
+
+}  // namespace
+
+SmallestRatio evaluate_solids(const SolidGroup& group, int begin, int end, const double* points,
+                              Tangent tangent, const SolidOutput& output) {
+  LaneMinimum minimum;
+  if (group.nodes == 4) {
+    evaluate_kind<4, 1>(group, begin, end, points, tangent, output, minimum);
+  } else {
+    evaluate_kind<8, 8>(group, begin, end, points, tangent, output, minimum);
+  }
+  return smallest(minimum, group.element, group.first_slot);
+}
+
+SmallestRatio measure_solids(const SolidGroup& group, int begin, int end, const double* points) {
+  LaneMinimum minimum;
+  if (group.nodes == 4) {
+    measure<4, 1>(group, begin, end, points, minimum);
+  } else {
+    measure<8, 8>(group, begin, end, points, minimum);
+  }
+  return smallest(minimum, group.element, group.first_slot);
+}
+
+void measure_batch(const SolidGroup& group, int batch, const double* points,
+                   std::span<SolidMeasures> result) {
+  if (group.nodes == 4) {
+    measure_fields<4, 1>(group, batch, points, result);
+  } else {
+    measure_fields<8, 8>(group, batch, points, result);
+  }
+}
+
+}  // namespace sinew::fem

@@ -1,0 +1,43 @@
+/// @file
+/// From positions to what each hyperelastic element contributes, eight at a time; the equations are
+/// in solid_elements.hpp.
+#pragma once
+
+#include "sinew/fem/element_kernel.hpp"
+#include "sinew/fem/solid_elements.hpp"
+
+namespace sinew::fem {
+
+/// Where a group's batches write. Record arrays are 64-byte aligned and are those of the body.
+struct SolidOutput {
+  double* forces;  ///< four doubles a node of an element
+  double* blocks;  ///< kSolidBlock doubles a pair of nodes; not touched for Tangent::none
+  double* energy;  ///< one a batch of this group, J
+};
+
+/// Evaluates batches begin .. end-1 of a group.
+/// @param group,begin,end which batches.
+/// @param points (n, 4) m, positions padded to four.
+/// @param tangent exact: the derivative; rotated: its projection onto the positive semi-definite
+///   matrices, point by point. @param output where everything is written.
+/// The smallest det F at a point of integration is returned, with the slot among all of the body;
+/// positions that are not finite give minus infinity.
+SmallestRatio evaluate_solids(const SolidGroup& group, int begin, int end, const double* points,
+                              Tangent tangent, const SolidOutput& output);
+
+/// The smallest det F alone.
+SmallestRatio measure_solids(const SolidGroup& group, int begin, int end, const double* points);
+
+/// What NodalFields makes colours of, eight elements at one point of integration.
+struct SolidMeasures {
+  LaneRow weight;     ///< m^3
+  LaneRow strain;     ///< sqrt(2/3 dev U : dev U), U the right stretch
+  LaneRow von_mises;  ///< of the Cauchy stress, Pa
+};
+
+/// Measures of a batch, one a point of integration. @param group,batch which.
+/// @param points as for evaluate_solids(). @param result (points,).
+void measure_batch(const SolidGroup& group, int batch, const double* points,
+                   std::span<SolidMeasures> result);
+
+}  // namespace sinew::fem

@@ -1,0 +1,338 @@
+// Hyperelastic tetrahedra and hexahedra: forces and matrix against differences of the energy, patch
+// tests, bodies of several materials and elements, threads, masses, points inside.
+#include <algorithm>
+#include <memory>
+#include <random>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include "sinew/core/error.hpp"
+#include "sinew/fem/assembly.hpp"
+#include "sinew/mesh/embedding.hpp"
+#include "sinew/mesh/hexahedron.hpp"
+#include "sinew/mesh/shapes.hpp"
+
+#include "allocation_counter.hpp"
+#include "block_mesh.hpp"
+#include "reference.hpp"
+
+namespace sinew::fem {
+namespace {
+
+constexpr double kEdge = 0.01;
+
+material::Hyperelastic rubber(double poisson_ratio = 0.49) {
+  material::Hyperelastic law =
+      material::ogden({{24361.0, 1.7138}, {66.703, 7.0679}, {-453.81, -3.3659}},
+                      material::OgdenConvention::mu_over_alpha);
+  law.bulk_modulus = material::bulk_modulus_of(law.shear_modulus(), poisson_ratio);
+  return law;
+}
+
+material::Hyperelastic soft_rubber() {
+  material::Hyperelastic law = material::yeoh({9e3, -200.0, 30.0});
+  law.bulk_modulus = 2e5;
+  return law;
+}
+
+enum class Kind { tetrahedra, hexahedra, both };
+
+/// A box of cells, inner nodes moved about; `both` has hexahedra below and tetrahedra above.
+std::shared_ptr<mesh::Mesh> box(Kind kind, int nx, int ny, int nz, double jitter = 0.12) {
+  auto result = block_mesh(nx, ny, nz, kEdge, jitter);
+  if (kind == Kind::tetrahedra) return result;
+  const auto number = [=](int x, int y, int z) { return (z * (ny + 1) + y) * (nx + 1) + x; };
+  const int layers = kind == Kind::hexahedra ? nz : (nz + 1) / 2;
+  for (int z = 0; z < layers; ++z) {
+    for (int y = 0; y < ny; ++y) {
+      for (int x = 0; x < nx; ++x) {
+        result->hexahedra.push_back({number(x, y, z), number(x + 1, y, z), number(x + 1, y + 1, z),
+                                     number(x, y + 1, z), number(x, y, z + 1),
+                                     number(x + 1, y, z + 1), number(x + 1, y + 1, z + 1),
+                                     number(x, y + 1, z + 1)});
+      }
+    }
+  }
+  // Six tetrahedra a cell, cell by cell from below.
+  result->tetrahedra.erase(result->tetrahedra.begin(),
+                           result->tetrahedra.begin() + 6 * nx * ny * layers);
+  return result;
+}
+
+FemModelSettings settings_of(const mesh::Mesh& mesh, const material::Hyperelastic& law) {
+  FemModelSettings settings;
+  settings.regions.push_back({.constants = {}, .density = 1070.0, .hyperelastic = law});
+  settings.fixed_nodes = bottom_nodes(mesh, kEdge);
+  return settings;
+}
+
+/// Elements dealt out in turn to two rubbers and, tetrahedra, to a corotational material.
+FemModelSettings mixed_settings(const mesh::Mesh& mesh) {
+  FemModelSettings settings;
+  settings.regions = {{.constants = {}, .density = 1000.0, .hyperelastic = rubber()},
+                      {.constants = {}, .density = 1100.0, .hyperelastic = soft_rubber()},
+                      {.constants = {2e5, 0.4}, .density = 900.0}};
+  const auto tetrahedra = static_cast<NodeId>(mesh.tetrahedra.size());
+  for (NodeId e = 0; e < tetrahedra + static_cast<NodeId>(mesh.hexahedra.size()); ++e) {
+    settings.regions[static_cast<std::size_t>(e < tetrahedra ? e % 3 : e % 2)].elements.push_back(
+        e);
+  }
+  std::erase_if(settings.regions, [](const Region& region) { return region.elements.empty(); });
+  settings.fixed_nodes = bottom_nodes(mesh, kEdge);
+  return settings;
+}
+
+Points moved(const mesh::Mesh& mesh, double size, unsigned seed = 1) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-size, size);
+  Points result = mesh.nodes;
+  for (double& x : result.reshaped()) x += kEdge * uniform(random);
+  return result;
+}
+
+struct Body {
+  Body(std::shared_ptr<const mesh::Mesh> mesh, const FemModelSettings& settings, int threads = 1)
+      : model(std::make_shared<const FemModel>(std::move(mesh), settings)),
+        pool(threads),
+        assembly(model, pool) {}
+
+  double energy(const Points& x) {
+    assembly.evaluate(x, {.tangent = Tangent::none});
+    return assembly.strain_energy();
+  }
+  VectorX forces(const Points& x) {
+    assembly.evaluate(x, {.tangent = Tangent::none});
+    return Eigen::Map<const VectorX>(assembly.forces().data(), 3 * model->free_count());
+  }
+  MatrixX matrix(const Points& x, Tangent tangent) {
+    assembly.evaluate(x, {.tangent = tangent});
+    return dense_matrix(assembly);
+  }
+  /// x with free coordinate k moved by `step`.
+  Points stepped(Points x, Eigen::Index k, double step) const {
+    x(model->free_nodes()[static_cast<std::size_t>(k / 3)], k % 3) += step;
+    return x;
+  }
+
+  std::shared_ptr<const FemModel> model;
+  ThreadPool pool;
+  Assembly assembly;
+};
+
+class EveryKind : public testing::TestWithParam<Kind> {};
+INSTANTIATE_TEST_SUITE_P(Kinds, EveryKind,
+                         testing::Values(Kind::tetrahedra, Kind::hexahedra, Kind::both));
+
+TEST_P(EveryKind, ForcesAreTheDerivativeOfTheEnergy) {
+  const auto mesh = box(GetParam(), 2, 2, 3);
+  Body body(mesh, mixed_settings(*mesh));
+  const Points x = moved(*mesh, 0.08);
+  const VectorX forces = body.forces(x);
+  constexpr double kStep = 1e-7;
+  for (Eigen::Index k = 0; k < forces.size(); k += 5) {
+    const double difference =
+        (body.energy(body.stepped(x, k, kStep)) - body.energy(body.stepped(x, k, -kStep))) /
+        (2 * kStep);
+    EXPECT_NEAR(forces[k], difference, 1e-6 * forces.cwiseAbs().maxCoeff());
+  }
+}
+
+TEST_P(EveryKind, TheMatrixIsTheDerivativeOfTheForces) {
+  const auto mesh = box(GetParam(), 2, 1, 3);
+  Body body(mesh, mixed_settings(*mesh));
+  const Points x = moved(*mesh, 0.08);
+  const MatrixX matrix = body.matrix(x, Tangent::exact);
+  EXPECT_LT((matrix - matrix.transpose()).norm(), 1e-12 * matrix.norm());
+  constexpr double kStep = 1e-8;
+  for (Eigen::Index k = 0; k < matrix.cols(); k += 4) {
+    const VectorX difference =
+        (body.forces(body.stepped(x, k, kStep)) - body.forces(body.stepped(x, k, -kStep))) /
+        (2 * kStep);
+    EXPECT_LT((matrix.col(k) - difference).cwiseAbs().maxCoeff(),
+              1e-6 * matrix.cwiseAbs().maxCoeff());
+  }
+}
+
+TEST_P(EveryKind, TheRealTimeMatrixIsPositive) {
+  const auto mesh = box(GetParam(), 2, 2, 3);
+  Body body(mesh, settings_of(*mesh, rubber(0.45)));
+  Points x = mesh->nodes;
+  x.col(2) *= 0.55;  // pressed together: the exact tangent buckles
+  const auto lowest = [](const MatrixX& m) {
+    return Eigen::SelfAdjointEigenSolver<MatrixX>(m, Eigen::EigenvaluesOnly)
+        .eigenvalues()
+        .minCoeff();
+  };
+  const MatrixX exact = body.matrix(x, Tangent::exact);
+  EXPECT_LT(lowest(exact), 0.0);
+  EXPECT_GT(lowest(body.matrix(x, Tangent::rotated)), 0.0);
+  // At rest there is nothing to project.
+  const MatrixX rest = body.matrix(mesh->nodes, Tangent::exact);
+  EXPECT_LT((body.matrix(mesh->nodes, Tangent::rotated) - rest).norm(), 1e-9 * rest.norm());
+}
+
+// A mesh of both is not conforming: a hexahedron's face that meets those of two tetrahedra bends in
+// another way, and shares its forces in another way.
+void expect_even_strain(Kind kind) {
+  // Affine motion of the boundary: inner nodes are in equilibrium where it takes them.
+  const auto mesh = box(kind, 3, 3, 3, 0.15);
+  FemModelSettings settings = settings_of(*mesh, rubber());
+  settings.fixed_nodes.clear();
+  const auto number = [](int x, int y, int z) { return (z * 4 + y) * 4 + x; };
+  for (int n = 0; n < 64; ++n) {
+    const int x = n % 4, y = n / 4 % 4, z = n / 16;
+    const bool inside = x % 3 != 0 && y % 3 != 0 && z % 3 != 0;
+    if (!inside) settings.fixed_nodes.push_back(number(x, y, z));
+  }
+  Body body(mesh, settings);
+  Matrix3 f;
+  f << 1.3, 0.2, -0.1, 0.05, 0.9, 0.15, 0.1, -0.2, 1.1;
+  const Points x = mesh->nodes * f.transpose();
+  const double scale = body.forces(moved(*mesh, 0.05)).cwiseAbs().maxCoeff();
+  EXPECT_LT(body.forces(x).cwiseAbs().maxCoeff(), 1e-10 * scale);
+  const auto at = material::respond(rubber(), [&] {
+    const Vector3 l = Eigen::JacobiSVD<Matrix3>(f).singularValues();
+    return std::array<double, 3>{l[0], l[1], l[2]};
+  }());
+  EXPECT_NEAR(body.energy(x), at.energy * body.model->volume(), 1e-12 * body.energy(x));
+}
+
+TEST(Solid, APatchOfTetrahedraIsStrainedEvenly) { expect_even_strain(Kind::tetrahedra); }
+TEST(Solid, APatchOfHexahedraIsStrainedEvenly) { expect_even_strain(Kind::hexahedra); }
+
+TEST_P(EveryKind, ARotationStrainsNothing) {
+  const auto mesh = box(GetParam(), 2, 2, 2);
+  FemModelSettings settings = settings_of(*mesh, rubber());
+  settings.fixed_nodes.clear();
+  Body body(mesh, settings);
+  const Matrix3 q = Eigen::AngleAxisd(2.1, Vector3(1, 2, -1).normalized()).toRotationMatrix();
+  Points x = mesh->nodes * q.transpose();
+  x.rowwise() += Eigen::RowVector3d(0.3, -0.2, 0.5);
+  EXPECT_LT(body.forces(x).cwiseAbs().maxCoeff(), 1e-11 * 24e3 * kEdge * kEdge * 1e3);
+  EXPECT_LT(body.energy(x), 1e-20);
+}
+
+TEST_P(EveryKind, ThreadsDoNotChangeABit) {
+  const auto mesh = box(GetParam(), 4, 3, 8);
+  const FemModelSettings settings = mixed_settings(*mesh);
+  const Points x = moved(*mesh, 0.1);
+  for (const Tangent tangent : {Tangent::none, Tangent::rotated, Tangent::exact}) {
+    Body one(mesh, settings), four(mesh, settings, 4);
+    one.assembly.evaluate(x, {.tangent = tangent, .mass = 2.0});
+    four.assembly.evaluate(x, {.tangent = tangent, .mass = 2.0});
+    EXPECT_TRUE(std::ranges::equal(one.assembly.forces(), four.assembly.forces()));
+    EXPECT_EQ(one.assembly.strain_energy(), four.assembly.strain_energy());
+    EXPECT_EQ(one.assembly.minimum_volume_ratio(), four.assembly.minimum_volume_ratio());
+    EXPECT_EQ(one.assembly.worst_element(), four.assembly.worst_element());
+    if (tangent == Tangent::none) continue;
+    EXPECT_TRUE(std::ranges::equal(std::as_const(one.assembly).matrix(),
+                                   std::as_const(four.assembly).matrix()));
+  }
+}
+
+TEST_P(EveryKind, NothingAllocatesAfterTheFirst) {
+  const auto mesh = box(GetParam(), 2, 2, 4);
+  Body body(mesh, mixed_settings(*mesh), 2);
+  const Points x = moved(*mesh, 0.1);
+  for (const Tangent tangent : {Tangent::rotated, Tangent::exact}) {
+    body.assembly.evaluate(x, {.tangent = tangent});
+    const std::size_t before = allocation_count();
+    body.assembly.evaluate(x, {.tangent = tangent});
+    EXPECT_EQ(allocation_count(), before);
+  }
+}
+
+TEST_P(EveryKind, TheWorstElementIsNamed) {
+  const auto mesh = box(GetParam(), 2, 2, 3, 0.0);
+  Body body(mesh, settings_of(*mesh, rubber()));
+  Points x = mesh->nodes;
+  x(0, 2) += 3.0 * kEdge;  // far through the cell's upper face
+  const VolumeMeasure measure = body.assembly.measure_volume(x);
+  EXPECT_LT(measure.smallest_ratio, 0.0);
+  const auto tetrahedra = static_cast<int>(mesh->tetrahedra.size());
+  ASSERT_GE(measure.element, 0);
+  const bool holds =
+      measure.element < tetrahedra
+          ? std::ranges::count(mesh->tetrahedra[static_cast<std::size_t>(measure.element)], 0) > 0
+          : std::ranges::count(
+                mesh->hexahedra[static_cast<std::size_t>(measure.element - tetrahedra)], 0) > 0;
+  EXPECT_TRUE(holds);
+  x(0, 0) = std::nan("");
+  EXPECT_EQ(body.assembly.measure_volume(x).smallest_ratio,
+            -std::numeric_limits<double>::infinity());
+}
+
+TEST_P(EveryKind, MassesAddUp) {
+  const auto mesh = box(GetParam(), 2, 3, 3);
+  FemModelSettings settings = settings_of(*mesh, rubber());
+  settings.fixed_nodes.clear();
+  for (const MassMatrix mass : {MassMatrix::lumped, MassMatrix::consistent}) {
+    settings.mass = mass;
+    const FemModel model(mesh, settings);
+    EXPECT_NEAR(model.total_mass(), 1070.0 * model.volume(), 1e-12 * model.total_mass());
+    // A rigid motion's momentum.
+    VectorX velocity(3 * model.free_count()), momentum(velocity.size());
+    for (int i = 0; i < model.free_count(); ++i) velocity.segment<3>(3 * i) = Vector3(1, 0, 0);
+    model.apply_mass({velocity.data(), static_cast<std::size_t>(velocity.size())},
+                     {momentum.data(), static_cast<std::size_t>(momentum.size())});
+    EXPECT_NEAR(momentum.sum(), model.total_mass(), 1e-12 * model.total_mass());
+  }
+}
+
+TEST(Solid, HexahedraDoNotLockInVolume) {
+  // One cell sheared while its volume is kept has no volumetric energy however stiff the bulk is.
+  const auto mesh = box(Kind::hexahedra, 1, 1, 1, 0.0);
+  const auto energy = [&](double poisson_ratio) {
+    FemModelSettings settings = settings_of(*mesh, rubber(poisson_ratio));
+    Body body(mesh, settings);
+    Points x = mesh->nodes;
+    // An hourglass of the upper face, which changes no mean volume to first order.
+    for (const auto& [node, sign] :
+         {std::pair(4, 1), std::pair(5, -1), std::pair(7, -1), std::pair(6, 1)}) {
+      x(node, 2) += sign * 0.05 * kEdge;
+    }
+    return body.energy(x);
+  };
+  EXPECT_LT(energy(0.4999) / energy(0.45), 1.1);
+}
+
+TEST(Solid, PointsInsideAreFoundAgain) {
+  const auto mesh = box(Kind::both, 3, 3, 4, 0.15);
+  const mesh::Embedder embedder(*mesh);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  int in_hexahedra = 0;
+  for (int k = 0; k < 300; ++k) {
+    const Vector3 point = kEdge * Vector3(0.3 + 2.4 * uniform(random), 0.3 + 2.4 * uniform(random),
+                                          0.3 + 3.4 * uniform(random));
+    const mesh::EmbeddedPoint found = embedder.locate(point, mesh::Outside::error, "a point");
+    Vector3 sum = Vector3::Zero();
+    for (std::size_t a = 0; a < found.nodes.size(); ++a) {
+      sum += found.weights[a] * mesh->nodes.row(found.nodes[a]).transpose();
+    }
+    EXPECT_LT((sum - point).norm(), 1e-14);
+    in_hexahedra += found.nodes.size() == 8 ? 1 : 0;
+  }
+  EXPECT_GT(in_hexahedra, 50);
+  EXPECT_LT(in_hexahedra, 250);
+}
+
+TEST(Solid, RefusesHexahedraOfSmallStrain) {
+  const auto mesh = box(Kind::hexahedra, 1, 1, 1);
+  FemModelSettings settings;
+  settings.regions.push_back({.constants = {1e5, 0.4}, .density = 1.0});
+  try {
+    const FemModel model(mesh, settings);
+    FAIL() << "taken";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::unsupported_element);
+  }
+  auto turned = box(Kind::hexahedra, 1, 1, 1);
+  std::swap(turned->hexahedra[0][0], turned->hexahedra[0][4]);
+  EXPECT_THROW(FemModel(turned, settings_of(*turned, rubber())), Error);
+}
+
+}  // namespace
+}  // namespace sinew::fem
