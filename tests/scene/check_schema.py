@@ -66,7 +66,7 @@ INVALID = {
     "bodies.trunk.density": [1000],  # beside mass
     "bodies.trunk.mesh": [{"unit": "mm"}, {"file": "a", "unit": "g"}, {"shape": "ball"},
                           {"shape": "block", "length": 1}],
-    "bodies.trunk.material": ["ecoflex-00-30", {"young_modulus": 1}],
+    "bodies.trunk.material": ["ecoflex-00-03", {"young_modulus": 1}, {"model": "neo-hookean", "shear_modulus": 1}],
     "bodies.trunk.fixed": [[], {}, {"set": "a", "box": "0 0 0 1 1 1"}, {"box": "0 0 0 1 1"}],
     "actuators.long_0.type": ["pressure", "muscle"],
     "actuators.long_0.points": [[], ["0 0 0"], {"unit": "mm"}],

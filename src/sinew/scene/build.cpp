@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "sinew/mesh/selection.hpp"
 #include "sinew/scene/scene.hpp"
 #include "sinew/sim/model_builder.hpp"
@@ -35,17 +37,38 @@ mesh::Region region_of(const FixedRegion& fixed) {
   return mesh::NamedRegion{fixed.set};
 }
 
+void check_element(const BodyDescription& body, const mesh::Mesh& mesh) {
+  const bool tetrahedra = !mesh.tetrahedra.empty(), hexahedra = !mesh.hexahedra.empty();
+  const bool other =
+      (body.element == Element::tet4 && hexahedra) || (body.element == Element::hex8 && tetrahedra);
+  if (other) {
+    throw Error(ErrorKind::unsupported_element, body.element_place,
+                fmt::format("the mesh has {}", tetrahedra ? "tetrahedra" : "hexahedra"),
+                "leave `element` out, or give another mesh");
+  }
+  if (hexahedra && body.material.model != MaterialModel::hyperelastic) {
+    throw Error(ErrorKind::unsupported_element, body.material.place,
+                "the mesh has hexahedra, and the material is linear or corotational",
+                "give hexahedra a hyperelastic one, for instance model: neo-hookean");
+  }
+}
+
 fem::FemBodySettings fem_settings(const SceneDescription& scene, const BodyDescription& body) {
   fem::FemBodySettings settings;
   settings.name = body.name;
-  settings.mesh = std::make_shared<const mesh::Mesh>(make_mesh(body.mesh));
+  settings.mesh = std::make_shared<const mesh::Mesh>(make_mesh(body.mesh, body.element));
+  check_element(body, *settings.mesh);
   settings.gravity = scene.gravity;
   settings.damping = {body.mass_damping, body.stiffness_damping};
   fem::Region region;
-  region.constants = {body.material.young_modulus, body.material.poisson_ratio};
-  region.law = body.material.model == MaterialModel::linear ? material::Law::linear
-                                                            : material::Law::corotational;
-  region.density = body.density.value_or(0.0);
+  if (body.material.model == MaterialModel::hyperelastic) {
+    region.hyperelastic = body.material.energy;
+  } else {
+    region.constants = {body.material.young_modulus, body.material.poisson_ratio};
+    region.law = body.material.model == MaterialModel::linear ? material::Law::linear
+                                                              : material::Law::corotational;
+  }
+  region.density = body.density.value_or(body.mass ? 0.0 : body.material.density);
   settings.elements.regions.push_back(std::move(region));
   settings.elements.total_mass = body.mass;
   settings.elements.even_mass = body.mass_distribution == MassDistribution::even;

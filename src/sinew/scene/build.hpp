@@ -38,6 +38,8 @@ Robot build(SceneDescription description);
 Robot load(const std::filesystem::path& path, const std::vector<std::string>& overrides = {});
 
 /// The mesh that a description names, file or shape; in m, checked.
-mesh::Mesh make_mesh(const MeshDescription& description);
+/// @param description,element the shape, and what it is to be made of. Throws what
+///   mesh::read_mesh() does, and Error(unsupported-element) for shapes that have no hexahedra.
+mesh::Mesh make_mesh(const MeshDescription& description, Element element = Element::any);
 
 }  // namespace sinew::scene

@@ -17,6 +17,7 @@
 #include "sinew/core/types.hpp"
 #include "sinew/inverse/target.hpp"
 #include "sinew/linalg/factorisation.hpp"
+#include "sinew/material/hyperelastic.hpp"
 #include "sinew/mesh/embedding.hpp"
 #include "sinew/scene/node.hpp"
 #include "sinew/sim/signal.hpp"
@@ -28,7 +29,8 @@ inline constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 enum class Integrator { quasi_static, backward_euler };
 enum class Method { one_linearisation, newton };
 enum class Tangent { rotated, exact };
-enum class MaterialModel { linear, corotational };
+enum class MaterialModel { linear, corotational, hyperelastic };
+enum class Element { any, tet4, hex8 };
 enum class MassDistribution { volume, even };
 enum class MassMatrix { lumped, consistent };
 enum class PullPoint { world, body };
@@ -60,8 +62,10 @@ struct MeshDescription {
 struct MaterialDescription {
   Place place;
   MaterialModel model = MaterialModel::corotational;
-  double young_modulus = 0.0;  ///< Pa
+  material::Hyperelastic energy;  ///< when hyperelastic; the next two are then unused
+  double young_modulus = 0.0;     ///< Pa
   double poisson_ratio = 0.0;
+  double density = 0.0;  ///< kg/m^3 of a material of the library; else 0
   Place young_modulus_place, poisson_ratio_place;
 };
 
@@ -83,6 +87,8 @@ struct BodyDescription {
   std::string name;
   Place place;
   MeshDescription mesh;
+  Element element = Element::any;
+  Place element_place;
   MaterialDescription material;
   std::optional<double> mass;     ///< kg, total; not together with density
   std::optional<double> density;  ///< kg/m^3

@@ -1,4 +1,9 @@
 // The tables of bodies: mesh, material, mass, damping, fixed regions.
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "sinew/material/library.hpp"
 #include "sinew/scene/grammar_forms.hpp"
 
 namespace sinew::scene::forms {
@@ -83,40 +88,134 @@ std::shared_ptr<const KeyTable> mesh_file_table() {
                  .description = "What one unit of the file's coordinates is."}}});
 }
 
-Form material_form() {
-  Range above_zero = positive();
-  above_zero.kind = ErrorKind::invalid_material;
-  const Range poisson{.min = -1.0,
-                      .max = 0.5,
-                      .above_min = true,
-                      .below_max = true,
-                      .kind = ErrorKind::invalid_material};
-  return table(make_table(
-      {.name = "material",
-       .description = "The elastic law and its constants.",
-       .keys = {
-           {.name = "model",
-            .forms = {choice(
-                {{"corotational", "Linear about the rotated element: large bending, small strain."},
-                 {"linear", "Small displacements and strains."},
-                 {"neo-hookean", "Hyperelastic.", true},
-                 {"mooney-rivlin", "Hyperelastic.", true},
-                 {"saint-venant-kirchhoff", "Hyperelastic.", true},
-                 {"yeoh", "Hyperelastic.", true},
-                 {"ogden", "Hyperelastic.", true}})},
-            .example = "corotational",
-            .default_text = "corotational",
-            .description = "The elastic law."},
-           {.name = "young_modulus",
-            .forms = {quantity(stress(), above_zero)},
-            .example = "450 kPa",
-            .description = "Young's modulus.",
-            .required = true},
-           {.name = "poisson_ratio",
-            .forms = {quantity(plain_number(), poisson)},
-            .example = "0.45",
-            .description = "Poisson's ratio, between -1 and 0.5. Linear tetrahedra lock near 0.5.",
-            .required = true}}}));
+Range material_range(double min, double max = std::numeric_limits<double>::infinity()) {
+  return {.min = min,
+          .max = max,
+          .above_min = true,
+          .below_max = true,
+          .kind = ErrorKind::invalid_material};
+}
+
+Key modulus(const char* name, const char* example, const char* description, bool required = true,
+            bool any_sign = false) {
+  const Range range = any_sign ? any() : material_range(0.0);
+  return {.name = name,
+          .forms = {quantity(stress(), range)},
+          .example = example,
+          .description = description,
+          .required = required};
+}
+
+Key poisson_ratio(bool required, const char* description) {
+  return {.name = "poisson_ratio",
+          .forms = {quantity(plain_number(), material_range(-1.0, 0.5))},
+          .example = "0.45",
+          .description = description,
+          .required = required};
+}
+
+std::vector<Key> small_strain_keys() {
+  return {
+      modulus("young_modulus", "450 kPa", "Young's modulus."),
+      poisson_ratio(true, "Poisson's ratio, between -1 and 0.5. Linear tetrahedra lock near 0.5.")};
+}
+
+/// A hyperelastic law: its own keys, and one of the two that say how little it is compressible.
+Choice energy(const char* word, const char* description, std::vector<Key> keys,
+              std::vector<Alternatives> alternatives = {}) {
+  keys.push_back(poisson_ratio(
+      false, "That of small strain, below 0.5: 0.49 to 0.4999 for rubbers on hexahedra."));
+  keys.push_back(modulus("bulk_modulus", "1 MPa", "In place of poisson_ratio.", false));
+  alternatives.push_back({{"poisson_ratio", "bulk_modulus"}, true});
+  return {.word = word,
+          .description = description,
+          .table = make_table({.name = std::string("material: model ") + word,
+                               .description = description,
+                               .keys = std::move(keys),
+                               .alternatives = std::move(alternatives)})};
+}
+
+Choice small_strain(const char* word, const char* description) {
+  return {.word = word,
+          .description = description,
+          .table = make_table({.name = std::string("material: model ") + word,
+                               .description = description,
+                               .keys = small_strain_keys()})};
+}
+
+std::vector<Key> ogden_keys() {
+  constexpr int kMostTerms = 6;
+  Form moduli = quantity(stress(), any());
+  moduli.max_count = kMostTerms;
+  return {
+      {.name = "mu",
+       .forms = {moduli},
+       .example = "24.361 0.066703 -0.45381 kPa",
+       .description = "Moduli, one to six.",
+       .required = true},
+      {.name = "alpha",
+       .forms = {numbers(1, kMostTerms, any())},
+       .example = "1.7138 7.0679 -3.3659",
+       .description = "Exponents, as many.",
+       .required = true},
+      {.name = "convention",
+       .forms = {choice({{"mu-over-alpha", "sum mu/alpha (...), Ogden's own."},
+                         {"two-mu-over-alpha-squared",
+                          "sum 2 mu/alpha^2 (...): mu adds up to the initial shear modulus."}})},
+       .example = "mu-over-alpha",
+       .description = "How the moduli are meant; sources differ, and stiffness with them.",
+       .required = true}};
+}
+
+/// Laws by name, told by `model`.
+Form law_form() {
+  const Key shear = modulus("shear_modulus", "24.4 kPa", "Initial shear modulus.", false);
+  Key c20 = modulus("c20", "-0.2 kPa", "Of (I - 3)^2.", false, true);
+  Key c30 = modulus("c30", "0.03 kPa", "Of (I - 3)^3.", false, true);
+  c20.default_text = c30.default_text = "0 Pa";
+  return variants(
+      "model",
+      {small_strain("corotational",
+                    "Linear about the rotated element: large bending, small strain."),
+       small_strain("linear", "Small displacements and strains."),
+       energy("neo-hookean", "mu/2 (I - 3) and kappa/2 (J - 1)^2.",
+              {shear, modulus("young_modulus", "72 kPa", "In place of shear_modulus.", false)},
+              {{{"shear_modulus", "young_modulus"}, true}}),
+       energy("mooney-rivlin", "C10 (I - 3) + C01 (II - 3).",
+              {modulus("c10", "12.18 kPa", "Of I - 3.", true, true),
+               modulus("c01", "1 kPa", "Of II - 3.", true, true)}),
+       energy("yeoh", "C10 (I - 3) + C20 (I - 3)^2 + C30 (I - 3)^3.",
+              {modulus("c10", "12 kPa", "Of I - 3; half the initial shear modulus."), c20, c30}),
+       energy("ogden", "A sum of powers of the principal stretches.", ogden_keys()),
+       energy("arruda-boyce", "Eight chains of finite length, five terms of their series.",
+              {modulus("shear_modulus", "20 kPa", "mu of the series."),
+               {.name = "locking_stretch",
+                .forms = {quantity(plain_number(), material_range(1.0))},
+                .example = "3.5",
+                .description = "Where the chains are straight.",
+                .required = true}}),
+       {.word = "saint-venant-kirchhoff",
+        .description = "Linear in the Green strain: large rotation, small strain; softens and "
+                       "collapses in compression.",
+        .table = make_table({.name = "material: model saint-venant-kirchhoff",
+                             .description = "Linear in the Green strain.",
+                             .keys = small_strain_keys()})}});
+}
+
+/// A law, the usual one by its constants alone, or a name of the library.
+std::vector<Form> material_forms() {
+  const auto usual = make_table({.name = "material",
+                                 .description = "The corotational law, when `model` is left out.",
+                                 .keys = small_strain_keys()});
+  std::vector<Choice> library;
+  for (const material::NamedMaterial& named : material::material_library()) {
+    std::string description =
+        fmt::format("{}, {}, {:g} kg/m^3, nu_0 {:g}. {}.", named.trade_name, named.law,
+                    named.density, material::kLibraryPoissonRatio, named.source);
+    if (!named.remark.empty()) description += " " + named.remark;
+    library.push_back({.word = named.name, .description = std::move(description)});
+  }
+  return {law_form(), table(usual, "young_modulus"), choice(std::move(library))};
 }
 
 std::shared_ptr<const KeyTable> sphere_table() {
@@ -223,23 +322,27 @@ std::shared_ptr<const KeyTable> fem_table() {
   KeyTable fem{.name = "body: type fem",
                .description = "A deformable body of finite elements.",
                .alternatives = {{{"mass", "density"}, false}}};
-  fem.keys = {{.name = "mesh",
-               .forms = {table(mesh_file_table(), "file"), mesh_shape()},
-               .example = "{file: trunk.vtk, unit: mm}",
-               .description = "The shape at rest.",
-               .required = true},
-              {.name = "element",
-               .forms = {choice({{"tet4", "Linear tetrahedra."},
-                                 {"tet10", "Quadratic tetrahedra.", true},
-                                 {"hex8", "Hexahedra.", true}})},
-               .example = "tet4",
-               .default_text = "tet4",
-               .description = "The finite element."},
-              {.name = "material",
-               .forms = {material_form(), later(text())},
-               .example = "{young_modulus: 450 kPa, poisson_ratio: 0.45}",
-               .description = "What it is made of.",
-               .required = true}};
+  fem.keys = {
+      {.name = "mesh",
+       .forms = {table(mesh_file_table(), "file"), mesh_shape()},
+       .example = "{file: trunk.vtk, unit: mm}",
+       .description = "The shape at rest.",
+       .required = true},
+      {.name = "element",
+       .forms = {choice({{"tet4", "Linear tetrahedra."},
+                         {"tet10", "Quadratic tetrahedra.", true},
+                         {"hex8",
+                          "Trilinear hexahedra with the pressure of their mean dilatation: "
+                          "no locking in volume. For hyperelastic materials."}})},
+       .example = "hex8",
+       .description = "The finite element. Without: what a mesh file holds, tet4 for shapes; "
+                      "hex8 among shapes is for blocks."},
+      {.name = "material",
+       .forms = material_forms(),
+       .example = "{young_modulus: 450 kPa, poisson_ratio: 0.45}",
+       .description = "What it is made of: a law, or a name of the library such as "
+                      "ecoflex-00-30.",
+       .required = true}};
   for (Key& key : mass_keys()) fem.keys.push_back(std::move(key));
   fem.keys.push_back({.name = "damping",
                       .forms = {table(damping_table())},

@@ -37,7 +37,7 @@ int matching(double length, double width, int across) {
   return std::max(1, static_cast<int>(std::lround(length / width * across)));
 }
 
-mesh::Mesh make_block(const Parameters& p) {
+mesh::Mesh make_block(const Parameters& p, Element element) {
   mesh::BlockShape shape;
   shape.size = {p.get("length", shape.size.x()), p.get("width", shape.size.y()),
                 p.get("height", shape.size.z())};
@@ -46,7 +46,7 @@ mesh::Mesh make_block(const Parameters& p) {
     shape.cells[static_cast<std::size_t>(c)] =
         p.cells(shape.size[c], matching(shape.size[c], smallest, 2));
   }
-  return mesh::block(shape);
+  return element == Element::hex8 ? mesh::hexahedral_block(shape) : mesh::block(shape);
 }
 
 mesh::Mesh make_cylinder(const Parameters& p) {
@@ -97,9 +97,14 @@ mesh::Mesh make_trunk(const Parameters& p) {
   return mesh::trunk(shape);
 }
 
-mesh::Mesh make_shape(const MeshDescription& description) {
+mesh::Mesh make_shape(const MeshDescription& description, Element element) {
+  if (element == Element::hex8 && description.shape != "block") {
+    throw Error(ErrorKind::unsupported_element, description.place,
+                fmt::format("the shape '{}' has no hexahedra", description.shape),
+                "leave `element` out, or give a mesh file of hexahedra");
+  }
   const Parameters parameters(description);
-  if (description.shape == "block") return make_block(parameters);
+  if (description.shape == "block") return make_block(parameters, element);
   if (description.shape == "cylinder") return make_cylinder(parameters);
   if (description.shape == "cone") return make_cone(parameters);
   if (description.shape == "hollow-cylinder") return make_tube(parameters);
@@ -111,9 +116,9 @@ mesh::Mesh make_shape(const MeshDescription& description) {
 
 }  // namespace
 
-mesh::Mesh make_mesh(const MeshDescription& description) {
+mesh::Mesh make_mesh(const MeshDescription& description, Element element) {
   try {
-    if (!description.shape.empty()) return make_shape(description);
+    if (!description.shape.empty()) return make_shape(description, element);
     mesh::ReadOptions options;
     options.unit = description.unit;
     options.unit_given = description.unit_place.line > 0 || description.unit != 1.0;

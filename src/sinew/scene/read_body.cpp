@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "sinew/material/library.hpp"
 #include "sinew/scene/readers.hpp"
 
 namespace sinew::scene {
@@ -29,17 +30,96 @@ MeshDescription read_mesh(const Fields& body, const ReadContext& context) {
   return mesh;
 }
 
+material::Hyperelastic read_ogden(const Fields& fields) {
+  std::vector<double> mu, alpha;
+  fields.read_numbers("mu", mu);
+  fields.read_numbers("alpha", alpha);
+  if (mu.size() != alpha.size()) {
+    throw Error(ErrorKind::wrong_length, fields.place("alpha"),
+                fmt::format("there are {} moduli and {} exponents", mu.size(), alpha.size()),
+                "give one exponent for each modulus");
+  }
+  auto convention = material::OgdenConvention::mu_over_alpha;
+  fields.read_choice(
+      "convention", convention,
+      {{"mu-over-alpha", material::OgdenConvention::mu_over_alpha},
+       {"two-mu-over-alpha-squared", material::OgdenConvention::two_mu_over_alpha_squared}});
+  std::vector<material::OgdenTerm> terms;
+  for (std::size_t k = 0; k < mu.size(); ++k) {
+    if (alpha[k] == 0.0) {
+      throw Error(ErrorKind::invalid_material, fields.place("alpha"), "an exponent is 0",
+                  "give one that is not, for instance 2");
+    }
+    terms.push_back({mu[k], alpha[k]});
+  }
+  return material::ogden(terms, convention);
+}
+
+material::Hyperelastic read_energy(const std::string& model, const Fields& fields) {
+  const auto number = [&](const char* key) {
+    double value = 0.0;
+    fields.read(key, value);
+    return value;
+  };
+  double poisson = 0.0;
+  const bool by_ratio = fields.read("poisson_ratio", poisson);
+  material::Hyperelastic energy;
+  if (model == "neo-hookean") {
+    const double young = number("young_modulus"), bulk = number("bulk_modulus");
+    double shear = number("shear_modulus");
+    if (young > 0.0) {
+      shear =
+          by_ratio ? young / (2.0 * (1.0 + poisson)) : 3.0 * bulk * young / (9.0 * bulk - young);
+    }
+    energy = material::neo_hookean(shear);
+  } else if (model == "mooney-rivlin") {
+    energy = material::mooney_rivlin(number("c10"), number("c01"));
+  } else if (model == "yeoh") {
+    energy = material::yeoh({number("c10"), number("c20"), number("c30")});
+  } else if (model == "ogden") {
+    energy = read_ogden(fields);
+  } else if (model == "arruda-boyce") {
+    energy = material::arruda_boyce(number("shear_modulus"), number("locking_stretch"));
+  } else {
+    return material::saint_venant_kirchhoff(number("young_modulus"), number("poisson_ratio"));
+  }
+  energy.bulk_modulus = by_ratio ? material::bulk_modulus_of(energy.shear_modulus(), poisson)
+                                 : number("bulk_modulus");
+  return energy;
+}
+
 MaterialDescription read_material(const Fields& body) {
   MaterialDescription material;
   material.place = body.place("material");
+  if (body.form("material").shape == Shape::choice) {
+    std::string name;
+    body.read_word("material", name);
+    const material::NamedMaterial& named = material::named_material(name);
+    material.model = MaterialModel::hyperelastic;
+    material.energy = named.energy;
+    material.density = named.density;
+    return material;
+  }
   const Fields fields = body.below("material");
-  fields.read_choice(
-      "model", material.model,
-      {{"linear", MaterialModel::linear}, {"corotational", MaterialModel::corotational}});
-  fields.read("young_modulus", material.young_modulus);
-  fields.read("poisson_ratio", material.poisson_ratio);
-  material.young_modulus_place = fields.place("young_modulus");
-  material.poisson_ratio_place = fields.place("poisson_ratio");
+  std::string model = "corotational";
+  if (body.form("material").shape == Shape::variants) {
+    model = read_text(*fields.map().find(body.form("material").telltale));
+  }
+  if (model == "linear" || model == "corotational") {
+    material.model = model == "linear" ? MaterialModel::linear : MaterialModel::corotational;
+    fields.read("young_modulus", material.young_modulus);
+    fields.read("poisson_ratio", material.poisson_ratio);
+    material.young_modulus_place = fields.place("young_modulus");
+    material.poisson_ratio_place = fields.place("poisson_ratio");
+    return material;
+  }
+  material.model = MaterialModel::hyperelastic;
+  material.energy = read_energy(model, fields);
+  try {
+    material.energy.validate("material");
+  } catch (const Error& error) {
+    throw error.at(material.place);
+  }
   return material;
 }
 
@@ -127,6 +207,8 @@ BodyDescription read_body(const Node::Entry& entry, const ReadContext& context) 
   const Form& form = form_of(grammar(), "bodies", Shape::names).items.front();
   const Fields fields(entry.value, form);
   body.mesh = read_mesh(fields, context);
+  fields.read_choice("element", body.element, {{"tet4", Element::tet4}, {"hex8", Element::hex8}});
+  body.element_place = fields.place("element");
   body.material = read_material(fields);
   read_mass(fields, body);
   const Fields damping = fields.below("damping");

@@ -27,6 +27,16 @@ void check_limits(const Limits& limits, const char* what, const ActuatorModel& a
   }
 }
 
+void hash_energy(StateHash& hash, const material::Hyperelastic& energy) {
+  for (const material::PowerTerm& term : energy.powers) {
+    hash.add(term.coefficient);
+    hash.add(term.exponent);
+  }
+  hash.add(energy.polynomial);
+  hash.add(energy.bulk_modulus);
+  hash.add(energy.saint_venant_shear);
+}
+
 void hash_points(StateHash& hash, const Points& points) {
   hash.add({points.data(), static_cast<std::size_t>(points.size())});
 }
@@ -262,6 +272,7 @@ std::shared_ptr<const Model> ModelBuilder::build(const linalg::FactorisationSett
       for (const auto& region : fem->settings().elements.regions) {
         hash.add(region.constants.young_modulus);
         hash.add(region.constants.poisson_ratio);
+        if (region.hyperelastic) hash_energy(hash, *region.hyperelastic);
       }
       hash.add(static_cast<double>(fem->elements().free_count()));
     }
