@@ -75,7 +75,7 @@ Json body_json(const mechanics::BodyModel& model, const Surface& surface) {
           {"vertices", surface.nodes.size()},
           {"triangles", surface.triangles.size() / 3},
           {"nodes", fem.mesh().nodes.rows()},
-          {"elements", fem.mesh().tetrahedra.size()}};
+          {"elements", fem.mesh().tetrahedra.size() + fem.mesh().hexahedra.size()}};
 }
 
 Json bounds_json(const sim::Model& model) {

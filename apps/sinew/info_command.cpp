@@ -146,11 +146,13 @@ void add_body(Facts& facts, const mechanics::BodyModel& model) {
                                   {"nodes", body->mesh().node_count()},
                                   {"free_nodes", body->elements().free_count()},
                                   {"tetrahedra", body->mesh().tetrahedra.size()},
+                                  {"hexahedra", body->mesh().hexahedra.size()},
                                   {"mass_kg", body->elements().total_mass()},
                                   {"volume_m3", body->elements().volume()}});
-  facts.text += fmt::format("  body {}: {} nodes ({} free), {} tetrahedra, {:.4g} g, {:.4g} cm^3\n",
+  facts.text += fmt::format("  body {}: {} nodes ({} free), {} elements, {:.4g} g, {:.4g} cm^3\n",
                             body->name(), body->mesh().node_count(), body->elements().free_count(),
-                            body->mesh().tetrahedra.size(), 1e3 * body->elements().total_mass(),
+                            body->mesh().tetrahedra.size() + body->mesh().hexahedra.size(),
+                            1e3 * body->elements().total_mass(),
                             1e6 * body->elements().volume());
 }
 

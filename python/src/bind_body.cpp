@@ -159,6 +159,14 @@ void bind_mesh_of(py::class_<Body>& type) {
           },
           "(m, 4) ndarray of int32: the nodes of every tetrahedron, positively oriented. "
           "Read-only.")
+      .def_property_readonly(
+          "hexahedra",
+          [](const Body& self) {
+            const auto& list = body(self).fem_model().mesh().hexahedra;
+            return view<NodeId>(list.empty() ? nullptr : list.front().data(),
+                                static_cast<py::ssize_t>(list.size()), 8, py::cast(self.session));
+          },
+          "(m, 8) ndarray of int32: the nodes of every hexahedron, in VTK's order. Read-only.")
       .def_property_readonly("fixed", &fixed,
                              "(n,) ndarray of bool: nodes that never move: fixed ones and those "
                              "that belong to no element.")
@@ -250,9 +258,10 @@ void bind_body(py::module_& module) {
   type.def_property_readonly(
           "name", [](const Body& self) { return name(self); }, "str: as in the scene.")
       .def("__repr__", [](const Body& self) {
-        return fmt::format("<sinew.Body '{}', {} nodes, {} tetrahedra>", name(self),
+        const mesh::Mesh& mesh = body(self).fem_model().mesh();
+        return fmt::format("<sinew.Body '{}', {} nodes, {} elements>", name(self),
                            body(self).positions().rows(),
-                           body(self).fem_model().mesh().tetrahedra.size());
+                           mesh.tetrahedra.size() + mesh.hexahedra.size());
       });
   bind_state(type);
   bind_mesh_of(type);

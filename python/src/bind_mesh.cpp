@@ -109,8 +109,8 @@ Parameters
 path : path-like
 )")
       .def("__repr__", [](const Mesh& self) {
-        return fmt::format("<sinew.mesh.Mesh '{}', {} nodes, {} tetrahedra>", self.name,
-                           self.nodes.rows(), self.tetrahedra.size());
+        return fmt::format("<sinew.mesh.Mesh '{}', {} nodes, {} elements>", self.name,
+                           self.nodes.rows(), self.tetrahedra.size() + self.hexahedra.size());
       });
 }
 

@@ -16,6 +16,14 @@ import sinew
 HERE = {"port": 0, "open_browser": False}
 
 
+@pytest.fixture(autouse=True)
+def hears_interrupts():
+    """Python does not listen for Ctrl-C where it was started in the background."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
 def test_a_script_that_is_watched_gets_the_same_bits(scene):
     watched, alone = sinew.load(scene), sinew.load(scene)
     with sinew.view(watched, block=False, **HERE) as view:

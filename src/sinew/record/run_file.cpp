@@ -111,20 +111,26 @@ mesh::Mesh RunFile::rest_mesh(std::string_view body) const {
   require_known(file.path(), content_->bodies, body);
   const std::string folder = "/mesh/" + std::string(body);
   const auto nodes = file.shape(folder + "/nodes");
-  const auto elements = file.shape(folder + "/tetrahedra");
-  if (nodes.size() != 2 || elements.size() != 2) file.fail(folder + " holds no mesh");
+  if (nodes.size() != 2) file.fail(folder + " holds no mesh");
   const std::vector<double> numbers = file.numbers(folder + "/nodes", {nodes[0], 3});
-  const std::vector<std::int32_t> corners = file.integers(folder + "/tetrahedra", {elements[0], 4});
   mesh::Mesh mesh;
   mesh.name = file.path() + ": " + std::string(body);
   mesh.nodes = Eigen::Map<const Points>(numbers.data(), static_cast<Eigen::Index>(nodes[0]), 3);
-  mesh.tetrahedra.resize(elements[0]);
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    if (corners[i] < 0 || static_cast<std::uint64_t>(corners[i]) >= nodes[0]) {
-      file.fail(fmt::format("{} has node {} of {}", folder, corners[i], nodes[0]));
+  const auto read = [&](const char* kind, auto& list) {
+    constexpr std::size_t kCorners = std::tuple_size_v<std::decay_t<decltype(list[0])>>;
+    const auto shape = file.shape(folder + kind);
+    if (shape.size() != 2) file.fail(folder + " holds no mesh");
+    const std::vector<std::int32_t> corners = file.integers(folder + kind, {shape[0], kCorners});
+    list.resize(shape[0]);
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      if (corners[i] < 0 || static_cast<std::uint64_t>(corners[i]) >= nodes[0]) {
+        file.fail(fmt::format("{} has node {} of {}", folder, corners[i], nodes[0]));
+      }
+      list[i / kCorners][i % kCorners] = corners[i];
     }
-    mesh.tetrahedra[i / 4][i % 4] = corners[i];
-  }
+  };
+  read("/tetrahedra", mesh.tetrahedra);
+  read("/hexahedra", mesh.hexahedra);
   return mesh;
 }
 

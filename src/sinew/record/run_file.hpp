@@ -42,7 +42,7 @@ class RunFile {
   /// Whether positions of all nodes were recorded.
   bool has_states() const;
 
-  /// The mesh of a body at rest, unchecked: nodes and tetrahedra. Throws Error(unknown-name),
+  /// The mesh of a body at rest, unchecked: nodes and elements. Throws Error(unknown-name),
   /// Error(malformed-file).
   /// @param body its name.
   mesh::Mesh rest_mesh(std::string_view body) const;

@@ -14,7 +14,7 @@
 namespace sinew::record {
 
 /// Version of the layout of run.h5; readers refuse others.
-inline constexpr std::int64_t kRunFormatVersion = 1;
+inline constexpr std::int64_t kRunFormatVersion = 2;
 
 /// What to record and where.
 struct RecordSettings {

@@ -58,9 +58,14 @@ void RunStates::declare_bodies(bool states) {
     const std::string folder = "/mesh/" + name;
     file_.dataset(folder + "/nodes", {nodes, 3}, numbers(mesh.nodes));
     file_.attribute(folder + "/nodes", "unit", std::string_view("m"));
-    const NodeId* first = mesh.tetrahedra.empty() ? nullptr : mesh.tetrahedra[0].data();
-    file_.dataset(folder + "/tetrahedra", {mesh.tetrahedra.size(), 4},
-                  std::span<const std::int32_t>(first, 4 * mesh.tetrahedra.size()));
+    const auto elements = [&](const char* kind, const auto& list) {
+      const std::size_t corners = std::tuple_size_v<std::decay_t<decltype(list[0])>>;
+      const NodeId* first = list.empty() ? nullptr : list[0].data();
+      file_.dataset(folder + kind, {list.size(), corners},
+                    std::span<const std::int32_t>(first, corners * list.size()));
+    };
+    elements("/tetrahedra", mesh.tetrahedra);
+    elements("/hexahedra", mesh.hexahedra);
     if (!states) continue;
     positions_.push_back(declare("/positions/" + name, {nodes, 3}, "m"));
     if (moving) velocities_.push_back(declare("/velocities/" + name, {nodes, 3}, "m/s"));
