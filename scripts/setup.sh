@@ -15,7 +15,7 @@ minimal="build-essential cmake ninja-build pkg-config
 further="git libgtest-dev libgmock-dev libbenchmark-dev
   python3-scipy python3-matplotlib python3-meshio python3-h5py python3-tqdm python3-yaml
   python3-pytest python3-cvxopt python3-jsonschema
-  gmsh doxygen graphviz clang clang-format clang-tidy libclang-rt-dev chromium"
+  gmsh calculix-ccx doxygen graphviz clang clang-format clang-tidy libclang-rt-dev chromium"
 
 # The view's page is bundled by Node.js. One that did not come from Debian (and brings its own npm,
 # with which Debian's npm cannot be installed) is as good.
