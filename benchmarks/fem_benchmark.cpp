@@ -1,10 +1,12 @@
 /// @file
-/// Time to evaluate all elements and assemble forces and matrix, by mesh, tangent and threads.
+/// Time to evaluate all elements and assemble forces and matrix, by mesh, material, tangent and
+/// threads; us_an_element is the same per element.
 /// Meshes: `SINEW_BENCHMARK_MESHES` names VTK files in mm, separated by ':'; without it, blocks of
 /// about the size of a small and of a large robot.
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -13,6 +15,7 @@
 
 #include "sinew/fem/assembly.hpp"
 #include "sinew/mesh/read.hpp"
+#include "sinew/mesh/shapes.hpp"
 
 #include "block_mesh.hpp"
 
@@ -53,17 +56,38 @@ void evaluate(benchmark::State& state, const std::shared_ptr<const fem::FemModel
     assembly.evaluate(positions, {.tangent = tangent});
     benchmark::DoNotOptimize(assembly.matrix().data());
   }
-  state.counters["elements"] = static_cast<double>(model->mesh().tetrahedra.size());
+  const auto elements =
+      static_cast<double>(model->mesh().tetrahedra.size() + model->mesh().hexahedra.size());
+  state.counters["elements"] = elements;
+  state.counters["us_an_element"] = benchmark::Counter(
+      1e-6 * elements, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
   state.counters["smallest_ratio"] = assembly.minimum_volume_ratio();
   state.counters["MB"] = static_cast<double>(assembly.bytes()) * 1e-6;
 }
 
-void add_benchmarks(const std::shared_ptr<const mesh::Mesh>& mesh) {
+material::Hyperelastic ogden3() {
+  material::Hyperelastic law =
+      material::ogden({{24361.0, 1.7138}, {66.703, 7.0679}, {-453.81, -3.3659}},
+                      material::OgdenConvention::mu_over_alpha);
+  law.bulk_modulus = material::bulk_modulus_of(law.shear_modulus(), 0.49);
+  return law;
+}
+
+material::Hyperelastic neo_hookean() {
+  material::Hyperelastic law = material::neo_hookean(25e3);
+  law.bulk_modulus = material::bulk_modulus_of(25e3, 0.49);
+  return law;
+}
+
+/// @param material "" for the corotational one.
+void add_benchmarks(const std::shared_ptr<const mesh::Mesh>& mesh, const std::string& material,
+                    const std::optional<material::Hyperelastic>& law) {
   const Eigen::Index axis = longest_axis(*mesh);
   const double bottom = mesh->nodes.col(axis).minCoeff();
   const double height = mesh->nodes.col(axis).maxCoeff() - bottom;
   fem::FemModelSettings settings;
   settings.regions.push_back({.constants = {450e3, 0.45}, .density = 1070.0, .elements = {}});
+  settings.regions.back().hyperelastic = law;
   for (NodeId node = 0; node < mesh->node_count(); ++node) {
     if (mesh->nodes(node, axis) < bottom + 0.05 * height) settings.fixed_nodes.push_back(node);
   }
@@ -73,7 +97,7 @@ void add_benchmarks(const std::shared_ptr<const mesh::Mesh>& mesh) {
                                                             {"exact", fem::Tangent::exact}};
   for (const auto& [name, tangent] : kTangents) {
     benchmark::RegisterBenchmark(
-        (std::filesystem::path(mesh->name).stem().string() + "/" + name).c_str(),
+        (std::filesystem::path(mesh->name).stem().string() + "/" + material + "/" + name).c_str(),
         [model, tangent = tangent](benchmark::State& state) { evaluate(state, model, tangent); })
         ->ArgName("threads")
         ->Arg(1)
@@ -105,6 +129,16 @@ std::vector<std::shared_ptr<const mesh::Mesh>> meshes() {
 
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
-  for (const auto& mesh : meshes()) add_benchmarks(mesh);
+  for (const auto& mesh : meshes()) {
+    add_benchmarks(mesh, "corotational", std::nullopt);
+    add_benchmarks(mesh, "neo-hookean", neo_hookean());
+    add_benchmarks(mesh, "ogden-3", ogden3());
+  }
+  mesh::BlockShape shape;
+  shape.size = {0.26, 0.03, 0.03};
+  shape.cells = {52, 6, 6};
+  const auto hexahedra = std::make_shared<const mesh::Mesh>(mesh::hexahedral_block(shape));
+  add_benchmarks(hexahedra, "neo-hookean", neo_hookean());
+  add_benchmarks(hexahedra, "ogden-3", ogden3());
   benchmark::RunSpecifiedBenchmarks();
 }

@@ -92,9 +92,13 @@ struct Sums {
   Lanes spread[N][3] = {};  // b_a = dV/dx_a
   Lanes block[kPairs][9] = {};
 
+  /// Gradients of a tetrahedron's nodes sum to zero, and so do rows and columns of its blocks:
+  /// those of the first node follow from the others.
+  static constexpr int kFirst = N == 4 ? 1 : 0;
+
   SINEW_INLINE void add_tangent(const material::Lanes9x9& a9, const Lanes (&g)[N][3],
                                 const Lanes& weight) {
-    for (int b = 0; b < N; ++b) {
+    for (int b = kFirst; b < N; ++b) {
       Lanes t[9][3];  // (3 i + j, r): sum over c of A(i j, r c) g_b c
       for (int ij = 0; ij < 9; ++ij) {
         for (int r = 0; r < 3; ++r) {
@@ -102,7 +106,7 @@ struct Sums {
                                a9.m[ij][3 * r + 2] * g[b][2]);
         }
       }
-      for (int a = 0; a <= b; ++a) {
+      for (int a = kFirst; a <= b; ++a) {
         Lanes* k = block[SolidGroup::pair(a, b)];
         for (int i = 0; i < 3; ++i) {
           for (int r = 0; r < 3; ++r) {
@@ -113,9 +117,28 @@ struct Sums {
       }
     }
   }
+  SINEW_INLINE void complete() {
+    if constexpr (N == 4) {
+      for (int i = 0; i < 3; ++i) {
+        for (int r = 0; r < 3; ++r) {
+          Lanes corner = lanes(0.0);
+          for (int b = 1; b < 4; ++b) {
+            Lanes sum = lanes(0.0);
+            for (int a = 1; a < 4; ++a) {
+              sum += a <= b ? block[SolidGroup::pair(a, b)][3 * i + r]
+                            : block[SolidGroup::pair(b, a)][3 * r + i];
+            }
+            block[SolidGroup::pair(0, b)][3 * i + r] = -sum;
+            corner += sum;
+          }
+          block[SolidGroup::pair(0, 0)][3 * i + r] = corner;
+        }
+      }
+    }
+  }
   SINEW_INLINE void add_dilatation(const Lanes& stiffness) {
-    for (int b = 0; b < N; ++b) {
-      for (int a = 0; a <= b; ++a) {
+    for (int b = kFirst; b < N; ++b) {
+      for (int a = kFirst; a <= b; ++a) {
         Lanes* k = block[SolidGroup::pair(a, b)];
         for (int i = 0; i < 3; ++i) {
           const Lanes scaled = stiffness * spread[a][i];
@@ -197,6 +220,7 @@ void evaluate(const SolidGroup& group, int begin, int end, const double* points,
     output.energy[b] = sum(energy);
     if constexpr (kTangent != Tangent::none) {
       if (split) sums.add_dilatation(mean.stiffness);
+      sums.complete();
       sums.store_blocks(output.blocks +
                         kSolidBlock * (group.first_block + Sums<N>::kPairs * kLanes * b));
     }

@@ -90,6 +90,14 @@ SINEW_INLINE Lanes power(const Lanes& x, const Lanes& log_x, double a) {
   return load(part);
 }
 
+/// x^(-1/3).
+SINEW_INLINE Lanes inverse_cube_root(const Lanes& x) {
+  alignas(64) double part[kLanes];
+  store(part, x);
+  for (double& y : part) y = std::cbrt(y);
+  return 1.0 / load(part);
+}
+
 SINEW_INLINE Lanes logarithm(const Lanes& x) {
   alignas(64) double part[kLanes];
   store(part, x);
@@ -181,13 +189,15 @@ SINEW_INLINE LanesLogResponse respond(const Hyperelastic& law, const Principal& 
     detail::add_saint_venant(law, at.stretch, result);
     return result;
   }
-  Lanes logs[3], isochoric[3];
-  for (int i = 0; i < 3; ++i) logs[i] = detail::logarithm(at.stretch[i]);
-  const Lanes mean = (logs[0] + logs[1] + logs[2]) / 3.0;
-  for (int i = 0; i < 3; ++i) logs[i] -= mean;
   const Lanes zero = lanes(0.0);
-  const Lanes scale = detail::power(zero, -mean, 1.0);
-  for (int i = 0; i < 3; ++i) isochoric[i] = scale * at.stretch[i];
+  const Lanes scale = detail::inverse_cube_root(at.stretch[0] * at.stretch[1] * at.stretch[2]);
+  Lanes logs[3] = {zero, zero, zero}, isochoric[3];
+  bool needs_logs = false;  // squares and their inverses do without
+  for (const PowerTerm& term : law.powers) needs_logs |= std::abs(term.exponent) != 2.0;
+  for (int i = 0; i < 3; ++i) {
+    isochoric[i] = scale * at.stretch[i];
+    if (needs_logs) logs[i] = detail::logarithm(isochoric[i]);
+  }
   const auto sum_of = [&](double exponent) {
     detail::LanesPowerSum sum;
     sum.exponent = exponent;
