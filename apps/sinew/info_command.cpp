@@ -152,8 +152,7 @@ void add_body(Facts& facts, const mechanics::BodyModel& model) {
   facts.text += fmt::format("  body {}: {} nodes ({} free), {} elements, {:.4g} g, {:.4g} cm^3\n",
                             body->name(), body->mesh().node_count(), body->elements().free_count(),
                             body->mesh().tetrahedra.size() + body->mesh().hexahedra.size(),
-                            1e3 * body->elements().total_mass(),
-                            1e6 * body->elements().volume());
+                            1e3 * body->elements().total_mass(), 1e6 * body->elements().volume());
 }
 
 Facts scene_facts(const InfoOptions& options) {

@@ -80,7 +80,8 @@ SINEW_INLINE void diagonalise(Lanes (&c)[3][3], Lanes3x3& v) {
   }
 }
 
-/// x^a in every lane, x > 0. @param log_x ln x.
+/// x^a in every lane, x > 0.
+/// @param x,log_x,a the base, its logarithm, the exponent.
 SINEW_INLINE Lanes power(const Lanes& x, const Lanes& log_x, double a) {
   if (a == 2.0) return x * x;
   if (a == -2.0) return 1.0 / (x * x);
@@ -276,7 +277,7 @@ SINEW_INLINE void project(Lanes (&m)[3][3]) {
 }  // namespace detail
 
 /// dP/dF, or its projection.
-/// @param f,at,response of one point. @param positive whether to project.
+/// @param f,at,response of one point. @param positive whether to project. @param result replaced.
 SINEW_INLINE void tangent(const Lanes3x3& f, const Principal& at, const LanesLogResponse& response,
                           bool positive, Lanes9x9& result) {
   constexpr double kMeeting = 1e-4;  // relative distance below which stretches count as equal
