@@ -137,7 +137,8 @@ int main(int argc, char** argv) {
   mesh::BlockShape shape;
   shape.size = {0.26, 0.03, 0.03};
   shape.cells = {52, 6, 6};
-  const auto hexahedra = std::make_shared<const mesh::Mesh>(mesh::hexahedral_block(shape));
+  const auto hexahedra =
+      std::make_shared<const mesh::Mesh>(mesh::block(shape, mesh::Cells::hexahedra));
   add_benchmarks(hexahedra, "neo-hookean", neo_hookean());
   add_benchmarks(hexahedra, "ogden-3", ogden3());
   benchmark::RunSpecifiedBenchmarks();

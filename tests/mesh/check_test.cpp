@@ -166,7 +166,7 @@ TEST(Check, SuspectsTheUnitOfHugeMeshes) {
 }
 
 TEST(Check, TurnsAndRefusesHexahedra) {
-  Mesh mesh = hexahedral_block({.cells = {2, 1, 1}});
+  Mesh mesh = block({.cells = {2, 1, 1}}, Cells::hexahedra);
   const double sound = volume(mesh);
   std::swap_ranges(mesh.hexahedra[0].begin(), mesh.hexahedra[0].begin() + 4,
                    mesh.hexahedra[0].begin() + 4);

@@ -54,7 +54,7 @@ TEST(WriteVtu, RoundTripsBitForBit) {
 }
 
 TEST(WriteVtu, RoundTripsHexahedra) {
-  Mesh mesh = hexahedral_block({.cells = {2, 2, 2}});
+  Mesh mesh = block({.cells = {2, 2, 2}}, Cells::hexahedra);
   mesh.hexahedron_sets["core"] = {3};
   const Mesh back = parse_mesh(format_vtu(mesh), "block.vtu");
   EXPECT_EQ(back.hexahedra, mesh.hexahedra);

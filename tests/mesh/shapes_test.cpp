@@ -9,6 +9,8 @@
 
 #include "sinew/mesh/check.hpp"
 #include "sinew/mesh/embedding.hpp"
+#include "sinew/mesh/hexahedron.hpp"
+#include "sinew/mesh/hexahedron.hpp"
 #include "sinew/mesh/quality.hpp"
 #include "sinew/mesh/refine.hpp"
 #include "sinew/mesh/report.hpp"
@@ -48,7 +50,7 @@ TEST(Shapes, BlockFillsItsBox) {
 
 TEST(Shapes, HexahedralBlockMatchesTheTetrahedralOne) {
   const BlockShape shape{.size = {0.1, 0.2, 0.3}, .cells = {2, 3, 4}};
-  const Mesh hexahedra = hexahedral_block(shape), tetrahedra = block(shape);
+  const Mesh hexahedra = block(shape, Cells::hexahedra), tetrahedra = block(shape);
   EXPECT_EQ(hexahedra.nodes, tetrahedra.nodes);
   EXPECT_EQ(hexahedra.node_sets, tetrahedra.node_sets);
   EXPECT_EQ(require_sound(hexahedra).hexahedra, 24);
@@ -67,6 +69,37 @@ TEST(Shapes, RoundSolidsHaveTheVolumeOfTheirPolygons) {
   const HollowCylinderShape tube{.around = 30};
   EXPECT_NEAR(require_sound(hollow_cylinder(tube)).volume, polygon(30) * (1.44e-4 - 0.64e-4) * 0.05,
               1e-15);
+}
+
+TEST(Shapes, RoundSolidsOfHexahedraHaveTheVolumeOfTheirPolygons) {
+  const auto polygon = [](int n) { return 0.5 * n * std::sin(2 * kPi / n); };
+  // Rings 2, 3, 4, 5: a square of 2, 2, 4, 4 cells a side.
+  for (const auto& [rings, around] : {std::pair(2, 8), {3, 8}, {4, 16}, {5, 16}}) {
+    const Mesh mesh =
+        cylinder({.radius = 0.01, .height = 0.1, .rings = rings, .layers = 5}, Cells::hexahedra);
+    const MeshReport report = require_sound(mesh);
+    EXPECT_NEAR(report.volume, polygon(around) * 1e-4 * 0.1, 1e-15) << rings;
+    EXPECT_EQ(report.tetrahedra, 0);
+    EXPECT_EQ(mesh.node_sets.at("side").size(), static_cast<std::size_t>(6 * around)) << rings;
+    // Nothing is flat: each cell's smallest Jacobian is a good part of its mean.
+    for (const Hexahedron& nodes : mesh.hexahedra) {
+      Eigen::Matrix<double, 8, 3> x;
+      for (int a = 0; a < 8; ++a) x.row(a) = mesh.nodes.row(nodes[static_cast<std::size_t>(a)]);
+      double least = std::numeric_limits<double>::infinity(), sum = 0.0;
+      for (const Vector3& point : hexahedron_points()) {
+        const double j = (x.transpose() * hexahedron_gradients(point)).determinant();
+        least = std::min(least, j);
+        sum += j / 8;
+      }
+      EXPECT_GT(least / sum, 0.5);
+    }
+  }
+  EXPECT_NEAR(require_sound(hollow_cylinder({.around = 30}, Cells::hexahedra)).volume,
+              polygon(30) * (1.44e-4 - 0.64e-4) * 0.05, 1e-15);
+  const double taper = 0.1 / 3 * (4e-4 + 2e-4 + 1e-4) * polygon(8);
+  EXPECT_NEAR(require_sound(cone({}, Cells::hexahedra)).volume / taper, 1.0, 2e-3);
+  EXPECT_EQ(require_sound(trunk({}, Cells::hexahedra)).tetrahedra, 0);
+  error_text(ErrorKind::out_of_range, [] { cylinder({.rings = 1}, Cells::hexahedra); });
 }
 
 TEST(Shapes, AreOfGoodQuality) {
@@ -141,7 +174,7 @@ TEST(Refine, CarriesSets) {
   for (const NodeId node : fine.node_sets.at("x_min")) EXPECT_EQ(fine.nodes(node, 0), 0.0);
   const Surface boundary = boundary_surface(fine);
   EXPECT_EQ(boundary.triangles.size(), fine.triangles.size());
-  error_text(ErrorKind::unsupported_element, [] { refine(hexahedral_block({})); });
+  error_text(ErrorKind::unsupported_element, [] { refine(block({}, Cells::hexahedra)); });
 }
 
 TEST(Selection, PicksNodesByPlace) {

@@ -34,6 +34,14 @@ void require_cells(int value, int least, const std::string& shape, const char* w
           fmt::format("{} = {} (from {} to {})", what, value, least, kMost));
 }
 
+void require_rings(int rings, Cells cells, const std::string& shape) {
+  require_cells(rings, cells == Cells::tetrahedra ? 1 : 2, shape, "rings");
+}
+
+Section disc(int rings, Cells cells) {
+  return cells == Cells::tetrahedra ? disc_section(rings) : disc_section_of_quadrilaterals(rings);
+}
+
 std::vector<double> even_heights(double height, int layers) {
   std::vector<double> heights;
   for (int k = 0; k <= layers; ++k) heights.push_back(height * k / layers);
@@ -117,12 +125,13 @@ class BlockGrid {
 
 }  // namespace
 
-Mesh block(const BlockShape& shape) {
+Mesh block(const BlockShape& shape, Cells cells) {
   const BlockGrid grid(shape);
   Mesh mesh = grid.nodes_and_sets();
   // The six monotone paths along edges from corner 0 to corner 6 (Kuhn's triangulation).
   constexpr std::array<std::size_t, 7> kRing = {1, 2, 3, 7, 4, 5, 1};
   grid.for_each_cell([&](const Hexahedron& h) {
+    if (cells == Cells::hexahedra) return mesh.hexahedra.push_back(h);
     for (std::size_t k = 0; k < 6; ++k) {
       mesh.tetrahedra.push_back({h[0], h[kRing[k]], h[kRing[k + 1]], h[6]});
     }
@@ -130,31 +139,25 @@ Mesh block(const BlockShape& shape) {
   return mesh;
 }
 
-Mesh hexahedral_block(const BlockShape& shape) {
-  const BlockGrid grid(shape);
-  Mesh mesh = grid.nodes_and_sets();
-  grid.for_each_cell([&](const Hexahedron& h) { mesh.hexahedra.push_back(h); });
-  return mesh;
-}
-
-Mesh cylinder(const CylinderShape& shape) {
+Mesh cylinder(const CylinderShape& shape, Cells cells) {
   require_length(shape.radius, "cylinder", "radius");
   Mesh mesh = cone({.bottom_radius = shape.radius,
                     .top_radius = shape.radius,
                     .height = shape.height,
                     .rings = shape.rings,
-                    .layers = shape.layers});
+                    .layers = shape.layers},
+                   cells);
   mesh.name = "cylinder";
   return mesh;
 }
 
-Mesh cone(const ConeShape& shape) {
+Mesh cone(const ConeShape& shape, Cells cells) {
   require_length(shape.bottom_radius, "cone", "bottom_radius");
   require_length(shape.top_radius, "cone", "top_radius");
   require_length(shape.height, "cone", "height");
-  require_cells(shape.rings, 1, "cone", "rings");
+  require_rings(shape.rings, cells, "cone");
   require_cells(shape.layers, 1, "cone", "layers");
-  const Section section = disc_section(shape.rings);
+  const Section section = disc(shape.rings, cells);
   const auto profile = [&](double s, double z) {
     return s * std::lerp(shape.bottom_radius, shape.top_radius, z / shape.height);
   };
@@ -163,7 +166,7 @@ Mesh cone(const ConeShape& shape) {
   return mesh;
 }
 
-Mesh hollow_cylinder(const HollowCylinderShape& shape) {
+Mesh hollow_cylinder(const HollowCylinderShape& shape, Cells cells) {
   const std::string name = "hollow cylinder";
   require_length(shape.inner_radius, name, "inner_radius");
   require_length(shape.outer_radius, name, "outer_radius");
@@ -174,7 +177,7 @@ Mesh hollow_cylinder(const HollowCylinderShape& shape) {
   require_cells(shape.through, 1, name, "through");
   require_cells(shape.around, 3, name, "around");
   require_cells(shape.layers, 1, name, "layers");
-  const Section section = annulus_section(shape.through, shape.around);
+  const Section section = annulus_section(shape.through, shape.around, cells == Cells::tetrahedra);
   const auto profile = [&](double s, double) {
     return std::lerp(shape.inner_radius, shape.outer_radius, s);
   };
@@ -184,7 +187,7 @@ Mesh hollow_cylinder(const HollowCylinderShape& shape) {
   return mesh;
 }
 
-Mesh trunk(const TrunkShape& shape) {
+Mesh trunk(const TrunkShape& shape, Cells cells) {
   require_length(shape.height, "trunk", "height");
   require_length(shape.bottom_radius, "trunk", "bottom_radius");
   require_length(shape.top_radius, "trunk", "top_radius");
@@ -192,8 +195,8 @@ Mesh trunk(const TrunkShape& shape) {
           fmt::format("groove_depth = {} (from 0 to 0.6)", shape.groove_depth));
   require_cells(shape.bellows, 1, "trunk", "bellows");
   require_cells(shape.layers_per_bellow, 2, "trunk", "layers_per_bellow");
-  require_cells(shape.rings, 1, "trunk", "rings");
-  const Section section = disc_section(shape.rings);
+  require_rings(shape.rings, cells, "trunk");
+  const Section section = disc(shape.rings, cells);
   // Crests at both ends and between bellows; the wave fades towards the axis as s^3, so that the
   // inside stays smooth.
   const auto profile = [&](double s, double z) {

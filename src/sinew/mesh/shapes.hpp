@@ -8,6 +8,9 @@
 
 namespace sinew::mesh {
 
+/// What shapes are made of.
+enum class Cells { tetrahedra, hexahedra };
+
 /// A box of Kuhn-split cubes: six tetrahedra a cell, all of one shape class when cells are cubes.
 struct BlockShape {
   Vector3 corner = Vector3::Zero();    ///< m, the least corner
@@ -19,8 +22,10 @@ struct BlockShape {
 struct CylinderShape {
   double radius = 0.01;  ///< m
   double height = 0.1;   ///< m
-  int rings = 2;         ///< rings of nodes round the axis; ring r has 6 r nodes
-  int layers = 10;       ///< along the axis
+  /// Rings of cells round the axis; of tetrahedra ring r has 6 r nodes, of hexahedra there are at
+  /// least two.
+  int rings = 2;
+  int layers = 10;  ///< along the axis
 };
 
 /// A frustum along +z, its bottom at z = 0.
@@ -56,27 +61,28 @@ struct TrunkShape {
 
 /// Sets: nodes `x_min`, `x_max`, `y_min`, `y_max`, `z_min`, `z_max`.
 /// @param shape its measures. Throws Error(out-of-range) when one is not positive.
-Mesh block(const BlockShape& shape);
-
-/// The same box of VTK hexahedra, with the same nodes and sets.
-/// @param shape as for block().
-Mesh hexahedral_block(const BlockShape& shape);
+/// @param cells what it is made of; nodes and sets are the same.
+Mesh block(const BlockShape& shape, Cells cells = Cells::tetrahedra);
 
 /// Sets: nodes `bottom`, `top`, `side`.
 /// @param shape its measures. Throws Error(out-of-range) when one is not positive.
-Mesh cylinder(const CylinderShape& shape);
+/// @param cells what it is made of.
+Mesh cylinder(const CylinderShape& shape, Cells cells = Cells::tetrahedra);
 
 /// Sets: nodes `bottom`, `top`, `side`.
 /// @param shape its measures. Throws Error(out-of-range) when one is not positive.
-Mesh cone(const ConeShape& shape);
+/// @param cells what it is made of.
+Mesh cone(const ConeShape& shape, Cells cells = Cells::tetrahedra);
 
 /// Sets: nodes `bottom`, `top`, `inner`, `outer`.
 /// @param shape its measures. Throws Error(out-of-range) when one is not positive or the inner
 /// radius is not the smaller one.
-Mesh hollow_cylinder(const HollowCylinderShape& shape);
+/// @param cells what it is made of.
+Mesh hollow_cylinder(const HollowCylinderShape& shape, Cells cells = Cells::tetrahedra);
 
 /// Sets: nodes `bottom`, `top`, `side`.
 /// @param shape its measures. Throws Error(out-of-range).
-Mesh trunk(const TrunkShape& shape = {});
+/// @param cells what it is made of.
+Mesh trunk(const TrunkShape& shape = {}, Cells cells = Cells::tetrahedra);
 
 }  // namespace sinew::mesh

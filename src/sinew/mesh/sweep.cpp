@@ -53,7 +53,61 @@ Section disc_section(int rings) {
   return section;
 }
 
-Section annulus_section(int through, int around) {
+Section disc_section_of_quadrilaterals(int rings) {
+  constexpr double kRoundness = 0.6;  // of the square: 0 straight, 1 a circle
+  const int inner = rings / 2, n = 2 * inner, outer = rings - inner;
+  const double half = static_cast<double>(inner) / rings;
+  Section section;
+  std::vector<std::array<double, 2>> at;
+  const auto number = [n](int i, int j) { return j * (n + 1) + i; };
+  for (int j = 0; j <= n; ++j) {
+    for (int i = 0; i <= n; ++i) {
+      const double x = 2.0 * i / n - 1.0, y = 2.0 * j / n - 1.0;
+      const auto blend = [&](double a,
+                             double b) {  // with the map of a square onto a disc by ellipses
+        return half * std::lerp(a, a * std::sqrt(1.0 - 0.5 * b * b), kRoundness);
+      };
+      at.push_back({blend(x, y), blend(y, x)});
+    }
+  }
+  std::vector<NodeId> ring;  // round the square, counter-clockwise from its lowest corner
+  for (int i = 0; i < n; ++i) ring.push_back(number(i, 0));
+  for (int j = 0; j < n; ++j) ring.push_back(number(n, j));
+  for (int i = n; i > 0; --i) ring.push_back(number(i, n));
+  for (int j = n; j > 0; --j) ring.push_back(number(0, j));
+  for (int j = 0; j < n; ++j) {
+    for (int i = 0; i < n; ++i) {
+      section.quadrilaterals.push_back(
+          {number(i, j), number(i + 1, j), number(i + 1, j + 1), number(i, j + 1)});
+    }
+  }
+  const auto around = static_cast<int>(ring.size());
+  const std::vector<NodeId> square = ring;
+  for (int k = 1; k <= outer; ++k) {
+    std::vector<NodeId> next;
+    for (int q = 0; q < around; ++q) {
+      const double angle = std::numbers::pi * (2.0 * q / around - 0.75);
+      const auto& from = at[static_cast<std::size_t>(square[static_cast<std::size_t>(q)])];
+      const double part = static_cast<double>(k) / outer;
+      next.push_back(static_cast<NodeId>(at.size()));
+      at.push_back(
+          {std::lerp(from[0], std::cos(angle), part), std::lerp(from[1], std::sin(angle), part)});
+    }
+    for (int q = 0; q < around; ++q) {
+      const auto a = static_cast<std::size_t>(q), b = static_cast<std::size_t>((q + 1) % around);
+      section.quadrilaterals.push_back({ring[a], next[a], next[b], ring[b]});
+    }
+    ring = std::move(next);
+  }
+  for (std::size_t node = 0; node < at.size(); ++node) {
+    const bool outside = node + static_cast<std::size_t>(around) >= at.size();
+    section.radius.push_back(outside ? 1.0 : std::hypot(at[node][0], at[node][1]));
+    section.angle.push_back(std::atan2(at[node][1], at[node][0]));
+  }
+  return section;
+}
+
+Section annulus_section(int through, int around, bool split) {
   Section section;
   for (int i = 0; i <= through; ++i) {
     for (int k = 0; k < around; ++k) {
@@ -66,8 +120,12 @@ Section annulus_section(int through, int around) {
       const int next = (k + 1) % around;
       const NodeId a = i * around + k, b = (i + 1) * around + k;
       const NodeId c = (i + 1) * around + next, d = i * around + next;
-      section.triangles.push_back({a, b, c});
-      section.triangles.push_back({a, c, d});
+      if (split) {
+        section.triangles.push_back({a, b, c});
+        section.triangles.push_back({a, c, d});
+      } else {
+        section.quadrilaterals.push_back({a, b, c, d});
+      }
     }
   }
   return section;
@@ -92,6 +150,14 @@ Mesh sweep(const Section& section, const std::vector<double>& heights, const Rad
     for (Triangle triangle : section.triangles) {
       for (NodeId& corner : triangle) corner += layer * in_layer;
       add_prism(triangle, in_layer, mesh.tetrahedra);
+    }
+    for (const auto& cell : section.quadrilaterals) {
+      Hexahedron hexahedron{};
+      for (std::size_t a = 0; a < 4; ++a) {
+        hexahedron[a] = cell[a] + layer * in_layer;
+        hexahedron[a + 4] = hexahedron[a] + in_layer;
+      }
+      mesh.hexahedra.push_back(hexahedron);
     }
   }
   for (NodeId i = 0; i < in_layer; ++i) {

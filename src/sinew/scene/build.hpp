@@ -39,7 +39,7 @@ Robot load(const std::filesystem::path& path, const std::vector<std::string>& ov
 
 /// The mesh that a description names, file or shape; in m, checked.
 /// @param description,element the shape, and what it is to be made of. Throws what
-///   mesh::read_mesh() does, and Error(unsupported-element) for shapes that have no hexahedra.
+///   mesh::read_mesh() and the shapes do.
 mesh::Mesh make_mesh(const MeshDescription& description, Element element = Element::any);
 
 }  // namespace sinew::scene

@@ -29,7 +29,7 @@ Key optional_length(const char* name, const char* example, const char* default_t
 Key element_size() {
   return optional_length(
       "element_size", "5 mm", "",
-      "Aimed edge length of the tetrahedra. Without: a few through the thinnest part.");
+      "Aimed edge length of the elements. Without: a few through the thinnest part.");
 }
 
 Choice shape(const char* word, const char* description, std::vector<Key> keys) {
@@ -335,8 +335,7 @@ std::shared_ptr<const KeyTable> fem_table() {
                           "Trilinear hexahedra with the pressure of their mean dilatation: "
                           "no locking in volume. For hyperelastic materials."}})},
        .example = "hex8",
-       .description = "The finite element. Without: what a mesh file holds, tet4 for shapes; "
-                      "hex8 among shapes is for blocks."},
+       .description = "The finite element. Without: what a mesh file holds, and tet4 for shapes."},
       {.name = "material",
        .forms = material_forms(),
        .example = "{young_modulus: 450 kPa, poisson_ratio: 0.45}",

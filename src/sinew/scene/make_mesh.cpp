@@ -37,7 +37,12 @@ int matching(double length, double width, int across) {
   return std::max(1, static_cast<int>(std::lround(length / width * across)));
 }
 
-mesh::Mesh make_block(const Parameters& p, Element element) {
+// A disc of hexahedra has two rings at least.
+int rings(int asked, mesh::Cells cells) {
+  return std::max(asked, cells == mesh::Cells::hexahedra ? 2 : 1);
+}
+
+mesh::Mesh make_block(const Parameters& p, mesh::Cells cells) {
   mesh::BlockShape shape;
   shape.size = {p.get("length", shape.size.x()), p.get("width", shape.size.y()),
                 p.get("height", shape.size.z())};
@@ -46,30 +51,30 @@ mesh::Mesh make_block(const Parameters& p, Element element) {
     shape.cells[static_cast<std::size_t>(c)] =
         p.cells(shape.size[c], matching(shape.size[c], smallest, 2));
   }
-  return element == Element::hex8 ? mesh::hexahedral_block(shape) : mesh::block(shape);
+  return mesh::block(shape, cells);
 }
 
-mesh::Mesh make_cylinder(const Parameters& p) {
+mesh::Mesh make_cylinder(const Parameters& p, mesh::Cells cells) {
   mesh::CylinderShape shape;
   shape.radius = p.get("radius", shape.radius);
   shape.height = p.get("height", shape.height);
-  shape.rings = p.cells(shape.radius, 2);
+  shape.rings = rings(p.cells(shape.radius, 2), cells);
   shape.layers = p.cells(shape.height, matching(shape.height, shape.radius, shape.rings));
-  return mesh::cylinder(shape);
+  return mesh::cylinder(shape, cells);
 }
 
-mesh::Mesh make_cone(const Parameters& p) {
+mesh::Mesh make_cone(const Parameters& p, mesh::Cells cells) {
   mesh::ConeShape shape;
   shape.bottom_radius = p.get("base_radius", shape.bottom_radius);
   shape.top_radius = p.get("tip_radius", shape.top_radius);
   shape.height = p.get("height", shape.height);
   const double radius = 0.5 * (shape.bottom_radius + shape.top_radius);
-  shape.rings = p.cells(radius, 2);
+  shape.rings = rings(p.cells(radius, 2), cells);
   shape.layers = p.cells(shape.height, matching(shape.height, radius, shape.rings));
-  return mesh::cone(shape);
+  return mesh::cone(shape, cells);
 }
 
-mesh::Mesh make_tube(const Parameters& p) {
+mesh::Mesh make_tube(const Parameters& p, mesh::Cells cells) {
   mesh::HollowCylinderShape shape;
   shape.inner_radius = p.get("inner_radius", shape.inner_radius);
   shape.outer_radius = p.get("outer_radius", shape.outer_radius);
@@ -79,10 +84,10 @@ mesh::Mesh make_tube(const Parameters& p) {
   shape.through = p.cells(wall, 2);
   shape.around = std::max(6, p.cells(girth, matching(girth, wall, shape.through) / 2));
   shape.layers = p.cells(shape.height, matching(shape.height, wall, shape.through) / 2);
-  return mesh::hollow_cylinder(shape);
+  return mesh::hollow_cylinder(shape, cells);
 }
 
-mesh::Mesh make_trunk(const Parameters& p) {
+mesh::Mesh make_trunk(const Parameters& p, mesh::Cells cells) {
   mesh::TrunkShape shape;
   shape.bottom_radius = p.get("base_radius", shape.bottom_radius);
   shape.top_radius = p.get("tip_radius", shape.top_radius);
@@ -91,24 +96,19 @@ mesh::Mesh make_trunk(const Parameters& p) {
   shape.groove_depth =
       p.get("bellow_depth", shape.groove_depth * shape.bottom_radius) / shape.bottom_radius;
   const double radius = 0.5 * (shape.bottom_radius + shape.top_radius);
-  shape.rings = p.cells(radius, shape.rings);
+  shape.rings = rings(p.cells(radius, shape.rings), cells);
   const double bellow = shape.height / shape.bellows;
   shape.layers_per_bellow = 2 * std::max(1, (p.cells(bellow, shape.layers_per_bellow) + 1) / 2);
-  return mesh::trunk(shape);
+  return mesh::trunk(shape, cells);
 }
 
-mesh::Mesh make_shape(const MeshDescription& description, Element element) {
-  if (element == Element::hex8 && description.shape != "block") {
-    throw Error(ErrorKind::unsupported_element, description.place,
-                fmt::format("the shape '{}' has no hexahedra", description.shape),
-                "leave `element` out, or give a mesh file of hexahedra");
-  }
+mesh::Mesh make_shape(const MeshDescription& description, mesh::Cells cells) {
   const Parameters parameters(description);
-  if (description.shape == "block") return make_block(parameters, element);
-  if (description.shape == "cylinder") return make_cylinder(parameters);
-  if (description.shape == "cone") return make_cone(parameters);
-  if (description.shape == "hollow-cylinder") return make_tube(parameters);
-  if (description.shape == "trunk") return make_trunk(parameters);
+  if (description.shape == "block") return make_block(parameters, cells);
+  if (description.shape == "cylinder") return make_cylinder(parameters, cells);
+  if (description.shape == "cone") return make_cone(parameters, cells);
+  if (description.shape == "hollow-cylinder") return make_tube(parameters, cells);
+  if (description.shape == "trunk") return make_trunk(parameters, cells);
   throw Error(ErrorKind::unknown_choice, description.place,
               fmt::format("there is no shape '{}'", description.shape),
               "block, cylinder, cone, hollow-cylinder or trunk");
@@ -118,7 +118,9 @@ mesh::Mesh make_shape(const MeshDescription& description, Element element) {
 
 mesh::Mesh make_mesh(const MeshDescription& description, Element element) {
   try {
-    if (!description.shape.empty()) return make_shape(description, element);
+    if (!description.shape.empty())
+      return make_shape(
+          description, element == Element::hex8 ? mesh::Cells::hexahedra : mesh::Cells::tetrahedra);
     mesh::ReadOptions options;
     options.unit = description.unit;
     options.unit_given = description.unit_place.line > 0 || description.unit != 1.0;
