@@ -23,7 +23,7 @@ std::optional<Steering> scene_controller(const scene::Robot& robot, const std::s
 
 }  // namespace
 
-LiveSource::LiveSource(scene::Robot robot, const LiveSettings& settings)
+LiveSource::LiveSource(const scene::Robot& robot, const LiveSettings& settings)
     : LiveSource(robot, std::make_shared<sim::Simulation>(robot.model, robot.threads()),
                  scene_controller(robot, settings.controller), settings) {}
 

@@ -30,7 +30,7 @@ class LiveSource : public SourceThread {
  public:
   /// @param robot is simulated with its own threads. @param settings see there.
   /// Throws Error(unknown-name) for a controller that the scene does not have.
-  explicit LiveSource(scene::Robot robot, const LiveSettings& settings = {});
+  explicit LiveSource(const scene::Robot& robot, const LiveSettings& settings = {});
   /// A simulation that others own and leave alone between start() and stop().
   /// @param robot,simulation what is shown. @param first,settings the one in place of the
   ///   other's controller.

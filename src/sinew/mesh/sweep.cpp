@@ -55,7 +55,7 @@ Section disc_section(int rings) {
 
 Section disc_section_of_quadrilaterals(int rings) {
   constexpr double kRoundness = 0.6;  // of the square: 0 straight, 1 a circle
-  const int inner = rings / 2, n = 2 * inner, outer = rings - inner;
+  const int inner = (rings + 1) / 2, n = 2 * inner, outer = rings - inner;
   const double half = static_cast<double>(inner) / rings;
   Section section;
   std::vector<std::array<double, 2>> at;
