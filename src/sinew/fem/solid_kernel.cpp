@@ -227,6 +227,79 @@ void evaluate(const SolidGroup& group, int begin, int end, const double* points,
   }
 }
 
+/// psi_iso = c (I - 3) alone: by invariants, without principal stretches.
+bool is_neo_hookean(const material::Hyperelastic& law) {
+  return law.powers.size() == 1 && law.powers.front().exponent == 2.0 && law.polynomial.empty() &&
+         law.saint_venant_shear == 0.0;
+}
+
+/// Neo-Hookean tetrahedra. With H = F^-T, m = 2 c J^(-2/3), I1 = F : F, h_a = H g_a, f_a = F g_a,
+///   P = m F + s H,   s = p J - m I1/3,
+///   K_ab = V { m (g_a . g_b) I - 2/3 m (f_a h_b^T + h_a f_b^T)
+///              + (2/9 m I1 + p J + kappa J^2) h_a h_b^T - s h_b h_a^T },
+/// the derivative of P by dJ = J H : dF and dH = -H dF^T H.
+template <Tangent kTangent>
+void evaluate_neo_hookean(const SolidGroup& group, int begin, int end, const double* points,
+                          const SolidOutput& output, LaneMinimum& minimum) {
+  const double c = group.law.powers.front().coefficient, bulk = group.law.bulk_modulus;
+  for (std::int64_t b = begin; b < end; ++b) {
+    const Batch<4, 1> batch(group, b, points);
+    const Lanes volume = batch.weight(0);
+    const Lanes3x3 f = batch.deformation(0), cof = material::cofactor(f);
+    const Lanes j = material::determinant(f, cof);
+    minimum.see(j, b);
+    const Lanes root = material::detail::inverse_cube_root(j);
+    const Lanes m = 2.0 * c * root * root;
+    Lanes i1 = lanes(0.0);
+    for (int r = 0; r < 3; ++r) {
+      for (int k = 0; k < 3; ++k) i1 += f[r][k] * f[r][k];
+    }
+    const Lanes growth = j - 1.0, push = bulk * growth * j;
+    const Lanes s = push - m * i1 / 3.0;
+    output.energy[b] = sum(volume * (0.5 * m * i1 - 3.0 * c + 0.5 * bulk * growth * growth));
+    const Lanes inverse = 1.0 / j;
+    Lanes g[4][3], h[4][3], fg[4][3];
+    Sums<4> sums;
+    for (int a = 1; a < 4; ++a) {
+      for (int k = 0; k < 3; ++k) g[a][k] = batch.gradient(0, a, k);
+      for (int r = 0; r < 3; ++r) {
+        h[a][r] = inverse * (cof[r][0] * g[a][0] + cof[r][1] * g[a][1] + cof[r][2] * g[a][2]);
+        fg[a][r] = f[r][0] * g[a][0] + f[r][1] * g[a][1] + f[r][2] * g[a][2];
+        sums.force[a][r] = volume * (m * fg[a][r] + s * h[a][r]);
+      }
+    }
+    for (int r = 0; r < 3; ++r) {
+      sums.force[0][r] = -(sums.force[1][r] + sums.force[2][r] + sums.force[3][r]);
+    }
+    sums.store_forces(output.forces + 4 * (group.first_force + 4 * kLanes * b));
+    if constexpr (kTangent == Tangent::exact) {
+      const Lanes vm = volume * m, vs = volume * s;
+      const Lanes mixed = -2.0 / 3.0 * vm;
+      const Lanes square = volume * (2.0 / 9.0 * m * i1 + push + bulk * j * j);
+      for (int bb = 1; bb < 4; ++bb) {
+        Lanes right[3];  // what h_a is multiplied by
+        for (int r = 0; r < 3; ++r) right[r] = mixed * fg[bb][r] + square * h[bb][r];
+        for (int a = 1; a <= bb; ++a) {
+          Lanes* k = sums.block[SolidGroup::pair(a, bb)];
+          const Lanes diagonal =
+              vm * (g[a][0] * g[bb][0] + g[a][1] * g[bb][1] + g[a][2] * g[bb][2]);
+          for (int i = 0; i < 3; ++i) {
+            const Lanes left = mixed * fg[a][i];
+            const Lanes swapped = vs * h[bb][i];
+            for (int r = 0; r < 3; ++r) {
+              k[3 * i + r] = left * h[bb][r] + h[a][i] * right[r] - swapped * h[a][r];
+            }
+            k[4 * i] += diagonal;
+          }
+        }
+      }
+      sums.complete();
+      sums.store_blocks(output.blocks +
+                        kSolidBlock * (group.first_block + Sums<4>::kPairs * kLanes * b));
+    }
+  }
+}
+
 template <int N, int Q>
 void evaluate_kind(const SolidGroup& group, int begin, int end, const double* points,
                    Tangent tangent, const SolidOutput& output, LaneMinimum& minimum) {
@@ -279,7 +352,11 @@ void measure_fields(const SolidGroup& group, int number, const double* points,
 SmallestRatio evaluate_solids(const SolidGroup& group, int begin, int end, const double* points,
                               Tangent tangent, const SolidOutput& output) {
   LaneMinimum minimum;
-  if (group.nodes == 4) {
+  if (group.nodes == 4 && is_neo_hookean(group.law) && tangent == Tangent::exact) {
+    evaluate_neo_hookean<Tangent::exact>(group, begin, end, points, output, minimum);
+  } else if (group.nodes == 4 && is_neo_hookean(group.law) && tangent == Tangent::none) {
+    evaluate_neo_hookean<Tangent::none>(group, begin, end, points, output, minimum);
+  } else if (group.nodes == 4) {
     evaluate_kind<4, 1>(group, begin, end, points, tangent, output, minimum);
   } else {
     evaluate_kind<8, 8>(group, begin, end, points, tangent, output, minimum);

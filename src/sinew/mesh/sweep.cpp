@@ -71,6 +71,7 @@ Section disc_section_of_quadrilaterals(int rings) {
     }
   }
   std::vector<NodeId> ring;  // round the square, counter-clockwise from its lowest corner
+  ring.reserve(static_cast<std::size_t>(4 * n));
   for (int i = 0; i < n; ++i) ring.push_back(number(i, 0));
   for (int j = 0; j < n; ++j) ring.push_back(number(n, j));
   for (int i = n; i > 0; --i) ring.push_back(number(i, n));
