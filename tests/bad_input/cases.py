@@ -140,6 +140,7 @@ def msh(old, new):
 
 # ---------------------------------------------------------------------------------------- scenes
 
+LAW = "{model: corotational, young_modulus: 200 kPa, poisson_ratio: 0.4}"
 SCENES = [
     scene("yaml-that-never-ends", "syntax-error", "scene.yaml:9:13", [], ("element_size: 10 mm}", "element_size: 10 mm")),
     scene("tab-for-indent", "syntax-error", "scene.yaml:6:1", [], ("  beam:", "\tbeam:")),
@@ -148,6 +149,13 @@ SCENES = [
     scene("misspelt-nested-key", "unknown-key", "scene.yaml:9:37", ["yung_modulus", "young_modulus"], ("young_modulus", "yung_modulus")),
     scene("key-twice", "duplicate-key", "scene.yaml:5:1", ["duration"], ("duration: 0.05 s", "duration: 0.05 s\nduration: 1 s")),
     scene("no-material", "missing-key", "scene.yaml:7:5", ["material"], ("    material: {model: corotational, young_modulus: 200 kPa, poisson_ratio: 0.4}\n", "")),
+    scene("misspelt-silicone", "unknown-choice", "scene.yaml:9:15", ["ecoflex-00-30"], (LAW, "ecoflex-0030")),
+    scene("ogden-without-convention", "missing-key", "scene.yaml:9:15", ["mu-over-alpha"],
+          (LAW, "{model: ogden, mu: 24 kPa, alpha: 1.7, poisson_ratio: 0.49}")),
+    scene("softer-than-nothing", "invalid-material", "scene.yaml:9:15", ["-2000 Pa"],
+          (LAW, "{model: mooney-rivlin, c10: 1 kPa, c01: -2 kPa, poisson_ratio: 0.49}")),
+    scene("corotational-hexahedra", "unsupported-element", "scene.yaml:10:15", ["neo-hookean"],
+          ("    material:", "    element: hex8\n    material:")),
     scene("no-version", "missing-key", "scene.yaml:1:1", ["sinew"], ("sinew: 1\n", "")),
     scene("version-of-the-future", "unsupported-version", "scene.yaml:1:8", ["99"], ("sinew: 1", "sinew: 99")),
     scene("list-for-a-map", "wrong-type", "scene.yaml:19:12", [], ("effectors:\n  tip: {body: beam, point: 100 10 10 mm}", "effectors: [tip]")),
