@@ -1,6 +1,7 @@
 #include "sinew/fem/assembly.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
@@ -222,6 +223,16 @@ void Assembly::add_block(int free_i, int free_j, const Matrix3& k) {
   double* target = work_->matrix.data() + linalg::kBlockStride * static_cast<std::size_t>(block);
   for (int c = 0; c < 3; ++c) {
     for (int r = 0; r < 3; ++r) target[4 * c + r] += free_i >= free_j ? k(r, c) : k(c, r);
+  }
+}
+
+void Assembly::hold() {
+  double* matrix = work_->matrix.data();
+  for (const std::int64_t entry : model_->held_entries()) matrix[entry] = 0.0;
+  for (const std::int64_t entry : model_->held_diagonals()) {
+    // Their motion is zero whatever stands here; the size of the others keeps the factor well
+    // scaled.
+    matrix[entry] = matrix[entry] == 0.0 ? 1.0 : std::abs(matrix[entry]);
   }
 }
 

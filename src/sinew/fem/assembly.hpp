@@ -77,6 +77,10 @@ class Assembly {
   /// @param k (3, 3), already weighted. Throws Error(internal) if the pair is not in the pattern.
   void add_block(int free_i, int free_j, const Matrix3& k);
 
+  /// Takes held coordinates out of the matrix: zeros in their rows and columns, and a diagonal that
+  /// is not zero. After everything was added to it.
+  void hold();
+
   double strain_energy() const;         ///< U, J
   double minimum_volume_ratio() const;  ///< smallest det F; <= 0: an element is inverted
   int worst_element() const;            ///< the element that has it

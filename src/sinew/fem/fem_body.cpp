@@ -127,7 +127,7 @@ void FemBody::form_right_side(const mechanics::LinearisationRequest& request) {
   if (tether_) pull_by_tether();
   if (imbalance_share_ != 0.0) right_ -= imbalance_share_ * imbalance_;
   const auto& weights = request.weights;
-  if (!weights.dynamic()) return;
+  if (!weights.dynamic()) return hold_right_side();
   travel_.resize(right_.size());
   momentum_.resize(right_.size());
 
@@ -148,6 +148,11 @@ void FemBody::form_right_side(const mechanics::LinearisationRequest& request) {
                      span_of(travel_), span_of(scratch_));
     right_ -= rate * scratch_;
   }
+  hold_right_side();
+}
+
+void FemBody::hold_right_side() {
+  for (const std::int32_t held : model_.elements().held()) right_[held] = 0.0;
 }
 
 void FemBody::add_curvature(const mechanics::RowCurvature& curvature, double effort) {
@@ -190,6 +195,16 @@ void FemBody::take_rows(const mechanics::RowValues& rows) {
     const Vector3& direction = rows.direction[static_cast<std::size_t>(s.entry)];
     for (int c = 0; c < 3; ++c) value[c] += s.weight * direction[c];
   }
+  const auto held = model_.elements().held();
+  if (held.empty()) return;
+  for (std::size_t e = 0; e < active_->system.border.node.size(); ++e) {
+    for (int c = 0; c < 3; ++c) {
+      const std::int32_t coordinate = 3 * active_->system.border.node[e] + c;
+      if (std::ranges::binary_search(held, coordinate)) {
+        active_->border[3 * e + static_cast<std::size_t>(c)] = 0.0;
+      }
+    }
+  }
 }
 
 double FemBody::residual(std::span<const double> effort) {
@@ -226,6 +241,7 @@ void FemBody::hold_imbalance(std::span<const double> effort) {
 }
 
 linalg::FactorStatus FemBody::condense() {
+  active_->assembly.hold();
   return active_->factorisation->factorise(active_->assembly.matrix(), active_->border,
                                            span_of(right_));
 }

@@ -75,6 +75,7 @@ class FemBody : public mechanics::Body {
 
   Numbers& numbers(bool with_curvature);
   void form_right_side(const mechanics::LinearisationRequest& request);
+  void hold_right_side();
   void stiffen_by_tether();
   void pull_by_tether();
   Vector3 weighted(const Points& field, int point) const;

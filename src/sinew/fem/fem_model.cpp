@@ -162,6 +162,7 @@ FemModel::FemModel(std::shared_ptr<const mesh::Mesh> mesh, const FemModelSetting
     if (free_index_[static_cast<std::size_t>(node)] >= 0) free_nodes_.push_back(node);
   }
   pattern_ = make_pattern(*mesh_, free_index_, free_count(), settings.couplings);
+  list_held(settings.held_axes);
   const std::vector<std::int32_t> rank = spatial_ranks(mesh_->nodes);
   elements_ = std::make_unique<const ElementBatches>(
       make_element_batches(*mesh_, settings.regions, region_of, rank));
@@ -182,6 +183,39 @@ FemModel::FemModel(std::shared_ptr<const mesh::Mesh> mesh, const FemModelSetting
 }
 
 FemModel::~FemModel() = default;
+
+void FemModel::list_held(const std::vector<HeldAxis>& axes) {
+  std::vector<std::array<bool, 3>> holds(free_nodes_.size(), {false, false, false});
+  for (const HeldAxis& held : axes) {
+    check_node(held.node, *mesh_, "held axis");
+    if (held.axis < 0 || held.axis > 2) {
+      throw Error(ErrorKind::index_out_of_range, {.file = mesh_->name, .item = "held axis"},
+                  fmt::format("axis {} of node {}", held.axis, held.node), "axes are 0, 1 and 2");
+    }
+    const NodeId free = free_index_[static_cast<std::size_t>(held.node)];
+    if (free >= 0)
+      holds[static_cast<std::size_t>(free)][static_cast<std::size_t>(held.axis)] = true;
+  }
+  for (std::size_t i = 0; i < holds.size(); ++i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      if (holds[i][c]) held_.push_back(static_cast<std::int32_t>(3 * i + c));
+    }
+  }
+  if (held_.empty()) return;
+  for (std::size_t j = 0; j < holds.size(); ++j) {
+    for (std::int32_t b = pattern_.column_start[j]; b < pattern_.column_start[j + 1]; ++b) {
+      const auto i = static_cast<std::size_t>(pattern_.row[static_cast<std::size_t>(b)]);
+      for (std::size_t c = 0; c < 3; ++c) {
+        for (std::size_t r = 0; r < 3; ++r) {
+          if (!holds[i][r] && !holds[j][c]) continue;
+          const auto at = static_cast<std::int64_t>(
+              linalg::kBlockStride * static_cast<std::size_t>(b) + 4 * c + r);
+          (i == j && r == c ? held_diagonals_ : held_entries_).push_back(at);
+        }
+      }
+    }
+  }
+}
 
 std::span<const SolidGroup> FemModel::solids() const { return solids_; }
 

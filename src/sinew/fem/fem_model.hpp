@@ -41,9 +41,16 @@ struct Region {
   }
 };
 
+/// A coordinate that does not move while the others of its node do: a roller.
+struct HeldAxis {
+  NodeId node = 0;
+  int axis = 0;  ///< 0, 1, 2: x, y, z
+};
+
 struct FemModelSettings {
   std::vector<Region> regions;      ///< every element stands in exactly one
   std::vector<NodeId> fixed_nodes;  ///< removed from the system; any order, repeats allowed
+  std::vector<HeldAxis> held_axes;  ///< of nodes that are not fixed; any order, repeats allowed
   MassMatrix mass = MassMatrix::lumped;
   std::optional<double> total_mass;  ///< kg, > 0; scales the densities (by volume if all are 0)
   bool even_mass = false;            ///< total_mass / n at each node used, as published codes do
@@ -58,7 +65,7 @@ class FemModel {
  public:
   /// Throws Error: no-volume-elements, unsupported-element (hexahedra that are not hyperelastic),
   /// empty-list (no region),
-  /// invalid-material, out-of-range (density, mass), index-out-of-range (element, node),
+  /// invalid-material, out-of-range (density, mass), index-out-of-range (element, node, axis),
   /// conflicting-keys (an element in two regions; even mass without a total or with a
   /// consistent matrix), empty-region (an element in none), zero-volume, inverted-element,
   /// everything-fixed.
@@ -75,6 +82,13 @@ class FemModel {
   int free_count() const { return static_cast<int>(free_nodes_.size()); }
   std::span<const NodeId> free_nodes() const { return free_nodes_; }  ///< free number -> mesh node
   std::span<const NodeId> free_index() const { return free_index_; }  ///< mesh node -> free or -1
+
+  /// Coordinates 3 free + axis that are held, ascending. They stay in the system: Assembly::hold()
+  /// takes them out of the matrix, and whoever makes a right side zeroes them there.
+  std::span<const std::int32_t> held() const { return held_; }
+  /// Doubles of the matrix in their rows and columns, without the diagonal; and the diagonal's.
+  std::span<const std::int64_t> held_entries() const { return held_entries_; }
+  std::span<const std::int64_t> held_diagonals() const { return held_diagonals_; }
 
   /// (n,) kg at each mesh node: row sums of the mass matrix before any node is removed.
   const VectorX& lumped_mass() const { return lumped_mass_; }
@@ -95,6 +109,8 @@ class FemModel {
   std::span<const double> mass_blocks() const { return mass_blocks_; }
 
  private:
+  void list_held(const std::vector<HeldAxis>& axes);
+
   std::shared_ptr<const mesh::Mesh> mesh_;
   std::vector<NodeId> free_nodes_, free_index_;
   linalg::BlockPattern pattern_;
@@ -103,6 +119,8 @@ class FemModel {
   std::unique_ptr<const GatherLists> gather_;
   VectorX lumped_mass_;
   std::vector<double> free_mass_, mass_blocks_;
+  std::vector<std::int32_t> held_;
+  std::vector<std::int64_t> held_entries_, held_diagonals_;
   double total_mass_ = 0.0;
   double volume_ = 0.0;
 };

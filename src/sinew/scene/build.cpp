@@ -1,6 +1,7 @@
 #include "sinew/scene/build.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -77,8 +78,18 @@ fem::FemBodySettings fem_settings(const SceneDescription& scene, const BodyDescr
   for (const FixedRegion& fixed : body.fixed) {
     try {
       const auto nodes = mesh::select_nodes(*settings.mesh, region_of(fixed), fixed.place.item);
-      auto& all = settings.elements.fixed_nodes;
-      all.insert(all.end(), nodes.begin(), nodes.end());
+      if (std::ranges::all_of(fixed.axes, std::identity{})) {
+        auto& all = settings.elements.fixed_nodes;
+        all.insert(all.end(), nodes.begin(), nodes.end());
+        continue;
+      }
+      for (const NodeId node : nodes) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          if (fixed.axes[axis]) {
+            settings.elements.held_axes.push_back({node, static_cast<int>(axis)});
+          }
+        }
+      }
     } catch (const Error& error) {
       throw error.at(fixed.place);
     }

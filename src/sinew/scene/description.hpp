@@ -74,13 +74,14 @@ struct FixedRegion {
   enum class Kind { box, sphere, plane, set };
   Place place;
   Kind kind = Kind::box;
-  Vector3 lower = Vector3::Zero();    ///< box: m
-  Vector3 upper = Vector3::Zero();    ///< box: m
-  Vector3 point = Vector3::Zero();    ///< sphere: center; plane: a point of it; m
-  Vector3 normal = Vector3::UnitZ();  ///< plane: unit length
-  double radius = 0.0;                ///< sphere: m
-  double within = 1e-6;               ///< plane: m, nodes no farther from it are fixed
-  std::string set;                    ///< set: its name in the mesh
+  Vector3 lower = Vector3::Zero();             ///< box: m
+  Vector3 upper = Vector3::Zero();             ///< box: m
+  Vector3 point = Vector3::Zero();             ///< sphere: center; plane: a point of it; m
+  Vector3 normal = Vector3::UnitZ();           ///< plane: unit length
+  double radius = 0.0;                         ///< sphere: m
+  double within = 1e-6;                        ///< plane: m, nodes no farther from it are fixed
+  std::string set;                             ///< set: its name in the mesh
+  std::array<bool, 3> axes{true, true, true};  ///< held along x, y, z
 };
 
 struct BodyDescription {

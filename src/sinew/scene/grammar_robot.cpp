@@ -257,7 +257,8 @@ std::shared_ptr<const KeyTable> plane_table() {
 Form fixed_region() {
   return table(make_table(
       {.name = "fixed region",
-       .description = "The nodes of the mesh at rest that do not move. Exactly one of the keys.",
+       .description = "The nodes of the mesh at rest that do not move. Exactly one of box, sphere, "
+                      "plane and set.",
        .keys = {{.name = "box",
                  .forms = {vector(length(), 6)},
                  .example = "-20 -20 0 20 20 20 mm",
@@ -274,7 +275,14 @@ Form fixed_region() {
                 {.name = "set",
                  .forms = {text()},
                  .example = "base",
-                 .description = "Nodes of a named set of the mesh; `sinew info` lists them."}},
+                 .description = "Nodes of a named set of the mesh; `sinew info` lists them."},
+                {.name = "axes",
+                 .forms = {choice({{"x", "Along x."}, {"y", "Along y."}, {"z", "Along z."}}),
+                           list({choice({{"x", ""}, {"y", ""}, {"z", ""}})}, 1, 3)},
+                 .example = "z",
+                 .default_text = "[x, y, z]",
+                 .description = "What is held; along the other axes the nodes slide freely, as on "
+                                "rollers."}},
        .alternatives = {{{"box", "sphere", "plane", "set"}, true}}}));
 }
 

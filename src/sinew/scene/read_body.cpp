@@ -160,9 +160,21 @@ void read_box(const Fields& fields, FixedRegion& region) {
   }
 }
 
+void read_axes(const Fields& fields, FixedRegion& region) {
+  const Node* axes = fields.find("axes");
+  if (axes == nullptr) return;
+  region.axes = {false, false, false};
+  const auto hold = [&](const Node& word) {
+    region.axes[std::string_view("xyz").find(read_text(word).front())] = true;
+  };
+  if (fields.form("axes").shape == Shape::choice) return hold(*axes);
+  for (const Node& word : axes->items()) hold(word);
+}
+
 FixedRegion read_region(const Fields& fields) {
   FixedRegion region;
   region.place = fields.map().place();
+  read_axes(fields, region);
   if (fields.find("box") != nullptr) {
     region.place = fields.place("box");
     read_box(fields, region);

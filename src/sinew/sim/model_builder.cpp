@@ -83,7 +83,9 @@ int ModelBuilder::add_fem_body(fem::FemBodySettings settings) {
                 "a dynamic integrator needs mass, and this body has none",
                 "give `mass` or `density`");
   }
-  if (!dynamic && body->settings().elements.fixed_nodes.empty()) {
+  const bool loose =
+      body->settings().elements.fixed_nodes.empty() && body->settings().elements.held_axes.empty();
+  if (!dynamic && loose) {
     throw Error(ErrorKind::nothing_fixed, {.item = "body '" + body->name() + "'"},
                 "nothing holds this body, so it has no static equilibrium",
                 "fix a region of it, or choose a dynamic integrator");
@@ -275,6 +277,7 @@ std::shared_ptr<const Model> ModelBuilder::build(const linalg::FactorisationSett
         if (region.hyperelastic) hash_energy(hash, *region.hyperelastic);
       }
       hash.add(static_cast<double>(fem->elements().free_count()));
+      for (const std::int32_t held : fem->elements().held()) hash.add(static_cast<double>(held));
     }
   }
   hash.add(model_->step_.time_step);
