@@ -18,6 +18,7 @@ from ._core import (
     InverseController,
     Limits,
     Linearisation,
+    Material,
     Polyline,
     Ramp,
     Samples,
@@ -31,6 +32,8 @@ from ._core import (
     Trajectory,
     View,
     __version__,
+    material,
+    materials,
     view,
 )
 from .errors import Error, Place, RunError
@@ -45,6 +48,7 @@ __all__ = [
     "InverseController",
     "Limits",
     "Linearisation",
+    "Material",
     "Place",
     "Polyline",
     "Ramp",
@@ -63,6 +67,8 @@ __all__ = [
     "errors",
     "load",
     "loads",
+    "material",
+    "materials",
     "mesh",
     "view",
 ]

@@ -28,4 +28,5 @@ PYBIND11_MODULE(_core, module) {
   python::bind_simulation(module);
   python::bind_controller(module);
   python::bind_view(module);
+  python::bind_material(module);
 }

@@ -1,0 +1,63 @@
+"""Materials by themselves."""
+
+import numpy as np
+import pytest
+import sinew
+
+
+def test_the_library_says_where_its_numbers_come_from():
+    library = sinew.materials()
+    assert "ecoflex-00-30" in library
+    for name, entry in library.items():
+        assert set(entry) == {"trade_name", "law", "density", "source", "remark"}
+        assert entry["source"] and entry["density"] > 500
+        assert sinew.material(name).density == entry["density"]
+
+
+def test_a_law_as_in_a_scene():
+    law = {"model": "mooney-rivlin", "c10": "150 kPa", "c01": "50 kPa", "poisson_ratio": 0.49}
+    material = sinew.material(law)
+    assert material.shear_modulus == pytest.approx(2 * (150e3 + 50e3))
+    assert material.poisson_ratio == pytest.approx(0.49)
+    assert material.density is None
+    assert "Material" in repr(material)
+    stretch = np.array([[0.5, 1.0], [1.5, 4.0]])
+    expected = 2 * (150e3 + 50e3 / stretch) * (stretch - stretch**-2)
+    np.testing.assert_allclose(material.nominal_stress(stretch), expected, rtol=1e-12, atol=1e-9)
+    equibiaxial = 2 * (150e3 + 50e3 * stretch**2) * (stretch - stretch**-5)
+    np.testing.assert_allclose(
+        material.nominal_stress(stretch, "equibiaxial"), equibiaxial, rtol=1e-12, atol=1e-9
+    )
+
+
+def test_both_readings_of_ogdens_moduli():
+    terms = {"model": "ogden", "mu": [107.9e3, 21.47, -87.1e3], "alpha": [1.55, 7.86, -1.91],
+             "poisson_ratio": 0.49}
+    as_sum = sinew.material({**terms, "convention": "two-mu-over-alpha-squared"})
+    assert as_sum.shear_modulus == pytest.approx(20.8e3, rel=2e-3)
+    as_ogden = sinew.material({**terms, "convention": "mu-over-alpha"})
+    assert as_ogden.shear_modulus == pytest.approx(167e3, rel=2e-3)
+
+
+def test_where_a_published_law_is_unstable():
+    low, high = sinew.material("ecoflex-00-30-published").stable_range()
+    assert low == pytest.approx(0.31, abs=0.005)
+    assert high == pytest.approx(3.68, abs=0.01)
+    assert sinew.material("ecoflex-00-30").stable_range() == (0.1, 10.0)
+
+
+@pytest.mark.parametrize(
+    ("call", "kind"),
+    [
+        (lambda: sinew.material("ecoflex-0030"), "unknown-choice"),
+        (lambda: sinew.material({"model": "neo-hookean"}), "missing-key"),
+        (lambda: sinew.material({"young_modulus": 1e5, "poisson_ratio": 0.4}), "wrong-type"),
+        (lambda: sinew.material("ecoflex-00-30").nominal_stress(-1.0), "out-of-range"),
+        (lambda: sinew.material("ecoflex-00-30").nominal_stress(1.0, "shear"), "unknown-choice"),
+        (lambda: sinew.material("ecoflex-00-30").stable_range(lowest=2.0), "out-of-range"),
+    ],
+)
+def test_broken_calls(call, kind):
+    with pytest.raises(sinew.Error) as caught:
+        call()
+    assert caught.value.kind == kind
