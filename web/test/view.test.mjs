@@ -67,6 +67,12 @@ async function open(url, errors = []) {
 const state = (page) => page.evaluate(() => window.sinewView.state());
 const ask = (page, message) => page.evaluate((m) => window.sinewView.request(m), message);
 
+/** What a function says of the picture once the last frame is in it, which may take a while without a GPU. */
+async function drawn(page, what) {
+  await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
+  return page.evaluate(what);
+}
+
 /** Waits until a page's state is as it should be. */
 async function until(page, holds, seconds = 20) {
   for (let tries = 0; tries < 20 * seconds; ++tries) {
@@ -205,9 +211,9 @@ test('the robot goes where its target is put', async () => {
     && Math.abs(s.signals['tip.x'] - 0.02) < 2e-4);
   assert.ok(Math.abs(there.signals['tip.y'] + 0.01) < 2e-4 && Math.abs(there.signals['tip.z'] - 0.18) < 2e-4);
   // By the arrow along z, drawn down with the mouse.
-  const [x, y] = await page.evaluate(() => window.sinewView.arrows()[2]);
+  const [x, y] = await drawn(page, () => window.sinewView.arrows()[2]);
   await page.mouse.move(x, y, {steps: 4});
-  await page.waitForTimeout(200);
+  await drawn(page, () => 0);
   await page.mouse.down();
   await page.mouse.move(x, y + 40, {steps: 12});
   await page.mouse.up();

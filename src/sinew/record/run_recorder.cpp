@@ -105,8 +105,7 @@ RecordSettings checked(RecordSettings settings) {
 }  // namespace
 
 struct RunRecorder::Files {
-  Files(const sim::Simulation& run, const inverse::InverseController* controller,
-        RecordSettings what)
+  Files(sim::Simulation& run, const inverse::InverseController* controller, RecordSettings what)
       : simulation(run),
         settings(checked(std::move(what))),
         states(settings.folder / "run.h5", run, controller, settings),
@@ -122,7 +121,7 @@ struct RunRecorder::Files {
     ++frames;
   }
 
-  const sim::Simulation& simulation;
+  sim::Simulation& simulation;
   RecordSettings settings;
   RunStates states;  // first: a file that another program holds open stops everything
   RunTable table;
@@ -130,8 +129,8 @@ struct RunRecorder::Files {
   std::int64_t frames = 0;
 };
 
-RunRecorder::RunRecorder(const sim::Simulation& simulation,
-                         const inverse::InverseController* controller, RecordSettings settings)
+RunRecorder::RunRecorder(sim::Simulation& simulation, const inverse::InverseController* controller,
+                         RecordSettings settings)
     : files_(std::make_unique<Files>(simulation, controller, std::move(settings))) {
   files_->write();
   files_->states.flush();

@@ -33,7 +33,10 @@ struct RecordSettings {
 ///
 /// run.csv, one row a frame, units in the headings: `time [s]`; per actuator `long_0.tension [N]`
 /// and `long_0.displacement [m]`; per effector `tip.x [m]` and so on (`rx [rad]` for orientations);
-/// per task of the controller `tip.target_x [m]` ... and `tip.error [m]`; then `residual [N]`,
+/// per task of the controller `tip.target_x [m]` ... and `tip.error [m]`; then the ledger
+/// `strain_energy`, `kinetic_energy`, `gravity_energy` (from the height at rest), `actuator_work`
+/// and `energy_loss` (that work less what the energies gained: lost to damping and to the
+/// integrator, and less the work of forces set from Python), all `[J]`; `residual [N]`,
 /// `relative_residual`, `iterations`, `scale` (of the motion, < 1 when a step was cut back),
 /// `smallest_volume_ratio`, and the statuses `law` and `controller` in words. The row at t = 0 is
 /// the start, before any step, whose statuses are `start`.
@@ -41,7 +44,7 @@ struct RecordSettings {
 /// run.h5: /time (frames,) s; /positions/BODY (frames, n, 3) m; /velocities/BODY in dynamics, m/s;
 /// /actuators/NAME/{effort,motion} (frames,); /effectors/NAME/position (frames, 3);
 /// /controller/EFFECTOR/{target,error}; /report/{residual,...} (frames,);
-/// /mesh/BODY/{nodes,tetrahedra}; /scene, YAML text. Attributes of the file: format,
+/// /mesh/BODY/{nodes,tetrahedra,hexahedra}; /scene, YAML text. Attributes of the file: format,
 /// format_version, sinew_version, scene_name, time_step, record_every, fingerprint; every series
 /// has its `unit`.
 class RunRecorder {
@@ -50,7 +53,7 @@ class RunRecorder {
   /// @param simulation must outlive the recorder. @param controller attached to it, or null; its
   /// targets and errors are recorded. @param settings see there.
   /// Throws Error(out-of-range) for `every` < 1, Error(file-unwritable), Error(recording-failed).
-  RunRecorder(const sim::Simulation& simulation, const inverse::InverseController* controller,
+  RunRecorder(sim::Simulation& simulation, const inverse::InverseController* controller,
               RecordSettings settings);
   /// Closes all files; call finish() first to hear of a full disk.
   ~RunRecorder();

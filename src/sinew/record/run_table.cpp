@@ -26,7 +26,7 @@ std::string_view law_status_name(sim::LawStatus status) {
   return "failed";
 }
 
-RunTable::RunTable(const std::filesystem::path& path, const sim::Simulation& simulation,
+RunTable::RunTable(const std::filesystem::path& path, sim::Simulation& simulation,
                    const inverse::InverseController* controller)
     : simulation_(simulation),
       controller_(controller),
@@ -61,8 +61,10 @@ std::vector<std::string> RunTable::names(const sim::Simulation& simulation,
       names.push_back(fmt::format("{}.error [{}]", effector, unit(e)));
     }
   }
-  for (const char* name : {"residual [N]", "relative_residual", "iterations", "scale",
-                           "smallest_volume_ratio", "law", "controller"}) {
+  for (const char* name :
+       {"strain_energy [J]", "kinetic_energy [J]", "gravity_energy [J]", "actuator_work [J]",
+        "energy_loss [J]", "residual [N]", "relative_residual", "iterations", "scale",
+        "smallest_volume_ratio", "law", "controller"}) {
     names.emplace_back(name);
   }
   return names;
@@ -87,10 +89,30 @@ void RunTable::collect() {
       values_.push_back(controller_->error(static_cast<int>(t)));
     }
   }
+  collect_energies();
   const sim::StepReport& report = simulation_.report();
   values_.insert(values_.end(),
                  {report.residual, report.relative_residual, static_cast<double>(report.iterations),
                   report.scale, report.smallest_volume_ratio});
+}
+
+// What actuators have put in since the first row is in the bodies or lost: to damping, and to the
+// integrator.
+void RunTable::collect_energies() {
+  double strain = 0.0, kinetic = 0.0, gravity = 0.0;
+  for (const auto& body : simulation_.world().bodies()) {
+    strain += body->strain_energy();
+    kinetic += body->kinetic_energy();
+    gravity += body->gravity_energy();
+  }
+  const double energy = strain + kinetic + gravity;
+  if (!started_) {
+    first_energy_ = energy;
+    first_work_ = simulation_.actuator_work();
+    started_ = true;
+  }
+  const double work = simulation_.actuator_work() - first_work_;
+  values_.insert(values_.end(), {strain, kinetic, gravity, work, work - (energy - first_energy_)});
 }
 
 void RunTable::write() {

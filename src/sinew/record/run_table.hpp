@@ -22,20 +22,23 @@ std::string_view law_status_name(sim::LawStatus status);
 class RunTable {
  public:
   /// @param path of the file. @param simulation,controller as for RunRecorder.
-  RunTable(const std::filesystem::path& path, const sim::Simulation& simulation,
+  RunTable(const std::filesystem::path& path, sim::Simulation& simulation,
            const inverse::InverseController* controller);
-  /// Appends the present state as a row. Allocates nothing after the first.
+  /// Appends the present state as a row. Evaluates the elements for their energy.
   void write();
 
  private:
   static std::vector<std::string> names(const sim::Simulation& simulation,
                                         const inverse::InverseController* controller);
   void collect();
+  void collect_energies();
 
-  const sim::Simulation& simulation_;
+  sim::Simulation& simulation_;
   const inverse::InverseController* controller_;
   CsvWriter writer_;
   std::vector<double> values_;
+  bool started_ = false;
+  double first_energy_ = 0.0, first_work_ = 0.0;  // J, of the first row
   std::array<std::string_view, 2> words_;
 };
 

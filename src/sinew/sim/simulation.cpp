@@ -32,6 +32,7 @@ Simulation::Simulation(std::shared_ptr<const Model> model, int threads)
   }
   finish_step();
   state_before_.resize(state_size());
+  motion_before_.resize(actuators_.size());
 }
 
 Simulation::~Simulation() = default;
@@ -64,7 +65,11 @@ const StepReport& Simulation::step() {
   }
   world_.end_step(mechanics::step_weights(model_->step().integrator, model_->step().time_step));
   ++steps_;
+  std::ranges::transform(actuators_, motion_before_.begin(), &ActuatorState::motion);
   finish_step();
+  for (std::size_t i = 0; i < actuators_.size(); ++i) {
+    actuator_work_ += actuators_[i].effort * (actuators_[i].motion - motion_before_[i]);
+  }
   clock_.mark(Stage::correction);
   clock_.stop();
   report_.times = times_;
@@ -288,6 +293,7 @@ void Simulation::reset() {
   std::ranges::fill(effort_, 0.0);
   std::ranges::fill(ranges_, ActuatorRange{});
   volume_ratio_ = 1.0;
+  actuator_work_ = 0.0;
   steps_ = 0;
   finish_step();
   direct_.reset();

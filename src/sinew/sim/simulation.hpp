@@ -66,6 +66,9 @@ class Simulation {
   /// step.
   const StepReport& step();
   const StepReport& report() const { return report_; }
+  /// J: what all actuators have done on the bodies in steps since the start or reset(), the sum of
+  /// effort times change of motion, with the effort that acted through each step.
+  double actuator_work() const { return actuator_work_; }
 
   /// Newton to the static equilibrium at the present inputs: commands at the present time, limits
   /// on rates lifted, actuators of a controller held at their efforts; exact tangent, cables'
@@ -127,6 +130,8 @@ class Simulation {
   std::vector<ActuatorRange> ranges_;
   std::vector<double> effort_;
   std::vector<double> state_before_;
+  std::vector<double> motion_before_;  // (actuators,) m
+  double actuator_work_ = 0.0;
   std::vector<int> all_cables_;
   std::int64_t steps_ = 0;
   double volume_ratio_ = 1.0;
