@@ -17,8 +17,6 @@ void FollowSource::stop() {
   LiveSource::stop();
 }
 
-bool FollowSource::wait_begun(std::chrono::milliseconds time) { return wait_turn(time); }
-
 void FollowSource::hand_over() {
   {
     const std::lock_guard lock(turn_mutex_);

@@ -25,15 +25,14 @@ class FollowSource final : public LiveSource {
 
   // The script's side; of one thread.
 
-  /// Waits until the first frame was made. False when that took longer.
-  bool wait_begun(std::chrono::milliseconds time);
   /// The controller that is to be shown; see RobotState. Before hand_over().
   void observe(const std::string& name, inverse::InverseController* controller) {
     state().observe(name, controller);
   }
   /// Begins the source's turn.
   void hand_over();
-  /// Waits for its end. False when it has not ended within the time.
+  /// Waits for its end; the first turn, in which a first frame is made, begins with start(). False
+  /// when it has not ended within the time.
   bool wait_turn(std::chrono::milliseconds time);
   /// Whether the source was stopped.
   bool ended() const;

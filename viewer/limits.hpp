@@ -7,6 +7,12 @@
 
 namespace sinew::viewer::limits {
 
+inline constexpr double kSlowest = 0.01, kFastest = 100.0;  ///< simulated seconds a second
+/// Whether a run can be shown at this speed; 0: as fast as it can.
+constexpr bool is_speed(double factor) {
+  return factor == 0.0 || (factor >= kSlowest && factor <= kFastest);
+}
+
 inline constexpr std::size_t kConnections = 32;  ///< open at once, pages and their views together
 inline constexpr std::size_t kRequestHeader = 8192;       ///< bytes of an HTTP request
 inline constexpr std::chrono::seconds kRequestTime{10};   ///< for a whole HTTP request

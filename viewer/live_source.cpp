@@ -6,26 +6,12 @@
 
 namespace sinew::viewer {
 
-namespace {
-
-std::optional<Steering> scene_controller(const scene::Robot& robot, const std::string& name) {
-  if (name.empty()) return std::nullopt;
-  std::vector<std::string> known;
-  for (const scene::SceneController& controller : robot.controllers) {
-    if (controller.name == name) return Steering{name, controller.settings};
-    known.push_back(controller.name);
-  }
-  throw Error(ErrorKind::unknown_name, {.item = "controller"},
-              fmt::format("the scene has no controller '{}'", name),
-              known.empty() ? "the scene has none"
-                            : fmt::format("choose among {}", fmt::join(known, ", ")));
-}
-
-}  // namespace
-
 LiveSource::LiveSource(const scene::Robot& robot, const LiveSettings& settings)
     : LiveSource(robot, std::make_shared<sim::Simulation>(robot.model, robot.threads()),
-                 scene_controller(robot, settings.controller), settings) {}
+                 settings.controller.empty()
+                     ? std::nullopt
+                     : std::optional(scene_controller(robot, settings.controller)),
+                 settings) {}
 
 LiveSource::LiveSource(scene::Robot robot, std::shared_ptr<sim::Simulation> simulation,
                        std::optional<Steering> first, const LiveSettings& settings)
@@ -36,11 +22,6 @@ LiveSource::LiveSource(scene::Robot robot, std::shared_ptr<sim::Simulation> simu
   auto scene = nlohmann::json::parse(description_.scene);
   scene["gallery"] = static_cast<bool>(gallery_);
   description_.scene = scene.dump();
-}
-
-void LiveSource::start(Publisher& publisher) {
-  publisher_ = &publisher;
-  SourceThread::start(publisher);
 }
 
 void LiveSource::stop() {
@@ -125,7 +106,7 @@ void LiveSource::handle(const Request& request) {
   } else if (const auto* recording = std::get_if<Record>(&request)) {
     record(recording->on);
   } else if (std::holds_alternative<ShowGallery>(request) && gallery_) {
-    publisher_->replace(gallery_);
+    publisher().replace(gallery_);
   } else {
     throw Error(ErrorKind::not_in_this_version, {}, "a live robot cannot do this",
                 "see docs/view.md for what it can");

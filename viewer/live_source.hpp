@@ -40,7 +40,6 @@ class LiveSource : public SourceThread {
 
   std::string_view mode() const override { return "live"; }
   const Description& description() const override { return description_; }
-  void start(Publisher& publisher) override;
   void stop() override;
   /// "run.csv" and "motion.glb" of what was recorded, once the recording has ended.
   void fetch(std::string_view name, std::function<void(std::optional<Download>)> done) override;
@@ -70,7 +69,6 @@ class LiveSource : public SourceThread {
   RobotState state_;
   Description description_;
   std::function<std::unique_ptr<Source>()> gallery_;
-  Publisher* publisher_ = nullptr;
   std::shared_ptr<Recording> recording_;  ///< under way, or ended
   bool recording_on_ = false;
   std::mutex mutex_;  // of saved_

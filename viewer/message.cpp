@@ -10,6 +10,8 @@
 
 #include "sinew/core/error.hpp"
 
+#include "limits.hpp"
+
 namespace sinew::viewer {
 
 namespace {
@@ -180,8 +182,8 @@ SetCommand read_command(Fields& fields) {
 }
 
 double read_speed(Fields& fields) {
-  const double factor = fields.number("factor", 0.0, 100.0);
-  if (factor != 0.0 && factor < 0.01) {
+  const double factor = fields.number("factor", 0.0, limits::kFastest);
+  if (!limits::is_speed(factor)) {
     fail(ErrorKind::out_of_range, "factor", fmt::format("{:g} is below 0.01 and not 0", factor));
   }
   return factor;

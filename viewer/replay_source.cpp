@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "sinew/scene/scene.hpp"
@@ -110,9 +111,7 @@ std::shared_ptr<const Frame> ReplaySource::frame(const std::array<bool, kFieldCo
 }
 
 std::string ReplaySource::status_members() const {
-  Json status = Json::parse(state_.status_members());
-  status["frame"] = at_;
-  return status.dump();
+  return fmt::format(R"({{"frame":{},{})", at_, state_.status_members().substr(1));
 }
 
 // At most as many frames as the motion keeps.

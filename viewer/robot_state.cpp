@@ -67,6 +67,18 @@ void add_controller(const inverse::InverseController& controller, const std::str
 
 }  // namespace
 
+Steering scene_controller(const scene::Robot& robot, const std::string& name) {
+  std::vector<std::string> known;
+  for (const scene::SceneController& controller : robot.controllers) {
+    if (controller.name == name) return {name, controller.settings};
+    known.push_back(controller.name);
+  }
+  throw Error(ErrorKind::unknown_name, {.item = "controller"},
+              fmt::format("the scene has no controller '{}'", name),
+              known.empty() ? "the scene has none"
+                            : fmt::format("choose among {}", fmt::join(known, ", ")));
+}
+
 RobotState::RobotState(scene::Robot robot, std::shared_ptr<sim::Simulation> simulation,
                        std::optional<Steering> first)
     : robot_(std::move(robot)),
@@ -154,15 +166,7 @@ void RobotState::choose_controller(const std::optional<std::string>& name) {
   }
   if (!name) return detach();
   if (first_ && first_->name == *name) return attach(*name, first_->settings);
-  std::vector<std::string> known;
-  for (const scene::SceneController& controller : robot_.controllers) {
-    if (controller.name == *name) return attach(*name, controller.settings);
-    known.push_back(controller.name);
-  }
-  throw Error(ErrorKind::unknown_name, {.item = "controller"},
-              fmt::format("the scene has no controller '{}'", *name),
-              known.empty() ? "the scene has none"
-                            : fmt::format("choose among {}", fmt::join(known, ", ")));
+  attach(*name, scene_controller(robot_, *name).settings);
 }
 
 int RobotState::task_of(int effector) const {
@@ -265,14 +269,8 @@ void RobotState::fill_signals(Frame& frame, double real_time_factor) {
     const int task = task_of(static_cast<int>(i));
     values.push_back(task < 0 ? kNone : controller_->error(task));
   }
-  double strain = 0.0, kinetic = 0.0, gravity = 0.0;
-  for (std::size_t b = 0; b < model.bodies().size(); ++b) {
-    mechanics::Body& body = simulation_->world().body(static_cast<int>(b));
-    strain += body.strain_energy();
-    kinetic += body.kinetic_energy();
-    gravity += body.gravity_energy();
-  }
-  values.insert(values.end(), {strain, kinetic, gravity});
+  const sim::Energies energies = simulation_->energies();
+  values.insert(values.end(), {energies.strain, energies.kinetic, energies.gravity});
   const sim::StepReport& report = simulation_->report();
   values.push_back(report.times.total);
   for (const double seconds : report.times.seconds) values.push_back(seconds);

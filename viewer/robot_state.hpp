@@ -32,6 +32,9 @@ struct Steering {
   inverse::InverseSettings settings;
 };
 
+/// A controller of the scene. Throws Error(unknown-name). @param robot,name where, and which.
+Steering scene_controller(const scene::Robot& robot, const std::string& name);
+
 /// A moment of a recorded run.
 struct RecordedState {
   std::vector<Points> positions;         ///< (n, 3) m a body, in the model's order

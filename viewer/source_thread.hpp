@@ -48,6 +48,7 @@ class SourceThread : public Source {
   virtual std::optional<Download> download(std::string_view) { return std::nullopt; }
 
   void pause() { playing_ = false; }
+  Publisher& publisher() { return *publisher_; }
   /// Time was changed other than by advance().
   void restart_clock();
   /// Ends the thread; for destructors of classes whose functions it calls.

@@ -17,6 +17,7 @@
 #ifdef SINEW_HAS_VIEWER
 #include "viewer/browser.hpp"
 #include "viewer/gallery_source.hpp"
+#include "viewer/limits.hpp"
 #include "viewer/live_source.hpp"
 #include "viewer/replay_source.hpp"
 #include "viewer/server.hpp"
@@ -64,7 +65,7 @@ std::unique_ptr<viewer::Source> source_of(const ViewOptions& options) {
 
 int view(const ViewOptions& options) {
   if (options.port) require_range("--port", *options.port, 0, kLastPort);
-  if (options.speed != 0.0 && !(options.speed >= 0.01 && options.speed <= 100.0)) {
+  if (!viewer::limits::is_speed(options.speed)) {
     throw Error(ErrorKind::out_of_range, {.item = "--speed"},
                 fmt::format("{:g} is out of range", options.speed),
                 "give 0.01 to 100 simulated seconds a second, or 0 for as fast as it can");

@@ -12,6 +12,7 @@
 #ifdef SINEW_HAS_VIEWER
 #include "viewer/browser.hpp"
 #include "viewer/follow_source.hpp"
+#include "viewer/limits.hpp"
 #include "viewer/server.hpp"
 #endif
 
@@ -53,7 +54,7 @@ viewer::ServerSettings server_settings(const ViewOptions& options) {
 
 viewer::LiveSettings live_settings(const ViewOptions& options, double usual_speed) {
   const double speed = options.speed.value_or(usual_speed);
-  if (speed != 0.0 && !(speed >= 0.01 && speed <= 100.0)) {
+  if (!viewer::limits::is_speed(speed)) {
     throw Error(ErrorKind::out_of_range, {.item = "view(speed)"},
                 fmt::format("{:g} is out of range", speed),
                 "give 0.01 to 100 simulated seconds a second, or 0 for as fast as it can");
@@ -85,7 +86,7 @@ class View {
     observe();
     server_ = std::make_unique<viewer::Server>(server_settings(options), std::move(source));
     server_->start();
-    while (!source_->wait_begun(kPause)) {
+    while (!source_->wait_turn(kPause)) {
     }
     announce(*server_, options, "");
   }

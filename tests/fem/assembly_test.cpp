@@ -42,14 +42,6 @@ FemModelSettings mixed_settings(const mesh::Mesh& mesh) {
   return settings;
 }
 
-Points moved(const mesh::Mesh& mesh, double size, unsigned seed = 1) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> uniform(-size, size);
-  Points result = mesh.nodes;
-  for (double& x : result.reshaped()) x += kEdge * uniform(random);
-  return result;
-}
-
 struct Case {
   const char* name;
   int cells[3];
@@ -67,7 +59,7 @@ TEST_P(AgainstReference, ForcesMatrixAndEnergyAgree) {
   const auto model = std::make_shared<const FemModel>(mesh, settings);
   ThreadPool pool(1);
   Assembly assembly(model, pool);
-  const Points positions = moved(*mesh, given.motion);
+  const Points positions = moved(*mesh, kEdge, given.motion);
   const AssemblyWeights weights{.tangent = tangent, .stiffness = 0.7, .mass = 3e5};
   assembly.evaluate(positions, weights);
   const Reference expected = reference(*model, settings, positions, weights);
@@ -107,7 +99,7 @@ TEST_P(EveryTangent, ThreadsDoNotChangeABit) {
   const auto mesh = block_mesh(4, 3, 12, kEdge, 0.1);
   const FemModelSettings settings = mixed_settings(*mesh);
   const auto model = std::make_shared<const FemModel>(mesh, settings);
-  const Points positions = moved(*mesh, 0.3);
+  const Points positions = moved(*mesh, kEdge, 0.3);
   ThreadPool one(1);
   Assembly expected(model, one);
   expected.evaluate(positions, {.tangent = GetParam(), .stiffness = 1.0, .mass = 2.0});
@@ -132,7 +124,7 @@ TEST_P(EveryTangent, EvaluationAllocatesNothing) {
     ThreadPool pool(threads);
     Assembly assembly(model, pool);
     assembly.reserve(GetParam());
-    const Points positions = moved(*mesh, 0.4);  // through the fallback of the rotation too
+    const Points positions = moved(*mesh, kEdge, 0.4);  // through the fallback of the rotation too
     const std::size_t before = allocation_count();
     for (int k = 0; k < 3; ++k) assembly.evaluate(positions, {.tangent = GetParam()});
     assembly.measure_volume(positions);
@@ -151,7 +143,7 @@ TEST(Assembly, ExactMatrixIsTheDerivativeOfTheForces) {
   const auto model = std::make_shared<const FemModel>(mesh, mixed_settings(*mesh));
   ThreadPool pool(1);
   Assembly assembly(model, pool);
-  const Points positions = moved(*mesh, 0.1);
+  const Points positions = moved(*mesh, kEdge, 0.1);
   assembly.evaluate(positions, {.tangent = Tangent::exact});
   const MatrixX matrix = dense_matrix(assembly);
   constexpr double kStep = 1e-8;  // m, 1e-6 edges
@@ -177,7 +169,7 @@ TEST(Assembly, ForcesAreTheDerivativeOfTheEnergy) {
   const auto model = std::make_shared<const FemModel>(mesh, mixed_settings(*mesh));
   ThreadPool pool(1);
   Assembly assembly(model, pool);
-  const Points positions = moved(*mesh, 0.2);
+  const Points positions = moved(*mesh, kEdge, 0.2);
   assembly.evaluate(positions, {.tangent = Tangent::none});
   const std::vector<double> forces(assembly.forces().begin(), assembly.forces().end());
   const double scale = std::abs(*std::ranges::max_element(forces));
@@ -198,7 +190,7 @@ TEST(Assembly, RigidMotionsGiveNoForce) {
   const auto model = std::make_shared<const FemModel>(mesh, settings_of(*mesh));
   ThreadPool pool(1);
   Assembly assembly(model, pool);
-  assembly.evaluate(moved(*mesh, 0.01), {.tangent = Tangent::none});
+  assembly.evaluate(moved(*mesh, kEdge, 0.01), {.tangent = Tangent::none});
   const double scale =
       Eigen::Map<const VectorX>(assembly.forces().data(), 3 * model->free_count()).norm();
   for (const double angle : {0.3, 1.5, 3.1, 3.14159265358979}) {
@@ -219,7 +211,7 @@ TEST(Assembly, ForcesAndMatrixTurnWithTheBody) {
   const auto model = std::make_shared<const FemModel>(mesh, settings_of(*mesh));
   ThreadPool pool(1);
   Assembly assembly(model, pool);
-  const Points positions = moved(*mesh, 0.1);
+  const Points positions = moved(*mesh, kEdge, 0.1);
   const Matrix3 turn = Eigen::AngleAxisd(2.0, Vector3(1, 2, 3).normalized()).toRotationMatrix();
   for (const Tangent tangent : {Tangent::rotated, Tangent::exact}) {
     assembly.evaluate(positions, {.tangent = tangent});
@@ -275,7 +267,7 @@ TEST(Assembly, MatricesAreSymmetricAndTheRotatedOneIsPositive) {
   ThreadPool pool(1);
   Assembly assembly(model, pool);
   for (const Tangent tangent : {Tangent::rotated, Tangent::exact}) {
-    assembly.evaluate(moved(*mesh, 0.2), {.tangent = tangent});
+    assembly.evaluate(moved(*mesh, kEdge, 0.2), {.tangent = tangent});
     const MatrixX matrix = dense_matrix(assembly);  // off-diagonal blocks symmetric by storage
     EXPECT_LT((matrix - matrix.transpose()).cwiseAbs().maxCoeff(),
               1e-15 * matrix.cwiseAbs().maxCoeff());

@@ -54,4 +54,13 @@ inline std::vector<NodeId> bottom_nodes(const mesh::Mesh& mesh, double size) {
   return result;
 }
 
+/// Every node moved at random by up to `size` edges in each direction.
+inline Points moved(const mesh::Mesh& mesh, double edge, double size, unsigned seed = 1) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-size, size);
+  Points result = mesh.nodes;
+  for (double& x : result.reshaped()) x += edge * uniform(random);
+  return result;
+}
+
 }  // namespace sinew::fem

@@ -84,14 +84,6 @@ FemModelSettings mixed_settings(const mesh::Mesh& mesh) {
   return settings;
 }
 
-Points moved(const mesh::Mesh& mesh, double size, unsigned seed = 1) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> uniform(-size, size);
-  Points result = mesh.nodes;
-  for (double& x : result.reshaped()) x += kEdge * uniform(random);
-  return result;
-}
-
 struct Body {
   Body(std::shared_ptr<const mesh::Mesh> mesh, const FemModelSettings& settings, int threads = 1)
       : model(std::make_shared<const FemModel>(std::move(mesh), settings)),
@@ -128,7 +120,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, EveryKind,
 TEST_P(EveryKind, ForcesAreTheDerivativeOfTheEnergy) {
   const auto mesh = box(GetParam(), 2, 2, 3);
   Body body(mesh, mixed_settings(*mesh));
-  const Points x = moved(*mesh, 0.08);
+  const Points x = moved(*mesh, kEdge, 0.08);
   const VectorX forces = body.forces(x);
   constexpr double kStep = 1e-7;
   for (Eigen::Index k = 0; k < forces.size(); k += 5) {
@@ -142,7 +134,7 @@ TEST_P(EveryKind, ForcesAreTheDerivativeOfTheEnergy) {
 TEST_P(EveryKind, TheMatrixIsTheDerivativeOfTheForces) {
   const auto mesh = box(GetParam(), 2, 1, 3);
   Body body(mesh, mixed_settings(*mesh));
-  const Points x = moved(*mesh, 0.08);
+  const Points x = moved(*mesh, kEdge, 0.08);
   const MatrixX matrix = body.matrix(x, Tangent::exact);
   EXPECT_LT((matrix - matrix.transpose()).norm(), 1e-12 * matrix.norm());
   constexpr double kStep = 1e-8;
@@ -190,7 +182,7 @@ void expect_even_strain(Kind kind) {
   Matrix3 f;
   f << 1.3, 0.2, -0.1, 0.05, 0.9, 0.15, 0.1, -0.2, 1.1;
   const Points x = mesh->nodes * f.transpose();
-  const double scale = body.forces(moved(*mesh, 0.05)).cwiseAbs().maxCoeff();
+  const double scale = body.forces(moved(*mesh, kEdge, 0.05)).cwiseAbs().maxCoeff();
   EXPECT_LT(body.forces(x).cwiseAbs().maxCoeff(), 1e-10 * scale);
   const auto at = material::respond(rubber(), [&] {
     const Vector3 l = Eigen::JacobiSVD<Matrix3>(f).singularValues();
@@ -218,7 +210,7 @@ TEST_P(EveryKind, ARotationStrainsNothing) {
 TEST_P(EveryKind, ThreadsDoNotChangeABit) {
   const auto mesh = box(GetParam(), 4, 3, 8);
   const FemModelSettings settings = mixed_settings(*mesh);
-  const Points x = moved(*mesh, 0.1);
+  const Points x = moved(*mesh, kEdge, 0.1);
   for (const Tangent tangent : {Tangent::none, Tangent::rotated, Tangent::exact}) {
     Body one(mesh, settings), four(mesh, settings, 4);
     one.assembly.evaluate(x, {.tangent = tangent, .mass = 2.0});
@@ -236,7 +228,7 @@ TEST_P(EveryKind, ThreadsDoNotChangeABit) {
 TEST_P(EveryKind, NothingAllocatesAfterTheFirst) {
   const auto mesh = box(GetParam(), 2, 2, 4);
   Body body(mesh, mixed_settings(*mesh), 2);
-  const Points x = moved(*mesh, 0.1);
+  const Points x = moved(*mesh, kEdge, 0.1);
   for (const Tangent tangent : {Tangent::rotated, Tangent::exact}) {
     body.assembly.evaluate(x, {.tangent = tangent});
     const std::size_t before = allocation_count();
@@ -289,7 +281,7 @@ TEST(Solid, NeoHookeanTetrahedraAreThoseOfTheGeneralWay) {
   two_halves.powers.front().coefficient *= 0.5;
   two_halves.powers.push_back(two_halves.powers.front());  // no longer taken for neo-Hookean
   Body fast(mesh, settings_of(*mesh, law)), general(mesh, settings_of(*mesh, two_halves));
-  const Points x = moved(*mesh, 0.12);
+  const Points x = moved(*mesh, kEdge, 0.12);
   const VectorX forces = general.forces(x);
   EXPECT_LT((fast.forces(x) - forces).norm(), 1e-13 * forces.norm());
   EXPECT_NEAR(fast.energy(x), general.energy(x), 1e-13 * general.energy(x));

@@ -22,7 +22,7 @@ struct Script {
         source(shown, simulation,
                {.controller = "", .playing = playing, .speed = speed, .gallery = {}}) {
     source.start(watcher);
-    while (!source.wait_begun(100ms)) {
+    while (!source.wait_turn(100ms)) {
     }
   }
   ~Script() { source.stop(); }

@@ -153,9 +153,8 @@ void append_solids(const SolidGroup& group, std::span<const NodeId> free_index,
   std::vector<NodeId> free(nodes);
   for (std::size_t slot = 0; slot < group.element.size(); ++slot) {
     if (group.element[slot] < 0) continue;
-    const std::size_t first = slot / kLanes * nodes * kLanes + slot % kLanes;
     for (std::size_t a = 0; a < nodes; ++a) {
-      free[a] = free_index[static_cast<std::size_t>(group.node[first + kLanes * a])];
+      free[a] = free_index[static_cast<std::size_t>(group.node_of(slot, a))];
     }
     const auto force = static_cast<std::size_t>(group.first_force) + nodes * slot;
     const auto block = static_cast<std::size_t>(group.first_block) +

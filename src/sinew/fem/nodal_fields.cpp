@@ -89,10 +89,8 @@ Lanes equivalent_strain(const Lanes3x3& f, const material::LaneModuli& moduli) {
 
 /// Adds a value to all nodes of an element.
 void add_share(const SolidGroup& group, std::size_t slot, double value, std::span<double> nodes) {
-  const auto count = static_cast<std::size_t>(group.nodes);
-  const std::size_t first = slot / kLanes * count * kLanes + slot % kLanes;
-  for (std::size_t a = 0; a < count; ++a) {
-    nodes[static_cast<std::size_t>(group.node[first + kLanes * a])] += value;
+  for (std::size_t a = 0; a < static_cast<std::size_t>(group.nodes); ++a) {
+    nodes[static_cast<std::size_t>(group.node_of(slot, a))] += value;
   }
 }
 

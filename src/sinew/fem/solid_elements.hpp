@@ -44,6 +44,11 @@ struct SolidGroup {
   int batches() const { return static_cast<int>(element.size()) / material::kLanes; }
   int rows_per_point() const { return 3 * nodes + 1; }
   int pairs() const { return nodes * (nodes + 1) / 2; }
+  /// Mesh node of local node a.
+  NodeId node_of(std::size_t slot, std::size_t a) const {
+    const auto count = static_cast<std::size_t>(nodes);
+    return node[(slot / material::kLanes * count + a) * material::kLanes + slot % material::kLanes];
+  }
   /// m^3 of a point of integration.
   double weight(std::size_t slot, int point) const {
     const std::size_t batch = slot / material::kLanes;

@@ -6,90 +6,15 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/material/principal.hpp"
 
 namespace sinew::material {
 
 namespace {
 
-using Triple = std::array<double, 3>;
-constexpr std::array<int, 3> kAxes = {0, 1, 2};
-
 [[noreturn]] void fail(const std::string& what, const std::string& message,
                        const std::string& remedy) {
   throw Error(ErrorKind::invalid_material, {.item = what}, message, remedy);
-}
-
-std::size_t at(int axis) { return static_cast<std::size_t>(axis); }
-
-// First and second derivatives by e_i of sum_i b_i^a, with t_i = b_i^a and T their sum:
-//   a (t_i - T/3),   a^2 (delta_ij t_i - (t_i + t_j)/3 + T/9).
-struct PowerSum {
-  double value = 0.0;
-  Triple first{};
-  std::array<Triple, 3> second{};
-};
-
-PowerSum power_sum(const Triple& isochoric, double exponent) {
-  Triple t{};
-  double sum = 0.0;
-  for (const int i : kAxes) sum += t[at(i)] = std::pow(isochoric[at(i)], exponent);
-  PowerSum result;
-  result.value = sum;
-  for (const int i : kAxes) {
-    result.first[at(i)] = exponent * (t[at(i)] - sum / 3.0);
-    for (const int j : kAxes) {
-      const double own = i == j ? t[at(i)] : 0.0;
-      result.second[at(i)][at(j)] =
-          exponent * exponent * (own - (t[at(i)] + t[at(j)]) / 3.0 + sum / 9.0);
-    }
-  }
-  return result;
-}
-
-// Adds w f(s) for s a power sum: f' s_i and f' s_ij + f'' s_i s_j.
-void add(LogResponse& to, const PowerSum& s, double value, double slope, double curvature) {
-  to.energy += value;
-  for (const int i : kAxes) {
-    to.first[at(i)] += slope * s.first[at(i)];
-    for (const int j : kAxes) {
-      to.second[at(i)][at(j)] +=
-          slope * s.second[at(i)][at(j)] + curvature * s.first[at(i)] * s.first[at(j)];
-    }
-  }
-}
-
-void add_volumetric(LogResponse& to, double bulk_modulus, double ratio) {
-  const double pressure = bulk_modulus * (ratio - 1.0);  // U'
-  to.energy += 0.5 * pressure * (ratio - 1.0);
-  for (const int i : kAxes) {
-    to.first[at(i)] += pressure * ratio;
-    for (const int j : kAxes) {
-      to.second[at(i)][at(j)] += (pressure + bulk_modulus * ratio) * ratio;
-    }
-  }
-}
-
-LogResponse saint_venant(const Hyperelastic& law, const Triple& stretches) {
-  const double mu = law.saint_venant_shear, lambda = law.bulk_modulus - 2.0 / 3.0 * mu;
-  Triple strain{}, square{};
-  double trace = 0.0, squares = 0.0;
-  for (const int i : kAxes) {
-    square[at(i)] = stretches[at(i)] * stretches[at(i)];
-    strain[at(i)] = 0.5 * (square[at(i)] - 1.0);
-    trace += strain[at(i)];
-    squares += strain[at(i)] * strain[at(i)];
-  }
-  LogResponse result;
-  result.energy = 0.5 * lambda * trace * trace + mu * squares;
-  for (const int i : kAxes) {
-    const double stress = lambda * trace + 2.0 * mu * strain[at(i)];
-    result.first[at(i)] = square[at(i)] * stress;
-    for (const int j : kAxes) {
-      const double own = i == j ? 2.0 * stress + 2.0 * mu * square[at(i)] : 0.0;
-      result.second[at(i)][at(j)] = square[at(i)] * (own + lambda * square[at(j)]);
-    }
-  }
-  return result;
 }
 
 }  // namespace
@@ -197,30 +122,25 @@ std::vector<OgdenTerm> convert(const std::vector<OgdenTerm>& terms, OgdenConvent
   return result;
 }
 
+// By the kernels' own functions, in one lane.
 LogResponse respond(const Hyperelastic& law, const std::array<double, 3>& stretches,
                     bool volumetric) {
-  if (law.saint_venant_shear > 0.0) return saint_venant(law, stretches);
-  const double ratio = stretches[0] * stretches[1] * stretches[2];
-  const double scale = 1.0 / std::cbrt(ratio);
-  const Triple isochoric = {scale * stretches[0], scale * stretches[1], scale * stretches[2]};
+  Principal at;
+  at.determinant = lanes(stretches[0] * stretches[1] * stretches[2]);
+  for (int i = 0; i < 3; ++i) at.stretch[i] = lanes(stretches[static_cast<std::size_t>(i)]);
+  LanesLogResponse response = respond(law, at);
+  // Saint Venant-Kirchhoff has no volumetric part of its own.
+  if (volumetric && law.saint_venant_shear == 0.0) {
+    add_volumetric(response, at.determinant, law.bulk_modulus);
+  }
   LogResponse result;
-  for (const PowerTerm& term : law.powers) {
-    const PowerSum sum = power_sum(isochoric, term.exponent);
-    add(result, sum, term.coefficient * (sum.value - 3.0), term.coefficient, 0.0);
-  }
-  if (!law.polynomial.empty()) {
-    const PowerSum sum = power_sum(isochoric, 2.0);
-    const double x = sum.value - 3.0;
-    double value = 0.0, slope = 0.0, curvature = 0.0;  // Horner, derivatives along with it
-    for (std::size_t k = law.polynomial.size(); k > 0; --k) {
-      curvature = curvature * x + 2.0 * slope;
-      slope = slope * x + value;
-      value = value * x + law.polynomial[k - 1];
+  result.energy = response.energy[0];
+  for (std::size_t i = 0; i < 3; ++i) {
+    result.first[i] = response.first[i][0];
+    for (std::size_t j = 0; j <= i; ++j) {
+      result.second[i][j] = result.second[j][i] = response.second[i][j][0];
     }
-    // The polynomial begins with x: f = x value.
-    add(result, sum, x * value, value + x * slope, 2.0 * slope + x * curvature);
   }
-  if (volumetric) add_volumetric(result, law.bulk_modulus, ratio);
   return result;
 }
 

@@ -130,11 +130,14 @@ struct LanesLogResponse {
 
 namespace detail {
 
-/// As power_sum() and add() of hyperelastic.cpp.
+/// s = sum_i b_i^a, with t_i = b_i^a and T their sum; its derivatives by e_i = ln l_i are
+/// a (t_i - T/3) and a^2 (delta_ij t_i - (t_i + t_j)/3 + T/9).
 struct LanesPowerSum {
   Lanes t[3], total;
   double exponent;
 
+  /// Adds f(s): f' s_i and f' s_ij + f'' s_i s_j. @param value,slope,curvature f and its
+  /// derivatives.
   SINEW_INLINE void add_to(LanesLogResponse& to, const Lanes& value, const Lanes& slope,
                            const Lanes& curvature) const {
     Lanes first[3];
@@ -213,7 +216,7 @@ SINEW_INLINE LanesLogResponse respond(const Hyperelastic& law, const Principal& 
   if (!law.polynomial.empty()) {
     const detail::LanesPowerSum sum = sum_of(2.0);
     const Lanes x = sum.total - 3.0;
-    Lanes value = zero, slope = zero, curvature = zero;
+    Lanes value = zero, slope = zero, curvature = zero;  // Horner, derivatives along with it
     for (std::size_t k = law.polynomial.size(); k > 0; --k) {
       curvature = curvature * x + 2.0 * slope;
       slope = slope * x + value;

@@ -99,12 +99,7 @@ void RunTable::collect() {
 // What actuators have put in since the first row is in the bodies or lost: to damping, and to the
 // integrator.
 void RunTable::collect_energies() {
-  double strain = 0.0, kinetic = 0.0, gravity = 0.0;
-  for (const auto& body : simulation_.world().bodies()) {
-    strain += body->strain_energy();
-    kinetic += body->kinetic_energy();
-    gravity += body->gravity_energy();
-  }
+  const auto [strain, kinetic, gravity] = simulation_.energies();
   const double energy = strain + kinetic + gravity;
   if (!started_) {
     first_energy_ = energy;

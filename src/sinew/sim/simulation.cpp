@@ -190,6 +190,16 @@ void Simulation::finish_step() {
   }
 }
 
+Energies Simulation::energies() {
+  Energies sum;
+  for (const auto& body : world_.bodies()) {
+    sum.strain += body->strain_energy();
+    sum.kinetic += body->kinetic_energy();
+    sum.gravity += body->gravity_energy();
+  }
+  return sum;
+}
+
 Vector3 Simulation::effector_value(int index) const {
   return model_->effector(index).value(world_.placement());
 }

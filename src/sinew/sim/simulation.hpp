@@ -15,6 +15,11 @@
 
 namespace sinew::sim {
 
+/// J; gravity's from the height at rest.
+struct Energies {
+  double strain = 0.0, kinetic = 0.0, gravity = 0.0;
+};
+
 /// What a step did.
 struct StepReport {
   LawStatus law = LawStatus::solved;
@@ -66,6 +71,8 @@ class Simulation {
   /// step.
   const StepReport& step();
   const StepReport& report() const { return report_; }
+  /// Of all bodies now. Evaluates their elements.
+  Energies energies();
   /// J: what all actuators have done on the bodies in steps since the start or reset(), the sum of
   /// effort times change of motion, with the effort that acted through each step.
   double actuator_work() const { return actuator_work_; }
