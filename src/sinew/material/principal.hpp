@@ -136,8 +136,8 @@ struct LanesPowerSum {
   Lanes t[3], total;
   double exponent;
 
-  /// Adds f(s): f' s_i and f' s_ij + f'' s_i s_j. @param value,slope,curvature f and its
-  /// derivatives.
+  /// Adds f(s): f' s_i, and f' s_ij + f'' s_i s_j.
+  /// @param to,value,slope,curvature where, and f with its derivatives.
   SINEW_INLINE void add_to(LanesLogResponse& to, const Lanes& value, const Lanes& slope,
                            const Lanes& curvature) const {
     Lanes first[3];
