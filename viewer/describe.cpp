@@ -15,16 +15,18 @@ namespace {
 using Json = nlohmann::json;
 
 // Half as far again as a robot's size is a slider's end where a scene sets none.
-constexpr double kFarPull = 0.25;     // of the robot's size
-constexpr double kStrongPull = 10.0;  // N
+constexpr double kFarPull = 0.25;         // of the robot's size
+constexpr double kStrongPull = 10.0;      // N
+constexpr double kStrongPressure = 20e3;  // Pa
+constexpr double kStrongPower = 5.0;      // W
 
 Json vector_json(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 Json limit_json(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-Json quantity_json(const char* name, const char* unit, const sim::Limits& limits, double low,
+Json quantity_json(const sim::QuantityName& quantity, const sim::Limits& limits, double low,
                    double high) {
-  return {{"name", name},
-          {"unit", unit},
+  return {{"name", quantity.name},
+          {"unit", quantity.unit},
           {"min", limit_json(limits.min)},
           {"max", limit_json(limits.max)},
           {"rate", limit_json(limits.rate)},
@@ -32,30 +34,67 @@ Json quantity_json(const char* name, const char* unit, const sim::Limits& limits
           {"high", std::isfinite(limits.max) ? limits.max : high}};
 }
 
+// Ends of the sliders of an actuator without limits.
+struct Ends {
+  double low, high;
+};
+
+Ends motion_ends(const sim::Model& model, int index) {
+  if (const auto* cavity = model.cavity(index)) {
+    const double volume = std::abs(cavity->rest_volume());
+    return {-0.5 * volume, volume};
+  }
+  const double far = kFarPull * model.size();
+  const auto type = model.actuators()[static_cast<std::size_t>(index)].type;
+  return {type == sim::ActuatorType::cable ? 0.0 : -far, far};
+}
+
+Ends effort_ends(const sim::ActuatorModel& actuator) {
+  if (actuator.type == sim::ActuatorType::pressure) return {-kStrongPressure, kStrongPressure};
+  return {actuator.type == sim::ActuatorType::cable ? 0.0 : -kStrongPull, kStrongPull};
+}
+
+Ends input_ends(const sim::Model& model, int index) {
+  const std::string_view name =
+      model.actuators()[static_cast<std::size_t>(index)].drive->input().name;
+  if (name == "power") return {0.0, kStrongPower};
+  if (name == "phase") return {0.0, 1.0};
+  const double volume = std::abs(model.cavity(index)->rest_volume());
+  return {-0.5 * volume, 2.0 * volume};
+}
+
+// What can be commanded, what the scene commands first; without a command a cable's pull, a force's
+// force, a chamber's pressure.
+Json quantities_json(const sim::Model& model, int index) {
+  const sim::ActuatorModel& actuator = model.actuators()[static_cast<std::size_t>(index)];
+  Json quantities = Json::array();
+  if (actuator.controllable()) {
+    const auto [low, high] = motion_ends(model, index);
+    quantities.push_back(quantity_json(actuator.motion_name(), actuator.motion, low, high));
+    const auto [least, most] = effort_ends(actuator);
+    quantities.push_back(quantity_json(actuator.effort_name(), actuator.effort, least, most));
+    if (actuator.command.kind == sim::CommandKind::effort) {
+      std::swap(quantities[0], quantities[1]);
+    }
+  }
+  if (actuator.drive != nullptr && *actuator.drive->input().name != '\0') {
+    const auto [low, high] = input_ends(model, index);
+    const Json input = quantity_json(actuator.drive->input(), {}, low, high);
+    const bool first = actuator.command.kind == sim::CommandKind::input;
+    quantities.insert(first ? quantities.begin() : quantities.end(), input);
+  }
+  return quantities;
+}
+
 Json actuator_json(const sim::Model& model, const scene::Robot& robot, int index) {
   const sim::ActuatorModel& actuator = model.actuators()[static_cast<std::size_t>(index)];
-  const double far = kFarPull * model.size();
-  const bool cable = actuator.type == sim::ActuatorType::cable;
-  Json quantities = Json::array();
-  const Json motion = quantity_json(sim::ActuatorModel::motion_name(), "m", actuator.motion,
-                                    cable ? 0.0 : -far, far);
-  const Json effort = quantity_json(actuator.effort_name(), "N", actuator.effort,
-                                    cable ? 0.0 : -kStrongPull, kStrongPull);
-  // What the scene commands comes first; else a cable's pull, a force's force.
-  const auto& command = robot.description.actuators[static_cast<std::size_t>(index)].command;
-  const bool by_motion = command ? command->kind == scene::CommandDescription::Kind::motion : cable;
-  quantities.push_back(by_motion ? motion : effort);
-  quantities.push_back(by_motion ? effort : motion);
-  const constraint::Cable* wire = model.cable(index);
-  std::size_t points = 0;
-  if (wire != nullptr) {
-    const auto& description = robot.description.actuators[static_cast<std::size_t>(index)];
-    points = static_cast<std::size_t>(description.points.points.rows());
-  }
+  const auto& description = robot.description.actuators[static_cast<std::size_t>(index)];
+  const bool wire = model.cable(index) != nullptr;
+  const auto points = static_cast<std::size_t>(wire ? description.points.points.rows() : 0);
   return {{"name", actuator.name},
           {"type", sim::actuator_type_name(actuator.type)},
-          {"body", robot.description.actuators[static_cast<std::size_t>(index)].body},
-          {"quantities", quantities},
+          {"body", description.body},
+          {"quantities", quantities_json(model, index)},
           {"points", points}};
 }
 
@@ -117,12 +156,16 @@ Json controllers_json(const scene::Robot& robot) {
 std::vector<SignalInfo> list_signals(const sim::Model& model) {
   std::vector<SignalInfo> list;
   for (const sim::ActuatorModel& actuator : model.actuators()) {
-    list.push_back({fmt::format("{}.{}", actuator.name, actuator.effort_name()), actuator.name, "N",
-                    "effort"});
+    const auto [name, unit] = actuator.effort_name();
+    const bool force = std::string_view(unit) == "N";
+    list.push_back({fmt::format("{}.{}", actuator.name, name), actuator.name, unit,
+                    force ? "effort" : "pressure"});
   }
   for (const sim::ActuatorModel& actuator : model.actuators()) {
-    list.push_back({fmt::format("{}.{}", actuator.name, sim::ActuatorModel::motion_name()),
-                    actuator.name, "m", "motion"});
+    const auto [name, unit] = actuator.motion_name();
+    const bool length = std::string_view(unit) == "m";
+    list.push_back({fmt::format("{}.{}", actuator.name, name), actuator.name, unit,
+                    length ? "motion" : "volume"});
   }
   for (std::size_t i = 0; i < model.effectors().size(); ++i) {
     const std::string& name = model.effectors()[i].name;

@@ -171,12 +171,14 @@ Pull read_pull(Fields& fields) {
 SetCommand read_command(Fields& fields) {
   SetCommand command;
   command.actuator = fields.text("actuator");
-  const std::string quantity = fields.text("quantity");
-  if (quantity != "displacement" && quantity != "tension" && quantity != "force") {
+  constexpr std::array<std::string_view, 9> kQuantities = {
+      "displacement", "tension", "force", "pressure", "volume_growth",
+      "gas",          "liquid",  "power", "phase"};
+  command.quantity = fields.text("quantity");
+  if (std::ranges::find(kQuantities, command.quantity) == kQuantities.end()) {
     fail(ErrorKind::unknown_choice, "quantity",
-         fmt::format("'{}' is none of displacement, tension, force", quantity));
+         fmt::format("'{}' is none of {}", command.quantity, fmt::join(kQuantities, ", ")));
   }
-  command.kind = quantity == "displacement" ? sim::CommandKind::motion : sim::CommandKind::effort;
   command.value = fields.number("value", -1e9, 1e9);
   return command;
 }

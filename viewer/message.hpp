@@ -42,8 +42,8 @@ struct Speed {
 /// Moves an actuator to a value and holds it there.
 struct SetCommand {
   std::string actuator;
-  sim::CommandKind kind = sim::CommandKind::motion;
-  double value = 0.0;  ///< m or N
+  std::string quantity;  ///< one of the actuator's: "displacement", "pressure", ...
+  double value = 0.0;    ///< in its SI unit
 };
 /// Attaches a controller of the scene; none: the actuators obey their commands.
 struct ChooseController {

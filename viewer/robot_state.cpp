@@ -31,16 +31,17 @@ Json trouble(const char* level, const char* kind, const std::string& subject,
 void add_limits(const sim::ActuatorModel& model, const sim::ActuatorState& state, Json& list) {
   const bool most = state.effort > 0.0 && at(state.effort, model.effort.max, 1e-3);
   if (most) {
-    list.push_back(trouble(
-        "warning", "effort-limit", model.name,
-        fmt::format("{} is at its limit, {:.3g} N", model.effort_name(), model.effort.max)));
+    list.push_back(trouble("warning", "effort-limit", model.name,
+                           fmt::format("{} is at its limit, {:.3g} {}", model.effort_name().name,
+                                       model.effort.max, model.effort_name().unit)));
   }
-  const bool far =
-      at(state.motion, model.motion.max, 1e-4) || at(state.motion, model.motion.min, 1e-4);
+  const double travel = state.motion * model.motion_scale;
+  const bool far = at(travel, model.motion.max * model.motion_scale, 1e-4) ||
+                   at(travel, model.motion.min * model.motion_scale, 1e-4);
   if (far && state.motion != 0.0) {
-    list.push_back(
-        trouble("warning", "motion-limit", model.name,
-                fmt::format("displacement is at its limit, {:.3g} mm", 1e3 * state.motion)));
+    list.push_back(trouble("warning", "motion-limit", model.name,
+                           fmt::format("{} is at its limit, {:.3g} {}", model.motion_name().name,
+                                       state.motion, model.motion_name().unit)));
   }
   if (state.slack) list.push_back(trouble("info", "slack", model.name, "the cable is slack"));
 }
@@ -134,15 +135,23 @@ void RobotState::command(const SetCommand& command) {
   const int index = simulation_->model().actuator_index(command.actuator);
   const sim::ActuatorModel& actuator =
       simulation_->model().actuators()[static_cast<std::size_t>(index)];
-  const bool motion = command.kind == sim::CommandKind::motion;
-  const sim::Limits& limits = motion ? actuator.motion : actuator.effort;
+  const std::optional<sim::CommandKind> kind = actuator.kind_of(command.quantity);
+  if (!kind) {
+    throw Error(ErrorKind::wrong_actuator_type, {.item = command.actuator},
+                fmt::format("a {} is not commanded by {}", sim::actuator_type_name(actuator.type),
+                            command.quantity),
+                "use one of the actuator's quantities");
+  }
+  const sim::Limits limits = *kind == sim::CommandKind::motion   ? actuator.motion
+                             : *kind == sim::CommandKind::effort ? actuator.effort
+                                                                 : sim::Limits{};
   if (command.value < limits.min || command.value > limits.max) {
     throw Error(ErrorKind::out_of_range, {.item = command.actuator},
                 fmt::format("{:g} is beyond the limits {:g} to {:g}", command.value, limits.min,
                             limits.max),
                 "stay within the limits of the scene");
   }
-  simulation_->command(index, {command.kind, sim::Signal::constant(command.value)});
+  simulation_->command(index, {*kind, sim::Signal::constant(command.value)});
 }
 
 void RobotState::detach() {
@@ -362,11 +371,9 @@ std::string RobotState::status_members() const {
   for (std::size_t i = 0; i < model.actuators().size(); ++i) {
     const sim::ActuatorModel& actuator = model.actuators()[i];
     const sim::ActuatorState& state = simulation_->actuator(static_cast<int>(i));
-    const bool motion = state.command.kind == sim::CommandKind::motion;
-    commands[actuator.name] = {
-        {"quantity", motion ? sim::ActuatorModel::motion_name() : actuator.effort_name()},
-        {"value", state.command.signal.value(simulation_->time())},
-        {"owned", state.owner != nullptr}};
+    commands[actuator.name] = {{"quantity", actuator.quantity(state.command.kind).name},
+                               {"value", state.command.signal.value(simulation_->time())},
+                               {"owned", state.owner != nullptr}};
     add_limits(actuator, state, troubles);
   }
   for (const auto& [name, position] : targets_) {

@@ -175,12 +175,22 @@ Facts scene_facts(const InfoOptions& options) {
     const sim::ActuatorModel& actuator = model.actuators()[a];
     const constraint::Cable* cable = model.cable(static_cast<int>(a));
     ordered_json entry = {{"name", actuator.name}, {"type", actuator_type_name(actuator.type)}};
-    if (cable != nullptr) entry["rest_length_m"] = cable->rest_length();
+    const constraint::Cavity* cavity = model.cavity(static_cast<int>(a));
+    std::string size;
+    if (cable != nullptr) {
+      entry["rest_length_m"] = cable->rest_length();
+      size = fmt::format(", {} long", mesh::format_length(cable->rest_length()));
+    }
+    if (cavity != nullptr) {
+      entry["rest_volume_m3"] = cavity->rest_volume();
+      entry["rest_area_m2"] = cavity->rest_area();
+      size = fmt::format(", {} in {} faces",
+                         format_quantity(cavity->rest_volume(), dimension::kVolume),
+                         cavity->faces().size());
+    }
     facts.json["actuators"].push_back(entry);
-    facts.text += fmt::format(
-        "  {} {}{}\n", actuator_type_name(actuator.type), actuator.name,
-        cable == nullptr ? ""
-                         : fmt::format(", {} long", mesh::format_length(cable->rest_length())));
+    facts.text +=
+        fmt::format("  {} {}{}\n", actuator_type_name(actuator.type), actuator.name, size);
   }
   for (const auto& effector : model.effectors()) {
     facts.json["effectors"].push_back(effector.name);

@@ -1,4 +1,6 @@
 #include <limits>
+#include <optional>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -20,18 +22,28 @@ std::string place(const Actuator& self, const char* what) {
   return fmt::format("actuator('{}').{}", model(self).name, what);
 }
 
-void require(const Actuator& self, ActuatorType type, const char* what) {
-  if (model(self).type == type) return;
+[[noreturn]] void fail_type(const Actuator& self, const char* what) {
+  const sim::ActuatorModel& own = model(self);
+  std::string has = fmt::format(".{} and .{}", own.effort_name().name, own.motion_name().name);
+  if (own.drive != nullptr && *own.drive->input().name != '\0') {
+    has += fmt::format(" and .{}", own.drive->input().name);
+  }
   throw Error(ErrorKind::wrong_actuator_type, {.item = place(self, what)},
-              fmt::format("'{}' is a {}, which has no {}", model(self).name,
-                          sim::actuator_type_name(model(self).type), what),
-              model(self).type == ActuatorType::force ? "a force has .force and .displacement"
-                                                      : "a cable has .tension and .displacement");
+              fmt::format("'{}' is a {}, which has no {}", own.name,
+                          sim::actuator_type_name(own.type), what),
+              fmt::format("it has {}", has));
 }
 
 const constraint::Cable& cable(const Actuator& self, const char* what) {
-  require(self, ActuatorType::cable, what);
-  return *self.session->model().cable(self.index);
+  const constraint::Cable* found = self.session->model().cable(self.index);
+  if (found == nullptr) fail_type(self, what);
+  return *found;
+}
+
+const constraint::Cavity& cavity(const Actuator& self, const char* what) {
+  const constraint::Cavity* found = self.session->model().cavity(self.index);
+  if (found == nullptr) fail_type(self, what);
+  return *found;
 }
 
 template <typename Get>
@@ -40,37 +52,78 @@ auto read(const Actuator& self, Get get) {
   return get(self.session->simulation().actuator(self.index));
 }
 
-void tell(const Actuator& self, CommandKind kind, const char* what, const py::object& value) {
-  const bool cable = model(self).type == ActuatorType::cable;
-  const sim::Signal signal =
-      to_signal(value, place(self, what), kind == CommandKind::effort ? "N" : "m");
-  if (cable && kind == CommandKind::effort && signal.is_constant() && signal.value(0.0) < 0.0) {
+void tell(const Actuator& self, const char* what, const py::object& value) {
+  const std::optional<CommandKind> kind = model(self).kind_of(what);
+  if (!kind) fail_type(self, what);
+  const sim::Signal signal = to_signal(value, place(self, what), model(self).quantity(*kind).unit);
+  const bool pushes = model(self).type == ActuatorType::cable && *kind == CommandKind::effort &&
+                      signal.is_constant() && signal.value(0.0) < 0.0;
+  if (pushes) {
     throw Error(ErrorKind::out_of_range, {.item = place(self, what)},
                 fmt::format("a tension of {:g} N would push", signal.value(0.0)),
                 "give zero or more; a cable can only pull");
   }
   const Session::Use use(*self.session);
-  self.session->simulation().command(self.index, {kind, signal});
+  self.session->simulation().command(self.index, {*kind, signal});
 }
 
-double effort(const Actuator& self, ActuatorType type, const char* what) {
-  require(self, type, what);
+double effort(const Actuator& self, const char* what) {
+  if (std::string_view(model(self).effort_name().name) != what) fail_type(self, what);
   return read(self, [](const sim::ActuatorState& state) { return state.effort; });
+}
+
+double motion(const Actuator& self, const char* what) {
+  if (std::string_view(model(self).motion_name().name) != what) fail_type(self, what);
+  return read(self, [](const sim::ActuatorState& state) { return state.motion; });
+}
+
+/// Number `index` of the drive whose input is called `input`.
+double drive_number(const Actuator& self, const char* input, const char* what, std::size_t index) {
+  const auto& drive = model(self).drive;
+  if (drive == nullptr || std::string_view(drive->input().name) != input) fail_type(self, what);
+  const Session::Use use(*self.session);
+  return self.session->simulation().drive_state(self.index)[index];
+}
+
+double added_gas(const Actuator& self) {
+  double now = drive_number(self, "gas", "gas", 0);
+  double rest = 0.0;
+  model(self).drive->rest({&rest, 1});
+  return now - rest;
+}
+
+/// Power or phase of a shape-memory wire.
+double wire_number(const Actuator& self, const char* what, std::size_t index) {
+  const auto& drive = model(self).drive;
+  if (drive == nullptr || drive->state_size() != 2) fail_type(self, what);
+  const Session::Use use(*self.session);
+  return self.session->simulation().drive_state(self.index)[index];
+}
+
+double power(const Actuator& self) {
+  const auto& drive = model(self).drive;
+  if (drive == nullptr || std::string_view(drive->input().name) != "power") {
+    fail_type(self, "power");
+  }
+  const Session::Use use(*self.session);
+  const auto& command = self.session->simulation().actuator(self.index).command;
+  return command.kind == CommandKind::input
+             ? command.signal.value(self.session->simulation().time())
+             : 0.0;
 }
 
 py::tuple command(const Actuator& self) {
   const Session::Use use(*self.session);
   const sim::Command& command = self.session->simulation().actuator(self.index).command;
-  const char* kind = command.kind == CommandKind::effort ? model(self).effort_name()
-                                                         : sim::ActuatorModel::motion_name();
+  const char* kind = model(self).quantity(command.kind).name;
   if (command.signal.is_constant()) return py::make_tuple(kind, command.signal.value(0.0));
   return py::make_tuple(kind, py::cast(command.signal));
 }
 
 py::dict limits(const Actuator& self) {
   py::dict result;
-  result[model(self).effort_name()] = py::cast(model(self).effort);
-  result[sim::ActuatorModel::motion_name()] = py::cast(model(self).motion);
+  result[model(self).effort_name().name] = py::cast(model(self).effort);
+  result[model(self).motion_name().name] = py::cast(model(self).motion);
   return result;
 }
 
@@ -85,44 +138,67 @@ auto of_cable(const char* what, Measure measure) {
 
 void bind_limits(py::module_& module) {
   py::class_<sim::Limits>(module, "Limits", "Inclusive limits; infinite where there is none.")
-      .def_readonly("min", &sim::Limits::min, "float: N or m.")
-      .def_readonly("max", &sim::Limits::max, "float: N or m.")
-      .def_readonly("rate", &sim::Limits::rate, "float: largest change, N/s or m/s.")
+      .def_readonly("min", &sim::Limits::min, "float: N, m, Pa or m^3.")
+      .def_readonly("max", &sim::Limits::max, "float: N, m, Pa or m^3.")
+      .def_readonly("rate", &sim::Limits::rate, "float: largest change a second.")
       .def("__repr__", [](const sim::Limits& self) {
         return fmt::format("Limits(min={:g}, max={:g}, rate={:g})", self.min, self.max, self.rate);
       });
 }
 
-void bind_commands(py::class_<Actuator>& type) {
+template <typename Get>
+void bind_quantity(py::class_<Actuator>& type, const char* name, Get get, const char* text) {
   type.def_property(
-          "displacement",
-          [](const Actuator& self) {
-            return read(self, [](const sim::ActuatorState& state) { return state.motion; });
-          },
-          [](const Actuator& self, const py::object& value) {
-            tell(self, CommandKind::motion, "displacement", value);
-          },
-          R"(float: length pulled out of the robot, or travel of a force's point along it (m).
+      name, [name, get](const Actuator& self) { return get(self, name); },
+      [name](const Actuator& self, const py::object& value) { tell(self, name, value); }, text);
+}
+
+void bind_commands(py::class_<Actuator>& type) {
+  bind_quantity(type, "displacement", motion,
+                R"(float: length pulled out of the robot, or travel of a force's point along it (m).
 
 Reading gives what it is; assigning commands it: a number (m), a signal such as `sinew.Ramp`, or
 (n, 2) samples of time and value. The actuator obeys within its limits. Raises Error
-(actuator-owned) while a controller has it.)")
-      .def_property(
-          "tension",
-          [](const Actuator& self) { return effort(self, ActuatorType::cable, "tension"); },
-          [](const Actuator& self, const py::object& value) {
-            require(self, ActuatorType::cable, "tension");
-            tell(self, CommandKind::effort, "tension", value);
+(actuator-owned) while a controller has it.)");
+  bind_quantity(type, "tension", effort,
+                "float: tension of a cable (N), >= 0. Assigning commands it, as for "
+                "`displacement`. Of a spring, which takes no command: negative when it pushes.");
+  bind_quantity(type, "force", effort,
+                "float: force of a force actuator along its direction (N). Assigning commands it, "
+                "as for `displacement`.");
+  bind_quantity(type, "pressure", effort,
+                "float: pressure in a chamber above ambient (Pa). Assigning commands it, as for "
+                "`displacement`; through the chamber's supply when it has one.");
+  bind_quantity(type, "volume_growth", motion,
+                "float: volume that a chamber gained since rest (m^3). Assigning commands it, as "
+                "a syringe of liquid would.");
+  bind_quantity(
+      type, "gas", [](const Actuator& self, const char*) { return added_gas(self); },
+      "float: gas added to what a chamber holds at rest, in volume at ambient pressure (m^3). "
+      "Assigning commands it, as for `displacement`. Chambers with `gas` alone.");
+  bind_quantity(
+      type, "liquid",
+      [](const Actuator& self, const char*) { return drive_number(self, "liquid", "liquid", 0); },
+      "float: liquid added to a chamber (m^3). Assigning commands it. Chambers with `liquid` "
+      "alone.");
+  bind_quantity(
+      type, "power", [](const Actuator& self, const char*) { return power(self); },
+      "float: electric power into a shape-memory spring (W). Assigning commands it.");
+  bind_quantity(
+      type, "phase",
+      [](const Actuator& self, const char*) { return wire_number(self, "phase", 1); },
+      "float: part of a shape-memory spring that is austenite, 0 to 1. Assigning commands it where "
+      "the scene says so.");
+  type.def_property_readonly(
+          "temperature", [](const Actuator& self) { return wire_number(self, "temperature", 0); },
+          "float: of a shape-memory spring (K).")
+      .def_property_readonly(
+          "volume",
+          [](const Actuator& self) {
+            const double rest = cavity(self, "volume").rest_volume();
+            return rest + motion(self, "volume_growth");
           },
-          "float: tension of a cable (N), >= 0. Assigning commands it, as for `displacement`.")
-      .def_property(
-          "force", [](const Actuator& self) { return effort(self, ActuatorType::force, "force"); },
-          [](const Actuator& self, const py::object& value) {
-            require(self, ActuatorType::force, "force");
-            tell(self, CommandKind::effort, "force", value);
-          },
-          "float: force of a force actuator along its direction (N). Assigning commands it, as for "
-          "`displacement`.")
+          "float: volume of a chamber now (m^3), without dead volume.")
       .def_property_readonly("command", &command,
                              "tuple: what it is told, as ('displacement', 0.01): the quantity and "
                              "a number or a Signal.")
@@ -160,8 +236,8 @@ void bind_measures(py::class_<Actuator>& type) {
           of_cable("points", [](const Cable& c, const Placement& p) { return copy(c.points(p)); }),
           "(n, 3) ndarray: a cable's points now, pull point first (m).")
       .def_property_readonly("limits", &limits,
-                             "dict: Limits of the effort ('tension' or 'force') and of the "
-                             "'displacement'.");
+                             "dict: Limits of the effort ('tension', 'force' or 'pressure') and of "
+                             "the motion ('displacement' or 'volume_growth').");
 }
 
 }  // namespace
@@ -169,12 +245,13 @@ void bind_measures(py::class_<Actuator>& type) {
 void bind_actuator(py::module_& module) {
   bind_limits(module);
   py::class_<Actuator> type(module, "Actuator",
-                            "What drives a robot: a cable or a force. From Simulation.actuator().");
+                            "What drives a robot: a cable, force, chamber or spring. From "
+                            "Simulation.actuator().");
   type.def_property_readonly(
           "name", [](const Actuator& self) { return model(self).name; }, "str: as in the scene.")
       .def_property_readonly(
           "type", [](const Actuator& self) { return sim::actuator_type_name(model(self).type); },
-          "str: 'cable' or 'force'.")
+          "str: 'cable', 'force', 'pressure' or 'spring'.")
       .def("__repr__", [](const Actuator& self) {
         return fmt::format("<sinew.Actuator '{}', a {}>", model(self).name,
                            sim::actuator_type_name(model(self).type));

@@ -36,13 +36,13 @@ void add_actuators(const Session& session, std::vector<Column>& columns) {
   for (std::size_t i = 0; i < actuators.size(); ++i) {
     const auto index = static_cast<int>(i);
     columns.push_back(
-        {actuators[i].name + "." + actuators[i].effort_name(),
+        {actuators[i].name + "." + actuators[i].effort_name().name,
          {},
          true,
          [index](Session& s, double* to) { *to = s.simulation().actuator(index).effort; },
          {}});
     columns.push_back(
-        {actuators[i].name + ".displacement",
+        {actuators[i].name + "." + actuators[i].motion_name().name,
          {},
          true,
          [index](Session& s, double* to) { *to = s.simulation().actuator(index).motion; },

@@ -138,12 +138,8 @@ void Session::save_state(const std::filesystem::path& path) const {
 Linearisation Session::linearise(const LinearisationChoice& choice) {
   const Use use(*this);
   check_loads();
-  std::vector<int> curved;
-  for (std::size_t i = 0; choice.geometric_stiffness && i < model().actuators().size(); ++i) {
-    if (model().cable(static_cast<int>(i)) != nullptr) {
-      curved.push_back(model().actuators()[i].constraint);
-    }
-  }
+  const std::vector<int> curved =
+      choice.geometric_stiffness ? model().curved_constraints() : std::vector<int>{};
   const auto weights = choice.of_statics ? mechanics::StepWeights{}
                                          : mechanics::step_weights(model().step().integrator,
                                                                    model().step().time_step);

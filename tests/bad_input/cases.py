@@ -161,7 +161,7 @@ SCENES = [
     scene("list-for-a-map", "wrong-type", "scene.yaml:19:12", [], ("effectors:\n  tip: {body: beam, point: 100 10 10 mm}", "effectors: [tip]")),
     scene("misspelt-choice", "unknown-choice", "scene.yaml:14:11", ["cabel", "cable"], ("type: cable", "type: cabel")),
     scene("later-key", "not-in-this-version", "scene.yaml:21:1", ["contacts"], ("controllers:", "contacts: {}\ncontrollers:")),
-    scene("later-type", "not-in-this-version", "scene.yaml:14:11", ["pressure"], ("type: cable", "type: pressure")),
+    scene("later-type", "not-in-this-version", "scene.yaml:7:11", ["rod"], ("type: fem", "type: rod")),
     scene("later-integrator", "not-in-this-version", "scene.yaml:3:13", ["bdf2"], ("time_step:", "integrator: bdf2\ntime_step:")),
     scene("unknown-body", "unknown-name", "scene.yaml:15:11", ["beem", "beam"], ("    body: beam\n    points", "    body: beem\n    points")),
     scene("unknown-effector", "unknown-name", "scene.yaml:25:7", ["tpi", "tip"], ("      tip: {target", "      tpi: {target")),

@@ -65,7 +65,7 @@ TEST(FollowSource, ShowsWhatTheScriptDid) {
 
 TEST(FollowSource, CarriesOutRequestsInTurnsOnly) {
   Script script(true);
-  auto answer = script.ask(SetCommand{"up", sim::CommandKind::effort, 0.5});
+  auto answer = script.ask(SetCommand{"up", "tension", 0.5});
   EXPECT_EQ(answer.wait_for(50ms), std::future_status::timeout) << "the script has its turn";
   ASSERT_TRUE(script.update());
   EXPECT_EQ(kind(answer.get()), "");

@@ -46,7 +46,7 @@ struct Live {
 
 TEST(LiveSource, StepsExactlyAndAsASimulationDoes) {
   Live live({.controller = "", .playing = false});
-  EXPECT_EQ(kind(live.ask(SetCommand{"up", sim::CommandKind::effort, 1.5})), "");
+  EXPECT_EQ(kind(live.ask(SetCommand{"up", "tension", 1.5})), "");
   EXPECT_EQ(kind(live.ask(Step{25})), "");
   const auto frame = live.at(25);
   const scene::Robot same = robot();
@@ -90,9 +90,10 @@ TEST(LiveSource, PlaysPausesAndKeepsTime) {
 
 TEST(LiveSource, RefusesWithAReason) {
   Live live({.controller = "hold", .playing = false});
-  EXPECT_EQ(kind(live.ask(SetCommand{"up", sim::CommandKind::motion, 0.0})), "actuator-owned");
-  EXPECT_EQ(kind(live.ask(SetCommand{"upp", sim::CommandKind::motion, 0.0})), "unknown-name");
-  EXPECT_EQ(kind(live.ask(SetCommand{"up", sim::CommandKind::effort, 21.0})), "out-of-range");
+  EXPECT_EQ(kind(live.ask(SetCommand{"up", "displacement", 0.0})), "actuator-owned");
+  EXPECT_EQ(kind(live.ask(SetCommand{"up", "pressure", 0.0})), "wrong-actuator-type");
+  EXPECT_EQ(kind(live.ask(SetCommand{"upp", "displacement", 0.0})), "unknown-name");
+  EXPECT_EQ(kind(live.ask(SetCommand{"up", "tension", 21.0})), "out-of-range");
   EXPECT_EQ(kind(live.ask(ChooseController{"hodl"})), "unknown-name");
   EXPECT_EQ(kind(live.ask(SetTarget{"top", Vector3::Zero()})), "unknown-name");
   EXPECT_EQ(kind(live.ask(Pull{"beam", {0, 1, 999999}, Vector3(1, 0, 0), Vector3::Zero(), 1.0})),
@@ -117,7 +118,7 @@ TEST(LiveSource, SteersWithoutAController) {
 TEST(LiveSource, SaysWhyARunStoppedAndStartsAnew) {
   Live live({.controller = "", .playing = false});
   const auto start = live.at(0)->hash;
-  EXPECT_EQ(kind(live.ask(SetCommand{"push", sim::CommandKind::effort, -1e6})), "");
+  EXPECT_EQ(kind(live.ask(SetCommand{"push", "force", -1e6})), "");
   const Outcome outcome = live.ask(Step{50});
   ASSERT_TRUE(outcome.has_value());
   live.wait([&](const Frame&) { return !live.watcher.status()["stopped"].is_null(); });

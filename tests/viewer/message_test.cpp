@@ -32,7 +32,7 @@ TEST(Message, ReadsEveryKind) {
   const auto command = read<SetCommand>(
       R"({"type": "command", "actuator": "a", "quantity": "tension", "value": 1.5})");
   EXPECT_EQ(command.actuator, "a");
-  EXPECT_EQ(command.kind, sim::CommandKind::effort);
+  EXPECT_EQ(command.quantity, "tension");
   EXPECT_EQ(command.value, 1.5);
   EXPECT_FALSE(read<ChooseController>(R"({"type": "controller", "name": null})").name);
   EXPECT_EQ(read<ChooseController>(R"({"type": "controller", "name": "x"})").name, "x");

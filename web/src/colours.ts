@@ -58,6 +58,7 @@ export function read(text: string): number {
 /** A number of a unit as people write it: 0.0123 m is "12.3 mm". */
 export function told(value: number, unit: string, digits = 3): string {
   if (!Number.isFinite(value)) return '-';
+  if (unit === 'm^3') return told(1e3 * value, 'l', digits);  // a prefix would be cubed, too
   if (unit === '' || value === 0) return `${Number(value.toPrecision(digits))}${unit ? ' ' + unit : ''}`;
   const size = Math.abs(value);
   const [scale, prefix] = PREFIXES.find(([s]) => size >= 0.9995 * s) ?? PREFIXES[PREFIXES.length - 1];

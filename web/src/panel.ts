@@ -5,8 +5,8 @@ import type {Actuator, Effector, Quantity, Scene, Status} from './protocol';
 
 const SPEEDS: [number, string][] = [[0.1, '0.1 x'], [0.25, '0.25 x'], [0.5, '0.5 x'], [1, 'real time'],
                                     [2, '2 x'], [5, '5 x'], [0, 'as fast as it can']];
-// Shown units of sliders: mm for m; N as it is.
-const SHOWN: Record<string, [number, string]> = {m: [1e3, 'mm'], N: [1, 'N']};
+// Shown units of sliders: mm for m, and so on; others as they are.
+const SHOWN: Record<string, [number, string]> = {m: [1e3, 'mm'], Pa: [1e-3, 'kPa'], 'm^3': [1e6, 'ml'], '': [1, '1']};
 
 export type Send = (message: Record<string, unknown>) => void;
 
@@ -50,6 +50,7 @@ export class Panel {
     this.controller.replaceChildren(new Option('none (by hand)', ''),
                                     ...scene.controllers.map((c) => new Option(c.name, c.name)));
     const heading = (text: string) => make('h2', {textContent: text});
+    const told = scene.actuators.filter((a) => a.quantities.length > 0);  // springs are not told
     const scripted = mode === 'follow';  // a script steps, resets and chooses the controller
     this.root.replaceChildren(
       heading('Run'),
@@ -60,7 +61,7 @@ export class Panel {
       make('div', {className: 'line'}, this.recorder, this.recorded),
       make('div', {className: 'line'}, this.who, this.drive, ...(scene.gallery ? [
            button('Examples', 'Back to the examples', () => this.send({type: 'gallery'}))] : [])),
-      ...(scene.actuators.length ? [heading('Actuators'), ...scene.actuators.map((a) => this.actuator(a))] : []),
+      ...(told.length ? [heading('Actuators'), ...told.map((a) => this.actuator(a))] : []),
       heading('Control'),
       ...(scripted ? [] : [make('div', {className: 'line'}, make('label', {}, 'Controller', this.controller))]),
       ...scene.effectors.filter((e) => e.kind === 'point').map((e) => this.target(e)),
@@ -205,9 +206,11 @@ export class Panel {
       const row = this.rows.get(actuator.name);
       const command = this.status?.source.commands?.[actuator.name];
       if (!row || !command || document.activeElement === row.slider || document.activeElement === row.number) return;
-      const motion = row.quantity.name === 'displacement';
+      const motion = row.quantity.name === 'displacement' || row.quantity.name === 'volume_growth';
+      const input = ['gas', 'liquid', 'power', 'phase'].includes(row.quantity.name);
       const offset = motion ? scene.actuators.length : 0;
       const told = command.quantity === row.quantity.name && !command.owned;
+      if (input && !told) return;  // no signal tells what it is
       const [scale] = SHOWN[row.quantity.unit] ?? [1];
       const text = String(Number((scale * (told ? command.value : signals[offset + k])).toPrecision(4)));
       if (row.number.value !== text) row.number.value = row.slider.value = text;

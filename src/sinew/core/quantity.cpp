@@ -45,6 +45,11 @@ constexpr std::array kWords = {
     DimensionWords{
         dimension::kVolumeRate, "a volume rate", "5 ml/s", {"m^3/s", "l/s", "ml/s", "mm^3/s"}, 0},
     DimensionWords{
+        dimension::kConductance, "a conductance of a valve", "2e-9 m^3/(s Pa)", {"m^3/(s Pa)"}, 0},
+    DimensionWords{dimension::kTemperature, "a temperature", "293.15 K", {"K"}, 0},
+    DimensionWords{dimension::kHeatCapacity, "a heat capacity", "0.1 J/K", {"J/K", "mJ/K"}, 0},
+    DimensionWords{dimension::kHeatLoss, "a heat loss", "0.01 W/K", {"W/K", "mW/K"}, 0},
+    DimensionWords{
         dimension::kPressureRate, "a pressure rate", "20 kPa/s", {"MPa/s", "kPa/s", "Pa/s"}, 2},
 };
 

@@ -40,6 +40,7 @@ constexpr std::array kUnits = {
     NamedUnit{"Pa", {1.0, 1.0, dimension::kPressure}, true},
     NamedUnit{"J", {1.0, 1.0, dimension::kEnergy}, true},
     NamedUnit{"W", {1.0, 1.0, dimension::kPower}, true},
+    NamedUnit{"K", {1.0, 1.0, dimension::kTemperature}, false},
     NamedUnit{"Hz", {1.0, 1.0, dimension::kFrequency}, true},
     NamedUnit{"Nm", {1.0, 1.0, dimension::kEnergy}, true},
     NamedUnit{"l", {1.0, 1e3, dimension::kVolume}, true},
@@ -73,17 +74,17 @@ std::optional<Unit> find_unit(std::string_view name) {
 
 /// The names that a slip is likely to have meant; not every prefix of every unit.
 std::string suggest(std::string_view name) {
-  constexpr std::array<std::string_view, 33> kCommon = {
-      "m",  "mm", "cm", "um",  "km",   "kg",  "g",   "mg",  "s",   "ms",  "us",
-      "N",  "mN", "kN", "Pa",  "kPa",  "MPa", "GPa", "J",   "mJ",  "W",   "Hz",
-      "Nm", "l",  "ml", "bar", "mbar", "psi", "atm", "min", "deg", "rad", "in"};
+  constexpr std::array<std::string_view, 34> kCommon = {
+      "m",  "mm", "cm",  "um",   "km",  "kg",  "g",   "mg",  "s",   "ms", "us", "N",
+      "mN", "kN", "Pa",  "kPa",  "MPa", "GPa", "J",   "mJ",  "W",   "K",  "Hz", "Nm",
+      "l",  "ml", "bar", "mbar", "psi", "atm", "min", "deg", "rad", "in"};
   const std::size_t digits = name.find_first_of("0123456789");
   if (digits != std::string_view::npos && digits > 0 && find_unit(name.substr(0, digits))) {
     return fmt::format("write '{}^{}' for a power", name.substr(0, digits), name.substr(digits));
   }
   const std::string nearest = nearest_word(name, kCommon);
   if (nearest.empty())
-    return "known are m, g, s, N, Pa, J, W, Hz, l, bar with SI prefixes, psi, "
+    return "known are m, g, s, N, Pa, J, W, K, Hz, l, bar with SI prefixes, psi, "
            "atm, in, min, h, deg, rad, % and their products";
   return fmt::format("did you mean '{}'?", nearest);
 }
@@ -213,13 +214,14 @@ Unit operator*(const Unit& a, const Unit& b) {
   return {numerator,
           denominator,
           {a.dimension.length + b.dimension.length, a.dimension.mass + b.dimension.mass,
-           a.dimension.time + b.dimension.time}};
+           a.dimension.time + b.dimension.time, a.dimension.temperature + b.dimension.temperature}};
 }
 
 Unit inverse(const Unit& unit) {
   return {unit.denominator,
           unit.numerator,
-          {-unit.dimension.length, -unit.dimension.mass, -unit.dimension.time}};
+          {-unit.dimension.length, -unit.dimension.mass, -unit.dimension.time,
+           -unit.dimension.temperature}};
 }
 
 Unit power(const Unit& unit, int exponent) {
@@ -243,6 +245,7 @@ std::string si_unit_name(Dimension dimension) {
   append("kg", dimension.mass);
   append("m", dimension.length);
   append("s", dimension.time);
+  append("K", dimension.temperature);
   return name.empty() ? "1" : name;
 }
 

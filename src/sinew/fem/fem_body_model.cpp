@@ -58,12 +58,26 @@ void FemBodyModel::finish(int body, const mechanics::RowPattern& rows,
                                   [&](const auto& point) { return point.body == body; });
     if (mine) rows_.push_back(row);
   }
+  plain_ = make_system(settings_.elements);
   for (const auto& curvature : curvatures) {
-    if (curvature.first.body == body && curvature.second.body == body) {
+    const bool mine = curvature.first.body == body && curvature.second.body == body;
+    if (mine && !couples(curvature.first.point, curvature.second.point)) {
       coupled_points_.push_back({curvature.first.point, curvature.second.point});
     }
   }
-  plain_ = make_system(settings_.elements);
+}
+
+bool FemBodyModel::couples(int first, int second) const {
+  const auto free = plain_.elements->free_index();
+  const auto& pattern = plain_.elements->pattern();
+  for (const NodeId a : attachment(first).nodes) {
+    const auto i = free[static_cast<std::size_t>(a)];
+    for (const NodeId b : attachment(second).nodes) {
+      const auto j = free[static_cast<std::size_t>(b)];
+      if (i >= 0 && j >= 0 && pattern.find(i, j) < 0) return false;
+    }
+  }
+  return true;
 }
 
 const FemSystem& FemBodyModel::system(bool with_curvature) const {

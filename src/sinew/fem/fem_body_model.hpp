@@ -62,6 +62,7 @@ class FemBodyModel : public mechanics::BodyModel {
   void finish(int body, const mechanics::RowPattern& rows,
               std::span<const mechanics::RowCurvature> curvatures,
               const linalg::FactorisationSettings& settings) override;
+  bool couples(int first, int second) const override;
   std::unique_ptr<mechanics::Body> create(ThreadPool& pool, bool with_curvature) const override;
 
   const mesh::Mesh& mesh() const { return *settings_.mesh; }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
@@ -86,12 +85,20 @@ void InverseController::check_settings() {
                 "name at least one effector and its target");
   }
   if (settings_.actuators.empty()) {
-    settings_.actuators.resize(model.actuators().size());
-    std::iota(settings_.actuators.begin(), settings_.actuators.end(), 0);
+    for (std::size_t i = 0; i < model.actuators().size(); ++i) {
+      if (model.actuators()[i].controllable()) settings_.actuators.push_back(static_cast<int>(i));
+    }
   }
   if (settings_.actuators.empty()) {
     throw Error(ErrorKind::no_actuators, {.item = "controller"}, "the robot has no actuators",
                 "add a cable");
+  }
+  for (const int index : settings_.actuators) {
+    const auto& actuator = model.actuators().at(static_cast<std::size_t>(index));
+    if (actuator.controllable()) continue;
+    throw Error(ErrorKind::wrong_actuator_type, {.item = "actuator '" + actuator.name + "'"},
+                "a spring's tension follows its stretch, a controller cannot choose it",
+                "leave it out of the controller's actuators");
   }
   for (const double value : {settings_.epsilon, settings_.largest_step, settings_.tolerance}) {
     if (!(value > 0.0)) {
@@ -161,8 +168,8 @@ void InverseController::form_objective(const sim::LawProblem& problem,
     const double own = problem.compliance(range.row, range.row);
     const double limit = std::max(std::abs(range.effort_min), std::abs(range.effort_max));
     scale_[j] = std::isfinite(limit) && limit > 0.0 ? limit
-                : own > 0.0                         ? problem.model.size() / own
-                                                    : 1.0;
+                : own > 0.0 ? problem.model.size() / (range.motion_scale * own)
+                            : 1.0;
   }
   for (Eigen::Index j = 0; j < count; ++j) {
     const int column = ranges[static_cast<std::size_t>(j)].row;
@@ -256,7 +263,7 @@ bool InverseController::release_pushing_cables(const sim::LawProblem& problem) {
     if (range.owned || range.kind != CommandKind::motion || slack_[k]) continue;
     const auto i = static_cast<Eigen::Index>(k);
     const double delta = problem.delta_free[range.row] + program_.rows.row(i).dot(scaled_effort_);
-    if (delta > range.value + kActive * problem.model.size()) {
+    if (delta > range.value + kActive * problem.model.size() / range.motion_scale) {
       slack_[k] = true;
       changed = true;
     }

@@ -70,6 +70,10 @@ class BodyModel {
   virtual void finish(int body, const RowPattern& rows, std::span<const RowCurvature> curvatures,
                       const linalg::FactorisationSettings& settings) = 0;
 
+  /// Whether A holds the blocks of two attached points without curvature (see RowCurvature): for
+  /// points of one element it does. After finish().
+  virtual bool couples(int first, int second) const = 0;
+
   /// A body at rest with its own state and workspace.
   /// @param pool must outlive the body.
   /// @param with_curvature workspace for this kind of linearisation is taken now, for the other

@@ -11,6 +11,7 @@
 #include "sinew/core/error.hpp"
 #include "sinew/mesh/check.hpp"
 #include "sinew/mesh/sweep.hpp"
+#include "sinew/mesh/topology.hpp"
 
 namespace sinew::mesh {
 
@@ -55,6 +56,28 @@ void add_wall_set(Mesh& mesh, const Section& section, double s, const std::strin
     if (section.radius[static_cast<std::size_t>(node % in_layer)] == s) {
       mesh.node_sets[name].push_back(node);
     }
+  }
+}
+
+/// Renumbers so that every node belongs to an element.
+void drop_unused_nodes(Mesh& mesh) {
+  const std::vector<char> used = used_nodes(mesh);
+  std::vector<NodeId> number(used.size(), -1);
+  NodeId next = 0;
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    if (used[i] == 0) continue;
+    mesh.nodes.row(next) = mesh.nodes.row(static_cast<Eigen::Index>(i)).eval();
+    number[i] = next++;
+  }
+  mesh.nodes.conservativeResize(next, 3);
+  const auto renumber = [&](auto& nodes) {
+    for (NodeId& node : nodes) node = number[static_cast<std::size_t>(node)];
+  };
+  for (auto& element : mesh.tetrahedra) renumber(element);
+  for (auto& element : mesh.hexahedra) renumber(element);
+  for (auto& [name, nodes] : mesh.node_sets) {
+    renumber(nodes);
+    std::erase(nodes, -1);
   }
 }
 
@@ -184,6 +207,134 @@ Mesh hollow_cylinder(const HollowCylinderShape& shape, Cells cells) {
   Mesh mesh = sweep(section, even_heights(shape.height, shape.layers), profile, name);
   add_wall_set(mesh, section, 0.0, "inner");
   add_wall_set(mesh, section, 1.0, "outer");
+  return mesh;
+}
+
+namespace {
+
+/// The chamber's circle as an O-grid, and rings from it to the outer circle: circles whose centres
+/// and radii go evenly from one to the other. Radii in m; ring nodes of the chamber's wall and of
+/// the outside are listed.
+struct EccentricSection {
+  Section section;
+  std::vector<NodeId> wall, outside;
+  std::size_t core_cells = 0;
+  NodeId core_nodes = 0;  // those before the wall's ring
+};
+
+EccentricSection eccentric_section(const ChamberedCylinderShape& shape) {
+  EccentricSection result;
+  Section& section = result.section;
+  const Section core = disc_section_of_quadrilaterals(shape.core);
+  section.quadrilaterals = core.quadrilaterals;
+  result.core_cells = core.quadrilaterals.size();
+  const auto add = [&](double x, double y) {
+    section.radius.push_back(std::hypot(x, y));
+    section.angle.push_back(std::atan2(y, x));
+    return static_cast<NodeId>(section.radius.size()) - 1;
+  };
+  std::vector<double> turn;  // of each node of the wall
+  for (std::size_t i = 0; i < core.radius.size(); ++i) {
+    const double r = shape.chamber_radius * core.radius[i];
+    const NodeId node =
+        add(shape.chamber_offset + r * std::cos(core.angle[i]), r * std::sin(core.angle[i]));
+    if (core.radius[i] == 1.0) {
+      result.wall.push_back(node);
+      turn.push_back(core.angle[i]);
+    }
+  }
+  result.core_nodes = result.wall.front();
+  std::vector<NodeId> ring = result.wall;
+  for (int k = 1; k <= shape.through; ++k) {
+    const double part = static_cast<double>(k) / shape.through;
+    const double centre = (1.0 - part) * shape.chamber_offset;
+    const double radius = std::lerp(shape.chamber_radius, shape.radius, part);
+    std::vector<NodeId> next;
+    for (const double angle : turn) {
+      next.push_back(add(centre + radius * std::cos(angle), radius * std::sin(angle)));
+    }
+    for (std::size_t a = 0; a < ring.size(); ++a) {
+      const std::size_t b = (a + 1) % ring.size();
+      section.quadrilaterals.push_back({ring[a], next[a], next[b], ring[b]});
+    }
+    ring = std::move(next);
+  }
+  result.outside = ring;
+  return result;
+}
+
+/// Even layers below, along and above the chamber.
+std::vector<double> chamber_heights(const ChamberedCylinderShape& shape) {
+  const double size = shape.height / shape.layers;
+  std::vector<double> heights{0.0};
+  for (const double end : {shape.chamber_bottom, shape.chamber_top, shape.height}) {
+    const double begin = heights.back();
+    if (end <= begin) continue;
+    const int layers = std::max(1, static_cast<int>(std::lround((end - begin) / size)));
+    for (int k = 1; k <= layers; ++k) heights.push_back(begin + (end - begin) * k / layers);
+  }
+  return heights;
+}
+
+}  // namespace
+
+Mesh chambered_cylinder(const ChamberedCylinderShape& shape, Cells cells) {
+  const std::string name = "chambered cylinder";
+  require_length(shape.radius, name, "radius");
+  require_length(shape.height, name, "height");
+  require_length(shape.chamber_radius, name, "chamber_radius");
+  require(shape.chamber_offset >= 0.0 && shape.chamber_offset + shape.chamber_radius < shape.radius,
+          name,
+          fmt::format("chamber_offset = {} m and chamber_radius = {} m reach beyond radius = {} m",
+                      shape.chamber_offset, shape.chamber_radius, shape.radius));
+  require(shape.chamber_bottom >= 0.0 && shape.chamber_top > shape.chamber_bottom &&
+              shape.chamber_top <= shape.height,
+          name,
+          fmt::format("the chamber reaches from {} to {} m of {} m", shape.chamber_bottom,
+                      shape.chamber_top, shape.height));
+  require_cells(shape.core, 2, name, "core");
+  require_cells(shape.through, 1, name, "through");
+  require_cells(shape.layers, 1, name, "layers");
+  EccentricSection plan = eccentric_section(shape);
+  const std::vector<double> heights = chamber_heights(shape);
+  const auto in_layer = static_cast<NodeId>(plan.section.radius.size());
+  if (cells == Cells::tetrahedra) {
+    for (const auto& [a, b, c, d] : plan.section.quadrilaterals) {
+      plan.section.triangles.push_back({a, b, c});
+      plan.section.triangles.push_back({a, c, d});
+    }
+    plan.section.quadrilaterals.clear();
+  }
+  Mesh mesh = sweep(
+      plan.section, heights, [](double s, double) { return s; }, name);
+  // The chamber: nodes inside its circle, strictly between its ends, and the elements round them.
+  const auto layer_of = [&](NodeId node) { return static_cast<std::size_t>(node / in_layer); };
+  const auto inside = [&](const auto& element) {
+    double z = 0.0;
+    bool core = true;
+    for (const NodeId node : element) {
+      core = core && node % in_layer < plan.core_nodes + static_cast<NodeId>(plan.wall.size());
+      z += heights[layer_of(node)] / static_cast<double>(element.size());
+    }
+    return core && z > shape.chamber_bottom && z < shape.chamber_top;
+  };
+  std::erase_if(mesh.tetrahedra, inside);
+  std::erase_if(mesh.hexahedra, inside);
+  const double tolerance = 1e-9 * shape.height;
+  for (NodeId node = 0; node < mesh.node_count(); ++node) {
+    const double z = heights[layer_of(node)];
+    const NodeId at = node % in_layer;
+    const bool along = z > shape.chamber_bottom - tolerance && z < shape.chamber_top + tolerance;
+    const bool end = (z < shape.chamber_bottom + tolerance && shape.chamber_bottom > 0.0) ||
+                     (z > shape.chamber_top - tolerance && shape.chamber_top < shape.height);
+    const bool on_wall =
+        at >= plan.core_nodes && at < plan.core_nodes + static_cast<NodeId>(plan.wall.size());
+    if (along && (on_wall || (end && at < plan.core_nodes))) {
+      mesh.node_sets["chamber"].push_back(node);
+    }
+    if (at >= plan.outside.front()) mesh.node_sets["side"].push_back(node);
+  }
+  drop_unused_nodes(mesh);
   return mesh;
 }
 

@@ -59,6 +59,19 @@ struct TrunkShape {
   int rings = 2;
 };
 
+/// A solid cylinder along +z, its bottom at z = 0, with a cylindrical chamber beside its axis.
+struct ChamberedCylinderShape {
+  double radius = 0.0125;          ///< m
+  double height = 0.065;           ///< m
+  double chamber_radius = 0.0037;  ///< m
+  double chamber_offset = 0.0073;  ///< m, of the chamber's axis along +x
+  double chamber_bottom = 0.0;     ///< m; 0: the chamber opens at the bottom
+  double chamber_top = 0.06;       ///< m, at most the height
+  int core = 3;                    ///< rings of cells in the chamber's circle, where it is solid
+  int through = 4;                 ///< cells from the chamber's wall to the outside
+  int layers = 26;                 ///< about, along the axis
+};
+
 /// Sets: nodes `x_min`, `x_max`, `y_min`, `y_max`, `z_min`, `z_max`.
 /// @param shape its measures. Throws Error(out-of-range) when one is not positive.
 /// @param cells what it is made of; nodes and sets are the same.
@@ -79,6 +92,12 @@ Mesh cone(const ConeShape& shape, Cells cells = Cells::tetrahedra);
 /// radius is not the smaller one.
 /// @param cells what it is made of.
 Mesh hollow_cylinder(const HollowCylinderShape& shape, Cells cells = Cells::tetrahedra);
+
+/// Sets: nodes `bottom`, `top`, `side`, and `chamber`, those of the chamber's whole wall.
+/// @param shape its measures. Throws Error(out-of-range) when one is not positive or the chamber
+///   does not lie inside.
+/// @param cells what it is made of.
+Mesh chambered_cylinder(const ChamberedCylinderShape& shape, Cells cells = Cells::tetrahedra);
 
 /// Sets: nodes `bottom`, `top`, `side`.
 /// @param shape its measures. Throws Error(out-of-range).

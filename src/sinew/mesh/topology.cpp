@@ -54,8 +54,8 @@ void for_each_element(const Mesh& mesh, const Visit& visit) {
   for (const Hexahedron& element : mesh.hexahedra) visit(element);
 }
 
-/// The quadrilateral faces of hexahedra that occur once, each split at its lowest node.
-void append_hexahedron_faces(const Mesh& mesh, std::vector<Triangle>& triangles) {
+/// The quadrilateral faces of hexahedra that occur once.
+void append_hexahedron_faces(const Mesh& mesh, std::vector<Face>& result) {
   using Quad = std::array<NodeId, 4>;
   std::vector<std::pair<Quad, Quad>> faces;  // sorted nodes, outward nodes
   for (const Hexahedron& hexahedron : mesh.hexahedra) {
@@ -69,12 +69,7 @@ void append_hexahedron_faces(const Mesh& mesh, std::vector<Triangle>& triangles)
   for (std::size_t i = 0; i < faces.size();) {
     std::size_t end = i + 1;
     while (end < faces.size() && faces[end].first == faces[i].first) ++end;
-    if (end == i + 1) {
-      Quad face = faces[i].second;
-      std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
-      triangles.push_back({face[0], face[1], face[2]});
-      triangles.push_back({face[0], face[2], face[3]});
-    }
+    if (end == i + 1) result.push_back({faces[i].second});
     i = end;
   }
 }
@@ -109,8 +104,8 @@ std::vector<FaceUse> face_uses(const Mesh& mesh) {
   return uses;
 }
 
-Surface boundary_surface(const Mesh& mesh) {
-  Surface surface{.name = mesh.name, .nodes = mesh.nodes, .triangles = {}};
+std::vector<Face> boundary_faces(const Mesh& mesh) {
+  std::vector<Face> result;
   const std::vector<FaceUse> uses = face_uses(mesh);
   for (std::size_t i = 0; i < uses.size();) {
     std::size_t end = i + 1;
@@ -118,11 +113,24 @@ Surface boundary_surface(const Mesh& mesh) {
     if (end == i + 1) {
       Triangle face = uses[i].key;
       if (!uses[i].even) std::swap(face[1], face[2]);
-      surface.triangles.push_back(face);
+      result.push_back({{face[0], face[1], face[2], -1}});
     }
     i = end;
   }
-  append_hexahedron_faces(mesh, surface.triangles);
+  append_hexahedron_faces(mesh, result);
+  return result;
+}
+
+Surface boundary_surface(const Mesh& mesh) {
+  Surface surface{.name = mesh.name, .nodes = mesh.nodes, .triangles = {}};
+  for (Face face : boundary_faces(mesh)) {
+    auto& n = face.node;
+    if (face.corners() == 4) {  // split at the lowest node
+      std::rotate(n.begin(), std::min_element(n.begin(), n.end()), n.end());
+      surface.triangles.push_back({n[0], n[2], n[3]});
+    }
+    surface.triangles.push_back({n[0], n[1], n[2]});
+  }
   return surface;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "sinew/mesh/mesh.hpp"
@@ -26,8 +27,21 @@ struct FaceUse {
 /// Every face of every tetrahedron, sorted by key, then tetrahedron: uses of one face are adjacent.
 std::vector<FaceUse> face_uses(const Mesh& mesh);
 
-/// The surface of the volume elements: faces that belong to one element only, outward. Nodes are
-/// those of the mesh, in its numbering, unused ones included. Faces of hexahedra are split in two.
+/// A face of a volume element, counter-clockwise seen from outside the element.
+struct Face {
+  std::array<NodeId, 4> node{-1, -1, -1, -1};  ///< the last one -1 for a triangle
+  int corners() const { return node[3] < 0 ? 3 : 4; }
+  std::span<const NodeId> nodes() const {
+    return {node.data(), static_cast<std::size_t>(corners())};
+  }
+};
+
+/// The faces that belong to one element only: triangles of tetrahedra, then quadrilaterals of
+/// hexahedra.
+std::vector<Face> boundary_faces(const Mesh& mesh);
+
+/// The surface of the volume elements: boundary_faces() with quadrilaterals split in two. Nodes are
+/// those of the mesh, in its numbering, unused ones included.
 Surface boundary_surface(const Mesh& mesh);
 
 /// For each node whether a volume element uses it.

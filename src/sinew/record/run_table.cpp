@@ -37,8 +37,9 @@ std::vector<std::string> RunTable::names(const sim::Simulation& simulation,
   const sim::Model& model = simulation.model();
   std::vector<std::string> names = {"time [s]"};
   for (const sim::ActuatorModel& actuator : model.actuators()) {
-    names.push_back(fmt::format("{}.{} [N]", actuator.name, actuator.effort_name()));
-    names.push_back(fmt::format("{}.{} [m]", actuator.name, sim::ActuatorModel::motion_name()));
+    for (const auto& [name, unit] : {actuator.effort_name(), actuator.motion_name()}) {
+      names.push_back(fmt::format("{}.{} [{}]", actuator.name, name, unit));
+    }
   }
   const auto unit = [&](std::size_t effector) {
     return std::string(model.effector(static_cast<int>(effector)).unit());

@@ -6,7 +6,9 @@
 
 #include <fmt/format.h>
 
+#include "sinew/mesh/patch.hpp"
 #include "sinew/mesh/selection.hpp"
+#include "sinew/mesh/surface.hpp"
 #include "sinew/scene/scene.hpp"
 #include "sinew/sim/model_builder.hpp"
 
@@ -20,8 +22,15 @@ sim::Limits limits(const LimitDescription& description) {
 
 sim::Command command(const ActuatorDescription& actuator) {
   if (!actuator.command) return {};
-  const bool motion = actuator.command->kind == CommandDescription::Kind::motion;
-  return {motion ? sim::CommandKind::motion : sim::CommandKind::effort, actuator.command->signal};
+  switch (actuator.command->kind) {
+    case CommandDescription::Kind::motion:
+      return {sim::CommandKind::motion, actuator.command->signal};
+    case CommandDescription::Kind::effort:
+      return {sim::CommandKind::effort, actuator.command->signal};
+    case CommandDescription::Kind::input:
+      return {sim::CommandKind::input, actuator.command->signal};
+  }
+  return {};
 }
 
 mesh::Region region_of(const FixedRegion& fixed) {
@@ -97,24 +106,24 @@ fem::FemBodySettings fem_settings(const SceneDescription& scene, const BodyDescr
   return settings;
 }
 
-void add_actuator(sim::ModelBuilder& builder, const ActuatorDescription& actuator, int body) {
-  if (actuator.type == ActuatorDescription::Type::cable) {
-    sim::CableSettings cable;
-    cable.name = actuator.name;
-    cable.place = actuator.place;
-    cable.body = body;
-    cable.points = actuator.points.points;
-    cable.point_places = actuator.points.places;
-    cable.pull_from_world = actuator.pull == PullPoint::world;
-    cable.outside = actuator.outside;
-    cable.tension = limits(actuator.effort);
-    cable.tension.min = std::max(cable.tension.min, 0.0);
-    cable.displacement = limits(actuator.motion);
-    cable.command = command(actuator);
-    cable.geometric_stiffness = actuator.geometric_stiffness;
-    builder.add_cable(cable);
-    return;
-  }
+void add_cable(sim::ModelBuilder& builder, const ActuatorDescription& actuator, int body) {
+  sim::CableSettings cable;
+  cable.name = actuator.name;
+  cable.place = actuator.place;
+  cable.body = body;
+  cable.points = actuator.points.points;
+  cable.point_places = actuator.points.places;
+  cable.pull_from_world = actuator.pull == PullPoint::world;
+  cable.outside = actuator.outside;
+  cable.tension = limits(actuator.effort);
+  cable.tension.min = std::max(cable.tension.min, 0.0);
+  cable.displacement = limits(actuator.motion);
+  cable.command = command(actuator);
+  cable.geometric_stiffness = actuator.geometric_stiffness;
+  builder.add_cable(cable);
+}
+
+void add_force(sim::ModelBuilder& builder, const ActuatorDescription& actuator, int body) {
   sim::ForceSettings force;
   force.name = actuator.name;
   force.place = actuator.place;
@@ -126,6 +135,77 @@ void add_actuator(sim::ModelBuilder& builder, const ActuatorDescription& actuato
   force.displacement = limits(actuator.motion);
   force.command = command(actuator);
   builder.add_force(force);
+}
+
+void add_spring(sim::ModelBuilder& builder, const ActuatorDescription& actuator, int body) {
+  sim::SpringLineSettings line;
+  line.name = actuator.name;
+  line.place = actuator.place;
+  line.body = body;
+  line.points = actuator.points.points;
+  line.point_places = actuator.points.places;
+  line.pull_from_world = actuator.pull == PullPoint::world;
+  line.outside = actuator.outside;
+  line.spring = actuator.spring;
+  line.free_at_rest = actuator.free_at_rest;
+  line.command = command(actuator);
+  builder.add_spring(line);
+}
+
+void add_chamber(sim::ModelBuilder& builder, const ActuatorDescription& actuator, int body,
+                 const mesh::Mesh& mesh) {
+  sim::CavitySettings cavity;
+  cavity.name = actuator.name;
+  cavity.place = actuator.place;
+  cavity.body = body;
+  const SurfaceDescription& surface = actuator.surface;
+  const std::string& what = surface.place.item;
+  try {
+    switch (surface.kind) {
+      case SurfaceDescription::Kind::inside:
+        cavity.surface = mesh::enclosing_surface(mesh, surface.point, what);
+        break;
+      case SurfaceDescription::Kind::patch:
+        cavity.surface = mesh::grow_patch(mesh, surface.point, surface.angle, what);
+        break;
+      case SurfaceDescription::Kind::file: {
+        mesh::SurfaceOptions options;
+        options.unit = surface.unit;
+        const mesh::Surface read = mesh::read_surface(surface.file, options);
+        mesh::require_closed(read);
+        cavity.surface = read;
+        break;
+      }
+      case SurfaceDescription::Kind::region:
+        cavity.surface = mesh::select_faces(mesh, region_of(surface.region), what);
+        break;
+    }
+  } catch (const Error& error) {
+    throw error.at(surface.place);
+  }
+  cavity.outside = actuator.outside;
+  cavity.cap = actuator.cap;
+  cavity.load_stiffness = actuator.load_stiffness;
+  cavity.pressure = limits(actuator.effort);
+  cavity.volume_growth = limits(actuator.motion);
+  cavity.command = command(actuator);
+  cavity.gas = actuator.gas;
+  cavity.liquid = actuator.liquid;
+  builder.add_cavity(cavity);
+}
+
+void add_actuator(sim::ModelBuilder& builder, const ActuatorDescription& actuator, int body,
+                  const mesh::Mesh& mesh) {
+  switch (actuator.type) {
+    case ActuatorDescription::Type::cable:
+      return add_cable(builder, actuator, body);
+    case ActuatorDescription::Type::force:
+      return add_force(builder, actuator, body);
+    case ActuatorDescription::Type::pressure:
+      return add_chamber(builder, actuator, body, mesh);
+    case ActuatorDescription::Type::spring:
+      return add_spring(builder, actuator, body);
+  }
 }
 
 void add_effector(sim::ModelBuilder& builder, const EffectorDescription& effector, int body,
@@ -202,7 +282,8 @@ Robot build(SceneDescription description) {
     }
   }
   for (const ActuatorDescription& actuator : description.actuators) {
-    add_actuator(builder, actuator, body_index(actuator.body));
+    const int body = body_index(actuator.body);
+    add_actuator(builder, actuator, body, *meshes[static_cast<std::size_t>(body)]);
   }
   for (const EffectorDescription& effector : description.effectors) {
     const int body = body_index(effector.body);

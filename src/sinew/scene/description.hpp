@@ -11,6 +11,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "sinew/core/error.hpp"
@@ -20,7 +21,9 @@
 #include "sinew/material/hyperelastic.hpp"
 #include "sinew/mesh/embedding.hpp"
 #include "sinew/scene/node.hpp"
+#include "sinew/sim/fluid_drive.hpp"
 #include "sinew/sim/signal.hpp"
+#include "sinew/sim/spring_drive.hpp"
 
 namespace sinew::scene {
 
@@ -116,24 +119,37 @@ struct LimitDescription {
   double rate = kUnlimited;  ///< largest change per second, >= 0
 };
 
-/// What an actuator is told: an effort (tension, force: N) or a motion (displacement: m) over time.
+/// What an actuator is told: an effort (tension, force: N; pressure: Pa), a motion (displacement:
+/// m; volume_growth: m^3) or a drive's input over time.
 struct CommandDescription {
-  enum class Kind { motion, effort };
+  enum class Kind { motion, effort, input };
   Place place;
   Kind kind = Kind::motion;
   sim::Signal signal;
 };
 
+/// Where a chamber's pressure acts.
+struct SurfaceDescription {
+  enum class Kind { inside, patch, file, region };
+  Place place;
+  Kind kind = Kind::region;
+  Vector3 point = Vector3::Zero();     ///< inside, patch: m
+  double angle = 0.69813170079773179;  ///< patch: rad, 40 degrees
+  std::filesystem::path file;          ///< file: resolved against the scene's folder
+  double unit = 1.0;                   ///< file: m per unit
+  FixedRegion region;                  ///< region
+};
+
 struct ActuatorDescription {
-  enum class Type { cable, force };
+  enum class Type { cable, force, pressure, spring };
   std::string name;
   Place place;
   Type type = Type::cable;
   std::string body;
   Place body_place;
   mesh::Outside outside = mesh::Outside::error;
-  LimitDescription effort;  ///< cable: tension, min >= 0 (0 when not given); force: force
-  LimitDescription motion;  ///< displacement
+  LimitDescription effort;  ///< cable: tension, min >= 0 (0 when not given); force; pressure
+  LimitDescription motion;  ///< displacement or volume_growth
   std::optional<CommandDescription> command;  ///< none: slack (zero effort) until told
   // cable
   PointList points;  ///< the first is the pull point
@@ -143,6 +159,15 @@ struct ActuatorDescription {
   Vector3 point = Vector3::Zero();  ///< m
   Place point_place;
   Vector3 direction = Vector3::UnitZ();  ///< unit length
+  // pressure
+  SurfaceDescription surface;
+  bool cap = false;
+  bool load_stiffness = true;
+  std::optional<sim::GasSettings> gas;
+  std::optional<sim::LiquidSettings> liquid;
+  // spring: points and pull as a cable's
+  std::variant<sim::SpringSettings, sim::SmaSettings> spring;
+  bool free_at_rest = true;
 };
 
 /// Something on the robot whose motion matters.

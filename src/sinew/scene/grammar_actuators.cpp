@@ -25,49 +25,53 @@ std::shared_ptr<const KeyTable> limit_table(const Measure& measure, const Measur
                                .description = "Greatest change in time."}}});
 }
 
-// Limits and command of an actuator whose effort is a force called `effort`.
-std::vector<Key> drive_keys(const char* effort, Range effort_range, const char* least,
-                            const char* undriven) {
-  const std::string name = effort;
-  const auto effort_limits =
-      limit_table(force(), force_rate(), effort, effort_range, least, "20 N", "100 N/s");
-  const auto motion_limits =
-      limit_table(length(), speed(), "displacement", any(), "", "70 mm", "100 mm/s");
+}  // namespace
+
+std::vector<Key> drive_keys(const DriveWords& w) {
+  const std::string effort = w.effort, motion = w.motion, kind = w.kind;
+  const auto effort_limits = limit_table(w.effort_measure, w.effort_rate, w.effort, w.effort_range,
+                                         w.least, w.effort_example, w.effort_rate_example);
+  const auto motion_limits = limit_table(w.motion_measure, w.motion_rate, w.motion, any(), "",
+                                         w.motion_example, w.motion_rate_example);
   const auto limits =
-      make_table({.name = std::string("limits of a ") + (name == "tension" ? "cable" : "force"),
+      make_table({.name = "limits of a " + kind,
                   .description = "What the actuator can do; commands and controllers obey.",
                   .keys = {{.name = effort,
                             .forms = {table(effort_limits)},
-                            .example = "{max: 20 N}",
+                            .example = std::string("{max: ") + w.effort_example + "}",
                             .default_text = "{}",
-                            .description = "Limits of the " + name + "."},
-                           {.name = "displacement",
+                            .description = "Limits of the " + effort + "."},
+                           {.name = motion,
                             .forms = {table(motion_limits)},
-                            .example = "{min: 0 mm, max: 70 mm, rate: 100 mm/s}",
+                            .example = std::string("{max: ") + w.motion_example + "}",
                             .default_text = "{}",
-                            .description = "Limits of the displacement."}}});
-  const auto command = make_table(
-      {.name = std::string("command of a ") + (name == "tension" ? "cable" : "force"),
-       .description = "What the actuator is told: a value, or a signal over time.",
-       .keys = {{.name = "displacement",
-                 .forms = {quantity(length()), table(signal_table(length(), "10 mm"))},
-                 .example = "10 mm",
-                 .description = name == "tension" ? "Length of cable pulled in at the pull point."
-                                                  : "Motion of the point along the direction."},
-                {.name = effort,
-                 .forms = {quantity(force(), effort_range), table(signal_table(force(), "2 N"))},
-                 .example = "2 N",
-                 .description = "The " + name + "."}},
-       .alternatives = {{{"displacement", effort}, true}}});
+                            .description = "Limits of the " + motion + "."}}});
+  KeyTable command{.name = "command of a " + kind,
+                   .description = "What the actuator is told: a value, or a signal over time.",
+                   .keys = {{.name = motion,
+                             .forms = {quantity(w.motion_measure),
+                                       table(signal_table(w.motion_measure, w.motion_value))},
+                             .example = w.motion_value,
+                             .description = w.motion_text},
+                            {.name = effort,
+                             .forms = {quantity(w.effort_measure, w.effort_range),
+                                       table(signal_table(w.effort_measure, w.effort_value))},
+                             .example = w.effort_value,
+                             .description = "The " + effort + "."}},
+                   .alternatives = {{{motion, effort}, true}}};
+  for (const Key& key : w.inputs) {
+    command.keys.push_back(key);
+    command.alternatives.front().keys.push_back(key.name);
+  }
   return {{.name = "limits",
            .forms = {table(limits)},
-           .example = "{displacement: {min: 0 mm, max: 70 mm}}",
+           .example = "{" + motion + ": {max: " + w.motion_example + "}}",
            .default_text = "{}",
            .description = "What the actuator can do."},
           {.name = "command",
-           .forms = {table(command)},
-           .example = "{displacement: 10 mm}",
-           .description = undriven}};
+           .forms = {table(make_table(std::move(command)))},
+           .example = "{" + motion + ": " + w.motion_value + "}",
+           .description = w.undriven}};
 }
 
 Key body_key() {
@@ -85,6 +89,32 @@ Key outside_key() {
           .example = "nearest",
           .default_text = "error",
           .description = "What to do with points that lie outside the mesh."};
+}
+
+namespace {
+
+// Words of an actuator that pulls or pushes along a line.
+DriveWords line_words(const char* kind, const char* effort, Range range, const char* least,
+                      const char* motion_text, const char* undriven) {
+  DriveWords words;
+  words.kind = kind;
+  words.effort = effort;
+  words.effort_measure = force();
+  words.effort_rate = force_rate();
+  words.effort_range = range;
+  words.least = least;
+  words.effort_example = "20 N";
+  words.effort_rate_example = "100 N/s";
+  words.effort_value = "2 N";
+  words.motion = "displacement";
+  words.motion_measure = length();
+  words.motion_rate = speed();
+  words.motion_example = "70 mm";
+  words.motion_rate_example = "100 mm/s";
+  words.motion_value = "10 mm";
+  words.motion_text = motion_text;
+  words.undriven = undriven;
+  return words;
 }
 
 std::shared_ptr<const KeyTable> cable_table() {
@@ -112,10 +142,10 @@ std::shared_ptr<const KeyTable> cable_table() {
                 .default_text = "false",
                 .description = "Adds the stiffness of the loaded cable to every step; "
                                "static solutions always have it."}}};
-  for (Key& key : drive_keys("tension", non_negative(), "0 N",
-                             "What it is told. Without: slack until told.")) {
-    cable.keys.push_back(std::move(key));
-  }
+  const DriveWords words = line_words("cable", "tension", non_negative(), "0 N",
+                                      "Length of cable pulled in at the pull point.",
+                                      "What it is told. Without: slack until told.");
+  for (Key& key : drive_keys(words)) cable.keys.push_back(std::move(key));
   return make_table(std::move(cable));
 }
 
@@ -134,10 +164,10 @@ std::shared_ptr<const KeyTable> force_table() {
                           .description = "Where it points; any length but zero.",
                           .required = true},
                          outside_key()}};
-  for (Key& key :
-       drive_keys("force", any(), "", "What it is told. Without: no force until told.")) {
-    push.keys.push_back(std::move(key));
-  }
+  const DriveWords words =
+      line_words("force", "force", any(), "", "Motion of the point along the direction.",
+                 "What it is told. Without: no force until told.");
+  for (Key& key : drive_keys(words)) push.keys.push_back(std::move(key));
   return make_table(std::move(push));
 }
 
@@ -162,8 +192,8 @@ Form actuator_form() {
   return variants("type",
                   {{.word = "cable", .description = "A sliding cable.", .table = cable_table()},
                    {.word = "force", .description = "A point force.", .table = force_table()},
-                   {.word = "pressure", .description = "A pressurised cavity.", .later = true},
-                   {.word = "spring", .description = "A spring or tendon.", .later = true}});
+                   {.word = "pressure", .description = "A chamber.", .table = pressure_table()},
+                   {.word = "spring", .description = "A spring.", .table = spring_table()}});
 }
 
 Form effector_form() {

@@ -14,6 +14,16 @@ Measure force() { return {dimension::kForce, "N"}; }
 Measure frequency() { return {dimension::kFrequency, "1/s"}; }
 Measure speed() { return {dimension::kVelocity, "m/s"}; }
 Measure force_rate() { return {Dimension{1, 1, -3}, "N/s"}; }
+Measure volume() { return {dimension::kVolume, "m^3"}; }
+Measure volume_rate() { return {dimension::kVolumeRate, "m^3/s"}; }
+Measure pressure_rate() { return {dimension::kPressureRate, "Pa/s"}; }
+Measure conductance() { return {dimension::kConductance, "m^3/(s Pa)"}; }
+Measure stiffness() { return {dimension::kStiffness, "N/m"}; }
+Measure damper() { return {dimension::kDamping, "N s/m"}; }
+Measure power() { return {dimension::kPower, "W"}; }
+Measure temperature() { return {dimension::kTemperature, "K"}; }
+Measure heat_capacity() { return {dimension::kHeatCapacity, "J/K"}; }
+Measure heat_loss() { return {dimension::kHeatLoss, "W/K"}; }
 
 Range any() { return {}; }
 Range positive() { return {.min = 0.0, .above_min = true}; }

@@ -31,6 +31,16 @@ Measure force();
 Measure frequency();
 Measure speed();
 Measure force_rate();
+Measure volume();
+Measure volume_rate();
+Measure pressure_rate();
+Measure conductance();
+Measure stiffness();
+Measure damper();
+Measure power();
+Measure temperature();
+Measure heat_capacity();
+Measure heat_loss();
 
 Range any();
 Range positive();
@@ -60,7 +70,35 @@ Form later(Form form);
 
 std::shared_ptr<const KeyTable> make_table(KeyTable table);
 
+/// What the limits and commands of one kind of actuator are called and look like.
+struct DriveWords {
+  const char* kind = "";
+  const char* effort = "";
+  Measure effort_measure{}, effort_rate{};
+  Range effort_range;
+  const char* least = "";
+  const char* effort_example = "";
+  const char* effort_rate_example = "";
+  const char* effort_value = "";
+  const char* motion = "";
+  Measure motion_measure{}, motion_rate{};
+  const char* motion_example = "";
+  const char* motion_rate_example = "";
+  const char* motion_value = "";
+  const char* motion_text = "";
+  std::vector<Key> inputs;  ///< further commands
+  const char* undriven = "";
+};
+/// The keys `limits` and `command`.
+std::vector<Key> drive_keys(const DriveWords& words);
+Key body_key();
+Key outside_key();
+/// box, sphere, plane and set, of which one must stand.
+std::vector<Key> region_keys(const char* whose);
+
 // The tables of each part, in the file of that part.
+std::shared_ptr<const KeyTable> pressure_table();
+std::shared_ptr<const KeyTable> spring_table();
 std::shared_ptr<const KeyTable> signal_table(const Measure& measure, const char* value_example);
 std::shared_ptr<const KeyTable> point_file_table();
 Form body_form();

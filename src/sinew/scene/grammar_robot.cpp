@@ -58,6 +58,24 @@ Form mesh_shape() {
                       {shape_length("inner_radius", "8 mm", "Radius of the bore."),
                        shape_length("outer_radius", "15 mm", "Outer radius."),
                        shape_length("height", "195 mm", "Along z.")}),
+                shape("chambered-cylinder",
+                      "A solid cylinder about z, its base at the origin, with a cylindrical "
+                      "chamber beside its axis. Node set `chamber`: the chamber's wall.",
+                      {shape_length("radius", "12.5 mm", "Outer radius."),
+                       shape_length("height", "65 mm", "Along z."),
+                       shape_length("chamber_radius", "3.7 mm", "Radius of the chamber."),
+                       Key{.name = "chamber_offset",
+                           .forms = {quantity(length(), non_negative())},
+                           .example = "7.3 mm",
+                           .default_text = "0 mm",
+                           .description = "Distance of the chamber's axis from z, along x."},
+                       Key{.name = "chamber_bottom",
+                           .forms = {quantity(length(), non_negative())},
+                           .example = "5 mm",
+                           .default_text = "0 mm",
+                           .description = "Where the chamber begins; at 0 it is open."},
+                       optional_length("chamber_top", "60 mm", "",
+                                       "Where it ends. Without: at the top, open.")}),
                 shape("trunk", "A tapered trunk with bellows about z, its base at the origin.",
                       {optional_length("base_radius", "20 mm", "20 mm", "Outer radius at z = 0."),
                        optional_length("tip_radius", "12 mm", "8.5 mm", "Outer radius at the top."),
@@ -254,36 +272,45 @@ std::shared_ptr<const KeyTable> plane_table() {
                                               "side, are fixed."}}});
 }
 
+}  // namespace
+
+std::vector<Key> region_keys(const char* whose) {
+  const std::string what = whose;
+  return {{.name = "box",
+           .forms = {vector(length(), 6)},
+           .example = "-20 -20 0 20 20 20 mm",
+           .description = what + " inside the box: x y z of its lowest, then its highest corner."},
+          {.name = "sphere",
+           .forms = {table(sphere_table())},
+           .example = "{center: 0 0 0 mm, radius: 10 mm}",
+           .description = what + " inside the sphere."},
+          {.name = "plane",
+           .forms = {table(plane_table())},
+           .example = "{point: 0 0 0 mm, normal: 0 0 1}",
+           .description = what + " on the plane."},
+          {.name = "set",
+           .forms = {text()},
+           .example = "base",
+           .description = what + " of a named set of the mesh; `sinew info` lists them."}};
+}
+
+namespace {
+
 Form fixed_region() {
-  return table(make_table(
-      {.name = "fixed region",
-       .description = "The nodes of the mesh at rest that do not move. Exactly one of box, sphere, "
-                      "plane and set.",
-       .keys = {{.name = "box",
-                 .forms = {vector(length(), 6)},
-                 .example = "-20 -20 0 20 20 20 mm",
-                 .description = "Nodes inside the box: x y z of its lowest, then its highest "
-                                "corner."},
-                {.name = "sphere",
-                 .forms = {table(sphere_table())},
-                 .example = "{center: 0 0 0 mm, radius: 10 mm}",
-                 .description = "Nodes inside the sphere."},
-                {.name = "plane",
-                 .forms = {table(plane_table())},
-                 .example = "{point: 0 0 0 mm, normal: 0 0 1}",
-                 .description = "Nodes on the plane."},
-                {.name = "set",
-                 .forms = {text()},
-                 .example = "base",
-                 .description = "Nodes of a named set of the mesh; `sinew info` lists them."},
-                {.name = "axes",
-                 .forms = {choice({{"x", "Along x."}, {"y", "Along y."}, {"z", "Along z."}}),
-                           list({choice({{"x", ""}, {"y", ""}, {"z", ""}})}, 1, 3)},
-                 .example = "z",
-                 .default_text = "[x, y, z]",
-                 .description = "What is held; along the other axes the nodes slide freely, as on "
-                                "rollers."}},
-       .alternatives = {{{"box", "sphere", "plane", "set"}, true}}}));
+  KeyTable fixed{.name = "fixed region",
+                 .description =
+                     "The nodes of the mesh at rest that do not move. Exactly one of "
+                     "box, sphere, plane and set.",
+                 .keys = region_keys("Nodes"),
+                 .alternatives = {{{"box", "sphere", "plane", "set"}, true}}};
+  fixed.keys.push_back(
+      {.name = "axes",
+       .forms = {choice({{"x", "Along x."}, {"y", "Along y."}, {"z", "Along z."}}),
+                 list({choice({{"x", ""}, {"y", ""}, {"z", ""}})}, 1, 3)},
+       .example = "z",
+       .default_text = "[x, y, z]",
+       .description = "What is held; along the other axes the nodes slide freely, as on rollers."});
+  return table(make_table(std::move(fixed)));
 }
 
 std::shared_ptr<const KeyTable> damping_table() {

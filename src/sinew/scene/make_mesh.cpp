@@ -87,6 +87,20 @@ mesh::Mesh make_tube(const Parameters& p, mesh::Cells cells) {
   return mesh::hollow_cylinder(shape, cells);
 }
 
+mesh::Mesh make_chambered(const Parameters& p, mesh::Cells cells) {
+  mesh::ChamberedCylinderShape shape;
+  shape.radius = p.get("radius", shape.radius);
+  shape.height = p.get("height", shape.height);
+  shape.chamber_radius = p.get("chamber_radius", shape.chamber_radius);
+  shape.chamber_offset = p.get("chamber_offset", 0.0);
+  shape.chamber_bottom = p.get("chamber_bottom", 0.0);
+  shape.chamber_top = p.get("chamber_top", shape.height);
+  shape.core = std::max(2, p.cells(2.0 * shape.chamber_radius, shape.core));
+  shape.through = std::max(2, p.cells(shape.radius - shape.chamber_radius, shape.through));
+  shape.layers = p.cells(shape.height, matching(shape.height, shape.chamber_radius, 1) * 3 / 2);
+  return mesh::chambered_cylinder(shape, cells);
+}
+
 mesh::Mesh make_trunk(const Parameters& p, mesh::Cells cells) {
   mesh::TrunkShape shape;
   shape.bottom_radius = p.get("base_radius", shape.bottom_radius);
@@ -108,10 +122,11 @@ mesh::Mesh make_shape(const MeshDescription& description, mesh::Cells cells) {
   if (description.shape == "cylinder") return make_cylinder(parameters, cells);
   if (description.shape == "cone") return make_cone(parameters, cells);
   if (description.shape == "hollow-cylinder") return make_tube(parameters, cells);
+  if (description.shape == "chambered-cylinder") return make_chambered(parameters, cells);
   if (description.shape == "trunk") return make_trunk(parameters, cells);
   throw Error(ErrorKind::unknown_choice, description.place,
               fmt::format("there is no shape '{}'", description.shape),
-              "block, cylinder, cone, hollow-cylinder or trunk");
+              "block, cylinder, cone, hollow-cylinder, chambered-cylinder or trunk");
 }
 
 }  // namespace

@@ -18,33 +18,74 @@ void read_limit(const Fields& fields, std::string_view key, LimitDescription& li
               "give a max that is at least min");
 }
 
-void read_command(const Fields& fields, const char* effort, ActuatorDescription& actuator,
-                  const ReadContext& context) {
+// What an actuator's efforts, motions and inputs are called.
+struct Words {
+  const char* effort = "";
+  const char* motion = "displacement";
+  std::vector<const char*> inputs = {};
+};
+
+Words words_of(const ActuatorDescription& actuator) {
+  switch (actuator.type) {
+    case ActuatorDescription::Type::cable:
+      return {"tension"};
+    case ActuatorDescription::Type::force:
+      return {"force"};
+    case ActuatorDescription::Type::pressure:
+      return {"pressure", "volume_growth", {"gas", "liquid"}};
+    case ActuatorDescription::Type::spring:
+      return {"", "", {"power", "phase"}};
+  }
+  return {};
+}
+
+// An input belongs to what fills a chamber.
+void check_input(const ActuatorDescription& actuator, std::string_view input, const Place& place) {
+  const bool has = (input != "gas" || actuator.gas) && (input != "liquid" || actuator.liquid);
+  if (has) return;
+  throw Error(ErrorKind::conflicting_keys, place,
+              fmt::format("the chamber has no {} to add to", show(std::string(input))),
+              fmt::format("give the chamber `{}: {{}}`, or command its pressure", input));
+}
+
+void read_command(const Fields& fields, ActuatorDescription& actuator, const ReadContext& context) {
   if (fields.find("command") == nullptr) return;
   const Fields command = fields.below("command");
+  const Words words = words_of(actuator);
   CommandDescription result;
-  const bool is_effort = command.find(effort) != nullptr;
-  const char* key = is_effort ? effort : "displacement";
-  result.kind = is_effort ? CommandDescription::Kind::effort : CommandDescription::Kind::motion;
+  std::string key = words.motion;
+  result.kind = CommandDescription::Kind::motion;
+  if (*words.effort != '\0' && command.find(words.effort) != nullptr) {
+    key = words.effort;
+    result.kind = CommandDescription::Kind::effort;
+  }
+  for (const char* input : words.inputs) {
+    if (command.find(input) == nullptr) continue;
+    key = input;
+    result.kind = CommandDescription::Kind::input;
+    check_input(actuator, input, command.place(input));
+    if (auto* wire = std::get_if<sim::SmaSettings>(&actuator.spring)) {
+      wire->by_phase = key == "phase";
+    }
+  }
   result.place = command.place(key);
   result.signal = read_signal(command, key, context);
   actuator.command = std::move(result);
 }
 
-void read_cable(const Fields& fields, ActuatorDescription& cable, const ReadContext& context) {
+void read_line(const Fields& fields, ActuatorDescription& cable, const ReadContext& context) {
   cable.points = read_points(fields, "points", context);
   fields.read_choice("pull", cable.pull, {{"world", PullPoint::world}, {"body", PullPoint::body}});
-  fields.read("geometric_stiffness", cable.geometric_stiffness);
   const Points& points = cable.points.points;
   if (points.rows() < 2 && !(points.rows() == 0 && context.files == Files::ignore)) {
     throw Error(ErrorKind::too_few_points, cable.points.place,
-                fmt::format("the cable has {} point", points.rows()),
-                "give the pull point and at least one more");
+                fmt::format("the line has {} point", points.rows()),
+                "give its first point and at least one more");
   }
   for (Eigen::Index i = 1; i < points.rows(); ++i) {
     if (points.row(i) != points.row(i - 1)) continue;
     throw Error(ErrorKind::degenerate_cable, cable.points.places[static_cast<std::size_t>(i)],
-                fmt::format("points {} and {} of the cable are the same", i, i + 1),
+                fmt::format("points {} and {} of the line are the same", i, i + 1),
                 "remove one of the two");
   }
 }
@@ -53,6 +94,105 @@ void read_force(const Fields& fields, ActuatorDescription& force) {
   fields.read("point", force.point);
   force.point_place = fields.place("point");
   fields.read_direction("direction", force.direction);
+}
+
+std::optional<sim::Supply> read_supply(const Fields& fields) {
+  if (fields.find("supply") == nullptr) return std::nullopt;
+  sim::Supply supply;
+  const Fields values = fields.below("supply");
+  values.read("conductance", supply.conductance);
+  values.read("leak", supply.leak);
+  return supply;
+}
+
+void read_surface(const Fields& fields, SurfaceDescription& surface, const ReadContext& context) {
+  surface.place = fields.map().place();
+  if (fields.read("inside", surface.point)) {
+    surface.kind = SurfaceDescription::Kind::inside;
+    surface.place = fields.place("inside");
+  } else if (fields.find("patch") != nullptr) {
+    surface.kind = SurfaceDescription::Kind::patch;
+    surface.place = fields.place("patch");
+    fields.below("patch").read("point", surface.point);
+    fields.below("patch").read("angle", surface.angle);
+  } else if (fields.find("file") != nullptr) {
+    surface.kind = SurfaceDescription::Kind::file;
+    surface.place = fields.place("file");
+    surface.file = context.path(fields, "file");
+    fields.read("unit", surface.unit);
+  } else {
+    surface.region = read_region(fields);
+    surface.place = surface.region.place;
+  }
+}
+
+void read_pressure(const Fields& fields, ActuatorDescription& chamber, const ReadContext& context) {
+  read_surface(fields.below("surface"), chamber.surface, context);
+  fields.read("cap", chamber.cap);
+  fields.read("load_stiffness", chamber.load_stiffness);
+  if (fields.find("gas") != nullptr) {
+    const Fields values = fields.below("gas");
+    sim::GasSettings& gas = chamber.gas.emplace();
+    values.read("ambient_pressure", gas.ambient_pressure);
+    values.read("polytropic_exponent", gas.exponent);
+    values.read("dead_volume", gas.dead_volume);
+    gas.supply = read_supply(values);
+    if (gas.supply) values.below("supply").read("critical_ratio", gas.supply->critical_ratio);
+  }
+  if (fields.find("liquid") != nullptr) {
+    const Fields values = fields.below("liquid");
+    sim::LiquidSettings& liquid = chamber.liquid.emplace();
+    values.read("bulk_modulus", liquid.bulk_modulus);
+    values.read("dead_volume", liquid.dead_volume);
+    liquid.supply = read_supply(values);
+  }
+}
+
+double read_stiffness(const Fields& fields) {
+  double stiffness = 0.0;
+  if (fields.form("stiffness").shape == Shape::quantity) {
+    fields.read("stiffness", stiffness);
+    return stiffness;
+  }
+  const Fields coil = fields.below("stiffness");
+  double modulus = 0.0, wire = 0.0, diameter = 0.0, coils = 0.0;
+  coil.read("shear_modulus", modulus);
+  coil.read("wire_diameter", wire);
+  coil.read("mean_diameter", diameter);
+  coil.read("coils", coils);
+  return sim::coil_stiffness(modulus, wire, diameter, coils);
+}
+
+void read_spring(const Fields& fields, ActuatorDescription& line) {
+  double free_length = 0.0, damping = 0.0;
+  line.free_at_rest = !fields.read("free_length", free_length);
+  fields.read("damping", damping);
+  if (fields.find("stiffness") != nullptr) {
+    sim::SpringSettings spring;
+    spring.stiffness = read_stiffness(fields);
+    spring.free_length = free_length;
+    spring.damping = damping;
+    fields.read("tension_only", spring.tension_only);
+    line.spring = spring;
+    return;
+  }
+  const Fields values = fields.below("shape_memory");
+  sim::SmaSettings wire;
+  wire.free_length = free_length;
+  wire.damping = damping;
+  values.read("wire_diameter", wire.wire);
+  values.read("mean_diameter", wire.mean_diameter);
+  values.read("coils", wire.coils);
+  values.read("martensite_modulus", wire.martensite_modulus);
+  values.read("austenite_modulus", wire.austenite_modulus);
+  values.read("heat_capacity", wire.heat_capacity);
+  values.read("heat_loss", wire.heat_loss);
+  values.read("ambient", wire.ambient);
+  values.read("austenite_start", wire.austenite_start);
+  values.read("austenite_end", wire.austenite_end);
+  values.read("martensite_start", wire.martensite_start);
+  values.read("martensite_end", wire.martensite_end);
+  line.spring = wire;
 }
 
 }  // namespace
@@ -67,19 +207,37 @@ ActuatorDescription read_actuator(const Node::Entry& entry, const ReadContext& c
   actuator.body_place = fields.place("body");
   fields.read_choice("outside", actuator.outside,
                      {{"error", mesh::Outside::error}, {"nearest", mesh::Outside::nearest}});
-  const bool is_cable = read_text(*entry.value.find(form.telltale)) == "cable";
-  actuator.type = is_cable ? ActuatorDescription::Type::cable : ActuatorDescription::Type::force;
-  const char* effort = is_cable ? "tension" : "force";
-  if (is_cable) {
-    actuator.effort.min = 0.0;
-    read_cable(fields, actuator, context);
-  } else {
-    read_force(fields, actuator);
+  using Type = ActuatorDescription::Type;
+  const std::string type = read_text(*entry.value.find(form.telltale));
+  actuator.type = type == "cable"      ? Type::cable
+                  : type == "force"    ? Type::force
+                  : type == "pressure" ? Type::pressure
+                                       : Type::spring;
+  switch (actuator.type) {
+    case Type::cable:
+      actuator.effort.min = 0.0;
+      read_line(fields, actuator, context);
+      fields.read("geometric_stiffness", actuator.geometric_stiffness);
+      break;
+    case Type::force:
+      read_force(fields, actuator);
+      break;
+    case Type::pressure:
+      read_pressure(fields, actuator, context);
+      break;
+    case Type::spring:
+      actuator.pull = PullPoint::body;
+      read_line(fields, actuator, context);
+      read_spring(fields, actuator);
+      break;
   }
-  const Fields limits = fields.below("limits");
-  read_limit(limits, effort, actuator.effort);
-  read_limit(limits, "displacement", actuator.motion);
-  read_command(fields, effort, actuator, context);
+  if (actuator.type != Type::spring) {
+    const Words words = words_of(actuator);
+    const Fields limits = fields.below("limits");
+    read_limit(limits, words.effort, actuator.effort);
+    read_limit(limits, words.motion, actuator.motion);
+  }
+  read_command(fields, actuator, context);
   return actuator;
 }
 

@@ -171,10 +171,11 @@ void read_axes(const Fields& fields, FixedRegion& region) {
   for (const Node& word : axes->items()) hold(word);
 }
 
+}  // namespace
+
 FixedRegion read_region(const Fields& fields) {
   FixedRegion region;
   region.place = fields.map().place();
-  read_axes(fields, region);
   if (fields.find("box") != nullptr) {
     region.place = fields.place("box");
     read_box(fields, region);
@@ -197,16 +198,24 @@ FixedRegion read_region(const Fields& fields) {
   return region;
 }
 
+namespace {
+
+FixedRegion read_fixed_region(const Fields& fields) {
+  FixedRegion region = read_region(fields);
+  read_axes(fields, region);
+  return region;
+}
+
 void read_fixed(const Fields& fields, BodyDescription& body) {
   const Node* fixed = fields.find("fixed");
   if (fixed == nullptr) return;
   const Form& form = fields.form("fixed");
   if (form.shape == Shape::table) {
-    body.fixed.push_back(read_region(Fields(*fixed, form)));
+    body.fixed.push_back(read_fixed_region(Fields(*fixed, form)));
     return;
   }
   for (const Node& item : fixed->items()) {
-    body.fixed.push_back(read_region(Fields(item, select_form(item, form.items, {}))));
+    body.fixed.push_back(read_fixed_region(Fields(item, select_form(item, form.items, {}))));
   }
 }
 

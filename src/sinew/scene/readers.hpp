@@ -24,6 +24,8 @@ struct ReadContext {
 };
 
 BodyDescription read_body(const Node::Entry& entry, const ReadContext& context);
+/// The region that one of the keys box, sphere, plane and set gives.
+FixedRegion read_region(const Fields& fields);
 ActuatorDescription read_actuator(const Node::Entry& entry, const ReadContext& context);
 EffectorDescription read_effector(const Node::Entry& entry, const ReadContext& context);
 /// Knows the effectors, which say how many weights and what kind of target there may be.

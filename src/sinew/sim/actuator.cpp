@@ -24,11 +24,52 @@ Interval reachable(const Limits& limits, double now, double time_step) {
 }  // namespace
 
 const char* actuator_type_name(ActuatorType type) {
-  return type == ActuatorType::cable ? "cable" : "force";
+  switch (type) {
+    case ActuatorType::cable:
+      return "cable";
+    case ActuatorType::force:
+      return "force";
+    case ActuatorType::pressure:
+      return "pressure";
+    case ActuatorType::spring:
+      return "spring";
+  }
+  return "unknown";
 }
 
-ActuatorRange actuator_range(const ActuatorModel& model, const ActuatorState& state, double time,
-                             double time_step) {
+QuantityName ActuatorModel::effort_name() const {
+  switch (type) {
+    case ActuatorType::force:
+      return {"force", "N"};
+    case ActuatorType::pressure:
+      return {"pressure", "Pa"};
+    case ActuatorType::cable:
+    case ActuatorType::spring:
+      return {"tension", "N"};
+  }
+  return {};
+}
+
+QuantityName ActuatorModel::motion_name() const {
+  if (type == ActuatorType::pressure) return {"volume_growth", "m^3"};
+  return {"displacement", "m"};
+}
+
+QuantityName ActuatorModel::quantity(CommandKind kind) const {
+  if (kind == CommandKind::effort) return effort_name();
+  if (kind == CommandKind::motion || drive == nullptr) return motion_name();
+  return drive->input();
+}
+
+std::optional<CommandKind> ActuatorModel::kind_of(std::string_view quantity) const {
+  if (controllable() && quantity == effort_name().name) return CommandKind::effort;
+  if (controllable() && quantity == motion_name().name) return CommandKind::motion;
+  const bool known = drive != nullptr && !quantity.empty() && quantity == drive->input().name;
+  return known ? std::optional(CommandKind::input) : std::nullopt;
+}
+
+ActuatorRange actuator_range(const ActuatorModel& model, const ActuatorState& state,
+                             std::span<const double> drive_state, double time, double time_step) {
   const Interval effort = reachable(model.effort, state.effort, time_step);
   const Interval motion = reachable(model.motion, state.wound, time_step);
   ActuatorRange range;
@@ -39,8 +80,14 @@ ActuatorRange actuator_range(const ActuatorModel& model, const ActuatorState& st
   range.motion_max = motion.max;
   range.kind = state.command.kind;
   range.owned = state.owner != nullptr;
-  const Interval& own = range.kind == CommandKind::effort ? effort : motion;
-  range.value = std::clamp(state.command.signal.value(time), own.min, own.max);
+  range.motion_scale = model.motion_scale;
+  const double told = state.command.signal.value(time);
+  const Interval& own = range.kind == CommandKind::motion ? motion : effort;
+  range.value = range.kind == CommandKind::input ? told : std::clamp(told, own.min, own.max);
+  if (model.drive == nullptr || range.owned) return range;
+  if (!model.drive->acts_on(range.kind)) return range;
+  range.drive = model.drive.get();
+  range.drive_step = {range.kind, range.value, time_step, state.motion, drive_state};
   return range;
 }
 

@@ -1,30 +1,31 @@
 /// @file
-/// What drives a robot: one row of H whose effort (N) or motion (m) is commanded within limits.
+/// What drives a robot: one row of H whose effort (N, Pa) or motion (m, m^3) is commanded within
+/// limits, or follows a drive.
 #pragma once
 
 #include <limits>
+#include <memory>
+#include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 
 #include "sinew/core/error.hpp"
+#include "sinew/sim/drive.hpp"
 #include "sinew/sim/signal.hpp"
 
 namespace sinew::sim {
 
-/// Inclusive limits on an effort (N) or a motion (m) and on its change per second.
+/// Inclusive limits on an effort (N, Pa) or a motion (m, m^3) and on its change per second.
 struct Limits {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
   double rate = std::numeric_limits<double>::infinity();  ///< >= 0, per second
 };
 
-enum class ActuatorType { cable, force };
-/// "cable", "force".
+enum class ActuatorType { cable, force, pressure, spring };
+/// "cable", "force", "pressure", "spring".
 const char* actuator_type_name(ActuatorType type);
-
-enum class CommandKind {
-  effort,  ///< tension or force, N
-  motion,  ///< displacement, m
-};
 
 /// What an actuator is told, over time.
 struct Command {
@@ -40,18 +41,28 @@ struct ActuatorModel {
   int constraint = -1;  ///< in Model::constraints
   int row = -1;         ///< of H
   Limits effort, motion;
-  Command command;  ///< where a run begins
+  Command command;                          ///< where a run begins
+  std::shared_ptr<const Drive> drive = {};  ///< none: it obeys its commands as they are
+  int first_state = 0;                      ///< of the drive's numbers among those of all drives
+  double motion_scale = 1.0;  ///< m per motion: 1, or 1/m^2 of a cavity, one over its area
 
-  /// "tension" or "force"; "displacement".
-  const char* effort_name() const { return type == ActuatorType::cable ? "tension" : "force"; }
-  static const char* motion_name() { return "displacement"; }
+  /// "tension", N; "force", N; "pressure", Pa.
+  QuantityName effort_name() const;
+  /// "displacement", m; "volume_growth", m^3.
+  QuantityName motion_name() const;
+  /// Of what a command of this kind gives.
+  QuantityName quantity(CommandKind kind) const;
+  /// The command that gives this quantity; none when the actuator takes no such command.
+  std::optional<CommandKind> kind_of(std::string_view quantity) const;
+  /// Whether something other than its drive may choose its effort.
+  bool controllable() const { return drive == nullptr || drive->controllable(); }
 };
 
 /// What an actuator is doing in a simulation.
 struct ActuatorState {
   Command command;
-  double effort = 0.0;  ///< N, of the last step
-  double motion = 0.0;  ///< m, at the end of the last step
+  double effort = 0.0;  ///< N or Pa, of the last step
+  double motion = 0.0;  ///< m or m^3, at the end of the last step
   double wound =
       0.0;  ///< m, where the drive stands: its last motion command as far as limits let it
   bool slack = true;            ///< a cable without tension
@@ -64,15 +75,19 @@ struct ActuatorRange {
   double effort_min = 0.0, effort_max = 0.0;  ///< N
   double motion_min = 0.0, motion_max = 0.0;  ///< m
   CommandKind kind = CommandKind::effort;
-  double value = 0.0;  ///< the command, clamped into the range
-  bool owned = false;  ///< a controller chooses; value and kind do not count
+  double value = 0.0;            ///< the command, clamped into the range
+  bool owned = false;            ///< a controller chooses; value and kind do not count
+  const Drive* drive = nullptr;  ///< shapes the effort in this step; limits do not count then
+  Drive::Step drive_step{};      ///< what it is asked
+  double motion_scale = 1.0;     ///< see ActuatorModel
 };
 
 /// The range of the step from the state before it.
 /// @param model,state of one actuator, before the step.
+/// @param drive_state of its drive, before the step; must outlive the range.
 /// @param time the end of the step (s), at which the command is read.
 /// @param time_step s; infinity lifts the limits on rates.
-ActuatorRange actuator_range(const ActuatorModel& model, const ActuatorState& state, double time,
-                             double time_step);
+ActuatorRange actuator_range(const ActuatorModel& model, const ActuatorState& state,
+                             std::span<const double> drive_state, double time, double time_step);
 
 }  // namespace sinew::sim

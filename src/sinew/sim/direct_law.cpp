@@ -77,9 +77,10 @@ bool DirectLaw::switch_branches(const LawProblem& problem) {
           problem.compliance(range.row, problem.actuators[j].row) * scale_[k] * scaled_effort_[k];
     }
     const Branch before = branch_[i];
-    if (before == Branch::pull && delta < range.motion_min - kMotionTolerance) {
+    const double tolerance = kMotionTolerance / range.motion_scale;
+    if (before == Branch::pull && delta < range.motion_min - tolerance) {
       branch_[i] = Branch::hold;
-    } else if (before == Branch::hold && delta > range.motion_max + kMotionTolerance) {
+    } else if (before == Branch::hold && delta > range.motion_max + tolerance) {
       branch_[i] = Branch::pull;
     }
     switched = switched || branch_[i] != before;
@@ -113,6 +114,7 @@ double DirectLaw::violation(const LawProblem& problem, std::span<const double> e
   double worst = 0.0;
   for (std::size_t i = 0; i < branch_.size(); ++i) {
     const ActuatorRange& range = problem.actuators[i];
+    if (range.drive != nullptr) continue;
     const Box box = box_of(range, branch_[i] == Branch::hold);
     const double lambda = effort[static_cast<std::size_t>(range.row)];
     const double gap = problem.delta[range.row] - box.motion;
@@ -122,7 +124,7 @@ double DirectLaw::violation(const LawProblem& problem, std::span<const double> e
     if (at_lower) miss = std::max(0.0, -gap);
     if (at_upper) miss = std::max(0.0, gap);
     if (at_lower && at_upper) miss = 0.0;
-    worst = std::max(worst, miss);
+    worst = std::max(worst, range.motion_scale * miss);
   }
   return worst;
 }

@@ -19,8 +19,8 @@ struct LawProblem {
   const constraint::Placement& placement;    ///< at the linearisation
   std::span<const ActuatorRange> actuators;  ///< in the model's order
   const MatrixX& compliance;                 ///< W (rows, rows), m/N
-  const VectorX& delta_free;                 ///< (rows,) m
-  const VectorX& delta;                      ///< (rows,) m, at the linearisation
+  const VectorX& delta_free;                 ///< (rows,) m or m^3
+  const VectorX& delta;                      ///< (rows,) m or m^3, at the linearisation
   double time = 0.0;                         ///< s, end of the step
   double time_step = 0.0;                    ///< s
 };

@@ -49,4 +49,10 @@ const constraint::Cable* Model::cable(int actuator) const {
       constraints_[static_cast<std::size_t>(model.constraint)].get());
 }
 
+const constraint::Cavity* Model::cavity(int actuator) const {
+  const auto& model = actuators_.at(static_cast<std::size_t>(actuator));
+  return dynamic_cast<const constraint::Cavity*>(
+      constraints_[static_cast<std::size_t>(model.constraint)].get());
+}
+
 }  // namespace sinew::sim

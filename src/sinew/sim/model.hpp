@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sinew/constraint/cable.hpp"
+#include "sinew/constraint/cavity.hpp"
 #include "sinew/constraint/effector.hpp"
 #include "sinew/constraint/point_force.hpp"
 #include "sinew/fem/fem_body_model.hpp"
@@ -55,6 +56,10 @@ class Model {
   const StepSettings& step() const { return step_; }
   /// Constraints whose curvature joins A in every step.
   const std::vector<int>& stiffening_constraints() const { return stiffening_; }
+  /// Whether that needs blocks that the elements' pattern has not.
+  bool stiffening_widens() const { return stiffening_widens_; }
+  /// All constraints with curvature.
+  const std::vector<int>& curved_constraints() const { return curved_; }
 
   /// Positions in the lists above. Throw Error(unknown-name) with a suggestion.
   int body_index(std::string_view name) const;
@@ -62,8 +67,12 @@ class Model {
   int effector_index(std::string_view name) const;
 
   const constraint::Effector& effector(int index) const;
-  /// The cable of an actuator; null when it is none.
+  /// The line of a cable or spring; null when an actuator has none.
   const constraint::Cable* cable(int actuator) const;
+  /// The chamber of an actuator; null when it has none.
+  const constraint::Cavity* cavity(int actuator) const;
+  /// Numbers of all drives.
+  int drive_states() const { return drive_states_; }
   /// A length of the robot's size, m: the largest diagonal of its bodies at rest.
   double size() const { return size_; }
   /// Tells models apart: a hash of meshes, materials, rows and settings. Saved states carry it.
@@ -78,7 +87,9 @@ class Model {
   std::vector<EffectorModel> effectors_;
   mechanics::RowPattern rows_;
   std::vector<mechanics::RowCurvature> curvatures_;
-  std::vector<int> stiffening_;
+  std::vector<int> stiffening_, curved_;
+  bool stiffening_widens_ = false;
+  int drive_states_ = 0;
   StepSettings step_;
   double size_ = 1.0;
   std::uint64_t fingerprint_ = 0;

@@ -1,12 +1,14 @@
 #include "sinew/sim/model_builder.hpp"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
 #include "sinew/core/state_hash.hpp"
+#include "sinew/mesh/surface.hpp"
 
 namespace sinew::sim {
 
@@ -104,8 +106,12 @@ int ModelBuilder::add_actuator(ActuatorModel actuator,
                   fmt::format("two actuators are called '{}'", actuator.name), "rename one");
     }
   }
-  check_limits(actuator.effort, actuator.effort_name(), actuator);
-  check_limits(actuator.motion, ActuatorModel::motion_name(), actuator);
+  check_limits(actuator.effort, actuator.effort_name().name, actuator);
+  check_limits(actuator.motion, actuator.motion_name().name, actuator);
+  if (actuator.drive) {
+    actuator.first_state = model_->drive_states_;
+    model_->drive_states_ += actuator.drive->state_size();
+  }
   constraint->declare(model_->rows_, model_->curvatures_);
   actuator.constraint = static_cast<int>(model_->constraints_.size());
   actuator.row = constraint->first_row();
@@ -114,42 +120,176 @@ int ModelBuilder::add_actuator(ActuatorModel actuator,
   return static_cast<int>(model_->actuators_.size()) - 1;
 }
 
+std::unique_ptr<constraint::Cable> ModelBuilder::make_line(const std::string& name,
+                                                           const char* kind, int body, Points rest,
+                                                           bool from_world, mesh::Outside outside,
+                                                           const std::vector<Place>& places,
+                                                           const Place& place) {
+  std::vector<mechanics::MaterialPoint> points;
+  std::optional<Vector3> pull_point;
+  for (Eigen::Index i = 0; i < rest.rows(); ++i) {
+    if (i == 0 && from_world) {
+      pull_point = Vector3(rest.row(0));
+      continue;
+    }
+    const std::string what = fmt::format("point {} of {} '{}'", i, kind, name);
+    try {
+      points.push_back({body, this->body(body).attach(rest.row(i), outside, what)});
+    } catch (const Error& error) {
+      const auto k = static_cast<std::size_t>(i);
+      throw error.at(k < places.size() ? places[k] : place);
+    }
+    rest.row(i) = this->body(body).rest_position(points.back().point);
+  }
+  return std::make_unique<constraint::Cable>(name, std::move(points), pull_point, rest);
+}
+
 int ModelBuilder::add_cable(const CableSettings& settings) {
   check_body(settings.body, settings.place);
-  const auto at = [&](Eigen::Index i) {
-    const auto k = static_cast<std::size_t>(i);
-    return k < settings.point_places.size() ? settings.point_places[k] : settings.place;
-  };
   if (settings.tension.min < 0.0) {
     throw Error(
         ErrorKind::out_of_range, settings.place,
         fmt::format("tension: min {:g} N is negative; a cable cannot push", settings.tension.min),
         "give zero or more");
   }
-  std::vector<mechanics::MaterialPoint> points;
-  std::optional<Vector3> pull_point;
-  Points rest = settings.points;
-  for (Eigen::Index i = 0; i < rest.rows(); ++i) {
-    if (i == 0 && settings.pull_from_world) {
-      pull_point = Vector3(rest.row(0));
-      continue;
-    }
-    const std::string what = fmt::format("point {} of cable '{}'", i, settings.name);
-    try {
-      points.push_back(
-          {settings.body, body(settings.body).attach(rest.row(i), settings.outside, what)});
-    } catch (const Error& error) {
-      throw error.at(at(i));
-    }
-    rest.row(i) = body(settings.body).rest_position(points.back().point);
-  }
   try {
     auto cable =
-        std::make_unique<constraint::Cable>(settings.name, std::move(points), pull_point, rest);
+        make_line(settings.name, "cable", settings.body, settings.points, settings.pull_from_world,
+                  settings.outside, settings.point_places, settings.place);
     const int index = add_actuator({settings.name, settings.place, ActuatorType::cable, -1, -1,
                                     settings.tension, settings.displacement, settings.command},
                                    std::move(cable));
     if (settings.geometric_stiffness || model_->step_.tangent == mechanics::Tangent::exact) {
+      model_->stiffening_.push_back(model_->actuators_[static_cast<std::size_t>(index)].constraint);
+    }
+    return index;
+  } catch (const Error& error) {
+    throw error.at(settings.place);
+  }
+}
+
+int ModelBuilder::add_spring(const SpringLineSettings& settings) {
+  check_body(settings.body, settings.place);
+  try {
+    auto line =
+        make_line(settings.name, "spring", settings.body, settings.points, settings.pull_from_world,
+                  settings.outside, settings.point_places, settings.place);
+    ActuatorModel actuator{settings.name,   settings.place, ActuatorType::spring, -1, -1, {}, {},
+                           settings.command};
+    const double length = line->rest_length();
+    std::visit(
+        [&](auto spring) {
+          using Wire = std::is_same<decltype(spring), SmaSettings>;
+          using Kind = std::conditional_t<Wire::value, SmaDrive, SpringDrive>;
+          if (settings.free_at_rest) spring.free_length = length;
+          actuator.drive = std::make_shared<const Kind>(spring, length);
+        },
+        settings.spring);
+    const int index = add_actuator(std::move(actuator), std::move(line));
+    // A stretched spring is as stiff across as along: without that a slack robot would swing.
+    model_->stiffening_.push_back(model_->actuators_[static_cast<std::size_t>(index)].constraint);
+    return index;
+  } catch (const Error& error) {
+    throw error.at(settings.place);
+  }
+}
+
+namespace {
+
+/// Points and faces of a cavity under construction.
+class CavityParts {
+ public:
+  CavityParts(mechanics::BodyModel& body, int number) : body_(body), number_(number) {}
+
+  void take(const std::vector<mesh::Face>& patch, bool cap) {
+    std::map<NodeId, int> corner;
+    const auto number = [&](NodeId node) {
+      const auto [found, is_new] = corner.insert({node, static_cast<int>(points.size())});
+      if (is_new) add_mean({node});
+      return found->second;
+    };
+    // Out of the material is into the fluid: turned round.
+    for (const mesh::Face& face : patch) {
+      const auto& n = face.node;
+      if (face.corners() == 3) {
+        faces.push_back({{number(n[2]), number(n[1]), number(n[0]), -1}});
+      } else {
+        faces.push_back({{number(n[3]), number(n[2]), number(n[1]), number(n[0])}});
+      }
+    }
+    if (!cap) return;
+    for (const std::vector<NodeId>& loop : mesh::open_loops(patch)) {
+      const int middle = static_cast<int>(points.size());
+      add_mean(loop);
+      for (std::size_t k = 0; k < loop.size(); ++k) {
+        const int a = number(loop[k]), b = number(loop[(k + 1) % loop.size()]);
+        faces.push_back({{b, a, middle, -1}});
+      }
+    }
+  }
+
+  void take(const mesh::Surface& surface, mesh::Outside outside, const std::string& name) {
+    const bool inwards = mesh::enclosed_volume(surface) < 0.0;
+    for (Eigen::Index i = 0; i < surface.nodes.rows(); ++i) {
+      const Vector3 at = surface.nodes.row(i).transpose();
+      add(body_.attach(at, outside, fmt::format("vertex {} of the surface of '{}'", i, name)));
+    }
+    for (const auto& [a, b, c] : surface.triangles) {
+      faces.push_back({{inwards ? b : a, inwards ? a : b, c, -1}});
+    }
+  }
+
+  Points rest() const {
+    Points result(static_cast<Eigen::Index>(points.size()), 3);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      result.row(static_cast<Eigen::Index>(i)) = body_.rest_position(points[i].point).transpose();
+    }
+    return result;
+  }
+
+  std::vector<mechanics::MaterialPoint> points;
+  std::vector<constraint::CavityFace> faces;
+
+ private:
+  void add(int point) { points.push_back({number_, point}); }
+  void add_mean(const std::vector<NodeId>& nodes) {
+    const std::vector<double> weights(nodes.size(), 1.0 / static_cast<double>(nodes.size()));
+    add(body_.attach_nodes(nodes, weights));
+  }
+
+  mechanics::BodyModel& body_;
+  int number_;
+};
+
+}  // namespace
+
+int ModelBuilder::add_cavity(const CavitySettings& settings) {
+  check_body(settings.body, settings.place);
+  try {
+    if (settings.gas && settings.liquid) {
+      throw Error(ErrorKind::conflicting_keys, settings.place, "a chamber holds gas or liquid",
+                  "give one of them");
+    }
+    CavityParts parts(body(settings.body), settings.body);
+    if (const auto* faces = std::get_if<std::vector<mesh::Face>>(&settings.surface)) {
+      parts.take(*faces, settings.cap);
+    } else {
+      parts.take(std::get<mesh::Surface>(settings.surface), settings.outside, settings.name);
+    }
+    const Points rest = parts.rest();
+    auto cavity = std::make_unique<constraint::Cavity>(settings.name, std::move(parts.points),
+                                                       std::move(parts.faces), rest);
+    ActuatorModel actuator{
+        settings.name,     settings.place,         ActuatorType::pressure, -1, -1,
+        settings.pressure, settings.volume_growth, settings.command};
+    actuator.motion_scale = 1.0 / cavity->rest_area();
+    if (settings.gas) {
+      actuator.drive = std::make_shared<const GasDrive>(*settings.gas, cavity->rest_volume());
+    } else if (settings.liquid) {
+      actuator.drive = std::make_shared<const LiquidDrive>(*settings.liquid, cavity->rest_volume());
+    }
+    const int index = add_actuator(std::move(actuator), std::move(cavity));
+    if (settings.load_stiffness) {
       model_->stiffening_.push_back(model_->actuators_[static_cast<std::size_t>(index)].constraint);
     }
     return index;
@@ -278,6 +418,20 @@ std::shared_ptr<const Model> ModelBuilder::build(const linalg::FactorisationSett
       }
       hash.add(static_cast<double>(fem->elements().free_count()));
       for (const std::int32_t held : fem->elements().held()) hash.add(static_cast<double>(held));
+    }
+  }
+  for (std::size_t i = 0; i < model_->constraints_.size(); ++i) {
+    if (model_->constraints_[i]->curvature_count() > 0) {
+      model_->curved_.push_back(static_cast<int>(i));
+    }
+  }
+  for (const int index : model_->stiffening_) {
+    const auto& constraint = *model_->constraints_[static_cast<std::size_t>(index)];
+    for (int k = 0; k < constraint.curvature_count(); ++k) {
+      const auto& pair =
+          model_->curvatures_[static_cast<std::size_t>(constraint.first_curvature() + k)];
+      model_->stiffening_widens_ |=
+          !body(pair.first.body).couples(pair.first.point, pair.second.point);
     }
   }
   hash.add(model_->step_.time_step);

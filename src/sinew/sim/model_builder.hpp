@@ -6,9 +6,13 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
+#include "sinew/mesh/patch.hpp"
+#include "sinew/sim/fluid_drive.hpp"
 #include "sinew/sim/model.hpp"
+#include "sinew/sim/spring_drive.hpp"
 
 namespace sinew::sim {
 
@@ -40,6 +44,39 @@ struct ForceSettings {
   Command command;
 };
 
+/// A chamber of a body under pressure.
+struct CavitySettings {
+  std::string name;
+  Place place;
+  int body = 0;
+  /// Faces of the body's mesh as seen from the material, or a surface that the body carries along
+  /// (its vertices are attached to the elements; either orientation).
+  std::variant<std::vector<mesh::Face>, mesh::Surface> surface;
+  mesh::Outside outside = mesh::Outside::error;  ///< for a surface's vertices
+  bool cap = false;  ///< close openings by a lid without stiffness that passes its force to the rim
+  bool load_stiffness = true;
+  Limits pressure;       ///< Pa, above ambient
+  Limits volume_growth;  ///< m^3
+  Command command;
+  /// What fills it; neither: the commanded pressure or growth of volume acts as it is.
+  std::optional<GasSettings> gas;
+  std::optional<LiquidSettings> liquid;
+};
+
+/// A spring, a tendon, or a shape-memory spring.
+struct SpringLineSettings {
+  std::string name;
+  Place place;
+  int body = 0;
+  Points points;  ///< (n, 3) m; via points without friction between its ends
+  std::vector<Place> point_places;
+  bool pull_from_world = false;  ///< the first point is fixed to the world, else to the body
+  mesh::Outside outside = mesh::Outside::error;
+  std::variant<SpringSettings, SmaSettings> spring;
+  bool free_at_rest = false;  ///< its free length is that at rest, whatever `spring` says
+  Command command{CommandKind::effort, {}};
+};
+
 /// A point, the mean of several points or nodes, or an orientation by three points.
 struct EffectorSettings {
   enum class Kind { points, nodes, orientation };
@@ -63,6 +100,11 @@ class ModelBuilder {
   /// Throws Error: too-few-points, degenerate-cable, point-outside-mesh, contradictory-limits.
   int add_cable(const CableSettings& settings);
   int add_force(const ForceSettings& settings);
+  /// Throws Error: surface-not-closed, zero-volume, point-outside-mesh, contradictory-limits,
+  /// out-of-range, conflicting-keys (gas and liquid).
+  int add_cavity(const CavitySettings& settings);
+  /// As add_cable(), and Error(out-of-range).
+  int add_spring(const SpringLineSettings& settings);
   int add_effector(const EffectorSettings& settings);
 
   /// Plans and hands the model over; the builder is empty afterwards.
@@ -76,6 +118,10 @@ class ModelBuilder {
   mechanics::BodyModel& body(int index);
   void check_body(int index, const Place& place) const;
   int add_actuator(ActuatorModel actuator, std::unique_ptr<constraint::Constraint> constraint);
+  std::unique_ptr<constraint::Cable> make_line(const std::string& name, const char* kind, int body,
+                                               Points rest, bool from_world, mesh::Outside outside,
+                                               const std::vector<Place>& places,
+                                               const Place& place);
 
   std::unique_ptr<Model> model_;
 };

@@ -22,13 +22,14 @@ Simulation::Simulation(std::shared_ptr<const Model> model, int threads)
       pool_(std::make_unique<ThreadPool>(threads)),
       world_(model_, *pool_),
       direct_(static_cast<int>(model_->actuators().size())),
+      driven_(model_->rows().rows(), static_cast<int>(model_->actuators().size())),
       actuators_(model_->actuators().size()),
       ranges_(model_->actuators().size()),
-      effort_(static_cast<std::size_t>(model_->rows().rows()), 0.0) {
+      effort_(static_cast<std::size_t>(model_->rows().rows()), 0.0),
+      drive_state_(static_cast<std::size_t>(model_->drive_states()), 0.0) {
   for (std::size_t i = 0; i < actuators_.size(); ++i) {
-    const ActuatorModel& actuator = model_->actuators()[i];
-    actuators_[i].command = actuator.command;
-    if (model_->cable(static_cast<int>(i)) != nullptr) all_cables_.push_back(actuator.constraint);
+    actuators_[i].command = model_->actuators()[i].command;
+    if (const auto& drive = model_->actuators()[i].drive) drive->rest(drive_numbers(i));
   }
   finish_step();
   state_before_.resize(state_size());
@@ -39,7 +40,36 @@ Simulation::~Simulation() = default;
 
 void Simulation::read_ranges(double time, double time_step) {
   for (std::size_t i = 0; i < actuators_.size(); ++i) {
-    ranges_[i] = actuator_range(model_->actuators()[i], actuators_[i], time, time_step);
+    ranges_[i] =
+        actuator_range(model_->actuators()[i], actuators_[i], drive_numbers(i), time, time_step);
+  }
+}
+
+std::span<double> Simulation::drive_numbers(std::size_t actuator) {
+  const ActuatorModel& model = model_->actuators()[actuator];
+  if (model.drive == nullptr) return {};
+  return std::span(drive_state_)
+      .subspan(static_cast<std::size_t>(model.first_state),
+               static_cast<std::size_t>(model.drive->state_size()));
+}
+
+std::span<const double> Simulation::drive_state(int actuator) const {
+  return const_cast<Simulation*>(this)->drive_numbers(static_cast<std::size_t>(actuator));
+}
+
+Law& Simulation::with_drives(Law& law) {
+  const bool any = std::ranges::any_of(ranges_, [](const auto& r) { return r.drive != nullptr; });
+  return any ? static_cast<Law&>(driven_.around(law)) : law;
+}
+
+// After finish_step(): where each drive stands, whoever chose its effort.
+void Simulation::advance_drives() {
+  for (std::size_t i = 0; i < actuators_.size(); ++i) {
+    const ActuatorModel& model = model_->actuators()[i];
+    if (model.drive == nullptr) continue;
+    Drive::Step step = ranges_[i].drive_step;
+    step.state = drive_numbers(i);
+    model.drive->advance(step, actuators_[i].motion, actuators_[i].effort, drive_numbers(i));
   }
 }
 
@@ -49,7 +79,7 @@ const StepReport& Simulation::step() {
   read_ranges(end, model_->step().time_step);
   save_state(state_before_);
   world_.begin_step();
-  Law& law = law_ != nullptr ? *law_ : direct_;
+  Law& law = with_drives(law_ != nullptr ? *law_ : direct_);
   const LawProblem problem{*model_,
                            world_.placement(),
                            ranges_,
@@ -67,6 +97,7 @@ const StepReport& Simulation::step() {
   ++steps_;
   std::ranges::transform(actuators_, motion_before_.begin(), &ActuatorState::motion);
   finish_step();
+  advance_drives();
   for (std::size_t i = 0; i < actuators_.size(); ++i) {
     actuator_work_ += actuators_[i].effort * (actuators_[i].motion - motion_before_[i]);
   }
@@ -79,7 +110,7 @@ const StepReport& Simulation::step() {
 void Simulation::step_once(Law& law, const LawProblem& problem) {
   const auto& settings = model_->step();
   world_.linearise({mechanics::step_weights(settings.integrator, settings.time_step),
-                    settings.tangent, !model_->stiffening_constraints().empty(), false});
+                    settings.tangent, model_->stiffening_widens(), false});
   clock_.mark(Stage::assembly);
   world_.form_rows(effort_, model_->stiffening_constraints());
   report_.residual = world_.residual(effort_);
@@ -142,7 +173,7 @@ void Simulation::step_newton(Law& law, const LawProblem& problem) {
   const auto& settings = model_->step();
   const auto curved = std::span<const int>(model_->stiffening_constraints());
   NewtonSettings newton{{mechanics::step_weights(settings.integrator, settings.time_step),
-                         settings.tangent, !curved.empty(), true},
+                         settings.tangent, model_->stiffening_widens(), true},
                         settings.tolerance,
                         settings.max_iterations,
                         curved};
@@ -230,8 +261,12 @@ void Simulation::detach(const Law& law) {
   for (ActuatorState& state : actuators_) {
     if (state.owner != &law) continue;
     state.owner = nullptr;
-    // The drive stays where it stands until it is told otherwise.
-    state.command = {CommandKind::motion, Signal::constant(state.motion)};
+    // The drive stays where it stands until it is told otherwise: a winch by its length, a
+    // regulator by its pressure.
+    const auto i = static_cast<std::size_t>(&state - actuators_.data());
+    const bool regulator = model_->actuators()[i].type == ActuatorType::pressure;
+    state.command = regulator ? Command{CommandKind::effort, Signal::constant(state.effort)}
+                              : Command{CommandKind::motion, Signal::constant(state.motion)};
   }
 }
 
@@ -262,7 +297,7 @@ std::size_t Simulation::bytes() const {
 }
 
 std::size_t Simulation::state_size() const {
-  return world_.state_size() + effort_.size() + 2 * actuators_.size() + 1;
+  return world_.state_size() + effort_.size() + drive_state_.size() + 2 * actuators_.size() + 1;
 }
 
 void Simulation::save_state(std::span<double> state) const {
@@ -270,6 +305,8 @@ void Simulation::save_state(std::span<double> state) const {
   auto rest = state.subspan(world_.state_size());
   std::ranges::copy(effort_, rest.begin());
   rest = rest.subspan(effort_.size());
+  std::ranges::copy(drive_state_, rest.begin());
+  rest = rest.subspan(drive_state_.size());
   for (std::size_t i = 0; i < actuators_.size(); ++i) {
     rest[2 * i] = actuators_[i].motion;
     rest[2 * i + 1] = actuators_[i].wound;
@@ -282,6 +319,8 @@ void Simulation::load_state(std::span<const double> state, std::int64_t steps) {
   auto rest = state.subspan(world_.state_size());
   std::copy_n(rest.begin(), effort_.size(), effort_.begin());
   rest = rest.subspan(effort_.size());
+  std::copy_n(rest.begin(), drive_state_.size(), drive_state_.begin());
+  rest = rest.subspan(drive_state_.size());
   for (std::size_t i = 0; i < actuators_.size(); ++i) {
     ActuatorState& actuator = actuators_[i];
     actuator.motion = rest[2 * i];
@@ -302,6 +341,9 @@ void Simulation::reset() {
   world_.restart();
   std::ranges::fill(effort_, 0.0);
   std::ranges::fill(ranges_, ActuatorRange{});
+  for (std::size_t i = 0; i < actuators_.size(); ++i) {
+    if (const auto& drive = model_->actuators()[i].drive) drive->rest(drive_numbers(i));
+  }
   volume_ratio_ = 1.0;
   actuator_work_ = 0.0;
   steps_ = 0;

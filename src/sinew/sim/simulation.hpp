@@ -9,6 +9,7 @@
 
 #include "sinew/fem/fem_body.hpp"
 #include "sinew/sim/direct_law.hpp"
+#include "sinew/sim/driven_law.hpp"
 #include "sinew/sim/newton.hpp"
 #include "sinew/sim/stages.hpp"
 #include "sinew/sim/world.hpp"
@@ -105,7 +106,9 @@ class Simulation {
   /// Throws Error(wrong-type) when the body is of another kind.
   fem::FemBody& fem_body(int index);
   const fem::FemBody& fem_body(int index) const;
-  std::span<const double> efforts() const { return effort_; }  ///< (rows,) N
+  std::span<const double> efforts() const { return effort_; }  ///< (rows,) N or Pa
+  /// The numbers of an actuator's drive (see Drive); empty without one.
+  std::span<const double> drive_state(int actuator) const;
   std::span<const ActuatorRange> ranges() const { return ranges_; }
 
   /// Over positions, velocities, efforts and drives: equal runs have equal hashes.
@@ -120,6 +123,9 @@ class Simulation {
 
  private:
   void read_ranges(double time, double time_step);
+  std::span<double> drive_numbers(std::size_t actuator);
+  Law& with_drives(Law& law);
+  void advance_drives();
   void step_once(Law& law, const LawProblem& problem);
   void step_newton(Law& law, const LawProblem& problem);
   void move_soundly();
@@ -132,14 +138,15 @@ class Simulation {
   std::unique_ptr<ThreadPool> pool_;
   World world_;
   DirectLaw direct_;
+  DrivenLaw driven_;
   Law* law_ = nullptr;
   std::vector<ActuatorState> actuators_;
   std::vector<ActuatorRange> ranges_;
   std::vector<double> effort_;
+  std::vector<double> drive_state_;  // of all drives, at the start of the step
   std::vector<double> state_before_;
   std::vector<double> motion_before_;  // (actuators,) m
   double actuator_work_ = 0.0;
-  std::vector<int> all_cables_;
   std::int64_t steps_ = 0;
   double volume_ratio_ = 1.0;
   StepReport report_;

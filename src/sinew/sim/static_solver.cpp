@@ -23,7 +23,9 @@ void blend(std::span<ActuatorRange> ranges, std::span<const ActuatorState> start
   for (std::size_t i = 0; i < ranges.size(); ++i) {
     const double from = goal[i].kind == CommandKind::effort ? start[i].effort : start[i].motion;
     ranges[i] = goal[i];
+    if (goal[i].kind == CommandKind::input) continue;  // the imbalance alone is taken away
     ranges[i].value = share * from + (1.0 - share) * goal[i].value;
+    ranges[i].drive_step.command = ranges[i].value;
   }
 }
 
@@ -44,8 +46,9 @@ NewtonReport Simulation::equilibrate(const StaticSettings& settings, double shar
   const NewtonSettings newton{{{}, mechanics::Tangent::exact, true, true},
                               settings.tolerance,
                               settings.max_iterations,
-                              all_cables_};
-  const NewtonReport result = solve_newton(world_, direct_, problem, effort_, newton, clock_);
+                              model_->curved_constraints()};
+  const NewtonReport result =
+      solve_newton(world_, with_drives(direct_), problem, effort_, newton, clock_);
   report.iterations += result.iterations;
   report.status = result.status;
   report.residual = result.residual;
@@ -74,7 +77,7 @@ StaticReport Simulation::solve_static(const StaticSettings& settings) {
   if (last.status != NewtonStatus::converged) {
     load_state(state_before_, steps_);
     world_.linearise({{}, mechanics::Tangent::exact, true, true});
-    world_.form_rows(effort_, all_cables_);
+    world_.form_rows(effort_, model_->curved_constraints());
     world_.hold_imbalance(effort_);
     std::vector<double> sound = state_before_;
     double share = 1.0;
@@ -109,6 +112,7 @@ StaticReport Simulation::solve_static(const StaticSettings& settings) {
   world_.begin_step();
   world_.end_step({});
   finish_step();
+  advance_drives();
   return report;
 }
 

@@ -10,7 +10,7 @@ namespace {
 
 std::vector<std::unique_ptr<mechanics::Body>> create_bodies(const Model& model, ThreadPool& pool) {
   std::vector<std::unique_ptr<mechanics::Body>> bodies;
-  const bool curved = !model.stiffening_constraints().empty();
+  const bool curved = model.stiffening_widens();
   for (const auto& body : model.bodies()) bodies.push_back(body->create(pool, curved));
   return bodies;
 }

@@ -1,0 +1,148 @@
+#include "sinew/constraint/cavity.hpp"
+
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include "sinew/core/error.hpp"
+
+namespace sinew::constraint {
+
+namespace {
+
+// A cavity of less than this part of (its area)^(3/2) is a sheet.
+constexpr double kFlat = 1e-9;
+
+Matrix3 cross_matrix(const Vector3& v) {
+  Matrix3 m;
+  m << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
+  return m;
+}
+
+}  // namespace
+
+Cavity::Cavity(std::string name, std::vector<mechanics::MaterialPoint> points,
+               std::vector<CavityFace> faces, const Points& placement_at_rest)
+    : Constraint(std::move(name)), points_(std::move(points)), faces_(std::move(faces)) {
+  if (points_.size() < 4) {
+    throw Error(ErrorKind::too_few_points, {.item = "cavity '" + this->name() + "'"},
+                fmt::format("the surface has {} nodes", points_.size()),
+                "choose a surface that encloses a volume");
+  }
+  check_closed(placement_at_rest);
+  for (const CavityFace& face : faces_) {
+    const auto [a, b, c, d] = face.corner;
+    if (d < 0) {
+      triangles_.push_back({{a, b, c}, 1.0});
+      continue;
+    }
+    for (const auto& corners : {std::array{a, b, c}, {a, c, d}, {a, b, d}, {b, c, d}}) {
+      triangles_.push_back({corners, 0.5});
+    }
+  }
+  list_edges();
+  const Vector3 origin = placement_at_rest.row(0).transpose();
+  for (const Triangle& t : triangles_) {
+    std::array<Vector3, 3> x;
+    for (std::size_t k = 0; k < 3; ++k) {
+      x[k] = placement_at_rest.row(t.corner[k]).transpose() - origin;
+    }
+    rest_volume_ += t.weight / 6.0 * x[0].dot(x[1].cross(x[2]));
+    rest_area_ += t.weight / 2.0 * (x[1] - x[0]).cross(x[2] - x[0]).norm();
+  }
+  if (!(std::abs(rest_volume_) > kFlat * std::pow(rest_area_, 1.5))) {
+    throw Error(ErrorKind::zero_volume, {.item = "cavity '" + this->name() + "'"},
+                fmt::format("the surface encloses {:g} m^3", rest_volume_),
+                "choose a surface that encloses a volume, or push with forces");
+  }
+}
+
+void Cavity::check_closed(const Points& at_rest) const {
+  std::multiset<std::pair<int, int>> edges;
+  for (const CavityFace& face : faces_) {
+    const std::size_t corners = face.corner[3] < 0 ? 3 : 4;
+    for (std::size_t k = 0; k < corners; ++k) {
+      edges.insert({face.corner[k], face.corner[(k + 1) % corners]});
+    }
+  }
+  int open = 0;
+  std::pair<int, int> first;
+  for (const auto& edge : edges) {
+    if (edges.count({edge.second, edge.first}) == edges.count(edge)) continue;
+    if (open++ == 0) first = edge;
+  }
+  if (open == 0) return;
+  const Vector3 a = at_rest.row(first.first), b = at_rest.row(first.second);
+  throw Error(
+      ErrorKind::surface_not_closed, {.item = "cavity '" + name() + "'"},
+      fmt::format("the surface is open along {} edges, the first from ({:g}, {:g}, {:g}) to "
+                  "({:g}, {:g}, {:g}) m",
+                  open, a.x(), a.y(), a.z(), b.x(), b.y(), b.z()),
+      "choose a closed surface, or close its openings with cap: true");
+}
+
+void Cavity::list_edges() {
+  std::map<std::array<int, 2>, int> number;
+  for (const Triangle& t : triangles_) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int a = t.corner[k], b = t.corner[(k + 1) % 3], c = t.corner[(k + 2) % 3];
+      const std::array<int, 2> pair{std::min(a, b), std::max(a, b)};
+      const auto [found, is_new] = number.insert({pair, static_cast<int>(pairs_.size())});
+      if (is_new) pairs_.push_back(pair);
+      // a to b gives -[c]x/6; seen from b it is the transpose, +[c]x/6.
+      edges_.push_back({found->second, c, t.weight / 6.0 * (a < b ? -1.0 : 1.0)});
+    }
+  }
+}
+
+void Cavity::declare(mechanics::RowPattern& rows,
+                     std::vector<mechanics::RowCurvature>& curvatures) {
+  first_entry_ = rows.entries();
+  first_row_ = rows.add_row(points_);
+  row_count_ = 1;
+  first_curvature_ = static_cast<int>(curvatures.size());
+  for (const auto& [a, b] : pairs_) {
+    curvatures.push_back({first_row_, points_[static_cast<std::size_t>(a)],
+                          points_[static_cast<std::size_t>(b)], Matrix3::Zero()});
+  }
+  curvature_count_ = static_cast<int>(pairs_.size());
+}
+
+void Cavity::linearise(const Placement& placement, mechanics::RowValues& values) const {
+  const auto direction = [&](int corner) -> Vector3& {
+    return values.direction[static_cast<std::size_t>(first_entry_ + corner)];
+  };
+  const auto position = [&](int corner) {
+    return placement.position(points_[static_cast<std::size_t>(corner)]);
+  };
+  for (std::size_t k = 0; k < points_.size(); ++k) direction(static_cast<int>(k)).setZero();
+  const Vector3 origin = position(0);
+  double volume = 0.0;
+  for (const Triangle& t : triangles_) {
+    const Vector3 a = position(t.corner[0]) - origin, b = position(t.corner[1]) - origin,
+                  c = position(t.corner[2]) - origin;
+    const Vector3 across = b.cross(c);
+    const double sixth = t.weight / 6.0;
+    volume += sixth * a.dot(across);
+    direction(t.corner[0]) += sixth * across;
+    direction(t.corner[1]) += sixth * c.cross(a);
+    direction(t.corner[2]) += sixth * a.cross(b);
+  }
+  values.delta[first_row_] = volume - rest_volume_;
+}
+
+void Cavity::curve(const Placement& placement,
+                   std::span<mechanics::RowCurvature> curvatures) const {
+  for (auto& entry : curvatures) entry.curvature.setZero();
+  const Vector3 origin = placement.position(points_.front());
+  for (const Edge& edge : edges_) {
+    const Vector3 c = placement.position(points_[static_cast<std::size_t>(edge.third)]) - origin;
+    curvatures[static_cast<std::size_t>(edge.pair)].curvature += edge.weight * cross_matrix(c);
+  }
+}
+
+}  // namespace sinew::constraint

@@ -1,0 +1,316 @@
+// The tables of chambers and springs.
+#include "sinew/scene/grammar_forms.hpp"
+
+namespace sinew::scene::forms {
+
+namespace {
+
+std::shared_ptr<const KeyTable> patch_table() {
+  return make_table(
+      {.name = "surface: patch",
+       .description = "The face of the body's surface nearest to a point, and all that can be "
+                      "reached from it over edges that turn by less than an angle.",
+       .keys = {{.name = "point",
+                 .forms = {vector(length())},
+                 .example = "0 0 30 mm",
+                 .description = "A point on or near the surface, in the mesh at rest.",
+                 .required = true},
+                {.name = "angle",
+                 .forms = {quantity(angle(), positive())},
+                 .example = "40 deg",
+                 .default_text = "40 deg",
+                 .description = "The largest turn between neighbouring faces."}}});
+}
+
+std::shared_ptr<const KeyTable> surface_table() {
+  KeyTable surface{
+      .name = "surface of a chamber",
+      .description = "Where the pressure acts: exactly one of these.",
+      .keys = {{.name = "inside",
+                .forms = {vector(length())},
+                .example = "0 0 30 mm",
+                .description = "A point in a void that the body encloses: its whole wall."},
+               {.name = "patch",
+                .forms = {table(patch_table())},
+                .example = "{point: 0 0 30 mm, angle: 40 deg}",
+                .description = "Faces round a point."},
+               {.name = "file",
+                .forms = {file()},
+                .example = "chamber.stl",
+                .description =
+                    "A closed surface as STL, OBJ or PLY, which the body carries along."},
+               {.name = "unit",
+                .forms = {unit(length())},
+                .example = "mm",
+                .default_text = "m",
+                .description = "What one unit of the file's coordinates is.",
+                .only_with = "file"}},
+      .alternatives = {{{"inside", "patch", "file", "box", "sphere", "plane", "set"}, true}}};
+  for (Key& key : region_keys("Faces with all their nodes")) surface.keys.push_back(std::move(key));
+  return make_table(std::move(surface));
+}
+
+std::shared_ptr<const KeyTable> supply_table(bool gas) {
+  KeyTable supply{
+      .name = gas ? "supply of gas" : "supply of liquid",
+      .description = gas ? "A regulator holds the commanded pressure before a valve; flow by ISO "
+                           "6358."
+                         : "A pump holds the commanded pressure before a valve; flow = conductance "
+                           "times the difference of pressures.",
+      .keys = {{.name = "conductance",
+                .forms = {quantity(conductance(), positive())},
+                .example = "2e-9 m^3/(s Pa)",
+                .description = gas ? "Sonic conductance: choked flow, in volume at ambient "
+                                     "pressure, over the absolute pressure before the valve."
+                                   : "Flow over difference of pressures.",
+                .required = true},
+               {.name = "leak",
+                .forms = {quantity(conductance(), non_negative())},
+                .example = "1e-11 m^3/(s Pa)",
+                .default_text = "0 m^3/(s Pa)",
+                .description = "The same of the way out of the chamber to ambient."}}};
+  if (gas) {
+    supply.keys.push_back(
+        {.name = "critical_ratio",
+         .forms = {quantity(plain_number(), {.min = 0.0, .max = 1.0, .below_max = true})},
+         .example = "0.3",
+         .default_text = "0.5",
+         .description = "Ratio of absolute pressures below which the flow is choked."});
+  }
+  return make_table(std::move(supply));
+}
+
+Key dead_volume_key() {
+  return {.name = "dead_volume",
+          .forms = {quantity(volume(), non_negative())},
+          .example = "5 ml",
+          .default_text = "0 ml",
+          .description = "Volume of tubes and fittings that fills along with the chamber."};
+}
+
+std::shared_ptr<const KeyTable> gas_table() {
+  return make_table(
+      {.name = "gas of a chamber",
+       .description = "What the chamber holds is compressible: absolute pressure times volume to "
+                      "the exponent is constant for a given amount.",
+       .keys = {{.name = "ambient_pressure",
+                 .forms = {quantity(stress(), positive())},
+                 .example = "101.325 kPa",
+                 .default_text = "101.325 kPa",
+                 .description = "Absolute pressure outside; the chamber is filled at it at rest."},
+                {.name = "polytropic_exponent",
+                 .forms = {quantity(plain_number(), {.min = 1.0})},
+                 .example = "1.4",
+                 .default_text = "1",
+                 .description = "1: slow, at constant temperature. 1.4: fast, adiabatic air."},
+                dead_volume_key(),
+                {.name = "supply",
+                 .forms = {table(supply_table(true))},
+                 .example = "{conductance: 2e-9 m^3/(s Pa), critical_ratio: 0.3}",
+                 .description = "Without: a commanded pressure acts at once."}}});
+}
+
+std::shared_ptr<const KeyTable> liquid_table() {
+  return make_table({.name = "liquid of a chamber",
+                     .description = "What the chamber holds is nearly incompressible.",
+                     .keys = {{.name = "bulk_modulus",
+                               .forms = {quantity(stress(), positive())},
+                               .example = "2.2 GPa",
+                               .default_text = "2.2 GPa",
+                               .description = "Of the liquid; water's, when left out."},
+                              dead_volume_key(),
+                              {.name = "supply",
+                               .forms = {table(supply_table(false))},
+                               .example = "{conductance: 2e-9 m^3/(s Pa)}",
+                               .description = "Without: a commanded pressure acts at once."}}});
+}
+
+Key input(const char* name, const Measure& measure, const char* example, const char* description,
+          Range range = any()) {
+  return {.name = name,
+          .forms = {quantity(measure, range), table(signal_table(measure, example))},
+          .example = example,
+          .description = description};
+}
+
+Key coil(const char* name, const Measure& measure, const char* example, const char* description) {
+  return {.name = name,
+          .forms = {quantity(measure, positive())},
+          .example = example,
+          .description = description,
+          .required = true};
+}
+
+std::vector<Key> coil_keys() {
+  return {coil("wire_diameter", length(), "0.5 mm", "Of the wire."),
+          coil("mean_diameter", length(), "2.4 mm", "Of the coil, from wire to wire."),
+          coil("coils", plain_number(), "10", "Number of active coils.")};
+}
+
+std::shared_ptr<const KeyTable> helical_table() {
+  KeyTable helical{.name = "stiffness: coil",
+                   .description =
+                       "A helical spring: G d^4/(8 n D^3), for d and D the wire's and the mean "
+                       "diameter and n coils.",
+                   .keys = coil_keys()};
+  helical.keys.push_back(coil("shear_modulus", stress(), "79 GPa", "Of the wire."));
+  return make_table(std::move(helical));
+}
+
+Key positive_key(const char* name, const Measure& measure, const char* example,
+                 const char* default_text, const char* description) {
+  return {.name = name,
+          .forms = {quantity(measure, positive())},
+          .example = example,
+          .default_text = default_text,
+          .description = description};
+}
+
+std::shared_ptr<const KeyTable> wire_table() {
+  KeyTable wire{.name = "shape memory of a spring",
+                .description =
+                    "A helical spring whose shear modulus follows its phase, and the "
+                    "phase its temperature, with hysteresis.",
+                .keys = coil_keys()};
+  for (Key& key : std::vector<Key>{
+           positive_key("martensite_modulus", stress(), "14.1 GPa", "14.1 GPa",
+                        "Shear modulus in the cold."),
+           positive_key("austenite_modulus", stress(), "24.7 GPa", "24.7 GPa",
+                        "Shear modulus when hot."),
+           positive_key("heat_capacity", heat_capacity(), "0.1 J/K", "0.1 J/K", "Of the wire."),
+           positive_key("heat_loss", heat_loss(), "0.01 W/K", "0.01 W/K",
+                        "To the surroundings, per degree above them."),
+           positive_key("ambient", temperature(), "293.15 K", "293.15 K",
+                        "Temperature of the surroundings and at rest."),
+           positive_key("austenite_start", temperature(), "341 K", "341 K",
+                        "Where austenite begins to form on heating."),
+           positive_key("austenite_end", temperature(), "351 K", "351 K",
+                        "Where all is austenite."),
+           positive_key("martensite_start", temperature(), "325 K", "325 K",
+                        "Where martensite begins to form on cooling."),
+           positive_key("martensite_end", temperature(), "315 K", "315 K",
+                        "Where all is martensite.")}) {
+    wire.keys.push_back(std::move(key));
+  }
+  return make_table(std::move(wire));
+}
+
+}  // namespace
+
+std::shared_ptr<const KeyTable> pressure_table() {
+  KeyTable chamber{
+      .name = "actuator: type pressure",
+      .description = "A chamber: one pressure over a closed surface of a body, which it follows.",
+      .keys = {body_key(),
+               {.name = "surface",
+                .forms = {table(surface_table())},
+                .example = "{inside: 0 0 30 mm}",
+                .description = "Where the pressure acts.",
+                .required = true},
+               {.name = "cap",
+                .forms = {boolean()},
+                .example = "true",
+                .default_text = "false",
+                .description = "Closes openings of the surface by lids without stiffness, which "
+                               "pass their force to the rim. Without: an open surface is refused."},
+               {.name = "load_stiffness",
+                .forms = {boolean()},
+                .example = "false",
+                .default_text = "true",
+                .description = "Adds the stiffness of the loaded surface to every step; static "
+                               "solutions always have it."},
+               {.name = "gas",
+                .forms = {table(gas_table())},
+                .example = "{dead_volume: 5 ml}",
+                .description = "What fills it. Without gas and liquid, pressure or volume act as "
+                               "commanded."},
+               {.name = "liquid",
+                .forms = {table(liquid_table())},
+                .example = "{bulk_modulus: 2.2 GPa}",
+                .description = "What fills it."},
+               outside_key()},
+      .alternatives = {{{"gas", "liquid"}, false}}};
+  DriveWords words;
+  words.kind = "chamber";
+  words.effort = "pressure";
+  words.effort_measure = stress();
+  words.effort_rate = pressure_rate();
+  words.effort_range = any();
+  words.effort_example = "50 kPa";
+  words.effort_rate_example = "100 kPa/s";
+  words.effort_value = "20 kPa";
+  words.motion = "volume_growth";
+  words.motion_measure = volume();
+  words.motion_rate = volume_rate();
+  words.motion_example = "20 ml";
+  words.motion_rate_example = "5 ml/s";
+  words.motion_value = "2 ml";
+  words.motion_text = "Volume that the chamber gains.";
+  words.inputs = {input("gas", volume(), "5 ml",
+                        "Gas added, in volume at ambient pressure. Chambers with `gas`."),
+                  input("liquid", volume(), "5 ml", "Liquid added. Chambers with `liquid`.")};
+  words.undriven = "What it is told. Without: no pressure until told.";
+  for (Key& key : drive_keys(words)) chamber.keys.push_back(std::move(key));
+  return make_table(std::move(chamber));
+}
+
+std::shared_ptr<const KeyTable> spring_table() {
+  const auto command = make_table(
+      {.name = "command of a spring",
+       .description = "Of springs with shape memory alone: power heats the wire, or its phase is "
+                      "given.",
+       .keys = {input("power", power(), "2 W", "Electric power into the wire.", non_negative()),
+                {.name = "phase",
+                 .forms = {quantity(plain_number(), {.min = 0.0, .max = 1.0})},
+                 .example = "1",
+                 .description = "Part of the wire that is austenite, 0 to 1."}},
+       .alternatives = {{{"power", "phase"}, true}}});
+  return make_table(
+      {.name = "actuator: type spring",
+       .description = "A spring or band along a line through points of a body, without friction at "
+                      "those between its ends. Its tension follows its length.",
+       .keys = {body_key(),
+                {.name = "points",
+                 .forms = {table(point_file_table()), list({vector(length())}, 2)},
+                 .example = "[0 0 20 mm, 0 0 60 mm]",
+                 .description = "The points it runs through, in the mesh at rest.",
+                 .required = true},
+                {.name = "pull",
+                 .forms = {choice({{"world", "Does not move."}, {"body", "Moves with the body."}})},
+                 .example = "world",
+                 .default_text = "body",
+                 .description = "What the first point is fixed to."},
+                outside_key(),
+                {.name = "stiffness",
+                 .forms = {quantity(stiffness(), positive()),
+                           table(helical_table(), "wire_diameter")},
+                 .example = "200 N/m",
+                 .description = "Force over stretch."},
+                {.name = "shape_memory",
+                 .forms = {table(wire_table())},
+                 .example = "{wire_diameter: 0.5 mm, mean_diameter: 2.4 mm, coils: 10}",
+                 .description = "In place of stiffness."},
+                {.name = "free_length",
+                 .forms = {quantity(length(), non_negative())},
+                 .example = "30 mm",
+                 .description = "Length without force. Without: the length at rest."},
+                {.name = "damping",
+                 .forms = {quantity(damper(), non_negative())},
+                 .example = "0.5 N s/m",
+                 .default_text = "0 N s/m",
+                 .description = "Force over rate of stretch."},
+                {.name = "tension_only",
+                 .forms = {boolean()},
+                 .example = "true",
+                 .default_text = "false",
+                 .description = "A band that goes slack instead of pushing.",
+                 .only_with = "stiffness"},
+                {.name = "command",
+                 .forms = {table(command)},
+                 .example = "{power: 2 W}",
+                 .description = "What the wire is told.",
+                 .only_with = "shape_memory"}},
+       .alternatives = {{{"stiffness", "shape_memory"}, true}}});
+}
+
+}  // namespace sinew::scene::forms

@@ -1,0 +1,117 @@
+#include "sinew/sim/driven_law.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sinew::sim {
+
+namespace {
+
+constexpr int kMostRounds = 60;
+constexpr double kTolerance = 1e-13;  // of the effort and of what the robot's compliance allows
+
+}  // namespace
+
+DrivenLaw::DrivenLaw(int rows, int actuators)
+    : compliance_(rows, rows), coupling_(rows, actuators), delta_free_(rows) {
+  driven_.reserve(static_cast<std::size_t>(actuators));
+  ranges_.reserve(static_cast<std::size_t>(actuators));
+}
+
+void DrivenLaw::linearise(const LawProblem& problem) {
+  for (Row& row : driven_) {
+    const ActuatorRange& range = problem.actuators[static_cast<std::size_t>(row.actuator)];
+    row.at = range.drive->respond(range.drive_step, row.motion);
+  }
+}
+
+void DrivenLaw::eliminate() {
+  for (std::size_t k = 0; k < driven_.size(); ++k) {
+    Row& row = driven_[k];
+    const int d = row.row;
+    const double softer = 1.0 - row.at.slope * compliance_(d, d);
+    row.gain = row.at.slope / softer;
+    row.offset = (row.at.effort + row.at.slope * (delta_free_[d] - row.motion)) / softer;
+    auto own = coupling_.col(static_cast<Eigen::Index>(k));
+    own = compliance_.col(d);
+    delta_free_ += row.offset * own;
+    compliance_.noalias() += row.gain * own * own.transpose();
+    // Until it is put back, the row takes no effort and moves nothing.
+    compliance_.col(d).setZero();
+    compliance_.row(d).setZero();
+  }
+}
+
+// Efforts and motions of the driven rows, the last one eliminated first; the farthest that a curve
+// was left, relative.
+double DrivenLaw::close(const LawProblem& problem, std::span<double> effort) {
+  double worst = 0.0;
+  for (std::size_t k = driven_.size(); k-- > 0;) {
+    Row& row = driven_[k];
+    const auto own = coupling_.col(static_cast<Eigen::Index>(k));
+    double reach = 0.0;
+    for (Eigen::Index j = 0; j < own.size(); ++j) {
+      // Rows taken out before this one are not yet known, and had left its coupling.
+      if (j != row.row) reach += own[j] * effort[static_cast<std::size_t>(j)];
+    }
+    effort[static_cast<std::size_t>(row.row)] = row.offset + row.gain * reach;
+  }
+  for (Row& row : driven_) {
+    double motion = problem.delta_free[row.row];
+    for (Eigen::Index j = 0; j < compliance_.cols(); ++j) {
+      motion += problem.compliance(row.row, j) * effort[static_cast<std::size_t>(j)];
+    }
+    const ActuatorRange& range = problem.actuators[static_cast<std::size_t>(row.actuator)];
+    const auto there = range.drive->respond(range.drive_step, motion);
+    const double lambda = effort[static_cast<std::size_t>(row.row)];
+    const double scale = std::max(std::abs(lambda), std::abs(there.effort)) +
+                         std::abs(there.slope * motion) + 1e-300;
+    worst = std::max(worst, std::abs(lambda - there.effort) / scale);
+    row.motion = motion;
+  }
+  return worst;
+}
+
+LawStatus DrivenLaw::solve(const LawProblem& problem, std::span<double> effort) {
+  driven_.clear();
+  ranges_.assign(problem.actuators.begin(), problem.actuators.end());
+  for (std::size_t i = 0; i < ranges_.size(); ++i) {
+    ActuatorRange& range = ranges_[i];
+    if (range.drive == nullptr) continue;
+    driven_.push_back({static_cast<int>(i), range.row, problem.delta[range.row], {}, 0.0, 0.0});
+    range.kind = CommandKind::effort;
+    range.value = range.effort_min = range.effort_max = 0.0;
+    range.motion_min = -INFINITY;
+    range.motion_max = INFINITY;
+  }
+  LawStatus status = LawStatus::solved;
+  for (int round = 0; round < kMostRounds; ++round) {
+    linearise(problem);
+    compliance_ = problem.compliance;
+    delta_free_ = problem.delta_free;
+    eliminate();
+    for (const Row& row : driven_) effort[static_cast<std::size_t>(row.row)] = 0.0;
+    const LawProblem rest{problem.model, problem.placement, ranges_,      compliance_,
+                          delta_free_,   problem.delta,     problem.time, problem.time_step};
+    status = law_->solve(rest, effort);
+    if (status == LawStatus::failed) return status;
+    if (close(problem, effort) <= kTolerance) return status;
+  }
+  return status;
+}
+
+double DrivenLaw::violation(const LawProblem& problem, std::span<const double> effort) const {
+  double worst = law_->violation(problem, effort);
+  for (std::size_t i = 0; i < problem.actuators.size(); ++i) {
+    const ActuatorRange& range = problem.actuators[i];
+    if (range.drive == nullptr) continue;
+    const auto at = range.drive->respond(range.drive_step, problem.delta[range.row]);
+    const double off = effort[static_cast<std::size_t>(range.row)] - at.effort;
+    // In motion: along the curve, or along the robot's own compliance where the curve is flat.
+    const double steepness = std::max(-at.slope, 1.0 / problem.compliance(range.row, range.row));
+    worst = std::max(worst, range.motion_scale * std::abs(off) / steepness);
+  }
+  return worst;
+}
+
+}  // namespace sinew::sim

@@ -1,0 +1,52 @@
+/// @file
+/// Rows whose effort follows a drive, taken out of the step's problem before a law sees it.
+#pragma once
+
+#include <vector>
+
+#include "sinew/sim/law.hpp"
+
+namespace sinew::sim {
+
+/// With a driven row's curve linearised, lambda_d = e + s (delta_d - m), s <= 0, the row is
+/// eliminated from delta = delta_free + W lambda: the other rows see
+///   W_ij + g W_id W_dj and delta_free_i + W_id h,
+///   g = s/(1 - s W_dd), h = (e + s (delta_free_d - m))/(1 - s W_dd),
+/// and the law solves for their efforts; then the curve is linearised anew where the row came out
+/// (Newton on a falling curve), until it stays there. W keeps its symmetry, and any law, direct or
+/// inverse, works unchanged.
+class DrivenLaw : public Law {
+ public:
+  /// @param rows of H. @param actuators of the model.
+  DrivenLaw(int rows, int actuators);
+
+  /// The law that chooses all other efforts.
+  DrivenLaw& around(Law& law) {
+    law_ = &law;
+    return *this;
+  }
+  LawStatus solve(const LawProblem& problem, std::span<double> effort) override;
+  double violation(const LawProblem& problem, std::span<const double> effort) const override;
+  void reset() override {}
+
+ private:
+  void linearise(const LawProblem& problem);
+  void eliminate();
+  double close(const LawProblem& problem, std::span<double> effort);
+
+  struct Row {
+    int actuator = 0, row = 0;
+    double motion = 0.0;  // where the curve is linearised
+    Drive::Response at;
+    double gain = 0.0, offset = 0.0;  // g, h
+  };
+
+  Law* law_ = nullptr;
+  std::vector<Row> driven_;
+  std::vector<ActuatorRange> ranges_;
+  MatrixX compliance_,
+      coupling_;  // what the law sees; W_d of each driven row when it was taken out
+  VectorX delta_free_;
+};
+
+}  // namespace sinew::sim

@@ -1,0 +1,95 @@
+/// @file
+/// Springs along cables: a linear one, and one of shape-memory wire.
+#pragma once
+
+#include "sinew/sim/drive.hpp"
+
+namespace sinew::sim {
+
+/// Stiffness (N/m) of a close-coiled helical spring, G d^4 / (8 n D^3) (Wahl, Mechanical Springs,
+/// 2nd ed., 1963, eq. 5-7): twist of the wire alone.
+/// @param shear_modulus Pa. @param wire,mean_diameter m. @param coils active ones.
+double coil_stiffness(double shear_modulus, double wire, double mean_diameter, double coils);
+
+/// Tension T = k (L - L_free) + c dL/dt.
+struct SpringSettings {
+  double stiffness = 0.0;     ///< k, N/m, > 0
+  double free_length = 0.0;   ///< m, >= 0
+  double damping = 0.0;       ///< c, N s/m, >= 0
+  bool tension_only = false;  ///< a band that goes slack instead of pushing
+};
+
+/// Effort: tension (N), negative when it pushes. Motion: L_rest - L (m). No input.
+class SpringDrive : public Drive {
+ public:
+  /// @param settings see there. @param rest_length of the row's cable, m.
+  /// Throws Error(out-of-range).
+  SpringDrive(const SpringSettings& settings, double rest_length);
+
+  int state_size() const override { return 0; }
+  void rest(std::span<double>) const override {}
+  QuantityName input() const override { return {}; }
+  bool acts_on(CommandKind) const override { return true; }
+  bool controllable() const override { return false; }
+  Response respond(const Step& step, double motion) const override;
+  void advance(const Step&, double, double, std::span<double>) const override {}
+
+ private:
+  SpringSettings settings_;
+  double rest_length_;
+};
+
+/// A helical spring of shape-memory wire. Its stiffness follows the shear modulus
+///   G = G_M + x (G_A - G_M),
+/// x the part that is austenite, from the temperature by the cosine law of Liang & Rogers (J.
+/// Intell. Mater. Syst. Struct. 1, 1990), without the stress's shift of the temperatures:
+///   heating x = (1 - cos(pi (T - A_s)/(A_f - A_s)))/2, cooling x = (1 - cos(pi (T - M_f)/(M_s -
+///   M_f)))/2,
+/// never falling while it heats nor rising while it cools. Temperature: C dT/dt = P - H (T - T_a)
+/// with P the electric power, by backward Euler. Tension T = k (L - L_free) with one L_free for
+/// both phases: what the wire forgets in the cold (its remaining twist) is not modelled.
+struct SmaSettings {
+  double wire = 0.0005, mean_diameter = 0.0024;             ///< m
+  double coils = 10.0;                                      ///< active ones
+  double martensite_modulus = 14.1e9;                       ///< G_M, Pa
+  double austenite_modulus = 24.7e9;                        ///< G_A, Pa
+  double free_length = 0.0;                                 ///< m
+  double damping = 0.0;                                     ///< N s/m
+  double heat_capacity = 0.1;                               ///< C, J/K
+  double heat_loss = 0.01;                                  ///< H, W/K
+  double ambient = 293.15;                                  ///< T_a, K
+  double austenite_start = 341.0, austenite_end = 351.0;    ///< A_s, A_f, K
+  double martensite_start = 325.0, martensite_end = 315.0;  ///< M_s, M_f, K
+  bool by_phase = false;  ///< the input is x itself, else the power
+};
+
+/// Effort and motion as SpringDrive. Input: electric power (W) or phase (0 to 1). State:
+/// temperature (K) and x.
+class SmaDrive : public Drive {
+ public:
+  /// @param settings see there. @param rest_length of the row's cable, m.
+  /// Throws Error(out-of-range).
+  SmaDrive(const SmaSettings& settings, double rest_length);
+
+  int state_size() const override { return 2; }
+  void rest(std::span<double> state) const override;
+  QuantityName input() const override {
+    return settings_.by_phase ? QuantityName{"phase", ""} : QuantityName{"power", "W"};
+  }
+  bool acts_on(CommandKind) const override { return true; }
+  bool controllable() const override { return false; }
+  Response respond(const Step& step, double motion) const override;
+  void advance(const Step& step, double motion, double effort,
+               std::span<double> state) const override;
+
+ private:
+  struct Wire {
+    double temperature, phase;
+  };
+  Wire wire_after(const Step& step) const;
+
+  SmaSettings settings_;
+  double rest_length_;
+};
+
+}  // namespace sinew::sim

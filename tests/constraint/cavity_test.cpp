@@ -1,0 +1,179 @@
+#include "sinew/constraint/cavity.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "sinew/core/error.hpp"
+
+#include "../sim/chambers.hpp"
+
+namespace sinew::constraint {
+namespace {
+
+using sinew::testing::chamber;
+using sinew::testing::kVoid;
+
+/// A chamber whose nodes are moved by hand.
+class CavityTest : public ::testing::TestWithParam<mesh::Cells> {
+ protected:
+  CavityTest() : simulation_(chamber({.cells = GetParam()})) {}
+
+  const Cavity& cavity() { return *simulation_.model().cavity(0); }
+  mechanics::RowValues rows() {
+    mechanics::RowValues values;
+    values.resize(simulation_.model().rows());
+    cavity().linearise(simulation_.world().placement(), values);
+    return values;
+  }
+  /// Moves every node by a smooth field of this size (m).
+  void distort(double size) {
+    std::vector<double> state(simulation_.state_size());
+    simulation_.save_state(state);
+    const Points& x = simulation_.fem_body(0).positions();
+    for (Eigen::Index i = 0; i < x.rows(); ++i) {
+      state[static_cast<std::size_t>(3 * i)] += size * std::sin(100.0 * x(i, 1) + 40.0 * x(i, 2));
+      state[static_cast<std::size_t>(3 * i + 1)] += size * std::cos(130.0 * x(i, 0));
+      state[static_cast<std::size_t>(3 * i + 2)] += size * std::sin(90.0 * x(i, 0) - x(i, 1));
+    }
+    simulation_.load_state(state, 0);
+  }
+  void move(const mechanics::MaterialPoint& point, int axis, double by) {
+    std::vector<double> state(simulation_.state_size());
+    simulation_.save_state(state);
+    const auto& model =
+        dynamic_cast<const fem::FemBodyModel&>(*simulation_.model().bodies().front());
+    const NodeId node = model.attachment(point.point).nodes.front();
+    state[static_cast<std::size_t>(3 * node + axis)] += by;
+    simulation_.load_state(state, 0);
+  }
+
+  sim::Simulation simulation_;
+};
+
+TEST_P(CavityTest, VolumeOfACubeIsExact) {
+  EXPECT_NEAR(cavity().rest_volume(), kVoid, 1e-18);
+  EXPECT_NEAR(cavity().rest_area(), 6e-4, 1e-15);
+  EXPECT_DOUBLE_EQ(rows().delta[0], 0.0);
+}
+
+TEST_P(CavityTest, PressurePutsNoForceAndNoMomentOnTheWhole) {
+  distort(1e-3);
+  const auto values = rows();
+  Vector3 force = Vector3::Zero(), moment = Vector3::Zero();
+  double size = 0.0;
+  for (std::size_t k = 0; k < cavity().material_points().size(); ++k) {
+    const Vector3 x = simulation_.world().placement().position(cavity().material_points()[k]);
+    force += values.direction[k];
+    moment += x.cross(values.direction[k]);
+    size += values.direction[k].norm();
+  }
+  EXPECT_GT(size, 1e-4);
+  EXPECT_LT(force.norm(), 1e-14 * size);
+  EXPECT_LT(moment.norm(), 1e-16 * size);
+}
+
+TEST_P(CavityTest, DirectionsAreTheDerivativeOfTheVolume) {
+  distort(1e-3);
+  const auto exact = rows();
+  constexpr double kStep = 1e-5;
+  for (std::size_t k = 0; k < cavity().material_points().size(); ++k) {
+    for (int axis = 0; axis < 3; ++axis) {
+      move(cavity().material_points()[k], axis, kStep);
+      const double up = rows().delta[0];
+      move(cavity().material_points()[k], axis, -2.0 * kStep);
+      const double down = rows().delta[0];
+      move(cavity().material_points()[k], axis, kStep);
+      // V is linear in each coordinate: central differences are exact but for rounding.
+      EXPECT_NEAR(exact.direction[k][axis], (up - down) / (2.0 * kStep), 1e-12) << k;
+    }
+  }
+}
+
+TEST_P(CavityTest, CurvatureIsTheDerivativeOfTheDirections) {
+  distort(1e-3);
+  auto pairs = simulation_.model().curvatures();
+  cavity().curve(simulation_.world().placement(), pairs);
+  const auto& points = cavity().material_points();
+  const auto index = [&](const mechanics::MaterialPoint& wanted) {
+    std::size_t k = 0;
+    while (points[k].point != wanted.point) ++k;
+    return k;
+  };
+  ASSERT_EQ(static_cast<int>(pairs.size()), cavity().curvature_count());
+  constexpr double kStep = 1e-5;
+  double largest = 0.0;
+  for (const auto& pair : pairs) {
+    const std::size_t first = index(pair.first);
+    for (int axis = 0; axis < 3; ++axis) {
+      move(pair.second, axis, kStep);
+      const Vector3 up = rows().direction[first];
+      move(pair.second, axis, -2.0 * kStep);
+      const Vector3 down = rows().direction[first];
+      move(pair.second, axis, kStep);
+      const Vector3 column = (up - down) / (2.0 * kStep);
+      EXPECT_LT((pair.curvature.col(axis) - column).norm(), 1e-10);
+      largest = std::max(largest, column.norm());
+    }
+  }
+  EXPECT_GT(largest, 1e-3);
+}
+
+TEST_P(CavityTest, LoadStiffnessOfAClosedSurfaceNeedsNoWiderPattern) {
+  EXPECT_FALSE(simulation_.model().stiffening_widens());
+  EXPECT_EQ(simulation_.model().stiffening_constraints().size(), 1U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cells, CavityTest,
+                         ::testing::Values(mesh::Cells::tetrahedra, mesh::Cells::hexahedra));
+
+ErrorKind kind_of(const auto& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    EXPECT_FALSE(error.remedy().empty());
+    return error.kind();
+  }
+  return ErrorKind::internal;
+}
+
+TEST(Cavity, OpenSurfacesAreRefusedOrCapped) {
+  EXPECT_EQ(kind_of([] { chamber({.bore = true}); }), ErrorKind::surface_not_closed);
+  const auto capped = chamber({.bore = true, .cap = true});
+  EXPECT_NEAR(capped->cavity(0)->rest_volume(), 2.0 * kVoid, 1e-17);
+}
+
+TEST(Cavity, ACapPassesItsForceToTheRim) {
+  sim::Simulation simulation(chamber({.bore = true, .cap = true}));
+  mechanics::RowValues values;
+  values.resize(simulation.model().rows());
+  simulation.model().cavity(0)->linearise(simulation.world().placement(), values);
+  Vector3 force = Vector3::Zero();
+  double size = 0.0;
+  for (const Vector3& direction : values.direction) {  // the effector's are not formed
+    force += direction;
+    size += direction.norm();
+  }
+  EXPECT_GT(size, 1e-4);
+  EXPECT_LT(force.norm(), 1e-14 * size);
+}
+
+TEST(Cavity, PointsThatEncloseNothingAreRefused) {
+  const mesh::Mesh mesh = sinew::testing::hollow_block(mesh::Cells::hexahedra);
+  EXPECT_EQ(mesh::enclosing_surface(mesh, {0.015, 0.015, 0.015}, "x").size(), 6U);
+  for (const Vector3& at : {Vector3(0.005, 0.005, 0.005), Vector3(0.015, 0.015, 0.05)}) {
+    EXPECT_EQ(kind_of([&] { mesh::enclosing_surface(mesh, at, "x"); }), ErrorKind::empty_region);
+  }
+}
+
+TEST(Cavity, APatchGrowsOverBluntEdgesAlone) {
+  const mesh::Mesh mesh =
+      mesh::block({.size = {0.03, 0.03, 0.03}, .cells = {3, 3, 3}}, mesh::Cells::hexahedra);
+  EXPECT_EQ(mesh::grow_patch(mesh, {0.015, 0.015, 0.03}, 0.5, "x").size(), 9U);
+  EXPECT_EQ(mesh::grow_patch(mesh, {0.015, 0.015, 0.03}, 1.6, "x").size(), 54U);
+  EXPECT_EQ(kind_of([&] { mesh::grow_patch(mesh, Vector3::Zero(), 0.0, "x"); }),
+            ErrorKind::out_of_range);
+}
+
+}  // namespace
+}  // namespace sinew::constraint

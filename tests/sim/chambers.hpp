@@ -1,0 +1,85 @@
+// A block with a void inside, for tests of pressure.
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "sinew/mesh/patch.hpp"
+#include "sinew/mesh/shapes.hpp"
+#include "sinew/mesh/topology.hpp"
+#include "sinew/sim/model_builder.hpp"
+#include "sinew/sim/simulation.hpp"
+
+namespace sinew::testing {
+
+/// A cube of 30 mm of 3 x 3 x 3 cells without the middle one: a void of 10 mm; with `bore`, without
+/// the one above it too, so that the void is open at the top.
+inline mesh::Mesh hollow_block(mesh::Cells cells, bool bore = false) {
+  const auto is_void = [&](const mesh::Mesh& mesh, const auto& element) {
+    Vector3 middle = Vector3::Zero();
+    for (const NodeId node : element) middle += mesh.nodes.row(node).transpose();
+    middle /= static_cast<double>(element.size());
+    const bool within = middle.x() > 0.01 && middle.x() < 0.02 && middle.y() > 0.01 &&
+                        middle.y() < 0.02 && middle.z() > 0.01;
+    return within && (bore || middle.z() < 0.02);
+  };
+  mesh::Mesh mesh = mesh::block({.size = {0.03, 0.03, 0.03}, .cells = {3, 3, 3}}, cells);
+  std::erase_if(mesh.hexahedra, [&](const auto& h) { return is_void(mesh, h); });
+  std::erase_if(mesh.tetrahedra, [&](const auto& t) { return is_void(mesh, t); });
+  return mesh;
+}
+
+inline constexpr double kVoid = 1e-6;  // m^3
+
+struct ChamberOptions {
+  sim::StepSettings step;
+  mesh::Cells cells = mesh::Cells::hexahedra;
+  bool bore = false;
+  bool cap = false;
+  bool load_stiffness = true;
+  double density = 1000.0;
+  std::optional<sim::GasSettings> gas;
+  std::optional<sim::LiquidSettings> liquid;
+  fem::RayleighDamping damping;
+};
+
+/// The hollow block of neo-Hookean silicone, clamped at its bottom, with its void as `chamber` and
+/// the middle of its top as effector.
+inline std::shared_ptr<const sim::Model> chamber(const ChamberOptions& options = {}) {
+  sim::ModelBuilder builder(options.step);
+  fem::FemBodySettings body;
+  body.name = "block";
+  const auto mesh = std::make_shared<const mesh::Mesh>(hollow_block(options.cells, options.bore));
+  body.mesh = mesh;
+  body.damping = options.damping;
+  fem::Region region;
+  region.hyperelastic = material::neo_hookean(30e3);
+  region.hyperelastic->bulk_modulus = material::bulk_modulus_of(30e3, 0.45);
+  region.density = options.density;
+  body.elements.regions = {region};
+  body.elements.fixed_nodes = mesh->node_sets.at("z_min");
+  const int number = builder.add_fem_body(std::move(body));
+  sim::CavitySettings cavity;
+  cavity.name = "chamber";
+  cavity.body = number;
+  const Vector3 inside(0.015, 0.015, 0.015);
+  cavity.surface =
+      options.bore ? mesh::select_faces(
+                         *mesh, mesh::BoxRegion{{0.01, 0.01, 0.01}, {0.02, 0.02, 0.03}}, "chamber")
+                   : mesh::enclosing_surface(*mesh, inside, "chamber");
+  cavity.cap = options.cap;
+  cavity.load_stiffness = options.load_stiffness;
+  cavity.gas = options.gas;
+  cavity.liquid = options.liquid;
+  builder.add_cavity(cavity);
+  sim::EffectorSettings top;
+  top.name = "top";
+  top.body = number;
+  top.points.resize(1, 3);
+  top.points << 0.005, 0.005, 0.03;
+  builder.add_effector(top);
+  return builder.build({});
+}
+
+}  // namespace sinew::testing
