@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Eigenvalues>
+
 namespace sinew::sim {
 
 namespace {
@@ -12,6 +14,34 @@ constexpr double kTolerance = 1e-13;  // of the effort and of what the robot's c
 
 }  // namespace
 
+bool DrivenLaw::takes(const ActuatorRange& range) {
+  if (range.drive != nullptr) return true;
+  return !range.owned && range.kind == CommandKind::motion && std::isinf(range.effort_min) &&
+         std::isinf(range.effort_max);
+}
+
+bool DrivenLaw::stabilised(const LawProblem& problem, int negative_pivots) {
+  std::vector<const ActuatorRange*> taken;
+  for (const ActuatorRange& range : problem.actuators) {
+    if (takes(range)) taken.push_back(&range);
+  }
+  const auto count = static_cast<Eigen::Index>(taken.size());
+  if (count < negative_pivots) return false;
+  MatrixX own(count, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const ActuatorRange& range = *taken[static_cast<std::size_t>(i)];
+    for (Eigen::Index j = 0; j < count; ++j) {
+      own(i, j) = problem.compliance(range.row, taken[static_cast<std::size_t>(j)]->row);
+    }
+    if (range.drive == nullptr) continue;
+    const auto at = range.drive->respond(range.drive_step, problem.delta[range.row]);
+    if (!(at.slope < 0.0)) return false;  // a flat curve holds nothing
+    own(i, i) -= 1.0 / at.slope;
+  }
+  const VectorX values = own.selfadjointView<Eigen::Lower>().eigenvalues();
+  return (values.array() < 0.0).count() == negative_pivots;
+}
+
 DrivenLaw::DrivenLaw(int rows, int actuators)
     : compliance_(rows, rows), coupling_(rows, actuators), delta_free_(rows) {
   driven_.reserve(static_cast<std::size_t>(actuators));
@@ -20,6 +50,7 @@ DrivenLaw::DrivenLaw(int rows, int actuators)
 
 void DrivenLaw::linearise(const LawProblem& problem) {
   for (Row& row : driven_) {
+    if (row.held) continue;
     const ActuatorRange& range = problem.actuators[static_cast<std::size_t>(row.actuator)];
     row.at = range.drive->respond(range.drive_step, row.motion);
   }
@@ -29,9 +60,14 @@ void DrivenLaw::eliminate() {
   for (std::size_t k = 0; k < driven_.size(); ++k) {
     Row& row = driven_[k];
     const int d = row.row;
-    const double softer = 1.0 - row.at.slope * compliance_(d, d);
-    row.gain = row.at.slope / softer;
-    row.offset = (row.at.effort + row.at.slope * (delta_free_[d] - row.motion)) / softer;
+    if (row.held) {
+      row.gain = -1.0 / compliance_(d, d);
+      row.offset = row.gain * (delta_free_[d] - row.motion);
+    } else {
+      const double softer = 1.0 - row.at.slope * compliance_(d, d);
+      row.gain = row.at.slope / softer;
+      row.offset = (row.at.effort + row.at.slope * (delta_free_[d] - row.motion)) / softer;
+    }
     auto own = coupling_.col(static_cast<Eigen::Index>(k));
     own = compliance_.col(d);
     delta_free_ += row.offset * own;
@@ -57,6 +93,7 @@ double DrivenLaw::close(const LawProblem& problem, std::span<double> effort) {
     effort[static_cast<std::size_t>(row.row)] = row.offset + row.gain * reach;
   }
   for (Row& row : driven_) {
+    if (row.held) continue;
     double motion = problem.delta_free[row.row];
     for (Eigen::Index j = 0; j < compliance_.cols(); ++j) {
       motion += problem.compliance(row.row, j) * effort[static_cast<std::size_t>(j)];
@@ -77,8 +114,10 @@ LawStatus DrivenLaw::solve(const LawProblem& problem, std::span<double> effort) 
   ranges_.assign(problem.actuators.begin(), problem.actuators.end());
   for (std::size_t i = 0; i < ranges_.size(); ++i) {
     ActuatorRange& range = ranges_[i];
-    if (range.drive == nullptr) continue;
-    driven_.push_back({static_cast<int>(i), range.row, problem.delta[range.row], {}, 0.0, 0.0});
+    if (!takes(range) || !(problem.compliance(range.row, range.row) != 0.0)) continue;
+    const bool held = range.drive == nullptr;
+    const double motion = held ? range.value : problem.delta[range.row];
+    driven_.push_back({static_cast<int>(i), range.row, held, motion, {}, 0.0, 0.0});
     range.kind = CommandKind::effort;
     range.value = range.effort_min = range.effort_max = 0.0;
     range.motion_min = -INFINITY;

@@ -1,5 +1,7 @@
 #include "sinew/sim/newton.hpp"
 
+#include "sinew/sim/driven_law.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -56,8 +58,12 @@ class NewtonSolver {
   bool condense() {
     auto status = world_.condense();
     ++report_.factorisations;
-    if (status != linalg::FactorStatus::positive_definite &&
-        settings_.request.tangent == mechanics::Tangent::exact) {
+    int negative = 0;
+    for (const auto& body : world_.bodies()) negative += body->negative_pivots();
+    const bool stable = status == linalg::FactorStatus::positive_definite ||
+                        (status == linalg::FactorStatus::indefinite &&
+                         DrivenLaw::stabilised(problem_, negative));
+    if (!stable && settings_.request.tangent == mechanics::Tangent::exact) {
       clock_.mark(Stage::factorisation);
       linearise(mechanics::Tangent::real_time);
       status = world_.condense();

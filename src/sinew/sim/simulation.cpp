@@ -58,8 +58,7 @@ std::span<const double> Simulation::drive_state(int actuator) const {
 }
 
 Law& Simulation::with_drives(Law& law) {
-  const bool any = std::ranges::any_of(ranges_, [](const auto& r) { return r.drive != nullptr; });
-  return any ? static_cast<Law&>(driven_.around(law)) : law;
+  return std::ranges::any_of(ranges_, DrivenLaw::takes) ? static_cast<Law&>(driven_.around(law)) : law;
 }
 
 // After finish_step(): where each drive stands, whoever chose its effort.
