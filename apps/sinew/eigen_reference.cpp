@@ -47,8 +47,8 @@ SparseMatrix step_matrix(const sim::Simulation& simulation, int index) {
   ThreadPool pool(1);
   fem::Assembly assembly(elements, pool);
   assembly.evaluate(body.positions(),
-                    {fem::Tangent::rotated, 1.0 + weights.damping * damping.stiffness,
-                     weights.mass + weights.damping * damping.mass});
+                    {fem::Tangent::rotated, 1.0 + weights.velocity.motion * damping.stiffness,
+                     weights.acceleration.motion + weights.velocity.motion * damping.mass});
   return expand(elements->pattern(), std::as_const(assembly).matrix());
 }
 

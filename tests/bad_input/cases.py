@@ -162,7 +162,7 @@ SCENES = [
     scene("misspelt-choice", "unknown-choice", "scene.yaml:14:11", ["cabel", "cable"], ("type: cable", "type: cabel")),
     scene("later-key", "not-in-this-version", "scene.yaml:21:1", ["contacts"], ("controllers:", "contacts: {}\ncontrollers:")),
     scene("later-type", "not-in-this-version", "scene.yaml:7:11", ["rod"], ("type: fem", "type: rod")),
-    scene("later-integrator", "not-in-this-version", "scene.yaml:3:13", ["bdf2"], ("time_step:", "integrator: bdf2\ntime_step:")),
+    scene("spectral-radius", "out-of-range", "scene.yaml:3:", ["spectral_radius"], ("time_step:", "integrator: {type: generalized-alpha, spectral_radius: 1.5}\ntime_step:")),
     scene("unknown-body", "unknown-name", "scene.yaml:15:11", ["beem", "beam"], ("    body: beam\n    points", "    body: beem\n    points")),
     scene("unknown-effector", "unknown-name", "scene.yaml:25:7", ["tpi", "tip"], ("      tip: {target", "      tpi: {target")),
     scene("mass-and-density", "conflicting-keys", "scene.yaml:10:5", ["density"], ("    density: 1070 kg/m^3", "    density: 1070 kg/m^3\n    mass: 40 g")),

@@ -55,7 +55,7 @@ INVALID = {
     "gravty": [0],
     "time_step": ["10 mm", "soon", 0, [1], {"ms": 10}],
     "gravity": ["0 0 m/s^2", [0, 0], "0 0 0 mm"],
-    "integrator": ["bdf2", "quasistatic", {"type": "generalized-alpha"}],
+    "integrator": ["bdf3", "quasistatic", {"type": "generalized-alpha", "spectral_radius": 2}],
     "solver": ["fast", {"threads": 0}, {"threads": 1.5}],
     "contacts": [{}],
     "bodies": [{}, []],

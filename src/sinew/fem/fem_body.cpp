@@ -34,12 +34,13 @@ struct FemBody::Numbers {
   bool damped = false;
 };
 
-FemBody::FemBody(const FemBodyModel& model, ThreadPool& pool, bool with_curvature)
+FemBody::FemBody(const FemBodyModel& model, ThreadPool& pool, bool with_curvature, int histories)
     : model_(model),
       pool_(pool),
       positions_(model.mesh().nodes),
       velocities_(Points::Zero(positions_.rows(), 3)),
       external_forces_(velocities_),
+      history_(static_cast<std::size_t>(histories), velocities_),
       start_positions_(positions_),
       active_(&numbers(with_curvature)) {
   const auto nodes = model.elements().free_nodes();
@@ -87,8 +88,8 @@ void FemBody::linearise(const mechanics::LinearisationRequest& request) {
   active_ = &numbers(request.with_curvature);
   const auto& weights = request.weights;
   const auto& damping = model_.settings().damping;
-  const double mass = weights.mass + damping.mass * weights.damping;
-  const double rate = damping.stiffness * weights.damping;
+  const double mass = weights.acceleration.motion + damping.mass * weights.velocity.motion;
+  const double rate = damping.stiffness * weights.velocity.motion;
   const bool exact = request.tangent == mechanics::Tangent::exact;
   // C = alpha M + beta K with the rotated K at the start of the step: positive semi-definite, so
   // that damping damps, and constant, so that Newton's derivative is exact.
@@ -104,12 +105,13 @@ void FemBody::linearise(const mechanics::LinearisationRequest& request) {
     const auto matrix = active_->assembly.matrix();
     for (std::size_t i = 0; i < matrix.size(); ++i) matrix[i] += rate * active_->start_stiffness[i];
   }
-  if (tether_) stiffen_by_tether();
   form_right_side(request);
+  if (tether_) stiffen_by_tether();
   first_linearisation_ = false;
 }
 
-// b = p - f - M (mass d - momentum v_start) - damping C d, with d the motion since the step began.
+// b = p - f - M a - C v, a and v combinations of the motion since the step began and of what was
+// before it (mechanics::StepWeights).
 void FemBody::form_right_side(const mechanics::LinearisationRequest& request) {
   const auto nodes = model_.elements().free_nodes();
   const auto forces = active_->assembly.forces();
@@ -128,27 +130,52 @@ void FemBody::form_right_side(const mechanics::LinearisationRequest& request) {
   if (imbalance_share_ != 0.0) right_ -= imbalance_share_ * imbalance_;
   const auto& weights = request.weights;
   if (!weights.dynamic()) return hold_right_side();
-  travel_.resize(right_.size());
-  momentum_.resize(right_.size());
+  add_inertia(weights);
+  hold_right_side();
+}
 
-  const auto& damping = model_.settings().damping;
-  const double mass = weights.mass + damping.mass * weights.damping;
+void FemBody::combine(const mechanics::Combination& weights, VectorX& result) const {
+  const auto nodes = model_.elements().free_nodes();
+  result.resize(3 * static_cast<Eigen::Index>(nodes.size()));
+  const bool kept = !history_.empty() && (weights.first != 0.0 || weights.second != 0.0);
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const auto k = 3 * static_cast<Eigen::Index>(i);
-    travel_.segment<3>(k) = (positions_.row(nodes[i]) - start_positions_.row(nodes[i])).transpose();
-    momentum_.segment<3>(k) =
-        weights.momentum * velocities_.row(nodes[i]).transpose() - mass * travel_.segment<3>(k);
+    result.segment<3>(k) =
+        weights.velocity * velocities_.row(nodes[i]).transpose() +
+        weights.motion * (positions_.row(nodes[i]) - start_positions_.row(nodes[i])).transpose();
+    if (!kept) continue;
+    result.segment<3>(k) += weights.first * history_[0].row(nodes[i]).transpose() +
+                            weights.second * history_[1].row(nodes[i]).transpose();
   }
+}
+
+void FemBody::add_inertia(const mechanics::StepWeights& weights) {
+  const auto& damping = model_.settings().damping;
+  const auto sum = [&](double a, double v) { return -(a + damping.mass * v); };
+  const mechanics::Combination &a = weights.acceleration, &v = weights.velocity;
+  combine({sum(a.motion, v.motion), sum(a.velocity, v.velocity), sum(a.first, v.first),
+           sum(a.second, v.second)},
+          momentum_);
   active_->system.elements->apply_mass(span_of(momentum_), span_of(scratch_));
   right_ += scratch_;
   force_scale_ += scratch_.norm();
-  const double rate = damping.stiffness * weights.damping;
-  if (rate > 0.0 && !first_linearisation_ && active_->damped) {
+  if (!(damping.stiffness > 0.0)) return;
+  if (active_->damped) {
+    combine(v, travel_);
     linalg::multiply(active_->system.elements->pattern(), active_->start_stiffness,
                      span_of(travel_), span_of(scratch_));
-    right_ -= rate * scratch_;
+    right_ -= damping.stiffness * scratch_;
+    return;
   }
-  hold_right_side();
+  // One linearisation, at the start: the matrix is (1 + rate) K + mass M and no motion is yet made.
+  if (v.velocity == 0.0 && v.first == 0.0 && v.second == 0.0) return;
+  combine(v, travel_);
+  const double mass = a.motion + damping.mass * v.motion;
+  const double rate = damping.stiffness * v.motion;
+  linalg::multiply(active_->system.elements->pattern(), active_->assembly.matrix(),
+                   span_of(travel_), span_of(scratch_));
+  active_->system.elements->apply_mass(span_of(travel_), span_of(momentum_));
+  right_ -= damping.stiffness / (1.0 + rate) * (scratch_ - mass * momentum_);
 }
 
 void FemBody::hold_right_side() {
@@ -290,25 +317,60 @@ mechanics::MotionReport FemBody::apply_motion(double scale) {
   return report;
 }
 
-void FemBody::end_step(const mechanics::StepWeights& weights) {
-  velocities_ = weights.rate * (positions_ - start_positions_);
+double FemBody::end_step(const mechanics::StepWeights& weights) {
+  using Jump = mechanics::StepWeights::Jump;
+  double worst = 0.0;
+  const bool kept = !history_.empty();
+  for (Eigen::Index i = 0; i < positions_.rows(); ++i) {
+    const Vector3 d = (positions_.row(i) - start_positions_.row(i)).transpose();
+    const Vector3 before = velocities_.row(i).transpose();
+    const Vector3 h0 = kept ? Vector3(history_[0].row(i).transpose()) : Vector3::Zero();
+    const Vector3 h1 = kept ? Vector3(history_[1].row(i).transpose()) : Vector3::Zero();
+    const auto sum = [&](const mechanics::Combination& c) -> Vector3 {
+      return c.motion * d + c.velocity * before + c.first * h0 + c.second * h1;
+    };
+    const Vector3 velocity = sum(weights.velocity);
+    velocities_.row(i) = velocity.transpose();
+    if (kept) {
+      history_[0].row(i) = sum(weights.first).transpose();
+      history_[1].row(i) = sum(weights.second).transpose();
+    }
+    Vector3 jump = Vector3::Zero();
+    if (weights.error_of == Jump::velocity) jump = velocity - before;
+    if (weights.error_of == Jump::first) jump = sum(weights.first) - h0;
+    if (weights.error_of == Jump::acceleration) {
+      jump = sum(weights.acceleration) - (before - h1) / weights.step_before;
+    }
+    worst = std::max(worst, jump.squaredNorm());
+  }
+  return weights.error_jump * std::sqrt(worst);
 }
 
 void FemBody::restart() {
   positions_ = model_.mesh().nodes;
   velocities_.setZero();
+  for (Points& kept : history_) kept.setZero();
 }
 
-std::size_t FemBody::state_size() const { return 2 * static_cast<std::size_t>(positions_.size()); }
+std::size_t FemBody::state_size() const {
+  return (2 + history_.size()) * static_cast<std::size_t>(positions_.size());
+}
 
 void FemBody::save_state(std::span<double> state) const {
   std::copy_n(positions_.data(), positions_.size(), state.data());
-  std::copy_n(velocities_.data(), velocities_.size(), state.data() + positions_.size());
+  double* to = state.data() + positions_.size();
+  to = std::copy_n(velocities_.data(), velocities_.size(), to);
+  for (const Points& kept : history_) to = std::copy_n(kept.data(), kept.size(), to);
 }
 
 void FemBody::load_state(std::span<const double> state) {
   std::copy_n(state.data(), positions_.size(), positions_.data());
-  std::copy_n(state.data() + positions_.size(), velocities_.size(), velocities_.data());
+  const double* from = state.data() + positions_.size();
+  std::copy_n(from, velocities_.size(), velocities_.data());
+  for (Points& kept : history_) {
+    from += positions_.size();
+    std::copy_n(from, kept.size(), kept.data());
+  }
 }
 
 int FemBody::negative_pivots() const { return active_->factorisation->negative_pivots(); }
@@ -341,7 +403,8 @@ double FemBody::gravity_energy() const {
 std::size_t FemBody::bytes() const {
   const Eigen::Index free = right_.size() + motion_.size() + base_.size() + scratch_.size() +
                             travel_.size() + momentum_.size() + imbalance_.size();
-  auto total = sizeof(double) * static_cast<std::size_t>(4 * positions_.size() + free);
+  const auto points = (4 + history_.size()) * static_cast<std::size_t>(positions_.size());
+  auto total = sizeof(double) * (points + static_cast<std::size_t>(free));
   for (const Numbers* n : {plain_.get(), curved_.get()}) {
     if (n == nullptr) continue;
     total += n->assembly.bytes() + n->factorisation->bytes() +

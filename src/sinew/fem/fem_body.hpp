@@ -16,8 +16,8 @@ namespace sinew::fem {
 class FemBody : public mechanics::Body {
  public:
   /// @param model must outlive the body. @param pool likewise.
-  /// @param with_curvature see mechanics::BodyModel::create().
-  FemBody(const FemBodyModel& model, ThreadPool& pool, bool with_curvature);
+  /// @param with_curvature,histories see mechanics::BodyModel::create().
+  FemBody(const FemBodyModel& model, ThreadPool& pool, bool with_curvature, int histories = 0);
   ~FemBody() override;
 
   const mechanics::BodyModel& model() const override { return model_; }
@@ -36,7 +36,7 @@ class FemBody : public mechanics::Body {
   void add_compliance(MatrixX& compliance, VectorX& free_motion) const override;
   void solve_motion(std::span<const double> effort) override;
   mechanics::MotionReport apply_motion(double scale) override;
-  void end_step(const mechanics::StepWeights& weights) override;
+  double end_step(const mechanics::StepWeights& weights) override;
 
   void restart() override;
   std::size_t state_size() const override;
@@ -75,6 +75,8 @@ class FemBody : public mechanics::Body {
 
   Numbers& numbers(bool with_curvature);
   void form_right_side(const mechanics::LinearisationRequest& request);
+  void add_inertia(const mechanics::StepWeights& weights);
+  void combine(const mechanics::Combination& weights, VectorX& result) const;
   void hold_right_side();
   void stiffen_by_tether();
   void pull_by_tether();
@@ -87,7 +89,8 @@ class FemBody : public mechanics::Body {
   const FemBodyModel& model_;
   ThreadPool& pool_;
   Points positions_, velocities_, external_forces_;
-  Points start_positions_;  // of the step; velocities_ stay those of its start until it ends
+  std::vector<Points> history_;  // what the integrator keeps, (n, 3) each
+  Points start_positions_;       // of the step; velocities_ stay those of its start until it ends
   std::unique_ptr<Numbers> plain_, curved_;
   Numbers* active_ = nullptr;
 

@@ -136,8 +136,9 @@ FemSystem FemBodyModel::make_system(const FemModelSettings& elements) const {
   return system;
 }
 
-std::unique_ptr<mechanics::Body> FemBodyModel::create(ThreadPool& pool, bool with_curvature) const {
-  return std::make_unique<FemBody>(*this, pool, with_curvature);
+std::unique_ptr<mechanics::Body> FemBodyModel::create(ThreadPool& pool, bool with_curvature,
+                                                      int histories) const {
+  return std::make_unique<FemBody>(*this, pool, with_curvature, histories);
 }
 
 }  // namespace sinew::fem

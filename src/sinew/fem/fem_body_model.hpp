@@ -63,7 +63,8 @@ class FemBodyModel : public mechanics::BodyModel {
               std::span<const mechanics::RowCurvature> curvatures,
               const linalg::FactorisationSettings& settings) override;
   bool couples(int first, int second) const override;
-  std::unique_ptr<mechanics::Body> create(ThreadPool& pool, bool with_curvature) const override;
+  std::unique_ptr<mechanics::Body> create(ThreadPool& pool, bool with_curvature,
+                                          int histories) const override;
 
   const mesh::Mesh& mesh() const { return *settings_.mesh; }
   const FemModel& elements() const { return *plain_.elements; }

@@ -78,7 +78,9 @@ class BodyModel {
   /// @param pool must outlive the body.
   /// @param with_curvature workspace for this kind of linearisation is taken now, for the other
   ///   when it is first asked for.
-  virtual std::unique_ptr<Body> create(ThreadPool& pool, bool with_curvature) const = 0;
+  /// @param histories see history_count().
+  virtual std::unique_ptr<Body> create(ThreadPool& pool, bool with_curvature,
+                                       int histories) const = 0;
 };
 
 /// How a proposed motion turned out.
@@ -120,11 +122,12 @@ class Body {
   virtual void solve_motion(std::span<const double> effort) = 0;
   /// State of the last linearisation moved by scale dq; may be called again with another scale.
   virtual MotionReport apply_motion(double scale) = 0;
-  virtual void end_step(const StepWeights& weights) = 0;
+  /// @return an estimate of the largest error that the step made in any coordinate, m.
+  virtual double end_step(const StepWeights& weights) = 0;
 
   /// Back to rest: the model's own q, v = 0. Inputs (outside forces) stay.
   virtual void restart() = 0;
-  /// q and v as one array, for hashing and saving.
+  /// q, v and what the integrator keeps as one array, for hashing and saving.
   virtual std::size_t state_size() const = 0;
   virtual void save_state(std::span<double> state) const = 0;
   virtual void load_state(std::span<const double> state) = 0;

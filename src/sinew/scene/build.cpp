@@ -251,9 +251,9 @@ SceneController controller_of(const ControllerDescription& description, const si
 sim::StepSettings step_settings(const SceneDescription& scene) {
   sim::StepSettings step;
   step.time_step = scene.time_step;
-  step.integrator = scene.integrator == Integrator::backward_euler
-                        ? mechanics::Integrator::backward_euler
-                        : mechanics::Integrator::quasi_static;
+  step.integrator = scene.integrator;
+  step.spectral_radius = scene.spectral_radius;
+  step.adaptive = scene.solver.adaptive;
   step.method =
       scene.solver.method == Method::newton ? sim::Method::newton : sim::Method::one_linearisation;
   step.tangent = scene.solver.tangent == Tangent::exact ? mechanics::Tangent::exact

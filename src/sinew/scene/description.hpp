@@ -22,6 +22,7 @@
 #include "sinew/mesh/embedding.hpp"
 #include "sinew/scene/node.hpp"
 #include "sinew/sim/fluid_drive.hpp"
+#include "sinew/sim/model.hpp"
 #include "sinew/sim/signal.hpp"
 #include "sinew/sim/spring_drive.hpp"
 
@@ -29,7 +30,7 @@ namespace sinew::scene {
 
 inline constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
-enum class Integrator { quasi_static, backward_euler };
+using mechanics::Integrator;
 enum class Method { one_linearisation, newton };
 enum class Tangent { rotated, exact };
 enum class MaterialModel { linear, corotational, hyperelastic };
@@ -43,6 +44,7 @@ struct SolverDescription {
   Place place;
   Method method = Method::one_linearisation;
   Tangent tangent = Tangent::rotated;
+  std::optional<sim::StepSettings::Adaptive> adaptive;
   double tolerance = 1e-8;        ///< Newton: residual relative to the loads
   int max_iterations = 50;        ///< Newton
   int threads = 1;                ///< inside a step
@@ -227,6 +229,7 @@ struct SceneDescription {
   Place gravity_place;
   double time_step = 0.01;  ///< s
   Integrator integrator = Integrator::quasi_static;
+  double spectral_radius = 0.8;  ///< of generalized-alpha
   SolverDescription solver;
   std::optional<double> duration;  ///< s
   std::vector<BodyDescription> bodies;

@@ -25,8 +25,8 @@ Form method_choice(const char* short_for = "") {
 Form integrator_choice(const char* short_for = "") {
   return choice({{"quasi-static", "Always in equilibrium; no inertia."},
                  {"backward-euler", "Dynamics; first order, damps."},
-                 {"bdf2", "Dynamics; second order.", true},
-                 {"generalized-alpha", "Dynamics; second order.", true}},
+                 {"bdf2", "Dynamics; second order, damps what moves fast."},
+                 {"generalized-alpha", "Dynamics; second order, with a knob for damping."}},
                 short_for);
 }
 
@@ -39,7 +39,30 @@ std::shared_ptr<const KeyTable> integrator_table() {
                  .example = "backward-euler",
                  .description = "The integrator.",
                  .required = true},
-                later_key("spectral_radius", "Of generalized-alpha: damping of fast motion.")}});
+                {.name = "spectral_radius",
+                 .forms = {quantity(plain_number(), {.min = 0.0, .max = 1.0})},
+                 .example = "0.8",
+                 .default_text = "0.8",
+                 .description = "Of generalized-alpha: what is left of the fastest motion after a "
+                                "step. 1 conserves energy, 0 damps most."}}});
+}
+
+std::shared_ptr<const KeyTable> adaptive_table() {
+  return make_table(
+      {.name = "adaptive",
+       .description = "Substeps inside each time step: smaller where the integrator's error asks "
+                      "for it or where a step fails.",
+       .keys = {{.name = "tolerance",
+                 .forms = {quantity(plain_number(), positive())},
+                 .example = "1e-4",
+                 .default_text = "1e-4",
+                 .description = "Largest error of a substep in any coordinate, over the robot's "
+                                "size."},
+                {.name = "smallest",
+                 .forms = {quantity(time(), positive())},
+                 .example = "0.1 ms",
+                 .description = "No substep is smaller; where that does not do, the run stops.",
+                 .required = true}}});
 }
 
 std::shared_ptr<const KeyTable> solver_table() {
@@ -51,6 +74,10 @@ std::shared_ptr<const KeyTable> solver_table() {
                  .example = "newton",
                  .default_text = "one-linearisation",
                  .description = "What a step does."},
+                {.name = "adaptive",
+                 .forms = {table(adaptive_table())},
+                 .example = "{tolerance: 1e-4, smallest: 0.1 ms}",
+                 .description = "Substeps. Without: one step of `time_step` each."},
                 {.name = "tangent",
                  .forms = {choice({{"rotated", "The rotated stiffness of real-time codes."},
                                    {"exact", "With the derivative of the rotation."}})},

@@ -19,8 +19,12 @@ void read_integrator(const Fields& fields, SceneDescription& scene) {
     fields.read_word("integrator", word);
   } else {
     fields.below("integrator").read_word("type", word);
+    fields.below("integrator").read("spectral_radius", scene.spectral_radius);
   }
-  scene.integrator = word == "quasi-static" ? Integrator::quasi_static : Integrator::backward_euler;
+  for (const Integrator integrator : {Integrator::quasi_static, Integrator::backward_euler,
+                                      Integrator::bdf2, Integrator::generalized_alpha}) {
+    if (word == mechanics::integrator_name(integrator)) scene.integrator = integrator;
+  }
 }
 
 void read_solver(const Fields& fields, SolverDescription& solver) {
@@ -35,6 +39,11 @@ void read_solver(const Fields& fields, SolverDescription& solver) {
   values.read_choice("method", solver.method, methods);
   values.read_choice("tangent", solver.tangent,
                      {{"rotated", Tangent::rotated}, {"exact", Tangent::exact}});
+  if (values.find("adaptive") != nullptr) {
+    auto& adaptive = solver.adaptive.emplace();
+    values.below("adaptive").read("tolerance", adaptive.tolerance);
+    values.below("adaptive").read("smallest", adaptive.smallest);
+  }
   values.read("tolerance", solver.tolerance);
   values.read("max_iterations", solver.max_iterations);
   values.read("threads", solver.threads);

@@ -1,9 +1,9 @@
 #include "sinew/sim/newton.hpp"
 
-#include "sinew/sim/driven_law.hpp"
-
 #include <algorithm>
 #include <cmath>
+
+#include "sinew/sim/driven_law.hpp"
 
 namespace sinew::sim {
 
@@ -60,9 +60,9 @@ class NewtonSolver {
     ++report_.factorisations;
     int negative = 0;
     for (const auto& body : world_.bodies()) negative += body->negative_pivots();
-    const bool stable = status == linalg::FactorStatus::positive_definite ||
-                        (status == linalg::FactorStatus::indefinite &&
-                         DrivenLaw::stabilised(problem_, negative));
+    const bool stable =
+        status == linalg::FactorStatus::positive_definite ||
+        (status == linalg::FactorStatus::indefinite && DrivenLaw::stabilised(problem_, negative));
     if (!stable && settings_.request.tangent == mechanics::Tangent::exact) {
       clock_.mark(Stage::factorisation);
       linearise(mechanics::Tangent::real_time);

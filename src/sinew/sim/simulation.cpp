@@ -58,7 +58,8 @@ std::span<const double> Simulation::drive_state(int actuator) const {
 }
 
 Law& Simulation::with_drives(Law& law) {
-  return std::ranges::any_of(ranges_, DrivenLaw::takes) ? static_cast<Law&>(driven_.around(law)) : law;
+  return std::ranges::any_of(ranges_, DrivenLaw::takes) ? static_cast<Law&>(driven_.around(law))
+                                                        : law;
 }
 
 // After finish_step(): where each drive stands, whoever chose its effort.
@@ -72,10 +73,78 @@ void Simulation::advance_drives() {
   }
 }
 
+mechanics::StepWeights Simulation::step_weights(double time_step) const {
+  const StepSettings& settings = model_->step();
+  return mechanics::step_weights(settings.integrator, time_step, step_before_,
+                                 settings.spectral_radius);
+}
+
 const StepReport& Simulation::step() {
   clock_.start();
-  const double end = static_cast<double>(steps_ + 1) * model_->step().time_step;
-  read_ranges(end, model_->step().time_step);
+  report_.substeps = 1;
+  report_.retries = 0;
+  if (model_->step().adaptive) {
+    step_adaptively();
+  } else {
+    const double time_step = model_->step().time_step;
+    report_.error = substep(static_cast<double>(steps_ + 1) * time_step, time_step);
+  }
+  ++steps_;
+  clock_.mark(Stage::correction);
+  clock_.stop();
+  report_.times = times_;
+  return report_;
+}
+
+// Halves where a substep fails; else aims at nine tenths of the step that the tolerance allows, by
+// the order of the error, at most twice the last one.
+void Simulation::step_adaptively() {
+  const StepSettings& settings = model_->step();
+  const double begin = time(), whole = settings.time_step;
+  const double tolerance = settings.adaptive->tolerance * model_->size();
+  const double order = mechanics::history_count(settings.integrator) > 0 ? 3.0 : 2.0;
+  if (!(substep_ > 0.0)) substep_ = whole;
+  state_at_step_.resize(state_size());
+  save_state(state_at_step_);
+  const double work = actuator_work_;
+  report_.substeps = 0;
+  report_.error = 0.0;
+  double done = 0.0;
+  while (done < whole * (1.0 - 1e-9)) {
+    const double left = whole - done;
+    const double h = substep_ < 0.999 * left ? std::min(substep_, 0.5 * left) : left;
+    const double before = actuator_work_;
+    try {
+      const double error = substep(begin + done + h, h);
+      const double aim =
+          error > 0.0 ? std::clamp(0.9 * std::pow(tolerance / error, 1.0 / order), 0.2, 2.0) : 2.0;
+      if (error > tolerance && 0.5 * h >= settings.adaptive->smallest) {
+        load_state(state_before_, steps_);
+        actuator_work_ = before;
+        substep_ = std::max(settings.adaptive->smallest, std::min(0.5, aim) * h);
+        ++report_.retries;
+        continue;
+      }
+      done += h;
+      ++report_.substeps;
+      report_.error = std::max(report_.error, error);
+      substep_ = std::min(whole, std::max(settings.adaptive->smallest, aim * std::max(h, 1e-300)));
+    } catch (const Error& failure) {
+      if (0.5 * h < settings.adaptive->smallest || !failure.is_run_failure()) {
+        load_state(state_at_step_, steps_);
+        actuator_work_ = work;
+        throw;
+      }
+      substep_ = 0.5 * h;
+      ++report_.retries;
+    }
+  }
+}
+
+// One solution of the step's equation; the error estimate, m.
+double Simulation::substep(double end, double time_step) {
+  now_ = end;
+  read_ranges(end, time_step);
   save_state(state_before_);
   world_.begin_step();
   Law& law = with_drives(law_ != nullptr ? *law_ : direct_);
@@ -86,30 +155,27 @@ const StepReport& Simulation::step() {
                            world_.delta_free(),
                            world_.delta(),
                            end,
-                           model_->step().time_step};
+                           time_step};
   if (model_->step().method == Method::newton) {
     step_newton(law, problem);
   } else {
     step_once(law, problem);
   }
-  world_.end_step(mechanics::step_weights(model_->step().integrator, model_->step().time_step));
-  ++steps_;
+  const double error = world_.end_step(step_weights(time_step));
+  step_before_ = time_step;
   std::ranges::transform(actuators_, motion_before_.begin(), &ActuatorState::motion);
   finish_step();
   advance_drives();
   for (std::size_t i = 0; i < actuators_.size(); ++i) {
     actuator_work_ += actuators_[i].effort * (actuators_[i].motion - motion_before_[i]);
   }
-  clock_.mark(Stage::correction);
-  clock_.stop();
-  report_.times = times_;
-  return report_;
+  return error;
 }
 
 void Simulation::step_once(Law& law, const LawProblem& problem) {
   const auto& settings = model_->step();
-  world_.linearise({mechanics::step_weights(settings.integrator, settings.time_step),
-                    settings.tangent, model_->stiffening_widens(), false});
+  world_.linearise(
+      {step_weights(problem.time_step), settings.tangent, model_->stiffening_widens(), false});
   clock_.mark(Stage::assembly);
   world_.form_rows(effort_, model_->stiffening_constraints());
   report_.residual = world_.residual(effort_);
@@ -171,11 +237,11 @@ void Simulation::move_soundly() {
 void Simulation::step_newton(Law& law, const LawProblem& problem) {
   const auto& settings = model_->step();
   const auto curved = std::span<const int>(model_->stiffening_constraints());
-  NewtonSettings newton{{mechanics::step_weights(settings.integrator, settings.time_step),
-                         settings.tangent, model_->stiffening_widens(), true},
-                        settings.tolerance,
-                        settings.max_iterations,
-                        curved};
+  NewtonSettings newton{
+      {step_weights(problem.time_step), settings.tangent, model_->stiffening_widens(), true},
+      settings.tolerance,
+      settings.max_iterations,
+      curved};
   const NewtonReport result = solve_newton(world_, law, problem, effort_, newton, clock_);
   report_.law = result.law;
   report_.residual = result.residual;
@@ -198,11 +264,9 @@ void Simulation::fail(ErrorKind kind, const std::string& message, const std::str
   load_state(state_before_, steps_);
   std::string bodies;
   for (const auto& body : model_->bodies()) bodies += (bodies.empty() ? "" : ", ") + body->name();
-  throw Error(
-      kind,
-      {.item = fmt::format("step {} (t = {:g} s), body {}", steps_ + 1,
-                           static_cast<double>(steps_ + 1) * model_->step().time_step, bodies)},
-      message, remedy);
+  throw Error(kind,
+              {.item = fmt::format("step {} (t = {:g} s), body {}", steps_ + 1, now_, bodies)},
+              message, remedy);
 }
 
 // What actuators did, read off the state.
@@ -296,7 +360,7 @@ std::size_t Simulation::bytes() const {
 }
 
 std::size_t Simulation::state_size() const {
-  return world_.state_size() + effort_.size() + drive_state_.size() + 2 * actuators_.size() + 1;
+  return world_.state_size() + effort_.size() + drive_state_.size() + 2 * actuators_.size() + 3;
 }
 
 void Simulation::save_state(std::span<double> state) const {
@@ -310,7 +374,10 @@ void Simulation::save_state(std::span<double> state) const {
     rest[2 * i] = actuators_[i].motion;
     rest[2 * i + 1] = actuators_[i].wound;
   }
-  rest.back() = volume_ratio_;
+  rest = rest.subspan(2 * actuators_.size());
+  rest[0] = volume_ratio_;
+  rest[1] = step_before_;
+  rest[2] = substep_;
 }
 
 void Simulation::load_state(std::span<const double> state, std::int64_t steps) {
@@ -327,7 +394,10 @@ void Simulation::load_state(std::span<const double> state, std::int64_t steps) {
     actuator.effort = effort_[static_cast<std::size_t>(model_->actuators()[i].row)];
     actuator.slack = model_->actuators()[i].type == ActuatorType::cable && !(actuator.effort > 0.0);
   }
-  volume_ratio_ = rest.back();
+  rest = rest.subspan(2 * actuators_.size());
+  volume_ratio_ = rest[0];
+  step_before_ = rest[1];
+  substep_ = rest[2];
   steps_ = steps;
   direct_.reset();
   if (law_ != nullptr) law_->reset();
@@ -345,6 +415,7 @@ void Simulation::reset() {
   }
   volume_ratio_ = 1.0;
   actuator_work_ = 0.0;
+  step_before_ = substep_ = 0.0;
   steps_ = 0;
   finish_step();
   direct_.reset();

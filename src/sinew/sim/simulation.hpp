@@ -28,7 +28,10 @@ struct StepReport {
   double residual = 0.0;           ///< N, |p - f - ... + H^T lambda|
   double relative_residual = 0.0;  ///< of the sum of the forces' norms
   double violation = 0.0;          ///< m, of the law by the motion at that state
-  int iterations = 1;              ///< linearisations
+  int iterations = 1;              ///< linearisations, of the last substep
+  int substeps = 1;                ///< that the step was made of
+  int retries = 0;                 ///< substeps that were taken back and tried smaller
+  double error = 0.0;              ///< m, largest estimate of a substep's error in any coordinate
   double scale = 1.0;  ///< of the motion; < 1 when it was cut back to keep elements from inverting
   double smallest_volume_ratio = 1.0;  ///< min det F at the end of the step
   NewtonStatus newton = NewtonStatus::converged;
@@ -126,6 +129,9 @@ class Simulation {
   std::span<double> drive_numbers(std::size_t actuator);
   Law& with_drives(Law& law);
   void advance_drives();
+  mechanics::StepWeights step_weights(double time_step) const;
+  double substep(double end, double time_step);
+  void step_adaptively();
   void step_once(Law& law, const LawProblem& problem);
   void step_newton(Law& law, const LawProblem& problem);
   void move_soundly();
@@ -145,6 +151,10 @@ class Simulation {
   std::vector<double> effort_;
   std::vector<double> drive_state_;  // of all drives, at the start of the step
   std::vector<double> state_before_;
+  std::vector<double> state_at_step_;  // adaptive: before the whole step
+  double step_before_ = 0.0;           // s, the last substep; 0: the integrator starts afresh
+  double substep_ = 0.0;               // s, adaptive: what the next one tries
+  double now_ = 0.0;                   // s, end of the substep in hand
   std::vector<double> motion_before_;  // (actuators,) m
   double actuator_work_ = 0.0;
   std::int64_t steps_ = 0;

@@ -60,6 +60,7 @@ NewtonReport Simulation::equilibrate(const StaticSettings& settings, double shar
 StaticReport Simulation::solve_static(const StaticSettings& settings) {
   StaticReport report;
   clock_.start();
+  now_ = time();
   save_state(state_before_);
   const std::vector<ActuatorState> start = actuators_;
   read_ranges(time(), kInfinity);
@@ -111,6 +112,7 @@ StaticReport Simulation::solve_static(const StaticSettings& settings) {
   ranges_ = goal;
   world_.begin_step();
   world_.end_step({});
+  step_before_ = 0.0;
   finish_step();
   advance_drives();
   return report;

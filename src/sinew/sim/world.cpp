@@ -11,7 +11,8 @@ namespace {
 std::vector<std::unique_ptr<mechanics::Body>> create_bodies(const Model& model, ThreadPool& pool) {
   std::vector<std::unique_ptr<mechanics::Body>> bodies;
   const bool curved = model.stiffening_widens();
-  for (const auto& body : model.bodies()) bodies.push_back(body->create(pool, curved));
+  const int histories = mechanics::history_count(model.step().integrator);
+  for (const auto& body : model.bodies()) bodies.push_back(body->create(pool, curved, histories));
   return bodies;
 }
 
@@ -113,8 +114,10 @@ mechanics::MotionReport World::apply_motion(double scale) {
   return worst;
 }
 
-void World::end_step(const mechanics::StepWeights& weights) {
-  for (auto& body : bodies_) body->end_step(weights);
+double World::end_step(const mechanics::StepWeights& weights) {
+  double worst = 0.0;
+  for (auto& body : bodies_) worst = std::max(worst, body->end_step(weights));
+  return worst;
 }
 
 std::size_t World::state_size() const {

@@ -34,7 +34,8 @@ class World {
   void solve_motion(std::span<const double> effort);
   /// The worst report of any body.
   mechanics::MotionReport apply_motion(double scale);
-  void end_step(const mechanics::StepWeights& weights);
+  /// The largest error estimate of any body, m.
+  double end_step(const mechanics::StepWeights& weights);
 
   const MatrixX& compliance() const { return compliance_; }  ///< W (rows, rows), m/N
   const VectorX& delta_free() const { return delta_free_; }  ///< (rows,) m

@@ -1,0 +1,190 @@
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "sinew/core/error.hpp"
+
+#include "robots.hpp"
+
+namespace sinew::sim {
+namespace {
+
+using mechanics::Integrator;
+using sinew::testing::beam;
+using sinew::testing::BeamOptions;
+
+BeamOptions falling(Integrator integrator, double step, double rho = 0.8) {
+  BeamOptions options;
+  options.step.integrator = integrator;
+  options.step.time_step = step;
+  options.step.spectral_radius = rho;
+  options.step.method = Method::newton;
+  options.step.tangent = mechanics::Tangent::exact;
+  options.step.tolerance = 1e-10;
+  options.gravity = {0.0, 0.0, -9.81};
+  options.cables = 0;
+  return options;
+}
+
+Vector3 tip_after(const BeamOptions& options, double duration) {
+  Simulation simulation(beam(options));
+  const auto steps = std::lround(duration / options.step.time_step);
+  for (long i = 0; i < steps; ++i) simulation.step();
+  return simulation.effector_value(0);
+}
+
+// Errors against a run of much smaller steps fall as h or h^2.
+TEST(Integrator, OrdersAreAsPublished) {
+  constexpr double kEnd = 0.04;
+  for (const bool damped : {false, true}) {
+    const auto options = [&](Integrator integrator, double step, double rho) {
+      BeamOptions result = falling(integrator, step, rho);
+      if (damped) result.damping = {1.0, 2e-4};
+      return result;
+    };
+    const Vector3 exact = tip_after(options(Integrator::generalized_alpha, 2.5e-5, 1.0), kEnd);
+    struct Expected {
+      Integrator integrator;
+      double rho, order;
+    };
+    for (const auto& [integrator, rho, order] :
+         {Expected{Integrator::backward_euler, 0.0, 1.0}, Expected{Integrator::bdf2, 0.0, 2.0},
+          Expected{Integrator::generalized_alpha, 0.0, 2.0},
+          Expected{Integrator::generalized_alpha, 0.8, 2.0},
+          Expected{Integrator::generalized_alpha, 1.0, 2.0}}) {
+      std::vector<double> errors;
+      for (const double step : {4e-4, 2e-4}) {
+        const double scale = order == 1.0 ? 0.25 : 0.5;  // the first order shows later
+        errors.push_back((tip_after(options(integrator, scale * step, rho), kEnd) - exact).norm());
+      }
+      const double found = std::log2(errors[0] / errors[1]);
+      EXPECT_NEAR(found, order, 0.3)
+          << mechanics::integrator_name(integrator) << " " << rho << ", damped " << damped;
+    }
+  }
+}
+
+double energy(Simulation& simulation) {
+  const Energies now = simulation.energies();
+  return now.strain + now.kinetic + now.gravity;
+}
+
+TEST(Integrator, TheSpectralRadiusIsAKnobForDamping) {
+  double before = 1e300;
+  for (const double rho : {0.0, 0.5, 0.8, 1.0}) {
+    Simulation simulation(beam(falling(Integrator::generalized_alpha, 2e-3, rho)));
+    double swing = 0.0;
+    for (int i = 0; i < 250; ++i) {
+      simulation.step();
+      swing = std::max(swing, simulation.energies().kinetic);
+    }
+    const double lost = -energy(simulation) / swing;  // it started from rest, with none
+    EXPECT_LT(lost, before) << rho;
+    if (rho == 1.0) {
+      EXPECT_LT(std::abs(lost), 0.02);
+    } else {
+      EXPECT_GT(lost, 0.0);
+    }
+    before = lost;
+  }
+}
+
+TEST(Integrator, SavedStatesGoOnBitForBit) {
+  for (const auto integrator : {Integrator::bdf2, Integrator::generalized_alpha}) {
+    Simulation a(beam(falling(integrator, 2e-3))), b(beam(falling(integrator, 2e-3)));
+    for (int i = 0; i < 20; ++i) a.step();
+    std::vector<double> state(a.state_size());
+    a.save_state(state);
+    b.load_state(state, a.steps());
+    for (int i = 0; i < 20; ++i) {
+      a.step();
+      b.step();
+    }
+    EXPECT_EQ(a.state_hash(), b.state_hash());
+    a.reset();
+    Simulation fresh(beam(falling(integrator, 2e-3)));
+    for (int i = 0; i < 5; ++i) {
+      a.step();
+      fresh.step();
+    }
+    EXPECT_EQ(a.state_hash(), fresh.state_hash());
+  }
+}
+
+// One linearisation a step with damping: the matrix holds the damping, and its force at the start
+// comes from the velocity that the integrator carries over.
+TEST(Integrator, OneLinearisationConvergesToTheSameMotion) {
+  for (const auto integrator : {Integrator::bdf2, Integrator::generalized_alpha}) {
+    BeamOptions options = falling(integrator, 2.5e-4);
+    options.damping = {1.0, 2e-3};
+    const Vector3 newton = tip_after(options, 0.1);
+    options.step.method = Method::one_linearisation;
+    options.step.tangent = mechanics::Tangent::real_time;
+    const Vector3 once = tip_after(options, 0.1);
+    EXPECT_LT((once - newton).norm(), 2e-5) << mechanics::integrator_name(integrator);
+  }
+}
+
+TEST(Adaptive, MeetsItsToleranceWithFewerSteps) {
+  const Vector3 exact = tip_after(falling(Integrator::generalized_alpha, 5e-5, 1.0), 0.1);
+  double last_error = 1.0;
+  int last_steps = 0;
+  for (const double tolerance : {1e-3, 1e-5}) {
+    BeamOptions options = falling(Integrator::generalized_alpha, 0.02);
+    options.step.adaptive = StepSettings::Adaptive{tolerance, 1e-5};
+    Simulation simulation(beam(options));
+    int substeps = 0;
+    for (int i = 0; i < 5; ++i) {
+      const StepReport& report = simulation.step();
+      substeps += report.substeps;
+      EXPECT_LE(report.error, tolerance * simulation.model().size());
+    }
+    EXPECT_DOUBLE_EQ(simulation.time(), 0.1);
+    const double error = (simulation.effector_value(0) - exact).norm();
+    EXPECT_LT(error, 0.3 * last_error);
+    EXPECT_GT(substeps, last_steps);
+    EXPECT_LT(substeps, 1000);
+    last_error = error;
+    last_steps = substeps;
+  }
+  EXPECT_LT(last_error, 2e-4);
+}
+
+TEST(Adaptive, RetriesWhereAStepFails) {
+  const auto pulled = [](bool adaptive) {
+    BeamOptions options = falling(Integrator::backward_euler, 0.05);
+    options.cables = 4;
+    options.step.max_iterations = 3;
+    if (adaptive) options.step.adaptive = StepSettings::Adaptive{1.0, 1e-4};
+    auto simulation = std::make_unique<Simulation>(beam(options));
+    simulation->command(0, {CommandKind::motion, Signal::ramp({0.0, 0.01, 0.0, 0.05})});
+    return simulation;
+  };
+  EXPECT_THROW(pulled(false)->step(), Error);
+  const auto simulation = pulled(true);
+  const StepReport& report = simulation->step();
+  EXPECT_GT(report.retries, 0);
+  EXPECT_GT(report.substeps, 1);
+  EXPECT_NEAR(simulation->actuator(0).motion, 0.01, 1e-9);
+}
+
+TEST(Adaptive, StopsAtTheSmallestStepAndRestoresTheState) {
+  BeamOptions options = falling(Integrator::backward_euler, 0.05);
+  options.cables = 4;
+  options.step.max_iterations = 1;
+  options.step.tolerance = 1e-15;
+  options.step.adaptive = StepSettings::Adaptive{1.0, 0.01};
+  Simulation simulation(beam(options));
+  const auto before = simulation.state_hash();
+  EXPECT_THROW(simulation.step(), Error);
+  EXPECT_EQ(simulation.steps(), 0);
+  EXPECT_NE(simulation.state_hash(), 0U);
+  Simulation fresh(beam(options));
+  EXPECT_EQ(fresh.state_hash(), before);
+  EXPECT_EQ(simulation.fem_body(0).positions(), fresh.fem_body(0).positions());
+}
+
+}  // namespace
+}  // namespace sinew::sim
