@@ -160,6 +160,15 @@ void bind_mesh_of(py::class_<Body>& type) {
           "(m, 4) ndarray of int32: the nodes of every tetrahedron, positively oriented. "
           "Read-only.")
       .def_property_readonly(
+          "quadratic_tetrahedra",
+          [](const Body& self) {
+            const auto& list = body(self).fem_model().mesh().quadratic;
+            return view<NodeId>(list.empty() ? nullptr : list.front().data(),
+                                static_cast<py::ssize_t>(list.size()), 10, py::cast(self.session));
+          },
+          "(m, 10) ndarray of int32: corners and middle nodes of quadratic tetrahedra, in VTK's "
+          "order; `tetrahedra` has their corners. Read-only.")
+      .def_property_readonly(
           "hexahedra",
           [](const Body& self) {
             const auto& list = body(self).fem_model().mesh().hexahedra;

@@ -12,7 +12,9 @@
 #include "sinew/fem/assembly.hpp"
 #include "sinew/mesh/embedding.hpp"
 #include "sinew/mesh/hexahedron.hpp"
+#include "sinew/mesh/quadratic.hpp"
 #include "sinew/mesh/shapes.hpp"
+#include "sinew/mesh/topology.hpp"
 
 #include "allocation_counter.hpp"
 #include "block_mesh.hpp"
@@ -37,12 +39,15 @@ material::Hyperelastic soft_rubber() {
   return law;
 }
 
-enum class Kind { tetrahedra, hexahedra, both };
+enum class Kind { tetrahedra, quadratic, hexahedra, both };
 
 /// A box of cells, inner nodes moved about; `both` has hexahedra below and tetrahedra above.
 std::shared_ptr<mesh::Mesh> box(Kind kind, int nx, int ny, int nz, double jitter = 0.12) {
   auto result = block_mesh(nx, ny, nz, kEdge, jitter);
   if (kind == Kind::tetrahedra) return result;
+  if (kind == Kind::quadratic) {
+    return std::make_shared<mesh::Mesh>(mesh::with_middle_nodes(*result));
+  }
   const auto number = [=](int x, int y, int z) { return (z * (ny + 1) + y) * (nx + 1) + x; };
   const int layers = kind == Kind::hexahedra ? nz : (nz + 1) / 2;
   for (int z = 0; z < layers; ++z) {
@@ -74,6 +79,8 @@ FemModelSettings mixed_settings(const mesh::Mesh& mesh) {
   settings.regions = {{.constants = {}, .density = 1000.0, .hyperelastic = rubber()},
                       {.constants = {}, .density = 1100.0, .hyperelastic = soft_rubber()},
                       {.constants = {2e5, 0.4}, .density = 900.0}};
+  if (!mesh.quadratic.empty()) settings.regions[2].hyperelastic = material::neo_hookean(3e4);
+  if (!mesh.quadratic.empty()) settings.regions[2].hyperelastic->bulk_modulus = 4e5;
   const auto tetrahedra = static_cast<NodeId>(mesh.tetrahedra.size());
   for (NodeId e = 0; e < tetrahedra + static_cast<NodeId>(mesh.hexahedra.size()); ++e) {
     settings.regions[static_cast<std::size_t>(e < tetrahedra ? e % 3 : e % 2)].elements.push_back(
@@ -115,7 +122,8 @@ struct Body {
 
 class EveryKind : public testing::TestWithParam<Kind> {};
 INSTANTIATE_TEST_SUITE_P(Kinds, EveryKind,
-                         testing::Values(Kind::tetrahedra, Kind::hexahedra, Kind::both));
+                         testing::Values(Kind::tetrahedra, Kind::quadratic, Kind::hexahedra,
+                                         Kind::both));
 
 TEST_P(EveryKind, ForcesAreTheDerivativeOfTheEnergy) {
   const auto mesh = box(GetParam(), 2, 2, 3);
@@ -172,11 +180,10 @@ void expect_even_strain(Kind kind) {
   const auto mesh = box(kind, 3, 3, 3, 0.15);
   FemModelSettings settings = settings_of(*mesh, rubber());
   settings.fixed_nodes.clear();
-  const auto number = [](int x, int y, int z) { return (z * 4 + y) * 4 + x; };
-  for (int n = 0; n < 64; ++n) {
-    const int x = n % 4, y = n / 4 % 4, z = n / 16;
-    const bool inside = x % 3 != 0 && y % 3 != 0 && z % 3 != 0;
-    if (!inside) settings.fixed_nodes.push_back(number(x, y, z));
+  for (const mesh::Face& face : mesh::boundary_faces(*mesh)) {
+    for (const NodeId node : face.nodes()) settings.fixed_nodes.push_back(node);
+    if (!face.is_quadratic()) continue;
+    for (const NodeId node : face.middle) settings.fixed_nodes.push_back(node);
   }
   Body body(mesh, settings);
   Matrix3 f;
@@ -192,6 +199,7 @@ void expect_even_strain(Kind kind) {
 }
 
 TEST(Solid, APatchOfTetrahedraIsStrainedEvenly) { expect_even_strain(Kind::tetrahedra); }
+TEST(Solid, APatchOfQuadraticTetrahedraIsStrainedEvenly) { expect_even_strain(Kind::quadratic); }
 TEST(Solid, APatchOfHexahedraIsStrainedEvenly) { expect_even_strain(Kind::hexahedra); }
 
 TEST_P(EveryKind, ARotationStrainsNothing) {
@@ -328,6 +336,83 @@ TEST(Solid, PointsInsideAreFoundAgain) {
   }
   EXPECT_GT(in_hexahedra, 50);
   EXPECT_LT(in_hexahedra, 250);
+}
+
+// A motion quadratic in space is one of the element's own: the energy is exact up to quadrature.
+TEST(Solid, QuadraticTetrahedraBendExactly) {
+  const auto mesh = box(Kind::quadratic, 2, 1, 3, 0.0);
+  const auto linear = box(Kind::tetrahedra, 2, 1, 3, 0.0);
+  material::Hyperelastic law = material::neo_hookean(25e3);
+  law.bulk_modulus = 1e5;
+  constexpr double kCurvature = 0.02;  // 1/m: strain 3e-4
+  const auto bent = [&](const mesh::Mesh& m) {
+    Points x = m.nodes;
+    for (Eigen::Index i = 0; i < x.rows(); ++i) {
+      x(i, 0) += 0.5 * kCurvature * m.nodes(i, 2) * m.nodes(i, 2);
+      x(i, 2) -= kCurvature * (m.nodes(i, 0) - kEdge) * m.nodes(i, 2);
+    }
+    return x;
+  };
+  FemModelSettings settings = settings_of(*mesh, law);
+  settings.fixed_nodes.clear();
+  Body quadratic(mesh, settings), tetrahedra(linear, settings);
+  // e_zz = -k (x - a) alone: energy density (lambda + 2 mu)/2 e^2 with the mean dilatation's part
+  // taken by element: between that of deviator alone and all of it.
+  const double mu = 25e3, lambda = 1e5 - 2.0 / 3.0 * mu;
+  const double moment = kEdge * 3 * kEdge * 2.0 / 3.0 * std::pow(kEdge, 3);  // integral of (x - a)^2
+  const double full = 0.5 * (lambda + 2.0 * mu) * kCurvature * kCurvature * moment;
+  const double deviator = 0.5 * (4.0 / 3.0 * mu) * kCurvature * kCurvature * moment;
+  const double found = quadratic.energy(bent(*mesh));
+  EXPECT_LT(found, full);
+  EXPECT_GT(found, deviator);
+  EXPECT_GT(tetrahedra.energy(bent(*linear)), 1.2 * full);  // they shear as well
+}
+
+TEST(Solid, PointsInsideQuadraticTetrahedraFollowTheirCurve) {
+  const auto mesh = box(Kind::quadratic, 2, 2, 2, 0.1);
+  const mesh::Embedder embedder(*mesh);
+  const auto field = [](const Vector3& x) { return Vector3(x.y() * x.z(), x.x() * x.x(), 3 * x.z()); };
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(0.2, 1.8);
+  for (int k = 0; k < 50; ++k) {
+    const Vector3 point = kEdge * Vector3(uniform(random), uniform(random), uniform(random));
+    const auto found = embedder.locate(point, mesh::Outside::error, "a point");
+    ASSERT_EQ(found.nodes.size(), 10U);
+    Vector3 at = Vector3::Zero(), value = Vector3::Zero();
+    for (std::size_t a = 0; a < 10; ++a) {
+      const Vector3 x = mesh->nodes.row(found.nodes[a]).transpose();
+      at += found.weights[a] * x;
+      value += found.weights[a] * field(x);
+    }
+    EXPECT_LT((at - point).norm(), 1e-14);
+    EXPECT_LT((value - field(point)).norm(), 1e-15);
+  }
+}
+
+TEST(Solid, WeightOfQuadraticTetrahedraIsConsistent) {
+  const auto mesh = box(Kind::quadratic, 2, 2, 2, 0.1);
+  FemModelSettings settings = settings_of(*mesh, rubber());
+  settings.fixed_nodes.clear();
+  const FemModel model(mesh, settings);
+  EXPECT_GT(model.lumped_mass().minCoeff(), 0.0);
+  EXPECT_NEAR(model.load_mass().sum(), model.total_mass(), 1e-12);
+  // First moments: integral of x rho dV, by either.
+  Vector3 centre = Vector3::Zero();
+  double volume = 0.0;
+  for (const auto& t : mesh->tetrahedra) {
+    Matrix3 edges;
+    Vector3 middle = Vector3::Zero();
+    for (std::size_t a = 0; a < 4; ++a) middle += 0.25 * mesh->nodes.row(t[a]).transpose();
+    for (int a = 0; a < 3; ++a) {
+      edges.col(a) = (mesh->nodes.row(t[static_cast<std::size_t>(a) + 1]) - mesh->nodes.row(t[0]))
+                         .transpose();
+    }
+    volume += edges.determinant() / 6.0;
+    centre += edges.determinant() / 6.0 * middle;
+  }
+  const Vector3 moment = mesh->nodes.transpose() * model.load_mass();
+  EXPECT_LT((moment - 1070.0 * centre).norm(), 1e-12 * moment.norm());
+  EXPECT_NEAR(model.volume(), volume, 1e-14 * volume);
 }
 
 TEST(Solid, RefusesHexahedraOfSmallStrain) {

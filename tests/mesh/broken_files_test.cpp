@@ -160,7 +160,7 @@ INSTANTIATE_TEST_SUITE_P(
                            kLegacyHead + "CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n10\n",
                            ErrorKind::malformed_file, "3 points instead of 4"},
                     Broken{"quadratic", kLegacyHead + "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n24\n",
-                           ErrorKind::unsupported_element, "quadratic tetrahedron"},
+                           ErrorKind::malformed_file, "quadratic tetrahedron with 4 points"},
                     Broken{"offsets",
                            kLegacyHead + "CELLS 2 4\nOFFSETS vtktypeint64\n0 9\nCONNECTIVITY "
                                          "vtktypeint64\n0 1 2 3\nCELL_TYPES 1\n10\n",

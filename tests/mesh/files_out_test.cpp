@@ -10,10 +10,12 @@
 
 #include "sinew/mesh/process.hpp"
 #include "sinew/mesh/quality.hpp"
+#include "sinew/mesh/quadratic.hpp"
 #include "sinew/mesh/read.hpp"
 #include "sinew/mesh/report.hpp"
 #include "sinew/mesh/shapes.hpp"
 #include "sinew/mesh/surface.hpp"
+#include "sinew/mesh/topology.hpp"
 #include "sinew/mesh/tetrahedralise.hpp"
 #include "sinew/mesh/topology.hpp"
 #include "sinew/mesh/write.hpp"
@@ -59,6 +61,25 @@ TEST(WriteVtu, RoundTripsHexahedra) {
   const Mesh back = parse_mesh(format_vtu(mesh), "block.vtu");
   EXPECT_EQ(back.hexahedra, mesh.hexahedra);
   EXPECT_EQ(back.hexahedron_sets, mesh.hexahedron_sets);
+}
+
+TEST(WriteVtu, RoundTripsQuadraticTetrahedra) {
+  Mesh mesh = with_middle_nodes(block({.size = {0.02, 0.01, 0.01}, .cells = {2, 1, 1}}));
+  mesh.node_sets.clear();
+  const Mesh back = parse_mesh(format_vtu(mesh), "block.vtu");
+  EXPECT_EQ(back.nodes, mesh.nodes);
+  EXPECT_EQ(back.tetrahedra, mesh.tetrahedra);
+  EXPECT_EQ(back.quadratic, mesh.quadratic);
+  // Elements of the other ordering are turned, middle nodes with them.
+  for (auto& t : mesh.quadratic) {
+    std::swap(t[2], t[3]);
+    std::swap(t[5], t[8]);
+    std::swap(t[6], t[7]);
+  }
+  const Mesh turned = parse_mesh(format_vtu(mesh), "turned.vtu");
+  EXPECT_EQ(turned.quadratic, back.quadratic);
+  EXPECT_EQ(boundary_surface(back).triangles.size(), 4U * 2U * 10U);
+  EXPECT_NEAR(enclosed_volume(boundary_surface(back)), 2e-6, 1e-18);
 }
 
 TEST(WriteVtu, ChecksFieldsAndPaths) {

@@ -339,13 +339,6 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     Later, BrokenScenes,
     testing::Values(
-        Broken{"element",
-               {{"element: tet4 ", "element: tet10 "}},
-               K::not_in_this_version,
-               9,
-               14,
-               "'tet10'",
-               "write one of tet4"},
         Broken{"rod", {{"type: fem", "type: rod"}}, K::not_in_this_version, 7, 11, "'rod'", "fem"},
         Broken{"pcc", {{"type: fem", "type: pcc"}}, K::not_in_this_version, 7, 11, "'pcc'", "fem"},
         Broken{"rigid",

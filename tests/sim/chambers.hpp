@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "sinew/mesh/patch.hpp"
+#include "sinew/mesh/quadratic.hpp"
 #include "sinew/mesh/shapes.hpp"
 #include "sinew/mesh/topology.hpp"
 #include "sinew/sim/model_builder.hpp"
@@ -35,6 +36,7 @@ inline constexpr double kVoid = 1e-6;  // m^3
 struct ChamberOptions {
   sim::StepSettings step;
   mesh::Cells cells = mesh::Cells::hexahedra;
+  bool quadratic = false;
   bool bore = false;
   bool cap = false;
   bool load_stiffness = true;
@@ -50,7 +52,9 @@ inline std::shared_ptr<const sim::Model> chamber(const ChamberOptions& options =
   sim::ModelBuilder builder(options.step);
   fem::FemBodySettings body;
   body.name = "block";
-  const auto mesh = std::make_shared<const mesh::Mesh>(hollow_block(options.cells, options.bore));
+  const mesh::Mesh linear = hollow_block(options.cells, options.bore);
+  const auto mesh = std::make_shared<const mesh::Mesh>(
+      options.quadratic ? mesh::with_middle_nodes(linear) : linear);
   body.mesh = mesh;
   body.damping = options.damping;
   fem::Region region;

@@ -17,6 +17,48 @@ namespace {
 // A cavity of less than this part of (its area)^(3/2) is a sheet.
 constexpr double kFlat = 1e-9;
 
+struct Weighted {
+  std::array<std::size_t, 3> corner;
+  double weight;
+};
+
+/// The volume under a quadratic triangle, 1/3 integral of x . (x_u x x_v), as a sum of weights / 6
+/// times triple products of its nodes: corners 0 to 2, then the middles behind them. Gauss's rule
+/// on a square with one side drawn together, exact for the degree 4 at hand.
+std::vector<Weighted> quadratic_weights() {
+  constexpr std::array kPoint = {0.06943184420297371, 0.33000947820757187, 0.66999052179242813,
+                                 0.93056815579702629};
+  constexpr std::array kWeight = {0.17392742256872693, 0.32607257743127307, 0.32607257743127307,
+                                  0.17392742256872693};
+  std::array<std::array<std::array<double, 6>, 6>, 6> t{};
+  for (std::size_t p = 0; p < 4; ++p) {
+    for (std::size_t q = 0; q < 4; ++q) {
+      const double u = kPoint[p], v = kPoint[q] * (1.0 - u), r = 1.0 - u - v;
+      const double w = kWeight[p] * kWeight[q] * (1.0 - u) / 3.0;
+      const std::array n = {r * (2 * r - 1), u * (2 * u - 1), v * (2 * v - 1),
+                            4 * r * u,       4 * u * v,       4 * v * r};
+      const std::array nu = {1 - 4 * r, 4 * u - 1, 0.0, 4 * (r - u), 4 * v, -4 * v};
+      const std::array nv = {1 - 4 * r, 0.0, 4 * v - 1, -4 * u, 4 * u, 4 * (r - v)};
+      for (std::size_t a = 0; a < 6; ++a) {
+        for (std::size_t b = 0; b < 6; ++b) {
+          for (std::size_t c = 0; c < 6; ++c) t[a][b][c] += w * n[a] * nu[b] * nv[c];
+        }
+      }
+    }
+  }
+  std::vector<Weighted> result;
+  for (std::size_t a = 0; a < 6; ++a) {
+    for (std::size_t b = a + 1; b < 6; ++b) {
+      for (std::size_t c = b + 1; c < 6; ++c) {
+        result.push_back({{a, b, c},
+                          6.0 * (t[a][b][c] + t[b][c][a] + t[c][a][b] - t[a][c][b] - t[c][b][a] -
+                                 t[b][a][c])});
+      }
+    }
+  }
+  return result;
+}
+
 Matrix3 cross_matrix(const Vector3& v) {
   Matrix3 m;
   m << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
@@ -36,6 +78,14 @@ Cavity::Cavity(std::string name, std::vector<mechanics::MaterialPoint> points,
   check_closed(placement_at_rest);
   for (const CavityFace& face : faces_) {
     const auto [a, b, c, d] = face.corner;
+    if (face.middle[0] >= 0) {
+      static const std::vector<Weighted> weights = quadratic_weights();
+      const std::array node = {a, b, c, face.middle[0], face.middle[1], face.middle[2]};
+      for (const Weighted& w : weights) {
+        triangles_.push_back({{node[w.corner[0]], node[w.corner[1]], node[w.corner[2]]}, w.weight});
+      }
+      continue;
+    }
     if (d < 0) {
       triangles_.push_back({{a, b, c}, 1.0});
       continue;
@@ -52,7 +102,14 @@ Cavity::Cavity(std::string name, std::vector<mechanics::MaterialPoint> points,
       x[k] = placement_at_rest.row(t.corner[k]).transpose() - origin;
     }
     rest_volume_ += t.weight / 6.0 * x[0].dot(x[1].cross(x[2]));
-    rest_area_ += t.weight / 2.0 * (x[1] - x[0]).cross(x[2] - x[0]).norm();
+  }
+  for (const CavityFace& face : faces_) {
+    const auto at = [&](std::size_t k) -> Vector3 {
+      return placement_at_rest.row(face.corner[k]).transpose();
+    };
+    const bool quad = face.corner[3] >= 0;
+    rest_area_ += 0.5 * (quad ? (at(2) - at(0)).cross(at(3) - at(1)).norm()
+                              : (at(1) - at(0)).cross(at(2) - at(0)).norm());
   }
   if (!(std::abs(rest_volume_) > kFlat * std::pow(rest_area_, 1.5))) {
     throw Error(ErrorKind::zero_volume, {.item = "cavity '" + this->name() + "'"},

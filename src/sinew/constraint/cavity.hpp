@@ -10,16 +10,19 @@
 
 namespace sinew::constraint {
 
-/// A triangle or quadrilateral of a cavity's surface.
+/// A triangle, quadratic triangle or quadrilateral of a cavity's surface.
 struct CavityFace {
   /// Positions in the cavity's points, counter-clockwise seen from the material, so that the normal
   /// points out of the fluid; the last one -1 for a triangle.
   std::array<int, 4> corner{-1, -1, -1, -1};
+  /// Of a quadratic triangle: middle nodes behind each corner.
+  std::array<int, 3> middle{-1, -1, -1};
 };
 
 /// One row: effort = pressure p above that outside (Pa, either sign), delta = V - V_0 (m^3), the
 /// volume gained. V = sum over triangles of x_a . (x_b x x_c)/6; a quadrilateral counts as the mean
-/// of its two splits, which is the volume under the bilinear patch. d(delta)/dx_a is then the
+/// of its two splits, which is the volume under the bilinear patch, a quadratic triangle as the
+/// weighted sum over the twenty triangles of its six nodes that integrates x . n/3 over it. d(delta)/dx_a is then the
 /// consistent nodal force of unit pressure, and it follows the surface; its derivative, the load
 /// stiffness p d2V/dx2, is symmetric since V is a function of the positions (Rumpel & Schweizerhof,
 /// Int. J. Numer. Meth. Eng. 57, 2003). An edge (a, b) with the triangle's third corner c has

@@ -83,7 +83,7 @@ class FemBody : public mechanics::Body {
   Vector3 weighted(const Points& field, int point) const;
   /// (3,) N on a mesh node.
   Vector3 weight(NodeId node) const {
-    return model_.elements().lumped_mass()[node] * model_.settings().gravity;
+    return model_.elements().load_mass()[node] * model_.settings().gravity;
   }
 
   const FemBodyModel& model_;

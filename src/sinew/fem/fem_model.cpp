@@ -67,10 +67,11 @@ std::vector<std::int32_t> assign_regions(const mesh::Mesh& mesh,
              fmt::format("{} is in regions {} and {}", list.name(e), region, r),
              "let regions not overlap");
       }
-      if (!list.is_tetrahedron(e) && !regions[r].hyperelastic) {
+      if (!list.is_linear_tetrahedron(e) && !regions[r].hyperelastic) {
         fail(ErrorKind::unsupported_element,
              fmt::format("{} has a linear or corotational material", list.name(e)),
-             "give hexahedra a hyperelastic one, for instance neo-hookean");
+             "give hexahedra and quadratic tetrahedra a hyperelastic one, for instance "
+             "neo-hookean");
       }
       region = static_cast<std::int32_t>(r);
     }
@@ -174,6 +175,7 @@ FemModel::FemModel(std::shared_ptr<const mesh::Mesh> mesh, const FemModelSetting
   volume_ = std::accumulate(volumes.begin(), volumes.end(), 0.0);
   const std::vector<double> masses = element_masses(settings, region_of, volumes);
   lumped_mass_ = lumped_masses(*mesh_, settings, masses);
+  load_mass_ = mesh_->quadratic.empty() ? lumped_mass_ : load_masses(*mesh_, settings, masses);
   total_mass_ = lumped_mass_.sum();
   free_mass_.reserve(free_nodes_.size());
   for (const NodeId node : free_nodes_) free_mass_.push_back(lumped_mass_[node]);

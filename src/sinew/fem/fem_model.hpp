@@ -90,8 +90,12 @@ class FemModel {
   std::span<const std::int64_t> held_entries() const { return held_entries_; }
   std::span<const std::int64_t> held_diagonals() const { return held_diagonals_; }
 
-  /// (n,) kg at each mesh node: row sums of the mass matrix before any node is removed.
+  /// (n,) kg at each mesh node, positive, before any node is removed: row sums of the mass matrix,
+  /// for quadratic tetrahedra its diagonal scaled to the mass.
   const VectorX& lumped_mass() const { return lumped_mass_; }
+  /// (n,) kg at each mesh node: row sums of the mass matrix, what gravity acts on; negative at
+  /// corners of quadratic tetrahedra.
+  const VectorX& load_mass() const { return load_mass_; }
   double total_mass() const { return total_mass_; }  ///< kg
   double volume() const { return volume_; }          ///< m^3 at rest
   bool has_consistent_mass() const { return !mass_blocks_.empty(); }
@@ -117,7 +121,7 @@ class FemModel {
   std::unique_ptr<const ElementBatches> elements_;
   std::vector<SolidGroup> solids_;
   std::unique_ptr<const GatherLists> gather_;
-  VectorX lumped_mass_;
+  VectorX lumped_mass_, load_mass_;
   std::vector<double> free_mass_, mass_blocks_;
   std::vector<std::int32_t> held_;
   std::vector<std::int64_t> held_entries_, held_diagonals_;

@@ -10,6 +10,7 @@
 #include "sinew/core/error.hpp"
 #include "sinew/fem/solid_elements.hpp"
 #include "sinew/mesh/hexahedron.hpp"
+#include "sinew/mesh/quadratic.hpp"
 
 namespace sinew::fem {
 
@@ -43,6 +44,13 @@ class ElementMass {
     for (std::size_t b = 0; b < nodes_; ++b) sum += of(a, b);
     return sum;
   }
+  /// Positive: the row sum, or for quadratic elements the scaled diagonal.
+  double lump(std::size_t a) const {
+    if (nodes_ != 10) return row_sum(a);
+    double trace = 0.0;
+    for (std::size_t b = 0; b < nodes_; ++b) trace += of(b, b);
+    return of(a, a) / trace;
+  }
 
  private:
   std::size_t nodes_;
@@ -56,6 +64,15 @@ ElementMass element_mass(const mesh::Mesh& mesh, const ElementList& list, int el
   if (nodes.size() == 4) {
     for (std::size_t a = 0; a < 4; ++a) {
       for (std::size_t b = 0; b < 4; ++b) result.at(a, b) = a == b ? 0.1 : 0.05;
+    }
+    return result;
+  }
+  if (nodes.size() == 10) {
+    const auto& products = mesh::quadratic_products();
+    for (std::size_t a = 0; a < 10; ++a) {
+      for (std::size_t b = 0; b < 10; ++b) {
+        result.at(a, b) = products(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
+      }
     }
     return result;
   }
@@ -97,6 +114,30 @@ std::vector<double> element_masses(const FemModelSettings& settings,
   return masses;
 }
 
+namespace {
+
+template <typename Share>
+VectorX spread(const mesh::Mesh& mesh, const FemModelSettings& settings,
+               std::span<const double> masses, Share share) {
+  VectorX result = VectorX::Zero(mesh.node_count());
+  const ElementList list(mesh);
+  for (int e = 0; e < list.count(); ++e) {
+    const auto nodes = list.nodes(e);
+    const ElementMass shares = element_mass(mesh, list, e);
+    for (std::size_t a = 0; a < nodes.size(); ++a) {
+      if (settings.even_mass) {
+        result[nodes[a]] = 1.0;
+      } else {
+        result[nodes[a]] += masses[static_cast<std::size_t>(e)] * share(shares, a);
+      }
+    }
+  }
+  if (settings.even_mass) result *= *settings.total_mass / result.sum();
+  return result;
+}
+
+}  // namespace
+
 VectorX lumped_masses(const mesh::Mesh& mesh, const FemModelSettings& settings,
                       std::span<const double> masses) {
   if (settings.even_mass && !settings.total_mass) {
@@ -109,21 +150,14 @@ VectorX lumped_masses(const mesh::Mesh& mesh, const FemModelSettings& settings,
                 "masses spread evenly over nodes have no consistent matrix",
                 "choose the lumped mass matrix");
   }
-  VectorX result = VectorX::Zero(mesh.node_count());
-  const ElementList list(mesh);
-  for (int e = 0; e < list.count(); ++e) {
-    const auto nodes = list.nodes(e);
-    const ElementMass shares = element_mass(mesh, list, e);
-    for (std::size_t a = 0; a < nodes.size(); ++a) {
-      if (settings.even_mass) {
-        result[nodes[a]] = 1.0;
-      } else {
-        result[nodes[a]] += masses[static_cast<std::size_t>(e)] * shares.row_sum(a);
-      }
-    }
-  }
-  if (settings.even_mass) result *= *settings.total_mass / result.sum();
-  return result;
+  return spread(mesh, settings, masses,
+                [](const ElementMass& shares, std::size_t a) { return shares.lump(a); });
+}
+
+VectorX load_masses(const mesh::Mesh& mesh, const FemModelSettings& settings,
+                    std::span<const double> masses) {
+  return spread(mesh, settings, masses,
+                [](const ElementMass& shares, std::size_t a) { return shares.row_sum(a); });
 }
 
 std::vector<double> consistent_mass_blocks(const mesh::Mesh& mesh,

@@ -10,6 +10,7 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/mesh/hexahedron.hpp"
+#include "sinew/mesh/quadratic.hpp"
 
 namespace sinew::fem {
 
@@ -46,6 +47,12 @@ std::vector<PointConstants> constants_of(const mesh::Mesh& mesh, std::span<const
     return {point_constants(local, x, 1.0 / 6.0)};
   }
   std::vector<PointConstants> result;
+  if (nodes.size() == 10) {
+    for (const auto& point : mesh::quadratic_points()) {
+      result.push_back(point_constants(mesh::quadratic_gradients(point), x, 1.0 / 24.0));
+    }
+    return result;
+  }
   for (const Vector3& point : mesh::hexahedron_points()) {
     result.push_back(point_constants(mesh::hexahedron_gradients(point), x, 1.0));
   }
@@ -139,7 +146,7 @@ std::vector<SolidGroup> make_solid_groups(const mesh::Mesh& mesh, std::span<cons
   for (const auto& [kind, elements] : sorted_elements(mesh, regions, region_of, rank)) {
     SolidGroup group;
     group.nodes = static_cast<int>(kind.first);
-    group.points = kind.first == 8 ? 8 : 1;
+    group.points = kind.first == 8 ? 8 : kind.first == 10 ? 4 : 1;
     group.law = *regions[static_cast<std::size_t>(kind.second)].hyperelastic;
     group.first_slot = slot;
     group.first_force = force;

@@ -9,7 +9,9 @@
 ///   b_a = integral of cof F g_a dV,
 /// symmetric since it derives from an energy. A linear tetrahedron has one point: Jm is its J.
 /// Hexahedra have eight Gauss points and do not lock in volume (mixed form Q1P0, pressure and
-/// dilatation condensed). Saint Venant-Kirchhoff has no volumetric part to be set apart.
+/// dilatation condensed); quadratic tetrahedra have four points, and with one pressure each (P2P0)
+/// fulfil the inf-sup condition (Boffi, Brezzi, Fortin, "Mixed Finite Element Methods and
+/// Applications", 2013, section 8.6). Saint Venant-Kirchhoff has no volumetric part to be set apart.
 #pragma once
 
 #include <cstdint>
@@ -30,8 +32,8 @@ inline constexpr int kSolidBlock = 12;
 /// Elements of one kind and law. Slot s = 8 batch + lane; lanes that fill up a batch repeat its
 /// last element with weights 0.
 struct SolidGroup {
-  int nodes = 4;   ///< of an element: 4 or 8
-  int points = 1;  ///< of integration: 1 or 8
+  int nodes = 4;   ///< of an element: 4, 8 or 10
+  int points = 1;  ///< of integration: 1, 8 or 4
   material::Hyperelastic law;
   /// [batch][point][3 a + c]: g_a component c (1/m), then the point's weight w det J (m^3).
   std::vector<LaneRow> constants;
@@ -43,7 +45,9 @@ struct SolidGroup {
 
   int batches() const { return static_cast<int>(element.size()) / material::kLanes; }
   int rows_per_point() const { return 3 * nodes + 1; }
-  int pairs() const { return nodes * (nodes + 1) / 2; }
+  /// Blocks of an element's record: one for each pair of nodes, and one of filling where their
+  /// number is odd.
+  int pairs() const { return (nodes * (nodes + 1) / 2 + 1) / 2 * 2; }
   /// Mesh node of local node a.
   NodeId node_of(std::size_t slot, std::size_t a) const {
     const auto count = static_cast<std::size_t>(nodes);
@@ -66,11 +70,16 @@ class ElementList {
  public:
   explicit ElementList(const mesh::Mesh& mesh) : mesh_(mesh) {}
   int count() const { return static_cast<int>(mesh_.tetrahedra.size() + mesh_.hexahedra.size()); }
+  /// Whether the linear and corotational laws know it.
+  bool is_linear_tetrahedron(int element) const {
+    return is_tetrahedron(element) && mesh_.quadratic.empty();
+  }
   bool is_tetrahedron(int element) const {
     return static_cast<std::size_t>(element) < mesh_.tetrahedra.size();
   }
   std::span<const NodeId> nodes(int element) const {
     const auto e = static_cast<std::size_t>(element);
+    if (e < mesh_.quadratic.size()) return mesh_.quadratic[e];
     if (is_tetrahedron(element)) return mesh_.tetrahedra[e];
     return mesh_.hexahedra[e - mesh_.tetrahedra.size()];
   }

@@ -87,7 +87,7 @@ SINEW_INLINE Dilatation mean_dilatation(const Batch<N, Q>& batch, const Lanes3x3
 /// Stiffness and forces of eight elements, summed over points.
 template <int N>
 struct Sums {
-  static constexpr int kPairs = N * (N + 1) / 2;
+  static constexpr int kPairs = (N * (N + 1) / 2 + 1) / 2 * 2;  // as SolidGroup::pairs()
   Lanes force[N][3] = {};
   Lanes spread[N][3] = {};  // b_a = dV/dx_a
   Lanes block[kPairs][9] = {};
@@ -157,7 +157,6 @@ struct Sums {
   }
   SINEW_INLINE void store_blocks(double* records) const {
     constexpr int kRecord = kSolidBlock * kPairs;
-    static_assert(kPairs % 2 == 0);
     for (int pair = 0; pair < kPairs; pair += 2) {
       Lanes rows[2 * kSolidBlock];
       for (int k = 0; k < 2; ++k) {
@@ -358,6 +357,8 @@ SmallestRatio evaluate_solids(const SolidGroup& group, int begin, int end, const
     evaluate_neo_hookean<Tangent::none>(group, begin, end, points, output, minimum);
   } else if (group.nodes == 4) {
     evaluate_kind<4, 1>(group, begin, end, points, tangent, output, minimum);
+  } else if (group.nodes == 10) {
+    evaluate_kind<10, 4>(group, begin, end, points, tangent, output, minimum);
   } else {
     evaluate_kind<8, 8>(group, begin, end, points, tangent, output, minimum);
   }
@@ -368,6 +369,8 @@ SmallestRatio measure_solids(const SolidGroup& group, int begin, int end, const 
   LaneMinimum minimum;
   if (group.nodes == 4) {
     measure<4, 1>(group, begin, end, points, minimum);
+  } else if (group.nodes == 10) {
+    measure<10, 4>(group, begin, end, points, minimum);
   } else {
     measure<8, 8>(group, begin, end, points, minimum);
   }
@@ -378,6 +381,8 @@ void measure_batch(const SolidGroup& group, int batch, const double* points,
                    std::span<SolidMeasures> result) {
   if (group.nodes == 4) {
     measure_fields<4, 1>(group, batch, points, result);
+  } else if (group.nodes == 10) {
+    measure_fields<10, 4>(group, batch, points, result);
   } else {
     measure_fields<8, 8>(group, batch, points, result);
   }

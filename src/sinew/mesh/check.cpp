@@ -1,5 +1,7 @@
 #include "sinew/mesh/check.hpp"
 
+#include "sinew/mesh/quadratic.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -254,6 +256,14 @@ int reorder_elements(Mesh& mesh) {
     if (!(signed_volume(corners_of(mesh, e)) < 0.0)) continue;
     auto& nodes = mesh.tetrahedra[static_cast<std::size_t>(e)];
     std::swap(nodes[2], nodes[3]);
+    if (!mesh.quadratic.empty()) {
+      const QuadraticTetrahedron before = mesh.quadratic[static_cast<std::size_t>(e)];
+      QuadraticTetrahedron& after = mesh.quadratic[static_cast<std::size_t>(e)];
+      std::copy(nodes.begin(), nodes.end(), after.begin());
+      for (std::size_t k = 0; k < kEdges.size(); ++k) {
+        after[4 + k] = middle_node(before, nodes[kEdges[k][0]], nodes[kEdges[k][1]]);
+      }
+    }
     ++reordered;
   }
   for (Hexahedron& nodes : mesh.hexahedra) {

@@ -14,6 +14,7 @@
 #include "sinew/core/error.hpp"
 #include "sinew/mesh/distance.hpp"
 #include "sinew/mesh/hexahedron.hpp"
+#include "sinew/mesh/quadratic.hpp"
 #include "sinew/mesh/quality.hpp"
 
 namespace sinew::mesh {
@@ -46,6 +47,7 @@ struct Embedder::Tree {
   // Of tetrahedra, and behind them of hexahedra, six each.
   std::vector<Corners> corners;
   std::vector<Tetrahedron> nodes;
+  std::vector<QuadraticTetrahedron> quadratic;
   std::size_t tetrahedra = 0;
   std::vector<Hexahedron> hexahedra;
   std::vector<Eigen::Matrix<double, 8, 3>> hexahedron_corners;
@@ -77,6 +79,7 @@ struct Embedder::Tree {
 Embedder::Tree::Tree(const Mesh& mesh)
     : name(mesh.name),
       nodes(mesh.tetrahedra),
+      quadratic(mesh.quadratic),
       tetrahedra(mesh.tetrahedra.size()),
       hexahedra(mesh.hexahedra) {
   for (const Hexahedron& hexahedron : hexahedra) {
@@ -238,6 +241,12 @@ EmbeddedPoint Embedder::locate(const Vector3& point, Outside outside,
   }
   const auto p = static_cast<std::size_t>(part);
   const auto weights = barycentric_weights(point, tree_->corners[p]);
+  if (inside && !tree_->quadratic.empty()) {
+    const auto shapes = quadratic_shapes(weights);
+    result.nodes.assign(tree_->quadratic[p].begin(), tree_->quadratic[p].end());
+    result.weights.assign(shapes.begin(), shapes.end());
+    return result;
+  }
   result.nodes.assign(tree_->nodes[p].begin(), tree_->nodes[p].end());
   result.weights.assign(weights.begin(), weights.end());
   return result;

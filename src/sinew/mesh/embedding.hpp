@@ -20,7 +20,7 @@ enum class Outside {
 
 /// x = sum_k weights[k] * nodes[k]; weights sum to 1.
 struct EmbeddedPoint {
-  std::vector<NodeId> nodes;    ///< of the element, or four of a hexahedron's
+  std::vector<NodeId> nodes;    ///< of the element, or its corners, or four of a hexahedron's
   std::vector<double> weights;  ///< as many
   int element = -1;             ///< that carries the point: tetrahedra, then hexahedra
   double distance = 0.0;        ///< m, from the nearest element; 0 inside
@@ -28,7 +28,8 @@ struct EmbeddedPoint {
 
 /// Finds the element that holds a point (bounding-volume tree; O(log n) a query). Ties on faces go
 /// to the lowest element number, so that results do not depend on the tree. Hexahedra are searched
-/// as six tetrahedra round the diagonal 0-6; points inside get trilinear weights.
+/// as six tetrahedra round the diagonal 0-6; points inside get trilinear weights. Quadratic
+/// tetrahedra are searched as their corners, and points inside get quadratic weights.
 class Embedder {
  public:
   explicit Embedder(const Mesh& mesh);

@@ -13,6 +13,8 @@ namespace sinew::mesh {
 
 /// Four node numbers; positively oriented: (x1-x0) . ((x2-x0) x (x3-x0)) > 0, as VTK and Gmsh.
 using Tetrahedron = std::array<NodeId, 4>;
+/// The corners of a tetrahedron, then the middle nodes of its edges 01, 12, 20, 03, 13, 23, as VTK.
+using QuadraticTetrahedron = std::array<NodeId, 10>;
 /// Eight node numbers in VTK_HEXAHEDRON order.
 using Hexahedron = std::array<NodeId, 8>;
 /// Three node numbers, counter-clockwise seen from outside.
@@ -31,6 +33,9 @@ struct Mesh {
   std::string name;  ///< file name or what made it, for messages
   Points nodes;      ///< (n, 3) m
   std::vector<Tetrahedron> tetrahedra;
+  /// With middle nodes, in the order of `tetrahedra`, which are then their corners; empty for linear
+  /// ones. A mesh has one kind.
+  std::vector<QuadraticTetrahedron> quadratic;
   std::vector<Hexahedron> hexahedra;
   std::vector<Triangle> triangles;  ///< surface triangles that the file holds; may be empty
 

@@ -41,6 +41,8 @@ std::size_t points_of(std::int64_t type) {
     case kVoxel:
     case kHexahedron:
       return 8;
+    case kQuadraticTetrahedron:
+      return 10;
     default:
       return 0;
   }
@@ -49,7 +51,7 @@ std::size_t points_of(std::int64_t type) {
 /// Volume cells that Sinew cannot simulate must not vanish silently.
 bool is_unsupported_volume(std::int64_t type) {
   const bool linear = type == kWedge || type == kPyramid || type == 15 || type == 16;
-  const bool quadratic = (type >= 24 && type <= 29) || type == 32 || type == 33 || type == 37;
+  const bool quadratic = (type >= 25 && type <= 29) || type == 32 || type == 33 || type == 37;
   const bool arbitrary = type == 42 || (type >= 71 && type <= 74) || (type >= 78 && type <= 81);
   return linear || quadratic || arbitrary;
 }
@@ -84,9 +86,9 @@ void check_cell(const RawMesh& raw, std::size_t c) {
   const std::int64_t type = raw.types[c];
   if (is_unsupported_volume(type)) {
     fail(raw, ErrorKind::unsupported_element,
-         fmt::format("cell {} is a {}; only linear tetrahedra and hexahedra are simulated", c,
+         fmt::format("cell {} is a {}; only tetrahedra and linear hexahedra are simulated", c,
                      cell_type_name(type)),
-         "mesh with linear tetrahedra (in Gmsh: Mesh.ElementOrder = 1)");
+         "mesh with tetrahedra (in Gmsh: Mesh.ElementOrder = 1 or 2)");
   }
   const auto count = static_cast<std::size_t>(raw.offsets[c + 1] - raw.offsets[c]);
   if (points_of(type) != 0 && points_of(type) != count) {
@@ -128,6 +130,12 @@ Destination place_cell(const RawMesh& raw, std::size_t c, Mesh& mesh) {
       return {List::triangles, append(mesh.triangles, nodes_of<3>(raw, c))};
     case kTetrahedron:
       return {List::tetrahedra, append(mesh.tetrahedra, nodes_of<4>(raw, c))};
+    case kQuadraticTetrahedron: {
+      const auto nodes = nodes_of<10>(raw, c);
+      mesh.quadratic.push_back(nodes);
+      return {List::tetrahedra, append(mesh.tetrahedra, Tetrahedron{nodes[0], nodes[1], nodes[2],
+                                                                    nodes[3]})};
+    }
     case kHexahedron:
       return {List::hexahedra, append(mesh.hexahedra, nodes_of<8>(raw, c))};
     case kVoxel: {
@@ -266,6 +274,15 @@ Mesh assemble(const RawMesh& raw) {
   for (std::size_t c = 0; c < raw.cell_count(); ++c) {
     check_cell(raw, c);
     where[c] = place_cell(raw, c, mesh);
+  }
+  const bool mixed = !mesh.quadratic.empty() && (mesh.quadratic.size() != mesh.tetrahedra.size() ||
+                                                 !mesh.hexahedra.empty());
+  if (mixed) {
+    fail(raw, ErrorKind::unsupported_element,
+         fmt::format("{} quadratic tetrahedra stand beside {} linear tetrahedra and {} hexahedra",
+                     mesh.quadratic.size(), mesh.tetrahedra.size() - mesh.quadratic.size(),
+                     mesh.hexahedra.size()),
+         "mesh with one kind of element");
   }
   make_sets(raw, where, mesh);
   return mesh;

@@ -137,6 +137,11 @@ Sets extend_node_sets(const Sets& sets, NodeId old_nodes,
 }
 
 void check_input(const Mesh& mesh) {
+  if (!mesh.quadratic.empty()) {
+    throw Error(ErrorKind::unsupported_element, {.file = mesh.name},
+                "the mesh has quadratic tetrahedra; only linear ones are refined",
+                "refine before middle nodes are added");
+  }
   if (!mesh.hexahedra.empty()) {
     throw Error(ErrorKind::unsupported_element, {.file = mesh.name},
                 fmt::format("the mesh has {} hexahedra; only tetrahedra are refined",

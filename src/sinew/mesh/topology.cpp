@@ -5,6 +5,8 @@
 #include <tuple>
 #include <utility>
 
+#include "sinew/mesh/quadratic.hpp"
+
 namespace sinew::mesh {
 
 namespace {
@@ -50,7 +52,10 @@ class UnionFind {
 
 template <typename Visit>
 void for_each_element(const Mesh& mesh, const Visit& visit) {
-  for (const Tetrahedron& element : mesh.tetrahedra) visit(element);
+  for (const QuadraticTetrahedron& element : mesh.quadratic) visit(element);
+  if (mesh.quadratic.empty()) {
+    for (const Tetrahedron& element : mesh.tetrahedra) visit(element);
+  }
   for (const Hexahedron& element : mesh.hexahedra) visit(element);
 }
 
@@ -69,7 +74,7 @@ void append_hexahedron_faces(const Mesh& mesh, std::vector<Face>& result) {
   for (std::size_t i = 0; i < faces.size();) {
     std::size_t end = i + 1;
     while (end < faces.size() && faces[end].first == faces[i].first) ++end;
-    if (end == i + 1) result.push_back({faces[i].second});
+    if (end == i + 1) result.push_back({.node = faces[i].second});
     i = end;
   }
 }
@@ -113,7 +118,14 @@ std::vector<Face> boundary_faces(const Mesh& mesh) {
     if (end == i + 1) {
       Triangle face = uses[i].key;
       if (!uses[i].even) std::swap(face[1], face[2]);
-      result.push_back({{face[0], face[1], face[2], -1}});
+      Face& outside = result.emplace_back();
+      std::copy(face.begin(), face.end(), outside.node.begin());
+      if (!mesh.quadratic.empty()) {
+        const auto& element = mesh.quadratic[static_cast<std::size_t>(uses[i].tetrahedron)];
+        for (std::size_t k = 0; k < 3; ++k) {
+          outside.middle[k] = middle_node(element, face[k], face[(k + 1) % 3]);
+        }
+      }
     }
     i = end;
   }
@@ -125,6 +137,14 @@ Surface boundary_surface(const Mesh& mesh) {
   Surface surface{.name = mesh.name, .nodes = mesh.nodes, .triangles = {}};
   for (Face face : boundary_faces(mesh)) {
     auto& n = face.node;
+    if (face.is_quadratic()) {
+      const auto& m = face.middle;
+      surface.triangles.insert(surface.triangles.end(), {{n[0], m[0], m[2]},
+                                                         {m[0], n[1], m[1]},
+                                                         {m[2], m[1], n[2]},
+                                                         {m[0], m[1], m[2]}});
+      continue;
+    }
     if (face.corners() == 4) {  // split at the lowest node
       std::rotate(n.begin(), std::min_element(n.begin(), n.end()), n.end());
       surface.triangles.push_back({n[0], n[2], n[3]});

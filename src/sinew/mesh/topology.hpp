@@ -30,7 +30,10 @@ std::vector<FaceUse> face_uses(const Mesh& mesh);
 /// A face of a volume element, counter-clockwise seen from outside the element.
 struct Face {
   std::array<NodeId, 4> node{-1, -1, -1, -1};  ///< the last one -1 for a triangle
+  /// Of a quadratic triangle: between corner k and k + 1.
+  std::array<NodeId, 3> middle{-1, -1, -1};
   int corners() const { return node[3] < 0 ? 3 : 4; }
+  bool is_quadratic() const { return middle[0] >= 0; }
   std::span<const NodeId> nodes() const {
     return {node.data(), static_cast<std::size_t>(corners())};
   }

@@ -124,7 +124,11 @@ void write_cells(const Mesh& mesh, const VtuFields& fields, VtuBuilder& out) {
       types.push_back(static_cast<std::uint8_t>(type));
     }
   };
-  add(mesh.tetrahedra, kTetrahedron, mesh.tetrahedra.size());
+  if (mesh.quadratic.empty()) {
+    add(mesh.tetrahedra, kTetrahedron, mesh.tetrahedra.size());
+  } else {
+    add(mesh.quadratic, kQuadraticTetrahedron, mesh.quadratic.size());
+  }
   add(mesh.hexahedra, kHexahedron, mesh.hexahedra.size());
   add(mesh.triangles, kTriangle, written_triangles(mesh, fields));
   out.line("      <Cells>");

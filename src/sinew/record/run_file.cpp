@@ -131,6 +131,12 @@ mesh::Mesh RunFile::rest_mesh(std::string_view body) const {
   };
   read("/tetrahedra", mesh.tetrahedra);
   read("/hexahedra", mesh.hexahedra);
+  if (file.has(folder + "/quadratic")) {
+    read("/quadratic", mesh.quadratic);
+    if (mesh.quadratic.size() != mesh.tetrahedra.size()) {
+      file.fail(folder + " has quadratic tetrahedra without their corners");
+    }
+  }
   return mesh;
 }
 

@@ -65,6 +65,7 @@ void RunStates::declare_bodies(bool states) {
                     std::span<const std::int32_t>(first, corners * list.size()));
     };
     elements("/tetrahedra", mesh.tetrahedra);
+    if (!mesh.quadratic.empty()) elements("/quadratic", mesh.quadratic);
     elements("/hexahedra", mesh.hexahedra);
     if (!states) continue;
     positions_.push_back(declare("/positions/" + name, {nodes, 3}, "m"));
@@ -76,8 +77,8 @@ void RunStates::declare_actuators() {
   file_.group("/actuators");
   for (const sim::ActuatorModel& actuator : simulation_.model().actuators()) {
     const std::string folder = "/actuators/" + actuator.name;
-    efforts_.push_back(declare(folder + "/effort", {}, "N"));
-    motions_.push_back(declare(folder + "/motion", {}, "m"));
+    efforts_.push_back(declare(folder + "/effort", {}, actuator.effort_name().unit));
+    motions_.push_back(declare(folder + "/motion", {}, actuator.motion_name().unit));
     file_.attribute(folder, "type", std::string_view(actuator_type_name(actuator.type)));
   }
 }

@@ -49,17 +49,21 @@ mesh::Region region_of(const FixedRegion& fixed) {
 
 void check_element(const BodyDescription& body, const mesh::Mesh& mesh) {
   const bool tetrahedra = !mesh.tetrahedra.empty(), hexahedra = !mesh.hexahedra.empty();
-  const bool other =
-      (body.element == Element::tet4 && hexahedra) || (body.element == Element::hex8 && tetrahedra);
+  const bool quadratic = !mesh.quadratic.empty();
+  const bool other = (body.element == Element::tet4 && (hexahedra || quadratic)) ||
+                     (body.element == Element::hex8 && tetrahedra);
   if (other) {
     throw Error(ErrorKind::unsupported_element, body.element_place,
-                fmt::format("the mesh has {}", tetrahedra ? "tetrahedra" : "hexahedra"),
+                fmt::format("the mesh has {}", quadratic    ? "quadratic tetrahedra"
+                                               : tetrahedra ? "tetrahedra"
+                                                            : "hexahedra"),
                 "leave `element` out, or give another mesh");
   }
-  if (hexahedra && body.material.model != MaterialModel::hyperelastic) {
+  if ((hexahedra || quadratic) && body.material.model != MaterialModel::hyperelastic) {
     throw Error(ErrorKind::unsupported_element, body.material.place,
-                "the mesh has hexahedra, and the material is linear or corotational",
-                "give hexahedra a hyperelastic one, for instance model: neo-hookean");
+                fmt::format("the mesh has {}, and the material is linear or corotational",
+                            hexahedra ? "hexahedra" : "quadratic tetrahedra"),
+                "give them a hyperelastic one, for instance model: neo-hookean");
   }
 }
 

@@ -365,7 +365,9 @@ std::shared_ptr<const KeyTable> fem_table() {
        .required = true},
       {.name = "element",
        .forms = {choice({{"tet4", "Linear tetrahedra."},
-                         {"tet10", "Quadratic tetrahedra.", true},
+                         {"tet10",
+                          "Quadratic tetrahedra, one pressure each: no locking. A linear mesh gets "
+                          "middle nodes. For hyperelastic materials."},
                          {"hex8",
                           "Trilinear hexahedra with the pressure of their mean dilatation: "
                           "no locking in volume. For hyperelastic materials."}})},

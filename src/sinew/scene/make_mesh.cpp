@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "sinew/mesh/quadratic.hpp"
 #include "sinew/mesh/read.hpp"
 #include "sinew/mesh/shapes.hpp"
 #include "sinew/scene/build.hpp"
@@ -133,13 +134,17 @@ mesh::Mesh make_shape(const MeshDescription& description, mesh::Cells cells) {
 
 mesh::Mesh make_mesh(const MeshDescription& description, Element element) {
   try {
-    if (!description.shape.empty())
-      return make_shape(
-          description, element == Element::hex8 ? mesh::Cells::hexahedra : mesh::Cells::tetrahedra);
-    mesh::ReadOptions options;
-    options.unit = description.unit;
-    options.unit_given = description.unit_place.line > 0 || description.unit != 1.0;
-    return mesh::read_mesh(description.file, options);
+    const auto linear = [&] {
+      if (!description.shape.empty()) {
+        return make_shape(description, element == Element::hex8 ? mesh::Cells::hexahedra
+                                                                : mesh::Cells::tetrahedra);
+      }
+      mesh::ReadOptions options;
+      options.unit = description.unit;
+      options.unit_given = description.unit_place.line > 0 || description.unit != 1.0;
+      return mesh::read_mesh(description.file, options);
+    };
+    return element == Element::tet10 ? mesh::with_middle_nodes(linear()) : linear();
   } catch (const Error& error) {
     throw error.at(description.place);
   }

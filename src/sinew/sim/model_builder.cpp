@@ -211,19 +211,39 @@ class CavityParts {
     // Out of the material is into the fluid: turned round.
     for (const mesh::Face& face : patch) {
       const auto& n = face.node;
-      if (face.corners() == 3) {
+      if (face.is_quadratic()) {
+        const auto& m = face.middle;
+        faces.push_back({{number(n[2]), number(n[1]), number(n[0]), -1},
+                         {number(m[1]), number(m[0]), number(m[2])}});
+      } else if (face.corners() == 3) {
         faces.push_back({{number(n[2]), number(n[1]), number(n[0]), -1}});
       } else {
         faces.push_back({{number(n[3]), number(n[2]), number(n[1]), number(n[0])}});
       }
     }
     if (!cap) return;
+    std::map<std::pair<NodeId, NodeId>, NodeId> middles;  // of the patch's quadratic edges
+    for (const mesh::Face& face : patch) {
+      for (std::size_t k = 0; face.is_quadratic() && k < 3; ++k) {
+        middles[std::minmax(face.node[k], face.node[(k + 1) % 3])] = face.middle[k];
+      }
+    }
     for (const std::vector<NodeId>& loop : mesh::open_loops(patch)) {
-      const int middle = static_cast<int>(points.size());
-      add_mean(loop);
+      const int hub = add_spoke(loop, -1);
+      // A quadratic rim needs quadratic lids, with straight spokes to the hub.
+      std::map<NodeId, int> spokes;
+      const auto spoke = [&](NodeId node) {
+        const auto [found, is_new] = spokes.insert({node, static_cast<int>(points.size())});
+        if (is_new) add_spoke(loop, node);
+        return found->second;
+      };
       for (std::size_t k = 0; k < loop.size(); ++k) {
-        const int a = number(loop[k]), b = number(loop[(k + 1) % loop.size()]);
-        faces.push_back({{b, a, middle, -1}});
+        const NodeId from = loop[k], to = loop[(k + 1) % loop.size()];
+        constraint::CavityFace lid{{number(to), number(from), hub, -1}};
+        if (const auto middle = middles.find(std::minmax(from, to)); middle != middles.end()) {
+          lid.middle = {number(middle->second), spoke(from), spoke(to)};
+        }
+        faces.push_back(lid);
       }
     }
   }
@@ -255,6 +275,16 @@ class CavityParts {
   void add_mean(const std::vector<NodeId>& nodes) {
     const std::vector<double> weights(nodes.size(), 1.0 / static_cast<double>(nodes.size()));
     add(body_.attach_nodes(nodes, weights));
+  }
+  /// The mean of a loop, or the point half way from it to a node of the loop.
+  int add_spoke(const std::vector<NodeId>& loop, NodeId node) {
+    const double share = (node < 0 ? 1.0 : 0.5) / static_cast<double>(loop.size());
+    std::vector<double> weights(loop.size(), share);
+    for (std::size_t k = 0; k < loop.size(); ++k) {
+      if (loop[k] == node) weights[k] += 0.5;
+    }
+    add(body_.attach_nodes(loop, weights));
+    return static_cast<int>(points.size()) - 1;
   }
 
   mechanics::BodyModel& body_;
