@@ -221,7 +221,7 @@ MESHES = [
     mesh("gmsh-version-3", "unsupported-version", "m.msh:2", ["3"], "m.msh", msh("2.2 0 8", "3.0 0 8")),
     mesh("gmsh-element-without-nodes", "index-out-of-range", "m.msh:13", ["9"], "m.msh", msh("1 4 2 1 1 1 2 3 4", "1 4 2 1 1 1 2 3 9")),
     mesh("gmsh-cut-short", "truncated-file", "m.msh:11", [], "m.msh", GMSH[:90]),
-    mesh("gmsh-of-second-order", "unsupported-element", "m.msh", ["quadratic tetrahedron"], "m.msh", msh("1 4 2 1 1 1 2 3 4", "1 11 2 1 1 1 2 3 4 1 2 3 4 1 2")),
+    mesh("gmsh-of-second-order", "unsupported-element", "m.msh", ["quadratic hexahedron"], "m.msh", msh("1 4 2 1 1 1 2 3 4", "1 12 2 1 1 " + "1 2 3 " * 9)),
     mesh("stl-for-a-body", "no-volume-elements", "m.stl", [], "m.stl", STL),
     command("surface-with-a-hole", "surface-not-closed", "open.stl", ["open"], "mesh", "{folder}/open.stl", "-o", "{out}/x.vtu", "--size", "1mm", files=(("open.stl", STL),)),
     command("surface-cut-short", "malformed-file", "cut.stl", [], "mesh", "{folder}/cut.stl", "-o", "{out}/x.vtu", "--size", "1mm", files=(("cut.stl", struct.pack("<80sI", b"binary", 1000) + bytes(100)),)),

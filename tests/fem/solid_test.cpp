@@ -359,7 +359,8 @@ TEST(Solid, QuadraticTetrahedraBendExactly) {
   // e_zz = -k (x - a) alone: energy density (lambda + 2 mu)/2 e^2 with the mean dilatation's part
   // taken by element: between that of deviator alone and all of it.
   const double mu = 25e3, lambda = 1e5 - 2.0 / 3.0 * mu;
-  const double moment = kEdge * 3 * kEdge * 2.0 / 3.0 * std::pow(kEdge, 3);  // integral of (x - a)^2
+  const double moment =
+      kEdge * 3 * kEdge * 2.0 / 3.0 * std::pow(kEdge, 3);  // integral of (x - a)^2
   const double full = 0.5 * (lambda + 2.0 * mu) * kCurvature * kCurvature * moment;
   const double deviator = 0.5 * (4.0 / 3.0 * mu) * kCurvature * kCurvature * moment;
   const double found = quadratic.energy(bent(*mesh));
@@ -371,7 +372,9 @@ TEST(Solid, QuadraticTetrahedraBendExactly) {
 TEST(Solid, PointsInsideQuadraticTetrahedraFollowTheirCurve) {
   const auto mesh = box(Kind::quadratic, 2, 2, 2, 0.1);
   const mesh::Embedder embedder(*mesh);
-  const auto field = [](const Vector3& x) { return Vector3(x.y() * x.z(), x.x() * x.x(), 3 * x.z()); };
+  const auto field = [](const Vector3& x) {
+    return Vector3(x.y() * x.z(), x.x() * x.x(), 3 * x.z());
+  };
   std::mt19937 random(5);
   std::uniform_real_distribution<double> uniform(0.2, 1.8);
   for (int k = 0; k < 50; ++k) {
@@ -404,8 +407,8 @@ TEST(Solid, WeightOfQuadraticTetrahedraIsConsistent) {
     Vector3 middle = Vector3::Zero();
     for (std::size_t a = 0; a < 4; ++a) middle += 0.25 * mesh->nodes.row(t[a]).transpose();
     for (int a = 0; a < 3; ++a) {
-      edges.col(a) = (mesh->nodes.row(t[static_cast<std::size_t>(a) + 1]) - mesh->nodes.row(t[0]))
-                         .transpose();
+      edges.col(a) =
+          (mesh->nodes.row(t[static_cast<std::size_t>(a) + 1]) - mesh->nodes.row(t[0])).transpose();
     }
     volume += edges.determinant() / 6.0;
     centre += edges.determinant() / 6.0 * middle;

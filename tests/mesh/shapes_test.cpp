@@ -10,6 +10,7 @@
 #include "sinew/mesh/check.hpp"
 #include "sinew/mesh/embedding.hpp"
 #include "sinew/mesh/hexahedron.hpp"
+#include "sinew/mesh/patch.hpp"
 #include "sinew/mesh/quality.hpp"
 #include "sinew/mesh/refine.hpp"
 #include "sinew/mesh/report.hpp"
@@ -55,29 +56,47 @@ TEST(Shapes, HexahedralBlockMatchesTheTetrahedralOne) {
   EXPECT_EQ(require_sound(hexahedra).hexahedra, 24);
 }
 
-TEST(Shapes, RoundSolidsHaveTheVolumeOfTheirPolygons) {
-  // The outline of `n` corners has the area n/2 sin(2 pi / n) r^2.
-  const auto polygon = [](int n) { return 0.5 * n * std::sin(2 * kPi / n); };
+TEST(Shapes, RoundSolidsHaveTheirVolume) {
   EXPECT_NEAR(
       require_sound(cylinder({.radius = 0.01, .height = 0.1, .rings = 3, .layers = 5})).volume,
-      polygon(18) * 1e-4 * 0.1, 1e-15);
-  // A linear taper within straight prisms: V = h/3 (r0^2 + r0 r1 + r1^2) times the polygon's factor
-  // is met to second order in the layers, from the twisted faces of its tetrahedra.
-  const double taper = 0.1 / 3 * (4e-4 + 2e-4 + 1e-4) * polygon(12);
+      kPi * 1e-4 * 0.1, 1e-15);
+  // A linear taper within straight prisms: V = pi h/3 (r0^2 + r0 r1 + r1^2) is met to second order
+  // in the layers, from the twisted faces of its tetrahedra.
+  const double taper = kPi * 0.1 / 3 * (4e-4 + 2e-4 + 1e-4);
   EXPECT_NEAR(require_sound(cone({})).volume / taper, 1.0, 2e-3);
   const HollowCylinderShape tube{.around = 30};
-  EXPECT_NEAR(require_sound(hollow_cylinder(tube)).volume, polygon(30) * (1.44e-4 - 0.64e-4) * 0.05,
-              1e-15);
+  EXPECT_NEAR(require_sound(hollow_cylinder(tube)).volume, kPi * (1.44e-4 - 0.64e-4) * 0.05, 1e-15);
 }
 
-TEST(Shapes, RoundSolidsOfHexahedraHaveTheVolumeOfTheirPolygons) {
-  const auto polygon = [](int n) { return 0.5 * n * std::sin(2 * kPi / n); };
+TEST(Shapes, TheChamberIsAVoidOfItsVolume) {
+  const ChamberedCylinderShape shape{.chamber_bottom = 0.005};
+  const double whole = kPi * shape.radius * shape.radius * shape.height;
+  const double chamber = kPi * shape.chamber_radius * shape.chamber_radius * 0.055;
+  for (const Cells cells : {Cells::tetrahedra, Cells::hexahedra}) {
+    const Mesh mesh = chambered_cylinder(shape, cells);
+    EXPECT_NEAR(require_sound(mesh).volume, whole - chamber, 1e-13);
+    const auto wall = enclosing_surface(mesh, {shape.chamber_offset, 0.0, 0.03}, "chamber");
+    EXPECT_EQ(wall.size(), select_faces(mesh, NamedRegion{"chamber"}, "chamber").size());
+    EXPECT_TRUE(open_loops(wall).empty());
+    ChamberedCylinderShape open = shape;
+    open.chamber_bottom = 0.0;
+    const Mesh bore = chambered_cylinder(open, cells);
+    const auto loops = open_loops(select_faces(bore, NamedRegion{"chamber"}, "chamber"));
+    ASSERT_EQ(loops.size(), 1U);
+    EXPECT_EQ(loops.front().size(), 16U);
+  }
+  ChamberedCylinderShape wide = shape;
+  wide.chamber_offset = 0.01;
+  EXPECT_THROW(chambered_cylinder(wide), Error);
+}
+
+TEST(Shapes, RoundSolidsOfHexahedraHaveTheirVolume) {
   // Rings 2, 3, 4, 5: a square of 2, 4, 4, 6 cells a side.
   for (const auto& [rings, around] : {std::pair(2, 8), {3, 16}, {4, 16}, {5, 24}}) {
     const Mesh mesh =
         cylinder({.radius = 0.01, .height = 0.1, .rings = rings, .layers = 5}, Cells::hexahedra);
     const MeshReport report = require_sound(mesh);
-    EXPECT_NEAR(report.volume, polygon(around) * 1e-4 * 0.1, 1e-15) << rings;
+    EXPECT_NEAR(report.volume, kPi * 1e-4 * 0.1, 1e-15) << rings;
     EXPECT_EQ(report.tetrahedra, 0);
     EXPECT_EQ(mesh.node_sets.at("side").size(), static_cast<std::size_t>(6 * around)) << rings;
     // Nothing is flat: each cell's smallest Jacobian is a good part of its mean.
@@ -94,8 +113,8 @@ TEST(Shapes, RoundSolidsOfHexahedraHaveTheVolumeOfTheirPolygons) {
     }
   }
   EXPECT_NEAR(require_sound(hollow_cylinder({.around = 30}, Cells::hexahedra)).volume,
-              polygon(30) * (1.44e-4 - 0.64e-4) * 0.05, 1e-15);
-  const double taper = 0.1 / 3 * (4e-4 + 2e-4 + 1e-4) * polygon(8);
+              kPi * (1.44e-4 - 0.64e-4) * 0.05, 1e-15);
+  const double taper = kPi * 0.1 / 3 * (4e-4 + 2e-4 + 1e-4);
   EXPECT_NEAR(require_sound(cone({}, Cells::hexahedra)).volume / taper, 1.0, 2e-3);
   EXPECT_EQ(require_sound(trunk({}, Cells::hexahedra)).tetrahedra, 0);
   error_text(ErrorKind::out_of_range, [] { cylinder({.rings = 1}, Cells::hexahedra); });

@@ -61,14 +61,14 @@ INVALID = {
     "bodies": [{}, []],
     "bodies.tr.unk": [{}],
     "bodies.trunk.type": ["rod", "fen"],
-    "bodies.trunk.element": ["tet10"],
+    "bodies.trunk.element": ["tet5"],
     "bodies.trunk.mass": ["42 mm", -1, "heavy"],
     "bodies.trunk.density": [1000],  # beside mass
     "bodies.trunk.mesh": [{"unit": "mm"}, {"file": "a", "unit": "g"}, {"shape": "ball"},
                           {"shape": "block", "length": 1}],
     "bodies.trunk.material": ["ecoflex-00-03", {"young_modulus": 1}, {"model": "neo-hookean", "shear_modulus": 1}],
     "bodies.trunk.fixed": [[], {}, {"set": "a", "box": "0 0 0 1 1 1"}, {"box": "0 0 0 1 1"}],
-    "actuators.long_0.type": ["pressure", "muscle"],
+    "actuators.long_0.type": ["motor", "muscle"],
     "actuators.long_0.points": [[], ["0 0 0"], {"unit": "mm"}],
     "actuators.long_0.limits": [{"tension": {"min": "0 mm"}}, {"pressure": {}}],
     "actuators.long_0.command": [

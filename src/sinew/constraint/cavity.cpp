@@ -50,9 +50,9 @@ std::vector<Weighted> quadratic_weights() {
   for (std::size_t a = 0; a < 6; ++a) {
     for (std::size_t b = a + 1; b < 6; ++b) {
       for (std::size_t c = b + 1; c < 6; ++c) {
-        result.push_back({{a, b, c},
-                          6.0 * (t[a][b][c] + t[b][c][a] + t[c][a][b] - t[a][c][b] - t[c][b][a] -
-                                 t[b][a][c])});
+        result.push_back(
+            {{a, b, c},
+             6.0 * (t[a][b][c] + t[b][c][a] + t[c][a][b] - t[a][c][b] - t[c][b][a] - t[b][a][c])});
       }
     }
   }

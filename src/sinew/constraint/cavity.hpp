@@ -22,11 +22,11 @@ struct CavityFace {
 /// One row: effort = pressure p above that outside (Pa, either sign), delta = V - V_0 (m^3), the
 /// volume gained. V = sum over triangles of x_a . (x_b x x_c)/6; a quadrilateral counts as the mean
 /// of its two splits, which is the volume under the bilinear patch, a quadratic triangle as the
-/// weighted sum over the twenty triangles of its six nodes that integrates x . n/3 over it. d(delta)/dx_a is then the
-/// consistent nodal force of unit pressure, and it follows the surface; its derivative, the load
-/// stiffness p d2V/dx2, is symmetric since V is a function of the positions (Rumpel & Schweizerhof,
-/// Int. J. Numer. Meth. Eng. 57, 2003). An edge (a, b) with the triangle's third corner c has
-/// d2V/dx_a dx_b v = v x x_c / 6.
+/// weighted sum over the twenty triangles of its six nodes that integrates x . n/3 over it.
+/// d(delta)/dx_a is then the consistent nodal force of unit pressure, and it follows the surface;
+/// its derivative, the load stiffness p d2V/dx2, is symmetric since V is a function of the
+/// positions (Rumpel & Schweizerhof, Int. J. Numer. Meth. Eng. 57, 2003). An edge (a, b) with the
+/// triangle's third corner c has d2V/dx_a dx_b v = v x x_c / 6.
 class Cavity : public Constraint {
  public:
   /// @param name for messages.

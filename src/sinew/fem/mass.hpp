@@ -18,10 +18,10 @@ std::vector<double> element_masses(const FemModelSettings& settings,
                                    std::span<const std::int32_t> region_of,
                                    std::span<const double> volumes);
 
-/// (n,) kg at each mesh node: the integral of rho N_a (a quarter of each tetrahedron around it), for
-/// quadratic tetrahedra the diagonal of their mass matrix scaled to their mass (Hinton, Rock,
-/// Zienkiewicz, Earthq. Eng. Struct. Dyn. 4, 1976), or the even share. Throws Error(conflicting-keys) for even masses without a total mass, or with a
-/// consistent matrix.
+/// (n,) kg at each mesh node: the integral of rho N_a (a quarter of each tetrahedron around it),
+/// for quadratic tetrahedra the diagonal of their mass matrix scaled to their mass (Hinton, Rock,
+/// Zienkiewicz, Earthq. Eng. Struct. Dyn. 4, 1976), or the even share. Throws
+/// Error(conflicting-keys) for even masses without a total mass, or with a consistent matrix.
 VectorX lumped_masses(const mesh::Mesh& mesh, const FemModelSettings& settings,
                       std::span<const double> masses);
 

@@ -11,7 +11,8 @@
 /// Hexahedra have eight Gauss points and do not lock in volume (mixed form Q1P0, pressure and
 /// dilatation condensed); quadratic tetrahedra have four points, and with one pressure each (P2P0)
 /// fulfil the inf-sup condition (Boffi, Brezzi, Fortin, "Mixed Finite Element Methods and
-/// Applications", 2013, section 8.6). Saint Venant-Kirchhoff has no volumetric part to be set apart.
+/// Applications", 2013, section 8.6). Saint Venant-Kirchhoff has no volumetric part to be set
+/// apart.
 #pragma once
 
 #include <cstdint>

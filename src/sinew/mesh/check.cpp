@@ -1,7 +1,5 @@
 #include "sinew/mesh/check.hpp"
 
-#include "sinew/mesh/quadratic.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -10,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "sinew/mesh/duplicates.hpp"
+#include "sinew/mesh/quadratic.hpp"
 #include "sinew/mesh/quality.hpp"
 #include "sinew/mesh/topology.hpp"
 

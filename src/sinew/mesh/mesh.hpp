@@ -33,8 +33,8 @@ struct Mesh {
   std::string name;  ///< file name or what made it, for messages
   Points nodes;      ///< (n, 3) m
   std::vector<Tetrahedron> tetrahedra;
-  /// With middle nodes, in the order of `tetrahedra`, which are then their corners; empty for linear
-  /// ones. A mesh has one kind.
+  /// With middle nodes, in the order of `tetrahedra`, which are then their corners; empty for
+  /// linear ones. A mesh has one kind.
   std::vector<QuadraticTetrahedron> quadratic;
   std::vector<Hexahedron> hexahedra;
   std::vector<Triangle> triangles;  ///< surface triangles that the file holds; may be empty

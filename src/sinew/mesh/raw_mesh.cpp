@@ -133,8 +133,8 @@ Destination place_cell(const RawMesh& raw, std::size_t c, Mesh& mesh) {
     case kQuadraticTetrahedron: {
       const auto nodes = nodes_of<10>(raw, c);
       mesh.quadratic.push_back(nodes);
-      return {List::tetrahedra, append(mesh.tetrahedra, Tetrahedron{nodes[0], nodes[1], nodes[2],
-                                                                    nodes[3]})};
+      return {List::tetrahedra,
+              append(mesh.tetrahedra, Tetrahedron{nodes[0], nodes[1], nodes[2], nodes[3]})};
     }
     case kHexahedron:
       return {List::hexahedra, append(mesh.hexahedra, nodes_of<8>(raw, c))};
@@ -275,8 +275,8 @@ Mesh assemble(const RawMesh& raw) {
     check_cell(raw, c);
     where[c] = place_cell(raw, c, mesh);
   }
-  const bool mixed = !mesh.quadratic.empty() && (mesh.quadratic.size() != mesh.tetrahedra.size() ||
-                                                 !mesh.hexahedra.empty());
+  const bool mixed = !mesh.quadratic.empty() &&
+                     (mesh.quadratic.size() != mesh.tetrahedra.size() || !mesh.hexahedra.empty());
   if (mixed) {
     fail(raw, ErrorKind::unsupported_element,
          fmt::format("{} quadratic tetrahedra stand beside {} linear tetrahedra and {} hexahedra",

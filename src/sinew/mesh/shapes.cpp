@@ -43,6 +43,18 @@ Section disc(int rings, Cells cells) {
   return cells == Cells::tetrahedra ? disc_section(rings) : disc_section_of_quadrilaterals(rings);
 }
 
+/// How much farther out than a circle the corners of a regular polygon lie that has its area, which
+/// gives it nearly the same second moment as well: bending stiffness is right from few cells on.
+double rounding(int corners) {
+  const double angle = 2.0 * std::numbers::pi / corners;
+  return std::sqrt(angle / std::sin(angle));
+}
+
+/// Nodes of a section at its radius 1.
+int outside_corners(const Section& section) {
+  return static_cast<int>(std::ranges::count(section.radius, 1.0));
+}
+
 std::vector<double> even_heights(double height, int layers) {
   std::vector<double> heights;
   for (int k = 0; k <= layers; ++k) heights.push_back(height * k / layers);
@@ -181,8 +193,9 @@ Mesh cone(const ConeShape& shape, Cells cells) {
   require_rings(shape.rings, cells, "cone");
   require_cells(shape.layers, 1, "cone", "layers");
   const Section section = disc(shape.rings, cells);
+  const double round = rounding(outside_corners(section));
   const auto profile = [&](double s, double z) {
-    return s * std::lerp(shape.bottom_radius, shape.top_radius, z / shape.height);
+    return round * s * std::lerp(shape.bottom_radius, shape.top_radius, z / shape.height);
   };
   Mesh mesh = sweep(section, even_heights(shape.height, shape.layers), profile, "cone");
   add_wall_set(mesh, section, 1.0, "side");
@@ -201,8 +214,9 @@ Mesh hollow_cylinder(const HollowCylinderShape& shape, Cells cells) {
   require_cells(shape.around, 3, name, "around");
   require_cells(shape.layers, 1, name, "layers");
   const Section section = annulus_section(shape.through, shape.around, cells == Cells::tetrahedra);
+  const double round = rounding(shape.around);
   const auto profile = [&](double s, double) {
-    return std::lerp(shape.inner_radius, shape.outer_radius, s);
+    return round * std::lerp(shape.inner_radius, shape.outer_radius, s);
   };
   Mesh mesh = sweep(section, even_heights(shape.height, shape.layers), profile, name);
   add_wall_set(mesh, section, 0.0, "inner");
@@ -228,6 +242,8 @@ EccentricSection eccentric_section(const ChamberedCylinderShape& shape) {
   const Section core = disc_section_of_quadrilaterals(shape.core);
   section.quadrilaterals = core.quadrilaterals;
   result.core_cells = core.quadrilaterals.size();
+  const double round = rounding(outside_corners(core));
+  const double wall_radius = round * shape.chamber_radius, outer_radius = round * shape.radius;
   const auto add = [&](double x, double y) {
     section.radius.push_back(std::hypot(x, y));
     section.angle.push_back(std::atan2(y, x));
@@ -235,7 +251,7 @@ EccentricSection eccentric_section(const ChamberedCylinderShape& shape) {
   };
   std::vector<double> turn;  // of each node of the wall
   for (std::size_t i = 0; i < core.radius.size(); ++i) {
-    const double r = shape.chamber_radius * core.radius[i];
+    const double r = wall_radius * core.radius[i];
     const NodeId node =
         add(shape.chamber_offset + r * std::cos(core.angle[i]), r * std::sin(core.angle[i]));
     if (core.radius[i] == 1.0) {
@@ -248,7 +264,7 @@ EccentricSection eccentric_section(const ChamberedCylinderShape& shape) {
   for (int k = 1; k <= shape.through; ++k) {
     const double part = static_cast<double>(k) / shape.through;
     const double centre = (1.0 - part) * shape.chamber_offset;
-    const double radius = std::lerp(shape.chamber_radius, shape.radius, part);
+    const double radius = std::lerp(wall_radius, outer_radius, part);
     std::vector<NodeId> next;
     for (const double angle : turn) {
       next.push_back(add(centre + radius * std::cos(angle), radius * std::sin(angle)));

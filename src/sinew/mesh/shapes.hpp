@@ -1,5 +1,7 @@
 /// @file
-/// Meshes that Sinew makes itself: structured, conforming, of good quality. Lengths in m.
+/// Meshes that Sinew makes itself: structured, conforming, of good quality. Lengths in m. Circles
+/// of cylinders, cones and tubes become polygons of the same area, whose corners lie a little
+/// outside.
 #pragma once
 
 #include <array>

@@ -139,10 +139,9 @@ Surface boundary_surface(const Mesh& mesh) {
     auto& n = face.node;
     if (face.is_quadratic()) {
       const auto& m = face.middle;
-      surface.triangles.insert(surface.triangles.end(), {{n[0], m[0], m[2]},
-                                                         {m[0], n[1], m[1]},
-                                                         {m[2], m[1], n[2]},
-                                                         {m[0], m[1], m[2]}});
+      surface.triangles.insert(
+          surface.triangles.end(),
+          {{n[0], m[0], m[2]}, {m[0], n[1], m[1]}, {m[2], m[1], n[2]}, {m[0], m[1], m[2]}});
       continue;
     }
     if (face.corners() == 4) {  // split at the lowest node

@@ -228,7 +228,8 @@ BodyDescription read_body(const Node::Entry& entry, const ReadContext& context) 
   const Form& form = form_of(grammar(), "bodies", Shape::names).items.front();
   const Fields fields(entry.value, form);
   body.mesh = read_mesh(fields, context);
-  fields.read_choice("element", body.element, {{"tet4", Element::tet4}, {"tet10", Element::tet10}, {"hex8", Element::hex8}});
+  fields.read_choice("element", body.element,
+                     {{"tet4", Element::tet4}, {"tet10", Element::tet10}, {"hex8", Element::hex8}});
   body.element_place = fields.place("element");
   body.material = read_material(fields);
   read_mass(fields, body);
