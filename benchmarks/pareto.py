@@ -146,7 +146,7 @@ def main():
     sizes = {"tet4": (13, 6.5, 3.25), "tet10": (13, 6.5, 4), "hex8": (13, 6.5, 4.3, 3.25, 1.625)}
     found = sweep(arm, sizes)
     charts.append(("Conical arm", found, extrapolated(found["hex8"])))
-    sizes = {"tet4": (4, 2.5, 1.5), "tet10": (6, 4, 2.5), "hex8": (4, 2.5, 2, 1.6, 0.8)}
+    sizes = {"tet4": (4, 2.5, 1.5), "tet10": (6, 4, 3, 2.5), "hex8": (4, 2.5, 1.6, 0.8)}
     found = sweep(module, sizes)
     charts.append(("Pneumatic module", found, extrapolated(found["hex8"])))
     source = data / "trunk" / "trunk.vtk"

@@ -12,6 +12,9 @@ find_package(pugixml REQUIRED)
 find_package(CLI11 REQUIRED)
 include(SinewSystemLibraries)
 
+if(SINEW_IDENTIFY)
+  find_package(Ceres 2.1 REQUIRED)
+endif()
 if(SINEW_VIEWER)
   find_package(Boost 1.74 REQUIRED)  # headers alone: Beast and Asio
 endif()

@@ -26,6 +26,8 @@ constexpr const char* kExamples =
     "  sinew run examples/trunk/trunk.yaml --set actuators.long_0.command.displacement=10mm --vtk\n"
     "  sinew info trunk.vtk --unit mm\n"
     "  sinew mesh finger.stl -o finger.vtu --size 5mm --unit mm\n"
+    "  sinew plot out/circle\n"
+    "  sinew fit tensile.csv --model ogden3 -o rubber.yaml --plot rubber.png\n"
     "  sinew bench examples/trunk/circle.yaml --steps 400 --json bench.json\n"
     "\n"
     "Exit codes: 0 done, 1 the run failed, 2 wrong input.";
@@ -49,6 +51,10 @@ int run(int argc, const char* const* argv) {
   cli::add_validate(app, actions);
   cli::add_info(app, actions);
   cli::add_mesh(app, actions);
+#ifdef SINEW_HAS_IDENTIFY
+  cli::add_fit(app, actions);
+#endif
+  cli::add_plot(app, actions);
   cli::add_schema(app, actions);
   try {
     cli::require_command(app, argc, argv);

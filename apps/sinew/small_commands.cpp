@@ -15,20 +15,14 @@
 #include "sinew/scene/reference.hpp"
 
 #include "commands.hpp"
+#include "program_folder.hpp"
+#include "python_tool.hpp"
 
 namespace sinew::cli {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr const char* kInterpreter = "/usr/bin/python3";
-
-fs::path program_folder() {
-  std::error_code problem;
-  const fs::path self = fs::read_symlink("/proc/self/exe", problem);
-  return problem ? fs::path() : self.parent_path();
-}
 
 // The environment's choice, the tree that this program was built from, or the installed one.
 fs::path validation_script() {
@@ -48,13 +42,7 @@ fs::path validation_script() {
 
 int validate(const std::vector<std::string>& cases) {
   const std::string script = validation_script().string();
-  const fs::path package = program_folder().parent_path() / "python";
-  if (fs::exists(package)) {  // the package of the same build as this program
-    const char* before = std::getenv("PYTHONPATH");
-    const std::string path =
-        package.string() + (before == nullptr ? "" : ":" + std::string(before));
-    setenv("PYTHONPATH", path.c_str(), 1);
-  }
+  use_own_python_package();
   std::vector<char*> arguments;
   std::vector<std::string> words = {kInterpreter, script};
   words.insert(words.end(), cases.begin(), cases.end());

@@ -68,6 +68,20 @@ TEST(Shapes, RoundSolidsHaveTheirVolume) {
   EXPECT_NEAR(require_sound(hollow_cylinder(tube)).volume, kPi * (1.44e-4 - 0.64e-4) * 0.05, 1e-15);
 }
 
+TEST(Shapes, QuadraticTetrahedraFollowTheCircle) {
+  const Mesh mesh = cylinder({.radius = 0.01, .height = 0.02, .rings = 2, .layers = 2}, Cells::quadratic);
+  int on = 0;
+  for (const NodeId node : mesh.node_sets.at("side")) {
+    const double radius = mesh.nodes.row(node).head<2>().norm();
+    if (node >= 3 * 19) EXPECT_NEAR(radius, 0.01, 1e-15);
+    on += std::abs(radius - 0.01) < 1e-12 ? 1 : 0;
+  }
+  EXPECT_GT(on, 3 * 12 + 2 * 12);
+  // A surface of four triangles a face on the arcs lies much nearer to the circle than 12 corners.
+  const double volume = enclosed_volume(boundary_surface(mesh));
+  EXPECT_NEAR(volume / (kPi * 1e-4 * 0.02), 1.0, 0.015);
+}
+
 TEST(Shapes, TheChamberIsAVoidOfItsVolume) {
   const ChamberedCylinderShape shape{.chamber_bottom = 0.005};
   const double whole = kPi * shape.radius * shape.radius * shape.height;

@@ -2,14 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
 #include "sinew/mesh/check.hpp"
+#include "sinew/mesh/quadratic.hpp"
 #include "sinew/mesh/sweep.hpp"
 #include "sinew/mesh/topology.hpp"
 
@@ -36,18 +39,51 @@ void require_cells(int value, int least, const std::string& shape, const char* w
 }
 
 void require_rings(int rings, Cells cells, const std::string& shape) {
-  require_cells(rings, cells == Cells::tetrahedra ? 1 : 2, shape, "rings");
+  require_cells(rings, cells == Cells::hexahedra ? 2 : 1, shape, "rings");
 }
 
 Section disc(int rings, Cells cells) {
-  return cells == Cells::tetrahedra ? disc_section(rings) : disc_section_of_quadrilaterals(rings);
+  return cells == Cells::hexahedra ? disc_section_of_quadrilaterals(rings) : disc_section(rings);
 }
 
 /// How much farther out than a circle the corners of a regular polygon lie that has its area, which
 /// gives it nearly the same second moment as well: bending stiffness is right from few cells on.
-double rounding(int corners) {
+double rounding(int corners, Cells cells) {
+  if (cells == Cells::quadratic) return 1.0;
   const double angle = 2.0 * std::numbers::pi / corners;
   return std::sqrt(angle / std::sin(angle));
+}
+
+/// A circle about an axis along z that curves the edges between nodes on it.
+struct Circle {
+  double x = 0.0;                       // of the axis, at y = 0, m
+  std::function<double(double)> radius;  // at a height, m
+};
+
+/// The mesh as the cells ask: with middle nodes where they are quadratic, those of edges along a
+/// circle on its arc.
+Mesh finished(Mesh mesh, Cells cells, const std::vector<Circle>& circles) {
+  if (cells != Cells::quadratic) return mesh;
+  Mesh result = with_middle_nodes(mesh);
+  constexpr double kOn = 1e-9;
+  for (const QuadraticTetrahedron& element : result.quadratic) {
+    for (std::size_t e = 0; e < kEdges.size(); ++e) {
+      const Vector3 a = result.nodes.row(element[kEdges[e][0]]).transpose();
+      const Vector3 b = result.nodes.row(element[kEdges[e][1]]).transpose();
+      for (const Circle& circle : circles) {
+        const Vector3 axis(circle.x, 0.0, 0.0);
+        const Eigen::Vector2d p = (a - axis).head<2>(), q = (b - axis).head<2>();
+        const double ra = circle.radius(a.z()), rb = circle.radius(b.z());
+        const bool on = std::abs(p.norm() - ra) < kOn * ra && std::abs(q.norm() - rb) < kOn * rb;
+        const Eigen::Vector2d middle = p.normalized() + q.normalized();
+        if (!on || middle.norm() < 1.0) continue;  // a chord across is none along
+        const double z = 0.5 * (a.z() + b.z());
+        const Eigen::Vector2d at = circle.radius(z) * middle.normalized();
+        result.nodes.row(element[4 + e]) << circle.x + at.x(), at.y(), z;
+      }
+    }
+  }
+  return result;
 }
 
 /// Nodes of a section at its radius 1.
@@ -171,7 +207,7 @@ Mesh block(const BlockShape& shape, Cells cells) {
       mesh.tetrahedra.push_back({h[0], h[kRing[k]], h[kRing[k + 1]], h[6]});
     }
   });
-  return mesh;
+  return finished(std::move(mesh), cells, {});
 }
 
 Mesh cylinder(const CylinderShape& shape, Cells cells) {
@@ -193,13 +229,13 @@ Mesh cone(const ConeShape& shape, Cells cells) {
   require_rings(shape.rings, cells, "cone");
   require_cells(shape.layers, 1, "cone", "layers");
   const Section section = disc(shape.rings, cells);
-  const double round = rounding(outside_corners(section));
+  const double round = rounding(outside_corners(section), cells);
   const auto profile = [&](double s, double z) {
     return round * s * std::lerp(shape.bottom_radius, shape.top_radius, z / shape.height);
   };
   Mesh mesh = sweep(section, even_heights(shape.height, shape.layers), profile, "cone");
   add_wall_set(mesh, section, 1.0, "side");
-  return mesh;
+  return finished(std::move(mesh), cells, {{0.0, [&](double z) { return profile(1.0, z); }}});
 }
 
 Mesh hollow_cylinder(const HollowCylinderShape& shape, Cells cells) {
@@ -213,15 +249,17 @@ Mesh hollow_cylinder(const HollowCylinderShape& shape, Cells cells) {
   require_cells(shape.through, 1, name, "through");
   require_cells(shape.around, 3, name, "around");
   require_cells(shape.layers, 1, name, "layers");
-  const Section section = annulus_section(shape.through, shape.around, cells == Cells::tetrahedra);
-  const double round = rounding(shape.around);
+  const Section section = annulus_section(shape.through, shape.around, cells != Cells::hexahedra);
+  const double round = rounding(shape.around, cells);
   const auto profile = [&](double s, double) {
     return round * std::lerp(shape.inner_radius, shape.outer_radius, s);
   };
   Mesh mesh = sweep(section, even_heights(shape.height, shape.layers), profile, name);
   add_wall_set(mesh, section, 0.0, "inner");
   add_wall_set(mesh, section, 1.0, "outer");
-  return mesh;
+  return finished(std::move(mesh), cells,
+                  {{0.0, [&](double) { return shape.inner_radius; }},
+                   {0.0, [&](double) { return shape.outer_radius; }}});
 }
 
 namespace {
@@ -236,13 +274,13 @@ struct EccentricSection {
   NodeId core_nodes = 0;  // those before the wall's ring
 };
 
-EccentricSection eccentric_section(const ChamberedCylinderShape& shape) {
+EccentricSection eccentric_section(const ChamberedCylinderShape& shape, Cells cells) {
   EccentricSection result;
   Section& section = result.section;
   const Section core = disc_section_of_quadrilaterals(shape.core);
   section.quadrilaterals = core.quadrilaterals;
   result.core_cells = core.quadrilaterals.size();
-  const double round = rounding(outside_corners(core));
+  const double round = rounding(outside_corners(core), cells);
   const double wall_radius = round * shape.chamber_radius, outer_radius = round * shape.radius;
   const auto add = [&](double x, double y) {
     section.radius.push_back(std::hypot(x, y));
@@ -311,10 +349,10 @@ Mesh chambered_cylinder(const ChamberedCylinderShape& shape, Cells cells) {
   require_cells(shape.core, 2, name, "core");
   require_cells(shape.through, 1, name, "through");
   require_cells(shape.layers, 1, name, "layers");
-  EccentricSection plan = eccentric_section(shape);
+  EccentricSection plan = eccentric_section(shape, cells);
   const std::vector<double> heights = chamber_heights(shape);
   const auto in_layer = static_cast<NodeId>(plan.section.radius.size());
-  if (cells == Cells::tetrahedra) {
+  if (cells != Cells::hexahedra) {
     for (const auto& [a, b, c, d] : plan.section.quadrilaterals) {
       plan.section.triangles.push_back({a, b, c});
       plan.section.triangles.push_back({a, c, d});
@@ -351,7 +389,9 @@ Mesh chambered_cylinder(const ChamberedCylinderShape& shape, Cells cells) {
     if (at >= plan.outside.front()) mesh.node_sets["side"].push_back(node);
   }
   drop_unused_nodes(mesh);
-  return mesh;
+  return finished(std::move(mesh), cells,
+                  {{0.0, [&](double) { return shape.radius; }},
+                   {shape.chamber_offset, [&](double) { return shape.chamber_radius; }}});
 }
 
 Mesh trunk(const TrunkShape& shape, Cells cells) {
@@ -374,7 +414,7 @@ Mesh trunk(const TrunkShape& shape, Cells cells) {
   const int layers = shape.bellows * shape.layers_per_bellow;
   Mesh mesh = sweep(section, even_heights(shape.height, layers), profile, "trunk");
   add_wall_set(mesh, section, 1.0, "side");
-  return mesh;
+  return finished(std::move(mesh), cells, {});
 }
 
 }  // namespace sinew::mesh

@@ -10,8 +10,9 @@
 
 namespace sinew::mesh {
 
-/// What shapes are made of.
-enum class Cells { tetrahedra, hexahedra };
+/// What shapes are made of. Quadratic tetrahedra have their middle nodes on the circles of round
+/// shapes, and their corners, too; of other cells see the file.
+enum class Cells { tetrahedra, quadratic, hexahedra };
 
 /// A box of Kuhn-split cubes: six tetrahedra a cell, all of one shape class when cells are cubes.
 struct BlockShape {

@@ -130,21 +130,21 @@ mesh::Mesh make_shape(const MeshDescription& description, mesh::Cells cells) {
               "block, cylinder, cone, hollow-cylinder, chambered-cylinder or trunk");
 }
 
+mesh::Cells cells_of(Element element) {
+  if (element == Element::hex8) return mesh::Cells::hexahedra;
+  return element == Element::tet10 ? mesh::Cells::quadratic : mesh::Cells::tetrahedra;
+}
+
 }  // namespace
 
 mesh::Mesh make_mesh(const MeshDescription& description, Element element) {
   try {
-    const auto linear = [&] {
-      if (!description.shape.empty()) {
-        return make_shape(description, element == Element::hex8 ? mesh::Cells::hexahedra
-                                                                : mesh::Cells::tetrahedra);
-      }
-      mesh::ReadOptions options;
-      options.unit = description.unit;
-      options.unit_given = description.unit_place.line > 0 || description.unit != 1.0;
-      return mesh::read_mesh(description.file, options);
-    };
-    return element == Element::tet10 ? mesh::with_middle_nodes(linear()) : linear();
+    if (!description.shape.empty()) return make_shape(description, cells_of(element));
+    mesh::ReadOptions options;
+    options.unit = description.unit;
+    options.unit_given = description.unit_place.line > 0 || description.unit != 1.0;
+    mesh::Mesh mesh = mesh::read_mesh(description.file, options);
+    return element == Element::tet10 ? mesh::with_middle_nodes(mesh) : mesh;
   } catch (const Error& error) {
     throw error.at(description.place);
   }

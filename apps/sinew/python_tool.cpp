@@ -1,0 +1,49 @@
+#include "python_tool.hpp"
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "sinew/core/error.hpp"
+
+#include "program_folder.hpp"
+
+namespace sinew::cli {
+
+void use_own_python_package() {
+  const std::filesystem::path package = program_folder().parent_path() / "python";
+  if (!std::filesystem::exists(package)) return;
+  const char* before = std::getenv("PYTHONPATH");
+  const std::string path = package.string() + (before == nullptr ? "" : ":" + std::string(before));
+  setenv("PYTHONPATH", path.c_str(), 1);
+}
+
+int run_python_module(const std::string& module, const std::vector<std::string>& arguments) {
+  use_own_python_package();
+  std::vector<std::string> words = {kInterpreter, "-m", module};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  const pid_t child = fork();
+  if (child == 0) {
+    execv(kInterpreter, pointers.data());
+    _exit(127);
+  }
+  int status = 0;
+  if (child < 0 || waitpid(child, &status, 0) < 0 || !WIFEXITED(status) ||
+      WEXITSTATUS(status) == 127) {
+    throw Error(ErrorKind::tool_missing, {.file = kInterpreter},
+                "plots are drawn by Python, which cannot be started",
+                "apt-get install python3 python3-numpy python3-matplotlib");
+  }
+  return WEXITSTATUS(status);
+}
+
+}  // namespace sinew::cli

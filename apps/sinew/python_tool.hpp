@@ -1,0 +1,20 @@
+/// @file
+/// Parts of the program that are Python: validation and plots.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace sinew::cli {
+
+/// Debian's interpreter, the one that sees Debian's packages.
+inline constexpr const char* kInterpreter = "/usr/bin/python3";
+
+/// Puts the Python package of the same build as this program on the interpreter's path.
+void use_own_python_package();
+
+/// Runs a module of the Python package and waits; its exit code.
+/// Throws Error(tool-missing) when the interpreter cannot be started.
+int run_python_module(const std::string& module, const std::vector<std::string>& arguments);
+
+}  // namespace sinew::cli
