@@ -61,3 +61,33 @@ def test_broken_calls(call, kind):
     with pytest.raises(sinew.Error) as caught:
         call()
     assert caught.value.kind == kind
+
+
+BEAM = """sinew: 1
+bodies:
+  beam:
+    type: fem
+    mesh: {shape: block, length: 40 mm, width: 10 mm, height: 10 mm}
+    material: {file: rubber.yaml}
+    fixed: [{set: x_min}]
+"""
+
+
+def test_a_material_may_stand_in_its_own_file(tmp_path):
+    (tmp_path / "scene.yaml").write_text(BEAM)
+    rubber = tmp_path / "rubber.yaml"
+    rubber.write_text("# fitted\nmodel: yeoh\nc10: 12 kPa\nc20: 100 Pa\npoisson_ratio: 0.45\n")
+    sinew.load(tmp_path / "scene.yaml")
+    for text, kind in [("model: yeoh\nc10: 12 mm\npoisson_ratio: 0.45\n", "wrong-dimension"),
+                       ("model: yeoh\nc11: 12 kPa\n", "unknown-key"),
+                       ("file: rubber.yaml\n", "wrong-type"),
+                       ("ecoflex-00-99\n", "unknown-choice")]:
+        rubber.write_text(text)
+        with pytest.raises(sinew.Error) as caught:
+            sinew.load(tmp_path / "scene.yaml")
+        assert caught.value.kind == kind
+        assert "rubber.yaml" in str(caught.value)
+    rubber.unlink()
+    with pytest.raises(sinew.Error) as caught:
+        sinew.load(tmp_path / "scene.yaml")
+    assert caught.value.kind == "file-not-found"

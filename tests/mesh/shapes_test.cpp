@@ -73,7 +73,9 @@ TEST(Shapes, QuadraticTetrahedraFollowTheCircle) {
   int on = 0;
   for (const NodeId node : mesh.node_sets.at("side")) {
     const double radius = mesh.nodes.row(node).head<2>().norm();
-    if (node >= 3 * 19) EXPECT_NEAR(radius, 0.01, 1e-15);
+    if (node >= 3 * 19) {
+      EXPECT_NEAR(radius, 0.01, 1e-15);
+    }
     on += std::abs(radius - 0.01) < 1e-12 ? 1 : 0;
   }
   EXPECT_GT(on, 3 * 12 + 2 * 12);

@@ -187,6 +187,10 @@ void check_scene(const Node& tree) {
   Checker(tree).check_map(tree, grammar(), {});
 }
 
+void check_value(const Node& node, const std::vector<Form>& forms) {
+  Checker(node).check_value(node, forms, "");
+}
+
 const KeyTable& table_of(const Node& map, const Form& form) {
   if (form.shape == Shape::table) return *form.table;
   const Node* word = map.find(form.telltale);

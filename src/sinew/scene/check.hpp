@@ -13,6 +13,10 @@ namespace sinew::scene {
 /// empty-list, wrong-length. The message names the value, the remedy what to write.
 void check_scene(const Node& tree);
 
+/// The same for one value that stands in a file of its own.
+/// @param node,forms the value, and what it may be.
+void check_value(const Node& node, const std::vector<Form>& forms);
+
 /// The table that holds for a map written in a table or variants form. Throws Error(missing-key),
 /// Error(unknown-choice), Error(not-in-this-version) for the word of a variants form.
 const KeyTable& table_of(const Node& map, const Form& form);

@@ -26,6 +26,7 @@ class Fields {
   Fields(const Node& map, const Form& form);
 
   const Node& map() const { return map_; }
+  const KeyTable& table() const { return table_; }
 
   /// The value of a key of the table, or nullptr.
   const Node* find(std::string_view key) const;

@@ -233,7 +233,17 @@ std::vector<Form> material_forms() {
     if (!named.remark.empty()) description += " " + named.remark;
     library.push_back({.word = named.name, .description = std::move(description)});
   }
-  return {law_form(), table(usual, "young_modulus"), choice(std::move(library))};
+  const auto own = make_table({.name = "material: file",
+                               .description = "A material in a YAML file of its own, with the keys "
+                                              "of a material here, as `sinew fit` writes it.",
+                               .keys = {{.name = "file",
+                                         .forms = {file()},
+                                         .example = "rubber.yaml",
+                                         .description = "Path of the file, relative to the scene "
+                                                        "file.",
+                                         .required = true}}});
+  return {law_form(), table(usual, "young_modulus"), table(own, "file"),
+          choice(std::move(library))};
 }
 
 std::shared_ptr<const KeyTable> sphere_table() {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "sinew/material/library.hpp"
+#include "sinew/scene/check.hpp"
 #include "sinew/scene/readers.hpp"
 
 namespace sinew::scene {
@@ -88,9 +89,13 @@ material::Hyperelastic read_energy(const std::string& model, const Fields& field
   return energy;
 }
 
-MaterialDescription read_material(const Fields& body) {
+// A file with what else would stand under `material`; such files do not name further ones.
+MaterialDescription read_material_file(const Fields& body, const ReadContext& context);
+
+MaterialDescription read_material(const Fields& body, const ReadContext& context) {
   MaterialDescription material;
   material.place = body.place("material");
+  if (body.form("material").telltale == "file") return read_material_file(body, context);
   if (body.form("material").shape == Shape::choice) {
     std::string name;
     body.read_word("material", name);
@@ -121,6 +126,24 @@ MaterialDescription read_material(const Fields& body) {
     throw error.at(material.place);
   }
   return material;
+}
+
+MaterialDescription read_material_file(const Fields& body, const ReadContext& context) {
+  const std::filesystem::path path = context.path(body.below("material"), "file");
+  const KeyTable& table = body.table();
+  if (context.files == Files::ignore) return {};
+  Node around = Node::map();
+  around.set("material", read_yaml(path));
+  around.name_paths();
+  around.set_place({.file = path.string(), .item = "material"});
+  const Node& written = *around.find("material");
+  check_value(written, table.find("material")->forms);
+  const Fields fields(around, table);
+  if (fields.form("material").telltale == "file") {
+    throw Error(ErrorKind::wrong_type, written.place(), "the file names another file",
+                "write the material itself");
+  }
+  return read_material(fields, context);
 }
 
 void read_mass(const Fields& fields, BodyDescription& body) {
@@ -231,7 +254,7 @@ BodyDescription read_body(const Node::Entry& entry, const ReadContext& context) 
   fields.read_choice("element", body.element,
                      {{"tet4", Element::tet4}, {"tet10", Element::tet10}, {"hex8", Element::hex8}});
   body.element_place = fields.place("element");
-  body.material = read_material(fields);
+  body.material = read_material(fields, context);
   read_mass(fields, body);
   const Fields damping = fields.below("damping");
   damping.read("mass", body.mass_damping);
