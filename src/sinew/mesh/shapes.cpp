@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include <Eigen/LU>
+
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
@@ -60,6 +62,44 @@ struct Circle {
   std::function<double(double)> radius;  // at a height, m
 };
 
+/// Least determinant of an element's map at its corners and points of integration, over that of its
+/// corners alone.
+double least_jacobian(const Mesh& mesh, const QuadraticTetrahedron& element) {
+  Eigen::Matrix<double, 10, 3> x;
+  for (std::size_t a = 0; a < 10; ++a) {
+    x.row(static_cast<Eigen::Index>(a)) = mesh.nodes.row(element[a]);
+  }
+  const Matrix3 straight = (x.middleRows<3>(1).rowwise() - x.row(0)).transpose();
+  double least = std::numeric_limits<double>::infinity();
+  const auto see = [&](const std::array<double, 4>& point) {
+    least = std::min(least, (x.transpose() * quadratic_gradients(point)).determinant());
+  };
+  for (const auto& point : quadratic_points()) see(point);
+  for (std::size_t a = 0; a < 4; ++a) {
+    std::array<double, 4> corner{};
+    corner[a] = 1.0;
+    see(corner);
+  }
+  return least / straight.determinant();
+}
+
+/// Where cells are flat beside their circle's curve, arcs would fold elements: these get straight
+/// edges again.
+void straighten_folded(Mesh& mesh) {
+  constexpr double kLeast = 0.1;
+  for (bool folded = true; folded;) {
+    folded = false;
+    for (const QuadraticTetrahedron& element : mesh.quadratic) {
+      if (least_jacobian(mesh, element) >= kLeast) continue;
+      folded = true;
+      for (std::size_t e = 0; e < kEdges.size(); ++e) {
+        mesh.nodes.row(element[4 + e]) = 0.5 * (mesh.nodes.row(element[kEdges[e][0]]) +
+                                                mesh.nodes.row(element[kEdges[e][1]]));
+      }
+    }
+  }
+}
+
 /// The mesh as the cells ask: with middle nodes where they are quadratic, those of edges along a
 /// circle on its arc.
 Mesh finished(Mesh mesh, Cells cells, const std::vector<Circle>& circles) {
@@ -83,7 +123,22 @@ Mesh finished(Mesh mesh, Cells cells, const std::vector<Circle>& circles) {
       }
     }
   }
+  straighten_folded(result);
   return result;
+}
+
+/// The circles of all rings of a section round the axis.
+std::vector<Circle> ring_circles(const Section& section, const RadialProfile& profile) {
+  std::vector<double> radii = section.radius;
+  std::ranges::sort(radii);
+  radii.erase(std::unique(radii.begin(), radii.end()), radii.end());
+  std::vector<Circle> circles;
+  for (const double s : radii) {
+    if (s > 0.0) circles.push_back({0.0, [s, profile](double z) { return profile(s, z); }});
+  }
+  if (radii.front() == 0.0) return circles;
+  circles.push_back({0.0, [profile](double z) { return profile(0.0, z); }});  // a tube's bore
+  return circles;
 }
 
 /// Nodes of a section at its radius 1.
@@ -235,7 +290,7 @@ Mesh cone(const ConeShape& shape, Cells cells) {
   };
   Mesh mesh = sweep(section, even_heights(shape.height, shape.layers), profile, "cone");
   add_wall_set(mesh, section, 1.0, "side");
-  return finished(std::move(mesh), cells, {{0.0, [&](double z) { return profile(1.0, z); }}});
+  return finished(std::move(mesh), cells, ring_circles(section, profile));
 }
 
 Mesh hollow_cylinder(const HollowCylinderShape& shape, Cells cells) {
@@ -257,9 +312,7 @@ Mesh hollow_cylinder(const HollowCylinderShape& shape, Cells cells) {
   Mesh mesh = sweep(section, even_heights(shape.height, shape.layers), profile, name);
   add_wall_set(mesh, section, 0.0, "inner");
   add_wall_set(mesh, section, 1.0, "outer");
-  return finished(std::move(mesh), cells,
-                  {{0.0, [&](double) { return shape.inner_radius; }},
-                   {0.0, [&](double) { return shape.outer_radius; }}});
+  return finished(std::move(mesh), cells, ring_circles(section, profile));
 }
 
 namespace {
@@ -389,9 +442,13 @@ Mesh chambered_cylinder(const ChamberedCylinderShape& shape, Cells cells) {
     if (at >= plan.outside.front()) mesh.node_sets["side"].push_back(node);
   }
   drop_unused_nodes(mesh);
-  return finished(std::move(mesh), cells,
-                  {{0.0, [&](double) { return shape.radius; }},
-                   {shape.chamber_offset, [&](double) { return shape.chamber_radius; }}});
+  std::vector<Circle> circles;
+  for (int k = 0; k <= shape.through; ++k) {
+    const double part = static_cast<double>(k) / shape.through;
+    const double radius = std::lerp(shape.chamber_radius, shape.radius, part);
+    circles.push_back({(1.0 - part) * shape.chamber_offset, [radius](double) { return radius; }});
+  }
+  return finished(std::move(mesh), cells, circles);
 }
 
 Mesh trunk(const TrunkShape& shape, Cells cells) {
