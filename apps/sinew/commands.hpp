@@ -26,7 +26,7 @@ void add_info(CLI::App& app, Actions& actions);
 void add_mesh(CLI::App& app, Actions& actions);
 void add_view(CLI::App& app, Actions& actions);
 void add_schema(CLI::App& app, Actions& actions);
-void add_fit(CLI::App& app, Actions& actions);   ///< where built with Ceres
+void add_fit(CLI::App& app, Actions& actions);  ///< where built with Ceres
 void add_plot(CLI::App& app, Actions& actions);
 /// @}
 

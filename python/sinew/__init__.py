@@ -9,7 +9,7 @@
 SI units everywhere. docs/python.md is the guide.
 """
 
-from . import errors, mesh
+from . import errors, fields, mesh
 from ._core import (
     Actuator,
     Body,
@@ -65,6 +65,7 @@ __all__ = [
     "View",
     "__version__",
     "errors",
+    "fields",
     "load",
     "loads",
     "material",

@@ -68,14 +68,16 @@ TEST(MaterialFit, FindsSoftening) {
   for (int k = 19; k >= 0; --k) {
     const double stretch = 1.0 + 2.0 * k / 20;
     const double energy =
-        material::respond(law, material::incompressible_stretches(test.mode, stretch), false).energy;
+        material::respond(law, material::incompressible_stretches(test.mode, stretch), false)
+            .energy;
     test.stretch.push_back(stretch);
     test.stress.push_back(material::nominal_stress(law, test.mode, stretch) *
                           (1.0 - std::erf((most - energy) / (5e3 + 0.2 * most)) / 2.5));
   }
   const std::vector<RubberTest> tests = {test};
   const FitResult plain = fit_material(tests, {.model = "neo-hookean"});
-  const FitResult soft = fit_material(tests, {.model = "neo-hookean", .starts = 5, .mullins = true});
+  const FitResult soft =
+      fit_material(tests, {.model = "neo-hookean", .starts = 5, .mullins = true});
   EXPECT_GT(plain.tests[0].relative, 0.05);
   EXPECT_LT(soft.tests[0].relative, 1e-4);
   ASSERT_TRUE(soft.mullins);
@@ -83,7 +85,8 @@ TEST(MaterialFit, FindsSoftening) {
 }
 
 TEST(RubberTest, ReadsWhatItsHeaderSays) {
-  const auto first = parse_rubber_test("stretch,nominal_stress_MPa\n1,0\n1.5,0.1\n2,0.2\n", "a.csv");
+  const auto first =
+      parse_rubber_test("stretch,nominal_stress_MPa\n1,0\n1.5,0.1\n2,0.2\n", "a.csv");
   EXPECT_EQ(first.mode, DeformationMode::uniaxial);
   EXPECT_DOUBLE_EQ(first.stress[2], 2e5);
   const auto percent = parse_rubber_test(

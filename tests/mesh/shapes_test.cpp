@@ -69,7 +69,8 @@ TEST(Shapes, RoundSolidsHaveTheirVolume) {
 }
 
 TEST(Shapes, QuadraticTetrahedraFollowTheCircle) {
-  const Mesh mesh = cylinder({.radius = 0.01, .height = 0.02, .rings = 2, .layers = 2}, Cells::quadratic);
+  const Mesh mesh =
+      cylinder({.radius = 0.01, .height = 0.02, .rings = 2, .layers = 2}, Cells::quadratic);
   int on = 0;
   for (const NodeId node : mesh.node_sets.at("side")) {
     const double radius = mesh.nodes.row(node).head<2>().norm();

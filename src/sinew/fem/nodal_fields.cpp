@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sinew/fem/element_batches.hpp"
+#include "sinew/fem/element_gradient.hpp"
 #include "sinew/fem/solid_kernel.hpp"
 #include "sinew/material/response.hpp"
 
@@ -16,24 +17,6 @@ using material::Lanes;
 using material::lanes;
 using material::Lanes3x3;
 using material::Law;
-
-// F = I + sum (u_a - u_0) g_a^T, from displacements, so that a small strain keeps its digits.
-Lanes3x3 gradient(const BatchConstants& batch, const std::int32_t* nodes, const Points& positions,
-                  const Points& rest) {
-  Lanes3x3 f{};
-  for (int lane = 0; lane < kLanes; ++lane) {
-    const Vector3 origin = (positions.row(nodes[lane]) - rest.row(nodes[lane])).transpose();
-    for (int a = 1; a < 4; ++a) {
-      const auto node = nodes[kLanes * a + lane];
-      const Vector3 u = (positions.row(node) - rest.row(node)).transpose() - origin;
-      for (int r = 0; r < 3; ++r) {
-        for (int c = 0; c < 3; ++c) f[r][c][lane] += u[r] * batch.gradient[a - 1][c].value[lane];
-      }
-    }
-  }
-  for (int r = 0; r < 3; ++r) f[r][r] += 1.0;
-  return f;
-}
 
 // |dev m|^2 of the symmetric part.
 SINEW_INLINE Lanes deviator_square(const Lanes3x3& m) {
@@ -130,7 +113,7 @@ void NodalFields::evaluate(const FemBody& body, std::span<double> values) {
   for (int b = 0; b < elements.batches(); ++b) {
     const BatchConstants& batch = elements.constants[static_cast<std::size_t>(b)];
     const std::int32_t* nodes = elements.nodes.data() + std::ptrdiff_t{4} * kLanes * b;
-    const Lanes3x3 f = gradient(batch, nodes, body.positions(), model_.mesh().nodes);
+    const Lanes3x3 f = deformation_gradient(batch, nodes, body.positions(), model_.mesh().nodes);
     const material::LaneModuli moduli{material::load(batch.mu.value),
                                       material::load(batch.lambda.value)};
     const bool linear = b < elements.linear_batches;

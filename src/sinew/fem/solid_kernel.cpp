@@ -346,7 +346,49 @@ void measure_fields(const SolidGroup& group, int number, const double* points,
   }
 }
 
+template <int N, int Q>
+void measure_states(const SolidGroup& group, int number, const double* points,
+                    std::span<SolidState> result) {
+  const bool split = group.law.saint_venant_shear == 0.0;
+  const Batch<N, Q> batch(group, number, points);
+  Lanes3x3 f[Q];
+  for (int q = 0; q < Q; ++q) f[q] = batch.deformation(q);
+  LaneMinimum ignored;
+  const Dilatation mean =
+      mean_dilatation(batch, f, split ? group.law.bulk_modulus : 0.0, ignored, number);
+  for (int q = 0; q < Q; ++q) {
+    const material::Principal at = material::principal(f[q]);
+    material::LanesLogResponse response = material::respond(group.law, at);
+    for (int i = 0; i < 3; ++i) response.first[i] += mean.pressure * at.determinant;
+    const Lanes3x3 stress = material::first_piola(f[q], at, response);
+    SolidState& to = result[static_cast<std::size_t>(q)];
+    material::store(to.weight.value, batch.weight(q));
+    for (int r = 0; r < 3; ++r) {
+      for (int c = 0; c < 3; ++c) {
+        material::store(to.deformation[r][c].value, f[q][r][c]);
+        material::store(to.piola[r][c].value, stress[r][c]);
+      }
+    }
+    for (int a = 0; a < N; ++a) {
+      for (int c = 0; c < 3; ++c) {
+        material::store(to.gradient[a][c].value, batch.gradient(q, a, c));
+      }
+    }
+  }
+}
+
 }  // namespace
+
+void state_batch(const SolidGroup& group, int batch, const double* points,
+                 std::span<SolidState> result) {
+  if (group.nodes == 4) {
+    measure_states<4, 1>(group, batch, points, result);
+  } else if (group.nodes == 10) {
+    measure_states<10, 4>(group, batch, points, result);
+  } else {
+    measure_states<8, 8>(group, batch, points, result);
+  }
+}
 
 SmallestRatio evaluate_solids(const SolidGroup& group, int begin, int end, const double* points,
                               Tangent tangent, const SolidOutput& output) {

@@ -35,6 +35,19 @@ struct SolidMeasures {
   LaneRow von_mises;  ///< of the Cauchy stress, Pa
 };
 
+/// Deformation and stress of eight elements at one point of integration.
+struct SolidState {
+  LaneRow weight;             ///< m^3
+  LaneRow deformation[3][3];  ///< F
+  LaneRow piola[3][3];        ///< P, Pa, with the element's pressure
+  LaneRow gradient[10][3];    ///< g_a of each node, 1/m
+};
+
+/// States of a batch, one a point of integration. @param group,batch which.
+/// @param points as for evaluate_solids(). @param result (points,).
+void state_batch(const SolidGroup& group, int batch, const double* points,
+                 std::span<SolidState> result);
+
 /// Measures of a batch, one a point of integration. @param group,batch which.
 /// @param points as for evaluate_solids(). @param result (points,).
 void measure_batch(const SolidGroup& group, int batch, const double* points,

@@ -35,7 +35,10 @@ struct Form {
 };
 
 Form neo_hookean() {
-  return {true, [](auto&) { return std::vector<Parameter>{{1.0, 1e-6}}; },
+  return {true,
+          [](auto&) {
+            return std::vector<Parameter>{{1.0, 1e-6}};
+          },
           [](const double* p, double s) { return material::neo_hookean(s * p[0]); },
           [](const double* p, double s) {
             return std::vector<Coefficient>{{"shear_modulus", s * p[0], "Pa"}};
@@ -43,7 +46,10 @@ Form neo_hookean() {
 }
 
 Form mooney_rivlin() {
-  return {true, [](auto&) { return std::vector<Parameter>{{0.4, 0.0}, {0.1, 0.0}}; },
+  return {true,
+          [](auto&) {
+            return std::vector<Parameter>{{0.4, 0.0}, {0.1, 0.0}};
+          },
           [](const double* p, double s) { return material::mooney_rivlin(s * p[0], s * p[1]); },
           [](const double* p, double s) {
             return std::vector<Coefficient>{{"c10", s * p[0], "Pa"}, {"c01", s * p[1], "Pa"}};
@@ -161,9 +167,7 @@ std::vector<double> stresses(const Hyperelastic& law, const MullinsEffect* mulli
 
 constexpr std::size_t kMullinsParameters = 3;
 
-MullinsEffect mullins_of(const double* p, double scale) {
-  return {1.0 / p[0], scale * p[1], p[2]};
-}
+MullinsEffect mullins_of(const double* p, double scale) { return {1.0 / p[0], scale * p[1], p[2]}; }
 
 /// Residuals of all tests over all parameters in one block.
 struct Residuals {
@@ -181,8 +185,8 @@ struct Residuals {
     if (mullins) softening = mullins_of(p.data() + own, scale);
     std::size_t at = 0;
     for (const RubberTest& test : tests) {
-      const double weight = 1.0 / (test.largest_stress() *
-                                   std::sqrt(static_cast<double>(test.stretch.size())));
+      const double weight =
+          1.0 / (test.largest_stress() * std::sqrt(static_cast<double>(test.stretch.size())));
       const std::vector<double> found = stresses(law, mullins ? &softening : nullptr, test);
       for (std::size_t i = 0; i < found.size(); ++i, ++at) {
         residuals[at] = weight * (found[i] - test.stress[i]);
@@ -288,8 +292,8 @@ FitResult fit_material(std::span<const RubberTest> tests, const FitSettings& set
     }
   }
   if (best.parameters.empty()) {
-    throw Error(ErrorKind::not_converged, {.item = settings.model},
-                "no start led to a usable fit", "try more starts, or a simpler model");
+    throw Error(ErrorKind::not_converged, {.item = settings.model}, "no start led to a usable fit",
+                "try more starts, or a simpler model");
   }
   result.cost = best.cost / static_cast<double>(tests.size());
   result.converged = best.converged;
@@ -325,8 +329,9 @@ std::string material_yaml(const FitResult& fit, std::span<const RubberTest> test
   text += fmt::format("\n# Stable in uniaxial stretches from {:.3g} to {:.3g}.\n",
                       fit.uniaxial_range.first, fit.uniaxial_range.second);
   if (fit.mullins) {
-    text += fmt::format("# Softening, which scenes do not have: r {:.4g}, m {:.4g} Pa, beta {:.4g}\n",
-                        fit.mullins->r, fit.mullins->m, fit.mullins->beta);
+    text +=
+        fmt::format("# Softening, which scenes do not have: r {:.4g}, m {:.4g} Pa, beta {:.4g}\n",
+                    fit.mullins->r, fit.mullins->m, fit.mullins->beta);
   }
   const bool ogden = fit.model.starts_with("ogden"), yeoh = fit.model.starts_with("yeoh");
   text += fmt::format("model: {}\n", ogden ? "ogden" : yeoh ? "yeoh" : fit.model);

@@ -26,7 +26,7 @@ struct MullinsEffect {
 struct FitSettings {
   /// "neo-hookean", "mooney-rivlin", "yeoh1" to "yeoh3", "ogden1" to "ogden6", "arruda-boyce".
   std::string model = "ogden3";
-  int starts = 20;         ///< random ones, for laws that are not linear in their coefficients
+  int starts = 20;  ///< random ones, for laws that are not linear in their coefficients
   std::uint64_t seed = 1;
   bool mullins = false;
   double poisson_ratio = 0.49;  ///< of the material that is written; tests are taken incompressible
@@ -41,8 +41,8 @@ struct Coefficient {
 
 /// How well a law meets one test.
 struct TestFit {
-  double rms = 0.0;       ///< Pa
-  double relative = 0.0;  ///< over the test's largest stress
+  double rms = 0.0;            ///< Pa
+  double relative = 0.0;       ///< over the test's largest stress
   std::vector<double> stress;  ///< nominal, Pa, at the test's stretches
 };
 
@@ -63,9 +63,9 @@ struct FitResult {
 /// Names of all models.
 std::vector<std::string> fit_models();
 
-/// Minimises sum over tests of mean((P - P_measured)^2)/max(P_measured)^2, so that every test counts
-/// the same. Ogden's terms keep mu alpha >= 0, which makes each of them stable; exponents stay
-/// within 30. Trust region with bounds (Ceres), from random starts that a seed determines.
+/// Minimises sum over tests of mean((P - P_measured)^2)/max(P_measured)^2, so that every test
+/// counts the same. Ogden's terms keep mu alpha >= 0, which makes each of them stable; exponents
+/// stay within 30. Trust region with bounds (Ceres), from random starts that a seed determines.
 /// Throws Error: empty-list (no tests), unknown-choice (model), out-of-range (starts, ratio).
 FitResult fit_material(std::span<const RubberTest> tests, const FitSettings& settings);
 

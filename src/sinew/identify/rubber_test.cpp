@@ -108,8 +108,9 @@ bool is_number(std::string_view cell) {
   const std::string text(cell);
   char* end = nullptr;
   std::strtod(text.c_str(), &end);
-  return end != text.c_str() && text.find_first_not_of(" \t\r", static_cast<std::size_t>(
-                                    end - text.c_str())) == std::string::npos;
+  return end != text.c_str() &&
+         text.find_first_not_of(" \t\r", static_cast<std::size_t>(end - text.c_str())) ==
+             std::string::npos;
 }
 
 /// The table from its header on: the last line before the first that is all numbers.

@@ -28,9 +28,9 @@ std::string_view mode_name(material::DeformationMode mode);
 /// Reads a table whose header says what its columns are and in which unit. Strain: a column called
 /// stretch, engineering strain (or strain) or true strain, with % or without unit. Stress: nominal
 /// or engineering (both force by undeformed area), or true stress, in kPa, MPa, psi, ... in the
-/// name, as "stress [MPa]", "stress (MPa)" or "stress_MPa". Of several columns the first that is not
-/// true stress or strain counts. Lines above the header that are not numbers are passed over, other
-/// columns ignored.
+/// name, as "stress [MPa]", "stress (MPa)" or "stress_MPa". Of several columns the first that is
+/// not true stress or strain counts. Lines above the header that are not numbers are passed over,
+/// other columns ignored.
 /// @param path the table.
 /// @param mode none: what the file's name says (uniaxial, equibiaxial or biaxial, planar or pure
 ///   shear), else uniaxial.

@@ -57,7 +57,8 @@ std::vector<NamedMaterial> make_library() {
       "Smooth-On, as Ecoflex 00-30",
       "The source does not say which convention: only sum 2 mu/alpha^2 (...) gives the material's "
       "initial shear modulus, 20.8 kPa; sum mu/alpha (...) would give 167 kPa. So read, the law is "
-      "unstable after Drucker beyond a uniaxial stretch of 1.13 or below 0.885, an equibiaxial one of "
+      "unstable after Drucker beyond a uniaxial stretch of 1.13 or below 0.885, an equibiaxial one "
+      "of "
       "1.06: walls of it invert under little load. Fit your own where strains are large."));
   std::ranges::sort(list, {}, &NamedMaterial::name);
   return list;

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include <Eigen/LU>
-
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
@@ -58,7 +57,7 @@ double rounding(int corners, Cells cells) {
 
 /// A circle about an axis along z that curves the edges between nodes on it.
 struct Circle {
-  double x = 0.0;                       // of the axis, at y = 0, m
+  double x = 0.0;                        // of the axis, at y = 0, m
   std::function<double(double)> radius;  // at a height, m
 };
 
@@ -93,8 +92,8 @@ void straighten_folded(Mesh& mesh) {
       if (least_jacobian(mesh, element) >= kLeast) continue;
       folded = true;
       for (std::size_t e = 0; e < kEdges.size(); ++e) {
-        mesh.nodes.row(element[4 + e]) = 0.5 * (mesh.nodes.row(element[kEdges[e][0]]) +
-                                                mesh.nodes.row(element[kEdges[e][1]]));
+        mesh.nodes.row(element[4 + e]) =
+            0.5 * (mesh.nodes.row(element[kEdges[e][0]]) + mesh.nodes.row(element[kEdges[e][1]]));
       }
     }
   }

@@ -1,0 +1,125 @@
+"""Strains and stresses of a body's elements, and their means at nodes.
+
+    F = body.deformation_gradients                  # (m, 3, 3)
+    sigma = body.cauchy_stresses                    # (m, 3, 3) Pa
+    sinew.fields.von_mises(sigma)                   # (m,) Pa
+    sinew.fields.to_nodes(body, sigma)              # (n, 3, 3) Pa, volume-weighted means
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["green_strain", "log_strain", "principal_stretches", "principal_values", "to_nodes", "von_mises"]
+
+
+def principal_stretches(deformation: ArrayLike) -> NDArray:
+    """Singular values of F, largest first.
+
+    Parameters
+    ----------
+    deformation : (..., 3, 3) array_like
+
+    Returns
+    -------
+    (..., 3) ndarray
+    """
+    return np.linalg.svd(np.asarray(deformation, float), compute_uv=False)
+
+
+def green_strain(deformation: ArrayLike) -> NDArray:
+    """Green's strain E = (F^T F - I)/2.
+
+    Parameters
+    ----------
+    deformation : (..., 3, 3) array_like
+
+    Returns
+    -------
+    (..., 3, 3) ndarray
+    """
+    f = np.asarray(deformation, float)
+    return 0.5 * (np.swapaxes(f, -1, -2) @ f - np.eye(3))
+
+
+def log_strain(deformation: ArrayLike) -> NDArray:
+    """Logarithmic (Hencky) strain ln U of the right stretch.
+
+    Parameters
+    ----------
+    deformation : (..., 3, 3) array_like
+
+    Returns
+    -------
+    (..., 3, 3) ndarray
+    """
+    f = np.asarray(deformation, float)
+    squares, axes = np.linalg.eigh(np.swapaxes(f, -1, -2) @ f)
+    return np.einsum("...ij,...j,...kj->...ik", axes, 0.5 * np.log(squares), axes)
+
+
+def von_mises(stress: ArrayLike) -> NDArray:
+    """sqrt(3/2 s : s) of the deviator s.
+
+    Parameters
+    ----------
+    stress : (..., 3, 3) array_like
+        Cauchy stress, Pa.
+
+    Returns
+    -------
+    (...,) ndarray
+    """
+    s = np.asarray(stress, float)
+    deviator = s - np.trace(s, axis1=-2, axis2=-1)[..., None, None] / 3 * np.eye(3)
+    return np.sqrt(1.5 * np.sum(deviator**2, axis=(-2, -1)))
+
+
+def principal_values(stress: ArrayLike) -> NDArray:
+    """Eigenvalues of a symmetric tensor, largest first.
+
+    Parameters
+    ----------
+    stress : (..., 3, 3) array_like
+
+    Returns
+    -------
+    (..., 3) ndarray
+    """
+    s = np.asarray(stress, float)
+    return np.linalg.eigvalsh(0.5 * (s + np.swapaxes(s, -1, -2)))[..., ::-1]
+
+
+def to_nodes(body, values: ArrayLike) -> NDArray:
+    """Means at nodes of values of elements, by the volume of the elements round each.
+
+    Parameters
+    ----------
+    body : Body
+    values : (m, ...) array_like
+        One for every element, tetrahedra before hexahedra.
+
+    Returns
+    -------
+    (n, ...) ndarray
+        NaN at nodes that belong to no element.
+    """
+    data = np.asarray(values, float)
+    volumes = np.asarray(body.element_volumes)
+    tets = body.quadratic_tetrahedra if len(body.quadratic_tetrahedra) else body.tetrahedra
+    count = len(body.rest_positions)
+    total = np.zeros((count, *data.shape[1:]))
+    weight = np.zeros(count)
+    first = 0
+    for nodes in (np.asarray(tets), np.asarray(body.hexahedra)):
+        if len(nodes) == 0:
+            continue
+        part = slice(first, first + len(nodes))
+        shape = (-1,) + (1,) * (data.ndim - 1)
+        for corner in nodes.T:
+            np.add.at(total, corner, volumes[part].reshape(shape) * data[part])
+            np.add.at(weight, corner, volumes[part])
+        first += len(nodes)
+    with np.errstate(invalid="ignore"):
+        return total / weight.reshape((-1,) + (1,) * (data.ndim - 1))
