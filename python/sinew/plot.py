@@ -80,9 +80,11 @@ def run(folder, out) -> pathlib.Path:
             group = f"Motion ({unit})"
         else:
             group = f"Effort ({unit})"
+        if group.startswith(("Effort", "Motion")):
+            name = name.rsplit(".", 1)[0]
         panels.setdefault(group, []).append((name, unit, values))
     count = max(1, len(panels))
-    figure, axes = plt.subplots(count, 1, figsize=(8, 2.3 * count + 0.3), sharex=True, squeeze=False)
+    figure, axes = plt.subplots(count, 1, figsize=(9, 2.3 * count + 0.3), sharex=True, squeeze=False)
     for axis, (group, series) in zip(axes[:, 0], panels.items()):
         for k, (name, unit, values) in enumerate(series):
             shown, scale = SHOWN.get(unit, (unit, 1.0))
@@ -91,7 +93,7 @@ def run(folder, out) -> pathlib.Path:
                       color=QUIET if goal else COLOURS[k % len(COLOURS)],
                       label=None if goal else name.replace("_", " "))
             axis.set_ylabel(f"{group.split(' (')[0]} ({shown})" if shown else group)
-        axis.legend(ncols=4, loc="upper left")
+        axis.legend(loc="upper left", bbox_to_anchor=(1.0, 1.02))
     axes[-1, 0].set_xlabel("time (s)")
     figure.savefig(out, dpi=110)
     plt.close(figure)

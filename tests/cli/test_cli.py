@@ -282,7 +282,7 @@ def test_wrong_arguments(arguments, kind, words, scene, tmp_path):
     assert sorted(tmp_path.rglob("*")) == before
 
 
-@pytest.mark.parametrize("command", [[], ["run"], ["bench"], ["info"], ["mesh"], ["validate"], ["schema"]],
+@pytest.mark.parametrize("command", [[], ["run"], ["bench"], ["info"], ["mesh"], ["validate"], ["schema"], ["plot"]],
                          ids=lambda c: " ".join(c) or "sinew")
 def test_help(command):
     result = sinew(*command, "--help")
@@ -358,6 +358,40 @@ def test_bench_writes_its_figures(scene, tmp_path):
     assert figures["bytes_per_simulation"] > 1000
     assert "Eigen SimplicialLDLT" in result.stdout
     assert not (tmp_path / "out").exists(), "nothing is recorded"
+
+
+def test_plot_draws_a_run(scene, tmp_path):
+    out = tmp_path / "out"
+    assert sinew("run", scene(), "--out", out, "--quiet").returncode == DONE
+    done = sinew("plot", out)
+    assert done.returncode == DONE and "run.png" in done.stdout, done.stderr
+    assert not done.stderr
+    assert (out / "run.png").read_bytes().startswith(b"\x89PNG")
+    missing = sinew("plot", tmp_path)
+    assert missing.returncode == WRONG and "file-not-found" in missing.stderr
+
+
+def test_fit_writes_a_material_that_a_scene_takes(scene, tmp_path):
+    stretch = np.linspace(1.0, 3.0, 20)
+    stress = 12.0 * 2 * (stretch - stretch**-2) + 0.3 * 4 * (stretch**2 + 2 / stretch - 3) * (stretch - stretch**-2)
+    table = "\n".join(f"{a:.6f},{b:.8f}" for a, b in zip(stretch, stress))
+    (tmp_path / "tensile.csv").write_text("stretch,nominal stress [kPa]\n" + table + "\n")
+    if sinew("fit", "--help").returncode != DONE:
+        pytest.skip("built without Ceres")
+    done = sinew("fit", "tensile.csv", "--model", "yeoh2", "-o", "rubber.yaml", "--plot", "rubber.png", cwd=tmp_path)
+    assert done.returncode == DONE, done.stderr
+    assert "stable after Drucker" in done.stdout and "initial shear modulus 24 kPa" in done.stdout
+    assert (tmp_path / "rubber.png").read_bytes().startswith(b"\x89PNG")
+    text = (tmp_path / "rubber.yaml").read_text()
+    c10 = float([line for line in text.splitlines() if line.startswith("c10")][0].split()[1])
+    assert c10 == pytest.approx(12e3, rel=1e-4)
+    path = scene(replace=("{model: corotational, young_modulus: 200 kPa, poisson_ratio: 0.4}", "{file: rubber.yaml}"))
+    assert sinew("run", path, "--duration", "20ms", "--out", tmp_path / "run", "--quiet").returncode == DONE
+    every = sinew("fit", "tensile.csv", "--all", "--starts", "2", cwd=tmp_path)
+    assert every.returncode == DONE and "arruda-boyce" in every.stdout and "ogden6" in every.stdout
+    for arguments, kind in ((["tensile.csv", "--model", "yoeh2"], "unknown-choice"), (["none.csv"], "file-not-found")):
+        wrong = sinew("fit", *arguments, cwd=tmp_path)
+        assert wrong.returncode == WRONG and kind in wrong.stderr
 
 
 def test_validate_passes_cases_on(tmp_path):
