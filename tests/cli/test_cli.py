@@ -125,6 +125,12 @@ def test_vtk_series(scene, tmp_path):
     assert result.stdout == ""
     assert len(list((tmp_path / "o" / "run").glob("*.vtu"))) == 4
     assert (tmp_path / "o" / "run.pvd").read_text().count("DataSet") == 4
+    last = meshio.read(sorted((tmp_path / "o" / "run").glob("*.vtu"))[-1])
+    assert {"displacement", "velocity", "reaction"} <= set(last.point_data)
+    stress = last.cell_data["cauchy_stress"][0].reshape(-1, 3, 3)
+    deviator = stress - np.trace(stress, axis1=1, axis2=2)[:, None, None] / 3 * np.eye(3)
+    assert last.cell_data["von_mises_stress"][0] == pytest.approx(np.sqrt(1.5 * (deviator**2).sum((1, 2))), abs=1e-9)
+    assert np.abs(last.point_data["reaction"]).max() > 0
 
 
 def test_threads_give_the_same_bits(scene, tmp_path):

@@ -1,6 +1,7 @@
 #include "sinew/record/run_recorder.hpp"
 
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <optional>
 #include <utility>
@@ -9,6 +10,7 @@
 #include <unistd.h>
 
 #include "sinew/core/build_info.hpp"
+#include "sinew/fem/element_states.hpp"
 #include "sinew/mesh/write.hpp"
 #include "sinew/record/run_states.hpp"
 #include "sinew/record/run_table.hpp"
@@ -84,11 +86,40 @@ class ParaviewSeries {
       fields.positions = &body.positions();
       const Points moved = body.positions() - mesh.nodes;
       fields.points.push_back({"displacement", 3, {moved.data(), moved.data() + moved.size()}});
+      const Points& speed = body.velocities();
+      fields.points.push_back({"velocity", 3, {speed.data(), speed.data() + speed.size()}});
+      const fem::ElementStates states = fem::element_states(body);
+      fields.cells.push_back({"deformation_gradient", 9, rows_of(states.deformation)});
+      fields.cells.push_back({"cauchy_stress", 9, rows_of(states.cauchy)});
+      fields.cells.push_back({"von_mises_stress", 1, von_mises(states.cauchy)});
+      const Points held = fem::reactions(body, states, simulation_.efforts(),
+                                         simulation_.world().rows().direction,
+                                         simulation_.model().rows(), static_cast<int>(b));
+      fields.points.push_back({"reaction", 3, {held.data(), held.data() + held.size()}});
       lists_[b].write(simulation_.time(), mesh, fields);
     }
   }
 
  private:
+  static std::vector<double> rows_of(const std::vector<Matrix3>& tensors) {
+    std::vector<double> result;
+    result.reserve(9 * tensors.size());
+    for (const Matrix3& m : tensors) {
+      for (int r = 0; r < 3; ++r) {
+        for (int c = 0; c < 3; ++c) result.push_back(m(r, c));
+      }
+    }
+    return result;
+  }
+  static std::vector<double> von_mises(const std::vector<Matrix3>& stresses) {
+    std::vector<double> result;
+    for (const Matrix3& s : stresses) {
+      const Matrix3 deviator = s - s.trace() / 3.0 * Matrix3::Identity();
+      result.push_back(std::sqrt(1.5) * deviator.norm());
+    }
+    return result;
+  }
+
   const sim::Simulation& simulation_;
   std::vector<mesh::PvdWriter> lists_;
 };
