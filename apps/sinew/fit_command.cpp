@@ -132,7 +132,7 @@ int fit(const FitOptions& options) {
   const std::string data = options.plot + ".json";
   mesh::write_file(data, json_of(tests, fits));
   std::fflush(stdout);
-  const int code = run_python_module("sinew.plot", {"fit", data, options.plot});
+  const int code = draw_plot({"fit", data, options.plot});
   std::error_code ignored;
   std::filesystem::remove(data, ignored);
   return code;

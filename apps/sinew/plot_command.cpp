@@ -27,7 +27,7 @@ void add_plot(CLI::App& app, Actions& actions) {
                   "there is no recorded run", "name the folder that `sinew run` wrote");
     }
     const std::string out = options->out.empty() ? (folder / "run.png").string() : options->out;
-    return run_python_module("sinew.plot", {"run", folder.string(), out});
+    return draw_plot({"run", folder.string(), out});
   };
 }
 

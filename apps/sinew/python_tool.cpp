@@ -24,9 +24,24 @@ void use_own_python_package() {
   setenv("PYTHONPATH", path.c_str(), 1);
 }
 
-int run_python_module(const std::string& module, const std::vector<std::string>& arguments) {
-  use_own_python_package();
-  std::vector<std::string> words = {kInterpreter, "-m", module};
+namespace {
+
+// Beside this program's build, in the tree that it was built from, or installed.
+std::filesystem::path plot_script() {
+  const std::filesystem::path around = program_folder().parent_path();
+  for (const std::filesystem::path& path :
+       {around / "python/sinew/plot.py", std::filesystem::path(SINEW_PLOT_DEFAULT),
+        around / "lib/python3/dist-packages/sinew/plot.py"}) {
+    if (std::filesystem::exists(path)) return path;
+  }
+  throw Error(ErrorKind::tool_missing, {.file = SINEW_PLOT_DEFAULT},
+              "the script that draws plots is not there", "install the Python package");
+}
+
+}  // namespace
+
+int draw_plot(const std::vector<std::string>& arguments) {
+  std::vector<std::string> words = {kInterpreter, plot_script().string()};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> pointers;
   for (std::string& word : words) pointers.push_back(word.data());

@@ -13,8 +13,9 @@ inline constexpr const char* kInterpreter = "/usr/bin/python3";
 /// Puts the Python package of the same build as this program on the interpreter's path.
 void use_own_python_package();
 
-/// Runs a module of the Python package and waits; its exit code.
-/// Throws Error(tool-missing) when the interpreter cannot be started.
-int run_python_module(const std::string& module, const std::vector<std::string>& arguments);
+/// Runs the package's plot.py and waits; its exit code.
+/// @param arguments what to draw. Throws Error(tool-missing) when the script or the interpreter is
+///   not there.
+int draw_plot(const std::vector<std::string>& arguments);
 
 }  // namespace sinew::cli

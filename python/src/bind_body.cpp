@@ -125,7 +125,42 @@ py::array_t<bool> fixed(const Body& self) {
   return mask;
 }
 
+void move_base(const Body& self, const py::object& translation, const py::object& rotation,
+               const py::object& center) {
+  const auto read = [](const py::object& value, const char* what) -> Vector3 {
+    const Array numbers = to_array(value, what, "(3,)");
+    if (numbers.size() != 3) {
+      throw Error(ErrorKind::wrong_shape, {.item = what},
+                  fmt::format("{} numbers where three belong", numbers.size()), "give x, y and z");
+    }
+    return {numbers.data()[0], numbers.data()[1], numbers.data()[2]};
+  };
+  const Vector3 shift = read(translation, "move_base(translation)");
+  const Vector3 turn = read(rotation, "move_base(rotation)");
+  const Vector3 centre = read(center, "move_base(center)");
+  const Session::Use use(*self.session);
+  self.session->simulation().fem_body(self.index).set_base(shift, turn, centre);
+}
+
 void bind_state(py::class_<Body>& type) {
+  type.def(
+      "move_base", &move_base, py::arg("translation") = py::make_tuple(0.0, 0.0, 0.0),
+      py::arg("rotation") = py::make_tuple(0.0, 0.0, 0.0),
+      py::arg("center") = py::make_tuple(0.0, 0.0, 0.0),
+      R"(move_base($self, translation=(0.0, 0.0, 0.0), rotation=(0.0, 0.0, 0.0), center=(0.0, 0.0, 0.0))
+--
+
+Moves the fixed nodes from the next step on: turned about `center`, then shifted, from rest.
+
+Parameters
+----------
+translation : (3,) array_like
+    m.
+rotation : (3,) array_like
+    Rotation vector, rad.
+center : (3,) array_like
+    m, at rest.
+)");
   type.def_property_readonly(
           "positions", [](const Body& self) { return points_view(self, body(self).positions()); },
           R"((n, 3) ndarray: positions of all nodes now, in the mesh's order (m).

@@ -82,6 +82,8 @@ Vector3 FemBody::velocity(int point) const { return weighted(velocities_, point)
 void FemBody::begin_step() {
   start_positions_ = positions_;
   first_linearisation_ = true;
+  carried_ = false;
+  if (base_pose_) place_base();
 }
 
 void FemBody::linearise(const mechanics::LinearisationRequest& request) {
@@ -149,6 +151,13 @@ void FemBody::combine(const mechanics::Combination& weights, VectorX& result) co
   }
 }
 
+// Velocity at the end of the step that stiffness damping acts on: beside a moving base, which the
+// rows and columns of fixed nodes in K would take away.
+void FemBody::combine_velocity(const mechanics::StepWeights& weights, VectorX& result) const {
+  combine(weights.velocity, result);
+  if (carried_) result -= carry_ / weights.time_step;
+}
+
 void FemBody::add_inertia(const mechanics::StepWeights& weights) {
   const auto& damping = model_.settings().damping;
   const auto sum = [&](double a, double v) { return -(a + damping.mass * v); };
@@ -161,15 +170,16 @@ void FemBody::add_inertia(const mechanics::StepWeights& weights) {
   force_scale_ += scratch_.norm();
   if (!(damping.stiffness > 0.0)) return;
   if (active_->damped) {
-    combine(v, travel_);
+    combine_velocity(weights, travel_);
     linalg::multiply(active_->system.elements->pattern(), active_->start_stiffness,
                      span_of(travel_), span_of(scratch_));
     right_ -= damping.stiffness * scratch_;
     return;
   }
-  // One linearisation, at the start: the matrix is (1 + rate) K + mass M and no motion is yet made.
-  if (v.velocity == 0.0 && v.first == 0.0 && v.second == 0.0) return;
-  combine(v, travel_);
+  // One linearisation, at the start: the matrix is (1 + rate) K + mass M, and no motion is yet made
+  // but a base's.
+  if (v.velocity == 0.0 && v.first == 0.0 && v.second == 0.0 && !carried_) return;
+  combine_velocity(weights, travel_);
   const double mass = a.motion + damping.mass * v.motion;
   const double rate = damping.stiffness * v.motion;
   linalg::multiply(active_->system.elements->pattern(), active_->assembly.matrix(),
@@ -350,6 +360,7 @@ void FemBody::restart() {
   positions_ = model_.mesh().nodes;
   velocities_.setZero();
   for (Points& kept : history_) kept.setZero();
+  base_at_ = Eigen::Isometry3d::Identity();
 }
 
 std::size_t FemBody::state_size() const {
@@ -364,6 +375,7 @@ void FemBody::save_state(std::span<double> state) const {
 }
 
 void FemBody::load_state(std::span<const double> state) {
+  base_at_.reset();
   std::copy_n(state.data(), positions_.size(), positions_.data());
   const double* from = state.data() + positions_.size();
   std::copy_n(from, velocities_.size(), velocities_.data());

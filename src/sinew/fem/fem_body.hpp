@@ -6,6 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include <Eigen/Geometry>
+
 #include "sinew/fem/assembly.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/tether.hpp"
@@ -58,6 +60,14 @@ class FemBody : public mechanics::Body {
   Points& external_forces() { return external_forces_; }
   const Points& external_forces() const { return external_forces_; }
 
+  /// Where the fixed nodes stand from the next step on: turned about `centre` by a rotation vector
+  /// and then moved, from rest. An input as external forces are, but that where the nodes stand is
+  /// part of the state. Each step begins its search where the base's motion takes the whole body.
+  /// What moves the base puts in or takes out work.
+  /// @param translation (3,) m. @param rotation (3,) rad. @param centre (3,) m, at rest.
+  /// Throws Error(not-finite).
+  void set_base(const Vector3& translation, const Vector3& rotation, const Vector3& centre);
+
   /// From the next step on; none lets go. An input as external forces are: not part of the state.
   /// @param tether see there. Throws Error: index-out-of-range (node), out-of-range (weights,
   /// stiffness), not-finite, bad-argument when the nodes are no face of an element.
@@ -77,10 +87,12 @@ class FemBody : public mechanics::Body {
   void form_right_side(const mechanics::LinearisationRequest& request);
   void add_inertia(const mechanics::StepWeights& weights);
   void combine(const mechanics::Combination& weights, VectorX& result) const;
+  void combine_velocity(const mechanics::StepWeights& weights, VectorX& result) const;
   void hold_right_side();
   void stiffen_by_tether();
   void pull_by_tether();
   Vector3 weighted(const Points& field, int point) const;
+  void place_base();
   /// (3,) N on a mesh node.
   Vector3 weight(NodeId node) const {
     return model_.elements().load_mass()[node] * model_.settings().gravity;
@@ -100,6 +112,10 @@ class FemBody : public mechanics::Body {
   std::vector<double> row_effort_;
   double imbalance_share_ = 0.0;
   std::optional<Tether> tether_;
+  std::optional<Eigen::Isometry3d> base_pose_;                                // asked for
+  std::optional<Eigen::Isometry3d> base_at_ = Eigen::Isometry3d::Identity();  // if it is known
+  bool carried_ = false;  // the base's motion took all nodes along at the start of the step
+  VectorX carry_;         // by this much, (3 free,) m
   double blow_up_ = 0.0;  // sum of squared positions, m^2, beyond which the state is taken as lost
   bool first_linearisation_ = true;
   double force_scale_ = 0.0;

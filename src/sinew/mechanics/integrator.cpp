@@ -81,19 +81,21 @@ int history_count(Integrator integrator) {
 StepWeights step_weights(Integrator integrator, double time_step, double step_before,
                          double spectral_radius) {
   if (integrator == Integrator::quasi_static) return {};
-  if (integrator == Integrator::backward_euler) return backward_euler(time_step);
   const bool bdf = integrator == Integrator::bdf2;
-  if (step_before > 0.0) {
-    return bdf ? bdf2(time_step, step_before) : generalized_alpha(time_step, spectral_radius);
-  }
-  StepWeights start = backward_euler(time_step);
-  if (bdf) {  // as bdf2() keeps them
-    start.first = {.motion = 1.0};
-    start.second = {.velocity = 1.0};
+  StepWeights weights;
+  if (integrator == Integrator::backward_euler || !(step_before > 0.0)) {
+    weights = backward_euler(time_step);
+    if (bdf) {  // as bdf2() keeps them
+      weights.first = {.motion = 1.0};
+      weights.second = {.velocity = 1.0};
+    } else {
+      weights.first = weights.second = weights.acceleration;
+    }
   } else {
-    start.first = start.second = start.acceleration;
+    weights = bdf ? bdf2(time_step, step_before) : generalized_alpha(time_step, spectral_radius);
   }
-  return start;
+  weights.time_step = time_step;
+  return weights;
 }
 
 }  // namespace sinew::mechanics

@@ -36,6 +36,7 @@ struct StepWeights {
   double error_jump = 0.0;
   enum class Jump { none, velocity, acceleration, first } error_of = Jump::none;
   double step_before = 0.0;  ///< s; bdf2: for the jump of acceleration
+  double time_step = 0.0;    ///< h, s; 0 in statics
 
   bool dynamic() const { return acceleration.motion > 0.0; }
 };

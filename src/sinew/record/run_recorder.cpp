@@ -92,9 +92,9 @@ class ParaviewSeries {
       fields.cells.push_back({"deformation_gradient", 9, rows_of(states.deformation)});
       fields.cells.push_back({"cauchy_stress", 9, rows_of(states.cauchy)});
       fields.cells.push_back({"von_mises_stress", 1, von_mises(states.cauchy)});
-      const Points held = fem::reactions(body, states, simulation_.efforts(),
-                                         simulation_.world().rows().direction,
-                                         simulation_.model().rows(), static_cast<int>(b));
+      const Points held =
+          fem::reactions(body, states, simulation_.efforts(), simulation_.world().rows().direction,
+                         simulation_.model().rows(), static_cast<int>(b));
       fields.points.push_back({"reaction", 3, {held.data(), held.data() + held.size()}});
       lists_[b].write(simulation_.time(), mesh, fields);
     }

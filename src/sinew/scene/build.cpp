@@ -280,7 +280,12 @@ Robot build(SceneDescription description) {
     try {
       auto settings = fem_settings(description, body);
       meshes.push_back(settings.mesh);
-      builder.add_fem_body(std::move(settings));
+      const int number = builder.add_fem_body(std::move(settings));
+      if (body.base) {
+        builder.add_base_motion(
+            {number, body.base->translation, body.base->angle, body.base->axis, body.base->center},
+            body.base->place);
+      }
     } catch (const Error& error) {
       throw error.at(body.place);
     }

@@ -89,6 +89,15 @@ struct FixedRegion {
   std::array<bool, 3> axes{true, true, true};  ///< held along x, y, z
 };
 
+/// How the fixed nodes of a body move.
+struct BaseDescription {
+  Place place;
+  std::array<sim::Signal, 3> translation;  ///< m
+  sim::Signal angle;                       ///< rad
+  Vector3 axis = Vector3::UnitZ();         ///< unit length
+  Vector3 center = Vector3::Zero();        ///< m
+};
+
 struct BodyDescription {
   std::string name;
   Place place;
@@ -104,6 +113,7 @@ struct BodyDescription {
   double mass_damping = 0.0;       ///< 1/s, Rayleigh: damping matrix = mass_damping M + ...
   double stiffness_damping = 0.0;  ///< s, ... + stiffness_damping K
   std::vector<FixedRegion> fixed;
+  std::optional<BaseDescription> base;
 };
 
 /// (n, 3) m, each row with the place where it was written (a scene line or a line of a CSV).

@@ -339,6 +339,38 @@ std::shared_ptr<const KeyTable> damping_table() {
                  .description = "Factor of the stiffness matrix."}}});
 }
 
+std::shared_ptr<const KeyTable> base_table() {
+  const auto along = [](const char* axis) {
+    return Key{.name = axis,
+               .forms = {quantity(length()), table(signal_table(length(), "10 mm"))},
+               .example = "{sine: {amplitude: 10 mm, period: 2 s}}",
+               .default_text = "0 mm",
+               .description = std::string("Along ") + axis + "."};
+  };
+  return make_table({.name = "base",
+                     .description =
+                         "How the fixed nodes move: turned about an axis, then shifted, from rest. "
+                         "What moves them puts in or takes out work.",
+                     .keys = {along("x"),
+                              along("y"),
+                              along("z"),
+                              {.name = "angle",
+                               .forms = {quantity(angle()), table(signal_table(angle(), "90 deg"))},
+                               .example = "{ramp: {to: 90 deg, duration: 2 s}}",
+                               .default_text = "0 rad",
+                               .description = "Of the turn, from rest."},
+                              {.name = "axis",
+                               .forms = {vector(plain_number())},
+                               .example = "0 1 0",
+                               .default_text = "0 0 1",
+                               .description = "Of the turn; any length but zero."},
+                              {.name = "center",
+                               .forms = {vector(length())},
+                               .example = "0 0 0 mm",
+                               .default_text = "0 0 0 mm",
+                               .description = "A point of the axis, at rest."}}});
+}
+
 std::vector<Key> mass_keys() {
   return {
       {.name = "mass",
@@ -395,6 +427,11 @@ std::shared_ptr<const KeyTable> fem_table() {
                       .example = "{mass: 0.1 1/s, stiffness: 0.01 s}",
                       .default_text = "{}",
                       .description = "Rayleigh damping."});
+  fem.keys.push_back({.name = "base",
+                      .forms = {table(base_table())},
+                      .example = "{x: {sine: {amplitude: 10 mm, period: 2 s}}}",
+                      .description = "How the fixed nodes move. Without: they stand still.",
+                      .only_with = "fixed"});
   fem.keys.push_back({.name = "fixed",
                       .forms = {fixed_region(), list({fixed_region()})},
                       .example = "{box: -20 -20 0 20 20 20 mm}",

@@ -260,6 +260,20 @@ BodyDescription read_body(const Node::Entry& entry, const ReadContext& context) 
   damping.read("mass", body.mass_damping);
   damping.read("stiffness", body.stiffness_damping);
   read_fixed(fields, body);
+  if (fields.find("base") != nullptr) {
+    const Fields base = fields.below("base");
+    BaseDescription& motion = body.base.emplace();
+    motion.place = fields.place("base");
+    constexpr std::array kAxes = {"x", "y", "z"};
+    for (std::size_t c = 0; c < 3; ++c) {
+      if (base.find(kAxes[c]) != nullptr) {
+        motion.translation[c] = read_signal(base, kAxes[c], context);
+      }
+    }
+    if (base.find("angle") != nullptr) motion.angle = read_signal(base, "angle", context);
+    base.read_direction("axis", motion.axis);
+    base.read("center", motion.center);
+  }
   return body;
 }
 

@@ -142,6 +142,13 @@ double SceneDescription::run_duration() const {
   for (const ActuatorDescription& actuator : actuators) {
     if (actuator.command) end = std::max(end, actuator.command->signal.end_time());
   }
+  for (const BodyDescription& body : bodies) {
+    if (!body.base) continue;
+    for (const sim::Signal& signal : body.base->translation) {
+      end = std::max(end, signal.end_time());
+    }
+    end = std::max(end, body.base->angle.end_time());
+  }
   for (const ControllerDescription& controller : controllers) {
     for (const TaskDescription& task : controller.tasks) {
       end = std::max(end, task.target.end_time());

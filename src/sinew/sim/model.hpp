@@ -2,6 +2,7 @@
 /// A whole robot and its surroundings, ready to run: what never changes, shared by simulations.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -51,6 +52,21 @@ struct EffectorModel {
   int constraint = -1;
 };
 
+/// A motion of a body's fixed nodes, from rest.
+struct BaseMotion {
+  int body = 0;
+  std::array<Signal, 3> translation;  ///< m, along x, y, z
+  Signal angle;                       ///< rad
+  Vector3 axis = Vector3::UnitZ();    ///< of the turn, unit length
+  Vector3 centre = Vector3::Zero();   ///< of the turn, m
+
+  /// (3,) m and (3,) rad at a time.
+  Vector3 translation_at(double time) const {
+    return {translation[0].value(time), translation[1].value(time), translation[2].value(time)};
+  }
+  Vector3 rotation_at(double time) const { return angle.value(time) * axis; }
+};
+
 /// Immutable; made by ModelBuilder. Several simulations and threads may share one.
 class Model {
  public:
@@ -63,6 +79,7 @@ class Model {
   const mechanics::RowPattern& rows() const { return rows_; }
   const std::vector<mechanics::RowCurvature>& curvatures() const { return curvatures_; }
   const StepSettings& step() const { return step_; }
+  const std::vector<BaseMotion>& base_motions() const { return base_motions_; }
   /// Constraints whose curvature joins A in every step.
   const std::vector<int>& stiffening_constraints() const { return stiffening_; }
   /// Whether that needs blocks that the elements' pattern has not.
@@ -100,6 +117,7 @@ class Model {
   bool stiffening_widens_ = false;
   int drive_states_ = 0;
   StepSettings step_;
+  std::vector<BaseMotion> base_motions_;
   double size_ = 1.0;
   std::uint64_t fingerprint_ = 0;
 };

@@ -328,6 +328,25 @@ int ModelBuilder::add_cavity(const CavitySettings& settings) {
   }
 }
 
+void ModelBuilder::add_base_motion(const BaseMotion& motion, const Place& place) {
+  check_body(motion.body, place);
+  const auto* fem = dynamic_cast<const fem::FemBodyModel*>(&body(motion.body));
+  if (fem == nullptr) {
+    throw Error(ErrorKind::wrong_type, place, "this body has no fixed nodes to move",
+                "move the base of a finite-element body");
+  }
+  if (fem->settings().elements.fixed_nodes.empty()) {
+    throw Error(ErrorKind::nothing_fixed, place, "the body has a base motion but no fixed node",
+                "fix the region that moves");
+  }
+  const double length = motion.axis.norm();
+  if (!(length > 0.0)) {
+    throw Error(ErrorKind::out_of_range, place, "the axis has no length", "give one such as 0 0 1");
+  }
+  model_->base_motions_.push_back(motion);
+  model_->base_motions_.back().axis /= length;
+}
+
 int ModelBuilder::add_force(const ForceSettings& settings) {
   check_body(settings.body, settings.place);
   try {

@@ -103,6 +103,8 @@ class ModelBuilder {
   /// Throws Error: surface-not-closed, zero-volume, point-outside-mesh, contradictory-limits,
   /// out-of-range, conflicting-keys (gas and liquid).
   int add_cavity(const CavitySettings& settings);
+  /// Moves a body's fixed nodes. Throws Error: nothing-fixed, out-of-range (no axis), wrong-type.
+  void add_base_motion(const BaseMotion& motion, const Place& place);
   /// As add_cable(), and Error(out-of-range).
   int add_spring(const SpringLineSettings& settings);
   int add_effector(const EffectorSettings& settings);

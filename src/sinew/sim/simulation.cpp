@@ -141,11 +141,19 @@ void Simulation::step_adaptively() {
   }
 }
 
+void Simulation::move_bases(double time) {
+  for (const BaseMotion& motion : model_->base_motions()) {
+    fem_body(motion.body)
+        .set_base(motion.translation_at(time), motion.rotation_at(time), motion.centre);
+  }
+}
+
 // One solution of the step's equation; the error estimate, m.
 double Simulation::substep(double end, double time_step) {
   now_ = end;
   read_ranges(end, time_step);
   save_state(state_before_);
+  move_bases(end);
   world_.begin_step();
   Law& law = with_drives(law_ != nullptr ? *law_ : direct_);
   const LawProblem problem{*model_,

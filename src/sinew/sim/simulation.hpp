@@ -131,6 +131,7 @@ class Simulation {
   void advance_drives();
   mechanics::StepWeights step_weights(double time_step) const;
   double substep(double end, double time_step);
+  void move_bases(double time);
   void step_adaptively();
   void step_once(Law& law, const LawProblem& problem);
   void step_newton(Law& law, const LawProblem& problem);

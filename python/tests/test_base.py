@@ -1,0 +1,67 @@
+"""Bases that move."""
+
+import numpy as np
+import pytest
+import sinew
+
+
+def beam(base=None, element="hex8", **world):
+    body = {"type": "fem", "element": element, "density": 1000.0, "fixed": [{"set": "x_min"}],
+            "material": {"model": "neo-hookean", "shear_modulus": 3e4, "poisson_ratio": 0.4},
+            "mesh": {"shape": "block", "length": 0.06, "width": 0.01, "height": 0.01, "element_size": 0.005},
+            "damping": {"stiffness": 0.02}}
+    if base is not None:
+        body["base"] = base
+    return sinew.load({"sinew": 1, "solver": {"ordering": "amd", "method": "newton"}, "bodies": {"beam": body},
+                       "effectors": {"tip": {"body": "beam", "point": [0.06, 0.005, 0.005]}}, **world})
+
+
+def test_a_body_follows_its_base_without_strain():
+    turn = np.pi / 2
+    sim = beam({"x": {"ramp": {"to": "20 mm", "duration": "0.3 s"}}, "angle": {"ramp": {"to": turn, "duration": "0.3 s"}},
+                "axis": "0 1 0", "center": "0 5 5 mm"})
+    sim.step(40)
+    body = sim.body("beam")
+    rest, centre = np.array(body.rest_positions), np.array([0, 0.005, 0.005])
+    rotation = np.array([[0, 0, 1], [0, 1, 0], [-1, 0, 0]])
+    expected = (rest - centre) @ rotation.T + centre + [0.02, 0, 0]
+    assert np.array(body.positions) == pytest.approx(expected, abs=1e-9)
+    assert body.strain_energy < 1e-12
+
+
+def test_an_accelerated_base_is_a_gravity():
+    """Pulled along at a constant acceleration, the beam bends as it would hang under its opposite."""
+    a, step = 4.0, 1e-3
+    sim = beam(integrator="backward-euler", time_step=step)
+    for k in range(1, 1501):
+        sim.body("beam").move_base([0, 0, a * (k * step) ** 2 / 2])
+        sim.step()
+    base = np.array(sim.body("beam").positions)[np.array(sim.body("beam").fixed)][:, 2].mean() - 0.005
+    lag = sim.effector("tip").position[2] - base - 0.005
+    still = beam(gravity=[0, 0, -a])
+    still.solve_static()
+    # A pendulum of a beam still rings a little, and backward Euler meets a parabola to first order.
+    assert lag == pytest.approx(still.effector("tip").position[2] - 0.005, rel=0.02)
+
+
+def test_statics_take_the_base_along():
+    sim = beam()
+    sim.body("beam").move_base([0.01, 0, 0], [0, 0, 0.1])
+    sim.solve_static()
+    assert sim.body("beam").strain_energy < 1e-12
+    assert sim.effector("tip").position[0] > 0.065
+
+
+def test_bad_bases_are_refused():
+    with pytest.raises(sinew.Error) as caught:
+        beam().body("beam").move_base([np.nan, 0, 0])
+    assert caught.value.kind == "not-finite"
+    with pytest.raises(sinew.Error) as caught:
+        beam().body("beam").move_base([1, 2])
+    assert caught.value.kind == "wrong-shape"
+    with pytest.raises(sinew.Error) as caught:
+        beam({"x": "10 s"})
+    assert caught.value.kind == "wrong-dimension"
+    with pytest.raises(sinew.Error) as caught:
+        beam({"axis": "0 0 0"})
+    assert caught.value.kind == "out-of-range"
