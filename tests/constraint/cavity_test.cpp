@@ -4,9 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "sinew/core/error.hpp"
-
 #include "../sim/chambers.hpp"
+#include "support/error_kind.hpp"
 
 namespace sinew::constraint {
 namespace {
@@ -136,15 +135,7 @@ TEST_P(CavityTest, LoadStiffnessOfAClosedSurfaceNeedsNoWiderPattern) {
 INSTANTIATE_TEST_SUITE_P(Kinds, CavityTest,
                          ::testing::Values(Kind::tetrahedra, Kind::quadratic, Kind::hexahedra));
 
-ErrorKind kind_of(const auto& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    EXPECT_FALSE(error.remedy().empty());
-    return error.kind();
-  }
-  return ErrorKind::internal;
-}
+using sinew::testing::kind_of;
 
 // On a flat quadratic triangle the corners bear nothing, the middles a third each.
 TEST(Cavity, PressureOnFlatQuadraticFacesIsConsistent) {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sinew/core/error.hpp"
+#include "support/error_kind.hpp"
 
 namespace sinew::identify {
 namespace {
@@ -26,15 +26,7 @@ std::vector<RubberTest> tests_of(const material::Hyperelastic& law) {
           made_of(law, DeformationMode::planar, 3.0)};
 }
 
-ErrorKind kind_of(const auto& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    EXPECT_FALSE(error.remedy().empty());
-    return error.kind();
-  }
-  return ErrorKind::internal;
-}
+using sinew::testing::kind_of;
 
 TEST(MaterialFit, FindsTheLawThatMadeTheData) {
   const auto check = [](const material::Hyperelastic& law, const char* model) {

@@ -8,6 +8,7 @@
 #include "sinew/core/error.hpp"
 
 #include "../sim/robots.hpp"
+#include "support/error_kind.hpp"
 
 namespace sinew::inverse {
 namespace {
@@ -170,14 +171,7 @@ TEST(InverseController, WeightsChooseWhatMatters) {
   EXPECT_LT(first.x(), 0.9 * even.x());
 }
 
-ErrorKind kind_of(const auto& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.kind();
-  }
-  return ErrorKind::internal;
-}
+using sinew::testing::kind_of;
 
 TEST(InverseController, OwnsItsActuatorsUntilDetached) {
   Simulation simulation(beam());

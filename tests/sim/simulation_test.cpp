@@ -5,9 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "sinew/core/error.hpp"
-
 #include "robots.hpp"
+#include "support/error_kind.hpp"
 
 namespace sinew::sim {
 namespace {
@@ -21,15 +20,7 @@ void run(Simulation& simulation, int steps) {
   for (int i = 0; i < steps; ++i) simulation.step();
 }
 
-ErrorKind kind_of(const auto& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    EXPECT_FALSE(error.message().empty());
-    return error.kind();
-  }
-  return ErrorKind::internal;
-}
+using sinew::testing::kind_of;
 
 TEST(Simulation, StaysAtRestWithoutInputs) {
   Simulation simulation(beam());

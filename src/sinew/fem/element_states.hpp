@@ -28,6 +28,7 @@ ElementStates element_states(const FemBody& body);
 /// @param body,states as element_states() gave them.
 /// @param effort (rows,) of the world's rows, as of the last step.
 /// @param directions of the world's rows (mechanics::RowValues::direction).
+/// @param rows of the world. @param index the body's position in it.
 Points reactions(const FemBody& body, const ElementStates& states, std::span<const double> effort,
                  std::span<const Vector3> directions, const mechanics::RowPattern& rows, int index);
 

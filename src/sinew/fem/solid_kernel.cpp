@@ -359,7 +359,7 @@ void measure_states(const SolidGroup& group, int number, const double* points,
   for (int q = 0; q < Q; ++q) {
     const material::Principal at = material::principal(f[q]);
     material::LanesLogResponse response = material::respond(group.law, at);
-    for (int i = 0; i < 3; ++i) response.first[i] += mean.pressure * at.determinant;
+    for (Lanes& first : response.first) first += mean.pressure * at.determinant;
     const Lanes3x3 stress = material::first_piola(f[q], at, response);
     SolidState& to = result[static_cast<std::size_t>(q)];
     material::store(to.weight.value, batch.weight(q));

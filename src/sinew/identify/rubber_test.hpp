@@ -38,7 +38,7 @@ std::string_view mode_name(material::DeformationMode mode);
 /// unknown-unit, out-of-range for a stretch that is not positive, too-few-points under three rows.
 RubberTest read_rubber_test(const std::filesystem::path& path,
                             std::optional<material::DeformationMode> mode = std::nullopt);
-/// The same from memory. @param bytes,name the file and its name.
+/// The same from memory. @param bytes,name the file and its name. @param mode as above.
 RubberTest parse_rubber_test(std::string_view bytes, const std::string& name,
                              std::optional<material::DeformationMode> mode = std::nullopt);
 

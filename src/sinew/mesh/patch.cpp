@@ -166,6 +166,7 @@ std::vector<Face> grow_patch(const Mesh& mesh, const Vector3& point, double angl
   }
   const std::vector<Face> faces = boundary_faces(mesh);
   std::vector<Vector3> normals;
+  normals.reserve(faces.size());
   for (const Face& face : faces) normals.push_back(normal(mesh, face));
   return grow(faces, normals, nearest_face(mesh, faces, point, what), angle);
 }

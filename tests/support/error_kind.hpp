@@ -1,0 +1,22 @@
+// What a call throws, for tests of bad input.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "sinew/core/error.hpp"
+
+namespace sinew::testing {
+
+/// The kind of the Error that `action` throws, which must say something; ErrorKind::internal when
+/// it throws none.
+inline ErrorKind kind_of(const auto& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    EXPECT_FALSE(error.message().empty());
+    return error.kind();
+  }
+  return ErrorKind::internal;
+}
+
+}  // namespace sinew::testing
