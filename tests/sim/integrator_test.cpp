@@ -133,7 +133,7 @@ TEST(Adaptive, MeetsItsToleranceWithFewerSteps) {
   int last_steps = 0;
   for (const double tolerance : {1e-3, 1e-5}) {
     BeamOptions options = falling(Integrator::generalized_alpha, 0.02);
-    options.step.adaptive = StepSettings::Adaptive{tolerance, 1e-5};
+    options.step.adaptive = AdaptiveStep{tolerance, 1e-5};
     Simulation simulation(beam(options));
     int substeps = 0;
     for (int i = 0; i < 5; ++i) {
@@ -157,7 +157,7 @@ TEST(Adaptive, RetriesWhereAStepFails) {
     BeamOptions options = falling(Integrator::backward_euler, 0.05);
     options.cables = 4;
     options.step.max_iterations = 3;
-    if (adaptive) options.step.adaptive = StepSettings::Adaptive{1.0, 1e-4};
+    if (adaptive) options.step.adaptive = AdaptiveStep{1.0, 1e-4};
     auto simulation = std::make_unique<Simulation>(beam(options));
     simulation->command(0, {CommandKind::motion, Signal::ramp({0.0, 0.01, 0.0, 0.05})});
     return simulation;
@@ -175,7 +175,7 @@ TEST(Adaptive, StopsAtTheSmallestStepAndRestoresTheState) {
   options.cables = 4;
   options.step.max_iterations = 1;
   options.step.tolerance = 1e-15;
-  options.step.adaptive = StepSettings::Adaptive{1.0, 0.01};
+  options.step.adaptive = AdaptiveStep{1.0, 0.01};
   Simulation simulation(beam(options));
   const auto before = simulation.state_hash();
   EXPECT_THROW(simulation.step(), Error);

@@ -356,6 +356,7 @@ EccentricSection eccentric_section(const ChamberedCylinderShape& shape, Cells ce
     const double centre = (1.0 - part) * shape.chamber_offset;
     const double radius = std::lerp(wall_radius, outer_radius, part);
     std::vector<NodeId> next;
+    next.reserve(turn.size());
     for (const double angle : turn) {
       next.push_back(add(centre + radius * std::cos(angle), radius * std::sin(angle)));
     }

@@ -44,7 +44,7 @@ struct SolverDescription {
   Place place;
   Method method = Method::one_linearisation;
   Tangent tangent = Tangent::rotated;
-  std::optional<sim::StepSettings::Adaptive> adaptive;
+  std::optional<sim::AdaptiveStep> adaptive;
   double tolerance = 1e-8;        ///< Newton: residual relative to the loads
   int max_iterations = 50;        ///< Newton
   int threads = 1;                ///< inside a step
