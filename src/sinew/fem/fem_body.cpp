@@ -329,6 +329,11 @@ mechanics::MotionReport FemBody::apply_motion(double scale) {
 
 double FemBody::end_step(const mechanics::StepWeights& weights) {
   using Jump = mechanics::StepWeights::Jump;
+  if (!weights.dynamic()) {  // nothing moves, and nothing is kept
+    velocities_.setZero();
+    for (Points& kept : history_) kept.setZero();
+    return 0.0;
+  }
   double worst = 0.0;
   const bool kept = !history_.empty();
   for (Eigen::Index i = 0; i < positions_.rows(); ++i) {

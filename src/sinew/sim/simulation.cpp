@@ -45,16 +45,18 @@ void Simulation::read_ranges(double time, double time_step) {
   }
 }
 
-std::span<double> Simulation::drive_numbers(std::size_t actuator) {
-  const ActuatorModel& model = model_->actuators()[actuator];
+std::span<const double> Simulation::drive_state(int actuator) const {
+  const ActuatorModel& model = model_->actuators()[static_cast<std::size_t>(actuator)];
   if (model.drive == nullptr) return {};
   return std::span(drive_state_)
       .subspan(static_cast<std::size_t>(model.first_state),
                static_cast<std::size_t>(model.drive->state_size()));
 }
 
-std::span<const double> Simulation::drive_state(int actuator) const {
-  return const_cast<Simulation*>(this)->drive_numbers(static_cast<std::size_t>(actuator));
+std::span<double> Simulation::drive_numbers(std::size_t actuator) {
+  return std::span(drive_state_)
+      .subspan(static_cast<std::size_t>(model_->actuators()[actuator].first_state),
+               drive_state(static_cast<int>(actuator)).size());
 }
 
 Law& Simulation::with_drives(Law& law) {
@@ -128,7 +130,7 @@ void Simulation::step_adaptively() {
       done += h;
       ++report_.substeps;
       report_.error = std::max(report_.error, error);
-      substep_ = std::min(whole, std::max(settings.adaptive->smallest, aim * std::max(h, 1e-300)));
+      substep_ = std::min(whole, std::max(settings.adaptive->smallest, aim * h));
     } catch (const Error& failure) {
       if (0.5 * h < settings.adaptive->smallest || !failure.is_run_failure()) {
         load_state(state_at_step_, steps_);
