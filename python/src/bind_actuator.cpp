@@ -232,6 +232,16 @@ void bind_measures(py::class_<Actuator>& type) {
           "wrap", of_cable("wrap", [](const Cable& c, const Placement& p) { return c.wrap(p); }),
           "float: sum of the angles by which a cable turns at its via points (rad).")
       .def_property_readonly(
+          "tensions",
+          [](const Actuator& self) {
+            const constraint::Cable& found = cable(self, "tensions");
+            const Session::Use use(*self.session);
+            const auto values = found.tensions(self.session->simulation().efforts());
+            return Array(static_cast<py::ssize_t>(values.size()), values.data());
+          },
+          "(n - 1,) ndarray: tension of every segment of a cable, from the pull point on (N). They "
+          "differ by the friction at the points between; the last one is what its end is tied by.")
+      .def_property_readonly(
           "points",
           of_cable("points", [](const Cable& c, const Placement& p) { return copy(c.points(p)); }),
           "(n, 3) ndarray: a cable's points now, pull point first (m).")

@@ -69,7 +69,8 @@ TEST_F(BentCable, CurvatureIsTheDerivativeOfTheDirections) {
   auto& world = simulation_.world();
   std::vector<mechanics::RowCurvature> pairs(
       model_->curvatures().begin(), model_->curvatures().begin() + cable().curvature_count());
-  cable().curve(world.placement(), pairs);
+  const std::vector<double> effort{1.0};
+  cable().curve(world.placement(), effort, pairs);
   const Points middle = cable().points(world.placement());
   shift(t);
   const Points after = cable().points(world.placement());
@@ -93,6 +94,64 @@ TEST_F(BentCable, CurvatureIsTheDerivativeOfTheDirections) {
     const Vector3 difference = (ahead[e] - behind[e]) / (2 * t);
     EXPECT_LT((expected - difference).norm(), 1e-5 * (1.0 + difference.norm())) << point;
   }
+}
+
+// Every row's directions are the derivatives of its motion, the curvature that of H^T lambda.
+TEST(CableFriction, RowsAndCurvatureAgreeWithDifferences) {
+  const auto model = sinew::testing::beam({.cables = 1, .pull_from_world = false, .friction = 0.2});
+  sim::Simulation simulation(model);
+  auto& body = simulation.fem_body(0);
+  auto& world = simulation.world();
+  const Cable& cable = *model->cable(0);
+  ASSERT_EQ(cable.row_count(), 1 + cable.via_count());
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0.0, 1e-3);
+  std::vector<double> state(body.state_size()), velocity(state.size(), 0.0);
+  body.save_state(state);
+  for (std::size_t i = 0; i < state.size() / 2; ++i) {
+    state[i] += noise(random);
+    velocity[i] = 1e3 * noise(random);
+  }
+  const auto at = [&](double t) {
+    auto moved = state;
+    for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += t * velocity[i];
+    body.load_state(moved);
+    world.measure_delta();
+    return std::pair(world.rows(), cable.points(world.placement()));
+  };
+  const double t = 1e-6;
+  const auto [ahead, after] = at(t);
+  const auto [behind, before] = at(-t);
+  const auto [rows, here] = at(0.0);
+  const Points rates = (after - before) / (2.0 * t);
+  std::vector<double> effort(static_cast<std::size_t>(model->rows().rows()), 0.0);
+  for (int k = 0; k < cable.row_count(); ++k) effort[static_cast<std::size_t>(k)] = 3.0 - 0.4 * k;
+  const int first_point = model->rows().point[0].point;
+  Points slope = Points::Zero(here.rows(), 3), expected = slope;
+  for (int k = 0; k < cable.row_count(); ++k) {
+    double rate = 0.0;
+    for (auto e = model->rows().row_start[static_cast<std::size_t>(k)];
+         e < model->rows().row_start[static_cast<std::size_t>(k) + 1]; ++e) {
+      const auto entry = static_cast<std::size_t>(e);
+      const auto point = model->rows().point[entry].point - first_point;
+      rate += rows.direction[entry].dot(rates.row(point));
+      slope.row(point) += effort[static_cast<std::size_t>(k)] *
+                          (ahead.direction[entry] - behind.direction[entry]).transpose() /
+                          (2.0 * t);
+    }
+    const double difference = (ahead.delta[k] - behind.delta[k]) / (2.0 * t);
+    EXPECT_NEAR(rate, difference, 1e-7 * (1.0 + std::abs(difference))) << k;
+  }
+  std::vector<mechanics::RowCurvature> pairs(model->curvatures().begin(),
+                                             model->curvatures().begin() + cable.curvature_count());
+  cable.curve(world.placement(), effort, pairs);
+  for (const auto& pair : pairs) {
+    const int a = pair.first.point - first_point, b = pair.second.point - first_point;
+    expected.row(a) += (pair.curvature * rates.row(b).transpose()).transpose();
+    if (a != b)
+      expected.row(b) += (pair.curvature.transpose() * rates.row(a).transpose()).transpose();
+  }
+  EXPECT_LT((slope - expected).cwiseAbs().maxCoeff(), 1e-5 * slope.cwiseAbs().maxCoeff());
 }
 
 TEST_F(BentCable, MotionIsTheLengthPulledOut) {

@@ -101,7 +101,8 @@ TEST_P(CavityTest, DirectionsAreTheDerivativeOfTheVolume) {
 TEST_P(CavityTest, CurvatureIsTheDerivativeOfTheDirections) {
   distort(1e-3);
   auto pairs = simulation_.model().curvatures();
-  cavity().curve(simulation_.world().placement(), pairs);
+  const std::vector<double> effort{1.0};
+  cavity().curve(simulation_.world().placement(), effort, pairs);
   const auto& points = cavity().material_points();
   const auto index = [&](const mechanics::MaterialPoint& wanted) {
     std::size_t k = 0;

@@ -205,5 +205,29 @@ TEST(InverseController, BadSettingsAreErrors) {
   EXPECT_EQ(kind_of([&] { InverseController c(still, to({0.1, 0, 0})); }), ErrorKind::no_actuators);
 }
 
+// The tensions along each cable obey Coulomb's law while the controller chooses the first one.
+TEST(InverseController, ReachesItsTargetThroughFriction) {
+  constexpr double kFriction = 0.3;
+  const auto model = beam({.friction = kFriction});
+  sim::Simulation simulation(model);
+  InverseController controller(simulation, to(reachable(beam())));
+  for (int k = 0; k < 300; ++k) controller.step();
+  EXPECT_LT(controller.error(), 5e-5);
+  double largest_drop = 0.0;
+  for (int cable = 0; cable < 4; ++cable) {
+    const auto tensions = model->cable(cable)->tensions(simulation.efforts());
+    for (int via = 0; via < model->cable(cable)->via_count(); ++via) {
+      const auto k = static_cast<std::size_t>(via);
+      const double turn = model->cable(cable)->turn(simulation.world().placement(), via);
+      // The limits are those of the placement in which the step was linearised.
+      const double slope = std::exp(kFriction * turn) * (1.0 + 1e-4);
+      EXPECT_LE(tensions[k], tensions[k + 1] * slope + 1e-9) << cable << ' ' << via;
+      EXPECT_LE(tensions[k + 1], tensions[k] * slope + 1e-9) << cable << ' ' << via;
+      largest_drop = std::max(largest_drop, std::abs(tensions[k] - tensions[k + 1]));
+    }
+  }
+  EXPECT_GT(largest_drop, 1e-3);
+}
+
 }  // namespace
 }  // namespace sinew::inverse

@@ -25,6 +25,7 @@ struct BeamOptions {
   sim::Limits displacement;
   bool pull_from_world = true;
   bool geometric_stiffness = false;
+  double friction = 0.0;
   bool clamped = true;
   fem::MassMatrix mass = fem::MassMatrix::lumped;
   material::Law law = material::Law::corotational;
@@ -58,6 +59,7 @@ inline std::shared_ptr<const sim::Model> beam(const BeamOptions& options = {}) {
     cable.tension = options.tension;
     cable.displacement = options.displacement;
     cable.geometric_stiffness = options.geometric_stiffness;
+    cable.friction = options.friction;
     builder.add_cable(cable);
   }
   sim::EffectorSettings tip;

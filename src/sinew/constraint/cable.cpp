@@ -32,10 +32,12 @@ Segment segment(const Vector3& from, const Vector3& to) {
 }  // namespace
 
 Cable::Cable(std::string name, std::vector<mechanics::MaterialPoint> points,
-             std::optional<Vector3> world_pull_point, const Points& placement_at_rest)
+             std::optional<Vector3> world_pull_point, const Points& placement_at_rest,
+             bool friction)
     : Constraint(std::move(name)),
       points_(std::move(points)),
-      pull_point_(std::move(world_pull_point)) {
+      pull_point_(std::move(world_pull_point)),
+      friction_(friction) {
   if (point_count() < 2) {
     throw Error(ErrorKind::too_few_points, {.item = "cable '" + this->name() + "'"},
                 fmt::format("a cable needs at least two points, got {}", point_count()),
@@ -67,11 +69,15 @@ void Cable::declare(mechanics::RowPattern& rows, std::vector<mechanics::RowCurva
   first_entry_ = rows.entries();
   first_row_ = rows.add_row(points_);
   row_count_ = 1;
+  const int skip = pull_point_ ? 1 : 0;
+  for (int via = 0; friction_ && via < via_count(); ++via, ++row_count_) {
+    rows.add_row({points_.begin() + (via + 1 - skip), points_.end()});
+  }
   first_curvature_ = static_cast<int>(curvatures.size());
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    curvatures.push_back({first_row_, points_[i], points_[i], Matrix3::Zero()});
+    curvatures.push_back({points_[i], points_[i], Matrix3::Zero()});
     if (i + 1 < points_.size()) {
-      curvatures.push_back({first_row_, points_[i], points_[i + 1], Matrix3::Zero()});
+      curvatures.push_back({points_[i], points_[i + 1], Matrix3::Zero()});
     }
   }
   curvature_count_ = static_cast<int>(curvatures.size()) - first_curvature_;
@@ -97,16 +103,45 @@ void Cable::linearise(const Placement& placement, mechanics::RowValues& values) 
     before = next.direction;
   }
   values.delta[first_row_] = rest_length_ - length;
+  if (friction_) linearise_friction(placement, values);
 }
 
-void Cable::curve(const Placement& placement, std::span<mechanics::RowCurvature> curvatures) const {
+// Row of via point i: minus the direction of the whole cable at all points behind it; at the point
+// itself only the segment behind it counts. Its motion is counted from rest, whose segments are not
+// kept one by one: laws look at differences.
+void Cable::linearise_friction(const Placement& placement, mechanics::RowValues& values) const {
+  const int skip = pull_point_ ? 1 : 0;
+  const int count = point_count();
+  auto entry = static_cast<std::size_t>(first_entry_) + points_.size();
+  for (int via = 0; via < via_count(); ++via) {
+    const int first = via + 1;
+    const Segment behind = segment(point(placement, first), point(placement, first + 1));
+    values.direction[entry++] = -behind.direction;
+    for (int i = first + 1; i < count; ++i) {
+      values.direction[entry++] =
+          -values.direction[static_cast<std::size_t>(first_entry_ + i - skip)];
+    }
+  }
+  double length = 0.0;  // behind the point
+  for (int via = via_count(); via-- > 0;) {
+    length += segment(point(placement, via + 1), point(placement, via + 2)).length;
+    values.delta[friction_row(via)] = length;
+  }
+}
+
+void Cable::curve(const Placement& placement, std::span<const double> effort,
+                  std::span<mechanics::RowCurvature> curvatures) const {
   const int skip = pull_point_ ? 1 : 0;
   for (auto& entry : curvatures) entry.curvature.setZero();
+  const double* lambda = effort.data() + first_row_;
+  double tension = lambda[0];
   // Diagonal pairs of sliding point k stand at 2 k, its pair with the next one at 2 k + 1.
   for (int i = 0; i + 1 < point_count(); ++i) {
+    if (friction_ && i > 0) tension -= lambda[i];
     const Segment s = segment(point(placement, i), point(placement, i + 1));
     if (s.length <= kShortestSegment) continue;
-    const Matrix3 bend = (Matrix3::Identity() - s.direction * s.direction.transpose()) / s.length;
+    const Matrix3 bend =
+        tension * (Matrix3::Identity() - s.direction * s.direction.transpose()) / s.length;
     const int k = i - skip;
     if (k >= 0) {
       curvatures[static_cast<std::size_t>(2 * k)].curvature -= bend;
@@ -124,14 +159,26 @@ double Cable::length(const Placement& placement) const {
   return length;
 }
 
+double Cable::turn(const Placement& placement, int via) const {
+  const Vector3 here = point(placement, via + 1);
+  const Vector3 a = segment(point(placement, via), here).direction;
+  const Vector3 b = segment(here, point(placement, via + 2)).direction;
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
 double Cable::wrap(const Placement& placement) const {
   double angle = 0.0;
-  for (int i = 1; i + 1 < point_count(); ++i) {
-    const Vector3 a = segment(point(placement, i - 1), point(placement, i)).direction;
-    const Vector3 b = segment(point(placement, i), point(placement, i + 1)).direction;
-    angle += std::atan2(a.cross(b).norm(), a.dot(b));
-  }
+  for (int via = 0; via < via_count(); ++via) angle += turn(placement, via);
   return angle;
+}
+
+std::vector<double> Cable::tensions(std::span<const double> effort) const {
+  std::vector<double> result{effort[static_cast<std::size_t>(first_row_)]};
+  for (int via = 0; via < via_count(); ++via) {
+    const double lost = friction_ ? effort[static_cast<std::size_t>(friction_row(via))] : 0.0;
+    result.push_back(result.back() - lost);
+  }
+  return result;
 }
 
 Points Cable::points(const Placement& placement) const {

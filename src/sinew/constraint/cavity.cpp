@@ -163,7 +163,7 @@ void Cavity::declare(mechanics::RowPattern& rows,
   row_count_ = 1;
   first_curvature_ = static_cast<int>(curvatures.size());
   for (const auto& [a, b] : pairs_) {
-    curvatures.push_back({first_row_, points_[static_cast<std::size_t>(a)],
+    curvatures.push_back({points_[static_cast<std::size_t>(a)],
                           points_[static_cast<std::size_t>(b)], Matrix3::Zero()});
   }
   curvature_count_ = static_cast<int>(pairs_.size());
@@ -192,13 +192,15 @@ void Cavity::linearise(const Placement& placement, mechanics::RowValues& values)
   values.delta[first_row_] = volume - rest_volume_;
 }
 
-void Cavity::curve(const Placement& placement,
+void Cavity::curve(const Placement& placement, std::span<const double> effort,
                    std::span<mechanics::RowCurvature> curvatures) const {
   for (auto& entry : curvatures) entry.curvature.setZero();
+  const double pressure = effort[static_cast<std::size_t>(first_row_)];
   const Vector3 origin = placement.position(points_.front());
   for (const Edge& edge : edges_) {
     const Vector3 c = placement.position(points_[static_cast<std::size_t>(edge.third)]) - origin;
-    curvatures[static_cast<std::size_t>(edge.pair)].curvature += edge.weight * cross_matrix(c);
+    curvatures[static_cast<std::size_t>(edge.pair)].curvature +=
+        pressure * edge.weight * cross_matrix(c);
   }
 }
 

@@ -39,7 +39,7 @@ class Cavity : public Constraint {
   void declare(mechanics::RowPattern& rows,
                std::vector<mechanics::RowCurvature>& curvatures) override;
   void linearise(const Placement& placement, mechanics::RowValues& values) const override;
-  void curve(const Placement& placement,
+  void curve(const Placement& placement, std::span<const double> effort,
              std::span<mechanics::RowCurvature> curvatures) const override;
 
   /// V_0, m^3; negative when the surface is a body's outside.

@@ -2,6 +2,7 @@
 
 namespace sinew::constraint {
 
-void Constraint::curve(const Placement&, std::span<mechanics::RowCurvature>) const {}
+void Constraint::curve(const Placement&, std::span<const double>,
+                       std::span<mechanics::RowCurvature>) const {}
 
 }  // namespace sinew::constraint

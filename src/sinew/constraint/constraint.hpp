@@ -44,7 +44,9 @@ class Constraint {
   /// Writes directions and delta of its rows for the current placement.
   virtual void linearise(const Placement& placement, mechanics::RowValues& values) const = 0;
   /// Writes the curvature of its declared pairs for the current placement.
-  virtual void curve(const Placement& placement,
+  /// @param placement of all bodies. @param effort (rows,) N or Pa, of all rows of the world.
+  /// @param curvatures its own, first_curvature() on.
+  virtual void curve(const Placement& placement, std::span<const double> effort,
                      std::span<mechanics::RowCurvature> curvatures) const;
 
   const std::string& name() const { return name_; }

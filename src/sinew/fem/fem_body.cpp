@@ -192,7 +192,7 @@ void FemBody::hold_right_side() {
   for (const std::int32_t held : model_.elements().held()) right_[held] = 0.0;
 }
 
-void FemBody::add_curvature(const mechanics::RowCurvature& curvature, double effort) {
+void FemBody::add_curvature(const mechanics::RowCurvature& curvature) {
   const auto& first = model_.attachment(curvature.first.point);
   const auto& second = model_.attachment(curvature.second.point);
   const bool same = curvature.first.point == curvature.second.point;
@@ -203,7 +203,7 @@ void FemBody::add_curvature(const mechanics::RowCurvature& curvature, double eff
     for (std::size_t b = 0; b < second.nodes.size(); ++b) {
       const auto j = free[static_cast<std::size_t>(second.nodes[b])];
       if (j < 0 || (same && i < j)) continue;
-      Matrix3 block = -effort * first.weights[a] * second.weights[b] * curvature.curvature;
+      Matrix3 block = -first.weights[a] * second.weights[b] * curvature.curvature;
       // Off-diagonal pairs stand for themselves and their transpose.
       if (!same && i == j) block = (block + block.transpose()).eval();
       active_->assembly.add_block(i, j, block);

@@ -29,7 +29,7 @@ class FemBody : public mechanics::Body {
 
   void begin_step() override;
   void linearise(const mechanics::LinearisationRequest& request) override;
-  void add_curvature(const mechanics::RowCurvature& curvature, double effort) override;
+  void add_curvature(const mechanics::RowCurvature& curvature) override;
   void take_rows(const mechanics::RowValues& rows) override;
   double residual(std::span<const double> effort) override;
   linalg::FactorStatus condense() override;

@@ -54,7 +54,7 @@ InverseController::InverseController(sim::Simulation& simulation, InverseSetting
     }
   }
   const auto rows = static_cast<Eigen::Index>(effector_rows_.size());
-  const auto count = static_cast<Eigen::Index>(model.actuators().size());
+  const auto count = static_cast<Eigen::Index>(model.range_count());
   row_weights_ = Eigen::Map<VectorX>(weights.data(), rows);
   jacobian_.setZero(rows, count);
   weighted_.setZero(rows, count);
@@ -62,7 +62,7 @@ InverseController::InverseController(sim::Simulation& simulation, InverseSetting
   goal_.setZero(rows);
   scale_.setOnes(count);
   scaled_effort_.setZero(count);
-  slack_.assign(static_cast<std::size_t>(count), false);
+  passive_.assign(static_cast<std::size_t>(count), Passive::held);
   program_ = qp::QuadraticProgram::sized(static_cast<int>(count), static_cast<int>(count));
   solver_ = qp::QpSolver(static_cast<int>(count), static_cast<int>(count));
   elastic_ = qp::ElasticSolver(static_cast<int>(count), static_cast<int>(count));
@@ -217,13 +217,14 @@ void InverseController::form_limits(const sim::LawProblem& problem) {
     double from = range.motion_min;
     double to = range.motion_max;
     if (!range.owned) {
-      const bool by_effort = range.kind == CommandKind::effort;
-      if (by_effort || slack_[k]) low = high = by_effort ? range.value : range.effort_min;
-      from = to = range.value;
-      if (by_effort || slack_[k]) {
-        from = -INFINITY;
-        to = INFINITY;
-      }
+      const bool held = range.kind == CommandKind::motion && passive_[k] == Passive::held;
+      const double given = range.kind == CommandKind::effort  ? range.value
+                           : passive_[k] == Passive::at_least ? range.effort_min
+                                                              : range.effort_max;
+      low = held ? -INFINITY : given;
+      high = held ? INFINITY : given;
+      from = held ? range.value : -INFINITY;
+      to = held ? range.value : INFINITY;
     }
     program_.lower[i] = low / scale_[i];
     program_.upper[i] = high / scale_[i];
@@ -234,7 +235,7 @@ void InverseController::form_limits(const sim::LawProblem& problem) {
 
 sim::LawStatus InverseController::solve_program(const sim::LawProblem& problem) {
   sim::LawStatus status = sim::LawStatus::solved;
-  for (std::size_t round = 0; round <= slack_.size(); ++round) {
+  for (std::size_t round = 0; round <= 2 * passive_.size(); ++round) {
     form_limits(problem);
     const qp::QpResult& result = solver_.solve(program_);
     if (result.status == qp::QpStatus::infeasible) {
@@ -249,24 +250,35 @@ sim::LawStatus InverseController::solve_program(const sim::LawProblem& problem) 
     } else {
       scaled_effort_ = result.x;
     }
-    if (!release_pushing_cables(problem)) break;
+    if (!settle_passive_rows(problem)) break;
   }
   return status;
 }
 
-// A passive cable whose motion is commanded is an equality row without regard to its sign; one that
-// comes out at its least tension may be slack instead.
-bool InverseController::release_pushing_cables(const sim::LawProblem& problem) {
+// A row that nobody owns and whose motion is commanded (a passive cable, a guide with friction) is
+// held there whatever effort that takes; where it takes more than there is, the effort stays at its
+// limit and the row moves, until it would move against that limit.
+bool InverseController::settle_passive_rows(const sim::LawProblem& problem) {
   bool changed = false;
-  for (std::size_t k = 0; k < slack_.size(); ++k) {
+  for (std::size_t k = 0; k < passive_.size(); ++k) {
     const ActuatorRange& range = problem.actuators[k];
-    if (range.owned || range.kind != CommandKind::motion || slack_[k]) continue;
+    if (range.owned || range.kind != CommandKind::motion) continue;
     const auto i = static_cast<Eigen::Index>(k);
-    const double delta = problem.delta_free[range.row] + program_.rows.row(i).dot(scaled_effort_);
-    if (delta > range.value + kActive * problem.model.size() / range.motion_scale) {
-      slack_[k] = true;
-      changed = true;
+    const double effort = scale_[i] * scaled_effort_[i];
+    const double motion =
+        problem.delta_free[range.row] + program_.rows.row(i).dot(scaled_effort_) - range.value;
+    const double nothing = kActive * problem.model.size() / range.motion_scale;
+    const double negligible = kActive * scale_[i];
+    const Passive before = passive_[k];
+    if (before == Passive::held && effort < range.effort_min - negligible) {
+      passive_[k] = Passive::at_least;
+    } else if (before == Passive::held && effort > range.effort_max + negligible) {
+      passive_[k] = Passive::at_most;
+    } else if ((before == Passive::at_least && motion < -nothing) ||
+               (before == Passive::at_most && motion > nothing)) {
+      passive_[k] = Passive::held;
     }
+    changed = changed || passive_[k] != before;
   }
   return changed;
 }
@@ -274,7 +286,7 @@ bool InverseController::release_pushing_cables(const sim::LawProblem& problem) {
 sim::LawStatus InverseController::solve(const sim::LawProblem& problem, std::span<double> effort) {
   form_residual(problem);
   form_objective(problem, effort);
-  std::fill(slack_.begin(), slack_.end(), false);
+  std::ranges::fill(passive_, Passive::held);
   const sim::LawStatus status = solve_program(problem);
   if (status == sim::LawStatus::failed) return status;
   for (std::size_t k = 0; k < problem.actuators.size(); ++k) {

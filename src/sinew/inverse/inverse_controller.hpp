@@ -59,7 +59,8 @@ std::string_view inverse_status_name(InverseStatus status);
 ///   min 1/2 |W_ea lambda + delta_e - target|_Q^2 + eps/2 (lambda - lambda_0)^T W_aa (lambda -
 ///   lambda_0) s.t. limits on lambda, and on delta_a = delta_free + W_aa lambda, rates folded in,
 /// where lambda_0 is the last step's effort (Regularisation::change) or zero. Actuators that it
-/// does not own obey their commands (equality rows; a cable among them that would push is slack).
+/// does not own obey their commands (equality rows, but for a motion that would take more effort
+/// than the limits allow).
 class InverseController : public sim::Law {
  public:
   /// @param simulation must outlive the controller. @param settings see there.
@@ -100,7 +101,7 @@ class InverseController : public sim::Law {
   void form_objective(const sim::LawProblem& problem, std::span<const double> effort);
   void form_limits(const sim::LawProblem& problem);
   sim::LawStatus solve_program(const sim::LawProblem& problem);
-  bool release_pushing_cables(const sim::LawProblem& problem);
+  bool settle_passive_rows(const sim::LawProblem& problem);
   void judge(const sim::LawProblem& problem, sim::LawStatus status);
 
   sim::Simulation& simulation_;
@@ -115,7 +116,8 @@ class InverseController : public sim::Law {
   VectorX goal_;                    // what delta of a task's rows should be
   VectorX scale_;                   // of each actuator's effort
   VectorX scaled_effort_;
-  std::vector<bool> slack_;  // passive cables that must not pull in this step
+  enum class Passive : char { held, at_least, at_most };  // by its motion, or by a limit
+  std::vector<Passive> passive_;                          // of rows whose motion is commanded
   bool shortened_ = false;
   qp::QuadraticProgram program_;
   qp::QpSolver solver_;

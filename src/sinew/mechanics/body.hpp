@@ -103,9 +103,9 @@ class Body {
 
   virtual void begin_step() = 0;
   virtual void linearise(const LinearisationRequest& request) = 0;
-  /// Adds effort-weighted curvature of a row (geometric stiffness): A -= effort d2(delta)/dq2.
+  /// Adds the curvature of a constraint's loads (geometric stiffness): A -= effort d2(delta)/dq2.
   /// Between linearise (with_curvature) and condense.
-  virtual void add_curvature(const RowCurvature& curvature, double effort) = 0;
+  virtual void add_curvature(const RowCurvature& curvature) = 0;
   /// Takes this body's part of H for what follows.
   virtual void take_rows(const RowValues& rows) = 0;
   /// |b + H^T effort|, N: how far the current state is from satisfying the step's equation.

@@ -34,11 +34,11 @@ struct RowPattern {
   }
 };
 
-/// Second derivative of a row: effort * stiffness couples points `first` and `second` of a row's
-/// body (a loaded cable's geometric stiffness). The matrix d(delta)/d(x_first)d(x_second) is
-/// `curvature`, 1/m; the pair (second, first) is its transpose and is not listed.
+/// Second derivative of a constraint's loads, which couples points `first` and `second` of one body
+/// (a loaded cable's geometric stiffness): `curvature` is the sum over the constraint's rows of
+/// effort d2(delta)/d(x_first)d(x_second), N/m; the pair (second, first) is its transpose and is
+/// not listed.
 struct RowCurvature {
-  std::int32_t row = -1;
   MaterialPoint first, second;
   Matrix3 curvature = Matrix3::Zero();
 };

@@ -124,6 +124,7 @@ void add_cable(sim::ModelBuilder& builder, const ActuatorDescription& actuator, 
   cable.displacement = limits(actuator.motion);
   cable.command = command(actuator);
   cable.geometric_stiffness = actuator.geometric_stiffness;
+  cable.friction = actuator.friction;
   builder.add_cable(cable);
 }
 

@@ -121,7 +121,7 @@ std::shared_ptr<const KeyTable> cable_table() {
   KeyTable cable{
       .name = "actuator: type cable",
       .description =
-          "A cable that slides without friction through points of a body. It "
+          "A cable that slides through points of a body, with or without friction. It "
           "pulls and never pushes.",
       .keys = {body_key(),
                {.name = "points",
@@ -136,6 +136,12 @@ std::shared_ptr<const KeyTable> cable_table() {
                 .default_text = "world",
                 .description = "What the pull point is fixed to."},
                outside_key(),
+               {.name = "friction",
+                .forms = {quantity(plain_number(), non_negative())},
+                .example = "0.2",
+                .default_text = "0",
+                .description = "Coulomb's coefficient at every point between its ends: the tension "
+                               "changes there by a factor of at most e^(friction angle)."},
                {.name = "geometric_stiffness",
                 .forms = {boolean()},
                 .example = "true",

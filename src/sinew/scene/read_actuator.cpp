@@ -218,6 +218,7 @@ ActuatorDescription read_actuator(const Node::Entry& entry, const ReadContext& c
       actuator.effort.min = 0.0;
       read_line(fields, actuator, context);
       fields.read("geometric_stiffness", actuator.geometric_stiffness);
+      fields.read("friction", actuator.friction);
       break;
     case Type::force:
       read_force(fields, actuator);

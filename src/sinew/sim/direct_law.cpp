@@ -29,12 +29,12 @@ Box box_of(const ActuatorRange& range, bool hold) {
 
 }  // namespace
 
-DirectLaw::DirectLaw(int actuators)
-    : program_(qp::QuadraticProgram::sized(actuators, 0)),
-      solver_(actuators, 0),
-      scale_(VectorX::Ones(actuators)),
-      scaled_effort_(VectorX::Zero(actuators)),
-      branch_(static_cast<std::size_t>(actuators), Branch::pull) {}
+DirectLaw::DirectLaw(int ranges)
+    : program_(qp::QuadraticProgram::sized(ranges, 0)),
+      solver_(ranges, 0),
+      scale_(VectorX::Ones(ranges)),
+      scaled_effort_(VectorX::Zero(ranges)),
+      branch_(static_cast<std::size_t>(ranges), Branch::pull) {}
 
 void DirectLaw::reset() {
   solver_.reset();

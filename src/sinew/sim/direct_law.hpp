@@ -21,7 +21,8 @@ namespace sinew::sim {
 /// diagonal.
 class DirectLaw : public Law {
  public:
-  explicit DirectLaw(int actuators);
+  /// @param ranges of the model, see Model::range_count().
+  explicit DirectLaw(int ranges);
 
   LawStatus solve(const LawProblem& problem, std::span<double> effort) override;
   double violation(const LawProblem& problem, std::span<const double> effort) const override;

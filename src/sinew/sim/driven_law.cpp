@@ -42,10 +42,10 @@ bool DrivenLaw::stabilised(const LawProblem& problem, int negative_pivots) {
   return (values.array() < 0.0).count() == negative_pivots;
 }
 
-DrivenLaw::DrivenLaw(int rows, int actuators)
-    : compliance_(rows, rows), coupling_(rows, actuators), delta_free_(rows) {
-  driven_.reserve(static_cast<std::size_t>(actuators));
-  ranges_.reserve(static_cast<std::size_t>(actuators));
+DrivenLaw::DrivenLaw(int rows, int ranges)
+    : compliance_(rows, rows), coupling_(rows, ranges), delta_free_(rows) {
+  driven_.reserve(static_cast<std::size_t>(ranges));
+  ranges_.reserve(static_cast<std::size_t>(ranges));
 }
 
 void DrivenLaw::linearise(const LawProblem& problem) {
@@ -111,6 +111,7 @@ double DrivenLaw::close(const LawProblem& problem, std::span<double> effort) {
 
 LawStatus DrivenLaw::solve(const LawProblem& problem, std::span<double> effort) {
   driven_.clear();
+  before_.assign(effort.begin(), effort.end());  // a law may look back at the last step
   ranges_.assign(problem.actuators.begin(), problem.actuators.end());
   for (std::size_t i = 0; i < ranges_.size(); ++i) {
     ActuatorRange& range = ranges_[i];
@@ -129,6 +130,7 @@ LawStatus DrivenLaw::solve(const LawProblem& problem, std::span<double> effort) 
     compliance_ = problem.compliance;
     delta_free_ = problem.delta_free;
     eliminate();
+    std::ranges::copy(before_, effort.begin());
     for (const Row& row : driven_) effort[static_cast<std::size_t>(row.row)] = 0.0;
     const LawProblem rest{problem.model, problem.placement, ranges_,      compliance_,
                           delta_free_,   problem.delta,     problem.time, problem.time_step};

@@ -21,8 +21,8 @@ namespace sinew::sim {
 /// balloon beyond its pressure's peak, held at its volume.
 class DrivenLaw : public Law {
  public:
-  /// @param rows of H. @param actuators of the model.
-  DrivenLaw(int rows, int actuators);
+  /// @param rows of H. @param ranges of the model, see Model::range_count().
+  DrivenLaw(int rows, int ranges);
 
   /// Whether the row is taken out.
   static bool takes(const ActuatorRange& range);
@@ -55,6 +55,7 @@ class DrivenLaw : public Law {
   Law* law_ = nullptr;
   std::vector<Row> driven_;
   std::vector<ActuatorRange> ranges_;
+  std::vector<double> before_;  // (rows,) efforts of the last step
   MatrixX compliance_,
       coupling_;  // what the law sees; W_d of each driven row when it was taken out
   VectorX delta_free_;

@@ -17,7 +17,7 @@ class Model;
 struct LawProblem {
   const Model& model;
   const constraint::Placement& placement;    ///< at the linearisation
-  std::span<const ActuatorRange> actuators;  ///< in the model's order
+  std::span<const ActuatorRange> actuators;  ///< the model's actuators, then its guides
   const MatrixX& compliance;                 ///< W (rows, rows), m/N
   const VectorX& delta_free;                 ///< (rows,) m or m^3
   const VectorX& delta;                      ///< (rows,) m or m^3, at the linearisation

@@ -45,6 +45,14 @@ struct StepSettings {
   int max_iterations = 50;  ///< Newton
 };
 
+/// A point that a cable slides through with friction.
+struct GuideModel {
+  int actuator = -1;    ///< whose cable
+  int via = 0;          ///< point between the cable's ends, from the pull point on
+  int row = -1;         ///< of H
+  double friction = 0;  ///< Coulomb's coefficient, > 0
+};
+
 /// An effector and where it is declared.
 struct EffectorModel {
   std::string name;
@@ -75,6 +83,10 @@ class Model {
     return constraints_;
   }
   const std::vector<ActuatorModel>& actuators() const { return actuators_; }
+  /// Along each cable from its pull point on.
+  const std::vector<GuideModel>& guides() const { return guides_; }
+  /// Actuators and, after them, guides: rows that a law finds efforts for.
+  std::size_t range_count() const { return actuators_.size() + guides_.size(); }
   const std::vector<EffectorModel>& effectors() const { return effectors_; }
   const mechanics::RowPattern& rows() const { return rows_; }
   const std::vector<mechanics::RowCurvature>& curvatures() const { return curvatures_; }
@@ -110,6 +122,7 @@ class Model {
   std::vector<std::unique_ptr<mechanics::BodyModel>> bodies_;
   std::vector<std::unique_ptr<constraint::Constraint>> constraints_;
   std::vector<ActuatorModel> actuators_;
+  std::vector<GuideModel> guides_;
   std::vector<EffectorModel> effectors_;
   mechanics::RowPattern rows_;
   std::vector<mechanics::RowCurvature> curvatures_;

@@ -1,6 +1,7 @@
 #include "sinew/sim/model_builder.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -124,7 +125,7 @@ std::unique_ptr<constraint::Cable> ModelBuilder::make_line(const std::string& na
                                                            const char* kind, int body, Points rest,
                                                            bool from_world, mesh::Outside outside,
                                                            const std::vector<Place>& places,
-                                                           const Place& place) {
+                                                           const Place& place, bool friction) {
   std::vector<mechanics::MaterialPoint> points;
   std::optional<Vector3> pull_point;
   for (Eigen::Index i = 0; i < rest.rows(); ++i) {
@@ -141,7 +142,7 @@ std::unique_ptr<constraint::Cable> ModelBuilder::make_line(const std::string& na
     }
     rest.row(i) = this->body(body).rest_position(points.back().point);
   }
-  return std::make_unique<constraint::Cable>(name, std::move(points), pull_point, rest);
+  return std::make_unique<constraint::Cable>(name, std::move(points), pull_point, rest, friction);
 }
 
 int ModelBuilder::add_cable(const CableSettings& settings) {
@@ -152,13 +153,24 @@ int ModelBuilder::add_cable(const CableSettings& settings) {
         fmt::format("tension: min {:g} N is negative; a cable cannot push", settings.tension.min),
         "give zero or more");
   }
+  if (!(settings.friction >= 0.0) || !std::isfinite(settings.friction)) {
+    throw Error(ErrorKind::out_of_range, settings.place,
+                fmt::format("the coefficient of friction is {:g}", settings.friction),
+                "give zero or more; 0.1 to 0.3 is usual for a cord in a tube");
+  }
   try {
+    const bool friction = settings.friction > 0.0;
     auto cable =
         make_line(settings.name, "cable", settings.body, settings.points, settings.pull_from_world,
-                  settings.outside, settings.point_places, settings.place);
+                  settings.outside, settings.point_places, settings.place, friction);
+    const int vias = friction ? cable->via_count() : 0;
     const int index = add_actuator({settings.name, settings.place, ActuatorType::cable, -1, -1,
                                     settings.tension, settings.displacement, settings.command},
                                    std::move(cable));
+    const int row = model_->actuators_[static_cast<std::size_t>(index)].row;
+    for (int via = 0; via < vias; ++via) {
+      model_->guides_.push_back({index, via, row + 1 + via, settings.friction});
+    }
     if (settings.geometric_stiffness || model_->step_.tangent == mechanics::Tangent::exact) {
       model_->stiffening_.push_back(model_->actuators_[static_cast<std::size_t>(index)].constraint);
     }
@@ -483,6 +495,7 @@ std::shared_ptr<const Model> ModelBuilder::build(const linalg::FactorisationSett
           !body(pair.first.body).couples(pair.first.point, pair.second.point);
     }
   }
+  for (const GuideModel& guide : model_->guides_) hash.add(guide.friction);
   hash.add(model_->step_.time_step);
   for (const auto& point : model_->rows_.point) hash.add(static_cast<double>(point.point));
   model_->fingerprint_ = hash.value();

@@ -29,6 +29,7 @@ struct CableSettings {
   Limits displacement;         ///< m
   Command command;
   bool geometric_stiffness = false;  ///< in every step; solve_static always has it
+  double friction = 0.0;  ///< Coulomb's coefficient at every point between its ends, >= 0
 };
 
 /// A force along a fixed direction on a point.
@@ -97,7 +98,8 @@ class ModelBuilder {
   /// All return the new part's position. Names are unique among their kind: Error(duplicate-key).
   int add_body(std::unique_ptr<mechanics::BodyModel> body);
   int add_fem_body(fem::FemBodySettings settings);
-  /// Throws Error: too-few-points, degenerate-cable, point-outside-mesh, contradictory-limits.
+  /// Throws Error: too-few-points, degenerate-cable, point-outside-mesh, contradictory-limits,
+  /// out-of-range (friction, tension).
   int add_cable(const CableSettings& settings);
   int add_force(const ForceSettings& settings);
   /// Throws Error: surface-not-closed, zero-volume, point-outside-mesh, contradictory-limits,
@@ -122,8 +124,8 @@ class ModelBuilder {
   int add_actuator(ActuatorModel actuator, std::unique_ptr<constraint::Constraint> constraint);
   std::unique_ptr<constraint::Cable> make_line(const std::string& name, const char* kind, int body,
                                                Points rest, bool from_world, mesh::Outside outside,
-                                               const std::vector<Place>& places,
-                                               const Place& place);
+                                               const std::vector<Place>& places, const Place& place,
+                                               bool friction = false);
 
   std::unique_ptr<Model> model_;
 };

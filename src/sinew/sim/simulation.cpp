@@ -21,10 +21,11 @@ Simulation::Simulation(std::shared_ptr<const Model> model, int threads)
     : model_(std::move(model)),
       pool_(std::make_unique<ThreadPool>(threads)),
       world_(model_, *pool_),
-      direct_(static_cast<int>(model_->actuators().size())),
-      driven_(model_->rows().rows(), static_cast<int>(model_->actuators().size())),
+      direct_(static_cast<int>(model_->range_count())),
+      driven_(model_->rows().rows(), static_cast<int>(model_->range_count())),
+      friction_(*model_),
       actuators_(model_->actuators().size()),
-      ranges_(model_->actuators().size()),
+      ranges_(model_->range_count()),
       effort_(static_cast<std::size_t>(model_->rows().rows()), 0.0),
       drive_state_(static_cast<std::size_t>(model_->drive_states()), 0.0) {
   for (std::size_t i = 0; i < actuators_.size(); ++i) {
@@ -43,6 +44,11 @@ void Simulation::read_ranges(double time, double time_step) {
     ranges_[i] =
         actuator_range(model_->actuators()[i], actuators_[i], drive_numbers(i), time, time_step);
   }
+  if (model_->guides().empty()) return;
+  const VectorX& delta = world_.measure_delta();
+  for (std::size_t k = 0; k < model_->guides().size(); ++k) {
+    ranges_[actuators_.size() + k] = guide_range(model_->guides()[k], delta);
+  }
 }
 
 std::span<const double> Simulation::drive_state(int actuator) const {
@@ -59,9 +65,10 @@ std::span<double> Simulation::drive_numbers(std::size_t actuator) {
                drive_state(static_cast<int>(actuator)).size());
 }
 
-Law& Simulation::with_drives(Law& law) {
-  return std::ranges::any_of(ranges_, DrivenLaw::takes) ? static_cast<Law&>(driven_.around(law))
-                                                        : law;
+Law& Simulation::complete(Law& law) {
+  const bool driven = std::ranges::any_of(ranges_, DrivenLaw::takes);
+  Law& inner = driven ? driven_.around(law) : law;
+  return model_->guides().empty() ? inner : friction_.around(inner);
 }
 
 // After finish_step(): where each drive stands, whoever chose its effort.
@@ -157,7 +164,7 @@ double Simulation::substep(double end, double time_step) {
   save_state(state_before_);
   move_bases(end);
   world_.begin_step();
-  Law& law = with_drives(law_ != nullptr ? *law_ : direct_);
+  Law& law = complete(law_ != nullptr ? *law_ : direct_);
   const LawProblem problem{*model_,
                            world_.placement(),
                            ranges_,

@@ -10,6 +10,7 @@
 #include "sinew/fem/fem_body.hpp"
 #include "sinew/sim/direct_law.hpp"
 #include "sinew/sim/driven_law.hpp"
+#include "sinew/sim/friction_law.hpp"
 #include "sinew/sim/newton.hpp"
 #include "sinew/sim/stages.hpp"
 #include "sinew/sim/world.hpp"
@@ -127,7 +128,8 @@ class Simulation {
  private:
   void read_ranges(double time, double time_step);
   std::span<double> drive_numbers(std::size_t actuator);
-  Law& with_drives(Law& law);
+  /// The law with what stands between it and the step's equation: drives, friction of cables.
+  Law& complete(Law& law);
   void advance_drives();
   mechanics::StepWeights step_weights(double time_step) const;
   double substep(double end, double time_step);
@@ -146,6 +148,7 @@ class Simulation {
   World world_;
   DirectLaw direct_;
   DrivenLaw driven_;
+  FrictionLaw friction_;
   Law* law_ = nullptr;
   std::vector<ActuatorState> actuators_;
   std::vector<ActuatorRange> ranges_;

@@ -20,7 +20,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Commands on the way from where the actuators stand (share 1) to where they are told to be (0).
 void blend(std::span<ActuatorRange> ranges, std::span<const ActuatorState> start,
            std::span<const ActuatorRange> goal, double share) {
-  for (std::size_t i = 0; i < ranges.size(); ++i) {
+  for (std::size_t i = 0; i < start.size(); ++i) {
     const double from = goal[i].kind == CommandKind::effort ? start[i].effort : start[i].motion;
     ranges[i] = goal[i];
     if (goal[i].kind == CommandKind::input) continue;  // the imbalance alone is taken away
@@ -48,7 +48,7 @@ NewtonReport Simulation::equilibrate(const StaticSettings& settings, double shar
                               settings.max_iterations,
                               model_->curved_constraints()};
   const NewtonReport result =
-      solve_newton(world_, with_drives(direct_), problem, effort_, newton, clock_);
+      solve_newton(world_, complete(direct_), problem, effort_, newton, clock_);
   report.iterations += result.iterations;
   report.status = result.status;
   report.residual = result.residual;

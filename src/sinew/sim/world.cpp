@@ -51,11 +51,12 @@ void World::form_rows(std::span<const double> effort, std::span<const int> curve
     const std::span<mechanics::RowCurvature> pairs(
         curvatures_.data() + constraint.first_curvature(),
         static_cast<std::size_t>(constraint.curvature_count()));
-    constraint.curve(placement_, pairs);
+    const auto own = effort.subspan(static_cast<std::size_t>(constraint.first_row()),
+                                    static_cast<std::size_t>(constraint.row_count()));
+    if (std::ranges::all_of(own, [](double lambda) { return lambda == 0.0; })) continue;
+    constraint.curve(placement_, effort, pairs);
     for (const auto& pair : pairs) {
-      const double lambda = effort[static_cast<std::size_t>(pair.row)];
-      if (lambda != 0.0)
-        bodies_[static_cast<std::size_t>(pair.first.body)]->add_curvature(pair, lambda);
+      bodies_[static_cast<std::size_t>(pair.first.body)]->add_curvature(pair);
     }
   }
 }

@@ -1,0 +1,195 @@
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "sinew/core/error.hpp"
+#include "sinew/sim/friction_law.hpp"
+
+#include "robots.hpp"
+
+namespace sinew::sim {
+namespace {
+
+using sinew::testing::beam;
+using sinew::testing::BeamOptions;
+using sinew::testing::pull;
+using sinew::testing::tension;
+
+constexpr double kFriction = 0.3;
+
+/// A block with a cable that runs straight in, along a quarter of a circle of 40 mm, and out.
+std::shared_ptr<const Model> bollard(int points_on_arc) {
+  StepSettings step;
+  step.method = Method::newton;
+  ModelBuilder builder(step);
+  fem::FemBodySettings body;
+  body.name = "block";
+  const auto mesh = std::make_shared<const mesh::Mesh>(
+      mesh::block({.size = {0.1, 0.1, 0.02}, .cells = {6, 6, 2}}));
+  body.mesh = mesh;
+  body.elements.regions = {{{1e6, 0.3}, material::Law::corotational, 1000.0, {}}};
+  body.elements.fixed_nodes = mesh->node_sets.at("x_min");
+  builder.add_fem_body(std::move(body));
+  CableSettings cable;
+  cable.name = "rope";
+  cable.friction = kFriction;
+  cable.points.resize(points_on_arc + 2, 3);
+  cable.points.row(0) << 0.0, 0.06, 0.01;
+  for (int i = 0; i < points_on_arc; ++i) {
+    const double angle = sinew::testing::kRightAngle * (i + 0.5) / points_on_arc;
+    cable.points.row(i + 1) << 0.02 + 0.04 * std::sin(angle), 0.02 + 0.04 * std::cos(angle), 0.01;
+  }
+  cable.points.row(points_on_arc + 1) << 0.06, 0.005, 0.01;
+  builder.add_cable(cable);
+  return builder.build();
+}
+
+std::vector<double> tensions(const Simulation& simulation, int actuator = 0) {
+  return simulation.model().cable(actuator)->tensions(simulation.efforts());
+}
+
+// Every ratio of neighbouring tensions within Coulomb's limits; whether all are at one of them.
+void expect_friction(const Simulation& simulation, double sign) {
+  const auto& model = simulation.model();
+  const auto& placement = simulation.world().placement();
+  const auto own = tensions(simulation);
+  for (int via = 0; via < model.cable(0)->via_count(); ++via) {
+    const auto k = static_cast<std::size_t>(via);
+    const double most = std::exp(kFriction * model.cable(0)->turn(placement, via));
+    const double ratio = own[k] / own[k + 1];
+    EXPECT_LE(ratio, most * (1.0 + 1e-8)) << via;
+    EXPECT_GE(ratio, (1.0 - 1e-8) / most) << via;
+    if (sign != 0.0) {
+      EXPECT_NEAR(ratio, std::pow(most, sign), 1e-7) << via;
+    }
+  }
+}
+
+TEST(Friction, RopeOverABollardFollowsEuler) {
+  for (const int points : {1, 4, 16}) {
+    const auto model = bollard(points);
+    Simulation simulation(model);
+    simulation.command(0, tension(3.0));
+    simulation.step();
+    const auto own = tensions(simulation);
+    const double wrap = model->cable(0)->wrap(simulation.world().placement());
+    EXPECT_GT(wrap, 1.0);
+    EXPECT_NEAR(own.front() / own.back(), std::exp(kFriction * wrap), 1e-7);
+    expect_friction(simulation, 1.0);
+  }
+}
+
+TEST(Friction, ReleasedRopeSticksBeforeItSlides) {
+  const auto model = bollard(8);
+  Simulation simulation(model);
+  simulation.command(0, tension(3.0));
+  simulation.step();
+  const double behind = tensions(simulation).back();
+  simulation.command(0, tension(2.7));
+  simulation.step();
+  // Behind the points that slide back, a release by a tenth is felt by the block's motion alone.
+  EXPECT_NEAR(tensions(simulation).back(), behind, 5e-3 * behind);
+  EXPECT_NEAR(tensions(simulation).front(), 2.7, 1e-9);
+  expect_friction(simulation, 0.0);
+  simulation.command(0, tension(0.5));
+  simulation.step();
+  expect_friction(simulation, -1.0);
+  EXPECT_GT(tensions(simulation).back(), 0.5);
+}
+
+TEST(Friction, ForcesOfRowsAreThoseOfTheSegments) {
+  const auto model = bollard(4);
+  Simulation simulation(model);
+  simulation.command(0, tension(3.0));
+  simulation.step();
+  auto& body = simulation.fem_body(0);
+  Points forces = Points::Zero(body.positions().rows(), 3);
+  body.add_row_forces(simulation.efforts(), forces);
+  // What the straight ends pull at the block, but for the world's pull point.
+  const auto own = tensions(simulation);
+  const Points points = model->cable(0)->points(simulation.world().placement());
+  const Vector3 first = (points.row(1) - points.row(0)).transpose().normalized();
+  // Forces on fixed nodes are not listed: the cable stays away from them but for the sum along y.
+  const Vector3 sum = forces.colwise().sum().transpose();
+  const Vector3 expected = -own.front() * first;
+  EXPECT_LT((sum - expected).norm(), 1e-6 * own.front());
+}
+
+// The same length costs more tension.
+TEST(Friction, BentBeamLosesTensionAlongItsCable) {
+  StepSettings step;
+  step.method = Method::newton;
+  Simulation smooth(beam({.step = step})), rough(beam({.step = step, .friction = kFriction}));
+  for (Simulation* simulation : {&smooth, &rough}) {
+    simulation->command(0, pull(0.004));
+    for (int k = 1; k < 4; ++k) simulation->command(k, tension(0.0));
+    simulation->step();
+    EXPECT_EQ(simulation->report().newton, NewtonStatus::converged);
+    EXPECT_NEAR(simulation->actuator(0).motion, 0.004, 1e-10);
+  }
+  expect_friction(rough, 1.0);
+  EXPECT_GT(rough.actuator(0).effort, smooth.actuator(0).effort);
+}
+
+TEST(Friction, CyclesDissipate) {
+  StepSettings step;
+  step.method = Method::newton;
+  const auto work_of_cycle = [&](double friction) {
+    Simulation simulation(beam({.step = step, .cables = 1, .friction = friction}));
+    double work = 0.0;
+    for (const bool second : {false, true}) {
+      for (int k = 0; k < 40; ++k) {
+        const double phase = k / 40.0;
+        const double share = phase < 0.5 ? 2.0 * phase : 2.0 - 2.0 * phase;
+        const double before = simulation.actuator(0).effort;
+        const double from = simulation.actuator(0).motion;
+        simulation.command(0, tension(0.2 + 2.0 * share));
+        simulation.step();
+        // Trapezoidal rule: the sum of end-of-step efforts overstates the work at first order.
+        const double mean = 0.5 * (before + simulation.actuator(0).effort);
+        if (second) work += mean * (simulation.actuator(0).motion - from);
+      }
+    }
+    return work;
+  };
+  const double smooth = work_of_cycle(0.0), rough = work_of_cycle(kFriction);
+  EXPECT_GT(rough, 0.0);
+  EXPECT_LT(std::abs(smooth), 0.02 * rough);
+}
+
+TEST(Friction, StateRestoresWithItsFriction) {
+  const auto model = bollard(8);
+  Simulation simulation(model);
+  simulation.command(0, tension(3.0));
+  simulation.step();
+  std::vector<double> state(simulation.state_size());
+  simulation.save_state(state);
+  simulation.command(0, tension(2.0));
+  simulation.step();
+  Simulation other(model);
+  other.load_state(state, 1);
+  other.command(0, tension(2.0));
+  other.step();
+  const Points gap = other.fem_body(0).positions() - simulation.fem_body(0).positions();
+  EXPECT_LT(gap.cwiseAbs().maxCoeff(), 1e-13);
+  for (std::size_t k = 0; k < 9; ++k) {
+    EXPECT_NEAR(tensions(other)[k], tensions(simulation)[k], 1e-9) << k;
+  }
+}
+
+TEST(Friction, NegativeCoefficientIsAnError) {
+  BeamOptions options;
+  options.friction = -0.1;
+  try {
+    beam(options);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::out_of_range);
+    EXPECT_FALSE(error.remedy().empty());
+  }
+}
+
+}  // namespace
+}  // namespace sinew::sim
