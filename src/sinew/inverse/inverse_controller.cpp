@@ -54,7 +54,7 @@ InverseController::InverseController(sim::Simulation& simulation, InverseSetting
     }
   }
   const auto rows = static_cast<Eigen::Index>(effector_rows_.size());
-  const auto count = static_cast<Eigen::Index>(model.range_count());
+  const auto count = static_cast<Eigen::Index>(model.actuators().size());
   row_weights_ = Eigen::Map<VectorX>(weights.data(), rows);
   jacobian_.setZero(rows, count);
   weighted_.setZero(rows, count);
@@ -255,9 +255,9 @@ sim::LawStatus InverseController::solve_program(const sim::LawProblem& problem) 
   return status;
 }
 
-// A row that nobody owns and whose motion is commanded (a passive cable, a guide with friction) is
-// held there whatever effort that takes; where it takes more than there is, the effort stays at its
-// limit and the row moves, until it would move against that limit.
+// A row that nobody owns and whose motion is commanded is held there whatever effort that takes;
+// where it takes more than there is, the effort stays at its limit (a slack cable, a stalled drive)
+// and the row moves, until it would move against that limit.
 bool InverseController::settle_passive_rows(const sim::LawProblem& problem) {
   bool changed = false;
   for (std::size_t k = 0; k < passive_.size(); ++k) {

@@ -12,6 +12,8 @@ namespace {
 constexpr int kMostRounds = 300;
 constexpr int kPlainRounds = 40;      // before the limits follow more slowly
 constexpr double kTolerance = 1e-12;  // of the largest tension
+constexpr int kControlRounds = 8;
+constexpr double kControlTolerance = 1e-6;
 
 LawProblem with_ranges(const LawProblem& problem, std::span<const ActuatorRange> ranges) {
   return {problem.model,      problem.placement, ranges,       problem.compliance,
@@ -60,6 +62,18 @@ bool FrictionLaw::follow(std::span<const double> effort, double share) {
   return false;
 }
 
+// Friction of the tensions in `ranges_`, and those tensions where they are not given.
+LawStatus FrictionLaw::slide(const LawProblem& problem, std::span<double> effort) {
+  follow(effort, 1.0);
+  for (int round = 0; round < kMostRounds; ++round) {
+    if (direct_->solve(with_ranges(problem, ranges_), effort) == LawStatus::failed) {
+      return LawStatus::failed;
+    }
+    if (follow(effort, round < kPlainRounds ? 1.0 : 0.5)) break;
+  }
+  return LawStatus::solved;
+}
+
 LawStatus FrictionLaw::solve(const LawProblem& problem, std::span<double> effort) {
   ranges_.assign(problem.actuators.begin(), problem.actuators.end());
   for (std::size_t k = 0; k < grip_.size(); ++k) {
@@ -67,20 +81,50 @@ LawStatus FrictionLaw::solve(const LawProblem& problem, std::span<double> effort
     const double turn = model_.cable(guide.actuator)->turn(problem.placement, guide.via);
     grip_[k] = -std::expm1(-guide.friction * turn);
   }
-  before_.assign(effort.begin(), effort.end());  // a law may look back at the last step
-  follow(effort, 1.0);
+  return controller_ == nullptr ? slide(problem, effort) : control(problem, effort);
+}
+
+LawStatus FrictionLaw::control(const LawProblem& problem, std::span<double> effort) {
+  const auto own = problem.actuators.first(model_.actuators().size());
+  before_.assign(effort.begin(), effort.end());
+  chosen_.resize(effort.size());
   LawStatus status = LawStatus::solved;
-  for (int round = 0; round < kMostRounds; ++round) {
-    std::ranges::copy(before_, effort.begin());
-    status = law_->solve(with_ranges(problem, ranges_), effort);
+  for (int round = 0; round < kControlRounds; ++round) {
+    delta_free_ = problem.delta_free;
+    for (const GuideModel& guide : model_.guides()) {
+      delta_free_ +=
+          effort[static_cast<std::size_t>(guide.row)] * problem.compliance.col(guide.row);
+    }
+    const LawProblem rest{problem.model, problem.placement, own,          problem.compliance,
+                          delta_free_,   problem.delta,     problem.time, problem.time_step};
+    std::ranges::copy(before_, chosen_.begin());  // a law may look back at the last step
+    for (const GuideModel& guide : model_.guides()) {
+      chosen_[static_cast<std::size_t>(guide.row)] = 0.0;
+    }
+    status = controller_->solve(rest, chosen_);
     if (status == LawStatus::failed) return status;
-    if (follow(effort, round < kPlainRounds ? 1.0 : 0.5)) break;
+    double change = 0.0, largest = 0.0;
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      const auto row = static_cast<std::size_t>(own[i].row);
+      ActuatorRange& range = ranges_[i];
+      change = std::max(change, std::abs(chosen_[row] - effort[row]));
+      largest = std::max(largest, std::abs(chosen_[row]));
+      effort[row] = chosen_[row];
+      range.kind = CommandKind::effort;
+      range.value = range.effort_min = range.effort_max = chosen_[row];
+      range.motion_min = -INFINITY;
+      range.motion_max = INFINITY;
+      range.drive = nullptr;
+    }
+    if (slide(problem, effort) == LawStatus::failed) return LawStatus::failed;
+    if (change <= kControlTolerance * largest) break;
   }
   return status;
 }
 
 double FrictionLaw::violation(const LawProblem& problem, std::span<const double> effort) const {
-  return law_->violation(with_ranges(problem, ranges_), effort);
+  const double own = direct_->violation(with_ranges(problem, ranges_), effort);
+  return controller_ == nullptr ? own : std::max(own, controller_->violation(problem, effort));
 }
 
 }  // namespace sinew::sim

@@ -65,10 +65,13 @@ std::span<double> Simulation::drive_numbers(std::size_t actuator) {
                drive_state(static_cast<int>(actuator)).size());
 }
 
-Law& Simulation::complete(Law& law) {
+Law& Simulation::complete(Law* controller) {
   const bool driven = std::ranges::any_of(ranges_, DrivenLaw::takes);
-  Law& inner = driven ? driven_.around(law) : law;
-  return model_->guides().empty() ? inner : friction_.around(inner);
+  Law& chooser = controller != nullptr ? *controller : direct_;
+  Law& inner = driven ? driven_.around(chooser) : chooser;
+  if (model_->guides().empty()) return inner;
+  return controller == nullptr ? friction_.around(inner, nullptr)
+                               : friction_.around(direct_, &inner);
 }
 
 // After finish_step(): where each drive stands, whoever chose its effort.
@@ -164,7 +167,7 @@ double Simulation::substep(double end, double time_step) {
   save_state(state_before_);
   move_bases(end);
   world_.begin_step();
-  Law& law = complete(law_ != nullptr ? *law_ : direct_);
+  Law& law = complete(law_);
   const LawProblem problem{*model_,
                            world_.placement(),
                            ranges_,

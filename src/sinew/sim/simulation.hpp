@@ -128,8 +128,9 @@ class Simulation {
  private:
   void read_ranges(double time, double time_step);
   std::span<double> drive_numbers(std::size_t actuator);
-  /// The law with what stands between it and the step's equation: drives, friction of cables.
-  Law& complete(Law& law);
+  /// The direct law, or a controller's in its place, with what stands between it and the step's
+  /// equation: drives, friction of cables.
+  Law& complete(Law* controller);
   void advance_drives();
   mechanics::StepWeights step_weights(double time_step) const;
   double substep(double end, double time_step);

@@ -48,7 +48,7 @@ NewtonReport Simulation::equilibrate(const StaticSettings& settings, double shar
                               settings.max_iterations,
                               model_->curved_constraints()};
   const NewtonReport result =
-      solve_newton(world_, complete(direct_), problem, effort_, newton, clock_);
+      solve_newton(world_, complete(nullptr), problem, effort_, newton, clock_);
   report.iterations += result.iterations;
   report.status = result.status;
   report.residual = result.residual;
