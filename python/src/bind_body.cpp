@@ -2,6 +2,7 @@
 
 #include "sinew/fem/assembly.hpp"
 #include "sinew/fem/element_states.hpp"
+#include "sinew/mesh/self_touch.hpp"
 
 #include "arrays.hpp"
 #include "bindings.hpp"
@@ -234,7 +235,30 @@ void bind_stress(py::class_<Body>& type) {
           "reactions", &support_forces,
           "(n, 3) ndarray: forces of the supports on fixed nodes and held axes (N), which keep "
           "these in equilibrium with elements, gravity, external forces and actuators; zero "
-          "elsewhere.");
+          "elsewhere.")
+      .def(
+          "self_touch",
+          [](const Body& self) -> py::object {
+            const Session::Use use(*self.session);
+            const fem::FemBody& own = body(self);
+            const auto found = mesh::SelfTouch(own.fem_model().mesh()).find(own.positions());
+            if (!found) return py::none();
+            return py::make_tuple(found->node, found->element);
+          },
+          R"(self_touch($self)
+--
+
+Whether the body reaches into itself now: None, or (node, element) of the first surface node that
+lies in an element it does not belong to. Nothing keeps it from doing so.
+)")
+      .def_property_readonly(
+          "load_forces",
+          [](const Body& self) {
+            const Session::Use use(*self.session);
+            return copy(body(self).load_forces());
+          },
+          "(n, 3) ndarray: what the scene's loads put on all nodes (N), as the last step had "
+          "them.");
 }
 
 void bind_mesh_of(py::class_<Body>& type) {

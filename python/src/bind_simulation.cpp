@@ -134,6 +134,36 @@ An actuator by its name. Raises Error (unknown-name) with a suggestion.
 An effector by its name. Raises Error (unknown-name) with a suggestion.
 )")
       .def(
+          "load",
+          [](const std::shared_ptr<Session>& self, const std::string& name) {
+            return Load{{self, self->model().load_index(name)}};
+          },
+          py::arg("name"),
+          R"(load($self, name)
+--
+
+A load by its name. Raises Error (unknown-name) with a suggestion.
+)")
+      .def_property_readonly(
+          "ledger",
+          [](Session& self) {
+            const Session::Use use(self);
+            sim::Simulation& simulation = self.simulation();
+            const sim::Energies energies = simulation.energies();
+            py::dict result;
+            result["strain"] = energies.strain;
+            result["kinetic"] = energies.kinetic;
+            result["gravity"] = energies.gravity;
+            result["actuator_work"] = simulation.actuator_work();
+            result["outside_work"] = simulation.outside_work();
+            result["dissipation"] = simulation.dissipation();
+            return result;
+          },
+          "dict: energies of all bodies now (J; gravity's from the height at rest), and since the "
+          "start the work of actuators, that of loads and outside forces, and what damping, drag "
+          "and the friction of cables took. Work less dissipation less what the energies gained is "
+          "the integrator's loss.")
+      .def(
           "body",
           [](const std::shared_ptr<Session>& self, const std::string& name) {
             return Body{{self, self->model().body_index(name)}};

@@ -29,6 +29,11 @@ std::vector<std::string> name_rows(const sim::Model& model) {
   for (const auto& actuator : model.actuators()) {
     names[static_cast<std::size_t>(actuator.row)] = actuator.name;
   }
+  for (const auto& guide : model.guides()) {
+    const auto& actuator = model.actuators()[static_cast<std::size_t>(guide.actuator)];
+    names[static_cast<std::size_t>(guide.row)] =
+        fmt::format("{} point {}", actuator.name, guide.via + 1);
+  }
   for (std::size_t i = 0; i < model.effectors().size(); ++i) {
     const auto& effector = model.effector(static_cast<int>(i));
     for (int k = 0; k < effector.row_count(); ++k) {

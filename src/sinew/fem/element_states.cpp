@@ -129,7 +129,7 @@ Points reactions(const FemBody& body, const ElementStates& states, std::span<con
                  int index) {
   const FemBodyModel& model = body.fem_model();
   const FemModel& elements = model.elements();
-  Points sum = states.forces + body.external_forces();
+  Points sum = states.forces + body.external_forces() + body.load_forces();
   for (NodeId node = 0; node < static_cast<NodeId>(sum.rows()); ++node) {
     sum.row(node) += elements.load_mass()[node] * model.settings().gravity.transpose();
   }

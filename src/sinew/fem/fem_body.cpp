@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sinew/fem/fem_body_numbers.hpp"
 #include "sinew/linalg/block_product.hpp"
 
 namespace sinew::fem {
@@ -19,21 +20,6 @@ constexpr double kLeastStrain = 1e-5;
 std::span<double> span_of(VectorX& v) { return {v.data(), static_cast<std::size_t>(v.size())}; }
 }  // namespace
 
-struct FemBody::Numbers {
-  Numbers(const FemSystem& system_in, ThreadPool& pool)
-      : system(system_in),
-        factorisation(system.plan->create(pool)),
-        assembly(system.elements, pool, factorisation->spare_memory()),
-        border(3 * static_cast<std::size_t>(system.border.entries()), 0.0) {}
-
-  const FemSystem& system;
-  std::unique_ptr<linalg::Factorisation> factorisation;
-  Assembly assembly;  // works where the factor will stand: a linearisation ends the last factor
-  std::vector<double> border;
-  std::vector<double> start_stiffness;  // rotated K at the start of the step, for damping
-  bool damped = false;
-};
-
 FemBody::FemBody(const FemBodyModel& model, ThreadPool& pool, bool with_curvature, int histories)
     : model_(model),
       pool_(pool),
@@ -41,6 +27,9 @@ FemBody::FemBody(const FemBodyModel& model, ThreadPool& pool, bool with_curvatur
       velocities_(Points::Zero(positions_.rows(), 3)),
       external_forces_(velocities_),
       history_(static_cast<std::size_t>(histories), velocities_),
+      load_factors_(model.loads().size(), 1.0),
+      load_forces_(Points::Zero(positions_.rows(), 3)),
+      drag_forces_(load_forces_),
       start_positions_(positions_),
       active_(&numbers(with_curvature)) {
   const auto nodes = model.elements().free_nodes();
@@ -107,8 +96,10 @@ void FemBody::linearise(const mechanics::LinearisationRequest& request) {
     const auto matrix = active_->assembly.matrix();
     for (std::size_t i = 0; i < matrix.size(); ++i) matrix[i] += rate * active_->start_stiffness[i];
   }
+  if (!model_.loads().empty()) apply_loads(request);
   form_right_side(request);
   if (tether_) stiffen_by_tether();
+  stiffen_by_loads();
   first_linearisation_ = false;
 }
 
@@ -122,7 +113,9 @@ void FemBody::form_right_side(const mechanics::LinearisationRequest& request) {
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const auto k = 3 * static_cast<Eigen::Index>(i);
     const Eigen::Map<const Vector3> f(forces.data() + k);
-    const Vector3 p = weight(nodes[i]) + external_forces_.row(nodes[i]).transpose();
+    const Vector3 p = weight(nodes[i]) + (external_forces_.row(nodes[i]) +
+                                          load_forces_.row(nodes[i]) + drag_forces_.row(nodes[i]))
+                                             .transpose();
     right_.segment<3>(k) = p - f;
     internal += f.squaredNorm();
     outside += p.squaredNorm();
@@ -301,6 +294,7 @@ void FemBody::solve_motion(std::span<const double> effort) {
     row_effort_[k] = effort[static_cast<std::size_t>(model_.rows()[k])];
   }
   active_->factorisation->solve_with_effort(row_effort_, span_of(motion_));
+  if (!open_stiffness_.empty()) correct_for_open_pressure();
   const auto nodes = model_.elements().free_nodes();
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     base_.segment<3>(3 * static_cast<Eigen::Index>(i)) = positions_.row(nodes[i]).transpose();
@@ -329,6 +323,7 @@ mechanics::MotionReport FemBody::apply_motion(double scale) {
 
 double FemBody::end_step(const mechanics::StepWeights& weights) {
   using Jump = mechanics::StepWeights::Jump;
+  add_work(weights);
   if (!weights.dynamic()) {  // nothing moves, and nothing is kept
     velocities_.setZero();
     for (Points& kept : history_) kept.setZero();

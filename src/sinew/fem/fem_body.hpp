@@ -39,6 +39,7 @@ class FemBody : public mechanics::Body {
   void solve_motion(std::span<const double> effort) override;
   mechanics::MotionReport apply_motion(double scale) override;
   double end_step(const mechanics::StepWeights& weights) override;
+  mechanics::StepWork step_work() const override { return work_; }
 
   void restart() override;
   std::size_t state_size() const override;
@@ -68,6 +69,12 @@ class FemBody : public mechanics::Body {
   /// Throws Error(not-finite).
   void set_base(const Vector3& translation, const Vector3& rotation, const Vector3& centre);
 
+  /// (loads,) of FemBodyModel::loads(), 1 unless set: an input as external forces are.
+  std::vector<double>& load_factors() { return load_factors_; }
+  const std::vector<double>& load_factors() const { return load_factors_; }
+  /// (n, 3) N: what the loads put on all nodes, as of the last linearisation.
+  Points load_forces() const { return load_forces_ + drag_forces_; }
+
   /// From the next step on; none lets go. An input as external forces are: not part of the state.
   /// @param tether see there. Throws Error: index-out-of-range (node), out-of-range (weights,
   /// stiffness), not-finite, bad-argument when the nodes are no face of an element.
@@ -82,6 +89,10 @@ class FemBody : public mechanics::Body {
 
  private:
   struct Numbers;  // assembly and factorisation of one FemSystem
+  struct LoadBlock {
+    std::int32_t row = 0, column = 0;  // free numbers
+    Matrix3 value;
+  };
 
   Numbers& numbers(bool with_curvature);
   void form_right_side(const mechanics::LinearisationRequest& request);
@@ -90,6 +101,12 @@ class FemBody : public mechanics::Body {
   void combine_velocity(const mechanics::StepWeights& weights, VectorX& result) const;
   void hold_right_side();
   void stiffen_by_tether();
+  void apply_loads(const mechanics::LinearisationRequest& request);
+  void stiffen_by_loads();
+  void correct_for_open_pressure();
+  void multiply_blocks(const std::vector<LoadBlock>& blocks, const VectorX& x, VectorX& y) const;
+  void add_work(const mechanics::StepWeights& weights);
+  double rayleigh_work(const mechanics::StepWeights& weights);
   void pull_by_tether();
   Vector3 weighted(const Points& field, int point) const;
   void place_base();
@@ -102,7 +119,13 @@ class FemBody : public mechanics::Body {
   ThreadPool& pool_;
   Points positions_, velocities_, external_forces_;
   std::vector<Points> history_;  // what the integrator keeps, (n, 3) each
-  Points start_positions_;       // of the step; velocities_ stay those of its start until it ends
+  std::vector<double> load_factors_;
+  Points load_forces_, drag_forces_;                    // (n, 3) N
+  Points load_rates_, load_gaps_, load_accelerations_;  // (n, 3), where loads resist motion
+  std::vector<LoadBlock> load_stiffness_;               // symmetric, row >= column
+  std::vector<LoadBlock> open_stiffness_;               // what is left of it; in statics alone
+  mechanics::StepWork work_;
+  Points start_positions_;  // of the step; velocities_ stay those of its start until it ends
   std::unique_ptr<Numbers> plain_, curved_;
   Numbers* active_ = nullptr;
 

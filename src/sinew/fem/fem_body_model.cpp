@@ -35,6 +35,11 @@ int FemBodyModel::attach_nodes(std::span<const NodeId> nodes, std::span<const do
   return static_cast<int>(attachments_.size()) - 1;
 }
 
+int FemBodyModel::add_load(Load load) {
+  added_loads_.push_back(std::move(load));
+  return static_cast<int>(added_loads_.size()) - 1;
+}
+
 Vector3 FemBodyModel::rest_position(int point) const {
   Vector3 position = Vector3::Zero();
   const Attachment& a = attachment(point);
@@ -49,6 +54,7 @@ void FemBodyModel::finish(int body, const mechanics::RowPattern& rows,
                           const linalg::FactorisationSettings& settings) {
   body_ = body;
   world_rows_ = rows;
+  loads_ = std::make_unique<const LoadSet>(std::move(added_loads_), mesh().nodes);
   factorisation_ = settings;
   rows_.clear();
   for (int row = 0; row < rows.rows(); ++row) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "sinew/fem/fem_model.hpp"
+#include "sinew/fem/loads.hpp"
 #include "sinew/mechanics/body.hpp"
 
 namespace sinew::fem {
@@ -59,6 +60,8 @@ class FemBodyModel : public mechanics::BodyModel {
   int attach(const Vector3& rest_position, mesh::Outside outside, const std::string& what) override;
   int attach_nodes(std::span<const NodeId> nodes, std::span<const double> weights) override;
   Vector3 rest_position(int point) const override;
+  /// Adds a load, whose number in loads() is returned. Building only.
+  int add_load(Load load);
   void finish(int body, const mechanics::RowPattern& rows,
               std::span<const mechanics::RowCurvature> curvatures,
               const linalg::FactorisationSettings& settings) override;
@@ -69,6 +72,8 @@ class FemBodyModel : public mechanics::BodyModel {
   const mesh::Mesh& mesh() const { return *settings_.mesh; }
   const FemModel& elements() const { return *plain_.elements; }
   const FemBodySettings& settings() const { return settings_; }
+  /// After finish().
+  const LoadSet& loads() const { return *loads_; }
   const Attachment& attachment(int point) const {
     return attachments_[static_cast<std::size_t>(point)];
   }
@@ -84,6 +89,8 @@ class FemBodyModel : public mechanics::BodyModel {
   FemBodySettings settings_;
   std::unique_ptr<mesh::Embedder> embedder_;
   std::vector<Attachment> attachments_;
+  std::vector<Load> added_loads_;  // until finish()
+  std::unique_ptr<const LoadSet> loads_;
 
   int body_ = -1;
   std::vector<std::int32_t> rows_;

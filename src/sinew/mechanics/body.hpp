@@ -91,6 +91,12 @@ struct MotionReport {
   double largest_move = 0.0;           ///< m, of any coordinate
 };
 
+/// What forces did in a step, with the values they had when it was linearised last, J.
+struct StepWork {
+  double outside = 0.0;  ///< by loads and outside forces, but not gravity
+  double damped = 0.0;   ///< taken out by damping and drag
+};
+
 /// The state and workspace of one body in one simulation. Nothing allocates after construction.
 class Body {
  public:
@@ -124,6 +130,8 @@ class Body {
   virtual MotionReport apply_motion(double scale) = 0;
   /// @return an estimate of the largest error that the step made in any coordinate, m.
   virtual double end_step(const StepWeights& weights) = 0;
+  /// Of the step that ended last.
+  virtual StepWork step_work() const = 0;
 
   /// Back to rest: the model's own q, v = 0. Inputs (outside forces) stay.
   virtual void restart() = 0;

@@ -34,9 +34,10 @@ struct RecordSettings {
 /// run.csv, one row a frame, units in the headings: `time [s]`; per actuator `long_0.tension [N]`
 /// and `long_0.displacement [m]`; per effector `tip.x [m]` and so on (`rx [rad]` for orientations);
 /// per task of the controller `tip.target_x [m]` ... and `tip.error [m]`; then the ledger
-/// `strain_energy`, `kinetic_energy`, `gravity_energy` (from the height at rest), `actuator_work`
-/// and `energy_loss` (that work less what the energies gained: lost to damping and to the
-/// integrator, and less the work of forces set from Python), all `[J]`; `residual [N]`,
+/// `strain_energy`, `kinetic_energy`, `gravity_energy` (from the height at rest), `actuator_work`,
+/// `outside_work` (loads and forces set from Python), `dissipation` (damping, drag, friction of
+/// cables) and `numerical_loss` (work less dissipation less what the energies gained: the
+/// integrator's, and what moved a base), all `[J]`; `residual [N]`,
 /// `relative_residual`, `iterations`, `scale` (of the motion, < 1 when a step was cut back),
 /// `smallest_volume_ratio`, and the statuses `law` and `controller` in words. The row at t = 0 is
 /// the start, before any step, whose statuses are `start`.

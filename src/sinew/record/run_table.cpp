@@ -64,8 +64,8 @@ std::vector<std::string> RunTable::names(const sim::Simulation& simulation,
   }
   for (const char* name :
        {"strain_energy [J]", "kinetic_energy [J]", "gravity_energy [J]", "actuator_work [J]",
-        "energy_loss [J]", "residual [N]", "relative_residual", "iterations", "scale",
-        "smallest_volume_ratio", "law", "controller"}) {
+        "outside_work [J]", "dissipation [J]", "numerical_loss [J]", "residual [N]",
+        "relative_residual", "iterations", "scale", "smallest_volume_ratio", "law", "controller"}) {
     names.emplace_back(name);
   }
   return names;
@@ -105,10 +105,15 @@ void RunTable::collect_energies() {
   if (!started_) {
     first_energy_ = energy;
     first_work_ = simulation_.actuator_work();
+    first_outside_ = simulation_.outside_work();
+    first_dissipation_ = simulation_.dissipation();
     started_ = true;
   }
   const double work = simulation_.actuator_work() - first_work_;
-  values_.insert(values_.end(), {strain, kinetic, gravity, work, work - (energy - first_energy_)});
+  const double outside = simulation_.outside_work() - first_outside_;
+  const double dissipation = simulation_.dissipation() - first_dissipation_;
+  const double lost = work + outside - dissipation - (energy - first_energy_);
+  values_.insert(values_.end(), {strain, kinetic, gravity, work, outside, dissipation, lost});
 }
 
 void RunTable::write() {

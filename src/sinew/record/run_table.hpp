@@ -38,7 +38,8 @@ class RunTable {
   CsvWriter writer_;
   std::vector<double> values_;
   bool started_ = false;
-  double first_energy_ = 0.0, first_work_ = 0.0;  // J, of the first row
+  double first_energy_ = 0.0, first_work_ = 0.0, first_outside_ = 0.0,
+         first_dissipation_ = 0.0;  // J, of the first row
   std::array<std::string_view, 2> words_;
 };
 

@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
-#include "sinew/mesh/patch.hpp"
 #include "sinew/mesh/selection.hpp"
 #include "sinew/mesh/surface.hpp"
+#include "sinew/scene/build_parts.hpp"
 #include "sinew/scene/scene.hpp"
 #include "sinew/sim/model_builder.hpp"
 
@@ -31,20 +31,6 @@ sim::Command command(const ActuatorDescription& actuator) {
       return {sim::CommandKind::input, actuator.command->signal};
   }
   return {};
-}
-
-mesh::Region region_of(const FixedRegion& fixed) {
-  switch (fixed.kind) {
-    case FixedRegion::Kind::box:
-      return mesh::BoxRegion{fixed.lower, fixed.upper};
-    case FixedRegion::Kind::sphere:
-      return mesh::SphereRegion{fixed.point, fixed.radius};
-    case FixedRegion::Kind::plane:
-      return mesh::PlaneRegion{fixed.point, fixed.normal, -fixed.within, fixed.within};
-    case FixedRegion::Kind::set:
-      return mesh::NamedRegion{fixed.set};
-  }
-  return mesh::NamedRegion{fixed.set};
 }
 
 void check_element(const BodyDescription& body, const mesh::Mesh& mesh) {
@@ -164,29 +150,18 @@ void add_chamber(sim::ModelBuilder& builder, const ActuatorDescription& actuator
   cavity.place = actuator.place;
   cavity.body = body;
   const SurfaceDescription& surface = actuator.surface;
-  const std::string& what = surface.place.item;
-  try {
-    switch (surface.kind) {
-      case SurfaceDescription::Kind::inside:
-        cavity.surface = mesh::enclosing_surface(mesh, surface.point, what);
-        break;
-      case SurfaceDescription::Kind::patch:
-        cavity.surface = mesh::grow_patch(mesh, surface.point, surface.angle, what);
-        break;
-      case SurfaceDescription::Kind::file: {
-        mesh::SurfaceOptions options;
-        options.unit = surface.unit;
-        const mesh::Surface read = mesh::read_surface(surface.file, options);
-        mesh::require_closed(read);
-        cavity.surface = read;
-        break;
-      }
-      case SurfaceDescription::Kind::region:
-        cavity.surface = mesh::select_faces(mesh, region_of(surface.region), what);
-        break;
+  if (surface.kind == SurfaceDescription::Kind::file) {
+    try {
+      mesh::SurfaceOptions options;
+      options.unit = surface.unit;
+      const mesh::Surface read = mesh::read_surface(surface.file, options);
+      mesh::require_closed(read);
+      cavity.surface = read;
+    } catch (const Error& error) {
+      throw error.at(surface.place);
     }
-  } catch (const Error& error) {
-    throw error.at(surface.place);
+  } else {
+    cavity.surface = faces_of(surface, mesh);
   }
   cavity.outside = actuator.outside;
   cavity.cap = actuator.cap;
@@ -294,6 +269,10 @@ Robot build(SceneDescription description) {
   for (const ActuatorDescription& actuator : description.actuators) {
     const int body = body_index(actuator.body);
     add_actuator(builder, actuator, body, *meshes[static_cast<std::size_t>(body)]);
+  }
+  for (const LoadDescription& load : description.loads) {
+    const int body = body_index(load.body);
+    add_load(builder, load, body, *meshes[static_cast<std::size_t>(body)]);
   }
   for (const EffectorDescription& effector : description.effectors) {
     const int body = body_index(effector.body);

@@ -22,6 +22,7 @@
 #include "sinew/mesh/embedding.hpp"
 #include "sinew/scene/node.hpp"
 #include "sinew/sim/fluid_drive.hpp"
+#include "sinew/sim/load_settings.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/signal.hpp"
 #include "sinew/sim/spring_drive.hpp"
@@ -140,7 +141,7 @@ struct CommandDescription {
   sim::Signal signal;
 };
 
-/// Where a chamber's pressure acts.
+/// Where a pressure acts.
 struct SurfaceDescription {
   enum class Kind { inside, patch, file, region };
   Place place;
@@ -181,6 +182,22 @@ struct ActuatorDescription {
   // spring: points and pull as a cable's
   std::variant<sim::SpringSettings, sim::SmaSettings> spring;
   bool free_at_rest = true;
+};
+
+/// What the surroundings do to a body.
+struct LoadDescription {
+  enum class Type { force, line, traction, acceleration, pressure, water };
+  std::string name;
+  Place place;
+  Type type = Type::force;
+  std::string body;
+  Vector3 point = Vector3::Zero();   ///< force: m
+  PointList points;                  ///< line
+  Vector3 vector = Vector3::Zero();  ///< N, N/m, Pa or m/s^2, by type
+  std::optional<SurfaceDescription> surface;
+  mesh::Outside outside = mesh::Outside::error;
+  sim::WaterSettings water;                         ///< its faces are not yet known
+  sim::Signal factor = sim::Signal::constant(1.0);  ///< pressure: Pa
 };
 
 /// Something on the robot whose motion matters.
@@ -245,6 +262,7 @@ struct SceneDescription {
   std::optional<double> duration;  ///< s
   std::vector<BodyDescription> bodies;
   std::vector<ActuatorDescription> actuators;
+  std::vector<LoadDescription> loads;
   std::vector<EffectorDescription> effectors;
   std::vector<ControllerDescription> controllers;
   RecordDescription record;

@@ -176,6 +176,10 @@ KeyTable scene_table() {
                         .forms = {names(actuator_form())},
                         .example = "{long_0: {type: cable, ...}}",
                         .description = "What moves them."});
+  scene.keys.push_back({.name = "loads",
+                        .forms = {names(load_form())},
+                        .example = "{sea: {type: water, body: arm}}",
+                        .description = "What the surroundings do to them."});
   scene.keys.push_back({.name = "effectors",
                         .forms = {names(effector_form())},
                         .example = "{tip: {body: trunk, point: 0 0 195 mm}}",

@@ -22,34 +22,6 @@ std::shared_ptr<const KeyTable> patch_table() {
                  .description = "The largest turn between neighbouring faces."}}});
 }
 
-std::shared_ptr<const KeyTable> surface_table() {
-  KeyTable surface{
-      .name = "surface of a chamber",
-      .description = "Where the pressure acts: exactly one of these.",
-      .keys = {{.name = "inside",
-                .forms = {vector(length())},
-                .example = "0 0 30 mm",
-                .description = "A point in a void that the body encloses: its whole wall."},
-               {.name = "patch",
-                .forms = {table(patch_table())},
-                .example = "{point: 0 0 30 mm, angle: 40 deg}",
-                .description = "Faces round a point."},
-               {.name = "file",
-                .forms = {file()},
-                .example = "chamber.stl",
-                .description =
-                    "A closed surface as STL, OBJ or PLY, which the body carries along."},
-               {.name = "unit",
-                .forms = {unit(length())},
-                .example = "mm",
-                .default_text = "m",
-                .description = "What one unit of the file's coordinates is.",
-                .only_with = "file"}},
-      .alternatives = {{{"inside", "patch", "file", "box", "sphere", "plane", "set"}, true}}};
-  for (Key& key : region_keys("Faces with all their nodes")) surface.keys.push_back(std::move(key));
-  return make_table(std::move(surface));
-}
-
 std::shared_ptr<const KeyTable> supply_table(bool gas) {
   KeyTable supply{
       .name = gas ? "supply of gas" : "supply of liquid",
@@ -118,6 +90,12 @@ std::shared_ptr<const KeyTable> liquid_table() {
                                .example = "2.2 GPa",
                                .default_text = "2.2 GPa",
                                .description = "Of the liquid; water's, when left out."},
+                              {.name = "density",
+                               .forms = {quantity(density(), non_negative())},
+                               .example = "1000 kg/m^3",
+                               .default_text = "0 kg/m^3",
+                               .description = "What it weighs in the chamber; its inertia is left "
+                                              "out."},
                               dead_volume_key(),
                               {.name = "supply",
                                .forms = {table(supply_table(false))},
@@ -196,6 +174,34 @@ std::shared_ptr<const KeyTable> wire_table() {
 }
 
 }  // namespace
+
+std::shared_ptr<const KeyTable> surface_table() {
+  KeyTable surface{
+      .name = "surface",
+      .description = "Where the pressure acts: exactly one of these.",
+      .keys = {{.name = "inside",
+                .forms = {vector(length())},
+                .example = "0 0 30 mm",
+                .description = "A point in a void that the body encloses: its whole wall."},
+               {.name = "patch",
+                .forms = {table(patch_table())},
+                .example = "{point: 0 0 30 mm, angle: 40 deg}",
+                .description = "Faces round a point."},
+               {.name = "file",
+                .forms = {file()},
+                .example = "chamber.stl",
+                .description =
+                    "A closed surface as STL, OBJ or PLY, which the body carries along."},
+               {.name = "unit",
+                .forms = {unit(length())},
+                .example = "mm",
+                .default_text = "m",
+                .description = "What one unit of the file's coordinates is.",
+                .only_with = "file"}},
+      .alternatives = {{{"inside", "patch", "file", "box", "sphere", "plane", "set"}, true}}};
+  for (Key& key : region_keys("Faces with all their nodes")) surface.keys.push_back(std::move(key));
+  return make_table(std::move(surface));
+}
 
 std::shared_ptr<const KeyTable> pressure_table() {
   KeyTable chamber{

@@ -201,25 +201,27 @@ std::shared_ptr<const KeyTable> regularisation_table() {
 
 std::shared_ptr<const KeyTable> signal_table(const Measure& measure, const char* value_example) {
   const std::string value = value_example;
-  return make_table(
-      {.name = std::string("signal in ") + measure.unit,
-       .description = "A value over time: exactly one of ramp, sine, steps and file.",
-       .keys = {{.name = "ramp",
-                 .forms = {table(ramp_table(measure, value_example))},
-                 .example = "{to: " + value + ", duration: 1 s}",
-                 .description = "A ramp."},
-                {.name = "sine",
-                 .forms = {table(sine_table(measure, value_example))},
-                 .example = "{amplitude: " + value + ", period: 2 s}",
-                 .description = "A sine."},
-                {.name = "steps",
-                 .forms = {samples(measure)},
-                 .example = "[[0 s, 0 " + std::string(measure.unit) + "], [1 s, " + value + "]]",
-                 .description = "Jumps: pairs of time and value, the first at 0 s."},
-                path_file_key("A CSV table with two columns, time and value; straight lines "
-                              "between."),
-                path_unit_key(measure, measure.unit)},
-       .alternatives = {{{"ramp", "sine", "steps", "file"}, true}}});
+  const bool plain = *measure.unit == '\0';
+  KeyTable signal{
+      .name = plain ? "signal" : std::string("signal in ") + measure.unit,
+      .description = "A value over time: exactly one of ramp, sine, steps and file.",
+      .keys = {{.name = "ramp",
+                .forms = {table(ramp_table(measure, value_example))},
+                .example = "{to: " + value + ", duration: 1 s}",
+                .description = "A ramp."},
+               {.name = "sine",
+                .forms = {table(sine_table(measure, value_example))},
+                .example = "{amplitude: " + value + ", period: 2 s}",
+                .description = "A sine."},
+               {.name = "steps",
+                .forms = {samples(measure)},
+                .example = "[[0 s, 0 " + std::string(measure.unit) + "], [1 s, " + value + "]]",
+                .description = "Jumps: pairs of time and value, the first at 0 s."},
+               path_file_key("A CSV table with two columns, time and value; straight lines "
+                             "between.")},
+      .alternatives = {{{"ramp", "sine", "steps", "file"}, true}}};
+  if (!plain) signal.keys.push_back(path_unit_key(measure, measure.unit));
+  return make_table(std::move(signal));
 }
 
 Form controller_form() {

@@ -97,12 +97,14 @@ Key outside_key();
 std::vector<Key> region_keys(const char* whose);
 
 // The tables of each part, in the file of that part.
+std::shared_ptr<const KeyTable> surface_table();
 std::shared_ptr<const KeyTable> pressure_table();
 std::shared_ptr<const KeyTable> spring_table();
 std::shared_ptr<const KeyTable> signal_table(const Measure& measure, const char* value_example);
 std::shared_ptr<const KeyTable> point_file_table();
 Form body_form();
 Form actuator_form();
+Form load_form();
 Form effector_form();
 Form controller_form();
 

@@ -105,27 +105,6 @@ std::optional<sim::Supply> read_supply(const Fields& fields) {
   return supply;
 }
 
-void read_surface(const Fields& fields, SurfaceDescription& surface, const ReadContext& context) {
-  surface.place = fields.map().place();
-  if (fields.read("inside", surface.point)) {
-    surface.kind = SurfaceDescription::Kind::inside;
-    surface.place = fields.place("inside");
-  } else if (fields.find("patch") != nullptr) {
-    surface.kind = SurfaceDescription::Kind::patch;
-    surface.place = fields.place("patch");
-    fields.below("patch").read("point", surface.point);
-    fields.below("patch").read("angle", surface.angle);
-  } else if (fields.find("file") != nullptr) {
-    surface.kind = SurfaceDescription::Kind::file;
-    surface.place = fields.place("file");
-    surface.file = context.path(fields, "file");
-    fields.read("unit", surface.unit);
-  } else {
-    surface.region = read_region(fields);
-    surface.place = surface.region.place;
-  }
-}
-
 void read_pressure(const Fields& fields, ActuatorDescription& chamber, const ReadContext& context) {
   read_surface(fields.below("surface"), chamber.surface, context);
   fields.read("cap", chamber.cap);
@@ -143,6 +122,7 @@ void read_pressure(const Fields& fields, ActuatorDescription& chamber, const Rea
     const Fields values = fields.below("liquid");
     sim::LiquidSettings& liquid = chamber.liquid.emplace();
     values.read("bulk_modulus", liquid.bulk_modulus);
+    values.read("density", liquid.density);
     values.read("dead_volume", liquid.dead_volume);
     liquid.supply = read_supply(values);
   }
@@ -196,6 +176,27 @@ void read_spring(const Fields& fields, ActuatorDescription& line) {
 }
 
 }  // namespace
+
+void read_surface(const Fields& fields, SurfaceDescription& surface, const ReadContext& context) {
+  surface.place = fields.map().place();
+  if (fields.read("inside", surface.point)) {
+    surface.kind = SurfaceDescription::Kind::inside;
+    surface.place = fields.place("inside");
+  } else if (fields.find("patch") != nullptr) {
+    surface.kind = SurfaceDescription::Kind::patch;
+    surface.place = fields.place("patch");
+    fields.below("patch").read("point", surface.point);
+    fields.below("patch").read("angle", surface.angle);
+  } else if (fields.find("file") != nullptr) {
+    surface.kind = SurfaceDescription::Kind::file;
+    surface.place = fields.place("file");
+    surface.file = context.path(fields, "file");
+    fields.read("unit", surface.unit);
+  } else {
+    surface.region = read_region(fields);
+    surface.place = surface.region.place;
+  }
+}
 
 ActuatorDescription read_actuator(const Node::Entry& entry, const ReadContext& context) {
   ActuatorDescription actuator;

@@ -19,7 +19,7 @@ Table read_scaled(const Fields& fields, int columns, Eigen::Index first,
   settings.columns = columns;
   Table table = at_place(fields.place("file"), [&] { return read_csv(path, settings); });
   double unit = 1.0;
-  fields.read("unit", unit);
+  if (fields.table().find("unit") != nullptr) fields.read("unit", unit);
   table.values.rightCols(table.values.cols() - first) *= unit;
   return table;
 }

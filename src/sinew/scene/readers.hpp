@@ -27,6 +27,9 @@ BodyDescription read_body(const Node::Entry& entry, const ReadContext& context);
 /// The region that one of the keys box, sphere, plane and set gives.
 FixedRegion read_region(const Fields& fields);
 ActuatorDescription read_actuator(const Node::Entry& entry, const ReadContext& context);
+LoadDescription read_load(const Node::Entry& entry, const ReadContext& context);
+/// The surface that the keys of the surface table give.
+void read_surface(const Fields& fields, SurfaceDescription& surface, const ReadContext& context);
 EffectorDescription read_effector(const Node::Entry& entry, const ReadContext& context);
 /// Knows the effectors, which say how many weights and what kind of target there may be.
 ControllerDescription read_controller(const Node::Entry& entry, const ReadContext& context,

@@ -124,6 +124,8 @@ SceneDescription read_scene(const Node& tree, const ReadContext& context) {
               [&](const auto& entry) { scene.bodies.push_back(read_body(entry, context)); });
   for_entries(fields, "actuators",
               [&](const auto& entry) { scene.actuators.push_back(read_actuator(entry, context)); });
+  for_entries(fields, "loads",
+              [&](const auto& entry) { scene.loads.push_back(read_load(entry, context)); });
   for_entries(fields, "effectors",
               [&](const auto& entry) { scene.effectors.push_back(read_effector(entry, context)); });
   for_entries(fields, "controllers", [&](const auto& entry) {
@@ -149,6 +151,7 @@ double SceneDescription::run_duration() const {
     }
     end = std::max(end, body.base->angle.end_time());
   }
+  for (const LoadDescription& load : loads) end = std::max(end, load.factor.end_time());
   for (const ControllerDescription& controller : controllers) {
     for (const TaskDescription& task : controller.tasks) {
       end = std::max(end, task.target.end_time());

@@ -154,6 +154,7 @@ LiquidDrive::LiquidDrive(const LiquidSettings& settings, double rest_volume)
       stiffness_(settings.bulk_modulus / total_volume(rest_volume, settings.dead_volume)) {
   require(settings.bulk_modulus > 0.0, "bulk_modulus", settings.bulk_modulus,
           "give that of the liquid: 2.2 GPa for water");
+  require(settings.density >= 0.0, "density", settings.density, "give zero or more");
   check(settings.supply);
 }
 

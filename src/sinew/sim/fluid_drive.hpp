@@ -58,6 +58,7 @@ class GasDrive : public Drive {
 /// modelled: a chamber may suck.
 struct LiquidSettings {
   double bulk_modulus = 2.2e9;   ///< K, Pa, > 0 (water at 20 degrees Celsius)
+  double density = 0.0;          ///< kg/m^3, >= 0: its weight, not its inertia, is felt
   double dead_volume = 0.0;      ///< m^3, >= 0
   std::optional<Supply> supply;  ///< critical_ratio is not used
 };

@@ -75,6 +75,15 @@ struct BaseMotion {
   Vector3 rotation_at(double time) const { return angle.value(time) * axis; }
 };
 
+/// A load on a body, and its factor over time.
+struct LoadModel {
+  std::string name;
+  Place place;
+  int body = 0;
+  std::vector<int> numbers;  ///< in fem::FemBodyModel::loads()
+  Signal factor;
+};
+
 /// Immutable; made by ModelBuilder. Several simulations and threads may share one.
 class Model {
  public:
@@ -92,6 +101,7 @@ class Model {
   const std::vector<mechanics::RowCurvature>& curvatures() const { return curvatures_; }
   const StepSettings& step() const { return step_; }
   const std::vector<BaseMotion>& base_motions() const { return base_motions_; }
+  const std::vector<LoadModel>& loads() const { return loads_; }
   /// Constraints whose curvature joins A in every step.
   const std::vector<int>& stiffening_constraints() const { return stiffening_; }
   /// Whether that needs blocks that the elements' pattern has not.
@@ -103,6 +113,7 @@ class Model {
   int body_index(std::string_view name) const;
   int actuator_index(std::string_view name) const;
   int effector_index(std::string_view name) const;
+  int load_index(std::string_view name) const;
 
   const constraint::Effector& effector(int index) const;
   /// The line of a cable or spring; null when an actuator has none.
@@ -131,6 +142,7 @@ class Model {
   int drive_states_ = 0;
   StepSettings step_;
   std::vector<BaseMotion> base_motions_;
+  std::vector<LoadModel> loads_;
   double size_ = 1.0;
   std::uint64_t fingerprint_ = 0;
 };

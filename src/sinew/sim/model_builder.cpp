@@ -331,6 +331,7 @@ int ModelBuilder::add_cavity(const CavitySettings& settings) {
       actuator.drive = std::make_shared<const LiquidDrive>(*settings.liquid, cavity->rest_volume());
     }
     const int index = add_actuator(std::move(actuator), std::move(cavity));
+    if (settings.liquid && settings.liquid->density > 0.0) add_liquid_weight(settings);
     if (settings.load_stiffness) {
       model_->stiffening_.push_back(model_->actuators_[static_cast<std::size_t>(index)].constraint);
     }
@@ -341,13 +342,7 @@ int ModelBuilder::add_cavity(const CavitySettings& settings) {
 }
 
 void ModelBuilder::add_base_motion(const BaseMotion& motion, const Place& place) {
-  check_body(motion.body, place);
-  const auto* fem = dynamic_cast<const fem::FemBodyModel*>(&body(motion.body));
-  if (fem == nullptr) {
-    throw Error(ErrorKind::wrong_type, place, "this body has no fixed nodes to move",
-                "move the base of a finite-element body");
-  }
-  if (fem->settings().elements.fixed_nodes.empty()) {
+  if (fem_body(motion.body, place, "motion of its base").settings().elements.fixed_nodes.empty()) {
     throw Error(ErrorKind::nothing_fixed, place, "the body has a base motion but no fixed node",
                 "fix the region that moves");
   }

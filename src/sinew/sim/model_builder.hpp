@@ -11,6 +11,7 @@
 
 #include "sinew/mesh/patch.hpp"
 #include "sinew/sim/fluid_drive.hpp"
+#include "sinew/sim/load_settings.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/spring_drive.hpp"
 
@@ -107,6 +108,8 @@ class ModelBuilder {
   int add_cavity(const CavitySettings& settings);
   /// Moves a body's fixed nodes. Throws Error: nothing-fixed, out-of-range (no axis), wrong-type.
   void add_base_motion(const BaseMotion& motion, const Place& place);
+  /// Throws Error: point-outside-mesh, too-few-points, zero-volume, out-of-range, wrong-type.
+  int add_load(const LoadSettings& settings);
   /// As add_cable(), and Error(out-of-range).
   int add_spring(const SpringLineSettings& settings);
   int add_effector(const EffectorSettings& settings);
@@ -121,6 +124,8 @@ class ModelBuilder {
  private:
   mechanics::BodyModel& body(int index);
   void check_body(int index, const Place& place) const;
+  fem::FemBodyModel& fem_body(int index, const Place& place, const char* what);
+  void add_liquid_weight(const CavitySettings& settings);
   int add_actuator(ActuatorModel actuator, std::unique_ptr<constraint::Constraint> constraint);
   std::unique_ptr<constraint::Cable> make_line(const std::string& name, const char* kind, int body,
                                                Points rest, bool from_world, mesh::Outside outside,

@@ -34,7 +34,8 @@ Simulation::Simulation(std::shared_ptr<const Model> model, int threads)
   }
   finish_step();
   state_before_.resize(state_size());
-  motion_before_.resize(actuators_.size());
+  motion_before_.resize(ranges_.size());
+  for (const LoadModel& load : model_->loads()) load_factors_.push_back(load.factor);
 }
 
 Simulation::~Simulation() = default;
@@ -118,21 +119,21 @@ void Simulation::step_adaptively() {
   if (!(substep_ > 0.0)) substep_ = whole;
   state_at_step_.resize(state_size());
   save_state(state_at_step_);
-  const double work = actuator_work_;
+  const Work work = work_;
   report_.substeps = 0;
   report_.error = 0.0;
   double done = 0.0;
   while (done < whole * (1.0 - 1e-9)) {
     const double left = whole - done;
     const double h = substep_ < 0.999 * left ? std::min(substep_, 0.5 * left) : left;
-    const double before = actuator_work_;
+    const Work before = work_;
     try {
       const double error = substep(begin + done + h, h);
       const double aim =
           error > 0.0 ? std::clamp(0.9 * std::pow(tolerance / error, 1.0 / order), 0.2, 2.0) : 2.0;
       if (error > tolerance && 0.5 * h >= settings.adaptive->smallest) {
         load_state(state_before_, steps_);
-        actuator_work_ = before;
+        work_ = before;
         substep_ = std::max(settings.adaptive->smallest, std::min(0.5, aim) * h);
         ++report_.retries;
         continue;
@@ -144,7 +145,7 @@ void Simulation::step_adaptively() {
     } catch (const Error& failure) {
       if (0.5 * h < settings.adaptive->smallest || !failure.is_run_failure()) {
         load_state(state_at_step_, steps_);
-        actuator_work_ = work;
+        work_ = work;
         throw;
       }
       substep_ = 0.5 * h;
@@ -160,12 +161,44 @@ void Simulation::move_bases(double time) {
   }
 }
 
+void Simulation::set_loads(double time) {
+  for (std::size_t k = 0; k < load_factors_.size(); ++k) {
+    const LoadModel& load = model_->loads()[k];
+    for (const int number : load.numbers) {
+      fem_body(load.body).load_factors()[static_cast<std::size_t>(number)] =
+          load_factors_[k].value(time);
+    }
+  }
+}
+
+void Simulation::set_load(int load, Signal factor) {
+  load_factors_.at(static_cast<std::size_t>(load)) = std::move(factor);
+}
+
+// After finish_step().
+void Simulation::count_work() {
+  for (std::size_t i = 0; i < actuators_.size(); ++i) {
+    work_.actuators += actuators_[i].effort * (actuators_[i].motion - motion_before_[i]);
+  }
+  for (const auto& body : world_.bodies()) {
+    const mechanics::StepWork work = body->step_work();
+    work_.outside += work.outside;
+    work_.dissipated += work.damped;
+  }
+  for (std::size_t k = actuators_.size(); k < ranges_.size(); ++k) {
+    const int row = ranges_[k].row;
+    const double slid = world_.delta()[row] - motion_before_[k];
+    work_.dissipated -= effort_[static_cast<std::size_t>(row)] * slid;
+  }
+}
+
 // One solution of the step's equation; the error estimate, m.
 double Simulation::substep(double end, double time_step) {
   now_ = end;
   read_ranges(end, time_step);
   save_state(state_before_);
   move_bases(end);
+  set_loads(end);
   world_.begin_step();
   Law& law = complete(law_);
   const LawProblem problem{*model_,
@@ -184,11 +217,12 @@ double Simulation::substep(double end, double time_step) {
   const double error = world_.end_step(step_weights(time_step));
   step_before_ = time_step;
   std::ranges::transform(actuators_, motion_before_.begin(), &ActuatorState::motion);
+  for (std::size_t k = actuators_.size(); k < ranges_.size(); ++k) {
+    motion_before_[k] = ranges_[k].value;
+  }
   finish_step();
   advance_drives();
-  for (std::size_t i = 0; i < actuators_.size(); ++i) {
-    actuator_work_ += actuators_[i].effort * (actuators_[i].motion - motion_before_[i]);
-  }
+  count_work();
   return error;
 }
 
@@ -427,6 +461,9 @@ void Simulation::reset() {
   for (std::size_t i = 0; i < actuators_.size(); ++i) {
     if (actuators_[i].owner == nullptr) actuators_[i].command = model_->actuators()[i].command;
   }
+  for (std::size_t k = 0; k < load_factors_.size(); ++k) {
+    load_factors_[k] = model_->loads()[k].factor;
+  }
   world_.restart();
   std::ranges::fill(effort_, 0.0);
   std::ranges::fill(ranges_, ActuatorRange{});
@@ -434,7 +471,7 @@ void Simulation::reset() {
     if (const auto& drive = model_->actuators()[i].drive) drive->rest(drive_numbers(i));
   }
   volume_ratio_ = 1.0;
-  actuator_work_ = 0.0;
+  work_ = {};
   step_before_ = substep_ = 0.0;
   steps_ = 0;
   finish_step();

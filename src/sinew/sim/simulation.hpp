@@ -80,7 +80,11 @@ class Simulation {
   Energies energies();
   /// J: what all actuators have done on the bodies in steps since the start or reset(), the sum of
   /// effort times change of motion, with the effort that acted through each step.
-  double actuator_work() const { return actuator_work_; }
+  double actuator_work() const { return work_.actuators; }
+  /// The same of loads and outside forces (gravity has its own energy), and what damping, drag and
+  /// the friction of cables took.
+  double outside_work() const { return work_.outside; }
+  double dissipation() const { return work_.dissipated; }
 
   /// Newton to the static equilibrium at the present inputs: commands at the present time, limits
   /// on rates lifted, actuators of a controller held at their efforts; exact tangent, cables'
@@ -95,6 +99,11 @@ class Simulation {
   void command(int actuator, Command command);
   const ActuatorState& actuator(int index) const {
     return actuators_[static_cast<std::size_t>(index)];
+  }
+  /// A load's factor from the next step on.
+  void set_load(int load, Signal factor);
+  const Signal& load_factor(int load) const {
+    return load_factors_[static_cast<std::size_t>(load)];
   }
   /// Position (3,) m, or rotation vector (3,) rad, of an effector.
   Vector3 effector_value(int index) const;
@@ -135,6 +144,8 @@ class Simulation {
   mechanics::StepWeights step_weights(double time_step) const;
   double substep(double end, double time_step);
   void move_bases(double time);
+  void set_loads(double time);
+  void count_work();
   void step_adaptively();
   void step_once(Law& law, const LawProblem& problem);
   void step_newton(Law& law, const LawProblem& problem);
@@ -160,8 +171,11 @@ class Simulation {
   double step_before_ = 0.0;           // s, the last substep; 0: the integrator starts afresh
   double substep_ = 0.0;               // s, adaptive: what the next one tries
   double now_ = 0.0;                   // s, end of the substep in hand
-  std::vector<double> motion_before_;  // (actuators,) m
-  double actuator_work_ = 0.0;
+  std::vector<double> motion_before_;  // (actuators, then guides) m
+  std::vector<Signal> load_factors_;
+  struct Work {
+    double actuators = 0.0, outside = 0.0, dissipated = 0.0;  // J
+  } work_;
   std::int64_t steps_ = 0;
   double volume_ratio_ = 1.0;
   StepReport report_;

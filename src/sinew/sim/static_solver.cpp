@@ -62,6 +62,7 @@ StaticReport Simulation::solve_static(const StaticSettings& settings) {
   clock_.start();
   now_ = time();
   move_bases(now_);
+  set_loads(now_);
   save_state(state_before_);
   const std::vector<ActuatorState> start = actuators_;
   read_ranges(time(), kInfinity);

@@ -1,0 +1,170 @@
+// What FemBody does with the loads of its surroundings.
+#include <cmath>
+
+#include "sinew/fem/fem_body.hpp"
+#include "sinew/fem/fem_body_numbers.hpp"
+#include "sinew/linalg/block_product.hpp"
+
+namespace sinew::fem {
+
+namespace {
+
+constexpr int kMostDirections = 60;  // of GMRES
+constexpr double kTolerance = 1e-12;
+
+}  // namespace
+
+void FemBody::apply_loads(const mechanics::LinearisationRequest& request) {
+  const LoadSet& loads = model_.loads();
+  const auto& weights = request.weights;
+  load_forces_.setZero();
+  drag_forces_.setZero();
+  load_stiffness_.clear();
+  open_stiffness_.clear();
+  if (loads.moves() && weights.dynamic()) {
+    const auto rate = [&](const mechanics::Combination& c, Points& result) {
+      result = c.motion * (positions_ - start_positions_) + c.velocity * velocities_;
+      if (!history_.empty()) result += c.first * history_[0] + c.second * history_[1];
+    };
+    rate(weights.velocity, load_rates_);
+    rate(weights.acceleration, load_accelerations_);
+    // Quadratic drag has no slope where nothing moves yet: one linearisation takes it at the
+    // velocity of the start, Newton at that of its iterate.
+    load_gaps_.setZero(positions_.rows(), 3);
+    if (!request.iterating) {
+      load_gaps_ = load_rates_ - velocities_;
+      load_rates_ = velocities_;
+    }
+  }
+  const auto free = model_.elements().free_index();
+  const auto keep = [&](std::vector<LoadBlock>& blocks, NodeId a, NodeId b, const Matrix3& block) {
+    const auto i = free[static_cast<std::size_t>(a)], j = free[static_cast<std::size_t>(b)];
+    if (i >= 0 && j >= 0) blocks.push_back({i, j, block});
+  };
+  LoadSet::AddBlock rest;
+  if (loads.is_open() && !weights.dynamic() && request.tangent == mechanics::Tangent::exact) {
+    rest = [&](NodeId a, NodeId b, const Matrix3& block) { keep(open_stiffness_, a, b, block); };
+  }
+  loads.evaluate(
+      {positions_, load_rates_, load_gaps_, load_accelerations_, weights.velocity.motion,
+       weights.acceleration.motion},
+      load_factors_, load_forces_, drag_forces_,
+      [&](NodeId a, NodeId b, const Matrix3& block) { keep(load_stiffness_, a, b, block); }, rest);
+}
+
+void FemBody::stiffen_by_loads() {
+  for (const auto& [row, column, block] : load_stiffness_) {
+    active_->assembly.add_block(row, column, block);
+  }
+}
+
+void FemBody::multiply_blocks(const std::vector<LoadBlock>& blocks, const VectorX& x,
+                              VectorX& y) const {
+  y.setZero(x.size());
+  for (const auto& [row, column, block] : blocks) {
+    y.segment<3>(3 * row) += block * x.segment<3>(3 * column);
+  }
+  for (const std::int32_t held : model_.elements().held()) y[held] = 0.0;
+}
+
+// The factor knows the symmetric part A of the tangent, not the rest B that pressure on an open
+// surface has: (I + A^-1 B) dq = A^-1 r by GMRES (Saad & Schultz 1986), which needs as many
+// directions as the rim of the surface makes B's rank, at most.
+void FemBody::correct_for_open_pressure() {
+  const double size = motion_.norm();
+  if (!(size > 0.0)) return;
+  std::vector<VectorX> basis{motion_ / size};
+  MatrixX hessenberg = MatrixX::Zero(kMostDirections + 1, kMostDirections);
+  VectorX weights;
+  VectorX product;
+  for (int k = 0; k < kMostDirections; ++k) {
+    multiply_blocks(open_stiffness_, basis.back(), product);
+    active_->factorisation->solve({product.data(), static_cast<std::size_t>(product.size())},
+                                  {product.data(), static_cast<std::size_t>(product.size())});
+    product += basis.back();
+    for (int j = 0; j <= k; ++j) {
+      hessenberg(j, k) = basis[static_cast<std::size_t>(j)].dot(product);
+      product -= hessenberg(j, k) * basis[static_cast<std::size_t>(j)];
+    }
+    hessenberg(k + 1, k) = product.norm();
+    VectorX right = VectorX::Zero(k + 2);
+    right[0] = size;
+    const MatrixX part = hessenberg.topLeftCorner(k + 2, k + 1);
+    weights = part.householderQr().solve(right);
+    const bool done = (part * weights - right).norm() <= kTolerance * size;
+    if (done || !(hessenberg(k + 1, k) > kTolerance * part.norm())) break;
+    basis.push_back(product / hessenberg(k + 1, k));
+  }
+  motion_.setZero();
+  for (Eigen::Index k = 0; k < weights.size(); ++k) {
+    motion_ += weights[k] * basis[static_cast<std::size_t>(k)];
+  }
+}
+
+void FemBody::add_work(const mechanics::StepWeights& weights) {
+  work_ = {};
+  const auto& damping = model_.settings().damping;
+  if (weights.dynamic() && (damping.mass > 0.0 || damping.stiffness > 0.0)) {
+    work_.damped = rayleigh_work(weights);
+  }
+  if (model_.loads().moves() && weights.dynamic()) {
+    // Drag as it is at the end, not as it was linearised.
+    mechanics::LinearisationRequest request;
+    request.weights = weights;
+    request.iterating = true;
+    apply_loads(request);
+  }
+  for (const NodeId node : model_.elements().free_nodes()) {
+    const Vector3 d = (positions_.row(node) - start_positions_.row(node)).transpose();
+    work_.outside += (external_forces_.row(node) + load_forces_.row(node)).dot(d.transpose());
+    work_.damped -= drag_forces_.row(node).dot(d.transpose());
+  }
+}
+
+double FemBody::rayleigh_work(const mechanics::StepWeights& weights) {
+  const auto& damping = model_.settings().damping;
+  // (C v) . d, C = alpha M + beta K as the step had it.
+  combine_velocity(weights, travel_);
+  scratch_.setZero();
+  const std::span<double> travel(travel_.data(), static_cast<std::size_t>(travel_.size()));
+  const std::span<double> force(scratch_.data(), travel.size());
+  VectorX total = VectorX::Zero(travel_.size());
+  if (damping.mass > 0.0) {
+    combine(weights.velocity, momentum_);
+    active_->system.elements->apply_mass(
+        {momentum_.data(), static_cast<std::size_t>(momentum_.size())}, force);
+    total += damping.mass * scratch_;
+  }
+  if (damping.stiffness > 0.0) {
+    const auto& pattern = active_->system.elements->pattern();
+    if (active_->damped) {
+      linalg::multiply(pattern, active_->start_stiffness, travel, force);
+      total += damping.stiffness * scratch_;
+    } else {
+      const double rate = damping.stiffness * weights.velocity.motion;
+      const double mass = weights.acceleration.motion + damping.mass * weights.velocity.motion;
+      linalg::multiply(pattern, active_->assembly.matrix(), travel, force);
+      VectorX rest(travel_.size());
+      active_->system.elements->apply_mass(travel,
+                                           {rest.data(), static_cast<std::size_t>(rest.size())});
+      scratch_ -= mass * rest;
+      rest.setZero();
+      for (const auto& [row, column, block] : load_stiffness_) {
+        rest.segment<3>(3 * row) += block * travel_.segment<3>(3 * column);
+        if (row != column) {
+          rest.segment<3>(3 * column) += block.transpose() * travel_.segment<3>(3 * row);
+        }
+      }
+      total += damping.stiffness / (1.0 + rate) * (scratch_ - rest);
+    }
+  }
+  double work = 0.0;
+  const auto nodes = model_.elements().free_nodes();
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const Vector3 d = (positions_.row(nodes[i]) - start_positions_.row(nodes[i])).transpose();
+    work += total.segment<3>(3 * static_cast<Eigen::Index>(i)).dot(d);
+  }
+  return work;
+}
+
+}  // namespace sinew::fem

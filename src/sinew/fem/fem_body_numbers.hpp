@@ -1,0 +1,27 @@
+/// @file
+/// Assembly and factorisation of one FemSystem, as the parts of FemBody share them.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "sinew/fem/fem_body.hpp"
+
+namespace sinew::fem {
+
+struct FemBody::Numbers {
+  Numbers(const FemSystem& system_in, ThreadPool& pool)
+      : system(system_in),
+        factorisation(system.plan->create(pool)),
+        assembly(system.elements, pool, factorisation->spare_memory()),
+        border(3 * static_cast<std::size_t>(system.border.entries()), 0.0) {}
+
+  const FemSystem& system;
+  std::unique_ptr<linalg::Factorisation> factorisation;
+  Assembly assembly;  // works where the factor will stand: a linearisation ends the last factor
+  std::vector<double> border;
+  std::vector<double> start_stiffness;  // rotated K at the start of the step, for damping
+  bool damped = false;
+};
+
+}  // namespace sinew::fem

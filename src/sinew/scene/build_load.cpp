@@ -1,0 +1,96 @@
+#include <numbers>
+
+#include "sinew/core/error.hpp"
+#include "sinew/mesh/patch.hpp"
+#include "sinew/scene/build_parts.hpp"
+
+namespace sinew::scene {
+
+mesh::Region region_of(const FixedRegion& fixed) {
+  switch (fixed.kind) {
+    case FixedRegion::Kind::box:
+      return mesh::BoxRegion{fixed.lower, fixed.upper};
+    case FixedRegion::Kind::sphere:
+      return mesh::SphereRegion{fixed.point, fixed.radius};
+    case FixedRegion::Kind::plane:
+      return mesh::PlaneRegion{fixed.point, fixed.normal, -fixed.within, fixed.within};
+    case FixedRegion::Kind::set:
+      return mesh::NamedRegion{fixed.set};
+  }
+  return mesh::NamedRegion{fixed.set};
+}
+
+std::vector<mesh::Face> faces_of(const SurfaceDescription& surface, const mesh::Mesh& mesh) {
+  const std::string& what = surface.place.item;
+  try {
+    switch (surface.kind) {
+      case SurfaceDescription::Kind::inside:
+        return mesh::enclosing_surface(mesh, surface.point, what);
+      case SurfaceDescription::Kind::patch:
+        return mesh::grow_patch(mesh, surface.point, surface.angle, what);
+      case SurfaceDescription::Kind::region:
+        return mesh::select_faces(mesh, region_of(surface.region), what);
+      case SurfaceDescription::Kind::file:
+        throw Error(ErrorKind::conflicting_keys, surface.place,
+                    "a load acts on faces of the body's own mesh, not on a surface in a file",
+                    "name them by a point inside, a patch or a region");
+    }
+  } catch (const Error& error) {
+    throw error.at(surface.place);
+  }
+  return {};
+}
+
+namespace {
+
+// The connected surface on which the outermost node lies; voids inside have their own.
+std::vector<mesh::Face> outer_surface(const mesh::Mesh& mesh, const std::string& what) {
+  const auto used = mesh::used_nodes(mesh);
+  Eigen::Index outermost = 0;
+  for (Eigen::Index i = 0; i < mesh.nodes.rows(); ++i) {
+    const bool farther = mesh.nodes(i, 0) > mesh.nodes(outermost, 0);
+    if (used[static_cast<std::size_t>(i)] && farther) outermost = i;
+  }
+  return mesh::grow_patch(mesh, mesh.nodes.row(outermost).transpose(), std::numbers::pi, what);
+}
+
+}  // namespace
+
+void add_load(sim::ModelBuilder& builder, const LoadDescription& load, int body,
+              const mesh::Mesh& mesh) {
+  sim::LoadSettings settings;
+  settings.name = load.name;
+  settings.place = load.place;
+  settings.body = body;
+  settings.outside = load.outside;
+  settings.factor = load.factor;
+  const auto faces = [&] {
+    return load.surface ? faces_of(*load.surface, mesh) : outer_surface(mesh, load.name);
+  };
+  switch (load.type) {
+    case LoadDescription::Type::force:
+      settings.load = sim::PointLoadSettings{load.point, load.vector};
+      break;
+    case LoadDescription::Type::line:
+      settings.load = sim::LineLoadSettings{load.points.points, load.vector};
+      break;
+    case LoadDescription::Type::traction:
+      settings.load = sim::SurfaceLoadSettings{faces(), load.vector};
+      break;
+    case LoadDescription::Type::acceleration:
+      settings.load = sim::BodyLoadSettings{load.vector};
+      break;
+    case LoadDescription::Type::pressure:
+      settings.load = sim::PressureLoadSettings{faces()};
+      break;
+    case LoadDescription::Type::water: {
+      sim::WaterSettings water = load.water;
+      water.faces = faces();
+      settings.load = std::move(water);
+      break;
+    }
+  }
+  builder.add_load(settings);
+}
+
+}  // namespace sinew::scene

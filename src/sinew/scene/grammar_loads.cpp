@@ -1,0 +1,141 @@
+// The tables of loads: what the surroundings do to a body.
+#include "sinew/scene/grammar_forms.hpp"
+
+namespace sinew::scene::forms {
+
+namespace {
+
+Key factor_key() {
+  return {.name = "factor",
+          .forms = {quantity(plain_number()), table(signal_table(plain_number(), "1"))},
+          .example = "{ramp: {to: 1, duration: 1 s}}",
+          .default_text = "1",
+          .description = "What the load is multiplied by, over time."};
+}
+
+Key surface_key(const char* description, bool required) {
+  return {.name = "surface",
+          .forms = {table(surface_table())},
+          .example = "{plane: {point: 0 0 100 mm, normal: 0 0 1}}",
+          .description = description,
+          .required = required};
+}
+
+std::shared_ptr<const KeyTable> load_table(const char* name, const char* description,
+                                           std::vector<Key> keys) {
+  KeyTable load{.name = std::string("load: type ") + name, .description = description};
+  load.keys.push_back(body_key());
+  for (Key& key : keys) load.keys.push_back(std::move(key));
+  return make_table(std::move(load));
+}
+
+Key vector_key(const char* name, const Measure& measure, const char* example,
+               const char* description) {
+  return {.name = name,
+          .forms = {vector(measure)},
+          .example = example,
+          .description = description,
+          .required = true};
+}
+
+Key coefficient(const char* name, const char* value, const char* description) {
+  return {.name = name,
+          .forms = {quantity(plain_number(), non_negative())},
+          .example = value,
+          .default_text = value,
+          .description = description};
+}
+
+std::shared_ptr<const KeyTable> force_table() {
+  return load_table(
+      "force", "A force of fixed direction on a point of the body.",
+      {vector_key("point", length(), "0 0 195 mm", "Where, in the mesh at rest."),
+       vector_key("force", force(), "0 0 -1 N", "The force."), outside_key(), factor_key()});
+}
+
+std::shared_ptr<const KeyTable> line_table() {
+  return load_table(
+      "line", "A force of fixed direction spread evenly along a line in the body.",
+      {{.name = "points",
+        .forms = {table(point_file_table()), list({vector(length())}, 2)},
+        .example = "[0 0 0 mm, 0 0 100 mm]",
+        .description = "The line, in the mesh at rest.",
+        .required = true},
+       vector_key("force_per_length", stiffness(), "0 0 -2 N/m", "By length at rest."),
+       outside_key(),
+       factor_key()});
+}
+
+std::shared_ptr<const KeyTable> traction_table() {
+  return load_table(
+      "traction", "A force of fixed direction spread evenly over faces.",
+      {surface_key("The faces.", true),
+       vector_key("traction", stress(), "0 0 -100 Pa", "By area at rest."), factor_key()});
+}
+
+std::shared_ptr<const KeyTable> acceleration_table() {
+  return load_table("acceleration",
+                    "A force in proportion to mass, as a shaker or a turntable has it.",
+                    {vector_key("acceleration", acceleration(), "2 0 0 m/s^2",
+                                "Which the body's mass feels beside gravity."),
+                     factor_key()});
+}
+
+std::shared_ptr<const KeyTable> pressure_load_table() {
+  return load_table(
+      "pressure",
+      "A pressure that stays normal to faces wherever they turn, open or closed. Steps use the "
+      "symmetric part of its stiffness; static solutions use all of it.",
+      {surface_key("The faces; pressure pushes into the body.", true),
+       {.name = "pressure",
+        .forms = {quantity(stress()), table(signal_table(stress(), "1 kPa"))},
+        .example = "1 kPa",
+        .description = "Over time.",
+        .required = true}});
+}
+
+std::shared_ptr<const KeyTable> water_table() {
+  return load_table(
+      "water",
+      "Water about the body: its buoyancy under the scene's gravity, the drag of every face and "
+      "the water that moves along.",
+      {surface_key("The wet faces. Without: the whole outer surface of the body.", false),
+       {.name = "density",
+        .forms = {quantity(density(), non_negative())},
+        .example = "1000 kg/m^3",
+        .default_text = "1000 kg/m^3",
+        .description = "Of the water."},
+       {.name = "level",
+        .forms = {quantity(length())},
+        .example = "100 mm",
+        .description = "Height of the water's surface above the origin, against gravity. "
+                       "Without: far above the body."},
+       {.name = "velocity",
+        .forms = {vector(speed())},
+        .example = "0.1 0 0 m/s",
+        .default_text = "0 0 0 m/s",
+        .description = "Of the water far from the body."},
+       coefficient("normal_drag", "0.9",
+                   "Of a face moving along its normal. A cylinder across the flow has 4/3 of it on "
+                   "its width, a sphere just that."),
+       coefficient("tangential_drag", "0.01", "Of a face moving along itself."),
+       coefficient("added_mass", "1",
+                   "Water that moves along, as a part of what the body displaces: 1 for a "
+                   "cylinder across the flow, 0.5 for a sphere."),
+       factor_key()});
+}
+
+}  // namespace
+
+Form load_form() {
+  return variants(
+      "type",
+      {{.word = "force", .description = "On a point.", .table = force_table()},
+       {.word = "line", .description = "Along a line.", .table = line_table()},
+       {.word = "traction", .description = "Over faces.", .table = traction_table()},
+       {.word = "acceleration", .description = "On all mass.", .table = acceleration_table()},
+       {.word = "pressure", .description = "Normal to faces.", .table = pressure_load_table()},
+       {.word = "water", .description = "Buoyancy, drag and added mass.", .table = water_table()}});
+}
+
+}  // namespace sinew::scene::forms

@@ -1,0 +1,67 @@
+/// @file
+/// Forces that the surroundings put on a body, as they are told to the ModelBuilder.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "sinew/core/error.hpp"
+#include "sinew/mesh/embedding.hpp"
+#include "sinew/mesh/topology.hpp"
+#include "sinew/sim/signal.hpp"
+
+namespace sinew::sim {
+
+/// A force of fixed direction on a point.
+struct PointLoadSettings {
+  Vector3 point = Vector3::Zero();  ///< m, at rest
+  Vector3 force = Vector3::Zero();  ///< N
+};
+
+/// A force spread evenly over a line of straight pieces.
+struct LineLoadSettings {
+  Points points;                               ///< (n, 3) m, at rest, n >= 2
+  Vector3 force_per_length = Vector3::Zero();  ///< N/m, of the length at rest
+};
+
+/// A traction of fixed direction on faces.
+struct SurfaceLoadSettings {
+  std::vector<mesh::Face> faces;
+  Vector3 traction = Vector3::Zero();  ///< Pa, of the area at rest
+};
+
+/// A force in proportion to mass, such as a turntable's or a shaker's.
+struct BodyLoadSettings {
+  Vector3 acceleration = Vector3::Zero();  ///< m/s^2
+};
+
+/// A pressure that follows faces, 1 Pa at a factor of 1.
+struct PressureLoadSettings {
+  std::vector<mesh::Face> faces;
+};
+
+/// Water about a body: buoyancy under the body's gravity, drag and added mass, see fem::WaterLoad.
+struct WaterSettings {
+  std::vector<mesh::Face> faces;
+  double density = 1000.0;             ///< kg/m^3, > 0
+  std::optional<double> level;         ///< m, height against gravity; none: far above the body
+  double normal_drag = 0.9;            ///< >= 0
+  double tangential_drag = 0.01;       ///< >= 0
+  double added_mass = 1.0;             ///< >= 0
+  Vector3 velocity = Vector3::Zero();  ///< m/s
+};
+
+struct LoadSettings {
+  std::string name;
+  Place place;
+  int body = 0;
+  mesh::Outside outside = mesh::Outside::error;
+  std::variant<PointLoadSettings, LineLoadSettings, SurfaceLoadSettings, BodyLoadSettings,
+               PressureLoadSettings, WaterSettings>
+      load;
+  Signal factor = Signal::constant(1.0);
+};
+
+}  // namespace sinew::sim

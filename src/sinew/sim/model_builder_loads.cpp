@@ -1,0 +1,179 @@
+// The part of ModelBuilder that turns loads into forces on nodes.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "sinew/core/error.hpp"
+#include "sinew/sim/model_builder.hpp"
+
+namespace sinew::sim {
+
+namespace {
+
+/// Makes the loads of one entry; there are two where pressure and motion both matter.
+class LoadMaker {
+ public:
+  LoadMaker(fem::FemBodyModel& body, const LoadSettings& settings)
+      : body_(body), settings_(settings) {}
+
+  std::vector<fem::Load> operator()(const PointLoadSettings& load) {
+    spread(load.point, load.force, "the point");
+    return {dead()};
+  }
+
+  // Gauss points every 1/20 of a piece: the elements' own functions are not smooth along it.
+  std::vector<fem::Load> operator()(const LineLoadSettings& load) {
+    constexpr int kParts = 20;
+    if (load.points.rows() < 2) {
+      throw Error(ErrorKind::too_few_points, settings_.place,
+                  fmt::format("a line needs two points, got {}", load.points.rows()),
+                  "give where it begins and ends");
+    }
+    for (Eigen::Index i = 0; i + 1 < load.points.rows(); ++i) {
+      const Vector3 from = load.points.row(i).transpose(), to = load.points.row(i + 1).transpose();
+      const double length = (to - from).norm() / (2 * kParts);
+      for (int k = 0; k < kParts; ++k) {
+        for (const double gauss : {-1.0, 1.0}) {
+          const double share = (k + 0.5 + 0.5 * gauss / std::sqrt(3.0)) / kParts;
+          spread(from + share * (to - from), length * load.force_per_length, "a point of the line");
+        }
+      }
+    }
+    return {dead()};
+  }
+
+  std::vector<fem::Load> operator()(const SurfaceLoadSettings& load) {
+    const Points forces = fem::traction_forces(body_.mesh().nodes, load.faces, load.traction);
+    for (NodeId node = 0; node < static_cast<NodeId>(forces.rows()); ++node) {
+      if (!forces.row(node).isZero(0.0)) forces_[node] = forces.row(node).transpose();
+    }
+    return {dead()};
+  }
+
+  std::vector<fem::Load> operator()(const BodyLoadSettings& load) {
+    const VectorX& mass = body_.elements().load_mass();
+    for (NodeId node = 0; node < static_cast<NodeId>(mass.size()); ++node) {
+      if (mass[node] != 0.0) forces_[node] = mass[node] * load.acceleration;
+    }
+    return {dead()};
+  }
+
+  std::vector<fem::Load> operator()(const PressureLoadSettings& load) {
+    return {fem::PressureLoad{.faces = load.faces, .pressure = 1.0}};
+  }
+
+  std::vector<fem::Load> operator()(const WaterSettings& water) {
+    const std::vector<std::pair<const char*, double>> numbers{
+        {"density", water.density},
+        {"normal_drag", water.normal_drag},
+        {"tangential_drag", water.tangential_drag},
+        {"added_mass", water.added_mass}};
+    for (const auto& [name, value] : numbers) {
+      if (value >= 0.0 && std::isfinite(value)) continue;
+      throw Error(ErrorKind::out_of_range, settings_.place, fmt::format("{} is {:g}", name, value),
+                  "give zero or more");
+    }
+    return {hydrostatic(water.faces, water.density, water.level),
+            fem::WaterLoad{.faces = water.faces,
+                           .density = water.density,
+                           .normal_drag = water.normal_drag,
+                           .tangential_drag = water.tangential_drag,
+                           .added_mass = water.added_mass,
+                           .velocity = water.velocity}};
+  }
+
+  /// The pressure of a liquid at rest. Without a level it is zero at the middle of the faces: what
+  /// a depth adds alike everywhere only compresses.
+  fem::PressureLoad hydrostatic(const std::vector<mesh::Face>& faces, double density,
+                                std::optional<double> level) const {
+    const Vector3& gravity = body_.settings().gravity;
+    fem::PressureLoad load{.faces = faces, .gradient = density * gravity};
+    if (level && !gravity.isZero(0.0)) {
+      load.level = -*level * gravity.normalized();
+      load.only_positive = true;
+      return load;
+    }
+    double count = 0.0;
+    for (const mesh::Face& face : faces) {
+      for (const NodeId node : face.nodes()) {
+        load.level += body_.mesh().nodes.row(node).transpose();
+        count += 1.0;
+      }
+    }
+    if (count > 0.0) load.level /= count;
+    return load;
+  }
+
+ private:
+  void spread(const Vector3& point, const Vector3& force, const char* what) {
+    const int number = body_.attach(point, settings_.outside,
+                                    fmt::format("{} of load '{}'", what, settings_.name));
+    const auto& attached = body_.attachment(number);
+    for (std::size_t k = 0; k < attached.nodes.size(); ++k) {
+      const auto found = forces_.try_emplace(attached.nodes[k], Vector3::Zero()).first;
+      found->second += attached.weights[k] * force;
+    }
+  }
+
+  fem::DeadLoad dead() const {
+    fem::DeadLoad load;
+    load.forces.resize(static_cast<Eigen::Index>(forces_.size()), 3);
+    for (const auto& [node, force] : forces_) {
+      load.forces.row(static_cast<Eigen::Index>(load.nodes.size())) = force.transpose();
+      load.nodes.push_back(node);
+    }
+    return load;
+  }
+
+  fem::FemBodyModel& body_;
+  const LoadSettings& settings_;
+  std::map<NodeId, Vector3> forces_;
+};
+
+}  // namespace
+
+fem::FemBodyModel& ModelBuilder::fem_body(int index, const Place& place, const char* what) {
+  check_body(index, place);
+  auto* fem = dynamic_cast<fem::FemBodyModel*>(&body(index));
+  if (fem != nullptr) return *fem;
+  throw Error(ErrorKind::wrong_type, place, fmt::format("this body takes no {}", what),
+              "name a finite-element body");
+}
+
+int ModelBuilder::add_load(const LoadSettings& settings) {
+  for (const LoadModel& other : model_->loads_) {
+    if (other.name != settings.name) continue;
+    throw Error(ErrorKind::duplicate_key, settings.place,
+                fmt::format("two loads are called '{}'", settings.name), "rename one");
+  }
+  fem::FemBodyModel& body = fem_body(settings.body, settings.place, "loads");
+  try {
+    LoadModel load{settings.name, settings.place, settings.body, {}, settings.factor};
+    for (fem::Load& part : std::visit(LoadMaker(body, settings), settings.load)) {
+      load.numbers.push_back(body.add_load(std::move(part)));
+    }
+    model_->loads_.push_back(std::move(load));
+    return static_cast<int>(model_->loads_.size()) - 1;
+  } catch (const Error& error) {
+    throw error.at(settings.place);
+  }
+}
+
+// What a chamber's liquid weighs, as the pressure that it has more of below than above.
+void ModelBuilder::add_liquid_weight(const CavitySettings& settings) {
+  const auto* faces = std::get_if<std::vector<mesh::Face>>(&settings.surface);
+  if (faces == nullptr) {
+    throw Error(ErrorKind::conflicting_keys, settings.place,
+                "the weight of a liquid needs faces of the body's mesh, and the chamber is a "
+                "surface of its own",
+                "name the chamber by a point inside, a patch or a region, or leave `density` out");
+  }
+  fem::FemBodyModel& body = fem_body(settings.body, settings.place, "liquid");
+  const LoadSettings named{.name = settings.name, .place = settings.place, .body = settings.body};
+  body.add_load(LoadMaker(body, named).hydrostatic(*faces, settings.liquid->density, std::nullopt));
+}
+
+}  // namespace sinew::sim

@@ -1,0 +1,255 @@
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include "sinew/core/error.hpp"
+#include "sinew/fem/loads.hpp"
+#include "sinew/mesh/patch.hpp"
+#include "sinew/mesh/shapes.hpp"
+#include "sinew/sim/model_builder.hpp"
+#include "sinew/sim/simulation.hpp"
+
+namespace sinew::sim {
+namespace {
+
+enum class Kind { tet4, tet10, hex8 };
+
+mesh::Mesh small_mesh(Kind kind) {
+  const mesh::BlockShape block{.size = {0.04, 0.03, 0.02}, .cells = {3, 2, 2}};
+  return mesh::block(block, kind == Kind::hex8    ? mesh::Cells::hexahedra
+                            : kind == Kind::tet10 ? mesh::Cells::quadratic
+                                                  : mesh::Cells::tetrahedra);
+}
+
+Points wobbled(const Points& rest, unsigned seed, double by) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise(0.0, by);
+  Points moved = rest;
+  for (Eigen::Index i = 0; i < moved.size(); ++i) moved.data()[i] += noise(random);
+  return moved;
+}
+
+class LoadTest : public ::testing::TestWithParam<Kind> {
+ protected:
+  LoadTest() : mesh_(small_mesh(GetParam())), faces_(mesh::boundary_faces(mesh_)) {}
+
+  struct Result {
+    Points forces, drag;
+    MatrixX symmetric, rest;
+  };
+  Result evaluate(const fem::LoadSet& loads, const Points& x, const Points& v, const Points& a,
+                  double rate, double second) const {
+    const Eigen::Index n = x.rows();
+    Result r{Points::Zero(n, 3), Points::Zero(n, 3), MatrixX::Zero(3 * n, 3 * n),
+             MatrixX::Zero(3 * n, 3 * n)};
+    const Points no_gap = Points::Zero(n, 3);
+    loads.evaluate(
+        {x, v, no_gap, a, rate, second}, {1.0}, r.forces, r.drag,
+        [&](NodeId i, NodeId j, const Matrix3& block) {
+          r.symmetric.block<3, 3>(3 * i, 3 * j) += block;
+          if (i != j) r.symmetric.block<3, 3>(3 * j, 3 * i) += block.transpose();
+        },
+        [&](NodeId i, NodeId j, const Matrix3& block) {
+          r.rest.block<3, 3>(3 * i, 3 * j) += block;
+        });
+    return r;
+  }
+
+  mesh::Mesh mesh_;
+  std::vector<mesh::Face> faces_;
+};
+
+// Pressure with a gradient on some faces: all of -df/dx, symmetric part and rest.
+TEST_P(LoadTest, StiffnessOfPressureIsTheDerivativeOfItsForces) {
+  std::vector<mesh::Face> some(faces_.begin(),
+                               faces_.begin() + static_cast<long>(faces_.size() / 3));
+  const fem::LoadSet loads(
+      {fem::PressureLoad{.faces = some, .pressure = 300.0, .gradient = {2e3, -1e3, 4e3}}},
+      mesh_.nodes);
+  EXPECT_TRUE(loads.is_open());
+  const Points x = wobbled(mesh_.nodes, 5, 1e-3), none = Points::Zero(x.rows(), 3);
+  const Points direction = wobbled(none, 6, 1.0);
+  const double t = 1e-6;
+  const Result here = evaluate(loads, x, none, none, 0.0, 0.0);
+  const Points ahead = evaluate(loads, x + t * direction, none, none, 0.0, 0.0).forces;
+  const Points behind = evaluate(loads, x - t * direction, none, none, 0.0, 0.0).forces;
+  const Points slope = (ahead - behind) / (2.0 * t);
+  const VectorX d = Eigen::Map<const VectorX>(direction.data(), direction.size());
+  const VectorX expected = -(here.symmetric + here.rest) * d;
+  const VectorX found = Eigen::Map<const VectorX>(slope.data(), slope.size());
+  EXPECT_LT((expected - found).norm(), 1e-7 * found.norm());
+  EXPECT_GT((here.rest * d).norm(), 1e-3 * found.norm());
+}
+
+// On a closed surface what is not symmetric cancels, and water carries what it displaces.
+TEST_P(LoadTest, WaterRoundABodyCarriesTheWaterItDisplaces) {
+  const Vector3 weight_density(0.0, 0.0, -9810.0);
+  const fem::LoadSet loads({fem::PressureLoad{.faces = faces_, .gradient = weight_density}},
+                           mesh_.nodes);
+  EXPECT_FALSE(loads.is_open());
+  const Points x = wobbled(mesh_.nodes, 7, 5e-4), none = Points::Zero(x.rows(), 3);
+  const Result here = evaluate(loads, x, none, none, 0.0, 0.0);
+  EXPECT_LT(here.rest.cwiseAbs().maxCoeff(), 1e-9 * here.symmetric.cwiseAbs().maxCoeff());
+  // The volume by the divergence theorem, from unit pressure gradients along x.
+  const fem::LoadSet unit({fem::PressureLoad{.faces = faces_, .gradient = Vector3::UnitX()}},
+                          mesh_.nodes);
+  const double volume = -evaluate(unit, x, none, none, 0.0, 0.0).forces.col(0).sum();
+  EXPECT_NEAR(volume, 0.04 * 0.03 * 0.02, 0.05 * 0.04 * 0.03 * 0.02);
+  const Vector3 force = here.forces.colwise().sum().transpose();
+  EXPECT_LT((force + volume * weight_density).norm(), 1e-10);
+  // At rest the block's centre is known: no moment about it.
+  const Vector3 about(0.02, 0.015, 0.01);
+  Vector3 moment = Vector3::Zero();
+  const Result rest = evaluate(loads, mesh_.nodes, none, none, 0.0, 0.0);
+  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+    moment += (mesh_.nodes.row(i).transpose() - about).cross(Vector3(rest.forces.row(i)));
+  }
+  EXPECT_LT(moment.norm(), 1e-12);
+}
+
+TEST_P(LoadTest, DampingOfWaterIsTheDerivativeOfItsDrag) {
+  const fem::LoadSet loads(
+      {fem::WaterLoad{.faces = faces_, .tangential_drag = 0.3, .velocity = {0.1, 0.0, -0.05}}},
+      mesh_.nodes);
+  const Points v = wobbled(Points::Zero(mesh_.nodes.rows(), 3), 8, 0.2);
+  const Points a = wobbled(Points::Zero(mesh_.nodes.rows(), 3), 9, 2.0);
+  const Points direction = wobbled(Points::Zero(v.rows(), 3), 10, 1.0);
+  const double rate = 200.0, second = 3e4, t = 1e-7;
+  const auto at = [&](double s) {
+    const Result r = evaluate(loads, mesh_.nodes, v + s * rate * direction,
+                              a + s * second * direction, rate, second);
+    return Points(r.forces + r.drag);
+  };
+  const Points slope = (at(t) - at(-t)) / (2.0 * t);
+  const Result here = evaluate(loads, mesh_.nodes, v, a, rate, second);
+  const VectorX d = Eigen::Map<const VectorX>(direction.data(), direction.size());
+  const VectorX found = Eigen::Map<const VectorX>(slope.data(), slope.size());
+  EXPECT_LT((here.symmetric * d + found).norm(), 1e-6 * found.norm());
+  EXPECT_LT((here.drag.array() * (v.rowwise() - Eigen::RowVector3d(0.1, 0.0, -0.05)).array()).sum(),
+            0.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Elements, LoadTest,
+                         ::testing::Values(Kind::tet4, Kind::tet10, Kind::hex8));
+
+// Drag and added mass of a cylinder across the flow and of its shape alone.
+TEST(Water, CylinderHasTheDragAndInertiaOfItsWidth) {
+  const mesh::Mesh mesh = mesh::cylinder({.radius = 0.01, .height = 0.2, .rings = 5, .layers = 40});
+  const auto faces = mesh::boundary_faces(mesh);
+  const fem::LoadSet loads(
+      {fem::WaterLoad{
+          .faces = faces, .normal_drag = 0.9, .tangential_drag = 0.0, .added_mass = 1.0}},
+      mesh.nodes);
+  const Eigen::Index n = mesh.nodes.rows();
+  Points v = Points::Zero(n, 3), a = v, forces = v, drag = v;
+  v.col(0).setConstant(0.3);
+  a.col(0).setConstant(2.0);
+  const auto ignore = [](NodeId, NodeId, const Matrix3&) {};
+  const Points none = Points::Zero(n, 3);
+  loads.evaluate({mesh.nodes, v, none, a, 1.0, 1.0}, {1.0}, forces, drag, ignore, {});
+  const double expected_drag = 0.5 * 1000.0 * 1.2 * 0.09 * (2.0 * 0.01 * 0.2);
+  EXPECT_NEAR(-drag.col(0).sum(), expected_drag, 0.03 * expected_drag);
+  const double displaced = 1000.0 * std::numbers::pi * 1e-4 * 0.2;
+  EXPECT_NEAR(-forces.col(0).sum(), 2.0 * displaced, 0.03 * 2.0 * displaced);
+}
+
+// A free body as heavy as water stays where it is.
+TEST(Water, BodyAsHeavyAsWaterFloatsWhereItIs) {
+  for (const double density : {1000.0, 1100.0}) {
+    StepSettings step;
+    step.integrator = mechanics::Integrator::backward_euler;
+    ModelBuilder builder(step);
+    fem::FemBodySettings body;
+    body.name = "ball";
+    const auto mesh = std::make_shared<const mesh::Mesh>(mesh::block(
+        {.corner = {-0.01, -0.01, -0.01}, .size = {0.02, 0.02, 0.02}, .cells = {3, 3, 3}}));
+    body.mesh = mesh;
+    body.gravity = {0.0, 0.0, -9.81};
+    body.elements.regions = {{{1e5, 0.4}, material::Law::corotational, density, {}}};
+    builder.add_fem_body(std::move(body));
+    builder.add_load({.name = "sea", .load = WaterSettings{.faces = mesh::boundary_faces(*mesh)}});
+    Simulation simulation(builder.build());
+    for (int k = 0; k < 100; ++k) simulation.step();
+    const Points moved = simulation.fem_body(0).positions() - mesh->nodes;
+    const double fall = moved.col(2).mean();
+    if (density == 1000.0) {
+      EXPECT_LT(std::abs(fall), 1e-6);
+    } else {
+      // Sinks towards sqrt(2 (rho - rho_w) g L / (rho_w c_n)) of a face ahead and one behind.
+      EXPECT_LT(fall, -5e-3);
+      EXPECT_LT(simulation.fem_body(0).velocities().col(2).mean(), -0.05);
+      const double terminal = std::sqrt(100.0 * 9.81 * 0.02 / (1000.0 * 0.9));
+      EXPECT_GT(simulation.fem_body(0).velocities().col(2).mean(), -1.05 * terminal);
+      EXPECT_GT(simulation.dissipation(), 0.0);
+    }
+  }
+}
+
+// A pressure on the end face of a cantilever: the full tangent converges as Newton does.
+TEST(Pressure, OpenSurfaceConvergesQuadraticallyInStatics) {
+  ModelBuilder builder;
+  fem::FemBodySettings body;
+  body.name = "beam";
+  const auto mesh = std::make_shared<const mesh::Mesh>(
+      mesh::block({.size = {0.1, 0.01, 0.01}, .cells = {20, 2, 2}}, mesh::Cells::hexahedra));
+  body.mesh = mesh;
+  fem::Region region;
+  region.hyperelastic = material::neo_hookean(4e4);
+  region.hyperelastic->bulk_modulus = 1e5;
+  region.density = 1000.0;
+  body.elements.regions = {region};
+  body.elements.fixed_nodes = mesh->node_sets.at("x_min");
+  builder.add_fem_body(std::move(body));
+  const auto faces = mesh::select_faces(*mesh, mesh::NamedRegion{"z_max"}, "top");
+  builder.add_load(
+      {.name = "wind", .load = PressureLoadSettings{faces}, .factor = Signal::constant(60.0)});
+  Simulation simulation(builder.build());
+  simulation.solve_static();
+  // Near the solution, a tangent without its unsymmetric part would gain a digit an iteration.
+  simulation.set_load(0, Signal::constant(60.5));
+  const StaticReport report = simulation.solve_static();
+  EXPECT_EQ(report.status, NewtonStatus::converged);
+  EXPECT_LE(report.iterations, 5);
+  const double tip = (simulation.fem_body(0).positions() - mesh->nodes).col(2).minCoeff();
+  EXPECT_LT(tip, -0.02);  // large: the load turns with the beam
+  // The top has turned towards +x, and what presses on it points the other way.
+  const Vector3 load = simulation.fem_body(0).load_forces().colwise().sum().transpose();
+  EXPECT_LT(load.x(), -0.01);
+}
+
+TEST(Loads, BadOnesAreErrors) {
+  const auto kind_of = [](const LoadSettings& load) {
+    ModelBuilder builder;
+    fem::FemBodySettings body;
+    body.name = "block";
+    const auto mesh = std::make_shared<const mesh::Mesh>(
+        mesh::block({.size = {0.1, 0.1, 0.1}, .cells = {2, 2, 2}}));
+    body.mesh = mesh;
+    body.elements.regions = {{{1e5, 0.3}, material::Law::corotational, 1000.0, {}}};
+    body.elements.fixed_nodes = mesh->node_sets.at("x_min");
+    builder.add_fem_body(std::move(body));
+    try {
+      builder.add_load(load);
+      builder.build();
+    } catch (const Error& error) {
+      EXPECT_FALSE(error.remedy().empty());
+      return error.kind();
+    }
+    return ErrorKind::internal;
+  };
+  EXPECT_EQ(kind_of({.name = "far", .load = PointLoadSettings{{1, 1, 1}, {0, 0, 1}}}),
+            ErrorKind::point_outside_mesh);
+  EXPECT_EQ(kind_of({.name = "short", .load = LineLoadSettings{Points::Zero(1, 3), {0, 0, 1}}}),
+            ErrorKind::too_few_points);
+  EXPECT_EQ(kind_of({.name = "sea", .load = WaterSettings{.density = -1.0}}),
+            ErrorKind::out_of_range);
+  EXPECT_EQ(kind_of({.name = "sea", .load = WaterSettings{}}), ErrorKind::zero_volume);
+  EXPECT_EQ(kind_of({.name = "lost", .body = 3, .load = BodyLoadSettings{}}),
+            ErrorKind::unknown_name);
+}
+
+}  // namespace
+}  // namespace sinew::sim

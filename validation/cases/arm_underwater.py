@@ -1,0 +1,79 @@
+"""The published conical arm curled by one or two cables under water, until it touches itself."""
+
+import time
+
+import numpy as np
+import sinew
+
+from suite import plots
+from suite.case import REPOSITORY
+
+TITLE = "Conical arm of Ecoflex 00-30 curled under water"
+SETUP = """The arm of examples/arm/underwater.yaml, hanging from its base under water, its cables through 14 points each: one
+cable, or two neighbouring ones, pulled by 2 N/s for 1.5 s or until a node of the surface enters the arm elsewhere. Hexahedra
+of 6.5 mm and of half that, Ogden's law, backward Euler at 5 ms. The source computed 21 h and 42 h for these two, and
+tabulates no result; damping and how it took the water are not in it. Assumed: stiffness damping of 10 ms, buoyancy, drag
+of 1.2 on the width, the added mass of an ideal fluid. What water and damping change is shown beside: the same in air without
+gravity, and with a tenth of the damping. Wall times are of this machine, one thread, and only reported."""
+SOURCES = {"published": "the multi-flexible-body simulation of this arm"}
+COST = 90
+PULLED = {"one cable": ("east",), "two cables": ("east", "north")}
+RAMP = "{tension: {ramp: {to: 3 N, duration: 1.5 s}}}"
+
+
+def curl(cables, size, *more):
+    """Times (s), tips (k, 3) mm, whether and when it touches (s), elements, the axis at the end, wall time (s)."""
+    told = [f"actuators.{name}.command=" + (RAMP if name in cables else "{tension: 0 N}")
+            for name in ("east", "north", "west", "south")]
+    sim = sinew.load(REPOSITORY / "examples" / "arm" / "underwater.yaml",
+                     set=[*told, f"bodies.arm.mesh.element_size={size}", *more])
+    body, tip = sim.body("arm"), sim.effector("tip")
+    times, tips, touched = [0.0], [1e3 * np.array(tip.position)], None
+    begin = time.perf_counter()
+    while sim.time < 1.5 - 1e-9:
+        sim.step()
+        times.append(sim.time)
+        tips.append(1e3 * np.array(tip.position))
+        if body.self_touch() is not None:
+            touched = sim.time
+            break
+    wall = time.perf_counter() - begin
+    on_axis = np.flatnonzero(np.hypot(*np.array(body.rest_positions)[:, :2].T) < 1e-9)
+    return np.array(times), np.array(tips), touched, len(body.hexahedra), 1e3 * np.array(body.positions)[on_axis], wall
+
+
+def run(case):
+    figure, (left, right) = plots.axes(2)
+    for (name, cables), colour in zip(PULLED.items(), (plots.OURS, plots.SECOND)):
+        coarse = curl(cables, "6.5 mm")
+        fine = curl(cables, "3.25 mm")
+        for run_of, size in ((coarse, "6.5 mm"), (fine, "3.25 mm")):
+            times, tips, touched, elements, _, wall = run_of
+            case.report(f"{name}, cells of {size} ({elements} hexahedra): touches itself after",
+                        touched if touched is not None else np.nan, unit="s", source="published")
+            case.report(f"{name}, cells of {size}: wall time", wall, unit="s", source="published")
+        last = min(len(coarse[0]), len(fine[0])) - 1
+        travelled = np.linalg.norm(np.diff(fine[1], axis=0), axis=1).sum()
+        apart = np.linalg.norm(coarse[1][:last] - fine[1][:last], axis=1).max()
+        case.bound(f"{name}: change of the tip by halving the cells, greatest over its path", apart / travelled, 0.02,
+                   source="published")
+        dry = curl(cables, "6.5 mm", "loads.sea.density=0 kg/m^3", "gravity=0 0 0 m/s^2")
+        lively = curl(cables, "6.5 mm", "bodies.arm.damping.stiffness=0.001 s")
+        for told, other in (("in air without gravity", dry), ("with a tenth of the damping", lively)):
+            until = min(len(coarse[0]), len(other[0])) - 1
+            case.report(f"{name}: tip apart {told}, greatest",
+                        np.linalg.norm(coarse[1][:until] - other[1][:until], axis=1).max(), unit="mm", source="published")
+            case.report(f"{name}: touches itself {told} after", other[2] if other[2] is not None else np.nan, unit="s",
+                        source="published")
+        axis = fine[4]
+        left.plot(np.hypot(axis[:, 0], axis[:, 1]) * np.sign(axis[:, 0] + axis[:, 1] + 1e-12), axis[:, 2], color=colour,
+                  label=f"{name}, {fine[0][-1]:.2f} s")
+        right.plot(fine[0], fine[1][:, 2], color=colour, label=name)
+        right.plot(coarse[0], coarse[1][:, 2], ":", color=colour)
+        right.plot(dry[0], dry[1][:, 2], "--", color=colour, lw=1, label=f"{name}, in air")
+    left.set(xlabel="aside (mm)", ylabel="below the base (mm)", aspect="equal")
+    left.invert_yaxis()
+    left.legend()
+    right.set(xlabel="time (s)", ylabel="tip below the base (mm)")
+    right.legend()
+    case.figure(figure, "Left: the arm's axis when it touches itself. Right: the tip; dotted, cells of twice the size.")
