@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import os
 import pathlib
+import shutil
 import subprocess
 
 import numpy as np
@@ -17,6 +18,11 @@ import numpy as np
 # Two further coefficients D multiply terms of higher order: 1/D vanishes.
 NO_FURTHER_TERM = 1e12
 TYPES = {4: "C3D4", 8: "C3D8", 10: "C3D10"}
+
+
+def present() -> bool:
+    """Whether this machine has it."""
+    return shutil.which("ccx") is not None
 
 
 def real(value: float) -> str:
