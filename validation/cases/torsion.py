@@ -22,7 +22,7 @@ SOURCES = {
               "Poynting effect, J. H. Poynting, Proc. R. Soc. A 82 (1909) 546-559",
     "equilibrium": "the moments on both ends of a body at rest",
 }
-COST = 60
+COST = 150
 A = 0.01
 LAWS = {"neo-Hookean": (50e3, 0.0), "Mooney-Rivlin": (37.5e3, 12.5e3)}
 TURNS = (0.25, 0.5, 0.75, 1.0)  # psi A
