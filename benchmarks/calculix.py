@@ -31,7 +31,7 @@ from reference import calculix  # noqa: E402
 
 LAW = {"model": "neo-hookean", "shear_modulus": 100e3, "bulk_modulus": 300e3}
 DENSITY, GRAVITY, STEP, STEPS = 1000.0, 9.81, 2e-3, 20
-SIZES = {"hex8": (5.0, 10 / 3, 2.5, 5 / 3), "tet10": (10.0, 20 / 3, 5.0, 10 / 3)}  # mm
+SIZES = {"hex8": (5.0, 10 / 3, 2.5), "tet10": (10.0, 20 / 3, 5.0)}  # mm
 SMALL = {"hex8": (10.0, 5.0), "tet10": (10.0,)}
 
 
