@@ -81,6 +81,9 @@ py::dict library() {
     entry["trade_name"] = named.trade_name;
     entry["law"] = named.law;
     entry["density"] = named.density;
+    entry["stretch_range"] = named.highest > 0.0
+                                 ? py::object(py::make_tuple(named.lowest, named.highest))
+                                 : py::object(py::none());
     entry["source"] = named.source;
     entry["remark"] = named.remark;
     result[named.name.c_str()] = entry;
@@ -180,7 +183,8 @@ The library of materials that scenes may name.
 Returns
 -------
 dict of dict
-    By name: 'trade_name', 'law', 'density' (kg/m^3), 'source' and 'remark'.
+    By name: 'trade_name', 'law', 'density' (kg/m^3), 'stretch_range' (between which stretches the
+    source measured, or None where it does not say), 'source' and 'remark'.
 )");
 }
 

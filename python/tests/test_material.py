@@ -9,9 +9,42 @@ def test_the_library_says_where_its_numbers_come_from():
     library = sinew.materials()
     assert "ecoflex-00-30" in library
     for name, entry in library.items():
-        assert set(entry) == {"trade_name", "law", "density", "source", "remark"}
+        assert set(entry) == {"trade_name", "law", "density", "stretch_range", "source", "remark"}
         assert entry["source"] and entry["density"] > 500
         assert sinew.material(name).density == entry["density"]
+
+
+@pytest.mark.parametrize("name", sorted(sinew.materials()))
+def test_every_silicone_is_stable_in_its_range_or_says_so(name):
+    entry, material = sinew.materials()[name], sinew.material(name)
+    lowest, highest = entry["stretch_range"] or (0.5, 3.0)
+    assert 0 < lowest <= 1 < highest
+    stable = material.stable_range()
+    assert (stable[0] <= lowest and stable[1] >= highest) or "unstable" in entry["remark"]
+    assert entry["source"].strip() and ("2" in entry["source"] or "published" in entry["source"])
+    assert 1e3 < material.shear_modulus < 2e6 and 1000 <= entry["density"] <= 1300
+    sim = sinew.load({"sinew": 1, "gravity": [0, 0, -9.81], "bodies": {"block": {
+        "type": "fem", "element": "hex8", "material": name, "fixed": [{"set": "x_min"}],
+        "mesh": {"shape": "block", "length": 0.02, "width": 0.02, "height": 0.02, "element_size": 0.01}}}})
+    assert sim.body("block").mass == pytest.approx(8e-6 * entry["density"])
+    sim.solve_static()
+
+
+@pytest.mark.parametrize(("name", "at_two", "at_three"), [
+    ("dragon-skin-10", 112.97, 272.79),
+    ("dragon-skin-20", 318.36, 722.26),
+    ("dragon-skin-30", 437.12, 959.47),
+    ("dragon-skin-fx-pro", 62.34, 132.45),
+    ("ecoflex-00-10", 14.79, 31.12),
+    ("ecoflex-00-30-tensile", 29.72, 52.39),
+    ("ecoflex-00-50-tensile", 40.95, 79.01),
+    ("sorta-clear-40", 564.34, 1216.81),
+])
+def test_fits_meet_the_published_curves(name, at_two, at_three):
+    """Nominal stress (kPa) of the tensile curves of Marechal et al., within three times the RMS that the entry states."""
+    found = 1e-3 * sinew.material(name).nominal_stress([2.0, 3.0])
+    rms = float(sinew.materials()[name]["source"].split("RMS ")[1].split(" kPa")[0])
+    np.testing.assert_allclose(found, [at_two, at_three], atol=3 * rms, rtol=0)
 
 
 def test_a_law_as_in_a_scene():

@@ -1,19 +1,33 @@
 """CalculiX (Dhondt and Wittig, www.calculix.de; Debian's calculix-ccx) as an independent code.
 
-Statics of hyperelastic linear tetrahedra. Its energies are U = U_iso + 1/D (J - 1)^2 (manual, section
+Statics and dynamics of hyperelastic solids. Its energies are U = U_iso + 1/D (J - 1)^2 (manual, section
 6.8.5 of version 2.20, after Abaqus' theory manual), so that D = 2/kappa; Ogden's moduli are those of
-sum 2 mu/alpha^2 (...).
+sum 2 mu/alpha^2 (...). Elements: C3D4, C3D10 (four points) and C3D8 (2 x 2 x 2 points, full integration); their node
+order is VTK's. Dynamics are the alpha method of Hilber, Hughes and Taylor with consistent masses.
 """
 
 from __future__ import annotations
 
+import os
 import pathlib
+import shutil
 import subprocess
 
 import numpy as np
 
 # Two further coefficients D multiply terms of higher order: 1/D vanishes.
 NO_FURTHER_TERM = 1e12
+TYPES = {4: "C3D4", 8: "C3D8", 10: "C3D10"}
+
+
+def present() -> bool:
+    """Whether this machine has it."""
+    return shutil.which("ccx") is not None
+
+
+def real(value: float) -> str:
+    """In the twenty characters that CalculiX reads of a number."""
+    return f"{float(value):.12e}"
 
 
 def cards(law: dict) -> tuple[str, list[float]]:
@@ -34,37 +48,74 @@ def cards(law: dict) -> tuple[str, list[float]]:
     raise ValueError(law["model"])
 
 
-def write_input(path: pathlib.Path, nodes, tetrahedra, fixed, law: dict, forces) -> None:
-    """An input deck. Shapes (n, 3) m, (m, 4), (n,) bool, (n, 3) N."""
+def body_cards(nodes, cells, fixed, law: dict, density: float | None = None) -> list[str]:
+    """Nodes (n, 3) m, cells (m, 4, 8 or 10), clamped nodes (n,) bool, material, kg/m^3."""
     key, constants = cards(law)
     lines = ["*NODE, NSET=ALL"]
-    lines += [f"{i + 1}, " + ", ".join(repr(float(x)) for x in row) for i, row in enumerate(nodes)]
-    lines += ["*ELEMENT, TYPE=C3D4, ELSET=BODY"]
-    lines += [f"{i + 1}, " + ", ".join(str(n + 1) for n in row) for i, row in enumerate(tetrahedra)]
+    lines += [f"{i + 1}, " + ", ".join(real(x) for x in row) for i, row in enumerate(nodes)]
+    lines += [f"*ELEMENT, TYPE={TYPES[np.shape(cells)[1]]}, ELSET=BODY"]
+    lines += [f"{i + 1}, " + ", ".join(str(n + 1) for n in row) for i, row in enumerate(cells)]
     lines += ["*NSET, NSET=CLAMP", *[str(i + 1) for i in np.flatnonzero(fixed)]]
     lines += ["*BOUNDARY", "CLAMP, 1, 3", "*MATERIAL, NAME=RUBBER", f"*HYPERELASTIC, {key}"]
-    numbers = [repr(float(c)) for c in constants]
+    numbers = [real(c) for c in constants]
     lines += [", ".join(numbers[k:k + 8]) for k in range(0, len(numbers), 8)]
-    lines += ["*SOLID SECTION, ELSET=BODY, MATERIAL=RUBBER", "*STEP, NLGEOM, INC=1000", "*STATIC",
-              "0.05, 1., 1e-6, 0.1", "*CONTROLS, PARAMETERS=FIELD", "1e-10, 1e-8", "*CLOAD"]
-    lines += [f"{i + 1}, {c + 1}, {float(forces[i, c])!r}"
-              for i in np.flatnonzero(np.any(forces != 0, axis=1)) for c in range(3)]
-    lines += ["*NODE PRINT, NSET=ALL, FREQUENCY=1000", "U", "*END STEP", ""]
-    path.write_text("\n".join(lines), encoding="utf-8")
+    if density is not None:
+        lines += ["*DENSITY", real(density)]
+    return [*lines, "*SOLID SECTION, ELSET=BODY, MATERIAL=RUBBER"]
 
 
-def displacements(folder: pathlib.Path, nodes, tetrahedra, fixed, law: dict, forces) -> np.ndarray:
-    """(n, 3) m at equilibrium, to the seven digits that CalculiX prints."""
-    write_input(folder / "body.inp", nodes, tetrahedra, fixed, law, forces)
-    done = subprocess.run(["ccx", "-i", "body"], cwd=folder, capture_output=True, text=True, check=False)
+def point_loads(forces) -> list[str]:
+    """Dead loads (n, 3) N on nodes."""
+    return ["*CLOAD"] + [f"{i + 1}, {c + 1}, {real(forces[i, c])}"
+                         for i in np.flatnonzero(np.any(forces != 0, axis=1)) for c in range(3)]
+
+
+def solve(folder: pathlib.Path, lines: list[str], threads: int = 1) -> list[tuple[float, np.ndarray]]:
+    """Runs a deck; the times and values (p, 3) of all its node prints, in order of nodes.
+
+    Raises
+    ------
+    RuntimeError
+        When ccx printed nothing, with the end of what it said.
+    """
+    (folder / "body.inp").write_text("\n".join([*lines, ""]), encoding="utf-8")
+    done = subprocess.run(["ccx", "-i", "body"], cwd=folder, capture_output=True, text=True, check=False,
+                          env={**os.environ, "OMP_NUM_THREADS": str(threads)})
+    (folder / "body.log").write_text(done.stdout, encoding="utf-8")
     output = folder / "body.dat"
-    rows = []
-    if output.exists():
-        words = [line.split() for line in output.read_text(encoding="utf-8").splitlines()]
-        rows = [row for row in words if len(row) == 4 and row[0].isdigit()]
-    if len(rows) < len(nodes):
+    prints: list[tuple[float, list]] = []
+    for line in output.read_text(encoding="utf-8").splitlines() if output.exists() else ():
+        words = line.split()
+        if words and "time" in words:
+            prints.append((float(words[-1]), []))
+        elif len(words) == 4 and words[0].isdigit():
+            prints[-1][1].append([float(word) for word in words[1:]])
+    if not prints:
         raise RuntimeError(f"ccx ended with {done.returncode}: {done.stdout[-500:]}")
-    result = np.zeros((len(nodes), 3))
-    for number, *values in rows[-len(nodes):]:
-        result[int(number) - 1] = [float(v) for v in values]
-    return result
+    return [(time, np.array(rows)) for time, rows in prints]
+
+
+def displacements(folder: pathlib.Path, nodes, cells, fixed, law: dict, forces, threads: int = 1) -> np.ndarray:
+    """(n, 3) m at equilibrium, to the seven digits that CalculiX prints."""
+    prints = solve(folder, [
+        *body_cards(nodes, cells, fixed, law), "*STEP, NLGEOM, INC=1000", "*STATIC", "0.05, 1., 1e-6, 0.1",
+        "*CONTROLS, PARAMETERS=FIELD", "1e-10, 1e-8", *point_loads(forces),
+        "*NODE PRINT, NSET=ALL, FREQUENCY=1000", "U", "*END STEP"], threads)
+    if len(prints[-1][1]) < len(nodes):
+        raise RuntimeError((folder / "body.log").read_text(encoding="utf-8")[-500:])
+    return prints[-1][1]
+
+
+def motion(folder: pathlib.Path, nodes, cells, fixed, law: dict, density: float, gravity, watched, *, step: float,
+           duration: float, alpha: float = 0.0, threads: int = 1) -> tuple[np.ndarray, np.ndarray]:
+    """Released under gravity (3,) m/s^2 at t = 0: times (k,) and displacements (k, 3) m of a node, at even steps."""
+    size = float(np.linalg.norm(gravity))
+    toward = ", ".join(real(x / size) for x in gravity)
+    prints = solve(folder, [
+        *body_cards(nodes, cells, fixed, law, density), "*NSET, NSET=WATCHED", str(watched + 1),
+        "*AMPLITUDE, NAME=AT_ONCE", f"0., 1., {real(2 * duration)}, 1.",
+        "*STEP, NLGEOM, INC=1000000", f"*DYNAMIC, DIRECT, ALPHA={real(alpha)}", f"{real(step)}, {real(duration)}",
+        "*CONTROLS, PARAMETERS=FIELD", "1e-7, 1e-6",
+        "*DLOAD, AMPLITUDE=AT_ONCE", f"BODY, GRAV, {real(size)}, {toward}",
+        "*NODE PRINT, NSET=WATCHED, FREQUENCY=1", "U", "*END STEP"], threads)
+    return np.array([time for time, _ in prints]), np.array([rows[0] for _, rows in prints])

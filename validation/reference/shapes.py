@@ -1,4 +1,4 @@
-"""Meshes of hexahedra for cases, written as VTU."""
+"""Meshes for cases, written as VTU."""
 
 from __future__ import annotations
 
@@ -8,10 +8,20 @@ import meshio
 import numpy as np
 
 
-def write_hexahedra(path: pathlib.Path, points, cells) -> pathlib.Path:
-    """(n, 3) m and (m, 8) in VTK order."""
-    meshio.write_points_cells(path, np.asarray(points, float), [("hexahedron", np.asarray(cells))])
+def _write(path: pathlib.Path, points, cells, kind: str, sets) -> pathlib.Path:
+    masks = {name: np.asarray(members, np.uint8) for name, members in (sets or {}).items()}
+    meshio.write_points_cells(path, np.asarray(points, float), [(kind, np.asarray(cells))], point_data=masks)
     return path
+
+
+def write_hexahedra(path: pathlib.Path, points, cells, sets=None) -> pathlib.Path:
+    """(n, 3) m, (m, 8) in VTK order, and by name masks (n,) of nodes."""
+    return _write(path, points, cells, "hexahedron", sets)
+
+
+def write_tetrahedra(path: pathlib.Path, points, cells, sets=None) -> pathlib.Path:
+    """As write_hexahedra(), (m, 4)."""
+    return _write(path, points, cells, "tetra", sets)
 
 
 def hollow_sphere(path: pathlib.Path, inner: float, outer: float, around: int, through: int) -> pathlib.Path:

@@ -11,55 +11,147 @@ namespace sinew::material {
 namespace {
 
 constexpr const char* kEcoflex30Source =
-    "Coefficients as published with the multi-flexible-body simulation of a cable-driven conical "
-    "arm; "
-    "density: Smooth-On, technical bulletin of the Ecoflex series (1.07 g/cm^3)";
-constexpr double kEcoflexDensity = 1070.0;
+    "Coefficients as published with the multi-flexible-body simulation of a cable-driven conical"
+    " arm; density: Smooth-On, technical bulletin of the Ecoflex series (1.07 g/cm^3)";
 
-NamedMaterial make(std::string name, std::string trade_name, std::string law, Hyperelastic energy,
-                   std::string source, std::string remark) {
-  energy.bulk_modulus = bulk_modulus_of(energy.shear_modulus(), kLibraryPoissonRatio);
-  return {.name = std::move(name),
-          .trade_name = std::move(trade_name),
-          .law = std::move(law),
-          .energy = std::move(energy),
-          .density = kEcoflexDensity,
-          .source = std::move(source),
-          .remark = std::move(remark)};
+// Fits of `sinew fit FILE --model ogdenN --starts 8` to the rows of a curve up to a stretch of 4.
+std::string tensile_source(const char* rms, double density) {
+  return fmt::format(
+      "Our fit to the tensile curve of Marechal, Balland, Lindenroth, Petrou, Kontovounisios, "
+      "Bello, Soft Robotics 8 (2021) 284-297 (Soft-Robotics-Materials-Database, ODbL 1.0), "
+      "stretch up to 4, RMS {} of nominal stress; density: Smooth-On, technical bulletin ({:g} "
+      "g/cm^3)",
+      rms, 1e-3 * density);
+}
+constexpr const char* kTensileRemark =
+    "Strain there is crosshead travel over 33 mm, so that the law is too soft, most of all at "
+    "small strain: Dragon Skin 10 gives E = 148 kPa so, and 264 kPa on a measured beam. Scale it"
+    " to a test of your own. Fitted to one tensile test, nothing says how it does in other "
+    "modes.";
+
+/// As published, or fitted; the bulk modulus is added.
+struct Entry {
+  std::string name, trade_name, law;
+  Hyperelastic energy;
+  double density, lowest, highest;
+  std::string source, remark;
+};
+
+NamedMaterial finish(Entry entry) {
+  entry.energy.bulk_modulus = bulk_modulus_of(entry.energy.shear_modulus(), kLibraryPoissonRatio);
+  return {.name = std::move(entry.name),
+          .trade_name = std::move(entry.trade_name),
+          .law = std::move(entry.law),
+          .energy = std::move(entry.energy),
+          .density = entry.density,
+          .lowest = entry.lowest,
+          .highest = entry.highest,
+          .source = std::move(entry.source),
+          .remark = std::move(entry.remark)};
+}
+
+NamedMaterial tensile(const char* name, const char* trade_name, const std::vector<OgdenTerm>& terms,
+                      const char* rms, double density, const std::string& more = "") {
+  return finish({name, trade_name, "ogden", ogden(terms, OgdenConvention::mu_over_alpha), density,
+                 1.0, 4.0, tensile_source(rms, density), kTensileRemark + more});
+}
+
+void add_ecoflex(std::vector<NamedMaterial>& list) {
+  constexpr double kDensity = 1070.0;
+  list.push_back(tensile("ecoflex-00-10", "Ecoflex 00-10",
+                         {{1563.90, 3.48450}, {10069.3, 0.938401}}, "0.31 kPa (0.5 %)", 1040.0));
+  list.push_back(finish(
+      {"ecoflex-00-20", "Ecoflex 00-20", "neo-hookean", neo_hookean(31.5e3), kDensity, 1.0, 2.0,
+       "From the maker's 100 % modulus alone, 8 psi (55.2 kPa) = mu (2 - 1/4); Smooth-On, "
+       "technical bulletin of the Ecoflex series, also density (1.07 g/cm^3)",
+       "A secant between 0 and 100 %, of the maker's own test: stiffer at small strain than "
+       "tests of its neighbours 00-10 and 00-30 (7 and 15 to 24 kPa)."}));
+  list.push_back(finish(
+      {"ecoflex-00-30", "Ecoflex 00-30", "ogden",
+       ogden({{24.361e3, 1.7138}, {66.703, 7.0679}, {-453.81, -3.3659}},
+             OgdenConvention::mu_over_alpha),
+       kDensity, 0.0, 0.0, kEcoflex30Source,
+       "The source gives mu_3 = 453.81 Pa and also uses -453.81 Pa, which is taken here: with "
+       "mu_3 alpha_3 < 0 the law is unstable below a stretch of 0.31 and above 3.68."}));
+  list.push_back(finish({"ecoflex-00-30-published", "Ecoflex 00-30", "ogden",
+                         ogden({{24.361e3, 1.7138}, {66.703, 7.0679}, {453.81, -3.3659}},
+                               OgdenConvention::mu_over_alpha),
+                         kDensity, 0.0, 0.0, kEcoflex30Source,
+                         "mu_3 as first published: unstable in uniaxial compression below 0.31 "
+                         "and in tension above 3.68. For comparison."}));
+  list.push_back(
+      finish({"ecoflex-00-30-mooney-rivlin", "Ecoflex 00-30", "mooney-rivlin",
+              mooney_rivlin(12.18e3, -33.3515), kDensity, 0.0, 0.0, kEcoflex30Source,
+              "Not a fit of its own: C10 = mu_1/2 and C01 = -mu_2/2 of the Ogden law."}));
+  list.push_back(finish({"ecoflex-00-30-neo-hookean", "Ecoflex 00-30", "neo-hookean",
+                         neo_hookean(2.0 * 12.18e3), kDensity, 0.0, 0.0, kEcoflex30Source,
+                         "Not a fit of its own: C10 = mu_1/2 of the Ogden law."}));
+  list.push_back(tensile("ecoflex-00-30-tensile", "Ecoflex 00-30",
+                         {{8.57318, 5.81546}, {13564.1, 2.22708}}, "0.34 kPa (0.4 %)", kDensity));
+  list.push_back(finish(
+      {"ecoflex-00-50", "Ecoflex 00-50", "ogden",
+       ogden({{107.9e3, 1.55}, {21.47, 7.86}, {-87.1e3, -1.91}},
+             OgdenConvention::two_mu_over_alpha_squared),
+       kDensity, 0.0, 0.0,
+       "Coefficients as published with the simulation of a pneumatic bending module; density: "
+       "Smooth-On, as Ecoflex 00-30",
+       "The source does not say which convention: only sum 2 mu/alpha^2 (...) gives the "
+       "material's initial shear modulus, 20.8 kPa; sum mu/alpha (...) would give 167 kPa. So "
+       "read, the law is unstable after Drucker beyond a uniaxial stretch of 1.13 or below "
+       "0.885, an equibiaxial one of 1.06: walls of it invert under little load. Fit your own "
+       "where strains are large, or take ecoflex-00-50-tensile."}));
+  list.push_back(tensile("ecoflex-00-50-tensile", "Ecoflex 00-50",
+                         {{9.08724, 5.94580}, {16581.7, 2.41648}}, "0.40 kPa (0.3 %)", kDensity));
+}
+
+void add_dragon_skin(std::vector<NamedMaterial>& list) {
+  list.push_back(tensile("dragon-skin-10", "Dragon Skin 10 Medium", {{34767.7, 2.85840}},
+                         "6.0 kPa (1.4 %)", 1070.0));
+  list.push_back(finish({"dragon-skin-10-beam", "Dragon Skin 10", "neo-hookean",
+                         neo_hookean(263824.0 / 3.0), 1070.0, 0.9, 1.1,
+                         "Young's modulus 263.8 kPa (incompressible: mu = E/3) as fitted to a "
+                         "clamped beam by Dubied, Michelis, Spielberg, Katzschmann, IEEE Robot. "
+                         "Autom. Lett. 7 (2022) 5015-5022, also density",
+                         "For bending at small strain; the same authors' later fits are 283 to "
+                         "294 kPa. Our own simulation of that beam wants 271 kPa."}));
+  list.push_back(
+      tensile("dragon-skin-20", "Dragon Skin 20", {{95909.4, 2.83335}}, "9.8 kPa (0.8 %)", 1080.0));
+  list.push_back(tensile("dragon-skin-30", "Dragon Skin 30", {{144776.9, 2.71607}},
+                         "13.7 kPa (0.9 %)", 1080.0));
+  list.push_back(tensile(
+      "dragon-skin-fx-pro", "Dragon Skin FX-Pro", {{19813.7, 2.73843}}, "0.4 kPa (0.2 %)", 1060.0,
+      " The curve of this one bears nothing up to 4.5 % (slack), and 26 of its rows were fitted."));
+}
+
+void add_others(std::vector<NamedMaterial>& list) {
+  list.push_back(tensile("sorta-clear-40", "SORTA-Clear 40", {{176661.4, 2.76681}},
+                         "6.8 kPa (0.3 %)", 1080.0));
+  list.push_back(finish(
+      {"elastosil-m4601", "Elastosil M4601", "yeoh", yeoh({0.11e6, 0.02e6}), 1130.0, 0.0, 0.0,
+       "C10 = 0.11 MPa, C20 = 0.02 MPa and density as in the Soft Robotics Toolkit "
+       "(softroboticstoolkit.com), PneuNets bending actuators, modeling",
+       "The source does not say up to which strain they hold."}));
+  list.push_back(
+      finish({"elastosil-m4601-neo-hookean", "Elastosil M4601", "neo-hookean",
+              neo_hookean(2.0 * 0.12e6), 1130.0, 0.0, 0.0,
+              "C10 = 0.12 MPa as in the Soft Robotics Toolkit (softroboticstoolkit.com), fiber-"
+              "reinforced actuators, finite element modeling; density: as elastosil-m4601",
+              "The source does not say up to which strain it holds."}));
+  list.push_back(finish(
+      {"sylgard-184", "Sylgard 184 (10:1)", "neo-hookean", neo_hookean(1.32e6 / 3.0), 1030.0, 1.0,
+       1.4,
+       "Young's modulus 1.32 MPa (incompressible: mu = E/3) of samples cured at 25 C, to 40 % "
+       "strain: Johnston, McCluskey, Tan, Tracey, J. Micromech. Microeng. 24 (2014) 035017; "
+       "density: Dow, technical data sheet (1.03)",
+       "Curing decides: 1.32 MPa at 25 C to 2.97 MPa at 200 C in that source; others differ more"
+       " (Varner, Cohen, Soft Matter 2024)."}));
 }
 
 std::vector<NamedMaterial> make_library() {
   std::vector<NamedMaterial> list;
-  list.push_back(
-      make("ecoflex-00-30", "Ecoflex 00-30", "ogden",
-           ogden({{24.361e3, 1.7138}, {66.703, 7.0679}, {-453.81, -3.3659}},
-                 OgdenConvention::mu_over_alpha),
-           kEcoflex30Source,
-           "The source gives mu_3 = 453.81 Pa and also uses -453.81 Pa, which is taken here: with "
-           "mu_3 alpha_3 < 0 the law is unstable below a stretch of 0.31 and above 3.68."));
-  list.push_back(make("ecoflex-00-30-published", "Ecoflex 00-30", "ogden",
-                      ogden({{24.361e3, 1.7138}, {66.703, 7.0679}, {453.81, -3.3659}},
-                            OgdenConvention::mu_over_alpha),
-                      kEcoflex30Source,
-                      "mu_3 as first published: unstable in uniaxial compression below 0.31 and in "
-                      "tension above 3.68. For comparison."));
-  list.push_back(make("ecoflex-00-30-mooney-rivlin", "Ecoflex 00-30", "mooney-rivlin",
-                      mooney_rivlin(12.18e3, -33.3515), kEcoflex30Source,
-                      "Not a fit of its own: C10 = mu_1/2 and C01 = -mu_2/2 of the Ogden law."));
-  list.push_back(make("ecoflex-00-30-neo-hookean", "Ecoflex 00-30", "neo-hookean",
-                      neo_hookean(2.0 * 12.18e3), kEcoflex30Source,
-                      "Not a fit of its own: C10 = mu_1/2 of the Ogden law."));
-  list.push_back(make(
-      "ecoflex-00-50", "Ecoflex 00-50", "ogden",
-      ogden({{107.9e3, 1.55}, {21.47, 7.86}, {-87.1e3, -1.91}},
-            OgdenConvention::two_mu_over_alpha_squared),
-      "Coefficients as published with the simulation of a pneumatic bending module; density: "
-      "Smooth-On, as Ecoflex 00-30",
-      "The source does not say which convention: only sum 2 mu/alpha^2 (...) gives the material's "
-      "initial shear modulus, 20.8 kPa; sum mu/alpha (...) would give 167 kPa. So read, the law is "
-      "unstable after Drucker beyond a uniaxial stretch of 1.13 or below 0.885, an equibiaxial one "
-      "of "
-      "1.06: walls of it invert under little load. Fit your own where strains are large."));
+  add_ecoflex(list);
+  add_dragon_skin(list);
+  add_others(list);
   std::ranges::sort(list, {}, &NamedMaterial::name);
   return list;
 }
