@@ -192,6 +192,30 @@ std::vector<SignalInfo> list_signals(const sim::Model& model) {
   return list;
 }
 
+const std::vector<FieldInfo>& list_fields() {
+  static const std::vector<FieldInfo> list = [] {
+    std::vector<FieldInfo> all = {
+        {"displacement", "Displacement", "m", "distance from the place at rest",
+         [](const fem::FemBody& body, const sim::Simulation&, const fem::NodalMean&) {
+           return fem::displacement_field(body);
+         }}};
+    for (const fem::ElementFieldInfo& info : fem::element_fields()) {
+      all.push_back({info.name, info.label, info.unit, info.description,
+                     [field = info.field](const fem::FemBody& body, const sim::Simulation&,
+                                          const fem::NodalMean& mean) {
+                       return mean(fem::element_field(body, field));
+                     }});
+    }
+    all.push_back(
+        {"actuator_force", "Actuators' force", "N", "force of the actuators on each node",
+         [](const fem::FemBody& body, const sim::Simulation& simulation, const fem::NodalMean&) {
+           return fem::row_force_field(body, simulation.efforts());
+         }});
+    return all;
+  }();
+  return list;
+}
+
 Surface surface_of(const mesh::Mesh& mesh) {
   Surface result;
   std::vector<int> vertex(static_cast<std::size_t>(mesh.nodes.rows()), -1);
@@ -236,11 +260,14 @@ Description describe(const scene::Robot& robot) {
     result.effectors.push_back(model.effectors()[i].name);
   }
   result.signals = list_signals(model);
-  result.fields = {"displacement", "strain", "stress", "force"};
-  const Json fields = {{{"name", "displacement"}, {"label", "Displacement"}, {"unit", "m"}},
-                       {{"name", "strain"}, {"label", "Equivalent strain"}, {"unit", ""}},
-                       {{"name", "stress"}, {"label", "Von Mises stress"}, {"unit", "Pa"}},
-                       {{"name", "force"}, {"label", "Actuators' force"}, {"unit", "N"}}};
+  Json fields = Json::array();
+  for (const FieldInfo& field : list_fields()) {
+    result.fields.push_back(field.name);
+    fields.push_back({{"name", field.name},
+                      {"label", field.label},
+                      {"unit", field.unit},
+                      {"description", field.description}});
+  }
   const Json scene = {{"name", robot.description.name},
                       {"time_step", model.step().time_step},
                       {"gravity", vector_json(robot.description.gravity)},

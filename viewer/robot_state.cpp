@@ -88,7 +88,7 @@ RobotState::RobotState(scene::Robot robot, std::shared_ptr<sim::Simulation> simu
       first_(std::move(first)) {
   for (std::size_t b = 0; b < robot_.model->bodies().size(); ++b) {
     const auto& body = simulation_->fem_body(static_cast<int>(b));
-    fields_.push_back(std::make_unique<fem::NodalFields>(body.fem_model()));
+    means_.emplace_back(body.fem_model());
   }
   if (first_) attach(first_->name, first_->settings);
 }
@@ -286,7 +286,7 @@ void RobotState::fill_signals(Frame& frame, double real_time_factor) {
   values.insert(values.end(), {real_time_factor, report.residual, report.smallest_volume_ratio});
 }
 
-void RobotState::fill_body(std::size_t index, const std::array<bool, kFieldCount>& wanted,
+void RobotState::fill_body(std::size_t index, const FieldChoice& wanted,
                            BodyFrame& frame) {
   const fem::FemBody& body = simulation_->fem_body(static_cast<int>(index));
   const Surface& surface = description_.surfaces[index];
@@ -296,27 +296,12 @@ void RobotState::fill_body(std::size_t index, const std::array<bool, kFieldCount
       frame.positions.push_back(static_cast<float>(body.positions()(node, c)));
     }
   }
-  frame.fields.resize(kFieldCount);
-  nodal_.resize(static_cast<std::size_t>(body.positions().rows()));
-  for (int f = 0; f < kFieldCount; ++f) {
-    if (!wanted[static_cast<std::size_t>(f)]) continue;
-    switch (static_cast<Field>(f)) {
-      case Field::displacement:
-        fields_[index]->displacement(body, nodal_);
-        break;
-      case Field::strain:
-        fields_[index]->strain(body, nodal_);
-        break;
-      case Field::stress:
-        fields_[index]->stress(body, nodal_);
-        break;
-      case Field::force:
-        fields_[index]->row_force(body, simulation_->efforts(), nodal_);
-        break;
-    }
+  frame.fields.resize(wanted.size());
+  for (std::size_t f = 0; f < wanted.size(); ++f) {
+    if (!wanted[f]) continue;
+    const std::vector<double> nodal = list_fields()[f].values(body, *simulation_, means_[index]);
     for (const NodeId node : surface.nodes) {
-      frame.fields[static_cast<std::size_t>(f)].push_back(
-          static_cast<float>(nodal_[static_cast<std::size_t>(node)]));
+      frame.fields[f].push_back(static_cast<float>(nodal[static_cast<std::size_t>(node)]));
     }
   }
 }
@@ -345,7 +330,7 @@ void RobotState::fill_points(Frame& frame) const {
   }
 }
 
-std::shared_ptr<const Frame> RobotState::frame(const std::array<bool, kFieldCount>& wanted,
+std::shared_ptr<const Frame> RobotState::frame(const FieldChoice& wanted,
                                                double real_time_factor) {
   auto frame = std::make_shared<Frame>();
   frame->step = static_cast<std::uint64_t>(simulation_->steps());

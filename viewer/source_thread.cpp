@@ -175,9 +175,9 @@ void SourceThread::do_request(const Request& request) {
 }
 
 void SourceThread::publish() {
-  std::array<bool, kFieldCount> wanted{};
-  for (int f = 0; f < kFieldCount; ++f) {
-    wanted[static_cast<std::size_t>(f)] = publisher_->wants_field(f);
+  FieldChoice wanted(list_fields().size());
+  for (std::size_t f = 0; f < wanted.size(); ++f) {
+    wanted[f] = publisher_->wants_field(static_cast<int>(f));
   }
   const bool slow = playing_ && speed_ > 0.0 && factor_ > 0.0 && factor_ < kSlow * speed_;
   std::string status = fmt::format(R"({{"playing":{},"speed":{},"slow":{},{})", playing_, speed_,

@@ -55,12 +55,13 @@ export function read(text: string): number {
   return Number(found[1]) * (PREFIXES.find(([, prefix]) => prefix === found[2])?.[0] ?? 1);
 }
 
-/** A number of a unit as people write it: 0.0123 m is "12.3 mm". */
-export function told(value: number, unit: string, digits = 3): string {
+/** A number of a unit as people write it: 0.0123 m is "12.3 mm"; with the prefix that `beside` would have. */
+export function told(value: number, unit: string, digits = 3, beside = value): string {
   if (!Number.isFinite(value)) return '-';
-  if (unit === 'm^3') return told(1e3 * value, 'l', digits);  // a prefix would be cubed, too
-  if (unit === '' || value === 0) return `${Number(value.toPrecision(digits))}${unit ? ' ' + unit : ''}`;
-  const size = Math.abs(value);
+  if (unit === 'm^3') return told(1e3 * value, 'l', digits, 1e3 * beside);  // a prefix would be cubed, too
+  if (unit === 'rad') return `${Number((value * 180 / Math.PI).toPrecision(digits))}\u00b0`;
+  if (unit === '' || beside === 0) return `${Number(value.toPrecision(digits))}${unit ? ' ' + unit : ''}`;
+  const size = Math.abs(beside);
   const [scale, prefix] = PREFIXES.find(([s]) => size >= 0.9995 * s) ?? PREFIXES[PREFIXES.length - 1];
   return `${Number((value / scale).toPrecision(digits))} ${prefix}${unit}`;
 }

@@ -8,7 +8,7 @@ export interface Actuator {name: string; type: string; body: string; quantities:
 export interface Effector {name: string; kind: 'point' | 'orientation'; directions: number[][]}
 export interface Controller {name: string; type: string; effectors: string[]}
 export interface Signal {key: string; label: string; unit: string; group: string}
-export interface FieldInfo {name: string; label: string; unit: string}
+export interface FieldInfo {name: string; label: string; unit: string; description: string}
 export interface Scene {
   name: string; time_step: number; gravity: number[]; bounds: number[][];
   bodies: {name: string; vertices: number; triangles: number; nodes: number; elements: number}[];

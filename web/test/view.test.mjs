@@ -120,8 +120,8 @@ test('the page loads without an error and shows the robot', async () => {
   const served = await serve(STEERED);
   const errors = [];
   const page = await open(served.url, errors);
-  await page.selectOption('[aria-label="Colour by"]', 'stress');
-  await until(page, (s) => s.field === 'stress' && s.range[1] > 1000);
+  await page.selectOption('[aria-label="Colour by"]', 'von_mises_stress');
+  await until(page, (s) => s.field === 'von_mises_stress' && s.range[1] > 1000);
   assert.ok(await page.locator('#legend .bar').isVisible());
   assert.match(await page.locator('#legend').innerText(), /Von Mises stress[\s\S]*kPa/);
   // Drawn at all: the canvas holds many colours, and the robot's in its middle.
