@@ -65,6 +65,11 @@ await draw('docs/images/view_reach.png', [circle], {}, async (page) => {
   await page.keyboard.press('Tab');
   await step(page, 260);
 });
+await draw('docs/images/view_fields.png', [join(root, 'examples/ring/sma.yaml')], {}, async (page) => {
+  await colour(page, 'max_stretch');
+  await page.selectOption('[aria-label="Signals to plot"]', 'probe');
+  await step(page, 400);
+});
 const folder = mkdtempSync(join(tmpdir(), 'sinew-pictures-'));
 execFileSync(program, ['run', circle, '--duration', '4s', '--out', folder, '--quiet']);
 await draw('docs/images/view_replay.png', [folder], {}, async (page) => {

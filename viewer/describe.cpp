@@ -108,6 +108,33 @@ Json effector_json(const sim::Model& model, int index) {
           {"directions", directions}};
 }
 
+// The signals of a probe: of a line its length alone, its points are seen.
+struct ProbeSignal {
+  std::string key, label;
+  const char* unit;
+};
+
+std::vector<ProbeSignal> probe_signals(const constraint::Probe& probe) {
+  const bool line = dynamic_cast<const constraint::LineProbe*>(&probe) != nullptr;
+  std::vector<ProbeSignal> list;
+  for (const constraint::ProbeComponent& part : probe.components()) {
+    const bool sole = line || part.name.empty();
+    const std::string label = sole ? probe.name() : fmt::format("{}.{}", probe.name(), part.name);
+    list.push_back({"probe." + label, label, part.unit});
+    if (sole) break;
+  }
+  return list;
+}
+
+Json probe_json(const constraint::Probe& probe) {
+  Json signals = Json::array();
+  for (const ProbeSignal& signal : probe_signals(probe)) signals.push_back(signal.key);
+  return {{"name", probe.name()},
+          {"kind", probe.kind()},
+          {"marks", probe.mark_count()},
+          {"signals", signals}};
+}
+
 Json body_json(const mechanics::BodyModel& model, const Surface& surface) {
   const auto& fem = dynamic_cast<const fem::FemBodyModel&>(model);
   return {{"name", model.name()},
@@ -179,6 +206,12 @@ std::vector<SignalInfo> list_signals(const sim::Model& model) {
     const std::string& name = model.effectors()[i].name;
     list.push_back({name + ".error", name, model.effector(static_cast<int>(i)).unit(), "error"});
   }
+  for (const auto& probe : model.probes()) {
+    for (const ProbeSignal& signal : probe_signals(*probe)) {
+      const bool angle = std::string_view(signal.unit) == "rad";
+      list.push_back({signal.key, signal.label, signal.unit, angle ? "angle" : "probe"});
+    }
+  }
   for (const char* kind : {"strain", "kinetic", "gravity"}) {
     list.push_back({fmt::format("energy.{}", kind), kind, "J", "energy"});
   }
@@ -249,7 +282,7 @@ Description describe(const scene::Robot& robot) {
     result.surfaces.back().body = body->name();
     bodies.push_back(body_json(*body, result.surfaces.back()));
   }
-  Json actuators = Json::array(), effectors = Json::array();
+  Json actuators = Json::array(), effectors = Json::array(), probes = Json::array();
   for (std::size_t i = 0; i < model.actuators().size(); ++i) {
     actuators.push_back(actuator_json(model, robot, static_cast<int>(i)));
     const std::size_t points = actuators.back()["points"];
@@ -259,6 +292,7 @@ Description describe(const scene::Robot& robot) {
     effectors.push_back(effector_json(model, static_cast<int>(i)));
     result.effectors.push_back(model.effectors()[i].name);
   }
+  for (const auto& probe : model.probes()) probes.push_back(probe_json(*probe));
   result.signals = list_signals(model);
   Json fields = Json::array();
   for (const FieldInfo& field : list_fields()) {
@@ -276,6 +310,7 @@ Description describe(const scene::Robot& robot) {
                       {"fields", fields},
                       {"actuators", actuators},
                       {"effectors", effectors},
+                      {"probes", probes},
                       {"controllers", controllers_json(robot)},
                       {"signals", signals_json(result.signals)}};
   result.scene = scene.dump();

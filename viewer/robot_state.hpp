@@ -82,8 +82,7 @@ class RobotState {
 
   /// Everything that is to be seen now.
   /// @param wanted which fields are. @param real_time_factor is among the signals.
-  std::shared_ptr<const Frame> frame(const FieldChoice& wanted,
-                                     double real_time_factor);
+  std::shared_ptr<const Frame> frame(const FieldChoice& wanted, double real_time_factor);
   /// JSON of the status message without what the source itself knows: controller, commands,
   /// targets, troubles, stopped.
   std::string status_members() const;

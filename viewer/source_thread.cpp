@@ -169,7 +169,7 @@ void SourceThread::do_request(const Request& request) {
   } else if (const auto* speed = std::get_if<Speed>(&request)) {
     speed_ = speed->factor;
     restart_clock();
-  } else {
+  } else if (!std::holds_alternative<ChooseField>(request)) {  // which wants_field() tells
     handle(request);
   }
 }

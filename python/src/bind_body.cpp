@@ -204,8 +204,8 @@ auto of_elements(Get get) {
 }
 
 Array numbers(const std::vector<double>& values) {
-  return copy(VectorX(
-      Eigen::Map<const VectorX>(values.data(), static_cast<Eigen::Index>(values.size()))));
+  return copy(
+      VectorX(Eigen::Map<const VectorX>(values.data(), static_cast<Eigen::Index>(values.size()))));
 }
 
 Array element_field(const Body& self, const std::string& field) {

@@ -21,6 +21,7 @@ void bind_targets(py::module_& module);
 void bind_reports(py::module_& module);
 void bind_actuator(py::module_& module);
 void bind_effector(py::module_& module);
+void bind_probe(py::module_& module);
 void bind_body(py::module_& module);
 void bind_simulation(py::module_& module);
 void bind_controller(py::module_& module);
@@ -35,6 +36,7 @@ struct Part {
 };
 struct Actuator : Part {};
 struct Effector : Part {};
+struct Probe : Part {};
 struct Body : Part {};
 
 /// A controller with the simulation that it steers, which it keeps alive.

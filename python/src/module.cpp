@@ -24,6 +24,7 @@ PYBIND11_MODULE(_core, module) {
   python::bind_mesh(module);
   python::bind_actuator(module);
   python::bind_effector(module);
+  python::bind_probe(module);
   python::bind_body(module);
   python::bind_simulation(module);
   python::bind_controller(module);

@@ -31,8 +31,8 @@ enum class Kind { linear, corotational, rubber, quadratic, hexahedra };
 
 std::shared_ptr<const mesh::Mesh> mesh_of(Kind kind) {
   if (kind == Kind::hexahedra) {
-    return std::make_shared<mesh::Mesh>(mesh::block(
-        {.size = {0.03, 0.02, 0.02}, .cells = {3, 2, 2}}, mesh::Cells::hexahedra));
+    return std::make_shared<mesh::Mesh>(
+        mesh::block({.size = {0.03, 0.02, 0.02}, .cells = {3, 2, 2}}, mesh::Cells::hexahedra));
   }
   auto tetrahedra = block_mesh(3, 2, 2, 0.01, 0.12);
   if (kind != Kind::quadratic) return tetrahedra;
@@ -76,7 +76,8 @@ struct Shown {
 };
 
 Matrix3 strong_deformation() {
-  Matrix3 f = Eigen::AngleAxis<double>(1.1, Vector3(0.3, -0.5, 0.8).normalized()).toRotationMatrix();
+  Matrix3 f =
+      Eigen::AngleAxis<double>(1.1, Vector3(0.3, -0.5, 0.8).normalized()).toRotationMatrix();
   Matrix3 u;
   u << 1.25, 0.12, -0.05, 0.12, 0.9, 0.07, -0.05, 0.07, 0.97;
   return f * u;
@@ -166,8 +167,7 @@ TEST_P(EveryElement, EnergyDensityAddsUpToTheEnergy) {
   });
   const auto density = element_field(shown.body(), ElementField::energy_density);
   const ElementStates states = element_states(shown.body());
-  const double sum =
-      std::inner_product(density.begin(), density.end(), states.volume.begin(), 0.0);
+  const double sum = std::inner_product(density.begin(), density.end(), states.volume.begin(), 0.0);
   EXPECT_NEAR(sum, shown.body().strain_energy(), 1e-10 * sum);
   EXPECT_GT(sum, 1e-6);
 }

@@ -2,7 +2,7 @@
 import {Vector3} from 'three';
 import 'uplot/dist/uPlot.min.css';
 import './style.css';
-import {gradient, MAPS, read, told} from './colours';
+import {gradient, MAPS, read, ticks, told} from './colours';
 import {Connection} from './connection';
 import {button, make} from './dom';
 import {Panel} from './panel';
@@ -84,6 +84,8 @@ function setTheme(dark: boolean): void {
 
 function chooseField(name: string | null): void {
   field = name;
+  seen = [NaN, NaN];  // until values come
+  latest?.fields.clear();
   fields.value = name ?? '';
   robot.coloured = name !== null;
   keepRange(null);
@@ -102,14 +104,14 @@ function picture(): void {
 // ------------------------------------------------------------------------------------------- legend
 
 const TICKS = 5;
-const ticks = Array.from({length: TICKS}, () => make('span', {})), bar = make('span', {className: 'bar'});
+const marks = Array.from({length: TICKS}, () => make('span', {})), bar = make('span', {className: 'bar'});
 const fixed = make('input', {type: 'checkbox', 'aria-label': 'Keep the range'});
 const ends = ['Lowest', 'Highest'].map((end) => make('input', {type: 'text', 'aria-label': `${end} value of the range`}));
 fixed.onchange = () => keepRange(fixed.checked ? [...seen] : null);
 ends.forEach((end) => { end.onchange = typedRange; });
 const name = make('div', {});
 const typed = make('div', {className: 'line', hidden: true}, ends[0], 'to', ends[1]);
-byId('legend').append(name, bar, make('span', {className: 'ends'}, ...ticks),
+byId('legend').append(name, bar, make('span', {className: 'ends'}, ...marks),
                       make('label', {className: 'line'}, fixed, 'keep the range'), typed);
 
 function keepRange(next: [number, number] | null): void {
@@ -135,12 +137,7 @@ function legend(): void {
   name.textContent = info.label;
   byId('legend').title = info.description;
   bar.style.background = gradient(map);
-  const size = Math.max(Math.abs(a), Math.abs(b));
-  const digits = b > a ? Math.min(3 + Math.max(0, Math.ceil(Math.log10(size / (b - a)))), 7) : 3;  // so that ticks differ
-  ticks.forEach((tick, k) => {  // from above
-    const value = a + (b - a) * (1 - k / (TICKS - 1));
-    tick.textContent = a === b && k !== TICKS - 1 ? '' : told(value, info.unit, digits, size);
-  });
+  ticks(a, b, TICKS, info.unit).forEach((text, k) => { marks[k].textContent = text; });
 }
 
 function measure(frame: Frame): void {
@@ -152,11 +149,12 @@ function measure(frame: Frame): void {
       if (value > b) b = value;
     }
   }
+  if (!(a <= b)) return;
   // Rounding is not shown as if it were a field: what is even has one colour.
   const unit = scene?.fields.find((f) => f.name === field)?.unit ?? '';
   const size = Math.max(Math.abs(a), Math.abs(b));
   if (b - a <= Math.max(1e-6 * size, SMALLEST[unit] ?? 0)) b = a = size <= (SMALLEST[unit] ?? 0) ? 0 : a;
-  if (a <= b) seen = [a, b];
+  seen = [a, b];
 }
 
 // ------------------------------------------------------------------------------------------- alerts
@@ -261,6 +259,11 @@ const connection = new Connection({
       for (const [k, v] of latest.positions) if (!frame.positions.has(k)) frame.positions.set(k, v);
       frame.cables ??= latest.cables;
       frame.effectors ??= latest.effectors;
+      frame.probes ??= latest.probes;
+    }
+    // One that was under way when another field was chosen.
+    for (const [body, {field: shown}] of frame.fields) {
+      if (scene?.fields[shown]?.name !== field) frame.fields.delete(body);
     }
     latest = frame;
     fresh = true;

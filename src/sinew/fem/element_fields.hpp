@@ -11,7 +11,8 @@
 
 namespace sinew::fem {
 
-/// Scalars of the deformation gradient F = R U, of the Cauchy stress sigma and of the strain energy.
+/// Scalars of the deformation gradient F = R U, of the Cauchy stress sigma and of the strain
+/// energy.
 enum class ElementField {
   von_mises_stress,
   max_principal_stress,

@@ -30,8 +30,7 @@ Lanes3x3 cauchy_of(const Lanes3x3& piola, const Lanes3x3& f) {
   Lanes3x3 s;
   for (int r = 0; r < 3; ++r) {
     for (int c = 0; c < 3; ++c) {
-      s[r][c] =
-          inverse * (piola[r][0] * f[c][0] + piola[r][1] * f[c][1] + piola[r][2] * f[c][2]);
+      s[r][c] = inverse * (piola[r][0] * f[c][0] + piola[r][1] * f[c][1] + piola[r][2] * f[c][2]);
     }
   }
   return s;
@@ -39,8 +38,8 @@ Lanes3x3 cauchy_of(const Lanes3x3& piola, const Lanes3x3& f) {
 
 template <material::Law law>
 void respond(const BatchConstants& batch, PointBatch& point) {
-  const material::Response response = material::respond<law>(
-      point.deformation, {load(batch.mu.value), load(batch.lambda.value)});
+  const material::Response response =
+      material::respond<law>(point.deformation, {load(batch.mu.value), load(batch.lambda.value)});
   point.piola = response.stress;
   point.cauchy = law == material::Law::linear ? response.stress
                                               : cauchy_of(response.stress, point.deformation);

@@ -1,6 +1,6 @@
 /// @file
-/// Deformation and stress at the points of integration of all elements, of every kind and law, eight
-/// elements at a time: what everything that people look at is made of.
+/// Deformation and stress at the points of integration of all elements, of every kind and law,
+/// eight elements at a time: what everything that people look at is made of.
 #pragma once
 
 #include <cstdint>
@@ -20,9 +20,9 @@ struct PointBatch {
   material::Lanes weight;                 ///< share of the volume at rest, m^3
   material::Lanes3x3 deformation;         ///< F = dx/dX
   material::Lanes3x3 piola;               ///< first Piola stress P, Pa
-  material::Lanes3x3 cauchy;              ///< sigma = P F^T / det F, Pa; of linear elements P itself
-  material::Lanes energy;                 ///< strain energy by volume at rest, J/m^3
-  material::Lanes gradient[10][3];        ///< dN_a/dX of each node, 1/m
+  material::Lanes3x3 cauchy;        ///< sigma = P F^T / det F, Pa; of linear elements P itself
+  material::Lanes energy;           ///< strain energy by volume at rest, J/m^3
+  material::Lanes gradient[10][3];  ///< dN_a/dX of each node, 1/m
 };
 
 /// Every point of integration of a body at its present state, batch by batch.

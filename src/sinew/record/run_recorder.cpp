@@ -34,7 +34,7 @@ void require_writable(const fs::path& folder) {
   if (problem) unwritable(folder, problem.message());
   if (!fs::is_directory(folder)) unwritable(folder, "it is a file");
   if (::access(folder.c_str(), W_OK | X_OK) != 0) unwritable(folder, std::strerror(errno));
-  for (const char* name : {"run.csv", "run.h5", "scene.yaml"}) {
+  for (const char* name : {"run.csv", "run.h5", "scene.yaml", "probes.csv"}) {
     const fs::path file = folder / name;
     if (!fs::exists(file)) continue;
     if (!fs::is_regular_file(file)) unwritable(file, "it is no regular file");
@@ -145,10 +145,14 @@ struct RunRecorder::Files {
         table(settings.folder / "run.csv", run, controller) {
     mesh::write_file(settings.folder / "scene.yaml", settings.scene);
     remove_series(settings.folder);
+    const fs::path probes_file = settings.folder / "probes.csv";
+    fs::remove(probes_file);  // an older run's would be taken for this one's
+    if (!run.model().probes().empty()) probes.emplace(probes_file, run);
     if (settings.vtk) series.emplace(settings.folder, run);
   }
   void write() {
     table.write();
+    if (probes) probes->write();
     states.write();
     if (series) series->write();
     ++frames;
@@ -158,6 +162,7 @@ struct RunRecorder::Files {
   RecordSettings settings;
   RunStates states;  // first: a file that another program holds open stops everything
   RunTable table;
+  std::optional<ProbeTable> probes;
   std::optional<ParaviewSeries> series;
   std::int64_t frames = 0;
 };

@@ -9,6 +9,7 @@
 #include "sinew/mesh/patch.hpp"
 #include "sinew/mesh/selection.hpp"
 #include "sinew/mesh/surface.hpp"
+#include "sinew/scene/build_probe.hpp"
 #include "sinew/scene/scene.hpp"
 #include "sinew/sim/model_builder.hpp"
 
@@ -31,20 +32,6 @@ sim::Command command(const ActuatorDescription& actuator) {
       return {sim::CommandKind::input, actuator.command->signal};
   }
   return {};
-}
-
-mesh::Region region_of(const FixedRegion& fixed) {
-  switch (fixed.kind) {
-    case FixedRegion::Kind::box:
-      return mesh::BoxRegion{fixed.lower, fixed.upper};
-    case FixedRegion::Kind::sphere:
-      return mesh::SphereRegion{fixed.point, fixed.radius};
-    case FixedRegion::Kind::plane:
-      return mesh::PlaneRegion{fixed.point, fixed.normal, -fixed.within, fixed.within};
-    case FixedRegion::Kind::set:
-      return mesh::NamedRegion{fixed.set};
-  }
-  return mesh::NamedRegion{fixed.set};
 }
 
 void check_element(const BodyDescription& body, const mesh::Mesh& mesh) {
@@ -270,6 +257,20 @@ sim::StepSettings step_settings(const SceneDescription& scene) {
 
 }  // namespace
 
+mesh::Region region_of(const FixedRegion& fixed) {
+  switch (fixed.kind) {
+    case FixedRegion::Kind::box:
+      return mesh::BoxRegion{fixed.lower, fixed.upper};
+    case FixedRegion::Kind::sphere:
+      return mesh::SphereRegion{fixed.point, fixed.radius};
+    case FixedRegion::Kind::plane:
+      return mesh::PlaneRegion{fixed.point, fixed.normal, -fixed.within, fixed.within};
+    case FixedRegion::Kind::set:
+      return mesh::NamedRegion{fixed.set};
+  }
+  return mesh::NamedRegion{fixed.set};
+}
+
 Robot build(SceneDescription description) {
   sim::ModelBuilder builder(step_settings(description));
   std::vector<std::shared_ptr<const mesh::Mesh>> meshes;
@@ -299,6 +300,11 @@ Robot build(SceneDescription description) {
     const int body = body_index(effector.body);
     add_effector(builder, effector, body, *meshes[static_cast<std::size_t>(body)]);
   }
+  const auto built = [&](const std::string& name) -> BuiltBody {
+    const int body = body_index(name);
+    return {body, meshes[static_cast<std::size_t>(body)].get()};
+  };
+  for (const ProbeDescription& probe : description.probes) add_probe(builder, probe, built);
   linalg::FactorisationSettings factorisation;
   factorisation.backend = description.solver.backend;
   factorisation.ordering = description.solver.ordering;

@@ -28,6 +28,10 @@ BodyDescription read_body(const Node::Entry& entry, const ReadContext& context);
 FixedRegion read_region(const Fields& fields);
 ActuatorDescription read_actuator(const Node::Entry& entry, const ReadContext& context);
 EffectorDescription read_effector(const Node::Entry& entry, const ReadContext& context);
+ProbeDescription read_probe(const Node::Entry& entry, const ReadContext& context);
+/// A unit vector, or the axis that x, y or z names. @param node,forms what is read, as one of
+/// these.
+Vector3 read_axis(const Node& node, const std::vector<Form>& forms);
 /// Knows the effectors, which say how many weights and what kind of target there may be.
 ControllerDescription read_controller(const Node::Entry& entry, const ReadContext& context,
                                       const SceneDescription& scene);

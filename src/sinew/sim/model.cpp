@@ -37,6 +37,10 @@ int Model::effector_index(std::string_view name) const {
   return find_by_name(effectors_, name, "effector", [](const auto& e) { return e.name; });
 }
 
+int Model::probe_index(std::string_view name) const {
+  return find_by_name(probes_, name, "probe", [](const auto& p) { return p->name(); });
+}
+
 const constraint::Effector& Model::effector(int index) const {
   const auto& model = effectors_.at(static_cast<std::size_t>(index));
   return dynamic_cast<const constraint::Effector&>(
