@@ -199,12 +199,13 @@ std::vector<SignalInfo> list_signals(const sim::Model& model) {
     const std::string unit = model.effector(static_cast<int>(i)).unit();
     for (const char* axis : {"x", "y", "z"}) {
       const std::string key = fmt::format("{}.{}{}", name, unit == "m" ? "" : "r", axis);
-      list.push_back({key, key, unit, "effector"});
+      list.push_back({key, key, unit, unit == "m" ? "effector" : "rotation"});
     }
   }
   for (std::size_t i = 0; i < model.effectors().size(); ++i) {
     const std::string& name = model.effectors()[i].name;
-    list.push_back({name + ".error", name, model.effector(static_cast<int>(i)).unit(), "error"});
+    const std::string unit = model.effector(static_cast<int>(i)).unit();
+    list.push_back({name + ".error", name, unit, unit == "m" ? "error" : "rotation error"});
   }
   for (const auto& probe : model.probes()) {
     for (const ProbeSignal& signal : probe_signals(*probe)) {

@@ -32,7 +32,7 @@ struct SignalInfo {
   std::string key;    ///< "long_0.tension"
   std::string label;  ///< for people
   std::string unit;   ///< SI; empty for plain numbers
-  std::string group;  ///< effort, motion, effector, error, probe, angle, energy, time or solver
+  std::string group;  ///< signals of one unit that are plotted together: "effort", "probe"
 };
 
 /// Everything that does not change while one robot is shown.

@@ -39,6 +39,10 @@ struct Effector : Part {};
 struct Probe : Part {};
 struct Body : Part {};
 
+/// The part of bind_body() about stress and strain.
+/// @param module,type where it goes.
+void bind_fields(py::module_& module, py::class_<Body>& type);
+
 /// A controller with the simulation that it steers, which it keeps alive.
 struct Controller {
   std::shared_ptr<Session> session;

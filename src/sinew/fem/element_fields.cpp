@@ -183,9 +183,10 @@ std::vector<double> NodalMean::operator()(std::span<const double> values, std::s
       }
     }
   }
-  for (std::size_t i = 0; i < means.size(); ++i) {
-    const double volume = around_[i / width];
-    means[i] = volume > 0.0 ? means[i] / volume : std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t node = 0; node < around_.size(); ++node) {
+    for (double& mean : std::span(means).subspan(width * node, width)) {
+      mean = around_[node] > 0.0 ? mean / around_[node] : std::numeric_limits<double>::quiet_NaN();
+    }
   }
   return means;
 }

@@ -30,6 +30,7 @@ class Attacher {
                   "choose a set or a region that has some");
     }
     std::vector<MaterialPoint> result;
+    result.reserve(list.size());
     const double one = 1.0;
     for (const NodeId node : list) {
       result.push_back({body, model_(body).attach_nodes({&node, 1}, {&one, 1})});
