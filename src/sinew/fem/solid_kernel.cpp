@@ -325,28 +325,6 @@ void measure(const SolidGroup& group, int begin, int end, const double* points,
 }
 
 template <int N, int Q>
-void measure_fields(const SolidGroup& group, int number, const double* points,
-                    std::span<SolidMeasures> result) {
-  const Batch<N, Q> batch(group, number, points);
-  for (int q = 0; q < Q; ++q) {
-    const material::Principal at = material::principal(batch.deformation(q));
-    const material::LanesLogResponse response = material::respond(group.law, at);
-    // Kirchhoff stresses and stretches share their axes; pressure has no deviator.
-    Lanes stress = lanes(0.0), stretch = lanes(0.0);
-    for (int i = 0; i < 3; ++i) {
-      const int j = (i + 1) % 3;
-      const Lanes s = response.first[i] - response.first[j], l = at.stretch[i] - at.stretch[j];
-      stress += s * s;
-      stretch += l * l;
-    }
-    SolidMeasures& to = result[static_cast<std::size_t>(q)];
-    material::store(to.weight.value, batch.weight(q));
-    material::store(to.strain.value, material::square_root(2.0 / 9.0 * stretch));
-    material::store(to.von_mises.value, material::square_root(0.5 * stress) / at.determinant);
-  }
-}
-
-template <int N, int Q>
 void measure_states(const SolidGroup& group, int number, const double* points,
                     std::span<SolidState> result) {
   const bool split = group.law.saint_venant_shear == 0.0;
@@ -359,10 +337,12 @@ void measure_states(const SolidGroup& group, int number, const double* points,
   for (int q = 0; q < Q; ++q) {
     const material::Principal at = material::principal(f[q]);
     material::LanesLogResponse response = material::respond(group.law, at);
+    response.energy += mean.energy / mean.volume;
     for (Lanes& first : response.first) first += mean.pressure * at.determinant;
     const Lanes3x3 stress = material::first_piola(f[q], at, response);
     SolidState& to = result[static_cast<std::size_t>(q)];
     material::store(to.weight.value, batch.weight(q));
+    material::store(to.energy.value, response.energy);
     for (int r = 0; r < 3; ++r) {
       for (int c = 0; c < 3; ++c) {
         material::store(to.deformation[r][c].value, f[q][r][c]);
@@ -417,17 +397,6 @@ SmallestRatio measure_solids(const SolidGroup& group, int begin, int end, const 
     measure<8, 8>(group, begin, end, points, minimum);
   }
   return smallest(minimum, group.element, group.first_slot);
-}
-
-void measure_batch(const SolidGroup& group, int batch, const double* points,
-                   std::span<SolidMeasures> result) {
-  if (group.nodes == 4) {
-    measure_fields<4, 1>(group, batch, points, result);
-  } else if (group.nodes == 10) {
-    measure_fields<10, 4>(group, batch, points, result);
-  } else {
-    measure_fields<8, 8>(group, batch, points, result);
-  }
 }
 
 }  // namespace sinew::fem

@@ -28,18 +28,12 @@ SmallestRatio evaluate_solids(const SolidGroup& group, int begin, int end, const
 /// The smallest det F alone.
 SmallestRatio measure_solids(const SolidGroup& group, int begin, int end, const double* points);
 
-/// What NodalFields makes colours of, eight elements at one point of integration.
-struct SolidMeasures {
-  LaneRow weight;     ///< m^3
-  LaneRow strain;     ///< sqrt(2/3 dev U : dev U), U the right stretch
-  LaneRow von_mises;  ///< of the Cauchy stress, Pa
-};
-
 /// Deformation and stress of eight elements at one point of integration.
 struct SolidState {
   LaneRow weight;             ///< m^3
   LaneRow deformation[3][3];  ///< F
   LaneRow piola[3][3];        ///< P, Pa, with the element's pressure
+  LaneRow energy;             ///< psi_iso + U(Jm), J/m^3
   LaneRow gradient[10][3];    ///< g_a of each node, 1/m
 };
 
@@ -47,10 +41,5 @@ struct SolidState {
 /// @param points as for evaluate_solids(). @param result (points,).
 void state_batch(const SolidGroup& group, int batch, const double* points,
                  std::span<SolidState> result);
-
-/// Measures of a batch, one a point of integration. @param group,batch which.
-/// @param points as for evaluate_solids(). @param result (points,).
-void measure_batch(const SolidGroup& group, int batch, const double* points,
-                   std::span<SolidMeasures> result);
 
 }  // namespace sinew::fem
