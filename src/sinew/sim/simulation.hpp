@@ -184,6 +184,7 @@ class Simulation {
   void finish_step();
   int negative_pivots() const;
   [[noreturn]] void fail(ErrorKind kind, const std::string& message, const std::string& remedy);
+  std::string describe_limit_point();
   NewtonReport equilibrate(const StaticSettings& settings, double share, StaticReport& report);
 
   std::shared_ptr<const Model> model_;
