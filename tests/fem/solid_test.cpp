@@ -10,6 +10,7 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/fem/assembly.hpp"
+#include "sinew/fem/solid_elements.hpp"
 #include "sinew/mesh/embedding.hpp"
 #include "sinew/mesh/hexahedron.hpp"
 #include "sinew/mesh/quadratic.hpp"
@@ -39,12 +40,12 @@ material::Hyperelastic soft_rubber() {
   return law;
 }
 
-enum class Kind { tetrahedra, quadratic, hexahedra, both };
+enum class Kind { tetrahedra, patches, quadratic, hexahedra, both };
 
 /// A box of cells, inner nodes moved about; `both` has hexahedra below and tetrahedra above.
 std::shared_ptr<mesh::Mesh> box(Kind kind, int nx, int ny, int nz, double jitter = 0.12) {
   auto result = block_mesh(nx, ny, nz, kEdge, jitter);
-  if (kind == Kind::tetrahedra) return result;
+  if (kind == Kind::tetrahedra || kind == Kind::patches) return result;
   if (kind == Kind::quadratic) {
     return std::make_shared<mesh::Mesh>(mesh::with_middle_nodes(*result));
   }
@@ -91,6 +92,28 @@ FemModelSettings mixed_settings(const mesh::Mesh& mesh) {
   return settings;
 }
 
+/// Those of mixed_settings(), or two rubbers in patches.
+FemModelSettings mixed_settings(Kind kind, const mesh::Mesh& mesh) {
+  FemModelSettings settings = mixed_settings(mesh);
+  if (kind != Kind::patches) return settings;
+  settings.regions.pop_back();
+  for (Region& region : settings.regions) {
+    region.elements.clear();
+    region.patches = true;
+  }
+  const auto count = static_cast<NodeId>(mesh.tetrahedra.size());
+  for (NodeId e = 0; e < count; ++e) {
+    settings.regions[e < count / 3 ? 0 : 1].elements.push_back(e);
+  }
+  return settings;
+}
+
+FemModelSettings settings_of(Kind kind, const mesh::Mesh& mesh, const material::Hyperelastic& law) {
+  FemModelSettings settings = settings_of(mesh, law);
+  settings.regions.front().patches = kind == Kind::patches;
+  return settings;
+}
+
 struct Body {
   Body(std::shared_ptr<const mesh::Mesh> mesh, const FemModelSettings& settings, int threads = 1)
       : model(std::make_shared<const FemModel>(std::move(mesh), settings)),
@@ -122,12 +145,12 @@ struct Body {
 
 class EveryKind : public testing::TestWithParam<Kind> {};
 INSTANTIATE_TEST_SUITE_P(Kinds, EveryKind,
-                         testing::Values(Kind::tetrahedra, Kind::quadratic, Kind::hexahedra,
-                                         Kind::both));
+                         testing::Values(Kind::tetrahedra, Kind::patches, Kind::quadratic,
+                                         Kind::hexahedra, Kind::both));
 
 TEST_P(EveryKind, ForcesAreTheDerivativeOfTheEnergy) {
   const auto mesh = box(GetParam(), 2, 2, 3);
-  Body body(mesh, mixed_settings(*mesh));
+  Body body(mesh, mixed_settings(GetParam(), *mesh));
   const Points x = moved(*mesh, kEdge, 0.08);
   const VectorX forces = body.forces(x);
   constexpr double kStep = 1e-7;
@@ -141,7 +164,7 @@ TEST_P(EveryKind, ForcesAreTheDerivativeOfTheEnergy) {
 
 TEST_P(EveryKind, TheMatrixIsTheDerivativeOfTheForces) {
   const auto mesh = box(GetParam(), 2, 1, 3);
-  Body body(mesh, mixed_settings(*mesh));
+  Body body(mesh, mixed_settings(GetParam(), *mesh));
   const Points x = moved(*mesh, kEdge, 0.08);
   const MatrixX matrix = body.matrix(x, Tangent::exact);
   EXPECT_LT((matrix - matrix.transpose()).norm(), 1e-12 * matrix.norm());
@@ -157,7 +180,7 @@ TEST_P(EveryKind, TheMatrixIsTheDerivativeOfTheForces) {
 
 TEST_P(EveryKind, TheRealTimeMatrixIsPositive) {
   const auto mesh = box(GetParam(), 2, 2, 3);
-  Body body(mesh, settings_of(*mesh, rubber(0.45)));
+  Body body(mesh, settings_of(GetParam(), *mesh, rubber(0.45)));
   Points x = mesh->nodes;
   x.col(2) *= 0.55;  // pressed together: the exact tangent buckles
   const auto lowest = [](const MatrixX& m) {
@@ -178,7 +201,7 @@ TEST_P(EveryKind, TheRealTimeMatrixIsPositive) {
 void expect_even_strain(Kind kind) {
   // Affine motion of the boundary: inner nodes are in equilibrium where it takes them.
   const auto mesh = box(kind, 3, 3, 3, 0.15);
-  FemModelSettings settings = settings_of(*mesh, rubber());
+  FemModelSettings settings = settings_of(kind, *mesh, rubber());
   settings.fixed_nodes.clear();
   for (const mesh::Face& face : mesh::boundary_faces(*mesh)) {
     for (const NodeId node : face.nodes()) settings.fixed_nodes.push_back(node);
@@ -199,12 +222,13 @@ void expect_even_strain(Kind kind) {
 }
 
 TEST(Solid, APatchOfTetrahedraIsStrainedEvenly) { expect_even_strain(Kind::tetrahedra); }
+TEST(Solid, PatchesOfTetrahedraAreStrainedEvenly) { expect_even_strain(Kind::patches); }
 TEST(Solid, APatchOfQuadraticTetrahedraIsStrainedEvenly) { expect_even_strain(Kind::quadratic); }
 TEST(Solid, APatchOfHexahedraIsStrainedEvenly) { expect_even_strain(Kind::hexahedra); }
 
 TEST_P(EveryKind, ARotationStrainsNothing) {
   const auto mesh = box(GetParam(), 2, 2, 2);
-  FemModelSettings settings = settings_of(*mesh, rubber());
+  FemModelSettings settings = settings_of(GetParam(), *mesh, rubber());
   settings.fixed_nodes.clear();
   Body body(mesh, settings);
   const Matrix3 q = Eigen::AngleAxisd(2.1, Vector3(1, 2, -1).normalized()).toRotationMatrix();
@@ -217,7 +241,7 @@ TEST_P(EveryKind, ARotationStrainsNothing) {
 
 TEST_P(EveryKind, ThreadsDoNotChangeABit) {
   const auto mesh = box(GetParam(), 4, 3, 8);
-  const FemModelSettings settings = mixed_settings(*mesh);
+  const FemModelSettings settings = mixed_settings(GetParam(), *mesh);
   const Points x = moved(*mesh, kEdge, 0.1);
   for (const Tangent tangent : {Tangent::none, Tangent::rotated, Tangent::exact}) {
     Body one(mesh, settings), four(mesh, settings, 4);
@@ -235,7 +259,7 @@ TEST_P(EveryKind, ThreadsDoNotChangeABit) {
 
 TEST_P(EveryKind, NothingAllocatesAfterTheFirst) {
   const auto mesh = box(GetParam(), 2, 2, 4);
-  Body body(mesh, mixed_settings(*mesh), 2);
+  Body body(mesh, mixed_settings(GetParam(), *mesh), 2);
   const Points x = moved(*mesh, kEdge, 0.1);
   for (const Tangent tangent : {Tangent::rotated, Tangent::exact}) {
     body.assembly.evaluate(x, {.tangent = tangent});
@@ -247,7 +271,7 @@ TEST_P(EveryKind, NothingAllocatesAfterTheFirst) {
 
 TEST_P(EveryKind, TheWorstElementIsNamed) {
   const auto mesh = box(GetParam(), 2, 2, 3, 0.0);
-  Body body(mesh, settings_of(*mesh, rubber()));
+  Body body(mesh, settings_of(GetParam(), *mesh, rubber()));
   Points x = mesh->nodes;
   x(0, 2) += 3.0 * kEdge;  // far through the cell's upper face
   const VolumeMeasure measure = body.assembly.measure_volume(x);
@@ -267,7 +291,7 @@ TEST_P(EveryKind, TheWorstElementIsNamed) {
 
 TEST_P(EveryKind, MassesAddUp) {
   const auto mesh = box(GetParam(), 2, 3, 3);
-  FemModelSettings settings = settings_of(*mesh, rubber());
+  FemModelSettings settings = settings_of(GetParam(), *mesh, rubber());
   settings.fixed_nodes.clear();
   for (const MassMatrix mass : {MassMatrix::lumped, MassMatrix::consistent}) {
     settings.mass = mass;
@@ -282,13 +306,14 @@ TEST_P(EveryKind, MassesAddUp) {
   }
 }
 
-TEST(Solid, NeoHookeanTetrahedraAreThoseOfTheGeneralWay) {
-  const auto mesh = box(Kind::tetrahedra, 3, 2, 4);
+void expect_one_way(Kind kind) {
+  const auto mesh = box(kind, 3, 2, 4);
   material::Hyperelastic law = material::neo_hookean(25e3), two_halves = law;
   law.bulk_modulus = two_halves.bulk_modulus = 4e5;
   two_halves.powers.front().coefficient *= 0.5;
   two_halves.powers.push_back(two_halves.powers.front());  // no longer taken for neo-Hookean
-  Body fast(mesh, settings_of(*mesh, law)), general(mesh, settings_of(*mesh, two_halves));
+  Body fast(mesh, settings_of(kind, *mesh, law)),
+      general(mesh, settings_of(kind, *mesh, two_halves));
   const Points x = moved(*mesh, kEdge, 0.12);
   const VectorX forces = general.forces(x);
   EXPECT_LT((fast.forces(x) - forces).norm(), 1e-13 * forces.norm());
@@ -297,6 +322,86 @@ TEST(Solid, NeoHookeanTetrahedraAreThoseOfTheGeneralWay) {
     const MatrixX matrix = general.matrix(x, tangent);
     EXPECT_LT((fast.matrix(x, tangent) - matrix).norm(), 1e-12 * matrix.norm());
     EXPECT_EQ(fast.assembly.minimum_volume_ratio(), general.assembly.minimum_volume_ratio());
+  }
+}
+
+TEST(Solid, NeoHookeanTetrahedraAreThoseOfTheGeneralWay) { expect_one_way(Kind::tetrahedra); }
+TEST(Solid, NeoHookeanPatchesAreThoseOfTheGeneralWay) { expect_one_way(Kind::patches); }
+
+TEST(Solid, PatchesCoverEveryTetrahedronOnce) {
+  const auto mesh = box(Kind::patches, 4, 3, 5);
+  const FemModel model(mesh, settings_of(Kind::patches, *mesh, rubber()));
+  ASSERT_EQ(model.solids().size(), 1U);
+  const SolidGroup& group = model.solids().front();
+  const ElementPatches& patches = group.patches;
+  std::vector<int> seen(mesh->tetrahedra.size(), 0);
+  double volume = 0.0;
+  for (int p = 0; p < patches.count(); ++p) {
+    const auto own = static_cast<std::size_t>(p);
+    volume += patches.volume[own];
+    EXPECT_GT(patches.first_slot[own + 1] - patches.first_slot[own], kPatchSize / 3);
+    for (auto s = patches.first_slot[own]; s < patches.first_slot[own + 1]; ++s) {
+      ++seen[static_cast<std::size_t>(group.element[static_cast<std::size_t>(s)])];
+      EXPECT_EQ(patches.of_slot[static_cast<std::size_t>(s)], p);
+    }
+  }
+  EXPECT_TRUE(std::ranges::all_of(seen, [](int count) { return count == 1; }));
+  EXPECT_NEAR(volume, model.volume(), 1e-13 * volume);
+  const double mean = static_cast<double>(seen.size()) / patches.count();
+  EXPECT_GT(mean, 0.75 * kPatchSize);
+  EXPECT_LT(mean, 1.25 * kPatchSize);
+}
+
+// A cantilever's stiffness hardly changes between nu = 0.45 and 0.4999 in patches; lone tetrahedra
+// lock.
+TEST(Solid, PatchesDoNotLockInVolume) {
+  const auto softness = [](Kind kind, double poisson_ratio) {
+    const auto mesh = box(kind, 2, 2, 8, 0.1);
+    Body body(mesh, settings_of(kind, *mesh, rubber(poisson_ratio)));
+    VectorX push = VectorX::Zero(3 * body.model->free_count());
+    push[push.size() - 3] = 1.0;
+    const MatrixX matrix = body.matrix(mesh->nodes, Tangent::exact);
+    return push.dot(matrix.ldlt().solve(push));
+  };
+  EXPECT_LT(softness(Kind::patches, 0.45) / softness(Kind::patches, 0.4999), 1.15);
+  EXPECT_GT(softness(Kind::tetrahedra, 0.45) / softness(Kind::tetrahedra, 0.4999), 3.0);
+}
+
+TEST(Solid, PatchesNeedALawWithAVolumetricPart) {
+  const auto mesh = box(Kind::patches, 1, 1, 1);
+  FemModelSettings settings =
+      settings_of(Kind::patches, *mesh, material::saint_venant_kirchhoff(1e5, 0.4));
+  EXPECT_THROW(FemModel(mesh, settings), Error);
+  settings.regions.front().hyperelastic.reset();
+  settings.regions.front().constants = {1e5, 0.4};
+  EXPECT_THROW(FemModel(mesh, settings), Error);
+}
+
+// u_x = k (x - x_c)^2 / 2 has no mean dilatation over an element with centroid x_c, and small
+// strain e = k (x - x_c): energy density 2/3 mu e^2 of the deviator and kappa'/2 e^2 = mu/2 e^2,
+// whatever kappa is.
+TEST(Solid, QuadraticTetrahedraResistTheirOwnDilatationByTheShearModulus) {
+  auto corners = std::make_shared<mesh::Mesh>();
+  corners->nodes.resize(4, 3);
+  corners->nodes << 0, 0, 0, 1, 0.1, 0, 0.2, 0.9, 0.1, 0.1, 0.2, 1.1;
+  corners->nodes *= kEdge;
+  corners->tetrahedra = {{0, 1, 2, 3}};
+  const auto mesh = std::make_shared<mesh::Mesh>(mesh::with_middle_nodes(*corners));
+  const VectorX x = corners->nodes.col(0).array() - corners->nodes.col(0).mean();
+  constexpr double kCurvature = 1e-3 / kEdge, kShear = 25e3;
+  for (const double bulk : {1e5, 1e7}) {
+    material::Hyperelastic law = material::neo_hookean(kShear);
+    law.bulk_modulus = bulk;
+    FemModelSettings settings = settings_of(*mesh, law);
+    settings.fixed_nodes.clear();
+    Body body(mesh, settings);
+    Points moved = mesh->nodes;
+    for (double& coordinate : moved.col(0)) {
+      coordinate += 0.5 * kCurvature * std::pow(coordinate - corners->nodes.col(0).mean(), 2);
+    }
+    const double squares = body.model->volume() / 20.0 * x.squaredNorm();  // of x over the volume
+    const double expected = (2.0 / 3.0 + 0.5) * kShear * kCurvature * kCurvature * squares;
+    EXPECT_NEAR(body.energy(moved), expected, 2e-3 * expected);
   }
 }
 

@@ -91,6 +91,8 @@ class Assembly {
   void load_positions(const Points& positions);
   void find_smallest();
   void evaluate_elements(const Points& positions, Tangent tangent);
+  void average_patches(const SolidGroup& group);
+  void spread_patches(const SolidGroup& group);
   void gather(const AssemblyWeights& weights);
 
   std::shared_ptr<const FemModel> model_;

@@ -67,8 +67,10 @@ void add_batch(const FemBody& body, int number, ElementStates& states) {
 void add_group(const SolidGroup& group, const std::vector<double>& points, ElementStates& states) {
   std::array<SolidState, 8> at;
   const auto count = static_cast<std::size_t>(group.points);
+  const std::vector<double> ratios = patch_ratios(group, points.data());
+  const double* patch_ratio = ratios.empty() ? nullptr : ratios.data();
   for (int b = 0; b < group.batches(); ++b) {
-    state_batch(group, b, points.data(), std::span(at).first(count));
+    state_batch(group, b, points.data(), patch_ratio, std::span(at).first(count));
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const std::size_t slot = static_cast<std::size_t>(b) * kLanes + lane;
       if (group.element[slot] < 0) continue;

@@ -13,6 +13,8 @@ struct SolidOutput {
   double* forces;  ///< four doubles a node of an element
   double* blocks;  ///< kSolidBlock doubles a pair of nodes; not touched for Tangent::none
   double* energy;  ///< one a batch of this group, J
+  const double* patch_ratio = nullptr;  ///< Jm of all patches of the body; read
+  double* spread = nullptr;             ///< 16 doubles a slot of a patch; see sum_rows()
 };
 
 /// Evaluates batches begin .. end-1 of a group.
@@ -27,6 +29,11 @@ SmallestRatio evaluate_solids(const SolidGroup& group, int begin, int end, const
 
 /// The smallest det F alone.
 SmallestRatio measure_solids(const SolidGroup& group, int begin, int end, const double* points);
+
+/// det F of batches begin .. end-1 of linear tetrahedra.
+/// @param group,begin,end which. @param points as for evaluate_solids(). @param ratios (slots,).
+void volume_ratios(const SolidGroup& group, int begin, int end, const double* points,
+                   double* ratios);
 
 /// What NodalFields makes colours of, eight elements at one point of integration.
 struct SolidMeasures {
@@ -44,9 +51,10 @@ struct SolidState {
 };
 
 /// States of a batch, one a point of integration. @param group,batch which.
-/// @param points as for evaluate_solids(). @param result (points,).
+/// @param points as for evaluate_solids(). @param patch_ratio Jm of the group's patches
+///   (patch_ratios()), null without. @param result (points,).
 void state_batch(const SolidGroup& group, int batch, const double* points,
-                 std::span<SolidState> result);
+                 const double* patch_ratio, std::span<SolidState> result);
 
 /// Measures of a batch, one a point of integration. @param group,batch which.
 /// @param points as for evaluate_solids(). @param result (points,).

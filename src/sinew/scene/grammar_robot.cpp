@@ -406,10 +406,13 @@ std::shared_ptr<const KeyTable> fem_table() {
        .description = "The shape at rest.",
        .required = true},
       {.name = "element",
-       .forms = {choice({{"tet4", "Linear tetrahedra."},
+       .forms = {choice({{"tet4", "Linear tetrahedra; near nu = 0.5 they lock."},
+                         {"tet4-patch",
+                          "Linear tetrahedra that share the dilatation of about eight neighbours: "
+                          "no locking in volume. For hyperelastic materials."},
                          {"tet10",
-                          "Quadratic tetrahedra, one pressure each: no locking. A linear mesh gets "
-                          "middle nodes. For hyperelastic materials."},
+                          "Quadratic tetrahedra: no locking. A linear mesh gets middle nodes. For "
+                          "hyperelastic materials."},
                          {"hex8",
                           "Trilinear hexahedra with the pressure of their mean dilatation: "
                           "no locking in volume. For hyperelastic materials."}})},

@@ -252,7 +252,10 @@ BodyDescription read_body(const Node::Entry& entry, const ReadContext& context) 
   const Fields fields(entry.value, form);
   body.mesh = read_mesh(fields, context);
   fields.read_choice("element", body.element,
-                     {{"tet4", Element::tet4}, {"tet10", Element::tet10}, {"hex8", Element::hex8}});
+                     {{"tet4", Element::tet4},
+                      {"tet4-patch", Element::tet4_patch},
+                      {"tet10", Element::tet10},
+                      {"hex8", Element::hex8}});
   body.element_place = fields.place("element");
   body.material = read_material(fields, context);
   read_mass(fields, body);
