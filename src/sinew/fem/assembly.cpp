@@ -8,6 +8,7 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/fem/block_gather.hpp"
+#include "sinew/fem/element_history.hpp"
 #include "sinew/fem/element_kernel.hpp"
 #include "sinew/fem/solid_kernel.hpp"
 #include "sinew/linalg/aligned_buffer.hpp"
@@ -163,7 +164,10 @@ void Assembly::evaluate_elements(const Points& positions, Tangent tangent) {
   SolidOutput solids{work.force_records, work.solid_blocks,
                      work.batch_energy.data() + elements.batches(), work.patch_ratios.data(),
                      work.patch_spread.data()};
-  for (const SolidGroup& group : model_->solids()) {
+  for (std::size_t g = 0; g < model_->solids().size(); ++g) {
+    const SolidGroup& group = model_->solids()[g];
+    solids.carried = history_ == nullptr ? nullptr : history_->carried(g);
+    if (solids.carried != nullptr) solids.factor = history_->factor(g);
     ratios += pool_->size();
     average_patches(group);
     pool_->for_range(group.batches(), 1, [&](int begin, int end, int thread) {
@@ -207,6 +211,15 @@ void Assembly::find_smallest() {
   work_->smallest = {std::numeric_limits<double>::infinity(), -1};
   for (const SmallestRatio& ratio : work_->thread_ratios) {  // ascending slots: the first wins ties
     if (ratio.value < work_->smallest.value) work_->smallest = ratio;
+  }
+}
+
+void Assembly::advance(const Points& positions, ElementHistory& history) {
+  load_positions(positions);
+  for (std::size_t g = 0; g < model_->solids().size(); ++g) {
+    pool_->for_range(model_->solids()[g].batches(), 1, [&](int begin, int end, int) {
+      history.end_step(g, begin, end, work_->points.data());
+    });
   }
 }
 

@@ -12,6 +12,8 @@
 
 namespace sinew::fem {
 
+class ElementHistory;
+
 /// Which derivative of the internal force goes into the matrix.
 enum class Tangent {
   none,  ///< forces and energy only; the matrix is left as it was
@@ -61,6 +63,13 @@ class Assembly {
   /// not finite are seen by minimum_volume_ratio() = -infinity.
   void evaluate(const Points& positions, const AssemblyWeights& weights);
 
+  /// From the next evaluate() on: what the history of viscoelastic elements adds to their stress;
+  /// null: they are relaxed. The energy is then the incremental one, whose derivative the forces
+  /// are. @param history must outlive this object.
+  void set_history(const ElementHistory* history) { history_ = history; }
+  /// Ends a step of the history at these positions. @param positions (n, 3) m.
+  void advance(const Points& positions, ElementHistory& history);
+
   /// Volume ratios alone, at a quarter of the cost of forces: to judge a motion before it is taken.
   /// @param positions (n, 3) m, as for evaluate().
   VolumeMeasure measure_volume(const Points& positions);
@@ -97,6 +106,7 @@ class Assembly {
 
   std::shared_ptr<const FemModel> model_;
   ThreadPool* pool_;
+  const ElementHistory* history_ = nullptr;
   std::unique_ptr<Workspace> work_;
 };
 

@@ -64,13 +64,16 @@ void add_batch(const FemBody& body, int number, ElementStates& states) {
   }
 }
 
-void add_group(const SolidGroup& group, const std::vector<double>& points, ElementStates& states) {
+/// @param overstress of the group's history; empty without.
+void add_group(const SolidGroup& group, const std::vector<double>& points,
+               const std::vector<LaneRow>& overstress, ElementStates& states) {
   std::array<SolidState, 8> at;
   const auto count = static_cast<std::size_t>(group.points);
   const std::vector<double> ratios = patch_ratios(group, points.data());
   const double* patch_ratio = ratios.empty() ? nullptr : ratios.data();
+  const LaneRow* carried = overstress.empty() ? nullptr : overstress.data();
   for (int b = 0; b < group.batches(); ++b) {
-    state_batch(group, b, points.data(), patch_ratio, std::span(at).first(count));
+    state_batch(group, b, points.data(), patch_ratio, carried, std::span(at).first(count));
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const std::size_t slot = static_cast<std::size_t>(b) * kLanes + lane;
       if (group.element[slot] < 0) continue;
@@ -122,7 +125,9 @@ ElementStates element_states(const FemBody& body) {
       points[static_cast<std::size_t>(4 * i + c)] = body.positions()(i, c);
     }
   }
-  for (const SolidGroup& group : model.solids()) add_group(group, points, states);
+  for (std::size_t g = 0; g < model.solids().size(); ++g) {
+    add_group(model.solids()[g], points, body.history().overstress(g), states);
+  }
   return states;
 }
 

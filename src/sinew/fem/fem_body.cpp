@@ -30,6 +30,7 @@ FemBody::FemBody(const FemBodyModel& model, ThreadPool& pool, bool with_curvatur
       load_factors_(model.loads().size(), 1.0),
       load_forces_(Points::Zero(positions_.rows(), 3)),
       drag_forces_(load_forces_),
+      viscous_(model.elements().solids()),
       start_positions_(positions_),
       active_(&numbers(with_curvature)) {
   const auto nodes = model.elements().free_nodes();
@@ -52,8 +53,17 @@ FemBody::~FemBody() = default;
 FemBody::Numbers& FemBody::numbers(bool with_curvature) {
   const FemSystem& system = model_.system(with_curvature);
   auto& own = &system == &model_.system(false) ? plain_ : curved_;
-  if (!own) own = std::make_unique<Numbers>(system, pool_);
+  if (!own) {
+    own = std::make_unique<Numbers>(system, pool_);
+    if (!viscous_.empty()) own->assembly.set_history(&viscous_);
+  }
   return *own;
+}
+
+void FemBody::prepare_history(double time_step) {
+  if (viscous_.empty() || prepared_step_ == time_step) return;
+  viscous_.begin_step(time_step);
+  prepared_step_ = time_step;
 }
 
 Vector3 FemBody::weighted(const Points& field, int point) const {
@@ -72,11 +82,13 @@ void FemBody::begin_step() {
   start_positions_ = positions_;
   first_linearisation_ = true;
   carried_ = false;
+  prepared_step_.reset();
   if (base_pose_) place_base();
 }
 
 void FemBody::linearise(const mechanics::LinearisationRequest& request) {
   active_ = &numbers(request.with_curvature);
+  prepare_history(request.weights.time_step);
   const auto& weights = request.weights;
   const auto& damping = model_.settings().damping;
   const double mass = weights.acceleration.motion + damping.mass * weights.velocity.motion;
@@ -324,6 +336,11 @@ mechanics::MotionReport FemBody::apply_motion(double scale) {
 double FemBody::end_step(const mechanics::StepWeights& weights) {
   using Jump = mechanics::StepWeights::Jump;
   add_work(weights);
+  if (!viscous_.empty()) {
+    prepare_history(weights.time_step);
+    active_->assembly.advance(positions_, viscous_);
+    prepared_step_.reset();
+  }
   if (!weights.dynamic()) {  // nothing moves, and nothing is kept
     velocities_.setZero();
     for (Points& kept : history_) kept.setZero();
@@ -360,11 +377,13 @@ void FemBody::restart() {
   positions_ = model_.mesh().nodes;
   velocities_.setZero();
   for (Points& kept : history_) kept.setZero();
+  viscous_.reset();
+  prepared_step_.reset();
   base_at_ = Eigen::Isometry3d::Identity();
 }
 
 std::size_t FemBody::state_size() const {
-  return (2 + history_.size()) * static_cast<std::size_t>(positions_.size());
+  return (2 + history_.size()) * static_cast<std::size_t>(positions_.size()) + viscous_.size();
 }
 
 void FemBody::save_state(std::span<double> state) const {
@@ -372,6 +391,7 @@ void FemBody::save_state(std::span<double> state) const {
   double* to = state.data() + positions_.size();
   to = std::copy_n(velocities_.data(), velocities_.size(), to);
   for (const Points& kept : history_) to = std::copy_n(kept.data(), kept.size(), to);
+  viscous_.save({to, viscous_.size()});
 }
 
 void FemBody::load_state(std::span<const double> state) {
@@ -383,12 +403,16 @@ void FemBody::load_state(std::span<const double> state) {
     from += positions_.size();
     std::copy_n(from, kept.size(), kept.data());
   }
+  viscous_.load({from + positions_.size(), viscous_.size()});
+  prepared_step_.reset();
 }
 
 int FemBody::negative_pivots() const { return active_->factorisation->negative_pivots(); }
 
 double FemBody::strain_energy() {
+  active_->assembly.set_history(nullptr);
   active_->assembly.evaluate(positions_, {Tangent::none, 1.0, 0.0});
+  if (!viscous_.empty()) active_->assembly.set_history(&viscous_);
   return active_->assembly.strain_energy();
 }
 
@@ -416,7 +440,7 @@ std::size_t FemBody::bytes() const {
   const Eigen::Index free = right_.size() + motion_.size() + base_.size() + scratch_.size() +
                             travel_.size() + momentum_.size() + imbalance_.size();
   const auto points = (4 + history_.size()) * static_cast<std::size_t>(positions_.size());
-  auto total = sizeof(double) * (points + static_cast<std::size_t>(free));
+  auto total = sizeof(double) * (points + static_cast<std::size_t>(free) + viscous_.size());
   for (const Numbers* n : {plain_.get(), curved_.get()}) {
     if (n == nullptr) continue;
     total += n->assembly.bytes() + n->factorisation->bytes() +

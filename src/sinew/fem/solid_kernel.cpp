@@ -1,11 +1,7 @@
 #include "sinew/fem/solid_kernel.hpp"
 
-#include <limits>
-
-#include "sinew/fem/element_patches.hpp"
 #include "sinew/fem/lane_minimum.hpp"
-#include "sinew/fem/transpose.hpp"
-#include "sinew/material/principal.hpp"
+#include "sinew/fem/solid_batch.hpp"
 
 namespace sinew::fem {
 
@@ -15,88 +11,6 @@ using material::kLanes;
 using material::Lanes;
 using material::lanes;
 using material::Lanes3x3;
-
-/// A batch in hand.
-template <int N, int Q>
-struct Batch {
-  static constexpr int kRows = 3 * N + 1;
-
-  const LaneRow* constants;
-  Lanes x[N][3];  // relative to the first node: no digits are lost far from the origin
-
-  SINEW_INLINE Batch(const SolidGroup& group, std::int64_t batch, const double* points)
-      : constants(group.constants.data() + batch * Q * kRows) {
-    const std::int32_t* nodes = group.node.data() + batch * N * kLanes;
-    Lanes origin[3];
-    load_points(points, nodes, origin);
-    for (int a = 0; a < N; ++a) {
-      load_points(points, nodes + kLanes * a, x[a]);
-      for (int c = 0; c < 3; ++c) x[a][c] -= origin[c];
-    }
-  }
-  SINEW_INLINE Lanes gradient(int q, int a, int c) const {
-    return material::load(constants[q * kRows + 3 * a + c].value);
-  }
-  SINEW_INLINE Lanes weight(int q) const {
-    return material::load(constants[q * kRows + 3 * N].value);
-  }
-  SINEW_INLINE Lanes3x3 deformation(int q) const {
-    Lanes3x3 f{};
-    for (int a = 1; a < N; ++a) {
-      for (int c = 0; c < 3; ++c) {
-        const Lanes g = gradient(q, a, c);
-        for (int r = 0; r < 3; ++r) f[r][c] += x[a][r] * g;
-      }
-    }
-    return f;
-  }
-};
-
-SINEW_INLINE double sum(const Lanes& value) {
-  return ((value[0] + value[1]) + (value[2] + value[3])) +
-         ((value[4] + value[5]) + (value[6] + value[7]));
-}
-
-/// Moduli of the dilatation that points share and of their own about it (solid_elements.hpp).
-struct BulkModuli {
-  double shared = 0.0;
-  double own = 0.0;
-
-  explicit BulkModuli(const SolidGroup& group)
-      : shared(group.law.saint_venant_shear == 0.0 ? group.law.bulk_modulus : 0.0),
-        own(own_bulk_modulus(group)) {}
-};
-
-/// What a batch's elements share.
-struct Dilatation {
-  Lanes ratio = lanes(1.0);     // Jm
-  Lanes pressure = lanes(0.0);  // kappa (Jm - 1)
-  Lanes energy = lanes(0.0);    // V kappa/2 (Jm - 1)^2
-  Lanes volume = lanes(1.0);    // V; 1 in lanes that only fill up
-};
-
-/// Of the elements' own points, or of the patches that they belong to.
-/// @param ratios det F of each point. @param patch_ratio of the group's patches, null without.
-template <int N, int Q>
-SINEW_INLINE Dilatation shared_dilatation(const SolidGroup& group, const Batch<N, Q>& batch,
-                                          std::int64_t number, const Lanes (&ratios)[Q],
-                                          const double* patch_ratio, double bulk) {
-  Dilatation result;
-  Lanes volume = lanes(0.0), sum = lanes(0.0);
-  for (int q = 0; q < Q; ++q) {
-    volume += batch.weight(q);
-    sum += batch.weight(q) * ratios[q];
-  }
-  result.volume = volume > 0.0 ? volume : lanes(1.0);
-  result.ratio = volume > 0.0 ? sum / result.volume : lanes(1.0);
-  if (patch_ratio != nullptr) {
-    const std::int32_t* patch = group.patches.of_slot.data() + number * kLanes;
-    for (int lane = 0; lane < kLanes; ++lane) result.ratio[lane] = patch_ratio[patch[lane]];
-  }
-  result.pressure = bulk * (result.ratio - 1.0);
-  result.energy = 0.5 * volume * result.pressure * (result.ratio - 1.0);
-  return result;
-}
 
 /// Stiffness and forces of eight elements, summed over points.
 template <int N>
@@ -204,7 +118,9 @@ void evaluate(const SolidGroup& group, int begin, int end, const double* points,
               const SolidOutput& output, LaneMinimum& minimum) {
   const BulkModuli bulk(group);
   const double* patch_ratio = patch_ratios_of(group, output);
+  const bool split = group.law.saint_venant_shear == 0.0;
   for (std::int64_t b = begin; b < end; ++b) {
+    const LaneRow* carried = carried_rows(group, output.carried, b);
     const Batch<N, Q> batch(group, b, points);
     Lanes3x3 f[Q], cof[Q];
     Lanes ratio[Q];
@@ -221,6 +137,7 @@ void evaluate(const SolidGroup& group, int begin, int end, const double* points,
       const Lanes weight = batch.weight(q);
       const material::Principal at = material::principal(f[q]);
       material::LanesLogResponse response = material::respond(group.law, at);
+      if (carried != nullptr) material::scale(response, output.factor);
       const Lanes off = ratio[q] - shared.ratio, own = bulk.own * off;
       energy += weight * (response.energy + 0.5 * own * off);
       // p J: p cof F by logarithmic stretches
@@ -234,7 +151,12 @@ void evaluate(const SolidGroup& group, int begin, int end, const double* points,
       for (int a = 0; a < N; ++a) {
         for (int c = 0; c < 3; ++c) g[a][c] = batch.gradient(q, a, c);
       }
-      const Lanes3x3 stress = material::first_piola(f[q], at, response);
+      Lanes3x3 stress = material::first_piola(f[q], at, response);
+      if (carried != nullptr) {
+        const Overstress over(carried + 6 * q, split, f[q], cof[q], ratio[q]);
+        energy += weight * over.energy(f[q]);
+        over.add_stress(stress);
+      }
       for (int a = 0; a < N; ++a) {
         for (int r = 0; r < 3; ++r) {
           sums.force[a][r] +=
@@ -246,6 +168,9 @@ void evaluate(const SolidGroup& group, int begin, int end, const double* points,
       if constexpr (kTangent != Tangent::none) {
         material::Lanes9x9 a9;
         material::tangent(f[q], at, response, kTangent == Tangent::rotated, a9);
+        if (kTangent == Tangent::exact && carried != nullptr) {
+          Overstress(carried + 6 * q, split, f[q], cof[q], ratio[q]).add_tangent(a9);
+        }
         sums.add_tangent(a9, g, weight);
       }
     }
@@ -365,103 +290,15 @@ void evaluate_kind(const SolidGroup& group, int begin, int end, const double* po
   }
 }
 
-template <int N, int Q>
-void measure(const SolidGroup& group, int begin, int end, const double* points,
-             LaneMinimum& minimum) {
-  for (std::int64_t b = begin; b < end; ++b) {
-    const Batch<N, Q> batch(group, b, points);
-    for (int q = 0; q < Q; ++q) {
-      const Lanes3x3 f = batch.deformation(q);
-      minimum.see(material::determinant(f, material::cofactor(f)), b);
-    }
-  }
-}
-
-template <int N, int Q>
-void measure_fields(const SolidGroup& group, int number, const double* points,
-                    std::span<SolidMeasures> result) {
-  const Batch<N, Q> batch(group, number, points);
-  for (int q = 0; q < Q; ++q) {
-    const material::Principal at = material::principal(batch.deformation(q));
-    const material::LanesLogResponse response = material::respond(group.law, at);
-    // Kirchhoff stresses and stretches share their axes; pressure has no deviator.
-    Lanes stress = lanes(0.0), stretch = lanes(0.0);
-    for (int i = 0; i < 3; ++i) {
-      const int j = (i + 1) % 3;
-      const Lanes s = response.first[i] - response.first[j], l = at.stretch[i] - at.stretch[j];
-      stress += s * s;
-      stretch += l * l;
-    }
-    SolidMeasures& to = result[static_cast<std::size_t>(q)];
-    material::store(to.weight.value, batch.weight(q));
-    material::store(to.strain.value, material::square_root(2.0 / 9.0 * stretch));
-    material::store(to.von_mises.value, material::square_root(0.5 * stress) / at.determinant);
-  }
-}
-
-template <int N, int Q>
-void measure_states(const SolidGroup& group, int number, const double* points,
-                    const double* patch_ratio, std::span<SolidState> result) {
-  const BulkModuli bulk(group);
-  const Batch<N, Q> batch(group, number, points);
-  Lanes3x3 f[Q];
-  Lanes ratio[Q];
-  for (int q = 0; q < Q; ++q) {
-    f[q] = batch.deformation(q);
-    ratio[q] = material::determinant(f[q], material::cofactor(f[q]));
-  }
-  const Dilatation shared =
-      shared_dilatation(group, batch, number, ratio, patch_ratio, bulk.shared);
-  for (int q = 0; q < Q; ++q) {
-    const material::Principal at = material::principal(f[q]);
-    material::LanesLogResponse response = material::respond(group.law, at);
-    const Lanes pressure = shared.pressure + bulk.own * (ratio[q] - shared.ratio);
-    for (Lanes& first : response.first) first += pressure * ratio[q];
-    const Lanes3x3 stress = material::first_piola(f[q], at, response);
-    SolidState& to = result[static_cast<std::size_t>(q)];
-    material::store(to.weight.value, batch.weight(q));
-    for (int r = 0; r < 3; ++r) {
-      for (int c = 0; c < 3; ++c) {
-        material::store(to.deformation[r][c].value, f[q][r][c]);
-        material::store(to.piola[r][c].value, stress[r][c]);
-      }
-    }
-    for (int a = 0; a < N; ++a) {
-      for (int c = 0; c < 3; ++c) {
-        material::store(to.gradient[a][c].value, batch.gradient(q, a, c));
-      }
-    }
-  }
-}
-
 }  // namespace
-
-void state_batch(const SolidGroup& group, int batch, const double* points,
-                 const double* patch_ratio, std::span<SolidState> result) {
-  if (group.nodes == 4) {
-    measure_states<4, 1>(group, batch, points, patch_ratio, result);
-  } else if (group.nodes == 10) {
-    measure_states<10, 4>(group, batch, points, nullptr, result);
-  } else {
-    measure_states<8, 8>(group, batch, points, nullptr, result);
-  }
-}
-
-void volume_ratios(const SolidGroup& group, int begin, int end, const double* points,
-                   double* ratios) {
-  for (std::int64_t b = begin; b < end; ++b) {
-    const Batch<4, 1> batch(group, b, points);
-    const Lanes3x3 f = batch.deformation(0);
-    material::store(ratios + kLanes * b, material::determinant(f, material::cofactor(f)));
-  }
-}
 
 SmallestRatio evaluate_solids(const SolidGroup& group, int begin, int end, const double* points,
                               Tangent tangent, const SolidOutput& output) {
   LaneMinimum minimum;
-  if (group.nodes == 4 && is_neo_hookean(group.law) && tangent == Tangent::exact) {
+  const bool fast = group.nodes == 4 && is_neo_hookean(group.law) && output.carried == nullptr;
+  if (fast && tangent == Tangent::exact) {
     evaluate_neo_hookean<Tangent::exact>(group, begin, end, points, output, minimum);
-  } else if (group.nodes == 4 && is_neo_hookean(group.law) && tangent == Tangent::none) {
+  } else if (fast && tangent == Tangent::none) {
     evaluate_neo_hookean<Tangent::none>(group, begin, end, points, output, minimum);
   } else if (group.nodes == 4) {
     evaluate_kind<4, 1>(group, begin, end, points, tangent, output, minimum);
@@ -471,29 +308,6 @@ SmallestRatio evaluate_solids(const SolidGroup& group, int begin, int end, const
     evaluate_kind<8, 8>(group, begin, end, points, tangent, output, minimum);
   }
   return smallest(minimum, group.element, group.first_slot);
-}
-
-SmallestRatio measure_solids(const SolidGroup& group, int begin, int end, const double* points) {
-  LaneMinimum minimum;
-  if (group.nodes == 4) {
-    measure<4, 1>(group, begin, end, points, minimum);
-  } else if (group.nodes == 10) {
-    measure<10, 4>(group, begin, end, points, minimum);
-  } else {
-    measure<8, 8>(group, begin, end, points, minimum);
-  }
-  return smallest(minimum, group.element, group.first_slot);
-}
-
-void measure_batch(const SolidGroup& group, int batch, const double* points,
-                   std::span<SolidMeasures> result) {
-  if (group.nodes == 4) {
-    measure_fields<4, 1>(group, batch, points, result);
-  } else if (group.nodes == 10) {
-    measure_fields<10, 4>(group, batch, points, result);
-  } else {
-    measure_fields<8, 8>(group, batch, points, result);
-  }
 }
 
 }  // namespace sinew::fem

@@ -15,6 +15,9 @@ struct SolidOutput {
   double* energy;  ///< one a batch of this group, J
   const double* patch_ratio = nullptr;  ///< Jm of all patches of the body; read
   double* spread = nullptr;             ///< 16 doubles a slot of a patch; see sum_rows()
+  /// What this group's history adds (ElementHistory); null without.
+  const LaneRow* carried = nullptr;
+  double factor = 1.0;  ///< of the law's isochoric part beside it
 };
 
 /// Evaluates batches begin .. end-1 of a group.
@@ -52,13 +55,21 @@ struct SolidState {
 
 /// States of a batch, one a point of integration. @param group,batch which.
 /// @param points as for evaluate_solids(). @param patch_ratio Jm of the group's patches
-///   (patch_ratios()), null without. @param result (points,).
+///   (patch_ratios()), null without. @param overstress ElementHistory::overstress() of the group,
+///   null without. @param result (points,).
 void state_batch(const SolidGroup& group, int batch, const double* points,
-                 const double* patch_ratio, std::span<SolidState> result);
+                 const double* patch_ratio, const LaneRow* overstress,
+                 std::span<SolidState> result);
+
+/// S~ of a batch's points, that which relaxes (element_history.hpp).
+/// @param group,batch which. @param points as for evaluate_solids(). @param result (6 points,) Pa:
+///   xx, yy, zz, xy, xz, yz of each.
+void relaxing_stress(const SolidGroup& group, int batch, const double* points, LaneRow* result);
 
 /// Measures of a batch, one a point of integration. @param group,batch which.
-/// @param points as for evaluate_solids(). @param result (points,).
+/// @param points as for evaluate_solids(). @param overstress as for state_batch().
+/// @param result (points,).
 void measure_batch(const SolidGroup& group, int batch, const double* points,
-                   std::span<SolidMeasures> result);
+                   const LaneRow* overstress, std::span<SolidMeasures> result);
 
 }  // namespace sinew::fem

@@ -227,6 +227,15 @@ SINEW_INLINE LanesLogResponse respond(const Hyperelastic& law, const Principal& 
   return result;
 }
 
+/// A law `factor` times as stiff. @param response changed.
+SINEW_INLINE void scale(LanesLogResponse& response, double factor) {
+  response.energy *= factor;
+  for (int i = 0; i < 3; ++i) {
+    response.first[i] *= factor;
+    for (int j = 0; j <= i; ++j) response.second[i][j] *= factor;
+  }
+}
+
 /// Adds U(J) = kappa/2 (J - 1)^2 of the point's own J.
 SINEW_INLINE void add_volumetric(LanesLogResponse& to, const Lanes& ratio, double bulk_modulus) {
   const Lanes pressure = bulk_modulus * (ratio - 1.0), stiffness = bulk_modulus * ratio;
@@ -237,9 +246,8 @@ SINEW_INLINE void add_volumetric(LanesLogResponse& to, const Lanes& ratio, doubl
   }
 }
 
-/// P = F sum t_i / l_i^2 N_i N_i^T.
-SINEW_INLINE Lanes3x3 first_piola(const Lanes3x3& f, const Principal& at,
-                                  const LanesLogResponse& response) {
+/// Second Piola-Kirchhoff stress S = sum t_i / l_i^2 N_i N_i^T.
+SINEW_INLINE LanesSymmetric second_piola(const Principal& at, const LanesLogResponse& response) {
   LanesSymmetric s{};
   for (int i = 0; i < 3; ++i) {
     const Lanes scale = response.first[i] / (at.stretch[i] * at.stretch[i]);
@@ -251,7 +259,13 @@ SINEW_INLINE Lanes3x3 first_piola(const Lanes3x3& f, const Principal& at,
     s.xz += scale * x * z;
     s.yz += scale * y * z;
   }
-  return multiply(f, s);
+  return s;
+}
+
+/// P = F S.
+SINEW_INLINE Lanes3x3 first_piola(const Lanes3x3& f, const Principal& at,
+                                  const LanesLogResponse& response) {
+  return multiply(f, second_piola(at, response));
 }
 
 /// A symmetric 9x9 matrix in every lane, rows and columns 3 r + c for entry (r, c) of P and F.

@@ -138,12 +138,46 @@ std::vector<Key> small_strain_keys() {
       poisson_ratio(true, "Poisson's ratio, between -1 and 0.5. Linear tetrahedra lock near 0.5.")};
 }
 
+std::shared_ptr<const KeyTable> prony_table() {
+  return make_table({.name = "material: viscosity",
+                     .description = "A part of the isochoric stress that relaxes: G(t)/G(0) = 1 - "
+                                    "sum of g (1 - exp(-t/tau)).",
+                     .keys = {{.name = "relative_modulus",
+                               .forms = {quantity(plain_number(), material_range(0.0, 1.0))},
+                               .example = "0.1",
+                               .description = "g, of the modulus of a sudden strain; all below 1 "
+                                              "together.",
+                               .required = true},
+                              {.name = "relaxation_time",
+                               .forms = {quantity(time(), material_range(0.0))},
+                               .example = "50 ms",
+                               .description = "tau.",
+                               .required = true}}});
+}
+
+/// Keys of all hyperelastic laws: viscoelasticity.
+std::vector<Key> viscosity_keys() {
+  Form series = list({table(prony_table())});
+  return {{.name = "viscosity",
+           .forms = {series},
+           .example = "[{relative_modulus: 0.1, relaxation_time: 50 ms}]",
+           .description = "Prony series of a viscoelastic material. Without: it is elastic."},
+          {.name = "moduli",
+           .forms = {choice({{"long-term", "Those of slow motion and statics."},
+                             {"instantaneous", "Those of a sudden strain."}})},
+           .example = "instantaneous",
+           .default_text = "long-term",
+           .description = "What the law's moduli are.",
+           .only_with = "viscosity"}};
+}
+
 /// A hyperelastic law: its own keys, and one of the two that say how little it is compressible.
 Choice energy(const char* word, const char* description, std::vector<Key> keys,
               std::vector<Alternatives> alternatives = {}) {
   keys.push_back(poisson_ratio(
       false, "That of small strain, below 0.5: 0.49 to 0.4999 for rubbers on hexahedra."));
   keys.push_back(modulus("bulk_modulus", "1 MPa", "In place of poisson_ratio.", false));
+  for (Key& key : viscosity_keys()) keys.push_back(std::move(key));
   alternatives.push_back({{"poisson_ratio", "bulk_modulus"}, true});
   return {.word = word,
           .description = description,
@@ -185,6 +219,12 @@ std::vector<Key> ogden_keys() {
        .required = true}};
 }
 
+std::vector<Key> saint_venant_keys() {
+  std::vector<Key> keys = small_strain_keys();
+  for (Key& key : viscosity_keys()) keys.push_back(std::move(key));
+  return keys;
+}
+
 /// Laws by name, told by `model`.
 Form law_form() {
   const Key shear = modulus("shear_modulus", "24.4 kPa", "Initial shear modulus.", false);
@@ -217,7 +257,7 @@ Form law_form() {
                        "collapses in compression.",
         .table = make_table({.name = "material: model saint-venant-kirchhoff",
                              .description = "Linear in the Green strain.",
-                             .keys = small_strain_keys()})}});
+                             .keys = saint_venant_keys()})}});
 }
 
 /// A law, the usual one by its constants alone, or a name of the library.

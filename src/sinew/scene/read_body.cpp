@@ -89,6 +89,22 @@ material::Hyperelastic read_energy(const std::string& model, const Fields& field
   return energy;
 }
 
+/// The Prony series; whether the law's moduli are those of a sudden strain.
+bool read_viscosity(const Fields& fields, material::Hyperelastic& energy) {
+  const Node* series = fields.find("viscosity");
+  if (series == nullptr) return false;
+  for (const Node& item : series->items()) {
+    const Fields part(item, select_form(item, fields.form("viscosity").items, {}));
+    material::PronyTerm term;
+    part.read("relative_modulus", term.relative_modulus);
+    part.read("relaxation_time", term.relaxation_time);
+    energy.prony.push_back(term);
+  }
+  bool instantaneous = false;
+  fields.read_choice("moduli", instantaneous, {{"long-term", false}, {"instantaneous", true}});
+  return instantaneous;
+}
+
 // A file with what else would stand under `material`; such files do not name further ones.
 MaterialDescription read_material_file(const Fields& body, const ReadContext& context);
 
@@ -120,11 +136,13 @@ MaterialDescription read_material(const Fields& body, const ReadContext& context
   }
   material.model = MaterialModel::hyperelastic;
   material.energy = read_energy(model, fields);
+  const bool instantaneous = read_viscosity(fields, material.energy);
   try {
     material.energy.validate("material");
   } catch (const Error& error) {
     throw error.at(material.place);
   }
+  if (instantaneous) material.energy = material::relaxed(material.energy);
   return material;
 }
 

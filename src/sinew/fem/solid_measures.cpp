@@ -1,0 +1,186 @@
+// What is read from elements outside of forces: volume ratios, states, measures, history.
+#include "sinew/fem/lane_minimum.hpp"
+#include "sinew/fem/solid_batch.hpp"
+#include "sinew/fem/solid_kernel.hpp"
+
+namespace sinew::fem {
+
+namespace {
+
+using material::kLanes;
+using material::Lanes;
+using material::lanes;
+using material::Lanes3x3;
+
+template <int N, int Q>
+void measure(const SolidGroup& group, int begin, int end, const double* points,
+             LaneMinimum& minimum) {
+  for (std::int64_t b = begin; b < end; ++b) {
+    const Batch<N, Q> batch(group, b, points);
+    for (int q = 0; q < Q; ++q) {
+      const Lanes3x3 f = batch.deformation(q);
+      minimum.see(material::determinant(f, material::cofactor(f)), b);
+    }
+  }
+}
+
+/// sqrt(3/2 dev s : dev s) of the Cauchy stress s = P F^T / J.
+SINEW_INLINE Lanes von_mises(const Lanes3x3& piola, const Lanes3x3& f, const Lanes& ratio) {
+  Lanes3x3 s;
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) {
+      s[r][c] = (piola[r][0] * f[c][0] + piola[r][1] * f[c][1] + piola[r][2] * f[c][2]) / ratio;
+    }
+  }
+  Lanes sum = lanes(0.0);
+  for (int r = 0; r < 3; ++r) {
+    const int c = (r + 1) % 3;
+    const Lanes difference = s[r][r] - s[c][c];
+    sum += 0.5 * difference * difference + 3.0 * s[r][c] * s[r][c];
+  }
+  return material::square_root(sum);
+}
+
+template <int N, int Q>
+void measure_fields(const SolidGroup& group, int number, const double* points,
+                    const LaneRow* overstress, std::span<SolidMeasures> result) {
+  const bool split = group.law.saint_venant_shear == 0.0;
+  const LaneRow* carried = carried_rows(group, overstress, number);
+  const Batch<N, Q> batch(group, number, points);
+  for (int q = 0; q < Q; ++q) {
+    const Lanes3x3 f = batch.deformation(q);
+    const material::Principal at = material::principal(f);
+    const material::LanesLogResponse response = material::respond(group.law, at);
+    Lanes stretch = lanes(0.0);
+    for (int i = 0; i < 3; ++i) {
+      const Lanes l = at.stretch[i] - at.stretch[(i + 1) % 3];
+      stretch += l * l;
+    }
+    // Pressure has no deviator.
+    Lanes3x3 stress = material::first_piola(f, at, response);
+    if (carried != nullptr) {
+      Overstress(carried + 6 * q, split, f, material::cofactor(f), at.determinant)
+          .add_stress(stress);
+    }
+    SolidMeasures& to = result[static_cast<std::size_t>(q)];
+    material::store(to.weight.value, batch.weight(q));
+    material::store(to.strain.value, material::square_root(2.0 / 9.0 * stretch));
+    material::store(to.von_mises.value, von_mises(stress, f, at.determinant));
+  }
+}
+
+template <int N, int Q>
+void measure_relaxing(const SolidGroup& group, int number, const double* points, LaneRow* result) {
+  const Batch<N, Q> batch(group, number, points);
+  for (int q = 0; q < Q; ++q) {
+    const material::Principal at = material::principal(batch.deformation(q));
+    const material::LanesSymmetric s = material::second_piola(at, material::respond(group.law, at));
+    Lanes scale = lanes(1.0);
+    if (group.law.saint_venant_shear == 0.0) {
+      const Lanes root = 1.0 / material::detail::inverse_cube_root(at.determinant);
+      scale = root * root;
+    }
+    const Lanes* parts[6] = {&s.xx, &s.yy, &s.zz, &s.xy, &s.xz, &s.yz};
+    for (int c = 0; c < 6; ++c) material::store(result[6 * q + c].value, scale * *parts[c]);
+  }
+}
+
+template <int N, int Q>
+void measure_states(const SolidGroup& group, int number, const double* points,
+                    const double* patch_ratio, const LaneRow* overstress,
+                    std::span<SolidState> result) {
+  const BulkModuli bulk(group);
+  const LaneRow* carried = carried_rows(group, overstress, number);
+  const Batch<N, Q> batch(group, number, points);
+  Lanes3x3 f[Q];
+  Lanes ratio[Q];
+  for (int q = 0; q < Q; ++q) {
+    f[q] = batch.deformation(q);
+    ratio[q] = material::determinant(f[q], material::cofactor(f[q]));
+  }
+  const Dilatation shared =
+      shared_dilatation(group, batch, number, ratio, patch_ratio, bulk.shared);
+  for (int q = 0; q < Q; ++q) {
+    const material::Principal at = material::principal(f[q]);
+    material::LanesLogResponse response = material::respond(group.law, at);
+    const Lanes pressure = shared.pressure + bulk.own * (ratio[q] - shared.ratio);
+    for (Lanes& first : response.first) first += pressure * ratio[q];
+    Lanes3x3 stress = material::first_piola(f[q], at, response);
+    if (carried != nullptr) {
+      const bool split = group.law.saint_venant_shear == 0.0;
+      Overstress(carried + 6 * q, split, f[q], material::cofactor(f[q]), ratio[q])
+          .add_stress(stress);
+    }
+    SolidState& to = result[static_cast<std::size_t>(q)];
+    material::store(to.weight.value, batch.weight(q));
+    for (int r = 0; r < 3; ++r) {
+      for (int c = 0; c < 3; ++c) {
+        material::store(to.deformation[r][c].value, f[q][r][c]);
+        material::store(to.piola[r][c].value, stress[r][c]);
+      }
+    }
+    for (int a = 0; a < N; ++a) {
+      for (int c = 0; c < 3; ++c) {
+        material::store(to.gradient[a][c].value, batch.gradient(q, a, c));
+      }
+    }
+  }
+}
+
+}  // namespace
+
+void state_batch(const SolidGroup& group, int batch, const double* points,
+                 const double* patch_ratio, const LaneRow* overstress,
+                 std::span<SolidState> result) {
+  if (group.nodes == 4) {
+    measure_states<4, 1>(group, batch, points, patch_ratio, overstress, result);
+  } else if (group.nodes == 10) {
+    measure_states<10, 4>(group, batch, points, nullptr, overstress, result);
+  } else {
+    measure_states<8, 8>(group, batch, points, nullptr, overstress, result);
+  }
+}
+
+void relaxing_stress(const SolidGroup& group, int batch, const double* points, LaneRow* result) {
+  if (group.nodes == 4) {
+    measure_relaxing<4, 1>(group, batch, points, result);
+  } else if (group.nodes == 10) {
+    measure_relaxing<10, 4>(group, batch, points, result);
+  } else {
+    measure_relaxing<8, 8>(group, batch, points, result);
+  }
+}
+
+void volume_ratios(const SolidGroup& group, int begin, int end, const double* points,
+                   double* ratios) {
+  for (std::int64_t b = begin; b < end; ++b) {
+    const Batch<4, 1> batch(group, b, points);
+    const Lanes3x3 f = batch.deformation(0);
+    material::store(ratios + kLanes * b, material::determinant(f, material::cofactor(f)));
+  }
+}
+
+SmallestRatio measure_solids(const SolidGroup& group, int begin, int end, const double* points) {
+  LaneMinimum minimum;
+  if (group.nodes == 4) {
+    measure<4, 1>(group, begin, end, points, minimum);
+  } else if (group.nodes == 10) {
+    measure<10, 4>(group, begin, end, points, minimum);
+  } else {
+    measure<8, 8>(group, begin, end, points, minimum);
+  }
+  return smallest(minimum, group.element, group.first_slot);
+}
+
+void measure_batch(const SolidGroup& group, int batch, const double* points,
+                   const LaneRow* overstress, std::span<SolidMeasures> result) {
+  if (group.nodes == 4) {
+    measure_fields<4, 1>(group, batch, points, overstress, result);
+  } else if (group.nodes == 10) {
+    measure_fields<10, 4>(group, batch, points, overstress, result);
+  } else {
+    measure_fields<8, 8>(group, batch, points, overstress, result);
+  }
+}
+
+}  // namespace sinew::fem
