@@ -1,5 +1,5 @@
-// Linear viscoelasticity of solid elements: derivatives, relaxation, moduli over frequency,
-// objectivity, threads.
+// History of solid elements, viscoelasticity and softening: derivatives, relaxation, moduli over
+// frequency, unloading, objectivity, threads.
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -41,6 +41,13 @@ material::Hyperelastic rubber() {
       material::ogden({{20e3, 1.7}, {-500.0, -3.4}}, material::OgdenConvention::mu_over_alpha);
   law.bulk_modulus = 4e5;
   law.prony = {{0.2, 0.05}, {0.15, 0.6}};
+  return law;
+}
+
+material::Hyperelastic softening_rubber() {
+  material::Hyperelastic law = rubber();
+  law.prony.clear();
+  law.mullins = {.r = 1.8, .m = 60.0, .beta = 0.2};
   return law;
 }
 
@@ -100,7 +107,7 @@ INSTANTIATE_TEST_SUITE_P(Viscous, EveryViscousKind,
 void expect_derivatives(Kind kind, const material::Hyperelastic& law) {
   Body body(kind, law);
   const mesh::Mesh& mesh = body.model->mesh();
-  body.step(moved(mesh, kEdge, 0.06, 1), 0.02);
+  body.step(moved(mesh, kEdge, 0.07, 1), 0.02);
   body.step(moved(mesh, kEdge, 0.06, 2), 0.1);
   body.history.begin_step(0.03);
   const Points x = moved(mesh, kEdge, 0.06, 3);
@@ -201,6 +208,42 @@ TEST(Viscous, StorageAndLossModuliAreThoseOfTheSeries) {
   }
 }
 
+TEST_P(EveryViscousKind, SoftenedForcesAreDerivativesToo) {
+  expect_derivatives(GetParam(), softening_rubber());
+  material::Hyperelastic both = softening_rubber();
+  both.prony = rubber().prony;
+  expect_derivatives(GetParam(), both);
+}
+
+// Shear keeps the volume: all of the stress softens, by the formula of Ogden and Roxburgh.
+TEST_P(EveryViscousKind, UnloadingFollowsOgdenAndRoxburgh) {
+  const material::Hyperelastic law = softening_rubber();
+  material::Hyperelastic elastic = law;
+  elastic.mullins.reset();
+  Body body(GetParam(), law), virgin(GetParam(), elastic);
+  const auto forces_at = [&](double gamma) {
+    body.history.begin_step(0.0);
+    const VectorX result = body.forces(body.sheared(gamma));
+    body.assembly.advance(body.sheared(gamma), body.history);
+    return result;
+  };
+  const auto energy_at = [&](double gamma) {  // stretches of simple shear
+    const double l = 0.5 * (gamma + std::sqrt(gamma * gamma + 4.0));
+    return material::respond(elastic, {l, 1.0 / l, 1.0}).energy;
+  };
+  double largest = 0.0;
+  for (const double gamma : {0.2, 0.5, 0.4, 0.1, 0.3, 0.5, 0.7, 0.6}) {
+    const VectorX found = forces_at(gamma), law_forces = virgin.forces(virgin.sheared(gamma));
+    const double w = energy_at(gamma);
+    largest = std::max(largest, w);
+    const double eta =
+        1.0 -
+        std::erf((largest - w) / (law.mullins->m + law.mullins->beta * largest)) / law.mullins->r;
+    EXPECT_LT((found - eta * law_forces).norm(), 1e-9 * law_forces.norm()) << gamma;
+    if (gamma == 0.1) EXPECT_LT(eta, 0.6);  // it does soften
+  }
+}
+
 TEST_P(EveryViscousKind, ARotationOnTheWayTurnsTheForcesAlone) {
   Body body(GetParam(), rubber()), turned(GetParam(), rubber());
   const mesh::Mesh& mesh = body.model->mesh();
@@ -245,7 +288,12 @@ TEST_P(EveryViscousKind, ThreadsDoNotChangeABitAndNothingAllocates) {
 }
 
 TEST(Viscous, RefusesSeriesThatLeaveNothing) {
-  material::Hyperelastic law = rubber();
+  material::Hyperelastic law = softening_rubber();
+  law.mullins->r = 1.0;
+  EXPECT_THROW(law.validate("material"), Error);
+  law.mullins = material::MullinsEffect{.r = 2.0, .m = 0.0, .beta = 0.0};
+  EXPECT_THROW(law.validate("material"), Error);
+  law = rubber();
   law.prony.push_back({0.7, 1.0});
   EXPECT_THROW(law.validate("material"), Error);
   law.prony = {{0.2, 0.0}};

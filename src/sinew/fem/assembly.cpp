@@ -166,8 +166,7 @@ void Assembly::evaluate_elements(const Points& positions, Tangent tangent) {
                      work.patch_spread.data()};
   for (std::size_t g = 0; g < model_->solids().size(); ++g) {
     const SolidGroup& group = model_->solids()[g];
-    solids.carried = history_ == nullptr ? nullptr : history_->carried(g);
-    if (solids.carried != nullptr) solids.factor = history_->factor(g);
+    if (history_ != nullptr) solids.history = history_->of_step(g);
     ratios += pool_->size();
     average_patches(group);
     pool_->for_range(group.batches(), 1, [&](int begin, int end, int thread) {

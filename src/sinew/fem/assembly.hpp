@@ -63,9 +63,9 @@ class Assembly {
   /// not finite are seen by minimum_volume_ratio() = -infinity.
   void evaluate(const Points& positions, const AssemblyWeights& weights);
 
-  /// From the next evaluate() on: what the history of viscoelastic elements adds to their stress;
-  /// null: they are relaxed. The energy is then the incremental one, whose derivative the forces
-  /// are. @param history must outlive this object.
+  /// From the next evaluate() on: what elements that relax or soften have behind them; null:
+  /// nothing. The energy is then the incremental one, whose derivative the forces are.
+  /// @param history must outlive this object.
   void set_history(const ElementHistory* history) { history_ = history; }
   /// Ends a step of the history at these positions. @param positions (n, 3) m.
   void advance(const Points& positions, ElementHistory& history);

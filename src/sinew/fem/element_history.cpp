@@ -10,7 +10,6 @@ namespace sinew::fem {
 
 namespace {
 
-using material::kLanes;
 using material::Lanes;
 using material::lanes;
 
@@ -23,10 +22,15 @@ ElementHistory::ElementHistory(std::span<const SolidGroup> groups)
   std::size_t state = 0, carried = 0;
   for (std::size_t g = 0; g < groups.size(); ++g) {
     const auto& series = groups[g].law.prony;
-    if (series.empty()) continue;
     Part& part = parts_[g];
+    part.relaxes = !series.empty();
+    part.softens = groups[g].law.mullins.has_value();
+    if (!part.relaxes && !part.softens) continue;
     part.points =
         static_cast<std::size_t>(groups[g].batches()) * static_cast<std::size_t>(groups[g].points);
+    part.first_peak = state;
+    if (part.softens) state += part.points;
+    if (!part.relaxes) continue;
     part.first = state;
     part.first_carried = carried;
     for (const material::PronyTerm& term : series) {
@@ -48,7 +52,7 @@ void ElementHistory::reset() { std::ranges::fill(state_, LaneRow{}); }
 void ElementHistory::begin_step(double time_step) {
   relaxed_ = !(time_step > 0.0);
   for (Part& part : parts_) {
-    if (part.points == 0) continue;
+    if (!part.relaxes) continue;
     const std::size_t terms = part.weight.size();
     part.factor = 1.0;
     for (std::size_t k = 0; k < terms; ++k) {
@@ -72,9 +76,14 @@ void ElementHistory::begin_step(double time_step) {
   }
 }
 
-const LaneRow* ElementHistory::carried(std::size_t group) const {
+const LaneRow* ElementHistory::peak(std::size_t group) const {
+  return parts_[group].softens ? &state_[parts_[group].first_peak] : nullptr;
+}
+
+PointHistory ElementHistory::of_step(std::size_t group) const {
   const Part& part = parts_[group];
-  return relaxed_ || part.points == 0 ? nullptr : &carried_[part.first_carried];
+  const bool carries = part.relaxes && !relaxed_;
+  return {carries ? &carried_[part.first_carried] : nullptr, part.factor, peak(group)};
 }
 
 void ElementHistory::end_step(std::size_t group, int begin, int end, const double* points) {
@@ -82,11 +91,17 @@ void ElementHistory::end_step(std::size_t group, int begin, int end, const doubl
   if (part.points == 0) return;
   const std::size_t terms = part.weight.size();
   const auto count = static_cast<std::size_t>(groups_[group].points);
-  LaneRow fresh[8 * kSix];
+  LaneRow fresh[8 * kSix], energy[8];
   for (int b = begin; b < end; ++b) {
-    relaxing_stress(groups_[group], b, points, fresh);
+    relaxing_stress(groups_[group], b, points, {nullptr, 1.0, peak(group)}, fresh, energy);
     for (std::size_t q = 0; q < count; ++q) {
       const std::size_t point = static_cast<std::size_t>(b) * count + q;
+      if (part.softens) {
+        double* most = state_[part.first_peak + point].value;
+        material::store(most,
+                        material::maximum(material::load(most), material::load(energy[q].value)));
+      }
+      if (!part.relaxes) continue;
       LaneRow* own = &state_[part.first + kSix * (1 + terms) * point];
       for (std::size_t c = 0; c < kSix; ++c) {
         const Lanes stress = material::load(fresh[kSix * q + c].value);
@@ -101,10 +116,11 @@ void ElementHistory::end_step(std::size_t group, int begin, int end, const doubl
   }
 }
 
-std::vector<LaneRow> ElementHistory::overstress(std::size_t group) const {
+PointHistory ElementHistory::present(std::size_t group, std::vector<LaneRow>& overstress) const {
   const Part& part = parts_[group];
+  if (!part.relaxes) return {nullptr, 1.0, peak(group)};
   const std::size_t terms = part.weight.size();
-  std::vector<LaneRow> result(kSix * part.points);
+  overstress.resize(kSix * part.points);
   for (std::size_t q = 0; q < part.points; ++q) {
     const LaneRow* from = &state_[part.first + kSix * (1 + terms) * q];
     for (std::size_t c = 0; c < kSix; ++c) {
@@ -112,10 +128,10 @@ std::vector<LaneRow> ElementHistory::overstress(std::size_t group) const {
       for (std::size_t k = 0; k < terms; ++k) {
         sum += part.weight[k] * material::load(from[kSix * (1 + k) + c].value);
       }
-      material::store(result[kSix * q + c].value, sum);
+      material::store(overstress[kSix * q + c].value, sum);
     }
   }
-  return result;
+  return {overstress.data(), 1.0, peak(group)};
 }
 
 void ElementHistory::save(std::span<double> state) const {

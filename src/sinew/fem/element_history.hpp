@@ -1,5 +1,6 @@
 /// @file
-/// Linear viscoelasticity by a Prony series at the points of integration of hyperelastic elements.
+/// What points of integration of hyperelastic elements have behind them: linear viscoelasticity by
+/// a Prony series, and softening.
 ///
 /// The law's energy psi is that of slow motion. With S(C) = 2 dpsi_iso/dC, brought to unit volume,
 /// S~ = J^(2/3) S, and beta_k = g_k / (1 - sum g),
@@ -14,6 +15,10 @@
 /// symmetric. Stresses of the material frame make it objective, and h may change from step to step.
 /// In statics h_k = 0 and S~ is the law's.
 ///
+/// Softening (material::MullinsEffect) keeps the largest energy psi_iso of first loading W_m, and
+/// takes its place in psi and S before they relax; W_m stays during a step, where first loading
+/// goes on beyond it.
+///
 /// Sources: Simo, CMAME 60, 1987, sections 2 and 4; Simo, Hughes, "Computational Inelasticity",
 /// 1998, section 10.3 (with a midpoint in place of a); the recurrence: Taylor, Pister, Goudreau,
 /// Int. J. Numer. Meth. Engng 2, 1970.
@@ -24,10 +29,11 @@
 
 #include "sinew/core/types.hpp"
 #include "sinew/fem/solid_elements.hpp"
+#include "sinew/fem/solid_kernel.hpp"
 
 namespace sinew::fem {
 
-/// Of one body; empty where no law relaxes. Part of its state.
+/// Of one body; empty where no law relaxes or softens. Part of its state.
 class ElementHistory {
  public:
   /// @param groups of the body; must outlive this.
@@ -37,20 +43,17 @@ class ElementHistory {
 
   /// Makes H for steps of `time_step` (s, > 0), or for statics (0).
   void begin_step(double time_step);
-  /// H of a group, six rows a point of integration (xx, yy, zz, xy, xz, yz; Pa), [batch][point];
-  /// null where its law does not relax, and in statics.
+  /// For forces of the step that begin_step() began: H, 1 + sum beta_k a_k, and W_m.
   /// @param group position among the body's.
-  const LaneRow* carried(std::size_t group) const;
-  /// 1 + sum beta_k a_k: by how much the law's S~ counts.
-  double factor(std::size_t group) const { return parts_[group].factor; }
+  PointHistory of_step(std::size_t group) const;
+  /// For stresses outside of steps, as they stand. @param group position among the body's.
+  /// @param overstress memory for sum beta_k h_k; must outlive the result.
+  PointHistory present(std::size_t group, std::vector<LaneRow>& overstress) const;
 
   /// Ends the step that begin_step() began, for batches begin .. end-1 of a group.
   /// @param group position among the body's. @param begin,end which batches.
   /// @param points (n, 4) m, positions padded to four.
   void end_step(std::size_t group, int begin, int end, const double* points);
-
-  /// sum beta_k h_k as it stands, laid out as carried(); empty where nothing relaxes.
-  std::vector<LaneRow> overstress(std::size_t group) const;
 
   /// Never strained: at rest.
   void reset();
@@ -59,11 +62,15 @@ class ElementHistory {
   void load(std::span<const double> state);  ///< (size(),)
 
  private:
+  const LaneRow* peak(std::size_t group) const;
+
   /// Where a group's numbers stand.
   struct Part {
-    std::size_t first = 0;  ///< in state_: S~, then h_1, h_2, ... of each point
-    std::size_t first_carried = 0;
-    std::size_t points = 0;  ///< of all its batches; 0 where nothing relaxes
+    std::size_t points = 0;         ///< of all its batches; 0: nothing to keep
+    std::size_t first = 0;          ///< in state_: S~, then h_1, h_2, ... of each point
+    std::size_t first_peak = 0;     ///< in state_: W_m of each point
+    std::size_t first_carried = 0;  ///< in carried_
+    bool relaxes = false, softens = false;
     double factor = 1.0;
     std::vector<double> weight, time;  ///< beta_k, tau_k
     std::vector<double> decay, rise;   ///< exp(-x_k), a_k of the step

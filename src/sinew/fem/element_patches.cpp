@@ -13,8 +13,6 @@ namespace sinew::fem {
 
 namespace {
 
-using material::kLanes;
-
 // Of a tetrahedron's four nodes, how many a patch has not yet; then what is the loneliest outside.
 using Score = std::tuple<int, int, int, std::int32_t>;
 

@@ -64,16 +64,14 @@ void add_batch(const FemBody& body, int number, ElementStates& states) {
   }
 }
 
-/// @param overstress of the group's history; empty without.
 void add_group(const SolidGroup& group, const std::vector<double>& points,
-               const std::vector<LaneRow>& overstress, ElementStates& states) {
+               const PointHistory& history, ElementStates& states) {
   std::array<SolidState, 8> at;
   const auto count = static_cast<std::size_t>(group.points);
   const std::vector<double> ratios = patch_ratios(group, points.data());
   const double* patch_ratio = ratios.empty() ? nullptr : ratios.data();
-  const LaneRow* carried = overstress.empty() ? nullptr : overstress.data();
   for (int b = 0; b < group.batches(); ++b) {
-    state_batch(group, b, points.data(), patch_ratio, carried, std::span(at).first(count));
+    state_batch(group, b, points.data(), patch_ratio, history, std::span(at).first(count));
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const std::size_t slot = static_cast<std::size_t>(b) * kLanes + lane;
       if (group.element[slot] < 0) continue;
@@ -125,8 +123,9 @@ ElementStates element_states(const FemBody& body) {
       points[static_cast<std::size_t>(4 * i + c)] = body.positions()(i, c);
     }
   }
+  std::vector<LaneRow> overstress;
   for (std::size_t g = 0; g < model.solids().size(); ++g) {
-    add_group(model.solids()[g], points, body.history().overstress(g), states);
+    add_group(model.solids()[g], points, body.history().present(g, overstress), states);
   }
   return states;
 }

@@ -149,11 +149,11 @@ void NodalFields::add_solids(const FemBody& body, Measure measure, std::span<dou
   std::array<SolidMeasures, 8> measures;
   for (std::size_t g = 0; g < model_.elements().solids().size(); ++g) {
     const SolidGroup& group = model_.elements().solids()[g];
-    const std::vector<LaneRow> overstress = body.history().overstress(g);
-    const LaneRow* carried = overstress.empty() ? nullptr : overstress.data();
+    std::vector<LaneRow> overstress;
+    const PointHistory history = body.history().present(g, overstress);
     const auto points = static_cast<std::size_t>(group.points);
     for (int b = 0; b < group.batches(); ++b) {
-      measure_batch(group, b, points_.data(), carried, std::span(measures).first(points));
+      measure_batch(group, b, points_.data(), history, std::span(measures).first(points));
       for (std::size_t q = 0; q < points; ++q) {
         const SolidMeasures& m = measures[q];
         const LaneRow& value = measure == Measure::strain ? m.strain : m.von_mises;

@@ -159,10 +159,23 @@ struct Overstress {
   }
 };
 
-/// Rows of a batch's points in what a group's history carries; null without.
-SINEW_INLINE const LaneRow* carried_rows(const SolidGroup& group, const LaneRow* carried,
-                                         std::int64_t batch) {
-  return carried == nullptr ? nullptr : carried + 6 * group.points * batch;
-}
+/// What a batch's points have behind them.
+struct BatchHistory {
+  const LaneRow* carried = nullptr;  ///< six rows a point
+  const LaneRow* peak = nullptr;     ///< one row a point
+
+  SINEW_INLINE BatchHistory(const SolidGroup& group, const PointHistory& history,
+                            std::int64_t batch)
+      : carried(history.carried == nullptr ? nullptr : history.carried + 6 * group.points * batch),
+        peak(history.peak == nullptr ? nullptr : history.peak + group.points * batch) {}
+
+  /// The isochoric part at point q, softened.
+  SINEW_INLINE material::LanesLogResponse respond(const material::Hyperelastic& law,
+                                                  const material::Principal& at, int q) const {
+    material::LanesLogResponse response = material::respond(law, at);
+    if (peak != nullptr) material::soften(*law.mullins, material::load(peak[q].value), response);
+    return response;
+  }
+};
 
 }  // namespace sinew::fem

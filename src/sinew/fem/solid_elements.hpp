@@ -12,10 +12,9 @@
 /// symmetric since it derives from an energy.
 ///
 /// Hexahedra have eight Gauss points, kappa' = 0, and do not lock in volume (mixed form Q1P0,
-/// pressure and dilatation condensed). Quadratic tetrahedra have four points; with one pressure
-/// each (P2P0) they fulfil the inf-sup condition (Boffi, Brezzi, Fortin, "Mixed Finite Element
-/// Methods and Applications", 2013, section 8.6), but one pressure leaves them soft where it
-/// changes along an element. kappa' is grad-div stabilisation (Franca, Hughes, CMAME 69, 1988;
+/// pressure and dilatation condensed). Quadratic tetrahedra have four points; one pressure each
+/// (P2P0) has no checkerboards, but leaves them soft where it changes along an element
+/// (docs/materials.md). kappa' is grad-div stabilisation (Franca, Hughes, CMAME 69, 1988;
 /// Olshanskii, Reusken, Math. Comp. 73, 2004, section 3) of what the mean does not see: bounded, so
 /// that it cannot lock, and without effect on a converged solution, whose dilatation is even in a
 /// small element. A linear tetrahedron has one point: Jm is its J, or that of its patch

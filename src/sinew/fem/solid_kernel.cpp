@@ -120,7 +120,7 @@ void evaluate(const SolidGroup& group, int begin, int end, const double* points,
   const double* patch_ratio = patch_ratios_of(group, output);
   const bool split = group.law.saint_venant_shear == 0.0;
   for (std::int64_t b = begin; b < end; ++b) {
-    const LaneRow* carried = carried_rows(group, output.carried, b);
+    const BatchHistory past(group, output.history, b);
     const Batch<N, Q> batch(group, b, points);
     Lanes3x3 f[Q], cof[Q];
     Lanes ratio[Q];
@@ -136,8 +136,8 @@ void evaluate(const SolidGroup& group, int begin, int end, const double* points,
     for (int q = 0; q < Q; ++q) {
       const Lanes weight = batch.weight(q);
       const material::Principal at = material::principal(f[q]);
-      material::LanesLogResponse response = material::respond(group.law, at);
-      if (carried != nullptr) material::scale(response, output.factor);
+      material::LanesLogResponse response = past.respond(group.law, at, q);
+      if (past.carried != nullptr) material::scale(response, output.history.factor);
       const Lanes off = ratio[q] - shared.ratio, own = bulk.own * off;
       energy += weight * (response.energy + 0.5 * own * off);
       // p J: p cof F by logarithmic stretches
@@ -152,8 +152,8 @@ void evaluate(const SolidGroup& group, int begin, int end, const double* points,
         for (int c = 0; c < 3; ++c) g[a][c] = batch.gradient(q, a, c);
       }
       Lanes3x3 stress = material::first_piola(f[q], at, response);
-      if (carried != nullptr) {
-        const Overstress over(carried + 6 * q, split, f[q], cof[q], ratio[q]);
+      if (past.carried != nullptr) {
+        const Overstress over(past.carried + 6 * q, split, f[q], cof[q], ratio[q]);
         energy += weight * over.energy(f[q]);
         over.add_stress(stress);
       }
@@ -168,8 +168,8 @@ void evaluate(const SolidGroup& group, int begin, int end, const double* points,
       if constexpr (kTangent != Tangent::none) {
         material::Lanes9x9 a9;
         material::tangent(f[q], at, response, kTangent == Tangent::rotated, a9);
-        if (kTangent == Tangent::exact && carried != nullptr) {
-          Overstress(carried + 6 * q, split, f[q], cof[q], ratio[q]).add_tangent(a9);
+        if (kTangent == Tangent::exact && past.carried != nullptr) {
+          Overstress(past.carried + 6 * q, split, f[q], cof[q], ratio[q]).add_tangent(a9);
         }
         sums.add_tangent(a9, g, weight);
       }
@@ -295,7 +295,8 @@ void evaluate_kind(const SolidGroup& group, int begin, int end, const double* po
 SmallestRatio evaluate_solids(const SolidGroup& group, int begin, int end, const double* points,
                               Tangent tangent, const SolidOutput& output) {
   LaneMinimum minimum;
-  const bool fast = group.nodes == 4 && is_neo_hookean(group.law) && output.carried == nullptr;
+  const bool elastic = output.history.carried == nullptr && output.history.peak == nullptr;
+  const bool fast = group.nodes == 4 && elastic && is_neo_hookean(group.law);
   if (fast && tangent == Tangent::exact) {
     evaluate_neo_hookean<Tangent::exact>(group, begin, end, points, output, minimum);
   } else if (fast && tangent == Tangent::none) {

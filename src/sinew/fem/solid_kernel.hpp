@@ -8,6 +8,13 @@
 
 namespace sinew::fem {
 
+/// What a group's points have behind them, from ElementHistory; nulls without.
+struct PointHistory {
+  const LaneRow* carried = nullptr;  ///< (batch, point, 6): what earlier strain adds to the stress
+  double factor = 1.0;               ///< of the law's isochoric part beside it
+  const LaneRow* peak = nullptr;     ///< (batch, point): largest energy so far, Pa
+};
+
 /// Where a group's batches write. Record arrays are 64-byte aligned and are those of the body.
 struct SolidOutput {
   double* forces;  ///< four doubles a node of an element
@@ -15,9 +22,7 @@ struct SolidOutput {
   double* energy;  ///< one a batch of this group, J
   const double* patch_ratio = nullptr;  ///< Jm of all patches of the body; read
   double* spread = nullptr;             ///< 16 doubles a slot of a patch; see sum_rows()
-  /// What this group's history adds (ElementHistory); null without.
-  const LaneRow* carried = nullptr;
-  double factor = 1.0;  ///< of the law's isochoric part beside it
+  PointHistory history = {};            ///< of this group
 };
 
 /// Evaluates batches begin .. end-1 of a group.
@@ -55,21 +60,23 @@ struct SolidState {
 
 /// States of a batch, one a point of integration. @param group,batch which.
 /// @param points as for evaluate_solids(). @param patch_ratio Jm of the group's patches
-///   (patch_ratios()), null without. @param overstress ElementHistory::overstress() of the group,
-///   null without. @param result (points,).
+///   (patch_ratios()), null without. @param history of the group: PresentHistory.
+/// @param result (points,).
 void state_batch(const SolidGroup& group, int batch, const double* points,
-                 const double* patch_ratio, const LaneRow* overstress,
+                 const double* patch_ratio, const PointHistory& history,
                  std::span<SolidState> result);
 
-/// S~ of a batch's points, that which relaxes (element_history.hpp).
-/// @param group,batch which. @param points as for evaluate_solids(). @param result (6 points,) Pa:
-///   xx, yy, zz, xy, xz, yz of each.
-void relaxing_stress(const SolidGroup& group, int batch, const double* points, LaneRow* result);
+/// S~ of a batch's points, that which relaxes, and the energy of first loading
+/// (element_history.hpp).
+/// @param group,batch which. @param points as for evaluate_solids(). @param history of the group.
+/// @param stress (6 points,) Pa: xx, yy, zz, xy, xz, yz of each. @param energy (points,) Pa.
+void relaxing_stress(const SolidGroup& group, int batch, const double* points,
+                     const PointHistory& history, LaneRow* stress, LaneRow* energy);
 
 /// Measures of a batch, one a point of integration. @param group,batch which.
-/// @param points as for evaluate_solids(). @param overstress as for state_batch().
+/// @param points as for evaluate_solids(). @param history as for state_batch().
 /// @param result (points,).
 void measure_batch(const SolidGroup& group, int batch, const double* points,
-                   const LaneRow* overstress, std::span<SolidMeasures> result);
+                   const PointHistory& history, std::span<SolidMeasures> result);
 
 }  // namespace sinew::fem

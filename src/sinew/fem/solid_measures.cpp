@@ -43,14 +43,14 @@ SINEW_INLINE Lanes von_mises(const Lanes3x3& piola, const Lanes3x3& f, const Lan
 
 template <int N, int Q>
 void measure_fields(const SolidGroup& group, int number, const double* points,
-                    const LaneRow* overstress, std::span<SolidMeasures> result) {
+                    const PointHistory& history, std::span<SolidMeasures> result) {
   const bool split = group.law.saint_venant_shear == 0.0;
-  const LaneRow* carried = carried_rows(group, overstress, number);
+  const BatchHistory past(group, history, number);
   const Batch<N, Q> batch(group, number, points);
   for (int q = 0; q < Q; ++q) {
     const Lanes3x3 f = batch.deformation(q);
     const material::Principal at = material::principal(f);
-    const material::LanesLogResponse response = material::respond(group.law, at);
+    const material::LanesLogResponse response = past.respond(group.law, at, q);
     Lanes stretch = lanes(0.0);
     for (int i = 0; i < 3; ++i) {
       const Lanes l = at.stretch[i] - at.stretch[(i + 1) % 3];
@@ -58,8 +58,8 @@ void measure_fields(const SolidGroup& group, int number, const double* points,
     }
     // Pressure has no deviator.
     Lanes3x3 stress = material::first_piola(f, at, response);
-    if (carried != nullptr) {
-      Overstress(carried + 6 * q, split, f, material::cofactor(f), at.determinant)
+    if (past.carried != nullptr) {
+      Overstress(past.carried + 6 * q, split, f, material::cofactor(f), at.determinant)
           .add_stress(stress);
     }
     SolidMeasures& to = result[static_cast<std::size_t>(q)];
@@ -70,27 +70,30 @@ void measure_fields(const SolidGroup& group, int number, const double* points,
 }
 
 template <int N, int Q>
-void measure_relaxing(const SolidGroup& group, int number, const double* points, LaneRow* result) {
+void measure_relaxing(const SolidGroup& group, int number, const double* points,
+                      const PointHistory& history, LaneRow* stress, LaneRow* energy) {
+  const BatchHistory past(group, history, number);
   const Batch<N, Q> batch(group, number, points);
   for (int q = 0; q < Q; ++q) {
     const material::Principal at = material::principal(batch.deformation(q));
-    const material::LanesSymmetric s = material::second_piola(at, material::respond(group.law, at));
+    material::store(energy[q].value, material::respond(group.law, at).energy);
+    const material::LanesSymmetric s = material::second_piola(at, past.respond(group.law, at, q));
     Lanes scale = lanes(1.0);
     if (group.law.saint_venant_shear == 0.0) {
       const Lanes root = 1.0 / material::detail::inverse_cube_root(at.determinant);
       scale = root * root;
     }
     const Lanes* parts[6] = {&s.xx, &s.yy, &s.zz, &s.xy, &s.xz, &s.yz};
-    for (int c = 0; c < 6; ++c) material::store(result[6 * q + c].value, scale * *parts[c]);
+    for (int c = 0; c < 6; ++c) material::store(stress[6 * q + c].value, scale * *parts[c]);
   }
 }
 
 template <int N, int Q>
 void measure_states(const SolidGroup& group, int number, const double* points,
-                    const double* patch_ratio, const LaneRow* overstress,
+                    const double* patch_ratio, const PointHistory& history,
                     std::span<SolidState> result) {
   const BulkModuli bulk(group);
-  const LaneRow* carried = carried_rows(group, overstress, number);
+  const BatchHistory past(group, history, number);
   const Batch<N, Q> batch(group, number, points);
   Lanes3x3 f[Q];
   Lanes ratio[Q];
@@ -102,13 +105,13 @@ void measure_states(const SolidGroup& group, int number, const double* points,
       shared_dilatation(group, batch, number, ratio, patch_ratio, bulk.shared);
   for (int q = 0; q < Q; ++q) {
     const material::Principal at = material::principal(f[q]);
-    material::LanesLogResponse response = material::respond(group.law, at);
+    material::LanesLogResponse response = past.respond(group.law, at, q);
     const Lanes pressure = shared.pressure + bulk.own * (ratio[q] - shared.ratio);
     for (Lanes& first : response.first) first += pressure * ratio[q];
     Lanes3x3 stress = material::first_piola(f[q], at, response);
-    if (carried != nullptr) {
+    if (past.carried != nullptr) {
       const bool split = group.law.saint_venant_shear == 0.0;
-      Overstress(carried + 6 * q, split, f[q], material::cofactor(f[q]), ratio[q])
+      Overstress(past.carried + 6 * q, split, f[q], material::cofactor(f[q]), ratio[q])
           .add_stress(stress);
     }
     SolidState& to = result[static_cast<std::size_t>(q)];
@@ -130,24 +133,25 @@ void measure_states(const SolidGroup& group, int number, const double* points,
 }  // namespace
 
 void state_batch(const SolidGroup& group, int batch, const double* points,
-                 const double* patch_ratio, const LaneRow* overstress,
+                 const double* patch_ratio, const PointHistory& history,
                  std::span<SolidState> result) {
   if (group.nodes == 4) {
-    measure_states<4, 1>(group, batch, points, patch_ratio, overstress, result);
+    measure_states<4, 1>(group, batch, points, patch_ratio, history, result);
   } else if (group.nodes == 10) {
-    measure_states<10, 4>(group, batch, points, nullptr, overstress, result);
+    measure_states<10, 4>(group, batch, points, nullptr, history, result);
   } else {
-    measure_states<8, 8>(group, batch, points, nullptr, overstress, result);
+    measure_states<8, 8>(group, batch, points, nullptr, history, result);
   }
 }
 
-void relaxing_stress(const SolidGroup& group, int batch, const double* points, LaneRow* result) {
+void relaxing_stress(const SolidGroup& group, int batch, const double* points,
+                     const PointHistory& history, LaneRow* stress, LaneRow* energy) {
   if (group.nodes == 4) {
-    measure_relaxing<4, 1>(group, batch, points, result);
+    measure_relaxing<4, 1>(group, batch, points, history, stress, energy);
   } else if (group.nodes == 10) {
-    measure_relaxing<10, 4>(group, batch, points, result);
+    measure_relaxing<10, 4>(group, batch, points, history, stress, energy);
   } else {
-    measure_relaxing<8, 8>(group, batch, points, result);
+    measure_relaxing<8, 8>(group, batch, points, history, stress, energy);
   }
 }
 
@@ -173,13 +177,13 @@ SmallestRatio measure_solids(const SolidGroup& group, int begin, int end, const 
 }
 
 void measure_batch(const SolidGroup& group, int batch, const double* points,
-                   const LaneRow* overstress, std::span<SolidMeasures> result) {
+                   const PointHistory& history, std::span<SolidMeasures> result) {
   if (group.nodes == 4) {
-    measure_fields<4, 1>(group, batch, points, overstress, result);
+    measure_fields<4, 1>(group, batch, points, history, result);
   } else if (group.nodes == 10) {
-    measure_fields<10, 4>(group, batch, points, overstress, result);
+    measure_fields<10, 4>(group, batch, points, history, result);
   } else {
-    measure_fields<8, 8>(group, batch, points, overstress, result);
+    measure_fields<8, 8>(group, batch, points, history, result);
   }
 }
 

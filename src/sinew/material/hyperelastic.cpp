@@ -65,6 +65,17 @@ void Hyperelastic::validate(const std::string& what) const {
     fail(what, fmt::format("its bulk modulus is {:g} Pa", bulk_modulus),
          "give a bulk modulus above 0, or a Poisson's ratio below 0.5");
   }
+  if (mullins) {
+    const bool finite =
+        std::isfinite(mullins->r) && std::isfinite(mullins->m) && std::isfinite(mullins->beta);
+    if (!finite || !(mullins->r > 1.0) || !(mullins->m >= 0.0) || !(mullins->beta >= 0.0) ||
+        !(mullins->m + mullins->beta > 0.0)) {
+      fail(what,
+           fmt::format("its softening has r = {:g}, m = {:g} Pa, beta = {:g}", mullins->r,
+                       mullins->m, mullins->beta),
+           "give r above 1, and m and beta not below 0 and not both 0");
+    }
+  }
   for (const PronyTerm& term : prony) {
     if (!(term.relative_modulus > 0.0) || !(term.relaxation_time > 0.0) ||
         !std::isfinite(term.relaxation_time)) {

@@ -20,6 +20,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -51,6 +52,16 @@ struct PronyTerm {
   double relaxation_time = 0.0;   ///< tau, s, > 0
 };
 
+/// Softening of rubber that was stretched before (Ogden & Roxburgh, Proc. R. Soc. A 455, 1999): on
+/// unloading and reloading the stress is eta times that of first loading,
+///   eta = 1 - erf((W_m - W)/(m + beta W_m))/r,
+/// W the energy of first loading at the stretch and W_m its maximum so far.
+struct MullinsEffect {
+  double r = 2.0;     ///< > 1
+  double m = 0.0;     ///< Pa, >= 0
+  double beta = 0.0;  ///< >= 0; m and beta not both 0
+};
+
 /// See the file.
 struct Hyperelastic {
   std::vector<PowerTerm> powers;
@@ -60,6 +71,7 @@ struct Hyperelastic {
   double saint_venant_shear = 0.0;
   /// Linear viscoelasticity (fem/element_history.hpp); all other numbers are those of slow motion.
   std::vector<PronyTerm> prony;
+  std::optional<MullinsEffect> mullins;  ///< of the isochoric part
 
   /// 1 - sum g: stiffness of slow motion over that of a sudden one; 1 without a series.
   double long_term_share() const;
@@ -70,7 +82,8 @@ struct Hyperelastic {
   /// nu_0 = (3 kappa - 2 mu_0) / (6 kappa + 2 mu_0).
   double poisson_ratio() const;
   /// Throws Error(invalid-material) unless all numbers are finite, exponents are not zero, and
-  /// mu_0 > 0 and kappa > 0, and the series is as PronyTerm says.
+  /// mu_0 > 0 and kappa > 0, and series and softening are as PronyTerm and
+  /// MullinsEffect say.
   /// @param what names the material in the message.
   void validate(const std::string& what) const;
 };

@@ -155,8 +155,32 @@ std::shared_ptr<const KeyTable> prony_table() {
                                .required = true}}});
 }
 
-/// Keys of all hyperelastic laws: viscoelasticity.
-std::vector<Key> viscosity_keys() {
+std::shared_ptr<const KeyTable> softening_table() {
+  return make_table(
+      {.name = "material: softening",
+       .description = "Softening of rubber that was stretched before (Ogden & Roxburgh 1999): on "
+                      "unloading the isochoric stress is 1 - erf((Wm - W)/(m + beta Wm))/r of the "
+                      "law's, W its energy and Wm the largest so far. `sinew fit --mullins` "
+                      "finds the numbers.",
+       .keys = {{.name = "r",
+                 .forms = {quantity(plain_number(), material_range(1.0))},
+                 .example = "2.1",
+                 .description = "How much at most: 1 - 1/r is left.",
+                 .required = true},
+                {.name = "m",
+                 .forms = {quantity(stress(), non_negative())},
+                 .example = "500 Pa",
+                 .description = "Energy by which Wm must be undercut, J/m^3.",
+                 .required = true},
+                {.name = "beta",
+                 .forms = {quantity(plain_number(), non_negative())},
+                 .example = "0.1",
+                 .default_text = "0",
+                 .description = "The same as a share of Wm."}}});
+}
+
+/// Keys of all hyperelastic laws: viscoelasticity and softening.
+std::vector<Key> history_keys() {
   Form series = list({table(prony_table())});
   return {{.name = "viscosity",
            .forms = {series},
@@ -168,7 +192,11 @@ std::vector<Key> viscosity_keys() {
            .example = "instantaneous",
            .default_text = "long-term",
            .description = "What the law's moduli are.",
-           .only_with = "viscosity"}};
+           .only_with = "viscosity"},
+          {.name = "softening",
+           .forms = {table(softening_table())},
+           .example = "{r: 2.1, m: 500 Pa, beta: 0.1}",
+           .description = "The Mullins effect. Without: unloading follows loading."}};
 }
 
 /// A hyperelastic law: its own keys, and one of the two that say how little it is compressible.
@@ -177,7 +205,7 @@ Choice energy(const char* word, const char* description, std::vector<Key> keys,
   keys.push_back(poisson_ratio(
       false, "That of small strain, below 0.5: 0.49 to 0.4999 for rubbers on hexahedra."));
   keys.push_back(modulus("bulk_modulus", "1 MPa", "In place of poisson_ratio.", false));
-  for (Key& key : viscosity_keys()) keys.push_back(std::move(key));
+  for (Key& key : history_keys()) keys.push_back(std::move(key));
   alternatives.push_back({{"poisson_ratio", "bulk_modulus"}, true});
   return {.word = word,
           .description = description,
@@ -221,7 +249,7 @@ std::vector<Key> ogden_keys() {
 
 std::vector<Key> saint_venant_keys() {
   std::vector<Key> keys = small_strain_keys();
-  for (Key& key : viscosity_keys()) keys.push_back(std::move(key));
+  for (Key& key : history_keys()) keys.push_back(std::move(key));
   return keys;
 }
 

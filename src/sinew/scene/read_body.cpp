@@ -89,6 +89,15 @@ material::Hyperelastic read_energy(const std::string& model, const Fields& field
   return energy;
 }
 
+void read_softening(const Fields& fields, material::Hyperelastic& energy) {
+  if (fields.find("softening") == nullptr) return;
+  const Fields effect = fields.below("softening");
+  material::MullinsEffect& mullins = energy.mullins.emplace();
+  effect.read("r", mullins.r);
+  effect.read("m", mullins.m);
+  effect.read("beta", mullins.beta);
+}
+
 /// The Prony series; whether the law's moduli are those of a sudden strain.
 bool read_viscosity(const Fields& fields, material::Hyperelastic& energy) {
   const Node* series = fields.find("viscosity");
@@ -136,6 +145,7 @@ MaterialDescription read_material(const Fields& body, const ReadContext& context
   }
   material.model = MaterialModel::hyperelastic;
   material.energy = read_energy(model, fields);
+  read_softening(fields, material.energy);
   const bool instantaneous = read_viscosity(fields, material.energy);
   try {
     material.energy.validate("material");

@@ -42,6 +42,9 @@ void hash_energy(StateHash& hash, const material::Hyperelastic& energy) {
     hash.add(term.relative_modulus);
     hash.add(term.relaxation_time);
   }
+  if (energy.mullins) {
+    for (const double x : {energy.mullins->r, energy.mullins->m, energy.mullins->beta}) hash.add(x);
+  }
 }
 
 void hash_points(StateHash& hash, const Points& points) {
