@@ -223,7 +223,7 @@ TEST_P(EveryViscousKind, UnloadingFollowsOgdenAndRoxburgh) {
   Body body(GetParam(), law), virgin(GetParam(), elastic);
   const auto forces_at = [&](double gamma) {
     body.history.begin_step(0.0);
-    const VectorX result = body.forces(body.sheared(gamma));
+    VectorX result = body.forces(body.sheared(gamma));
     body.assembly.advance(body.sheared(gamma), body.history);
     return result;
   };
@@ -240,7 +240,7 @@ TEST_P(EveryViscousKind, UnloadingFollowsOgdenAndRoxburgh) {
         1.0 -
         std::erf((largest - w) / (law.mullins->m + law.mullins->beta * largest)) / law.mullins->r;
     EXPECT_LT((found - eta * law_forces).norm(), 1e-9 * law_forces.norm()) << gamma;
-    if (gamma == 0.1) EXPECT_LT(eta, 0.6);  // it does soften
+    EXPECT_LT(gamma == 0.1 ? eta : 0.0, 0.6);  // it does soften
   }
 }
 

@@ -30,7 +30,7 @@ FemBody::FemBody(const FemBodyModel& model, ThreadPool& pool, bool with_curvatur
       load_factors_(model.loads().size(), 1.0),
       load_forces_(Points::Zero(positions_.rows(), 3)),
       drag_forces_(load_forces_),
-      viscous_(model.elements().solids()),
+      element_history_(model.elements().solids()),
       start_positions_(positions_),
       active_(&numbers(with_curvature)) {
   const auto nodes = model.elements().free_nodes();
@@ -55,14 +55,14 @@ FemBody::Numbers& FemBody::numbers(bool with_curvature) {
   auto& own = &system == &model_.system(false) ? plain_ : curved_;
   if (!own) {
     own = std::make_unique<Numbers>(system, pool_);
-    if (!viscous_.empty()) own->assembly.set_history(&viscous_);
+    if (!element_history_.empty()) own->assembly.set_history(&element_history_);
   }
   return *own;
 }
 
 void FemBody::prepare_history(double time_step) {
-  if (viscous_.empty() || prepared_step_ == time_step) return;
-  viscous_.begin_step(time_step);
+  if (element_history_.empty() || prepared_step_ == time_step) return;
+  element_history_.begin_step(time_step);
   prepared_step_ = time_step;
 }
 
@@ -336,9 +336,9 @@ mechanics::MotionReport FemBody::apply_motion(double scale) {
 double FemBody::end_step(const mechanics::StepWeights& weights) {
   using Jump = mechanics::StepWeights::Jump;
   add_work(weights);
-  if (!viscous_.empty()) {
+  if (!element_history_.empty()) {
     prepare_history(weights.time_step);
-    active_->assembly.advance(positions_, viscous_);
+    active_->assembly.advance(positions_, element_history_);
     prepared_step_.reset();
   }
   if (!weights.dynamic()) {  // nothing moves, and nothing is kept
@@ -373,40 +373,6 @@ double FemBody::end_step(const mechanics::StepWeights& weights) {
   return weights.error_jump * std::sqrt(worst);
 }
 
-void FemBody::restart() {
-  positions_ = model_.mesh().nodes;
-  velocities_.setZero();
-  for (Points& kept : history_) kept.setZero();
-  viscous_.reset();
-  prepared_step_.reset();
-  base_at_ = Eigen::Isometry3d::Identity();
-}
-
-std::size_t FemBody::state_size() const {
-  return (2 + history_.size()) * static_cast<std::size_t>(positions_.size()) + viscous_.size();
-}
-
-void FemBody::save_state(std::span<double> state) const {
-  std::copy_n(positions_.data(), positions_.size(), state.data());
-  double* to = state.data() + positions_.size();
-  to = std::copy_n(velocities_.data(), velocities_.size(), to);
-  for (const Points& kept : history_) to = std::copy_n(kept.data(), kept.size(), to);
-  viscous_.save({to, viscous_.size()});
-}
-
-void FemBody::load_state(std::span<const double> state) {
-  base_at_.reset();
-  std::copy_n(state.data(), positions_.size(), positions_.data());
-  const double* from = state.data() + positions_.size();
-  std::copy_n(from, velocities_.size(), velocities_.data());
-  for (Points& kept : history_) {
-    from += positions_.size();
-    std::copy_n(from, kept.size(), kept.data());
-  }
-  viscous_.load({from + positions_.size(), viscous_.size()});
-  prepared_step_.reset();
-}
-
 int FemBody::negative_pivots() const { return active_->factorisation->negative_pivots(); }
 
 double FemBody::strain_energy() {
@@ -415,31 +381,11 @@ double FemBody::strain_energy() {
   return active_->assembly.strain_energy();
 }
 
-double FemBody::kinetic_energy() const {
-  const auto nodes = model_.elements().free_nodes();
-  VectorX velocity(3 * static_cast<Eigen::Index>(nodes.size()));
-  VectorX momentum(velocity.size());
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    velocity.segment<3>(3 * static_cast<Eigen::Index>(i)) = velocities_.row(nodes[i]).transpose();
-  }
-  model_.elements().apply_mass(span_of(velocity), span_of(momentum));
-  return 0.5 * velocity.dot(momentum);
-}
-
-double FemBody::gravity_energy() const {
-  double energy = 0.0;
-  for (const NodeId node : model_.elements().free_nodes()) {
-    const Vector3 moved = (positions_.row(node) - model_.mesh().nodes.row(node)).transpose();
-    energy -= weight(node).dot(moved);
-  }
-  return energy;
-}
-
 std::size_t FemBody::bytes() const {
   const Eigen::Index free = right_.size() + motion_.size() + base_.size() + scratch_.size() +
                             travel_.size() + momentum_.size() + imbalance_.size();
   const auto points = (4 + history_.size()) * static_cast<std::size_t>(positions_.size());
-  auto total = sizeof(double) * (points + static_cast<std::size_t>(free) + viscous_.size());
+  auto total = sizeof(double) * (points + static_cast<std::size_t>(free) + element_history_.size());
   for (const Numbers* n : {plain_.get(), curved_.get()}) {
     if (n == nullptr) continue;
     total += n->assembly.bytes() + n->factorisation->bytes() +

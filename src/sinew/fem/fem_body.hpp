@@ -84,8 +84,8 @@ class FemBody : public mechanics::Body {
   /// Where the tether holds the body now, (3,) m. Only while there is one.
   Vector3 tether_point() const;
 
-  /// What relaxes in it; part of the state.
-  const ElementHistory& history() const { return viscous_; }
+  /// What its elements have behind them; part of the state.
+  const ElementHistory& history() const { return element_history_; }
 
   /// Adds the force that rows put on each free node, as of the last linearisation.
   /// @param effort (rows,) N of the world's rows. @param forces (n, 3) N, added to.
@@ -130,8 +130,8 @@ class FemBody : public mechanics::Body {
   std::vector<LoadBlock> load_stiffness_;               // symmetric, row >= column
   std::vector<LoadBlock> open_stiffness_;               // what is left of it; in statics alone
   mechanics::StepWork work_;
-  ElementHistory viscous_;
-  std::optional<double> prepared_step_;  // that viscous_ was last prepared for
+  ElementHistory element_history_;
+  std::optional<double> prepared_step_;  // that element_history_ was last prepared for
   Points start_positions_;  // of the step; velocities_ stay those of its start until it ends
   std::unique_ptr<Numbers> plain_, curved_;
   Numbers* active_ = nullptr;
