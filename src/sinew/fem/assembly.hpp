@@ -67,7 +67,8 @@ class Assembly {
   /// nothing. The energy is then the incremental one, whose derivative the forces are.
   /// @param history must outlive this object.
   void set_history(const ElementHistory* history) { history_ = history; }
-  /// Ends a step of the history at these positions. @param positions (n, 3) m.
+  /// Ends a step of the history at these positions.
+  /// @param positions (n, 3) m. @param history of this model's elements.
   void advance(const Points& positions, ElementHistory& history);
 
   /// Volume ratios alone, at a quarter of the cost of forces: to judge a motion before it is taken.

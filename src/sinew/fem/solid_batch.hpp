@@ -76,7 +76,8 @@ struct Dilatation {
 };
 
 /// Of the elements' own points, or of the patches that they belong to.
-/// @param ratios det F of each point. @param patch_ratio of the group's patches, null without.
+/// @param group,batch,number of which batch. @param ratios det F of each point.
+/// @param patch_ratio of the group's patches, null without. @param bulk kappa, Pa.
 template <int N, int Q>
 SINEW_INLINE Dilatation shared_dilatation(const SolidGroup& group, const Batch<N, Q>& batch,
                                           std::int64_t number, const Lanes (&ratios)[Q],
@@ -105,7 +106,8 @@ struct Overstress {
   Lanes3x3 inverse;  // F^-T
   Lanes scale, s;    // J^(-2/3); 1 and 0 for a law that is not split
 
-  /// @param rows six of ElementHistory::carried(). @param split whether H acts on J^(-2/3) C.
+  /// @param rows six of PointHistory::carried. @param split whether H acts on J^(-2/3) C.
+  /// @param f,cof,ratio F, its cofactors and its determinant.
   SINEW_INLINE Overstress(const LaneRow* rows, bool split, const Lanes3x3& f, const Lanes3x3& cof,
                           const Lanes& ratio)
       : h{material::load(rows[0].value), material::load(rows[1].value),

@@ -227,7 +227,7 @@ SINEW_INLINE LanesLogResponse respond(const Hyperelastic& law, const Principal& 
   return result;
 }
 
-/// A law `factor` times as stiff. @param response changed.
+/// A law so many times as stiff. @param response changed. @param factor how many.
 SINEW_INLINE void scale(LanesLogResponse& response, double factor) {
   response.energy *= factor;
   for (int i = 0; i < 3; ++i) {
