@@ -46,7 +46,7 @@ async function colour(page, field) {
 }
 
 await draw('docs/images/view.png', [circle], {}, async (page) => {
-  await colour(page, 'stress');
+  await colour(page, 'von_mises_stress');
   await step(page, 620);
 });
 await draw('docs/images/view_dark.png', [circle], {}, async (page) => {
@@ -65,20 +65,25 @@ await draw('docs/images/view_reach.png', [circle], {}, async (page) => {
   await page.keyboard.press('Tab');
   await step(page, 260);
 });
+await draw('docs/images/view_fields.png', [join(root, 'examples/ring/sma.yaml')], {}, async (page) => {
+  await colour(page, 'max_stretch');
+  await page.selectOption('[aria-label="Signals to plot"]', 'probe');
+  await step(page, 400);
+});
 const folder = mkdtempSync(join(tmpdir(), 'sinew-pictures-'));
 execFileSync(program, ['run', circle, '--duration', '4s', '--out', folder, '--quiet']);
 await draw('docs/images/view_replay.png', [folder], {}, async (page) => {
-  await colour(page, 'strain');
+  await colour(page, 'max_stretch');
   for (let frame = 0; frame <= 250; frame += 10) await ask(page, {type: 'seek', frame});
 });
 rmSync(folder, {recursive: true});
 await draw('docs/images/view_tablet.png', [circle], {width: 820, height: 1100}, async (page) => {
-  await colour(page, 'stress');
+  await colour(page, 'von_mises_stress');
   await step(page, 300);
 });
 for (const [scene, count] of EXAMPLES) {
   await draw(`examples/${scene}.png`, [join(root, 'examples', `${scene}.yaml`)], {width: 600, height: 400}, async (page) => {
-    await colour(page, 'stress');
+    await colour(page, 'von_mises_stress');
     await step(page, count);
     await page.addStyleTag({content: '#top, #panel, #plots, #legend, #alerts, #scale { display: none !important; }'});
     await page.evaluate(() => window.sinewView.plain());

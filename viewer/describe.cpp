@@ -108,6 +108,33 @@ Json effector_json(const sim::Model& model, int index) {
           {"directions", directions}};
 }
 
+// The signals of a probe: of a line its length alone, its points are seen.
+struct ProbeSignal {
+  std::string key, label;
+  const char* unit;
+};
+
+std::vector<ProbeSignal> probe_signals(const constraint::Probe& probe) {
+  const bool line = dynamic_cast<const constraint::LineProbe*>(&probe) != nullptr;
+  std::vector<ProbeSignal> list;
+  for (const constraint::ProbeComponent& part : probe.components()) {
+    const bool sole = line || part.name.empty();
+    const std::string label = sole ? probe.name() : fmt::format("{}.{}", probe.name(), part.name);
+    list.push_back({"probe." + label, label, part.unit});
+    if (sole) break;
+  }
+  return list;
+}
+
+Json probe_json(const constraint::Probe& probe) {
+  Json signals = Json::array();
+  for (const ProbeSignal& signal : probe_signals(probe)) signals.push_back(signal.key);
+  return {{"name", probe.name()},
+          {"kind", probe.kind()},
+          {"marks", probe.mark_count()},
+          {"signals", signals}};
+}
+
 Json body_json(const mechanics::BodyModel& model, const Surface& surface) {
   const auto& fem = dynamic_cast<const fem::FemBodyModel&>(model);
   return {{"name", model.name()},
@@ -172,12 +199,19 @@ std::vector<SignalInfo> list_signals(const sim::Model& model) {
     const std::string unit = model.effector(static_cast<int>(i)).unit();
     for (const char* axis : {"x", "y", "z"}) {
       const std::string key = fmt::format("{}.{}{}", name, unit == "m" ? "" : "r", axis);
-      list.push_back({key, key, unit, "effector"});
+      list.push_back({key, key, unit, unit == "m" ? "effector" : "rotation"});
     }
   }
   for (std::size_t i = 0; i < model.effectors().size(); ++i) {
     const std::string& name = model.effectors()[i].name;
-    list.push_back({name + ".error", name, model.effector(static_cast<int>(i)).unit(), "error"});
+    const std::string unit = model.effector(static_cast<int>(i)).unit();
+    list.push_back({name + ".error", name, unit, unit == "m" ? "error" : "rotation error"});
+  }
+  for (const auto& probe : model.probes()) {
+    for (const ProbeSignal& signal : probe_signals(*probe)) {
+      const bool angle = std::string_view(signal.unit) == "rad";
+      list.push_back({signal.key, signal.label, signal.unit, angle ? "angle" : "probe"});
+    }
   }
   for (const char* kind : {"strain", "kinetic", "gravity"}) {
     list.push_back({fmt::format("energy.{}", kind), kind, "J", "energy"});
@@ -189,6 +223,30 @@ std::vector<SignalInfo> list_signals(const sim::Model& model) {
   list.push_back({"real_time_factor", "real-time factor", "", "solver"});
   list.push_back({"residual", "residual", "N", "solver"});
   list.push_back({"smallest_volume_ratio", "smallest volume ratio", "", "solver"});
+  return list;
+}
+
+const std::vector<FieldInfo>& list_fields() {
+  static const std::vector<FieldInfo> list = [] {
+    std::vector<FieldInfo> all = {
+        {"displacement", "Displacement", "m", "distance from the place at rest",
+         [](const fem::FemBody& body, const sim::Simulation&, const fem::NodalMean&) {
+           return fem::displacement_field(body);
+         }}};
+    for (const fem::ElementFieldInfo& info : fem::element_fields()) {
+      all.push_back({info.name, info.label, info.unit, info.description,
+                     [field = info.field](const fem::FemBody& body, const sim::Simulation&,
+                                          const fem::NodalMean& mean) {
+                       return mean(fem::element_field(body, field));
+                     }});
+    }
+    all.push_back(
+        {"actuator_force", "Actuators' force", "N", "force of the actuators on each node",
+         [](const fem::FemBody& body, const sim::Simulation& simulation, const fem::NodalMean&) {
+           return fem::row_force_field(body, simulation.efforts());
+         }});
+    return all;
+  }();
   return list;
 }
 
@@ -225,7 +283,7 @@ Description describe(const scene::Robot& robot) {
     result.surfaces.back().body = body->name();
     bodies.push_back(body_json(*body, result.surfaces.back()));
   }
-  Json actuators = Json::array(), effectors = Json::array();
+  Json actuators = Json::array(), effectors = Json::array(), probes = Json::array();
   for (std::size_t i = 0; i < model.actuators().size(); ++i) {
     actuators.push_back(actuator_json(model, robot, static_cast<int>(i)));
     const std::size_t points = actuators.back()["points"];
@@ -235,12 +293,16 @@ Description describe(const scene::Robot& robot) {
     effectors.push_back(effector_json(model, static_cast<int>(i)));
     result.effectors.push_back(model.effectors()[i].name);
   }
+  for (const auto& probe : model.probes()) probes.push_back(probe_json(*probe));
   result.signals = list_signals(model);
-  result.fields = {"displacement", "strain", "stress", "force"};
-  const Json fields = {{{"name", "displacement"}, {"label", "Displacement"}, {"unit", "m"}},
-                       {{"name", "strain"}, {"label", "Equivalent strain"}, {"unit", ""}},
-                       {{"name", "stress"}, {"label", "Von Mises stress"}, {"unit", "Pa"}},
-                       {{"name", "force"}, {"label", "Actuators' force"}, {"unit", "N"}}};
+  Json fields = Json::array();
+  for (const FieldInfo& field : list_fields()) {
+    result.fields.push_back(field.name);
+    fields.push_back({{"name", field.name},
+                      {"label", field.label},
+                      {"unit", field.unit},
+                      {"description", field.description}});
+  }
   const Json scene = {{"name", robot.description.name},
                       {"time_step", model.step().time_step},
                       {"gravity", vector_json(robot.description.gravity)},
@@ -249,6 +311,7 @@ Description describe(const scene::Robot& robot) {
                       {"fields", fields},
                       {"actuators", actuators},
                       {"effectors", effectors},
+                      {"probes", probes},
                       {"controllers", controllers_json(robot)},
                       {"signals", signals_json(result.signals)}};
   result.scene = scene.dump();

@@ -2,19 +2,30 @@
 /// What a page is told of a robot before the first frame.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "sinew/fem/element_fields.hpp"
 #include "sinew/scene/build.hpp"
 
 #include "frame.hpp"
 
 namespace sinew::viewer {
 
-/// Fields that finite-element bodies can be coloured by, in the order of Description::fields.
-enum class Field { displacement, strain, stress, force };
-inline constexpr int kFieldCount = 4;
+/// Fields that finite-element bodies can be coloured by: the displacement, those of the elements,
+/// and the force of the actuators on each node. In the order of Description::fields.
+struct FieldInfo {
+  std::string name, label, unit, description;
+  /// (n,) at all nodes. @param body,simulation one of its bodies. @param mean of that body.
+  std::function<std::vector<double>(const fem::FemBody&, const sim::Simulation&,
+                                    const fem::NodalMean&)>
+      values;
+};
+const std::vector<FieldInfo>& list_fields();
+/// Which of list_fields() are wanted.
+using FieldChoice = std::vector<bool>;
 
 /// In the order in which sources fill Frame::signals.
 std::vector<SignalInfo> list_signals(const sim::Model& model);

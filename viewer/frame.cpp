@@ -17,7 +17,15 @@ static_assert(std::endian::native == std::endian::little, "numbers are sent as t
 
 constexpr std::uint32_t kMagic = 0x31574e53;  // "SNW1"
 enum class Kind : std::uint16_t { surface = 1, frame = 2 };
-enum class Section : std::uint16_t { positions = 1, field, cables, effectors, targets, pull };
+enum class Section : std::uint16_t {
+  positions = 1,
+  field,
+  cables,
+  effectors,
+  targets,
+  pull,
+  probes
+};
 
 /// Appends numbers to bytes.
 class Writer {
@@ -100,6 +108,7 @@ void encode_frame(const Frame& frame, const FrameChoice& choice, std::vector<std
   if (choice.shape) {
     writer.section(Section::cables, 0, frame.cables);
     writer.section(Section::effectors, 0, frame.effectors);
+    if (!frame.probes.empty()) writer.section(Section::probes, 0, frame.probes);
   }
   writer.section(Section::targets, 0, frame.targets);
   if (frame.pull) {

@@ -32,7 +32,7 @@ struct SignalInfo {
   std::string key;    ///< "long_0.tension"
   std::string label;  ///< for people
   std::string unit;   ///< SI; empty for plain numbers
-  std::string group;  ///< effort, motion, effector, error, energy, time or solver
+  std::string group;  ///< signals of one unit that are plotted together: "effort", "probe"
 };
 
 /// Everything that does not change while one robot is shown.
@@ -68,6 +68,7 @@ struct Frame {
   std::vector<float> cables;     ///< (3 points,) m, all cables' points one after the other
   std::vector<float> effectors;  ///< (3 effectors,) m
   std::vector<float> targets;    ///< (3 effectors,) m; NaN where there is none
+  std::vector<float> probes;     ///< (3 marks,) m, all probes' marks one after the other
   std::optional<PullFrame> pull;
 };
 

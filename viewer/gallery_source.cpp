@@ -72,13 +72,13 @@ GallerySource::GallerySource(std::vector<Example> examples) : examples_(std::mov
                      seen ? Json("/download/thumbnail/" + example.name + ".png") : Json(nullptr)}});
   }
   const Json empty = Json::array();
-  description_.scene = Json{
-      {"name", "Examples"},   {"time_step", 0.01},
-      {"gravity", {0, 0, 0}}, {"bounds", {{0, 0, 0}, {1, 1, 1}}},
-      {"bodies", empty},      {"fields", empty},
-      {"actuators", empty},   {"effectors", empty},
-      {"controllers", empty}, {"signals", empty},
-      {"examples", list}}.dump();
+  description_.scene = Json{{"name", "Examples"},   {"time_step", 0.01},
+                            {"gravity", {0, 0, 0}}, {"bounds", {{0, 0, 0}, {1, 1, 1}}},
+                            {"bodies", empty},      {"fields", empty},
+                            {"actuators", empty},   {"effectors", empty},
+                            {"probes", empty},      {"controllers", empty},
+                            {"signals", empty},     {"examples", list}}
+                           .dump();
 }
 
 void GallerySource::start(Publisher& publisher) {
@@ -103,7 +103,8 @@ void GallerySource::submit(const Request& request, std::function<void(Outcome)> 
     if (const auto* open = std::get_if<Open>(&request)) {
       const fs::path path = find(open->name).scene;
       publisher_->replace([path, examples = examples_] { return open_example(path, examples); });
-    } else if (!std::holds_alternative<Release>(request)) {
+    } else if (!std::holds_alternative<Release>(request) &&
+               !std::holds_alternative<ChooseField>(request)) {
       throw Error(ErrorKind::not_in_this_version, {}, "the gallery cannot do this",
                   "open an example first");
     }

@@ -53,8 +53,7 @@ class LiveSource : public SourceThread {
   bool advance() override;
   void handle(const Request& request) override;
   void require_ready() const override;
-  std::shared_ptr<const Frame> frame(const std::array<bool, kFieldCount>& wanted,
-                                     double real_time_factor) override {
+  std::shared_ptr<const Frame> frame(const FieldChoice& wanted, double real_time_factor) override {
     return state_.frame(wanted, real_time_factor);
   }
   std::string status_members() const override;

@@ -105,7 +105,7 @@ void ReplaySource::show() {
   state_.show(recorded);
 }
 
-std::shared_ptr<const Frame> ReplaySource::frame(const std::array<bool, kFieldCount>& wanted,
+std::shared_ptr<const Frame> ReplaySource::frame(const FieldChoice& wanted,
                                                  double real_time_factor) {
   return state_.frame(wanted, real_time_factor);
 }

@@ -88,7 +88,7 @@ RobotState::RobotState(scene::Robot robot, std::shared_ptr<sim::Simulation> simu
       first_(std::move(first)) {
   for (std::size_t b = 0; b < robot_.model->bodies().size(); ++b) {
     const auto& body = simulation_->fem_body(static_cast<int>(b));
-    fields_.push_back(std::make_unique<fem::NodalFields>(body.fem_model()));
+    means_.emplace_back(body.fem_model());
   }
   if (first_) attach(first_->name, first_->settings);
 }
@@ -278,6 +278,12 @@ void RobotState::fill_signals(Frame& frame, double real_time_factor) {
     const int task = task_of(static_cast<int>(i));
     values.push_back(task < 0 ? kNone : controller_->error(task));
   }
+  for (std::size_t p = 0; p < model.probes().size(); ++p) {
+    const std::vector<double> measured = simulation_->probe_values(static_cast<int>(p));
+    const bool line =
+        dynamic_cast<const constraint::LineProbe*>(model.probes()[p].get()) != nullptr;
+    values.insert(values.end(), measured.begin(), line ? measured.begin() + 1 : measured.end());
+  }
   const sim::Energies energies = simulation_->energies();
   values.insert(values.end(), {energies.strain, energies.kinetic, energies.gravity});
   const sim::StepReport& report = simulation_->report();
@@ -286,8 +292,7 @@ void RobotState::fill_signals(Frame& frame, double real_time_factor) {
   values.insert(values.end(), {real_time_factor, report.residual, report.smallest_volume_ratio});
 }
 
-void RobotState::fill_body(std::size_t index, const std::array<bool, kFieldCount>& wanted,
-                           BodyFrame& frame) {
+void RobotState::fill_body(std::size_t index, const FieldChoice& wanted, BodyFrame& frame) {
   const fem::FemBody& body = simulation_->fem_body(static_cast<int>(index));
   const Surface& surface = description_.surfaces[index];
   frame.positions.reserve(3 * surface.nodes.size());
@@ -296,27 +301,12 @@ void RobotState::fill_body(std::size_t index, const std::array<bool, kFieldCount
       frame.positions.push_back(static_cast<float>(body.positions()(node, c)));
     }
   }
-  frame.fields.resize(kFieldCount);
-  nodal_.resize(static_cast<std::size_t>(body.positions().rows()));
-  for (int f = 0; f < kFieldCount; ++f) {
-    if (!wanted[static_cast<std::size_t>(f)]) continue;
-    switch (static_cast<Field>(f)) {
-      case Field::displacement:
-        fields_[index]->displacement(body, nodal_);
-        break;
-      case Field::strain:
-        fields_[index]->strain(body, nodal_);
-        break;
-      case Field::stress:
-        fields_[index]->stress(body, nodal_);
-        break;
-      case Field::force:
-        fields_[index]->row_force(body, simulation_->efforts(), nodal_);
-        break;
-    }
+  frame.fields.resize(wanted.size());
+  for (std::size_t f = 0; f < wanted.size(); ++f) {
+    if (!wanted[f]) continue;
+    const std::vector<double> nodal = list_fields()[f].values(body, *simulation_, means_[index]);
     for (const NodeId node : surface.nodes) {
-      frame.fields[static_cast<std::size_t>(f)].push_back(
-          static_cast<float>(nodal_[static_cast<std::size_t>(node)]));
+      frame.fields[f].push_back(static_cast<float>(nodal[static_cast<std::size_t>(node)]));
     }
   }
 }
@@ -332,6 +322,10 @@ void RobotState::fill_points(Frame& frame) const {
     const Points points = cable->points(simulation_->world().placement());
     for (Eigen::Index k = 0; k < points.rows(); ++k) put(frame.cables, points.row(k).transpose());
   }
+  for (const auto& probe : model.probes()) {
+    const Points marks = probe->marks(simulation_->world().placement());
+    for (Eigen::Index k = 0; k < marks.rows(); ++k) put(frame.probes, marks.row(k).transpose());
+  }
   for (std::size_t i = 0; i < model.effectors().size(); ++i) {
     const auto index = static_cast<int>(i);
     const bool point = std::string_view(model.effector(index).unit()) == "m";
@@ -345,8 +339,7 @@ void RobotState::fill_points(Frame& frame) const {
   }
 }
 
-std::shared_ptr<const Frame> RobotState::frame(const std::array<bool, kFieldCount>& wanted,
-                                               double real_time_factor) {
+std::shared_ptr<const Frame> RobotState::frame(const FieldChoice& wanted, double real_time_factor) {
   auto frame = std::make_shared<Frame>();
   frame->step = static_cast<std::uint64_t>(simulation_->steps());
   frame->time = simulation_->time();

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "sinew/fem/nodal_fields.hpp"
+#include "sinew/fem/element_fields.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/sim/simulation.hpp"
 
@@ -82,8 +82,7 @@ class RobotState {
 
   /// Everything that is to be seen now.
   /// @param wanted which fields are. @param real_time_factor is among the signals.
-  std::shared_ptr<const Frame> frame(const std::array<bool, kFieldCount>& wanted,
-                                     double real_time_factor);
+  std::shared_ptr<const Frame> frame(const FieldChoice& wanted, double real_time_factor);
   /// JSON of the status message without what the source itself knows: controller, commands,
   /// targets, troubles, stopped.
   std::string status_members() const;
@@ -93,7 +92,7 @@ class RobotState {
   void detach();
   int task_of(int effector) const;
   void fill_signals(Frame& frame, double real_time_factor);
-  void fill_body(std::size_t index, const std::array<bool, kFieldCount>& wanted, BodyFrame& frame);
+  void fill_body(std::size_t index, const FieldChoice& wanted, BodyFrame& frame);
   void fill_points(Frame& frame) const;
 
   scene::Robot robot_;
@@ -104,8 +103,7 @@ class RobotState {
   std::string controller_name_;
   std::optional<Steering> first_;
   bool observing_ = false;
-  std::vector<std::unique_ptr<fem::NodalFields>> fields_;
-  std::vector<double> nodal_;
+  std::vector<fem::NodalMean> means_;  ///< one a body
   std::map<std::string, Vector3> targets_;
   std::optional<int> pulled_;  ///< body
   std::optional<StoppedRun> stopped_;

@@ -367,6 +367,7 @@ void Server::Hub::receive(ViewConnection& view, const Message& message) {
   try {
     if (const auto* field = std::get_if<ChooseField>(&message.request)) {
       choose_field(view, field->name);
+      source_->submit(message.request, [](const Outcome&) {});  // a robot at rest is shown anew
       return answer({});
     }
     if (std::holds_alternative<Ping>(message.request)) return answer({});

@@ -169,15 +169,15 @@ void SourceThread::do_request(const Request& request) {
   } else if (const auto* speed = std::get_if<Speed>(&request)) {
     speed_ = speed->factor;
     restart_clock();
-  } else {
+  } else if (!std::holds_alternative<ChooseField>(request)) {  // which wants_field() tells
     handle(request);
   }
 }
 
 void SourceThread::publish() {
-  std::array<bool, kFieldCount> wanted{};
-  for (int f = 0; f < kFieldCount; ++f) {
-    wanted[static_cast<std::size_t>(f)] = publisher_->wants_field(f);
+  FieldChoice wanted(list_fields().size());
+  for (std::size_t f = 0; f < wanted.size(); ++f) {
+    wanted[f] = publisher_->wants_field(static_cast<int>(f));
   }
   const bool slow = playing_ && speed_ > 0.0 && factor_ > 0.0 && factor_ < kSlow * speed_;
   std::string status = fmt::format(R"({{"playing":{},"speed":{},"slow":{},{})", playing_, speed_,

@@ -3,7 +3,6 @@
 /// recorded runs have in common.
 #pragma once
 
-#include <array>
 #include <chrono>
 #include <condition_variable>
 #include <deque>
@@ -40,7 +39,7 @@ class SourceThread : public Source {
   virtual void handle(const Request& request) = 0;
   /// Throws Error when play and step are refused.
   virtual void require_ready() const {}
-  virtual std::shared_ptr<const Frame> frame(const std::array<bool, kFieldCount>& wanted,
+  virtual std::shared_ptr<const Frame> frame(const FieldChoice& wanted,
                                              double real_time_factor) = 0;
   /// JSON object of the status message without playing, speed and slow.
   virtual std::string status_members() const = 0;

@@ -196,6 +196,10 @@ Facts scene_facts(const InfoOptions& options) {
     facts.json["effectors"].push_back(effector.name);
     facts.text += fmt::format("  effector {}\n", effector.name);
   }
+  for (const auto& probe : model.probes()) {
+    facts.json["probes"].push_back(probe->name());
+    facts.text += fmt::format("  probe {}: {}\n", probe->name(), probe->kind());
+  }
   for (const auto& controller : robot.controllers) {
     facts.json["controllers"].push_back(controller.name);
     facts.text += fmt::format("  controller {}\n", controller.name);
@@ -218,14 +222,15 @@ Facts run_facts(const InfoOptions& options) {
                 {"states", run.has_states()},
                 {"bodies", run.bodies()},
                 {"actuators", run.actuators()},
-                {"effectors", run.effectors()}};
+                {"effectors", run.effectors()},
+                {"probes", run.probes()}};
   facts.text = fmt::format(
       "{}: run of {} by Sinew {}\n  {} frames from {:g} s to {:g} s, {}\n  bodies: {}\n"
-      "  actuators: {}\n  effectors: {}\n",
+      "  actuators: {}\n  effectors: {}\n  probes: {}\n",
       options.file, run.scene_name(), run.sinew_version(), run.frames(), first, last,
       run.has_states() ? "with positions of all nodes" : "without positions of nodes",
       fmt::join(run.bodies(), ", "), fmt::join(run.actuators(), ", "),
-      fmt::join(run.effectors(), ", "));
+      fmt::join(run.effectors(), ", "), fmt::join(run.probes(), ", "));
   return facts;
 }
 

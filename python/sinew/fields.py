@@ -1,9 +1,14 @@
 """Strains and stresses of a body's elements, and their means at nodes.
 
+    body.element_field("von_mises_stress")          # (m,) Pa
+    body.nodal_field("max_stretch")                 # (n,), as the view colours it
     F = body.deformation_gradients                  # (m, 3, 3)
     sigma = body.cauchy_stresses                    # (m, 3, 3) Pa
-    sinew.fields.von_mises(sigma)                   # (m,) Pa
+    sinew.fields.principal_values(sigma)            # (m, 3) Pa
     sinew.fields.to_nodes(body, sigma)              # (n, 3, 3) Pa, volume-weighted means
+
+The functions here do the algebra of tensors, those of a body or of your own. What a body's fields
+are called, their units and equations are in FIELDS.
 """
 
 from __future__ import annotations
@@ -11,7 +16,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["green_strain", "log_strain", "principal_stretches", "principal_values", "to_nodes", "von_mises"]
+from . import _core
+
+__all__ = ["FIELDS", "green_strain", "log_strain", "principal_stretches", "principal_values", "to_nodes", "von_mises"]
+
+#: Fields of Body.element_field() and Body.nodal_field(): name -> (unit, what it is).
+FIELDS: dict[str, tuple[str, str]] = _core._element_fields()
 
 
 def principal_stretches(deformation: ArrayLike) -> NDArray:
@@ -105,21 +115,4 @@ def to_nodes(body, values: ArrayLike) -> NDArray:
     (n, ...) ndarray
         NaN at nodes that belong to no element.
     """
-    data = np.asarray(values, float)
-    volumes = np.asarray(body.element_volumes)
-    tets = body.quadratic_tetrahedra if len(body.quadratic_tetrahedra) else body.tetrahedra
-    count = len(body.rest_positions)
-    total = np.zeros((count, *data.shape[1:]))
-    weight = np.zeros(count)
-    first = 0
-    for nodes in (np.asarray(tets), np.asarray(body.hexahedra)):
-        if len(nodes) == 0:
-            continue
-        part = slice(first, first + len(nodes))
-        shape = (-1,) + (1,) * (data.ndim - 1)
-        for corner in nodes.T:
-            np.add.at(total, corner, volumes[part].reshape(shape) * data[part])
-            np.add.at(weight, corner, volumes[part])
-        first += len(nodes)
-    with np.errstate(invalid="ignore"):
-        return total / weight.reshape((-1,) + (1,) * (data.ndim - 1))
+    return body.nodal_means(np.asarray(values, float))

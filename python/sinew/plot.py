@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import csv
 import json
+import math
 import pathlib
+import re
 import sys
 
 OURS, DATA, SECOND, QUIET = "#1f5fa8", "#222222", "#c8501e", "#999999"
@@ -24,18 +26,20 @@ def _pyplot():
 
 
 # Shown units: what one SI unit is in them.
-SHOWN = {"m": ("mm", 1e3), "Pa": ("kPa", 1e-3), "m^3": ("ml", 1e6), "J": ("mJ", 1e3)}
+SHOWN = {"m": ("mm", 1e3), "Pa": ("kPa", 1e-3), "m^3": ("ml", 1e6), "J": ("mJ", 1e3), "rad": ("degrees", 180 / math.pi)}
 
 
-def read_run(folder) -> dict[str, list[float]]:
+def read_run(folder, table="run.csv") -> dict[str, list[float]]:
     """The numeric columns of a run's table, by their headings.
 
     Parameters
     ----------
     folder : path-like
         As `sinew run` wrote it.
+    table : str
+        Or "probes.csv".
     """
-    with open(pathlib.Path(folder) / "run.csv", newline="", encoding="utf-8") as file:
+    with open(pathlib.Path(folder) / table, newline="", encoding="utf-8") as file:
         rows = list(csv.reader(file))
     columns: dict[str, list[float]] = {}
     for k, name in enumerate(rows[0]):
@@ -52,7 +56,9 @@ def _split(heading: str) -> tuple[str, str]:
 
 
 def run(folder, out) -> pathlib.Path:
-    """Draws efforts, motions, effectors, errors and energies of a recorded run over time.
+    """Draws efforts, motions, effectors, probes, errors and energies of a recorded run over time.
+
+    Of a line that is probed its length is drawn.
 
     Parameters
     ----------
@@ -83,6 +89,11 @@ def run(folder, out) -> pathlib.Path:
         if group.startswith(("Effort", "Motion")):
             name = name.rsplit(".", 1)[0]
         panels.setdefault(group, []).append((name, unit, values))
+    probes = read_run(folder, "probes.csv") if (pathlib.Path(folder) / "probes.csv").exists() else {}
+    for heading, values in probes.items():
+        name, unit = _split(heading)
+        if name != "time" and not re.search(r"\.\d+\.[xyz]$", name):
+            panels.setdefault(f"Probes ({unit})", []).append((name.removesuffix(".length"), unit, values))
     count = max(1, len(panels))
     figure, axes = plt.subplots(count, 1, figsize=(9, 2.3 * count + 0.3), sharex=True, squeeze=False)
     for axis, (group, series) in zip(axes[:, 0], panels.items()):

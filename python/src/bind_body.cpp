@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include "sinew/fem/assembly.hpp"
-#include "sinew/fem/element_states.hpp"
 #include "sinew/mesh/self_touch.hpp"
 
 #include "arrays.hpp"
@@ -182,61 +181,8 @@ A live, writable view: `body.external_forces[5] = [0, 0, -0.1]` acts from the ne
 stay until changed; reset() sets them to zero. Forces on fixed nodes do nothing.)");
 }
 
-// (m, 3, 3) of tensors.
-Array tensors(const std::vector<Matrix3>& list) {
-  Array result({static_cast<Eigen::Index>(list.size()), Eigen::Index{3}, Eigen::Index{3}});
-  double* to = result.mutable_data();
-  for (const Matrix3& m : list) {
-    for (int r = 0; r < 3; ++r) {
-      for (int c = 0; c < 3; ++c) *to++ = m(r, c);
-    }
-  }
-  return result;
-}
-
-template <typename Get>
-auto of_elements(Get get) {
-  return [get](const Body& self) {
-    const Session::Use use(*self.session);
-    return get(fem::element_states(body(self)));
-  };
-}
-
-Array support_forces(const Body& self) {
-  const Session::Use use(*self.session);
-  sim::Simulation& simulation = self.session->simulation();
-  simulation.world().measure_delta();  // rows at the present state
-  return copy(fem::reactions(body(self), fem::element_states(body(self)), simulation.efforts(),
-                             simulation.world().rows().direction, simulation.model().rows(),
-                             self.index));
-}
-
-void bind_stress(py::class_<Body>& type) {
-  type.def_property_readonly(
-          "deformation_gradients",
-          of_elements([](const fem::ElementStates& s) { return tensors(s.deformation); }),
-          "(m, 3, 3) ndarray: F = dx/dX of every element, tetrahedra before hexahedra, mean over "
-          "its points of integration. See `sinew.fields` for strains.")
-      .def_property_readonly(
-          "piola_stresses",
-          of_elements([](const fem::ElementStates& s) { return tensors(s.piola); }),
-          "(m, 3, 3) ndarray: first Piola stress of every element (Pa), force by area at rest.")
-      .def_property_readonly(
-          "cauchy_stresses",
-          of_elements([](const fem::ElementStates& s) { return tensors(s.cauchy); }),
-          "(m, 3, 3) ndarray: Cauchy stress of every element (Pa), force by area now.")
-      .def_property_readonly(
-          "element_volumes", of_elements([](const fem::ElementStates& s) {
-            const auto count = static_cast<Eigen::Index>(s.volume.size());
-            return copy(VectorX(Eigen::Map<const VectorX>(s.volume.data(), count)));
-          }),
-          "(m,) ndarray: volume of every element at rest (m^3).")
-      .def_property_readonly(
-          "reactions", &support_forces,
-          "(n, 3) ndarray: forces of the supports on fixed nodes and held axes (N), which keep "
-          "these in equilibrium with elements, gravity, external forces and actuators; zero "
-          "elsewhere.")
-      .def(
+void bind_loads_of(py::class_<Body>& type) {
+  type.def(
           "self_touch",
           [](const Body& self) -> py::object {
             const Session::Use use(*self.session);
@@ -390,7 +336,8 @@ void bind_body(py::module_& module) {
                            mesh.tetrahedra.size() + mesh.hexahedra.size());
       });
   bind_state(type);
-  bind_stress(type);
+  bind_fields(module, type);
+  bind_loads_of(type);
   bind_mesh_of(type);
   bind_mechanics(type);
 }

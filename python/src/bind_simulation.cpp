@@ -70,6 +70,15 @@ py::dict all_effectors(const std::shared_ptr<Session>& self) {
   return result;
 }
 
+py::dict all_probes(const std::shared_ptr<Session>& self) {
+  py::dict result;
+  int index = 0;
+  for (const auto& probe : self->model().probes()) {
+    result[probe->name().c_str()] = Probe{{self, index++}};
+  }
+  return result;
+}
+
 py::dict all_bodies(const std::shared_ptr<Session>& self) {
   py::dict result;
   int index = 0;
@@ -164,6 +173,17 @@ A load by its name. Raises Error (unknown-name) with a suggestion.
           "and the friction of cables took. Work less dissipation less what the energies gained is "
           "the integrator's loss.")
       .def(
+          "probe",
+          [](const std::shared_ptr<Session>& self, const std::string& name) {
+            return Probe{{self, self->model().probe_index(name)}};
+          },
+          py::arg("name"),
+          R"(probe($self, name)
+--
+
+A probe by its name. Raises Error (unknown-name) with a suggestion.
+)")
+      .def(
           "body",
           [](const std::shared_ptr<Session>& self, const std::string& name) {
             return Body{{self, self->model().body_index(name)}};
@@ -178,6 +198,8 @@ A body by its name. Raises Error (unknown-name) with a suggestion.
                              "dict: all actuators by name, in the scene's order.")
       .def_property_readonly("effectors", &all_effectors,
                              "dict: all effectors by name, in the scene's order.")
+      .def_property_readonly("probes", &all_probes,
+                             "dict: all probes by name, in the scene's order.")
       .def_property_readonly("bodies", &all_bodies,
                              "dict: all bodies by name, in the scene's order.");
 }

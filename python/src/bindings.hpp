@@ -22,6 +22,7 @@ void bind_reports(py::module_& module);
 void bind_actuator(py::module_& module);
 void bind_effector(py::module_& module);
 void bind_load(py::module_& module);
+void bind_probe(py::module_& module);
 void bind_body(py::module_& module);
 void bind_simulation(py::module_& module);
 void bind_controller(py::module_& module);
@@ -37,7 +38,12 @@ struct Part {
 struct Actuator : Part {};
 struct Effector : Part {};
 struct Load : Part {};
+struct Probe : Part {};
 struct Body : Part {};
+
+/// The part of bind_body() about stress and strain.
+/// @param module,type where it goes.
+void bind_fields(py::module_& module, py::class_<Body>& type);
 
 /// A controller with the simulation that it steers, which it keeps alive.
 struct Controller {

@@ -25,6 +25,7 @@ PYBIND11_MODULE(_core, module) {
   python::bind_actuator(module);
   python::bind_effector(module);
   python::bind_load(module);
+  python::bind_probe(module);
   python::bind_body(module);
   python::bind_simulation(module);
   python::bind_controller(module);

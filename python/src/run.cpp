@@ -66,6 +66,37 @@ void add_effectors(const Session& session, std::vector<Column>& columns) {
   }
 }
 
+// A point's or a number; of a line its length, and its points.
+void add_probes(const Session& session, std::vector<Column>& columns) {
+  const auto& probes = session.model().probes();
+  for (std::size_t i = 0; i < probes.size(); ++i) {
+    const auto index = static_cast<int>(i);
+    const auto* line = dynamic_cast<const constraint::LineProbe*>(probes[i].get());
+    const auto count = static_cast<py::ssize_t>(line ? 1 : probes[i]->components().size());
+    const auto put = [index](std::size_t from) {
+      return [index, from](Session& s, double* to) {
+        const std::vector<double> values = s.simulation().probe_values(index);
+        std::copy(values.begin() + static_cast<std::ptrdiff_t>(from), values.end(), to);
+      };
+    };
+    const auto first = [index](Session& s, double* to) {
+      *to = s.simulation().probe_values(index).front();
+    };
+    const std::string& name = probes[i]->name();
+    if (line != nullptr) {
+      columns.push_back({name + ".value", {}, true, first, {}});
+      columns.push_back({name + ".positions",
+                         {static_cast<py::ssize_t>(line->mark_count()), 3},
+                         true,
+                         put(1),
+                         {}});
+    } else {
+      const auto shape = count == 1 ? std::vector<py::ssize_t>{} : std::vector<py::ssize_t>{count};
+      columns.push_back({name + ".value", shape, true, put(0), {}});
+    }
+  }
+}
+
 void add_bodies(Session& session, std::vector<Column>& columns) {
   for (std::size_t i = 0; i < session.model().bodies().size(); ++i) {
     const auto index = static_cast<int>(i);
@@ -87,6 +118,7 @@ std::vector<Column> all_columns(Session& session) {
       {"time", {}, true, [](Session& s, double* to) { *to = s.simulation().time(); }, {}});
   add_actuators(session, columns);
   add_effectors(session, columns);
+  add_probes(session, columns);
   columns.push_back({"residual",
                      {},
                      true,

@@ -91,3 +91,34 @@ def test_supports_bear_the_weight_and_the_actuators(element):
     weight = 1000.0 * 0.04 * 0.01**2 * 9.81
     assert reactions.sum(axis=0) == pytest.approx([0, -0.02, weight], abs=1e-7)
     assert np.abs(reactions[~np.array(body.fixed)]).max() == 0
+
+
+@pytest.mark.parametrize("element,material", [
+    ("tet4", STIFF), ("tet4", RUBBER), ("tet10", RUBBER), ("hex8", RUBBER)])
+def test_scalar_fields_are_those_of_the_tensors(element, material):
+    sim = cube(element, material)
+    sim.body("cube").external_forces[:, 2] = -0.002
+    sim.solve_static()
+    body = sim.body("cube")
+    assert set(fields.FIELDS) >= {"von_mises_stress", "max_stretch", "pressure", "energy_density"}
+    volumes = np.array(body.element_volumes)
+    assert (body.element_field("energy_density") * volumes).sum() == pytest.approx(body.strain_energy, rel=1e-10)
+    # Linear in the stress, so that the mean of the pressure is the pressure of the mean.
+    pressure = -np.trace(body.cauchy_stresses, axis1=1, axis2=2) / 3
+    assert body.element_field("pressure") == pytest.approx(pressure, rel=1e-9)
+    if element == "tet4":  # one point an element
+        assert body.element_field("von_mises_stress") == pytest.approx(fields.von_mises(body.cauchy_stresses), rel=1e-9)
+        stretches = fields.principal_stretches(body.deformation_gradients)
+        assert body.element_field("max_stretch") == pytest.approx(stretches[:, 0], rel=1e-12)
+        assert body.element_field("log_strain") == pytest.approx(np.log(stretches[:, 0]), rel=1e-6)
+    nodal = body.nodal_field("von_mises_stress")
+    assert nodal == pytest.approx(fields.to_nodes(body, body.element_field("von_mises_stress")), rel=1e-14)
+    assert np.ptp(nodal) > 0
+
+
+def test_unknown_fields_and_wrong_shapes_are_refused():
+    body = cube("tet4", STIFF).body("cube")
+    with pytest.raises(sinew.Error, match="von_mises_stress"):
+        body.nodal_field("von_mises")
+    with pytest.raises(sinew.Error, match="elements"):
+        fields.to_nodes(body, np.zeros(3))

@@ -6,6 +6,7 @@
 #include "sinew/core/error.hpp"
 #include "sinew/core/thread_pool.hpp"
 #include "sinew/core/types.hpp"
+#include "sinew/fem/element_fields.hpp"
 #include "sinew/inverse/inverse_controller.hpp"
 #include "sinew/inverse/target.hpp"
 #include "sinew/linalg/factorisation.hpp"

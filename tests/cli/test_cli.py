@@ -379,6 +379,28 @@ def test_plot_draws_a_run(scene, tmp_path):
     assert missing.returncode == WRONG and "file-not-found" in missing.stderr
 
 
+def test_probes_are_recorded_and_plotted(scene, tmp_path):
+    probes = """probes:
+  bend: {body: beam, bend: [{set: x_min}, {set: x_max}], about: y}
+  axis: {body: beam, line: [0 10 10 mm, 100 10 10 mm], samples: 5}
+effectors:"""
+    path, out = scene(replace=("effectors:", probes)), tmp_path / "out"
+    assert sinew("run", path, "--out", out, "--quiet").returncode == DONE
+    rows, plain = rows_of(out / "probes.csv"), rows_of(out / "run.csv")
+    assert [row["time [s]"] for row in rows] == [row["time [s]"] for row in plain]
+    assert list(rows[0])[:3] == ["time [s]", "bend [rad]", "axis.length [m]"]
+    assert float(rows[0]["axis.length [m]"]) == pytest.approx(0.1)
+    assert float(rows[-1]["bend [rad]"]) < -0.05
+    with h5py.File(out / "run.h5") as run:
+        assert run["probes/bend"].attrs["kind"] == "bend"
+        assert run["probes/bend/value"].attrs["unit"] == "rad"
+        assert run["probes/bend/value"][-1] == float(rows[-1]["bend [rad]"])
+        assert run["probes/axis/positions"].shape == (len(rows), 5, 3)
+        assert run["probes/axis/positions"][-1, 4, 2] == float(rows[-1]["axis.4.z [m]"])
+    done = sinew("plot", out)
+    assert done.returncode == DONE and not done.stderr, done.stderr
+
+
 def test_fit_writes_a_material_that_a_scene_takes(scene, tmp_path):
     stretch = np.linspace(1.0, 3.0, 20)
     stress = 12.0 * 2 * (stretch - stretch**-2) + 0.3 * 4 * (stretch**2 + 2 / stretch - 3) * (stretch - stretch**-2)

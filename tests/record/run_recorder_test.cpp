@@ -8,11 +8,13 @@
 #include <sstream>
 #include <string>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "sinew/core/csv.hpp"
+#include "sinew/fem/element_fields.hpp"
 #include "sinew/mesh/read.hpp"
 #include "sinew/record/run_file.hpp"
 
@@ -146,6 +148,40 @@ TEST_F(RunRecorderTest, TheTableHasUnitsAndWords) {
   EXPECT_EQ(std::stod(last[9]), simulation.effector_value(0).x());
 }
 
+TEST_F(RunRecorderTest, ProbesHaveATableAndSeries) {
+  sinew::testing::BeamOptions options;
+  options.probes = true;
+  sim::Simulation simulation(beam(options));
+  record_pull(simulation, settings(), 4);
+  const fs::path run = folder_ / "run";
+  const auto rows = lines(run / "probes.csv");
+  ASSERT_EQ(rows.size(), 6u);
+  const auto names = cells(rows[0]), last = cells(rows.back());
+  ASSERT_EQ(names.size(), 1 + 3 + (1 + 3 * 6) + 1u);
+  EXPECT_EQ(names[1], "\"end.x [m]\"");
+  EXPECT_EQ(names[4], "\"axis.length [m]\"");
+  EXPECT_EQ(names[22], "\"axis.5.z [m]\"");
+  EXPECT_EQ(names[23], "\"bend [rad]\"");
+  EXPECT_EQ(std::stod(last[1]), simulation.effector_value(0).x());
+  EXPECT_EQ(std::stod(last[4]), simulation.probe_values(1)[0]);
+  EXPECT_EQ(std::stod(last[23]), simulation.probe_values(2)[0]);
+  EXPECT_GT(std::stod(last[23]), 0.01);
+  {
+    const RunFile file(run / "run.h5");
+    EXPECT_EQ(file.probes(), (std::vector<std::string>{"axis", "bend", "end"}));
+    ASSERT_EQ(file.probe("bend").size(), 5u);
+    EXPECT_EQ(file.probe("bend").back(), simulation.probe_values(2)[0]);
+    EXPECT_EQ(file.probe("axis").back(), simulation.probe_values(1)[0]);
+    ASSERT_EQ(file.probe("end").size(), 15u);
+    EXPECT_EQ(file.probe("end")[14], simulation.effector_value(0).z());
+    EXPECT_EQ(kind_of([&] { file.probe("bent"); }), ErrorKind::unknown_name);
+  }
+  sim::Simulation bare(beam());
+  record_pull(bare, settings(), 1);
+  EXPECT_FALSE(fs::exists(run / "probes.csv")) << "an older run's";
+  EXPECT_TRUE(RunFile(run / "run.h5").probes().empty());
+}
+
 TEST_F(RunRecorderTest, EveryOtherStepAndNoStates) {
   RecordSettings sparse = settings();
   sparse.every = 2;
@@ -179,6 +215,10 @@ TEST_F(RunRecorderTest, ASeriesForParaviewReplacesAnOlderOne) {
   EXPECT_TRUE(fs::exists(run / "run.pvd"));
   const mesh::Mesh last = mesh::read_mesh_unchecked(run / "run" / "run_000003.vtu");
   EXPECT_LT((last.nodes - seen.back()).cwiseAbs().maxCoeff(), 1e-15);
+  const std::string written = text(run / "run" / "run_000003.vtu");
+  for (const fem::ElementFieldInfo& info : fem::element_fields()) {
+    EXPECT_NE(written.find(fmt::format("Name=\"{}\"", info.name)), std::string::npos) << info.name;
+  }
   simulation.reset();
   record_pull(simulation, settings(), 1);  // without a series
   EXPECT_FALSE(fs::exists(run / "run.pvd"));

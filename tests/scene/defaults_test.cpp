@@ -39,6 +39,9 @@ actuators:
     command: {force: {sine: {amplitude: 1, period: 1}}}
 effectors:
   tip: {body: a, point: 0 0 1}
+probes:
+  axis: {body: a, line: [0 0 0, 0 0 1]}
+  girth: {body: a, extent: {across: z}}
 controllers:
   follow:
     type: inverse
@@ -62,6 +65,7 @@ class Dump {
     for (const auto& body : scene.bodies) add_body(body);
     for (const auto& actuator : scene.actuators) add_actuator(actuator);
     for (const auto& effector : scene.effectors) add(effector.directions, effector.outside);
+    for (const auto& probe : scene.probes) add(probe.samples, probe.way, probe.outside);
     for (const auto& controller : scene.controllers) {
       add(controller.regularisation, controller.epsilon.value_or(-1));
       for (const auto& task : controller.tasks) {

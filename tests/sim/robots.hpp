@@ -30,6 +30,7 @@ struct BeamOptions {
   fem::MassMatrix mass = fem::MassMatrix::lumped;
   material::Law law = material::Law::corotational;
   linalg::FactorisationSettings factorisation;
+  bool probes = false;  ///< "end" where the tip is, "axis" of six points, "bend" of both ends
 };
 
 inline std::shared_ptr<const sim::Model> beam(const BeamOptions& options = {}) {
@@ -68,6 +69,18 @@ inline std::shared_ptr<const sim::Model> beam(const BeamOptions& options = {}) {
   tip.points.resize(1, 3);
   tip.points << 0.1, 0.0, 0.0;
   builder.add_effector(tip);
+  if (options.probes) {
+    builder.add_probe({"end", {}, mesh::Outside::error, sim::ProbeSpot{beam, tip.points, {}}});
+    sim::ProbeLine axis{beam, Points(2, 3), 6};
+    axis.corners << 0.0, 0.0, 0.0, 0.1, 0.0, 0.0;
+    builder.add_probe({"axis", {}, mesh::Outside::error, axis});
+    const auto& sets = mesh->node_sets;
+    builder.add_probe(
+        {"bend",
+         {},
+         mesh::Outside::error,
+         sim::ProbeBend{{{{beam, sets.at("x_min"), {}}, {beam, sets.at("x_max"), {}}}}, {}}});
+  }
   return builder.build(options.factorisation);
 }
 

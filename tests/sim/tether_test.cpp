@@ -9,7 +9,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include "sinew/fem/nodal_fields.hpp"
+#include "sinew/fem/element_fields.hpp"
 
 #include "robots.hpp"
 
@@ -101,85 +101,20 @@ TEST(Tether, RefusesWhatIsNoFace) {
          ErrorKind::not_finite);
 }
 
-// One deformation gradient everywhere, set by hand, so that every node has the same strain.
-void deform(fem::FemBody& body, const Matrix3& gradient) {
-  std::vector<double> state(body.state_size());
-  body.save_state(state);
-  const Points& rest = body.fem_model().mesh().nodes;
-  for (Eigen::Index i = 0; i < rest.rows(); ++i) {
-    const Vector3 x = gradient * rest.row(i).transpose();
-    for (Eigen::Index c = 0; c < 3; ++c) state[static_cast<std::size_t>(3 * i + c)] = x[c];
-  }
-  body.load_state(state);
-}
-
-struct Fields {
-  std::vector<double> strain, stress;
-};
-
-Fields fields_under(const Matrix3& gradient, material::Law law) {
-  testing::BeamOptions options;
-  options.law = law;
-  sim::Simulation simulation(testing::beam(options));
-  fem::FemBody& body = simulation.fem_body(0);
-  deform(body, gradient);
-  fem::NodalFields fields(body.fem_model());
-  const auto nodes = static_cast<std::size_t>(body.positions().rows());
-  Fields result{std::vector<double>(nodes), std::vector<double>(nodes)};
-  fields.strain(body, result.strain);
-  fields.stress(body, result.stress);
-  return result;
-}
-
-void expect_everywhere(const std::vector<double>& values, double expected) {
-  for (const double value : values) {
-    ASSERT_NEAR(value, expected, 1e-9 * std::max(1.0, std::abs(expected)));
-  }
-}
-
-constexpr double kYoung = 200e3, kPoisson = 0.4;  // of the beam
-constexpr double kShear = kYoung / (2.0 * (1.0 + kPoisson));
-
-// Stretches s along the axes after any rotation: dev e from the stretches, Cauchy stress
-// (2 mu (s_i - 1) + lambda sum (s - 1)) s_i / (s_1 s_2 s_3).
-TEST(NodalFields, ArePrincipalStretchesWhateverTheRotation) {
-  const Vector3 s(1.2, 0.95, 0.9);
-  const Matrix3 rotation =
-      Eigen::AngleAxis<double>(1.1, Vector3(0.3, -0.5, 0.8).normalized()).toRotationMatrix();
-  const Fields fields = fields_under(rotation * s.asDiagonal(), material::Law::corotational);
-  const double lambda = kYoung * kPoisson / ((1.0 + kPoisson) * (1.0 - 2.0 * kPoisson));
-  const Vector3 e = s.array() - 1.0;
-  const auto deviator = [](const Vector3& v) -> Vector3 { return v.array() - v.mean(); };
-  const Vector3 cauchy = (2.0 * kShear * e.array() + lambda * e.sum()) * s.array() / s.prod();
-  expect_everywhere(fields.strain, std::sqrt(2.0 / 3.0) * deviator(e).norm());
-  expect_everywhere(fields.stress, std::sqrt(1.5) * deviator(cauchy).norm());
-}
-
-TEST(NodalFields, OfTheLinearLawInSimpleShear) {
-  Matrix3 gradient = Matrix3::Identity();
-  const double shear = 0.02;
-  gradient(0, 1) = shear;
-  const Fields fields = fields_under(gradient, material::Law::linear);
-  expect_everywhere(fields.strain, shear / std::sqrt(3.0));
-  expect_everywhere(fields.stress, std::sqrt(3.0) * kShear * shear);
-}
-
-TEST(NodalFields, CableForceIsWhatTheCablePutsOnTheBody) {
+TEST(ElementFields, CableForceIsWhatTheCablePutsOnTheBody) {
   sim::Simulation simulation(testing::beam());
   simulation.command(0, testing::tension(2.0));
   simulation.step();
-  fem::NodalFields fields(simulation.fem_body(0).fem_model());
-  const auto nodes = static_cast<std::size_t>(simulation.fem_body(0).positions().rows());
-  std::vector<double> force(nodes), moved(nodes);
-  fields.row_force(simulation.fem_body(0), simulation.efforts(), force);
-  Points sum = Points::Zero(static_cast<Eigen::Index>(nodes), 3);
-  simulation.fem_body(0).add_row_forces(simulation.efforts(), sum);
+  const fem::FemBody& body = simulation.fem_body(0);
+  const auto force = fem::row_force_field(body, simulation.efforts());
+  Points sum = Points::Zero(body.positions().rows(), 3);
+  body.add_row_forces(simulation.efforts(), sum);
   // A straight cable along x, from the clamp to its anchor near the tip, pulls towards the clamp.
   const Vector3 total = sum.colwise().sum();
   EXPECT_NEAR(total.x(), -2.0, 0.05);
   EXPECT_NEAR(total.y(), 0.0, 1e-9);
   EXPECT_GT(*std::ranges::max_element(force), 0.1);
-  fields.displacement(simulation.fem_body(0), moved);
+  const auto moved = fem::displacement_field(body);
   EXPECT_GT(*std::ranges::max_element(moved), 1e-4);
 }
 

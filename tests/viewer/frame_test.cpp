@@ -42,6 +42,7 @@ Frame sample() {
   frame.cables = {1, 1, 1, 2, 2, 2};
   frame.effectors = {7, 8, 9};
   frame.targets = {4, 5, 6};
+  frame.probes = {3, 2, 1};
   return frame;
 }
 
@@ -73,7 +74,7 @@ TEST(Frame, StandsAsDocumented) {
   EXPECT_EQ(number<std::uint64_t>(bytes, 32), 0xfedcba9876543210ULL);
   EXPECT_EQ(number<double>(bytes, 48), -3.0);
   const auto list = parts(bytes, 2);
-  ASSERT_EQ(list.size(), 5U);
+  ASSERT_EQ(list.size(), 6U);
   EXPECT_EQ(list[0].kind, 1);
   EXPECT_EQ(number<float>(bytes, list[0].at + 8), 3.0F);
   EXPECT_EQ(list[1].kind, 2);
@@ -82,7 +83,9 @@ TEST(Frame, StandsAsDocumented) {
   EXPECT_EQ(list[2].kind, 3);
   EXPECT_EQ(list[2].bytes, 24U);
   EXPECT_EQ(list[3].kind, 4);
-  EXPECT_EQ(list[4].kind, 5);
+  EXPECT_EQ(list[4].kind, 7);
+  EXPECT_EQ(number<float>(bytes, list[4].at), 3.0F);
+  EXPECT_EQ(list[5].kind, 5);
 }
 
 TEST(Frame, LeavesOutWhatHasNotChanged) {

@@ -1,12 +1,14 @@
 // Running robots as they are shown: steps, clocks, commands, and runs that end before their time.
 #include "viewer/live_source.hpp"
 
+#include <algorithm>
 #include <future>
 #include <thread>
 
 #include <gtest/gtest.h>
 
 #include "robot_fixture.hpp"
+#include "viewer/robot_state.hpp"
 
 namespace sinew::viewer {
 namespace {
@@ -57,6 +59,55 @@ TEST(LiveSource, StepsExactlyAndAsASimulationDoes) {
   EXPECT_EQ(frame->signals[0], simulation.actuator(0).effort);
   EXPECT_FALSE(frame->bodies[0].fields[2].empty()) << "a field that was asked for";
   EXPECT_TRUE(frame->bodies[0].fields[0].empty()) << "a field that nobody asked for";
+}
+
+TEST(LiveSource, ShowsAnewWhenAFieldIsChosen) {
+  Live live({.controller = "", .playing = false});
+  const auto before = live.at(0);
+  EXPECT_EQ(kind(live.ask(ChooseField{"von_mises_stress"})), "");
+  live.wait([&](const Frame& frame) { return &frame != before.get(); });
+}
+
+TEST(LiveSource, ShowsFieldsAndProbesAsTheyAreMeasured) {
+  const scene::Robot same = robot();
+  const Description description = describe(same);
+  RobotState state(same);
+  for (int k = 0; k < 3; ++k) {
+    state.command({"up", "tension", 1.0 + k});
+    state.step();
+  }
+  const auto frame = state.frame(FieldChoice(list_fields().size(), true), 1.0);
+  const fem::FemBody& body = state.simulation().fem_body(0);
+  const fem::NodalMean mean(body.fem_model());
+  ASSERT_EQ(frame->bodies[0].fields.size(), description.fields.size());
+  for (std::size_t f = 0; f < description.fields.size(); ++f) {
+    const std::string& name = description.fields[f];
+    std::vector<double> expected;
+    if (name == "displacement") {
+      expected = fem::displacement_field(body);
+    } else if (name == "actuator_force") {
+      expected = fem::row_force_field(body, state.simulation().efforts());
+    } else {
+      expected = mean(fem::element_field(body, fem::element_field_of(name)));
+    }
+    const auto& nodes = description.surfaces[0].nodes;
+    ASSERT_EQ(frame->bodies[0].fields[f].size(), nodes.size());
+    for (std::size_t v = 0; v < nodes.size(); ++v) {
+      ASSERT_EQ(frame->bodies[0].fields[f][v],
+                static_cast<float>(expected[static_cast<std::size_t>(nodes[v])]))
+          << name;
+    }
+  }
+  const auto signal = [&](const char* key) {
+    const auto found = std::ranges::find(description.signals, key, &SignalInfo::key);
+    return frame->signals.at(static_cast<std::size_t>(found - description.signals.begin()));
+  };
+  EXPECT_EQ(frame->signals.size(), description.signals.size());
+  EXPECT_EQ(signal("probe.bend"), state.simulation().probe_values(0)[0]);
+  EXPECT_GT(signal("probe.bend"), 1e-3);
+  EXPECT_EQ(signal("probe.axis"), state.simulation().probe_values(1)[0]);
+  ASSERT_EQ(frame->probes.size(), 3 * (2 + 4u));
+  EXPECT_EQ(frame->probes[3 * 5 + 2], static_cast<float>(state.simulation().effector_value(0).z()));
 }
 
 TEST(LiveSource, ResetsBitForBit) {

@@ -51,7 +51,8 @@ TEST(Message, ReadsEveryKind) {
   EXPECT_EQ(read<Seek>(R"({"type": "seek", "frame": 12})").frame, 12);
   EXPECT_EQ(read<Open>(R"({"type": "open", "name": "trunk/circle"})").name, "trunk/circle");
   read<ShowGallery>(R"({"type": "gallery"})");
-  EXPECT_EQ(read<ChooseField>(R"({"type": "field", "name": "stress"})").name, "stress");
+  EXPECT_EQ(read<ChooseField>(R"({"type": "field", "name": "von_mises_stress"})").name,
+            "von_mises_stress");
   EXPECT_FALSE(read<Drive>(R"({"type": "drive", "on": false})").on);
   read<Ping>(R"({"type": "ping"})");
   EXPECT_EQ(parse_message(R"({"id": 9007199254740991, "type": "ping"})").id, 9007199254740991);

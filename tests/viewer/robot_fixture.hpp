@@ -36,6 +36,9 @@ actuators:
   push: {type: force, body: beam, point: 60 10 10 mm, direction: 1 0 0}
 effectors:
   tip: {body: beam, point: 60 10 10 mm}
+probes:
+  bend: {body: beam, bend: [{set: x_min}, {set: x_max}]}
+  axis: {body: beam, line: [0 10 10 mm, 60 10 10 mm], samples: 4}
 controllers:
   hold:
     type: inverse

@@ -262,6 +262,10 @@ TEST(Server, LetsOneDrive) {
   EXPECT_EQ(first.next_json("reply")["error"]["kind"], "not-driving");
   first.say(R"({"type": "field", "name": "heat", "id": 5})");
   EXPECT_EQ(first.next_json("reply")["error"]["kind"], "unknown-name");
+  EXPECT_EQ(shown.fake->requests, 1);
+  first.say(R"({"type": "field", "name": "displacement", "id": 6})");
+  EXPECT_FALSE(first.next_json("reply").contains("error")) << "a looker-on may choose colours";
+  EXPECT_EQ(shown.fake->requests, 2) << "the source is to show them";
 }
 
 TEST(Server, ReleasesTheHandOfADriverThatGoes) {

@@ -55,12 +55,25 @@ export function read(text: string): number {
   return Number(found[1]) * (PREFIXES.find(([, prefix]) => prefix === found[2])?.[0] ?? 1);
 }
 
+function prefix(size: number): [number, string] {
+  return PREFIXES.find(([s]) => size >= 0.9995 * s) ?? PREFIXES[PREFIXES.length - 1];
+}
+
+/** Values from high to low, one below the other: of one prefix, with as many decimals as tell them apart. */
+export function ticks(low: number, high: number, count: number, unit: string): string[] {
+  if (!(high > low)) return [...Array(count - 1).fill(''), told(low, unit)];
+  const [scale, name] = unit === '' ? [1, ''] : prefix(Math.max(Math.abs(low), Math.abs(high)));
+  const decimals = Math.min(Math.max(2 - Math.floor(Math.log10((high - low) / scale)), 0), 8);
+  return Array.from({length: count}, (_, k) =>
+    `${((high - (high - low) * k / (count - 1)) / scale).toFixed(decimals)} ${name}${unit.replace('^3', '\u00b3')}`.trim());
+}
+
 /** A number of a unit as people write it: 0.0123 m is "12.3 mm". */
 export function told(value: number, unit: string, digits = 3): string {
   if (!Number.isFinite(value)) return '-';
   if (unit === 'm^3') return told(1e3 * value, 'l', digits);  // a prefix would be cubed, too
+  if (unit === 'rad') return `${Number((value * 180 / Math.PI).toPrecision(digits))}\u00b0`;
   if (unit === '' || value === 0) return `${Number(value.toPrecision(digits))}${unit ? ' ' + unit : ''}`;
-  const size = Math.abs(value);
-  const [scale, prefix] = PREFIXES.find(([s]) => size >= 0.9995 * s) ?? PREFIXES[PREFIXES.length - 1];
-  return `${Number((value / scale).toPrecision(digits))} ${prefix}${unit}`;
+  const [scale, name] = prefix(Math.abs(value));
+  return `${Number((value / scale).toPrecision(digits))} ${name}${unit.replace('^3', '\u00b3')}`;
 }

@@ -2,7 +2,7 @@
 import {Vector3} from 'three';
 import 'uplot/dist/uPlot.min.css';
 import './style.css';
-import {gradient, MAPS, read, told} from './colours';
+import {gradient, MAPS, read, ticks, told} from './colours';
 import {Connection} from './connection';
 import {button, make} from './dom';
 import {Panel} from './panel';
@@ -10,6 +10,7 @@ import {Plots} from './plots';
 import type {Frame, Scene, Status} from './protocol';
 import {Robot3d} from './robot3d';
 
+const SMALLEST: Record<string, number> = {m: 1e-9, Pa: 1e-3, N: 1e-9, 'J/m^3': 1e-6, '': 1e-6};  // told from zero
 const FROZEN = 2000;  // ms without a frame while playing
 const byId = (id: string) => document.getElementById(id)!;
 
@@ -83,6 +84,8 @@ function setTheme(dark: boolean): void {
 
 function chooseField(name: string | null): void {
   field = name;
+  seen = [NaN, NaN];  // until values come
+  latest?.fields.clear();
   fields.value = name ?? '';
   robot.coloured = name !== null;
   keepRange(null);
@@ -100,14 +103,15 @@ function picture(): void {
 
 // ------------------------------------------------------------------------------------------- legend
 
-const low = make('span', {}), high = make('span', {}), bar = make('span', {className: 'bar'});
+const TICKS = 5;
+const marks = Array.from({length: TICKS}, () => make('span', {})), bar = make('span', {className: 'bar'});
 const fixed = make('input', {type: 'checkbox', 'aria-label': 'Keep the range'});
 const ends = ['Lowest', 'Highest'].map((end) => make('input', {type: 'text', 'aria-label': `${end} value of the range`}));
 fixed.onchange = () => keepRange(fixed.checked ? [...seen] : null);
 ends.forEach((end) => { end.onchange = typedRange; });
 const name = make('div', {});
 const typed = make('div', {className: 'line', hidden: true}, ends[0], 'to', ends[1]);
-byId('legend').append(name, bar, make('span', {className: 'ends'}, high, low),
+byId('legend').append(name, bar, make('span', {className: 'ends'}, ...marks),
                       make('label', {className: 'line'}, fixed, 'keep the range'), typed);
 
 function keepRange(next: [number, number] | null): void {
@@ -131,20 +135,26 @@ function legend(): void {
   if (!info) return;
   const [a, b] = range ?? seen;
   name.textContent = info.label;
+  byId('legend').title = info.description;
   bar.style.background = gradient(map);
-  low.textContent = told(a, info.unit);
-  high.textContent = told(b, info.unit);
+  ticks(a, b, TICKS, info.unit).forEach((text, k) => { marks[k].textContent = text; });
 }
 
 function measure(frame: Frame): void {
   let a = Infinity, b = -Infinity;
   for (const {values} of frame.fields.values()) {
     for (const value of values) {
+      if (!Number.isFinite(value)) continue;
       if (value < a) a = value;
       if (value > b) b = value;
     }
   }
-  if (a <= b) seen = [a, b];
+  if (!(a <= b)) return;
+  // Rounding is not shown as if it were a field: what is even has one colour.
+  const unit = scene?.fields.find((f) => f.name === field)?.unit ?? '';
+  const size = Math.max(Math.abs(a), Math.abs(b));
+  if (b - a <= Math.max(1e-6 * size, SMALLEST[unit] ?? 0)) b = a = size <= (SMALLEST[unit] ?? 0) ? 0 : a;
+  seen = [a, b];
 }
 
 // ------------------------------------------------------------------------------------------- alerts
@@ -226,7 +236,11 @@ const connection = new Connection({
     title.textContent = next.name;
     title.title = Panel.size(next);
     document.title = `${next.name} - Sinew`;
-    fields.replaceChildren(new Option('plain', ''), ...next.fields.map((f) => new Option(f.label, f.name)));
+    fields.replaceChildren(new Option('plain', ''), ...next.fields.map((f) => {
+      const option = new Option(f.label, f.name);
+      option.title = f.description;
+      return option;
+    }));
     document.body.classList.toggle('gallery', what === 'gallery');
     robot.scene(next);
     panel.scene(next, what);
@@ -245,6 +259,11 @@ const connection = new Connection({
       for (const [k, v] of latest.positions) if (!frame.positions.has(k)) frame.positions.set(k, v);
       frame.cables ??= latest.cables;
       frame.effectors ??= latest.effectors;
+      frame.probes ??= latest.probes;
+    }
+    // One that was under way when another field was chosen.
+    for (const [body, {field: shown}] of frame.fields) {
+      if (scene?.fields[shown]?.name !== field) frame.fields.delete(body);
     }
     latest = frame;
     fresh = true;

@@ -24,6 +24,7 @@ export class Panel {
   private time = make('input', {type: 'range', min: '0', step: '1', value: '0', className: 'time',
                                 'aria-label': 'Frame of the recorded run'});
   private recorder = button('Record', 'Record the run from now on', () => this.record());
+  private probes: {value: HTMLElement; columns: number[]; unit: string}[] = [];
   private recorded = make('span', {className: 'recorded'});
   private status: Status | null = null;
   stiffness = 20;  // N/m, of the hand's spring
@@ -45,6 +46,7 @@ export class Panel {
   scene(scene: Scene, mode: string): void {
     this.rows.clear();
     this.targets.clear();
+    this.probes = [];
     if (mode === 'gallery') return this.gallery(scene);
     if (mode === 'replay') return this.replay(scene);
     this.controller.replaceChildren(new Option('none (by hand)', ''),
@@ -65,7 +67,7 @@ export class Panel {
       heading('Control'),
       ...(scripted ? [] : [make('div', {className: 'line'}, make('label', {}, 'Controller', this.controller))]),
       ...scene.effectors.filter((e) => e.kind === 'point').map((e) => this.target(e)),
-      heading('Hand'), this.hand(),
+      ...this.measured(scene), heading('Hand'), this.hand(),
     );
   }
 
@@ -90,7 +92,28 @@ export class Panel {
            this.steps, button('Reset', 'Back to the start (r)', () => this.reset())),
       make('div', {className: 'line'}, make('label', {}, 'Speed', this.speed)), this.time,
       make('div', {className: 'line'}, this.who, this.drive,
-           ...this.files()));
+           ...this.files()),
+      ...this.measured(scene));
+  }
+
+  /** Names of probes and their numbers, which show() keeps up to date. */
+  private measured(scene: Scene): HTMLElement[] {
+    this.probes = scene.probes.map((probe) => {
+      const columns = probe.signals.map((key) => scene.signals.findIndex((s) => s.key === key));
+      return {value: make('output', {'aria-label': `${probe.name}: ${probe.kind}`}), columns,
+              unit: scene.signals[columns[0]].unit};
+    });
+    if (scene.probes.length === 0) return [];
+    const rows = scene.probes.map((probe, k) => make('div', {className: 'measured', title: probe.kind},
+      make('span', {className: 'name', textContent: probe.name}), this.probes[k].value));
+    return [make('h2', {textContent: 'Probes'}), ...rows];
+  }
+
+  private show(signals: Float64Array): void {
+    for (const {value, columns, unit} of this.probes) {
+      const text = columns.map((k) => told(signals[k], unit)).join(', ');
+      if (value.textContent !== text) value.textContent = text;
+    }
   }
 
   private files(): HTMLElement[] {
@@ -202,6 +225,7 @@ export class Panel {
 
   /** Shows what the actuators do where a controller drives them, or what they are told. */
   follow(scene: Scene, signals: Float64Array): void {
+    this.show(signals);
     scene.actuators.forEach((actuator, k) => {
       const row = this.rows.get(actuator.name);
       const command = this.status?.source.commands?.[actuator.name];

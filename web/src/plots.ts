@@ -8,7 +8,8 @@ const WINDOW = 10;      // s
 const SAMPLES = 1200;   // at most
 const COLOURS = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#7a5195', '#5c5c5c'];
 const TITLES: Record<string, string> = {
-  effort: 'Effort', motion: 'Motion', pressure: 'Pressure', volume: 'Volume', effector: 'Effector', error: 'Error', energy: 'Energy',
+  effort: 'Effort', motion: 'Motion', pressure: 'Pressure', volume: 'Volume', effector: 'Effector', error: 'Error', rotation: 'Rotation',
+  'rotation error': 'Rotation error', probe: 'Probes', angle: 'Probe angles', energy: 'Energy',
   time: 'Time of a step', solver: 'Solver',
 };
 
@@ -23,6 +24,7 @@ class Plot {
   private columns: number[] = [];
   private data: number[][] = [];
   private unit = '';
+  private scale = 1;  // angles are drawn in degrees, so that their ticks are round
   private select = make('select', {'aria-label': 'Signals to plot'});
   private box = make('div', {className: 'plot'});
   private scene: Scene | null = null;
@@ -50,6 +52,7 @@ class Plot {
     this.plot?.destroy();
     const signals = this.columns.map((k) => this.scene!.signals[k]);
     this.unit = signals[0]?.unit ?? '';
+    this.scale = this.unit === 'rad' ? 180 / Math.PI : 1;
     const ink = getComputedStyle(document.documentElement).getPropertyValue('--ink').trim();
     const faint = getComputedStyle(document.documentElement).getPropertyValue('--line').trim();
     const axis = {stroke: ink, grid: {stroke: faint, width: 1}, ticks: {stroke: faint, width: 1}};
@@ -57,7 +60,7 @@ class Plot {
       width: 300, height: 160, cursor: {show: true}, legend: {live: false},
       scales: {x: {time: false}},
       axes: [{...axis, label: 'time (s)', labelSize: 16, size: 30},
-             {...axis, size: 64, values: (_, ticks) => ticks.map((v) => told(v, this.unit))}],
+             {...axis, size: 64, values: (_, ticks) => ticks.map((v) => told(v / this.scale, this.unit))}],
       series: [{}, ...signals.map((s, k) => ({label: s.label, stroke: COLOURS[k % COLOURS.length],
                                                width: 1.5, dash: k >= COLOURS.length ? [5, 4] : undefined}))],
     }, this.data as uPlot.AlignedData, this.box);
@@ -73,7 +76,7 @@ class Plot {
     if (frame.time === this.last) return;
     this.last = frame.time;
     this.data[0].push(frame.time);
-    this.columns.forEach((k, c) => this.data[c + 1].push(frame.signals[k]));
+    this.columns.forEach((k, c) => this.data[c + 1].push(this.scale * frame.signals[k]));
     const times = this.data[0];
     if (times.length > SAMPLES || times[0] < frame.time - 1.2 * WINDOW) {
       const first = times.findIndex((t) => t >= frame.time - WINDOW);

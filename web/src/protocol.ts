@@ -6,13 +6,15 @@ export interface Quantity {
 }
 export interface Actuator {name: string; type: string; body: string; quantities: Quantity[]; points: number}
 export interface Effector {name: string; kind: 'point' | 'orientation'; directions: number[][]}
+/** `marks`: its points in the frame's `probes`; `signals`: keys of its numbers. */
+export interface Probe {name: string; kind: string; marks: number; signals: string[]}
 export interface Controller {name: string; type: string; effectors: string[]}
 export interface Signal {key: string; label: string; unit: string; group: string}
-export interface FieldInfo {name: string; label: string; unit: string}
+export interface FieldInfo {name: string; label: string; unit: string; description: string}
 export interface Scene {
   name: string; time_step: number; gravity: number[]; bounds: number[][];
   bodies: {name: string; vertices: number; triangles: number; nodes: number; elements: number}[];
-  fields: FieldInfo[]; actuators: Actuator[]; effectors: Effector[]; controllers: Controller[];
+  fields: FieldInfo[]; actuators: Actuator[]; effectors: Effector[]; probes: Probe[]; controllers: Controller[];
   signals: Signal[];
   frames?: number; duration?: number; gallery?: boolean;
   examples?: {name: string; title: string; thumbnail: string | null}[];
@@ -33,6 +35,7 @@ export interface Frame {
   sequence: number; step: number; time: number; hash: string; signals: Float64Array;
   positions: Map<number, Float32Array>; fields: Map<number, {field: number; values: Float32Array}>;
   cables?: Float32Array; effectors?: Float32Array; targets?: Float32Array; pull?: Float32Array;
+  probes?: Float32Array;
 }
 
 const MAGIC = 0x31574e53;
@@ -81,6 +84,7 @@ function decodeFrame(buffer: ArrayBuffer, view: DataView): Frame {
       if (kind === 4) frame.effectors = values;
       if (kind === 5) frame.targets = values;
       if (kind === 6) frame.pull = values;
+      if (kind === 7) frame.probes = values;
     }
     at += bytes;
   }

@@ -16,6 +16,8 @@ import type {Frame, Scene, Surface} from './protocol';
 
 const BODY_COLOURS = [0xd9a066, 0x7fa6c9, 0x9cb380];  // told apart by lightness too
 const GIZMO = 0.6;  // size of the target's arrows
+const PROBE = 0x009e73;
+const OPACITY = 0.82;  // of a body without colours
 const SLACK = 0x8a8f98, TAUT = 0x0072b2, STRONG = 0xd55e00;  // Okabe and Ito 2008
 
 export interface Hand {
@@ -33,8 +35,7 @@ function caption(text: string): Sprite {
   context.textBaseline = 'middle';
   context.fillStyle = '#7d8894';
   context.fillText(text, 128, 34);
-  const sprite = new Sprite(new SpriteMaterial({map: new CanvasTexture(canvas), depthTest: false,
-                                                sizeAttenuation: false, transparent: true}));
+  const sprite = new Sprite(new SpriteMaterial({map: new CanvasTexture(canvas), sizeAttenuation: false, transparent: true}));
   sprite.scale.set(0.1, 0.025, 1);
   return sprite;
 }
@@ -55,6 +56,7 @@ export class Robot3d {
   private cableSignals: number[] = [];
   private effectors: Mesh[] = [];
   private targets: Mesh[] = [];
+  private probes: {line: Line; ends: Mesh[]; marks: number}[] = [];
   private spring = new Line(new BufferGeometry(), new LineBasicMaterial({color: STRONG}));
   private size = 0.2;
   private table = linearTable('viridis');
@@ -167,6 +169,17 @@ export class Robot3d {
     });
     this.effectors = marks(0x000000, 0.7);
     this.targets = marks(STRONG, 0.8);
+    const bead = new SphereGeometry(0.008 * this.size, 14, 10);
+    this.probes = scene.probes.map(({kind, marks}) => {
+      const line = new Line(new BufferGeometry(), new LineBasicMaterial({color: PROBE, depthTest: false, transparent: true}));
+      line.frustumCulled = false;
+      line.visible = kind === 'line' || kind === 'distance';
+      const ends = Array.from({length: Math.min(marks, 2)}, () =>
+        new Mesh(bead, new MeshBasicMaterial({color: PROBE, depthTest: false, transparent: true, opacity: 0.9})));
+      [line, ...ends].forEach((part) => { part.renderOrder = 2; });
+      this.robot.add(line, ...ends);
+      return {line, ends, marks};
+    });
     this.chosen = -1;
     this.camera.near = 1e-3 * this.size;
     this.camera.far = 50 * this.size;
@@ -204,7 +217,7 @@ export class Robot3d {
     geometry.computeVertexNormals();
     const color = BODY_COLOURS[surface.body % BODY_COLOURS.length];
     const material = new MeshStandardMaterial({color, roughness: 0.65, side: DoubleSide,
-                                               transparent: true, opacity: 0.82});
+                                               transparent: true, opacity: OPACITY});
     const mesh = new Mesh(geometry, material);
     const wire = new Mesh(geometry, new MeshBasicMaterial({color: 0x222222, wireframe: true, transparent: true,
                                                            opacity: 0.25}));
@@ -238,6 +251,8 @@ export class Robot3d {
       const {material} = body.mesh;
       if (material.vertexColors !== this.coloured) {
         material.vertexColors = this.coloured;
+        material.transparent = !this.coloured;  // or what lies behind would change the colours
+        material.opacity = this.coloured ? 1 : OPACITY;
         material.needsUpdate = true;
         const index = this.bodies.indexOf(body);
         material.color.set(this.coloured ? 0xffffff : BODY_COLOURS[index % BODY_COLOURS.length]);
@@ -245,6 +260,7 @@ export class Robot3d {
       body.wire.visible = this.wireframe;
     }
     if (frame.cables) this.drawCables(frame.cables, frame.signals);
+    if (frame.probes) this.drawProbes(frame.probes);
     if (frame.effectors) this.place(this.effectors, frame.effectors);
     if (frame.targets) this.place(this.targets, frame.targets);
     this.steer();
@@ -264,6 +280,16 @@ export class Robot3d {
       }
       if (slack) line.computeLineDistances();
     });
+  }
+
+  private drawProbes(points: Float32Array): void {
+    let at = 0;
+    for (const {line, ends, marks} of this.probes) {
+      const own = points.subarray(at, at + 3 * marks);
+      at += 3 * marks;
+      line.geometry.setAttribute('position', new BufferAttribute(own.slice(), 3));
+      this.place(ends, marks > 1 ? new Float32Array([...own.subarray(0, 3), ...own.subarray(-3)]) : own);
+    }
   }
 
   private place(marks: Mesh[], points: Float32Array): void {

@@ -14,6 +14,7 @@ const PROGRAM = process.env.SINEW_PROGRAM ?? join(ROOT, 'build/release/bin/sinew
 const PACKAGE = process.env.SINEW_PYTHON_PATH ?? join(ROOT, 'build/release/python');
 const CHROMIUM = process.env.SINEW_CHROMIUM ?? '/usr/bin/chromium';
 const DIRECT = join(ROOT, 'examples/trunk/trunk.yaml');
+const MODULE = join(ROOT, 'examples/finger/module.yaml');
 const STEERED = join(ROOT, 'examples/trunk/circle.yaml');
 
 let browser;
@@ -120,8 +121,8 @@ test('the page loads without an error and shows the robot', async () => {
   const served = await serve(STEERED);
   const errors = [];
   const page = await open(served.url, errors);
-  await page.selectOption('[aria-label="Colour by"]', 'stress');
-  await until(page, (s) => s.field === 'stress' && s.range[1] > 1000);
+  await page.selectOption('[aria-label="Colour by"]', 'von_mises_stress');
+  await until(page, (s) => s.field === 'von_mises_stress' && s.range[1] > 1000);
   assert.ok(await page.locator('#legend .bar').isVisible());
   assert.match(await page.locator('#legend').innerText(), /Von Mises stress[\s\S]*kPa/);
   // Drawn at all: the canvas holds many colours, and the robot's in its middle.
@@ -196,6 +197,97 @@ test('pause and step count exactly, and reset restores the start bit for bit', a
   assert.equal(again.hash, start.hash);
   await ask(page, {type: 'step', count: 37});
   assert.equal((await until(page, (s) => s.step === 37)).hash, later.hash);
+  await page.close();
+  await stop(served);
+});
+
+/** What Python finds after so many steps of a scene: the range of every field on the surface, and the probes. */
+function measured(scene, steps) {
+  return python(`
+import json, sys
+import numpy as np
+import sinew
+sim = sinew.load(${JSON.stringify(scene)})
+sim.step(${steps})
+body = next(iter(sim.bodies.values()))
+faces = np.array([[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]])
+sides = np.array(body.hexahedra)[:, faces].reshape(-1, 4)
+_, first, count = np.unique(np.sort(sides, axis=1), axis=0, return_index=True, return_counts=True)
+seen = np.unique(sides[first[count == 1]])
+fields = {name: body.nodal_field(name)[seen] for name in sinew.fields.FIELDS}
+fields["displacement"] = np.linalg.norm(body.positions - body.rest_positions, axis=1)[seen]
+print(json.dumps({"fields": {name: [v.min(), v.max()] for name, v in fields.items()},
+                  "probes": {name: probe.value for name, probe in sim.probes.items()}}))`);
+}
+
+/** Chooses every field in turn and compares what the page shows with what Python finds. */
+async function compareFields(page, expected) {
+  const close = (a, b, size) => Math.abs(a - b) <= 1e-5 * size;
+  const choices = await page.evaluate(() => window.sinewView.scene().fields);
+  assert.deepEqual(new Set(choices.map((f) => f.name)), new Set([...Object.keys(expected), 'actuator_force']));
+  for (const {name, label, unit} of choices) {
+    await page.selectOption('[aria-label="Colour by"]', name);
+    if (!expected[name]) continue;
+    const [low, high] = expected[name];
+    const size = Math.max(Math.abs(low), Math.abs(high));
+    await until(page, (s) => s.field === name && close(s.range[0], low, size) && close(s.range[1], high, size));
+    const legend = await drawn(page, () => document.getElementById('legend').innerText);
+    assert.ok(legend.startsWith(label), legend);
+    if (unit !== '') assert.match(legend, new RegExp(`[mk]?${unit.replace('^3', '\u00b3')}`));
+  }
+}
+
+test('every field has the colours and the legend of what Python finds', async () => {
+  const served = await serve(MODULE, 0, '--paused');
+  const errors = [];
+  const page = await open(served.url, errors);
+  await ask(page, {type: 'step', count: 60});
+  const expected = measured(MODULE, 60);
+  await compareFields(page, expected.fields);
+  // A range that is typed stays while the robot moves.
+  await page.selectOption('[aria-label="Colour by"]', 'max_stretch');
+  await page.locator('[aria-label="Keep the range"]').check();
+  await page.locator('[aria-label="Lowest value of the range"]').fill('1');
+  await page.locator('[aria-label="Lowest value of the range"]').press('Enter');
+  await page.locator('[aria-label="Highest value of the range"]').fill('1.5');
+  await page.locator('[aria-label="Highest value of the range"]').press('Enter');
+  await ask(page, {type: 'step', count: 3});
+  await until(page, (s) => s.step === 63 && s.range[0] === 1 && s.range[1] === 1.5);
+  assert.match(await drawn(page, () => document.getElementById('legend').innerText), /1\.500\s+1\.375\s+1\.250\s+1\.125\s+1\.000/);
+  assert.deepEqual(errors, []);
+  await page.close();
+  await stop(served);
+});
+
+test('a recorded run has the same fields and probes', async () => {
+  const folder = mkdtempSync(join(tmpdir(), 'sinew-view-'));
+  execFileSync(PROGRAM, ['run', MODULE, '--duration', '0.3s', '--out', folder, '--quiet']);
+  const served = await serve(folder, 0, '--paused');
+  const page = await open(served.url);
+  await page.locator('[aria-label="Frame of the recorded run"]').fill('25');
+  await until(page, (s) => s.status.frame === 25 && s.step === 25);
+  const expected = measured(MODULE, 25);
+  await compareFields(page, expected.fields);
+  assert.equal((await state(page)).signals['probe.bending'], expected.probes.bending);
+  await page.close();
+  await stop(served);
+  rmSync(folder, {recursive: true});
+});
+
+test('probes are told as numbers and plotted', async () => {
+  const served = await serve(MODULE, 0, '--paused');
+  const page = await open(served.url);
+  await ask(page, {type: 'step', count: 40});
+  const {probes} = measured(MODULE, 40);
+  const now = await until(page, (s) => s.step === 40);
+  for (const [name, value] of Object.entries(probes)) {
+    assert.equal(now.signals[`probe.${name}`], value, name);
+  }
+  const told = (name) => page.locator(`output[aria-label^="${name}:"]`).innerText();
+  assert.equal(await told('bending'), `${Number((probes.bending * 180 / Math.PI).toPrecision(3))}\u00b0`);
+  assert.equal(await told('axis'), `${Number((1e3 * probes.axis).toPrecision(3))} mm`);
+  await page.selectOption('[aria-label="Signals to plot"]', 'angle');
+  assert.match(await page.locator('#plots .u-legend').first().innerText(), /bending/);
   await page.close();
   await stop(served);
 });

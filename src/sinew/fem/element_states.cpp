@@ -1,13 +1,7 @@
 #include "sinew/fem/element_states.hpp"
 
-#include <array>
-
-#include <Eigen/LU>
-
-#include "sinew/fem/element_batches.hpp"
-#include "sinew/fem/element_gradient.hpp"
-#include "sinew/fem/solid_kernel.hpp"
-#include "sinew/material/response.hpp"
+#include "sinew/fem/element_points.hpp"
+#include "sinew/fem/solid_elements.hpp"
 
 namespace sinew::fem {
 
@@ -23,109 +17,39 @@ Matrix3 lane_of(const material::Lanes3x3& m, std::size_t lane) {
   return result;
 }
 
-Matrix3 lane_of(const LaneRow (&m)[3][3], std::size_t lane) {
-  Matrix3 result;
-  for (int r = 0; r < 3; ++r) {
-    for (int c = 0; c < 3; ++c) result(r, c) = m[r][c].value[lane];
-  }
-  return result;
-}
-
-template <material::Law law>
-void add_batch(const FemBody& body, int number, ElementStates& states) {
-  const ElementBatches& elements = body.fem_model().elements().elements();
-  const BatchConstants& batch = elements.constants[static_cast<std::size_t>(number)];
-  const std::int32_t* nodes = elements.nodes.data() + std::ptrdiff_t{4} * kLanes * number;
-  const auto f =
-      deformation_gradient(batch, nodes, body.positions(), body.fem_model().mesh().nodes);
-  const material::Response response = material::respond<law>(
-      f, {material::load(batch.mu.value), material::load(batch.lambda.value)});
-  for (std::size_t lane = 0; lane < kLanes; ++lane) {
-    const auto slot = static_cast<std::size_t>(number) * kLanes + lane;
-    if (elements.tetrahedron[slot] < 0) continue;
-    const auto e = static_cast<std::size_t>(elements.tetrahedron[slot]);
-    const double volume = batch.volume.value[lane];
-    states.volume[e] = volume;
-    states.deformation[e] = lane_of(f, lane);
-    states.piola[e] = lane_of(response.stress, lane);
-    states.cauchy[e] = law == material::Law::linear
-                           ? states.piola[e]
-                           : Matrix3(states.piola[e] * states.deformation[e].transpose() /
-                                     states.deformation[e].determinant());
-    Vector3 rest = Vector3::Zero();
-    for (std::size_t a = 1; a < 4; ++a) {
-      Vector3 g;
-      for (int c = 0; c < 3; ++c) g[c] = batch.gradient[a - 1][c].value[lane];
-      const Vector3 force = -volume * (states.piola[e] * g);
-      states.forces.row(nodes[kLanes * a + lane]) += force.transpose();
-      rest -= force;
-    }
-    states.forces.row(nodes[lane]) += rest.transpose();
-  }
-}
-
-void add_group(const SolidGroup& group, const std::vector<double>& points,
-               const PointHistory& history, ElementStates& states) {
-  std::array<SolidState, 8> at;
-  const auto count = static_cast<std::size_t>(group.points);
-  const std::vector<double> ratios = patch_ratios(group, points.data());
-  const double* patch_ratio = ratios.empty() ? nullptr : ratios.data();
-  for (int b = 0; b < group.batches(); ++b) {
-    state_batch(group, b, points.data(), patch_ratio, history, std::span(at).first(count));
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      const std::size_t slot = static_cast<std::size_t>(b) * kLanes + lane;
-      if (group.element[slot] < 0) continue;
-      const auto e = static_cast<std::size_t>(group.element[slot]);
-      for (std::size_t q = 0; q < count; ++q) {
-        const double weight = at[q].weight.value[lane];
-        const Matrix3 f = lane_of(at[q].deformation, lane), p = lane_of(at[q].piola, lane);
-        states.volume[e] += weight;
-        states.deformation[e] += weight * f;
-        states.piola[e] += weight * p;
-        states.cauchy[e] += weight * p * f.transpose() / f.determinant();
-        for (std::size_t a = 0; a < static_cast<std::size_t>(group.nodes); ++a) {
-          Vector3 g;
-          for (int c = 0; c < 3; ++c) g[c] = at[q].gradient[a][c].value[lane];
-          states.forces.row(group.node_of(slot, a)) -= weight * (p * g).transpose();
-        }
-      }
-      for (Matrix3* mean : {&states.deformation[e], &states.piola[e], &states.cauchy[e]}) {
-        *mean /= states.volume[e];
-      }
-    }
+// What one element of a batch adds to the means and to the forces of its nodes.
+void add_point(const PointBatch& point, std::size_t lane, ElementStates& states) {
+  const auto e = static_cast<std::size_t>(point.element[lane]);
+  const double weight = point.weight[lane];
+  const Matrix3 piola = lane_of(point.piola, lane);
+  states.volume[e] += weight;
+  states.deformation[e] += weight * lane_of(point.deformation, lane);
+  states.piola[e] += weight * piola;
+  states.cauchy[e] += weight * lane_of(point.cauchy, lane);
+  for (std::size_t a = 0; a < point.nodes; ++a) {
+    Vector3 gradient;
+    for (int c = 0; c < 3; ++c) gradient[c] = point.gradient[a][c][lane];
+    states.forces.row(point.node[kLanes * a + lane]) -= weight * (piola * gradient).transpose();
   }
 }
 
 }  // namespace
 
 ElementStates element_states(const FemBody& body) {
-  const FemModel& model = body.fem_model().elements();
-  const ElementList list(body.fem_model().mesh());
-  const auto count = static_cast<std::size_t>(list.count());
+  const auto count = static_cast<std::size_t>(ElementList(body.fem_model().mesh()).count());
   ElementStates states;
   states.volume.assign(count, 0.0);
   for (auto* tensors : {&states.deformation, &states.piola, &states.cauchy}) {
     tensors->assign(count, Matrix3::Zero());
   }
   states.forces.setZero(body.positions().rows(), 3);
-  const ElementBatches& elements = model.elements();
-  for (int b = 0; b < elements.batches(); ++b) {
-    if (b < elements.linear_batches) {
-      add_batch<material::Law::linear>(body, b, states);
-    } else {
-      add_batch<material::Law::corotational>(body, b, states);
+  visit_points(body, [&](const PointBatch& point) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      if (point.element[lane] >= 0) add_point(point, lane, states);
     }
-  }
-  if (model.solids().empty()) return states;
-  std::vector<double> points(4 * static_cast<std::size_t>(body.positions().rows()), 0.0);
-  for (Eigen::Index i = 0; i < body.positions().rows(); ++i) {
-    for (Eigen::Index c = 0; c < 3; ++c) {
-      points[static_cast<std::size_t>(4 * i + c)] = body.positions()(i, c);
-    }
-  }
-  std::vector<LaneRow> overstress;
-  for (std::size_t g = 0; g < model.solids().size(); ++g) {
-    add_group(model.solids()[g], points, body.history().present(g, overstress), states);
+  });
+  for (auto* tensors : {&states.deformation, &states.piola, &states.cauchy}) {
+    for (std::size_t e = 0; e < count; ++e) (*tensors)[e] /= states.volume[e];
   }
   return states;
 }

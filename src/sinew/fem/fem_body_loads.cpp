@@ -121,50 +121,50 @@ void FemBody::add_work(const mechanics::StepWeights& weights) {
   }
 }
 
+// (C v) . d with C = alpha M + beta K as the step had it.
 double FemBody::rayleigh_work(const mechanics::StepWeights& weights) {
   const auto& damping = model_.settings().damping;
-  // (C v) . d, C = alpha M + beta K as the step had it.
-  combine_velocity(weights, travel_);
-  scratch_.setZero();
-  const std::span<double> travel(travel_.data(), static_cast<std::size_t>(travel_.size()));
-  const std::span<double> force(scratch_.data(), travel.size());
-  VectorX total = VectorX::Zero(travel_.size());
-  if (damping.mass > 0.0) {
-    combine(weights.velocity, momentum_);
-    active_->system.elements->apply_mass(
-        {momentum_.data(), static_cast<std::size_t>(momentum_.size())}, force);
-    total += damping.mass * scratch_;
-  }
-  if (damping.stiffness > 0.0) {
-    const auto& pattern = active_->system.elements->pattern();
-    if (active_->damped) {
-      linalg::multiply(pattern, active_->start_stiffness, travel, force);
-      total += damping.stiffness * scratch_;
-    } else {
-      const double rate = damping.stiffness * weights.velocity.motion;
-      const double mass = weights.acceleration.motion + damping.mass * weights.velocity.motion;
-      linalg::multiply(pattern, active_->assembly.matrix(), travel, force);
-      VectorX rest(travel_.size());
-      active_->system.elements->apply_mass(travel,
-                                           {rest.data(), static_cast<std::size_t>(rest.size())});
-      scratch_ -= mass * rest;
-      rest.setZero();
-      for (const auto& [row, column, block] : load_stiffness_) {
-        rest.segment<3>(3 * row) += block * travel_.segment<3>(3 * column);
-        if (row != column) {
-          rest.segment<3>(3 * column) += block.transpose() * travel_.segment<3>(3 * row);
-        }
-      }
-      total += damping.stiffness / (1.0 + rate) * (scratch_ - rest);
-    }
-  }
-  double work = 0.0;
+  const FemModel& elements = *active_->system.elements;
   const auto nodes = model_.elements().free_nodes();
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const Vector3 d = (positions_.row(nodes[i]) - start_positions_.row(nodes[i])).transpose();
-    work += total.segment<3>(3 * static_cast<Eigen::Index>(i)).dot(d);
+  const auto size = static_cast<std::size_t>(scratch_.size());
+  const auto moved = [&](std::int32_t i) -> Vector3 {
+    const NodeId node = nodes[static_cast<std::size_t>(i)];
+    return (positions_.row(node) - start_positions_.row(node)).transpose();
+  };
+  const auto along = [&](const VectorX& force) {
+    double sum = 0.0;
+    for (std::int32_t i = 0; i < static_cast<std::int32_t>(nodes.size()); ++i) {
+      sum += force.segment<3>(3 * i).dot(moved(i));
+    }
+    return sum;
+  };
+  double work = 0.0;
+  if (damping.mass > 0.0) {
+    combine(weights.velocity, travel_);
+    elements.apply_mass({travel_.data(), size}, {scratch_.data(), size});
+    work += damping.mass * along(scratch_);
   }
-  return work;
+  if (!(damping.stiffness > 0.0)) return work;
+  combine_velocity(weights, travel_);
+  const std::span<const double> travel(travel_.data(), size);
+  const std::span<double> force(scratch_.data(), size);
+  if (active_->damped) {
+    linalg::multiply(elements.pattern(), active_->start_stiffness, travel, force);
+    return work + damping.stiffness * along(scratch_);
+  }
+  // The matrix is (1 + rate) K + mass M and what the loads added.
+  const double rate = damping.stiffness * weights.velocity.motion;
+  const double mass = weights.acceleration.motion + damping.mass * weights.velocity.motion;
+  linalg::multiply(elements.pattern(), active_->assembly.matrix(), travel, force);
+  double stiff = along(scratch_);
+  momentum_.resize(scratch_.size());
+  elements.apply_mass(travel, {momentum_.data(), size});
+  stiff -= mass * along(momentum_);
+  for (const auto& [row, column, block] : load_stiffness_) {
+    stiff -= moved(row).dot(block * travel_.segment<3>(3 * column));
+    if (row != column) stiff -= moved(column).dot(block.transpose() * travel_.segment<3>(3 * row));
+  }
+  return work + damping.stiffness / (1.0 + rate) * stiff;
 }
 
 }  // namespace sinew::fem

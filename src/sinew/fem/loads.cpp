@@ -92,7 +92,7 @@ std::vector<FacePoint> quadratic_rule() {
 
 // One face as it stands: its nodes' rows of any field.
 struct FaceGeometry {
-  FaceGeometry(const Points& positions, const std::vector<NodeId>& nodes, const FacePoint& point) {
+  FaceGeometry(const Points& positions, const FaceNodes& nodes, const FacePoint& point) {
     for (std::size_t a = 0; a < nodes.size(); ++a) {
       const Vector3 x = positions.row(nodes[a]).transpose();
       at += point.shape[a] * x;
@@ -105,7 +105,7 @@ struct FaceGeometry {
   Vector3 area = Vector3::Zero();  // outward normal times the area per parameter
 };
 
-Vector3 interpolate(const Points& field, const std::vector<NodeId>& nodes, const FacePoint& point) {
+Vector3 interpolate(const Points& field, const FaceNodes& nodes, const FacePoint& point) {
   Vector3 sum = Vector3::Zero();
   for (std::size_t a = 0; a < nodes.size(); ++a) {
     sum += point.shape[a] * field.row(nodes[a]).transpose();
@@ -121,7 +121,7 @@ class FaceStiffness {
   }
   Matrix3& operator()(std::size_t a, std::size_t b) { return blocks_[a * nodes_ + b]; }
 
-  void hand_over(const std::vector<NodeId>& nodes, const LoadSet::AddBlock& symmetric,
+  void hand_over(const FaceNodes& nodes, const LoadSet::AddBlock& symmetric,
                  const LoadSet::AddBlock& rest) {
     for (std::size_t a = 0; a < nodes_; ++a) {
       for (std::size_t b = 0; b <= a; ++b) {
@@ -145,7 +145,7 @@ void press(const PressureLoad& load, double factor, const Points& positions, Poi
            const LoadSet::AddBlock& symmetric, const LoadSet::AddBlock& rest) {
   if (factor == 0.0) return;
   for (const mesh::Face& face : load.faces) {
-    const std::vector<NodeId> nodes = face_nodes(face);
+    const FaceNodes nodes(face);
     FaceStiffness stiffness(nodes.size());
     for (const FacePoint& point : face_points(face)) {
       const FaceGeometry now(positions, nodes, point);
@@ -180,7 +180,7 @@ void resist(const WaterLoad& load, const std::vector<double>& thickness, double 
   const double dynamic = 0.5 * factor * load.density;
   for (std::size_t f = 0; f < load.faces.size(); ++f) {
     const mesh::Face& face = load.faces[f];
-    const std::vector<NodeId> nodes = face_nodes(face);
+    const FaceNodes nodes(face);
     FaceStiffness stiffness(nodes.size());
     for (const FacePoint& point : face_points(face)) {
       const FaceGeometry now(state.positions, nodes, point);
@@ -245,7 +245,7 @@ std::vector<double> half_thickness(const std::vector<mesh::Face>& faces, const P
   const double most = 3.0 * volume / surface;
   std::vector<double> result;
   for (const mesh::Face& face : faces) {
-    const std::vector<NodeId> nodes = face_nodes(face);
+    const FaceNodes nodes(face);
     const FaceGeometry here(rest, nodes, face_points(face).front());
     const Vector3 inwards = -here.area.normalized();
     double nearest = 2.0 * most;
@@ -278,17 +278,17 @@ const std::vector<FacePoint>& face_points(const mesh::Face& face) {
   return face.corners() == 3 ? triangle : quadrilateral;
 }
 
-std::vector<NodeId> face_nodes(const mesh::Face& face) {
-  std::vector<NodeId> nodes(face.nodes().begin(), face.nodes().end());
-  if (face.is_quadratic()) nodes.insert(nodes.end(), face.middle.begin(), face.middle.end());
-  return nodes;
+FaceNodes::FaceNodes(const mesh::Face& face) {
+  for (const NodeId node : face.nodes()) node_[size_++] = node;
+  if (!face.is_quadratic()) return;
+  for (const NodeId node : face.middle) node_[size_++] = node;
 }
 
 Points traction_forces(const Points& rest, const std::vector<mesh::Face>& faces,
                        const Vector3& traction) {
   Points forces = Points::Zero(rest.rows(), 3);
   for (const mesh::Face& face : faces) {
-    const std::vector<NodeId> nodes = face_nodes(face);
+    const FaceNodes nodes(face);
     for (const FacePoint& point : face_points(face)) {
       const double area = FaceGeometry(rest, nodes, point).area.norm() * point.weight;
       for (std::size_t a = 0; a < nodes.size(); ++a) {

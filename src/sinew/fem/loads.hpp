@@ -62,7 +62,16 @@ struct FacePoint {
 /// on a flat or bilinear face, and to degree 6 on a curved one.
 const std::vector<FacePoint>& face_points(const mesh::Face& face);
 /// Corners and, of a quadratic triangle, middle nodes.
-std::vector<NodeId> face_nodes(const mesh::Face& face);
+class FaceNodes {
+ public:
+  explicit FaceNodes(const mesh::Face& face);
+  std::size_t size() const { return size_; }
+  NodeId operator[](std::size_t k) const { return node_[k]; }
+
+ private:
+  std::array<NodeId, 6> node_{};
+  std::size_t size_ = 0;
+};
 
 /// (n, 3) N: a uniform traction (3,) Pa, per area at rest, as consistent nodal forces.
 Points traction_forces(const Points& rest, const std::vector<mesh::Face>& faces,

@@ -43,24 +43,18 @@ SmallestRatio measure_solids(const SolidGroup& group, int begin, int end, const 
 void volume_ratios(const SolidGroup& group, int begin, int end, const double* points,
                    double* ratios);
 
-/// What NodalFields makes colours of, eight elements at one point of integration.
-struct SolidMeasures {
-  LaneRow weight;     ///< m^3
-  LaneRow strain;     ///< sqrt(2/3 dev U : dev U), U the right stretch
-  LaneRow von_mises;  ///< of the Cauchy stress, Pa
-};
-
 /// Deformation and stress of eight elements at one point of integration.
 struct SolidState {
   LaneRow weight;             ///< m^3
   LaneRow deformation[3][3];  ///< F
   LaneRow piola[3][3];        ///< P, Pa, with the element's pressure
+  LaneRow energy;             ///< of the law (of slow motion, softened), volumetric part too; J/m^3
   LaneRow gradient[10][3];    ///< g_a of each node, 1/m
 };
 
 /// States of a batch, one a point of integration. @param group,batch which.
 /// @param points as for evaluate_solids(). @param patch_ratio Jm of the group's patches
-///   (patch_ratios()), null without. @param history of the group: PresentHistory.
+///   (patch_ratios()), null without. @param history of the group: ElementHistory::present().
 /// @param result (points,).
 void state_batch(const SolidGroup& group, int batch, const double* points,
                  const double* patch_ratio, const PointHistory& history,
@@ -72,11 +66,5 @@ void state_batch(const SolidGroup& group, int batch, const double* points,
 /// @param stress (6 points,) Pa: xx, yy, zz, xy, xz, yz of each. @param energy (points,) Pa.
 void relaxing_stress(const SolidGroup& group, int batch, const double* points,
                      const PointHistory& history, LaneRow* stress, LaneRow* energy);
-
-/// Measures of a batch, one a point of integration. @param group,batch which.
-/// @param points as for evaluate_solids(). @param history as for state_batch().
-/// @param result (points,).
-void measure_batch(const SolidGroup& group, int batch, const double* points,
-                   const PointHistory& history, std::span<SolidMeasures> result);
 
 }  // namespace sinew::fem

@@ -24,51 +24,6 @@ void measure(const SolidGroup& group, int begin, int end, const double* points,
   }
 }
 
-/// sqrt(3/2 dev s : dev s) of the Cauchy stress s = P F^T / J.
-SINEW_INLINE Lanes von_mises(const Lanes3x3& piola, const Lanes3x3& f, const Lanes& ratio) {
-  Lanes3x3 s;
-  for (int r = 0; r < 3; ++r) {
-    for (int c = 0; c < 3; ++c) {
-      s[r][c] = (piola[r][0] * f[c][0] + piola[r][1] * f[c][1] + piola[r][2] * f[c][2]) / ratio;
-    }
-  }
-  Lanes sum = lanes(0.0);
-  for (int r = 0; r < 3; ++r) {
-    const int c = (r + 1) % 3;
-    const Lanes difference = s[r][r] - s[c][c];
-    sum += 0.5 * difference * difference + 3.0 * s[r][c] * s[r][c];
-  }
-  return material::square_root(sum);
-}
-
-template <int N, int Q>
-void measure_fields(const SolidGroup& group, int number, const double* points,
-                    const PointHistory& history, std::span<SolidMeasures> result) {
-  const bool split = group.law.saint_venant_shear == 0.0;
-  const BatchHistory past(group, history, number);
-  const Batch<N, Q> batch(group, number, points);
-  for (int q = 0; q < Q; ++q) {
-    const Lanes3x3 f = batch.deformation(q);
-    const material::Principal at = material::principal(f);
-    const material::LanesLogResponse response = past.respond(group.law, at, q);
-    Lanes stretch = lanes(0.0);
-    for (int i = 0; i < 3; ++i) {
-      const Lanes l = at.stretch[i] - at.stretch[(i + 1) % 3];
-      stretch += l * l;
-    }
-    // Pressure has no deviator.
-    Lanes3x3 stress = material::first_piola(f, at, response);
-    if (past.carried != nullptr) {
-      Overstress(past.carried + 6 * q, split, f, material::cofactor(f), at.determinant)
-          .add_stress(stress);
-    }
-    SolidMeasures& to = result[static_cast<std::size_t>(q)];
-    material::store(to.weight.value, batch.weight(q));
-    material::store(to.strain.value, material::square_root(2.0 / 9.0 * stretch));
-    material::store(to.von_mises.value, von_mises(stress, f, at.determinant));
-  }
-}
-
 template <int N, int Q>
 void measure_relaxing(const SolidGroup& group, int number, const double* points,
                       const PointHistory& history, LaneRow* stress, LaneRow* energy) {
@@ -106,7 +61,9 @@ void measure_states(const SolidGroup& group, int number, const double* points,
   for (int q = 0; q < Q; ++q) {
     const material::Principal at = material::principal(f[q]);
     material::LanesLogResponse response = past.respond(group.law, at, q);
-    const Lanes pressure = shared.pressure + bulk.own * (ratio[q] - shared.ratio);
+    const Lanes off = ratio[q] - shared.ratio;
+    const Lanes pressure = shared.pressure + bulk.own * off;
+    response.energy += 0.5 * (shared.pressure * (shared.ratio - 1.0) + bulk.own * off * off);
     for (Lanes& first : response.first) first += pressure * ratio[q];
     Lanes3x3 stress = material::first_piola(f[q], at, response);
     if (past.carried != nullptr) {
@@ -116,6 +73,7 @@ void measure_states(const SolidGroup& group, int number, const double* points,
     }
     SolidState& to = result[static_cast<std::size_t>(q)];
     material::store(to.weight.value, batch.weight(q));
+    material::store(to.energy.value, response.energy);
     for (int r = 0; r < 3; ++r) {
       for (int c = 0; c < 3; ++c) {
         material::store(to.deformation[r][c].value, f[q][r][c]);
@@ -174,17 +132,6 @@ SmallestRatio measure_solids(const SolidGroup& group, int begin, int end, const 
     measure<8, 8>(group, begin, end, points, minimum);
   }
   return smallest(minimum, group.element, group.first_slot);
-}
-
-void measure_batch(const SolidGroup& group, int batch, const double* points,
-                   const PointHistory& history, std::span<SolidMeasures> result) {
-  if (group.nodes == 4) {
-    measure_fields<4, 1>(group, batch, points, history, result);
-  } else if (group.nodes == 10) {
-    measure_fields<10, 4>(group, batch, points, history, result);
-  } else {
-    measure_fields<8, 8>(group, batch, points, history, result);
-  }
 }
 
 }  // namespace sinew::fem

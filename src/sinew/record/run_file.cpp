@@ -46,6 +46,7 @@ struct RunFile::Content {
     bodies = file.names("/mesh");
     actuators = file.names("/actuators");
     effectors = file.names("/effectors");
+    if (file.has("/probes")) probes = file.names("/probes");
     states = file.has("/positions");
     frames = complete_frames();
     times = file.rows("/time", 0, frames);
@@ -64,6 +65,7 @@ struct RunFile::Content {
     for (const std::string& effector : effectors) {
       series.push_back("/effectors/" + effector + "/position");
     }
+    for (const std::string& probe : probes) series.push_back("/probes/" + probe + "/value");
     std::uint64_t least = kMostFrames;
     for (const std::string& one : series) {
       const Hdf5Reader::Shape shape = file.shape(one);
@@ -79,7 +81,7 @@ struct RunFile::Content {
   std::uint64_t frames = 0;
   bool states = false;
   std::vector<double> times;
-  std::vector<std::string> bodies, actuators, effectors;
+  std::vector<std::string> bodies, actuators, effectors, probes;
 };
 
 RunFile::RunFile(const std::filesystem::path& path) : content_(std::make_unique<Content>(path)) {}
@@ -104,6 +106,7 @@ const std::vector<double>& RunFile::times() const { return content_->times; }
 const std::vector<std::string>& RunFile::bodies() const { return content_->bodies; }
 const std::vector<std::string>& RunFile::actuators() const { return content_->actuators; }
 const std::vector<std::string>& RunFile::effectors() const { return content_->effectors; }
+const std::vector<std::string>& RunFile::probes() const { return content_->probes; }
 bool RunFile::has_states() const { return content_->states; }
 
 mesh::Mesh RunFile::rest_mesh(std::string_view body) const {
@@ -176,6 +179,12 @@ Points RunFile::effector(std::string_view effector) const {
   if (shape.size() != 2 || shape[1] != 3) file.fail(name + " holds no positions");
   const std::vector<double> numbers = file.rows(name, 0, content_->frames);
   return Eigen::Map<const Points>(numbers.data(), static_cast<Eigen::Index>(content_->frames), 3);
+}
+
+std::vector<double> RunFile::probe(std::string_view probe) const {
+  const Hdf5Reader& file = content_->file;
+  require_known(file.path(), content_->probes, probe);
+  return file.rows(fmt::format("/probes/{}/value", probe), 0, content_->frames);
 }
 
 }  // namespace sinew::record

@@ -39,6 +39,7 @@ class RunFile {
   const std::vector<std::string>& bodies() const;
   const std::vector<std::string>& actuators() const;
   const std::vector<std::string>& effectors() const;
+  const std::vector<std::string>& probes() const;
   /// Whether positions of all nodes were recorded.
   bool has_states() const;
 
@@ -56,6 +57,9 @@ class RunFile {
   /// (frames, 3) m, or rad for orientations; throws as positions().
   /// @param effector its name.
   Points effector(std::string_view effector) const;
+  /// (frames,) m or rad, (frames 3,) m of a point, of a line its length; throws as positions().
+  /// @param probe its name.
+  std::vector<double> probe(std::string_view probe) const;
 
  private:
   struct Content;

@@ -1,7 +1,6 @@
 #include "sinew/record/run_recorder.hpp"
 
 #include <cerrno>
-#include <cmath>
 #include <cstring>
 #include <optional>
 #include <utility>
@@ -10,6 +9,7 @@
 #include <unistd.h>
 
 #include "sinew/core/build_info.hpp"
+#include "sinew/fem/element_fields.hpp"
 #include "sinew/fem/element_states.hpp"
 #include "sinew/mesh/write.hpp"
 #include "sinew/record/run_states.hpp"
@@ -34,7 +34,7 @@ void require_writable(const fs::path& folder) {
   if (problem) unwritable(folder, problem.message());
   if (!fs::is_directory(folder)) unwritable(folder, "it is a file");
   if (::access(folder.c_str(), W_OK | X_OK) != 0) unwritable(folder, std::strerror(errno));
-  for (const char* name : {"run.csv", "run.h5", "scene.yaml"}) {
+  for (const char* name : {"run.csv", "run.h5", "scene.yaml", "probes.csv"}) {
     const fs::path file = folder / name;
     if (!fs::exists(file)) continue;
     if (!fs::is_regular_file(file)) unwritable(file, "it is no regular file");
@@ -72,6 +72,9 @@ class ParaviewSeries {
   ParaviewSeries(const fs::path& folder, const sim::Simulation& simulation)
       : simulation_(simulation) {
     const auto& bodies = simulation.model().bodies();
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      means_.emplace_back(simulation.fem_body(static_cast<int>(b)).fem_model());
+    }
     for (const auto& body : bodies) {
       lists_.emplace_back(folder /
                           (bodies.size() == 1 ? "run.pvd" : "run_" + body->name() + ".pvd"));
@@ -91,7 +94,13 @@ class ParaviewSeries {
       const fem::ElementStates states = fem::element_states(body);
       fields.cells.push_back({"deformation_gradient", 9, rows_of(states.deformation)});
       fields.cells.push_back({"cauchy_stress", 9, rows_of(states.cauchy)});
-      fields.cells.push_back({"von_mises_stress", 1, von_mises(states.cauchy)});
+      for (const fem::ElementFieldInfo& info : fem::element_fields()) {
+        std::vector<double> values = fem::element_field(body, info.field);
+        fields.points.push_back({info.name, 1, means_[b](values)});
+        if (info.field == fem::ElementField::von_mises_stress) {
+          fields.cells.push_back({info.name, 1, std::move(values)});
+        }
+      }
       const Points held =
           fem::reactions(body, states, simulation_.efforts(), simulation_.world().rows().direction,
                          simulation_.model().rows(), static_cast<int>(b));
@@ -111,17 +120,10 @@ class ParaviewSeries {
     }
     return result;
   }
-  static std::vector<double> von_mises(const std::vector<Matrix3>& stresses) {
-    std::vector<double> result;
-    for (const Matrix3& s : stresses) {
-      const Matrix3 deviator = s - s.trace() / 3.0 * Matrix3::Identity();
-      result.push_back(std::sqrt(1.5) * deviator.norm());
-    }
-    return result;
-  }
 
   const sim::Simulation& simulation_;
   std::vector<mesh::PvdWriter> lists_;
+  std::vector<fem::NodalMean> means_;  // one a body
 };
 
 RecordSettings checked(RecordSettings settings) {
@@ -143,10 +145,14 @@ struct RunRecorder::Files {
         table(settings.folder / "run.csv", run, controller) {
     mesh::write_file(settings.folder / "scene.yaml", settings.scene);
     remove_series(settings.folder);
+    const fs::path probes_file = settings.folder / "probes.csv";
+    fs::remove(probes_file);  // an older run's would be taken for this one's
+    if (!run.model().probes().empty()) probes.emplace(probes_file, run);
     if (settings.vtk) series.emplace(settings.folder, run);
   }
   void write() {
     table.write();
+    if (probes) probes->write();
     states.write();
     if (series) series->write();
     ++frames;
@@ -156,6 +162,7 @@ struct RunRecorder::Files {
   RecordSettings settings;
   RunStates states;  // first: a file that another program holds open stops everything
   RunTable table;
+  std::optional<ProbeTable> probes;
   std::optional<ParaviewSeries> series;
   std::int64_t frames = 0;
 };

@@ -42,8 +42,14 @@ struct RecordSettings {
 /// `smallest_volume_ratio`, and the statuses `law` and `controller` in words. The row at t = 0 is
 /// the start, before any step, whose statuses are `start`.
 ///
+/// probes.csv, where the scene has probes, one row a frame: `time [s]`, then per probe `bend [rad]`
+/// (a bend, a distance, an extent), `tip.x [m]` ... (a point), or `axis.length [m]` and
+/// `axis.0.x [m]`, `axis.0.y [m]` ... of every point of a line.
+///
 /// run.h5: /time (frames,) s; /positions/BODY (frames, n, 3) m; /velocities/BODY in dynamics, m/s;
 /// /actuators/NAME/{effort,motion} (frames,); /effectors/NAME/position (frames, 3);
+/// /probes/NAME/value (frames,), of a point (frames, 3), of a line its length, with
+/// /probes/NAME/positions (frames, k, 3);
 /// /controller/EFFECTOR/{target,error}; /report/{residual,...} (frames,);
 /// /mesh/BODY/{nodes,tetrahedra,hexahedra}; /scene, YAML text. Attributes of the file: format,
 /// format_version, sinew_version, scene_name, time_step, record_every, fingerprint; every series

@@ -26,6 +26,7 @@ RunStates::RunStates(const std::filesystem::path& path, const sim::Simulation& s
   declare_bodies(settings.states);
   declare_actuators();
   declare_effectors();
+  declare_probes();
   declare_report();
 }
 
@@ -100,6 +101,35 @@ void RunStates::declare_effectors() {
   }
 }
 
+void RunStates::declare_probes() {
+  const auto& probes = simulation_.model().probes();
+  if (!probes.empty()) file_.group("/probes");
+  for (const auto& probe : probes) {
+    const std::string folder = "/probes/" + probe->name();
+    const auto count = static_cast<std::uint64_t>(probe->components().size());
+    const char* unit = probe->components().front().unit;
+    const auto* line = dynamic_cast<const constraint::LineProbe*>(probe.get());
+    if (line != nullptr) {
+      probes_.push_back({declare(folder + "/value", {}, unit),
+                         declare(folder + "/positions", {line->mark_count(), 3}, unit)});
+    } else if (count == 1) {
+      probes_.push_back({declare(folder + "/value", {}, unit), -1});
+    } else {
+      probes_.push_back({declare(folder + "/value", {count}, unit), -1});
+    }
+    file_.attribute(folder, "kind", std::string_view(probe->kind()));
+  }
+}
+
+void RunStates::write_probe(int index) {
+  const auto [value, positions] = probes_[static_cast<std::size_t>(index)];
+  const std::vector<double> values = simulation_.probe_values(index);
+  const std::span<const double> all(values);
+  if (positions < 0) return file_.append(value, all);
+  file_.append(value, all.first(1));
+  file_.append(positions, all.subspan(1));
+}
+
 void RunStates::declare_report() {
   report_ = {declare("/report/residual", {}, "N"), declare("/report/relative_residual", {}, "1"),
              declare("/report/iterations", {}, "1"), declare("/report/scale", {}, "1"),
@@ -120,6 +150,7 @@ void RunStates::write() {
   for (std::size_t e = 0; e < effectors_.size(); ++e) {
     append(effectors_[e], simulation_.effector_value(static_cast<int>(e)));
   }
+  for (std::size_t p = 0; p < probes_.size(); ++p) write_probe(static_cast<int>(p));
   for (std::size_t t = 0; t < targets_.size(); ++t) {
     append(targets_[t], controller_->settings().tasks[t].target.at(simulation_.time()));
     append(errors_[t], controller_->error(static_cast<int>(t)));

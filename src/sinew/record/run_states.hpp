@@ -29,7 +29,9 @@ class RunStates {
   void declare_bodies(bool states);
   void declare_actuators();
   void declare_effectors();
+  void declare_probes();
   void declare_report();
+  void write_probe(int index);
   int declare(const std::string& path, const std::vector<std::uint64_t>& shape, const char* unit);
   void append(int series, double value) { file_.append(series, {&value, 1}); }
   void append(int series, const Vector3& value) { file_.append(series, {value.data(), 3}); }
@@ -39,6 +41,10 @@ class RunStates {
   Hdf5Writer file_;
   int time_ = -1;
   std::vector<int> positions_, velocities_, efforts_, motions_, effectors_, targets_, errors_;
+  struct ProbeSeries {
+    int value, positions;  // the latter of a line, else -1
+  };
+  std::vector<ProbeSeries> probes_;
   std::array<int, 5> report_{};
 };
 

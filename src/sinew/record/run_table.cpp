@@ -126,4 +126,31 @@ void RunTable::write() {
   writer_.write_row(values_, words_);
 }
 
+namespace {
+
+std::vector<std::string> probe_headings(const sim::Model& model) {
+  std::vector<std::string> names = {"time [s]"};
+  for (const auto& probe : model.probes()) {
+    for (const constraint::ProbeComponent& part : probe->components()) {
+      names.push_back(fmt::format("{}{}{} [{}]", probe->name(), part.name.empty() ? "" : ".",
+                                  part.name, part.unit));
+    }
+  }
+  return names;
+}
+
+}  // namespace
+
+ProbeTable::ProbeTable(const std::filesystem::path& path, const sim::Simulation& simulation)
+    : simulation_(simulation), writer_(path, probe_headings(simulation.model())) {}
+
+void ProbeTable::write() {
+  std::vector<double> row = {simulation_.time()};
+  for (std::size_t p = 0; p < simulation_.model().probes().size(); ++p) {
+    const std::vector<double> values = simulation_.probe_values(static_cast<int>(p));
+    row.insert(row.end(), values.begin(), values.end());
+  }
+  writer_.write_row(row);
+}
+
 }  // namespace sinew::record

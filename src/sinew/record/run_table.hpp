@@ -43,4 +43,17 @@ class RunTable {
   std::array<std::string_view, 2> words_;
 };
 
+/// Writes probes.csv: time and the numbers of every probe.
+class ProbeTable {
+ public:
+  /// @param path of the file. @param simulation whose model has probes.
+  ProbeTable(const std::filesystem::path& path, const sim::Simulation& simulation);
+  /// Appends the present state as a row.
+  void write();
+
+ private:
+  const sim::Simulation& simulation_;
+  CsvWriter writer_;
+};
+
 }  // namespace sinew::record

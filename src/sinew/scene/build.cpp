@@ -281,14 +281,16 @@ Robot build(SceneDescription description) {
     const int body = body_index(actuator.body);
     add_actuator(builder, actuator, body, *meshes[static_cast<std::size_t>(body)]);
   }
-  for (const LoadDescription& load : description.loads) {
-    const int body = body_index(load.body);
-    add_load(builder, load, body, *meshes[static_cast<std::size_t>(body)]);
-  }
   for (const EffectorDescription& effector : description.effectors) {
     const int body = body_index(effector.body);
     add_effector(builder, effector, body, *meshes[static_cast<std::size_t>(body)]);
   }
+  const auto built = [&](const std::string& name) -> BuiltBody {
+    const int body = body_index(name);
+    return {body, meshes[static_cast<std::size_t>(body)].get()};
+  };
+  for (const LoadDescription& load : description.loads) add_load(builder, load, built);
+  for (const ProbeDescription& probe : description.probes) add_probe(builder, probe, built);
   linalg::FactorisationSettings factorisation;
   factorisation.backend = description.solver.backend;
   factorisation.ordering = description.solver.ordering;

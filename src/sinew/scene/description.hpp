@@ -14,6 +14,7 @@
 #include <variant>
 #include <vector>
 
+#include "sinew/constraint/probe.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/core/types.hpp"
 #include "sinew/inverse/target.hpp"
@@ -217,6 +218,27 @@ struct EffectorDescription {
   Points directions = Points(Matrix3::Identity());
 };
 
+/// Something that is measured and recorded, and acts on nothing.
+struct ProbeDescription {
+  enum class Kind { point, line, bend, distance, extent };
+  /// Points, whose mean is meant, or a region's nodes.
+  struct Part {
+    Place place;
+    std::string body;
+    PointList points;
+    std::optional<FixedRegion> region;  ///< none: `points`, or the whole body for an extent
+  };
+  std::string name;
+  Place place;
+  Kind kind = Kind::point;
+  std::vector<Part> parts;         ///< bend, distance: 2; else 1
+  int samples = 21;                ///< line
+  std::optional<Vector3> about;    ///< bend: unit length
+  Vector3 axis = Vector3::Zero();  ///< extent: unit length
+  constraint::ExtentProbe::Way way = constraint::ExtentProbe::Way::along;
+  mesh::Outside outside = mesh::Outside::error;
+};
+
 /// What a controller asks of one effector.
 struct TaskDescription {
   std::string effector;
@@ -264,6 +286,7 @@ struct SceneDescription {
   std::vector<ActuatorDescription> actuators;
   std::vector<LoadDescription> loads;
   std::vector<EffectorDescription> effectors;
+  std::vector<ProbeDescription> probes;
   std::vector<ControllerDescription> controllers;
   RecordDescription record;
   Node tree;  ///< what this was read from, for to_yaml() and overrides

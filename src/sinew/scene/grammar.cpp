@@ -184,6 +184,10 @@ KeyTable scene_table() {
                         .forms = {names(effector_form())},
                         .example = "{tip: {body: trunk, point: 0 0 195 mm}}",
                         .description = "What is watched and steered."});
+  scene.keys.push_back({.name = "probes",
+                        .forms = {names(probe_form())},
+                        .example = "{bend: {body: finger, bend: [{set: bottom}, {set: top}]}}",
+                        .description = "What is measured and recorded; they act on nothing."});
   scene.keys.push_back({.name = "controllers",
                         .forms = {names(controller_form())},
                         .example = "{follow: {type: inverse, effectors: {tip: ...}}}",

@@ -202,9 +202,15 @@ Form actuator_form() {
                    {.word = "spring", .description = "A spring.", .table = spring_table()}});
 }
 
+std::vector<Form> axis_forms() {
+  return {choice({{"x", "The world's x axis."},
+                  {"y", "The world's y axis."},
+                  {"z", "The world's z axis."}}),
+          vector(plain_number())};
+}
+
 Form effector_form() {
-  const Form axis = choice(
-      {{"x", "The world's x axis."}, {"y", "The world's y axis."}, {"z", "The world's z axis."}});
+  const Form axis = axis_forms().front();
   return table(make_table(
       {.name = "effector",
        .description = "Something on a body whose motion matters: exactly one of point, points, "
@@ -228,7 +234,7 @@ Form effector_form() {
                  .description = "The rotation of the frame through three points, as a rotation "
                                 "vector from rest."},
                 {.name = "directions",
-                 .forms = {axis, list({axis, vector(plain_number())}, 1, 3)},
+                 .forms = {axis, list(axis_forms(), 1, 3)},
                  .example = "[x, y]",
                  .default_text = "[x, y, z]",
                  .description = "Along what the motion matters: axes or vectors, independent of "

@@ -93,6 +93,8 @@ struct DriveWords {
 std::vector<Key> drive_keys(const DriveWords& words);
 Key body_key();
 Key outside_key();
+/// x, y, z, which name the world's axes, or a vector.
+std::vector<Form> axis_forms();
 /// box, sphere, plane and set, of which one must stand.
 std::vector<Key> region_keys(const char* whose);
 
@@ -108,6 +110,7 @@ Form body_form();
 Form actuator_form();
 Form load_form();
 Form effector_form();
+Form probe_form();
 Form controller_form();
 
 }  // namespace sinew::scene::forms

@@ -50,13 +50,6 @@ void read_measured(const Fields& fields, EffectorDescription& effector,
   if (fields.find("orientation") != nullptr) read_orientation(fields, effector);
 }
 
-Vector3 read_axis(const Node& node, const std::vector<Form>& forms) {
-  const Form& form = select_form(node, forms, "x");
-  if (form.shape != Shape::choice) return unit_vector(read_numbers(node, form), node.place());
-  const std::string& word = read_choice(node, form).word;
-  return Vector3::Unit(word == "x" ? 0 : word == "y" ? 1 : 2);
-}
-
 void read_directions(const Fields& fields, EffectorDescription& effector) {
   const Node* node = fields.find("directions");
   if (node == nullptr) return;
@@ -78,6 +71,13 @@ void read_directions(const Fields& fields, EffectorDescription& effector) {
 }
 
 }  // namespace
+
+Vector3 read_axis(const Node& node, const std::vector<Form>& forms) {
+  const Form& form = select_form(node, forms, "x");
+  if (form.shape != Shape::choice) return unit_vector(read_numbers(node, form), node.place());
+  const std::string& word = read_choice(node, form).word;
+  return Vector3::Unit(word == "x" ? 0 : word == "y" ? 1 : 2);
+}
 
 EffectorDescription read_effector(const Node::Entry& entry, const ReadContext& context) {
   EffectorDescription effector;

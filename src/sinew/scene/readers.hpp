@@ -31,6 +31,10 @@ LoadDescription read_load(const Node::Entry& entry, const ReadContext& context);
 /// The surface that the keys of the surface table give.
 void read_surface(const Fields& fields, SurfaceDescription& surface, const ReadContext& context);
 EffectorDescription read_effector(const Node::Entry& entry, const ReadContext& context);
+ProbeDescription read_probe(const Node::Entry& entry, const ReadContext& context);
+/// A unit vector, or the axis that x, y or z names. @param node,forms what is read, as one of
+/// these.
+Vector3 read_axis(const Node& node, const std::vector<Form>& forms);
 /// Knows the effectors, which say how many weights and what kind of target there may be.
 ControllerDescription read_controller(const Node::Entry& entry, const ReadContext& context,
                                       const SceneDescription& scene);

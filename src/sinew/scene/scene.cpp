@@ -128,6 +128,8 @@ SceneDescription read_scene(const Node& tree, const ReadContext& context) {
               [&](const auto& entry) { scene.loads.push_back(read_load(entry, context)); });
   for_entries(fields, "effectors",
               [&](const auto& entry) { scene.effectors.push_back(read_effector(entry, context)); });
+  for_entries(fields, "probes",
+              [&](const auto& entry) { scene.probes.push_back(read_probe(entry, context)); });
   for_entries(fields, "controllers", [&](const auto& entry) {
     scene.controllers.push_back(read_controller(entry, context, scene));
   });

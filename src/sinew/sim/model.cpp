@@ -41,6 +41,10 @@ int Model::load_index(std::string_view name) const {
   return find_by_name(loads_, name, "load", [](const auto& l) { return l.name; });
 }
 
+int Model::probe_index(std::string_view name) const {
+  return find_by_name(probes_, name, "probe", [](const auto& p) { return p->name(); });
+}
+
 const constraint::Effector& Model::effector(int index) const {
   const auto& model = effectors_.at(static_cast<std::size_t>(index));
   return dynamic_cast<const constraint::Effector&>(

@@ -13,6 +13,7 @@
 #include "sinew/constraint/cavity.hpp"
 #include "sinew/constraint/effector.hpp"
 #include "sinew/constraint/point_force.hpp"
+#include "sinew/constraint/probe.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/sim/actuator.hpp"
@@ -97,6 +98,7 @@ class Model {
   /// Actuators and, after them, guides: rows that a law finds efforts for.
   std::size_t range_count() const { return actuators_.size() + guides_.size(); }
   const std::vector<EffectorModel>& effectors() const { return effectors_; }
+  const std::vector<std::unique_ptr<constraint::Probe>>& probes() const { return probes_; }
   const mechanics::RowPattern& rows() const { return rows_; }
   const std::vector<mechanics::RowCurvature>& curvatures() const { return curvatures_; }
   const StepSettings& step() const { return step_; }
@@ -114,6 +116,7 @@ class Model {
   int actuator_index(std::string_view name) const;
   int effector_index(std::string_view name) const;
   int load_index(std::string_view name) const;
+  int probe_index(std::string_view name) const;
 
   const constraint::Effector& effector(int index) const;
   /// The line of a cable or spring; null when an actuator has none.
@@ -135,6 +138,7 @@ class Model {
   std::vector<ActuatorModel> actuators_;
   std::vector<GuideModel> guides_;
   std::vector<EffectorModel> effectors_;
+  std::vector<std::unique_ptr<constraint::Probe>> probes_;
   mechanics::RowPattern rows_;
   std::vector<mechanics::RowCurvature> curvatures_;
   std::vector<int> stiffening_, curved_;

@@ -378,27 +378,23 @@ int ModelBuilder::add_force(const ForceSettings& settings) {
   }
 }
 
-namespace {
-
-// The mean of points given by position, as one attached point.
-int attach_mean(mechanics::BodyModel& body, const EffectorSettings& settings) {
-  const auto what = [&](Eigen::Index i) {
-    return fmt::format("point {} of effector '{}'", i, settings.name);
-  };
-  if (settings.points.rows() == 1) {
-    return body.attach(settings.points.row(0), settings.outside, what(0));
+int attach_mean(mechanics::BodyModel& body, const Points& points, mesh::Outside outside,
+                const std::string& what, const Place& place) {
+  if (points.rows() == 0) {
+    throw Error(ErrorKind::too_few_points, place, "there is no point", "give `point: x y z mm`");
   }
+  const auto name = [&](Eigen::Index i) { return fmt::format("point {} of {}", i, what); };
+  if (points.rows() == 1) return body.attach(points.row(0), outside, name(0));
   auto* fem = dynamic_cast<fem::FemBodyModel*>(&body);
   if (fem == nullptr) {
-    throw Error(ErrorKind::wrong_type, settings.place,
+    throw Error(ErrorKind::wrong_type, place,
                 "the mean of several points needs a finite-element body", "give one point");
   }
   std::vector<NodeId> nodes;
   std::vector<double> weights;
-  const double share = 1.0 / static_cast<double>(settings.points.rows());
-  for (Eigen::Index i = 0; i < settings.points.rows(); ++i) {
-    const int point = body.attach(settings.points.row(i), settings.outside, what(i));
-    const auto& a = fem->attachment(point);
+  const double share = 1.0 / static_cast<double>(points.rows());
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    const auto& a = fem->attachment(body.attach(points.row(i), outside, name(i)));
     for (std::size_t k = 0; k < a.nodes.size(); ++k) {
       nodes.push_back(a.nodes[k]);
       weights.push_back(share * a.weights[k]);
@@ -406,8 +402,6 @@ int attach_mean(mechanics::BodyModel& body, const EffectorSettings& settings) {
   }
   return body.attach_nodes(nodes, weights);
 }
-
-}  // namespace
 
 int ModelBuilder::add_effector(const EffectorSettings& settings) {
   check_body(settings.body, settings.place);
@@ -448,11 +442,8 @@ int ModelBuilder::add_effector(const EffectorSettings& settings) {
                                           1.0 / static_cast<double>(settings.nodes.size()));
         point = on.attach_nodes(settings.nodes, weights);
       } else {
-        if (settings.points.rows() == 0) {
-          throw Error(ErrorKind::too_few_points, settings.place, "the effector has no point",
-                      "give `point: x y z mm`");
-        }
-        point = attach_mean(on, settings);
+        point = attach_mean(on, settings.points, settings.outside,
+                            fmt::format("effector '{}'", settings.name), settings.place);
       }
       effector = std::make_unique<constraint::PointEffector>(
           settings.name, mechanics::MaterialPoint{settings.body, point}, settings.directions);

@@ -13,6 +13,7 @@
 #include "sinew/sim/fluid_drive.hpp"
 #include "sinew/sim/load_settings.hpp"
 #include "sinew/sim/model.hpp"
+#include "sinew/sim/probe_settings.hpp"
 #include "sinew/sim/spring_drive.hpp"
 
 namespace sinew::sim {
@@ -92,6 +93,12 @@ struct EffectorSettings {
   mesh::Outside outside = mesh::Outside::error;
 };
 
+/// The mean of points given by position, as one attached point. @return its number.
+/// @param body,points,outside (n, 3) m on it, at rest. @param what names it in messages.
+/// @param place of what is declared. Throws Error: too-few-points, point-outside-mesh, wrong-type.
+int attach_mean(mechanics::BodyModel& body, const Points& points, mesh::Outside outside,
+                const std::string& what, const Place& place);
+
 class ModelBuilder {
  public:
   explicit ModelBuilder(StepSettings settings = {});
@@ -113,6 +120,8 @@ class ModelBuilder {
   /// As add_cable(), and Error(out-of-range).
   int add_spring(const SpringLineSettings& settings);
   int add_effector(const EffectorSettings& settings);
+  /// Throws Error: too-few-points, empty-region, point-outside-mesh, degenerate-orientation.
+  int add_probe(const ProbeSettings& settings);
 
   /// Plans and hands the model over; the builder is empty afterwards.
   /// @param settings of the factorisation.

@@ -352,6 +352,13 @@ Vector3 Simulation::effector_value(int index) const {
   return model_->effector(index).value(world_.placement());
 }
 
+std::vector<double> Simulation::probe_values(int index) const {
+  const constraint::Probe& probe = *model_->probes().at(static_cast<std::size_t>(index));
+  std::vector<double> values(probe.components().size());
+  probe.measure(world_.placement(), values);
+  return values;
+}
+
 void Simulation::command(int actuator, Command command) {
   ActuatorState& state = actuators_.at(static_cast<std::size_t>(actuator));
   if (state.owner != nullptr) {

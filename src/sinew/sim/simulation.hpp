@@ -107,6 +107,8 @@ class Simulation {
   }
   /// Position (3,) m, or rotation vector (3,) rad, of an effector.
   Vector3 effector_value(int index) const;
+  /// (components,) what a probe measures now, m and rad. @param index of Model::probes().
+  std::vector<double> probe_values(int index) const;
 
   /// Gives a law the actuators that it chooses efforts for; it replaces the direct law in every
   /// step until it is detached. One law at a time. Throws Error(actuator-owned).

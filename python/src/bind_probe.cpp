@@ -1,0 +1,59 @@
+#include <fmt/format.h>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+
+namespace sinew::python {
+
+namespace {
+
+const constraint::Probe& model(const Probe& self) {
+  return *self.session->model().probes()[static_cast<std::size_t>(self.index)];
+}
+
+bool is_line(const Probe& self) {
+  return dynamic_cast<const constraint::LineProbe*>(&model(self)) != nullptr;
+}
+
+py::object value(const Probe& self) {
+  const Session::Use use(*self.session);
+  const std::vector<double> values = self.session->simulation().probe_values(self.index);
+  if (values.size() == 1 || is_line(self)) return py::float_(values.front());
+  const auto count = static_cast<Eigen::Index>(values.size());
+  return copy(VectorX(Eigen::Map<const VectorX>(values.data(), count)));
+}
+
+Array positions(const Probe& self) {
+  const Session::Use use(*self.session);
+  return copy(model(self).marks(self.session->simulation().world().placement()));
+}
+
+}  // namespace
+
+void bind_probe(py::module_& module) {
+  py::class_<Probe>(module, "Probe",
+                    "Something measured on the robot, which acts on nothing. From "
+                    "Simulation.probe() or Simulation.probes.")
+      .def_property_readonly(
+          "name", [](const Probe& self) { return model(self).name(); }, "str: as in the scene.")
+      .def_property_readonly(
+          "kind", [](const Probe& self) { return model(self).kind(); },
+          "str: 'point', 'line', 'bend', 'distance' or 'extent'.")
+      .def_property_readonly(
+          "unit", [](const Probe& self) { return model(self).components().front().unit; },
+          "str: 'm', or 'rad' of a bend.")
+      .def_property_readonly(
+          "value", &value,
+          "float: what it measures now (m, or rad); the length of a line. (3,) ndarray of a point "
+          "(m).")
+      .def_property_readonly("positions", &positions,
+                             "(k, 3) ndarray: where it measures now (m): a point; the points along "
+                             "a line; the ends of "
+                             "a distance; the nodes that an extent lies between; the middles of a "
+                             "bend's faces. A copy.")
+      .def("__repr__", [](const Probe& self) {
+        return fmt::format("<sinew.Probe '{}', {}>", model(self).name(), model(self).kind());
+      });
+}
+
+}  // namespace sinew::python

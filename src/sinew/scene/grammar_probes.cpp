@@ -1,0 +1,127 @@
+// The tables of probes.
+#include "sinew/scene/grammar_forms.hpp"
+
+namespace sinew::scene::forms {
+
+namespace {
+
+Key optional_body_key() {
+  Key key = body_key();
+  key.required = false;
+  key.description = "The body it belongs to. Without: the probe's.";
+  return key;
+}
+
+std::vector<Key> spot_keys() {
+  return {{.name = "point",
+           .forms = {vector(length())},
+           .example = "0 0 195 mm",
+           .description = "A point, in the mesh at rest."},
+          {.name = "points",
+           .forms = {table(point_file_table()), list({vector(length())})},
+           .example = "[10 0 195 mm, -10 0 195 mm]",
+           .description = "The mean of several points."},
+          {.name = "set",
+           .forms = {text()},
+           .example = "tip",
+           .description = "The mean of the nodes of a named set of the mesh."}};
+}
+
+std::shared_ptr<const KeyTable> end_table() {
+  KeyTable end{.name = "end of a distance",
+               .description = "Exactly one of point, points and set.",
+               .keys = spot_keys(),
+               .alternatives = {{{"point", "points", "set"}, true}}};
+  end.keys.push_back(optional_body_key());
+  return make_table(std::move(end));
+}
+
+std::shared_ptr<const KeyTable> face_table() {
+  KeyTable face{.name = "face of a bend",
+                .description =
+                    "Nodes of a face or a cross-section at rest: exactly one of box, sphere, plane "
+                    "and set. Its normal is that of the plane, or of the plane that fits best, and "
+                    "turns with the nodes.",
+                .keys = region_keys("Nodes"),
+                .alternatives = {{{"box", "sphere", "plane", "set"}, true}}};
+  face.keys.push_back(optional_body_key());
+  return make_table(std::move(face));
+}
+
+std::shared_ptr<const KeyTable> extent_table() {
+  KeyTable extent{
+      .name = "extent",
+      .description =
+          "How far nodes reach. Of box, sphere, plane and set at most one says which "
+          "nodes of the mesh at rest; without, all of the body.",
+      .keys = region_keys("Nodes"),
+      .alternatives = {{{"box", "sphere", "plane", "set"}, false}, {{"along", "across"}, true}}};
+  extent.keys.push_back({.name = "along",
+                         .forms = axis_forms(),
+                         .example = "z",
+                         .description = "An axis: the largest coordinate less the smallest."});
+  extent.keys.push_back({.name = "across",
+                         .forms = axis_forms(),
+                         .example = "z",
+                         .description = "An axis: the reach in the directions normal to it, the "
+                                        "diameter of a ring round this axis."});
+  extent.keys.push_back(
+      {.name = "size",
+       .forms = {choice({{"largest", "In the direction where they reach farthest."},
+                         {"smallest", "In the direction where they reach least."}})},
+       .example = "smallest",
+       .default_text = "largest",
+       .description = "Which of the directions across the axis.",
+       .only_with = "across"});
+  return make_table(std::move(extent));
+}
+
+}  // namespace
+
+Form probe_form() {
+  KeyTable probe{
+      .name = "probe",
+      .description =
+          "A number, or several, read off the robot's shape: exactly one of point, points, set, "
+          "line, bend, distance and extent. A probe acts on nothing; what is to be steered is an "
+          "effector. `sinew run` records all in probes.csv and run.h5, in m and rad.",
+      .keys = spot_keys(),
+      .alternatives = {{{"point", "points", "set", "line", "bend", "distance", "extent"}, true}}};
+  probe.keys.insert(probe.keys.begin(), body_key());
+  probe.keys.push_back({.name = "line",
+                        .forms = {table(point_file_table()), list({vector(length())}, 2)},
+                        .example = "[0 0 0 mm, 0 0 195 mm]",
+                        .description = "The corners of a line in the mesh at rest: its length now "
+                                       "and the points along it."});
+  probe.keys.push_back({.name = "samples",
+                        .forms = {integer(2, 10000)},
+                        .example = "21",
+                        .default_text = "21",
+                        .description = "How many points along the line, evenly spaced at rest; its "
+                                       "corners are always among them.",
+                        .only_with = "line"});
+  probe.keys.push_back({.name = "bend",
+                        .forms = {list({table(face_table())}, 2, 2)},
+                        .example = "[{set: bottom}, {set: top}]",
+                        .description = "The angle between the normals of two faces, 0 to 180 deg; "
+                                       "at rest both point from the first towards the second."});
+  probe.keys.push_back({.name = "about",
+                        .forms = axis_forms(),
+                        .example = "y",
+                        .description =
+                            "An axis across both normals: the angle has a sign then, by "
+                            "the right hand from the first to the second, -180 to 180 deg.",
+                        .only_with = "bend"});
+  probe.keys.push_back({.name = "distance",
+                        .forms = {list({vector(length()), table(end_table())}, 2, 2)},
+                        .example = "[-10 0 50 mm, 10 0 50 mm]",
+                        .description = "The distance between two points in the mesh at rest."});
+  probe.keys.push_back({.name = "extent",
+                        .forms = {table(extent_table())},
+                        .example = "{set: side, along: x}",
+                        .description = "How far nodes reach: a height, a diameter."});
+  probe.keys.push_back(outside_key());
+  return table(make_table(std::move(probe)));
+}
+
+}  // namespace sinew::scene::forms
