@@ -264,9 +264,10 @@ auto energy(Get get) {
 }
 
 void bind_mechanics(py::class_<Body>& type) {
-  type.def_property_readonly("strain_energy",
-                             energy([](fem::FemBody& b) { return b.strain_energy(); }),
-                             "float: elastic energy now (J).")
+  type.def_property_readonly(
+          "strain_energy", energy([](fem::FemBody& b) { return b.strain_energy(); }),
+          "float: elastic energy now (J), that of the law of slow motion in viscoelastic "
+          "materials; with what softening has dissipated.")
       .def_property_readonly("kinetic_energy",
                              energy([](fem::FemBody& b) { return b.kinetic_energy(); }),
                              "float: energy of motion now (J).")

@@ -109,6 +109,17 @@ void bind_material(py::module_& module) {
           "poisson_ratio", [](const Material& self) { return self.energy.poisson_ratio(); },
           "float: of small strain.")
       .def_property_readonly(
+          "viscosity",
+          [](const Material& self) {
+            std::vector<std::pair<double, double>> series;
+            for (const material::PronyTerm& term : self.energy.prony) {
+              series.emplace_back(term.relative_modulus, term.relaxation_time);
+            }
+            return series;
+          },
+          "list of tuple: relative modulus and relaxation time (s) of each part of its Prony "
+          "series; moduli and stresses of this object are those of slow motion.")
+      .def_property_readonly(
           "density",
           [](const Material& self) -> std::optional<double> {
             if (self.density > 0.0) return self.density;

@@ -10,6 +10,7 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/fem/assembly.hpp"
+#include "sinew/fem/solid_elements.hpp"
 #include "sinew/mesh/embedding.hpp"
 #include "sinew/mesh/hexahedron.hpp"
 #include "sinew/mesh/quadratic.hpp"
@@ -19,115 +20,21 @@
 #include "allocation_counter.hpp"
 #include "block_mesh.hpp"
 #include "reference.hpp"
+#include "solid_bodies.hpp"
 
 namespace sinew::fem {
 namespace {
 
-constexpr double kEdge = 0.01;
-
-material::Hyperelastic rubber(double poisson_ratio = 0.49) {
-  material::Hyperelastic law =
-      material::ogden({{24361.0, 1.7138}, {66.703, 7.0679}, {-453.81, -3.3659}},
-                      material::OgdenConvention::mu_over_alpha);
-  law.bulk_modulus = material::bulk_modulus_of(law.shear_modulus(), poisson_ratio);
-  return law;
-}
-
-material::Hyperelastic soft_rubber() {
-  material::Hyperelastic law = material::yeoh({9e3, -200.0, 30.0});
-  law.bulk_modulus = 2e5;
-  return law;
-}
-
-enum class Kind { tetrahedra, quadratic, hexahedra, both };
-
-/// A box of cells, inner nodes moved about; `both` has hexahedra below and tetrahedra above.
-std::shared_ptr<mesh::Mesh> box(Kind kind, int nx, int ny, int nz, double jitter = 0.12) {
-  auto result = block_mesh(nx, ny, nz, kEdge, jitter);
-  if (kind == Kind::tetrahedra) return result;
-  if (kind == Kind::quadratic) {
-    return std::make_shared<mesh::Mesh>(mesh::with_middle_nodes(*result));
-  }
-  const auto number = [=](int x, int y, int z) { return (z * (ny + 1) + y) * (nx + 1) + x; };
-  const int layers = kind == Kind::hexahedra ? nz : (nz + 1) / 2;
-  for (int z = 0; z < layers; ++z) {
-    for (int y = 0; y < ny; ++y) {
-      for (int x = 0; x < nx; ++x) {
-        result->hexahedra.push_back({number(x, y, z), number(x + 1, y, z), number(x + 1, y + 1, z),
-                                     number(x, y + 1, z), number(x, y, z + 1),
-                                     number(x + 1, y, z + 1), number(x + 1, y + 1, z + 1),
-                                     number(x, y + 1, z + 1)});
-      }
-    }
-  }
-  // Six tetrahedra a cell, cell by cell from below.
-  result->tetrahedra.erase(result->tetrahedra.begin(),
-                           result->tetrahedra.begin() + 6 * nx * ny * layers);
-  return result;
-}
-
-FemModelSettings settings_of(const mesh::Mesh& mesh, const material::Hyperelastic& law) {
-  FemModelSettings settings;
-  settings.regions.push_back({.constants = {}, .density = 1070.0, .hyperelastic = law});
-  settings.fixed_nodes = bottom_nodes(mesh, kEdge);
-  return settings;
-}
-
-/// Elements dealt out in turn to two rubbers and, tetrahedra, to a corotational material.
-FemModelSettings mixed_settings(const mesh::Mesh& mesh) {
-  FemModelSettings settings;
-  settings.regions = {{.constants = {}, .density = 1000.0, .hyperelastic = rubber()},
-                      {.constants = {}, .density = 1100.0, .hyperelastic = soft_rubber()},
-                      {.constants = {2e5, 0.4}, .density = 900.0}};
-  if (!mesh.quadratic.empty()) settings.regions[2].hyperelastic = material::neo_hookean(3e4);
-  if (!mesh.quadratic.empty()) settings.regions[2].hyperelastic->bulk_modulus = 4e5;
-  const auto tetrahedra = static_cast<NodeId>(mesh.tetrahedra.size());
-  for (NodeId e = 0; e < tetrahedra + static_cast<NodeId>(mesh.hexahedra.size()); ++e) {
-    settings.regions[static_cast<std::size_t>(e < tetrahedra ? e % 3 : e % 2)].elements.push_back(
-        e);
-  }
-  std::erase_if(settings.regions, [](const Region& region) { return region.elements.empty(); });
-  settings.fixed_nodes = bottom_nodes(mesh, kEdge);
-  return settings;
-}
-
-struct Body {
-  Body(std::shared_ptr<const mesh::Mesh> mesh, const FemModelSettings& settings, int threads = 1)
-      : model(std::make_shared<const FemModel>(std::move(mesh), settings)),
-        pool(threads),
-        assembly(model, pool) {}
-
-  double energy(const Points& x) {
-    assembly.evaluate(x, {.tangent = Tangent::none});
-    return assembly.strain_energy();
-  }
-  VectorX forces(const Points& x) {
-    assembly.evaluate(x, {.tangent = Tangent::none});
-    return Eigen::Map<const VectorX>(assembly.forces().data(), 3 * model->free_count());
-  }
-  MatrixX matrix(const Points& x, Tangent tangent) {
-    assembly.evaluate(x, {.tangent = tangent});
-    return dense_matrix(assembly);
-  }
-  /// x with free coordinate k moved by `step`.
-  Points stepped(Points x, Eigen::Index k, double step) const {
-    x(model->free_nodes()[static_cast<std::size_t>(k / 3)], k % 3) += step;
-    return x;
-  }
-
-  std::shared_ptr<const FemModel> model;
-  ThreadPool pool;
-  Assembly assembly;
-};
+using namespace solid_bodies;
 
 class EveryKind : public testing::TestWithParam<Kind> {};
 INSTANTIATE_TEST_SUITE_P(Kinds, EveryKind,
-                         testing::Values(Kind::tetrahedra, Kind::quadratic, Kind::hexahedra,
-                                         Kind::both));
+                         testing::Values(Kind::tetrahedra, Kind::patches, Kind::quadratic,
+                                         Kind::hexahedra, Kind::both));
 
 TEST_P(EveryKind, ForcesAreTheDerivativeOfTheEnergy) {
   const auto mesh = box(GetParam(), 2, 2, 3);
-  Body body(mesh, mixed_settings(*mesh));
+  Body body(mesh, mixed_settings(GetParam(), *mesh));
   const Points x = moved(*mesh, kEdge, 0.08);
   const VectorX forces = body.forces(x);
   constexpr double kStep = 1e-7;
@@ -141,7 +48,7 @@ TEST_P(EveryKind, ForcesAreTheDerivativeOfTheEnergy) {
 
 TEST_P(EveryKind, TheMatrixIsTheDerivativeOfTheForces) {
   const auto mesh = box(GetParam(), 2, 1, 3);
-  Body body(mesh, mixed_settings(*mesh));
+  Body body(mesh, mixed_settings(GetParam(), *mesh));
   const Points x = moved(*mesh, kEdge, 0.08);
   const MatrixX matrix = body.matrix(x, Tangent::exact);
   EXPECT_LT((matrix - matrix.transpose()).norm(), 1e-12 * matrix.norm());
@@ -157,7 +64,7 @@ TEST_P(EveryKind, TheMatrixIsTheDerivativeOfTheForces) {
 
 TEST_P(EveryKind, TheRealTimeMatrixIsPositive) {
   const auto mesh = box(GetParam(), 2, 2, 3);
-  Body body(mesh, settings_of(*mesh, rubber(0.45)));
+  Body body(mesh, settings_of(GetParam(), *mesh, rubber(0.45)));
   Points x = mesh->nodes;
   x.col(2) *= 0.55;  // pressed together: the exact tangent buckles
   const auto lowest = [](const MatrixX& m) {
@@ -178,7 +85,7 @@ TEST_P(EveryKind, TheRealTimeMatrixIsPositive) {
 void expect_even_strain(Kind kind) {
   // Affine motion of the boundary: inner nodes are in equilibrium where it takes them.
   const auto mesh = box(kind, 3, 3, 3, 0.15);
-  FemModelSettings settings = settings_of(*mesh, rubber());
+  FemModelSettings settings = settings_of(kind, *mesh, rubber());
   settings.fixed_nodes.clear();
   for (const mesh::Face& face : mesh::boundary_faces(*mesh)) {
     for (const NodeId node : face.nodes()) settings.fixed_nodes.push_back(node);
@@ -199,12 +106,13 @@ void expect_even_strain(Kind kind) {
 }
 
 TEST(Solid, APatchOfTetrahedraIsStrainedEvenly) { expect_even_strain(Kind::tetrahedra); }
+TEST(Solid, PatchesOfTetrahedraAreStrainedEvenly) { expect_even_strain(Kind::patches); }
 TEST(Solid, APatchOfQuadraticTetrahedraIsStrainedEvenly) { expect_even_strain(Kind::quadratic); }
 TEST(Solid, APatchOfHexahedraIsStrainedEvenly) { expect_even_strain(Kind::hexahedra); }
 
 TEST_P(EveryKind, ARotationStrainsNothing) {
   const auto mesh = box(GetParam(), 2, 2, 2);
-  FemModelSettings settings = settings_of(*mesh, rubber());
+  FemModelSettings settings = settings_of(GetParam(), *mesh, rubber());
   settings.fixed_nodes.clear();
   Body body(mesh, settings);
   const Matrix3 q = Eigen::AngleAxisd(2.1, Vector3(1, 2, -1).normalized()).toRotationMatrix();
@@ -217,7 +125,7 @@ TEST_P(EveryKind, ARotationStrainsNothing) {
 
 TEST_P(EveryKind, ThreadsDoNotChangeABit) {
   const auto mesh = box(GetParam(), 4, 3, 8);
-  const FemModelSettings settings = mixed_settings(*mesh);
+  const FemModelSettings settings = mixed_settings(GetParam(), *mesh);
   const Points x = moved(*mesh, kEdge, 0.1);
   for (const Tangent tangent : {Tangent::none, Tangent::rotated, Tangent::exact}) {
     Body one(mesh, settings), four(mesh, settings, 4);
@@ -235,7 +143,7 @@ TEST_P(EveryKind, ThreadsDoNotChangeABit) {
 
 TEST_P(EveryKind, NothingAllocatesAfterTheFirst) {
   const auto mesh = box(GetParam(), 2, 2, 4);
-  Body body(mesh, mixed_settings(*mesh), 2);
+  Body body(mesh, mixed_settings(GetParam(), *mesh), 2);
   const Points x = moved(*mesh, kEdge, 0.1);
   for (const Tangent tangent : {Tangent::rotated, Tangent::exact}) {
     body.assembly.evaluate(x, {.tangent = tangent});
@@ -247,7 +155,7 @@ TEST_P(EveryKind, NothingAllocatesAfterTheFirst) {
 
 TEST_P(EveryKind, TheWorstElementIsNamed) {
   const auto mesh = box(GetParam(), 2, 2, 3, 0.0);
-  Body body(mesh, settings_of(*mesh, rubber()));
+  Body body(mesh, settings_of(GetParam(), *mesh, rubber()));
   Points x = mesh->nodes;
   x(0, 2) += 3.0 * kEdge;  // far through the cell's upper face
   const VolumeMeasure measure = body.assembly.measure_volume(x);
@@ -267,7 +175,7 @@ TEST_P(EveryKind, TheWorstElementIsNamed) {
 
 TEST_P(EveryKind, MassesAddUp) {
   const auto mesh = box(GetParam(), 2, 3, 3);
-  FemModelSettings settings = settings_of(*mesh, rubber());
+  FemModelSettings settings = settings_of(GetParam(), *mesh, rubber());
   settings.fixed_nodes.clear();
   for (const MassMatrix mass : {MassMatrix::lumped, MassMatrix::consistent}) {
     settings.mass = mass;
@@ -282,13 +190,14 @@ TEST_P(EveryKind, MassesAddUp) {
   }
 }
 
-TEST(Solid, NeoHookeanTetrahedraAreThoseOfTheGeneralWay) {
-  const auto mesh = box(Kind::tetrahedra, 3, 2, 4);
+void expect_one_way(Kind kind) {
+  const auto mesh = box(kind, 3, 2, 4);
   material::Hyperelastic law = material::neo_hookean(25e3), two_halves = law;
   law.bulk_modulus = two_halves.bulk_modulus = 4e5;
   two_halves.powers.front().coefficient *= 0.5;
   two_halves.powers.push_back(two_halves.powers.front());  // no longer taken for neo-Hookean
-  Body fast(mesh, settings_of(*mesh, law)), general(mesh, settings_of(*mesh, two_halves));
+  Body fast(mesh, settings_of(kind, *mesh, law)),
+      general(mesh, settings_of(kind, *mesh, two_halves));
   const Points x = moved(*mesh, kEdge, 0.12);
   const VectorX forces = general.forces(x);
   EXPECT_LT((fast.forces(x) - forces).norm(), 1e-13 * forces.norm());
@@ -299,6 +208,9 @@ TEST(Solid, NeoHookeanTetrahedraAreThoseOfTheGeneralWay) {
     EXPECT_EQ(fast.assembly.minimum_volume_ratio(), general.assembly.minimum_volume_ratio());
   }
 }
+
+TEST(Solid, NeoHookeanTetrahedraAreThoseOfTheGeneralWay) { expect_one_way(Kind::tetrahedra); }
+TEST(Solid, NeoHookeanPatchesAreThoseOfTheGeneralWay) { expect_one_way(Kind::patches); }
 
 TEST(Solid, HexahedraDoNotLockInVolume) {
   // One cell sheared while its volume is kept has no volumetric energy however stiff the bulk is.

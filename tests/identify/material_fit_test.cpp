@@ -73,6 +73,7 @@ TEST(MaterialFit, FindsSoftening) {
   EXPECT_GT(plain.tests[0].relative, 0.05);
   EXPECT_LT(soft.tests[0].relative, 1e-4);
   ASSERT_TRUE(soft.mullins);
+  EXPECT_NE(material_yaml(soft, tests, 0.49).find("softening: {r: 2."), std::string::npos);
   EXPECT_NEAR(soft.mullins->r, 2.5, 0.01);
 }
 

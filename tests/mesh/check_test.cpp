@@ -177,6 +177,32 @@ TEST(Check, TurnsAndRefusesHexahedra) {
   refused(ErrorKind::inverted_element, mesh);
 }
 
+TEST(Check, RefusesHexahedraThatMeetTetrahedra) {
+  Mesh mesh = block({.cells = {2, 1, 1}}, Cells::hexahedra);
+  const Mesh tetrahedra = block({.cells = {2, 1, 1}}, Cells::tetrahedra);
+  const Hexahedron second = mesh.hexahedra[1];
+  mesh.hexahedra.pop_back();
+  for (const Tetrahedron& t : tetrahedra.tetrahedra) {
+    const bool of_second = std::ranges::all_of(
+        t, [&](NodeId node) { return std::ranges::find(second, node) != second.end(); });
+    if (of_second) mesh.tetrahedra.push_back(t);
+  }
+  ASSERT_GE(mesh.tetrahedra.size(), 5U);
+  const std::vector<Defect> defects = find_defects(mesh);
+  ASSERT_EQ(defects.size(), 1U);
+  EXPECT_EQ(defects.front().kind, ErrorKind::unsupported_element);
+  EXPECT_NE(defects.front().message.find("(2 such in all)"), std::string::npos)
+      << defects.front().message;
+  // Side by side without a common face they are sound but in two parts.
+  for (auto& nodes : mesh.tetrahedra) {
+    for (NodeId& node : nodes) node += mesh.node_count();
+  }
+  const Points own = mesh.nodes;
+  mesh.nodes.resize(2 * own.rows(), 3);
+  mesh.nodes << own, own.rowwise() + Eigen::RowVector3d(0.5, 0.0, 0.0);
+  EXPECT_TRUE(find_defects(mesh, {.allow_several_components = true}).empty());
+}
+
 TEST(Check, ListsAllKindsOfDefectsAtOnce) {
   Mesh mesh = two_tetrahedra();
   mesh.nodes *= 1000.0;

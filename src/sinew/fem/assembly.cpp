@@ -8,6 +8,7 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/fem/block_gather.hpp"
+#include "sinew/fem/element_history.hpp"
 #include "sinew/fem/element_kernel.hpp"
 #include "sinew/fem/solid_kernel.hpp"
 #include "sinew/linalg/aligned_buffer.hpp"
@@ -17,6 +18,7 @@ namespace sinew::fem {
 namespace {
 
 using material::kLanes;
+constexpr int kPatchGrain = 256;
 constexpr int kNodeGrain = 4096;  // below this a thread's wake-up costs more than the work
 
 /// Visits to columns split so that threads have equal numbers of contributions.
@@ -51,7 +53,9 @@ struct Assembly::Workspace {
   double* solid_blocks = nullptr;   // null without hyperelastic elements
   std::span<double> lent;           // behind force_records
   linalg::AlignedBuffer own_records, own_exact_records, own_solid_blocks;
-  linalg::AlignedBuffer points;  // (n, 4) m
+  std::vector<double> slot_ratios, patch_ratios;   // det F of members, Jm of patches
+  linalg::AlignedBuffer patch_spread, patch_rows;  // see sum_rows()
+  linalg::AlignedBuffer points;                    // (n, 4) m
   linalg::AlignedBuffer matrix;
   std::vector<double> forces;
   std::vector<double> batch_energy;          // one a batch, groups of solids behind the others
@@ -70,12 +74,21 @@ Assembly::Assembly(std::shared_ptr<const FemModel> model, ThreadPool& pool, std:
     : model_(std::move(model)), pool_(&pool), work_(std::make_unique<Workspace>()) {
   const auto batches = static_cast<std::size_t>(model_->elements().batches());
   std::size_t forces = kLanes * kForceRecord * batches, solid_batches = 0, solid_blocks = 0;
+  std::size_t patch_slots = 0, patches = 0, patch_rows = 0;
   for (const SolidGroup& group : model_->solids()) {
     const std::size_t slots = group.element.size();
     forces += 4 * static_cast<std::size_t>(group.nodes) * slots;
     solid_blocks += kSolidBlock * static_cast<std::size_t>(group.pairs()) * slots;
     solid_batches += static_cast<std::size_t>(group.batches());
+    if (group.patches.empty()) continue;
+    patch_slots += slots;
+    patches += group.patches.volume.size();
+    patch_rows += group.patches.row_node.size();
   }
+  work_->slot_ratios.resize(patch_slots);
+  work_->patch_ratios.resize(patches);
+  work_->patch_spread = linalg::AlignedBuffer(std::size_t{16} * patch_slots);
+  work_->patch_rows = linalg::AlignedBuffer(4 * patch_rows);
   const std::size_t rotated = kLanes * kRotatedRecord * batches;
   if (lent.size() < forces + rotated) {
     work_->own_records = linalg::AlignedBuffer(forces + rotated);
@@ -149,12 +162,17 @@ void Assembly::evaluate_elements(const Points& positions, Tangent tangent) {
   }
   SmallestRatio* ratios = work.thread_ratios.data();
   SolidOutput solids{work.force_records, work.solid_blocks,
-                     work.batch_energy.data() + elements.batches()};
-  for (const SolidGroup& group : model_->solids()) {
+                     work.batch_energy.data() + elements.batches(), work.patch_ratios.data(),
+                     work.patch_spread.data()};
+  for (std::size_t g = 0; g < model_->solids().size(); ++g) {
+    const SolidGroup& group = model_->solids()[g];
+    if (history_ != nullptr) solids.history = history_->of_step(g);
     ratios += pool_->size();
+    average_patches(group);
     pool_->for_range(group.batches(), 1, [&](int begin, int end, int thread) {
       ratios[thread] = evaluate_solids(group, begin, end, work.points.data(), tangent, solids);
     });
+    if (tangent != Tangent::none) spread_patches(group);
     solids.energy += group.batches();
   }
   work.energy = 0.0;
@@ -162,10 +180,45 @@ void Assembly::evaluate_elements(const Points& positions, Tangent tangent) {
   find_smallest();
 }
 
+void Assembly::average_patches(const SolidGroup& group) {
+  const ElementPatches& patches = group.patches;
+  if (patches.empty()) return;
+  const auto ratios =
+      std::span(work_->slot_ratios)
+          .subspan(static_cast<std::size_t>(patches.slots_before), group.element.size());
+  const auto means =
+      std::span(work_->patch_ratios)
+          .subspan(static_cast<std::size_t>(patches.patches_before), patches.volume.size());
+  pool_->for_range(group.batches(), 1, [&](int begin, int end, int) {
+    volume_ratios(group, begin, end, work_->points.data(), ratios.data());
+  });
+  pool_->for_range(patches.count(), kPatchGrain, [&](int begin, int end, int) {
+    average_ratios(group, begin, end, ratios, means);
+  });
+}
+
+void Assembly::spread_patches(const SolidGroup& group) {
+  const ElementPatches& patches = group.patches;
+  if (patches.empty()) return;
+  const double* spread = work_->patch_spread.data() + 16 * patches.slots_before;
+  double* rows = work_->patch_rows.data() + 4 * patches.rows_before;
+  pool_->for_range(patches.count(), kPatchGrain,
+                   [&](int begin, int end, int) { sum_rows(group, begin, end, spread, rows); });
+}
+
 void Assembly::find_smallest() {
   work_->smallest = {std::numeric_limits<double>::infinity(), -1};
   for (const SmallestRatio& ratio : work_->thread_ratios) {  // ascending slots: the first wins ties
     if (ratio.value < work_->smallest.value) work_->smallest = ratio;
+  }
+}
+
+void Assembly::advance(const Points& positions, ElementHistory& history) {
+  load_positions(positions);
+  for (std::size_t g = 0; g < model_->solids().size(); ++g) {
+    pool_->for_range(model_->solids()[g].batches(), 1, [&](int begin, int end, int) {
+      history.end_step(g, begin, end, work_->points.data());
+    });
   }
 }
 
@@ -197,11 +250,12 @@ void Assembly::gather(const AssemblyWeights& weights) {
   const bool consistent = model.has_consistent_mass();
   const double* records = work.records(weights.tangent);
   const double* solids = work.solid_blocks;
+  const double* patch_rows = work.patch_ratios.empty() ? nullptr : work.patch_rows.data();
   pool_->run([&](int thread) {
     const int begin = work.column_splits[static_cast<std::size_t>(thread)];
     const int end = work.column_splits[static_cast<std::size_t>(thread) + 1];
     gather_forces(model.gather(), begin, end, work.force_records, work.forces.data());
-    gather_blocks(model.gather(), model.pattern(), begin, end, records, solids, weights,
+    gather_blocks(model.gather(), model.pattern(), begin, end, records, solids, patch_rows, weights,
                   consistent ? nullptr : model.free_mass().data(),
                   consistent ? model.mass_blocks().data() : nullptr, work.matrix.data());
   });
@@ -257,8 +311,9 @@ std::size_t Assembly::bytes() const {
   const Workspace& work = *work_;
   return sizeof(Assembly) + sizeof(Workspace) + work.own_records.bytes() +
          work.own_exact_records.bytes() + work.own_solid_blocks.bytes() + work.points.bytes() +
-         bytes_of(work.forces) + work.matrix.bytes() + bytes_of(work.batch_energy) +
-         bytes_of(work.thread_ratios) + bytes_of(work.column_splits);
+         work.patch_spread.bytes() + work.patch_rows.bytes() + bytes_of(work.slot_ratios) +
+         bytes_of(work.patch_ratios) + bytes_of(work.forces) + work.matrix.bytes() +
+         bytes_of(work.batch_energy) + bytes_of(work.thread_ratios) + bytes_of(work.column_splits);
 }
 
 }  // namespace sinew::fem

@@ -12,6 +12,8 @@
 
 namespace sinew::fem {
 
+class ElementHistory;
+
 /// Which derivative of the internal force goes into the matrix.
 enum class Tangent {
   none,  ///< forces and energy only; the matrix is left as it was
@@ -61,6 +63,14 @@ class Assembly {
   /// not finite are seen by minimum_volume_ratio() = -infinity.
   void evaluate(const Points& positions, const AssemblyWeights& weights);
 
+  /// From the next evaluate() on: what elements that relax or soften have behind them; null:
+  /// nothing. The energy is then the incremental one, whose derivative the forces are.
+  /// @param history must outlive this object.
+  void set_history(const ElementHistory* history) { history_ = history; }
+  /// Ends a step of the history at these positions.
+  /// @param positions (n, 3) m. @param history of this model's elements.
+  void advance(const Points& positions, ElementHistory& history);
+
   /// Volume ratios alone, at a quarter of the cost of forces: to judge a motion before it is taken.
   /// @param positions (n, 3) m, as for evaluate().
   VolumeMeasure measure_volume(const Points& positions);
@@ -91,10 +101,13 @@ class Assembly {
   void load_positions(const Points& positions);
   void find_smallest();
   void evaluate_elements(const Points& positions, Tangent tangent);
+  void average_patches(const SolidGroup& group);
+  void spread_patches(const SolidGroup& group);
   void gather(const AssemblyWeights& weights);
 
   std::shared_ptr<const FemModel> model_;
   ThreadPool* pool_;
+  const ElementHistory* history_ = nullptr;
   std::unique_ptr<Workspace> work_;
 };
 

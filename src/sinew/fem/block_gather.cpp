@@ -102,9 +102,18 @@ SINEW_INLINE void add_solids(const GatherLists& lists, std::size_t visit, const 
   }
 }
 
+/// Adds what the shared dilatation of patches couples.
+SINEW_INLINE void add_patches(const GatherLists& lists, std::size_t visit, const double* rows,
+                              Block& sum) {
+  for (std::int64_t p = lists.patch_start[visit]; p < lists.patch_start[visit + 1]; ++p) {
+    const auto& [first, second] = lists.patch_pairs[static_cast<std::size_t>(p)];
+    sum.add_product(load_quad(rows + std::size_t{4} * first), rows + std::size_t{4} * second);
+  }
+}
+
 template <Tangent tangent>
 void gather_columns(const GatherLists& lists, const linalg::BlockPattern& pattern, int begin,
-                    int end, const double* records, const double* solids,
+                    int end, const double* records, const double* solids, const double* patch_rows,
                     const AssemblyWeights& weights, const double* node_mass,
                     const double* block_mass, double* matrix) {
   const double diagonal = weights.stiffness * (tangent == Tangent::exact ? 2.0 : 1.0);
@@ -118,6 +127,7 @@ void gather_columns(const GatherLists& lists, const linalg::BlockPattern& patter
       if (block_mass != nullptr) mass = block_mass[b];
       Block block = gather_block<tangent>(lists, visit, records);
       if (solids != nullptr) add_solids(lists, visit, solids, block);
+      if (patch_rows != nullptr) add_patches(lists, visit, patch_rows, block);
       block.store(weights.stiffness,
                   diagonal * lists.diagonal_stiffness[visit] + weights.mass * mass,
                   matrix + linalg::kBlockStride * b);
@@ -128,15 +138,15 @@ void gather_columns(const GatherLists& lists, const linalg::BlockPattern& patter
 }  // namespace
 
 void gather_blocks(const GatherLists& lists, const linalg::BlockPattern& pattern, int begin,
-                   int end, const double* records, const double* solids,
+                   int end, const double* records, const double* solids, const double* patch_rows,
                    const AssemblyWeights& weights, const double* node_mass,
                    const double* block_mass, double* matrix) {
   if (weights.tangent == Tangent::exact) {
-    gather_columns<Tangent::exact>(lists, pattern, begin, end, records, solids, weights, node_mass,
-                                   block_mass, matrix);
+    gather_columns<Tangent::exact>(lists, pattern, begin, end, records, solids, patch_rows, weights,
+                                   node_mass, block_mass, matrix);
   } else if (weights.tangent == Tangent::rotated) {
-    gather_columns<Tangent::rotated>(lists, pattern, begin, end, records, solids, weights,
-                                     node_mass, block_mass, matrix);
+    gather_columns<Tangent::rotated>(lists, pattern, begin, end, records, solids, patch_rows,
+                                     weights, node_mass, block_mass, matrix);
   }
 }
 

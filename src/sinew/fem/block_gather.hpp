@@ -9,13 +9,13 @@ namespace sinew::fem {
 
 /// Writes the blocks of column visits begin .. end-1 as stiffness K + mass M.
 /// @param lists,pattern,begin,end what is gathered where, for these columns.
-/// @param records,solids,weights element records of the tangent that `weights` names, and blocks of
-///   hyperelastic elements (nullptr without).
+/// @param records,solids,patch_rows,weights element records of the tangent that `weights` names,
+///   blocks of hyperelastic elements (nullptr without), and rows of patches (nullptr without).
 /// @param node_mass (free,) kg, lumped; nullptr if `block_mass` is given.
 /// @param block_mass (blocks,) kg, consistent; nullptr if `node_mass` is given.
 /// @param matrix layout of linalg::BlockPattern.
 void gather_blocks(const GatherLists& lists, const linalg::BlockPattern& pattern, int begin,
-                   int end, const double* records, const double* solids,
+                   int end, const double* records, const double* solids, const double* patch_rows,
                    const AssemblyWeights& weights, const double* node_mass,
                    const double* block_mass, double* matrix);
 

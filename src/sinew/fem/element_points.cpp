@@ -75,16 +75,19 @@ void visit_tetrahedra(const FemBody& body, const std::function<void(const PointB
 }
 
 void visit_solids(const SolidGroup& group, const std::vector<double>& positions,
+                  const PointHistory& history,
                   const std::function<void(const PointBatch&)>& visit) {
   const std::span<const std::int32_t> numbers(group.element), nodes(group.node);
   const auto count = static_cast<std::size_t>(group.nodes);
   std::array<SolidState, 8> states;
   const auto at = std::span(states).first(static_cast<std::size_t>(group.points));
+  const std::vector<double> ratios = patch_ratios(group, positions.data());
+  const double* patch_ratio = ratios.empty() ? nullptr : ratios.data();
   PointBatch point;
   point.nodes = count;
   for (int b = 0; b < group.batches(); ++b) {
     const auto slot = static_cast<std::size_t>(b) * kLanes;
-    state_batch(group, b, positions.data(), at);
+    state_batch(group, b, positions.data(), patch_ratio, history, at);
     point.element = numbers.subspan(slot, kLanes);
     point.node = nodes.subspan(count * slot, count * kLanes);
     for (const SolidState& state : at) {
@@ -113,7 +116,10 @@ void visit_points(const FemBody& body, const std::function<void(const PointBatch
       padded[static_cast<std::size_t>(4 * i + c)] = body.positions()(i, c);
     }
   }
-  for (const SolidGroup& group : solids) visit_solids(group, padded, visit);
+  std::vector<LaneRow> overstress;
+  for (std::size_t g = 0; g < solids.size(); ++g) {
+    visit_solids(solids[g], padded, body.history().present(g, overstress), visit);
+  }
 }
 
 }  // namespace sinew::fem

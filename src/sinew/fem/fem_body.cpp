@@ -30,6 +30,7 @@ FemBody::FemBody(const FemBodyModel& model, ThreadPool& pool, bool with_curvatur
       load_factors_(model.loads().size(), 1.0),
       load_forces_(Points::Zero(positions_.rows(), 3)),
       drag_forces_(load_forces_),
+      element_history_(model.elements().solids()),
       start_positions_(positions_),
       active_(&numbers(with_curvature)) {
   const auto nodes = model.elements().free_nodes();
@@ -52,8 +53,17 @@ FemBody::~FemBody() = default;
 FemBody::Numbers& FemBody::numbers(bool with_curvature) {
   const FemSystem& system = model_.system(with_curvature);
   auto& own = &system == &model_.system(false) ? plain_ : curved_;
-  if (!own) own = std::make_unique<Numbers>(system, pool_);
+  if (!own) {
+    own = std::make_unique<Numbers>(system, pool_);
+    if (!element_history_.empty()) own->assembly.set_history(&element_history_);
+  }
   return *own;
+}
+
+void FemBody::prepare_history(double time_step) {
+  if (element_history_.empty() || prepared_step_ == time_step) return;
+  element_history_.begin_step(time_step);
+  prepared_step_ = time_step;
 }
 
 Vector3 FemBody::weighted(const Points& field, int point) const {
@@ -72,11 +82,13 @@ void FemBody::begin_step() {
   start_positions_ = positions_;
   first_linearisation_ = true;
   carried_ = false;
+  prepared_step_.reset();
   if (base_pose_) place_base();
 }
 
 void FemBody::linearise(const mechanics::LinearisationRequest& request) {
   active_ = &numbers(request.with_curvature);
+  prepare_history(request.weights.time_step);
   const auto& weights = request.weights;
   const auto& damping = model_.settings().damping;
   const double mass = weights.acceleration.motion + damping.mass * weights.velocity.motion;
@@ -342,6 +354,11 @@ mechanics::MotionReport FemBody::apply_motion(double scale) {
 double FemBody::end_step(const mechanics::StepWeights& weights) {
   using Jump = mechanics::StepWeights::Jump;
   add_work(weights);
+  if (!element_history_.empty()) {
+    prepare_history(weights.time_step);
+    active_->assembly.advance(positions_, element_history_);
+    prepared_step_.reset();
+  }
   if (!weights.dynamic()) {  // nothing moves, and nothing is kept
     velocities_.setZero();
     for (Points& kept : history_) kept.setZero();
@@ -374,67 +391,19 @@ double FemBody::end_step(const mechanics::StepWeights& weights) {
   return weights.error_jump * std::sqrt(worst);
 }
 
-void FemBody::restart() {
-  positions_ = model_.mesh().nodes;
-  velocities_.setZero();
-  for (Points& kept : history_) kept.setZero();
-  base_at_ = Eigen::Isometry3d::Identity();
-}
-
-std::size_t FemBody::state_size() const {
-  return (2 + history_.size()) * static_cast<std::size_t>(positions_.size());
-}
-
-void FemBody::save_state(std::span<double> state) const {
-  std::copy_n(positions_.data(), positions_.size(), state.data());
-  double* to = state.data() + positions_.size();
-  to = std::copy_n(velocities_.data(), velocities_.size(), to);
-  for (const Points& kept : history_) to = std::copy_n(kept.data(), kept.size(), to);
-}
-
-void FemBody::load_state(std::span<const double> state) {
-  base_at_.reset();
-  std::copy_n(state.data(), positions_.size(), positions_.data());
-  const double* from = state.data() + positions_.size();
-  std::copy_n(from, velocities_.size(), velocities_.data());
-  for (Points& kept : history_) {
-    from += positions_.size();
-    std::copy_n(from, kept.size(), kept.data());
-  }
-}
-
 int FemBody::negative_pivots() const { return active_->factorisation->negative_pivots(); }
 
 double FemBody::strain_energy() {
+  prepare_history(0.0);  // what relaxing parts store beside the law's energy is not in it
   active_->assembly.evaluate(positions_, {Tangent::none, 1.0, 0.0});
   return active_->assembly.strain_energy();
-}
-
-double FemBody::kinetic_energy() const {
-  const auto nodes = model_.elements().free_nodes();
-  VectorX velocity(3 * static_cast<Eigen::Index>(nodes.size()));
-  VectorX momentum(velocity.size());
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    velocity.segment<3>(3 * static_cast<Eigen::Index>(i)) = velocities_.row(nodes[i]).transpose();
-  }
-  model_.elements().apply_mass(span_of(velocity), span_of(momentum));
-  return 0.5 * velocity.dot(momentum);
-}
-
-double FemBody::gravity_energy() const {
-  double energy = 0.0;
-  for (const NodeId node : model_.elements().free_nodes()) {
-    const Vector3 moved = (positions_.row(node) - model_.mesh().nodes.row(node)).transpose();
-    energy -= weight(node).dot(moved);
-  }
-  return energy;
 }
 
 std::size_t FemBody::bytes() const {
   const Eigen::Index free = right_.size() + motion_.size() + base_.size() + scratch_.size() +
                             travel_.size() + momentum_.size() + imbalance_.size();
   const auto points = (4 + history_.size()) * static_cast<std::size_t>(positions_.size());
-  auto total = sizeof(double) * (points + static_cast<std::size_t>(free));
+  auto total = sizeof(double) * (points + static_cast<std::size_t>(free) + element_history_.size());
   for (const Numbers* n : {plain_.get(), curved_.get()}) {
     if (n == nullptr) continue;
     total += n->assembly.bytes() + n->factorisation->bytes() +

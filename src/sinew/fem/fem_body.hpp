@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include "sinew/fem/assembly.hpp"
+#include "sinew/fem/element_history.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/tether.hpp"
 
@@ -87,6 +88,9 @@ class FemBody : public mechanics::Body {
   /// Where the tether holds the body now, (3,) m. Only while there is one.
   Vector3 tether_point() const;
 
+  /// What its elements have behind them; part of the state.
+  const ElementHistory& history() const { return element_history_; }
+
   /// Adds the force that rows put on each free node, as of the last linearisation.
   /// @param effort (rows,) N of the world's rows. @param forces (n, 3) N, added to.
   void add_row_forces(std::span<const double> effort, Points& forces) const;
@@ -115,6 +119,7 @@ class FemBody : public mechanics::Body {
   Vector3 weighted(const Points& field, int point) const;
   void place_base();
   void remember_base();
+  void prepare_history(double time_step);
   /// (3,) N on a mesh node.
   Vector3 weight(NodeId node) const {
     return model_.elements().load_mass()[node] * model_.settings().gravity;
@@ -130,6 +135,8 @@ class FemBody : public mechanics::Body {
   std::vector<LoadBlock> load_stiffness_;               // symmetric, row >= column
   std::vector<LoadBlock> open_stiffness_;               // what is left of it; in statics alone
   mechanics::StepWork work_;
+  ElementHistory element_history_;
+  std::optional<double> prepared_step_;  // that element_history_ was last prepared for
   Points start_positions_;  // of the step; velocities_ stay those of its start until it ends
   std::unique_ptr<Numbers> plain_, curved_;
   Numbers* active_ = nullptr;

@@ -35,6 +35,11 @@ void check_mesh(const mesh::Mesh& mesh) {
 }
 
 void check_region(const Region& region) {
+  if (region.patches && (!region.hyperelastic || region.hyperelastic->saint_venant_shear != 0.0)) {
+    throw Error(ErrorKind::unsupported_element, {.item = "material"},
+                "patches of tetrahedra need a law whose volumetric part stands apart",
+                "give them a hyperelastic material other than saint-venant-kirchhoff");
+  }
   if (region.hyperelastic) {
     region.hyperelastic->validate("material");
   } else {
@@ -116,7 +121,7 @@ std::vector<NodeId> number_free_nodes(const mesh::Mesh& mesh,
 }
 
 linalg::BlockPattern make_pattern(const mesh::Mesh& mesh, std::span<const NodeId> free_index,
-                                  int free_count,
+                                  int free_count, std::span<const SolidGroup> solids,
                                   const std::vector<std::vector<NodeId>>& couplings) {
   std::vector<std::int32_t> starts{0}, members;
   const auto add = [&](const auto& clique) {
@@ -129,6 +134,14 @@ linalg::BlockPattern make_pattern(const mesh::Mesh& mesh, std::span<const NodeId
   };
   const ElementList list(mesh);
   for (int e = 0; e < list.count(); ++e) add(list.nodes(e));
+  for (const SolidGroup& group : solids) {
+    const ElementPatches& patches = group.patches;
+    for (std::size_t p = 0; p < patches.volume.size(); ++p) {
+      const auto first = static_cast<std::size_t>(patches.first_row[p]);
+      add(std::span(patches.row_node)
+              .subspan(first, static_cast<std::size_t>(patches.first_row[p + 1]) - first));
+    }
+  }
   for (const std::vector<NodeId>& coupling : couplings) add(coupling);
   return linalg::BlockPattern::from_cliques(free_count, starts, members);
 }
@@ -162,12 +175,12 @@ FemModel::FemModel(std::shared_ptr<const mesh::Mesh> mesh, const FemModelSetting
   for (NodeId node = 0; node < mesh_->node_count(); ++node) {
     if (free_index_[static_cast<std::size_t>(node)] >= 0) free_nodes_.push_back(node);
   }
-  pattern_ = make_pattern(*mesh_, free_index_, free_count(), settings.couplings);
-  list_held(settings.held_axes);
   const std::vector<std::int32_t> rank = spatial_ranks(mesh_->nodes);
   elements_ = std::make_unique<const ElementBatches>(
       make_element_batches(*mesh_, settings.regions, region_of, rank));
   solids_ = make_solid_groups(*mesh_, settings.regions, region_of, rank, *elements_);
+  pattern_ = make_pattern(*mesh_, free_index_, free_count(), solids_, settings.couplings);
+  list_held(settings.held_axes);
   gather_ = std::make_unique<const GatherLists>(
       make_gather_lists(*elements_, solids_, settings.regions, free_index_, rank, pattern_));
 

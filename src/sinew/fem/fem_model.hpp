@@ -34,6 +34,8 @@ struct Region {
   std::vector<NodeId> elements = {};
   /// In place of constants and law; hexahedra need one.
   std::optional<material::Hyperelastic> hyperelastic = std::nullopt;
+  /// Hyperelastic linear tetrahedra share dilatations in patches (element_patches.hpp).
+  bool patches = false;
 
   /// E of small strain, Pa.
   double young_modulus() const {

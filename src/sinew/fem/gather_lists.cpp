@@ -146,6 +146,44 @@ struct SolidPart {
   std::uint32_t code;
 };
 
+/// A product of two rows of a patch in a block of the matrix.
+struct PatchPart {
+  std::int32_t visit;
+  std::array<std::uint32_t, 2> rows;
+};
+
+void append_patches(const ElementPatches& patches, std::span<const NodeId> free_index,
+                    const BlockVisits& visits, std::vector<PatchPart>& parts) {
+  const auto free = [&](std::int32_t row) {
+    return free_index[static_cast<std::size_t>(patches.row_node[static_cast<std::size_t>(row)])];
+  };
+  const auto number = [&](std::int32_t row) {
+    return static_cast<std::uint32_t>(patches.rows_before + row);
+  };
+  for (std::size_t p = 0; p < patches.volume.size(); ++p) {
+    for (std::int32_t i = patches.first_row[p]; i < patches.first_row[p + 1]; ++i) {
+      for (std::int32_t j = patches.first_row[p]; j < patches.first_row[p + 1]; ++j) {
+        if (free(j) < 0 || free(i) < free(j)) continue;
+        parts.push_back({visits.of(free(i), free(j)), {number(i), number(j)}});
+      }
+    }
+  }
+}
+
+void write_patches(std::vector<PatchPart>& parts, int blocks, GatherLists& lists) {
+  if (parts.empty()) return;
+  std::ranges::sort(parts, [](const PatchPart& p, const PatchPart& q) {
+    return p.visit != q.visit ? p.visit < q.visit : p.rows < q.rows;
+  });
+  lists.patch_start.assign(static_cast<std::size_t>(blocks) + 1, 0);
+  lists.patch_pairs.reserve(parts.size());
+  for (const PatchPart& part : parts) {
+    ++lists.patch_start[static_cast<std::size_t>(part.visit) + 1];
+    lists.patch_pairs.push_back(part.rows);
+  }
+  std::partial_sum(lists.patch_start.begin(), lists.patch_start.end(), lists.patch_start.begin());
+}
+
 void append_solids(const SolidGroup& group, std::span<const NodeId> free_index,
                    const BlockVisits& visits, std::vector<SolidPart>& blocks,
                    std::vector<ForcePart>& forces) {
@@ -212,6 +250,7 @@ GatherLists make_gather_lists(const ElementBatches& elements, std::span<const So
   const BlockVisits visits(pattern, free_index, rank, lists);
   std::vector<Part> parts;
   std::vector<SolidPart> solid_parts;
+  std::vector<PatchPart> patch_parts;
   std::vector<ForcePart> forces;
   for (std::size_t slot = 0; slot < slots; ++slot) {
     if (elements.tetrahedron[slot] < 0) continue;
@@ -223,9 +262,11 @@ GatherLists make_gather_lists(const ElementBatches& elements, std::span<const So
   }
   for (const SolidGroup& group : solids) {
     append_solids(group, free_index, visits, solid_parts, forces);
+    append_patches(group.patches, free_index, visits, patch_parts);
   }
   write_blocks(parts, pattern.blocks(), lists);
   write_solids(solid_parts, pattern.blocks(), lists);
+  write_patches(patch_parts, pattern.blocks(), lists);
   write_forces(forces, visits, lists);
   return lists;
 }

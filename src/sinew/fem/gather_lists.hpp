@@ -3,6 +3,7 @@
 /// gather: every result is written once, by one thread, in a fixed order of summation.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -37,6 +38,12 @@ struct GatherLists {
   /// 2 block + transposed. Both empty without such elements.
   std::vector<std::int64_t> solid_start;
   std::vector<std::uint32_t> solid_parts;
+
+  /// Products of rows of patches (element_patches.hpp) in block visit q:
+  /// patch_pairs[patch_start[q] .. patch_start[q+1]-1], rows counted over all of the body's groups;
+  /// h_first h_second^T. Both empty without patches.
+  std::vector<std::int64_t> patch_start;
+  std::vector<std::array<std::uint32_t, 2>> patch_pairs;
 
   /// Parts of the force of visit k's node: force_parts[force_start[k] .. force_start[k+1]-1], in
   /// vectors of four doubles: 4 s + a for batches, behind them those of solid groups.

@@ -142,7 +142,7 @@ std::vector<SolidGroup> make_solid_groups(const mesh::Mesh& mesh, std::span<cons
                                           const ElementBatches& batches) {
   std::vector<SolidGroup> groups;
   auto slot = static_cast<std::int64_t>(batches.tetrahedron.size());
-  std::int64_t force = 4 * slot, block = 0;
+  std::int64_t force = 4 * slot, block = 0, patch_slots = 0, patch_count = 0, patch_rows = 0;
   for (const auto& [kind, elements] : sorted_elements(mesh, regions, region_of, rank)) {
     SolidGroup group;
     group.nodes = static_cast<int>(kind.first);
@@ -151,7 +151,19 @@ std::vector<SolidGroup> make_solid_groups(const mesh::Mesh& mesh, std::span<cons
     group.first_slot = slot;
     group.first_force = force;
     group.first_block = block;
-    fill_group(group, mesh, elements);
+    std::vector<std::int32_t> order = elements, first_slot;
+    const bool patches = group.nodes == 4 && regions[static_cast<std::size_t>(kind.second)].patches;
+    if (patches) first_slot = group_elements(mesh, order);
+    fill_group(group, mesh, order);
+    if (patches) {
+      make_patches(group, std::move(first_slot));
+      group.patches.slots_before = patch_slots;
+      group.patches.patches_before = patch_count;
+      group.patches.rows_before = patch_rows;
+      patch_slots += static_cast<std::int64_t>(group.element.size());
+      patch_count += group.patches.count();
+      patch_rows += group.patches.rows();
+    }
     const auto slots = static_cast<std::int64_t>(group.element.size());
     slot += slots;
     force += slots * group.nodes;

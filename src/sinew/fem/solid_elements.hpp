@@ -2,17 +2,23 @@
 /// Hyperelastic elements, tetrahedra and hexahedra, eight of one kind and one law to a batch.
 ///
 /// The pressure is that of the element's mean dilatation (Nagtegaal, Parks, Rice, CMAME 4, 1974;
-/// in this energy-consistent form Simo, Taylor, Pister, CMAME 51, 1985, with constant pressure):
-///   U_e = integral of psi_iso(F) dV + V U(Jm),   Jm = 1/V integral of det F dV,
-///   f_a = integral of (P_iso + p cof F) g_a dV,   p = U'(Jm) = kappa (Jm - 1),
-///   K_ab = integral of g_a . (dP_iso/dF + p d(cof F)/dF) g_b dV + kappa/V b_a b_b^T,
-///   b_a = integral of cof F g_a dV,
-/// symmetric since it derives from an energy. A linear tetrahedron has one point: Jm is its J.
-/// Hexahedra have eight Gauss points and do not lock in volume (mixed form Q1P0, pressure and
-/// dilatation condensed); quadratic tetrahedra have four points, and with one pressure each (P2P0)
-/// fulfil the inf-sup condition (Boffi, Brezzi, Fortin, "Mixed Finite Element Methods and
-/// Applications", 2013, section 8.6). Saint Venant-Kirchhoff has no volumetric part to be set
-/// apart.
+/// in this energy-consistent form Simo, Taylor, Pister, CMAME 51, 1985, with constant pressure),
+/// and a small part of each point's own, with a modulus kappa' of the size of the shear modulus:
+///   U_e = integral of psi_iso(F) + kappa'/2 (J - Jm)^2 dV + V kappa/2 (Jm - 1)^2,
+///   J = det F,   Jm = 1/V integral of J dV,
+///   f_a = integral of (P_iso + p cof F) g_a dV,   p = kappa (Jm - 1) + kappa' (J - Jm),
+///   K_ab = integral of g_a . (dP_iso/dF + p d(cof F)/dF + kappa' cof F cof F^T) g_b dV
+///          + (kappa - kappa')/V b_a b_b^T,   b_a = integral of cof F g_a dV,
+/// symmetric since it derives from an energy.
+///
+/// Hexahedra have eight Gauss points, kappa' = 0, and do not lock in volume (mixed form Q1P0,
+/// pressure and dilatation condensed). Quadratic tetrahedra have four points; one pressure each
+/// (P2P0) has no checkerboards, but leaves them soft where it changes along an element
+/// (docs/materials.md). kappa' is grad-div stabilisation (Franca, Hughes, CMAME 69, 1988;
+/// Olshanskii, Reusken, Math. Comp. 73, 2004, section 3) of what the mean does not see: bounded, so
+/// that it cannot lock, and without effect on a converged solution, whose dilatation is even in a
+/// small element. A linear tetrahedron has one point: Jm is its J, or that of its patch
+/// (element_patches.hpp). Saint Venant-Kirchhoff has no volumetric part to be set apart.
 #pragma once
 
 #include <cstdint>
@@ -21,6 +27,7 @@
 
 #include "sinew/core/types.hpp"
 #include "sinew/fem/element_batches.hpp"
+#include "sinew/fem/element_patches.hpp"
 #include "sinew/material/hyperelastic.hpp"
 
 namespace sinew::fem {
@@ -29,6 +36,13 @@ struct Region;
 
 /// Doubles of a stiffness block in a record: three columns, padded to four.
 inline constexpr int kSolidBlock = 12;
+
+/// kappa' of quadratic tetrahedra over the initial shear modulus, where kappa is not less:
+/// chosen by error over four problems (docs/materials.md), which change little within a factor
+/// of 2.
+inline constexpr double kQuadraticShare = 1.0;
+/// The same of tetrahedra in patches.
+inline constexpr double kPatchShare = 0.25;
 
 /// Elements of one kind and law. Slot s = 8 batch + lane; lanes that fill up a batch repeat its
 /// last element with weights 0.
@@ -40,6 +54,7 @@ struct SolidGroup {
   std::vector<LaneRow> constants;
   std::vector<std::int32_t> node;     ///< [batch][a][lane]: mesh node of local node a
   std::vector<std::int32_t> element;  ///< slot -> element of the mesh; -1: filling
+  ElementPatches patches;             ///< of linear tetrahedra that share dilatations
   std::int64_t first_slot = 0;   ///< among all slots of the body, those of ElementBatches first
   std::int64_t first_force = 0;  ///< of its force records, in vectors of four doubles
   std::int64_t first_block = 0;  ///< of its block records, in blocks of kSolidBlock doubles

@@ -1,10 +1,7 @@
 #include "sinew/fem/solid_kernel.hpp"
 
-#include <limits>
-
 #include "sinew/fem/lane_minimum.hpp"
-#include "sinew/fem/transpose.hpp"
-#include "sinew/material/principal.hpp"
+#include "sinew/fem/solid_batch.hpp"
 
 namespace sinew::fem {
 
@@ -14,75 +11,6 @@ using material::kLanes;
 using material::Lanes;
 using material::lanes;
 using material::Lanes3x3;
-
-/// A batch in hand.
-template <int N, int Q>
-struct Batch {
-  static constexpr int kRows = 3 * N + 1;
-
-  const LaneRow* constants;
-  Lanes x[N][3];  // relative to the first node: no digits are lost far from the origin
-
-  SINEW_INLINE Batch(const SolidGroup& group, std::int64_t batch, const double* points)
-      : constants(group.constants.data() + batch * Q * kRows) {
-    const std::int32_t* nodes = group.node.data() + batch * N * kLanes;
-    Lanes origin[3];
-    load_points(points, nodes, origin);
-    for (int a = 0; a < N; ++a) {
-      load_points(points, nodes + kLanes * a, x[a]);
-      for (int c = 0; c < 3; ++c) x[a][c] -= origin[c];
-    }
-  }
-  SINEW_INLINE Lanes gradient(int q, int a, int c) const {
-    return material::load(constants[q * kRows + 3 * a + c].value);
-  }
-  SINEW_INLINE Lanes weight(int q) const {
-    return material::load(constants[q * kRows + 3 * N].value);
-  }
-  SINEW_INLINE Lanes3x3 deformation(int q) const {
-    Lanes3x3 f{};
-    for (int a = 1; a < N; ++a) {
-      for (int c = 0; c < 3; ++c) {
-        const Lanes g = gradient(q, a, c);
-        for (int r = 0; r < 3; ++r) f[r][c] += x[a][r] * g;
-      }
-    }
-    return f;
-  }
-};
-
-SINEW_INLINE double sum(const Lanes& value) {
-  return ((value[0] + value[1]) + (value[2] + value[3])) +
-         ((value[4] + value[5]) + (value[6] + value[7]));
-}
-
-/// Volume and pressure of a batch's elements.
-struct Dilatation {
-  Lanes volume = lanes(0.0);  // V; 1 in lanes that only fill up
-  Lanes ratio = lanes(0.0);   // Jm
-  Lanes pressure = lanes(0.0);
-  Lanes energy = lanes(0.0);     // V U(Jm)
-  Lanes stiffness = lanes(0.0);  // kappa / V
-};
-
-template <int N, int Q>
-SINEW_INLINE Dilatation mean_dilatation(const Batch<N, Q>& batch, const Lanes3x3* f, double bulk,
-                                        LaneMinimum& minimum, std::int64_t number) {
-  Dilatation result;
-  for (int q = 0; q < Q; ++q) {
-    const Lanes j = material::determinant(f[q], material::cofactor(f[q]));
-    minimum.see(j, number);
-    result.volume += batch.weight(q);
-    result.ratio += batch.weight(q) * j;
-  }
-  const Lanes real = result.volume;
-  result.volume = real > 0.0 ? real : lanes(1.0);
-  result.ratio = real > 0.0 ? result.ratio / result.volume : lanes(1.0);
-  result.pressure = bulk * (result.ratio - 1.0);
-  result.energy = 0.5 * real * result.pressure * (result.ratio - 1.0);
-  result.stiffness = bulk / result.volume;
-  return result;
-}
 
 /// Stiffness and forces of eight elements, summed over points.
 template <int N>
@@ -147,11 +75,13 @@ struct Sums {
       }
     }
   }
-  SINEW_INLINE void store_forces(double* records) const {
+  /// Vectors of all nodes, padded to four. @param vectors force or spread.
+  SINEW_INLINE static void store_vectors(const Lanes (&vectors)[N][3], double* records) {
     const Lanes zero = lanes(0.0);
     for (int a = 0; a < N; a += 2) {
-      const Lanes rows[8] = {force[a][0],     force[a][1],     force[a][2],     zero,
-                             force[a + 1][0], force[a + 1][1], force[a + 1][2], zero};
+      const Lanes(&u)[3] = vectors[a];
+      const Lanes(&v)[3] = vectors[a + 1];
+      const Lanes rows[8] = {u[0], u[1], u[2], zero, v[0], v[1], v[2], zero};
       store_records(rows, records + 4 * a, 4 * N);
     }
   }
@@ -173,52 +103,86 @@ struct Sums {
   }
 };
 
+/// Null without patches.
+const double* patch_ratios_of(const SolidGroup& group, const SolidOutput& output) {
+  return group.patches.empty() ? nullptr : output.patch_ratio + group.patches.patches_before;
+}
+
+/// Where a group's batch writes what patches sum up.
+double* spread_records(const SolidGroup& group, const SolidOutput& output, std::int64_t batch) {
+  return output.spread + 16 * (group.patches.slots_before + kLanes * batch);
+}
+
 template <int N, int Q, Tangent kTangent>
 void evaluate(const SolidGroup& group, int begin, int end, const double* points,
               const SolidOutput& output, LaneMinimum& minimum) {
+  const BulkModuli bulk(group);
+  const double* patch_ratio = patch_ratios_of(group, output);
   const bool split = group.law.saint_venant_shear == 0.0;
   for (std::int64_t b = begin; b < end; ++b) {
+    const BatchHistory past(group, output.history, b);
     const Batch<N, Q> batch(group, b, points);
-    Lanes3x3 f[Q];
-    for (int q = 0; q < Q; ++q) f[q] = batch.deformation(q);
-    const Dilatation mean =
-        mean_dilatation(batch, f, split ? group.law.bulk_modulus : 0.0, minimum, b);
+    Lanes3x3 f[Q], cof[Q];
+    Lanes ratio[Q];
+    for (int q = 0; q < Q; ++q) {
+      f[q] = batch.deformation(q);
+      cof[q] = material::cofactor(f[q]);
+      ratio[q] = material::determinant(f[q], cof[q]);
+      minimum.see(ratio[q], b);
+    }
+    const Dilatation shared = shared_dilatation(group, batch, b, ratio, patch_ratio, bulk.shared);
     Sums<N> sums;
-    Lanes energy = mean.energy;
+    Lanes energy = shared.energy;
     for (int q = 0; q < Q; ++q) {
       const Lanes weight = batch.weight(q);
       const material::Principal at = material::principal(f[q]);
-      material::LanesLogResponse response = material::respond(group.law, at);
-      energy += weight * response.energy;
-      const Lanes push = mean.pressure * at.determinant;  // p J: p cof F by logarithmic stretches
+      material::LanesLogResponse response = past.respond(group.law, at, q);
+      if (past.carried != nullptr) material::scale(response, output.history.factor);
+      const Lanes off = ratio[q] - shared.ratio, own = bulk.own * off;
+      energy += weight * (response.energy + 0.5 * own * off);
+      // p J: p cof F by logarithmic stretches
+      const Lanes push = (shared.pressure + own) * ratio[q];
+      const Lanes stiffness = push + bulk.own * ratio[q] * ratio[q];
       for (int i = 0; i < 3; ++i) {
         response.first[i] += push;
-        for (int j = 0; j <= i; ++j) response.second[i][j] += push;
+        for (int j = 0; j <= i; ++j) response.second[i][j] += stiffness;
       }
       Lanes g[N][3];
       for (int a = 0; a < N; ++a) {
         for (int c = 0; c < 3; ++c) g[a][c] = batch.gradient(q, a, c);
       }
-      const Lanes3x3 stress = material::first_piola(f[q], at, response);
-      const Lanes3x3 cof = material::cofactor(f[q]);
+      Lanes3x3 stress = material::first_piola(f[q], at, response);
+      if (past.carried != nullptr) {
+        const Overstress over(past.carried + 6 * q, split, f[q], cof[q], ratio[q]);
+        energy += weight * over.energy(f[q]);
+        over.add_stress(stress);
+      }
       for (int a = 0; a < N; ++a) {
         for (int r = 0; r < 3; ++r) {
           sums.force[a][r] +=
               weight * (stress[r][0] * g[a][0] + stress[r][1] * g[a][1] + stress[r][2] * g[a][2]);
           sums.spread[a][r] +=
-              weight * (cof[r][0] * g[a][0] + cof[r][1] * g[a][1] + cof[r][2] * g[a][2]);
+              weight * (cof[q][r][0] * g[a][0] + cof[q][r][1] * g[a][1] + cof[q][r][2] * g[a][2]);
         }
       }
       if constexpr (kTangent != Tangent::none) {
         material::Lanes9x9 a9;
         material::tangent(f[q], at, response, kTangent == Tangent::rotated, a9);
+        if (kTangent == Tangent::exact && past.carried != nullptr) {
+          Overstress(past.carried + 6 * q, split, f[q], cof[q], ratio[q]).add_tangent(a9);
+        }
         sums.add_tangent(a9, g, weight);
       }
     }
-    sums.store_forces(output.forces + 4 * (group.first_force + N * kLanes * b));
+    sums.store_vectors(sums.force, output.forces + 4 * (group.first_force + N * kLanes * b));
     output.energy[b] = sum(energy);
     if constexpr (kTangent != Tangent::none) {
-      if (split) sums.add_dilatation(mean.stiffness);
+      if constexpr (N == 4) {
+        if (patch_ratio != nullptr) {
+          sums.store_vectors(sums.spread, spread_records(group, output, b));
+        }
+      }
+      if (Q > 1) sums.add_dilatation((bulk.shared - bulk.own) / shared.volume);
       sums.complete();
       sums.store_blocks(output.blocks +
                         kSolidBlock * (group.first_block + Sums<N>::kPairs * kLanes * b));
@@ -233,14 +197,16 @@ bool is_neo_hookean(const material::Hyperelastic& law) {
 }
 
 /// Neo-Hookean tetrahedra. With H = F^-T, m = 2 c J^(-2/3), I1 = F : F, h_a = H g_a, f_a = F g_a,
-///   P = m F + s H,   s = p J - m I1/3,
+///   P = m F + s H,   s = p J - m I1/3,   p = kappa (Jm - 1) + kappa' (J - Jm),
 ///   K_ab = V { m (g_a . g_b) I - 2/3 m (f_a h_b^T + h_a f_b^T)
-///              + (2/9 m I1 + p J + kappa J^2) h_a h_b^T - s h_b h_a^T },
-/// the derivative of P by dJ = J H : dF and dH = -H dF^T H.
+///              + (2/9 m I1 + p J + kappa' J^2) h_a h_b^T - s h_b h_a^T },
+/// the derivative of P by dJ = J H : dF and dH = -H dF^T H; without patches Jm = J, kappa' = kappa.
 template <Tangent kTangent>
 void evaluate_neo_hookean(const SolidGroup& group, int begin, int end, const double* points,
                           const SolidOutput& output, LaneMinimum& minimum) {
-  const double c = group.law.powers.front().coefficient, bulk = group.law.bulk_modulus;
+  const double c = group.law.powers.front().coefficient;
+  const BulkModuli bulk(group);
+  const double* patch_ratio = patch_ratios_of(group, output);
   for (std::int64_t b = begin; b < end; ++b) {
     const Batch<4, 1> batch(group, b, points);
     const Lanes volume = batch.weight(0);
@@ -253,9 +219,11 @@ void evaluate_neo_hookean(const SolidGroup& group, int begin, int end, const dou
     for (int r = 0; r < 3; ++r) {
       for (int k = 0; k < 3; ++k) i1 += f[r][k] * f[r][k];
     }
-    const Lanes growth = j - 1.0, push = bulk * growth * j;
+    const Dilatation shared = shared_dilatation(group, batch, b, {j}, patch_ratio, bulk.shared);
+    const Lanes off = j - shared.ratio, own = bulk.own * off;
+    const Lanes push = (shared.pressure + own) * j;
     const Lanes s = push - m * i1 / 3.0;
-    output.energy[b] = sum(volume * (0.5 * m * i1 - 3.0 * c + 0.5 * bulk * growth * growth));
+    output.energy[b] = sum(volume * (0.5 * m * i1 - 3.0 * c + 0.5 * own * off) + shared.energy);
     const Lanes inverse = 1.0 / j;
     Lanes g[4][3], h[4][3], fg[4][3];
     Sums<4> sums;
@@ -270,11 +238,21 @@ void evaluate_neo_hookean(const SolidGroup& group, int begin, int end, const dou
     for (int r = 0; r < 3; ++r) {
       sums.force[0][r] = -(sums.force[1][r] + sums.force[2][r] + sums.force[3][r]);
     }
-    sums.store_forces(output.forces + 4 * (group.first_force + 4 * kLanes * b));
+    sums.store_vectors(sums.force, output.forces + 4 * (group.first_force + 4 * kLanes * b));
     if constexpr (kTangent == Tangent::exact) {
+      if (patch_ratio != nullptr) {
+        for (int r = 0; r < 3; ++r) {
+          sums.spread[0][r] = lanes(0.0);
+          for (int a = 1; a < 4; ++a) {
+            sums.spread[a][r] = volume * j * h[a][r];
+            sums.spread[0][r] -= sums.spread[a][r];
+          }
+        }
+        sums.store_vectors(sums.spread, spread_records(group, output, b));
+      }
       const Lanes vm = volume * m, vs = volume * s;
       const Lanes mixed = -2.0 / 3.0 * vm;
-      const Lanes square = volume * (2.0 / 9.0 * m * i1 + push + bulk * j * j);
+      const Lanes square = volume * (2.0 / 9.0 * m * i1 + push + bulk.own * j * j);
       for (int bb = 1; bb < 4; ++bb) {
         Lanes right[3];  // what h_a is multiplied by
         for (int r = 0; r < 3; ++r) right[r] = mixed * fg[bb][r] + square * h[bb][r];
@@ -312,70 +290,16 @@ void evaluate_kind(const SolidGroup& group, int begin, int end, const double* po
   }
 }
 
-template <int N, int Q>
-void measure(const SolidGroup& group, int begin, int end, const double* points,
-             LaneMinimum& minimum) {
-  for (std::int64_t b = begin; b < end; ++b) {
-    const Batch<N, Q> batch(group, b, points);
-    for (int q = 0; q < Q; ++q) {
-      const Lanes3x3 f = batch.deformation(q);
-      minimum.see(material::determinant(f, material::cofactor(f)), b);
-    }
-  }
-}
-
-template <int N, int Q>
-void measure_states(const SolidGroup& group, int number, const double* points,
-                    std::span<SolidState> result) {
-  const bool split = group.law.saint_venant_shear == 0.0;
-  const Batch<N, Q> batch(group, number, points);
-  Lanes3x3 f[Q];
-  for (int q = 0; q < Q; ++q) f[q] = batch.deformation(q);
-  LaneMinimum ignored;
-  const Dilatation mean =
-      mean_dilatation(batch, f, split ? group.law.bulk_modulus : 0.0, ignored, number);
-  for (int q = 0; q < Q; ++q) {
-    const material::Principal at = material::principal(f[q]);
-    material::LanesLogResponse response = material::respond(group.law, at);
-    response.energy += mean.energy / mean.volume;
-    for (Lanes& first : response.first) first += mean.pressure * at.determinant;
-    const Lanes3x3 stress = material::first_piola(f[q], at, response);
-    SolidState& to = result[static_cast<std::size_t>(q)];
-    material::store(to.weight.value, batch.weight(q));
-    material::store(to.energy.value, response.energy);
-    for (int r = 0; r < 3; ++r) {
-      for (int c = 0; c < 3; ++c) {
-        material::store(to.deformation[r][c].value, f[q][r][c]);
-        material::store(to.piola[r][c].value, stress[r][c]);
-      }
-    }
-    for (int a = 0; a < N; ++a) {
-      for (int c = 0; c < 3; ++c) {
-        material::store(to.gradient[a][c].value, batch.gradient(q, a, c));
-      }
-    }
-  }
-}
-
 }  // namespace
-
-void state_batch(const SolidGroup& group, int batch, const double* points,
-                 std::span<SolidState> result) {
-  if (group.nodes == 4) {
-    measure_states<4, 1>(group, batch, points, result);
-  } else if (group.nodes == 10) {
-    measure_states<10, 4>(group, batch, points, result);
-  } else {
-    measure_states<8, 8>(group, batch, points, result);
-  }
-}
 
 SmallestRatio evaluate_solids(const SolidGroup& group, int begin, int end, const double* points,
                               Tangent tangent, const SolidOutput& output) {
   LaneMinimum minimum;
-  if (group.nodes == 4 && is_neo_hookean(group.law) && tangent == Tangent::exact) {
+  const bool elastic = output.history.carried == nullptr && output.history.peak == nullptr;
+  const bool fast = group.nodes == 4 && elastic && is_neo_hookean(group.law);
+  if (fast && tangent == Tangent::exact) {
     evaluate_neo_hookean<Tangent::exact>(group, begin, end, points, output, minimum);
-  } else if (group.nodes == 4 && is_neo_hookean(group.law) && tangent == Tangent::none) {
+  } else if (fast && tangent == Tangent::none) {
     evaluate_neo_hookean<Tangent::none>(group, begin, end, points, output, minimum);
   } else if (group.nodes == 4) {
     evaluate_kind<4, 1>(group, begin, end, points, tangent, output, minimum);
@@ -383,18 +307,6 @@ SmallestRatio evaluate_solids(const SolidGroup& group, int begin, int end, const
     evaluate_kind<10, 4>(group, begin, end, points, tangent, output, minimum);
   } else {
     evaluate_kind<8, 8>(group, begin, end, points, tangent, output, minimum);
-  }
-  return smallest(minimum, group.element, group.first_slot);
-}
-
-SmallestRatio measure_solids(const SolidGroup& group, int begin, int end, const double* points) {
-  LaneMinimum minimum;
-  if (group.nodes == 4) {
-    measure<4, 1>(group, begin, end, points, minimum);
-  } else if (group.nodes == 10) {
-    measure<10, 4>(group, begin, end, points, minimum);
-  } else {
-    measure<8, 8>(group, begin, end, points, minimum);
   }
   return smallest(minimum, group.element, group.first_slot);
 }

@@ -8,11 +8,21 @@
 
 namespace sinew::fem {
 
+/// What a group's points have behind them, from ElementHistory; nulls without.
+struct PointHistory {
+  const LaneRow* carried = nullptr;  ///< (batch, point, 6): what earlier strain adds to the stress
+  double factor = 1.0;               ///< of the law's isochoric part beside it
+  const LaneRow* peak = nullptr;     ///< (batch, point): largest energy so far, Pa
+};
+
 /// Where a group's batches write. Record arrays are 64-byte aligned and are those of the body.
 struct SolidOutput {
   double* forces;  ///< four doubles a node of an element
   double* blocks;  ///< kSolidBlock doubles a pair of nodes; not touched for Tangent::none
   double* energy;  ///< one a batch of this group, J
+  const double* patch_ratio = nullptr;  ///< Jm of all patches of the body; read
+  double* spread = nullptr;             ///< 16 doubles a slot of a patch; see sum_rows()
+  PointHistory history = {};            ///< of this group
 };
 
 /// Evaluates batches begin .. end-1 of a group.
@@ -28,18 +38,33 @@ SmallestRatio evaluate_solids(const SolidGroup& group, int begin, int end, const
 /// The smallest det F alone.
 SmallestRatio measure_solids(const SolidGroup& group, int begin, int end, const double* points);
 
+/// det F of batches begin .. end-1 of linear tetrahedra.
+/// @param group,begin,end which. @param points as for evaluate_solids(). @param ratios (slots,).
+void volume_ratios(const SolidGroup& group, int begin, int end, const double* points,
+                   double* ratios);
+
 /// Deformation and stress of eight elements at one point of integration.
 struct SolidState {
   LaneRow weight;             ///< m^3
   LaneRow deformation[3][3];  ///< F
   LaneRow piola[3][3];        ///< P, Pa, with the element's pressure
-  LaneRow energy;             ///< psi_iso + U(Jm), J/m^3
+  LaneRow energy;             ///< of the law (of slow motion, softened), volumetric part too; J/m^3
   LaneRow gradient[10][3];    ///< g_a of each node, 1/m
 };
 
 /// States of a batch, one a point of integration. @param group,batch which.
-/// @param points as for evaluate_solids(). @param result (points,).
+/// @param points as for evaluate_solids(). @param patch_ratio Jm of the group's patches
+///   (patch_ratios()), null without. @param history of the group: ElementHistory::present().
+/// @param result (points,).
 void state_batch(const SolidGroup& group, int batch, const double* points,
+                 const double* patch_ratio, const PointHistory& history,
                  std::span<SolidState> result);
+
+/// S~ of a batch's points, that which relaxes, and the energy of first loading
+/// (element_history.hpp).
+/// @param group,batch which. @param points as for evaluate_solids(). @param history of the group.
+/// @param stress (6 points,) Pa: xx, yy, zz, xy, xz, yz of each. @param energy (points,) Pa.
+void relaxing_stress(const SolidGroup& group, int batch, const double* points,
+                     const PointHistory& history, LaneRow* stress, LaneRow* energy);
 
 }  // namespace sinew::fem

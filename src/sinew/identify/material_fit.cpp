@@ -328,11 +328,6 @@ std::string material_yaml(const FitResult& fit, std::span<const RubberTest> test
   }
   text += fmt::format("\n# Stable in uniaxial stretches from {:.3g} to {:.3g}.\n",
                       fit.uniaxial_range.first, fit.uniaxial_range.second);
-  if (fit.mullins) {
-    text +=
-        fmt::format("# Softening, which scenes do not have: r {:.4g}, m {:.4g} Pa, beta {:.4g}\n",
-                    fit.mullins->r, fit.mullins->m, fit.mullins->beta);
-  }
   const bool ogden = fit.model.starts_with("ogden"), yeoh = fit.model.starts_with("yeoh");
   text += fmt::format("model: {}\n", ogden ? "ogden" : yeoh ? "yeoh" : fit.model);
   if (ogden) {
@@ -345,6 +340,10 @@ std::string material_yaml(const FitResult& fit, std::span<const RubberTest> test
     for (const Coefficient& c : fit.coefficients) {
       text += fmt::format("{}: {}{}{}\n", c.name, c.value, *c.unit != '\0' ? " " : "", c.unit);
     }
+  }
+  if (fit.mullins) {
+    text += fmt::format("softening: {{r: {:.6g}, m: {:.6g} Pa, beta: {:.6g}}}\n", fit.mullins->r,
+                        fit.mullins->m, fit.mullins->beta);
   }
   return text + fmt::format("poisson_ratio: {}\n", poisson_ratio);
 }

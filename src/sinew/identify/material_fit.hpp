@@ -13,15 +13,7 @@
 
 namespace sinew::identify {
 
-/// Softening of rubber that was stretched before (Ogden & Roxburgh, Proc. R. Soc. A 455, 1999): on
-/// unloading and reloading the stress is eta times that of first loading,
-///   eta = 1 - erf((W_m - W)/(m + beta W_m))/r,
-/// W the energy of first loading at the stretch and W_m its maximum so far.
-struct MullinsEffect {
-  double r = 2.0;     ///< > 1
-  double m = 0.0;     ///< Pa, >= 0
-  double beta = 0.0;  ///< >= 0
-};
+using material::MullinsEffect;
 
 struct FitSettings {
   /// "neo-hookean", "mooney-rivlin", "yeoh1" to "yeoh3", "ogden1" to "ogden6", "arruda-boyce".

@@ -28,6 +28,12 @@ double Hyperelastic::shear_modulus() const {
   return sum;
 }
 
+double Hyperelastic::long_term_share() const {
+  double share = 1.0;
+  for (const PronyTerm& term : prony) share -= term.relative_modulus;
+  return share;
+}
+
 double Hyperelastic::young_modulus() const {
   const double mu = shear_modulus();
   return 9.0 * bulk_modulus * mu / (3.0 * bulk_modulus + mu);
@@ -59,6 +65,44 @@ void Hyperelastic::validate(const std::string& what) const {
     fail(what, fmt::format("its bulk modulus is {:g} Pa", bulk_modulus),
          "give a bulk modulus above 0, or a Poisson's ratio below 0.5");
   }
+  if (mullins) {
+    const bool finite =
+        std::isfinite(mullins->r) && std::isfinite(mullins->m) && std::isfinite(mullins->beta);
+    if (!finite || !(mullins->r > 1.0) || !(mullins->m >= 0.0) || !(mullins->beta >= 0.0) ||
+        !(mullins->m + mullins->beta > 0.0)) {
+      fail(what,
+           fmt::format("its softening has r = {:g}, m = {:g} Pa, beta = {:g}", mullins->r,
+                       mullins->m, mullins->beta),
+           "give r above 1, and m and beta not below 0 and not both 0");
+    }
+  }
+  for (const PronyTerm& term : prony) {
+    if (!(term.relative_modulus > 0.0) || !(term.relaxation_time > 0.0) ||
+        !std::isfinite(term.relaxation_time)) {
+      fail(what,
+           fmt::format("a part of its Prony series has the relative modulus {:g} and relaxes in "
+                       "{:g} s",
+                       term.relative_modulus, term.relaxation_time),
+           "give numbers above 0");
+    }
+  }
+  if (!(long_term_share() > 0.0)) {
+    fail(what,
+         fmt::format("the relative moduli of its Prony series add up to {:g}",
+                     1.0 - long_term_share()),
+         "let them stay below 1: what is left is the stiffness of slow motion");
+  }
+}
+
+Hyperelastic relaxed(Hyperelastic law) {
+  const double share = law.long_term_share();
+  for (PowerTerm& term : law.powers) term.coefficient *= share;
+  for (double& coefficient : law.polynomial) coefficient *= share;
+  if (law.saint_venant_shear > 0.0) {  // all of it relaxes
+    law.saint_venant_shear *= share;
+    law.bulk_modulus *= share;
+  }
+  return law;
 }
 
 double bulk_modulus_of(double shear, double poisson_ratio) {

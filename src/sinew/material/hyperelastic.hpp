@@ -20,6 +20,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -44,6 +45,23 @@ struct OgdenTerm {
   double alpha = 0.0;
 };
 
+/// One relaxing part of the isochoric stress: relative to the modulus of a sudden strain,
+///   G(t)/G(0) = 1 - sum_k g_k (1 - exp(-t/tau_k)).
+struct PronyTerm {
+  double relative_modulus = 0.0;  ///< g, > 0; all together below 1
+  double relaxation_time = 0.0;   ///< tau, s, > 0
+};
+
+/// Softening of rubber that was stretched before (Ogden & Roxburgh, Proc. R. Soc. A 455, 1999): on
+/// unloading and reloading the stress is eta times that of first loading,
+///   eta = 1 - erf((W_m - W)/(m + beta W_m))/r,
+/// W the energy of first loading at the stretch and W_m its maximum so far.
+struct MullinsEffect {
+  double r = 2.0;     ///< > 1
+  double m = 0.0;     ///< Pa, >= 0
+  double beta = 0.0;  ///< >= 0; m and beta not both 0
+};
+
 /// See the file.
 struct Hyperelastic {
   std::vector<PowerTerm> powers;
@@ -51,7 +69,12 @@ struct Hyperelastic {
   double bulk_modulus = 0.0;       ///< kappa, Pa; for Saint Venant-Kirchhoff that of small strain
   /// Saint Venant-Kirchhoff with this shear modulus, Pa; 0: the canonical form.
   double saint_venant_shear = 0.0;
+  /// Linear viscoelasticity (fem/element_history.hpp); all other numbers are those of slow motion.
+  std::vector<PronyTerm> prony;
+  std::optional<MullinsEffect> mullins;  ///< of the isochoric part
 
+  /// 1 - sum g: stiffness of slow motion over that of a sudden one; 1 without a series.
+  double long_term_share() const;
   /// mu_0 = 1/2 sum c a^2 + 2 w_1 (or that of Saint Venant-Kirchhoff), Pa.
   double shear_modulus() const;
   /// E_0 = 9 kappa mu_0 / (3 kappa + mu_0), Pa.
@@ -59,13 +82,18 @@ struct Hyperelastic {
   /// nu_0 = (3 kappa - 2 mu_0) / (6 kappa + 2 mu_0).
   double poisson_ratio() const;
   /// Throws Error(invalid-material) unless all numbers are finite, exponents are not zero, and
-  /// mu_0 > 0 and kappa > 0.
+  /// mu_0 > 0 and kappa > 0, and series and softening are as PronyTerm and
+  /// MullinsEffect say.
   /// @param what names the material in the message.
   void validate(const std::string& what) const;
 };
 
 /// kappa = 2 mu (1 + nu) / (3 (1 - 2 nu)). @param shear mu, Pa. @param poisson_ratio nu < 0.5.
 double bulk_modulus_of(double shear, double poisson_ratio);
+
+/// The law whose slow motion is as much softer as its series says: from coefficients of a sudden
+/// strain to those that Hyperelastic has. kappa stays. @param law with its series.
+Hyperelastic relaxed(Hyperelastic law);
 
 // Laws by their usual coefficients, in Pa; kappa is to be set.
 Hyperelastic neo_hookean(double shear_modulus);

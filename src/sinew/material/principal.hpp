@@ -227,6 +227,44 @@ SINEW_INLINE LanesLogResponse respond(const Hyperelastic& law, const Principal& 
   return result;
 }
 
+/// A law so many times as stiff. @param response changed. @param factor how many.
+SINEW_INLINE void scale(LanesLogResponse& response, double factor) {
+  response.energy *= factor;
+  for (int i = 0; i < 3; ++i) {
+    response.first[i] *= factor;
+    for (int j = 0; j <= i; ++j) response.second[i][j] *= factor;
+  }
+}
+
+/// Softens a law W that was strained up to W_m before: with x = (W_m - W)/w, w = m + beta W_m,
+///   phi = W + w/r (x erf x + (exp(-x^2) - 1)/sqrt(pi)),
+///   eta = dphi/dW = 1 - erf(x)/r,   deta/dW = 2/(sqrt(pi) r w) exp(-x^2),
+/// and phi = W on first loading, W >= W_m. @param effect,peak its numbers, and W_m.
+/// @param response changed.
+SINEW_INLINE void soften(const MullinsEffect& effect, const Lanes& peak,
+                         LanesLogResponse& response) {
+  constexpr double kRootPi = 1.7724538509055160273;
+  constexpr double kLeastWidth = 1e-9;  // Pa: where nothing was strained yet
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const double w = response.energy[lane], most = peak[lane];
+    if (!(w < most)) continue;
+    const double width = std::fmax(effect.m + effect.beta * most, kLeastWidth);
+    const double x = (most - w) / width, bell = std::exp(-x * x);
+    const double eta = 1.0 - std::erf(x) / effect.r;
+    const double slope = 2.0 / (kRootPi * effect.r * width) * bell;
+    response.energy[lane] += width / effect.r * (x * std::erf(x) + (bell - 1.0) / kRootPi);
+    double first[3];
+    for (int i = 0; i < 3; ++i) first[i] = response.first[i][lane];
+    for (int i = 0; i < 3; ++i) {
+      response.first[i][lane] = eta * first[i];
+      for (int j = 0; j <= i; ++j) {
+        Lanes& second = response.second[i][j];
+        second[lane] = eta * second[lane] + slope * first[i] * first[j];
+      }
+    }
+  }
+}
+
 /// Adds U(J) = kappa/2 (J - 1)^2 of the point's own J.
 SINEW_INLINE void add_volumetric(LanesLogResponse& to, const Lanes& ratio, double bulk_modulus) {
   const Lanes pressure = bulk_modulus * (ratio - 1.0), stiffness = bulk_modulus * ratio;
@@ -237,9 +275,8 @@ SINEW_INLINE void add_volumetric(LanesLogResponse& to, const Lanes& ratio, doubl
   }
 }
 
-/// P = F sum t_i / l_i^2 N_i N_i^T.
-SINEW_INLINE Lanes3x3 first_piola(const Lanes3x3& f, const Principal& at,
-                                  const LanesLogResponse& response) {
+/// Second Piola-Kirchhoff stress S = sum t_i / l_i^2 N_i N_i^T.
+SINEW_INLINE LanesSymmetric second_piola(const Principal& at, const LanesLogResponse& response) {
   LanesSymmetric s{};
   for (int i = 0; i < 3; ++i) {
     const Lanes scale = response.first[i] / (at.stretch[i] * at.stretch[i]);
@@ -251,7 +288,13 @@ SINEW_INLINE Lanes3x3 first_piola(const Lanes3x3& f, const Principal& at,
     s.xz += scale * x * z;
     s.yz += scale * y * z;
   }
-  return multiply(f, s);
+  return s;
+}
+
+/// P = F S.
+SINEW_INLINE Lanes3x3 first_piola(const Lanes3x3& f, const Principal& at,
+                                  const LanesLogResponse& response) {
+  return multiply(f, second_piola(at, response));
 }
 
 /// A symmetric 9x9 matrix in every lane, rows and columns 3 r + c for entry (r, c) of P and F.

@@ -80,9 +80,10 @@ int history_count(Integrator integrator) {
 
 StepWeights step_weights(Integrator integrator, double time_step, double step_before,
                          double spectral_radius) {
-  if (integrator == Integrator::quasi_static) return {};
   const bool bdf = integrator == Integrator::bdf2;
   StepWeights weights;
+  weights.time_step = time_step;  // materials that relax do so without inertia, too
+  if (integrator == Integrator::quasi_static) return weights;
   if (integrator == Integrator::backward_euler || !(step_before > 0.0)) {
     weights = backward_euler(time_step);
     if (bdf) {  // as bdf2() keeps them

@@ -229,6 +229,42 @@ MaybeDefect inverted_hexahedron(const Mesh& mesh) {
                 "check the node order (bottom face, then top face) or remesh"};
 }
 
+/// A triangle on the outside of the tetrahedra whose corners are three of a quadrilateral on the
+/// outside of the hexahedra lies in that face: the two kinds meet there, and bend in two ways.
+MaybeDefect non_conforming(const Mesh& mesh) {
+  if (mesh.tetrahedra.empty() || mesh.hexahedra.empty()) return {};
+  std::vector<Triangle> corners;
+  const std::vector<Face> faces = boundary_faces(mesh);
+  const auto sorted = [](Triangle nodes) {
+    std::ranges::sort(nodes);
+    return nodes;
+  };
+  for (const Face& face : faces) {
+    const auto& n = face.node;
+    if (face.corners() != 4) continue;
+    for (std::size_t k = 0; k < 4; ++k) {
+      corners.push_back(sorted({n[k], n[(k + 1) % 4], n[(k + 2) % 4]}));
+    }
+  }
+  std::ranges::sort(corners);
+  int count = 0;
+  std::string first;
+  for (const Face& face : faces) {
+    if (face.corners() != 3) continue;
+    const Triangle nodes{face.node[0], face.node[1], face.node[2]};
+    if (!std::ranges::binary_search(corners, sorted(nodes)) || count++ > 0) continue;
+    Vector3 centre = Vector3::Zero();
+    for (const NodeId node : nodes) centre += mesh.nodes.row(node).transpose() / 3.0;
+    first = fmt::format(
+        "a tetrahedron's face (nodes {}) meets a hexahedron's at {}: faces of three "
+        "and of four nodes do not conform",
+        text_of(nodes), text_of(centre));
+  }
+  if (count == 0) return {};
+  return Defect{ErrorKind::unsupported_element, first + and_others(count),
+                "mesh the body with one kind, or as two bodies"};
+}
+
 MaybeDefect several_components(const Mesh& mesh, const CheckOptions& options) {
   if (options.allow_several_components) return {};
   const Components parts = components(mesh);
@@ -288,6 +324,7 @@ std::vector<Defect> find_defects(const Mesh& mesh, const CheckOptions& options) 
   add(zero_volume(mesh, options.smallest_volume));
   add(inverted_hexahedron(mesh));
   add(overlap(mesh));
+  add(non_conforming(mesh));
   add(several_components(mesh, options));
   return defects;
 }

@@ -35,7 +35,8 @@ int reorder_elements(Mesh& mesh);
 /// how many there are. Kinds: no-volume-elements, index-out-of-range, non-finite-node,
 /// suspicious-unit, repeated-node-in-element, duplicate-node, zero-volume, inverted-element (two
 /// elements on the same side of a face that they share, or a hexahedron that is turned inside out
-/// at a corner), disconnected-mesh. Defects of numbering and numbers hide those of geometry.
+/// at a corner), unsupported-element (a hexahedron's face that meets those of tetrahedra),
+/// disconnected-mesh. Defects of numbering and numbers hide those of geometry.
 std::vector<Defect> find_defects(const Mesh& mesh, const CheckOptions& options = {});
 
 /// reorder_elements(), then throws the first of find_defects() as Error at `mesh.name`.

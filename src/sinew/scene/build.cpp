@@ -36,14 +36,24 @@ sim::Command command(const ActuatorDescription& actuator) {
 void check_element(const BodyDescription& body, const mesh::Mesh& mesh) {
   const bool tetrahedra = !mesh.tetrahedra.empty(), hexahedra = !mesh.hexahedra.empty();
   const bool quadratic = !mesh.quadratic.empty();
-  const bool other = (body.element == Element::tet4 && (hexahedra || quadratic)) ||
-                     (body.element == Element::hex8 && tetrahedra);
+  const bool linear = body.element == Element::tet4 || body.element == Element::tet4_patch;
+  const bool other =
+      (linear && (hexahedra || quadratic)) || (body.element == Element::hex8 && tetrahedra);
   if (other) {
     throw Error(ErrorKind::unsupported_element, body.element_place,
                 fmt::format("the mesh has {}", quadratic    ? "quadratic tetrahedra"
                                                : tetrahedra ? "tetrahedra"
                                                             : "hexahedra"),
                 "leave `element` out, or give another mesh");
+  }
+  const bool patches = body.element == Element::tet4_patch;
+  const bool split = body.material.model == MaterialModel::hyperelastic &&
+                     body.material.energy.saint_venant_shear == 0.0;
+  if (patches && !split) {
+    throw Error(ErrorKind::unsupported_element, body.material.place,
+                "tet4-patch needs a law whose volumetric part stands apart",
+                "give it a hyperelastic one other than saint-venant-kirchhoff, for instance model: "
+                "neo-hookean, or take tet4");
   }
   if ((hexahedra || quadratic) && body.material.model != MaterialModel::hyperelastic) {
     throw Error(ErrorKind::unsupported_element, body.material.place,
@@ -68,6 +78,7 @@ fem::FemBodySettings fem_settings(const SceneDescription& scene, const BodyDescr
     region.law = body.material.model == MaterialModel::linear ? material::Law::linear
                                                               : material::Law::corotational;
   }
+  region.patches = body.element == Element::tet4_patch;
   region.density = body.density.value_or(body.mass ? 0.0 : body.material.density);
   settings.elements.regions.push_back(std::move(region));
   settings.elements.total_mass = body.mass;

@@ -36,7 +36,7 @@ using mechanics::Integrator;
 enum class Method { one_linearisation, newton };
 enum class Tangent { rotated, exact };
 enum class MaterialModel { linear, corotational, hyperelastic };
-enum class Element { any, tet4, tet10, hex8 };
+enum class Element { any, tet4, tet4_patch, tet10, hex8 };
 enum class MassDistribution { volume, even };
 enum class MassMatrix { lumped, consistent };
 enum class PullPoint { world, body };

@@ -104,6 +104,8 @@ std::shared_ptr<const KeyTable> pressure_table();
 std::shared_ptr<const KeyTable> spring_table();
 std::shared_ptr<const KeyTable> signal_table(const Measure& measure, const char* value_example);
 std::shared_ptr<const KeyTable> point_file_table();
+/// What may stand under `material`: a law, a file, or a name of the library.
+std::vector<Form> material_forms();
 Form body_form();
 Form actuator_form();
 Form load_form();

@@ -1,9 +1,4 @@
-// The tables of bodies: mesh, material, mass, damping, fixed regions.
-#include <limits>
-
-#include <fmt/format.h>
-
-#include "sinew/material/library.hpp"
+// The tables of bodies: mesh, element, mass, damping, fixed regions.
 #include "sinew/scene/grammar_forms.hpp"
 
 namespace sinew::scene::forms {
@@ -104,146 +99,6 @@ std::shared_ptr<const KeyTable> mesh_file_table() {
                  .example = "mm",
                  .default_text = "m",
                  .description = "What one unit of the file's coordinates is."}}});
-}
-
-Range material_range(double min, double max = std::numeric_limits<double>::infinity()) {
-  return {.min = min,
-          .max = max,
-          .above_min = true,
-          .below_max = true,
-          .kind = ErrorKind::invalid_material};
-}
-
-Key modulus(const char* name, const char* example, const char* description, bool required = true,
-            bool any_sign = false) {
-  const Range range = any_sign ? any() : material_range(0.0);
-  return {.name = name,
-          .forms = {quantity(stress(), range)},
-          .example = example,
-          .description = description,
-          .required = required};
-}
-
-Key poisson_ratio(bool required, const char* description) {
-  return {.name = "poisson_ratio",
-          .forms = {quantity(plain_number(), material_range(-1.0, 0.5))},
-          .example = "0.45",
-          .description = description,
-          .required = required};
-}
-
-std::vector<Key> small_strain_keys() {
-  return {
-      modulus("young_modulus", "450 kPa", "Young's modulus."),
-      poisson_ratio(true, "Poisson's ratio, between -1 and 0.5. Linear tetrahedra lock near 0.5.")};
-}
-
-/// A hyperelastic law: its own keys, and one of the two that say how little it is compressible.
-Choice energy(const char* word, const char* description, std::vector<Key> keys,
-              std::vector<Alternatives> alternatives = {}) {
-  keys.push_back(poisson_ratio(
-      false, "That of small strain, below 0.5: 0.49 to 0.4999 for rubbers on hexahedra."));
-  keys.push_back(modulus("bulk_modulus", "1 MPa", "In place of poisson_ratio.", false));
-  alternatives.push_back({{"poisson_ratio", "bulk_modulus"}, true});
-  return {.word = word,
-          .description = description,
-          .table = make_table({.name = std::string("material: model ") + word,
-                               .description = description,
-                               .keys = std::move(keys),
-                               .alternatives = std::move(alternatives)})};
-}
-
-Choice small_strain(const char* word, const char* description) {
-  return {.word = word,
-          .description = description,
-          .table = make_table({.name = std::string("material: model ") + word,
-                               .description = description,
-                               .keys = small_strain_keys()})};
-}
-
-std::vector<Key> ogden_keys() {
-  constexpr int kMostTerms = 6;
-  Form moduli = quantity(stress(), any());
-  moduli.max_count = kMostTerms;
-  return {
-      {.name = "mu",
-       .forms = {moduli},
-       .example = "24.361 0.066703 -0.45381 kPa",
-       .description = "Moduli, one to six.",
-       .required = true},
-      {.name = "alpha",
-       .forms = {numbers(1, kMostTerms, any())},
-       .example = "1.7138 7.0679 -3.3659",
-       .description = "Exponents, as many.",
-       .required = true},
-      {.name = "convention",
-       .forms = {choice({{"mu-over-alpha", "sum mu/alpha (...), Ogden's own."},
-                         {"two-mu-over-alpha-squared",
-                          "sum 2 mu/alpha^2 (...): mu adds up to the initial shear modulus."}})},
-       .example = "mu-over-alpha",
-       .description = "How the moduli are meant; sources differ, and stiffness with them.",
-       .required = true}};
-}
-
-/// Laws by name, told by `model`.
-Form law_form() {
-  const Key shear = modulus("shear_modulus", "24.4 kPa", "Initial shear modulus.", false);
-  Key c20 = modulus("c20", "-0.2 kPa", "Of (I - 3)^2.", false, true);
-  Key c30 = modulus("c30", "0.03 kPa", "Of (I - 3)^3.", false, true);
-  c20.default_text = c30.default_text = "0 Pa";
-  return variants(
-      "model",
-      {small_strain("corotational",
-                    "Linear about the rotated element: large bending, small strain."),
-       small_strain("linear", "Small displacements and strains."),
-       energy("neo-hookean", "mu/2 (I - 3) and kappa/2 (J - 1)^2.",
-              {shear, modulus("young_modulus", "72 kPa", "In place of shear_modulus.", false)},
-              {{{"shear_modulus", "young_modulus"}, true}}),
-       energy("mooney-rivlin", "C10 (I - 3) + C01 (II - 3).",
-              {modulus("c10", "12.18 kPa", "Of I - 3.", true, true),
-               modulus("c01", "1 kPa", "Of II - 3.", true, true)}),
-       energy("yeoh", "C10 (I - 3) + C20 (I - 3)^2 + C30 (I - 3)^3.",
-              {modulus("c10", "12 kPa", "Of I - 3; half the initial shear modulus."), c20, c30}),
-       energy("ogden", "A sum of powers of the principal stretches.", ogden_keys()),
-       energy("arruda-boyce", "Eight chains of finite length, five terms of their series.",
-              {modulus("shear_modulus", "20 kPa", "mu of the series."),
-               {.name = "locking_stretch",
-                .forms = {quantity(plain_number(), material_range(1.0))},
-                .example = "3.5",
-                .description = "Where the chains are straight.",
-                .required = true}}),
-       {.word = "saint-venant-kirchhoff",
-        .description = "Linear in the Green strain: large rotation, small strain; softens and "
-                       "collapses in compression.",
-        .table = make_table({.name = "material: model saint-venant-kirchhoff",
-                             .description = "Linear in the Green strain.",
-                             .keys = small_strain_keys()})}});
-}
-
-/// A law, the usual one by its constants alone, or a name of the library.
-std::vector<Form> material_forms() {
-  const auto usual = make_table({.name = "material",
-                                 .description = "The corotational law, when `model` is left out.",
-                                 .keys = small_strain_keys()});
-  std::vector<Choice> library;
-  for (const material::NamedMaterial& named : material::material_library()) {
-    std::string description =
-        fmt::format("{}, {}, {:g} kg/m^3, nu_0 {:g}. {}.", named.trade_name, named.law,
-                    named.density, material::kLibraryPoissonRatio, named.source);
-    if (!named.remark.empty()) description += " " + named.remark;
-    library.push_back({.word = named.name, .description = std::move(description)});
-  }
-  const auto own = make_table({.name = "material: file",
-                               .description = "A material in a YAML file of its own, with the keys "
-                                              "of a material here, as `sinew fit` writes it.",
-                               .keys = {{.name = "file",
-                                         .forms = {file()},
-                                         .example = "rubber.yaml",
-                                         .description = "Path of the file, relative to the scene "
-                                                        "file.",
-                                         .required = true}}});
-  return {law_form(), table(usual, "young_modulus"), table(own, "file"),
-          choice(std::move(library))};
 }
 
 std::shared_ptr<const KeyTable> sphere_table() {
@@ -406,10 +261,13 @@ std::shared_ptr<const KeyTable> fem_table() {
        .description = "The shape at rest.",
        .required = true},
       {.name = "element",
-       .forms = {choice({{"tet4", "Linear tetrahedra."},
+       .forms = {choice({{"tet4", "Linear tetrahedra; near nu = 0.5 they lock."},
+                         {"tet4-patch",
+                          "Linear tetrahedra that share the dilatation of about eight neighbours: "
+                          "no locking in volume. For hyperelastic materials."},
                          {"tet10",
-                          "Quadratic tetrahedra, one pressure each: no locking. A linear mesh gets "
-                          "middle nodes. For hyperelastic materials."},
+                          "Quadratic tetrahedra: no locking. A linear mesh gets middle nodes. For "
+                          "hyperelastic materials."},
                          {"hex8",
                           "Trilinear hexahedra with the pressure of their mean dilatation: "
                           "no locking in volume. For hyperelastic materials."}})},

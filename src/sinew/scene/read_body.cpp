@@ -89,6 +89,31 @@ material::Hyperelastic read_energy(const std::string& model, const Fields& field
   return energy;
 }
 
+void read_softening(const Fields& fields, material::Hyperelastic& energy) {
+  if (fields.find("softening") == nullptr) return;
+  const Fields effect = fields.below("softening");
+  material::MullinsEffect& mullins = energy.mullins.emplace();
+  effect.read("r", mullins.r);
+  effect.read("m", mullins.m);
+  effect.read("beta", mullins.beta);
+}
+
+/// The Prony series; whether the law's moduli are those of a sudden strain.
+bool read_viscosity(const Fields& fields, material::Hyperelastic& energy) {
+  const Node* series = fields.find("viscosity");
+  if (series == nullptr) return false;
+  for (const Node& item : series->items()) {
+    const Fields part(item, select_form(item, fields.form("viscosity").items, {}));
+    material::PronyTerm term;
+    part.read("relative_modulus", term.relative_modulus);
+    part.read("relaxation_time", term.relaxation_time);
+    energy.prony.push_back(term);
+  }
+  bool instantaneous = false;
+  fields.read_choice("moduli", instantaneous, {{"long-term", false}, {"instantaneous", true}});
+  return instantaneous;
+}
+
 // A file with what else would stand under `material`; such files do not name further ones.
 MaterialDescription read_material_file(const Fields& body, const ReadContext& context);
 
@@ -120,11 +145,14 @@ MaterialDescription read_material(const Fields& body, const ReadContext& context
   }
   material.model = MaterialModel::hyperelastic;
   material.energy = read_energy(model, fields);
+  read_softening(fields, material.energy);
+  const bool instantaneous = read_viscosity(fields, material.energy);
   try {
     material.energy.validate("material");
   } catch (const Error& error) {
     throw error.at(material.place);
   }
+  if (instantaneous) material.energy = material::relaxed(material.energy);
   return material;
 }
 
@@ -252,7 +280,10 @@ BodyDescription read_body(const Node::Entry& entry, const ReadContext& context) 
   const Fields fields(entry.value, form);
   body.mesh = read_mesh(fields, context);
   fields.read_choice("element", body.element,
-                     {{"tet4", Element::tet4}, {"tet10", Element::tet10}, {"hex8", Element::hex8}});
+                     {{"tet4", Element::tet4},
+                      {"tet4-patch", Element::tet4_patch},
+                      {"tet10", Element::tet10},
+                      {"hex8", Element::hex8}});
   body.element_place = fields.place("element");
   body.material = read_material(fields, context);
   read_mass(fields, body);

@@ -38,6 +38,13 @@ void hash_energy(StateHash& hash, const material::Hyperelastic& energy) {
   hash.add(energy.polynomial);
   hash.add(energy.bulk_modulus);
   hash.add(energy.saint_venant_shear);
+  for (const material::PronyTerm& term : energy.prony) {
+    hash.add(term.relative_modulus);
+    hash.add(term.relaxation_time);
+  }
+  if (energy.mullins) {
+    for (const double x : {energy.mullins->r, energy.mullins->m, energy.mullins->beta}) hash.add(x);
+  }
 }
 
 void hash_points(StateHash& hash, const Points& points) {
@@ -462,6 +469,7 @@ std::shared_ptr<const Model> ModelBuilder::build(const linalg::FactorisationSett
         hash.add(region.constants.young_modulus);
         hash.add(region.constants.poisson_ratio);
         if (region.hyperelastic) hash_energy(hash, *region.hyperelastic);
+        if (region.patches) hash.add(1.0);
       }
       hash.add(static_cast<double>(fem->elements().free_count()));
       for (const std::int32_t held : fem->elements().held()) hash.add(static_cast<double>(held));
