@@ -153,6 +153,67 @@ An effector by its name. Raises Error (unknown-name) with a suggestion.
 
 A load by its name. Raises Error (unknown-name) with a suggestion.
 )")
+      .def(
+          "follow_path",
+          [](Session& self, double first_step, double largest_step, double tolerance,
+             int max_points) {
+            const Session::Use use(self);
+            sim::Simulation& simulation = self.simulation();
+            const auto& effectors = simulation.model().effectors();
+            std::vector<std::vector<Vector3>> values(effectors.size());
+            const auto path =
+                simulation.follow_path({first_step, largest_step, tolerance, max_points}, [&] {
+                  for (std::size_t i = 0; i < effectors.size(); ++i) {
+                    values[i].push_back(simulation.effector_value(static_cast<int>(i)));
+                  }
+                });
+            VectorX share(static_cast<Eigen::Index>(path.size())), unstable(share.size());
+            for (Eigen::Index k = 0; k < share.size(); ++k) {
+              share[k] = path[static_cast<std::size_t>(k)].share;
+              unstable[k] = path[static_cast<std::size_t>(k)].negative_pivots;
+            }
+            py::dict result;
+            result["share"] = copy(share);
+            result["negative_pivots"] = copy(unstable);
+            for (std::size_t i = 0; i < effectors.size(); ++i) {
+              Points points(share.size(), 3);
+              for (Eigen::Index k = 0; k < share.size(); ++k) {
+                points.row(k) = values[i][static_cast<std::size_t>(k)].transpose();
+              }
+              result[py::str(effectors[i].name)] = copy(points);
+            }
+            return result;
+          },
+          py::kw_only(), py::arg("first_step") = 0.01, py::arg("largest_step") = 0.05,
+          py::arg("tolerance") = 1e-9, py::arg("max_points") = 500,
+          R"(follow_path($self, *, first_step=0.01, largest_step=0.05, tolerance=1e-09, max_points=500)
+--
+
+Equilibria while loads and commanded efforts grow in proportion, from what acted last (nothing, at
+the start) to what they are told to be now: by arc length, so through limit points and back, where
+solve_static() would jump or fail. The last one lies at the full load or just beyond it.
+
+Parameters
+----------
+first_step, largest_step : float
+    Largest motion of any coordinate in a step, as a part of the robot's size.
+tolerance : float
+    Residual relative to the loads.
+max_points : int
+
+Returns
+-------
+dict
+    'share' (k,): part of the load; 'negative_pivots' (k,): directions in which the point is
+    unstable; and by its name the value (k, 3) of every effector.
+
+Raises
+------
+Error
+    bad-argument where an actuator is told a motion or has a drive, or a cable has friction.
+RunError
+    not-converged; the state is then that of the start.
+)")
       .def_property_readonly(
           "ledger",
           [](Session& self) {

@@ -286,5 +286,71 @@ TEST(Spring, PhaseHasHysteresis) {
   EXPECT_DOUBLE_EQ(settle(0.0), 0.0);
 }
 
+// A cube of one layer of bricks blown up to a ball of 10 mm with a wall of 1 mm, held at its
+// bottom.
+std::shared_ptr<const Model> balloon() {
+  constexpr int kCells = 8;
+  mesh::Mesh made =
+      mesh::block({.corner = {-1, -1, -1}, .size = {2, 2, 2}, .cells = {kCells, kCells, kCells}},
+                  mesh::Cells::hexahedra);
+  std::erase_if(made.hexahedra, [&](const auto& brick) {
+    Vector3 middle = Vector3::Zero();
+    for (const NodeId node : brick) middle += made.nodes.row(node).transpose() / 8.0;
+    return middle.cwiseAbs().maxCoeff() < 1.0 - 2.0 / kCells;
+  });
+  std::vector<NodeId> bottom;
+  for (NodeId node = 0; node < made.node_count(); ++node) {
+    const Vector3 at = made.nodes.row(node).transpose();
+    const double shell = at.cwiseAbs().maxCoeff();
+    if (shell < 1.0 - 3.0 / kCells) continue;
+    const double radius = shell > 1.0 - 1.0 / kCells ? 0.010 : 0.009;
+    made.nodes.row(node) = (radius * at.normalized()).transpose();
+    if (made.nodes(node, 2) < -0.0085) bottom.push_back(node);
+  }
+  ModelBuilder builder;
+  fem::FemBodySettings body;
+  body.name = "balloon";
+  const auto mesh = std::make_shared<const mesh::Mesh>(std::move(made));
+  body.mesh = mesh;
+  fem::Region region;
+  region.hyperelastic = material::neo_hookean(4e4);
+  region.hyperelastic->bulk_modulus = 1e6;
+  region.density = 1000.0;
+  body.elements.regions = {region};
+  body.elements.fixed_nodes = bottom;
+  builder.add_fem_body(std::move(body));
+  CavitySettings cavity;
+  cavity.name = "inside";
+  cavity.surface = mesh::enclosing_surface(*mesh, Vector3::Zero(), "inside");
+  builder.add_cavity(cavity);
+  return builder.build();
+}
+
+// A balloon has a greatest pressure; beyond it the error says so, and where.
+TEST(Chamber, PressureBeyondTheLimitPointIsNamed) {
+  const auto model = balloon();
+  Simulation held(model);
+  const double volume = model->cavity(0)->rest_volume();
+  double peak = 0.0;
+  for (double grown = 0.1; grown <= 4.0; grown += 0.1) {
+    held.command(0, {CommandKind::motion, Signal::constant(grown * volume)});
+    held.solve_static();
+    peak = std::max(peak, held.actuator(0).effort);
+  }
+  ASSERT_LT(held.actuator(0).effort, 0.99 * peak);
+  Simulation simulation(model);
+  simulation.command(0, {CommandKind::effort, Signal::constant(1.5 * peak)});
+  try {
+    simulation.solve_static();
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::not_converged);
+    const std::string text = error.what();
+    const auto at = text.find("about ");
+    ASSERT_NE(at, std::string::npos) << text;
+    EXPECT_NEAR(std::stod(text.substr(at + 6)), 1e-3 * peak, 0.02 * 1e-3 * peak) << text;
+  }
+}
+
 }  // namespace
 }  // namespace sinew::sim

@@ -307,10 +307,28 @@ void FemBody::solve_motion(std::span<const double> effort) {
   }
   active_->factorisation->solve_with_effort(row_effort_, span_of(motion_));
   if (!open_stiffness_.empty()) correct_for_open_pressure();
+  remember_base();
+}
+
+void FemBody::remember_base() {
   const auto nodes = model_.elements().free_nodes();
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     base_.segment<3>(3 * static_cast<Eigen::Index>(i)) = positions_.row(nodes[i]).transpose();
   }
+}
+
+void FemBody::imbalance(std::span<const double> effort, std::span<double> result) {
+  residual(effort);
+  std::copy_n(scratch_.data(), scratch_.size(), result.data());
+}
+
+void FemBody::solve(std::span<const double> right, std::span<double> result) {
+  active_->factorisation->solve(right, result);
+}
+
+void FemBody::propose_motion(std::span<const double> motion) {
+  std::ranges::copy(motion, motion_.data());
+  remember_base();
 }
 
 mechanics::MotionReport FemBody::apply_motion(double scale) {

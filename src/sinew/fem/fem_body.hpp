@@ -38,6 +38,10 @@ class FemBody : public mechanics::Body {
   void set_imbalance_share(double share) override { imbalance_share_ = share; }
   void add_compliance(MatrixX& compliance, VectorX& free_motion) const override;
   void solve_motion(std::span<const double> effort) override;
+  std::size_t motion_size() const override { return static_cast<std::size_t>(motion_.size()); }
+  void imbalance(std::span<const double> effort, std::span<double> result) override;
+  void solve(std::span<const double> right, std::span<double> result) override;
+  void propose_motion(std::span<const double> motion) override;
   mechanics::MotionReport apply_motion(double scale) override;
   double end_step(const mechanics::StepWeights& weights) override;
   mechanics::StepWork step_work() const override { return work_; }
@@ -115,6 +119,7 @@ class FemBody : public mechanics::Body {
   Vector3 weighted(const Points& field, int point) const;
   void place_base();
   void prepare_history(double time_step);
+  void remember_base();
   /// (3,) N on a mesh node.
   Vector3 weight(NodeId node) const {
     return model_.elements().load_mass()[node] * model_.settings().gravity;

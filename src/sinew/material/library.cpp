@@ -71,8 +71,8 @@ void add_ecoflex(std::vector<NamedMaterial>& list) {
        ogden({{24.361e3, 1.7138}, {66.703, 7.0679}, {-453.81, -3.3659}},
              OgdenConvention::mu_over_alpha),
        kDensity, 0.0, 0.0, kEcoflex30Source,
-       "The source gives mu_3 = 453.81 Pa and also uses -453.81 Pa, which is taken here: with "
-       "mu_3 alpha_3 < 0 the law is unstable below a stretch of 0.31 and above 3.68."}));
+       "The source gives mu_3 = 453.81 Pa and also uses -453.81 Pa, which is taken here: with the "
+       "first, mu_3 alpha_3 < 0 and the law is unstable below a stretch of 0.31 and above 3.68."}));
   list.push_back(finish({"ecoflex-00-30-published", "Ecoflex 00-30", "ogden",
                          ogden({{24.361e3, 1.7138}, {66.703, 7.0679}, {453.81, -3.3659}},
                                OgdenConvention::mu_over_alpha),
@@ -120,12 +120,14 @@ void add_dragon_skin(std::vector<NamedMaterial>& list) {
                          "13.7 kPa (0.9 %)", 1080.0));
   list.push_back(tensile(
       "dragon-skin-fx-pro", "Dragon Skin FX-Pro", {{19813.7, 2.73843}}, "0.4 kPa (0.2 %)", 1060.0,
-      " The curve of this one bears nothing up to 4.5 % (slack), and 26 of its rows were fitted."));
+      " The curve of this one bears nothing up to 4.5 % (slack), and 26 of its rows were fitted. "
+      "Weigh yours: its density could not be checked against the sheet."));
 }
 
 void add_others(std::vector<NamedMaterial>& list) {
   list.push_back(tensile("sorta-clear-40", "SORTA-Clear 40", {{176661.4, 2.76681}},
-                         "6.8 kPa (0.3 %)", 1080.0));
+                         "6.8 kPa (0.3 %)", 1080.0,
+                         " Weigh yours: its density could not be checked against the sheet."));
   list.push_back(finish(
       {"elastosil-m4601", "Elastosil M4601", "yeoh", yeoh({0.11e6, 0.02e6}), 1130.0, 0.0, 0.0,
        "C10 = 0.11 MPa, C20 = 0.02 MPa and density as in the Soft Robotics Toolkit "
@@ -144,7 +146,7 @@ void add_others(std::vector<NamedMaterial>& list) {
        "strain: Johnston, McCluskey, Tan, Tracey, J. Micromech. Microeng. 24 (2014) 035017; "
        "density: Dow, technical data sheet (1.03)",
        "Curing decides: 1.32 MPa at 25 C to 2.97 MPa at 200 C in that source; others differ more"
-       " (Varner, Cohen, Soft Matter 2024)."}));
+       " (Varner, Cohen, Soft Matter 2024). Weigh yours: its density could not be checked."}));
 }
 
 std::vector<NamedMaterial> make_library() {

@@ -126,6 +126,13 @@ class Body {
   virtual void set_imbalance_share(double share) = 0;
   /// dq = A^-1 (b + H^T effort).
   virtual void solve_motion(std::span<const double> effort) = 0;
+  /// For those who choose dq themselves: how many numbers it has; b + H^T effort; A^-1 of any right
+  /// side, of the last condensation; what the next apply_motion() takes in place of
+  /// solve_motion()'s.
+  virtual std::size_t motion_size() const = 0;
+  virtual void imbalance(std::span<const double> effort, std::span<double> result) = 0;
+  virtual void solve(std::span<const double> right, std::span<double> result) = 0;
+  virtual void propose_motion(std::span<const double> motion) = 0;
   /// State of the last linearisation moved by scale dq; may be called again with another scale.
   virtual MotionReport apply_motion(double scale) = 0;
   /// @return an estimate of the largest error that the step made in any coordinate, m.

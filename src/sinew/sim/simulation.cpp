@@ -36,6 +36,7 @@ Simulation::Simulation(std::shared_ptr<const Model> model, int threads)
   state_before_.resize(state_size());
   motion_before_.resize(ranges_.size());
   for (const LoadModel& load : model_->loads()) load_factors_.push_back(load.factor);
+  load_applied_.resize(load_factors_.size());
 }
 
 Simulation::~Simulation() = default;
@@ -163,11 +164,15 @@ void Simulation::move_bases(double time) {
 
 void Simulation::set_loads(double time) {
   for (std::size_t k = 0; k < load_factors_.size(); ++k) {
-    const LoadModel& load = model_->loads()[k];
-    for (const int number : load.numbers) {
-      fem_body(load.body).load_factors()[static_cast<std::size_t>(number)] =
-          load_factors_[k].value(time);
-    }
+    apply_load(k, load_factors_[k].value(time));
+  }
+}
+
+void Simulation::apply_load(std::size_t load, double factor) {
+  load_applied_[load] = factor;
+  const LoadModel& model = model_->loads()[load];
+  for (const int number : model.numbers) {
+    fem_body(model.body).load_factors()[static_cast<std::size_t>(number)] = factor;
   }
 }
 
@@ -470,6 +475,7 @@ void Simulation::reset() {
   }
   for (std::size_t k = 0; k < load_factors_.size(); ++k) {
     load_factors_[k] = model_->loads()[k].factor;
+    load_applied_[k] = 0.0;
   }
   world_.restart();
   std::ranges::fill(effort_, 0.0);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -54,6 +55,19 @@ struct StaticReport {
   double violation = 0.0;          ///< m
 };
 
+struct PathSettings {
+  double first_step = 0.01;    ///< largest motion of any coordinate in it, of the robot's size
+  double largest_step = 0.05;  ///< the same of every later one
+  double tolerance = 1e-9;     ///< residual relative to the loads
+  int max_points = 500;
+};
+
+/// An equilibrium on the way to the full load.
+struct PathPoint {
+  double share = 0.0;       ///< of the loads and efforts, 0 at the start, 1 at the end
+  int negative_pivots = 0;  ///< directions in which it is unstable
+};
+
 /// One run of a model. Not thread-safe itself; any number may run side by side in threads.
 class Simulation {
  public:
@@ -91,6 +105,16 @@ class Simulation {
   /// geometric stiffness, load stepping when needed. Velocities become zero; time stands still.
   /// Throws Error(not-converged) and restores the state when there is none to be found.
   StaticReport solve_static(const StaticSettings& settings = {});
+
+  /// Equilibria from the present one to that of the present loads' factors and commanded efforts,
+  /// all growing in proportion from what acted last (nothing, at the start): through limit points
+  /// and back, stable or not. Velocities become zero; time stands still. The last point lies at the
+  /// full load or just beyond; solve_static() finds that of the load itself from there.
+  /// @param settings see there. @param visit called at every point.
+  /// Throws Error(bad-argument) where an actuator is told a motion, has a drive or friction;
+  /// Error(not-converged), the state then being that of the start.
+  std::vector<PathPoint> follow_path(const PathSettings& settings,
+                                     const std::function<void()>& visit = {});
 
   /// Back to the start, bit for bit: state, time, commands of the model. Controllers stay attached.
   void reset();
@@ -147,6 +171,11 @@ class Simulation {
   double substep(double end, double time_step);
   void move_bases(double time);
   void set_loads(double time);
+  void apply_load(std::size_t load, double factor);
+  void set_share(double share);
+  void plan_path();
+  void imbalance_at(double share, VectorX& imbalance);
+  int step_path(double length, double& share, VectorX& direction, double tolerance);
   void count_work();
   void step_adaptively();
   void step_once(Law& law, const LawProblem& problem);
@@ -155,6 +184,7 @@ class Simulation {
   void finish_step();
   int negative_pivots() const;
   [[noreturn]] void fail(ErrorKind kind, const std::string& message, const std::string& remedy);
+  std::string describe_limit_point();
   NewtonReport equilibrate(const StaticSettings& settings, double share, StaticReport& report);
 
   std::shared_ptr<const Model> model_;
@@ -175,6 +205,11 @@ class Simulation {
   double now_ = 0.0;                   // s, end of the substep in hand
   std::vector<double> motion_before_;  // (actuators, then guides) m
   std::vector<Signal> load_factors_;
+  std::vector<double> load_applied_;  // (loads,) factors that acted last; 0 at the start
+  struct Stretch {
+    double from = 0.0, to = 0.0;
+  };
+  std::vector<Stretch> path_loads_, path_efforts_;
   struct Work {
     double actuators = 0.0, outside = 0.0, dissipated = 0.0;  // J
   } work_;

@@ -15,6 +15,10 @@ namespace sinew::sim {
 
 namespace {
 
+// A chamber is near its limit point where pressure rises by less than the inverse of this for what
+// it rose by the same volume before.
+constexpr double kFlat = 5.0;
+
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Commands on the way from where the actuators stand (share 1) to where they are told to be (0).
@@ -55,6 +59,31 @@ NewtonReport Simulation::equilibrate(const StaticSettings& settings, double shar
   report.relative_residual = result.relative_residual;
   report.violation = result.violation;
   return result;
+}
+
+// At the last equilibrium that was found: a chamber whose pressure hardly rises any more while its
+// volume grows, compared with how it did on the average so far.
+std::string Simulation::describe_limit_point() {
+  world_.set_imbalance_share(0.0);
+  world_.linearise({{}, mechanics::Tangent::exact, true, true});
+  world_.form_rows(effort_, model_->curved_constraints());
+  if (world_.condense() == linalg::FactorStatus::singular) return {};
+  for (std::size_t i = 0; i < actuators_.size(); ++i) {
+    const ActuatorModel& model = model_->actuators()[i];
+    const ActuatorRange& range = ranges_[i];
+    if (model.type != ActuatorType::pressure || range.kind != CommandKind::effort) continue;
+    const double reached = effort_[static_cast<std::size_t>(model.row)];
+    const double grown = world_.delta()[model.row];
+    const double compliance = world_.compliance()(model.row, model.row);
+    const bool flat = compliance < 0.0 || compliance * reached > kFlat * grown;
+    const bool short_of = std::abs(reached) < std::abs(range.value);
+    if (!(reached * grown > 0.0) || !flat || !short_of) continue;
+    return fmt::format(
+        "chamber '{}' has no equilibrium at {:.4g} kPa: about {:.4g} kPa its "
+        "pressure reaches a peak (limit point), where it has grown by {:.4g} ml",
+        model.name, 1e-3 * range.value, 1e-3 * reached, 1e6 * grown);
+  }
+  return {};
 }
 
 StaticReport Simulation::solve_static(const StaticSettings& settings) {
@@ -103,6 +132,11 @@ StaticReport Simulation::solve_static(const StaticSettings& settings) {
     world_.set_imbalance_share(0.0);
   }
   if (last.status != NewtonStatus::converged) {
+    const std::string limit = describe_limit_point();
+    if (!limit.empty()) {
+      fail(ErrorKind::not_converged, limit,
+           "command its volume_growth, which passes the peak, or follow_path()");
+    }
     fail(ErrorKind::not_converged,
          fmt::format("no static equilibrium was found: Newton ended as '{}' with a relative "
                      "residual of {:.3g}, in load steps down to 1/{}",

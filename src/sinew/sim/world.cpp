@@ -100,6 +100,36 @@ void World::solve_motion(std::span<const double> effort) {
   for (auto& body : bodies_) body->solve_motion(effort);
 }
 
+void World::imbalance(std::span<const double> effort, VectorX& result) {
+  std::size_t size = 0;
+  for (const auto& body : bodies_) size += body->motion_size();
+  result.resize(static_cast<Eigen::Index>(size));
+  std::span<double> rest(result.data(), size);
+  for (const auto& body : bodies_) {
+    body->imbalance(effort, rest.first(body->motion_size()));
+    rest = rest.subspan(body->motion_size());
+  }
+}
+
+void World::solve(const VectorX& right, VectorX& result) {
+  result.resize(right.size());
+  std::span<const double> from(right.data(), static_cast<std::size_t>(right.size()));
+  std::span<double> to(result.data(), from.size());
+  for (const auto& body : bodies_) {
+    body->solve(from.first(body->motion_size()), to.first(body->motion_size()));
+    from = from.subspan(body->motion_size());
+    to = to.subspan(body->motion_size());
+  }
+}
+
+void World::propose_motion(const VectorX& motion) {
+  std::span<const double> rest(motion.data(), static_cast<std::size_t>(motion.size()));
+  for (const auto& body : bodies_) {
+    body->propose_motion(rest.first(body->motion_size()));
+    rest = rest.subspan(body->motion_size());
+  }
+}
+
 mechanics::MotionReport World::apply_motion(double scale) {
   mechanics::MotionReport worst;
   worst.smallest_volume_ratio = INFINITY;

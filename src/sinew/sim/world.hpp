@@ -32,6 +32,10 @@ class World {
   /// W and delta_free. The worst status of any body.
   linalg::FactorStatus condense();
   void solve_motion(std::span<const double> effort);
+  /// The same by hand, see mechanics::Body: (all bodies' motion_size(),), one behind the other.
+  void imbalance(std::span<const double> effort, VectorX& result);
+  void solve(const VectorX& right, VectorX& result);
+  void propose_motion(const VectorX& motion);
   /// The worst report of any body.
   mechanics::MotionReport apply_motion(double scale);
   /// The largest error estimate of any body, m.
