@@ -184,18 +184,19 @@ stay until changed; reset() sets them to zero. Forces on fixed nodes do nothing.
 void bind_loads_of(py::class_<Body>& type) {
   type.def(
           "self_touch",
-          [](const Body& self) -> py::object {
+          [](const Body& self, double apart) -> py::object {
             const Session::Use use(*self.session);
             const fem::FemBody& own = body(self);
-            const auto found = mesh::SelfTouch(own.fem_model().mesh()).find(own.positions());
+            const auto found = mesh::SelfTouch(own.fem_model().mesh()).find(own.positions(), apart);
             if (!found) return py::none();
             return py::make_tuple(found->node, found->element);
           },
-          R"(self_touch($self)
+          py::arg("apart") = 0.0, R"(self_touch($self, apart=0.0)
 --
 
 Whether the body reaches into itself now: None, or (node, element) of the first surface node that
-lies in an element it does not belong to. Nothing keeps it from doing so.
+lies in an element it does not belong to. Nothing keeps it from doing so. What is nearer than `apart`
+(m) at rest is not looked at, such as the dent round a point load.
 )")
       .def_property_readonly(
           "load_forces",

@@ -37,6 +37,8 @@ TEST_P(SelfTouchTest, BarThatClosesOnItselfIsSeen) {
   // One end is in the other.
   const double x = mesh.nodes(found->node, 0);
   EXPECT_TRUE(x < 0.02 || x > 0.18) << x;
+  EXPECT_TRUE(touch.find(closed, 0.1));
+  EXPECT_FALSE(touch.find(closed, 0.25)) << "longer than the bar";
 }
 
 TEST_P(SelfTouchTest, NodesThatMeetNobodyAreFree) {

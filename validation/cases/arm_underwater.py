@@ -14,7 +14,9 @@ cable, or two neighbouring ones, pulled by 2 N/s for 1.5 s or until a node of th
 of 6.5 mm and of half that, Ogden's law, backward Euler at 5 ms. The source computed 21 h and 42 h for these two, and
 tabulates no result; damping and how it took the water are not in it. Assumed: stiffness damping of 10 ms, buoyancy, drag
 of 1.2 on the width, the added mass of an ideal fluid. What water and damping change is shown beside: the same in air without
-gravity, and with a tenth of the damping. Wall times are of this machine, one thread, and only reported."""
+gravity, and with a tenth of the damping. Parts that are within 40 mm at rest do not count as touching: cables pull at bare
+points of the rubber, which dents there the more the finer the mesh is, since the source has no guides. That is also why
+halving the cells changes the tip by more than 2 % towards the end, a miss that is left in. Wall times are of this machine, one thread, and only reported."""
 SOURCES = {"published": "the multi-flexible-body simulation of this arm"}
 COST = 90
 PULLED = {"one cable": ("east",), "two cables": ("east", "north")}
@@ -34,12 +36,18 @@ def curl(cables, size, *more):
         sim.step()
         times.append(sim.time)
         tips.append(1e3 * np.array(tip.position))
-        if body.self_touch() is not None:
+        if body.self_touch(apart=0.04) is not None:
             touched = sim.time
             break
     wall = time.perf_counter() - begin
     on_axis = np.flatnonzero(np.hypot(*np.array(body.rest_positions)[:, :2].T) < 1e-9)
     return np.array(times), np.array(tips), touched, len(body.hexahedra), 1e3 * np.array(body.positions)[on_axis], wall
+
+
+def report_touch(case, name, when):
+    case.report(f"{name}: touches itself within 1.5 s (1) or not (0)", float(when is not None), source="published")
+    if when is not None:
+        case.report(f"{name}: touches itself after", when, unit="s", source="published")
 
 
 def run(case):
@@ -49,10 +57,13 @@ def run(case):
         fine = curl(cables, "3.25 mm")
         for run_of, size in ((coarse, "6.5 mm"), (fine, "3.25 mm")):
             times, tips, touched, elements, _, wall = run_of
-            case.report(f"{name}, cells of {size} ({elements} hexahedra): touches itself after",
-                        touched if touched is not None else np.nan, unit="s", source="published")
+            report_touch(case, f"{name}, cells of {size} ({elements} hexahedra)", touched)
             case.report(f"{name}, cells of {size}: wall time", wall, unit="s", source="published")
         last = min(len(coarse[0]), len(fine[0])) - 1
+        half = min(last, int(0.75 / 0.005))
+        case.report(f"{name}: change of the tip by halving the cells up to 1.5 N, greatest over its path",
+                    np.linalg.norm(coarse[1][:half] - fine[1][:half], axis=1).max()
+                    / np.linalg.norm(np.diff(fine[1][:half], axis=0), axis=1).sum(), source="published")
         travelled = np.linalg.norm(np.diff(fine[1], axis=0), axis=1).sum()
         apart = np.linalg.norm(coarse[1][:last] - fine[1][:last], axis=1).max()
         case.bound(f"{name}: change of the tip by halving the cells, greatest over its path", apart / travelled, 0.02,
@@ -63,8 +74,7 @@ def run(case):
             until = min(len(coarse[0]), len(other[0])) - 1
             case.report(f"{name}: tip apart {told}, greatest",
                         np.linalg.norm(coarse[1][:until] - other[1][:until], axis=1).max(), unit="mm", source="published")
-            case.report(f"{name}: touches itself {told} after", other[2] if other[2] is not None else np.nan, unit="s",
-                        source="published")
+            report_touch(case, f"{name}, {told}", other[2])
         axis = fine[4]
         left.plot(np.hypot(axis[:, 0], axis[:, 1]) * np.sign(axis[:, 0] + axis[:, 1] + 1e-12), axis[:, 2], color=colour,
                   label=f"{name}, {fine[0][-1]:.2f} s")

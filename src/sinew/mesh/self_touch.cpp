@@ -31,7 +31,8 @@ std::uint64_t key_of(const Cell& cell) {
 
 }  // namespace
 
-SelfTouch::SelfTouch(const Mesh& mesh) : elements_of_(static_cast<std::size_t>(mesh.node_count())) {
+SelfTouch::SelfTouch(const Mesh& mesh)
+    : mesh_(mesh), elements_of_(static_cast<std::size_t>(mesh.node_count())) {
   int element = 0;
   const auto belongs = [&](NodeId node) {
     elements_of_[static_cast<std::size_t>(node)].push_back(element);
@@ -62,7 +63,7 @@ SelfTouch::SelfTouch(const Mesh& mesh) : elements_of_(static_cast<std::size_t>(m
   surface_.erase(std::unique(surface_.begin(), surface_.end()), surface_.end());
 }
 
-std::optional<SelfTouch::Touch> SelfTouch::find(const Points& positions) const {
+std::optional<SelfTouch::Touch> SelfTouch::find(const Points& positions, double apart) const {
   // Surface nodes in cells of the mean element's size; every element looks into those it spans.
   double size = 0.0;
   for (const Part& part : parts_) {
@@ -103,6 +104,9 @@ std::optional<SelfTouch::Touch> SelfTouch::find(const Points& positions) const {
             if (first.node >= 0 && node >= first.node) continue;
             const auto& own = elements_of_[static_cast<std::size_t>(node)];
             if (std::ranges::find(own, part.element) != own.end()) continue;
+            const Vector3 away =
+                (mesh_.nodes.row(node) - mesh_.nodes.row(part.corners[0])).transpose();
+            if (away.norm() < apart) continue;
             const auto weights = barycentric_weights(positions.row(node).transpose(), corners);
             const bool inside = std::ranges::all_of(weights, [](double w) { return w > kInside; });
             if (inside) first = {node, part.element};

@@ -22,16 +22,19 @@ class SelfTouch {
   explicit SelfTouch(const Mesh& mesh);
 
   /// @param positions (n, 3) m, of all nodes.
+  /// @param apart m: what is nearer than this at rest is not looked at, such as the dent round a
+  ///   point load.
   /// @return the first node of the surface, by number, that lies inside an element that it does not
   ///   belong to; none while nothing overlaps. Touching without overlap is not seen, an edge that
   ///   crosses an edge neither until a node is inside.
-  std::optional<Touch> find(const Points& positions) const;
+  std::optional<Touch> find(const Points& positions, double apart = 0.0) const;
 
  private:
   struct Part {
     Tetrahedron corners;
     int element;
   };
+  const Mesh& mesh_;
   std::vector<Part> parts_;
   std::vector<NodeId> surface_;                // ascending
   std::vector<std::vector<int>> elements_of_;  // of each node
