@@ -62,7 +62,7 @@ struct Block {
     std::iota(nodes.begin(), nodes.end(), 0);
     return nodes;
   }
-  sim::ProbeBend ends(std::optional<Vector3> about = {}) const {
+  sim::ProbeBend ends(const std::optional<Vector3>& about = {}) const {
     return {{{{0, mesh_->node_sets.at("x_min"), {}}, {0, mesh_->node_sets.at("x_max"), {}}}},
             about};
   }

@@ -86,7 +86,7 @@ Matrix3 strong_deformation() {
 /// Every field at F from its definition, by Eigen's decompositions.
 double expected(ElementField field, const Matrix3& f, Kind kind) {
   const Eigen::JacobiSVD<Matrix3> svd(f, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Vector3 l = svd.singularValues();
+  const Vector3& l = svd.singularValues();
   const Matrix3 rotation = svd.matrixU() * svd.matrixV().transpose();
   const double j = f.determinant(), lambda = kBulk - 2.0 / 3.0 * kShear;
   Matrix3 cauchy;

@@ -332,8 +332,8 @@ TEST(Chamber, PressureBeyondTheLimitPointIsNamed) {
   Simulation held(model);
   const double volume = model->cavity(0)->rest_volume();
   double peak = 0.0;
-  for (double grown = 0.1; grown <= 4.0; grown += 0.1) {
-    held.command(0, {CommandKind::motion, Signal::constant(grown * volume)});
+  for (int tenth = 1; tenth <= 40; ++tenth) {
+    held.command(0, {CommandKind::motion, Signal::constant(0.1 * tenth * volume)});
     held.solve_static();
     peak = std::max(peak, held.actuator(0).effort);
   }

@@ -52,7 +52,7 @@ struct WaterLoad {
 using Load = std::variant<DeadLoad, PressureLoad, WaterLoad>;
 
 /// Nodes, outward area vectors and weights of one face at one point of integration, at rest or
-/// deformed: see FaceRule.
+/// deformed: see face_points().
 struct FacePoint {
   std::array<double, 6> shape{}, along{}, across{};  ///< N_a and its derivatives
   double weight = 0.0;
