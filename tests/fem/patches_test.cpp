@@ -66,7 +66,8 @@ TEST(Patches, PatchesNeedALawWithAVolumetricPart) {
 // u_x = k (x - x_c)^2 / 2 has no mean dilatation over an element with centroid x_c, and small
 // strain e = k (x - x_c): energy density 2/3 mu e^2 of the deviator and kappa'/2 e^2 = mu/2 e^2,
 // whatever kappa is.
-TEST(Patches, QuadraticTetrahedraResistTheirOwnDilatationByTheShearModulus) {
+// kappa'/2 (J - Jm)^2 with kappa' = 2 mu beside the 2/3 mu of the isochoric part.
+TEST(Patches, QuadraticTetrahedraResistTheirOwnDilatationByTwiceTheShearModulus) {
   auto corners = std::make_shared<mesh::Mesh>();
   corners->nodes.resize(4, 3);
   corners->nodes << 0, 0, 0, 1, 0.1, 0, 0.2, 0.9, 0.1, 0.1, 0.2, 1.1;
@@ -86,7 +87,7 @@ TEST(Patches, QuadraticTetrahedraResistTheirOwnDilatationByTheShearModulus) {
       coordinate += 0.5 * kCurvature * std::pow(coordinate - corners->nodes.col(0).mean(), 2);
     }
     const double squares = body.model->volume() / 20.0 * x.squaredNorm();  // of x over the volume
-    const double expected = (2.0 / 3.0 + 0.5) * kShear * kCurvature * kCurvature * squares;
+    const double expected = (2.0 / 3.0 + 1.0) * kShear * kCurvature * kCurvature * squares;
     EXPECT_NEAR(body.energy(moved), expected, 2e-3 * expected);
   }
 }

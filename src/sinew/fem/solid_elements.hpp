@@ -38,9 +38,8 @@ struct Region;
 inline constexpr int kSolidBlock = 12;
 
 /// kappa' of quadratic tetrahedra over the initial shear modulus, where kappa is not less:
-/// chosen by error over four problems (docs/materials.md), which change little within a factor
-/// of 2.
-inline constexpr double kQuadraticShare = 1.0;
+/// chosen by error over four problems (docs/materials.md).
+inline constexpr double kQuadraticShare = 2.0;
 /// The same of tetrahedra in patches.
 inline constexpr double kPatchShare = 0.25;
 
