@@ -93,7 +93,8 @@ class LoadSet {
   /// A block of -d(force)/d(position) between two mesh nodes, N/m.
   using AddBlock = std::function<void(NodeId, NodeId, const Matrix3&)>;
 
-  /// @param rest (n, 3) m. Throws Error(zero-volume) for water about faces that enclose nothing.
+  /// @param loads any number. @param rest (n, 3) m. Throws Error(zero-volume) for water about faces
+  /// that enclose nothing.
   LoadSet(std::vector<Load> loads, const Points& rest);
 
   std::size_t size() const { return loads_.size(); }
