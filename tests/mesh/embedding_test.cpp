@@ -154,5 +154,57 @@ TEST(NearestPointOnTriangle, CoversEveryRegion) {
   EXPECT_EQ(nearest_point_on_triangle({2, 1, 0}, a, a, a), a);
 }
 
+/// Mean of f over an embedded point's nodes.
+template <typename F>
+double mean_of(const Mesh& mesh, const EmbeddedPoint& at, const F& f) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < at.nodes.size(); ++k) {
+    sum += at.weights[k] * f(Vector3(mesh.nodes.row(at.nodes[k])));
+  }
+  return sum;
+}
+
+TEST(Spread, IsTheMeanOverTheBallAndKeepsItsCentre) {
+  const Mesh mesh = block({.size = {0.1, 0.1, 0.1}, .cells = {20, 20, 20}});
+  const Embedder embedder(mesh);
+  const double radius = 0.02;
+  const Vector3 low = mesh.nodes.colwise().minCoeff();
+  const Vector3 centre = low + Vector3(0.053, 0.051, 0.048);
+  const EmbeddedPoint at = embedder.spread(centre, radius, Outside::error, "p");
+  EXPECT_GT(at.nodes.size(), 200U);
+  EXPECT_NEAR(mean_of(mesh, at, [](const Vector3&) { return 1.0; }), 1.0, 1e-14);
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_NEAR(mean_of(mesh, at, [&](const Vector3& x) { return x[axis]; }), centre[axis], 1e-14);
+  }
+  // The mean of |x - c|^2 over a ball is 3/5 r^2; interpolation on the mesh adds a little (h^2/4 an
+  // axis at most), and a lattice of four steps along the radius has 3 % less.
+  const double moment =
+      mean_of(mesh, at, [&](const Vector3& x) { return (x - centre).squaredNorm(); });
+  EXPECT_NEAR(moment, 0.6 * radius * radius, 0.1 * 0.6 * radius * radius);
+}
+
+TEST(Spread, KeepsItsCentreBesideASurfaceAndIsThePointInACoarseMesh) {
+  const Mesh mesh = block({.size = {0.1, 0.1, 0.1}, .cells = {10, 10, 10}});
+  const Embedder embedder(mesh);
+  const Vector3 low = mesh.nodes.colwise().minCoeff();
+  const Vector3 centre = low + Vector3(0.002, 0.05, 0.05);
+  const EmbeddedPoint beside = embedder.spread(centre, 0.01, Outside::error, "p");
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_NEAR(mean_of(mesh, beside, [&](const Vector3& x) { return x[axis]; }), centre[axis],
+                1e-14);
+  }
+  // Wholly inside one element: the same map from nodes as at the point.
+  const Vector3 inside = low + Vector3(0.0525, 0.055, 0.0575);
+  const EmbeddedPoint point = embedder.locate(inside, Outside::error, "p");
+  const EmbeddedPoint ball = embedder.spread(inside, 0.0004, Outside::error, "p");
+  ASSERT_EQ(ball.nodes.size(), point.nodes.size());
+  for (std::size_t k = 0; k < point.nodes.size(); ++k) {
+    const auto same = std::find(ball.nodes.begin(), ball.nodes.end(), point.nodes[k]);
+    ASSERT_NE(same, ball.nodes.end());
+    EXPECT_NEAR(ball.weights[static_cast<std::size_t>(same - ball.nodes.begin())], point.weights[k],
+                1e-12);
+  }
+}
+
 }  // namespace
 }  // namespace sinew::mesh

@@ -26,7 +26,12 @@ FemBodyModel::~FemBodyModel() = default;
 
 int FemBodyModel::attach(const Vector3& rest_position, mesh::Outside outside,
                          const std::string& what) {
-  const mesh::EmbeddedPoint point = embedder_->locate(rest_position, outside, what);
+  return attach_ball(rest_position, 0.0, outside, what);
+}
+
+int FemBodyModel::attach_ball(const Vector3& centre, double radius, mesh::Outside outside,
+                              const std::string& what) {
+  const mesh::EmbeddedPoint point = embedder_->spread(centre, radius, outside, what);
   return attach_nodes(point.nodes, point.weights);
 }
 

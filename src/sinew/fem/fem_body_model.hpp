@@ -58,6 +58,8 @@ class FemBodyModel : public mechanics::BodyModel {
 
   const std::string& name() const override { return settings_.name; }
   int attach(const Vector3& rest_position, mesh::Outside outside, const std::string& what) override;
+  int attach_ball(const Vector3& centre, double radius, mesh::Outside outside,
+                  const std::string& what) override;
   int attach_nodes(std::span<const NodeId> nodes, std::span<const double> weights) override;
   Vector3 rest_position(int point) const override;
   /// Adds a load, whose number in loads() is returned. Building only.
@@ -74,6 +76,7 @@ class FemBodyModel : public mechanics::BodyModel {
   const FemBodySettings& settings() const { return settings_; }
   /// After finish().
   const LoadSet& loads() const { return *loads_; }
+  const std::vector<Attachment>& attachments() const { return attachments_; }
   const Attachment& attachment(int point) const {
     return attachments_[static_cast<std::size_t>(point)];
   }

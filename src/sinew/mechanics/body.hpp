@@ -57,6 +57,11 @@ class BodyModel {
   /// @return the point's number. Throws Error(point-outside-mesh).
   virtual int attach(const Vector3& rest_position, mesh::Outside outside,
                      const std::string& what) = 0;
+  /// Attaches the mean of a ball of the material, whose centre is its rest position: a tube or ring
+  /// set into it. A point where sections are rigid. Building only.
+  /// @param centre,outside,what as attach()'s. @param radius m.
+  virtual int attach_ball(const Vector3& centre, double radius, mesh::Outside outside,
+                          const std::string& what) = 0;
   /// Attaches the weighted mean of nodes (weights sum to 1). Building only.
   virtual int attach_nodes(std::span<const NodeId> nodes, std::span<const double> weights) = 0;
   /// Rest position (3,) m of an attached point.

@@ -4,10 +4,13 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <utility>
 #include <vector>
 
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
@@ -28,6 +31,10 @@ constexpr double kWeightTolerance = 1e-9;
 /// Distances that differ by less than this share of the mesh's size are equal.
 constexpr double kDistanceTolerance = 1e-10;
 constexpr int kLeafSize = 4;
+/// Samples of a ball along its radius: 257 in all.
+constexpr int kBallSteps = 4;
+/// Least second moment of the part inside, in radius^2 (a whole ball has 1/5).
+constexpr double kThinnest = 0.01;
 
 /// A hexahedron as six tetrahedra round its diagonal 0-6, positively oriented.
 constexpr std::array<std::array<std::size_t, 4>, 6> kSplit = {
@@ -249,6 +256,53 @@ EmbeddedPoint Embedder::locate(const Vector3& point, Outside outside,
   }
   result.nodes.assign(tree_->nodes[p].begin(), tree_->nodes[p].end());
   result.weights.assign(weights.begin(), weights.end());
+  return result;
+}
+
+EmbeddedPoint Embedder::spread(const Vector3& centre, double radius, Outside outside,
+                               const std::string& what) const {
+  EmbeddedPoint result = locate(centre, outside, what);
+  if (radius <= 0.0) return result;
+  std::vector<EmbeddedPoint> samples;
+  std::vector<Vector3> offsets;
+  Vector3 sum = Vector3::Zero();
+  Matrix3 moments = Matrix3::Zero();
+  for (int i = -kBallSteps; i <= kBallSteps; ++i) {
+    for (int j = -kBallSteps; j <= kBallSteps; ++j) {
+      for (int k = -kBallSteps; k <= kBallSteps; ++k) {
+        if (i * i + j * j + k * k > kBallSteps * kBallSteps) continue;
+        const Vector3 offset = radius / kBallSteps * Vector3(i, j, k);
+        if (tree_->find_inside(centre + offset) < 0) continue;
+        samples.push_back(locate(centre + offset, Outside::error, what));
+        offsets.push_back(offset);
+        sum += offset;
+        moments += offset * offset.transpose();
+      }
+    }
+  }
+  // Weights 1 + slope . offset: sum_s (1 + slope . o_s) o_s = 0. A ball with next to nothing inside
+  // (a centre outside, a thin wall) has no such weights, or wild ones.
+  const Eigen::SelfAdjointEigenSolver<Matrix3> spectrum(moments);
+  const auto count = static_cast<double>(samples.size());
+  if (spectrum.eigenvalues()[0] < kThinnest * radius * radius * count || samples.empty()) {
+    return result;
+  }
+  const Vector3 slope = -moments.ldlt().solve(sum);
+  std::map<NodeId, double> weights;
+  double total = 0.0;
+  for (std::size_t s = 0; s < samples.size(); ++s) {
+    const double weight = 1.0 + slope.dot(offsets[s]);
+    total += weight;
+    for (std::size_t k = 0; k < samples[s].nodes.size(); ++k) {
+      weights[samples[s].nodes[k]] += weight * samples[s].weights[k];
+    }
+  }
+  result.nodes.clear();
+  result.weights.clear();
+  for (const auto& [node, weight] : weights) {
+    result.nodes.push_back(node);
+    result.weights.push_back(weight / total);
+  }
   return result;
 }
 

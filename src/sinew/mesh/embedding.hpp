@@ -41,6 +41,14 @@ class Embedder {
   /// @param what names the point in the error message ("via point 3 of cable long_0").
   EmbeddedPoint locate(const Vector3& point, Outside outside, const std::string& what) const;
 
+  /// The mean of the part of a ball that lies inside, with weights changed linearly over the ball
+  /// so that its centre stays the mean (moving least squares, Lancaster and Salkauskas 1981). In a
+  /// mesh coarser than the ball this is locate(); in a finer one a force on it does not dent the
+  /// material the more the finer the mesh is, as it does at a bare point.
+  /// @param centre,outside,what as locate()'s. @param radius m; zero: locate().
+  EmbeddedPoint spread(const Vector3& centre, double radius, Outside outside,
+                       const std::string& what) const;
+
  private:
   struct Tree;
   std::unique_ptr<Tree> tree_;

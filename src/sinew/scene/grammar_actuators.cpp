@@ -123,31 +123,45 @@ std::shared_ptr<const KeyTable> cable_table() {
       .description =
           "A cable that slides through points of a body, with or without friction. It "
           "pulls and never pushes.",
-      .keys = {body_key(),
-               {.name = "points",
-                .forms = {table(point_file_table()), list({vector(length())}, 2)},
-                .example = "[0 10 0 mm, 0 10 60 mm, 0 10 120 mm]",
-                .description = "The points it runs through, in the mesh at rest. The first "
-                               "is the pull point, the last the end that is tied.",
-                .required = true},
-               {.name = "pull",
-                .forms = {choice({{"world", "Does not move."}, {"body", "Moves with the body."}})},
-                .example = "world",
-                .default_text = "world",
-                .description = "What the pull point is fixed to."},
-               outside_key(),
-               {.name = "friction",
-                .forms = {quantity(plain_number(), non_negative())},
-                .example = "0.2",
-                .default_text = "0",
-                .description = "Coulomb's coefficient at every point between its ends: the tension "
-                               "changes there by a factor of at most e^(friction angle)."},
-               {.name = "geometric_stiffness",
-                .forms = {boolean()},
-                .example = "true",
-                .default_text = "false",
-                .description = "Adds the stiffness of the loaded cable to every step; "
-                               "static solutions always have it."}}};
+      .keys = {
+          body_key(),
+          {.name = "points",
+           .forms = {table(point_file_table()), list({vector(length())}, 2)},
+           .example = "[0 10 0 mm, 0 10 60 mm, 0 10 120 mm]",
+           .description = "The points it runs through, in the mesh at rest. The first "
+                          "is the pull point, the last the end that is tied.",
+           .required = true},
+          {.name = "pull",
+           .forms = {choice({{"world", "Does not move."}, {"body", "Moves with the body."}})},
+           .example = "world",
+           .default_text = "world",
+           .description = "What the pull point is fixed to."},
+          outside_key(),
+          {.name = "friction",
+           .forms = {quantity(plain_number(), non_negative())},
+           .example = "0.2",
+           .default_text = "0",
+           .description = "Coulomb's coefficient at every point between its ends: the tension "
+                          "changes there by a factor of at most e^(friction angle)."},
+          {.name = "guide_radius",
+           .forms = {quantity(length(), non_negative())},
+           .example = "2 mm",
+           .default_text = "0 m",
+           .description = "Radius of the tubes or rings it runs through, set into the "
+                          "material: each point is the mean of a ball. 0 pulls at bare points, "
+                          "where a finer mesh dents more without limit."},
+          {.name = "guide_spacing",
+           .forms = {quantity(length(), non_negative())},
+           .example = "10 mm",
+           .default_text = "0 m",
+           .description = "Sets guides between the points, evenly and no farther apart than "
+                          "this, as along a conduit. 0: the points alone."},
+          {.name = "geometric_stiffness",
+           .forms = {boolean()},
+           .example = "true",
+           .default_text = "false",
+           .description = "Adds the stiffness of the loaded cable to every step; "
+                          "static solutions always have it."}}};
   const DriveWords words = line_words("cable", "tension", non_negative(), "0 N",
                                       "Length of cable pulled in at the pull point.",
                                       "What it is told. Without: slack until told.");

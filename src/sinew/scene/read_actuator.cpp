@@ -220,6 +220,8 @@ ActuatorDescription read_actuator(const Node::Entry& entry, const ReadContext& c
       read_line(fields, actuator, context);
       fields.read("geometric_stiffness", actuator.geometric_stiffness);
       fields.read("friction", actuator.friction);
+      fields.read("guide_radius", actuator.guide_radius);
+      fields.read("guide_spacing", actuator.guide_spacing);
       break;
     case Type::force:
       read_force(fields, actuator);

@@ -132,7 +132,8 @@ std::unique_ptr<constraint::Cable> ModelBuilder::make_line(const std::string& na
                                                            const char* kind, int body, Points rest,
                                                            bool from_world, mesh::Outside outside,
                                                            const std::vector<Place>& places,
-                                                           const Place& place, bool friction) {
+                                                           const Place& place, bool friction,
+                                                           double guide_radius) {
   std::vector<mechanics::MaterialPoint> points;
   std::optional<Vector3> pull_point;
   for (Eigen::Index i = 0; i < rest.rows(); ++i) {
@@ -142,7 +143,8 @@ std::unique_ptr<constraint::Cable> ModelBuilder::make_line(const std::string& na
     }
     const std::string what = fmt::format("point {} of {} '{}'", i, kind, name);
     try {
-      points.push_back({body, this->body(body).attach(rest.row(i), outside, what)});
+      points.push_back(
+          {body, this->body(body).attach_ball(rest.row(i), guide_radius, outside, what)});
     } catch (const Error& error) {
       const auto k = static_cast<std::size_t>(i);
       throw error.at(k < places.size() ? places[k] : place);
@@ -151,6 +153,46 @@ std::unique_ptr<constraint::Cable> ModelBuilder::make_line(const std::string& na
   }
   return std::make_unique<constraint::Cable>(name, std::move(points), pull_point, rest, friction);
 }
+
+namespace {
+
+/// Points as written with others between them, evenly and no farther apart than `spacing`.
+struct Conduit {
+  Points points;              ///< (n, 3) m
+  std::vector<Place> places;  ///< (n,) or empty
+};
+
+Conduit set_guides(const Points& written, const std::vector<Place>& places, double spacing) {
+  if (spacing <= 0.0 || written.rows() < 2) return {written, places};
+  constexpr double kMost = 1e4;
+  std::vector<Vector3> all{written.row(0)};
+  Conduit result;
+  if (!places.empty()) result.places.push_back(places.front());
+  for (Eigen::Index i = 1; i < written.rows(); ++i) {
+    const Vector3 from = written.row(i - 1), to = written.row(i);
+    // A hair less than a whole number of spacings is that number.
+    const double parts = std::ceil((to - from).norm() / spacing - 1e-6);
+    if (!(parts <= kMost)) {
+      throw Error(
+          ErrorKind::out_of_range, {},
+          fmt::format("guides {:g} m apart would be {:g} between two points", spacing, parts),
+          "give a greater spacing, or check its unit");
+    }
+    for (double k = 1.0; k <= std::max(parts, 1.0); k += 1.0) {
+      all.push_back(from + k / std::max(parts, 1.0) * (to - from));
+      if (static_cast<std::size_t>(i) < places.size()) {
+        result.places.push_back(places[static_cast<std::size_t>(i)]);
+      }
+    }
+  }
+  result.points.resize(static_cast<Eigen::Index>(all.size()), 3);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    result.points.row(static_cast<Eigen::Index>(k)) = all[k].transpose();
+  }
+  return result;
+}
+
+}  // namespace
 
 int ModelBuilder::add_cable(const CableSettings& settings) {
   check_body(settings.body, settings.place);
@@ -165,11 +207,23 @@ int ModelBuilder::add_cable(const CableSettings& settings) {
                 fmt::format("the coefficient of friction is {:g}", settings.friction),
                 "give zero or more; 0.1 to 0.3 is usual for a cord in a tube");
   }
+  if (!(settings.guide_radius >= 0.0) || !std::isfinite(settings.guide_radius)) {
+    throw Error(ErrorKind::out_of_range, settings.place,
+                fmt::format("the guides' radius is {:g} m", settings.guide_radius),
+                "give zero or more: that of the tubes that the cable runs through");
+  }
+  if (!(settings.guide_spacing >= 0.0) || !std::isfinite(settings.guide_spacing)) {
+    throw Error(ErrorKind::out_of_range, settings.place,
+                fmt::format("the guides' spacing is {:g} m", settings.guide_spacing),
+                "give the distance between guides, or zero for none between the points");
+  }
   try {
     const bool friction = settings.friction > 0.0;
-    auto cable =
-        make_line(settings.name, "cable", settings.body, settings.points, settings.pull_from_world,
-                  settings.outside, settings.point_places, settings.place, friction);
+    const Conduit conduit =
+        set_guides(settings.points, settings.point_places, settings.guide_spacing);
+    auto cable = make_line(settings.name, "cable", settings.body, conduit.points,
+                           settings.pull_from_world, settings.outside, conduit.places,
+                           settings.place, friction, settings.guide_radius);
     const int vias = friction ? cable->via_count() : 0;
     const int index = add_actuator({settings.name, settings.place, ActuatorType::cable, -1, -1,
                                     settings.tension, settings.displacement, settings.command},
@@ -473,6 +527,9 @@ std::shared_ptr<const Model> ModelBuilder::build(const linalg::FactorisationSett
       }
       hash.add(static_cast<double>(fem->elements().free_count()));
       for (const std::int32_t held : fem->elements().held()) hash.add(static_cast<double>(held));
+      for (const auto& attachment : fem->attachments()) {
+        for (const double weight : attachment.weights) hash.add(weight);
+      }
     }
   }
   for (std::size_t i = 0; i < model_->constraints_.size(); ++i) {

@@ -32,6 +32,11 @@ struct CableSettings {
   Command command;
   bool geometric_stiffness = false;  ///< in every step; solve_static always has it
   double friction = 0.0;  ///< Coulomb's coefficient at every point between its ends, >= 0
+  /// m, >= 0: every point is the mean of a ball of this radius, such as a tube set into the
+  /// material; 0: a bare point
+  double guide_radius = 0.0;
+  /// m: guides are set between the points, evenly and no farther apart, as along a conduit; 0: none
+  double guide_spacing = 0.0;
 };
 
 /// A force along a fixed direction on a point.
@@ -139,7 +144,7 @@ class ModelBuilder {
   std::unique_ptr<constraint::Cable> make_line(const std::string& name, const char* kind, int body,
                                                Points rest, bool from_world, mesh::Outside outside,
                                                const std::vector<Place>& places, const Place& place,
-                                               bool friction = false);
+                                               bool friction = false, double guide_radius = 0.0);
 
   std::unique_ptr<Model> model_;
 };
