@@ -1,0 +1,287 @@
+#include "sinew/pcc/arm_equations.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Cholesky>
+#include <fmt/format.h>
+
+#include "sinew/core/error.hpp"
+
+namespace sinew::pcc {
+
+namespace {
+
+constexpr std::size_t kDirections = 12;
+/// Second derivatives go by pairs of groups of variables.
+constexpr std::size_t kGroup = kDirections / 2;
+using First = Dual<kDirections>;
+using Second = SecondDual<kDirections>;
+
+template <typename T>
+std::span<const T> view(const std::vector<T>& values) {
+  return {values.data(), values.size()};
+}
+
+std::span<const double> view(const VectorX& values) {
+  return {values.data(), static_cast<std::size_t>(values.size())};
+}
+
+}  // namespace
+
+struct ArmEquations::Work {
+  explicit Work(std::shared_ptr<const Arm> arm_)
+      : arm(std::move(arm_)), plain(arm), n(static_cast<std::size_t>(arm->coordinates())) {
+    const Eigen::Index size = arm->coordinates();
+    zero = bias = acceleration = VectorX::Zero(size);
+    mass = coriolis = MatrixX::Zero(size, size);
+    decomposed = Eigen::LLT<MatrixX>(size);
+    linear.residual = VectorX::Zero(size);
+    linear.by_position = linear.by_rate = linear.by_acceleration = MatrixX::Zero(size, size);
+  }
+
+  std::shared_ptr<const Arm> arm;
+  ArmDynamics<double> plain;
+  std::size_t n;
+  VectorX zero, bias, acceleration;
+  MatrixX mass, coriolis, curvature;
+  Eigen::LLT<MatrixX> decomposed;
+  Linearisation linear;
+  ForwardDerivatives forward;
+  // Those with derivatives are made when first asked for.
+  std::unique_ptr<ArmDynamics<First>> first;
+  std::vector<First> first_q, first_rate, first_acceleration, first_result;
+  std::unique_ptr<ArmDynamics<Second>> second;
+  std::vector<Second> second_q, second_rate, second_acceleration, second_result;
+};
+
+ArmEquations::ArmEquations(std::shared_ptr<const Arm> arm)
+    : work_(std::make_unique<Work>(std::move(arm))) {}
+ArmEquations::~ArmEquations() = default;
+ArmEquations::ArmEquations(ArmEquations&&) noexcept = default;
+ArmEquations& ArmEquations::operator=(ArmEquations&&) noexcept = default;
+
+const Arm& ArmEquations::arm() const { return *work_->arm; }
+
+const VectorX& ArmEquations::residual(const VectorX& q, const VectorX& rate,
+                                      const VectorX& acceleration) {
+  Work& w = *work_;
+  w.plain.set(view(q), view(rate), view(acceleration));
+  w.plain.inverse_dynamics({w.bias.data(), w.n});
+  return w.bias;
+}
+
+const MatrixX& ArmEquations::mass_matrix(const VectorX& q) {
+  Work& w = *work_;
+  w.plain.set(view(q), view(w.zero), view(w.zero));
+  w.plain.mass_matrix({w.mass.data(), w.n * w.n});
+  return w.mass;
+}
+
+const VectorX& ArmEquations::acceleration(const VectorX& q, const VectorX& rate,
+                                          const VectorX& torque) {
+  Work& w = *work_;
+  residual(q, rate, w.zero);
+  w.plain.mass_matrix({w.mass.data(), w.n * w.n});
+  w.decomposed.compute(w.mass);
+  if (w.decomposed.info() != Eigen::Success) {
+    throw Error(ErrorKind::singular_matrix, {.item = w.arm->settings().name},
+                "its mass matrix is not positive definite in this pose",
+                "spread the masses (centre: distributed), or check the angles");
+  }
+  w.acceleration.noalias() = w.arm->actuation() * torque;
+  w.acceleration -= w.bias;
+  w.decomposed.solveInPlace(w.acceleration);
+  return w.acceleration;
+}
+
+const MatrixX& ArmEquations::coriolis_matrix(const VectorX& q, const VectorX& rate) {
+  // C_kj = 1/2 sum_i (dH_kj/dq_i + dH_ki/dq_j - dH_ij/dq_k) q'_i.
+  Work& w = *work_;
+  const std::size_t n = w.n;
+  std::vector<MatrixX> slope(n, MatrixX::Zero(static_cast<Eigen::Index>(n), w.mass.cols()));
+  if (!w.first) w.first = std::make_unique<ArmDynamics<First>>(w.arm);
+  std::vector<First> values(n), still(n), mass(n * n);
+  for (std::size_t from = 0; from < n; from += kDirections) {
+    for (std::size_t k = 0; k < n; ++k) {
+      values[k] = q[static_cast<Eigen::Index>(k)];
+      if (k >= from && k < from + kDirections) values[k].grad[k - from] = 1.0;
+    }
+    w.first->set(view(values), view(still), view(still));
+    w.first->mass_matrix({mass.data(), n * n});
+    for (std::size_t d = 0; d < std::min(kDirections, n - from); ++d) {
+      for (std::size_t e = 0; e < n * n; ++e) slope[from + d].data()[e] = mass[e].grad[d];
+    }
+  }
+  w.coriolis.setZero();
+  const auto size = static_cast<Eigen::Index>(n);
+  for (Eigen::Index k = 0; k < size; ++k) {
+    for (Eigen::Index j = 0; j < size; ++j) {
+      for (Eigen::Index i = 0; i < size; ++i) {
+        w.coriolis(k, j) +=
+            0.5 * rate[i] *
+            (slope[static_cast<std::size_t>(i)](k, j) + slope[static_cast<std::size_t>(j)](k, i) -
+             slope[static_cast<std::size_t>(k)](i, j));
+      }
+    }
+  }
+  return w.coriolis;
+}
+
+const ArmEquations::Linearisation& ArmEquations::linearise(const VectorX& q, const VectorX& rate,
+                                                           const VectorX& acceleration) {
+  Work& w = *work_;
+  const std::size_t n = w.n;
+  if (!w.first) w.first = std::make_unique<ArmDynamics<First>>(w.arm);
+  if (w.first_q.empty()) {
+    w.first_q.resize(n);
+    w.first_rate.resize(n);
+    w.first_acceleration.resize(n);
+    w.first_result.resize(n);
+  }
+  const auto variable = [&](std::size_t k) -> First& {
+    return k < n ? w.first_q[k] : k < 2 * n ? w.first_rate[k - n] : w.first_acceleration[k - 2 * n];
+  };
+  for (std::size_t k = 0; k < n; ++k) {
+    w.first_q[k] = q[static_cast<Eigen::Index>(k)];
+    w.first_rate[k] = rate[static_cast<Eigen::Index>(k)];
+    w.first_acceleration[k] = acceleration[static_cast<Eigen::Index>(k)];
+  }
+  for (std::size_t from = 0; from < 3 * n; from += kDirections) {
+    const std::size_t used = std::min(kDirections, 3 * n - from);
+    for (std::size_t d = 0; d < used; ++d) variable(from + d).grad[d] = 1.0;
+    w.first->set(view(w.first_q), view(w.first_rate), view(w.first_acceleration));
+    w.first->inverse_dynamics({w.first_result.data(), n});
+    for (std::size_t d = 0; d < used; ++d) {
+      variable(from + d).grad[d] = 0.0;
+      const std::size_t k = from + d;
+      MatrixX& matrix = k < n       ? w.linear.by_position
+                        : k < 2 * n ? w.linear.by_rate
+                                    : w.linear.by_acceleration;
+      const auto column = static_cast<Eigen::Index>(k % n);
+      for (std::size_t i = 0; i < n; ++i) {
+        matrix(static_cast<Eigen::Index>(i), column) = w.first_result[i].grad[d];
+      }
+    }
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    w.linear.residual[static_cast<Eigen::Index>(i)] = w.first_result[i].value;
+  }
+  return w.linear;
+}
+
+const MatrixX& ArmEquations::curvature(const VectorX& weights, const VectorX& q,
+                                       const VectorX& rate, const VectorX& acceleration) {
+  Work& w = *work_;
+  const std::size_t n = w.n, all = 3 * n;
+  if (!w.second) {
+    w.second = std::make_unique<ArmDynamics<Second>>(w.arm);
+    w.second_q.resize(n);
+    w.second_rate.resize(n);
+    w.second_acceleration.resize(n);
+    w.second_result.resize(n);
+    w.curvature.setZero(static_cast<Eigen::Index>(all), static_cast<Eigen::Index>(all));
+  }
+  const auto variable = [&](std::size_t k) -> Second& {
+    return k < n       ? w.second_q[k]
+           : k < 2 * n ? w.second_rate[k - n]
+                       : w.second_acceleration[k - 2 * n];
+  };
+  for (std::size_t k = 0; k < n; ++k) {
+    w.second_q[k] = q[static_cast<Eigen::Index>(k)];
+    w.second_rate[k] = rate[static_cast<Eigen::Index>(k)];
+    w.second_acceleration[k] = acceleration[static_cast<Eigen::Index>(k)];
+  }
+  const std::size_t groups = (all + kGroup - 1) / kGroup;
+  std::array<std::size_t, kDirections> of{};
+  // Every pair of groups, so that every pair of variables shares a pass; one group goes alone.
+  for (std::size_t a = 0; a < groups; ++a) {
+    for (std::size_t b = groups > 1 ? a + 1 : a; b < groups; ++b) {
+      std::size_t used = 0;
+      const auto take = [&](std::size_t group) {
+        const std::size_t end = std::min(all, (group + 1) * kGroup);
+        for (std::size_t k = group * kGroup; k < end; ++k) of[used++] = k;
+      };
+      take(a);
+      if (b != a) take(b);
+      for (std::size_t d = 0; d < used; ++d) variable(of[d]).grad[d] = 1.0;
+      w.second->set(view(w.second_q), view(w.second_rate), view(w.second_acceleration));
+      w.second->inverse_dynamics({w.second_result.data(), n});
+      for (std::size_t i = 0; i < used; ++i) {
+        variable(of[i]).grad[i] = 0.0;
+        for (std::size_t j = 0; j <= i; ++j) {
+          double sum = 0.0;
+          for (std::size_t r = 0; r < n; ++r) {
+            sum += weights[static_cast<Eigen::Index>(r)] *
+                   w.second_result[r].hess[i * (i + 1) / 2 + j];
+          }
+          const auto row = static_cast<Eigen::Index>(of[i]),
+                     column = static_cast<Eigen::Index>(of[j]);
+          w.curvature(row, column) = w.curvature(column, row) = sum;
+        }
+      }
+    }
+  }
+  return w.curvature;
+}
+
+const ArmEquations::ForwardDerivatives& ArmEquations::forward_derivatives(const VectorX& q,
+                                                                          const VectorX& rate,
+                                                                          const VectorX& torque) {
+  Work& w = *work_;
+  w.forward.acceleration = acceleration(q, rate, torque);
+  linearise(q, rate, w.forward.acceleration);
+  w.forward.by_position = w.decomposed.solve(-w.linear.by_position);
+  w.forward.by_rate = w.decomposed.solve(-w.linear.by_rate);
+  w.forward.by_torque = w.decomposed.solve(w.arm->actuation());
+  return w.forward;
+}
+
+Points ArmEquations::endpoints(const VectorX& q) {
+  Work& w = *work_;
+  w.plain.set(view(q), view(w.zero), view(w.zero));
+  Points result(w.arm->segments(), 3);
+  for (int n = 0; n < w.arm->segments(); ++n) {
+    const Vec3<double> x = w.plain.position({n, 1.0, 0.0, 0.0});
+    result.row(n) << x.x, x.y, x.z;
+  }
+  return result;
+}
+
+ArmEquations::Energy ArmEquations::energy(const VectorX& q, const VectorX& rate) {
+  Work& w = *work_;
+  w.plain.set(view(q), view(rate), view(w.zero));
+  return {w.plain.kinetic_energy(), w.plain.strain_energy(), w.plain.gravity_energy()};
+}
+
+ArmEquations::PointMotion ArmEquations::point(const ArmPoint& point, const VectorX& q,
+                                              const VectorX& rate) {
+  Work& w = *work_;
+  const std::size_t n = w.n;
+  using Timed = Dual<1>;
+  ArmDynamics<Timed> moving(w.arm);
+  std::vector<Timed> values(n), still(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    values[k].value = q[static_cast<Eigen::Index>(k)];
+    values[k].grad[0] = rate[static_cast<Eigen::Index>(k)];
+  }
+  moving.set(view(values), view(still), view(still));
+  std::vector<Vec3<Timed>> columns(n);
+  moving.jacobian(point, columns);
+  const auto plain = [](const Vec3<Timed>& v) { return Vector3(v.x.value, v.y.value, v.z.value); };
+  PointMotion result{
+      plain(moving.position(point)), {}, MatrixX(3, w.mass.cols()), MatrixX(3, w.mass.cols())};
+  const Rotation<Timed> turned = moving.rotation(point);
+  result.rotation << plain(turned.x), plain(turned.y), plain(turned.z);
+  for (std::size_t k = 0; k < n; ++k) {
+    const auto column = static_cast<Eigen::Index>(k);
+    result.jacobian.col(column) = plain(columns[k]);
+    result.jacobian_rate.col(column) << columns[k].x.grad[0], columns[k].y.grad[0],
+        columns[k].z.grad[0];
+  }
+  return result;
+}
+
+}  // namespace sinew::pcc

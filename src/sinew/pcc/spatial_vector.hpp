@@ -1,0 +1,54 @@
+/// @file
+/// Vectors and rotations of space over any kind of number, plain so that numbers that carry
+/// derivatives cost what they must and no more.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "sinew/core/types.hpp"
+
+namespace sinew::pcc {
+
+template <typename T>
+struct Vec3 {
+  T x{}, y{}, z{};
+
+  Vec3() = default;
+  Vec3(T x_, T y_, T z_) : x(std::move(x_)), y(std::move(y_)), z(std::move(z_)) {}
+  explicit Vec3(const Vector3& v) : x(v.x()), y(v.y()), z(v.z()) {}
+
+  Vec3& operator+=(const Vec3& b) {
+    x += b.x;
+    y += b.y;
+    z += b.z;
+    return *this;
+  }
+  friend Vec3 operator+(Vec3 a, const Vec3& b) { return a += b; }
+  friend Vec3 operator-(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  template <typename S>
+  friend Vec3 operator*(const S& s, const Vec3& a) {
+    return {s * a.x, s * a.y, s * a.z};
+  }
+};
+
+template <typename T>
+T dot(const Vec3<T>& a, const Vec3<T>& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+template <typename T>
+Vec3<T> cross(const Vec3<T>& a, const Vec3<T>& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+/// A rotation by its columns: the images of the axes.
+template <typename T>
+struct Rotation {
+  Vec3<T> x, y, z;
+
+  Vec3<T> operator*(const Vec3<T>& v) const { return v.x * x + v.y * y + v.z * z; }
+  Rotation operator*(const Rotation& b) const { return {*this * b.x, *this * b.y, *this * b.z}; }
+};
+
+}  // namespace sinew::pcc

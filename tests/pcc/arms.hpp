@@ -1,0 +1,57 @@
+// Arms that the tests share.
+#pragma once
+
+#include <memory>
+#include <random>
+
+#include "sinew/pcc/arm.hpp"
+
+namespace sinew::pcc::testing {
+
+/// Four planar segments as identified by the fluidic arm's authors; 0.14 m each (assumed).
+inline ArmSettings fluidic(MassCentre centre = MassCentre::arc) {
+  ArmSettings settings;
+  settings.centre = centre;
+  for (const double mass : {0.190, 0.146, 0.090, 0.090}) {
+    Segment segment;
+    segment.length = 0.14;
+    segment.mass = mass;
+    segment.stiffness = 0.108;
+    segment.damping = 4.2e-3;
+    settings.segments.push_back(segment);
+  }
+  return settings;
+}
+
+/// Turned, extensible, with dead lengths, a skew base and a load: everything at once.
+inline ArmSettings mixed(MassCentre centre = MassCentre::distributed) {
+  ArmSettings settings = fluidic(centre);
+  settings.segments.resize(3);
+  settings.segments[0].gamma = 0.4;
+  settings.segments[0].dead_length = 0.02;
+  settings.segments[1].bending = Bending::spatial;
+  settings.segments[1].gamma = -1.1;
+  settings.segments[2].bending = Bending::spatial;
+  settings.segments[2].extensible = true;
+  settings.segments[2].axial_stiffness = 150.0;
+  settings.segments[2].axial_damping = 0.3;
+  settings.segments[2].dead_length = 0.01;
+  settings.gravity = {1.0, -2.0, -9.0};
+  settings.base = {0.1, 0.2, 0.3};
+  settings.loads.push_back({1, 0.7, {0.1, -0.2, 0.05}});
+  return settings;
+}
+
+inline std::shared_ptr<const Arm> make(ArmSettings settings) {
+  return std::make_shared<const Arm>(std::move(settings));
+}
+
+/// (n,) uniform in [-size, size].
+inline VectorX random_vector(std::mt19937& random, Eigen::Index n, double size) {
+  std::uniform_real_distribution<double> spread(-size, size);
+  VectorX result(n);
+  for (Eigen::Index i = 0; i < n; ++i) result[i] = spread(random);
+  return result;
+}
+
+}  // namespace sinew::pcc::testing
