@@ -55,7 +55,7 @@ TEST(Stumpff, DerivativesAgreeWithComplexStep) {
       EXPECT_NEAR(first[k].grad[1], by_step[k].imag() / tiny, 1e-14) << s << " " << k;
       EXPECT_EQ(first[k].grad[0], 0.0);
       EXPECT_NEAR(second[k].grad[0], first[k].grad[1], 1e-14);
-      EXPECT_NEAR(second[k].hess[0], (slope_after[k].grad[0] - slope_before[k].grad[0]) / 2e-5,
+      EXPECT_NEAR(second[k].hess[0][0], (slope_after[k].grad[0] - slope_before[k].grad[0]) / 2e-5,
                   1e-9);
     }
   }

@@ -251,7 +251,7 @@ T ArmDynamics<T>::gravity_energy() const {
 template class ArmDynamics<double>;
 template class ArmDynamics<std::complex<double>>;
 template class ArmDynamics<Dual<1>>;
-template class ArmDynamics<Dual<12>>;
-template class ArmDynamics<SecondDual<12>>;
+template class ArmDynamics<Dual<8>>;
+template class ArmDynamics<SecondDual<8>>;
 
 }  // namespace sinew::pcc

@@ -27,7 +27,7 @@ struct ArmPoint {
 };
 
 /// Workspace of one arm; nothing allocates after construction. T: double, std::complex<double>,
-/// Dual<1>, Dual<12>, SecondDual<12>.
+/// Dual<1>, Dual<8>, SecondDual<8>.
 template <typename T>
 class ArmDynamics {
  public:

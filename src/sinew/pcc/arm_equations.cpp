@@ -14,10 +14,11 @@ namespace sinew::pcc {
 
 namespace {
 
-constexpr std::size_t kDirections = 12;
+/// First derivatives go by so many variables a pass: angles and rates of four planar segments.
+constexpr std::size_t kDirections = 8;
+using First = Dual<kDirections>;
 /// Second derivatives go by pairs of groups of variables.
 constexpr std::size_t kGroup = kDirections / 2;
-using First = Dual<kDirections>;
 using Second = SecondDual<kDirections>;
 
 template <typename T>
@@ -141,31 +142,32 @@ const ArmEquations::Linearisation& ArmEquations::linearise(const VectorX& q, con
     w.first_acceleration.resize(n);
     w.first_result.resize(n);
   }
-  const auto variable = [&](std::size_t k) -> First& {
-    return k < n ? w.first_q[k] : k < 2 * n ? w.first_rate[k - n] : w.first_acceleration[k - 2 * n];
-  };
   for (std::size_t k = 0; k < n; ++k) {
     w.first_q[k] = q[static_cast<Eigen::Index>(k)];
     w.first_rate[k] = rate[static_cast<Eigen::Index>(k)];
     w.first_acceleration[k] = acceleration[static_cast<Eigen::Index>(k)];
   }
-  for (std::size_t from = 0; from < 3 * n; from += kDirections) {
-    const std::size_t used = std::min(kDirections, 3 * n - from);
+  const auto variable = [&](std::size_t k) -> First& {
+    return k < n ? w.first_q[k] : w.first_rate[k - n];
+  };
+  for (std::size_t from = 0; from < 2 * n; from += kDirections) {
+    const std::size_t used = std::min(kDirections, 2 * n - from);
     for (std::size_t d = 0; d < used; ++d) variable(from + d).grad[d] = 1.0;
     w.first->set(view(w.first_q), view(w.first_rate), view(w.first_acceleration));
     w.first->inverse_dynamics({w.first_result.data(), n});
     for (std::size_t d = 0; d < used; ++d) {
-      variable(from + d).grad[d] = 0.0;
       const std::size_t k = from + d;
-      MatrixX& matrix = k < n       ? w.linear.by_position
-                        : k < 2 * n ? w.linear.by_rate
-                                    : w.linear.by_acceleration;
+      variable(k).grad[d] = 0.0;
+      MatrixX& matrix = k < n ? w.linear.by_position : w.linear.by_rate;
       const auto column = static_cast<Eigen::Index>(k % n);
       for (std::size_t i = 0; i < n; ++i) {
         matrix(static_cast<Eigen::Index>(i), column) = w.first_result[i].grad[d];
       }
     }
   }
+  // dr/dq'' is H.
+  w.plain.set(view(q), view(w.zero), view(w.zero));
+  w.plain.mass_matrix({w.linear.by_acceleration.data(), n * n});
   for (std::size_t i = 0; i < n; ++i) {
     w.linear.residual[static_cast<Eigen::Index>(i)] = w.first_result[i].value;
   }
@@ -175,25 +177,24 @@ const ArmEquations::Linearisation& ArmEquations::linearise(const VectorX& q, con
 const MatrixX& ArmEquations::curvature(const VectorX& weights, const VectorX& q,
                                        const VectorX& rate, const VectorX& acceleration) {
   Work& w = *work_;
-  const std::size_t n = w.n, all = 3 * n;
+  const std::size_t n = w.n, all = 2 * n;
   if (!w.second) {
     w.second = std::make_unique<ArmDynamics<Second>>(w.arm);
     w.second_q.resize(n);
     w.second_rate.resize(n);
     w.second_acceleration.resize(n);
     w.second_result.resize(n);
-    w.curvature.setZero(static_cast<Eigen::Index>(all), static_cast<Eigen::Index>(all));
+    const auto size = static_cast<Eigen::Index>(3 * n);
+    w.curvature.setZero(size, size);
   }
-  const auto variable = [&](std::size_t k) -> Second& {
-    return k < n       ? w.second_q[k]
-           : k < 2 * n ? w.second_rate[k - n]
-                       : w.second_acceleration[k - 2 * n];
-  };
   for (std::size_t k = 0; k < n; ++k) {
     w.second_q[k] = q[static_cast<Eigen::Index>(k)];
     w.second_rate[k] = rate[static_cast<Eigen::Index>(k)];
     w.second_acceleration[k] = acceleration[static_cast<Eigen::Index>(k)];
   }
+  const auto variable = [&](std::size_t k) -> Second& {
+    return k < n ? w.second_q[k] : w.second_rate[k - n];
+  };
   const std::size_t groups = (all + kGroup - 1) / kGroup;
   std::array<std::size_t, kDirections> of{};
   // Every pair of groups, so that every pair of variables shares a pass; one group goes alone.
@@ -214,8 +215,7 @@ const MatrixX& ArmEquations::curvature(const VectorX& weights, const VectorX& q,
         for (std::size_t j = 0; j <= i; ++j) {
           double sum = 0.0;
           for (std::size_t r = 0; r < n; ++r) {
-            sum += weights[static_cast<Eigen::Index>(r)] *
-                   w.second_result[r].hess[i * (i + 1) / 2 + j];
+            sum += weights[static_cast<Eigen::Index>(r)] * w.second_result[r].hess[i][j];
           }
           const auto row = static_cast<Eigen::Index>(of[i]),
                      column = static_cast<Eigen::Index>(of[j]);
@@ -224,6 +224,15 @@ const MatrixX& ArmEquations::curvature(const VectorX& weights, const VectorX& q,
       }
     }
   }
+  // r is linear in q'': what is left is d(H weights)/dq, that of r at q'' = weights and at rest
+  // less that of r at rest.
+  const auto size = static_cast<Eigen::Index>(n);
+  const MatrixX& moved = linearise(q, w.zero, weights).by_position;
+  w.curvature.block(2 * size, 0, size, size) = moved;
+  const MatrixX& still = linearise(q, w.zero, w.zero).by_position;
+  w.curvature.block(2 * size, 0, size, size) -= still;
+  w.curvature.block(0, 2 * size, size, size) =
+      w.curvature.block(2 * size, 0, size, size).transpose();
   return w.curvature;
 }
 
