@@ -9,7 +9,7 @@
 SI units everywhere. docs/python.md is the guide.
 """
 
-from . import errors, fields, mesh
+from . import errors, fields, mesh, pcc
 from ._core import (
     Actuator,
     Body,
@@ -75,6 +75,7 @@ __all__ = [
     "material",
     "materials",
     "mesh",
+    "pcc",
     "view",
 ]
 

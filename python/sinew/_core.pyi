@@ -374,6 +374,82 @@ class Simulation:
     def controller(self) -> Optional[InverseController]: ...
     def detach(self) -> None: ...
 
+class Arm:
+    def __init__(
+        self,
+        lengths: ArrayLike,
+        masses: ArrayLike,
+        stiffness: ArrayLike,
+        damping: ArrayLike,
+        *,
+        centre: str = "arc",
+        gravity: ArrayLike = 9.81,
+        gamma: ArrayLike = 0.0,
+        dead_lengths: ArrayLike = 0.0,
+        bending: str = "planar",
+        axial_stiffness: Optional[ArrayLike] = None,
+        axial_damping: ArrayLike = 0.0,
+        base: ArrayLike = (0.0, 0.0, 0.0),
+        actuation: Optional[ArrayLike] = None,
+        mass_points: int = 3,
+    ) -> None: ...
+    @property
+    def segments(self) -> int: ...
+    @property
+    def coordinates(self) -> int: ...
+    @property
+    def length(self) -> float: ...
+    @property
+    def stiffness(self) -> _Floats: ...
+    @property
+    def damping(self) -> _Floats: ...
+    def acceleration(
+        self, theta: ArrayLike, theta_dot: ArrayLike, torque: ArrayLike
+    ) -> _Floats: ...
+    def inverse_dynamics(
+        self, theta: ArrayLike, theta_dot: ArrayLike, theta_ddot: ArrayLike
+    ) -> _Floats: ...
+    def mass_matrix(self, theta: ArrayLike) -> _Floats: ...
+    def coriolis_matrix(self, theta: ArrayLike, theta_dot: ArrayLike) -> _Floats: ...
+    def endpoints(self, theta: ArrayLike) -> _Floats: ...
+    def point(
+        self,
+        theta: ArrayLike,
+        segment: int,
+        fraction: float = 1.0,
+        *,
+        offset: tuple[float, float] = (0.0, 0.0),
+    ) -> _Floats: ...
+    def jacobian(
+        self,
+        theta: ArrayLike,
+        segment: int,
+        fraction: float = 1.0,
+        *,
+        offset: tuple[float, float] = (0.0, 0.0),
+    ) -> _Floats: ...
+    def energy(self, theta: ArrayLike, theta_dot: ArrayLike) -> float: ...
+    def energies(self, theta: ArrayLike, theta_dot: ArrayLike) -> dict[str, float]: ...
+    def linearise(
+        self, theta: ArrayLike, theta_dot: ArrayLike, torque: ArrayLike
+    ) -> tuple[_Floats, _Floats, _Floats, _Floats]: ...
+    def equilibrium(
+        self, torque: ArrayLike, start: Optional[ArrayLike] = None
+    ) -> _Floats: ...
+    def simulate(
+        self,
+        theta: ArrayLike,
+        theta_dot: ArrayLike,
+        torque: ArrayLike,
+        *,
+        time_step: float = 0.001,
+        integrator: str = "generalized-alpha",
+        spectral_radius: float = 0.8,
+    ) -> tuple[_Floats, _Floats]: ...
+
+def channel_stiffness(first: float, lengths: ArrayLike) -> _Floats: ...
+def beam_stiffness(bending: float, lengths: ArrayLike) -> _Floats: ...
+
 class Material:
     @property
     def shear_modulus(self) -> float: ...

@@ -115,6 +115,21 @@ std::vector<double> to_list(const py::handle& value, const std::string& place,
   return {array.data(), array.data() + array.size()};
 }
 
+VectorX to_vector(const py::handle& value, const std::string& place, Eigen::Index size,
+                  const std::string& unit) {
+  const std::string wanted = fmt::format("({},) {}", size, unit);
+  const Array array = to_array(value, place, wanted);
+  if (array.ndim() != 1 || array.size() != size) wrong_shape(array, place, wanted);
+  return Eigen::Map<const VectorX>(array.data(), size);
+}
+
+MatrixX to_matrix(const py::handle& value, const std::string& place, const std::string& wanted) {
+  const Array array = to_array(value, place, wanted);
+  if (array.ndim() != 2) wrong_shape(array, place, wanted);
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  return Eigen::Map<const RowMajor>(array.data(), array.shape(0), array.shape(1));
+}
+
 Array copy(const Vector3& vector) { return Array(3, vector.data()); }
 Array copy(const VectorX& vector) { return Array(vector.size(), vector.data()); }
 Array copy(const Points& points) { return Array({points.rows(), Eigen::Index{3}}, points.data()); }

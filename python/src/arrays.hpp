@@ -41,6 +41,14 @@ Points to_points(const py::handle& value, const std::string& place, const std::s
 std::vector<double> to_list(const py::handle& value, const std::string& place,
                             const std::string& unit);
 
+/// (size,). Throws as to_array(), and Error(wrong-shape).
+VectorX to_vector(const py::handle& value, const std::string& place, Eigen::Index size,
+                  const std::string& unit);
+
+/// Any matrix. Throws as to_array(), and Error(wrong-shape).
+/// @param wanted describes shape and unit: "(steps, inputs) N m".
+MatrixX to_matrix(const py::handle& value, const std::string& place, const std::string& wanted);
+
 /// Copies.
 Array copy(const Vector3& vector);
 Array copy(const VectorX& vector);

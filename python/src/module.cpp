@@ -31,4 +31,5 @@ PYBIND11_MODULE(_core, module) {
   python::bind_controller(module);
   python::bind_view(module);
   python::bind_material(module);
+  python::bind_pcc(module);
 }
