@@ -17,6 +17,8 @@ using Json = nlohmann::json;
 // Half as far again as a robot's size is a slider's end where a scene sets none.
 constexpr double kFarPull = 0.25;         // of the robot's size
 constexpr double kStrongPull = 10.0;      // N
+constexpr double kFarBend = 1.5;          // rad
+constexpr double kStrongTorque = 0.5;     // N m
 constexpr double kStrongPressure = 20e3;  // Pa
 constexpr double kStrongPower = 5.0;      // W
 
@@ -46,11 +48,13 @@ Ends motion_ends(const sim::Model& model, int index) {
   }
   const double far = kFarPull * model.size();
   const auto type = model.actuators()[static_cast<std::size_t>(index)].type;
+  if (type == sim::ActuatorType::torque) return {-kFarBend, kFarBend};
   return {type == sim::ActuatorType::cable ? 0.0 : -far, far};
 }
 
 Ends effort_ends(const sim::ActuatorModel& actuator) {
   if (actuator.type == sim::ActuatorType::pressure) return {-kStrongPressure, kStrongPressure};
+  if (actuator.type == sim::ActuatorType::torque) return {-kStrongTorque, kStrongTorque};
   return {actuator.type == sim::ActuatorType::cable ? 0.0 : -kStrongPull, kStrongPull};
 }
 
@@ -90,7 +94,8 @@ Json actuator_json(const sim::Model& model, const scene::Robot& robot, int index
   const sim::ActuatorModel& actuator = model.actuators()[static_cast<std::size_t>(index)];
   const auto& description = robot.description.actuators[static_cast<std::size_t>(index)];
   const bool wire = model.cable(index) != nullptr;
-  const auto points = static_cast<std::size_t>(wire ? description.points.points.rows() : 0);
+  // As many as the frames hold: guides between those written included.
+  const auto points = static_cast<std::size_t>(wire ? model.cable(index)->via_count() + 2 : 0);
   return {{"name", actuator.name},
           {"type", sim::actuator_type_name(actuator.type)},
           {"body", description.body},
@@ -136,19 +141,19 @@ Json probe_json(const constraint::Probe& probe) {
 }
 
 Json body_json(const mechanics::BodyModel& model, const Surface& surface) {
-  const auto& fem = dynamic_cast<const fem::FemBodyModel&>(model);
+  const mesh::Mesh& mesh = model.mesh();
   return {{"name", model.name()},
           {"vertices", surface.nodes.size()},
           {"triangles", surface.triangles.size() / 3},
-          {"nodes", fem.mesh().nodes.rows()},
-          {"elements", fem.mesh().tetrahedra.size() + fem.mesh().hexahedra.size()}};
+          {"nodes", mesh.nodes.rows()},
+          {"elements", mesh.tetrahedra.size() + mesh.hexahedra.size()}};
 }
 
 Json bounds_json(const sim::Model& model) {
   Vector3 low = Vector3::Constant(std::numeric_limits<double>::infinity());
   Vector3 high = -low;
   for (const auto& body : model.bodies()) {
-    const Points& nodes = dynamic_cast<const fem::FemBodyModel&>(*body).mesh().nodes;
+    const Points& nodes = body->mesh().nodes;
     low = low.cwiseMin(nodes.colwise().minCoeff().transpose());
     high = high.cwiseMax(nodes.colwise().maxCoeff().transpose());
   }
@@ -184,15 +189,19 @@ std::vector<SignalInfo> list_signals(const sim::Model& model) {
   std::vector<SignalInfo> list;
   for (const sim::ActuatorModel& actuator : model.actuators()) {
     const auto [name, unit] = actuator.effort_name();
-    const bool force = std::string_view(unit) == "N";
+    const std::string_view of = unit;
     list.push_back({fmt::format("{}.{}", actuator.name, name), actuator.name, unit,
-                    force ? "effort" : "pressure"});
+                    of == "N"    ? "effort"
+                    : of == "Pa" ? "pressure"
+                                 : "torque"});
   }
   for (const sim::ActuatorModel& actuator : model.actuators()) {
     const auto [name, unit] = actuator.motion_name();
-    const bool length = std::string_view(unit) == "m";
+    const std::string_view of = unit;
     list.push_back({fmt::format("{}.{}", actuator.name, name), actuator.name, unit,
-                    length ? "motion" : "volume"});
+                    of == "m"     ? "motion"
+                    : of == "rad" ? "angle"
+                                  : "volume"});
   }
   for (std::size_t i = 0; i < model.effectors().size(); ++i) {
     const std::string& name = model.effectors()[i].name;
@@ -274,12 +283,7 @@ Description describe(const scene::Robot& robot) {
   Description result;
   Json bodies = Json::array();
   for (const auto& body : model.bodies()) {
-    const auto* fem = dynamic_cast<const fem::FemBodyModel*>(body.get());
-    if (fem == nullptr) {
-      throw Error(ErrorKind::wrong_type, {.item = body->name()},
-                  "this body is not of finite elements", "the view shows such bodies alone");
-    }
-    result.surfaces.push_back(surface_of(fem->mesh()));
+    result.surfaces.push_back(surface_of(body->mesh()));
     result.surfaces.back().body = body->name();
     bodies.push_back(body_json(*body, result.surfaces.back()));
   }

@@ -103,7 +103,7 @@ class RobotState {
   std::string controller_name_;
   std::optional<Steering> first_;
   bool observing_ = false;
-  std::vector<fem::NodalMean> means_;  ///< one a body
+  std::vector<std::unique_ptr<fem::NodalMean>> means_;  ///< one a body; none of an arm
   std::map<std::string, Vector3> targets_;
   std::optional<int> pulled_;  ///< body
   std::optional<StoppedRun> stopped_;

@@ -119,7 +119,7 @@ nlohmann::ordered_json to_json(const Samples& samples, Session& session, int war
       {"date", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))},
       {"tangent", model.step().tangent == mechanics::Tangent::exact ? "exact" : "rotated"}};
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
-    const mesh::Mesh& mesh = session.simulation().fem_body(static_cast<int>(b)).fem_model().mesh();
+    const mesh::Mesh& mesh = model.bodies()[b]->mesh();
     json["bodies"].push_back({{"name", model.bodies()[b]->name()},
                               {"nodes", mesh.node_count()},
                               {"tetrahedra", mesh.tetrahedra.size()}});

@@ -12,6 +12,7 @@
 #include "sinew/mesh/read.hpp"
 #include "sinew/mesh/report.hpp"
 #include "sinew/mesh/surface.hpp"
+#include "sinew/pcc/arm_body.hpp"
 #include "sinew/record/run_file.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/sim/state_io.hpp"
@@ -139,7 +140,23 @@ Facts surface_facts(const InfoOptions& options) {
   return facts;
 }
 
+void add_arm(Facts& facts, const pcc::ArmBodyModel& body) {
+  const pcc::Arm& arm = body.arm();
+  double mass = 0.0;
+  for (const pcc::Segment& segment : arm.settings().segments) mass += segment.mass;
+  facts.json["bodies"].push_back({{"name", body.name()},
+                                  {"segments", arm.segments()},
+                                  {"coordinates", arm.coordinates()},
+                                  {"length_m", arm.length()},
+                                  {"mass_kg", mass}});
+  facts.text += fmt::format(
+      "  body {}: {} segments of constant curvature, {} coordinates, "
+      "{:.4g} mm, {:.4g} g\n",
+      body.name(), arm.segments(), arm.coordinates(), 1e3 * arm.length(), 1e3 * mass);
+}
+
 void add_body(Facts& facts, const mechanics::BodyModel& model) {
+  if (const auto* arm = dynamic_cast<const pcc::ArmBodyModel*>(&model)) return add_arm(facts, *arm);
   const auto* body = dynamic_cast<const fem::FemBodyModel*>(&model);
   if (body == nullptr) return;
   facts.json["bodies"].push_back({{"name", body->name()},

@@ -169,6 +169,10 @@ Reading gives what it is; assigning commands it: a number (m), a signal such as 
   bind_quantity(type, "pressure", effort,
                 "float: pressure in a chamber above ambient (Pa). Assigning commands it, as for "
                 "`displacement`; through the chamber's supply when it has one.");
+  bind_quantity(type, "torque", effort,
+                "float: torque on a bend (N m). Assigning commands it, as for `displacement`.");
+  bind_quantity(type, "angle", motion,
+                "float: a bend under a torque (rad). Assigning commands it.");
   bind_quantity(type, "volume_growth", motion,
                 "float: volume that a chamber gained since rest (m^3). Assigning commands it, as "
                 "a syringe of liquid would.");

@@ -2,9 +2,11 @@
 
 #include "sinew/fem/assembly.hpp"
 #include "sinew/mesh/self_touch.hpp"
+#include "sinew/pcc/arm_body.hpp"
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "pcc_arm.hpp"
 
 namespace sinew::python {
 
@@ -12,9 +14,22 @@ namespace {
 
 fem::FemBody& body(const Body& self) { return self.session->simulation().fem_body(self.index); }
 const fem::FemModel& elements(const Body& self) { return body(self).fem_model().elements(); }
-const std::string& name(const Body& self) { return body(self).fem_model().name(); }
+const mechanics::Body& any(const Body& self) {
+  return self.session->simulation().world().body(self.index);
+}
+const std::string& name(const Body& self) { return any(self).model().name(); }
+const pcc::ArmBody& arm(const Body& self) {
+  const auto* found = dynamic_cast<const pcc::ArmBody*>(&any(self));
+  if (found == nullptr) {
+    throw Error(ErrorKind::wrong_type, {.item = fmt::format("body('{}')", name(self))},
+                "this body is not of constant curvatures", "ask for its positions");
+  }
+  return *found;
+}
 
 py::array points_view(const Body& self, const Points& points, bool writable = false) {
+  // An arm works its points out when asked; there is nothing to look at live.
+  if (dynamic_cast<const pcc::ArmBody*>(&any(self)) != nullptr) return copy(points);
   return view(points.data(), points.rows(), 3, py::cast(self.session), writable);
 }
 
@@ -162,13 +177,34 @@ center : (3,) array_like
     m, at rest.
 )");
   type.def_property_readonly(
-          "positions", [](const Body& self) { return points_view(self, body(self).positions()); },
+          "positions", [](const Body& self) { return points_view(self, any(self).positions()); },
           R"((n, 3) ndarray: positions of all nodes now, in the mesh's order (m).
 
 A live, read-only view: it shows every later step, keeps the simulation alive, and must not be read
 while another thread steps. Copy it to keep a moment: `body.positions.copy()`.)")
       .def_property_readonly(
-          "velocities", [](const Body& self) { return points_view(self, body(self).velocities()); },
+          "coordinates",
+          [](const Body& self) {
+            const Session::Use use(*self.session);
+            return copy(arm(self).coordinates());
+          },
+          "(coordinates,) ndarray: angles of a constant-curvature arm (rad; extensions m).")
+      .def_property_readonly(
+          "rates",
+          [](const Body& self) {
+            const Session::Use use(*self.session);
+            return copy(arm(self).rates());
+          },
+          "(coordinates,) ndarray: their rates (rad/s).")
+      .def_property_readonly(
+          "arm",
+          [](const Body& self) {
+            const auto& model = dynamic_cast<const pcc::ArmBodyModel&>(arm(self).model());
+            return std::make_unique<PccArm>(model.shared_arm());
+          },
+          "sinew.pcc.Arm: what a constant-curvature body is made of.")
+      .def_property_readonly(
+          "velocities", [](const Body& self) { return points_view(self, any(self).velocities()); },
           "(n, 3) ndarray: velocities of all nodes (m/s); zero in quasi-static runs. A live, "
           "read-only view.")
       .def_property(
@@ -211,12 +247,12 @@ lies in an element it does not belong to. Nothing keeps it from doing so. What i
 void bind_mesh_of(py::class_<Body>& type) {
   type.def_property_readonly(
           "rest_positions",
-          [](const Body& self) { return points_view(self, body(self).fem_model().mesh().nodes); },
+          [](const Body& self) { return points_view(self, any(self).model().mesh().nodes); },
           "(n, 3) ndarray: positions of all nodes at rest (m). Read-only.")
       .def_property_readonly(
           "tetrahedra",
           [](const Body& self) {
-            const auto& list = body(self).fem_model().mesh().tetrahedra;
+            const auto& list = any(self).model().mesh().tetrahedra;
             return view<NodeId>(list.empty() ? nullptr : list.front().data(),
                                 static_cast<py::ssize_t>(list.size()), 4, py::cast(self.session));
           },
@@ -225,7 +261,7 @@ void bind_mesh_of(py::class_<Body>& type) {
       .def_property_readonly(
           "quadratic_tetrahedra",
           [](const Body& self) {
-            const auto& list = body(self).fem_model().mesh().quadratic;
+            const auto& list = any(self).model().mesh().quadratic;
             return view<NodeId>(list.empty() ? nullptr : list.front().data(),
                                 static_cast<py::ssize_t>(list.size()), 10, py::cast(self.session));
           },
@@ -234,7 +270,7 @@ void bind_mesh_of(py::class_<Body>& type) {
       .def_property_readonly(
           "hexahedra",
           [](const Body& self) {
-            const auto& list = body(self).fem_model().mesh().hexahedra;
+            const auto& list = any(self).model().mesh().hexahedra;
             return view<NodeId>(list.empty() ? nullptr : list.front().data(),
                                 static_cast<py::ssize_t>(list.size()), 8, py::cast(self.session));
           },
@@ -243,7 +279,7 @@ void bind_mesh_of(py::class_<Body>& type) {
                              "(n,) ndarray of bool: nodes that never move: fixed ones and those "
                              "that belong to no element.")
       .def_property_readonly(
-          "node_sets", [](const Body& self) { return body(self).fem_model().mesh().node_sets; },
+          "node_sets", [](const Body& self) { return any(self).model().mesh().node_sets; },
           "dict: named sets of nodes of the mesh.")
       .def_property_readonly(
           "mass", [](const Body& self) { return elements(self).total_mass(); },
@@ -331,9 +367,9 @@ void bind_body(py::module_& module) {
   type.def_property_readonly(
           "name", [](const Body& self) { return name(self); }, "str: as in the scene.")
       .def("__repr__", [](const Body& self) {
-        const mesh::Mesh& mesh = body(self).fem_model().mesh();
+        const mesh::Mesh& mesh = any(self).model().mesh();
         return fmt::format("<sinew.Body '{}', {} nodes, {} elements>", name(self),
-                           body(self).positions().rows(),
+                           mesh.nodes.rows(),
                            mesh.tetrahedra.size() + mesh.hexahedra.size());
       });
   bind_state(type);

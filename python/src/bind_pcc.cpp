@@ -146,7 +146,7 @@ pcc::ArmPoint PccArm::place(int segment, double fraction,
     throw Error(ErrorKind::out_of_range, {.item = "fraction"},
                 fmt::format("{:g} is not on the segment", fraction), "give 0 to 1");
   }
-  return {segment, fraction, offset.first, offset.second};
+  return {segment, fraction, offset.first, offset.second, 0.0};
 }
 
 void bind_pcc(py::module_& module) {

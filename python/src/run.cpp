@@ -100,12 +100,12 @@ void add_probes(const Session& session, std::vector<Column>& columns) {
 void add_bodies(Session& session, std::vector<Column>& columns) {
   for (std::size_t i = 0; i < session.model().bodies().size(); ++i) {
     const auto index = static_cast<int>(i);
-    const auto nodes = session.simulation().fem_body(index).positions().rows();
+    const auto nodes = session.simulation().world().body(index).positions().rows();
     columns.push_back({session.model().bodies()[i]->name() + ".positions",
                        {nodes, 3},
                        false,
                        [index](Session& s, double* to) {
-                         const Points& points = s.simulation().fem_body(index).positions();
+                         const Points& points = s.simulation().world().body(index).positions();
                          std::copy_n(points.data(), points.size(), to);
                        },
                        {}});

@@ -14,6 +14,15 @@ namespace sinew::python {
 
 namespace {
 
+// Whether a body is of finite elements, whose nodes take forces.
+bool of_elements(const sim::Simulation& simulation, int body) {
+  return dynamic_cast<const fem::FemBody*>(&simulation.world().body(body)) != nullptr;
+}
+
+}  // namespace
+
+namespace {
+
 using Clock = std::chrono::steady_clock;
 constexpr auto kSignalInterval = std::chrono::milliseconds(50);
 
@@ -71,6 +80,7 @@ std::shared_ptr<Session> Session::clone() const {
   }
   for (std::size_t i = 0; i < model().bodies().size(); ++i) {
     const auto index = static_cast<int>(i);
+    if (!of_elements(simulation_, index)) continue;
     other->simulation_.fem_body(index).external_forces() =
         simulation_.fem_body(index).external_forces();
   }
@@ -84,6 +94,7 @@ std::shared_ptr<Session> Session::clone() const {
 
 void Session::check_loads() const {
   for (std::size_t i = 0; i < model().bodies().size(); ++i) {
+    if (!of_elements(simulation_, static_cast<int>(i))) continue;
     const auto& body = simulation_.fem_body(static_cast<int>(i));
     if (body.external_forces().allFinite()) continue;
     throw Error(ErrorKind::not_finite,
@@ -123,6 +134,7 @@ sim::StaticReport Session::solve_static(const sim::StaticSettings& settings) {
 void Session::reset() {
   const Use use(*this);
   for (std::size_t i = 0; i < model().bodies().size(); ++i) {
+    if (!of_elements(simulation_, static_cast<int>(i))) continue;
     simulation_.fem_body(static_cast<int>(i)).external_forces().setZero();
   }
   simulation_.reset();

@@ -103,3 +103,76 @@ def test_wrong_shapes_of_states():
     assert caught.value.kind == "wrong-shape"
     with pytest.raises(sinew.Error):
         arm().point(np.zeros(4), 4)
+
+
+SCENE = {
+    "sinew": 1, "time_step": 0.005, "integrator": "backward-euler", "gravity": [0, 0, -9.81],
+    "bodies": {"arm": {"type": "pcc", "centre": "distributed", "radius": 0.025, "segments": [
+        {"length": 0.14, "mass": mass, "stiffness": 0.108, "damping": 0.05} for mass in MASSES]}},
+    "actuators": {f"bend_{i}": {"type": "torque", "body": "arm", "segment": i,
+                              "limits": {"torque": {"min": -0.3, "max": 0.3}}} for i in range(4)},
+    "effectors": {"tip": {"body": "arm", "point": [0, 0, -0.56], "directions": [[1, 0, 0], [0, 0, 1]]}},
+}
+
+
+def test_an_arm_in_a_scene_is_the_arm_by_itself():
+    sim = sinew.load(SCENE)
+    body = sim.body("arm")
+    torque = [0.02, 0.05, -0.03, 0.08]
+    for i, value in enumerate(torque):
+        sim.actuator(f"bend_{i}").torque = value
+    sim.solve_static()
+    alone = body.arm
+    np.testing.assert_allclose(body.coordinates, alone.equilibrium(torque), atol=1e-9)
+    np.testing.assert_allclose(sim.effector("tip").position, alone.endpoints(body.coordinates)[-1], atol=1e-12)
+    assert sim.actuator("bend_3").angle == pytest.approx(body.coordinates[3])
+    assert np.abs(body.positions - body.rest_positions).max() > 0.03
+    sim.step(10)
+    np.testing.assert_allclose(body.rates, 0.0, atol=1e-9)
+
+
+def test_inverse_control_of_an_arm():
+    sim = sinew.load(SCENE)
+    goal = np.array([0.15, 0.0, -0.45])
+    ik = sinew.InverseController(sim, targets={"tip": goal})
+    for _ in range(400):
+        ik.step()
+    assert ik.error < 1e-5
+    np.testing.assert_allclose(sim.effector("tip").position, goal, atol=1e-5)
+
+
+def test_a_cable_bends_an_arm():
+    scene = {**SCENE, "actuators": {"tendon": {
+        "type": "cable", "body": "arm", "points": [[0.02, 0, -0.001], [0.02, 0, -0.559]], "guide_spacing": 0.07,
+        "command": {"tension": 2.0}}}}
+    sim = sinew.load(scene)
+    sim.solve_static()
+    assert sim.effector("tip").position[0] > 0.05
+    assert (sim.body("arm").coordinates > 0).all()
+
+
+@pytest.mark.parametrize("change, kind, text", [
+    (("bodies", "arm", "segments", 1, "mass", -0.1), "out-of-range", "mass"),
+    (("bodies", "arm", "segments", 0, "stiffness", "3 N"), "wrong-dimension", "stiffness"),
+    (("bodies", "arm", "direction", [1, 0, 0]), None, ""),
+    (("actuators", "bend_0", "segment", 7), "index-out-of-range", "no segment 7"),
+    (("actuators", "bend_0", "towards", "across"), "unknown-choice", "planar"),
+    (("effectors", "tip", "point", [0.1, 0, -0.3]), "point-outside-mesh", "outside arm"),
+])
+def test_bad_scenes(change, kind, text):
+    import copy
+
+    scene = copy.deepcopy(SCENE)
+    *path, key, value = change
+    at = scene
+    for part in path:
+        at = at[part]
+    at[key] = value
+    if kind is None:
+        scene["bodies"]["arm"]["side"] = [2, 0, 0]
+        kind = "out-of-range"
+        text = "side"
+    with pytest.raises(sinew.Error) as caught:
+        sinew.load(scene)
+    assert caught.value.kind == kind
+    assert text in str(caught.value)

@@ -79,7 +79,7 @@ TEST(Transform, IsTheProductOfItsFactors) {
                Eigen::Translation3d(0, 0, chord) * half;
   }
   ArmEquations equations(make(settings));
-  const auto tip = equations.point({1, 1.0, 0.0, 0.0}, q, VectorX::Zero(2));
+  const auto tip = equations.point({.segment = 1}, q, VectorX::Zero(2));
   EXPECT_NEAR((tip.position - expected.translation()).norm(), 0.0, 1e-15);
   EXPECT_NEAR((tip.rotation - expected.linear()).norm(), 0.0, 1e-14);
 }
@@ -288,7 +288,7 @@ TEST_P(ArmKinds, ForwardDynamicsInvertsInverseDynamics) {
 
 TEST_P(ArmKinds, PointsMoveByTheirJacobian) {
   const VectorX q = random_vector(random, n, 1.0), rate = random_vector(random, n, 2.0);
-  const ArmPoint place{arm->segments() - 1, 0.6, 0.01, -0.02};
+  const ArmPoint place{arm->segments() - 1, 0.6, 0.01, -0.02, 0.005};
   const auto here = equations.point(place, q, rate);
   const double h = 1e-6;
   const auto after = equations.point(place, q + h * rate, rate);

@@ -340,7 +340,6 @@ INSTANTIATE_TEST_SUITE_P(
     Later, BrokenScenes,
     testing::Values(
         Broken{"rod", {{"type: fem", "type: rod"}}, K::not_in_this_version, 7, 11, "'rod'", "fem"},
-        Broken{"pcc", {{"type: fem", "type: pcc"}}, K::not_in_this_version, 7, 11, "'pcc'", "fem"},
         Broken{"rigid",
                {{"type: fem", "type: rigid"}},
                K::not_in_this_version,

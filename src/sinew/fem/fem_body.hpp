@@ -59,9 +59,9 @@ class FemBody : public mechanics::Body {
   std::size_t bytes() const override;
 
   /// (n, 3) m, all mesh nodes in file order, fixed and unused ones included.
-  const Points& positions() const { return positions_; }
+  const Points& positions() const override { return positions_; }
   /// (n, 3) m/s.
-  const Points& velocities() const { return velocities_; }
+  const Points& velocities() const override { return velocities_; }
   /// (n, 3) N, dead loads added to gravity; zero unless set. Forces on fixed nodes do nothing.
   Points& external_forces() { return external_forces_; }
   const Points& external_forces() const { return external_forces_; }

@@ -71,12 +71,11 @@ class FemBodyModel : public mechanics::BodyModel {
   std::unique_ptr<mechanics::Body> create(ThreadPool& pool, bool with_curvature,
                                           int histories) const override;
 
-  const mesh::Mesh& mesh() const { return *settings_.mesh; }
+  const mesh::Mesh& mesh() const override { return *settings_.mesh; }
   const FemModel& elements() const { return *plain_.elements; }
   const FemBodySettings& settings() const { return settings_; }
   /// After finish().
   const LoadSet& loads() const { return *loads_; }
-  const std::vector<Attachment>& attachments() const { return attachments_; }
   const Attachment& attachment(int point) const {
     return attachments_[static_cast<std::size_t>(point)];
   }

@@ -24,6 +24,7 @@
 #include "sinew/mechanics/integrator.hpp"
 #include "sinew/mechanics/rows.hpp"
 #include "sinew/mesh/embedding.hpp"
+#include "sinew/mesh/mesh.hpp"
 
 namespace sinew::mechanics {
 
@@ -78,6 +79,9 @@ class BodyModel {
   /// Whether A holds the blocks of two attached points without curvature (see RowCurvature): for
   /// points of one element it does. After finish().
   virtual bool couples(int first, int second) const = 0;
+
+  /// A volume mesh that shows the body at rest, for records and the view.
+  virtual const mesh::Mesh& mesh() const = 0;
 
   /// A body at rest with its own state and workspace.
   /// @param pool must outlive the body.
@@ -161,6 +165,9 @@ class Body {
   virtual double strain_energy() = 0;
   virtual double kinetic_energy() const = 0;
   virtual double gravity_energy() const = 0;
+  /// Of the nodes of the model's mesh, (n, 3) m and m/s.
+  virtual const Points& positions() const = 0;
+  virtual const Points& velocities() const = 0;
   /// Bytes of this body's own data, the model not counted.
   virtual std::size_t bytes() const = 0;
 };

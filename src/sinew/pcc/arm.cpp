@@ -87,6 +87,7 @@ Arm::Arm(ArmSettings settings) : settings_(std::move(settings)) {
     refuse(ErrorKind::out_of_range, name, "the base's frame is not a rotation",
            "give an orthogonal matrix of determinant 1");
   }
+  check(name, "radius", settings_.radius, "m", false);
   std::vector<double> stiffness, damping;
   for (std::size_t i = 0; i < list.size(); ++i) {
     const Segment& segment = list[i];

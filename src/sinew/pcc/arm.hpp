@@ -55,6 +55,7 @@ struct ArmSettings {
   std::string name = "arm";
   std::vector<Segment> segments;  ///< from the base on, at least one
   MassCentre centre = MassCentre::arc;
+  double radius = 0.02;              ///< m, of what is drawn and of what points attach to
   int mass_points = 3;               ///< of a segment whose mass is distributed, 1 to 8
   Vector3 gravity{0.0, 0.0, -9.81};  ///< m/s^2
   Vector3 base = Vector3::Zero();    ///< m

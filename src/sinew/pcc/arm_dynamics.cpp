@@ -173,7 +173,8 @@ Vec3<T> ArmDynamics<T>::position(const ArmPoint& point) const {
   BendSection<T> section;
   bend(point.segment).at(point.fraction, 1.0, own, &section);
   const Frame& frame = frames_[at(point.segment)];
-  const Vec3<T> aside = point.x * section.rotation.x + point.y * section.rotation.y;
+  const Vec3<T> aside =
+      point.x * section.rotation.x + point.y * section.rotation.y + point.z * section.rotation.z;
   return frame.origin + frame.rotation * (own.position + aside);
 }
 
@@ -191,7 +192,8 @@ void ArmDynamics<T>::jacobian(const ArmPoint& point, std::span<Vec3<T>> columns)
   BendSection<T> section;
   bend(point.segment).at(point.fraction, 1.0, own, &section);
   const Frame& frame = frames_[at(point.segment)];
-  const Vec3<T> aside = point.x * section.rotation.x + point.y * section.rotation.y;
+  const Vec3<T> aside =
+      point.x * section.rotation.x + point.y * section.rotation.y + point.z * section.rotation.z;
   const Vec3<T> x = frame.origin + frame.rotation * (own.position + aside);
   for (int k = 0; k < arm_->segments(); ++k) {
     const std::size_t first = at(arm_->first(k));
@@ -210,11 +212,10 @@ void ArmDynamics<T>::jacobian(const ArmPoint& point, std::span<Vec3<T>> columns)
 }
 
 template <typename T>
-Vec3<T> ArmDynamics<T>::velocity(const ArmPoint& point) const {
-  std::vector<Vec3<T>> columns(q_.size());
-  jacobian(point, columns);
+Vec3<T> ArmDynamics<T>::velocity(const ArmPoint& point) {
+  jacobian(point, columns_);
   Vec3<T> sum;
-  for (std::size_t i = 0; i < q_.size(); ++i) sum += rate_[i] * columns[i];
+  for (std::size_t i = 0; i < q_.size(); ++i) sum += rate_[i] * columns_[i];
   return sum;
 }
 

@@ -22,8 +22,8 @@ namespace sinew::pcc {
 /// A point of the arm's material: in the section at a fraction of a segment's arc.
 struct ArmPoint {
   int segment = 0;
-  double fraction = 1.0;    ///< of the arc, 0 to 1
-  double x = 0.0, y = 0.0;  ///< m, in the section
+  double fraction = 1.0;             ///< of the arc, 0 to 1
+  double x = 0.0, y = 0.0, z = 0.0;  ///< m, from the axis: in the section, and along its normal
 };
 
 /// Workspace of one arm; nothing allocates after construction. T: double, std::complex<double>,
@@ -44,7 +44,7 @@ class ArmDynamics {
 
   /// Where a point is (m); its Jacobian (coordinates,) of columns.
   Vec3<T> position(const ArmPoint& point) const;
-  Vec3<T> velocity(const ArmPoint& point) const;  ///< m/s
+  Vec3<T> velocity(const ArmPoint& point);  ///< m/s
   void jacobian(const ArmPoint& point, std::span<Vec3<T>> columns) const;
   Rotation<T> rotation(const ArmPoint& point) const;  ///< of the section there
 

@@ -253,7 +253,7 @@ Points ArmEquations::endpoints(const VectorX& q) {
   w.plain.set(view(q), view(w.zero), view(w.zero));
   Points result(w.arm->segments(), 3);
   for (int n = 0; n < w.arm->segments(); ++n) {
-    const Vec3<double> x = w.plain.position({n, 1.0, 0.0, 0.0});
+    const Vec3<double> x = w.plain.position({.segment = n});
     result.row(n) << x.x, x.y, x.z;
   }
   return result;

@@ -73,7 +73,8 @@ class ParaviewSeries {
       : simulation_(simulation) {
     const auto& bodies = simulation.model().bodies();
     for (std::size_t b = 0; b < bodies.size(); ++b) {
-      means_.emplace_back(simulation.fem_body(static_cast<int>(b)).fem_model());
+      const auto* fem = dynamic_cast<const fem::FemBodyModel*>(bodies[b].get());
+      means_.push_back(fem == nullptr ? nullptr : std::make_unique<fem::NodalMean>(*fem));
     }
     for (const auto& body : bodies) {
       lists_.emplace_back(folder /
@@ -83,33 +84,40 @@ class ParaviewSeries {
 
   void write() {
     for (std::size_t b = 0; b < lists_.size(); ++b) {
-      const fem::FemBody& body = simulation_.fem_body(static_cast<int>(b));
-      const mesh::Mesh& mesh = body.fem_model().mesh();
+      const mechanics::Body& body = simulation_.world().body(static_cast<int>(b));
+      const mesh::Mesh& mesh = body.model().mesh();
       mesh::VtuFields fields;
       fields.positions = &body.positions();
       const Points moved = body.positions() - mesh.nodes;
       fields.points.push_back({"displacement", 3, {moved.data(), moved.data() + moved.size()}});
       const Points& speed = body.velocities();
       fields.points.push_back({"velocity", 3, {speed.data(), speed.data() + speed.size()}});
-      const fem::ElementStates states = fem::element_states(body);
-      fields.cells.push_back({"deformation_gradient", 9, rows_of(states.deformation)});
-      fields.cells.push_back({"cauchy_stress", 9, rows_of(states.cauchy)});
-      for (const fem::ElementFieldInfo& info : fem::element_fields()) {
-        std::vector<double> values = fem::element_field(body, info.field);
-        fields.points.push_back({info.name, 1, means_[b](values)});
-        if (info.field == fem::ElementField::von_mises_stress) {
-          fields.cells.push_back({info.name, 1, std::move(values)});
-        }
-      }
-      const Points held =
-          fem::reactions(body, states, simulation_.efforts(), simulation_.world().rows().direction,
-                         simulation_.model().rows(), static_cast<int>(b));
-      fields.points.push_back({"reaction", 3, {held.data(), held.data() + held.size()}});
+      if (means_[b]) add_fields(static_cast<int>(b), fields);
       lists_[b].write(simulation_.time(), mesh, fields);
     }
   }
 
  private:
+  // Of finite elements: stress, strain, what holds the body.
+  void add_fields(int index, mesh::VtuFields& fields) {
+    const fem::FemBody& body = simulation_.fem_body(index);
+    const fem::NodalMean& mean = *means_[static_cast<std::size_t>(index)];
+    const fem::ElementStates states = fem::element_states(body);
+    fields.cells.push_back({"deformation_gradient", 9, rows_of(states.deformation)});
+    fields.cells.push_back({"cauchy_stress", 9, rows_of(states.cauchy)});
+    for (const fem::ElementFieldInfo& info : fem::element_fields()) {
+      std::vector<double> values = fem::element_field(body, info.field);
+      fields.points.push_back({info.name, 1, mean(values)});
+      if (info.field == fem::ElementField::von_mises_stress) {
+        fields.cells.push_back({info.name, 1, std::move(values)});
+      }
+    }
+    const Points held =
+        fem::reactions(body, states, simulation_.efforts(), simulation_.world().rows().direction,
+                       simulation_.model().rows(), index);
+    fields.points.push_back({"reaction", 3, {held.data(), held.data() + held.size()}});
+  }
+
   static std::vector<double> rows_of(const std::vector<Matrix3>& tensors) {
     std::vector<double> result;
     result.reserve(9 * tensors.size());
@@ -123,7 +131,7 @@ class ParaviewSeries {
 
   const sim::Simulation& simulation_;
   std::vector<mesh::PvdWriter> lists_;
-  std::vector<fem::NodalMean> means_;  // one a body
+  std::vector<std::unique_ptr<fem::NodalMean>> means_;  // one a body; none of an arm
 };
 
 RecordSettings checked(RecordSettings settings) {

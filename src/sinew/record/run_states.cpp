@@ -54,7 +54,7 @@ void RunStates::declare_bodies(bool states) {
   const bool moving = model.step().integrator != mechanics::Integrator::quasi_static;
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
     const std::string& name = model.bodies()[b]->name();
-    const mesh::Mesh& mesh = simulation_.fem_body(static_cast<int>(b)).fem_model().mesh();
+    const mesh::Mesh& mesh = model.bodies()[b]->mesh();
     const auto nodes = static_cast<std::uint64_t>(mesh.node_count());
     const std::string folder = "/mesh/" + name;
     file_.dataset(folder + "/nodes", {nodes, 3}, numbers(mesh.nodes));
@@ -139,7 +139,7 @@ void RunStates::declare_report() {
 void RunStates::write() {
   append(time_, simulation_.time());
   for (std::size_t b = 0; b < positions_.size(); ++b) {
-    const fem::FemBody& body = simulation_.fem_body(static_cast<int>(b));
+    const mechanics::Body& body = simulation_.world().body(static_cast<int>(b));
     file_.append(positions_[b], numbers(body.positions()));
     if (!velocities_.empty()) file_.append(velocities_[b], numbers(body.velocities()));
   }

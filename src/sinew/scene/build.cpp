@@ -187,6 +187,19 @@ void add_chamber(sim::ModelBuilder& builder, const ActuatorDescription& actuator
   builder.add_cavity(cavity);
 }
 
+void add_torque(sim::ModelBuilder& builder, const ActuatorDescription& actuator, int body) {
+  sim::TorqueSettings torque;
+  torque.name = actuator.name;
+  torque.place = actuator.place;
+  torque.body = body;
+  torque.segment = actuator.segment;
+  torque.towards = actuator.towards;
+  torque.torque = limits(actuator.effort);
+  torque.angle = limits(actuator.motion);
+  torque.command = command(actuator);
+  builder.add_torque(torque);
+}
+
 void add_actuator(sim::ModelBuilder& builder, const ActuatorDescription& actuator, int body,
                   const mesh::Mesh& mesh) {
   switch (actuator.type) {
@@ -198,6 +211,8 @@ void add_actuator(sim::ModelBuilder& builder, const ActuatorDescription& actuato
       return add_chamber(builder, actuator, body, mesh);
     case ActuatorDescription::Type::spring:
       return add_spring(builder, actuator, body);
+    case ActuatorDescription::Type::torque:
+      return add_torque(builder, actuator, body);
   }
 }
 
@@ -267,6 +282,13 @@ Robot build(SceneDescription description) {
   };
   for (const BodyDescription& body : description.bodies) {
     try {
+      if (body.arm) {
+        pcc::ArmSettings settings = *body.arm;
+        settings.gravity = description.gravity;
+        const int number = builder.add_arm(std::move(settings));
+        meshes.push_back(std::make_shared<const mesh::Mesh>(builder.added_body(number).mesh()));
+        continue;
+      }
       auto settings = fem_settings(description, body);
       meshes.push_back(settings.mesh);
       const int number = builder.add_fem_body(std::move(settings));

@@ -21,12 +21,14 @@
 #include "sinew/linalg/factorisation.hpp"
 #include "sinew/material/hyperelastic.hpp"
 #include "sinew/mesh/embedding.hpp"
+#include "sinew/pcc/arm.hpp"
 #include "sinew/scene/node.hpp"
 #include "sinew/sim/fluid_drive.hpp"
 #include "sinew/sim/load_settings.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/signal.hpp"
 #include "sinew/sim/spring_drive.hpp"
+#include "sinew/sim/torque_settings.hpp"
 
 namespace sinew::scene {
 
@@ -103,6 +105,7 @@ struct BaseDescription {
 struct BodyDescription {
   std::string name;
   Place place;
+  std::optional<pcc::ArmSettings> arm;  ///< of type pcc; nothing below is then used
   MeshDescription mesh;
   Element element = Element::any;
   Place element_place;
@@ -155,7 +158,7 @@ struct SurfaceDescription {
 };
 
 struct ActuatorDescription {
-  enum class Type { cable, force, pressure, spring };
+  enum class Type { cable, force, pressure, spring, torque };
   std::string name;
   Place place;
   Type type = Type::cable;
@@ -176,6 +179,9 @@ struct ActuatorDescription {
   Vector3 point = Vector3::Zero();  ///< m
   Place point_place;
   Vector3 direction = Vector3::UnitZ();  ///< unit length
+  // torque
+  int segment = 0;
+  sim::TorqueSettings::Towards towards = sim::TorqueSettings::Towards::side;
   // pressure
   SurfaceDescription surface;
   bool cap = false;

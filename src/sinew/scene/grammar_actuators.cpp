@@ -212,6 +212,7 @@ Form actuator_form() {
   return variants("type",
                   {{.word = "cable", .description = "A sliding cable.", .table = cable_table()},
                    {.word = "force", .description = "A point force.", .table = force_table()},
+                   {.word = "torque", .description = "On a bend.", .table = torque_table()},
                    {.word = "pressure", .description = "A chamber.", .table = pressure_table()},
                    {.word = "spring", .description = "A spring.", .table = spring_table()}});
 }

@@ -14,6 +14,9 @@ Measure force() { return {dimension::kForce, "N"}; }
 Measure frequency() { return {dimension::kFrequency, "1/s"}; }
 Measure speed() { return {dimension::kVelocity, "m/s"}; }
 Measure force_rate() { return {Dimension{1, 1, -3}, "N/s"}; }
+Measure torque() { return {dimension::kEnergy, "N m"}; }
+Measure torque_rate() { return {Dimension{2, 1, -3}, "N m/s"}; }
+Measure angular_damper() { return {Dimension{2, 1, -1}, "N m s"}; }
 Measure volume() { return {dimension::kVolume, "m^3"}; }
 Measure volume_rate() { return {dimension::kVolumeRate, "m^3/s"}; }
 Measure pressure_rate() { return {dimension::kPressureRate, "Pa/s"}; }

@@ -31,6 +31,9 @@ Measure force();
 Measure frequency();
 Measure speed();
 Measure force_rate();
+Measure torque();
+Measure torque_rate();
+Measure angular_damper();
 Measure volume();
 Measure volume_rate();
 Measure pressure_rate();
@@ -102,6 +105,8 @@ std::vector<Key> region_keys(const char* whose);
 std::shared_ptr<const KeyTable> surface_table();
 std::shared_ptr<const KeyTable> pressure_table();
 std::shared_ptr<const KeyTable> spring_table();
+std::shared_ptr<const KeyTable> pcc_table();
+std::shared_ptr<const KeyTable> torque_table();
 std::shared_ptr<const KeyTable> signal_table(const Measure& measure, const char* value_example);
 std::shared_ptr<const KeyTable> point_file_table();
 /// What may stand under `material`: a law, a file, or a name of the library.

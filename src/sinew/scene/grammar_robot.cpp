@@ -300,11 +300,13 @@ std::shared_ptr<const KeyTable> fem_table() {
 }  // namespace
 
 Form body_form() {
-  return variants("type", {{.word = "fem", .description = "Finite elements.", .table = fem_table()},
-                           {.word = "reduced", .description = "Reduced elements.", .later = true},
-                           {.word = "rod", .description = "A slender rod.", .later = true},
-                           {.word = "pcc", .description = "Constant curvature.", .later = true},
-                           {.word = "rigid", .description = "A rigid body.", .later = true}});
+  return variants(
+      "type",
+      {{.word = "fem", .description = "Finite elements.", .table = fem_table()},
+       {.word = "reduced", .description = "Reduced elements.", .later = true},
+       {.word = "rod", .description = "A slender rod.", .later = true},
+       {.word = "pcc", .description = "An arm of constant curvatures.", .table = pcc_table()},
+       {.word = "rigid", .description = "A rigid body.", .later = true}});
 }
 
 }  // namespace sinew::scene::forms

@@ -35,6 +35,8 @@ Words words_of(const ActuatorDescription& actuator) {
       return {"pressure", "volume_growth", {"gas", "liquid"}};
     case ActuatorDescription::Type::spring:
       return {"", "", {"power", "phase"}};
+    case ActuatorDescription::Type::torque:
+      return {"torque", "angle"};
   }
   return {};
 }
@@ -206,14 +208,17 @@ ActuatorDescription read_actuator(const Node::Entry& entry, const ReadContext& c
   const Fields fields(entry.value, form);
   fields.read("body", actuator.body);
   actuator.body_place = fields.place("body");
-  fields.read_choice("outside", actuator.outside,
-                     {{"error", mesh::Outside::error}, {"nearest", mesh::Outside::nearest}});
   using Type = ActuatorDescription::Type;
   const std::string type = read_text(*entry.value.find(form.telltale));
   actuator.type = type == "cable"      ? Type::cable
                   : type == "force"    ? Type::force
                   : type == "pressure" ? Type::pressure
+                  : type == "torque"   ? Type::torque
                                        : Type::spring;
+  if (actuator.type != Type::torque) {
+    fields.read_choice("outside", actuator.outside,
+                       {{"error", mesh::Outside::error}, {"nearest", mesh::Outside::nearest}});
+  }
   switch (actuator.type) {
     case Type::cable:
       actuator.effort.min = 0.0;
@@ -228,6 +233,12 @@ ActuatorDescription read_actuator(const Node::Entry& entry, const ReadContext& c
       break;
     case Type::pressure:
       read_pressure(fields, actuator, context);
+      break;
+    case Type::torque:
+      fields.read("segment", actuator.segment);
+      fields.read_choice("towards", actuator.towards,
+                         {{"side", sim::TorqueSettings::Towards::side},
+                          {"across", sim::TorqueSettings::Towards::across}});
       break;
     case Type::spring:
       actuator.pull = PullPoint::body;

@@ -278,6 +278,10 @@ BodyDescription read_body(const Node::Entry& entry, const ReadContext& context) 
   body.place = entry.key_place;
   const Form& form = form_of(grammar(), "bodies", Shape::names).items.front();
   const Fields fields(entry.value, form);
+  if (read_text(*entry.value.find(form.telltale)) == "pcc") {
+    body.arm = read_arm(fields, body.name);
+    return body;
+  }
   body.mesh = read_mesh(fields, context);
   fields.read_choice("element", body.element,
                      {{"tet4", Element::tet4},

@@ -33,6 +33,8 @@ const char* actuator_type_name(ActuatorType type) {
       return "pressure";
     case ActuatorType::spring:
       return "spring";
+    case ActuatorType::torque:
+      return "torque";
   }
   return "unknown";
 }
@@ -43,6 +45,8 @@ QuantityName ActuatorModel::effort_name() const {
       return {"force", "N"};
     case ActuatorType::pressure:
       return {"pressure", "Pa"};
+    case ActuatorType::torque:
+      return {"torque", "N m"};
     case ActuatorType::cable:
     case ActuatorType::spring:
       return {"tension", "N"};
@@ -52,6 +56,7 @@ QuantityName ActuatorModel::effort_name() const {
 
 QuantityName ActuatorModel::motion_name() const {
   if (type == ActuatorType::pressure) return {"volume_growth", "m^3"};
+  if (type == ActuatorType::torque) return {"angle", "rad"};
   return {"displacement", "m"};
 }
 

@@ -23,8 +23,8 @@ struct Limits {
   double rate = std::numeric_limits<double>::infinity();  ///< >= 0, per second
 };
 
-enum class ActuatorType { cable, force, pressure, spring };
-/// "cable", "force", "pressure", "spring".
+enum class ActuatorType { cable, force, pressure, spring, torque };
+/// "cable", "force", "pressure", "spring", "torque".
 const char* actuator_type_name(ActuatorType type);
 
 /// What an actuator is told, over time.
@@ -46,9 +46,9 @@ struct ActuatorModel {
   int first_state = 0;                      ///< of the drive's numbers among those of all drives
   double motion_scale = 1.0;  ///< m per motion: 1, or 1/m^2 of a cavity, one over its area
 
-  /// "tension", N; "force", N; "pressure", Pa.
+  /// "tension", N; "force", N; "pressure", Pa; "torque", N m.
   QuantityName effort_name() const;
-  /// "displacement", m; "volume_growth", m^3.
+  /// "displacement", m; "volume_growth", m^3; "angle", rad.
   QuantityName motion_name() const;
   /// Of what a command of this kind gives.
   QuantityName quantity(CommandKind kind) const;

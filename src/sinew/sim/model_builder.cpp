@@ -517,6 +517,7 @@ std::shared_ptr<const Model> ModelBuilder::build(const linalg::FactorisationSett
   for (std::size_t i = 0; i < model_->bodies_.size(); ++i) {
     auto& body = *model_->bodies_[i];
     body.finish(static_cast<int>(i), model_->rows_, model_->curvatures_, settings);
+    hash_arm(hash, body);
     if (const auto* fem = dynamic_cast<const fem::FemBodyModel*>(&body)) {
       hash_points(hash, fem->mesh().nodes);
       for (const auto& region : fem->settings().elements.regions) {
@@ -527,8 +528,9 @@ std::shared_ptr<const Model> ModelBuilder::build(const linalg::FactorisationSett
       }
       hash.add(static_cast<double>(fem->elements().free_count()));
       for (const std::int32_t held : fem->elements().held()) hash.add(static_cast<double>(held));
-      for (const auto& attachment : fem->attachments()) {
-        for (const double weight : attachment.weights) hash.add(weight);
+      for (const mechanics::MaterialPoint& point : model_->rows_.point) {
+        if (point.body != static_cast<int>(i)) continue;
+        for (const double weight : fem->attachment(point.point).weights) hash.add(weight);
       }
     }
   }

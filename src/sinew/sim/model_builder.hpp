@@ -10,11 +10,17 @@
 #include <vector>
 
 #include "sinew/mesh/patch.hpp"
+#include "sinew/pcc/arm.hpp"
 #include "sinew/sim/fluid_drive.hpp"
 #include "sinew/sim/load_settings.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/probe_settings.hpp"
 #include "sinew/sim/spring_drive.hpp"
+#include "sinew/sim/torque_settings.hpp"
+
+namespace sinew {
+class StateHash;
+}
 
 namespace sinew::sim {
 
@@ -111,10 +117,14 @@ class ModelBuilder {
   /// All return the new part's position. Names are unique among their kind: Error(duplicate-key).
   int add_body(std::unique_ptr<mechanics::BodyModel> body);
   int add_fem_body(fem::FemBodySettings settings);
+  /// A constant-curvature arm. Throws what pcc::Arm does.
+  int add_arm(pcc::ArmSettings settings);
   /// Throws Error: too-few-points, degenerate-cable, point-outside-mesh, contradictory-limits,
   /// out-of-range (friction, tension).
   int add_cable(const CableSettings& settings);
   int add_force(const ForceSettings& settings);
+  /// Throws Error: wrong-type (no arm), index-out-of-range (segment), unknown-choice (towards).
+  int add_torque(const TorqueSettings& settings);
   /// Throws Error: surface-not-closed, zero-volume, point-outside-mesh, contradictory-limits,
   /// out-of-range, conflicting-keys (gas and liquid).
   int add_cavity(const CavitySettings& settings);
@@ -135,7 +145,13 @@ class ModelBuilder {
   /// without mass.
   std::shared_ptr<const Model> build(const linalg::FactorisationSettings& settings = {});
 
+  /// A body that was added.
+  const mechanics::BodyModel& added_body(int index) const {
+    return *model_->bodies_[static_cast<std::size_t>(index)];
+  }
+
  private:
+  static void hash_arm(StateHash& hash, const mechanics::BodyModel& body);
   mechanics::BodyModel& body(int index);
   void check_body(int index, const Place& place) const;
   fem::FemBodyModel& fem_body(int index, const Place& place, const char* what);

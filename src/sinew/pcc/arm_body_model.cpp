@@ -1,0 +1,133 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "sinew/core/error.hpp"
+#include "sinew/mesh/shapes.hpp"
+#include "sinew/pcc/arm_body.hpp"
+
+namespace sinew::pcc {
+
+namespace {
+
+constexpr int kSkinLayersASegment = 8;
+
+}  // namespace
+
+ArmBodyModel::ArmBodyModel(std::shared_ptr<const Arm> arm) : arm_(std::move(arm)) { make_skin(); }
+
+ArmPoint ArmBodyModel::locate(const Vector3& rest_position, mesh::Outside outside,
+                              const std::string& what) const {
+  const ArmSettings& settings = arm_->settings();
+  if (!rest_position.allFinite()) {
+    throw Error(ErrorKind::not_finite, {.item = what}, "the point is not finite",
+                "give three numbers");
+  }
+  const Vector3 local = settings.frame.transpose() * (rest_position - settings.base);
+  const double length = arm_->length(), slack = 1e-9 * length;
+  const double beyond = std::max(-local.z(), local.z() - length);
+  const double aside = std::hypot(local.x(), local.y()) - settings.radius;
+  if (outside == mesh::Outside::error && (beyond > slack || aside > slack)) {
+    throw Error(ErrorKind::point_outside_mesh, {.item = what},
+                fmt::format("the point ({:.6g}, {:.6g}, {:.6g}) m lies {:.3g} m outside arm '{}'",
+                            rest_position.x(), rest_position.y(), rest_position.z(),
+                            std::hypot(std::max(beyond, 0.0), std::max(aside, 0.0)), name()),
+                "move it inside, give the arm its radius, or write `outside: nearest`");
+  }
+  double from = 0.0, turn = 0.0;
+  for (int n = 0;; ++n) {
+    const Segment& segment = settings.segments[static_cast<std::size_t>(n)];
+    turn += segment.gamma;
+    const double begin = from + segment.dead_length, end = begin + segment.length;
+    if (local.z() > end && n + 1 < arm_->segments()) {
+      from = end;
+      continue;
+    }
+    ArmPoint point;
+    point.segment = n;
+    point.fraction = std::clamp((local.z() - begin) / segment.length, 0.0, 1.0);
+    point.x = std::cos(turn) * local.x() + std::sin(turn) * local.y();
+    point.y = std::cos(turn) * local.y() - std::sin(turn) * local.x();
+    point.z = local.z() - begin - point.fraction * segment.length;
+    return point;
+  }
+}
+
+int ArmBodyModel::attach(const Vector3& rest_position, mesh::Outside outside,
+                         const std::string& what) {
+  attachments_.push_back({locate(rest_position, outside, what), -1});
+  return static_cast<int>(attachments_.size()) - 1;
+}
+
+// Sections are rigid: the mean of a ball is its centre but for the bend within the ball.
+int ArmBodyModel::attach_ball(const Vector3& centre, double, mesh::Outside outside,
+                              const std::string& what) {
+  return attach(centre, outside, what);
+}
+
+int ArmBodyModel::attach_nodes(std::span<const NodeId>, std::span<const double>) {
+  throw Error(ErrorKind::wrong_type, {.item = "body '" + name() + "'"},
+              "a constant-curvature arm has no nodes or faces", "name points of it");
+}
+
+int ArmBodyModel::attach_coordinate(int coordinate) {
+  if (coordinate < 0 || coordinate >= arm_->coordinates()) {
+    throw Error(ErrorKind::index_out_of_range, {.item = "body '" + name() + "'"},
+                fmt::format("it has no coordinate {}", coordinate),
+                fmt::format("name 0 to {}", arm_->coordinates() - 1));
+  }
+  attachments_.push_back({{}, coordinate});
+  return static_cast<int>(attachments_.size()) - 1;
+}
+
+Vector3 ArmBodyModel::rest_position(int point) const {
+  const Attachment& attachment = attachments_[static_cast<std::size_t>(point)];
+  if (attachment.coordinate >= 0) return Vector3::Zero();
+  ArmDynamics<double> dynamics(arm_);
+  const std::vector<double> still(static_cast<std::size_t>(arm_->coordinates()));
+  dynamics.set(still, still, still);
+  const Vec3<double> x = dynamics.position(attachment.point);
+  return {x.x, x.y, x.z};
+}
+
+void ArmBodyModel::finish(int body, const mechanics::RowPattern& rows,
+                          std::span<const mechanics::RowCurvature>,
+                          const linalg::FactorisationSettings&) {
+  rows_.clear();
+  entries_.clear();
+  for (int row = 0; row < rows.rows(); ++row) {
+    const auto end = rows.row_start[static_cast<std::size_t>(row) + 1];
+    bool mine = false;
+    for (auto e = rows.row_start[static_cast<std::size_t>(row)]; e < end; ++e) {
+      const mechanics::MaterialPoint& point = rows.point[static_cast<std::size_t>(e)];
+      if (point.body != body) continue;
+      mine = true;
+      entries_.push_back({static_cast<int>(rows_.size()), e, point.point});
+    }
+    if (mine) rows_.push_back(row);
+  }
+}
+
+std::unique_ptr<mechanics::Body> ArmBodyModel::create(ThreadPool&, bool, int histories) const {
+  return std::make_unique<ArmBody>(*this, histories);
+}
+
+void ArmBodyModel::make_skin() {
+  const ArmSettings& settings = arm_->settings();
+  mesh::CylinderShape shape;
+  shape.radius = settings.radius;
+  shape.height = arm_->length();
+  shape.rings = 2;
+  shape.layers = kSkinLayersASegment * arm_->segments();
+  skin_ = mesh::cylinder(shape, mesh::Cells::hexahedra);
+  skin_.name = name();
+  for (Eigen::Index i = 0; i < skin_.nodes.rows(); ++i) {
+    const Vector3 at = settings.base + settings.frame * skin_.nodes.row(i).transpose();
+    skin_.nodes.row(i) = at.transpose();
+    skin_points_.push_back(locate(at, mesh::Outside::nearest, name()));
+  }
+}
+
+}  // namespace sinew::pcc

@@ -1,0 +1,24 @@
+/// @file
+/// A torque as an actuator.
+#pragma once
+
+#include <string>
+
+#include "sinew/sim/actuator.hpp"
+
+namespace sinew::sim {
+
+/// A torque on a bend of a constant-curvature arm.
+struct TorqueSettings {
+  enum class Towards { side, across, along };  ///< a segment's coordinates: u, v, e
+  std::string name;
+  Place place;
+  int body = 0;
+  int segment = 0;
+  Towards towards = Towards::side;
+  Limits torque;  ///< N m; along: N
+  Limits angle;   ///< rad; along: m
+  Command command;
+};
+
+}  // namespace sinew::sim

@@ -1,0 +1,206 @@
+// Constant-curvature arms as bodies: the same motion as the arm by itself, cables, control, states.
+#include "sinew/pcc/arm_body.hpp"
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "sinew/core/error.hpp"
+#include "sinew/pcc/arm_simulation.hpp"
+#include "sinew/sim/model_builder.hpp"
+#include "sinew/sim/simulation.hpp"
+
+#include "pcc/arms.hpp"
+
+namespace sinew::sim {
+namespace {
+
+using pcc::ArmSettings;
+using pcc::MassCentre;
+using pcc::testing::fluidic;
+using pcc::testing::mixed;
+
+Command hold(double effort) { return {CommandKind::effort, Signal::constant(effort)}; }
+
+TorqueSettings torque(int segment, double value) {
+  TorqueSettings settings;
+  settings.name = "torque_" + std::to_string(segment);
+  settings.segment = segment;
+  settings.command = hold(value);
+  return settings;
+}
+
+const pcc::ArmBody& arm_of(const Simulation& simulation) {
+  return dynamic_cast<const pcc::ArmBody&>(simulation.world().body(0));
+}
+
+/// The fluidic arm under torques on its last three segments.
+std::shared_ptr<const Model> driven(const StepSettings& step, MassCentre centre) {
+  ModelBuilder builder(step);
+  builder.add_arm(fluidic(centre));
+  builder.add_torque(torque(1, 0.05));
+  builder.add_torque(torque(2, -0.04));
+  builder.add_torque(torque(3, 0.1));
+  return builder.build();
+}
+
+const VectorX kTorque{{0.0, 0.05, -0.04, 0.1}};
+
+TEST(ArmBody, MovesAsTheArmByItself) {
+  for (const auto integrator : {mechanics::Integrator::backward_euler, mechanics::Integrator::bdf2,
+                                mechanics::Integrator::generalized_alpha}) {
+    StepSettings step;
+    step.time_step = 2e-3;
+    step.integrator = integrator;
+    step.method = Method::newton;
+    step.tolerance = 1e-12;
+    Simulation simulation(driven(step, MassCentre::arc));
+    pcc::ArmSimulation alone(pcc::testing::make(fluidic(MassCentre::arc)),
+                             {.time_step = 2e-3, .integrator = integrator, .tolerance = 1e-12});
+    for (int i = 0; i < 200; ++i) {
+      simulation.step();
+      alone.step(kTorque);
+    }
+    EXPECT_GT(alone.position().norm(), 0.1);
+    EXPECT_LT((arm_of(simulation).coordinates() - alone.position()).norm(), 1e-8)
+        << integrator_name(integrator);
+  }
+}
+
+TEST(ArmBody, SettlesInTheArmsEquilibrium) {
+  StepSettings step;
+  step.integrator = mechanics::Integrator::quasi_static;
+  Simulation simulation(driven(step, MassCentre::distributed));
+  simulation.solve_static();
+  pcc::ArmEquations equations(pcc::testing::make(fluidic(MassCentre::distributed)));
+  const auto rest = pcc::find_equilibrium(equations, kTorque, VectorX::Zero(4));
+  EXPECT_LT((arm_of(simulation).coordinates() - rest.position).norm(), 1e-8);
+  EXPECT_NEAR(simulation.actuator(2).motion, rest.position[3], 1e-8);
+}
+
+TEST(ArmBody, CableDoesTheWorkOfItsLength) {
+  // Everything at once: turned segments, dead lengths, extension. r(q) = -T dl/dq with the length l
+  // by differences.
+  StepSettings step;
+  step.integrator = mechanics::Integrator::quasi_static;
+  ArmSettings settings = mixed();
+  const Vector3 along = settings.frame.col(2), across = settings.frame.col(0);
+  CableSettings cable;
+  cable.name = "tendon";
+  const double at[] = {0.0, 0.1, 0.2, 0.3, 0.4};
+  cable.points.resize(5, 3);
+  for (int i = 0; i < 5; ++i) {
+    cable.points.row(i) = (settings.base + at[i] * along + 0.015 * across).transpose();
+  }
+  cable.command = hold(2.0);
+  ModelBuilder builder(step);
+  builder.add_arm(settings);
+  builder.add_cable(cable);
+  Simulation simulation(builder.build());
+  simulation.solve_static();
+
+  const pcc::ArmBody& body = arm_of(simulation);
+  const auto& model = dynamic_cast<const pcc::ArmBodyModel&>(body.model());
+  pcc::ArmEquations equations(model.shared_arm());
+  const VectorX q = body.coordinates(), still = VectorX::Zero(q.size());
+  EXPECT_GT(q.norm(), 0.05);
+  pcc::ArmBodyModel places(model.shared_arm());
+  const auto length = [&](const VectorX& at_q) {
+    pcc::ArmBody probe(places, 0);
+    probe.set_coordinates(at_q, still);
+    double sum = 0.0;
+    Vector3 before = cable.points.row(0);
+    for (int i = 0; i < 4; ++i) {
+      const Vector3 next = probe.position(i);
+      sum += (next - before).norm();
+      before = next;
+    }
+    return sum;
+  };
+  for (int i = 1; i < 5; ++i) {
+    places.attach(cable.points.row(i).transpose(), mesh::Outside::error, "point");
+  }
+  const VectorX r = equations.residual(q, still, still);
+  for (Eigen::Index k = 0; k < q.size(); ++k) {
+    VectorX up = q, down = q;
+    up[k] += 1e-6;
+    down[k] -= 1e-6;
+    EXPECT_NEAR(r[k], -2.0 * (length(up) - length(down)) / 2e-6, 1e-6 * (1.0 + r.norm())) << k;
+  }
+}
+
+TEST(ArmBody, StateGoesOnAsItWas) {
+  StepSettings step;
+  step.time_step = 5e-3;
+  step.integrator = mechanics::Integrator::generalized_alpha;
+  Simulation first(driven(step, MassCentre::arc)), second(first.shared_model());
+  for (int i = 0; i < 20; ++i) first.step();
+  std::vector<double> state(first.state_size());
+  first.save_state(state);
+  second.load_state(state, first.steps());
+  for (int i = 0; i < 20; ++i) {
+    first.step();
+    second.step();
+  }
+  EXPECT_EQ(first.state_hash(), second.state_hash());
+}
+
+TEST(ArmBody, LedgerBalancesOverASwing) {
+  StepSettings step;
+  step.time_step = 5e-4;
+  step.integrator = mechanics::Integrator::generalized_alpha;
+  step.spectral_radius = 1.0;
+  step.method = Method::newton;
+  step.tolerance = 1e-12;
+  Simulation simulation(driven(step, MassCentre::distributed));
+  for (int i = 0; i < 1000; ++i) simulation.step();
+  const Energies energies = simulation.energies();
+  const double gained = energies.strain + energies.kinetic + energies.gravity;
+  EXPECT_GT(simulation.actuator_work(), 1e-3);
+  EXPECT_NEAR(simulation.actuator_work() - simulation.dissipation() - gained, 0.0,
+              1e-3 * simulation.actuator_work());
+}
+
+TEST(ArmBody, SkinFollowsTheAxis) {
+  StepSettings step;
+  step.integrator = mechanics::Integrator::quasi_static;
+  Simulation simulation(driven(step, MassCentre::arc));
+  const mesh::Mesh& skin = arm_of(simulation).model().mesh();
+  EXPECT_LT((arm_of(simulation).positions() - skin.nodes).norm(), 1e-12);
+  simulation.solve_static();
+  const Points& moved = arm_of(simulation).positions();
+  EXPECT_GT((moved - skin.nodes).norm(), 0.1);
+  EXPECT_TRUE(moved.allFinite());
+}
+
+TEST(ArmBody, WrongPartsAreErrors) {
+  ModelBuilder builder;
+  builder.add_arm(fluidic());
+  const auto kind_of = [&](auto&& add) {
+    try {
+      add();
+    } catch (const Error& error) {
+      return error.kind();
+    }
+    return ErrorKind::internal;
+  };
+  EXPECT_EQ(kind_of([&] { builder.add_torque(torque(4, 0.0)); }), ErrorKind::index_out_of_range);
+  EXPECT_EQ(kind_of([&] {
+              auto across = torque(1, 0.0);
+              across.towards = TorqueSettings::Towards::across;
+              builder.add_torque(across);
+            }),
+            ErrorKind::unknown_choice);
+  EXPECT_EQ(kind_of([&] {
+              ForceSettings force;
+              force.name = "push";
+              force.point = {0.1, 0.0, -0.2};
+              builder.add_force(force);
+            }),
+            ErrorKind::point_outside_mesh);
+}
+
+}  // namespace
+}  // namespace sinew::sim
