@@ -196,7 +196,7 @@ float or ndarray
           "inertia",
           [](const BendingActuator& self, const py::object& theta) {
             return for_each<1>("inertia(theta)", {theta},
-                               [&](double q) { return self.energies().at(q).inertia.value; });
+                               [&](double q) { return self.terms(q).inertia.value; });
           },
           py::arg("theta"), R"(inertia($self, theta)
 --

@@ -1,5 +1,8 @@
 """Bending actuators from Python."""
 
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
 import sinew
@@ -185,3 +188,37 @@ def test_tip_errors_by_hand():
     assert errors.largest_of_length == pytest.approx(0.05)
     assert errors.mean_absolute == pytest.approx([1.5e-3, 2.5e-3])
     assert errors.root_mean_square == pytest.approx(np.sqrt([4.5e-6, 8.5e-6]))
+
+
+def test_the_page(tmp_path):
+    text = (Path(__file__).resolve().parents[2] / "docs" / "bending_actuator.md").read_text(encoding="utf-8")
+    names = {}
+    for block in re.findall(r"```python\n(.*?)```", text, re.DOTALL):
+        exec(compile(block, "docs/bending_actuator.md", "exec"), names)
+    assert names["run"]["angle"].max() == pytest.approx(2.1, abs=0.1)
+    assert abs(names["motion"].angle - names["run"]["angle"][-1]) < 1e-3
+
+
+def test_what_the_errata_say():
+    modulus = pcc.published_modulus()
+    roots = np.roots(modulus.coefficients[::-1])
+    real = roots[np.abs(roots.imag) < 1e-6].real
+    assert real == pytest.approx([-20.68e3], abs=10)
+    assert modulus.value(27e3) == pytest.approx(818e3, abs=1e3)
+    assert modulus.value(110e3) == pytest.approx(617e3, abs=1e3)
+    level = {"modulus": modulus, "gravity": 0.0}
+    assert actuator(**level).linear_angle(90e3) == pytest.approx(1.50, abs=0.005)
+    assert actuator(**level, order=None).equilibrium(90e3) == pytest.approx(2.03, abs=0.005)
+    # Where odd orders give way and exact energies do not.
+    for order, pressure in ((3, 90e3), (5, 100e3)):
+        with pytest.raises(sinew.RunError):
+            actuator(**level, order=order).equilibrium(pressure)
+        assert actuator(**level, order=order).equilibrium(0.8 * pressure) < 2.2
+        assert actuator(**level, order=None).equilibrium(pressure) < 2.6
+
+
+def test_angles_of_no_actuator():
+    for theta in (7.0, -6.5):
+        with pytest.raises(sinew.Error) as error:
+            actuator().acceleration([0.0, theta], 0.0, 0.0)
+        assert error.value.kind == "out-of-range"

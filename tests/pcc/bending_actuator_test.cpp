@@ -200,6 +200,17 @@ TEST(BendingActuator, TaylorErrorHoldsForForces) {
   EXPECT_EQ(kind_of([&] { reduced.taylor_error(0.0, 7.0, 0.0); }), ErrorKind::out_of_range);
 }
 
+TEST(BendingActuator, RefusesAnglesOfNoActuator) {
+  const BendingActuator actuator(damped());
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const double theta : {-6.0, 7.0, nan}) {
+    EXPECT_EQ(kind_of([&] { actuator.acceleration(theta, 0.0, 0.0); }), ErrorKind::out_of_range);
+    EXPECT_EQ(kind_of([&] { actuator.energy(theta, 0.0, 0.0); }), ErrorKind::out_of_range);
+    EXPECT_EQ(kind_of([&] { actuator.stiffness(theta, 0.0); }), ErrorKind::out_of_range);
+    EXPECT_EQ(kind_of([&] { actuator.terms(theta); }), ErrorKind::out_of_range);
+  }
+}
+
 TEST(BendingActuator, RefusesWhatCannotBe) {
   const auto kind = [](auto change) {
     BendingParameters p;

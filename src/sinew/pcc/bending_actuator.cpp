@@ -44,24 +44,34 @@ double BendingActuator::chamber_volume(double theta) const {
   return std::numbers::pi * r * r * parameters_.length + moment_per_pressure_ * theta;
 }
 
+BendingTerms BendingActuator::terms(double theta) const {
+  // Also false for NaN.
+  if (theta >= energies_.lowest_angle() && theta <= energies_.highest_angle()) {
+    return energies_.at(theta);
+  }
+  throw Error(ErrorKind::out_of_range, {.item = "theta"}, fmt::format("{:g} rad", theta),
+              fmt::format("the model holds from {:g} to {:g} rad", energies_.lowest_angle(),
+                          energies_.highest_angle()));
+}
+
 BendingEnergy BendingActuator::energy(double theta, double rate, double pressure) const {
-  const BendingTerms terms = energies_.at(theta);
-  return {parameters_.modulus.shear(pressure) * terms.strain.value, terms.gravity.value,
-          0.5 * terms.inertia.value * rate * rate};
+  const BendingTerms t = terms(theta);
+  return {parameters_.modulus.shear(pressure) * t.strain.value, t.gravity.value,
+          0.5 * t.inertia.value * rate * rate};
 }
 
 double BendingActuator::acceleration(double theta, double rate, double pressure) const {
-  const BendingTerms terms = energies_.at(theta);
+  const BendingTerms t = terms(theta);
   const double shear = parameters_.modulus.shear(pressure);
-  const double inertia = terms.inertia.value;
-  return (moment_per_pressure_ * pressure - shear * terms.strain.first - terms.gravity.first -
-          0.5 * terms.inertia.first * rate * rate - damping(inertia, shear) * rate) /
+  const double inertia = t.inertia.value;
+  return (moment_per_pressure_ * pressure - shear * t.strain.first - t.gravity.first -
+          0.5 * t.inertia.first * rate * rate - damping(inertia, shear) * rate) /
          inertia;
 }
 
 double BendingActuator::stiffness(double theta, double pressure) const {
-  const BendingTerms terms = energies_.at(theta);
-  return parameters_.modulus.shear(pressure) * terms.strain.second + terms.gravity.second;
+  const BendingTerms t = terms(theta);
+  return parameters_.modulus.shear(pressure) * t.strain.second + t.gravity.second;
 }
 
 double BendingActuator::linear_angle(double pressure) const {

@@ -37,7 +37,8 @@ struct BendingError {
 
 /// A model: immutable, shareable between threads; BendingMotion is its data. Evaluating allocates
 /// nothing. Angles in rad, rates in rad/s, pressures in Pa above the surroundings.
-/// Every function of a pressure throws Error(out-of-range) where the modulus refuses it.
+/// Every function of a pressure throws Error(out-of-range) where the modulus refuses it, and
+/// energy(), acceleration() and stiffness() for an angle that the model does not hold for.
 class BendingActuator {
  public:
   /// Throws Error(not-finite | out-of-range) naming the parameter.
@@ -62,6 +63,8 @@ class BendingActuator {
   double acceleration(double theta, double rate, double pressure) const;
   /// d^2(V_s + V_g)/dtheta^2, N m/rad.
   double stiffness(double theta, double pressure) const;
+  /// Energies with their derivatives. @param theta rad. Throws Error(out-of-range).
+  BendingTerms terms(double theta) const;
   /// c, N m s/rad. @param inertia kg m^2. @param shear G, Pa.
   double damping(double inertia, double shear) const {
     return parameters_.mass_damping * inertia + viscosity_ * shear;
