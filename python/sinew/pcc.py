@@ -1,15 +1,46 @@
-"""Soft arms of segments of constant curvature, by themselves: models that cost microseconds.
+"""Models of constant curvature by themselves, which cost microseconds: soft arms of segments, and
+bending actuators of one angle.
 
     import numpy as np
     from sinew import pcc
     arm = pcc.Arm(lengths=[0.14] * 4, masses=[0.190, 0.146, 0.090, 0.090], stiffness=0.108, damping=4.2e-3)
     arm.acceleration(np.zeros(4), np.zeros(4), [0, 0.05, 0, 0])    # (4,) rad/s^2
 
-SI units everywhere. docs/pcc.md has the equations and the conventions.
+    actuator = pcc.BendingActuator(0.1, 6e-3, 2e-3, modulus=0.2e6)
+    actuator.equilibrium(60e3)                                     # rad
+    run = actuator.simulate(time, pressure)                        # dict of arrays; run["tip"]: (n, 2) m
+    fit = pcc.fit_modulus(actuator, pcc.read_tip_record("tip.csv"))
+
+SI units everywhere. docs/pcc.md and docs/bending_actuator.md have the equations and the conventions.
 """
 
-from ._core import Arm, beam_stiffness, channel_stiffness
+from ._core import (
+    Arm,
+    BendingActuator,
+    BendingModulus,
+    BendingMotion,
+    beam_stiffness,
+    channel_stiffness,
+    published_modulus,
+)
+from .bending_fit import BendingFit, TipErrors, TipRecord, fit_modulus, read_tip_record, tip_errors
 
-__all__ = ["Arm", "beam_stiffness", "channel_stiffness"]
+__all__ = [
+    "Arm",
+    "BendingActuator",
+    "BendingFit",
+    "BendingModulus",
+    "BendingMotion",
+    "TipErrors",
+    "TipRecord",
+    "beam_stiffness",
+    "channel_stiffness",
+    "fit_modulus",
+    "published_modulus",
+    "read_tip_record",
+    "tip_errors",
+]
 
-Arm.__module__ = "sinew.pcc"
+for _class in (Arm, BendingActuator, BendingModulus, BendingMotion):
+    _class.__module__ = "sinew.pcc"
+del _class

@@ -32,4 +32,6 @@ PYBIND11_MODULE(_core, module) {
   python::bind_view(module);
   python::bind_material(module);
   python::bind_pcc(module);
+  python::bind_bending(module);
+  python::bind_bending_fit(module);
 }

@@ -12,7 +12,9 @@ import pytest
 import sinew
 
 ROOT = Path(__file__).resolve().parents[2]
-EXAMPLES = sorted((ROOT / "examples" / "python").glob("*.py"))
+EXAMPLES = sorted((ROOT / "examples" / "python").glob("*.py")) + [
+    ROOT / "examples" / "bending_actuator" / "simulate.py"
+]
 SCENES = sorted((ROOT / "examples").rglob("*.yaml"))
 
 
@@ -32,7 +34,7 @@ def test_the_guide(tmp_path, monkeypatch, capsys):
 
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.stem)
 def test_examples(example, tmp_path):
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), "MPLBACKEND": "Agg"}
     result = subprocess.run(
         [sys.executable, str(example)],
         cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=300, check=False,

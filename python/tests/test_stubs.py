@@ -98,7 +98,7 @@ def test_the_same_parameters(name, node, function):
 
 @pytest.mark.parametrize(
     "name", ["Ramp", "Sine", "Steps", "Samples", "Circle", "Polyline", "Trajectory"]
-    + ["InverseController"]
+    + ["InverseController", "BendingModulus", "BendingActuator", "BendingMotion"]
 )
 def test_the_same_parameters_of_constructors(name):
     init = next(n for n in CLASSES[name].body if getattr(n, "name", "") == "__init__")
@@ -125,9 +125,10 @@ def split_arguments(signature):
     return parts
 
 
-def test_everything_public_has_a_docstring():
-    for name in sinew.__all__:
-        member = getattr(sinew, name)
+@pytest.mark.parametrize("module", [sinew, sinew.pcc], ids=lambda module: module.__name__)
+def test_everything_public_has_a_docstring(module):
+    for name in module.__all__:
+        member = getattr(module, name)
         if name.startswith("__"):
             continue
         assert member.__doc__, name

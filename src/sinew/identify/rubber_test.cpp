@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <utility>
 
@@ -10,7 +9,7 @@
 
 #include "sinew/core/csv.hpp"
 #include "sinew/core/error.hpp"
-#include "sinew/core/quantity.hpp"
+#include "sinew/identify/column_unit.hpp"
 #include "sinew/mesh/read.hpp"
 
 namespace sinew::identify {
@@ -19,28 +18,8 @@ namespace {
 
 using material::DeformationMode;
 
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) {
-    c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    if (c == '_' || c == '-') c = ' ';
-  }
-  return result;
-}
-
 bool has(std::string_view text, std::string_view word) {
   return text.find(word) != std::string_view::npos;
-}
-
-/// The text in brackets of a column's name, or its last word; case kept.
-std::string unit_of(const std::string& name) {
-  const std::size_t open = name.find_first_of("[(");
-  const std::size_t close = name.find_last_of("])");
-  if (open != std::string::npos && close != std::string::npos && close > open) {
-    return name.substr(open + 1, close - open - 1);
-  }
-  const std::size_t last = name.find_last_of("_ ");
-  return last == std::string::npos ? "" : name.substr(last + 1);
 }
 
 struct Column {
@@ -50,15 +29,6 @@ struct Column {
   double unit = 1.0;
 };
 
-/// Pa of a stress column's unit; none when it has no such unit.
-std::optional<double> stress_unit(const std::string& name) {
-  try {
-    return parse_unit(unit_of(name), dimension::kPressure);
-  } catch (const Error&) {
-    return std::nullopt;
-  }
-}
-
 void consider(Column& best, const Column& found) {
   if (best.index < 0 || (best.is_true && !found.is_true)) best = found;
 }
@@ -67,10 +37,10 @@ std::pair<Column, Column> find_columns(const Table& table) {
   Column strain, stress;
   std::string unreadable;
   for (std::size_t i = 0; i < table.names.size(); ++i) {
-    const std::string name = lower(table.names[i]);
+    const std::string name = plain_name(table.names[i]);
     Column column{static_cast<Eigen::Index>(i), has(name, "true") || has(name, "cauchy"), false, 1};
     if (has(name, "stress")) {
-      const auto unit = stress_unit(table.names[i]);
+      const auto unit = column_unit(table.names[i], dimension::kPressure);
       if (!unit) {
         unreadable = table.names[i];
         continue;
@@ -98,7 +68,7 @@ std::pair<Column, Column> find_columns(const Table& table) {
 }
 
 DeformationMode mode_of(const std::string& file) {
-  const std::string name = lower(std::filesystem::path(file).filename().string());
+  const std::string name = plain_name(std::filesystem::path(file).filename().string());
   if (has(name, "biaxial")) return DeformationMode::equibiaxial;
   if (has(name, "planar") || has(name, "pure shear")) return DeformationMode::planar;
   return DeformationMode::uniaxial;

@@ -1,0 +1,54 @@
+/// @file
+/// What the parts of the bindings of bending actuators share.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "sinew/pcc/bending_motion.hpp"
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+
+namespace sinew::python {
+
+using ActuatorType = py::class_<pcc::BendingActuator, std::shared_ptr<pcc::BendingActuator>>;
+
+void bind_bending_modulus(py::module_& module);
+/// simulate(). @param type the actuator's.
+void bind_bending_history(ActuatorType& type);
+void bind_bending_motion(py::module_& module);
+
+/// Throws Error(unknown-choice).
+/// @param integrator by its name. @param spectral_radius of generalized-alpha.
+pcc::BendingMotionSettings to_motion_settings(const std::string& integrator,
+                                              double spectral_radius);
+
+/// f of every entry of arrays that broadcast against each other; a float for numbers.
+/// @param place names the arguments. @param values from Python. @param f of N numbers.
+template <std::size_t N, typename F>
+py::object for_each(const char* place, const std::array<py::object, N>& values, F&& f) {
+  py::list given;
+  for (const py::object& value : values) given.append(to_array(value, place, "any shape"));
+  py::list same;
+  try {
+    same = py::module_::import("numpy").attr("broadcast_arrays")(*given);
+  } catch (py::error_already_set&) {
+    throw Error(ErrorKind::wrong_shape, {.item = place}, "the shapes do not fit each other",
+                "give numbers, or arrays that broadcast");
+  }
+  std::array<Array, N> arrays;
+  for (std::size_t k = 0; k < N; ++k) arrays[k] = Array::ensure(same[k]);
+  Array result(std::vector<py::ssize_t>(arrays[0].shape(), arrays[0].shape() + arrays[0].ndim()));
+  for (py::ssize_t i = 0; i < result.size(); ++i) {
+    std::array<double, N> at;
+    for (std::size_t k = 0; k < N; ++k) at[k] = arrays[k].data()[i];
+    result.mutable_data()[i] = std::apply(f, at);
+  }
+  return result.attr("__getitem__")(py::tuple());
+}
+
+}  // namespace sinew::python
