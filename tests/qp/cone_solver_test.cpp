@@ -142,14 +142,15 @@ TEST(ConeSolver, SolvesRandomContacts) {
         const Contacts c = random_contacts(contacts, 3 * contacts + 4, mu, random);
         ConeSolver solver(3 * contacts, 0, contacts);
         VectorX x = VectorX::Zero(3 * contacts);
-        const ConeResult& result = solver.solve(c.problem(), {x.data(), static_cast<std::size_t>(x.size())});
-        EXPECT_EQ(result.status, ConeStatus::solved) << contacts << " mu " << mu << " residual " << result.residual;
+        const ConeResult& result =
+            solver.solve(c.problem(), {x.data(), static_cast<std::size_t>(x.size())});
+        EXPECT_EQ(result.status, ConeStatus::solved)
+            << contacts << " mu " << mu << " residual " << result.residual;
         expect_laws(c, x, 1e-8);
       }
     }
   }
 }
-
 
 std::span<double> span_of(VectorX& x) { return {x.data(), static_cast<std::size_t>(x.size())}; }
 

@@ -16,8 +16,8 @@ namespace sinew::qp {
 namespace {
 
 constexpr int kMostSteps = 12;
-// Of the diagonal, on the change of x. Keeps what redundant contacts leave undetermined from growing out
-// of rounding.
+// Of the diagonal, on the change of x. Keeps what redundant contacts leave undetermined from
+// growing out of rounding.
 constexpr double kProximal = 1e-9;
 // A step may raise the residual by this factor on the way to blocks changing their branch.
 constexpr double kGrowth = 10.0;
@@ -66,6 +66,7 @@ int ConeSolver::Workspace::choose_unknowns(const ConeProblem& problem) {
       continue;
     }
     unknown_row[static_cast<std::size_t>(count)] = box.row;
+    row_scale[count] = 1.0 / std::sqrt(box_scale[k]);
     box_at[k] = count++;
   }
   for (std::size_t k = 0; k < problem.cones.size(); ++k) {
@@ -76,6 +77,7 @@ int ConeSolver::Workspace::choose_unknowns(const ConeProblem& problem) {
       continue;
     }
     cone_at[k] = count;
+    row_scale.segment<3>(count).setConstant(1.0 / std::sqrt(scale[k]));
     for (int c = 0; c < 3; ++c) unknown_row[static_cast<std::size_t>(count++)] = row + c;
   }
   return count;
@@ -98,6 +100,9 @@ void ConeSolver::Workspace::form_system(const ConeProblem& problem, int count) {
   for (std::size_t k = 0; k < problem.cones.size(); ++k) {
     if (cone_at[k] >= 0) form_cone(problem, k, cone_at[k]);
   }
+  for (int j = 0; j < count; ++j)
+    system.col(j).array() *= row_scale[j] * row_scale.head(count).array();
+  right.head(count).array() *= row_scale.head(count).array();
 }
 
 // `at` rows of the system hold W on entry, which is the derivative of u.
@@ -115,8 +120,7 @@ void ConeSolver::Workspace::form_cone(const ConeProblem& problem, std::size_t nu
   Eigen::Vector2d e = Eigen::Vector2d::Zero();
   if (far > 0.0) e = s.tail<2>() / far;
   const double share = far > 0.0 ? mu * s[0] / far : 0.0;
-  const Eigen::Matrix2d across =
-      share * (Eigen::Matrix2d::Identity() - e * e.transpose());
+  const Eigen::Matrix2d across = share * (Eigen::Matrix2d::Identity() - e * e.transpose());
   for (Eigen::Index j = 0; j < system.cols(); ++j) {
     const Vector3 du = system.block<3, 1>(at, j);
     system.block<2, 1>(at + 1, j) = mu * e * du[0] + across * du.tail<2>();
@@ -127,7 +131,9 @@ void ConeSolver::Workspace::form_cone(const ConeProblem& problem, std::size_t nu
 }
 
 void ConeSolver::Workspace::move_unknowns(int count) {
-  for (int j = 0; j < count; ++j) x[unknown_row[static_cast<std::size_t>(j)]] += right[j];
+  for (int j = 0; j < count; ++j) {
+    x[unknown_row[static_cast<std::size_t>(j)]] += row_scale[j] * right[j];
+  }
 }
 
 }  // namespace sinew::qp

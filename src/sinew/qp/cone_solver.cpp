@@ -25,12 +25,13 @@ void check_shape(const ConeProblem& problem, std::size_t start, Eigen::Index row
   if (problem.matrix.rows() != rows || problem.matrix.cols() != rows ||
       problem.offset.size() != rows || size(start) != rows || problem.boxes.size() > most_boxes ||
       problem.cones.size() > most_cones) {
-    throw Error(ErrorKind::wrong_shape, {.item = "cone problem"},
-                fmt::format("a matrix ({}, {}), offset ({},), x ({},), {} boxes and {} cones do not "
-                            "fit a solver of {} rows",
-                            problem.matrix.rows(), problem.matrix.cols(), problem.offset.size(),
-                            start, problem.boxes.size(), problem.cones.size(), rows),
-                "size the solver and the problem alike");
+    throw Error(
+        ErrorKind::wrong_shape, {.item = "cone problem"},
+        fmt::format("a matrix ({}, {}), offset ({},), x ({},), {} boxes and {} cones do not "
+                    "fit a solver of {} rows",
+                    problem.matrix.rows(), problem.matrix.cols(), problem.offset.size(), start,
+                    problem.boxes.size(), problem.cones.size(), rows),
+        "size the solver and the problem alike");
   }
 }
 
@@ -78,6 +79,7 @@ ConeSolver::Workspace::Workspace(int rows, int boxes, int cones, ConeSettings ch
       lu(std::min(boxes + 3 * cones, chosen.newton_limit)),
       right(VectorX::Zero(boxes + 3 * cones)),
       best(VectorX::Zero(rows)),
+      row_scale(VectorX::Zero(boxes + 3 * cones)),
       unknown_row(static_cast<std::size_t>(boxes + 3 * cones)),
       box_at(static_cast<std::size_t>(boxes)),
       cone_at(static_cast<std::size_t>(cones)) {
@@ -198,9 +200,10 @@ double ConeSolver::Workspace::judge(const ConeProblem& problem) {
     const int row = problem.cones[k].row;
     const double mu = problem.cones[k].friction;
     const Vector3 r = x.segment<3>(row), u = motion.segment<3>(row);
-    worst = std::max(worst, cone_residual(r, u, mu, scale[k]));
-    largest = std::max(largest, r.norm());
-    floor = std::max(floor, rounding / scale[k]);
+    const double unit = std::sqrt(scale[k]);
+    worst = std::max(worst, unit * cone_residual(r, u, mu, scale[k]));
+    largest = std::max(largest, unit * r.norm());
+    floor = std::max(floor, rounding / unit);
     result.signorini = std::max(result.signorini, std::abs(std::min(u[0], scale[k] * r[0])));
     const Eigen::Vector2d aim = scale[k] * r.tail<2>() - u.tail<2>();
     const double radius = scale[k] * mu * r[0], far = aim.norm();
@@ -212,9 +215,11 @@ double ConeSolver::Workspace::judge(const ConeProblem& problem) {
     const BoxBlock& box = problem.boxes[k];
     if (!(box_scale[k] > 0.0)) continue;
     const double aim = x[box.row] - (motion[box.row] - box.target) / box_scale[k];
-    worst = std::max(worst, std::abs(x[box.row] - std::clamp(aim, box.lower, box.upper)));
-    largest = std::max(largest, std::abs(x[box.row]));
-    floor = std::max(floor, kRounding * std::abs(box.target) / box_scale[k]);
+    const double unit = std::sqrt(box_scale[k]);
+    const double miss = x[box.row] - std::clamp(aim, box.lower, box.upper);
+    worst = std::max(worst, unit * std::abs(miss));
+    largest = std::max(largest, unit * std::abs(x[box.row]));
+    floor = std::max(floor, kRounding * std::abs(box.target) / unit);
   }
   result.residual = worst <= floor ? 0.0 : worst / std::max(largest, 1e-300);
   return result.residual;

@@ -57,10 +57,11 @@ struct ConeSettings {
 struct ConeResult {
   ConeStatus status = ConeStatus::solved;
   std::vector<ContactState> states;  ///< (cones,)
-  /// Largest distance of any block from its law, of the largest effort. With De Saxce's change of
-  /// variables v = (u_n + mu |u_t|, u_t), Signorini's and Coulomb's laws together are
-  /// K contains r _|_ v in K* (De Saxce & Feng 1998); the distance is |r - P_K(r - v/w)|, w a third
-  /// of the trace of the block of the matrix.
+  /// Largest distance of any block from its law, of the largest effort, each times sqrt(w): w a
+  /// third of the trace of the block of the matrix, so that efforts of different units compare.
+  /// With De Saxce's change of variables v = (u_n + mu |u_t|, u_t), Signorini's and Coulomb's laws
+  /// together are K contains r _|_ v in K* (De Saxce & Feng 1998); the distance is |r - P_K(r -
+  /// v/w)|.
   double residual = 0.0;
   double signorini = 0.0;  ///< largest |min(u_n, w r_n)|: penetration, effort across a gap; as u
   double coulomb = 0.0;    ///< largest |w r_t - P(w r_t - u_t)|, P onto the disc of w mu r_n; as u
@@ -72,9 +73,9 @@ struct ConeResult {
 /// Each sweep solves block after block exactly, all others held (Jean 1999's nonsmooth contact
 /// dynamics; local solutions as in Bonnefon & Daviet 2011). Gauss-Seidel is robust, and slow where
 /// many contacts hold one stiff body; its iterate then starts Newton's method on the equations that
-/// the projection leaves (Alart & Curnier 1991), whose steps are kept where they lessen the residual.
-/// Small multiples of the diagonal that act on the change of x alone, and so have no part in the
-/// solution, keep redundant contacts solvable.
+/// the projection leaves (Alart & Curnier 1991), whose steps are kept where they lessen the
+/// residual. Small multiples of the diagonal that act on the change of x alone, and so have no part
+/// in the solution, keep redundant contacts solvable.
 class ConeSolver {
  public:
   /// @param rows n. @param boxes,cones most of them that problems will have.

@@ -47,7 +47,8 @@ struct ConeSolver::Workspace {
   DenseLu lu;
   int unknowns = 0;
   VectorX right, best;
-  std::vector<int> unknown_row;    // (count,) row of every unknown
+  VectorX row_scale;                 // (unknowns,) 1/sqrt(w), by which rows and columns are scaled
+  std::vector<int> unknown_row;      // (count,) row of every unknown
   std::vector<int> box_at, cone_at;  // position among the unknowns, or -1
 };
 

@@ -83,8 +83,8 @@ Vector3 ConeEquation::slip(const Vector3& q) const {
       const double across_change = r_t.dot(change) / across;
       const double normal_change = -coupling_.dot(change) / normal;
       const double value = 1.0 / across - 1.0 / (friction_ * r_n);
-      const double slope = -across_change / (across * across) +
-                           normal_change / (friction_ * r_n * r_n);
+      const double slope =
+          -across_change / (across * across) + normal_change / (friction_ * r_n * r_n);
       next = s - value / slope;
     }
     // Outside the bracket: its middle, by magnitude where it spans several.
