@@ -14,10 +14,11 @@ namespace sinew::qp {
 namespace {
 
 constexpr double kProximal = 1e-12;  // of the diagonal
+constexpr double kNewtonShare = 0.5;  // of the cost of a step of Newton's
 constexpr double kRounding = 1e-14;  // of the largest offset
 // A block whose diagonal is under this part of the largest cannot move.
 constexpr double kFixed = 1e-14;
-constexpr double kSlipping = 1e-7;  // what tells slip from stick, of effort and of what it moves
+constexpr double kAtLimit = 1e-7;  // friction within this part of its limit is at it
 
 void check_shape(const ConeProblem& problem, std::size_t start, Eigen::Index rows,
                  std::size_t most_boxes, std::size_t most_cones) {
@@ -100,15 +101,25 @@ void ConeSolver::Workspace::solve(const ConeProblem& problem, std::span<double> 
   while (result.sweeps < settings.max_sweeps) {
     for (int k = 0; k < sweeps; ++k, ++result.sweeps) sweep(problem);
     measure_motion(problem);
-    if (judge(problem) <= settings.tolerance || newton(problem)) {
+    if (judge(problem) <= settings.tolerance || (newton_pays(problem) && newton(problem))) {
       result.status = ConeStatus::solved;
       break;
     }
-    sweeps = std::min(2 * sweeps, settings.max_sweeps);
+    sweeps = std::min(result.sweeps, settings.max_sweeps - result.sweeps);
   }
   judge(problem);
   classify(problem);
   std::copy_n(x.data(), x.size(), start.begin());
+}
+
+// One of Newton's steps costs about (2/3) n^3 for n unknowns, a sweep 2 n of the problem's rows: Newton
+// gets its turn when the sweeps so far cost as much as a few of its steps.
+bool ConeSolver::Workspace::newton_pays(const ConeProblem& problem) const {
+  double count = static_cast<double>(problem.boxes.size());
+  for (const ConeBlock& cone : problem.cones) count += x[cone.row] > 0.0 ? 3.0 : 0.0;
+  const double rows = static_cast<double>(x.size());
+  return count <= settings.newton_limit &&
+         result.sweeps * 3.0 * rows >= kNewtonShare * count * count;
 }
 
 bool ConeSolver::Workspace::prepare(const ConeProblem& problem) {
@@ -221,11 +232,14 @@ double ConeSolver::Workspace::judge(const ConeProblem& problem) {
     largest = std::max(largest, unit * std::abs(x[box.row]));
     floor = std::max(floor, kRounding * std::abs(box.target) / unit);
   }
+  effort_size = largest;
   result.residual = worst <= floor ? 0.0 : worst / std::max(largest, 1e-300);
   return result.residual;
 }
 
 void ConeSolver::Workspace::classify(const ConeProblem& problem) {
+  // Times sqrt(w) the least motion that the residual lets one tell from none.
+  const double resolved = 10.0 * std::max(settings.tolerance, result.residual) * effort_size;
   for (std::size_t k = 0; k < problem.cones.size(); ++k) {
     const Vector3 r = x.segment<3>(problem.cones[k].row);
     const double limit = problem.cones[k].friction * r[0];
@@ -234,8 +248,8 @@ void ConeSolver::Workspace::classify(const ConeProblem& problem) {
       continue;
     }
     const double travel = motion.segment<2>(problem.cones[k].row + 1).norm();
-    const bool slides = r.tail<2>().norm() >= (1.0 - kSlipping) * limit &&
-                        travel > std::max(rounding, kSlipping * scale[k] * r[0]);
+    const bool slides = r.tail<2>().norm() >= (1.0 - kAtLimit) * limit &&
+                        travel > std::max(rounding, resolved * std::sqrt(scale[k]));
     result.states[k] = slides ? ContactState::slip : ContactState::stick;
   }
 }

@@ -26,6 +26,7 @@ struct ConeSolver::Workspace {
   void classify(const ConeProblem& problem);
 
   // Newton (cone_newton.cpp).
+  bool newton_pays(const ConeProblem& problem) const;
   bool newton(const ConeProblem& problem);
   int choose_unknowns(const ConeProblem& problem);
   void form_system(const ConeProblem& problem, int count);
@@ -41,8 +42,8 @@ struct ConeSolver::Workspace {
   std::vector<ConeEquation> equations;
   std::vector<double> scale;      // (cones,) w; 0: nothing can move here, and x stays 0
   std::vector<double> box_scale;  // (boxes,) diagonal; 0 likewise
-  double proximal = 0.0;          // of the diagonal
   double rounding = 0.0;          // of motions, as u
+  double effort_size = 0.0;       // largest effort times its sqrt(w)
 
   DenseLu lu;
   int unknowns = 0;
