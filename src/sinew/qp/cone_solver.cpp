@@ -13,9 +13,9 @@ namespace sinew::qp {
 
 namespace {
 
-constexpr double kProximal = 1e-12;  // of the diagonal
+constexpr double kProximal = 1e-12;   // of the diagonal
 constexpr double kNewtonShare = 0.5;  // of the cost of a step of Newton's
-constexpr double kRounding = 1e-14;  // of the largest offset
+constexpr double kRounding = 1e-14;   // of the largest offset
 // A block whose diagonal is under this part of the largest cannot move.
 constexpr double kFixed = 1e-14;
 constexpr double kAtLimit = 1e-7;  // friction within this part of its limit is at it
@@ -112,8 +112,8 @@ void ConeSolver::Workspace::solve(const ConeProblem& problem, std::span<double> 
   std::copy_n(x.data(), x.size(), start.begin());
 }
 
-// One of Newton's steps costs about (2/3) n^3 for n unknowns, a sweep 2 n of the problem's rows: Newton
-// gets its turn when the sweeps so far cost as much as a few of its steps.
+// One of Newton's steps costs about (2/3) n^3 for n unknowns, a sweep 2 n of the problem's rows:
+// Newton gets its turn when the sweeps so far cost as much as a few of its steps.
 bool ConeSolver::Workspace::newton_pays(const ConeProblem& problem) const {
   double count = static_cast<double>(problem.boxes.size());
   for (const ConeBlock& cone : problem.cones) count += x[cone.row] > 0.0 ? 3.0 : 0.0;

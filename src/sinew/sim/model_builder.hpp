@@ -143,7 +143,8 @@ class ModelBuilder {
   int add_spring(const SpringLineSettings& settings);
   int add_effector(const EffectorSettings& settings);
   /// Throws Error: too-few-points, point-outside-mesh, out-of-range (friction, radius, normal, a
-  /// point inside the surface at the start), wrong-type (nodes of a body without).
+  /// point inside the surface at the start), wrong-type (nodes of a body without),
+  /// not-in-this-version (generalized-alpha).
   int add_contact(const ContactSettings& settings);
   /// Throws Error: too-few-points, empty-region, point-outside-mesh, degenerate-orientation.
   int add_probe(const ProbeSettings& settings);

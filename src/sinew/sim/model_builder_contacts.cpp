@@ -36,6 +36,13 @@ void check_gaps(const constraint::Contact& contact, const mechanics::BodyModel& 
 
 int ModelBuilder::add_contact(const ContactSettings& settings) {
   check_body(settings.body, settings.place);
+  // Its velocity after an impact is about the opposite of that before, node by node, on top of what
+  // the body's elasticity gives back: measured, twice the energy.
+  if (model_->step_.integrator == mechanics::Integrator::generalized_alpha) {
+    throw Error(ErrorKind::not_in_this_version, settings.place,
+                "generalized-alpha creates energy in impacts",
+                "use backward-euler (impacts without rebound) or bdf2");
+  }
   for (const ContactModel& other : model_->contacts_) {
     if (other.name == settings.name) {
       throw Error(ErrorKind::duplicate_key, settings.place,
