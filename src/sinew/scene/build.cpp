@@ -293,6 +293,9 @@ Robot build(SceneDescription description) {
   };
   for (const LoadDescription& load : description.loads) add_load(builder, load, built);
   for (const ProbeDescription& probe : description.probes) add_probe(builder, probe, built);
+  for (const ContactDescription& contact : description.contacts) {
+    add_contact(builder, contact, built);
+  }
   linalg::FactorisationSettings factorisation;
   factorisation.backend = description.solver.backend;
   factorisation.ordering = description.solver.ordering;

@@ -188,6 +188,10 @@ KeyTable scene_table() {
                         .forms = {names(probe_form())},
                         .example = "{bend: {body: finger, bend: [{set: bottom}, {set: top}]}}",
                         .description = "What is measured and recorded; they act on nothing."});
+  scene.keys.push_back({.name = "contacts",
+                        .forms = {names(contact_form())},
+                        .example = "{floor: {body: block, surface: {plane: {}}, friction: 0.5}}",
+                        .description = "Surfaces that bodies may touch, with friction."});
   scene.keys.push_back({.name = "controllers",
                         .forms = {names(controller_form())},
                         .example = "{follow: {type: inverse, effectors: {tip: ...}}}",
@@ -198,7 +202,6 @@ KeyTable scene_table() {
                         .default_text = "{}",
                         .description = "What a run writes."});
   scene.keys.push_back(later_key("materials", "Materials by name."));
-  scene.keys.push_back(later_key("contacts", "Which bodies touch, and their friction."));
   scene.keys.push_back(later_key("obstacles", "What surrounds the robot."));
   scene.keys.push_back(later_key("joints", "Joints between bodies."));
   scene.keys.push_back(later_key("sensors", "What the robot feels."));

@@ -90,6 +90,13 @@ void check_mass(const SceneDescription& scene) {
   }
 }
 
+void check_contacts(const SceneDescription& scene) {
+  if (scene.contacts.empty() || scene.controllers.empty()) return;
+  throw Error(ErrorKind::not_in_this_version, scene.controllers.front().place,
+              "controllers do not yet choose efforts of robots with contacts",
+              "leave out `contacts`, or command the actuators");
+}
+
 // Every actuator has one owner.
 void check_owners(const SceneDescription& scene) {
   std::map<std::string, std::string> owners;
@@ -130,11 +137,14 @@ SceneDescription read_scene(const Node& tree, const ReadContext& context) {
               [&](const auto& entry) { scene.effectors.push_back(read_effector(entry, context)); });
   for_entries(fields, "probes",
               [&](const auto& entry) { scene.probes.push_back(read_probe(entry, context)); });
+  for_entries(fields, "contacts",
+              [&](const auto& entry) { scene.contacts.push_back(read_contact(entry, context)); });
   for_entries(fields, "controllers", [&](const auto& entry) {
     scene.controllers.push_back(read_controller(entry, context, scene));
   });
   check_mass(scene);
   check_owners(scene);
+  check_contacts(scene);
   return scene;
 }
 
@@ -146,13 +156,13 @@ double SceneDescription::run_duration() const {
   for (const ActuatorDescription& actuator : actuators) {
     if (actuator.command) end = std::max(end, actuator.command->signal.end_time());
   }
-  for (const BodyDescription& body : bodies) {
-    if (!body.base) continue;
-    for (const sim::Signal& signal : body.base->translation) {
-      end = std::max(end, signal.end_time());
-    }
-    end = std::max(end, body.base->angle.end_time());
-  }
+  const auto include = [&](const std::optional<BaseDescription>& motion) {
+    if (!motion) return;
+    for (const sim::Signal& signal : motion->translation) end = std::max(end, signal.end_time());
+    end = std::max(end, motion->angle.end_time());
+  };
+  for (const BodyDescription& body : bodies) include(body.base);
+  for (const ContactDescription& contact : contacts) include(contact.motion);
   for (const LoadDescription& load : loads) end = std::max(end, load.factor.end_time());
   for (const ControllerDescription& controller : controllers) {
     for (const TaskDescription& task : controller.tasks) {
