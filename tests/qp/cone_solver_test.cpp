@@ -345,13 +345,20 @@ TEST(ConeSolver, SaysWhatItCannotSolve) {
   Contacts c = random_contacts(3, 10, 0.5, random);
   ConeSolver solver(9, 0, 3);
   VectorX x = VectorX::Zero(9);
-  // No motion is possible, and yet the surface is penetrated.
+  // Two surfaces squeeze a point that can only move along their common normal.
   Contacts held = c;
-  held.matrix.setZero();
-  held.matrix.diagonal().setConstant(1e-30);
-  held.matrix(0, 0) = held.matrix(1, 1) = held.matrix(2, 2) = 1.0;
+  held.cones.resize(2);
+  MatrixX jacobian = MatrixX::Zero(9, 3);
+  jacobian.topRows(3).setIdentity();
+  jacobian.middleRows(3, 3) = -Matrix3::Identity();
+  held.matrix = jacobian * jacobian.transpose();
   held.offset.setConstant(-1.0);
-  EXPECT_NE(solver.solve(held.problem(), span_of(x)).status, ConeStatus::not_finite);
+  const ConeResult& squeezed = solver.solve(held.problem(), span_of(x));
+  EXPECT_EQ(squeezed.status, ConeStatus::iteration_limit);
+  EXPECT_GT(squeezed.residual, 1e-6);
+  x.setZero();
+  held.matrix = -c.matrix;
+  EXPECT_EQ(solver.solve(held.problem(), span_of(x)).status, ConeStatus::not_convex);
   c.matrix(4, 4) = std::nan("");
   EXPECT_EQ(solver.solve(c.problem(), span_of(x)).status, ConeStatus::not_finite);
   VectorX wrong = VectorX::Zero(6);

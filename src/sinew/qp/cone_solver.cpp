@@ -46,6 +46,8 @@ std::string_view cone_status_name(ConeStatus status) {
       return "iteration-limit";
     case ConeStatus::not_finite:
       return "not-finite";
+    case ConeStatus::not_convex:
+      return "not-convex";
   }
   return "unknown";
 }
@@ -91,9 +93,9 @@ void ConeSolver::Workspace::solve(const ConeProblem& problem, std::span<double> 
   result.sweeps = result.newton_steps = 0;
   result.states.assign(problem.cones.size(), ContactState::open);
   x = Eigen::Map<const VectorX>(start.data(), x.size());
-  result.status = ConeStatus::not_finite;
   if (!x.allFinite()) x.setZero();
-  if (!prepare(problem)) return;
+  result.status = prepare(problem);
+  if (result.status != ConeStatus::solved) return;
   settle_into_blocks(problem);
   measure_motion(problem);
   result.status = ConeStatus::iteration_limit;
@@ -122,7 +124,7 @@ bool ConeSolver::Workspace::newton_pays(const ConeProblem& problem) const {
          result.sweeps * 3.0 * rows >= kNewtonShare * count * count;
 }
 
-bool ConeSolver::Workspace::prepare(const ConeProblem& problem) {
+ConeStatus ConeSolver::Workspace::prepare(const ConeProblem& problem) {
   const MatrixX& w = problem.matrix;
   double sum = 0.0, largest = 0.0;
   rounding = 0.0;
@@ -138,9 +140,13 @@ bool ConeSolver::Workspace::prepare(const ConeProblem& problem) {
     sum += w.col(problem.boxes[k].row).sum() + problem.offset[problem.boxes[k].row];
   }
   rounding *= kRounding;
-  if (!std::isfinite(sum)) return false;
+  if (!std::isfinite(sum)) return ConeStatus::not_finite;
+  for (std::size_t k = 0; k < problem.boxes.size(); ++k) {
+    if (box_scale[k] < 0.0) return ConeStatus::not_convex;
+  }
   for (std::size_t k = 0; k < problem.cones.size(); ++k) {
     const int row = problem.cones[k].row;
+    if (scale[k] < -kFixed * largest) return ConeStatus::not_convex;
     if (!(scale[k] > kFixed * largest)) {
       scale[k] = 0.0;
       continue;
@@ -149,7 +155,7 @@ bool ConeSolver::Workspace::prepare(const ConeProblem& problem) {
     own.diagonal().array() += kProximal * scale[k];
     equations[k].set(own, problem.cones[k].friction);
   }
-  return true;
+  return ConeStatus::solved;
 }
 
 void ConeSolver::Workspace::settle_into_blocks(const ConeProblem& problem) {

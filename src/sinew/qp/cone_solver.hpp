@@ -42,6 +42,7 @@ enum class ConeStatus {
   solved,
   iteration_limit,  ///< the residual is above the tolerance after settings.max_sweeps
   not_finite,       ///< NaN or infinity in the problem's data
+  not_convex,       ///< a block's diagonal is negative
 };
 /// The status as it is printed: "iteration-limit".
 std::string_view cone_status_name(ConeStatus status);

@@ -15,7 +15,7 @@ struct ConeSolver::Workspace {
   void solve(const ConeProblem& problem, std::span<double> start);
 
   // Gauss-Seidel (cone_solver.cpp).
-  bool prepare(const ConeProblem& problem);
+  ConeStatus prepare(const ConeProblem& problem);
   void settle_into_blocks(const ConeProblem& problem);
   void measure_motion(const ConeProblem& problem);
   void sweep(const ConeProblem& problem);

@@ -253,6 +253,7 @@ sim::StepSettings step_settings(const SceneDescription& scene) {
                                                         : mechanics::Tangent::real_time;
   step.tolerance = scene.solver.tolerance;
   step.max_iterations = scene.solver.max_iterations;
+  step.contact_tolerance = scene.solver.contact_tolerance;
   return step;
 }
 

@@ -50,6 +50,7 @@ struct SolverDescription {
   std::optional<sim::AdaptiveStep> adaptive;
   double tolerance = 1e-8;        ///< Newton: residual relative to the loads
   int max_iterations = 50;        ///< Newton
+  double contact_tolerance = 1e-10;
   int threads = 1;                ///< inside a step
   std::string backend = "block";  ///< a name of linalg::backends()
   linalg::Ordering ordering = linalg::Ordering::fastest;

@@ -95,6 +95,12 @@ std::shared_ptr<const KeyTable> solver_table() {
                  .example = "50",
                  .default_text = "50",
                  .description = "Newton: iterations a step at most."},
+                {.name = "contact_tolerance",
+                 .forms = {quantity(plain_number(), Range{0.0, 1.0, true, true})},
+                 .example = "1e-8",
+                 .default_text = "1e-10",
+                 .description = "Contacts: distance of any point from the laws of contact, over the "
+                                "largest force."},
                 {.name = "threads",
                  .forms = {integer(1, 256)},
                  .example = "4",

@@ -46,6 +46,7 @@ void read_solver(const Fields& fields, SolverDescription& solver) {
   }
   values.read("tolerance", solver.tolerance);
   values.read("max_iterations", solver.max_iterations);
+  values.read("contact_tolerance", solver.contact_tolerance);
   values.read("threads", solver.threads);
   values.read_word("factorisation", solver.backend);
   values.read_choice("ordering", solver.ordering,

@@ -29,7 +29,7 @@ ContactLaw::ContactLaw(const Model& model)
       boxes_(model.range_count()),
       cones_(cones_of(model)),
       solver_(model.rows().rows(), static_cast<int>(boxes_.size()),
-              static_cast<int>(cones_.size())) {}
+              static_cast<int>(cones_.size()), {.tolerance = model.step().contact_tolerance}) {}
 
 void ContactLaw::reset() { ranges_.reset(); }
 
@@ -55,9 +55,10 @@ LawStatus ContactLaw::solve(const LawProblem& problem, std::span<double> effort)
     }
     const qp::ConeResult& result =
         solver_.solve({problem.compliance, problem.delta_free, boxes_, cones_}, effort);
-    if (result.status == qp::ConeStatus::not_finite || !(result.residual <= kUsable)) {
-      return LawStatus::failed;
-    }
+    const bool usable =
+        result.status == qp::ConeStatus::solved ||
+        (result.status == qp::ConeStatus::iteration_limit && result.residual <= kUsable);
+    if (!usable) return LawStatus::failed;
     if (!switch_branches(problem, effort)) return LawStatus::solved;
   }
   return LawStatus::failed;

@@ -45,6 +45,7 @@ struct StepSettings {
   mechanics::Tangent tangent = mechanics::Tangent::real_time;
   double tolerance = 1e-8;  ///< Newton: residual relative to the loads, and motion to the size
   int max_iterations = 50;  ///< Newton
+  double contact_tolerance = 1e-10;  ///< of the contacts' residual, see qp::ConeResult
 };
 
 /// A point that a cable slides through with friction.
