@@ -286,6 +286,30 @@ TEST(ConeSolver, RigidBlockSticksBelowTheFrictionAngleAndSlidesAboveIt) {
   }
 }
 
+// A nearly rigid body that lands: Gauss-Seidel alone would take as many sweeps as it is stiffer in
+// its own shape than in its free motion.
+TEST(ConeSolver, SolvesStiffBodies) {
+  Random random(71);
+  for (const double softness : {1e-2, 1e-4, 1e-6}) {
+    for (const double friction : {0.0, 0.1, 0.5, 2.0}) {
+      for (int trial = 0; trial < 5; ++trial) {
+        RigidBlock block(5, 0.3, friction);
+        Contacts& c = block.contacts;
+        const auto rows = static_cast<int>(c.offset.size());
+        const double size = c.matrix.diagonal().mean();
+        c.matrix += softness * size * random_hessian(rows, 100.0, random);
+        c.offset += softness * c.offset.norm() * random.vector(rows);
+        ConeSolver solver(rows, 0, rows / 3);
+        VectorX x = VectorX::Zero(rows);
+        const ConeResult& result = solver.solve(c.problem(), span_of(x));
+        EXPECT_EQ(result.status, ConeStatus::solved)
+            << "softness " << softness << " mu " << friction << " residual " << result.residual;
+        expect_laws(c, x, 1e-8);
+      }
+    }
+  }
+}
+
 TEST(ConeSolver, TakesOffWhereNothingPresses) {
   RigidBlock block(4, 0.0, 0.5);
   block.contacts.offset *= -1.0;

@@ -5,7 +5,9 @@
 //   s_n > 0, |s_t| >  mu s_n:     u_n = 0,  r_t - mu s_n s_t/|s_t| = 0
 // (Alart & Curnier 1991, with the projection of the augmented normal effort), and a box
 //   its limit, where x - (y - target)/w is beyond it, else y = target.
-// Blocks with a given x leave the system; the others' equations are linearised.
+// Blocks with a given x leave the system; the others' equations are linearised. The residual may
+// rise while blocks change their branch, and x may leave the cones: projecting it onto them in
+// between would take away what makes the steps Newton's.
 #include <algorithm>
 #include <cmath>
 
@@ -15,19 +17,16 @@ namespace sinew::qp {
 
 namespace {
 
-constexpr int kMostSteps = 12;
+constexpr int kMostSteps = 30;
 // Of the diagonal, on the change of x. Keeps what redundant contacts leave undetermined from
 // growing out of rounding.
 constexpr double kProximal = 1e-9;
-// A step may raise the residual by this factor on the way to blocks changing their branch.
-constexpr double kGrowth = 10.0;
 
 }  // namespace
 
 bool ConeSolver::Workspace::newton(const ConeProblem& problem) {
   best = x;
-  const double start = result.residual;
-  double least = start;
+  double least = result.residual;
   for (int step = 0; step < kMostSteps; ++step) {
     const int count = choose_unknowns(problem);
     if (count > settings.newton_limit) break;
@@ -37,17 +36,21 @@ bool ConeSolver::Workspace::newton(const ConeProblem& problem) {
     if (count > 0) lu.solve(right.head(count));
     ++result.newton_steps;
     move_unknowns(count);
-    settle_into_blocks(problem);
     measure_motion(problem);
     const double residual = judge(problem);
     if (residual < least) {
       least = residual;
       best = x;
     }
-    if (residual <= settings.tolerance) return true;
-    if (!(residual < kGrowth * start)) break;
+    if (residual <= settings.tolerance) {
+      settle_into_blocks(problem);
+      measure_motion(problem);
+      if (judge(problem) <= settings.tolerance) return true;
+    }
+    if (!std::isfinite(residual)) break;
   }
   x = best;
+  settle_into_blocks(problem);
   measure_motion(problem);
   judge(problem);
   return false;

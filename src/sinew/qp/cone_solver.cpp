@@ -14,7 +14,7 @@ namespace sinew::qp {
 namespace {
 
 constexpr double kProximal = 1e-12;   // of the diagonal
-constexpr double kNewtonShare = 0.5;  // of the cost of a step of Newton's
+constexpr double kNewtonShare = 0.3;  // of the cost of a step of Newton's
 constexpr double kRounding = 1e-14;   // of the largest offset
 // A block whose diagonal is under this part of the largest cannot move.
 constexpr double kFixed = 1e-14;

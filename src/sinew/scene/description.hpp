@@ -48,8 +48,8 @@ struct SolverDescription {
   Method method = Method::one_linearisation;
   Tangent tangent = Tangent::rotated;
   std::optional<sim::AdaptiveStep> adaptive;
-  double tolerance = 1e-8;        ///< Newton: residual relative to the loads
-  int max_iterations = 50;        ///< Newton
+  double tolerance = 1e-8;  ///< Newton: residual relative to the loads
+  int max_iterations = 50;  ///< Newton
   double contact_tolerance = 1e-10;
   int threads = 1;                ///< inside a step
   std::string backend = "block";  ///< a name of linalg::backends()

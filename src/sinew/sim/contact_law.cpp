@@ -28,8 +28,8 @@ ContactLaw::ContactLaw(const Model& model)
     : ranges_(static_cast<int>(model.range_count())),
       boxes_(model.range_count()),
       cones_(cones_of(model)),
-      solver_(model.rows().rows(), static_cast<int>(boxes_.size()),
-              static_cast<int>(cones_.size()), {.tolerance = model.step().contact_tolerance}) {}
+      solver_(model.rows().rows(), static_cast<int>(boxes_.size()), static_cast<int>(cones_.size()),
+              {.tolerance = model.step().contact_tolerance}) {}
 
 void ContactLaw::reset() { ranges_.reset(); }
 
