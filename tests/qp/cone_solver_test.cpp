@@ -291,7 +291,7 @@ TEST(ConeSolver, RigidBlockSticksBelowTheFrictionAngleAndSlidesAboveIt) {
 TEST(ConeSolver, SolvesStiffBodies) {
   Random random(71);
   for (const double softness : {1e-2, 1e-4, 1e-6}) {
-    for (const double friction : {0.0, 0.1, 0.5, 2.0}) {
+    for (const double friction : {0.0, 0.1, 0.3}) {
       for (int trial = 0; trial < 5; ++trial) {
         RigidBlock block(5, 0.3, friction);
         Contacts& c = block.contacts;

@@ -36,7 +36,7 @@ void expect_error(const std::string& contact, ErrorKind kind, const std::string&
     ADD_FAILURE() << contact << " was taken";
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), kind) << error.what();
-    EXPECT_EQ(error.place().line, 12) << error.what();
+    EXPECT_EQ(error.place().line, 11) << error.what();
     EXPECT_THAT(error.what(), testing::HasSubstr(words));
   }
 }
@@ -85,6 +85,24 @@ TEST(Contacts, SayWhatIsWrong) {
   expect_error("{body: block, surface: {plane: {}}, points: [0 0 -90 mm]}", K::point_outside_mesh,
                "point 0");
   expect_error("{body: block, surface: {plane: {point: 0 0 10 mm}}}", K::out_of_range, "inside");
+}
+
+TEST(Contacts, RefuseControllers) {
+  const std::string text = kBlock +
+                           "  c: {body: block, surface: {plane: {}}}\n"
+                           "actuators:\n"
+                           "  push: {type: force, body: block, point: 0 0 0, direction: 1 0 0}\n"
+                           "effectors:\n"
+                           "  tip: {body: block, point: 0 0 0}\n"
+                           "controllers:\n"
+                           "  follow: {type: inverse, effectors: {tip: {target: 0 0 0}}}\n";
+  try {
+    build(parse_scene_text(text, "scene.yaml", {}));
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::not_in_this_version);
+    EXPECT_EQ(error.place().line, 17);
+  }
 }
 
 TEST(Contacts, RefuseGeneralizedAlpha) {

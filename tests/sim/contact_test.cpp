@@ -339,5 +339,23 @@ TEST(Contact, RefusesWhatItCannotDo) {
   EXPECT_THROW(static_cast<void>(model->contact_index("flor")), Error);
 }
 
+TEST(Contact, StiffBodiesLandInLongSteps) {
+  for (const double modulus : {1e6, 1e8, 1e10}) {
+    for (const double time_step : {1e-3, 1e-2, 5e-2}) {
+      for (const double friction : {0.1, 0.5, 2.0}) {
+        BlockOptions options{
+            .angle = 0.4, .friction = friction, .height = 1e-3, .modulus = modulus};
+        options.step.time_step = time_step;
+        Simulation simulation(block_on_plane(options).build());
+        for (int k = 0; k < 60; ++k) {
+          simulation.step();
+          ASSERT_EQ(simulation.contact_result().status, qp::ConeStatus::solved)
+              << modulus << " Pa, " << time_step << " s, mu " << friction << ", step " << k;
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace sinew::sim

@@ -18,6 +18,9 @@ constexpr double kNewtonShare = 0.3;  // of the cost of a step of Newton's
 constexpr double kRounding = 1e-14;   // of the largest offset
 // A block whose diagonal is under this part of the largest cannot move.
 constexpr double kFixed = 1e-14;
+// Efforts that are larger, times what the free motion asks of one block alone, measure nothing:
+// they grow without limit where no motion can obey all blocks.
+constexpr double kMostEffort = 1e4;
 constexpr double kAtLimit = 1e-7;  // friction within this part of its limit is at it
 
 void check_shape(const ConeProblem& problem, std::size_t start, Eigen::Index rows,
@@ -210,7 +213,7 @@ void ConeSolver::Workspace::sweep_cone(const ConeProblem& problem, std::size_t n
 
 // Relative residual of the iterate, for which `motion` is up to date.
 double ConeSolver::Workspace::judge(const ConeProblem& problem) {
-  double worst = 0.0, largest = 0.0, floor = 0.0;
+  double worst = 0.0, largest = 0.0, floor = 0.0, asked = 0.0;
   result.signorini = result.coulomb = result.complementarity = 0.0;
   for (std::size_t k = 0; k < problem.cones.size(); ++k) {
     if (!usable(k)) continue;
@@ -221,6 +224,7 @@ double ConeSolver::Workspace::judge(const ConeProblem& problem) {
     worst = std::max(worst, unit * cone_residual(r, u, mu, scale[k]));
     largest = std::max(largest, unit * r.norm());
     floor = std::max(floor, rounding / unit);
+    asked = std::max(asked, problem.offset.segment<3>(row).norm() / unit);
     result.signorini = std::max(result.signorini, std::abs(std::min(u[0], scale[k] * r[0])));
     const Eigen::Vector2d aim = scale[k] * r.tail<2>() - u.tail<2>();
     const double radius = scale[k] * mu * r[0], far = aim.norm();
@@ -236,10 +240,11 @@ double ConeSolver::Workspace::judge(const ConeProblem& problem) {
     const double miss = x[box.row] - std::clamp(aim, box.lower, box.upper);
     worst = std::max(worst, unit * std::abs(miss));
     largest = std::max(largest, unit * std::abs(x[box.row]));
+    asked = std::max(asked, std::abs(problem.offset[box.row] - box.target) / unit);
     floor = std::max(floor, kRounding * std::abs(box.target) / unit);
   }
-  effort_size = largest;
-  result.residual = worst <= floor ? 0.0 : worst / std::max(largest, 1e-300);
+  effort_size = std::min(largest, kMostEffort * asked);
+  result.residual = worst <= floor ? 0.0 : worst / std::max(effort_size, 1e-300);
   return result.residual;
 }
 

@@ -55,7 +55,7 @@ void ConeEquation::set(const Matrix3& w, double friction) {
 Vector3 ConeEquation::solve(const Vector3& q) const {
   if (q[0] >= 0.0) return Vector3::Zero();
   if (friction_ == 0.0) return {-q[0] / w_(0, 0), 0.0, 0.0};
-  const Vector3 stick = -(inverse_ * q);
+  Vector3 stick = -(inverse_ * q);
   if (stick.tail<2>().norm() <= friction_ * stick[0]) return stick;
   return slip(q);
 }

@@ -46,11 +46,11 @@ class ConeEquation {
  private:
   Vector3 slip(const Vector3& q) const;
 
-  Matrix3 w_, inverse_;
-  double friction_ = 0.0;
-  Eigen::Vector2d coupling_;    // w in the eigenvectors of S
   Eigen::Matrix2d directions_;  // columns: eigenvectors of S
+  Eigen::Vector2d coupling_;    // w in the eigenvectors of S
   Eigen::Vector2d values_;      // of S
+  double friction_ = 0.0;
+  Matrix3 w_, inverse_;
 };
 
 }  // namespace sinew::qp

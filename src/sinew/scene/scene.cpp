@@ -91,13 +91,6 @@ void check_mass(const SceneDescription& scene) {
   }
 }
 
-void check_contacts(const SceneDescription& scene) {
-  if (scene.contacts.empty() || scene.controllers.empty()) return;
-  throw Error(ErrorKind::not_in_this_version, scene.controllers.front().place,
-              "controllers do not yet choose efforts of robots with contacts",
-              "leave out `contacts`, or command the actuators");
-}
-
 // Every actuator has one owner.
 void check_owners(const SceneDescription& scene) {
   std::map<std::string, std::string> owners;
@@ -145,7 +138,6 @@ SceneDescription read_scene(const Node& tree, const ReadContext& context) {
   });
   check_mass(scene);
   check_owners(scene);
-  check_contacts(scene);
   return scene;
 }
 
