@@ -217,6 +217,12 @@ Facts scene_facts(const InfoOptions& options) {
     facts.json["probes"].push_back(probe->name());
     facts.text += fmt::format("  probe {}: {}\n", probe->name(), probe->kind());
   }
+  for (std::size_t i = 0; i < model.contacts().size(); ++i) {
+    const std::string& name = model.contacts()[i].name;
+    const auto points = model.contact(static_cast<int>(i)).points().size();
+    facts.json["contacts"].push_back({{"name", name}, {"points", points}});
+    facts.text += fmt::format("  contact {}: {} points\n", name, points);
+  }
   for (const auto& controller : robot.controllers) {
     facts.json["controllers"].push_back(controller.name);
     facts.text += fmt::format("  controller {}\n", controller.name);

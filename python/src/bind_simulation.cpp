@@ -79,6 +79,15 @@ py::dict all_probes(const std::shared_ptr<Session>& self) {
   return result;
 }
 
+py::dict all_contacts(const std::shared_ptr<Session>& self) {
+  py::dict result;
+  int index = 0;
+  for (const auto& contact : self->model().contacts()) {
+    result[contact.name.c_str()] = Contact{{self, index++}};
+  }
+  return result;
+}
+
 py::dict all_bodies(const std::shared_ptr<Session>& self) {
   py::dict result;
   int index = 0;
@@ -231,7 +240,8 @@ RunError
           },
           "dict: energies of all bodies now (J; gravity's from the height at rest), and since the "
           "start the work of actuators, that of loads and outside forces, and what damping, drag "
-          "and the friction of cables took. Work less dissipation less what the energies gained is "
+          "the friction of cables and contacts took. Work less dissipation less what the energies "
+          "gained is "
           "the integrator's loss.")
       .def(
           "probe",
@@ -243,6 +253,17 @@ RunError
 --
 
 A probe by its name. Raises Error (unknown-name) with a suggestion.
+)")
+      .def(
+          "contact",
+          [](const std::shared_ptr<Session>& self, const std::string& name) {
+            return Contact{{self, self->model().contact_index(name)}};
+          },
+          py::arg("name"),
+          R"(contact($self, name)
+--
+
+A contact by its name. Raises Error (unknown-name) with a suggestion.
 )")
       .def(
           "body",
@@ -261,6 +282,8 @@ A body by its name. Raises Error (unknown-name) with a suggestion.
                              "dict: all effectors by name, in the scene's order.")
       .def_property_readonly("probes", &all_probes,
                              "dict: all probes by name, in the scene's order.")
+      .def_property_readonly("contacts", &all_contacts,
+                             "dict: all contacts by name, in the scene's order.")
       .def_property_readonly("bodies", &all_bodies,
                              "dict: all bodies by name, in the scene's order.");
 }

@@ -23,6 +23,7 @@ void bind_actuator(py::module_& module);
 void bind_effector(py::module_& module);
 void bind_load(py::module_& module);
 void bind_probe(py::module_& module);
+void bind_contact(py::module_& module);
 void bind_body(py::module_& module);
 void bind_simulation(py::module_& module);
 void bind_controller(py::module_& module);
@@ -42,6 +43,7 @@ struct Actuator : Part {};
 struct Effector : Part {};
 struct Load : Part {};
 struct Probe : Part {};
+struct Contact : Part {};
 struct Body : Part {};
 
 /// The part of bind_body() about stress and strain.

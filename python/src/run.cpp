@@ -97,6 +97,32 @@ void add_probes(const Session& session, std::vector<Column>& columns) {
   }
 }
 
+void add_contacts(const Session& session, std::vector<Column>& columns) {
+  const auto& contacts = session.model().contacts();
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const auto index = static_cast<int>(i);
+    const auto add = [&](const char* what, double sim::ContactSum::*member) {
+      columns.push_back({contacts[i].name + what,
+                         {},
+                         true,
+                         [index, member](Session& s, double* to) {
+                           *to = s.simulation().contact_sum(index).*member;
+                         },
+                         {}});
+    };
+    columns.push_back({contacts[i].name + ".force",
+                       {3},
+                       true,
+                       [index](Session& s, double* to) {
+                         const Vector3 force = s.simulation().contact_sum(index).force;
+                         std::copy_n(force.data(), 3, to);
+                       },
+                       {}});
+    add(".normal_force", &sim::ContactSum::normal_force);
+    add(".gap", &sim::ContactSum::smallest_gap);
+  }
+}
+
 void add_bodies(Session& session, std::vector<Column>& columns) {
   for (std::size_t i = 0; i < session.model().bodies().size(); ++i) {
     const auto index = static_cast<int>(i);
@@ -119,6 +145,7 @@ std::vector<Column> all_columns(Session& session) {
   add_actuators(session, columns);
   add_effectors(session, columns);
   add_probes(session, columns);
+  add_contacts(session, columns);
   columns.push_back({"residual",
                      {},
                      true,

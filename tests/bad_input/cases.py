@@ -160,7 +160,7 @@ SCENES = [
     scene("version-of-the-future", "unsupported-version", "scene.yaml:1:8", ["99"], ("sinew: 1", "sinew: 99")),
     scene("list-for-a-map", "wrong-type", "scene.yaml:19:12", [], ("effectors:\n  tip: {body: beam, point: 100 10 10 mm}", "effectors: [tip]")),
     scene("misspelt-choice", "unknown-choice", "scene.yaml:14:11", ["cabel", "cable"], ("type: cable", "type: cabel")),
-    scene("later-key", "not-in-this-version", "scene.yaml:21:1", ["contacts"], ("controllers:", "contacts: {}\ncontrollers:")),
+    scene("later-key", "not-in-this-version", "scene.yaml:21:1", ["obstacles"], ("controllers:", "obstacles: {}\ncontrollers:")),
     scene("later-type", "not-in-this-version", "scene.yaml:7:11", ["rod"], ("type: fem", "type: rod")),
     scene("spectral-radius", "out-of-range", "scene.yaml:3:", ["spectral_radius"], ("time_step:", "integrator: {type: generalized-alpha, spectral_radius: 1.5}\ntime_step:")),
     scene("unknown-body", "unknown-name", "scene.yaml:15:11", ["beem", "beam"], ("    body: beam\n    points", "    body: beem\n    points")),

@@ -5,6 +5,7 @@
 
 #include "sinew/inverse/inverse_controller.hpp"
 
+#include "../sim/contact_robots.hpp"
 #include "../sim/robots.hpp"
 #include "../support/allocation_guard.hpp"
 
@@ -71,6 +72,22 @@ TEST_P(SteadyStep, OfNewtonDynamics) {
   options.step.tangent = mechanics::Tangent::exact;
   options.damping = {.mass = 1.0, .stiffness = 0.01};
   expect_none(options, false);
+}
+
+TEST_P(SteadyStep, OfContacts) {
+  sinew::testing::BlockOptions options{.angle = 0.6, .height = 1e-4};
+  for (const sim::Method method : {sim::Method::one_linearisation, sim::Method::newton}) {
+    options.step.method = method;
+    linalg::FactorisationSettings factorisation;
+    factorisation.threads = GetParam();
+    sim::Simulation simulation(sinew::testing::block_on_plane(options).build(factorisation),
+                               GetParam());
+    for (int i = 0; i < 3; ++i) simulation.step();
+    const long before = allocations();
+    for (int i = 0; i < 100; ++i) simulation.step();  // lands, sticks here and slides there
+    EXPECT_EQ(allocations(), before);
+    EXPECT_GT(simulation.contact_sum(0).normal_force, 0.0);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Threads, SteadyStep, ::testing::Values(1, 4));

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/qp/cone_solver.hpp"
 #include "sinew/qp/elastic.hpp"
 
 #include "random_problem.hpp"
@@ -88,6 +89,30 @@ TEST(Allocation, NeverHappensInElasticSolve) {
     for (const QuadraticProgram& problem : problems) solver.solve(problem, weight);
     EXPECT_EQ(allocations, before);
   }
+}
+
+TEST(Allocation, NeverHappensInConeSolve) {
+  Random random(9);
+  constexpr int kCones = 20, kBoxes = 3, kRows = 3 * kCones + kBoxes;
+  ConeSolver solver(kRows, kBoxes, kCones);
+  std::vector<ConeBlock> cones;
+  std::vector<BoxBlock> boxes;
+  for (int i = 0; i < kCones; ++i) cones.push_back({kBoxes + 3 * i, 0.4});
+  for (int i = 0; i < kBoxes; ++i) boxes.push_back({i, 0.0, 1.0, 0.1});
+  std::vector<MatrixX> matrices;
+  std::vector<VectorX> offsets;
+  for (int trial = 0; trial < 20; ++trial) {
+    matrices.push_back(random_hessian(kRows, 1e4, random));
+    offsets.push_back(random.vector(kRows));
+  }
+  std::vector<double> x(kRows, 0.0);
+  int newton_steps = 0;
+  const long before = allocations;
+  for (std::size_t k = 0; k < matrices.size(); ++k) {
+    newton_steps += solver.solve({matrices[k], offsets[k], boxes, cones}, x).newton_steps;
+  }
+  EXPECT_EQ(allocations, before);
+  EXPECT_GT(newton_steps, 0);
 }
 
 #endif

@@ -42,6 +42,8 @@ effectors:
 probes:
   axis: {body: a, line: [0 0 0, 0 0 1]}
   girth: {body: a, extent: {across: z}}
+contacts:
+  floor: {body: a, surface: {plane: {}}, motion: {}}
 controllers:
   follow:
     type: inverse
@@ -61,11 +63,17 @@ class Dump {
     add(scene.gravity, scene.time_step, scene.integrator, scene.duration.value_or(-1));
     add(scene.solver.method, scene.solver.tangent, scene.solver.tolerance);
     add(scene.solver.max_iterations, scene.solver.threads, scene.solver.backend);
+    add(scene.solver.contact_tolerance);
     add(scene.solver.ordering, scene.record.every, scene.record.states);
     for (const auto& body : scene.bodies) add_body(body);
     for (const auto& actuator : scene.actuators) add_actuator(actuator);
     for (const auto& effector : scene.effectors) add(effector.directions, effector.outside);
     for (const auto& probe : scene.probes) add(probe.samples, probe.way, probe.outside);
+    for (const auto& contact : scene.contacts) {
+      const auto& plane = std::get<constraint::Plane>(contact.surface);
+      add(plane.point, plane.normal, contact.friction, contact.outside, contact.motion->axis);
+      add(contact.motion->translation[0].value(1.0), contact.motion->angle.value(1.0));
+    }
     for (const auto& controller : scene.controllers) {
       add(controller.regularisation, controller.epsilon.value_or(-1));
       for (const auto& task : controller.tasks) {

@@ -8,8 +8,8 @@ const WINDOW = 10;      // s
 const SAMPLES = 1200;   // at most
 const COLOURS = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#7a5195', '#5c5c5c'];
 const TITLES: Record<string, string> = {
-  effort: 'Effort', motion: 'Motion', torque: 'Torque', angle: 'Angle', pressure: 'Pressure', volume: 'Volume', effector: 'Effector', error: 'Error', rotation: 'Rotation',
-  'rotation error': 'Rotation error', probe: 'Probes', angle: 'Probe angles', energy: 'Energy',
+  effort: 'Effort', motion: 'Motion', torque: 'Torque', pressure: 'Pressure', volume: 'Volume', effector: 'Effector', error: 'Error', rotation: 'Rotation',
+  'rotation error': 'Rotation error', probe: 'Probes', angle: 'Angles', energy: 'Energy',
   time: 'Time of a step', solver: 'Solver',
 };
 

@@ -47,10 +47,15 @@ struct RowCurvature {
 struct RowValues {
   std::vector<Vector3> direction;  ///< one per entry; dimensionless for motions in m
   VectorX delta;                   ///< (rows,) value of the row's motion at the current state, m
+  /// (rows,) m, of contacts alone, whose rows are delta = direction . x + offset through a step,
+  /// and `reference` where the point would be carried by the surface (see constraint::Contact).
+  VectorX offset, reference;
 
   void resize(const RowPattern& pattern) {
     direction.assign(static_cast<std::size_t>(pattern.entries()), Vector3::Zero());
     delta.setZero(pattern.rows());
+    offset.setZero(pattern.rows());
+    reference.setZero(pattern.rows());
   }
 };
 

@@ -52,6 +52,12 @@ std::vector<std::string> RunTable::names(const sim::Simulation& simulation,
       names.push_back(fmt::format("{}.{} [{}]", model.effectors()[e].name, axis(e, name), unit(e)));
     }
   }
+  for (const sim::ContactModel& contact : model.contacts()) {
+    for (const char* name : {"force_x [N]", "force_y [N]", "force_z [N]", "normal_force [N]",
+                             "friction_force [N]", "gap [m]", "sticking", "slipping"}) {
+      names.push_back(fmt::format("{}.{}", contact.name, name));
+    }
+  }
   if (controller != nullptr) {
     for (const inverse::Task& task : controller->settings().tasks) {
       const auto e = static_cast<std::size_t>(task.effector);
@@ -82,6 +88,13 @@ void RunTable::collect() {
   }
   for (std::size_t e = 0; e < model.effectors().size(); ++e) {
     add_vector(values_, simulation_.effector_value(static_cast<int>(e)));
+  }
+  for (std::size_t c = 0; c < model.contacts().size(); ++c) {
+    const sim::ContactSum sum = simulation_.contact_sum(static_cast<int>(c));
+    add_vector(values_, sum.force);
+    values_.insert(values_.end(),
+                   {sum.normal_force, sum.friction_force, sum.smallest_gap,
+                    static_cast<double>(sum.sticking), static_cast<double>(sum.slipping)});
   }
   if (controller_ != nullptr) {
     const auto& tasks = controller_->settings().tasks;

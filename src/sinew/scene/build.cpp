@@ -268,12 +268,25 @@ sim::StepSettings step_settings(const SceneDescription& scene) {
                                                         : mechanics::Tangent::real_time;
   step.tolerance = scene.solver.tolerance;
   step.max_iterations = scene.solver.max_iterations;
+  step.contact_tolerance = scene.solver.contact_tolerance;
   return step;
 }
 
 }  // namespace
 
+namespace {
+
+void check_contacts(const SceneDescription& scene) {
+  if (scene.contacts.empty() || scene.controllers.empty()) return;
+  throw Error(ErrorKind::not_in_this_version, scene.controllers.front().place,
+              "controllers do not yet choose efforts of robots with contacts",
+              "leave out `contacts`, or command the actuators");
+}
+
+}  // namespace
+
 Robot build(SceneDescription description) {
+  check_contacts(description);
   sim::ModelBuilder builder(step_settings(description));
   std::vector<std::shared_ptr<const mesh::Mesh>> meshes;
   const auto body_index = [&](const std::string& name) {
@@ -315,6 +328,9 @@ Robot build(SceneDescription description) {
   };
   for (const LoadDescription& load : description.loads) add_load(builder, load, built);
   for (const ProbeDescription& probe : description.probes) add_probe(builder, probe, built);
+  for (const ContactDescription& contact : description.contacts) {
+    add_contact(builder, contact, built);
+  }
   linalg::FactorisationSettings factorisation;
   factorisation.backend = description.solver.backend;
   factorisation.ordering = description.solver.ordering;

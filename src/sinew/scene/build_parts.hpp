@@ -30,6 +30,10 @@ std::vector<mesh::Face> faces_of(const SurfaceDescription& surface, const mesh::
 /// @param builder that has the bodies. @param load to be added. @param body_of finds bodies.
 void add_load(sim::ModelBuilder& builder, const LoadDescription& load, const BodyOf& body_of);
 
+/// @param builder that has the bodies. @param contact to be added. @param body_of finds bodies.
+void add_contact(sim::ModelBuilder& builder, const ContactDescription& contact,
+                 const BodyOf& body_of);
+
 /// @param builder that has the bodies. @param probe to be added. @param body_of finds bodies.
 void add_probe(sim::ModelBuilder& builder, const ProbeDescription& probe, const BodyOf& body_of);
 

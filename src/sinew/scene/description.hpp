@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "sinew/constraint/probe.hpp"
+#include "sinew/constraint/surface.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/core/types.hpp"
 #include "sinew/inverse/target.hpp"
@@ -49,8 +50,9 @@ struct SolverDescription {
   Method method = Method::one_linearisation;
   Tangent tangent = Tangent::rotated;
   std::optional<sim::AdaptiveStep> adaptive;
-  double tolerance = 1e-8;        ///< Newton: residual relative to the loads
-  int max_iterations = 50;        ///< Newton
+  double tolerance = 1e-8;  ///< Newton: residual relative to the loads
+  int max_iterations = 50;  ///< Newton
+  double contact_tolerance = 1e-10;
   int threads = 1;                ///< inside a step
   std::string backend = "block";  ///< a name of linalg::backends()
   linalg::Ordering ordering = linalg::Ordering::fastest;
@@ -93,7 +95,7 @@ struct FixedRegion {
   std::array<bool, 3> axes{true, true, true};  ///< held along x, y, z
 };
 
-/// How the fixed nodes of a body move.
+/// How the fixed nodes of a body, or a surface, move.
 struct BaseDescription {
   Place place;
   std::array<sim::Signal, 3> translation;  ///< m
@@ -247,6 +249,19 @@ struct ProbeDescription {
   mesh::Outside outside = mesh::Outside::error;
 };
 
+/// A surface that points of a body may touch.
+struct ContactDescription {
+  std::string name;
+  Place place;
+  std::string body;
+  constraint::Surface surface;
+  std::optional<FixedRegion> nodes;  ///< of the outside; none, and no points: all of it
+  PointList points;
+  mesh::Outside outside = mesh::Outside::error;
+  double friction = 0.0;  ///< Coulomb's coefficient, >= 0
+  std::optional<BaseDescription> motion;
+};
+
 /// What a controller asks of one effector.
 struct TaskDescription {
   std::string effector;
@@ -295,6 +310,7 @@ struct SceneDescription {
   std::vector<LoadDescription> loads;
   std::vector<EffectorDescription> effectors;
   std::vector<ProbeDescription> probes;
+  std::vector<ContactDescription> contacts;
   std::vector<ControllerDescription> controllers;
   RecordDescription record;
   Node tree;  ///< what this was read from, for to_yaml() and overrides

@@ -100,6 +100,8 @@ Key outside_key();
 std::vector<Form> axis_forms();
 /// box, sphere, plane and set, of which one must stand.
 std::vector<Key> region_keys(const char* whose);
+/// x, y, z, angle, axis and center of a motion over time.
+std::vector<Key> motion_keys();
 
 // The tables of each part, in the file of that part.
 std::shared_ptr<const KeyTable> surface_table();
@@ -115,6 +117,7 @@ Form body_form();
 Form actuator_form();
 Form load_form();
 Form effector_form();
+Form contact_form();
 Form probe_form();
 Form controller_form();
 

@@ -194,7 +194,9 @@ std::shared_ptr<const KeyTable> damping_table() {
                  .description = "Factor of the stiffness matrix."}}});
 }
 
-std::shared_ptr<const KeyTable> base_table() {
+}  // namespace
+
+std::vector<Key> motion_keys() {
   const auto along = [](const char* axis) {
     return Key{.name = axis,
                .forms = {quantity(length()), table(signal_table(length(), "10 mm"))},
@@ -202,28 +204,34 @@ std::shared_ptr<const KeyTable> base_table() {
                .default_text = "0 mm",
                .description = std::string("Along ") + axis + "."};
   };
+  return {along("x"),
+          along("y"),
+          along("z"),
+          {.name = "angle",
+           .forms = {quantity(angle()), table(signal_table(angle(), "90 deg"))},
+           .example = "{ramp: {to: 90 deg, duration: 2 s}}",
+           .default_text = "0 rad",
+           .description = "Of the turn, from rest."},
+          {.name = "axis",
+           .forms = {vector(plain_number())},
+           .example = "0 1 0",
+           .default_text = "0 0 1",
+           .description = "Of the turn; any length but zero."},
+          {.name = "center",
+           .forms = {vector(length())},
+           .example = "0 0 0 mm",
+           .default_text = "0 0 0 mm",
+           .description = "A point of the axis, at rest."}};
+}
+
+namespace {
+
+std::shared_ptr<const KeyTable> base_table() {
   return make_table({.name = "base",
                      .description =
                          "How the fixed nodes move: turned about an axis, then shifted, from rest. "
                          "What moves them puts in or takes out work.",
-                     .keys = {along("x"),
-                              along("y"),
-                              along("z"),
-                              {.name = "angle",
-                               .forms = {quantity(angle()), table(signal_table(angle(), "90 deg"))},
-                               .example = "{ramp: {to: 90 deg, duration: 2 s}}",
-                               .default_text = "0 rad",
-                               .description = "Of the turn, from rest."},
-                              {.name = "axis",
-                               .forms = {vector(plain_number())},
-                               .example = "0 1 0",
-                               .default_text = "0 0 1",
-                               .description = "Of the turn; any length but zero."},
-                              {.name = "center",
-                               .forms = {vector(length())},
-                               .example = "0 0 0 mm",
-                               .default_text = "0 0 0 mm",
-                               .description = "A point of the axis, at rest."}}});
+                     .keys = motion_keys()});
 }
 
 std::vector<Key> mass_keys() {

@@ -272,6 +272,21 @@ void read_fixed(const Fields& fields, BodyDescription& body) {
 
 }  // namespace
 
+BaseDescription read_motion(const Fields& fields, const Place& place, const ReadContext& context) {
+  BaseDescription motion;
+  motion.place = place;
+  constexpr std::array kAxes = {"x", "y", "z"};
+  for (std::size_t c = 0; c < 3; ++c) {
+    if (fields.find(kAxes[c]) != nullptr) {
+      motion.translation[c] = read_signal(fields, kAxes[c], context);
+    }
+  }
+  if (fields.find("angle") != nullptr) motion.angle = read_signal(fields, "angle", context);
+  fields.read_direction("axis", motion.axis);
+  fields.read("center", motion.center);
+  return motion;
+}
+
 BodyDescription read_body(const Node::Entry& entry, const ReadContext& context) {
   BodyDescription body;
   body.name = entry.key;
@@ -296,18 +311,7 @@ BodyDescription read_body(const Node::Entry& entry, const ReadContext& context) 
   damping.read("stiffness", body.stiffness_damping);
   read_fixed(fields, body);
   if (fields.find("base") != nullptr) {
-    const Fields base = fields.below("base");
-    BaseDescription& motion = body.base.emplace();
-    motion.place = fields.place("base");
-    constexpr std::array kAxes = {"x", "y", "z"};
-    for (std::size_t c = 0; c < 3; ++c) {
-      if (base.find(kAxes[c]) != nullptr) {
-        motion.translation[c] = read_signal(base, kAxes[c], context);
-      }
-    }
-    if (base.find("angle") != nullptr) motion.angle = read_signal(base, "angle", context);
-    base.read_direction("axis", motion.axis);
-    base.read("center", motion.center);
+    body.base = read_motion(fields.below("base"), fields.place("base"), context);
   }
   return body;
 }

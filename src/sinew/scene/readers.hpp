@@ -33,6 +33,9 @@ LoadDescription read_load(const Node::Entry& entry, const ReadContext& context);
 /// The surface that the keys of the surface table give.
 void read_surface(const Fields& fields, SurfaceDescription& surface, const ReadContext& context);
 EffectorDescription read_effector(const Node::Entry& entry, const ReadContext& context);
+ContactDescription read_contact(const Node::Entry& entry, const ReadContext& context);
+/// A motion over time. @param fields of its map. @param place of it. @param context of the scene.
+BaseDescription read_motion(const Fields& fields, const Place& place, const ReadContext& context);
 ProbeDescription read_probe(const Node::Entry& entry, const ReadContext& context);
 /// A unit vector, or the axis that x, y or z names. @param node,forms what is read, as one of
 /// these.

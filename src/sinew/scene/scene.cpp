@@ -46,6 +46,7 @@ void read_solver(const Fields& fields, SolverDescription& solver) {
   }
   values.read("tolerance", solver.tolerance);
   values.read("max_iterations", solver.max_iterations);
+  values.read("contact_tolerance", solver.contact_tolerance);
   values.read("threads", solver.threads);
   values.read_word("factorisation", solver.backend);
   values.read_choice("ordering", solver.ordering,
@@ -130,6 +131,8 @@ SceneDescription read_scene(const Node& tree, const ReadContext& context) {
               [&](const auto& entry) { scene.effectors.push_back(read_effector(entry, context)); });
   for_entries(fields, "probes",
               [&](const auto& entry) { scene.probes.push_back(read_probe(entry, context)); });
+  for_entries(fields, "contacts",
+              [&](const auto& entry) { scene.contacts.push_back(read_contact(entry, context)); });
   for_entries(fields, "controllers", [&](const auto& entry) {
     scene.controllers.push_back(read_controller(entry, context, scene));
   });
@@ -146,13 +149,13 @@ double SceneDescription::run_duration() const {
   for (const ActuatorDescription& actuator : actuators) {
     if (actuator.command) end = std::max(end, actuator.command->signal.end_time());
   }
-  for (const BodyDescription& body : bodies) {
-    if (!body.base) continue;
-    for (const sim::Signal& signal : body.base->translation) {
-      end = std::max(end, signal.end_time());
-    }
-    end = std::max(end, body.base->angle.end_time());
-  }
+  const auto include = [&](const std::optional<BaseDescription>& motion) {
+    if (!motion) return;
+    for (const sim::Signal& signal : motion->translation) end = std::max(end, signal.end_time());
+    end = std::max(end, motion->angle.end_time());
+  };
+  for (const BodyDescription& body : bodies) include(body.base);
+  for (const ContactDescription& contact : contacts) include(contact.motion);
   for (const LoadDescription& load : loads) end = std::max(end, load.factor.end_time());
   for (const ControllerDescription& controller : controllers) {
     for (const TaskDescription& task : controller.tasks) {

@@ -1,6 +1,5 @@
 #include "sinew/sim/direct_law.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace sinew::sim {
@@ -9,23 +8,6 @@ namespace {
 
 // Relative size of the term that shares tension among redundant cables.
 constexpr double kRedundancy = 1e-12;
-// Motions that agree within this (m) agree.
-constexpr double kMotionTolerance = 1e-12;
-
-// lambda in [lower, upper] and the delta that holds in between.
-struct Box {
-  double lower, upper, motion;
-};
-
-Box box_of(const ActuatorRange& range, bool hold) {
-  if (range.kind == CommandKind::motion) {
-    return {range.effort_min, range.effort_max, range.value};
-  }
-  if (hold) return {range.value, range.effort_max, range.motion_min};
-  // Without a stroke limit nothing but T itself is possible.
-  const double lower = std::isinf(range.motion_max) ? range.value : range.effort_min;
-  return {lower, range.value, std::isinf(range.motion_max) ? 0.0 : range.motion_max};
-}
 
 }  // namespace
 
@@ -34,11 +16,11 @@ DirectLaw::DirectLaw(int ranges)
       solver_(ranges, 0),
       scale_(VectorX::Ones(ranges)),
       scaled_effort_(VectorX::Zero(ranges)),
-      branch_(static_cast<std::size_t>(ranges), Branch::pull) {}
+      boxes_(ranges) {}
 
 void DirectLaw::reset() {
   solver_.reset();
-  std::ranges::fill(branch_, Branch::pull);
+  boxes_.reset();
 }
 
 void DirectLaw::form(const LawProblem& problem) {
@@ -57,52 +39,43 @@ void DirectLaw::form(const LawProblem& problem) {
     }
     program_.hessian(j, j) += kRedundancy;
     const ActuatorRange& range = ranges[static_cast<std::size_t>(j)];
-    const Box box = box_of(range, branch_[static_cast<std::size_t>(j)] == Branch::hold);
+    const EffortBox box = boxes_.box(static_cast<std::size_t>(j), range);
     program_.gradient[j] = scale_[j] * (problem.delta_free[range.row] - box.motion);
     program_.lower[j] = box.lower / scale_[j];
-    program_.upper[j] = std::max(box.lower, box.upper) / scale_[j];
+    program_.upper[j] = box.upper / scale_[j];
   }
 }
 
-// An effort row at T whose motion passed the far stroke limit changes branch.
 bool DirectLaw::switch_branches(const LawProblem& problem) {
   bool switched = false;
-  for (std::size_t i = 0; i < branch_.size(); ++i) {
+  for (std::size_t i = 0; i < boxes_.size(); ++i) {
     const ActuatorRange& range = problem.actuators[i];
     if (range.kind != CommandKind::effort) continue;
     double delta = problem.delta_free[range.row];
-    for (std::size_t j = 0; j < branch_.size(); ++j) {
+    for (std::size_t j = 0; j < boxes_.size(); ++j) {
       const auto k = static_cast<Eigen::Index>(j);
       delta +=
           problem.compliance(range.row, problem.actuators[j].row) * scale_[k] * scaled_effort_[k];
     }
-    const Branch before = branch_[i];
-    const double tolerance = kMotionTolerance / range.motion_scale;
-    if (before == Branch::pull && delta < range.motion_min - tolerance) {
-      branch_[i] = Branch::hold;
-    } else if (before == Branch::hold && delta > range.motion_max + tolerance) {
-      branch_[i] = Branch::pull;
-    }
-    switched = switched || branch_[i] != before;
+    switched = boxes_.switch_branch(i, range, delta) || switched;
   }
   return switched;
 }
 
 LawStatus DirectLaw::solve(const LawProblem& problem, std::span<double> effort) {
-  const int most_rounds = 2 * static_cast<int>(branch_.size()) + 2;
+  const int most_rounds = 2 * static_cast<int>(boxes_.size()) + 2;
   for (int round = 0; round < most_rounds; ++round) {
     form(problem);
     const qp::QpResult& result = solver_.solve(program_);
     if (result.status != qp::QpStatus::optimal) return LawStatus::failed;
     scaled_effort_ = result.x;
-    for (std::size_t i = 0; i < branch_.size(); ++i) {
+    for (std::size_t i = 0; i < boxes_.size(); ++i) {
       const auto k = static_cast<Eigen::Index>(i);
-      const bool held = branch_[i] == Branch::hold;
-      const Box box = box_of(problem.actuators[i], held);
+      const EffortBox box = boxes_.box(i, problem.actuators[i]);
       // Scaling must not blur a limit: a slack cable's tension is zero, not nearly so.
       double lambda = scale_[k] * scaled_effort_[k];
       if (scaled_effort_[k] <= program_.lower[k]) lambda = box.lower;
-      if (scaled_effort_[k] >= program_.upper[k]) lambda = std::max(box.lower, box.upper);
+      if (scaled_effort_[k] >= program_.upper[k]) lambda = box.upper;
       effort[static_cast<std::size_t>(problem.actuators[i].row)] = lambda;
     }
     if (!switch_branches(problem)) return LawStatus::solved;
@@ -111,22 +84,7 @@ LawStatus DirectLaw::solve(const LawProblem& problem, std::span<double> effort) 
 }
 
 double DirectLaw::violation(const LawProblem& problem, std::span<const double> effort) const {
-  double worst = 0.0;
-  for (std::size_t i = 0; i < branch_.size(); ++i) {
-    const ActuatorRange& range = problem.actuators[i];
-    if (range.drive != nullptr) continue;
-    const Box box = box_of(range, branch_[i] == Branch::hold);
-    const double lambda = effort[static_cast<std::size_t>(range.row)];
-    const double gap = problem.delta[range.row] - box.motion;
-    const bool at_lower = lambda <= box.lower;
-    const bool at_upper = lambda >= box.upper;
-    double miss = std::abs(gap);
-    if (at_lower) miss = std::max(0.0, -gap);
-    if (at_upper) miss = std::max(0.0, gap);
-    if (at_lower && at_upper) miss = 0.0;
-    worst = std::max(worst, range.motion_scale * miss);
-  }
-  return worst;
+  return boxes_.violation(problem, effort);
 }
 
 }  // namespace sinew::sim

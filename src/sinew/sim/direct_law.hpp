@@ -2,10 +2,8 @@
 /// The law of direct simulation: every actuator obeys its command within its limits, exactly.
 #pragma once
 
-#include <vector>
-
 #include "sinew/qp/quadratic_program.hpp"
-#include "sinew/sim/law.hpp"
+#include "sinew/sim/effort_boxes.hpp"
 
 namespace sinew::sim {
 
@@ -29,15 +27,13 @@ class DirectLaw : public Law {
   void reset() override;
 
  private:
-  enum class Branch : char { pull, hold };  // an effort row at or below T, or above it
-
   void form(const LawProblem& problem);
   bool switch_branches(const LawProblem& problem);
 
   qp::QuadraticProgram program_;
   qp::QpSolver solver_;
   VectorX scale_, scaled_effort_;
-  std::vector<Branch> branch_;
+  EffortBoxes boxes_;
 };
 
 }  // namespace sinew::sim

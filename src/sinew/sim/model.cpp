@@ -25,6 +25,18 @@ int find_by_name(const List& list, std::string_view name, const char* what, Name
 
 }  // namespace
 
+Eigen::Isometry3d ContactModel::pose(double time) const {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  if (!motion) return pose;
+  const Vector3 turn = motion->rotation_at(time);
+  if (const double angle = turn.norm(); angle > 0.0) {
+    pose.rotate(Eigen::AngleAxisd(angle, turn / angle));
+  }
+  pose.pretranslate(
+      Vector3(motion->translation_at(time) + motion->centre - pose.linear() * motion->centre));
+  return pose;
+}
+
 int Model::body_index(std::string_view name) const {
   return find_by_name(bodies_, name, "body", [](const auto& b) { return b->name(); });
 }
@@ -35,6 +47,10 @@ int Model::actuator_index(std::string_view name) const {
 
 int Model::effector_index(std::string_view name) const {
   return find_by_name(effectors_, name, "effector", [](const auto& e) { return e.name; });
+}
+
+int Model::contact_index(std::string_view name) const {
+  return find_by_name(contacts_, name, "contact", [](const auto& c) { return c.name; });
 }
 
 int Model::load_index(std::string_view name) const {
@@ -48,6 +64,12 @@ int Model::probe_index(std::string_view name) const {
 const constraint::Effector& Model::effector(int index) const {
   const auto& model = effectors_.at(static_cast<std::size_t>(index));
   return dynamic_cast<const constraint::Effector&>(
+      *constraints_[static_cast<std::size_t>(model.constraint)]);
+}
+
+const constraint::Contact& Model::contact(int index) const {
+  const auto& model = contacts_.at(static_cast<std::size_t>(index));
+  return dynamic_cast<const constraint::Contact&>(
       *constraints_[static_cast<std::size_t>(model.constraint)]);
 }
 

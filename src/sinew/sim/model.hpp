@@ -11,6 +11,7 @@
 
 #include "sinew/constraint/cable.hpp"
 #include "sinew/constraint/cavity.hpp"
+#include "sinew/constraint/contact.hpp"
 #include "sinew/constraint/effector.hpp"
 #include "sinew/constraint/point_force.hpp"
 #include "sinew/constraint/probe.hpp"
@@ -44,6 +45,7 @@ struct StepSettings {
   mechanics::Tangent tangent = mechanics::Tangent::real_time;
   double tolerance = 1e-8;  ///< Newton: residual relative to the loads, and motion to the size
   int max_iterations = 50;  ///< Newton
+  double contact_tolerance = 1e-10;  ///< of the contacts' residual, see qp::ConeResult
 };
 
 /// A point that a cable slides through with friction.
@@ -61,9 +63,9 @@ struct EffectorModel {
   int constraint = -1;
 };
 
-/// A motion of a body's fixed nodes, from rest.
+/// A motion given over time, from rest: of a body's fixed nodes or of a surface.
 struct BaseMotion {
-  int body = 0;
+  int body = 0;                       ///< whose fixed nodes; a surface has none
   std::array<Signal, 3> translation;  ///< m, along x, y, z
   Signal angle;                       ///< rad
   Vector3 axis = Vector3::UnitZ();    ///< of the turn, unit length
@@ -74,6 +76,17 @@ struct BaseMotion {
     return {translation[0].value(time), translation[1].value(time), translation[2].value(time)};
   }
   Vector3 rotation_at(double time) const { return angle.value(time) * axis; }
+};
+
+/// Points that may touch a surface, and how the surface moves.
+struct ContactModel {
+  std::string name;
+  Place place;
+  int constraint = -1;               ///< a constraint::Contact
+  std::optional<BaseMotion> motion;  ///< of the surface; none: it stands still
+
+  /// Of the surface at a time.
+  Eigen::Isometry3d pose(double time) const;
 };
 
 /// A load on a body, and its factor over time.
@@ -98,6 +111,7 @@ class Model {
   /// Actuators and, after them, guides: rows that a law finds efforts for.
   std::size_t range_count() const { return actuators_.size() + guides_.size(); }
   const std::vector<EffectorModel>& effectors() const { return effectors_; }
+  const std::vector<ContactModel>& contacts() const { return contacts_; }
   const std::vector<std::unique_ptr<constraint::Probe>>& probes() const { return probes_; }
   const mechanics::RowPattern& rows() const { return rows_; }
   const std::vector<mechanics::RowCurvature>& curvatures() const { return curvatures_; }
@@ -115,10 +129,12 @@ class Model {
   int body_index(std::string_view name) const;
   int actuator_index(std::string_view name) const;
   int effector_index(std::string_view name) const;
+  int contact_index(std::string_view name) const;
   int load_index(std::string_view name) const;
   int probe_index(std::string_view name) const;
 
   const constraint::Effector& effector(int index) const;
+  const constraint::Contact& contact(int index) const;
   /// The line of a cable or spring; null when an actuator has none.
   const constraint::Cable* cable(int actuator) const;
   /// The chamber of an actuator; null when it has none.
@@ -138,6 +154,7 @@ class Model {
   std::vector<ActuatorModel> actuators_;
   std::vector<GuideModel> guides_;
   std::vector<EffectorModel> effectors_;
+  std::vector<ContactModel> contacts_;
   std::vector<std::unique_ptr<constraint::Probe>> probes_;
   mechanics::RowPattern rows_;
   std::vector<mechanics::RowCurvature> curvatures_;

@@ -402,17 +402,19 @@ int ModelBuilder::add_cavity(const CavitySettings& settings) {
   }
 }
 
+Vector3 checked_axis(const Vector3& axis, const Place& place) {
+  const double length = axis.norm();
+  if (length > 0.0) return axis / length;
+  throw Error(ErrorKind::out_of_range, place, "the axis has no length", "give one such as 0 0 1");
+}
+
 void ModelBuilder::add_base_motion(const BaseMotion& motion, const Place& place) {
   if (fem_body(motion.body, place, "motion of its base").settings().elements.fixed_nodes.empty()) {
     throw Error(ErrorKind::nothing_fixed, place, "the body has a base motion but no fixed node",
                 "fix the region that moves");
   }
-  const double length = motion.axis.norm();
-  if (!(length > 0.0)) {
-    throw Error(ErrorKind::out_of_range, place, "the axis has no length", "give one such as 0 0 1");
-  }
   model_->base_motions_.push_back(motion);
-  model_->base_motions_.back().axis /= length;
+  model_->base_motions_.back().axis = checked_axis(motion.axis, place);
 }
 
 int ModelBuilder::add_force(const ForceSettings& settings) {
@@ -549,6 +551,10 @@ std::shared_ptr<const Model> ModelBuilder::build(const linalg::FactorisationSett
     }
   }
   for (const GuideModel& guide : model_->guides_) hash.add(guide.friction);
+  for (std::size_t i = 0; i < model_->contacts_.size(); ++i) {
+    hash.add(model_->contact(static_cast<int>(i)).friction());
+    hash.add(static_cast<double>(model_->contact(static_cast<int>(i)).surface().index()));
+  }
   hash.add(model_->step_.time_step);
   for (const auto& point : model_->rows_.point) hash.add(static_cast<double>(point.point));
   model_->fingerprint_ = hash.value();

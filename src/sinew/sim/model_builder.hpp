@@ -104,11 +104,28 @@ struct EffectorSettings {
   mesh::Outside outside = mesh::Outside::error;
 };
 
+/// Points of a body that may touch a surface.
+struct ContactSettings {
+  std::string name;
+  Place place;
+  int body = 0;
+  constraint::Surface surface;
+  std::vector<NodeId> nodes;  ///< of the body's mesh; fixed ones are left out
+  Points points;              ///< (n, 3) m, at rest; beside the nodes
+  mesh::Outside outside = mesh::Outside::error;
+  double friction = 0.0;             ///< Coulomb's coefficient, >= 0
+  std::optional<BaseMotion> motion;  ///< of the surface
+};
+
 /// The mean of points given by position, as one attached point. @return its number.
 /// @param body,points,outside (n, 3) m on it, at rest. @param what names it in messages.
 /// @param place of what is declared. Throws Error: too-few-points, point-outside-mesh, wrong-type.
 int attach_mean(mechanics::BodyModel& body, const Points& points, mesh::Outside outside,
                 const std::string& what, const Place& place);
+
+/// An axis of unit length. @param axis,place (3,), and where it was written. Throws
+/// Error(out-of-range) for one without length.
+Vector3 checked_axis(const Vector3& axis, const Place& place);
 
 class ModelBuilder {
  public:
@@ -135,6 +152,10 @@ class ModelBuilder {
   /// As add_cable(), and Error(out-of-range).
   int add_spring(const SpringLineSettings& settings);
   int add_effector(const EffectorSettings& settings);
+  /// Throws Error: too-few-points, point-outside-mesh, out-of-range (friction, radius, normal, a
+  /// point inside the surface at the start), wrong-type (nodes of a body without),
+  /// not-in-this-version (generalized-alpha).
+  int add_contact(const ContactSettings& settings);
   /// Throws Error: too-few-points, empty-region, point-outside-mesh, degenerate-orientation.
   int add_probe(const ProbeSettings& settings);
 

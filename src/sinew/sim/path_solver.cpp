@@ -39,6 +39,11 @@ void Simulation::set_share(double share) {
 }
 
 void Simulation::plan_path() {
+  if (!model_->contacts().empty()) {
+    throw Error(ErrorKind::not_in_this_version, {.item = "follow_path"},
+                "paths of robots with contacts are not followed yet",
+                "step through the load in time");
+  }
   if (!model_->guides().empty()) {
     throw Error(ErrorKind::bad_argument, {.item = "follow_path"},
                 "cables with friction have no path of their own", "step through the load in time");
@@ -131,7 +136,7 @@ std::vector<PathPoint> Simulation::follow_path(const PathSettings& settings,
   now_ = time();
   move_bases(now_);
   plan_path();
-  world_.begin_step();
+  world_.begin_step(time(), time());
   std::vector<PathPoint> path;
   VectorX direction;
   double share = 0.0;
@@ -139,7 +144,7 @@ std::vector<PathPoint> Simulation::follow_path(const PathSettings& settings,
   const double longest = settings.largest_step * model_->size();
   const auto rest = [&] {
     world_.end_step({});
-    world_.begin_step();
+    world_.begin_step(time(), time());
     finish_step();
   };
   while (share < 1.0 && static_cast<int>(path.size()) < settings.max_points) {

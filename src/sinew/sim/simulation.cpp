@@ -22,6 +22,7 @@ Simulation::Simulation(std::shared_ptr<const Model> model, int threads)
       pool_(std::make_unique<ThreadPool>(threads)),
       world_(model_, *pool_),
       direct_(static_cast<int>(model_->range_count())),
+      contact_(*model_),
       driven_(model_->rows().rows(), static_cast<int>(model_->range_count())),
       friction_(*model_),
       actuators_(model_->actuators().size()),
@@ -69,11 +70,12 @@ std::span<double> Simulation::drive_numbers(std::size_t actuator) {
 
 Law& Simulation::complete(Law* controller) {
   const bool driven = std::ranges::any_of(ranges_, DrivenLaw::takes);
-  Law& chooser = controller != nullptr ? *controller : direct_;
+  Law& direct = model_->contacts().empty() ? static_cast<Law&>(direct_) : contact_;
+  Law& chooser = controller != nullptr ? *controller : direct;
   Law& inner = driven ? driven_.around(chooser) : chooser;
   if (model_->guides().empty()) return inner;
   return controller == nullptr ? friction_.around(inner, nullptr)
-                               : friction_.around(direct_, &inner);
+                               : friction_.around(direct, &inner);
 }
 
 // After finish_step(): where each drive stands, whoever chose its effort.
@@ -195,6 +197,7 @@ void Simulation::count_work() {
     const double slid = world_.delta()[row] - motion_before_[k];
     work_.dissipated -= effort_[static_cast<std::size_t>(row)] * slid;
   }
+  count_contact_work();
 }
 
 // One solution of the step's equation; the error estimate, m.
@@ -204,7 +207,7 @@ double Simulation::substep(double end, double time_step) {
   save_state(state_before_);
   move_bases(end);
   set_loads(end);
-  world_.begin_step();
+  world_.begin_step(end - time_step, end);
   Law& law = complete(law_);
   const LawProblem problem{*model_,
                            world_.placement(),
@@ -218,6 +221,10 @@ double Simulation::substep(double end, double time_step) {
     step_newton(law, problem);
   } else {
     step_once(law, problem);
+  }
+  if (!model_->contacts().empty()) {
+    report_.contact_residual = contact_.result().residual;
+    report_.contact_sweeps = contact_.result().sweeps;
   }
   const double error = world_.end_step(step_weights(time_step));
   step_before_ = time_step;
@@ -253,6 +260,12 @@ void Simulation::step_once(Law& law, const LawProblem& problem) {
                      "buckle",
                      negative_pivots()),
          "use the rotated tangent, which passes through, or lessen the load");
+  }
+  if (report_.law == LawStatus::failed && !model_->contacts().empty()) {
+    fail(ErrorKind::not_converged,
+         fmt::format("no contact forces obey this step: residual {:.3g} after {} sweeps",
+                     contact_.result().residual, contact_.result().sweeps),
+         "take a smaller time step, or look for a body that is squeezed where it cannot give way");
   }
   if (report_.law == LawStatus::failed) {
     fail(ErrorKind::not_converged, "no efforts obey the law of this step",
@@ -375,6 +388,11 @@ void Simulation::command(int actuator, Command command) {
 }
 
 void Simulation::attach(Law& law, std::span<const int> actuators) {
+  if (!model_->contacts().empty()) {
+    throw Error(ErrorKind::not_in_this_version, {.item = "controller"},
+                "controllers do not yet choose efforts of robots with contacts",
+                "leave out `contacts`, or command the actuators");
+  }
   if (law_ != nullptr && law_ != &law) {
     throw Error(ErrorKind::actuator_owned, {.item = "controller"},
                 "another controller is attached to this simulation", "detach it first");
@@ -387,6 +405,7 @@ void Simulation::detach(const Law& law) {
   if (law_ != &law) return;
   law_ = nullptr;
   direct_.reset();
+  contact_.reset();
   for (ActuatorState& state : actuators_) {
     if (state.owner != &law) continue;
     state.owner = nullptr;
@@ -466,6 +485,7 @@ void Simulation::load_state(std::span<const double> state, std::int64_t steps) {
   substep_ = rest[2];
   steps_ = steps;
   direct_.reset();
+  contact_.reset();
   if (law_ != nullptr) law_->reset();
 }
 
@@ -489,6 +509,7 @@ void Simulation::reset() {
   steps_ = 0;
   finish_step();
   direct_.reset();
+  contact_.reset();
   if (law_ != nullptr) law_->reset();
   report_ = {};
 }

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "sinew/fem/fem_body.hpp"
+#include "sinew/sim/contact_law.hpp"
+#include "sinew/sim/contact_state.hpp"
 #include "sinew/sim/direct_law.hpp"
 #include "sinew/sim/driven_law.hpp"
 #include "sinew/sim/friction_law.hpp"
@@ -36,6 +38,8 @@ struct StepReport {
   double error = 0.0;              ///< m, largest estimate of a substep's error in any coordinate
   double scale = 1.0;  ///< of the motion; < 1 when it was cut back to keep elements from inverting
   double smallest_volume_ratio = 1.0;  ///< min det F at the end of the step
+  double contact_residual = 0.0;       ///< relative, see qp::ConeResult; 0 without contacts
+  int contact_sweeps = 0;              ///< of Gauss-Seidel, in the last solution of the law
   NewtonStatus newton = NewtonStatus::converged;
   StageTimes times;
 };
@@ -96,13 +100,14 @@ class Simulation {
   /// effort times change of motion, with the effort that acted through each step.
   double actuator_work() const { return work_.actuators; }
   /// The same of loads and outside forces (gravity has its own energy), and what damping, drag and
-  /// the friction of cables took.
+  /// the friction of cables, and friction and impacts of contacts took.
   double outside_work() const { return work_.outside; }
   double dissipation() const { return work_.dissipated; }
 
   /// Newton to the static equilibrium at the present inputs: commands at the present time, limits
   /// on rates lifted, actuators of a controller held at their efforts; exact tangent, cables'
   /// geometric stiffness, load stepping when needed. Velocities become zero; time stands still.
+  /// Friction of contacts is that of one slow motion from the present state.
   /// Throws Error(not-converged) and restores the state when there is none to be found.
   StaticReport solve_static(const StaticSettings& settings = {});
 
@@ -112,7 +117,8 @@ class Simulation {
   /// full load or just beyond; solve_static() finds that of the load itself from there.
   /// @param settings see there. @param visit called at every point.
   /// Throws Error(bad-argument) where an actuator is told a motion, has a drive or friction;
-  /// Error(not-converged), the state then being that of the start.
+  /// Error(not-in-this-version) with contacts; Error(not-converged), the state then being that of
+  /// the start.
   std::vector<PathPoint> follow_path(const PathSettings& settings,
                                      const std::function<void()>& visit = {});
 
@@ -134,8 +140,17 @@ class Simulation {
   /// (components,) what a probe measures now, m and rad. @param index of Model::probes().
   std::vector<double> probe_values(int index) const;
 
+  /// What the points of a contact do, see Model::contact().
+  /// @param index of Model::contacts(). @param point of constraint::Contact::points().
+  ContactPoint contact_point(int index, std::size_t point) const;
+  std::vector<ContactPoint> contact_points(int index) const;
+  ContactSum contact_sum(int index) const;
+  /// How the contacts' forces were last found.
+  const qp::ConeResult& contact_result() const { return contact_.result(); }
+
   /// Gives a law the actuators that it chooses efforts for; it replaces the direct law in every
-  /// step until it is detached. One law at a time. Throws Error(actuator-owned).
+  /// step until it is detached. One law at a time. Throws Error(actuator-owned), and
+  /// Error(not-in-this-version) where bodies may touch surfaces.
   void attach(Law& law, std::span<const int> actuators);
   void detach(const Law& law);
   const Law* attached_law() const { return law_; }
@@ -177,6 +192,8 @@ class Simulation {
   void imbalance_at(double share, VectorX& imbalance);
   int step_path(double length, double& share, VectorX& direction, double tolerance);
   void count_work();
+  void count_contact_work();
+  void follow_surfaces(const StaticSettings& settings, StaticReport& report, NewtonReport& last);
   void step_adaptively();
   void step_once(Law& law, const LawProblem& problem);
   void step_newton(Law& law, const LawProblem& problem);
@@ -191,6 +208,7 @@ class Simulation {
   std::unique_ptr<ThreadPool> pool_;
   World world_;
   DirectLaw direct_;
+  ContactLaw contact_;
   DrivenLaw driven_;
   FrictionLaw friction_;
   Law* law_ = nullptr;

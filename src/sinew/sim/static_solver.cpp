@@ -19,6 +19,10 @@ namespace {
 // it rose by the same volume before.
 constexpr double kFlat = 5.0;
 
+// Touching points are this near their surface, of the robot's size.
+constexpr double kSurfaceTolerance = 1e-9;
+constexpr int kMostSurfaceRounds = 60;
+
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Commands on the way from where the actuators stand (share 1) to where they are told to be (0).
@@ -38,7 +42,7 @@ void blend(std::span<ActuatorRange> ranges, std::span<const ActuatorState> start
 NewtonReport Simulation::equilibrate(const StaticSettings& settings, double share,
                                      StaticReport& report) {
   world_.set_imbalance_share(share);
-  world_.begin_step();
+  world_.begin_step(time(), time());
   const LawProblem problem{*model_,
                            world_.placement(),
                            ranges_,
@@ -86,6 +90,22 @@ std::string Simulation::describe_limit_point() {
   return {};
 }
 
+// A step takes surfaces for their tangent planes: further ones until no touching point finds its
+// own another.
+void Simulation::follow_surfaces(const StaticSettings& settings, StaticReport& report,
+                                 NewtonReport& last) {
+  const double tolerance = std::max(settings.tolerance, kSurfaceTolerance) * model_->size();
+  for (int round = 0; round < kMostSurfaceRounds; ++round) {
+    if (!(world_.contact_drift(effort_, time()) > tolerance)) return;
+    last = equilibrate(settings, 0.0, report);
+    if (last.status != NewtonStatus::converged) break;
+  }
+  if (world_.contact_drift(effort_, time()) > tolerance || last.status != NewtonStatus::converged) {
+    fail(ErrorKind::not_converged, "points keep moving along a curved surface",
+         "approach the load through time steps");
+  }
+}
+
 StaticReport Simulation::solve_static(const StaticSettings& settings) {
   StaticReport report;
   clock_.start();
@@ -104,6 +124,7 @@ StaticReport Simulation::solve_static(const StaticSettings& settings) {
   }
   const std::vector<ActuatorRange> goal = ranges_;
   direct_.reset();
+  contact_.reset();
   NewtonReport last = equilibrate(settings, 0.0, report);
 
   if (last.status != NewtonStatus::converged) {
@@ -144,9 +165,10 @@ StaticReport Simulation::solve_static(const StaticSettings& settings) {
                      settings.max_load_steps),
          "approach the load through time steps; the robot may buckle on the way");
   }
+  follow_surfaces(settings, report, last);
   volume_ratio_ = last.motion.smallest_volume_ratio;
   ranges_ = goal;
-  world_.begin_step();
+  world_.begin_step(time(), time());
   world_.end_step({});
   step_before_ = 0.0;
   finish_step();

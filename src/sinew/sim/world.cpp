@@ -27,11 +27,40 @@ World::World(std::shared_ptr<const Model> model, ThreadPool& pool)
   const int rows = model_->rows().rows();
   compliance_.setZero(rows, rows);
   delta_free_.setZero(rows);
+  contact_start_.setZero(rows);
+  place_contacts(0.0, 0.0);
   measure_delta();
 }
 
-void World::begin_step() {
+// Before bodies follow their bases: what they are carried by counts as motion along the surface.
+void World::place_contacts(double from, double to) {
+  for (std::size_t i = 0; i < model_->contacts().size(); ++i) {
+    const ContactModel& contact = model_->contacts()[i];
+    model_->contact(static_cast<int>(i))
+        .begin_step(placement_, contact.pose(from), contact.pose(to), rows_);
+  }
+}
+
+void World::begin_step(double from, double to) {
+  if (!model_->contacts().empty()) {
+    place_contacts(from, to);
+    contact_start_ = measure_delta();
+  }
   for (auto& body : bodies_) body->begin_step();
+}
+
+double World::contact_drift(std::span<const double> effort, double time) const {
+  double worst = 0.0;
+  for (std::size_t i = 0; i < model_->contacts().size(); ++i) {
+    const constraint::Contact& contact = model_->contact(static_cast<int>(i));
+    const Eigen::Isometry3d pose = model_->contacts()[i].pose(time);
+    for (std::size_t k = 0; k < contact.points().size(); ++k) {
+      if (effort[static_cast<std::size_t>(contact.row(k))] == 0.0) continue;
+      const double gap = contact.distance_now(placement_, pose, k).gap;
+      worst = std::max(worst, std::abs(gap - rows_.delta[contact.row(k)]));
+    }
+  }
+  return worst;
 }
 
 void World::linearise(const mechanics::LinearisationRequest& request) {

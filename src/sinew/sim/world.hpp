@@ -17,7 +17,11 @@ class World {
   /// @param model shared. @param pool must outlive the world.
   World(std::shared_ptr<const Model> model, ThreadPool& pool);
 
-  void begin_step();
+  /// @param from,to s, when the step begins and ends: where surfaces stand then.
+  void begin_step(double from, double to);
+  /// m: the farthest that any touching point's gap is from that of its tangent plane, at the pose
+  /// that surfaces have at a time. @param effort (rows,) N; who touches. @param time s.
+  double contact_drift(std::span<const double> effort, double time) const;
   /// Assembly: every body at its current state.
   void linearise(const mechanics::LinearisationRequest& request);
   /// H and delta at the current placement, handed to the bodies; adds the curvature of
@@ -47,6 +51,8 @@ class World {
   /// delta at the current placement, without forming the rows anew for the bodies.
   const VectorX& measure_delta();
   const mechanics::RowValues& rows() const { return rows_; }
+  /// (rows,) m: delta of contacts when the step began.
+  const VectorX& contact_start() const { return contact_start_; }
 
   const constraint::Placement& placement() const { return placement_; }
   std::span<const std::unique_ptr<mechanics::Body>> bodies() const { return bodies_; }
@@ -61,13 +67,15 @@ class World {
   std::size_t bytes() const;
 
  private:
+  void place_contacts(double from, double to);
+
   std::shared_ptr<const Model> model_;
   std::vector<std::unique_ptr<mechanics::Body>> bodies_;
   constraint::Placement placement_;
   mechanics::RowValues rows_;
   std::vector<mechanics::RowCurvature> curvatures_;
   MatrixX compliance_;
-  VectorX delta_free_;
+  VectorX delta_free_, contact_start_;
 };
 
 }  // namespace sinew::sim

@@ -1,0 +1,111 @@
+#include <fmt/format.h>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+
+namespace sinew::python {
+
+namespace {
+
+const sim::ContactModel& model(const Contact& self) {
+  return self.session->model().contacts()[static_cast<std::size_t>(self.index)];
+}
+
+std::vector<sim::ContactPoint> points(const Contact& self) {
+  const Session::Use use(*self.session);
+  return self.session->simulation().contact_points(self.index);
+}
+
+sim::ContactSum sum(const Contact& self) {
+  const Session::Use use(*self.session);
+  return self.session->simulation().contact_sum(self.index);
+}
+
+/// (n, 3) of one vector of every point.
+Array vectors(const Contact& self, Vector3 sim::ContactPoint::*member) {
+  const auto all = points(self);
+  Points result(static_cast<Eigen::Index>(all.size()), 3);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    result.row(static_cast<Eigen::Index>(k)) = (all[k].*member).transpose();
+  }
+  return copy(result);
+}
+
+/// (n,) of one number of every point.
+Array numbers(const Contact& self, double sim::ContactPoint::*member) {
+  const auto all = points(self);
+  VectorX result(static_cast<Eigen::Index>(all.size()));
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    result[static_cast<Eigen::Index>(k)] = all[k].*member;
+  }
+  return copy(result);
+}
+
+py::list states(const Contact& self) {
+  py::list result;
+  for (const sim::ContactPoint& point : points(self)) {
+    result.append(qp::contact_state_name(point.state));
+  }
+  return result;
+}
+
+void bind_sums(py::class_<Contact>& type) {
+  type.def_property_readonly(
+          "force", [](const Contact& self) { return copy(sum(self).force); },
+          "(3,) ndarray: the force on the body in the last step (N), of all points together.")
+      .def_property_readonly(
+          "normal_force", [](const Contact& self) { return sum(self).normal_force; },
+          "float: sum of the points' normal forces (N), >= 0.")
+      .def_property_readonly(
+          "friction_force", [](const Contact& self) { return sum(self).friction_force; },
+          "float: sum of the magnitudes of the points' friction forces (N).")
+      .def_property_readonly(
+          "gap", [](const Contact& self) { return sum(self).smallest_gap; },
+          "float: the smallest gap of any point (m), negative inside the surface.");
+}
+
+void bind_points(py::class_<Contact>& type) {
+  type.def_property_readonly(
+          "positions",
+          [](const Contact& self) { return vectors(self, &sim::ContactPoint::position); },
+          "(n, 3) ndarray: the points that may touch, now (m).")
+      .def_property_readonly(
+          "gaps", [](const Contact& self) { return numbers(self, &sim::ContactPoint::gap); },
+          "(n,) ndarray: distance of every point from the surface (m), negative inside.")
+      .def_property_readonly(
+          "normals", [](const Contact& self) { return vectors(self, &sim::ContactPoint::normal); },
+          "(n, 3) ndarray: out of the surface, of the last step.")
+      .def_property_readonly(
+          "normal_forces",
+          [](const Contact& self) { return numbers(self, &sim::ContactPoint::normal_force); },
+          "(n,) ndarray: force on the body along the normal (N), >= 0.")
+      .def_property_readonly(
+          "friction_forces",
+          [](const Contact& self) { return vectors(self, &sim::ContactPoint::friction_force); },
+          "(n, 3) ndarray: force on the body along the surface (N).")
+      .def_property_readonly("states", &states,
+                             "list of str: 'open', 'stick' or 'slip' (friction at its limit) of "
+                             "every point.");
+}
+
+}  // namespace
+
+void bind_contact(py::module_& module) {
+  py::class_<Contact> type(module, "Contact",
+                           "Points of a body that may touch a surface. From Simulation.contact() "
+                           "or Simulation.contacts.");
+  type.def_property_readonly(
+          "name", [](const Contact& self) { return model(self).name; }, "str: as in the scene.")
+      .def_property_readonly(
+          "friction",
+          [](const Contact& self) { return self.session->model().contact(self.index).friction(); },
+          "float: Coulomb's coefficient.");
+  bind_sums(type);
+  bind_points(type);
+  type.def("__repr__", [](const Contact& self) {
+    return fmt::format("<sinew.Contact '{}', {} points>", model(self).name,
+                       self.session->model().contact(self.index).points().size());
+  });
+}
+
+}  // namespace sinew::python

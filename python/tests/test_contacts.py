@@ -1,0 +1,60 @@
+"""Contacts, as Python sees them."""
+
+import numpy as np
+import pytest
+
+import sinew
+
+WEIGHT = 1000.0 * 0.04 * 0.04 * 0.02 * 9.81
+
+
+def block(friction=0.5, angle=0.0, **more):
+    return sinew.load({
+        "sinew": 1, "integrator": "backward-euler", "time_step": "1 ms",
+        "gravity": [9.81 * np.sin(angle), 0.0, -9.81 * np.cos(angle)],
+        "bodies": {"block": {
+            "type": "fem", "density": 1000.0, "damping": {"stiffness": "2 ms"},
+            "material": {"young_modulus": "1 MPa", "poisson_ratio": 0.3},
+            "mesh": {"shape": "block", "length": 0.04, "width": 0.04, "height": 0.02, "element_size": 0.01}}},
+        "contacts": {"floor": {"body": "block", "nodes": {"set": "z_min"}, "friction": friction,
+                               "surface": {"plane": {}}}}, **more})
+
+
+def test_resting_block():
+    sim = block()
+    sim.step(400)
+    floor = sim.contact("floor")
+    assert sim.contacts["floor"].name == "floor"
+    assert floor.friction == 0.5
+    assert floor.normal_force == pytest.approx(WEIGHT, rel=1e-6)
+    assert floor.force == pytest.approx([0.0, 0.0, WEIGHT], abs=1e-6 * WEIGHT)
+    assert floor.normal_forces.sum() == pytest.approx(floor.normal_force)
+    assert floor.friction_forces.shape == floor.positions.shape == floor.normals.shape == (25, 3)
+    assert abs(floor.gap) < 1e-9 and abs(floor.gaps).max() < 1e-9
+    assert len(floor.states) == 25 and set(floor.states) <= {"stick", "slip", "open"}
+    assert "floor" in repr(floor)
+
+
+def test_sliding_block_is_recorded():
+    angle = 0.8
+    sim = block(angle=angle)
+    run = sim.run(1.0)
+    assert run["floor.force"].shape == (1001, 3)
+    assert run["floor.normal_force"][-1] == pytest.approx(WEIGHT * np.cos(angle), rel=1e-3)
+    assert run["floor.gap"][-1] == pytest.approx(0.0, abs=1e-9)
+    speed = sim.body("block").velocities[:, 0].mean()
+    assert speed == pytest.approx(9.81 * (np.sin(angle) - 0.5 * np.cos(angle)), rel=2e-3)
+    assert set(sim.contact("floor").states) <= {"slip", "open"}
+
+
+def test_errors():
+    sim = block()
+    with pytest.raises(sinew.Error) as error:
+        sim.contact("flor")
+    assert error.value.kind == "unknown-name"
+    with pytest.raises(sinew.Error) as error:
+        block(integrator="generalized-alpha")
+    assert error.value.kind == "not-in-this-version"
+    with pytest.raises(sinew.Error) as error:
+        sim.follow_path()
+    assert error.value.kind == "not-in-this-version"

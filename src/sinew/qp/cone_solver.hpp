@@ -1,0 +1,103 @@
+/// @file
+/// Complementarity problems over a dense compliance whose blocks are friction cones and boxes:
+/// block Gauss-Seidel with exact local solutions, and Newton's method to finish. Knows no physics
+/// beyond the cone.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "sinew/core/types.hpp"
+#include "sinew/qp/friction_cone.hpp"
+
+namespace sinew::qp {
+
+/// One variable between limits: y = target strictly between, y >= target at `lower`, y <= target at
+/// `upper`.
+struct BoxBlock {
+  int row = 0;
+  double lower = 0.0, upper = 0.0;  ///< may be infinite; lower <= upper
+  double target = 0.0;
+};
+
+/// Three variables (normal, two tangential) at rows `row` .. `row` + 2, see ConeEquation.
+struct ConeBlock {
+  int row = 0;
+  double friction = 0.0;  ///< >= 0
+};
+
+/// Find x with y = matrix x + offset such that every block's law holds. Rows in no block keep the x
+/// that they have.
+struct ConeProblem {
+  const MatrixX& matrix;  ///< (n, n), symmetric positive semidefinite on the blocks' rows
+  const VectorX& offset;  ///< (n,)
+  std::span<const BoxBlock> boxes;
+  std::span<const ConeBlock> cones;
+};
+
+/// How a solve ended.
+enum class ConeStatus {
+  solved,
+  iteration_limit,  ///< the residual is above the tolerance after settings.max_sweeps
+  not_finite,       ///< NaN or infinity in the problem's data
+  not_convex,       ///< a block's diagonal is negative
+};
+/// The status as it is printed: "iteration-limit".
+std::string_view cone_status_name(ConeStatus status);
+
+/// How ConeSolver works.
+struct ConeSettings {
+  double tolerance = 1e-10;  ///< of `residual`
+  int max_sweeps = 2000;     ///< of Gauss-Seidel
+  int first_sweeps = 4;      ///< before Newton's method is tried; doubled at every further try
+  int newton_limit = 1500;   ///< unknowns; larger problems are left to Gauss-Seidel
+};
+
+struct ConeResult {
+  ConeStatus status = ConeStatus::solved;
+  std::vector<ContactState> states;  ///< (cones,)
+  /// Largest distance of any block from its law, of the largest effort, each times sqrt(w): w a
+  /// third of the trace of the block of the matrix, so that efforts of different units compare.
+  /// With De Saxce's change of variables v = (u_n + mu |u_t|, u_t), Signorini's and Coulomb's laws
+  /// together are K contains r _|_ v in K* (De Saxce & Feng 1998); the distance is |r - P_K(r -
+  /// v/w)|.
+  double residual = 0.0;
+  double signorini = 0.0;  ///< largest |min(u_n, w r_n)|: penetration, effort across a gap; as u
+  double coulomb = 0.0;    ///< largest |w r_t - P(w r_t - u_t)|, P onto the disc of w mu r_n; as u
+  double complementarity = 0.0;  ///< largest |u_n r_n|, as u times r
+  int sweeps = 0;
+  int newton_steps = 0;
+};
+
+/// Each sweep solves block after block exactly, all others held (Jean 1999's nonsmooth contact
+/// dynamics; local solutions as in Bonnefon & Daviet 2011). Gauss-Seidel is robust, and slow where
+/// many contacts hold one stiff body; its iterate then starts Newton's method on the equations that
+/// the projection leaves (Alart & Curnier 1991), whose steps are kept where they lessen the
+/// residual. Small multiples of the diagonal that act on the change of x alone, and so have no part
+/// in the solution, keep redundant contacts solvable.
+class ConeSolver {
+ public:
+  /// @param rows n. @param boxes,cones most of them that problems will have.
+  /// @param settings see there.
+  ConeSolver(int rows, int boxes, int cones, ConeSettings settings = {});
+  ~ConeSolver();
+  ConeSolver(ConeSolver&&) noexcept;
+  ConeSolver& operator=(ConeSolver&&) noexcept;
+
+  /// Allocates nothing. @param problem of the solver's size. @param x (n,) in: where to start from;
+  /// out: the solution, each block inside its cone or box exactly. Throws Error(wrong-shape).
+  const ConeResult& solve(const ConeProblem& problem, std::span<double> x);
+  const ConeResult& result() const;
+
+ private:
+  struct Workspace;
+  std::unique_ptr<Workspace> work_;
+};
+
+/// Distance of one contact from its laws: |r - P_K(r - v/w)| (see ConeResult::residual).
+/// @param r,u (3,) effort and motion. @param friction mu. @param scale w, > 0.
+double cone_residual(const Vector3& r, const Vector3& u, double friction, double scale);
+
+}  // namespace sinew::qp

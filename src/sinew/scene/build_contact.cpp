@@ -1,0 +1,59 @@
+#include <algorithm>
+
+#include "sinew/core/error.hpp"
+#include "sinew/scene/build_parts.hpp"
+#include "sinew/scene/readers.hpp"
+
+namespace sinew::scene {
+
+namespace {
+
+// Ascending, the middles of quadratic faces included.
+std::vector<NodeId> outer_nodes(const mesh::Mesh& mesh) {
+  std::vector<NodeId> nodes;
+  for (const mesh::Face& face : mesh::boundary_faces(mesh)) {
+    nodes.insert(nodes.end(), face.nodes().begin(), face.nodes().end());
+    if (face.is_quadratic()) nodes.insert(nodes.end(), face.middle.begin(), face.middle.end());
+  }
+  std::ranges::sort(nodes);
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return nodes;
+}
+
+std::vector<NodeId> nodes_of(const ContactDescription& contact, const mesh::Mesh& mesh) {
+  std::vector<NodeId> outer = outer_nodes(mesh);
+  if (!contact.nodes) return outer;
+  const std::vector<NodeId> picked = at_place(contact.nodes->place, [&] {
+    return mesh::select_nodes(mesh, region_of(*contact.nodes), contact.nodes->place.item);
+  });
+  std::vector<NodeId> nodes;
+  std::ranges::set_intersection(picked, outer, std::back_inserter(nodes));
+  if (nodes.empty()) {
+    throw Error(ErrorKind::empty_region, contact.nodes->place,
+                "all nodes of the region lie inside the body", "name a part of its outside");
+  }
+  return nodes;
+}
+
+}  // namespace
+
+void add_contact(sim::ModelBuilder& builder, const ContactDescription& contact,
+                 const BodyOf& body_of) {
+  const auto [body, mesh] = body_of(contact.body);
+  sim::ContactSettings settings;
+  settings.name = contact.name;
+  settings.place = contact.place;
+  settings.body = body;
+  settings.surface = contact.surface;
+  settings.points = contact.points.points;
+  settings.outside = contact.outside;
+  settings.friction = contact.friction;
+  if (settings.points.rows() == 0) settings.nodes = nodes_of(contact, *mesh);
+  if (contact.motion) {
+    const BaseDescription& motion = *contact.motion;
+    settings.motion = {-1, motion.translation, motion.angle, motion.axis, motion.center};
+  }
+  builder.add_contact(settings);
+}
+
+}  // namespace sinew::scene

@@ -1,0 +1,126 @@
+// The tables of contacts: what surfaces a body may touch, and where.
+#include "sinew/scene/grammar_forms.hpp"
+
+namespace sinew::scene::forms {
+
+namespace {
+
+Key radius_key(const char* example) {
+  return {.name = "radius",
+          .forms = {quantity(length(), positive())},
+          .example = example,
+          .description = "Its radius.",
+          .required = true};
+}
+
+std::shared_ptr<const KeyTable> solid_plane() {
+  return make_table({.name = "solid plane",
+                     .description = "A half space that is solid below a plane.",
+                     .keys = {{.name = "point",
+                               .forms = {vector(length())},
+                               .example = "0 0 0 mm",
+                               .default_text = "0 0 0 mm",
+                               .description = "A point of the plane."},
+                              {.name = "normal",
+                               .forms = {vector(plain_number())},
+                               .example = "0 0 1",
+                               .default_text = "0 0 1",
+                               .description = "Out of what is solid; any length but zero."}}});
+}
+
+std::shared_ptr<const KeyTable> solid_sphere() {
+  return make_table({.name = "solid sphere",
+                     .description = "A ball, touched from outside.",
+                     .keys = {{.name = "center",
+                               .forms = {vector(length())},
+                               .example = "0 0 195 mm",
+                               .description = "Its center.",
+                               .required = true},
+                              radius_key("10 mm")}});
+}
+
+std::shared_ptr<const KeyTable> solid_capsule() {
+  return make_table({.name = "solid capsule",
+                     .description = "All that is within a radius of a segment: a rod with round "
+                                    "ends, touched from outside.",
+                     .keys = {{.name = "ends",
+                               .forms = {list({vector(length())}, 2, 2)},
+                               .example = "[-50 0 40 mm, 50 0 40 mm]",
+                               .description = "The ends of the segment.",
+                               .required = true},
+                              radius_key("5 mm")}});
+}
+
+std::shared_ptr<const KeyTable> solid_table() {
+  return make_table({.name = "surface of a contact",
+                     .description = "Exactly one of plane, sphere and capsule.",
+                     .keys = {{.name = "plane",
+                               .forms = {table(solid_plane())},
+                               .example = "{point: 0 0 0 mm, normal: 0 0 1}",
+                               .description = "A plane."},
+                              {.name = "sphere",
+                               .forms = {table(solid_sphere())},
+                               .example = "{center: 0 0 0 mm, radius: 10 mm}",
+                               .description = "A ball."},
+                              {.name = "capsule",
+                               .forms = {table(solid_capsule())},
+                               .example = "{ends: [-50 0 40 mm, 50 0 40 mm], radius: 5 mm}",
+                               .description = "A rod with round ends."}},
+                     .alternatives = {{{"plane", "sphere", "capsule"}, true}}});
+}
+
+std::shared_ptr<const KeyTable> nodes_table() {
+  return make_table({.name = "nodes of a contact",
+                     .description =
+                         "Which nodes of the body's outside may touch, picked in the mesh "
+                         "at rest. Exactly one of box, sphere, plane and set.",
+                     .keys = region_keys("Nodes"),
+                     .alternatives = {{{"box", "sphere", "plane", "set"}, true}}});
+}
+
+}  // namespace
+
+Form contact_form() {
+  KeyTable contact{
+      .name = "contact",
+      .description =
+          "A surface that points of a body may touch and not pass, with Coulomb friction. Every "
+          "point costs three rows in each step, touching or not: name the part of the body that "
+          "may touch. `sinew run` records the resultant force in run.csv.",
+      .keys = {body_key()},
+      .alternatives = {{{"nodes", "points"}, false}}};
+  contact.keys.push_back(
+      {.name = "surface",
+       .forms = {table(solid_table())},
+       .example = "{plane: {point: 0 0 0 mm, normal: 0 0 1}}",
+       .description = "What is touched; fixed in the world, or moved by `motion`.",
+       .required = true});
+  contact.keys.push_back({.name = "nodes",
+                          .forms = {table(nodes_table())},
+                          .example = "{set: z_min}",
+                          .description = "The nodes of the body's outside that may touch. Without, "
+                                         "and without points: all that are not fixed."});
+  contact.keys.push_back({.name = "points",
+                          .forms = {table(point_file_table()), list({vector(length())})},
+                          .example = "[0 0 195 mm]",
+                          .description = "Points in the mesh at rest, in place of nodes."});
+  contact.keys.push_back(outside_key());
+  contact.keys.push_back({.name = "friction",
+                          .forms = {quantity(plain_number(), non_negative())},
+                          .example = "0.5",
+                          .default_text = "0",
+                          .description = "Coulomb's coefficient. Coated against rigid 0.05 to 0.2, "
+                                         "silicone on steel 0.6 to 0.9."});
+  contact.keys.push_back(
+      {.name = "motion",
+       .forms = {table(make_table(
+           {.name = "motion of a surface",
+            .description = "How the surface moves: turned about an axis, then shifted, from where "
+                           "it is declared.",
+            .keys = motion_keys()}))},
+       .example = "{z: {ramp: {to: -4 mm, duration: 1 s}}}",
+       .description = "How the surface moves. Without: it stands still."});
+  return table(make_table(std::move(contact)));
+}
+
+}  // namespace sinew::scene::forms

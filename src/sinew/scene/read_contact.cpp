@@ -1,0 +1,54 @@
+#include "sinew/scene/readers.hpp"
+
+namespace sinew::scene {
+
+namespace {
+
+constraint::Surface read_solid(const Fields& fields) {
+  if (fields.find("plane") != nullptr) {
+    const Fields written = fields.below("plane");
+    constraint::Plane plane;
+    written.read("point", plane.point);
+    written.read_direction("normal", plane.normal);
+    return plane;
+  }
+  if (fields.find("sphere") != nullptr) {
+    const Fields written = fields.below("sphere");
+    constraint::Sphere sphere;
+    written.read("center", sphere.centre);
+    written.read("radius", sphere.radius);
+    return sphere;
+  }
+  const Fields written = fields.below("capsule");
+  constraint::Capsule capsule;
+  written.read("radius", capsule.radius);
+  const Node& ends = *written.find("ends");
+  const Form& form = written.form("ends").items.front();
+  const std::vector<double> from = read_numbers(ends.items()[0], form);
+  const std::vector<double> to = read_numbers(ends.items()[1], form);
+  capsule.from = {from[0], from[1], from[2]};
+  capsule.to = {to[0], to[1], to[2]};
+  return capsule;
+}
+
+}  // namespace
+
+ContactDescription read_contact(const Node::Entry& entry, const ReadContext& context) {
+  ContactDescription contact;
+  contact.name = entry.key;
+  contact.place = entry.key_place;
+  const Fields fields(entry.value, form_of(grammar(), "contacts", Shape::names).items.front());
+  fields.read("body", contact.body);
+  contact.surface = read_solid(fields.below("surface"));
+  if (fields.find("nodes") != nullptr) contact.nodes = read_region(fields.below("nodes"));
+  if (fields.find("points") != nullptr) contact.points = read_points(fields, "points", context);
+  fields.read_choice("outside", contact.outside,
+                     {{"error", mesh::Outside::error}, {"nearest", mesh::Outside::nearest}});
+  fields.read("friction", contact.friction);
+  if (fields.find("motion") != nullptr) {
+    contact.motion = read_motion(fields.below("motion"), fields.place("motion"), context);
+  }
+  return contact;
+}
+
+}  // namespace sinew::scene

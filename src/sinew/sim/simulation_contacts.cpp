@@ -1,0 +1,74 @@
+// What Simulation says of contacts.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "sinew/sim/simulation.hpp"
+
+namespace sinew::sim {
+
+namespace {
+
+// Friction within this part of its limit is at it.
+constexpr double kAtLimit = 1e-7;
+
+}  // namespace
+
+ContactPoint Simulation::contact_point(int index, std::size_t point) const {
+  const constraint::Contact& contact = model_->contact(index);
+  const Eigen::Isometry3d pose = model_->contacts()[static_cast<std::size_t>(index)].pose(time());
+  const auto row = static_cast<std::size_t>(contact.row(point));
+  const auto* frame = &world_.rows().direction[contact.entry(point)];
+  ContactPoint result;
+  result.position = world_.placement().position(contact.points()[point]);
+  result.gap = contact.distance_now(world_.placement(), pose, point).gap;
+  result.normal = frame[0];
+  result.normal_force = effort_[row];
+  result.friction_force = effort_[row + 1] * frame[1] + effort_[row + 2] * frame[2];
+  if (!(result.normal_force > 0.0)) return result;
+  const double limit = contact.friction() * result.normal_force;
+  const double across = std::hypot(effort_[row + 1], effort_[row + 2]);
+  const bool slips = across >= (1.0 - kAtLimit) * limit;
+  result.state = slips ? qp::ContactState::slip : qp::ContactState::stick;
+  return result;
+}
+
+std::vector<ContactPoint> Simulation::contact_points(int index) const {
+  std::vector<ContactPoint> result(model_->contact(index).points().size());
+  for (std::size_t k = 0; k < result.size(); ++k) result[k] = contact_point(index, k);
+  return result;
+}
+
+ContactSum Simulation::contact_sum(int index) const {
+  ContactSum sum;
+  sum.smallest_gap = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < model_->contact(index).points().size(); ++k) {
+    const ContactPoint point = contact_point(index, k);
+    sum.force += point.normal_force * point.normal + point.friction_force;
+    sum.normal_force += point.normal_force;
+    sum.friction_force += point.friction_force.norm();
+    sum.smallest_gap = std::min(sum.smallest_gap, point.gap);
+    sum.sticking += point.state == qp::ContactState::stick ? 1 : 0;
+    sum.slipping += point.state == qp::ContactState::slip ? 1 : 0;
+  }
+  return sum;
+}
+
+// After finish_step(). Relative to where the surface's motion carries a point (reference), what
+// contacts do is taken out: by friction, and by an impact that stops a gap from closing further.
+// The way to there is work of whoever moves the surface.
+void Simulation::count_contact_work() {
+  const VectorX& end = world_.delta();
+  const VectorX& carried = world_.rows().reference;
+  const VectorX& start = world_.contact_start();
+  for (std::size_t i = 0; i < model_->contacts().size(); ++i) {
+    const constraint::Contact& contact = model_->contact(static_cast<int>(i));
+    for (int row = contact.first_row(); row < contact.first_row() + contact.row_count(); ++row) {
+      const double effort = effort_[static_cast<std::size_t>(row)];
+      work_.outside += effort * (carried[row] - start[row]);
+      work_.dissipated -= effort * (end[row] - carried[row]);
+    }
+  }
+}
+
+}  // namespace sinew::sim

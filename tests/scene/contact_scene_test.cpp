@@ -1,0 +1,120 @@
+// Contacts of a scene: what is read, what is built of it, and what is wrong with it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "sinew/core/error.hpp"
+#include "sinew/scene/build.hpp"
+#include "sinew/scene/scene.hpp"
+#include "sinew/sim/simulation.hpp"
+
+namespace sinew::scene {
+namespace {
+
+const std::string kBlock = R"(sinew: 1
+integrator: backward-euler
+time_step: 1 ms
+bodies:
+  block:
+    type: fem
+    mesh: {shape: block, length: 40 mm, width: 20 mm, height: 20 mm, element_size: 10 mm}
+    material: {young_modulus: 100 kPa, poisson_ratio: 0.4}
+    density: 1000 kg/m^3
+contacts:
+)";
+
+SceneDescription scene_with(const std::string& contact) {
+  return parse_scene_text(kBlock + "  c: " + contact + "\n", "scene.yaml", {});
+}
+
+std::size_t points_of(const std::string& contact) {
+  return build(scene_with(contact)).model->contact(0).points().size();
+}
+
+void expect_error(const std::string& contact, ErrorKind kind, const std::string& words) {
+  try {
+    build(scene_with(contact));
+    ADD_FAILURE() << contact << " was taken";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), kind) << error.what();
+    EXPECT_EQ(error.place().line, 11) << error.what();
+    EXPECT_THAT(error.what(), testing::HasSubstr(words));
+  }
+}
+
+TEST(Contacts, PickNodesOfTheOutside) {
+  EXPECT_EQ(points_of("{body: block, surface: {plane: {point: 0 0 -5 mm}}}"), 5u * 9u - 3u);
+  EXPECT_EQ(points_of("{body: block, surface: {plane: {}}, nodes: {set: z_min}}"), 15u);
+  EXPECT_EQ(points_of("{body: block, surface: {plane: {}}, nodes: {box: 0 0 0 10 20 0 mm}}"), 6u);
+  EXPECT_EQ(points_of("{body: block, surface: {plane: {}}, points: [5 5 0 mm, 6 5 0 mm]}"), 2u);
+}
+
+TEST(Contacts, ReadEverySurfaceAndItsMotion) {
+  const auto sphere = scene_with(
+      "{body: block, surface: {sphere: {center: 0 0 -10 mm, radius: 5 mm}}, friction: 0.7}");
+  EXPECT_DOUBLE_EQ(std::get<constraint::Sphere>(sphere.contacts[0].surface).radius, 0.005);
+  EXPECT_DOUBLE_EQ(std::get<constraint::Sphere>(sphere.contacts[0].surface).centre[2], -0.01);
+  EXPECT_DOUBLE_EQ(sphere.contacts[0].friction, 0.7);
+  const auto capsule = scene_with(
+      "{body: block, surface: {capsule: {ends: [0 0 -10 mm, 40 0 -12 mm], radius: 5 mm}}, "
+      "motion: {z: {ramp: {to: 4 mm, duration: 2 s}}, angle: 0.1, axis: 0 2 0}}");
+  const auto& shape = std::get<constraint::Capsule>(capsule.contacts[0].surface);
+  EXPECT_DOUBLE_EQ(shape.to[0], 0.04);
+  EXPECT_DOUBLE_EQ(shape.to[2], -0.012);
+  EXPECT_DOUBLE_EQ(capsule.contacts[0].motion->translation[2].value(1.0), 0.002);
+  EXPECT_DOUBLE_EQ(capsule.contacts[0].motion->axis[1], 1.0);
+  EXPECT_DOUBLE_EQ(capsule.run_duration(), 2.0);
+  const auto plane = scene_with("{body: block, surface: {plane: {normal: 0 0 3}}}");
+  EXPECT_DOUBLE_EQ(std::get<constraint::Plane>(plane.contacts[0].surface).normal[2], 1.0);
+}
+
+TEST(Contacts, SayWhatIsWrong) {
+  using K = ErrorKind;
+  expect_error("{body: blok, surface: {plane: {}}}", K::unknown_name, "blok");
+  expect_error("{body: block, surface: {}}", K::missing_key, "plane");
+  expect_error("{body: block, surface: {plane: {}, capsule: {ends: [0 0 0, 0 0 1], radius: 1}}}",
+               K::conflicting_keys, "capsule");
+  expect_error("{body: block, surface: {plane: {normal: 0 0 0}}}", K::out_of_range, "0");
+  expect_error("{body: block, surface: {sphere: {center: 0 0 0, radius: 0 mm}}}", K::out_of_range,
+               "radius");
+  expect_error("{body: block, surface: {plane: {}}, friction: -0.5}", K::out_of_range, "-0.5");
+  expect_error("{body: block, surface: {plane: {}}, nodes: {set: z_mim}}", K::unknown_set, "z_m");
+  expect_error("{body: block, surface: {plane: {}}, nodes: {set: z_min}, points: [0 0 0]}",
+               K::conflicting_keys, "points");
+  expect_error("{body: block, surface: {plane: {}}, nodes: {box: 10 10 10 10 10 10 mm}}",
+               K::empty_region, "inside");
+  expect_error("{body: block, surface: {plane: {}}, points: [0 0 -90 mm]}", K::point_outside_mesh,
+               "point 0");
+  expect_error("{body: block, surface: {plane: {point: 0 0 10 mm}}}", K::out_of_range, "inside");
+}
+
+TEST(Contacts, RefuseControllers) {
+  const std::string text = kBlock +
+                           "  c: {body: block, surface: {plane: {}}}\n"
+                           "actuators:\n"
+                           "  push: {type: force, body: block, point: 0 0 0, direction: 1 0 0}\n"
+                           "effectors:\n"
+                           "  tip: {body: block, point: 0 0 0}\n"
+                           "controllers:\n"
+                           "  follow: {type: inverse, effectors: {tip: {target: 0 0 0}}}\n";
+  try {
+    build(parse_scene_text(text, "scene.yaml", {}));
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::not_in_this_version);
+    EXPECT_EQ(error.place().line, 17);
+  }
+}
+
+TEST(Contacts, RefuseGeneralizedAlpha) {
+  std::string text = kBlock + "  c: {body: block, surface: {plane: {}}}\n";
+  text.replace(text.find("backward-euler"), 14, "generalized-alpha");
+  try {
+    build(parse_scene_text(text, "scene.yaml", {}));
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::not_in_this_version);
+  }
+}
+
+}  // namespace
+}  // namespace sinew::scene

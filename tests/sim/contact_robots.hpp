@@ -1,0 +1,65 @@
+// Blocks that rest, slide and are pressed, which the tests of contact share.
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "sinew/mesh/shapes.hpp"
+#include "sinew/sim/model_builder.hpp"
+#include "sinew/sim/simulation.hpp"
+
+namespace sinew::testing {
+
+inline constexpr double kGravity = 9.81;
+
+/// A block of rubber, 40 x 40 x 20 mm, its bottom on the plane z = 0 or above it. The plane is
+/// inclined by turning gravity, so that x runs downhill.
+struct BlockOptions {
+  sim::StepSettings step{.time_step = 1e-3, .integrator = mechanics::Integrator::backward_euler};
+  double angle = 0.0;  ///< rad
+  double friction = 0.5;
+  double height = 0.0;   ///< m, of its bottom at the start
+  double modulus = 1e6;  ///< Pa
+  std::array<int, 3> cells{4, 4, 2};
+  fem::RayleighDamping damping{.mass = 0.0, .stiffness = 0.002};
+  bool floor = true;
+  bool top_fixed = false;
+};
+
+inline constexpr double kBlockDensity = 1000.0;
+inline constexpr double kBlockWeight = kBlockDensity * 0.04 * 0.04 * 0.02 * kGravity;
+
+/// The builder with the block as body 0 and the floor as contact 0.
+inline sim::ModelBuilder block_on_plane(const BlockOptions& options) {
+  sim::ModelBuilder builder(options.step);
+  fem::FemBodySettings body;
+  body.name = "block";
+  const auto mesh =
+      std::make_shared<const mesh::Mesh>(mesh::block({.corner = {-0.02, -0.02, options.height},
+                                                      .size = {0.04, 0.04, 0.02},
+                                                      .cells = options.cells}));
+  body.mesh = mesh;
+  body.gravity = kGravity * Vector3(std::sin(options.angle), 0.0, -std::cos(options.angle));
+  body.damping = options.damping;
+  body.elements.regions = {
+      {{options.modulus, 0.3}, material::Law::corotational, kBlockDensity, {}}};
+  if (options.top_fixed) body.elements.fixed_nodes = mesh->node_sets.at("z_max");
+  builder.add_fem_body(std::move(body));
+  if (options.floor) {
+    sim::ContactSettings floor;
+    floor.name = "floor";
+    floor.surface = constraint::Plane{};
+    floor.nodes = mesh->node_sets.at("z_min");
+    floor.friction = options.friction;
+    builder.add_contact(floor);
+  }
+  return builder;
+}
+
+/// Mean velocity of the block's nodes (lumped: equal cells, so near the centre of mass's), m/s.
+inline Vector3 mean_velocity(const sim::Simulation& simulation) {
+  return simulation.fem_body(0).velocities().colwise().mean().transpose();
+}
+
+}  // namespace sinew::testing

@@ -1,0 +1,361 @@
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "sinew/core/error.hpp"
+
+#include "contact_robots.hpp"
+
+namespace sinew::sim {
+namespace {
+
+using sinew::testing::block_on_plane;
+using sinew::testing::BlockOptions;
+using sinew::testing::kBlockWeight;
+using sinew::testing::kGravity;
+using sinew::testing::mean_velocity;
+
+TEST(Contact, BlockSticksBelowTheFrictionAngle) {
+  const double critical = std::atan(0.5);
+  for (const double share : {0.5, 0.95}) {
+    Simulation simulation(block_on_plane({.angle = share * critical}).build());
+    for (int k = 0; k < 500; ++k) simulation.step();
+    const Vector3 before = simulation.fem_body(0).positions().colwise().mean();
+    for (int k = 0; k < 500; ++k) simulation.step();
+    const Vector3 after = simulation.fem_body(0).positions().colwise().mean();
+    EXPECT_LT((after - before).norm(), 1e-9) << share;
+    const ContactSum sum = simulation.contact_sum(0);
+    EXPECT_NEAR(sum.normal_force, kBlockWeight * std::cos(share * critical), 1e-6 * kBlockWeight);
+    EXPECT_NEAR(sum.force[0], -kBlockWeight * std::sin(share * critical), 1e-6 * kBlockWeight);
+    EXPECT_LT(simulation.report().contact_residual, 1e-9);
+  }
+}
+
+TEST(Contact, BlockSlidesAsCoulombSaysAboveIt) {
+  for (const double angle : {0.55, 0.8}) {
+    Simulation simulation(block_on_plane({.angle = angle}).build());
+    // The settling of the rubber dies away first.
+    for (int k = 0; k < 600; ++k) simulation.step();
+    const double before = mean_velocity(simulation)[0];
+    for (int k = 0; k < 400; ++k) simulation.step();
+    const double acceleration = (mean_velocity(simulation)[0] - before) / 0.4;
+    const double expected = kGravity * (std::sin(angle) - 0.5 * std::cos(angle));
+    EXPECT_NEAR(acceleration, expected, 1e-3 * expected) << angle;
+    const ContactSum sum = simulation.contact_sum(0);
+    EXPECT_EQ(sum.sticking, 0);
+    EXPECT_NEAR(sum.friction_force, 0.5 * sum.normal_force, 1e-9 * kBlockWeight);
+  }
+}
+
+double total(Simulation& simulation) {
+  const Energies energies = simulation.energies();
+  return energies.strain + energies.kinetic + energies.gravity;
+}
+
+// Without friction the forces at rest are the static ones, whatever led there.
+TEST(Contact, RestingForcesDoNotDependOnTheTimeStep) {
+  std::vector<double> first;
+  for (const double time_step : {1e-3, 4e-3, 10e-3}) {
+    BlockOptions options{.friction = 0.0};
+    options.step.time_step = time_step;
+    Simulation simulation(block_on_plane(options).build());
+    for (int k = 0; k < 400; ++k) simulation.step();
+    double sum = 0.0;
+    const auto points = simulation.contact_points(0);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      sum += points[k].normal_force;
+      EXPECT_GE(points[k].gap, -1e-12);
+      if (first.size() == points.size()) {
+        EXPECT_NEAR(points[k].normal_force, first[k], 1e-6 * kBlockWeight);
+      }
+    }
+    EXPECT_NEAR(sum, kBlockWeight, 1e-8 * kBlockWeight);
+    if (first.empty()) {
+      for (const ContactPoint& point : points) first.push_back(point.normal_force);
+    }
+  }
+}
+
+TEST(Contact, ImpactTakesEnergyAndNeverGivesAny) {
+  for (const Method method : {Method::one_linearisation, Method::newton}) {
+    for (const double friction : {0.0, 0.5}) {
+      BlockOptions options{.angle = 0.3, .friction = friction, .height = 0.005, .modulus = 1e5};
+      options.damping = {};
+      options.step.method = method;
+      Simulation simulation(block_on_plane(options).build());
+      const double fall = 0.005 * kBlockWeight * std::cos(0.3);
+      double before = total(simulation);
+      bool touched = false;
+      for (int k = 0; k < 300; ++k) {
+        simulation.step();
+        const double after = total(simulation);
+        EXPECT_LE(after, before + 1e-9 * fall) << k;
+        before = after;
+        touched |= simulation.contact_sum(0).normal_force > 0.0;
+      }
+      EXPECT_TRUE(touched);
+      EXPECT_LT(before, -0.9 * fall);  // it no longer bounces
+    }
+  }
+}
+
+TEST(Contact, SecondOrderStepsDoNotGainEnergyInAnImpact) {
+  BlockOptions options{.angle = 0.3, .height = 0.005, .modulus = 1e5};
+  options.damping = {};
+  options.step.integrator = mechanics::Integrator::bdf2;
+  Simulation simulation(block_on_plane(options).build());
+  const double start = total(simulation);
+  for (int k = 0; k < 300; ++k) {
+    simulation.step();
+    EXPECT_LE(total(simulation), start);
+  }
+  options.step.integrator = mechanics::Integrator::generalized_alpha;
+  EXPECT_THROW(block_on_plane(options), Error);
+}
+
+// strain + kinetic + gravity + what friction, impacts and damping took never exceeds what was there
+// and what surfaces put in; the difference is what backward Euler loses.
+TEST(Contact, LedgerOfACarriedBlock) {
+  BlockOptions options{.friction = 0.5, .floor = false};
+  ModelBuilder builder = block_on_plane(options);
+  ContactSettings belt;
+  belt.name = "belt";
+  belt.surface = constraint::Plane{};
+  belt.friction = 0.5;
+  const auto mesh =
+      mesh::block({.corner = {-0.02, -0.02, 0.0}, .size = {0.04, 0.04, 0.02}, .cells = {4, 4, 2}});
+  belt.nodes = mesh.node_sets.at("z_min");
+  BaseMotion motion;
+  motion.translation = {Signal::ramp({0.0, 0.2, 0.0, 1.0}), Signal::constant(0.0),
+                        Signal::constant(0.0)};
+  belt.motion = motion;
+  builder.add_contact(belt);
+  Simulation simulation(builder.build());
+  const double start = total(simulation);
+  double lost = 0.0;
+  for (int k = 0; k < 500; ++k) {
+    simulation.step();
+    const double now =
+        start + simulation.outside_work() - simulation.dissipation() - total(simulation);
+    EXPECT_GE(now, lost - 1e-12);
+    lost = now;
+  }
+  // The belt runs at 0.2 m/s; the block slips until it has its speed, then it sticks.
+  EXPECT_NEAR(mean_velocity(simulation)[0], 0.2, 1e-6);
+  EXPECT_GT(simulation.contact_sum(0).sticking, 20);
+  const double kinetic = simulation.energies().kinetic;
+  EXPECT_NEAR(simulation.outside_work(), 2.0 * kinetic, 0.05 * kinetic);  // half of it became heat
+}
+
+mesh::Mesh block_mesh(int cells) {
+  return mesh::block({.corner = {-0.02, -0.02, 0.0},
+                      .size = {0.04, 0.04, 0.02},
+                      .cells = {cells, cells, cells / 2}});
+}
+
+/// The block, its bottom fixed, and a ball that comes down on its top, quasi-statically.
+std::shared_ptr<const Model> pressed_by_a_ball(Method method, double friction, double depth) {
+  BlockOptions options{.floor = false};
+  options.step = {.time_step = 0.1, .method = method};
+  ModelBuilder builder(options.step);
+  fem::FemBodySettings body;
+  body.name = "block";
+  const auto mesh = std::make_shared<const mesh::Mesh>(block_mesh(8));
+  body.mesh = mesh;
+  body.elements.regions = {{{1e5, 0.3}, material::Law::corotational, 1000.0, {}}};
+  body.elements.fixed_nodes = mesh->node_sets.at("z_min");
+  builder.add_fem_body(std::move(body));
+  ContactSettings ball;
+  ball.name = "ball";
+  ball.surface = constraint::Sphere{Vector3(0.001, 0.002, 0.02 + 0.03), 0.03};
+  ball.nodes = mesh->node_sets.at("z_max");
+  ball.friction = friction;
+  BaseMotion motion;
+  motion.translation[2] = Signal::ramp({0.0, -depth, 0.0, 1.0});
+  ball.motion = motion;
+  builder.add_contact(ball);
+  return builder.build();
+}
+
+TEST(Contact, BallPressedIntoABlockIsNotPenetrated) {
+  for (const Method method : {Method::one_linearisation, Method::newton}) {
+    for (const double friction : {0.0, 0.6}) {
+      Simulation simulation(pressed_by_a_ball(method, friction, 0.004));
+      for (int k = 0; k < 10; ++k) simulation.step();
+      simulation.solve_static();
+      int closed = 0;
+      for (const ContactPoint& point : simulation.contact_points(0)) {
+        EXPECT_GE(point.gap, -1e-9 * 0.06);
+        if (point.normal_force > 0.0) {
+          ++closed;
+          EXPECT_NEAR(point.gap, 0.0, 1e-9 * 0.06);
+        }
+      }
+      EXPECT_GT(closed, 8);
+      EXPECT_LT(simulation.contact_sum(0).force[2], -0.1);
+    }
+  }
+}
+
+// The same static forces by one long step and by many, without friction, which has no history.
+TEST(Contact, FrictionlessStaticsDoNotDependOnTheWay) {
+  Simulation slow(pressed_by_a_ball(Method::newton, 0.0, 0.004));
+  for (int k = 0; k < 10; ++k) slow.step();
+  slow.solve_static();
+  Simulation fast(pressed_by_a_ball(Method::one_linearisation, 0.0, 0.004));
+  for (int k = 0; k < 10; ++k) fast.step();
+  fast.solve_static();
+  const Vector3 expected = slow.contact_sum(0).force;
+  EXPECT_LT((fast.contact_sum(0).force - expected).norm(), 1e-6 * expected.norm());
+}
+
+/// Two capsules along y that close on a block from both sides and hold it by friction.
+TEST(Contact, TwoCapsulesHoldABlockByFriction) {
+  for (const double friction : {0.6, 0.05}) {
+    BlockOptions options{.floor = false};
+    options.step.time_step = 2e-3;
+    options.modulus = 1e5;
+    ModelBuilder builder = block_on_plane(options);
+    const mesh::Mesh mesh = block_mesh(4);
+    for (const double side : {-1.0, 1.0}) {
+      ContactSettings finger;
+      finger.name = side < 0.0 ? "left" : "right";
+      const double x = side * (0.02 + 0.008);
+      finger.surface = constraint::Capsule{{x, -0.03, 0.01}, {x, 0.03, 0.01}, 0.008};
+      finger.nodes = mesh.node_sets.at(side < 0.0 ? "x_min" : "x_max");
+      finger.friction = friction;
+      BaseMotion motion;
+      // Deep enough, the dent alone would carry the block.
+      const double depth = friction > 0.5 ? 3e-3 : 1e-4;
+      motion.translation[0] = Signal::ramp({0.0, -side * depth, 0.0, 0.02});
+      finger.motion = motion;
+      builder.add_contact(finger);
+    }
+    Simulation simulation(builder.build());
+    for (int k = 0; k < 300; ++k) simulation.step();
+    const double fallen = -mean_velocity(simulation)[2];
+    const ContactSum left = simulation.contact_sum(0), right = simulation.contact_sum(1);
+    if (friction > 0.5) {
+      EXPECT_NEAR(left.force[2] + right.force[2], kBlockWeight, 1e-3 * kBlockWeight);
+      EXPECT_NEAR(left.force[0], -right.force[0], 1e-3 * left.normal_force);
+      EXPECT_LT(fallen, 1e-3);
+      EXPECT_GT(left.normal_force, 1.0 * kBlockWeight);
+    } else {
+      EXPECT_GT(fallen, 0.1);  // it slips out
+    }
+  }
+}
+
+TEST(Contact, ActuatorsAndContactsShareOneProblem) {
+  // A clamped block pushed down by a force with a limited stroke: the floor takes the rest.
+  for (const double pushed : {0.5, 20.0}) {
+    BlockOptions options{.height = 1e-3, .modulus = 1e5};
+    options.step = {.time_step = 0.1, .method = Method::newton};
+    ModelBuilder builder(options.step);
+    fem::FemBodySettings body;
+    body.name = "block";
+    const auto mesh = std::make_shared<const mesh::Mesh>(block_mesh(4));
+    body.mesh = mesh;
+    body.elements.regions = {{{1e5, 0.3}, material::Law::corotational, 1000.0, {}}};
+    body.elements.fixed_nodes = mesh->node_sets.at("x_min");
+    builder.add_fem_body(std::move(body));
+    ContactSettings floor;
+    floor.name = "floor";
+    floor.surface = constraint::Plane{{0.0, 0.0, -0.0005}, Vector3::UnitZ()};
+    floor.nodes = mesh->node_sets.at("z_min");
+    floor.friction = 0.3;
+    builder.add_contact(floor);
+    ForceSettings push;
+    push.name = "push";
+    push.point = {0.02, 0.0, 0.02};
+    push.direction = -Vector3::UnitZ();
+    push.displacement.max = 0.004;
+    push.command = {CommandKind::effort, Signal::constant(pushed)};
+    builder.add_force(push);
+    Simulation simulation(builder.build());
+    for (int k = 0; k < 5; ++k) simulation.step();
+    EXPECT_LT(simulation.report().violation, 1e-9);
+    const ContactSum sum = simulation.contact_sum(0);
+    const ActuatorState& state = simulation.actuator(0);
+    EXPECT_GE(sum.smallest_gap, -1e-12);
+    EXPECT_GT(sum.normal_force, 0.0);
+    if (pushed < 1.0) {
+      EXPECT_NEAR(state.effort, pushed, 1e-12);
+      EXPECT_LT(state.motion, 0.004);
+    } else {
+      EXPECT_LT(state.effort, pushed);  // the stroke ends first
+      EXPECT_NEAR(state.motion, 0.004, 1e-9);
+    }
+  }
+}
+
+TEST(Contact, RunsGoOnFromASavedStateBitForBit) {
+  BlockOptions options{.angle = 0.3, .height = 1e-4};
+  const auto model = block_on_plane(options).build();
+  Simulation whole(model), first(model), second(model);
+  for (int k = 0; k < 60; ++k) whole.step();
+  for (int k = 0; k < 30; ++k) first.step();
+  std::vector<double> state(first.state_size());
+  first.save_state(state);
+  second.load_state(state, first.steps());
+  for (int k = 0; k < 30; ++k) second.step();
+  EXPECT_EQ(second.state_hash(), whole.state_hash());
+  whole.reset();
+  for (int k = 0; k < 60; ++k) whole.step();
+  EXPECT_EQ(second.state_hash(), whole.state_hash());
+}
+
+TEST(Contact, ThreadsGiveTheSameBits) {
+  std::vector<std::uint64_t> hashes;
+  for (const int threads : {1, 4}) {
+    linalg::FactorisationSettings factorisation;
+    factorisation.threads = threads;
+    factorisation.ordering = linalg::Ordering::amd;
+    Simulation simulation(block_on_plane({.angle = 0.3, .height = 1e-4}).build(factorisation),
+                          threads);
+    for (int k = 0; k < 60; ++k) simulation.step();
+    hashes.push_back(simulation.state_hash());
+  }
+  EXPECT_EQ(hashes[0], hashes[1]);
+}
+
+TEST(Contact, RefusesWhatItCannotDo) {
+  const auto model = block_on_plane({}).build();
+  Simulation simulation(model);
+  struct Nothing : Law {
+    LawStatus solve(const LawProblem&, std::span<double>) override { return LawStatus::solved; }
+    double violation(const LawProblem&, std::span<const double>) const override { return 0.0; }
+    void reset() override {}
+  } law;
+  EXPECT_THROW(simulation.attach(law, {}), Error);
+  EXPECT_THROW(simulation.follow_path({}), Error);
+  BlockOptions sunk{.height = -1e-3};
+  EXPECT_THROW(block_on_plane(sunk), Error);
+  BlockOptions negative{.friction = -0.1};
+  EXPECT_THROW(block_on_plane(negative), Error);
+  EXPECT_EQ(model->contact_index("floor"), 0);
+  EXPECT_THROW(static_cast<void>(model->contact_index("flor")), Error);
+}
+
+TEST(Contact, StiffBodiesLandInLongSteps) {
+  for (const double modulus : {1e6, 1e8, 1e10}) {
+    for (const double time_step : {1e-3, 1e-2, 5e-2}) {
+      for (const double friction : {0.1, 0.5, 2.0}) {
+        BlockOptions options{
+            .angle = 0.4, .friction = friction, .height = 1e-3, .modulus = modulus};
+        options.step.time_step = time_step;
+        Simulation simulation(block_on_plane(options).build());
+        for (int k = 0; k < 60; ++k) {
+          simulation.step();
+          ASSERT_EQ(simulation.contact_result().status, qp::ConeStatus::solved)
+              << modulus << " Pa, " << time_step << " s, mu " << friction << ", step " << k;
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sinew::sim
