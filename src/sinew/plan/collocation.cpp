@@ -146,9 +146,10 @@ void Collocation::set_scales() {
   constraint_scale_[goal_row()] = 0.1 * length;
   if (speed_limited_) constraint_scale_[speed_row()] = 0.1 * length / own;
   const Objective& cost = task_.objective;
-  objective_scale_ = std::max({cost.effort * torque * torque * grid_.duration,
-                               cost.tip_speed * std::pow(0.1 * length / own, 2), cost.time * own,
-                               1e-12});
+  // A tenth of what limits on torque allow is what plans come to.
+  objective_scale_ = 0.1 * std::max({cost.effort * torque * torque * grid_.duration,
+                                     cost.tip_speed * std::pow(0.1 * length / own, 2),
+                                     cost.time * own, 1e-12});
 }
 
 MatrixX Collocation::pair(const VectorX& x, int k) const {

@@ -65,7 +65,6 @@ struct SolverSettings {
   double tolerance = 1e-6;    ///< of the scaled optimality and violation
   int max_iterations = 300;   ///< >= 1
   double max_time = 30.0;     ///< s of processor time
-  double barrier = 0.1;       ///< mu at a cold start
   double warm_barrier = 1e-4; ///< mu at a warm start
   bool verbose = false;       ///< the solver's own table on stdout
 };

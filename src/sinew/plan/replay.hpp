@@ -18,6 +18,25 @@ struct Replay {
   double clearance = 0.0;           ///< m, the least of all times, points and obstacles; none: +inf
 };
 
+/// Fills a replay, state by state.
+class Recorder {
+ public:
+  /// @param arm that moves. @param task completed(), of the goal and the obstacles.
+  /// @param steps how many. @param time_step s.
+  Recorder(std::shared_ptr<const pcc::Arm> arm, const Task& task, Eigen::Index steps,
+           double time_step);
+  /// @param q,rate (coordinates,). @param torque (inputs,) that led there.
+  void add(const VectorX& q, const VectorX& rate, const VectorX& torque);
+  Replay finish();
+
+ private:
+  pcc::ArmDynamics<double> dynamics_;
+  const Task& task_;
+  Eigen::Index next_ = 0;
+  VectorX still_;
+  Replay replay_;
+};
+
 /// The plan's torque on an arm, open loop, by generalized-alpha steps. @param arm that carries it
 /// out, the planned one or another of as many coordinates and inputs. @param task that was planned.
 /// @param plan what to do. @param time_step s, about: a whole number of steps makes the duration.
