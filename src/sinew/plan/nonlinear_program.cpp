@@ -220,7 +220,7 @@ ProgramResult solve(NonlinearProgram& program, const ProgramPoint& start,
   }
   set_options(*application->Options(), settings, warm);
   const auto begin = std::chrono::steady_clock::now();
-  if (application->Initialize(std::getenv("OPT") ? std::getenv("OPT") : "") != Ipopt::Solve_Succeeded) {
+  if (application->Initialize("") != Ipopt::Solve_Succeeded) {
     throw Error(ErrorKind::internal, {.item = "Ipopt"}, "its options were not taken");
   }
   Ipopt::SmartPtr<Ipopt::TNLP> adapter = new Adapter(program, start, result);

@@ -59,8 +59,8 @@ struct Objective {
 
 struct Grid {
   Method method = Method::hermite_simpson;
-  double duration = 2.4;  ///< s, > 0; where it is free, the first guess
-  int intervals = 30;     ///< >= 2
+  double duration = 1.6;  ///< s, > 0; where it is free, the first guess
+  int intervals = 50;     ///< >= 2
   double least_duration = 0.0, most_duration = 0.0;  ///< s; both 0: the duration is fixed
   bool free() const { return most_duration > 0.0; }
 };
