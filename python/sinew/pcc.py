@@ -8,8 +8,8 @@
 SI units everywhere. docs/pcc.md has the equations and the conventions.
 """
 
-from ._core import Arm, beam_stiffness, channel_stiffness
+from ._core import Arm, beam_stiffness, channel_stiffness, published_arm, published_torque_limits
 
-__all__ = ["Arm", "beam_stiffness", "channel_stiffness"]
+__all__ = ["Arm", "beam_stiffness", "channel_stiffness", "published_arm", "published_torque_limits"]
 
 Arm.__module__ = "sinew.pcc"

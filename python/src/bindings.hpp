@@ -30,6 +30,7 @@ void bind_mesh(py::module_& module);
 void bind_view(py::module_& module);
 void bind_material(py::module_& module);
 void bind_pcc(py::module_& module);
+void bind_plan(py::module_& module);
 
 /// A part of a simulation: keeps the whole alive.
 struct Part {

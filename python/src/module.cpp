@@ -32,4 +32,7 @@ PYBIND11_MODULE(_core, module) {
   python::bind_view(module);
   python::bind_material(module);
   python::bind_pcc(module);
+#ifdef SINEW_HAS_PLAN
+  python::bind_plan(module);
+#endif
 }

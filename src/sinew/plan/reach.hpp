@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <numbers>
 #include <string_view>
 
 #include "sinew/pcc/arm_equations.hpp"
@@ -51,7 +52,7 @@ NearestReach nearest_reach(std::shared_ptr<const pcc::Arm> arm, const Limits& li
 
 struct ReachProofSettings {
   double tolerance = 0.02;       ///< m, > 0: about the goal, along each axis
-  double angle = 3.14159265358979;  ///< rad, > 0: how far a segment bends where no limit says
+  double angle = std::numbers::pi;  ///< rad, > 0: how far a segment bends where no limit says
   long max_boxes = 5'000'000;    ///< >= 1
 };
 
