@@ -134,25 +134,28 @@ INSTANTIATE_TEST_SUITE_P(
                       Kind{"HermiteFreeMixed", Method::hermite_simpson, true, true}),
     [](const auto& kind) { return kind.param.name; });
 
-/// On a cubic of position (with its rates) Hermite-Simpson's defects vanish, and its stages lie on
-/// the cubic; backward Euler's on a straight line.
+/// Hermite-Simpson and its first interval are exact where the position is a cubic (its own degree:
+/// the rate's parabola); backward Euler on a straight line.
 TEST(Transcription, IsExactOnPolynomials) {
   const double h = 0.3;
   const auto cubic = [](double t) {
     return std::array{1.0 - 2.0 * t + 3.0 * t * t - 4.0 * t * t * t,
                       -2.0 + 6.0 * t - 12.0 * t * t, 6.0 - 24.0 * t};
   };
-  const Transcription hermite(Method::hermite_simpson, h);
   VectorX knots(6);
   for (int k = 0; k < 2; ++k) {
     for (int b = 0; b < 3; ++b) knots[3 * k + b] = cubic(k * h)[static_cast<std::size_t>(b)];
   }
-  EXPECT_NEAR((hermite.defect.value * knots)[0], 0.0, 1e-14);
-  const VectorX middle = hermite.stages[0].state.value * knots;
-  for (int b = 0; b < 3; ++b) {
-    EXPECT_NEAR(middle[b], cubic(h / 2)[static_cast<std::size_t>(b)], 1e-13) << b;
+  for (const bool first : {false, true}) {
+    const Transcription rules(Method::hermite_simpson, h, first);
+    EXPECT_NEAR((rules.defect.value * knots)[0], 0.0, 1e-14) << first;
+    const VectorX stage = rules.stages[0].state.value * knots;
+    for (int b = first ? 1 : 0; b < 3; ++b) {  // Radau's inner position is of second order
+      EXPECT_NEAR(stage[b], cubic(h / (first ? 3 : 2))[static_cast<std::size_t>(b)], 1e-13) << b;
+    }
+    EXPECT_EQ(rules.stages[1].state.value * knots, knots.tail(3));
   }
-  const Transcription euler(Method::backward_euler, h);
+  const Transcription euler(Method::backward_euler, h, false);
   const VectorX line{{1.0, -2.0, 1.0 - 2.0 * h, -2.0}};
   EXPECT_NEAR((euler.defect.value * line)[0], 0.0, 1e-15);
   EXPECT_NEAR((euler.stages[0].state.value * line)[2], 0.0, 1e-15);

@@ -48,7 +48,7 @@ Collocation::Collocation(std::shared_ptr<const pcc::Arm> arm, Task task)
     : arm_(std::move(arm)),
       task_(std::move(task)),
       grid_(task_.grid),
-      rules_(grid_.method, grid_.duration / grid_.intervals),
+      rules_(grid_.method, grid_.duration / grid_.intervals, false),
       equations_(arm_),
       points_(arm_),
       tip_{arm_->segments() - 1},
@@ -87,6 +87,8 @@ void Collocation::set_bounds() {
   for (VectorX* bound : {&variable_bounds_.lower, &variable_bounds_.upper}) {
     bound->segment(0, n_) = task_.start.position;
     bound->segment(n_, n_) = task_.start.rate;
+    // The first acceleration takes no part.
+    if (rules_.blocks == 3) bound->segment(2 * n_, n_).setZero();
     bound->segment(torque_at(0), inputs_) = task_.start.torque;
   }
   if (grid_.free()) {
@@ -142,7 +144,6 @@ void Collocation::set_scales() {
     constraint_scale_.segment(rate_row(k), clearance_row(k) - rate_row(k)).setConstant(torque / own);
     constraint_scale_.segment(clearance_row(k), row(k + 1) - clearance_row(k)).setConstant(length);
   }
-  constraint_scale_.segment(start_row(), goal_row() - start_row()).setConstant(torque);
   constraint_scale_[goal_row()] = 0.1 * length;
   if (speed_limited_) constraint_scale_[speed_row()] = 0.1 * length / own;
   const Objective& cost = task_.objective;
@@ -169,8 +170,9 @@ double Collocation::duration(const VectorX& x) const {
   return grid_.free() ? x[time_at()] : grid_.duration;
 }
 
-Transcription Collocation::rules(const VectorX& x) const {
-  return {grid_.method, duration(x) / grid_.intervals};
+std::array<Transcription, 2> Collocation::rules(const VectorX& x) const {
+  const double h = duration(x) / grid_.intervals;
+  return {Transcription(grid_.method, h, true), Transcription(grid_.method, h, false)};
 }
 
 const VectorDerivatives& Collocation::tip_position(const VectorX& x) {
@@ -226,9 +228,10 @@ void Collocation::gradient(const VectorX& x, VectorX& result) {
 
 void Collocation::constraints(const VectorX& x, VectorX& result) {
   result.resize(constraints());
-  const Transcription rules = this->rules(x);
+  const std::array<Transcription, 2> both = rules(x);
   const MatrixX& actuation = arm_->actuation();
   for (int k = 0; k < grid_.intervals; ++k) {
+    const Transcription& rules = both[k > 0 ? 1 : 0];
     const MatrixX knots = pair(x, k);
     const VectorX before = torque(x, k), after = torque(x, k + 1);
     result.segment(row(k), n_) = knots * rules.defect.value.transpose();
@@ -250,11 +253,6 @@ void Collocation::constraints(const VectorX& x, VectorX& result) {
       for (const VectorDerivatives& point : where) result[at++] = obstacle.distance(point.value);
     }
   }
-  if (rules_.stage_at_start) {
-    result.segment(start_row(), n_) =
-        equations_.residual(state(x, 0, 0), state(x, 0, 1), state(x, 0, 2)) -
-        actuation * torque(x, 0);
-  }
   const Goal& goal = task_.goal;
   result[goal_row()] = SmoothLength(tip_position(x).value - goal.position, goal.tolerance).value;
   if (speed_limited_) {
@@ -264,9 +262,9 @@ void Collocation::constraints(const VectorX& x, VectorX& result) {
 
 template <typename Emit>
 void Collocation::each_jacobian_entry(const VectorX& x, const Emit& emit) {
-  const Transcription rules = this->rules(x);
+  const std::array<Transcription, 2> both = rules(x);
   const MatrixX& actuation = arm_->actuation();
-  const int blocks = rules.blocks;
+  const int blocks = rules_.blocks;
   const auto column = [&](int k, int block) {
     return block < blocks ? knot(k) + block * n_ : knot(k + 1) + (block - blocks) * n_;
   };
@@ -282,6 +280,7 @@ void Collocation::each_jacobian_entry(const VectorX& x, const Emit& emit) {
     }
   };
   for (int k = 0; k < grid_.intervals; ++k) {
+    const Transcription& rules = both[k > 0 ? 1 : 0];
     const MatrixX knots = pair(x, k);
     for (int i = 0; i < n_; ++i) {
       for (int b = 0; b < 2 * blocks; ++b) {
@@ -342,20 +341,6 @@ void Collocation::each_jacobian_entry(const VectorX& x, const Emit& emit) {
       }
     }
   }
-  if (rules_.stage_at_start) {
-    const auto& linear =
-        equations_.linearise(state(x, 0, 0), state(x, 0, 1), state(x, 0, 2));
-    const std::array<const MatrixX*, 3> by{&linear.by_position, &linear.by_rate,
-                                           &linear.by_acceleration};
-    for (int a = 0; a < 3; ++a) {
-      for (int i = 0; i < n_; ++i) {
-        for (int j = 0; j < n_; ++j) {
-          emit(start_row() + i, knot(0) + a * n_ + j, (*by[static_cast<std::size_t>(a)])(i, j));
-        }
-      }
-    }
-    torque_entries(start_row(), 0, 1.0);
-  }
   const int last = knot(grid_.intervals);
   const Goal& goal = task_.goal;
   const auto& tip = tip_position(x);
@@ -401,7 +386,7 @@ template <typename Emit>
 void Collocation::interval_hessian(const VectorX& x, int k, const VectorX& multipliers,
                                    const Emit& emit) {
   // In the interval's own variables: 2 blocks of n, and h.
-  const Transcription rules = this->rules(x);
+  const Transcription rules(grid_.method, duration(x) / grid_.intervals, k == 0);
   const int blocks = 2 * rules.blocks, size = blocks * n_;
   const MatrixX knots = pair(x, k);
   const double share = 1.0 / grid_.intervals;
@@ -513,14 +498,6 @@ void Collocation::each_hessian_entry(const VectorX& x, double factor, const Vect
                                      const Emit& emit) {
   effort_hessian(x, factor, emit);
   for (int k = 0; k < grid_.intervals; ++k) interval_hessian(x, k, multipliers, emit);
-  if (rules_.stage_at_start) {
-    const MatrixX& curvature =
-        equations_.curvature(multipliers.segment(start_row(), n_), state(x, 0, 0), state(x, 0, 1),
-                             state(x, 0, 2));
-    for (int i = 0; i < 3 * n_; ++i) {
-      for (int j = 0; j <= i; ++j) emit(knot(0) + i, knot(0) + j, curvature(i, j));
-    }
-  }
   terminal_hessian(x, factor, multipliers, emit);
 }
 

@@ -3,6 +3,7 @@
 /// derivatives.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -26,7 +27,7 @@ struct Knots {
 ///
 /// Constraints, interval by interval: defects (n), equations of motion of each stage (n each),
 /// torque rates (inputs, where limited), clearances of its second knot (points by obstacles); then
-/// the first knot's equations of motion; the tip's distance from the goal and its speed, both as
+/// the tip's distance from the goal and its speed, both as
 /// sqrt(|e|^2 + tolerance^2) <= sqrt(2) tolerance: as good as linear far away, smooth at the goal.
 class Collocation final : public NonlinearProgram {
  public:
@@ -71,7 +72,8 @@ class Collocation final : public NonlinearProgram {
 
   void set_bounds();
   void set_scales();
-  Transcription rules(const VectorX& x) const;
+  /// Of the first interval, of the others.
+  std::array<Transcription, 2> rules(const VectorX& x) const;
   int knot(int k) const { return k * knot_size_; }
   int torque_at(int k) const { return knot(k) + rules_.blocks * n_; }
   int time_at() const { return variables_ - 1; }
@@ -80,8 +82,7 @@ class Collocation final : public NonlinearProgram {
   int stage_row(int k, int stage) const { return row(k) + n_ * (1 + stage); }
   int rate_row(int k) const { return stage_row(k, static_cast<int>(rules_.stages.size())); }
   int clearance_row(int k) const { return rate_row(k) + (rate_limited_ ? inputs_ : 0); }
-  int start_row() const { return row(grid_.intervals); }
-  int goal_row() const { return start_row() + (rules_.stage_at_start ? n_ : 0); }
+  int goal_row() const { return row(grid_.intervals); }
   int speed_row() const { return goal_row() + 1; }
   /// (n, 2 blocks) of what two knots hold; of one.
   MatrixX pair(const VectorX& x, int k) const;

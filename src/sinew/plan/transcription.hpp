@@ -14,6 +14,13 @@
 ///   q1 = q0 + h/2 (v0 + v1) + h^2/12 (a0 - a1)
 /// and the equations of motion at the knots and the middle. The mass matrix, nearly singular for
 /// lumped masses, is never inverted. Torque is linear over the interval.
+///
+/// Its stability function tends to 1 for fast damped motion, which therefore must not be set off: a
+/// start that is out of balance would stay so. Its first interval is one of Radau IIA, two stages
+/// (Hairer & Wanner 1996, IV.5), which annihilates fast motion, in the same knots:
+///   a_s = 4/(3h) (v1 - v0) - a1/3,   v_s = (4 v0 + 5 v1)/9 - 2/9 h a1,
+///   q_s = q0 + h (5 v0 + 4 v1)/27 - 5/54 h^2 a1,   q1 = q0 + h (v0 + 2 v1)/3 - h^2/6 a1
+/// with equations of motion at a third of the interval and at its end.
 #pragma once
 
 #include <array>
@@ -43,11 +50,15 @@ struct Transcription {
   int blocks = 0;             ///< a knot holds: q, v and, with 3, a
   std::vector<Stage> stages;  ///< of an interval
   Weights defect;             ///< one row, zero
-  bool stage_at_start = false;  ///< the equations hold at the first knot too
   bool linear_torque = false;   ///< else constant over an interval
 
-  /// @param method which one. @param h interval, s, > 0.
-  Transcription(Method method, double h);
+  /// @param method which one. @param h interval, s, > 0. @param first whether it is the first.
+  Transcription(Method method, double h, bool first);
+
+ private:
+  void set_euler(double h);
+  void set_hermite(double h);
+  void set_radau(double h);
 };
 
 }  // namespace sinew::plan
