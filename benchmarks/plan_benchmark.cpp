@@ -80,8 +80,7 @@ void warm_start(benchmark::State& state) {
 void reach_proof(benchmark::State& state) {
   const Task task = task_of(state);
   for (auto _ : state) {
-    benchmark::DoNotOptimize(
-        prove_out_of_reach(arm(), task.limits, task.goal.position).boxes);
+    benchmark::DoNotOptimize(prove_out_of_reach(arm(), task.limits, task.goal.position).boxes);
   }
 }
 

@@ -113,12 +113,12 @@ PlanTask make_task(const PccArm& of, const py::object& goal, const py::object& t
   return {of.arm, plan::completed(arm, task)};
 }
 
-plan::Plan solve(const PlanTask& self, std::uint64_t seed, const plan::Plan* warm,
-                 double tolerance, int max_iterations, double max_time) {
+plan::Plan solve(const PlanTask& self, std::uint64_t seed, const plan::Plan* warm, double tolerance,
+                 int max_iterations, double max_time) {
   const py::gil_scoped_release release;
-  plan::Planner planner(self.arm, self.task,
-                        {.tolerance = tolerance, .max_iterations = max_iterations,
-                         .max_time = max_time});
+  plan::Planner planner(
+      self.arm, self.task,
+      {.tolerance = tolerance, .max_iterations = max_iterations, .max_time = max_time});
   return warm == nullptr ? planner.plan(seed) : planner.replan(*warm);
 }
 
@@ -198,8 +198,8 @@ void bind_plans(py::module_& module) {
       .def_property_readonly(
           "seconds", [](const Plan& self) { return self.seconds; }, "float: of the solver.")
       .def(
-          "torque_at",
-          [](const Plan& self, double time) { return copy(self.torque(time)); }, py::arg("time"),
+          "torque_at", [](const Plan& self, double time) { return copy(self.torque(time)); },
+          py::arg("time"),
           R"(torque_at($self, time)
 --
 
@@ -271,11 +271,11 @@ Error
            py::arg("angle_limits") = py::none(), py::arg("rate_limits") = py::none(),
            py::arg("torque_rate_limits") = py::none(), py::arg("tolerance") = 2e-3,
            py::arg("speed_tolerance") = 5e-3, py::arg("effort") = 0.1, py::arg("tip_speed") = 0.0,
-           py::arg("time") = 0.0, py::arg("duration") = 1.6,
-           py::arg("duration_range") = py::none(), py::arg("intervals") = 50,
-           py::arg("method") = "hermite-simpson", py::arg("theta") = py::none(),
-           py::arg("theta_dot") = py::none(), py::arg("torque") = py::none(),
-           py::arg("obstacles") = std::vector<plan::Obstacle>{}, py::arg("backbone_points") = 4)
+           py::arg("time") = 0.0, py::arg("duration") = 1.6, py::arg("duration_range") = py::none(),
+           py::arg("intervals") = 50, py::arg("method") = "hermite-simpson",
+           py::arg("theta") = py::none(), py::arg("theta_dot") = py::none(),
+           py::arg("torque") = py::none(), py::arg("obstacles") = std::vector<plan::Obstacle>{},
+           py::arg("backbone_points") = 4)
       .def("solve", &solve, py::arg("seed") = 0, py::kw_only(), py::arg("warm") = nullptr,
            py::arg("tolerance") = 1e-6, py::arg("max_iterations") = 300, py::arg("max_time") = 30.0,
            R"(solve($self, seed=0, *, warm=None, tolerance=1e-06, max_iterations=300, max_time=30.0)

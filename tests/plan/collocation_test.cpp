@@ -1,7 +1,8 @@
 // Exact derivatives of every part of the program against differences.
+#include "sinew/plan/collocation.hpp"
+
 #include <gtest/gtest.h>
 
-#include "sinew/plan/collocation.hpp"
 #include "tasks.hpp"
 
 namespace sinew::plan {
@@ -32,8 +33,9 @@ class Derivatives : public ::testing::TestWithParam<Kind> {
     }
     task.objective = {0.7, 1.3, 0.4};
     task.limits.torque_rate = VectorX::Constant(mixed ? 6 : 4, 2.0);
-    task.obstacles = {{.point = {0.3, 0.1, -0.1}, .radius = 0.05, .clearance = 0.01},
-                      {.kind = Obstacle::Kind::plane, .point = {0.0, 0.0, -0.8}, .normal = {0.1, 0, 2}}};
+    task.obstacles = {
+        {.point = {0.3, 0.1, -0.1}, .radius = 0.05, .clearance = 0.01},
+        {.kind = Obstacle::Kind::plane, .point = {0.0, 0.0, -0.8}, .normal = {0.1, 0, 2}}};
     task.backbone_points = 2;
     return task;
   }
@@ -121,9 +123,7 @@ TEST_P(Derivatives, HessianIsThatOfTheLagrangian) {
   }
 }
 
-TEST_P(Derivatives, KnotsPackAndUnpack) {
-  EXPECT_EQ(program_.pack(program_.unpack(x_)), x_);
-}
+TEST_P(Derivatives, KnotsPackAndUnpack) { EXPECT_EQ(program_.pack(program_.unpack(x_)), x_); }
 
 INSTANTIATE_TEST_SUITE_P(
     Kinds, Derivatives,
@@ -139,8 +139,8 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Transcription, IsExactOnPolynomials) {
   const double h = 0.3;
   const auto cubic = [](double t) {
-    return std::array{1.0 - 2.0 * t + 3.0 * t * t - 4.0 * t * t * t,
-                      -2.0 + 6.0 * t - 12.0 * t * t, 6.0 - 24.0 * t};
+    return std::array{1.0 - 2.0 * t + 3.0 * t * t - 4.0 * t * t * t, -2.0 + 6.0 * t - 12.0 * t * t,
+                      6.0 - 24.0 * t};
   };
   VectorX knots(6);
   for (int k = 0; k < 2; ++k) {

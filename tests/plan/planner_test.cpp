@@ -5,6 +5,7 @@
 #include "sinew/core/error.hpp"
 #include "sinew/pcc/arm_simulation.hpp"
 #include "sinew/plan/replay.hpp"
+
 #include "tasks.hpp"
 
 namespace sinew::plan {
@@ -37,8 +38,9 @@ TEST(Planner, PlansThatAreCarriedOutReachTheirGoals) {
     const Replay run = replay(arm, task, plan);
     EXPECT_LT(run.tip_error, 0.003) << goal.transpose();
     EXPECT_LT(run.tip_speed, 0.01) << goal.transpose();
-    EXPECT_TRUE((plan.knots.torque.cwiseAbs().rowwise() -
-                 pcc::published_torque_limits().transpose()).maxCoeff() < 1e-8);
+    EXPECT_TRUE(
+        (plan.knots.torque.cwiseAbs().rowwise() - pcc::published_torque_limits().transpose())
+            .maxCoeff() < 1e-8);
     const MatrixX change = plan.knots.torque.bottomRows(50) - plan.knots.torque.topRows(50);
     EXPECT_LT(change.cwiseAbs().maxCoeff() / (plan.duration() / 50), 2.0 + 1e-6);
   }

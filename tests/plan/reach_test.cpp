@@ -1,8 +1,10 @@
 // Static reach: samples, nearest equilibria and proofs hold each other.
+#include "sinew/plan/reach.hpp"
+
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
-#include "sinew/plan/reach.hpp"
+
 #include "tasks.hpp"
 
 namespace sinew::plan {
@@ -23,8 +25,8 @@ TEST(Reach, SamplesAreEquilibriaWithinTheirLimits) {
     const VectorX q = map.position.row(i);
     EXPECT_LT((equations.residual(q, still, still) - map.torque.row(i).transpose()).norm(), 1e-9);
     EXPECT_LT((equations.endpoints(q).row(3) - map.tip.row(i)).norm(), 1e-12);
-    EXPECT_TRUE((map.torque.row(i).transpose().cwiseAbs().array() <=
-                 limits.torque_upper.array()).all());
+    EXPECT_TRUE(
+        (map.torque.row(i).transpose().cwiseAbs().array() <= limits.torque_upper.array()).all());
   }
 }
 
@@ -52,8 +54,8 @@ TEST(Reach, GoalsOfGrabsAreProvenOutOfReach) {
 /// Soundness: nowhere where an equilibrium is does the search prove that there is none.
 TEST(Reach, NeverProvesAnEquilibriumAway) {
   for (const bool turned : {false, true}) {
-    pcc::ArmSettings settings = pcc::testing::fluidic(turned ? pcc::MassCentre::chord
-                                                             : pcc::MassCentre::distributed);
+    pcc::ArmSettings settings =
+        pcc::testing::fluidic(turned ? pcc::MassCentre::chord : pcc::MassCentre::distributed);
     if (turned) {
       settings.segments[2].gamma = 0.5;
       settings.segments[1].dead_length = 0.02;
@@ -65,9 +67,8 @@ TEST(Reach, NeverProvesAnEquilibriumAway) {
     limits.torque_lower = -limits.torque_upper;
     const ReachMap map = sample_reach(arm, limits, 20, 5);
     for (Eigen::Index i = 0; i < map.tip.rows(); ++i) {
-      const ReachProof proof =
-          prove_out_of_reach(arm, limits, map.tip.row(i).transpose(),
-                             {.tolerance = 2e-3, .max_boxes = 20000});
+      const ReachProof proof = prove_out_of_reach(arm, limits, map.tip.row(i).transpose(),
+                                                  {.tolerance = 2e-3, .max_boxes = 20000});
       EXPECT_NE(proof.verdict, ReachProof::Verdict::out_of_reach) << i;
     }
   }
@@ -79,7 +80,9 @@ TEST(Reach, FindsWhatCanBeReached) {
   ASSERT_EQ(proof.verdict, ReachProof::Verdict::reachable);
   pcc::ArmEquations equations(arm);
   EXPECT_LT((equations.endpoints(proof.position).row(3).transpose() - Vector3(0.1, 0.0, -0.5))
-                .cwiseAbs().maxCoeff(), 0.021);
+                .cwiseAbs()
+                .maxCoeff(),
+            0.021);
 }
 
 TEST(Reach, RefusesWhatItCannotDo) {

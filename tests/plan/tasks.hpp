@@ -3,8 +3,9 @@
 
 #include <numbers>
 
-#include "arms.hpp"
 #include "sinew/plan/planner.hpp"
+
+#include "arms.hpp"
 
 namespace sinew::plan::testing {
 

@@ -1,9 +1,11 @@
 // The regulator: its linearisation, Riccati's equation, and what it is good for.
+#include "sinew/plan/tracking.hpp"
+
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
 #include "sinew/pcc/arm_simulation.hpp"
-#include "sinew/plan/tracking.hpp"
+
 #include "tasks.hpp"
 
 namespace sinew::plan {
@@ -16,9 +18,9 @@ using testing::make;
 TEST(Tracking, LinearisesTheImplicitStep) {
   const auto arm = make(pcc::testing::fluidic(pcc::MassCentre::distributed));
   const double h = 5e-3;
-  pcc::ArmSimulation simulation(arm, {.time_step = h,
-                                      .integrator = mechanics::Integrator::backward_euler,
-                                      .tolerance = 1e-13});
+  pcc::ArmSimulation simulation(
+      arm,
+      {.time_step = h, .integrator = mechanics::Integrator::backward_euler, .tolerance = 1e-13});
   const VectorX q{{0.3, -0.5, 0.7, 0.2}}, v{{1.0, -2.0, 0.5, 3.0}}, torque{{0, 0.1, -0.1, 0.05}};
   const auto step = [&](const VectorX& from, const VectorX& by) {
     simulation.set_state(from.head(4), from.tail(4));
@@ -30,17 +32,19 @@ TEST(Tracking, LinearisesTheImplicitStep) {
   VectorX x(8);
   x << q, v;
   const VectorX next = step(x, torque);
-  const auto linear = linearise_step(simulation.equations(), next.head(4), next.tail(4),
-                                     (next.tail(4) - v) / h, h);
+  const auto linear =
+      linearise_step(simulation.equations(), next.head(4), next.tail(4), (next.tail(4) - v) / h, h);
   const double e = 1e-6;
   for (int i = 0; i < 8; ++i) {
-    const VectorX difference = (step(x + e * VectorX::Unit(8, i), torque) -
-                                step(x - e * VectorX::Unit(8, i), torque)) / (2.0 * e);
+    const VectorX difference =
+        (step(x + e * VectorX::Unit(8, i), torque) - step(x - e * VectorX::Unit(8, i), torque)) /
+        (2.0 * e);
     EXPECT_LT((linear.state.col(i) - difference).norm(), 1e-5 * (1.0 + difference.norm())) << i;
   }
   for (int i = 0; i < 4; ++i) {
-    const VectorX difference = (step(x, torque + e * VectorX::Unit(4, i)) -
-                                step(x, torque - e * VectorX::Unit(4, i))) / (2.0 * e);
+    const VectorX difference =
+        (step(x, torque + e * VectorX::Unit(4, i)) - step(x, torque - e * VectorX::Unit(4, i))) /
+        (2.0 * e);
     EXPECT_LT((linear.input.col(i) - difference).norm(), 1e-5 * (1.0 + difference.norm())) << i;
   }
 }

@@ -126,8 +126,8 @@ void Collocation::set_scales() {
   const double own = std::sqrt(linear.by_acceleration.trace() / std::max(stiffness, 1e-12));
   const double most = std::max(task_.limits.torque_upper.cwiseAbs().maxCoeff(),
                                task_.limits.torque_lower.cwiseAbs().maxCoeff());
-  const double torque = most < kNoBound ? std::max(most, 1e-9)
-                                        : std::max(stiffness / static_cast<double>(n_), 1e-9);
+  const double torque =
+      most < kNoBound ? std::max(most, 1e-9) : std::max(stiffness / static_cast<double>(n_), 1e-9);
   variable_scale_ = VectorX::Ones(variables_);
   for (int k = 0; k <= grid_.intervals; ++k) {
     double unit = 1.0;
@@ -141,16 +141,17 @@ void Collocation::set_scales() {
   for (int k = 0; k < grid_.intervals; ++k) {
     constraint_scale_.segment(row(k), n_).setConstant(grid_.duration / grid_.intervals / own);
     constraint_scale_.segment(stage_row(k, 0), rate_row(k) - stage_row(k, 0)).setConstant(torque);
-    constraint_scale_.segment(rate_row(k), clearance_row(k) - rate_row(k)).setConstant(torque / own);
+    constraint_scale_.segment(rate_row(k), clearance_row(k) - rate_row(k))
+        .setConstant(torque / own);
     constraint_scale_.segment(clearance_row(k), row(k + 1) - clearance_row(k)).setConstant(length);
   }
   constraint_scale_[goal_row()] = 0.1 * length;
   if (speed_limited_) constraint_scale_[speed_row()] = 0.1 * length / own;
   const Objective& cost = task_.objective;
   // A tenth of what limits on torque allow is what plans come to.
-  objective_scale_ = 0.1 * std::max({cost.effort * torque * torque * grid_.duration,
-                                     cost.tip_speed * std::pow(0.1 * length / own, 2),
-                                     cost.time * own, 1e-12});
+  objective_scale_ =
+      0.1 * std::max({cost.effort * torque * torque * grid_.duration,
+                      cost.tip_speed * std::pow(0.1 * length / own, 2), cost.time * own, 1e-12});
 }
 
 MatrixX Collocation::pair(const VectorX& x, int k) const {
@@ -212,10 +213,11 @@ void Collocation::gradient(const VectorX& x, VectorX& result) {
       result.segment(torque_at(k + 1), inputs_) += 2.0 * cost.effort * h * after;
     }
     if (grid_.free()) {
-      result[time_at()] += cost.effort / grid_.intervals *
-                           (rules_.linear_torque ? (before.squaredNorm() + before.dot(after) +
-                                                    after.squaredNorm()) / 3.0
-                                                 : after.squaredNorm());
+      result[time_at()] +=
+          cost.effort / grid_.intervals *
+          (rules_.linear_torque
+               ? (before.squaredNorm() + before.dot(after) + after.squaredNorm()) / 3.0
+               : after.squaredNorm());
     }
   }
   if (cost.tip_speed > 0.0) {
@@ -243,8 +245,7 @@ void Collocation::constraints(const VectorX& x, VectorX& result) {
           actuation * (stage.torque[0] * before + stage.torque[1] * after);
     }
     if (rate_limited_) {
-      result.segment(rate_row(k), inputs_) =
-          (after - before) * grid_.intervals / duration(x);
+      result.segment(rate_row(k), inputs_) = (after - before) * grid_.intervals / duration(x);
     }
     if (task_.obstacles.empty()) continue;
     const auto& where = points_.positions(state(x, k + 1, 0), backbone_);
@@ -296,8 +297,7 @@ void Collocation::each_jacobian_entry(const VectorX& x, const Emit& emit) {
       const Stage& stage = rules.stages[s];
       const int first = stage_row(k, static_cast<int>(s));
       const MatrixX motion = knots * stage.state.value.transpose();
-      const auto& linear =
-          equations_.linearise(motion.col(0), motion.col(1), motion.col(2));
+      const auto& linear = equations_.linearise(motion.col(0), motion.col(1), motion.col(2));
       const std::array<const MatrixX*, 3> by{&linear.by_position, &linear.by_rate,
                                              &linear.by_acceleration};
       for (int b = 0; b < 2 * blocks; ++b) {
@@ -312,8 +312,7 @@ void Collocation::each_jacobian_entry(const VectorX& x, const Emit& emit) {
       }
       if (grid_.free()) {
         const MatrixX slope = share * knots * stage.state.slope.transpose();
-        const VectorX total =
-            *by[0] * slope.col(0) + *by[1] * slope.col(1) + *by[2] * slope.col(2);
+        const VectorX total = *by[0] * slope.col(0) + *by[1] * slope.col(1) + *by[2] * slope.col(2);
         for (int i = 0; i < n_; ++i) emit(first + i, time_at(), total[i]);
       }
       torque_entries(first, k, stage.torque[0]);
@@ -344,13 +343,13 @@ void Collocation::each_jacobian_entry(const VectorX& x, const Emit& emit) {
   const int last = knot(grid_.intervals);
   const Goal& goal = task_.goal;
   const auto& tip = tip_position(x);
-  const VectorX distance = tip.jacobian.transpose() *
-                           SmoothLength(tip.value - goal.position, goal.tolerance).gradient;
+  const VectorX distance =
+      tip.jacobian.transpose() * SmoothLength(tip.value - goal.position, goal.tolerance).gradient;
   for (int j = 0; j < n_; ++j) emit(goal_row(), last + j, distance[j]);
   if (!speed_limited_) return;
   const auto& velocity = tip_velocity(x);
-  const VectorX speed = velocity.jacobian.transpose() *
-                        SmoothLength(velocity.value, goal.speed_tolerance).gradient;
+  const VectorX speed =
+      velocity.jacobian.transpose() * SmoothLength(velocity.value, goal.speed_tolerance).gradient;
   for (int j = 0; j < 2 * n_; ++j) emit(speed_row(), last + j, speed[j]);
 }
 
@@ -415,8 +414,7 @@ void Collocation::interval_hessian(const VectorX& x, int k, const VectorX& multi
     const MatrixX slope = knots * weights.slope.transpose();
     const MatrixX bend = knots * weights.bend.transpose();
     const VectorX slopes = slope.reshaped(), curved = curvature * slopes;
-    const auto& linear =
-        equations_.linearise(motion.col(0), motion.col(1), motion.col(2));
+    const auto& linear = equations_.linearise(motion.col(0), motion.col(1), motion.col(2));
     MatrixX gradient(n_, 3);
     gradient << linear.by_position.transpose() * weight, linear.by_rate.transpose() * weight,
         linear.by_acceleration.transpose() * weight;
@@ -460,8 +458,8 @@ void Collocation::interval_hessian(const VectorX& x, int k, const VectorX& multi
   int at = clearance_row(k);
   for (const Obstacle& obstacle : task_.obstacles) {
     for (const VectorDerivatives& point : where) {
-      clearances += multipliers[at++] * composed(obstacle.gradient(point.value),
-                                                 obstacle.hessian(point.value), point);
+      clearances += multipliers[at++] *
+                    composed(obstacle.gradient(point.value), obstacle.hessian(point.value), point);
     }
   }
   for (int i = 0; i < n_; ++i) {
@@ -503,8 +501,7 @@ void Collocation::each_hessian_entry(const VectorX& x, double factor, const Vect
 
 void Collocation::hessian(const VectorX& x, double factor, const VectorX& multipliers,
                           double* values) {
-  each_hessian_entry(x, factor, multipliers,
-                     [&](int, int, double value) { *values++ = value; });
+  each_hessian_entry(x, factor, multipliers, [&](int, int, double value) { *values++ = value; });
 }
 
 VectorX Collocation::pack(const Knots& knots) const {

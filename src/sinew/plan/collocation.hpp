@@ -16,9 +16,9 @@ namespace sinew::plan {
 
 /// Motion and torque at the knots, one a row.
 struct Knots {
-  VectorX times;                        ///< (knots,) s, from 0
+  VectorX times;                         ///< (knots,) s, from 0
   MatrixX position, rate, acceleration;  ///< (knots, coordinates)
-  MatrixX torque;                       ///< (knots, inputs) N m
+  MatrixX torque;                        ///< (knots, inputs) N m
 };
 
 /// Variables, with b = 2 (q, v) or 3 (q, v, a) blocks a knot:

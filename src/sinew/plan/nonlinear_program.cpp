@@ -179,10 +179,10 @@ void set_options(Ipopt::OptionsList& options, const SolverSettings& settings, bo
   options.SetStringValue("honor_original_bounds", "no");
   if (warm) {
     options.SetStringValue("warm_start_init_point", "yes");
-    for (const char* name : {"warm_start_bound_push", "warm_start_bound_frac",
-                             "warm_start_slack_bound_push", "warm_start_slack_bound_frac",
-                             "warm_start_mult_bound_push"}) {
-      options.SetNumericValue(name, 1e-6);
+    for (const char* name :
+         {"warm_start_bound_push", "warm_start_bound_frac", "warm_start_slack_bound_push",
+          "warm_start_slack_bound_frac", "warm_start_mult_bound_push"}) {
+      options.SetNumericValue(name, 1e-3);
     }
   }
 }
@@ -225,8 +225,7 @@ ProgramResult solve(NonlinearProgram& program, const ProgramPoint& start,
   }
   Ipopt::SmartPtr<Ipopt::TNLP> adapter = new Adapter(program, start, result);
   result.status = status_of(application->OptimizeTNLP(adapter));
-  result.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return result;
 }
 

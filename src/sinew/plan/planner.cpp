@@ -18,8 +18,7 @@ namespace {
 /// Random torques: two sines an input, that begin at the start's torque.
 class Excitation {
  public:
-  Excitation(const Task& task, double torque, double frequency, std::uint64_t seed)
-      : task_(task) {
+  Excitation(const Task& task, double torque, double frequency, std::uint64_t seed) : task_(task) {
     std::mt19937_64 random(seed);
     const auto uniform = [&](double from, double to) {
       return from + (to - from) * std::generate_canonical<double, 53>(random);
@@ -79,9 +78,10 @@ Knots Planner::guess(std::uint64_t seed) const {
   const Eigen::Index count = grid.intervals + 1, n = arm_->coordinates();
   // The slow motion of the whole arm, as a pendulum of its mass: what a swing works with.
   pcc::ArmEquations equations(arm_);
-  const auto& linear = equations.linearise(task_.start.position, VectorX::Zero(n), VectorX::Zero(n));
-  const double frequency = std::sqrt(linear.by_position.diagonal().cwiseAbs().sum() /
-                                     linear.by_acceleration.trace());
+  const auto& linear =
+      equations.linearise(task_.start.position, VectorX::Zero(n), VectorX::Zero(n));
+  const double frequency =
+      std::sqrt(linear.by_position.diagonal().cwiseAbs().sum() / linear.by_acceleration.trace());
   double torque = 0.0;
   for (const VectorX* limit : {&task_.limits.torque_lower, &task_.limits.torque_upper}) {
     for (const double value : *limit) {
@@ -105,8 +105,8 @@ Knots Planner::guess(std::uint64_t seed) const {
   }
   for (Eigen::Index k = 0; k < count; ++k) {
     const Eigen::Index from = std::max<Eigen::Index>(k - 1, 0), to = std::min(k + 1, count - 1);
-    knots.acceleration.row(k) = (knots.rate.row(to) - knots.rate.row(from)) /
-                                (static_cast<double>(to - from) * h);
+    knots.acceleration.row(k) =
+        (knots.rate.row(to) - knots.rate.row(from)) / (static_cast<double>(to - from) * h);
   }
   return knots;
 }

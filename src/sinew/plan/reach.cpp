@@ -36,8 +36,14 @@ class Random {
 class NearestProgram final : public NonlinearProgram {
  public:
   NearestProgram(std::shared_ptr<const pcc::Arm> arm, const Limits& limits, const Vector3& goal)
-      : arm_(arm), equations_(arm), points_(arm), goal_(goal), n_(arm->coordinates()),
-        inputs_(arm->inputs()), still_(VectorX::Zero(n_)), tip_{arm->segments() - 1} {
+      : arm_(arm),
+        equations_(arm),
+        points_(arm),
+        goal_(goal),
+        n_(arm->coordinates()),
+        inputs_(arm->inputs()),
+        still_(VectorX::Zero(n_)),
+        tip_{arm->segments() - 1} {
     variables_ = {VectorX(n_ + inputs_), VectorX(n_ + inputs_)};
     variables_.lower << limits.angle_lower, limits.torque_lower;
     variables_.upper << limits.angle_upper, limits.torque_upper;
@@ -201,9 +207,9 @@ NearestReach nearest_reach(std::shared_ptr<const pcc::Arm> arm, const Limits& gi
     const double distance = (tip - goal).norm();
     if (best.found && distance >= best.distance) continue;
     const MatrixX& stiffness = equations.linearise(q, still, still).by_position;
-    const double lowest =
-        Eigen::SelfAdjointEigenSolver<MatrixX>(0.5 * (stiffness + stiffness.transpose()),
-                                               Eigen::EigenvaluesOnly).eigenvalues()[0];
+    const double lowest = Eigen::SelfAdjointEigenSolver<MatrixX>(
+                              0.5 * (stiffness + stiffness.transpose()), Eigen::EigenvaluesOnly)
+                              .eigenvalues()[0];
     best = {true, lowest > 0.0, distance, tip, q, found.point.x.tail(arm->inputs()), best.solved};
   }
   return best;

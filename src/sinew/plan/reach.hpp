@@ -51,9 +51,9 @@ NearestReach nearest_reach(std::shared_ptr<const pcc::Arm> arm, const Limits& li
                            const Vector3& goal, int starts = 20, std::uint64_t seed = 1);
 
 struct ReachProofSettings {
-  double tolerance = 0.02;       ///< m, > 0: about the goal, along each axis
+  double tolerance = 0.02;          ///< m, > 0: about the goal, along each axis
   double angle = std::numbers::pi;  ///< rad, > 0: how far a segment bends where no limit says
-  long max_boxes = 5'000'000;    ///< >= 1
+  long max_boxes = 5'000'000;       ///< >= 1
 };
 
 struct ReachProof {
@@ -63,9 +63,9 @@ struct ReachProof {
     undecided,     ///< boxes ran out
   };
   Verdict verdict = Verdict::undecided;
-  long boxes = 0;        ///< looked at
+  long boxes = 0;         ///< looked at
   double smallest = 0.0;  ///< rad, the largest half-width of the smallest box needed
-  VectorX position;      ///< (coordinates,) of what was found
+  VectorX position;       ///< (coordinates,) of what was found
 };
 /// "out-of-reach", "reachable", "undecided".
 std::string_view verdict_name(ReachProof::Verdict verdict);
@@ -77,9 +77,9 @@ std::string_view verdict_name(ReachProof::Verdict verdict);
 /// since the axis' direction t turns by f_i dq_i, f_i(s) the share of segment i's bend that lies
 /// before s, so that every derivative of t by q_i is at most f_i long, whatever the turns gamma. A
 /// box goes when these enclosures miss the goal or the torques' limits; the linear constraints also
-/// shrink it (Hansen & Walster, Global Optimization Using Interval Analysis, 2004, ch. 10-11). Exact but for
-/// rounding, against which every bound is widened by 1e-9.
-/// Throws Error(out-of-range): a spatial segment, a setting that makes no sense.
+/// shrink it (Hansen & Walster, Global Optimization Using Interval Analysis, 2004, ch. 10-11).
+/// Exact but for rounding, against which every bound is widened by 1e-9. Throws
+/// Error(out-of-range): a spatial segment, a setting that makes no sense.
 ReachProof prove_out_of_reach(std::shared_ptr<const pcc::Arm> arm, const Limits& limits,
                               const Vector3& goal, const ReachProofSettings& settings = {});
 

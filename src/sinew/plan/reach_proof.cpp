@@ -16,8 +16,8 @@ constexpr double kRounding = 1e-9;
 
 /// integral of f_a f_b ... ds along the axis up to a point; f_i(s) is the share of segment i's bend
 /// before s. `times` counts how often each segment stands in the product.
-double bend_moment(const pcc::Arm& arm, const std::vector<int>& times, int segment,
-                   double fraction, double scale) {
+double bend_moment(const pcc::Arm& arm, const std::vector<int>& times, int segment, double fraction,
+                   double scale) {
   int last = -1;
   for (std::size_t i = 0; i < times.size(); ++i) {
     if (times[i] > 0) last = static_cast<int>(i);
@@ -46,8 +46,13 @@ class Search {
  public:
   Search(std::shared_ptr<const pcc::Arm> arm, const Limits& limits, const Vector3& goal,
          const ReachProofSettings& settings)
-      : arm_(arm), equations_(arm), dynamics_(arm), n_(arm->coordinates()),
-        tip_{arm->segments() - 1}, still_(VectorX::Zero(n_)), gradients_(static_cast<std::size_t>(n_)) {
+      : arm_(arm),
+        equations_(arm),
+        dynamics_(arm),
+        n_(arm->coordinates()),
+        tip_{arm->segments() - 1},
+        still_(VectorX::Zero(n_)),
+        gradients_(static_cast<std::size_t>(n_)) {
     const Eigen::Index rows = n_ + 3;
     lower_.resize(rows);
     upper_.resize(rows);
@@ -110,8 +115,8 @@ class Search {
             const double weight =
                 (particle.mass * arm_->settings().gravity + particle.force).norm();
             curvatures_[static_cast<std::size_t>(i)](j, k) +=
-                weight * bend_moment(*arm_, times, particle.segment, particle.fraction,
-                                     particle.scale);
+                weight *
+                bend_moment(*arm_, times, particle.segment, particle.fraction, particle.scale);
           }
           --times[static_cast<std::size_t>(i)];
         }
@@ -142,8 +147,8 @@ class Search {
                            std::max(slope * from[j], slope * to[j])};
         // slope d_j in -(total - own).
         const double low = -(total.upper - own.upper), high = -(total.lower - own.lower);
-        const Interval allowed = slope > 0.0 ? Interval{low / slope, high / slope}
-                                             : Interval{high / slope, low / slope};
+        const Interval allowed =
+            slope > 0.0 ? Interval{low / slope, high / slope} : Interval{high / slope, low / slope};
         from[j] = std::max(from[j], allowed.lower - kRounding);
         to[j] = std::min(to[j], allowed.upper + kRounding);
         if (from[j] > to[j]) return false;

@@ -10,12 +10,12 @@ namespace sinew::plan {
 
 /// The arm's motion over equal steps.
 struct Replay {
-  VectorX times;                    ///< (steps + 1,) s
-  MatrixX position, rate, torque;   ///< (steps + 1, coordinates or inputs)
-  Points tip, tip_velocity;         ///< (steps + 1, 3) m, m/s
-  double tip_error = 0.0;           ///< m, at the end
-  double tip_speed = 0.0;           ///< m/s, at the end
-  double clearance = 0.0;           ///< m, the least of all times, points and obstacles; none: +inf
+  VectorX times;                   ///< (steps + 1,) s
+  MatrixX position, rate, torque;  ///< (steps + 1, coordinates or inputs)
+  Points tip, tip_velocity;        ///< (steps + 1, 3) m, m/s
+  double tip_error = 0.0;          ///< m, at the end
+  double tip_speed = 0.0;          ///< m/s, at the end
+  double clearance = 0.0;          ///< m, the least of all times, points and obstacles; none: +inf
 };
 
 /// Fills a replay, state by state.

@@ -33,9 +33,10 @@ void fill(VectorX& values, Eigen::Index size, double with, const char* item) {
 void check_order(const VectorX& lower, const VectorX& upper, const char* item) {
   for (Eigen::Index i = 0; i < lower.size(); ++i) {
     if (lower[i] > upper[i]) {
-      throw Error(ErrorKind::contradictory_limits, {.item = fmt::format("{}[{}]", item, i)},
-                  fmt::format("the lower limit {:g} is above the upper one {:g}", lower[i], upper[i]),
-                  "swap them");
+      throw Error(
+          ErrorKind::contradictory_limits, {.item = fmt::format("{}[{}]", item, i)},
+          fmt::format("the lower limit {:g} is above the upper one {:g}", lower[i], upper[i]),
+          "swap them");
     }
   }
 }
@@ -94,10 +95,10 @@ void check_grid(const Grid& grid) {
   if (!grid.free()) return;
   check_positive(grid.least_duration, "grid.least_duration", "s");
   if (grid.least_duration > grid.most_duration) {
-    throw Error(ErrorKind::contradictory_limits, {.item = "grid.least_duration"},
-                fmt::format("{:g} s is above the most, {:g} s", grid.least_duration,
-                            grid.most_duration),
-                "swap them");
+    throw Error(
+        ErrorKind::contradictory_limits, {.item = "grid.least_duration"},
+        fmt::format("{:g} s is above the most, {:g} s", grid.least_duration, grid.most_duration),
+        "swap them");
   }
 }
 
@@ -149,7 +150,8 @@ Task completed(const pcc::Arm& arm, Task task) {
   check_order(limits.angle_lower, limits.angle_upper, "limits.angle");
   for (const double rate : limits.rate) check_not_negative(rate, "limits.rate");
   for (const double rate : limits.torque_rate) check_positive(rate, "limits.torque_rate", "N m/s");
-  check_within(task.start.position, limits.angle_lower, limits.angle_upper, "start.position", "rad");
+  check_within(task.start.position, limits.angle_lower, limits.angle_upper, "start.position",
+               "rad");
   check_within(task.start.rate, -limits.rate, limits.rate, "start.rate", "rad/s");
   check_within(task.start.torque, limits.torque_lower, limits.torque_upper, "start.torque", "N m");
   check_not_negative(task.objective.effort, "objective.effort");

@@ -39,10 +39,10 @@ struct Limits {
 struct Obstacle {
   enum class Kind { sphere, plane };
   Kind kind = Kind::sphere;
-  Vector3 point = Vector3::Zero();   ///< m, the sphere's centre, or on the plane
-  double radius = 0.0;               ///< m, > 0, of a sphere
+  Vector3 point = Vector3::Zero();    ///< m, the sphere's centre, or on the plane
+  double radius = 0.0;                ///< m, > 0, of a sphere
   Vector3 normal = Vector3::UnitZ();  ///< of a plane, towards where the arm may be; any length
-  double clearance = 0.0;            ///< m, >= 0, left between the axis and the surface
+  double clearance = 0.0;             ///< m, >= 0, left between the axis and the surface
 
   /// Distance (m) from the surface, negative inside; its gradient and Hessian by the point.
   double distance(const Vector3& at) const;
@@ -50,7 +50,8 @@ struct Obstacle {
   Matrix3 hessian(const Vector3& at) const;
 };
 
-/// Cost = effort * integral of tau . tau dt + tip_speed * |v|^2 + time * t_f, v the tip's at the end.
+/// Cost = effort * integral of tau . tau dt + tip_speed * |v|^2 + time * t_f, v the tip's at the
+/// end.
 struct Objective {
   double effort = 0.1;     ///< R, 1/((N m)^2 s), >= 0
   double tip_speed = 0.0;  ///< (s/m)^2, >= 0
@@ -59,8 +60,8 @@ struct Objective {
 
 struct Grid {
   Method method = Method::hermite_simpson;
-  double duration = 1.6;  ///< s, > 0; where it is free, the first guess
-  int intervals = 50;     ///< >= 2
+  double duration = 1.6;                             ///< s, > 0; where it is free, the first guess
+  int intervals = 50;                                ///< >= 2
   double least_duration = 0.0, most_duration = 0.0;  ///< s; both 0: the duration is fixed
   bool free() const { return most_duration > 0.0; }
 };

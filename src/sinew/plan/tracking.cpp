@@ -16,10 +16,12 @@ namespace sinew::plan {
 namespace {
 
 void check(const TrackingSettings& settings) {
-  const std::pair<const char*, double> all[] = {
-      {"time_step", settings.time_step},       {"angle", settings.angle},
-      {"rate", settings.rate},                 {"torque_share", settings.torque_share},
-      {"tip_position", settings.tip_position}, {"tip_speed", settings.tip_speed}};
+  const std::pair<const char*, double> all[] = {{"time_step", settings.time_step},
+                                                {"angle", settings.angle},
+                                                {"rate", settings.rate},
+                                                {"torque_share", settings.torque_share},
+                                                {"tip_position", settings.tip_position},
+                                                {"tip_speed", settings.tip_speed}};
   for (const auto& [name, value] : all) {
     if (!(value > 0.0) || !std::isfinite(value)) {
       throw Error(ErrorKind::out_of_range, {.item = name}, fmt::format("{:g}", value),
@@ -130,8 +132,8 @@ Replay track(std::shared_ptr<const pcc::Arm> arm, const Tracker& tracker,
   const Task& task = tracker.task();
   const VectorX q = trial.position.size() > 0 ? trial.position : task.start.position;
   const VectorX rate = trial.rate.size() > 0 ? trial.rate : task.start.rate;
-  const auto fine = static_cast<Eigen::Index>(
-      std::max(1.0, std::round(tracker.time_step() / trial.time_step)));
+  const auto fine =
+      static_cast<Eigen::Index>(std::max(1.0, std::round(tracker.time_step() / trial.time_step)));
   const double h = tracker.time_step() / static_cast<double>(fine);
   pcc::ArmSimulation simulation(arm, {.time_step = h});
   simulation.set_state(q, rate);

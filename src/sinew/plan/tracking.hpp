@@ -1,6 +1,7 @@
 /// @file
-/// Feedback that keeps an arm on its plan: a linear quadratic regulator of variable gain (Kwakernaak
-/// & Sivan, Linear Optimal Control Systems, 1972, sec. 6.4) on the linearised implicit step.
+/// Feedback that keeps an arm on its plan: a linear quadratic regulator of variable gain
+/// (Kwakernaak & Sivan, Linear Optimal Control Systems, 1972, sec. 6.4) on the linearised implicit
+/// step.
 #pragma once
 
 #include <memory>
@@ -36,12 +37,12 @@ RiccatiStep riccati_step(const StepLinearisation& step, const MatrixX& state_cos
 
 /// What errors are as bad as each other (Bryson's rule: costs are their inverse squares), all > 0.
 struct TrackingSettings {
-  double time_step = 5e-3;      ///< s, of control: the torque is held that long
-  double angle = 0.5;           ///< rad, on the way
-  double rate = 5.0;            ///< rad/s, on the way
-  double torque_share = 0.5;    ///< of an input's range of torque, on the way
-  double tip_position = 5e-3;   ///< m, at the end
-  double tip_speed = 5e-2;      ///< m/s, at the end
+  double time_step = 5e-3;     ///< s, of control: the torque is held that long
+  double angle = 0.5;          ///< rad, on the way
+  double rate = 5.0;           ///< rad/s, on the way
+  double torque_share = 0.5;   ///< of an input's range of torque, on the way
+  double tip_position = 5e-3;  ///< m, at the end
+  double tip_speed = 5e-2;     ///< m/s, at the end
 };
 
 /// The plan's nominal motion and its gains. Immutable.
@@ -53,8 +54,8 @@ class Tracker {
           const TrackingSettings& settings = {});
 
   int steps() const { return static_cast<int>(gains_.size()); }
-  double time_step() const { return time_step_; }          ///< s
-  const Task& task() const { return task_; }               ///< completed
+  double time_step() const { return time_step_; }  ///< s
+  const Task& task() const { return task_; }       ///< completed
   const MatrixX& gain(int k) const { return gains_[static_cast<std::size_t>(k)]; }
   /// The nominal state (2n,) at the start of step k; k = steps(): at the end.
   VectorX state(int k) const { return states_.row(k); }
@@ -71,9 +72,9 @@ class Tracker {
 
 /// What an arm that differs from the planned one, or starts elsewhere, makes of a plan.
 struct TrackingTrial {
-  VectorX position, rate;    ///< (coordinates,) start; empty: the task's
-  bool feedback = true;      ///< else the nominal torque, open loop
-  double time_step = 1e-3;   ///< s, about, of the simulation
+  VectorX position, rate;   ///< (coordinates,) start; empty: the task's
+  bool feedback = true;     ///< else the nominal torque, open loop
+  double time_step = 1e-3;  ///< s, about, of the simulation
 };
 Replay track(std::shared_ptr<const pcc::Arm> arm, const Tracker& tracker,
              const TrackingTrial& trial = {});

@@ -47,10 +47,10 @@ struct Stage {
 };
 
 struct Transcription {
-  int blocks = 0;             ///< a knot holds: q, v and, with 3, a
-  std::vector<Stage> stages;  ///< of an interval
-  Weights defect;             ///< one row, zero
-  bool linear_torque = false;   ///< else constant over an interval
+  int blocks = 0;              ///< a knot holds: q, v and, with 3, a
+  std::vector<Stage> stages;   ///< of an interval
+  Weights defect;              ///< one row, zero
+  bool linear_torque = false;  ///< else constant over an interval
 
   /// @param method which one. @param h interval, s, > 0. @param first whether it is the first.
   Transcription(Method method, double h, bool first);
