@@ -10,6 +10,7 @@ minimal="build-essential cmake ninja-build pkg-config
   libeigen3-dev libmetis-dev libsuitesparse-dev libtbb-dev libhdf5-dev libyaml-cpp-dev
   libpugixml-dev libassimp-dev libcli11-dev libfmt-dev nlohmann-json3-dev zlib1g-dev
   libceres-dev
+  coinor-libipopt-dev
   libboost-dev
   python3 python3-dev python3-numpy python3-pip python3-venv python3-setuptools python3-wheel
   pybind11-dev"

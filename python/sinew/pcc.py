@@ -21,7 +21,9 @@ from ._core import (
     BendingMotion,
     beam_stiffness,
     channel_stiffness,
+    published_arm,
     published_modulus,
+    published_torque_limits,
 )
 from .bending_fit import BendingFit, TipErrors, TipRecord, fit_modulus, read_tip_record, tip_errors
 
@@ -36,7 +38,9 @@ __all__ = [
     "beam_stiffness",
     "channel_stiffness",
     "fit_modulus",
+    "published_arm",
     "published_modulus",
+    "published_torque_limits",
     "read_tip_record",
     "tip_errors",
 ]

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "sinew/pcc/arm_simulation.hpp"
+#include "sinew/pcc/published.hpp"
 
 #include "arrays.hpp"
 #include "bindings.hpp"
@@ -93,6 +94,18 @@ std::unique_ptr<PccArm> make_arm(const py::object& lengths, const py::object& ma
   }
   if (!actuation.is_none()) settings.actuation = to_matrix(actuation, "Arm(actuation)", "");
   return std::make_unique<PccArm>(std::make_shared<const pcc::Arm>(std::move(settings)));
+}
+
+std::unique_ptr<PccArm> published(const py::object& lengths, const std::string& centre) {
+  using pcc::MassCentre;
+  const auto where = choose<MassCentre>(centre, "published_arm(centre)",
+                                        {{"arc", MassCentre::arc},
+                                         {"chord", MassCentre::chord},
+                                         {"distributed", MassCentre::distributed}});
+  VectorX length;
+  if (!lengths.is_none()) length = to_vector(lengths, "published_arm(lengths)", 4, "m");
+  return std::make_unique<PccArm>(
+      std::make_shared<const pcc::Arm>(pcc::published_arm(where, length)));
 }
 
 py::tuple simulate(PccArm& self, const py::object& theta, const py::object& theta_dot,
@@ -413,6 +426,19 @@ Raises
 ------
 RunError
     not-converged, diverged.)");
+  module.def("published_arm", &published, py::arg("lengths") = py::none(),
+             py::arg("centre") = "arc",
+             R"(published_arm(lengths=None, centre='arc')
+--
+
+The identified four-segment fluidic arm: masses, stiffness and damping as published; the lengths
+(4,) m, which are not published, 0.14 each when left out. An Arm.)");
+  module.def(
+      "published_torque_limits", [] { return copy(pcc::published_torque_limits()); },
+      R"(published_torque_limits()
+--
+
+(4,) N m, either way, of that arm; its first segment is not actuated.)");
   module.def(
       "channel_stiffness",
       [](double first, const py::object& lengths) {

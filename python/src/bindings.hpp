@@ -33,6 +33,7 @@ void bind_material(py::module_& module);
 void bind_pcc(py::module_& module);
 void bind_bending(py::module_& module);
 void bind_bending_fit(py::module_& module);
+void bind_plan(py::module_& module);
 
 /// A part of a simulation: keeps the whole alive.
 struct Part {

@@ -35,4 +35,7 @@ PYBIND11_MODULE(_core, module) {
   python::bind_pcc(module);
   python::bind_bending(module);
   python::bind_bending_fit(module);
+#ifdef SINEW_HAS_PLAN
+  python::bind_plan(module);
+#endif
 }

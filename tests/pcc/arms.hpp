@@ -4,24 +4,11 @@
 #include <memory>
 #include <random>
 
-#include "sinew/pcc/arm.hpp"
+#include "sinew/pcc/published.hpp"
 
 namespace sinew::pcc::testing {
 
-/// Four planar segments as identified by the fluidic arm's authors; 0.14 m each (assumed).
-inline ArmSettings fluidic(MassCentre centre = MassCentre::arc) {
-  ArmSettings settings;
-  settings.centre = centre;
-  for (const double mass : {0.190, 0.146, 0.090, 0.090}) {
-    Segment segment;
-    segment.length = 0.14;
-    segment.mass = mass;
-    segment.stiffness = 0.108;
-    segment.damping = 4.2e-3;
-    settings.segments.push_back(segment);
-  }
-  return settings;
-}
+inline ArmSettings fluidic(MassCentre centre = MassCentre::arc) { return published_arm(centre); }
 
 /// Turned, extensible, with dead lengths, a skew base and a load: everything at once.
 inline ArmSettings mixed(MassCentre centre = MassCentre::distributed) {

@@ -1,0 +1,41 @@
+"""Planning for soft arms of constant curvature: swings to places that they cannot hold at rest.
+
+    from sinew import pcc, plan
+    arm = pcc.published_arm()
+    task = plan.Task(arm, goal=[-0.25, 0.0, -0.45], torque_limits=[0.0, 0.12, 0.13, 0.18])
+    found = task.solve()                    # a Plan: found.status, found.torque, ...
+    task.replay(found).tip_error            # m, carried out in fine steps
+    plan.Tracker(task, found).run()         # with feedback
+
+SI units everywhere. docs/planning.md has the equations and what they assume.
+"""
+
+from ._core import (
+    Plan,
+    PlanObstacle as Obstacle,
+    PlanReplay as Replay,
+    PlanTask as Task,
+    PlanTracker as Tracker,
+    plan_nearest_reach as nearest_reach,
+    plan_plane as Plane,
+    plan_prove_out_of_reach as prove_out_of_reach,
+    plan_sample_reach as sample_reach,
+    plan_sphere as Sphere,
+)
+
+__all__ = [
+    "Obstacle",
+    "Plan",
+    "Plane",
+    "Replay",
+    "Sphere",
+    "Task",
+    "Tracker",
+    "nearest_reach",
+    "prove_out_of_reach",
+    "sample_reach",
+]
+
+for _type, _name in ((Obstacle, "Obstacle"), (Plan, "Plan"), (Replay, "Replay"), (Task, "Task"), (Tracker, "Tracker")):
+    _type.__module__, _type.__name__, _type.__qualname__ = "sinew.plan", _name, _name
+del _type, _name

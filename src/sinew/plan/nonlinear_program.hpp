@@ -1,0 +1,93 @@
+/// @file
+/// Smooth sparse nonlinear programs, min f(x) with bounds on x and on c(x), and their solution by
+/// Ipopt's interior-point method with a filter line search (Waechter & Biegler, Mathematical
+/// Programming 106, 2006). Knows no physics.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "sinew/core/types.hpp"
+
+namespace sinew::plan {
+
+/// Beyond this a bound is none.
+inline constexpr double kNoBound = 1e20;
+
+struct Bounds {
+  VectorX lower, upper;  ///< +-kNoBound: none; equal: an equality
+};
+
+/// Where an entry of a sparse matrix stands. Entries that stand in one place add up.
+struct SparseEntry {
+  int row = 0, column = 0;
+};
+
+/// What the solver asks of a problem. Derivatives are exact.
+class NonlinearProgram {
+ public:
+  NonlinearProgram() = default;
+  NonlinearProgram(const NonlinearProgram&) = delete;
+  NonlinearProgram& operator=(const NonlinearProgram&) = delete;
+  virtual ~NonlinearProgram() = default;
+
+  virtual const Bounds& variable_bounds() const = 0;
+  virtual const Bounds& constraint_bounds() const = 0;
+  /// Typical magnitudes, > 0, by which the solver scales. (variables,), (constraints,).
+  virtual const VectorX& variable_scale() const = 0;
+  virtual const VectorX& constraint_scale() const = 0;
+  virtual double objective_scale() const = 0;
+  virtual const std::vector<SparseEntry>& jacobian_pattern() const = 0;
+  virtual const std::vector<SparseEntry>& hessian_pattern() const = 0;  ///< lower triangle
+
+  virtual double objective(const VectorX& x) = 0;
+  virtual void gradient(const VectorX& x, VectorX& result) = 0;
+  virtual void constraints(const VectorX& x, VectorX& result) = 0;
+  /// @param x where. @param values (pattern's entries,).
+  virtual void jacobian(const VectorX& x, double* values) = 0;
+  /// Of factor f + multipliers . c.
+  virtual void hessian(const VectorX& x, double factor, const VectorX& multipliers,
+                       double* values) = 0;
+};
+
+enum class Status {
+  solved,           ///< to the tolerance
+  acceptable,       ///< to a hundred times the tolerance, no further
+  infeasible,       ///< the violation has a local minimum above zero
+  iteration_limit,  ///< stopped short
+  time_limit,       ///< stopped short
+  failed,           ///< the solver lost its way: numbers out of range, no step found
+};
+/// "solved", "acceptable", "infeasible", "iteration-limit", "time-limit", "failed".
+std::string_view status_name(Status status);
+
+struct SolverSettings {
+  double tolerance = 1e-6;     ///< of the scaled optimality and violation
+  int max_iterations = 300;    ///< >= 1
+  double max_time = 30.0;      ///< s of processor time
+  double warm_barrier = 1e-3;  ///< mu at a warm start
+  bool verbose = false;        ///< the solver's own table on stdout
+};
+
+/// A point with its multipliers. Multipliers may be empty: a cold start.
+struct ProgramPoint {
+  VectorX x;                                     ///< (variables,)
+  VectorX constraint_multipliers;                ///< (constraints,)
+  VectorX lower_multipliers, upper_multipliers;  ///< (variables,), of the bounds on x, >= 0
+};
+
+struct ProgramResult {
+  Status status = Status::failed;
+  ProgramPoint point;
+  double objective = 0.0;
+  double violation = 0.0;  ///< largest of c's, unscaled
+  int iterations = 0;
+  double seconds = 0.0;
+};
+
+/// Solves a program. Not to be called from two threads at once: the linear solver below (MUMPS,
+/// sequential) keeps global state, and a lock makes callers wait.
+ProgramResult solve(NonlinearProgram& program, const ProgramPoint& start,
+                    const SolverSettings& settings = {});
+
+}  // namespace sinew::plan

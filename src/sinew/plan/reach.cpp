@@ -1,0 +1,218 @@
+#include "sinew/plan/reach.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <utility>
+
+#include <Eigen/Eigenvalues>
+#include <fmt/format.h>
+
+#include "sinew/core/error.hpp"
+#include "sinew/pcc/arm_simulation.hpp"
+#include "sinew/plan/point_derivatives.hpp"
+
+namespace sinew::plan {
+
+namespace {
+
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : engine_(seed) {}
+  double operator()(double from, double to) {
+    return from + (to - from) * std::generate_canonical<double, 53>(engine_);
+  }
+  VectorX vector(const VectorX& from, const VectorX& to) {
+    VectorX result(from.size());
+    for (Eigen::Index i = 0; i < from.size(); ++i) result[i] = (*this)(from[i], to[i]);
+    return result;
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+/// min |tip - goal|^2 over (q, tau) at rest.
+class NearestProgram final : public NonlinearProgram {
+ public:
+  NearestProgram(std::shared_ptr<const pcc::Arm> arm, const Limits& limits, const Vector3& goal)
+      : arm_(arm),
+        equations_(arm),
+        points_(arm),
+        goal_(goal),
+        n_(arm->coordinates()),
+        inputs_(arm->inputs()),
+        still_(VectorX::Zero(n_)),
+        tip_{arm->segments() - 1} {
+    variables_ = {VectorX(n_ + inputs_), VectorX(n_ + inputs_)};
+    variables_.lower << limits.angle_lower, limits.torque_lower;
+    variables_.upper << limits.angle_upper, limits.torque_upper;
+    rows_ = {VectorX::Zero(n_), VectorX::Zero(n_)};
+    const double torque = std::max(limits.torque_upper.cwiseAbs().maxCoeff(), 1e-6);
+    variable_scale_ = VectorX::Ones(n_ + inputs_);
+    variable_scale_.tail(inputs_).setConstant(torque);
+    row_scale_ = VectorX::Constant(n_, torque);
+    for (int i = 0; i < n_; ++i) {
+      for (int j = 0; j < n_; ++j) jacobian_.push_back({i, j});
+      for (int u = 0; u < inputs_; ++u) jacobian_.push_back({i, n_ + u});
+      for (int j = 0; j <= i; ++j) hessian_.push_back({i, j});
+    }
+  }
+
+  const Bounds& variable_bounds() const override { return variables_; }
+  const Bounds& constraint_bounds() const override { return rows_; }
+  const VectorX& variable_scale() const override { return variable_scale_; }
+  const VectorX& constraint_scale() const override { return row_scale_; }
+  double objective_scale() const override { return std::pow(0.1 * arm_->length(), 2); }
+  const std::vector<SparseEntry>& jacobian_pattern() const override { return jacobian_; }
+  const std::vector<SparseEntry>& hessian_pattern() const override { return hessian_; }
+
+  double objective(const VectorX& x) override { return (tip(x).value - goal_).squaredNorm(); }
+  void gradient(const VectorX& x, VectorX& result) override {
+    const auto& at = tip(x);
+    result.setZero(n_ + inputs_);
+    result.head(n_) = 2.0 * at.jacobian.transpose() * (at.value - goal_);
+  }
+  void constraints(const VectorX& x, VectorX& result) override {
+    result = equations_.residual(x.head(n_), still_, still_) - arm_->actuation() * x.tail(inputs_);
+  }
+  void jacobian(const VectorX& x, double* values) override {
+    const MatrixX& stiffness = equations_.linearise(x.head(n_), still_, still_).by_position;
+    for (int i = 0; i < n_; ++i) {
+      for (int j = 0; j < n_; ++j) *values++ = stiffness(i, j);
+      for (int u = 0; u < inputs_; ++u) *values++ = -arm_->actuation()(i, u);
+    }
+  }
+  void hessian(const VectorX& x, double factor, const VectorX& multipliers,
+               double* values) override {
+    const MatrixX& curvature = equations_.curvature(multipliers, x.head(n_), still_, still_);
+    const auto& at = tip(x);
+    MatrixX sum = curvature.topLeftCorner(n_, n_);
+    sum += 2.0 * factor * at.jacobian.transpose() * at.jacobian;
+    const Vector3 error = at.value - goal_;
+    for (std::size_t k = 0; k < 3; ++k) {
+      sum += 2.0 * factor * error[static_cast<Eigen::Index>(k)] * at.hessian[k];
+    }
+    for (int i = 0; i < n_; ++i) {
+      for (int j = 0; j <= i; ++j) *values++ = sum(i, j);
+    }
+  }
+
+ private:
+  const VectorDerivatives& tip(const VectorX& x) {
+    return points_.positions(x.head(n_), {tip_}).front();
+  }
+
+  std::shared_ptr<const pcc::Arm> arm_;
+  pcc::ArmEquations equations_;
+  PointDerivatives points_;
+  Vector3 goal_;
+  int n_, inputs_;
+  VectorX still_;
+  pcc::ArmPoint tip_;
+  Bounds variables_, rows_;
+  VectorX variable_scale_, row_scale_;
+  std::vector<SparseEntry> jacobian_, hessian_;
+};
+
+}  // namespace
+
+Limits completed_limits(const pcc::Arm& arm, const Limits& limits) {
+  Task task;
+  task.goal.position = arm.settings().base;
+  task.limits = limits;
+  // Only limits matter here: a start that they exclude is none of theirs.
+  const auto inside = [](const VectorX& lower, const VectorX& upper, Eigen::Index size) {
+    VectorX result = VectorX::Zero(size);
+    if (lower.size() == size) result = result.cwiseMax(lower);
+    if (upper.size() == size) result = result.cwiseMin(upper);
+    return result;
+  };
+  task.start.position = inside(limits.angle_lower, limits.angle_upper, arm.coordinates());
+  task.start.torque = inside(limits.torque_lower, limits.torque_upper, arm.inputs());
+  Limits result = completed(arm, task).limits;
+  for (Eigen::Index u = 0; u < arm.inputs(); ++u) {
+    if (result.torque_lower[u] <= -kNoBound || result.torque_upper[u] >= kNoBound) {
+      throw Error(ErrorKind::out_of_range, {.item = fmt::format("limits.torque[{}]", u)},
+                  "it has no limit", "give a lower and an upper one in N m");
+    }
+  }
+  return result;
+}
+
+ReachMap sample_reach(std::shared_ptr<const pcc::Arm> arm, const Limits& given, int samples,
+                      std::uint64_t seed) {
+  if (samples < 1) {
+    throw Error(ErrorKind::out_of_range, {.item = "samples"}, fmt::format("{}", samples),
+                "give 1 or more");
+  }
+  const Limits limits = completed_limits(*arm, given);
+  pcc::ArmEquations equations(arm);
+  Random random(seed);
+  const Eigen::Index n = arm->coordinates(), inputs = arm->inputs();
+  ReachMap result{MatrixX(2 * samples, n), MatrixX(2 * samples, inputs), Points(2 * samples, 3)};
+  Eigen::Index found = 0;
+  for (int s = 0; s < samples; ++s) {
+    VectorX torque = random.vector(limits.torque_lower, limits.torque_upper);
+    if (s % 2 == 1) {
+      for (Eigen::Index u = 0; u < inputs; ++u) {
+        torque[u] = random(-1.0, 1.0) < 0.0 ? limits.torque_lower[u] : limits.torque_upper[u];
+      }
+    }
+    for (const bool straight : {true, false}) {
+      const VectorX start = straight ? VectorX::Zero(n)
+                                     : random.vector(VectorX::Constant(n, -std::numbers::pi),
+                                                     VectorX::Constant(n, std::numbers::pi));
+      try {
+        const auto rest = pcc::find_equilibrium(equations, torque, start);
+        if (!rest.stable || (rest.position.array() < limits.angle_lower.array()).any() ||
+            (rest.position.array() > limits.angle_upper.array()).any()) {
+          continue;
+        }
+        result.position.row(found) = rest.position;
+        result.torque.row(found) = torque;
+        const Points ends = equations.endpoints(rest.position);
+        result.tip.row(found++) = ends.row(ends.rows() - 1);
+      } catch (const Error& error) {
+        if (error.kind() != ErrorKind::not_converged) throw;
+      }
+    }
+  }
+  result.position.conservativeResize(found, n);
+  result.torque.conservativeResize(found, inputs);
+  result.tip.conservativeResize(found, 3);
+  return result;
+}
+
+NearestReach nearest_reach(std::shared_ptr<const pcc::Arm> arm, const Limits& given,
+                           const Vector3& goal, int starts, std::uint64_t seed) {
+  const Limits limits = completed_limits(*arm, given);
+  NearestProgram program(arm, limits, goal);
+  pcc::ArmEquations equations(arm);
+  Random random(seed);
+  const Eigen::Index n = arm->coordinates();
+  const VectorX still = VectorX::Zero(n);
+  NearestReach best;
+  for (int s = 0; s < starts; ++s) {
+    const VectorX wide = VectorX::Constant(n, std::numbers::pi / 2.0);
+    VectorX start(n + arm->inputs());
+    start << random.vector(limits.angle_lower.cwiseMax(-wide), limits.angle_upper.cwiseMin(wide)),
+        random.vector(limits.torque_lower, limits.torque_upper);
+    const ProgramResult found = solve(program, {start, {}, {}, {}});
+    if (found.status != Status::solved && found.status != Status::acceptable) continue;
+    ++best.solved;
+    const VectorX q = found.point.x.head(n);
+    const Points ends = equations.endpoints(q);
+    const Vector3 tip = ends.row(ends.rows() - 1);
+    const double distance = (tip - goal).norm();
+    if (best.found && distance >= best.distance) continue;
+    const MatrixX& stiffness = equations.linearise(q, still, still).by_position;
+    const double lowest = Eigen::SelfAdjointEigenSolver<MatrixX>(
+                              0.5 * (stiffness + stiffness.transpose()), Eigen::EigenvaluesOnly)
+                              .eigenvalues()[0];
+    best = {true, lowest > 0.0, distance, tip, q, found.point.x.tail(arm->inputs()), best.solved};
+  }
+  return best;
+}
+
+}  // namespace sinew::plan

@@ -1,0 +1,85 @@
+/// @file
+/// What a plan is asked for: where the arm starts, where its tip is to be and how slow, within what
+/// limits, at what cost.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "sinew/pcc/arm.hpp"
+#include "sinew/plan/transcription.hpp"
+
+namespace sinew::plan {
+
+/// Where the arm is and what drives it at the time 0. The torque goes on from there without a jump
+/// (Hermite-Simpson; with limits on its rate, both methods): a jump sets off the arm's fast damped
+/// modes, which no knot resolves.
+struct Start {
+  VectorX position;  ///< (coordinates,) rad; empty: straight
+  VectorX rate;      ///< (coordinates,) rad/s; empty: at rest
+  VectorX torque;    ///< (inputs,) N m; empty: none
+};
+
+/// Of the last segment's end, at the end of the plan.
+struct Goal {
+  Vector3 position = Vector3::Zero();  ///< m
+  double tolerance = 2e-3;             ///< m, > 0, of the tip's distance
+  double speed_tolerance = 5e-3;       ///< m/s, > 0, of the tip's speed; kNoBound: any speed
+};
+
+/// Empty: none.
+struct Limits {
+  VectorX torque_lower, torque_upper;  ///< (inputs,) N m
+  VectorX angle_lower, angle_upper;    ///< (coordinates,) rad; extension: m
+  VectorX rate;                        ///< (coordinates,) rad/s, >= 0, either way
+  VectorX torque_rate;                 ///< (inputs,) N m/s, > 0, either way
+};
+
+/// What the arm's axis keeps clear of, at the knots, at points along it.
+struct Obstacle {
+  enum class Kind { sphere, plane };
+  Kind kind = Kind::sphere;
+  Vector3 point = Vector3::Zero();    ///< m, the sphere's centre, or on the plane
+  double radius = 0.0;                ///< m, > 0, of a sphere
+  Vector3 normal = Vector3::UnitZ();  ///< of a plane, towards where the arm may be; any length
+  double clearance = 0.0;             ///< m, >= 0, left between the axis and the surface
+
+  /// Distance (m) from the surface, negative inside; its gradient and Hessian by the point.
+  double distance(const Vector3& at) const;
+  Vector3 gradient(const Vector3& at) const;
+  Matrix3 hessian(const Vector3& at) const;
+};
+
+/// Cost = effort * integral of tau . tau dt + tip_speed * |v|^2 + time * t_f, v the tip's at the
+/// end.
+struct Objective {
+  double effort = 0.1;     ///< R, 1/((N m)^2 s), >= 0
+  double tip_speed = 0.0;  ///< (s/m)^2, >= 0
+  double time = 0.0;       ///< 1/s, >= 0, where the duration is free
+};
+
+struct Grid {
+  Method method = Method::hermite_simpson;
+  double duration = 1.6;                             ///< s, > 0; where it is free, the first guess
+  int intervals = 50;                                ///< >= 2
+  double least_duration = 0.0, most_duration = 0.0;  ///< s; both 0: the duration is fixed
+  bool free() const { return most_duration > 0.0; }
+};
+
+struct Task {
+  Start start;
+  Goal goal;
+  Limits limits;
+  Objective objective;
+  std::vector<Obstacle> obstacles;
+  int backbone_points = 4;  ///< a segment, >= 1, that keep clear of obstacles
+  Grid grid;
+};
+
+/// Fills in what is empty, so that every vector has its size. Throws Error(wrong-length |
+/// not-finite | out-of-range | contradictory-limits): vectors of the wrong length, limits that
+/// cross or that the start breaks, tolerances and grids that make no sense, a goal that is further
+/// from the base than the arm is long.
+Task completed(const pcc::Arm& arm, Task task);
+
+}  // namespace sinew::plan

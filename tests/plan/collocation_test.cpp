@@ -1,0 +1,165 @@
+// Exact derivatives of every part of the program against differences.
+#include "sinew/plan/collocation.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tasks.hpp"
+
+namespace sinew::plan {
+namespace {
+
+using testing::grab;
+using testing::make;
+
+struct Kind {
+  const char* name;
+  Method method;
+  bool free, mixed;
+};
+
+class Derivatives : public ::testing::TestWithParam<Kind> {
+ protected:
+  static Task task() {
+    Task task = grab();
+    const bool mixed = GetParam().mixed;
+    if (mixed) task.limits = {};
+    task.goal.position = {0.1, 0.05, -0.2};
+    task.grid.method = GetParam().method;
+    task.grid.intervals = 3;
+    task.grid.duration = 0.3;
+    if (GetParam().free) {
+      task.grid.least_duration = 0.1;
+      task.grid.most_duration = 1.0;
+    }
+    task.objective = {0.7, 1.3, 0.4};
+    task.limits.torque_rate = VectorX::Constant(mixed ? 6 : 4, 2.0);
+    task.obstacles = {
+        {.point = {0.3, 0.1, -0.1}, .radius = 0.05, .clearance = 0.01},
+        {.kind = Obstacle::Kind::plane, .point = {0.0, 0.0, -0.8}, .normal = {0.1, 0, 2}}};
+    task.backbone_points = 2;
+    return task;
+  }
+  Derivatives()
+      : arm_(make(GetParam().mixed ? pcc::testing::mixed() : pcc::testing::fluidic())),
+        program_(arm_, completed(*arm_, task())) {
+    std::mt19937 random(7);
+    x_ = pcc::testing::random_vector(random, program_.variables(), 0.5);
+    if (GetParam().free) x_[x_.size() - 1] = 0.35;
+    multipliers_ = pcc::testing::random_vector(random, program_.constraints(), 1.0);
+  }
+  /// Gradient of factor f + multipliers . c.
+  VectorX lagrangian_gradient(const VectorX& x, double factor) {
+    VectorX result;
+    program_.gradient(x, result);
+    return factor * result + jacobian(x).transpose() * multipliers_;
+  }
+  MatrixX jacobian(const VectorX& x) {
+    const auto& pattern = program_.jacobian_pattern();
+    std::vector<double> values(pattern.size());
+    program_.jacobian(x, values.data());
+    MatrixX result = MatrixX::Zero(program_.constraints(), program_.variables());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      result(pattern[i].row, pattern[i].column) += values[i];
+    }
+    return result;
+  }
+
+  std::shared_ptr<const pcc::Arm> arm_;
+  Collocation program_;
+  VectorX x_, multipliers_;
+};
+
+TEST_P(Derivatives, GradientIsThatOfTheObjective) {
+  VectorX gradient;
+  program_.gradient(x_, gradient);
+  for (Eigen::Index i = 0; i < x_.size(); ++i) {
+    const double h = 1e-6;
+    VectorX to = x_, from = x_;
+    to[i] += h;
+    from[i] -= h;
+    const double difference = (program_.objective(to) - program_.objective(from)) / (2.0 * h);
+    EXPECT_NEAR(gradient[i], difference, 1e-8 * (1.0 + std::abs(difference))) << i;
+  }
+}
+
+TEST_P(Derivatives, JacobianIsThatOfTheConstraints) {
+  const MatrixX exact = jacobian(x_);
+  VectorX above, below;
+  for (Eigen::Index i = 0; i < x_.size(); ++i) {
+    const double h = 1e-6;
+    VectorX to = x_, from = x_;
+    to[i] += h;
+    from[i] -= h;
+    program_.constraints(to, above);
+    program_.constraints(from, below);
+    const VectorX difference = (above - below) / (2.0 * h);
+    EXPECT_LT((exact.col(i) - difference).cwiseAbs().maxCoeff(),
+              1e-7 * (1.0 + difference.cwiseAbs().maxCoeff()))
+        << i;
+  }
+}
+
+TEST_P(Derivatives, HessianIsThatOfTheLagrangian) {
+  const double factor = 1.7;
+  const auto& pattern = program_.hessian_pattern();
+  std::vector<double> values(pattern.size());
+  program_.hessian(x_, factor, multipliers_, values.data());
+  MatrixX exact = MatrixX::Zero(x_.size(), x_.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    ASSERT_GE(pattern[i].row, pattern[i].column);
+    exact(pattern[i].row, pattern[i].column) += values[i];
+  }
+  exact = MatrixX(exact.selfadjointView<Eigen::Lower>());
+  for (Eigen::Index i = 0; i < x_.size(); ++i) {
+    const double h = 1e-6;
+    VectorX to = x_, from = x_;
+    to[i] += h;
+    from[i] -= h;
+    const VectorX difference =
+        (lagrangian_gradient(to, factor) - lagrangian_gradient(from, factor)) / (2.0 * h);
+    EXPECT_LT((exact.col(i) - difference).cwiseAbs().maxCoeff(),
+              1e-6 * (1.0 + difference.cwiseAbs().maxCoeff()))
+        << i;
+  }
+}
+
+TEST_P(Derivatives, KnotsPackAndUnpack) { EXPECT_EQ(program_.pack(program_.unpack(x_)), x_); }
+
+INSTANTIATE_TEST_SUITE_P(
+    Kinds, Derivatives,
+    ::testing::Values(Kind{"Euler", Method::backward_euler, false, false},
+                      Kind{"EulerFree", Method::backward_euler, true, false},
+                      Kind{"Hermite", Method::hermite_simpson, false, false},
+                      Kind{"HermiteFree", Method::hermite_simpson, true, false},
+                      Kind{"HermiteFreeMixed", Method::hermite_simpson, true, true}),
+    [](const auto& kind) { return kind.param.name; });
+
+/// Hermite-Simpson and its first interval are exact where the position is a cubic (its own degree:
+/// the rate's parabola); backward Euler on a straight line.
+TEST(Transcription, IsExactOnPolynomials) {
+  const double h = 0.3;
+  const auto cubic = [](double t) {
+    return std::array{1.0 - 2.0 * t + 3.0 * t * t - 4.0 * t * t * t, -2.0 + 6.0 * t - 12.0 * t * t,
+                      6.0 - 24.0 * t};
+  };
+  VectorX knots(6);
+  for (int k = 0; k < 2; ++k) {
+    for (int b = 0; b < 3; ++b) knots[3 * k + b] = cubic(k * h)[static_cast<std::size_t>(b)];
+  }
+  for (const bool first : {false, true}) {
+    const Transcription rules(Method::hermite_simpson, h, first);
+    EXPECT_NEAR((rules.defect.value * knots)[0], 0.0, 1e-14) << first;
+    const VectorX stage = rules.stages[0].state.value * knots;
+    for (int b = first ? 1 : 0; b < 3; ++b) {  // Radau's inner position is of second order
+      EXPECT_NEAR(stage[b], cubic(h / (first ? 3 : 2))[static_cast<std::size_t>(b)], 1e-13) << b;
+    }
+    EXPECT_EQ(rules.stages[1].state.value * knots, knots.tail(3));
+  }
+  const Transcription euler(Method::backward_euler, h, false);
+  const VectorX line{{1.0, -2.0, 1.0 - 2.0 * h, -2.0}};
+  EXPECT_NEAR((euler.defect.value * line)[0], 0.0, 1e-15);
+  EXPECT_NEAR((euler.stages[0].state.value * line)[2], 0.0, 1e-15);
+}
+
+}  // namespace
+}  // namespace sinew::plan

@@ -1,0 +1,202 @@
+// Plans carried out, warm starts, limits, obstacles, and what cannot be.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "sinew/core/error.hpp"
+#include "sinew/pcc/arm_simulation.hpp"
+#include "sinew/plan/replay.hpp"
+
+#include "tasks.hpp"
+
+namespace sinew::plan {
+namespace {
+
+using testing::grab;
+using testing::kGoals;
+using testing::make;
+
+std::shared_ptr<const pcc::Arm> fluidic() { return make(pcc::testing::fluidic()); }
+
+ErrorKind kind_of(const Task& task) {
+  try {
+    completed(*fluidic(), task);
+  } catch (const Error& error) {
+    return error.kind();
+  }
+  return ErrorKind::internal;
+}
+
+TEST(Planner, PlansThatAreCarriedOutReachTheirGoals) {
+  const auto arm = fluidic();
+  for (const Vector3& goal : kGoals) {
+    Task task = grab(goal);
+    task.limits.torque_rate = VectorX::Constant(4, 2.0);
+    const Plan plan = Planner(arm, task).plan(1);
+    ASSERT_EQ(plan.status, Status::solved);
+    EXPECT_LE(plan.tip_error, task.goal.tolerance * 1.001);
+    EXPECT_LE(plan.tip_speed, task.goal.speed_tolerance * 1.001);
+    const Replay run = replay(arm, task, plan);
+    EXPECT_LT(run.tip_error, 0.003) << goal.transpose();
+    EXPECT_LT(run.tip_speed, 0.01) << goal.transpose();
+    EXPECT_TRUE(
+        (plan.knots.torque.cwiseAbs().rowwise() - pcc::published_torque_limits().transpose())
+            .maxCoeff() < 1e-8);
+    const MatrixX change = plan.knots.torque.bottomRows(50) - plan.knots.torque.topRows(50);
+    EXPECT_LT(change.cwiseAbs().maxCoeff() / (plan.duration() / 50), 2.0 + 1e-6);
+  }
+}
+
+/// Backward Euler's knots are the states of the simulation's steps of backward Euler.
+TEST(Planner, EulersPlanIsTheSimulationsMotion) {
+  const auto arm = fluidic();
+  Task task = grab(kGoals[2]);
+  task.grid = {.method = Method::backward_euler, .duration = 2.4, .intervals = 30};
+  const Plan plan = Planner(arm, task).plan(1);
+  ASSERT_EQ(plan.status, Status::solved);
+  pcc::ArmSimulation simulation(
+      arm, {.time_step = 0.08, .integrator = mechanics::Integrator::backward_euler});
+  for (int k = 1; k <= 30; ++k) {
+    simulation.step(plan.knots.torque.row(k).transpose());
+    EXPECT_LT((simulation.position() - plan.knots.position.row(k).transpose()).norm(), 1e-5) << k;
+  }
+}
+
+/// The gap between the plan and the motion of its torque falls with the fourth power of the knots'
+/// distance, less what the arm's fast modes take from it.
+TEST(Planner, HermiteSimpsonConverges) {
+  const auto arm = fluidic();
+  std::vector<double> gaps;
+  for (const int intervals : {20, 40}) {
+    Task task = grab(kGoals[1]);
+    task.limits.torque_rate = VectorX::Constant(4, 2.0);
+    task.grid.intervals = intervals;
+    const Plan plan = Planner(arm, task).plan(1);
+    ASSERT_EQ(plan.status, Status::solved);
+    const Replay run = replay(arm, task, plan, 5e-4);
+    gaps.push_back((run.position.bottomRows(1) - plan.knots.position.bottomRows(1)).norm());
+  }
+  EXPECT_GT(gaps[0] / gaps[1], 8.0);
+}
+
+TEST(Planner, StartsDoNotChangeTheOptimum) {
+  const auto arm = fluidic();
+  Planner planner(arm, grab(kGoals[2]));
+  const double first = planner.plan(1).objective;
+  for (const std::uint64_t seed : {2, 3}) {
+    const Plan plan = planner.plan(seed);
+    ASSERT_TRUE(plan.found());
+    EXPECT_NEAR(plan.objective, first, 1e-5 * first);
+  }
+}
+
+TEST(Planner, AWarmStartNeedsFewerIterations) {
+  const auto arm = fluidic();
+  const Plan before = Planner(arm, grab(kGoals[2])).plan(1);
+  Planner moved(arm, grab(kGoals[2] + Vector3(0.01, 0.0, 0.005)));
+  const Plan warm = moved.replan(before), cold = moved.plan(1);
+  ASSERT_TRUE(warm.found());
+  EXPECT_NEAR(warm.objective, cold.objective, 1e-4 * cold.objective);
+  EXPECT_LT(warm.iterations, cold.iterations);
+  Task other = grab(kGoals[2]);
+  other.grid.intervals = 40;
+  EXPECT_THROW(Planner(arm, other).replan(before), Error);
+}
+
+/// A start out of balance sets off the arm's fast modes; the plan's first interval takes them up.
+TEST(Planner, PlansFromDisturbedStarts) {
+  const auto arm = fluidic();
+  std::mt19937 random(3);
+  for (int trial = 0; trial < 3; ++trial) {
+    Task task = grab(kGoals[2]);
+    task.limits.torque_rate = VectorX::Constant(4, 2.0);
+    task.start.position = pcc::testing::random_vector(random, 4, 0.1);
+    task.start.rate = pcc::testing::random_vector(random, 4, 0.5);
+    const Plan plan = Planner(arm, task).plan(1);
+    ASSERT_TRUE(plan.found()) << trial;
+    const Replay run = replay(arm, task, plan);
+    EXPECT_LT(run.tip_error, 0.004) << trial;
+    EXPECT_LT(run.tip_speed, 0.02) << trial;
+  }
+}
+
+TEST(Planner, AFreeDurationDoesNotCostMore) {
+  const auto arm = fluidic();
+  Task task = grab(kGoals[2]);
+  const Plan fixed = Planner(arm, task).plan(1);
+  task.grid.least_duration = 1.0;
+  task.grid.most_duration = 2.0;
+  const Plan free = Planner(arm, task).plan(1);
+  ASSERT_TRUE(free.found());
+  EXPECT_LE(free.objective, fixed.objective * (1.0 + 1e-6));
+  EXPECT_GE(free.duration(), 1.0 - 1e-8);
+  EXPECT_LE(free.duration(), 2.0 + 1e-8);
+}
+
+TEST(Planner, KeepsClearOfObstacles) {
+  const auto arm = fluidic();
+  Task task = grab(kGoals[2]);
+  const Plan before = Planner(arm, task).plan(1);
+  // In the way of the tip, where it is furthest from the goal.
+  const Points tip = replay(arm, task, before).tip;
+  Eigen::Index furthest = 0;
+  (tip.rowwise() - task.goal.position.transpose()).rowwise().norm().maxCoeff(&furthest);
+  const Vector3 swing = tip.row(furthest) - 0.02 * tip.row(furthest).normalized();
+  task.obstacles = {{.point = swing, .radius = 0.03, .clearance = 0.01}};
+  ASSERT_LT(replay(arm, task, before).clearance, 0.0);
+  const Plan plan = Planner(arm, task).plan(1);
+  ASSERT_TRUE(plan.found());
+  const Replay run = replay(arm, task, plan);
+  EXPECT_GT(run.clearance, 0.0);
+  EXPECT_LT(run.tip_error, 0.004);
+}
+
+TEST(Planner, SaysWhereThereIsNoPlan) {
+  Task task = grab(kGoals[3]);
+  task.grid.duration = 0.3;  // no time for a swing
+  task.grid.intervals = 10;
+  const Plan plan = Planner(fluidic(), task).plan(1);
+  EXPECT_EQ(plan.status, Status::infeasible);
+  EXPECT_FALSE(plan.found());
+  EXPECT_EQ(status_name(plan.status), "infeasible");
+}
+
+TEST(Planner, StopsAtItsLimits) {
+  Planner planner(fluidic(), grab(), {.max_iterations = 3});
+  const Plan plan = planner.plan(1);
+  EXPECT_EQ(plan.status, Status::iteration_limit);
+  EXPECT_EQ(plan.iterations, 3);
+}
+
+TEST(Planner, RefusesTasksThatMakeNoSense) {
+  EXPECT_EQ(kind_of(grab({0.5, 0.0, -0.4})), ErrorKind::out_of_range);  // beyond 0.56 m
+  EXPECT_EQ(kind_of(grab({std::nan(""), 0.0, -0.4})), ErrorKind::not_finite);
+  Task task = grab();
+  task.limits.torque_lower[1] = 0.2;
+  EXPECT_EQ(kind_of(task), ErrorKind::contradictory_limits);
+  task = grab();
+  task.limits.angle_lower = VectorX::Constant(4, 0.1);  // the straight start is outside
+  EXPECT_EQ(kind_of(task), ErrorKind::contradictory_limits);
+  task = grab();
+  task.limits.rate = VectorX::Zero(3);
+  EXPECT_EQ(kind_of(task), ErrorKind::wrong_length);
+  task = grab();
+  task.goal.tolerance = 0.0;
+  EXPECT_EQ(kind_of(task), ErrorKind::out_of_range);
+  task = grab();
+  task.grid.least_duration = 2.0;
+  task.grid.most_duration = 1.0;
+  EXPECT_EQ(kind_of(task), ErrorKind::contradictory_limits);
+  task = grab();
+  task.obstacles = {{.radius = -0.1}};
+  EXPECT_EQ(kind_of(task), ErrorKind::out_of_range);
+  try {
+    completed(*fluidic(), grab({0.5, 0.0, -0.4}));
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("0.6403 m from the base"));
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("0.56 m long"));
+  }
+}
+
+}  // namespace
+}  // namespace sinew::plan

@@ -1,0 +1,114 @@
+"""Grabs out of static reach: plans by direct collocation, carried out in fine steps."""
+
+import numpy as np
+from sinew import pcc, plan
+
+from suite import plots
+
+TITLE = "Grabs of a fluidic arm out of its static reach"
+SETUP = """The identified four-segment arm (masses, k_1 and b as published; lengths are not: 0.14 m each assumed),
+torques within 0, 0.12, 0.13 and 0.18 N m, from hanging at rest to goals A (-25, -45), B (15, -35), C (20, -40) and
+D (-30, -30) cm (x, z), minimal effort, seven random starts each; tip within 0.2 cm and 0.5 cm/s of the goal at the
+plan's end. Hermite-Simpson with 50 knots of 32 ms, with torque rates within 2 N m/s and without that limit; backward
+Euler with 30 knots of 80 ms, as published. Each plan's torque is then put on the arm in steps of 1 ms
+(generalized-alpha); the aim is 0.3 cm and 1 cm/s. Out of static reach: no equilibrium, stable or not, has its tip
+within 2 cm, proven by branch and bound. Basin: 40 random starts off by so much (rad in each angle) and arms whose
+masses or stiffnesses are off by 10 %; a grab succeeds with the tip within 2 cm."""
+SOURCES = {
+    "aim": "this project's aim",
+    "published": "the fluidic arm's authors: 0.9 to 1.7 cm and 0.1 to 7.6 cm/s after re-integration",
+    "proof": "branch and bound with Taylor bounds, docs/planning.md",
+    "optimum": "the best of the seven starts",
+}
+COST = 90
+GOALS = {"A": (-0.25, -0.45), "B": (0.15, -0.35), "C": (0.20, -0.40), "D": (-0.30, -0.30)}
+SEEDS = range(1, 8)
+KINDS = {
+    "Hermite-Simpson, torque rate limited": {"torque_rate_limits": 2.0},
+    "Hermite-Simpson": {},
+    "backward Euler, 80 ms": {"method": "backward-euler", "duration": 2.4, "intervals": 30},
+}
+
+
+def goal(name):
+    x, z = GOALS[name]
+    return np.array([x, 0.0, z])
+
+
+def scaled(mass=1.0, stiffness=1.0):
+    """The arm with other masses and stiffnesses."""
+    masses = np.array([0.190, 0.146, 0.090, 0.090])
+    return pcc.Arm([0.14] * 4, mass * masses, 0.108 * stiffness, 4.2e-3)
+
+
+def grabs(case, arm, limits):
+    best = {}
+    for kind, settings in KINDS.items():
+        for name in GOALS:
+            task = plan.Task(arm, goal(name), limits, **settings)
+            found = [p for p in map(task.solve, SEEDS) if p.found]
+            case.report(f"{kind}, {name}: starts that led to a plan", f"{len(found)} of {len(SEEDS)}", source="aim")
+            if not found:
+                continue
+            least = min(found, key=lambda p: p.objective)
+            runs = [task.replay(p) for p in found]
+            error, speed = 100 * max(r.tip_error for r in runs), 100 * max(r.tip_speed for r in runs)
+            if "rate" in kind:
+                case.bound(f"{kind}, {name}: tip error, worst start", error, 0.3, unit="cm", source="aim")
+                case.bound(f"{kind}, {name}: tip speed, worst start", speed, 1.0, unit="cm/s", source="aim")
+                same = sum(p.objective < 1.001 * least.objective for p in found)
+                case.report(f"{kind}, {name}: starts that led to the same effort", f"{same} of {len(found)}",
+                            source="optimum")
+                best[name] = (task, least)
+            else:
+                case.report(f"{kind}, {name}: tip error, worst start", error, unit="cm", source="published")
+                case.report(f"{kind}, {name}: tip speed, worst start", speed, unit="cm/s", source="published")
+    return best
+
+
+def reach(case, arm, limits):
+    for name in GOALS:
+        nearest = plan.nearest_reach(arm, limits, goal(name))
+        case.report(f"{name}: nearest equilibrium of {nearest['solved']} found", 100 * nearest["distance"], unit="cm",
+                    source="proof")
+        proof = plan.prove_out_of_reach(arm, limits, goal(name), tolerance=0.02)
+        case.agree(f"{name}: static reach, by {proof['boxes']} boxes", proof["verdict"], "out-of-reach", source="proof")
+
+
+def basin(case, task, found):
+    tracker = plan.Tracker(task, found)
+    random = np.random.default_rng(5)
+    starts = random.uniform(-1.0, 1.0, (40, 4))
+    sizes, shares = (0.0, 0.02, 0.05, 0.1, 0.2), {}
+    for feedback in (False, True):
+        word = "closed loop" if feedback else "open loop"
+        shares[word] = []
+        for size in sizes:
+            runs = [tracker.run(theta=size * start, feedback=feedback) for start in starts[: 1 if size == 0 else 40]]
+            share = np.mean([r.tip_error < 0.02 for r in runs])
+            shares[word].append(100 * share)
+            case.report(f"{word}, start off by {size:g} rad: grabs that succeed", 100 * share, unit="%", source="aim")
+        for label, other in (("masses +10 %", scaled(mass=1.1)), ("masses -10 %", scaled(mass=0.9)),
+                             ("stiffness +10 %", scaled(stiffness=1.1)), ("stiffness -10 %", scaled(stiffness=0.9))):
+            run = tracker.run(other, feedback=feedback)
+            case.report(f"{word}, {label}: tip error", 100 * run.tip_error, unit="cm", source="aim")
+    return sizes, shares
+
+
+def run(case):
+    arm, limits = pcc.published_arm(), pcc.published_torque_limits()
+    reach(case, arm, limits)
+    best = grabs(case, arm, limits)
+    figure, (left, right) = plots.axes(2)
+    for (name, (task, found)), colour in zip(best.items(), (plots.OURS, plots.SECOND, plots.THIRD, plots.QUIET)):
+        tip = task.replay(found).tip
+        left.plot(100 * tip[:, 0], 100 * tip[:, 2], color=colour, label=name)
+        left.plot(*(100 * goal(name)[[0, 2]]), "o", color=colour)
+    left.set(xlabel="x (cm)", ylabel="z (cm)", aspect="equal")
+    left.legend()
+    sizes, shares = basin(case, *best["C"])
+    for word, colour in (("open loop", plots.SECOND), ("closed loop", plots.OURS)):
+        right.plot(sizes, shares[word], "o-", color=colour, label=word)
+    right.set(xlabel="start off by (rad)", ylabel="grabs of C that succeed (%)")
+    right.legend()
+    case.figure(figure, "Paths of the tip to the four goals, and how often a grab succeeds from starts that are off.")
