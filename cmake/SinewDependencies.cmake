@@ -13,7 +13,7 @@ find_package(CLI11 REQUIRED)
 include(SinewSystemLibraries)
 
 if(SINEW_IDENTIFY)
-  find_package(Ceres 2.1 REQUIRED)
+  sinew_ceres()
 endif()
 if(SINEW_PLAN)
   sinew_system_library(ipopt LIBRARY ipopt HEADER IpTNLP.hpp SUFFIXES coin coin-or)

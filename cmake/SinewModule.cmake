@@ -18,9 +18,8 @@ function(sinew_module name)
   target_include_directories(sinew_${name} ${scope}
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:include>)
   target_compile_features(sinew_${name} ${scope} cxx_std_20)
-  # One alignment for Eigen objects on both sides of the library's boundary, whatever -march the user has: that
-  # of malloc, as in Debian's static libceres, whose weak copies of Eigen's functions the linker may choose for ours.
-  target_compile_definitions(sinew_${name} ${scope} EIGEN_MAX_ALIGN_BYTES=16)
+  # One alignment for Eigen objects on both sides of the library's boundary, whatever -march the user has.
+  target_compile_definitions(sinew_${name} ${scope} EIGEN_MAX_ALIGN_BYTES=64)
   foreach(dependency ${arg_DEPENDS})
     target_link_libraries(sinew_${name} ${scope} sinew_${dependency})
   endforeach()

@@ -18,7 +18,7 @@ if(SINEW_PCH)
   file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/precompiled/library.cpp CONTENT "")
   add_library(sinew_precompiled OBJECT ${CMAKE_BINARY_DIR}/precompiled/library.cpp)
   target_link_libraries(sinew_precompiled PRIVATE sinew_options Eigen3::Eigen fmt::fmt Threads::Threads)
-  target_compile_definitions(sinew_precompiled PRIVATE EIGEN_MAX_ALIGN_BYTES=16)
+  target_compile_definitions(sinew_precompiled PRIVATE EIGEN_MAX_ALIGN_BYTES=64)
   target_precompile_headers(sinew_precompiled PRIVATE ${sinew_standard_headers} <Eigen/Dense>)
 
   if(SINEW_TESTS)
@@ -26,7 +26,7 @@ if(SINEW_PCH)
     add_executable(sinew_precompiled_test ${CMAKE_BINARY_DIR}/precompiled/test.cpp)
     target_link_libraries(sinew_precompiled_test PRIVATE
                           sinew_options Eigen3::Eigen fmt::fmt Threads::Threads GTest::gmock)
-    target_compile_definitions(sinew_precompiled_test PRIVATE EIGEN_MAX_ALIGN_BYTES=16)
+    target_compile_definitions(sinew_precompiled_test PRIVATE EIGEN_MAX_ALIGN_BYTES=64)
     target_precompile_headers(sinew_precompiled_test PRIVATE
       ${sinew_standard_headers} <Eigen/Dense> <gmock/gmock.h> <gtest/gtest.h>)
     set_target_properties(sinew_precompiled_test PROPERTIES

@@ -30,3 +30,13 @@ endfunction()
 sinew_system_library(metis LIBRARY metis HEADER metis.h)
 sinew_system_library(amd LIBRARY amd HEADER amd.h SUFFIXES suitesparse)
 sinew_system_library(hdf5 LIBRARY hdf5 HEADER hdf5.h SUFFIXES hdf5/serial)
+
+# The shared libceres, and not the static one that its own CMake package names: that one holds weak copies of
+# Eigen's functions for 16-byte alignment, which the linker may choose for ours of 64 (memory is then freed as it
+# was not allocated).
+function(sinew_ceres)
+  sinew_system_library(ceres LIBRARY ${CMAKE_SHARED_LIBRARY_PREFIX}ceres${CMAKE_SHARED_LIBRARY_SUFFIX}
+                       HEADER ceres/ceres.h)
+  sinew_system_library(glog LIBRARY glog HEADER glog/logging.h)
+  target_link_libraries(SinewSystem::ceres INTERFACE SinewSystem::glog)
+endfunction()

@@ -369,8 +369,7 @@ void bind_body(py::module_& module) {
       .def("__repr__", [](const Body& self) {
         const mesh::Mesh& mesh = any(self).model().mesh();
         return fmt::format("<sinew.Body '{}', {} nodes, {} elements>", name(self),
-                           mesh.nodes.rows(),
-                           mesh.tetrahedra.size() + mesh.hexahedra.size());
+                           mesh.nodes.rows(), mesh.tetrahedra.size() + mesh.hexahedra.size());
       });
   bind_state(type);
   bind_fields(module, type);

@@ -318,7 +318,7 @@ TEST(Arm, BadNumbersAreErrors) {
   };
   EXPECT_NE(refused([](ArmSettings& s) {
               s.segments[2].mass = -0.1;
-            }).find("segment 2 of arm: its mass is -0.1 kg"),
+            }).find("segment 2 of fluidic arm: its mass is -0.1 kg"),
             std::string::npos);
   EXPECT_NE(refused([](ArmSettings& s) { s.segments[0].length = 0.0; }).find("its length is 0 m"),
             std::string::npos);

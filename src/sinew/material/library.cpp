@@ -140,6 +140,13 @@ void add_others(std::vector<NamedMaterial>& list) {
               "reinforced actuators, finite element modeling; density: as elastosil-m4601",
               "The source does not say up to which strain it holds."}));
   list.push_back(finish(
+      {"smooth-sil-950", "Smooth-Sil 950", "neo-hookean", neo_hookean(1.875e6 / 1.75), 1240.0, 1.0,
+       2.0,
+       "From the maker's 100 % modulus alone, 272 psi (1.875 MPa) = mu (2 - 1/4), as commonly "
+       "quoted of Smooth-On's bulletin, also density (1.24 g/cm^3)",
+       "Neither figure could be checked against the bulletin itself. A secant between 0 and 100 %: "
+       "test yours before you trust it."}));
+  list.push_back(finish(
       {"sylgard-184", "Sylgard 184 (10:1)", "neo-hookean", neo_hookean(1.32e6 / 3.0), 1030.0, 1.0,
        1.4,
        "Young's modulus 1.32 MPa (incompressible: mu = E/3) of samples cured at 25 C, to 40 % "
