@@ -33,8 +33,8 @@ TEST(ArmFit, RecoversAPassiveArm) {
   const ArmModel truth{make(fluidic()), {}};
   const std::vector<MotionRecord> records = {release(truth, kPose, {}, 1, {}, "a"),
                                              release(truth, kOther, {}, 2, {}, "b")};
-  const ArmModel start{off(fluidic(), {1.0, 1.2, 0.85, 1.15}, 0.9, 0.8), {}};
-  const ArmFit fit = fit_arm(start, records, {.fixed = {"mass_0"}});
+  const ArmModel start{off(fluidic(), {0.85, 1.0, 0.85, 1.15}, 0.9, 0.8), {}};
+  const ArmFit fit = fit_arm(start, records, {.fixed = {"mass_1"}});
   for (Eigen::Index k = 0; k < fit.own; ++k) {
     const auto& p = fit.fit.parameters[static_cast<std::size_t>(k)];
     fmt::print("{} {:.5g} [{:.5g}, {:.5g}] {} {}\n", p.name, p.value, p.interval_lower, p.interval_upper, p.at_bound, p.determined);

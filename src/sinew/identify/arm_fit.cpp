@@ -75,9 +75,10 @@ class ArmParameters {
                                   : VectorX(VectorX::Zero(n))};
   }
 
-  ArmParameterMap map(std::size_t record) const {
+  /// By the arm's parameters and a record's own, which come behind them.
+  ArmParameterMap map() const {
     const pcc::Arm& arm = *model_.arm;
-    ArmParameterMap map(arm, count());
+    ArmParameterMap map(arm, own_ + each());
     const Eigen::Index n = arm.segments(), coordinates = arm.coordinates();
     map.mass.leftCols(n).setIdentity();
     map.stiffness.col(n) = arm.stiffness() / arm.stiffness()[0];
@@ -87,12 +88,19 @@ class ArmParameters {
       map.cubic.middleCols(n + 2, inputs).setIdentity();
       map.delay[n + 2 + inputs] = 1.0;
     }
-    const Eigen::Index at = start_of(record);
-    map.position.middleCols(at, coordinates).setIdentity();
+    map.position.middleCols(own_, coordinates).setIdentity();
     if (settings_.start == RecordStart::moving) {
-      map.rate.middleCols(at + coordinates, coordinates).setIdentity();
+      map.rate.middleCols(own_ + coordinates, coordinates).setIdentity();
     }
     return map;
+  }
+
+  /// Parameters of a record, and the first of them.
+  Eigen::Index each() const {
+    return model_.arm->coordinates() * (settings_.start == RecordStart::moving ? 2 : 1);
+  }
+  Eigen::Index start_of(std::size_t record) const {
+    return own_ + static_cast<Eigen::Index>(record) * each();
   }
 
  private:
@@ -152,12 +160,6 @@ class ArmParameters {
                        .unit = "rad/s",
                        .scale = 1.0});
     }
-  }
-
-  Eigen::Index start_of(std::size_t record) const {
-    const Eigen::Index each =
-        model_.arm->coordinates() * (settings_.start == RecordStart::moving ? 2 : 1);
-    return own_ + static_cast<Eigen::Index>(record) * each;
   }
 
   const ArmModel& model_;
@@ -223,20 +225,26 @@ ArmFit fit_arm(const ArmModel& model, std::span<const MotionRecord> records,
   for (const MotionRecord& record : records) {
     predicting.observations += record.samples() * wide;
   }
-  std::vector<ArmParameterMap> maps;
-  for (std::size_t k = 0; k < records.size(); ++k) maps.push_back(parameters.map(k));
-  MatrixX own;
+  const ArmParameterMap map = parameters.map();
+  MatrixX derivatives;
   predicting.predict = [&](const VectorX& p, VectorX& prediction, MatrixX* jacobian) {
     const ArmModel changed = parameters.model(p);
     Eigen::Index row = 0;
     for (std::size_t k = 0; k < records.size(); ++k) {
+      const bool wanted = jacobian != nullptr;
       const MatrixX ends =
           predict_motion(changed, records[k], parameters.start(p, k), settings.step,
-                         jacobian != nullptr ? &maps[k] : nullptr, jacobian != nullptr ? &own : nullptr);
+                         wanted ? &map : nullptr, wanted ? &derivatives : nullptr);
       const Eigen::Index rows = ends.size();
       const MatrixX by_sample = ends.transpose();
       prediction.segment(row, rows) = Eigen::Map<const VectorX>(by_sample.data(), rows);
-      if (jacobian != nullptr) jacobian->middleRows(row, rows) = own;
+      if (wanted) {
+        const Eigen::Index own = parameters.own(), each = parameters.each();
+        auto block = jacobian->middleRows(row, rows);
+        block.setZero();
+        block.leftCols(own) = derivatives.leftCols(own);
+        block.middleCols(parameters.start_of(k), each) = derivatives.rightCols(each);
+      }
       row += rows;
     }
   };

@@ -82,6 +82,9 @@ struct Problem {
   const std::vector<Parameter>& parameters;
   std::vector<Eigen::Index> free, seen;
   VectorX scale;
+  // What a solve moves, of those free, and where the others are held.
+  std::vector<Eigen::Index> moving;
+  VectorX base;
   mutable VectorX prediction;
   mutable MatrixX jacobian;
   mutable std::exception_ptr failure;
@@ -98,8 +101,8 @@ struct Problem {
     }
   }
 
-  const Parameter& of_free(std::size_t k) const {
-    return parameters[static_cast<std::size_t>(free[k])];
+  const Parameter& parameter(Eigen::Index k) const {
+    return parameters[static_cast<std::size_t>(k)];
   }
   VectorX starts() const {
     VectorX result(scale.size());
@@ -109,10 +112,11 @@ struct Problem {
     return result;
   }
   VectorX values(const double* x) const {
-    VectorX result = starts();
-    for (std::size_t k = 0; k < free.size(); ++k) {
+    VectorX result = base;
+    for (std::size_t j = 0; j < moving.size(); ++j) {
+      const Eigen::Index k = moving[j];
       // Bounds hold in the parameters' own units, whatever scaling rounds.
-      result[free[k]] = std::clamp(scale[free[k]] * x[k], of_free(k).lower, of_free(k).upper);
+      result[k] = std::clamp(scale[k] * x[j], parameter(k).lower, parameter(k).upper);
     }
     return result;
   }
@@ -139,7 +143,7 @@ class Cost : public ceres::CostFunction {
  public:
   explicit Cost(const Problem& problem) : problem_(problem) {
     set_num_residuals(static_cast<int>(problem.seen.size()));
-    mutable_parameter_block_sizes()->push_back(static_cast<int>(problem.free.size()));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(problem.moving.size()));
   }
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
     if (problem_.failure) return false;
@@ -151,14 +155,14 @@ class Cost : public ceres::CostFunction {
       problem_.failure = std::current_exception();
       return false;
     }
-    const std::size_t n = problem_.free.size();
+    const std::size_t n = problem_.moving.size();
     for (std::size_t r = 0; r < problem_.seen.size(); ++r) {
       const Eigen::Index i = problem_.seen[r];
       residuals[r] = problem_.prediction[i] - problem_.measured[i];
       if (!derivatives) continue;
       for (std::size_t k = 0; k < n; ++k) {
         jacobians[0][r * n + k] =
-            problem_.jacobian(i, problem_.free[k]) * problem_.scale[problem_.free[k]];
+            problem_.jacobian(i, problem_.moving[k]) * problem_.scale[problem_.moving[k]];
       }
     }
     return true;
@@ -175,21 +179,24 @@ struct Attempt {
   bool converged = false;
 };
 
-Attempt solve(const Problem& problem, const VectorX& start, const ParameterFitSettings& settings) {
+/// Ceres over what moves, within bounds.
+ceres::Solver::Summary descend(Problem& problem, const ParameterFitSettings& settings,
+                               int iterations) {
   std::vector<double> x;
-  for (const Eigen::Index k : problem.free) x.push_back(start[k] / problem.scale[k]);
+  for (const Eigen::Index k : problem.moving) x.push_back(problem.base[k] / problem.scale[k]);
   ceres::Problem ceres_problem;
   ceres_problem.AddResidualBlock(new Cost(problem), nullptr, x.data());
-  for (std::size_t k = 0; k < x.size(); ++k) {
-    const double scale = problem.scale[problem.free[k]];
-    const int index = static_cast<int>(k);
-    const double lower = problem.of_free(k).lower / scale, upper = problem.of_free(k).upper / scale;
+  for (std::size_t j = 0; j < x.size(); ++j) {
+    const Eigen::Index k = problem.moving[j];
+    const double lower = problem.parameter(k).lower / problem.scale[k],
+                 upper = problem.parameter(k).upper / problem.scale[k];
+    const int index = static_cast<int>(j);
     if (std::isfinite(lower)) ceres_problem.SetParameterLowerBound(x.data(), index, lower);
     if (std::isfinite(upper)) ceres_problem.SetParameterUpperBound(x.data(), index, upper);
-    x[k] = std::clamp(x[k], lower, upper);
+    x[j] = std::clamp(x[j], lower, upper);
   }
   ceres::Solver::Options options;
-  options.max_num_iterations = settings.max_iterations;
+  options.max_num_iterations = iterations;
   options.function_tolerance = settings.tolerance;
   options.parameter_tolerance = settings.tolerance;
   options.gradient_tolerance = 1e-16;
@@ -198,30 +205,68 @@ Attempt solve(const Problem& problem, const VectorX& start, const ParameterFitSe
   ceres::Solver::Summary summary;
   ceres::Solve(options, &ceres_problem, &summary);
   if (problem.failure) std::rethrow_exception(problem.failure);
-  Attempt attempt;
-  attempt.values = problem.values(x.data());
-  attempt.iterations = static_cast<int>(summary.iterations.size());
-  attempt.converged = summary.termination_type == ceres::CONVERGENCE;
-  if (summary.IsSolutionUsable()) attempt.cost = 2.0 * summary.final_cost;
-  return attempt;
-}
-
-VectorX random_start(const Problem& problem, Random& random) {
-  VectorX result = problem.starts();
-  for (std::size_t k = 0; k < problem.free.size(); ++k) {
-    const Parameter& p = problem.of_free(k);
-    const double scale = problem.scale[problem.free[k]];
-    // Without a bound, as far as its scale.
-    const double lower = std::isfinite(p.lower) ? p.lower : p.start - scale;
-    const double upper = std::isfinite(p.upper) ? p.upper : p.start + scale;
-    result[problem.free[k]] = random.uniform(lower, upper);
-  }
-  return result;
+  problem.base = problem.values(x.data());
+  return summary;
 }
 
 bool at_bound(const Parameter& p, double value, double scale) {
   const double near = 1e-8 * scale;
   return value - p.lower <= near || p.upper - value <= near;
+}
+
+/// Ceres projects its steps on bounds, and then creeps along them. So parameters at a bound against
+/// which the cost's gradient pushes are held there, the others go on alone, and those held are let
+/// go when the gradient turns (active sets; Nocedal & Wright, Numerical Optimization, 2006, 16.5).
+Attempt solve(Problem& problem, const VectorX& start, const ParameterFitSettings& settings) {
+  constexpr int kRound = 20;
+  Attempt attempt;
+  problem.base = start;
+  problem.moving = problem.free;
+  double before = kInfinity;
+  while (attempt.iterations < settings.max_iterations) {
+    const int most = std::min(kRound, settings.max_iterations - attempt.iterations);
+    const auto summary = descend(problem, settings, most);
+    attempt.iterations += std::max(1, static_cast<int>(summary.iterations.size()) - 1);
+    if (!summary.IsSolutionUsable()) return attempt;
+    attempt.cost = 2.0 * summary.final_cost;
+    attempt.values = problem.base;
+    if (!problem.evaluate(problem.base, true)) return attempt;
+    std::vector<Eigen::Index> moving;
+    for (const Eigen::Index k : problem.free) {
+      double slope = 0.0;
+      for (const Eigen::Index i : problem.seen) {
+        slope += problem.jacobian(i, k) * (problem.prediction[i] - problem.measured[i]);
+      }
+      const Parameter& p = problem.parameter(k);
+      const bool pushed = at_bound(p, problem.base[k], problem.scale[k]) &&
+                          (p.upper - problem.base[k] < problem.base[k] - p.lower ? slope < 0.0
+                                                                                 : slope > 0.0);
+      if (!pushed) moving.push_back(k);
+    }
+    const bool settled = summary.termination_type == ceres::CONVERGENCE &&
+                         (moving == problem.moving ||
+                          before - attempt.cost <= settings.tolerance * attempt.cost);
+    if (settled || moving.empty()) {
+      attempt.converged = true;
+      return attempt;
+    }
+    before = attempt.cost;
+    problem.moving = std::move(moving);
+  }
+  return attempt;
+}
+
+VectorX random_start(const Problem& problem, Random& random) {
+  VectorX result = problem.starts();
+  for (const Eigen::Index k : problem.free) {
+    const Parameter& p = problem.parameter(k);
+    const double scale = problem.scale[k];
+    // Without a bound, as far as its scale.
+    const double lower = std::isfinite(p.lower) ? p.lower : p.start - scale;
+    const double upper = std::isfinite(p.upper) ? p.upper : p.start + scale;
+    result[k] = random.uniform(lower, upper);
+  }
+  return result;
 }
 
 /// Directions, standard errors and intervals from the Jacobian at the solution.
@@ -385,7 +430,7 @@ ParameterFit fit_parameters(const Model& model, const VectorX& measured,
                             const std::vector<Parameter>& parameters,
                             const ParameterFitSettings& settings) {
   check(model, measured, parameters, settings);
-  const Problem problem(model, measured, parameters);
+  Problem problem(model, measured, parameters);
   if (problem.seen.size() < problem.free.size()) {
     refuse(ErrorKind::too_few_points, "measured",
            fmt::format("{} measurements for {} parameters", problem.seen.size(),
