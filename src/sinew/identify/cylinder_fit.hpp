@@ -1,30 +1,16 @@
 /// @file
-/// A drive cylinder's two-state system from records of its command and volume, and an actuator's
-/// coefficients from records of volume and torque.
+/// A drive cylinder's two-state system from records of its command and volume.
 #pragma once
 
 #include <span>
 #include <string>
 #include <vector>
 
-#include "sinew/core/types.hpp"
+#include "sinew/identify/drive_record.hpp"
 #include "sinew/identify/parameter_fit.hpp"
 #include "sinew/pcc/drive_cylinder.hpp"
-#include "sinew/pcc/fluidic_actuator.hpp"
 
 namespace sinew::identify {
-
-/// Input and output at even samples.
-struct DriveRecord {
-  std::string name;
-  VectorX input, output;       ///< (samples,)
-  double sample_time = 0.01;  ///< s
-};
-
-/// Reads a table "time [s], command, volume [ml]"; a command without a unit is a plain number, else
-/// it is a volume. Times must be even to 1 % of their step.
-/// Throws what read_csv() does, wrong-columns, non-monotonic-time, out-of-range (uneven times).
-DriveRecord parse_drive_record(std::string_view bytes, const std::string& name);
 
 struct CylinderFitSettings {
   int block_rows = 10;  ///< of the subspace method, more than the two states
@@ -64,25 +50,5 @@ CylinderFit fit_cylinder(std::span<const DriveRecord> records,
 /// @param cylinder as fitted. @param records others. @param block samples.
 std::vector<CylinderTrial> validate_cylinder(const pcc::DriveCylinder& cylinder,
                                              std::span<const DriveRecord> records, int block = 20);
-
-/// tau and V of an actuator in time.
-struct ActuatorRecord {
-  std::string name;
-  VectorX time;            ///< (samples,) s, growing
-  VectorX volume, torque;  ///< (samples,) m^3, N m; nan where the torque was not measured
-};
-
-struct ActuatorFit {
-  pcc::FluidicActuator actuator;
-  ParameterFit fit;  ///< "cubic", "delay", and "linear" unless it is fixed at zero
-};
-
-/// c and t_d (and a, where `linear` is asked for) of tau = a V(t - t_d) + c V(t - t_d)^3.
-/// @param records at least one. @param linear fit a as well. @param longest_delay s, bound of t_d.
-/// @param settings of the search.
-/// Throws Error: empty-list, wrong-length, non-monotonic-time, too-few-points, and what
-/// fit_parameters() does.
-ActuatorFit fit_actuator(std::span<const ActuatorRecord> records, bool linear = false,
-                         double longest_delay = 0.5, const ParameterFitSettings& settings = {});
 
 }  // namespace sinew::identify

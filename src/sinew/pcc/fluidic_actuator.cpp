@@ -25,13 +25,15 @@ void FluidicActuator::check() const {
 }
 
 double FluidicActuator::volume(double torque) const {
-  if (cubic == 0.0) return torque / linear;
-  const double lone = std::cbrt(torque / cubic);
-  // Where the cubic term has it all, the quotient a/c below would vanish.
-  if (linear <= 1e-12 * cubic * lone * lone || torque == 0.0) return lone;
-  const double unit = 2.0 * std::sqrt(linear / (3.0 * cubic));
-  const double root = unit * std::sinh(std::asinh(3.0 * torque / (linear * unit)) / 3.0);
-  // One step of Newton's method takes off what sinh and asinh round.
+  if (cubic == 0.0 || torque == 0.0) return torque == 0.0 ? 0.0 : torque / linear;
+  double root = std::cbrt(torque / cubic);
+  if (linear == 0.0) return root;
+  // Where the linear term is next to nothing, the quotient a/c would vanish.
+  if (linear > 1e-12 * cubic * root * root) {
+    const double unit = 2.0 * std::sqrt(linear / (3.0 * cubic));
+    root = unit * std::sinh(std::asinh(3.0 * torque / (linear * unit)) / 3.0);
+  }
+  // One step of Newton's method takes off what is left of it, and what sinh and asinh round.
   return root - (this->torque(root) - torque) / slope(root);
 }
 
