@@ -247,7 +247,7 @@ InputSignal::InputSignal(const MotionRecord& record)
 
 InputSignal::Value InputSignal::at(Eigen::Index input, double time) const {
   const Eigen::Index n = time_.size();
-  if (time <= time_[0]) return {value_(0, input), 0.0};
+  if (time < time_[0]) return {value_(0, input), 0.0};
   if (time >= time_[n - 1]) return {value_(n - 1, input), 0.0};
   const Eigen::Index i =
       std::upper_bound(time_.data(), time_.data() + n, time) - time_.data() - 1;

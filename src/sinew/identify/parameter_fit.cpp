@@ -222,6 +222,7 @@ Attempt solve(Problem& problem, const VectorX& start, const ParameterFitSettings
   Attempt attempt;
   problem.base = start;
   problem.moving = problem.free;
+  if (!problem.evaluate(start, false)) return attempt;
   double before = kInfinity;
   while (attempt.iterations < settings.max_iterations) {
     const int most = std::min(kRound, settings.max_iterations - attempt.iterations);
@@ -279,6 +280,7 @@ void judge(const Problem& problem, const ParameterFitSettings& settings, Paramet
   const auto rows = static_cast<Eigen::Index>(problem.seen.size());
   fit.degrees_of_freedom = static_cast<int>(std::max<Eigen::Index>(rows - columns, 1));
   fit.noise = std::sqrt(fit.cost / fit.degrees_of_freedom);
+  fit.covariance = MatrixX::Zero(fit.values.size(), fit.values.size());
   if (columns == 0) return;
   VectorX unit(columns);
   MatrixX scaled(rows, columns);
@@ -292,7 +294,7 @@ void judge(const Problem& problem, const ParameterFitSettings& settings, Paramet
     }
   }
   const Eigen::BDCSVD<MatrixX> svd(scaled, Eigen::ComputeThinV);
-  VectorX variance = VectorX::Zero(columns);
+  MatrixX covariance = MatrixX::Zero(columns, columns);
   for (Eigen::Index i = 0; i < columns; ++i) {
     Direction& direction = fit.directions.emplace_back();
     direction.singular_value = svd.singularValues()[i];
@@ -304,21 +306,26 @@ void judge(const Problem& problem, const ParameterFitSettings& settings, Paramet
     direction.weights = VectorX::Zero(fit.values.size());
     for (Eigen::Index j = 0; j < columns; ++j) {
       const Eigen::Index k = inner[static_cast<std::size_t>(j)];
-      const double weight = svd.matrixV()(j, i);
-      direction.weights[k] = weight;
-      if (!direction.undetermined) {
-        variance[j] += std::pow(unit[j] * weight * direction.relative_error, 2);
-      } else if (std::abs(weight) > kPart) {
+      direction.weights[k] = svd.matrixV()(j, i);
+      if (direction.undetermined && std::abs(svd.matrixV()(j, i)) > kPart) {
         fit.parameters[static_cast<std::size_t>(k)].determined = false;
       }
     }
+    if (direction.undetermined) continue;
+    const VectorX part = direction.relative_error * unit.cwiseProduct(svd.matrixV().col(i));
+    covariance.noalias() += part * part.transpose();
   }
   const double quantile =
       student_quantile(0.5 + 0.5 * settings.confidence, fit.degrees_of_freedom);
   for (Eigen::Index j = 0; j < columns; ++j) {
-    FittedParameter& p =
-        fit.parameters[static_cast<std::size_t>(inner[static_cast<std::size_t>(j)])];
-    p.standard_error = p.determined ? std::sqrt(variance[j]) : kInfinity;
+    const Eigen::Index own = inner[static_cast<std::size_t>(j)];
+    FittedParameter& p = fit.parameters[static_cast<std::size_t>(own)];
+    p.standard_error = p.determined ? std::sqrt(covariance(j, j)) : kInfinity;
+    for (Eigen::Index i = 0; i < columns && p.determined; ++i) {
+      const Eigen::Index other = inner[static_cast<std::size_t>(i)];
+      if (!fit.parameters[static_cast<std::size_t>(other)].determined) continue;
+      fit.covariance(own, other) = covariance(j, i);
+    }
     p.interval_lower = p.value - quantile * p.standard_error;
     p.interval_upper = p.value + quantile * p.standard_error;
   }
@@ -416,6 +423,10 @@ Model with_differences(Eigen::Index observations,
             if (jacobian == nullptr) return;
             VectorX moved = parameters;
             for (Eigen::Index k = 0; k < parameters.size(); ++k) {
+              if (scales[k] == 0.0) {
+                jacobian->col(k).setZero();
+                continue;
+              }
               moved[k] = parameters[k] + step * scales[k];
               const double above = moved[k];
               const VectorX high = checked(moved);

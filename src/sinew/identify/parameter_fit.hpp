@@ -34,7 +34,7 @@ struct Model {
 
 /// A model without derivatives: central differences of `step` times each parameter's scale.
 /// @param observations how many. @param predict parameters -> (observations,).
-/// @param scales (parameters,) typical sizes. @param step relative; truncation goes with its
+/// @param scales (parameters,) typical sizes; 0 for those fixed. @param step relative; truncation goes with its
 /// square, the run's rounding and iteration errors with its inverse.
 Model with_differences(Eigen::Index observations,
                        std::function<VectorX(const VectorX&)> predict, VectorX scales,
@@ -72,6 +72,7 @@ struct ParameterFit {
   std::vector<FittedParameter> parameters;
   VectorX values;                     ///< (parameters,)
   std::vector<Direction> directions;  ///< from the best determined to the worst
+  MatrixX covariance;  ///< (parameters, parameters); 0 for those fixed, at bounds or undetermined
   VectorX prediction;                 ///< (observations,)
   VectorX residual;                   ///< prediction - measured; NaN where nothing was measured
   double start_cost = 0.0;            ///< sum of squares at the given start
