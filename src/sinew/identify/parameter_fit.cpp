@@ -344,6 +344,40 @@ double normal_quantile(double probability) {
 
 }  // namespace
 
+std::string fit_table(const ParameterFit& fit, Eigen::Index count) {
+  const auto shown = count < 0 ? fit.parameters.size() : static_cast<std::size_t>(count);
+  std::string text = fmt::format("{:<20} {:>12} {:>12} {:>27}  {}\n", "parameter", "value",
+                                 "std. error", "interval", "unit");
+  for (std::size_t k = 0; k < shown; ++k) {
+    const FittedParameter& p = fit.parameters[k];
+    text += fmt::format("{:<20} {:>12.6g} ", p.name, p.value);
+    if (p.fixed || p.at_bound || !p.determined) {
+      const char* why = p.fixed ? "known" : p.at_bound ? "at its bound" : "not determined";
+      text += fmt::format("{:>12} {:>27}", "", why);
+    } else {
+      text += fmt::format("{:>12.3g} {:>27}", p.standard_error,
+                          fmt::format("{:.6g} to {:.6g}", p.interval_lower, p.interval_upper));
+    }
+    text += fmt::format("  {}\n", p.unit);
+  }
+  for (const Direction& direction : fit.directions) {
+    if (!direction.undetermined) continue;
+    text += "not determined by the data: ";
+    bool first = true;
+    for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
+      const double weight = direction.weights[static_cast<Eigen::Index>(k)];
+      if (std::abs(weight) <= kPart) continue;
+      text += fmt::format("{}{:.3g} {}", first ? "" : ", ", weight, fit.parameters[k].name);
+      first = false;
+    }
+    text += " together (relative changes); fix one of them\n";
+  }
+  text += fmt::format("noise {:.4g}, {} degrees of freedom, {} after {} iterations\n", fit.noise,
+                      fit.degrees_of_freedom, fit.converged ? "converged" : "not converged",
+                      fit.iterations);
+  return text;
+}
+
 double student_quantile(double probability, int degrees_of_freedom) {
   const double n = degrees_of_freedom;
   if (degrees_of_freedom == 1) return std::tan(std::numbers::pi * (probability - 0.5));

@@ -103,6 +103,10 @@ ParameterFit fit_parameters(const Model& model, const VectorX& measured,
                             const std::vector<Parameter>& parameters,
                             const ParameterFitSettings& settings = {});
 
+/// A table of the parameters with their intervals, and of what is not determined.
+/// @param fit to tell of. @param count parameters, from the first; -1: all.
+std::string fit_table(const ParameterFit& fit, Eigen::Index count = -1);
+
 /// Quantile of Student's t. @param probability between 0 and 1. @param degrees_of_freedom 1 or
 /// more.
 double student_quantile(double probability, int degrees_of_freedom);
