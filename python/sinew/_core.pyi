@@ -789,6 +789,116 @@ class Plan:
 class PlanReplay:
     @property
     def times(self) -> _Floats: ...
+    @property
+    def theta(self) -> _Floats: ...
+    @property
+    def theta_dot(self) -> _Floats: ...
+    @property
+    def torque(self) -> _Floats: ...
+    @property
+    def tip(self) -> _Floats: ...
+    @property
+    def tip_velocity(self) -> _Floats: ...
+    @property
+    def tip_error(self) -> float: ...
+    @property
+    def tip_speed(self) -> float: ...
+    @property
+    def clearance(self) -> float: ...
+
+class PlanTask:
+    def __init__(
+        self,
+        arm: Arm,
+        goal: ArrayLike,
+        torque_limits: Optional[ArrayLike] = None,
+        *,
+        angle_limits: Optional[ArrayLike] = None,
+        rate_limits: Optional[ArrayLike] = None,
+        torque_rate_limits: Optional[ArrayLike] = None,
+        tolerance: float = 2e-3,
+        speed_tolerance: Optional[float] = 5e-3,
+        effort: float = 0.1,
+        tip_speed: float = 0.0,
+        time: float = 0.0,
+        duration: float = 1.6,
+        duration_range: Optional[ArrayLike] = None,
+        intervals: int = 50,
+        method: str = "hermite-simpson",
+        theta: Optional[ArrayLike] = None,
+        theta_dot: Optional[ArrayLike] = None,
+        torque: Optional[ArrayLike] = None,
+        obstacles: list[PlanObstacle] = [],
+        backbone_points: int = 4,
+    ) -> None: ...
+    def solve(
+        self,
+        seed: int = 0,
+        *,
+        warm: Optional[Plan] = None,
+        tolerance: float = 1e-6,
+        max_iterations: int = 300,
+        max_time: float = 30.0,
+    ) -> Plan: ...
+    def replay(
+        self, plan: Plan, arm: Optional[Arm] = None, *, time_step: float = 0.001
+    ) -> PlanReplay: ...
+
+class PlanTracker:
+    def __init__(
+        self,
+        task: PlanTask,
+        plan: Plan,
+        *,
+        time_step: float = 5e-3,
+        angle: float = 0.5,
+        rate: float = 5.0,
+        torque_share: float = 0.5,
+        tip_position: float = 5e-3,
+        tip_speed: float = 5e-2,
+    ) -> None: ...
+    @property
+    def steps(self) -> int: ...
+    @property
+    def time_step(self) -> float: ...
+    def gain(self, step: int) -> _Floats: ...
+    def run(
+        self,
+        arm: Optional[Arm] = None,
+        *,
+        theta: Optional[ArrayLike] = None,
+        theta_dot: Optional[ArrayLike] = None,
+        feedback: bool = True,
+        time_step: float = 0.001,
+    ) -> PlanReplay: ...
+
+def plan_sample_reach(
+    arm: Arm,
+    torque_limits: ArrayLike,
+    samples: int = 1000,
+    seed: int = 1,
+    *,
+    angle_limits: Optional[ArrayLike] = None,
+) -> dict[str, _Floats]: ...
+def plan_nearest_reach(
+    arm: Arm,
+    torque_limits: ArrayLike,
+    goal: ArrayLike,
+    starts: int = 20,
+    seed: int = 1,
+    *,
+    angle_limits: Optional[ArrayLike] = None,
+) -> dict[str, Any]: ...
+def plan_prove_out_of_reach(
+    arm: Arm,
+    torque_limits: ArrayLike,
+    goal: ArrayLike,
+    *,
+    tolerance: float = 0.02,
+    angle: float = 3.141592653589793,
+    max_boxes: int = 5000000,
+    angle_limits: Optional[ArrayLike] = None,
+) -> dict[str, Any]: ...
 
 class FluidicActuator:
     def __init__(self, cubic: float, *, linear: float = 0.0, delay: float = 0.0) -> None: ...
@@ -906,112 +1016,6 @@ class RecordFit:
     @property
     def theta_dot(self) -> _Floats: ...
     @property
-    def torque(self) -> _Floats: ...
-    @property
-    def tip(self) -> _Floats: ...
-    @property
-    def tip_velocity(self) -> _Floats: ...
-    @property
-    def tip_error(self) -> float: ...
-    @property
-    def tip_speed(self) -> float: ...
-    @property
-    def clearance(self) -> float: ...
-
-class PlanTask:
-    def __init__(
-        self,
-        arm: Arm,
-        goal: ArrayLike,
-        torque_limits: Optional[ArrayLike] = None,
-        *,
-        angle_limits: Optional[ArrayLike] = None,
-        rate_limits: Optional[ArrayLike] = None,
-        torque_rate_limits: Optional[ArrayLike] = None,
-        tolerance: float = 2e-3,
-        speed_tolerance: Optional[float] = 5e-3,
-        effort: float = 0.1,
-        tip_speed: float = 0.0,
-        time: float = 0.0,
-        duration: float = 1.6,
-        duration_range: Optional[ArrayLike] = None,
-        intervals: int = 50,
-        method: str = "hermite-simpson",
-        theta: Optional[ArrayLike] = None,
-        theta_dot: Optional[ArrayLike] = None,
-        torque: Optional[ArrayLike] = None,
-        obstacles: list[PlanObstacle] = [],
-        backbone_points: int = 4,
-    ) -> None: ...
-    def solve(
-        self,
-        seed: int = 0,
-        *,
-        warm: Optional[Plan] = None,
-        tolerance: float = 1e-6,
-        max_iterations: int = 300,
-        max_time: float = 30.0,
-    ) -> Plan: ...
-    def replay(
-        self, plan: Plan, arm: Optional[Arm] = None, *, time_step: float = 0.001
-    ) -> PlanReplay: ...
-
-class PlanTracker:
-    def __init__(
-        self,
-        task: PlanTask,
-        plan: Plan,
-        *,
-        time_step: float = 5e-3,
-        angle: float = 0.5,
-        rate: float = 5.0,
-        torque_share: float = 0.5,
-        tip_position: float = 5e-3,
-        tip_speed: float = 5e-2,
-    ) -> None: ...
-    @property
-    def steps(self) -> int: ...
-    @property
-    def time_step(self) -> float: ...
-    def gain(self, step: int) -> _Floats: ...
-    def run(
-        self,
-        arm: Optional[Arm] = None,
-        *,
-        theta: Optional[ArrayLike] = None,
-        theta_dot: Optional[ArrayLike] = None,
-        feedback: bool = True,
-        time_step: float = 0.001,
-    ) -> PlanReplay: ...
-
-def plan_sample_reach(
-    arm: Arm,
-    torque_limits: ArrayLike,
-    samples: int = 1000,
-    seed: int = 1,
-    *,
-    angle_limits: Optional[ArrayLike] = None,
-) -> dict[str, _Floats]: ...
-def plan_nearest_reach(
-    arm: Arm,
-    torque_limits: ArrayLike,
-    goal: ArrayLike,
-    starts: int = 20,
-    seed: int = 1,
-    *,
-    angle_limits: Optional[ArrayLike] = None,
-) -> dict[str, Any]: ...
-def plan_prove_out_of_reach(
-    arm: Arm,
-    torque_limits: ArrayLike,
-    goal: ArrayLike,
-    *,
-    tolerance: float = 0.02,
-    angle: float = 3.141592653589793,
-    max_boxes: int = 5000000,
-    angle_limits: Optional[ArrayLike] = None,
-) -> dict[str, Any]: ...
-
     def nrmse(self) -> float: ...
     @property
     def mean_error(self) -> float: ...

@@ -38,8 +38,7 @@ DriveCylinder make_cylinder(const py::object& a, const py::object& b, const py::
   const MatrixX matrix = to_matrix(a, "DriveCylinder(a)", "(2, 2)");
   if (matrix.rows() != 2 || matrix.cols() != 2) {
     throw Error(ErrorKind::wrong_shape, {.item = "DriveCylinder(a)"},
-                fmt::format("its shape is ({}, {})", matrix.rows(), matrix.cols()),
-                "give (2, 2)");
+                fmt::format("its shape is ({}, {})", matrix.rows(), matrix.cols()), "give (2, 2)");
   }
   cylinder.a = matrix;
   cylinder.b = to_pair(b, "DriveCylinder(b)");
@@ -133,8 +132,7 @@ Error
       .def_property_readonly(
           "b", [](const DriveCylinder& self) { return copy(VectorX(self.b)); }, "(2,).")
       .def_property_readonly(
-          "c", [](const DriveCylinder& self) { return copy(VectorX(self.c.transpose())); },
-          "(2,).")
+          "c", [](const DriveCylinder& self) { return copy(VectorX(self.c.transpose())); }, "(2,).")
       .def_readonly("d", &DriveCylinder::d, "float.")
       .def_readonly("sample_time", &DriveCylinder::sample_time, "float: s.")
       .def_property_readonly("gain", &DriveCylinder::gain, "float: volume over command at rest.")
@@ -170,8 +168,9 @@ damping : float
 sample_time : float
     s.)");
 
-  py::class_<Excitation>(module, "Excitation",
-                         R"(Excitation(amplitude, *, peak_frequency=1.0, band=(0.4, 4.0), sines=40, seed=1)
+  py::class_<Excitation>(
+      module, "Excitation",
+      R"(Excitation(amplitude, *, peak_frequency=1.0, band=(0.4, 4.0), sines=40, seed=1)
 
 A sum of sines of random frequencies and phases with the energies of Bretschneider's spectrum
 ``S(w) = (1.25/4) (w_p^4/w^5) zeta^2 exp(-1.25 (w_p/w)^4)``, ``zeta = 2 amplitude``. The same seed

@@ -4,6 +4,7 @@
 #include "sinew/identify/actuator_fit.hpp"
 #include "sinew/identify/cylinder_fit.hpp"
 #include "sinew/identify/parameter_fit.hpp"
+#include "sinew/identify/statistics.hpp"
 
 #include "arrays.hpp"
 #include "bindings.hpp"
@@ -56,8 +57,8 @@ ParameterFit fit(const py::function& predict, const py::object& measured, const 
   for (std::size_t k = 0; k < parameters.size(); ++k) {
     const Parameter& p = parameters[k];
     const double range = p.upper - p.lower;
-    scales[static_cast<Eigen::Index>(k)] = p.fixed          ? 0.0
-                                           : p.start != 0.0 ? std::abs(p.start)
+    scales[static_cast<Eigen::Index>(k)] = p.fixed                ? 0.0
+                                           : p.start != 0.0       ? std::abs(p.start)
                                            : std::isfinite(range) ? range
                                                                   : 1.0;
   }
@@ -75,10 +76,8 @@ ParameterFit fit(const py::function& predict, const py::object& measured, const 
       throw Error(ErrorKind::diverged, {.item = "fit(predict)"}, "the run failed");
     }
   };
-  const ParameterFitSettings settings{.starts = starts,
-                                      .seed = seed,
-                                      .confidence = confidence,
-                                      .max_iterations = max_iterations};
+  const ParameterFitSettings settings{
+      .starts = starts, .seed = seed, .confidence = confidence, .max_iterations = max_iterations};
   return fit_parameters(with_differences(data.size(), call, scales, step), data, parameters,
                         settings);
 }
@@ -211,18 +210,19 @@ void bind_identify(py::module_& module) {
           "(observations,): prediction - measured; nan where nothing was measured.")
       .def_readonly("cost", &ParameterFit::cost, "float: sum of squared residuals.")
       .def_readonly("start_cost", &ParameterFit::start_cost, "float: the same at the start.")
-      .def_readonly("costs", &ParameterFit::costs, "list of float: of each start; inf if it failed.")
+      .def_readonly("costs", &ParameterFit::costs,
+                    "list of float: of each start; inf if it failed.")
       .def_readonly("noise", &ParameterFit::noise, "float: standard deviation of the residuals.")
       .def_readonly("degrees_of_freedom", &ParameterFit::degrees_of_freedom, "int.")
       .def_readonly("iterations", &ParameterFit::iterations, "int: of the best start.")
       .def_readonly("converged", &ParameterFit::converged, "bool.")
       .def("__str__", [](const ParameterFit& self) { return fit_table(self); });
 
-  module.def("fit", &fit, py::arg("predict"), py::arg("measured"), py::arg("parameters"),
-             py::kw_only(), py::arg("fixed") = std::vector<std::string>{}, py::arg("starts") = 1,
-             py::arg("seed") = 1, py::arg("confidence") = 0.95, py::arg("step") = 1e-5,
-             py::arg("max_iterations") = 100,
-             R"(fit(predict, measured, parameters, *, fixed=(), starts=1, seed=1, confidence=0.95, step=1e-5, max_iterations=100)
+  module.def(
+      "fit", &fit, py::arg("predict"), py::arg("measured"), py::arg("parameters"), py::kw_only(),
+      py::arg("fixed") = std::vector<std::string>{}, py::arg("starts") = 1, py::arg("seed") = 1,
+      py::arg("confidence") = 0.95, py::arg("step") = 1e-5, py::arg("max_iterations") = 100,
+      R"(fit(predict, measured, parameters, *, fixed=(), starts=1, seed=1, confidence=0.95, step=1e-5, max_iterations=100)
 --
 
 Named parameters of any simulation by bounded least squares; derivatives by central differences.

@@ -56,8 +56,7 @@ py::array predict(const PccArm& arm, const py::object& time, const py::object& t
   ArmStart start{arm.angles(theta, "predict_motion(theta)", "rad"), VectorX()};
   start.rate = theta_dot.is_none() ? VectorX(VectorX::Zero(start.position.size()))
                                    : arm.angles(theta_dot, "predict_motion(theta_dot)", "rad/s");
-  return by_segment(
-      predict_motion({arm.arm, actuators}, record, start, {.time_step = time_step}));
+  return by_segment(predict_motion({arm.arm, actuators}, record, start, {.time_step = time_step}));
 }
 
 ArmFit python_fit_arm(const PccArm& arm, const std::vector<MotionRecord>& records,
@@ -118,11 +117,9 @@ Error
           "positions", [](const MotionRecord& self) { return by_segment(self.position); },
           "(samples, segments, 3) m.")
       .def_property_readonly(
-          "inputs", [](const MotionRecord& self) { return copy(self.input); },
-          "(samples, inputs).")
+          "inputs", [](const MotionRecord& self) { return copy(self.input); }, "(samples, inputs).")
       .def(
-          "csv",
-          [](const MotionRecord& self, bool torque) { return motion_csv(self, torque); },
+          "csv", [](const MotionRecord& self, bool torque) { return motion_csv(self, torque); },
           py::arg("torque") = false, R"(csv($self, torque=False)
 --
 
@@ -143,10 +140,11 @@ Raises
 ------
 Error
     file-not-found, wrong-columns, malformed-table, non-monotonic-time, too-few-points.)");
-  module.def("predict_motion", &predict, py::arg("arm"), py::arg("time"), py::arg("theta"),
-             py::kw_only(), py::arg("theta_dot") = py::none(), py::arg("inputs") = py::none(),
-             py::arg("actuators") = Actuators{}, py::arg("time_step") = 5e-3,
-             R"(predict_motion(arm, time, theta, *, theta_dot=None, inputs=None, actuators=(), time_step=5e-3)
+  module.def(
+      "predict_motion", &predict, py::arg("arm"), py::arg("time"), py::arg("theta"), py::kw_only(),
+      py::arg("theta_dot") = py::none(), py::arg("inputs") = py::none(),
+      py::arg("actuators") = Actuators{}, py::arg("time_step") = 5e-3,
+      R"(predict_motion(arm, time, theta, *, theta_dot=None, inputs=None, actuators=(), time_step=5e-3)
 --
 
 Ends (samples, segments, 3), m, of an arm's segments at times.
@@ -191,14 +189,14 @@ time_step : float
           "list of FluidicActuator.")
       .def_readonly("records", &ArmFit::records, "list of RecordFit: as given.")
       .def("__str__", [](const ArmFit& self) { return fit_table(self.fit, self.own); });
-  module.def("fit_arm", &python_fit_arm, py::arg("arm"), py::arg("records"), py::kw_only(),
-             py::arg("actuators") = Actuators{}, py::arg("fixed") = std::vector<std::string>{},
-             py::arg("mass_spread") = 0.38, py::arg("stiffness_spread") = 0.23,
-             py::arg("damping") = std::pair(1e-3, 5e-3), py::arg("coefficient_spread") = 0.9,
-             py::arg("longest_delay") = 0.5, py::arg("start") = "at-rest",
-             py::arg("time_step") = 5e-3, py::arg("starts") = 1, py::arg("seed") = 1,
-             py::arg("confidence") = 0.95,
-             R"(fit_arm(arm, records, *, actuators=(), fixed=(), mass_spread=0.38, stiffness_spread=0.23, damping=(1e-3, 5e-3), coefficient_spread=0.9, longest_delay=0.5, start='at-rest', time_step=5e-3, starts=1, seed=1, confidence=0.95)
+  module.def(
+      "fit_arm", &python_fit_arm, py::arg("arm"), py::arg("records"), py::kw_only(),
+      py::arg("actuators") = Actuators{}, py::arg("fixed") = std::vector<std::string>{},
+      py::arg("mass_spread") = 0.38, py::arg("stiffness_spread") = 0.23,
+      py::arg("damping") = std::pair(1e-3, 5e-3), py::arg("coefficient_spread") = 0.9,
+      py::arg("longest_delay") = 0.5, py::arg("start") = "at-rest", py::arg("time_step") = 5e-3,
+      py::arg("starts") = 1, py::arg("seed") = 1, py::arg("confidence") = 0.95,
+      R"(fit_arm(arm, records, *, actuators=(), fixed=(), mass_spread=0.38, stiffness_spread=0.23, damping=(1e-3, 5e-3), coefficient_spread=0.9, longest_delay=0.5, start='at-rest', time_step=5e-3, starts=1, seed=1, confidence=0.95)
 --
 
 Masses ("mass_0", ...), "stiffness", "damping", and with actuators "coefficient_0", ... and "delay"

@@ -31,15 +31,12 @@ void bind_mesh(py::module_& module);
 void bind_view(py::module_& module);
 void bind_material(py::module_& module);
 void bind_pcc(py::module_& module);
-<<<<<<< HEAD
 void bind_bending(py::module_& module);
 void bind_bending_fit(py::module_& module);
 void bind_plan(py::module_& module);
-=======
 void bind_drive(py::module_& module);
 void bind_identify(py::module_& module);
 void bind_identify_arm(py::module_& module);
->>>>>>> d83f8ba (sinew.identify in Python, an example, a validation case and its page)
 
 /// A part of a simulation: keeps the whole alive.
 struct Part {

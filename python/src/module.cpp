@@ -33,16 +33,14 @@ PYBIND11_MODULE(_core, module) {
   python::bind_view(module);
   python::bind_material(module);
   python::bind_pcc(module);
-<<<<<<< HEAD
   python::bind_bending(module);
   python::bind_bending_fit(module);
+  python::bind_drive(module);
 #ifdef SINEW_HAS_PLAN
   python::bind_plan(module);
-=======
-  python::bind_drive(module);
+#endif
 #ifdef SINEW_HAS_IDENTIFY
   python::bind_identify(module);
   python::bind_identify_arm(module);
->>>>>>> d83f8ba (sinew.identify in Python, an example, a validation case and its page)
 #endif
 }

@@ -6,11 +6,11 @@
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
-#include "pcc/arms.hpp"
 #include "sinew/pcc/excitation.hpp"
-#include "support/error_kind.hpp"
 
 #include "arm_records.hpp"
+#include "pcc/arms.hpp"
+#include "support/error_kind.hpp"
 
 namespace sinew::identify {
 namespace {

@@ -8,6 +8,7 @@
 #include "sinew/core/random.hpp"
 #include "sinew/identify/actuator_fit.hpp"
 #include "sinew/pcc/excitation.hpp"
+
 #include "support/error_kind.hpp"
 
 namespace sinew::identify {
@@ -67,7 +68,8 @@ TEST(CylinderFit, OutputErrorHoldsTheTruthAndPredictsOtherRecords) {
   // Refinement never loses to its start, which noise biases.
   EXPECT_LE(fit.fit.cost, fit.fit.start_cost);
   std::vector<DriveRecord> others;
-  for (std::uint64_t seed = 11; seed <= 14; ++seed) others.push_back(record_of(kTruth, kNoise, seed));
+  for (std::uint64_t seed = 11; seed <= 14; ++seed)
+    others.push_back(record_of(kTruth, kNoise, seed));
   for (const CylinderTrial& trial : validate_cylinder(fit.cylinder, others)) {
     // Noise alone makes 1e-6 of a standard deviation near 1.4e-5.
     EXPECT_LT(trial.nrmse, 0.1) << trial.name;
@@ -104,8 +106,8 @@ TEST(CylinderFit, RefusesWhatItCannotUse) {
 }
 
 TEST(DriveRecord, ReadsItsHeader) {
-  const DriveRecord record = parse_drive_record(
-      "time [ms],command,volume [ml]\n0,1,2\n10,2,3\n20,3,4\n", "first.csv");
+  const DriveRecord record =
+      parse_drive_record("time [ms],command,volume [ml]\n0,1,2\n10,2,3\n20,3,4\n", "first.csv");
   EXPECT_EQ(record.name, "first");
   EXPECT_DOUBLE_EQ(record.sample_time, 0.01);
   EXPECT_DOUBLE_EQ(record.input[2], 3.0);
@@ -131,9 +133,8 @@ TEST(ActuatorFit, FindsCoefficientAndDelay) {
   record.time = VectorX::LinSpaced(500, 0.0, 4.99);
   record.volume = volume.sample(record.time);
   Random random(9);
-  record.torque = record.time.unaryExpr([&](double t) {
-    return truth.torque(volume.at(t - truth.delay)) + 1e-3 * random.normal();
-  });
+  record.torque = record.time.unaryExpr(
+      [&](double t) { return truth.torque(volume.at(t - truth.delay)) + 1e-3 * random.normal(); });
   // Before the record the volume is not known.
   record.torque.head(10).setConstant(NAN);
   const ActuatorFit fit = fit_actuator(std::vector<ActuatorRecord>{record});
@@ -146,8 +147,8 @@ TEST(ActuatorFit, FindsCoefficientAndDelay) {
   EXPECT_EQ(fit.actuator.linear, 0.0);
   // A linear part that is there is found.
   const pcc::FluidicActuator both{900.0, 4e12, 0.085};
-  record.torque = record.time.unaryExpr(
-      [&](double t) { return both.torque(volume.at(t - both.delay)); });
+  record.torque =
+      record.time.unaryExpr([&](double t) { return both.torque(volume.at(t - both.delay)); });
   record.torque.head(10).setConstant(NAN);
   const ActuatorFit second = fit_actuator(std::vector<ActuatorRecord>{record}, true);
   EXPECT_NEAR(second.actuator.linear, 900.0, 9.0);

@@ -8,6 +8,8 @@
 #include "sinew/core/error.hpp"
 #include "sinew/core/random.hpp"
 #include "sinew/identify/motion_record.hpp"
+#include "sinew/identify/statistics.hpp"
+
 #include "support/error_kind.hpp"
 
 namespace sinew::identify {
@@ -62,8 +64,8 @@ TEST(ParameterFit, IntervalsCoverAsTheySay) {
 TEST(ParameterFit, DifferencesDoAsWellAsDerivatives) {
   const VectorX data = measured(0.02, 5);
   const ParameterFit exact = fit_parameters(decay_model(), data, kParameters);
-  const ParameterFit numeric = fit_parameters(
-      with_differences(kTimes.size(), decay, VectorX::Ones(3)), data, kParameters);
+  const ParameterFit numeric =
+      fit_parameters(with_differences(kTimes.size(), decay, VectorX::Ones(3)), data, kParameters);
   EXPECT_LT((exact.values - numeric.values).cwiseAbs().maxCoeff(), 1e-7);
   EXPECT_NEAR(exact.parameters[1].standard_error, numeric.parameters[1].standard_error, 1e-6);
 }
@@ -94,14 +96,11 @@ TEST(ParameterFit, SolutionsOnBoundsAreExact) {
 
 TEST(ParameterFit, TellsDirectionsThatDataDoNotDetermine) {
   // Only the product of size and gain shows.
-  const auto predict = [](const VectorX& p) {
-    return decay(VectorX{{p[0] * p[3], p[1], p[2]}});
-  };
+  const auto predict = [](const VectorX& p) { return decay(VectorX{{p[0] * p[3], p[1], p[2]}}); };
   std::vector<Parameter> parameters = kParameters;
   parameters.push_back({"gain", 1.0, 0.0, 10.0});
-  const ParameterFit fit =
-      fit_parameters(with_differences(kTimes.size(), predict, VectorX::Ones(4)),
-                     measured(0.01, 2), parameters);
+  const ParameterFit fit = fit_parameters(
+      with_differences(kTimes.size(), predict, VectorX::Ones(4)), measured(0.01, 2), parameters);
   ASSERT_EQ(fit.undetermined(), 1);
   const VectorX& weights = fit.directions.back().weights;
   EXPECT_NEAR(std::abs(weights[0]), std::sqrt(0.5), 1e-4);
@@ -143,10 +142,9 @@ TEST(ParameterFit, FailedRunsAreSteppedRoundAndOtherErrorsCome) {
       fit_parameters(failing(ErrorKind::diverged), measured(0.0, 1), parameters, {.starts = 5});
   EXPECT_LT((fit.values - kTruth).cwiseAbs().maxCoeff(), 1e-6);
   parameters[1].start = 3.0;
-  EXPECT_EQ(kind_of([&] {
-              fit_parameters(failing(ErrorKind::diverged), measured(0.0, 1), parameters);
-            }),
-            ErrorKind::not_converged);
+  EXPECT_EQ(
+      kind_of([&] { fit_parameters(failing(ErrorKind::diverged), measured(0.0, 1), parameters); }),
+      ErrorKind::not_converged);
   EXPECT_EQ(kind_of([&] {
               fit_parameters(failing(ErrorKind::unknown_key), measured(0.0, 1), parameters);
             }),

@@ -72,7 +72,8 @@ Run run(const VectorX& p, Integrator integrator) {
   const Eigen::Index n = arm->coordinates();
   const VectorX shape = VectorX::LinSpaced(n, 0.01, 0.03);
   ArmSimulation simulation(
-      arm, {.time_step = 2e-3, .integrator = integrator, .spectral_radius = 0.7, .tolerance = 1e-14});
+      arm,
+      {.time_step = 2e-3, .integrator = integrator, .spectral_radius = 0.7, .tolerance = 1e-14});
   VectorX q = VectorX::LinSpaced(n, 0.1, 0.5), rate = VectorX::LinSpaced(n, -0.5, 0.5);
   q[n - 1] = 0.002;
   rate[n - 1] = 0.0;
@@ -85,10 +86,10 @@ Run run(const VectorX& p, Integrator integrator) {
   sensitivity.start(by_q, by_rate);
   for (int i = 0; i < 60; ++i) {
     simulation.step(p[3] * shape);
-    partial.col(0) = simulation.equations()
-                         .mass_regressor(simulation.position(), simulation.rate(),
-                                         simulation.acceleration())
-                         .col(1);
+    partial.col(0) =
+        simulation.equations()
+            .mass_regressor(simulation.position(), simulation.rate(), simulation.acceleration())
+            .col(1);
     partial.col(1) = arm->stiffness().cwiseProduct(simulation.position()) / p[1];
     partial.col(2) = arm->damping().cwiseProduct(simulation.rate()) / p[2];
     partial.col(3) = -shape;

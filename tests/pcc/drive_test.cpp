@@ -9,6 +9,7 @@
 #include "sinew/pcc/drive_cylinder.hpp"
 #include "sinew/pcc/excitation.hpp"
 #include "sinew/pcc/fluidic_actuator.hpp"
+
 #include "support/error_kind.hpp"
 
 namespace sinew::pcc {
@@ -113,8 +114,7 @@ TEST(Excitation, HasTheSpectrumThatWasAskedFor) {
         sum += value * phase;
         phase *= turn;
       }
-      found[static_cast<std::size_t>(band)] +=
-          2.0 * std::norm(sum) / kSamples / kSamples / kSeeds;
+      found[static_cast<std::size_t>(band)] += 2.0 * std::norm(sum) / kSamples / kSamples / kSeeds;
     }
   }
   for (int band = 0; band < kBands; ++band) {

@@ -46,8 +46,8 @@ void check(std::span<const ActuatorRecord> records) {
 
 }  // namespace
 
-ActuatorFit fit_actuator(std::span<const ActuatorRecord> records, bool linear,
-                         double longest_delay, const ParameterFitSettings& settings) {
+ActuatorFit fit_actuator(std::span<const ActuatorRecord> records, bool linear, double longest_delay,
+                         const ParameterFitSettings& settings) {
   check(records);
   std::vector<InputSignal> signals;
   Model model;

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/identify/statistics.hpp"
 
 namespace sinew::identify {
 
@@ -70,9 +71,8 @@ class ArmParameters {
 
   ArmStart start(const VectorX& p, std::size_t record) const {
     const Eigen::Index n = model_.arm->coordinates(), at = start_of(record);
-    return {p.segment(at, n), settings_.start == RecordStart::moving
-                                  ? VectorX(p.segment(at + n, n))
-                                  : VectorX(VectorX::Zero(n))};
+    return {p.segment(at, n), settings_.start == RecordStart::moving ? VectorX(p.segment(at + n, n))
+                                                                     : VectorX(VectorX::Zero(n))};
   }
 
   /// By the arm's parameters and a record's own, which come behind them.
@@ -283,8 +283,7 @@ std::vector<RecordFit> validate_arm(const ArmModel& model, std::span<const Motio
   std::vector<RecordFit> result;
   for (const MotionRecord& record : records) {
     const ArmStart start = first_pose(*model.arm, record);
-    RecordFit& fit =
-        result.emplace_back(judge(record, predict_motion(model, record, start, step)));
+    RecordFit& fit = result.emplace_back(judge(record, predict_motion(model, record, start, step)));
     fit.start = start;
     fit.start_summed_error = fit.summed_error;
   }

@@ -34,11 +34,11 @@ struct ArmFitSettings {
 struct RecordFit {
   std::string name;
   ArmStart start;
-  MatrixX predicted;               ///< (samples, 3 segments) m
-  double nrmse = 0.0;              ///< over all ends and axes that move
-  double mean_error = 0.0;         ///< m, mean distance of an end that was seen wholly or in part
-  double summed_error = 0.0;       ///< m, sum of these over samples and segments
-  double start_summed_error = 0.0; ///< m, of the parameters before the fit
+  MatrixX predicted;                ///< (samples, 3 segments) m
+  double nrmse = 0.0;               ///< over all ends and axes that move
+  double mean_error = 0.0;          ///< m, mean distance of an end that was seen wholly or in part
+  double summed_error = 0.0;        ///< m, sum of these over samples and segments
+  double start_summed_error = 0.0;  ///< m, of the parameters before the fit
 };
 
 struct ArmFit {
@@ -49,14 +49,14 @@ struct ArmFit {
   std::vector<RecordFit> records;  ///< as given
 };
 
-/// Fits N masses, the first coordinate's stiffness k_1 and damping b (those of the others keep their
-/// ratios to it), and with actuators a coefficient c each and one delay: 2N + 2 parameters where the
-/// first segment has no actuator, N + 2 of a passive arm (Marchese, Tedrake & Rus, Int. J. Robotics
-/// Research 35, 2016). The start of each record is fitted as well. The arm's own parameters are
-/// where the search starts; derivatives are exact.
-/// When motion alone is observed and volumes drive it, masses, stiffness, damping and coefficients
-/// may all be multiplied by one number: ParameterFit::directions tells so, and one of them must be
-/// fixed. Torques that are known leave no such freedom.
+/// Fits N masses, the first coordinate's stiffness k_1 and damping b (those of the others keep
+/// their ratios to it), and with actuators a coefficient c each and one delay: 2N + 2 parameters
+/// where the first segment has no actuator, N + 2 of a passive arm (Marchese, Tedrake & Rus, Int.
+/// J. Robotics Research 35, 2016). The start of each record is fitted as well. The arm's own
+/// parameters are where the search starts; derivatives are exact. When motion alone is observed and
+/// volumes drive it, masses, stiffness, damping and coefficients may all be multiplied by one
+/// number: ParameterFit::directions tells so, and one of them must be fixed. Torques that are known
+/// leave no such freedom.
 /// @param model where to start. @param records to fit to; their inputs are volumes with actuators,
 /// torques without. @param settings bounds and search.
 /// Throws Error: empty-list (no records), wrong-length (segments or inputs), unknown-name (fixed),

@@ -97,8 +97,8 @@ MatrixX predict_motion(const ArmModel& model, const MotionRecord& record, const 
   const Eigen::Index parameters = map != nullptr ? map->delay.size() : 0;
   Drive drive(model, record);
   const double begin = record.time[0], duration = record.time[record.samples() - 1] - begin;
-  const auto steps = static_cast<Eigen::Index>(
-      std::max(1.0, std::ceil(duration / settings.time_step - 1e-9)));
+  const auto steps =
+      static_cast<Eigen::Index>(std::max(1.0, std::ceil(duration / settings.time_step - 1e-9)));
   pcc::ArmStepSettings even = settings;
   even.time_step = duration / static_cast<double>(steps);
   pcc::ArmSimulation simulation(model.arm, even);
@@ -137,9 +137,9 @@ MatrixX predict_motion(const ArmModel& model, const MotionRecord& record, const 
       result.row(sample) = Eigen::Map<const Eigen::RowVectorXd>(ends.data(), wide);
       if (map == nullptr) continue;
       jacobian->middleRows(sample * wide, wide).noalias() =
-          equations.endpoint_jacobian(q) *
-          hermite.mix<MatrixX>(position_before, rate_before, sensitivity.position(),
-                               sensitivity.rate());
+          equations.endpoint_jacobian(q) * hermite.mix<MatrixX>(position_before, rate_before,
+                                                                sensitivity.position(),
+                                                                sensitivity.rate());
     }
   }
   return result;
@@ -161,11 +161,11 @@ ArmStart first_pose(const pcc::Arm& arm, const MotionRecord& record) {
   const double damping = 1e-6 * arm.length() * arm.length();
   for (int iteration = 0; iteration < 50; ++iteration) {
     const Points ends = equations.endpoints(q);
-    const VectorX error = weight.asDiagonal() *
-                          (seen - Eigen::Map<const VectorX>(ends.data(), wide));
+    const VectorX error =
+        weight.asDiagonal() * (seen - Eigen::Map<const VectorX>(ends.data(), wide));
     const MatrixX& jacobian = equations.endpoint_jacobian(q);
-    const MatrixX normal = jacobian.transpose() * weight.asDiagonal() * jacobian +
-                           damping * MatrixX::Identity(n, n);
+    const MatrixX normal =
+        jacobian.transpose() * weight.asDiagonal() * jacobian + damping * MatrixX::Identity(n, n);
     VectorX move = normal.ldlt().solve(jacobian.transpose() * error - damping * q);
     move *= std::min(1.0, 1.0 / std::max(1e-300, move.cwiseAbs().maxCoeff()));
     q += move;

@@ -38,8 +38,8 @@ struct ArmStart {
   VectorX position, rate;  ///< (coordinates,) rad and rad/s
 };
 
-/// Ends of all segments at the record's times, (samples, 3 segments) m: even implicit steps from its
-/// first time on, cubic Hermite interpolation of angles and their derivatives in between.
+/// Ends of all segments at the record's times, (samples, 3 segments) m: even implicit steps from
+/// its first time on, cubic Hermite interpolation of angles and their derivatives in between.
 /// @param model what moves. @param record times and inputs. @param start at the first time.
 /// @param settings of the steps; the time step is shortened to divide the record evenly.
 /// @param map what to differentiate by, or null.

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/identify/statistics.hpp"
 
 namespace sinew::identify {
 
@@ -53,8 +54,8 @@ void check(std::span<const DriveRecord> records, int least) {
 }
 
 /// (rows, columns) of all records side by side. @param from sample of the first row.
-void put_hankel(const VectorX& signal, Index from, Index rows, Index columns, Index at, Index column,
-                MatrixX& result) {
+void put_hankel(const VectorX& signal, Index from, Index rows, Index columns, Index at,
+                Index column, MatrixX& result) {
   for (Index j = 0; j < columns; ++j) {
     result.block(at, column + j, rows, 1) = signal.segment(from + j, rows);
   }
@@ -70,8 +71,7 @@ void check_excitation(std::span<const DriveRecord> records) {
       products.noalias() += part * part.transpose();
     }
   }
-  const Eigen::SelfAdjointEigenSolver<decltype(products)> solver(products,
-                                                                 Eigen::EigenvaluesOnly);
+  const Eigen::SelfAdjointEigenSolver<decltype(products)> solver(products, Eigen::EigenvaluesOnly);
   if (solver.eigenvalues()[0] > 1e-13 * solver.eigenvalues()[kRows - 1]) return;
   refuse(ErrorKind::out_of_range, records[0].name, "the input does not excite the cylinder",
          "give a signal of three frequencies or more, fast enough for the sample time");
@@ -85,23 +85,23 @@ DriveCylinder observe(std::span<const DriveRecord> records, Index rows) {
   Index column = 0;
   for (const DriveRecord& record : records) {
     const Index own = record.input.size() - 2 * rows + 1;
-    put_hankel(record.input, rows, rows, own, 0, column, data);         // future inputs
-    put_hankel(record.input, 0, rows, own, rows, column, data);         // past inputs
-    put_hankel(record.output, 0, rows, own, 2 * rows, column, data);    // past outputs
-    put_hankel(record.output, rows, rows, own, 3 * rows, column, data); // future outputs
+    put_hankel(record.input, rows, rows, own, 0, column, data);          // future inputs
+    put_hankel(record.input, 0, rows, own, rows, column, data);          // past inputs
+    put_hankel(record.output, 0, rows, own, 2 * rows, column, data);     // past outputs
+    put_hankel(record.output, rows, rows, own, 3 * rows, column, data);  // future outputs
     column += own;
   }
   const Eigen::HouseholderQR<MatrixX> decomposed(data.transpose());
   const MatrixX lower =
       decomposed.matrixQR().topRows(4 * rows).triangularView<Eigen::Upper>().transpose();
-  const Eigen::BDCSVD<MatrixX> svd(lower.block(3 * rows, rows, rows, 2 * rows), Eigen::ComputeThinU);
+  const Eigen::BDCSVD<MatrixX> svd(lower.block(3 * rows, rows, rows, 2 * rows),
+                                   Eigen::ComputeThinU);
   const MatrixX observability =
       svd.matrixU().leftCols(kOrder) * svd.singularValues().head(kOrder).cwiseSqrt().asDiagonal();
   DriveCylinder result;
   result.c = observability.row(0);
-  result.a = observability.topRows(rows - 1)
-                 .colPivHouseholderQr()
-                 .solve(observability.bottomRows(rows - 1));
+  result.a = observability.topRows(rows - 1).colPivHouseholderQr().solve(
+      observability.bottomRows(rows - 1));
   // Noise may put a slow pole outside the unit circle: as far inside as it is out.
   const double radius = result.spectral_radius();
   if (radius >= 1.0) result.a /= radius * radius * (1.0 + 1e-6);
@@ -135,8 +135,8 @@ void solve_inputs(std::span<const DriveRecord> records, bool feedthrough, DriveC
   const VectorX found = matrix.colPivHouseholderQr().solve(right);
   cylinder.b = found.head<2>();
   cylinder.d = feedthrough ? found[kOrder] : 0.0;
-  starts = Eigen::Map<const MatrixX>(found.data() + fixed, kOrder,
-                                     static_cast<Index>(records.size()));
+  starts =
+      Eigen::Map<const MatrixX>(found.data() + fixed, kOrder, static_cast<Index>(records.size()));
 }
 
 DriveCylinder observer_form(const VectorX& p, double sample_time) {
@@ -150,8 +150,9 @@ DriveCylinder observer_form(const VectorX& p, double sample_time) {
 }
 
 /// The output and its derivatives by a1, a2, b1, b2, d and the start.
-void simulate(const DriveCylinder& cylinder, const DriveRecord& record, const Eigen::Vector2d& start,
-              Index row, Index own, VectorX& prediction, MatrixX* jacobian) {
+void simulate(const DriveCylinder& cylinder, const DriveRecord& record,
+              const Eigen::Vector2d& start, Index row, Index own, VectorX& prediction,
+              MatrixX* jacobian) {
   Eigen::Vector2d x = start;
   Eigen::Matrix<double, 2, 7> s = Eigen::Matrix<double, 2, 7>::Zero();
   s.rightCols<2>().setIdentity();
@@ -175,7 +176,8 @@ void simulate(const DriveCylinder& cylinder, const DriveRecord& record, const Ei
 
 }  // namespace
 
-CylinderFit fit_cylinder(std::span<const DriveRecord> records, const CylinderFitSettings& settings) {
+CylinderFit fit_cylinder(std::span<const DriveRecord> records,
+                         const CylinderFitSettings& settings) {
   const Index rows = settings.block_rows;
   if (rows <= kOrder || rows > 200) {
     refuse(ErrorKind::out_of_range, "block_rows", fmt::format("there are {} block rows", rows),
@@ -200,11 +202,12 @@ CylinderFit fit_cylinder(std::span<const DriveRecord> records, const CylinderFit
     reach = std::max(reach, record.output.cwiseAbs().maxCoeff());
   }
   const auto parameter = [](std::string name, double start, double scale, bool fixed = false) {
-    return Parameter{.name = std::move(name), .start = start, .unit = "", .fixed = fixed, .scale = scale};
+    return Parameter{
+        .name = std::move(name), .start = start, .unit = "", .fixed = fixed, .scale = scale};
   };
-  std::vector<Parameter> parameters = {
-      parameter("a1", a1, 1.0), parameter("a2", a2, 1.0), parameter("b1", b1, size),
-      parameter("b2", b2, size), parameter("d", found.d, size, !settings.feedthrough)};
+  std::vector<Parameter> parameters = {parameter("a1", a1, 1.0), parameter("a2", a2, 1.0),
+                                       parameter("b1", b1, size), parameter("b2", b2, size),
+                                       parameter("d", found.d, size, !settings.feedthrough)};
   Model model;
   for (std::size_t k = 0; k < records.size(); ++k) {
     const Eigen::Vector2d x = starts.col(static_cast<Index>(k));

@@ -13,14 +13,14 @@
 namespace sinew::identify {
 
 struct CylinderFitSettings {
-  int block_rows = 10;  ///< of the subspace method, more than the two states
+  int block_rows = 10;       ///< of the subspace method, more than the two states
   bool feedthrough = false;  ///< fit D; else it is zero
   ParameterFitSettings search;
 };
 
 struct CylinderTrial {
   std::string name;
-  VectorX predicted;   ///< (samples,)
+  VectorX predicted;  ///< (samples,)
   Eigen::Vector2d start = Eigen::Vector2d::Zero();
   double nrmse = 0.0;  ///< |y - y_predicted| / |y - mean y|
 };

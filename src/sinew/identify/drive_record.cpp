@@ -48,12 +48,10 @@ DriveRecord parse_drive_record(std::string_view bytes, const std::string& name) 
   DriveRecord record;
   record.name = std::filesystem::path(name).stem().string();
   const std::string& heading = table.names[static_cast<std::size_t>(input)];
-  record.input = table.values.col(input) *
-                 column_unit(heading, dimension::kVolume).value_or(1.0);
+  record.input = table.values.col(input) * column_unit(heading, dimension::kVolume).value_or(1.0);
   record.output =
       table.values.col(output) * unit_of(table, output, dimension::kVolume, "volume [ml]");
-  const VectorX times =
-      table.values.col(time) * unit_of(table, time, dimension::kTime, "time [s]");
+  const VectorX times = table.values.col(time) * unit_of(table, time, dimension::kTime, "time [s]");
   const Eigen::Index n = times.size();
   if (n < 3) {
     throw Error(ErrorKind::too_few_points, table.place, fmt::format("the table has {} rows", n),

@@ -59,10 +59,10 @@ struct Columns {
 
 void take_input(const Table& table, std::vector<Source>& inputs, int number, Source source) {
   if (number < 0 || number > 1000) {
-    throw Error(ErrorKind::wrong_columns, table.place,
-                fmt::format("'{}' has no number", table.names[static_cast<std::size_t>(
-                                                      source.column)]),
-                "number inputs from 0, as volume_0 [ml]");
+    throw Error(
+        ErrorKind::wrong_columns, table.place,
+        fmt::format("'{}' has no number", table.names[static_cast<std::size_t>(source.column)]),
+        "number inputs from 0, as volume_0 [ml]");
   }
   inputs.resize(std::max(inputs.size(), static_cast<std::size_t>(number) + 1));
   inputs[static_cast<std::size_t>(number)] = source;
@@ -157,14 +157,15 @@ void check(const MotionRecord& record) {
   require(record.time.allFinite(), ErrorKind::not_finite, "a time is not finite",
           "leave out rows without a time");
   require(record.input.size() == 0 || record.input.allFinite(), ErrorKind::not_finite,
-          "an input is not finite", "inputs must be known throughout; only positions may be missing");
-  require(!record.position.array().isInf().any(), ErrorKind::not_finite,
-          "a position is infinite", "write nan for what was not seen");
+          "an input is not finite",
+          "inputs must be known throughout; only positions may be missing");
+  require(!record.position.array().isInf().any(), ErrorKind::not_finite, "a position is infinite",
+          "write nan for what was not seen");
   for (Eigen::Index i = 1; i < n; ++i) {
-    require(record.time[i] > record.time[i - 1], ErrorKind::non_monotonic_time,
-            fmt::format("row {}: {:g} s comes after {:g} s", i + 1, record.time[i],
-                        record.time[i - 1]),
-            "sort the rows and leave out repeated times");
+    require(
+        record.time[i] > record.time[i - 1], ErrorKind::non_monotonic_time,
+        fmt::format("row {}: {:g} s comes after {:g} s", i + 1, record.time[i], record.time[i - 1]),
+        "sort the rows and leave out repeated times");
   }
   require(record.seen() > 0, ErrorKind::out_of_range, "no position was seen",
           "give positions in at least one row");
@@ -249,8 +250,7 @@ InputSignal::Value InputSignal::at(Eigen::Index input, double time) const {
   const Eigen::Index n = time_.size();
   if (time < time_[0]) return {value_(0, input), 0.0};
   if (time >= time_[n - 1]) return {value_(n - 1, input), 0.0};
-  const Eigen::Index i =
-      std::upper_bound(time_.data(), time_.data() + n, time) - time_.data() - 1;
+  const Eigen::Index i = std::upper_bound(time_.data(), time_.data() + n, time) - time_.data() - 1;
   const double h = time_[i + 1] - time_[i], s = (time - time_[i]) / h;
   const double a = value_(i, input), b = value_(i + 1, input);
   const double da = h * slope_(i, input), db = h * slope_(i + 1, input);

@@ -25,8 +25,8 @@ struct MotionRecord {
 void check(const MotionRecord& record);
 
 /// Reads a table whose header names its columns with their units, numbered from 0 as segments are:
-/// "time [s]", "x_0 [mm]", "y_0 [mm]", "z_0 [mm]", ..., "volume_0 [ml]" or "torque_0 [N m]". Axes that
-/// were not measured are left out, and markers that were not seen are empty cells or nan.
+/// "time [s]", "x_0 [mm]", "y_0 [mm]", "z_0 [mm]", ..., "volume_0 [ml]" or "torque_0 [N m]". Axes
+/// that were not measured are left out, and markers that were not seen are empty cells or nan.
 /// @param path the table. @param segments of the arm; columns beyond are an error.
 /// Throws what read_csv() and check() do, and wrong-columns (no time, no unit, volumes beside
 /// torques, a gap in their numbers).

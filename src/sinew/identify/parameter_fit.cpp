@@ -4,7 +4,6 @@
 #include <cmath>
 #include <exception>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 #include <Eigen/SVD>
@@ -13,6 +12,7 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/core/random.hpp"
+#include "sinew/identify/statistics.hpp"
 
 namespace sinew::identify {
 
@@ -21,8 +21,6 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// A singular value that is rounding, of the largest.
 constexpr double kVanishing = 1e-7;
-/// A part in a direction that counts.
-constexpr double kPart = 1e-3;
 
 [[noreturn]] void refuse(ErrorKind kind, const std::string& item, std::string message,
                          std::string remedy) {
@@ -239,14 +237,14 @@ Attempt solve(Problem& problem, const VectorX& start, const ParameterFitSettings
         slope += problem.jacobian(i, k) * (problem.prediction[i] - problem.measured[i]);
       }
       const Parameter& p = problem.parameter(k);
-      const bool pushed = at_bound(p, problem.base[k], problem.scale[k]) &&
-                          (p.upper - problem.base[k] < problem.base[k] - p.lower ? slope < 0.0
-                                                                                 : slope > 0.0);
+      const bool pushed =
+          at_bound(p, problem.base[k], problem.scale[k]) &&
+          (p.upper - problem.base[k] < problem.base[k] - p.lower ? slope < 0.0 : slope > 0.0);
       if (!pushed) moving.push_back(k);
     }
-    const bool settled = summary.termination_type == ceres::CONVERGENCE &&
-                         (moving == problem.moving ||
-                          before - attempt.cost <= settings.tolerance * attempt.cost);
+    const bool settled =
+        summary.termination_type == ceres::CONVERGENCE &&
+        (moving == problem.moving || before - attempt.cost <= settings.tolerance * attempt.cost);
     if (settled || moving.empty()) {
       attempt.converged = true;
       return attempt;
@@ -298,16 +296,15 @@ void judge(const Problem& problem, const ParameterFitSettings& settings, Paramet
   for (Eigen::Index i = 0; i < columns; ++i) {
     Direction& direction = fit.directions.emplace_back();
     direction.singular_value = svd.singularValues()[i];
-    direction.relative_error = direction.singular_value > 0.0
-                                   ? fit.noise / direction.singular_value
-                                   : kInfinity;
+    direction.relative_error =
+        direction.singular_value > 0.0 ? fit.noise / direction.singular_value : kInfinity;
     direction.undetermined = direction.singular_value <= kVanishing * svd.singularValues()[0] ||
                              direction.relative_error > 1.0;
     direction.weights = VectorX::Zero(fit.values.size());
     for (Eigen::Index j = 0; j < columns; ++j) {
       const Eigen::Index k = inner[static_cast<std::size_t>(j)];
       direction.weights[k] = svd.matrixV()(j, i);
-      if (direction.undetermined && std::abs(svd.matrixV()(j, i)) > kPart) {
+      if (direction.undetermined && std::abs(svd.matrixV()(j, i)) > kPartOfDirection) {
         fit.parameters[static_cast<std::size_t>(k)].determined = false;
       }
     }
@@ -315,8 +312,7 @@ void judge(const Problem& problem, const ParameterFitSettings& settings, Paramet
     const VectorX part = direction.relative_error * unit.cwiseProduct(svd.matrixV().col(i));
     covariance.noalias() += part * part.transpose();
   }
-  const double quantile =
-      student_quantile(0.5 + 0.5 * settings.confidence, fit.degrees_of_freedom);
+  const double quantile = student_quantile(0.5 + 0.5 * settings.confidence, fit.degrees_of_freedom);
   for (Eigen::Index j = 0; j < columns; ++j) {
     const Eigen::Index own = inner[static_cast<std::size_t>(j)];
     FittedParameter& p = fit.parameters[static_cast<std::size_t>(own)];
@@ -331,117 +327,10 @@ void judge(const Problem& problem, const ParameterFitSettings& settings, Paramet
   }
 }
 
-double normal_quantile(double probability) {
-  // Newton's method on the distribution function, which is convex on either side of zero.
-  double z = 0.0;
-  for (int i = 0; i < 60; ++i) {
-    const double error = 0.5 * std::erfc(-z / std::numbers::sqrt2) - probability;
-    const double density = std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::numbers::pi);
-    z -= std::clamp(error / density, -1.0, 1.0);
-  }
-  return z;
-}
-
 }  // namespace
 
-std::string fit_table(const ParameterFit& fit, Eigen::Index count) {
-  const auto shown = count < 0 ? fit.parameters.size() : static_cast<std::size_t>(count);
-  std::string text = fmt::format("{:<20} {:>12} {:>12} {:>27}  {}\n", "parameter", "value",
-                                 "std. error", "interval", "unit");
-  for (std::size_t k = 0; k < shown; ++k) {
-    const FittedParameter& p = fit.parameters[k];
-    text += fmt::format("{:<20} {:>12.6g} ", p.name, p.value);
-    if (p.fixed || p.at_bound || !p.determined) {
-      const char* why = p.fixed ? "known" : p.at_bound ? "at its bound" : "not determined";
-      text += fmt::format("{:>12} {:>27}", "", why);
-    } else {
-      text += fmt::format("{:>12.3g} {:>27}", p.standard_error,
-                          fmt::format("{:.6g} to {:.6g}", p.interval_lower, p.interval_upper));
-    }
-    text += fmt::format("  {}\n", p.unit);
-  }
-  for (const Direction& direction : fit.directions) {
-    if (!direction.undetermined) continue;
-    text += "not determined by the data: ";
-    bool first = true;
-    for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
-      const double weight = direction.weights[static_cast<Eigen::Index>(k)];
-      if (std::abs(weight) <= kPart) continue;
-      text += fmt::format("{}{:.3g} {}", first ? "" : ", ", weight, fit.parameters[k].name);
-      first = false;
-    }
-    text += " together (relative changes); fix one of them\n";
-  }
-  text += fmt::format("noise {:.4g}, {} degrees of freedom, {} after {} iterations\n", fit.noise,
-                      fit.degrees_of_freedom, fit.converged ? "converged" : "not converged",
-                      fit.iterations);
-  return text;
-}
-
-double student_quantile(double probability, int degrees_of_freedom) {
-  const double n = degrees_of_freedom;
-  if (degrees_of_freedom == 1) return std::tan(std::numbers::pi * (probability - 0.5));
-  if (degrees_of_freedom == 2) {
-    const double a = 2.0 * probability - 1.0;
-    return a * std::sqrt(2.0 / (1.0 - a * a));
-  }
-  // Abramowitz & Stegun 1964, eq. 26.7.5.
-  const double z = normal_quantile(probability), z2 = z * z;
-  const double g1 = z * (z2 + 1.0) / 4.0;
-  const double g2 = z * ((5.0 * z2 + 16.0) * z2 + 3.0) / 96.0;
-  const double g3 = z * (((3.0 * z2 + 19.0) * z2 + 17.0) * z2 - 15.0) / 384.0;
-  const double g4 =
-      z * ((((79.0 * z2 + 776.0) * z2 + 1482.0) * z2 - 1920.0) * z2 - 945.0) / 92160.0;
-  return z + (g1 + (g2 + (g3 + g4 / n) / n) / n) / n;
-}
-
-double nrmse(const MatrixX& predicted, const MatrixX& measured) {
-  if (predicted.rows() != measured.rows() || predicted.cols() != measured.cols()) {
-    refuse(ErrorKind::wrong_length, "nrmse",
-           fmt::format("({}, {}) predicted, ({}, {}) measured", predicted.rows(), predicted.cols(),
-                       measured.rows(), measured.cols()),
-           "give the same shape");
-  }
-  double error = 0.0, spread = 0.0;
-  for (Eigen::Index c = 0; c < measured.cols(); ++c) {
-    double sum = 0.0;
-    int count = 0;
-    for (Eigen::Index r = 0; r < measured.rows(); ++r) {
-      if (std::isnan(measured(r, c))) continue;
-      sum += measured(r, c);
-      ++count;
-    }
-    for (Eigen::Index r = 0; r < measured.rows(); ++r) {
-      if (std::isnan(measured(r, c))) continue;
-      error += std::pow(predicted(r, c) - measured(r, c), 2);
-      spread += std::pow(measured(r, c) - sum / count, 2);
-    }
-  }
-  if (!(spread > 0.0)) {
-    refuse(ErrorKind::out_of_range, "nrmse", "what was measured does not vary",
-           "an error cannot be normalised by it");
-  }
-  return std::sqrt(error / spread);
-}
-
-int ParameterFit::undetermined() const {
-  return static_cast<int>(std::ranges::count_if(directions, &Direction::undetermined));
-}
-
-const FittedParameter& ParameterFit::parameter(const std::string& name) const {
-  const auto found = std::ranges::find(parameters, name, &FittedParameter::name);
-  if (found != parameters.end()) return *found;
-  std::vector<std::string> names;
-  for (const FittedParameter& p : parameters) names.push_back(p.name);
-  const std::string near = nearest_word(name, names);
-  throw Error(ErrorKind::unknown_name, {.item = name}, "there is no such parameter",
-              near.empty() ? fmt::format("the names are {}", fmt::join(names, ", "))
-                           : fmt::format("did you mean '{}'?", near));
-}
-
-Model with_differences(Eigen::Index observations,
-                       std::function<VectorX(const VectorX&)> predict, VectorX scales,
-                       double step) {
+Model with_differences(Eigen::Index observations, std::function<VectorX(const VectorX&)> predict,
+                       VectorX scales, double step) {
   const auto checked = [predict = std::move(predict), observations](const VectorX& parameters) {
     VectorX result = predict(parameters);
     if (result.size() != observations) {
@@ -477,10 +366,10 @@ ParameterFit fit_parameters(const Model& model, const VectorX& measured,
   check(model, measured, parameters, settings);
   Problem problem(model, measured, parameters);
   if (problem.seen.size() < problem.free.size()) {
-    refuse(ErrorKind::too_few_points, "measured",
-           fmt::format("{} measurements for {} parameters", problem.seen.size(),
-                       problem.free.size()),
-           "measure more, or fix some of the parameters");
+    refuse(
+        ErrorKind::too_few_points, "measured",
+        fmt::format("{} measurements for {} parameters", problem.seen.size(), problem.free.size()),
+        "measure more, or fix some of the parameters");
   }
   ParameterFit fit;
   fit.start_cost = problem.evaluate(problem.starts(), false) ? problem.cost() : kInfinity;

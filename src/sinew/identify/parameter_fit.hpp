@@ -34,11 +34,10 @@ struct Model {
 
 /// A model without derivatives: central differences of `step` times each parameter's scale.
 /// @param observations how many. @param predict parameters -> (observations,).
-/// @param scales (parameters,) typical sizes; 0 for those fixed. @param step relative; truncation goes with its
-/// square, the run's rounding and iteration errors with its inverse.
-Model with_differences(Eigen::Index observations,
-                       std::function<VectorX(const VectorX&)> predict, VectorX scales,
-                       double step = 1e-5);
+/// @param scales (parameters,) typical sizes; 0 for those fixed. @param step relative; truncation
+/// goes with its square, the run's rounding and iteration errors with its inverse.
+Model with_differences(Eigen::Index observations, std::function<VectorX(const VectorX&)> predict,
+                       VectorX scales, double step = 1e-5);
 
 struct ParameterFitSettings {
   int starts = 1;  ///< the first as given, others at random between the bounds
@@ -53,10 +52,10 @@ struct FittedParameter {
   double value = 0.0;
   double lower = 0.0, upper = 0.0;  ///< its bounds
   bool fixed = false;
-  bool at_bound = false;  ///< the bound decides it; it has no interval
-  double standard_error = 0.0;                         ///< infinite where undetermined; 0 if fixed
-  double interval_lower = 0.0, interval_upper = 0.0;   ///< of the confidence asked for
-  bool determined = true;                              ///< no undetermined direction has a part in it
+  bool at_bound = false;                              ///< the bound decides it; it has no interval
+  double standard_error = 0.0;                        ///< infinite where undetermined; 0 if fixed
+  double interval_lower = 0.0, interval_upper = 0.0;  ///< of the confidence asked for
+  bool determined = true;  ///< no undetermined direction has a part in it
 };
 
 /// A combination of parameters that changes the prediction least: relative changes of those that
@@ -68,16 +67,19 @@ struct Direction {
   VectorX weights;              ///< (parameters,) of length 1; 0 for those fixed or at bounds
 };
 
+/// A weight in a direction that counts.
+inline constexpr double kPartOfDirection = 1e-3;
+
 struct ParameterFit {
   std::vector<FittedParameter> parameters;
   VectorX values;                     ///< (parameters,)
   std::vector<Direction> directions;  ///< from the best determined to the worst
   MatrixX covariance;  ///< (parameters, parameters); 0 for those fixed, at bounds or undetermined
-  VectorX prediction;                 ///< (observations,)
-  VectorX residual;                   ///< prediction - measured; NaN where nothing was measured
-  double start_cost = 0.0;            ///< sum of squares at the given start
-  double cost = 0.0;                  ///< sum of squared residuals
-  double noise = 0.0;                 ///< standard deviation of the residuals
+  VectorX prediction;  ///< (observations,)
+  VectorX residual;    ///< prediction - measured; NaN where nothing was measured
+  double start_cost = 0.0;  ///< sum of squares at the given start
+  double cost = 0.0;        ///< sum of squared residuals
+  double noise = 0.0;       ///< standard deviation of the residuals
   int degrees_of_freedom = 0;
   std::vector<double> costs;  ///< of each start; infinite for those that failed
   int best_start = 0, iterations = 0;
@@ -89,11 +91,11 @@ struct ParameterFit {
 };
 
 /// Minimises |prediction - measured|^2 within bounds: trust region (Ceres). Intervals are those of
-/// the linearised problem with Student's t, value -+ t s sqrt((J^T J)^-1_ii) (Seber & Wild, Nonlinear
-/// Regression, 1989, sec. 5.1): they hold for independent noise of one size and a model that is
-/// right. Parameters at bounds are left out of it. Directions come from the singular values of the
-/// scaled Jacobian at the solution; where one is undetermined, the solution along it is where the
-/// start or a bound left it, and parameters with a part in it have no interval.
+/// the linearised problem with Student's t, value -+ t s sqrt((J^T J)^-1_ii) (Seber & Wild,
+/// Nonlinear Regression, 1989, sec. 5.1): they hold for independent noise of one size and a model
+/// that is right. Parameters at bounds are left out of it. Directions come from the singular values
+/// of the scaled Jacobian at the solution; where one is undetermined, the solution along it is
+/// where the start or a bound left it, and parameters with a part in it have no interval.
 /// @param model what predicts. @param measured (observations,); NaN: nothing measured there.
 /// @param parameters at least one that is not fixed. @param settings how.
 /// Throws Error: empty-list, wrong-length, contradictory-limits, out-of-range, not-finite,
@@ -106,15 +108,5 @@ ParameterFit fit_parameters(const Model& model, const VectorX& measured,
 /// A table of the parameters with their intervals, and of what is not determined.
 /// @param fit to tell of. @param count parameters, from the first; -1: all.
 std::string fit_table(const ParameterFit& fit, Eigen::Index count = -1);
-
-/// Quantile of Student's t. @param probability between 0 and 1. @param degrees_of_freedom 1 or
-/// more.
-double student_quantile(double probability, int degrees_of_freedom);
-
-/// Normalised root mean square error |predicted - measured| / |measured - mean|, over all columns
-/// and all entries that were measured (not NaN); each column has its own mean.
-/// Throws Error(wrong-length | out-of-range when the measured do not vary).
-/// @param predicted,measured (samples, columns).
-double nrmse(const MatrixX& predicted, const MatrixX& measured);
 
 }  // namespace sinew::identify

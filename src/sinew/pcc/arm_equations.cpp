@@ -277,9 +277,8 @@ const MatrixX& ArmEquations::endpoint_jacobian(const VectorX& q) {
   for (int s = 0; s < w.arm->segments(); ++s) {
     w.plain.jacobian({s, 1.0, 0.0, 0.0}, w.columns);
     for (std::size_t k = 0; k < w.n; ++k) {
-      w.ends.block<3, 1>(3 * s, static_cast<Eigen::Index>(k))
-          << w.columns[k].x,
-          w.columns[k].y, w.columns[k].z;
+      w.ends.block<3, 1>(3 * s, static_cast<Eigen::Index>(k)) << w.columns[k].x, w.columns[k].y,
+          w.columns[k].z;
     }
   }
   return w.ends;

@@ -70,7 +70,7 @@ void ArmSimulation::step(const VectorX& torque) {
     last_.linear = &linear;
     residual_ = linear.residual - drive_;
     last_.matrix = linear.by_position + weights.velocity.motion * linear.by_rate +
-              weights.acceleration.motion * linear.by_acceleration;
+                   weights.acceleration.motion * linear.by_acceleration;
     // The largest torque at work: what rounding and the tolerance are measured against.
     const double scale = drive_.cwiseAbs().maxCoeff() +
                          (arm().stiffness().cwiseProduct(q_)).cwiseAbs().maxCoeff() +

@@ -32,7 +32,7 @@ struct DriveCylinder {
 
   /// Throws Error: out-of-range (sample time, an unstable A), contradictory-limits, not-finite.
   void check() const;
-  double gain() const;           ///< y over u at rest
+  double gain() const;             ///< y over u at rest
   double spectral_radius() const;  ///< of A
   /// Volumes (samples,) of commands (samples,), from state zero or `start`. Commands are cut at
   /// their limits; volumes beyond theirs are held there, the state going on.
