@@ -66,7 +66,7 @@ def main():
     guess = arm(MASSES * [0.75, 1.0, 1.25, 0.8], 0.092, 2.1e-3)
     start = [pcc.FluidicActuator(2.8e12, delay=0.02)] * 3
     free = identify.fit_arm(guess, [fitted], actuators=start)
-    print(f"Nothing weighed: {free.fit.undetermined} direction is not determined by motion.")
+    print(f"Nothing weighed: {free.undetermined} direction is not determined by motion.")
     found = identify.fit_arm(guess, [fitted], actuators=start, fixed=["mass_1"])
     print(f"Segment 1 weighed:\n{found}")
     record = found.records[0]

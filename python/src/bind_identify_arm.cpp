@@ -188,6 +188,9 @@ time_step : float
           "actuators", [](const ArmFit& self) { return self.model.actuators; },
           "list of FluidicActuator.")
       .def_readonly("records", &ArmFit::records, "list of RecordFit: as given.")
+      .def_property_readonly("undetermined", &ArmFit::undetermined,
+                             "int: directions of the arm's parameters that the data do not "
+                             "determine.")
       .def("__str__", [](const ArmFit& self) { return fit_table(self.fit, self.own); });
   module.def(
       "fit_arm", &python_fit_arm, py::arg("arm"), py::arg("records"), py::kw_only(),

@@ -28,7 +28,7 @@ def test_a_passive_arm_is_found(tmp_path):
     found = identify.fit_arm(guess, records, fixed=["mass_1"], mass_spread=0.9, stiffness_spread=0.5,
                              damping=(1e-4, 2e-2))
     fit = found.fit
-    assert fit.converged and fit.undetermined == 0 and not fit.at_bounds
+    assert fit.converged and found.undetermined == 0 and not fit.at_bounds
     for name, truth in {"mass_0": 0.19, "mass_3": 0.09, "stiffness": 0.108, "damping": 4.2e-3}.items():
         low, high = fit.intervals[name]
         assert low - (high - low) < truth < high + (high - low)
@@ -46,7 +46,7 @@ def test_a_passive_arm_is_found(tmp_path):
 
 def test_scale_is_reported():
     found = identify.fit_arm(arm(), [record(arm(), "a")])
-    assert found.fit.undetermined == 1
+    assert found.undetermined == 1
     weights = found.fit.directions[-1]["weights"]
     own = np.array([weights[name] for name in ("mass_0", "stiffness", "damping")])
     np.testing.assert_allclose(own, own[0], rtol=1e-4)

@@ -100,7 +100,7 @@ TEST(ArmFit, RecoversAPassiveArmAndPredictsOtherRecords) {
   const ArmModel truth{make(fluidic()), {}};
   const ArmFit fit = fit_arm(guess(truth), two_releases(truth, 1), wide({"mass_1"}));
   EXPECT_TRUE(fit.fit.converged);
-  EXPECT_EQ(fit.fit.undetermined(), 0);
+  EXPECT_EQ(fit.undetermined(), 0);
   EXPECT_EQ(fit.own, 6);  // N + 2
   const auto values = true_values(truth);
   for (std::size_t k = 0; k < values.size(); ++k) {
@@ -153,7 +153,7 @@ TEST(ArmFit, ScaleIsReportedWhereMotionAloneIsSeen) {
   const ArmModel truth{make(fluidic()), {}};
   const auto records = two_releases(truth, 3);
   const ArmFit free = fit_arm(guess(truth), records, wide({}));
-  ASSERT_EQ(free.fit.undetermined(), 1);
+  ASSERT_EQ(free.undetermined(), 1);
   const Direction& scale = free.fit.directions.back();
   EXPECT_LT(scale.singular_value, 1e-9 * free.fit.directions.front().singular_value);
   // Masses, stiffness and damping grow by one factor.
@@ -163,7 +163,7 @@ TEST(ArmFit, ScaleIsReportedWhereMotionAloneIsSeen) {
   }
   // It costs nothing: the same motion is met as well.
   const ArmFit fixed = fit_arm(guess(truth), records, wide({"mass_1"}));
-  EXPECT_EQ(fixed.fit.undetermined(), 0);
+  EXPECT_EQ(fixed.undetermined(), 0);
   EXPECT_NEAR(free.fit.cost, fixed.fit.cost, 1e-6 * fixed.fit.cost);
 }
 
@@ -172,7 +172,7 @@ TEST(ArmFit, ActuatedArmHasTwoNAndTwoParameters) {
   const std::vector<MotionRecord> records = {driven(truth, 1, "a"), driven(truth, 2, "b")};
   const ArmFit fit = fit_arm(guess(truth), records, wide({"mass_1"}));
   EXPECT_EQ(fit.own, 10);  // 2 N + 2
-  EXPECT_EQ(fit.fit.undetermined(), 0);
+  EXPECT_EQ(fit.undetermined(), 0);
   const auto values = true_values(truth);
   for (std::size_t k = 0; k < values.size(); ++k) {
     const FittedParameter& p = fit.fit.parameters[k];
@@ -183,7 +183,7 @@ TEST(ArmFit, ActuatedArmHasTwoNAndTwoParameters) {
   EXPECT_LT(validate_arm(fit.model, others, {.time_step = 5e-3})[0].nrmse, 0.05);
   // The scale runs through the coefficients as well, and not through the delay.
   const ArmFit free = fit_arm(guess(truth), records, wide({}));
-  ASSERT_EQ(free.fit.undetermined(), 1);
+  ASSERT_EQ(free.undetermined(), 1);
   const VectorX& weights = free.fit.directions.back().weights;
   for (Eigen::Index k = 0; k < 9; ++k) EXPECT_NEAR(std::abs(weights[k]), 1.0 / 3.0, 1e-5);
   EXPECT_NEAR(weights[9], 0.0, 1e-6);
@@ -195,7 +195,7 @@ TEST(ArmFit, KnownTorquesLeaveNoScale) {
   truth.actuators.clear();
   const std::vector<MotionRecord> records = {driven(truth, 1, "a", true)};
   const ArmFit fit = fit_arm(guess(truth), records, wide({}));
-  EXPECT_EQ(fit.fit.undetermined(), 0);
+  EXPECT_EQ(fit.undetermined(), 0);
   const auto values = true_values(truth);
   for (std::size_t k = 0; k < values.size(); ++k) {
     const FittedParameter& p = fit.fit.parameters[k];

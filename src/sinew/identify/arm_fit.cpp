@@ -216,6 +216,13 @@ RecordFit judge(const MotionRecord& record, MatrixX predicted) {
 
 }  // namespace
 
+int ArmFit::undetermined() const {
+  return static_cast<int>(std::ranges::count_if(fit.directions, [&](const Direction& direction) {
+    return direction.undetermined &&
+           direction.weights.head(own).cwiseAbs().maxCoeff() > kPartOfDirection;
+  }));
+}
+
 ArmFit fit_arm(const ArmModel& model, std::span<const MotionRecord> records,
                const ArmFitSettings& settings) {
   check(model, records);

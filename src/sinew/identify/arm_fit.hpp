@@ -47,6 +47,11 @@ struct ArmFit {
   Eigen::Index own = 0;  ///< parameters of the arm, before those of the records
   ArmModel model;
   std::vector<RecordFit> records;  ///< as given
+
+  /// Directions that are not determined and have a part in the arm's own parameters. Fast motion of
+  /// a record's start dies within a frame where masses are lumped, and where a first marker was not
+  /// seen its direction is lost; that harms no other parameter.
+  int undetermined() const;
 };
 
 /// Fits N masses, the first coordinate's stiffness k_1 and damping b (those of the others keep

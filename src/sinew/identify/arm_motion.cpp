@@ -46,7 +46,7 @@ class Drive {
     return torque_;
   }
 
-  /// Takes B dtau/dp off. @param map of the parameters.
+  /// Takes B dtau/dp off.
   void subtract_derivative(double time, const ArmParameterMap& map, MatrixX& result) const {
     if (passive_ || model_.actuators.empty()) return;
     for (Eigen::Index i = 0; i < torque_.size(); ++i) {

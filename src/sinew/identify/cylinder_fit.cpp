@@ -53,7 +53,7 @@ void check(std::span<const DriveRecord> records, int least) {
   }
 }
 
-/// (rows, columns) of all records side by side. @param from sample of the first row.
+/// (rows, columns) of all records side by side. `from`: sample of the first row.
 void put_hankel(const VectorX& signal, Index from, Index rows, Index columns, Index at,
                 Index column, MatrixX& result) {
   for (Index j = 0; j < columns; ++j) {
@@ -109,7 +109,7 @@ DriveCylinder observe(std::span<const DriveRecord> records, Index rows) {
   return result;
 }
 
-/// B, D and the records' starts, in which the output is linear. @param starts (2, records).
+/// B, D and the records' starts, in which the output is linear. starts: (2, records).
 void solve_inputs(std::span<const DriveRecord> records, bool feedthrough, DriveCylinder& cylinder,
                   MatrixX& starts) {
   const Index fixed = kOrder + (feedthrough ? 1 : 0);

@@ -41,7 +41,8 @@ std::string fit_table(const ParameterFit& fit, Eigen::Index count) {
     text += fmt::format("  {}\n", p.unit);
   }
   for (const Direction& direction : fit.directions) {
-    if (!direction.undetermined) continue;
+    const auto part = direction.weights.head(static_cast<Eigen::Index>(shown)).cwiseAbs();
+    if (!direction.undetermined || part.maxCoeff() <= kPartOfDirection) continue;
     text += "not determined by the data: ";
     bool first = true;
     for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
