@@ -19,11 +19,15 @@ from ._core import (
     BendingActuator,
     BendingModulus,
     BendingMotion,
+    DriveCylinder,
+    Excitation,
+    FluidicActuator,
     beam_stiffness,
     channel_stiffness,
     published_arm,
     published_modulus,
     published_torque_limits,
+    second_order_cylinder,
 )
 from .bending_fit import BendingFit, TipErrors, TipRecord, fit_modulus, read_tip_record, tip_errors
 
@@ -33,6 +37,9 @@ __all__ = [
     "BendingFit",
     "BendingModulus",
     "BendingMotion",
+    "DriveCylinder",
+    "Excitation",
+    "FluidicActuator",
     "TipErrors",
     "TipRecord",
     "beam_stiffness",
@@ -42,9 +49,10 @@ __all__ = [
     "published_modulus",
     "published_torque_limits",
     "read_tip_record",
+    "second_order_cylinder",
     "tip_errors",
 ]
 
-for _class in (Arm, BendingActuator, BendingModulus, BendingMotion):
+for _class in (Arm, BendingActuator, BendingModulus, BendingMotion, DriveCylinder, Excitation, FluidicActuator):
     _class.__module__ = "sinew.pcc"
 del _class

@@ -130,6 +130,24 @@ MatrixX to_matrix(const py::handle& value, const std::string& place, const std::
   return Eigen::Map<const RowMajor>(array.data(), array.shape(0), array.shape(1));
 }
 
+MatrixX to_gappy_matrix(const py::handle& value, const std::string& place,
+                        const std::string& wanted) {
+  const py::array any = py::array::ensure(value);
+  if (!any) PyErr_Clear();
+  const char kind = any ? any.dtype().kind() : 'O';
+  if (kind != 'f' && kind != 'i' && kind != 'u') {
+    throw Error(ErrorKind::wrong_type, {.item = place},
+                fmt::format("a value of type {} holds no real numbers", type_name(value)),
+                fmt::format("give an array of shape {}", wanted));
+  }
+  const Array array = Array::ensure(any);
+  if (!array) throw py::error_already_set();
+  if (array.ndim() != 1 && array.ndim() != 2) wrong_shape(array, place, wanted);
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  return Eigen::Map<const RowMajor>(array.data(), array.shape(0),
+                                    array.ndim() == 2 ? array.shape(1) : 1);
+}
+
 Array copy(const Vector3& vector) { return Array(3, vector.data()); }
 Array copy(const VectorX& vector) { return Array(vector.size(), vector.data()); }
 Array copy(const Points& points) { return Array({points.rows(), Eigen::Index{3}}, points.data()); }

@@ -49,6 +49,12 @@ VectorX to_vector(const py::handle& value, const std::string& place, Eigen::Inde
 /// @param wanted describes shape and unit: "(steps, inputs) N m".
 MatrixX to_matrix(const py::handle& value, const std::string& place, const std::string& wanted);
 
+/// (rows,) or (rows, columns) with nan where nothing was measured; a vector is one column.
+/// Throws Error(wrong-type | wrong-shape).
+/// @param value,place,wanted see to_matrix().
+MatrixX to_gappy_matrix(const py::handle& value, const std::string& place,
+                        const std::string& wanted);
+
 /// Copies.
 Array copy(const Vector3& vector);
 Array copy(const VectorX& vector);

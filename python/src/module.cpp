@@ -35,7 +35,12 @@ PYBIND11_MODULE(_core, module) {
   python::bind_pcc(module);
   python::bind_bending(module);
   python::bind_bending_fit(module);
+  python::bind_drive(module);
 #ifdef SINEW_HAS_PLAN
   python::bind_plan(module);
+#endif
+#ifdef SINEW_HAS_IDENTIFY
+  python::bind_identify(module);
+  python::bind_identify_arm(module);
 #endif
 }

@@ -13,7 +13,8 @@ import sinew
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = sorted((ROOT / "examples" / "python").glob("*.py")) + [
-    ROOT / "examples" / "bending_actuator" / "simulate.py"
+    ROOT / "examples" / "bending_actuator" / "simulate.py",
+    ROOT / "examples" / "fluidic_arm" / "identify.py",
 ]
 SCENES = sorted((ROOT / "examples").rglob("*.yaml"))
 

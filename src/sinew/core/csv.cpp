@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -182,6 +183,7 @@ class TableReader {
     if (kind == CellKind::number && (std::isfinite(value) || settings_.allow_non_finite))
       return value;
     if (cell.empty()) {
+      if (settings_.allow_empty) return std::numeric_limits<double>::quiet_NaN();
       fail(ErrorKind::malformed_table, column_of(cell), "the cell is empty",
            "write a number, or leave the separator out");
     }

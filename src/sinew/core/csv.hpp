@@ -21,6 +21,7 @@ struct CsvSettings {
   int columns = 0;  ///< exact number of columns; 0: any, the same in every row
   std::size_t max_bytes = std::size_t{256} << 20;  ///< larger files are refused before reading
   bool allow_non_finite = false;                   ///< accept nan and inf as cells
+  bool allow_empty = false;                        ///< accept empty cells, as nan
 };
 
 /// Numbers in rows, with the header's names if there was a header.

@@ -138,6 +138,29 @@ void ArmDynamics<T>::inverse_dynamics(std::span<T> torque) {
 }
 
 template <typename T>
+void ArmDynamics<T>::mass_regressor(std::span<T> torque) {
+  const std::size_t n = q_.size();
+  std::fill(torque.begin(), torque.end(), T(0.0));
+  for (std::size_t p = 0; p < bodies_.size(); ++p) {
+    const Particle& of = arm_->particles()[p];
+    if (of.mass == 0.0) continue;
+    const Body& body = bodies_[p];
+    const Vec3<T> pull =
+        (of.mass / arm_->settings().segments[at(of.segment)].mass) * body.acceleration;
+    T* column = torque.data() + n * at(of.segment);
+    for (int k = 0; k <= of.segment; ++k) {
+      const Frame& frame = frames_[at(k)];
+      const Vec3<T> moment = cross(body.position - frame.end, pull);
+      for (int i = 0; i < arm_->settings().segments[at(k)].coordinates(); ++i) {
+        column[at(arm_->first(k) + i)] +=
+            k == of.segment ? dot(body.gradient[at(i)], pull)
+                            : dot(frame.gradient[at(i)], pull) + dot(frame.turn[at(i)], moment);
+      }
+    }
+  }
+}
+
+template <typename T>
 void ArmDynamics<T>::mass_matrix(std::span<T> mass) {
   const auto n = at(arm_->coordinates());
   std::fill(mass.begin(), mass.end(), T(0.0));

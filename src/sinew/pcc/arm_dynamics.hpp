@@ -39,6 +39,9 @@ class ArmDynamics {
 
   /// H q'' + C q' + G + b q' (coordinates,): what B tau must be.
   void inverse_dynamics(std::span<T> torque);
+  /// What inverse_dynamics() is linear in the segments' masses by: (coordinates, segments) column
+  /// by column, N m/kg.
+  void mass_regressor(std::span<T> torque);
   /// H (coordinates^2,), row by row.
   void mass_matrix(std::span<T> mass);
 

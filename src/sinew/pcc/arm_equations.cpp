@@ -38,6 +38,9 @@ struct ArmEquations::Work {
     const Eigen::Index size = arm->coordinates();
     zero = bias = acceleration = VectorX::Zero(size);
     mass = coriolis = MatrixX::Zero(size, size);
+    regressor = MatrixX::Zero(size, arm->segments());
+    ends = MatrixX::Zero(3 * arm->segments(), size);
+    columns.resize(n);
     decomposed = Eigen::LLT<MatrixX>(size);
     linear.residual = VectorX::Zero(size);
     linear.by_position = linear.by_rate = linear.by_acceleration = MatrixX::Zero(size, size);
@@ -47,7 +50,8 @@ struct ArmEquations::Work {
   ArmDynamics<double> plain;
   std::size_t n;
   VectorX zero, bias, acceleration;
-  MatrixX mass, coriolis, curvature;
+  MatrixX mass, coriolis, curvature, regressor, ends;
+  std::vector<Vec3<double>> columns;
   Eigen::LLT<MatrixX> decomposed;
   Linearisation linear;
   ForwardDerivatives forward;
@@ -72,6 +76,14 @@ const VectorX& ArmEquations::residual(const VectorX& q, const VectorX& rate,
   w.plain.set(view(q), view(rate), view(acceleration));
   w.plain.inverse_dynamics({w.bias.data(), w.n});
   return w.bias;
+}
+
+const MatrixX& ArmEquations::mass_regressor(const VectorX& q, const VectorX& rate,
+                                            const VectorX& acceleration) {
+  Work& w = *work_;
+  w.plain.set(view(q), view(rate), view(acceleration));
+  w.plain.mass_regressor({w.regressor.data(), static_cast<std::size_t>(w.regressor.size())});
+  return w.regressor;
 }
 
 const MatrixX& ArmEquations::mass_matrix(const VectorX& q) {
@@ -257,6 +269,19 @@ Points ArmEquations::endpoints(const VectorX& q) {
     result.row(n) << x.x, x.y, x.z;
   }
   return result;
+}
+
+const MatrixX& ArmEquations::endpoint_jacobian(const VectorX& q) {
+  Work& w = *work_;
+  w.plain.set(view(q), view(w.zero), view(w.zero));
+  for (int s = 0; s < w.arm->segments(); ++s) {
+    w.plain.jacobian({s, 1.0, 0.0, 0.0}, w.columns);
+    for (std::size_t k = 0; k < w.n; ++k) {
+      w.ends.block<3, 1>(3 * s, static_cast<Eigen::Index>(k)) << w.columns[k].x, w.columns[k].y,
+          w.columns[k].z;
+    }
+  }
+  return w.ends;
 }
 
 ArmEquations::Energy ArmEquations::energy(const VectorX& q, const VectorX& rate) {

@@ -26,6 +26,8 @@ class ArmEquations {
   const VectorX& acceleration(const VectorX& q, const VectorX& rate, const VectorX& torque);
   /// r (coordinates,) N m.
   const VectorX& residual(const VectorX& q, const VectorX& rate, const VectorX& acceleration);
+  /// dr/d(masses), (coordinates, segments) N m/kg: r is linear in them.
+  const MatrixX& mass_regressor(const VectorX& q, const VectorX& rate, const VectorX& acceleration);
   /// H (coordinates, coordinates), kg m^2.
   const MatrixX& mass_matrix(const VectorX& q);
   /// C (coordinates, coordinates) of Christoffel's symbols, so that H' - 2C is skew.
@@ -53,6 +55,8 @@ class ArmEquations {
 
   /// Positions (segments, 3) m of the segments' ends.
   Points endpoints(const VectorX& q);
+  /// Of these by q: (3 segments, coordinates), x y z of one end after the other.
+  const MatrixX& endpoint_jacobian(const VectorX& q);
   struct Energy {
     double kinetic = 0.0, strain = 0.0, gravity = 0.0;  ///< J
     double total() const { return kinetic + strain + gravity; }

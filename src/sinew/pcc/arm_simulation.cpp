@@ -36,7 +36,8 @@ ArmSimulation::ArmSimulation(std::shared_ptr<const Arm> arm, const ArmStepSettin
                 "choose backward-euler, bdf2 or generalized-alpha, or ask for its equilibrium");
   }
   motion_ = start_ = new_rate_ = acceleration_ = residual_ = drive_ = VectorX::Zero(n);
-  matrix_ = MatrixX::Zero(n, n);
+  last_.matrix = MatrixX::Zero(n, n);
+  new_acceleration_ = VectorX::Zero(n);
   decomposed_ = Eigen::PartialPivLU<MatrixX>(n);
   set_state(VectorX::Zero(n), VectorX::Zero(n));
 }
@@ -51,8 +52,9 @@ void ArmSimulation::set_state(const VectorX& q, const VectorX& rate, double time
 }
 
 void ArmSimulation::step(const VectorX& torque) {
-  const auto weights = mechanics::step_weights(settings_.integrator, settings_.time_step,
-                                               step_before_, settings_.spectral_radius);
+  last_.weights = mechanics::step_weights(settings_.integrator, settings_.time_step, step_before_,
+                                          settings_.spectral_radius);
+  const mechanics::StepWeights& weights = last_.weights;
   const auto combine = [&](const mechanics::Combination& c, VectorX& result) {
     result = c.motion * motion_ + c.velocity * rate_ + c.first * first_ + c.second * second_;
   };
@@ -63,22 +65,23 @@ void ArmSimulation::step(const VectorX& torque) {
   for (iterations_ = 0;;) {
     q_ = start_ + motion_;
     combine(weights.velocity, new_rate_);
-    combine(weights.acceleration, acceleration_);
-    const auto& linear = equations_.linearise(q_, new_rate_, acceleration_);
+    combine(weights.acceleration, new_acceleration_);
+    const auto& linear = equations_.linearise(q_, new_rate_, new_acceleration_);
+    last_.linear = &linear;
     residual_ = linear.residual - drive_;
-    matrix_ = linear.by_position + weights.velocity.motion * linear.by_rate +
-              weights.acceleration.motion * linear.by_acceleration;
+    last_.matrix = linear.by_position + weights.velocity.motion * linear.by_rate +
+                   weights.acceleration.motion * linear.by_acceleration;
     // The largest torque at work: what rounding and the tolerance are measured against.
     const double scale = drive_.cwiseAbs().maxCoeff() +
                          (arm().stiffness().cwiseProduct(q_)).cwiseAbs().maxCoeff() +
-                         (linear.by_acceleration * acceleration_).cwiseAbs().maxCoeff() +
+                         (linear.by_acceleration * new_acceleration_).cwiseAbs().maxCoeff() +
                          1e-6 * arm().stiffness().maxCoeff();
     const double left = residual_.cwiseAbs().maxCoeff();
     const bool first = iterations_ == 0;
     // Positions are rounded, and the matrix, with H / h^2 in it, makes torques of that.
     const double rounding =
         kRounding *
-        (matrix_.cwiseAbs() * (q_.cwiseAbs() + VectorX::Constant(q_.size(), 1e-3))).maxCoeff();
+        (last_.matrix.cwiseAbs() * (q_.cwiseAbs() + VectorX::Constant(q_.size(), 1e-3))).maxCoeff();
     if (!first && left <= settings_.tolerance * scale + rounding) break;
     if (!std::isfinite(left) || iterations_ == settings_.max_iterations) {
       q_ = start_;
@@ -87,7 +90,7 @@ void ArmSimulation::step(const VectorX& torque) {
                               left, iterations_, time_ + settings_.time_step),
                   "make the time step smaller, or the damping larger");
     }
-    decomposed_.compute(matrix_);
+    decomposed_.compute(last_.matrix);
     motion_ -= decomposed_.solve(residual_);
     ++iterations_;
   }

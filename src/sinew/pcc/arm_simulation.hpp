@@ -34,6 +34,15 @@ class ArmSimulation {
   const VectorX& position() const { return q_; }  ///< (coordinates,) rad; e: m
   const VectorX& rate() const { return rate_; }   ///< (coordinates,) rad/s
   int iterations() const { return iterations_; }  ///< of Newton's method in the last step
+  const VectorX& acceleration() const { return new_acceleration_; }  ///< after a step, rad/s^2
+
+  /// What derivatives of the last step need, at its end.
+  struct LastStep {
+    mechanics::StepWeights weights;
+    MatrixX matrix;  ///< of the residual by the motion: dr/dq + dr/dq' dq'/dd + H dq''/dd
+    const ArmEquations::Linearisation* linear = nullptr;  ///< until the equations are used again
+  };
+  const LastStep& last_step() const { return last_; }
   /// A new start. @param q,rate (coordinates,).
   void set_state(const VectorX& q, const VectorX& rate, double time = 0.0);
 
@@ -48,7 +57,8 @@ class ArmSimulation {
   int iterations_ = 0;
   VectorX q_, rate_, first_, second_;
   VectorX motion_, start_, new_rate_, acceleration_, residual_, drive_;
-  MatrixX matrix_;
+  VectorX new_acceleration_;
+  LastStep last_;
   Eigen::PartialPivLU<MatrixX> decomposed_;
 };
 

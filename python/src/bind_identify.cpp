@@ -1,0 +1,331 @@
+// Identification: parameters of any simulation, drive cylinders and actuators.
+#include <fmt/format.h>
+
+#include "sinew/identify/actuator_fit.hpp"
+#include "sinew/identify/cylinder_fit.hpp"
+#include "sinew/identify/parameter_fit.hpp"
+#include "sinew/identify/statistics.hpp"
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+
+namespace sinew::python {
+
+namespace {
+
+using namespace identify;
+
+Parameter to_parameter(const std::string& name, const py::handle& value) {
+  Parameter parameter{.name = name};
+  const std::string place = fmt::format("fit(parameters[{}])", name);
+  if (!py::isinstance<py::sequence>(value) && !py::isinstance<py::array>(value)) {
+    parameter.start = to_number(value, place, "");
+    return parameter;
+  }
+  const std::vector<double> bounds = py::cast<std::vector<double>>(value);
+  if (bounds.size() != 3) {
+    throw Error(ErrorKind::wrong_shape, {.item = place},
+                fmt::format("it has {} numbers", bounds.size()), "give (start, lower, upper)");
+  }
+  parameter.start = bounds[0];
+  parameter.lower = bounds[1];
+  parameter.upper = bounds[2];
+  return parameter;
+}
+
+ParameterFit fit(const py::function& predict, const py::object& measured, const py::dict& given,
+                 const std::vector<std::string>& fixed, int starts, std::uint64_t seed,
+                 double confidence, double step, int max_iterations) {
+  std::vector<Parameter> parameters;
+  for (const auto& [key, value] : given) {
+    parameters.push_back(to_parameter(py::cast<std::string>(key), value));
+  }
+  for (const std::string& name : fixed) {
+    const auto found = std::ranges::find(parameters, name, &Parameter::name);
+    if (found == parameters.end()) {
+      throw Error(ErrorKind::unknown_name, {.item = name}, "there is no such parameter to fix",
+                  "name one of the parameters");
+    }
+    found->fixed = true;
+  }
+  const auto flat = [](const MatrixX& matrix) {
+    const MatrixX by_row = matrix.transpose();
+    return VectorX(Eigen::Map<const VectorX>(by_row.data(), by_row.size()));
+  };
+  const VectorX data = flat(to_gappy_matrix(measured, "fit(measured)", "(n,) or (n, m)"));
+  VectorX scales(static_cast<Eigen::Index>(parameters.size()));
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    const Parameter& p = parameters[k];
+    const double range = p.upper - p.lower;
+    scales[static_cast<Eigen::Index>(k)] = p.fixed                ? 0.0
+                                           : p.start != 0.0       ? std::abs(p.start)
+                                           : std::isfinite(range) ? range
+                                                                  : 1.0;
+  }
+  const auto call = [&](const VectorX& p) {
+    py::dict values;
+    for (std::size_t k = 0; k < parameters.size(); ++k) {
+      values[parameters[k].name.c_str()] = p[static_cast<Eigen::Index>(k)];
+    }
+    try {
+      return flat(to_gappy_matrix(predict(values), "fit(predict)", "that of measured"));
+    } catch (py::error_already_set& error) {
+      // A run that failed is sinew.RunError in Python: these parameters are rejected.
+      const py::object run_error = py::module_::import("sinew.errors").attr("RunError");
+      if (!error.matches(run_error)) throw;
+      throw Error(ErrorKind::diverged, {.item = "fit(predict)"}, "the run failed");
+    }
+  };
+  const ParameterFitSettings settings{
+      .starts = starts, .seed = seed, .confidence = confidence, .max_iterations = max_iterations};
+  return fit_parameters(with_differences(data.size(), call, scales, step), data, parameters,
+                        settings);
+}
+
+template <typename Get>
+py::dict by_name(const ParameterFit& fit, const Get& get) {
+  py::dict result;
+  for (const FittedParameter& p : fit.parameters) result[p.name.c_str()] = get(p);
+  return result;
+}
+
+py::list directions(const ParameterFit& fit) {
+  py::list result;
+  for (const Direction& direction : fit.directions) {
+    py::dict entry, weights;
+    for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
+      weights[fit.parameters[k].name.c_str()] = direction.weights[static_cast<Eigen::Index>(k)];
+    }
+    entry["singular_value"] = direction.singular_value;
+    entry["relative_error"] = direction.relative_error;
+    entry["undetermined"] = direction.undetermined;
+    entry["weights"] = weights;
+    result.append(entry);
+  }
+  return result;
+}
+
+std::vector<DriveRecord> to_records(const py::iterable& records) {
+  std::vector<DriveRecord> result;
+  for (const py::handle& item : records) {
+    const auto triple = py::cast<py::tuple>(item);
+    if (triple.size() != 3) {
+      throw Error(ErrorKind::wrong_shape, {.item = "records"},
+                  fmt::format("a record has {} parts", triple.size()),
+                  "give (input, output, sample_time)");
+    }
+    DriveRecord& record = result.emplace_back();
+    record.name = fmt::format("record {}", result.size() - 1);
+    const auto put = [&](std::size_t part, const char* place) {
+      const auto list = to_list(triple[part], place, "");
+      return VectorX(
+          Eigen::Map<const VectorX>(list.data(), static_cast<Eigen::Index>(list.size())));
+    };
+    record.input = put(0, "records(input)");
+    record.output = put(1, "records(output)");
+    record.sample_time = to_number(triple[2], "records(sample_time)", "s");
+  }
+  return result;
+}
+
+py::list trial_list(const std::vector<CylinderTrial>& trials) {
+  py::list result;
+  for (const CylinderTrial& trial : trials) {
+    py::dict entry;
+    entry["nrmse"] = trial.nrmse;
+    entry["predicted"] = copy(trial.predicted);
+    entry["start"] = copy(VectorX(trial.start));
+    result.append(entry);
+  }
+  return result;
+}
+
+py::tuple python_fit_cylinder(const py::iterable& records, int block_rows, bool feedthrough) {
+  const CylinderFit found =
+      fit_cylinder(to_records(records), {.block_rows = block_rows, .feedthrough = feedthrough});
+  return py::make_tuple(found.cylinder, found.fit, trial_list(found.trials));
+}
+
+py::tuple python_fit_actuator(const py::object& time, const py::object& volume,
+                              const py::object& torque, bool linear, double longest_delay) {
+  ActuatorRecord record;
+  record.name = "record";
+  record.time = to_gappy_matrix(time, "fit_actuator(time)", "(n,) s");
+  record.volume = to_gappy_matrix(volume, "fit_actuator(volume)", "(n,) m^3");
+  record.torque = to_gappy_matrix(torque, "fit_actuator(torque)", "(n,) N m");
+  const ActuatorFit found =
+      fit_actuator(std::vector<ActuatorRecord>{record}, linear, longest_delay);
+  return py::make_tuple(found.actuator, found.fit);
+}
+
+}  // namespace
+
+void bind_identify(py::module_& module) {
+  py::class_<ParameterFit>(module, "ParameterFit",
+                           "Parameters found by least squares, and what the data say about them.")
+      .def_property_readonly(
+          "values",
+          [](const ParameterFit& self) {
+            return by_name(self, [](const FittedParameter& p) { return p.value; });
+          },
+          "dict: parameters by name.")
+      .def_property_readonly(
+          "standard_errors",
+          [](const ParameterFit& self) {
+            return by_name(self, [](const FittedParameter& p) { return p.standard_error; });
+          },
+          "dict: by name; inf where the data do not determine it, 0 where fixed.")
+      .def_property_readonly(
+          "intervals",
+          [](const ParameterFit& self) {
+            return by_name(self, [](const FittedParameter& p) {
+              return py::make_tuple(p.interval_lower, p.interval_upper);
+            });
+          },
+          "dict of tuple: confidence intervals by name.")
+      .def_property_readonly(
+          "at_bounds",
+          [](const ParameterFit& self) {
+            py::list names;
+            for (const FittedParameter& p : self.parameters) {
+              if (p.at_bound) names.append(p.name);
+            }
+            return names;
+          },
+          "list of str: parameters that a bound decides.")
+      .def_property_readonly("directions", &directions,
+                             "list of dict: combinations of parameters from the best determined to "
+                             "the worst: 'singular_value', 'relative_error', 'undetermined', "
+                             "'weights' by name.")
+      .def_property_readonly("undetermined", &ParameterFit::undetermined,
+                             "int: directions that the data do not determine.")
+      .def_property_readonly(
+          "covariance", [](const ParameterFit& self) { return copy(self.covariance); },
+          "(parameters, parameters); 0 for those without an interval.")
+      .def_property_readonly(
+          "prediction", [](const ParameterFit& self) { return copy(self.prediction); },
+          "(observations,), row by row of what was measured.")
+      .def_property_readonly(
+          "residual", [](const ParameterFit& self) { return copy(self.residual); },
+          "(observations,): prediction - measured; nan where nothing was measured.")
+      .def_readonly("cost", &ParameterFit::cost, "float: sum of squared residuals.")
+      .def_readonly("start_cost", &ParameterFit::start_cost, "float: the same at the start.")
+      .def_readonly("costs", &ParameterFit::costs,
+                    "list of float: of each start; inf if it failed.")
+      .def_readonly("noise", &ParameterFit::noise, "float: standard deviation of the residuals.")
+      .def_readonly("degrees_of_freedom", &ParameterFit::degrees_of_freedom, "int.")
+      .def_readonly("iterations", &ParameterFit::iterations, "int: of the best start.")
+      .def_readonly("converged", &ParameterFit::converged, "bool.")
+      .def("__str__", [](const ParameterFit& self) { return fit_table(self); });
+
+  module.def(
+      "fit", &fit, py::arg("predict"), py::arg("measured"), py::arg("parameters"), py::kw_only(),
+      py::arg("fixed") = std::vector<std::string>{}, py::arg("starts") = 1, py::arg("seed") = 1,
+      py::arg("confidence") = 0.95, py::arg("step") = 1e-5, py::arg("max_iterations") = 100,
+      R"(fit(predict, measured, parameters, *, fixed=(), starts=1, seed=1, confidence=0.95, step=1e-5, max_iterations=100)
+--
+
+Named parameters of any simulation by bounded least squares; derivatives by central differences.
+
+Parameters
+----------
+predict : callable
+    Takes a dict of parameters by name, gives an array of the shape of `measured`. A
+    sinew.RunError in it rejects these parameters; any other exception ends the fit.
+measured : (n,) or (n, m)
+    nan where nothing was measured.
+parameters : dict
+    By name: (start, lower, upper), or a start without bounds.
+fixed : list of str
+    Names of parameters that are known.
+starts : int
+    The first as given, others at random between the bounds.
+seed : int
+confidence : float
+    Of the intervals.
+step : float
+    Of the differences, relative to each parameter's start. Larger for noisy simulations.
+max_iterations : int
+
+Returns
+-------
+ParameterFit
+
+Raises
+------
+Error
+    contradictory-limits, out-of-range, wrong-length, too-few-points, not-converged.)");
+  module.def(
+      "nrmse",
+      [](const py::object& predicted, const py::object& measured) {
+        return nrmse(to_gappy_matrix(predicted, "nrmse(predicted)", "(n,) or (n, m)"),
+                     to_gappy_matrix(measured, "nrmse(measured)", "(n,) or (n, m)"));
+      },
+      py::arg("predicted"), py::arg("measured"), R"(nrmse(predicted, measured)
+--
+
+``|predicted - measured| / |measured - mean|`` over what was measured; each column has its mean.)");
+  module.def("fit_cylinder", &python_fit_cylinder, py::arg("records"), py::kw_only(),
+             py::arg("block_rows") = 10, py::arg("feedthrough") = false,
+             R"(fit_cylinder(records, *, block_rows=10, feedthrough=False)
+--
+
+A drive cylinder's two states from records: subspace start, output-error refinement.
+
+Parameters
+----------
+records : list of (input, output, sample_time)
+    (samples,), (samples,) and s.
+block_rows : int
+    Of the subspace method's Hankel matrices.
+feedthrough : bool
+    Fit D as well.
+
+Returns
+-------
+tuple
+    DriveCylinder, ParameterFit, and for each record a dict of 'nrmse', 'predicted' and 'start'.
+
+Raises
+------
+Error
+    too-few-points, out-of-range (an input that does not excite it), wrong-length.)");
+  module.def(
+      "validate_cylinder",
+      [](const pcc::DriveCylinder& cylinder, const py::iterable& records) {
+        return trial_list(validate_cylinder(cylinder, to_records(records)));
+      },
+      py::arg("cylinder"), py::arg("records"), R"(validate_cylinder(cylinder, records)
+--
+
+How a cylinder meets records that it was not fitted to: a dict of 'nrmse', 'predicted' and 'start'
+for each. The start comes from a record's first 20 samples.)");
+  module.def("fit_actuator", &python_fit_actuator, py::arg("time"), py::arg("volume"),
+             py::arg("torque"), py::kw_only(), py::arg("linear") = false,
+             py::arg("longest_delay") = 0.5,
+             R"(fit_actuator(time, volume, torque, *, linear=False, longest_delay=0.5)
+--
+
+c and delay (and a) of ``tau = a V(t - delay) + c V(t - delay)**3``.
+
+Parameters
+----------
+time, volume, torque : (n,) s, m^3, N m
+    Torques may be nan where not measured.
+linear : bool
+    Fit a as well; else it is zero.
+longest_delay : float
+    s.
+
+Returns
+-------
+tuple
+    FluidicActuator and ParameterFit.
+
+Raises
+------
+Error
+    non-monotonic-time, too-few-points, wrong-length.)");
+}
+
+}  // namespace sinew::python
