@@ -70,6 +70,7 @@ class Collocation final : public NonlinearProgram {
   void terminal_hessian(const VectorX& x, double factor, const VectorX& multipliers,
                         const Emit& emit);
 
+  void note_patterns();
   void set_bounds();
   void set_scales();
   /// Of the first interval, of the others.

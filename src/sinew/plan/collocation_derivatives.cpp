@@ -1,0 +1,275 @@
+// Jacobian and Hessian of the program: each entry is met once, to note its place or its value.
+#include <array>
+
+#include "sinew/plan/collocation.hpp"
+#include "sinew/plan/smooth_length.hpp"
+
+namespace sinew::plan {
+
+namespace {
+
+/// Chain rule to second order: J^T H J + sum g_i H_i.
+MatrixX composed(const Vector3& gradient, const Matrix3& hessian, const VectorDerivatives& inner) {
+  MatrixX result = inner.jacobian.transpose() * hessian * inner.jacobian;
+  for (std::size_t i = 0; i < 3; ++i) {
+    result += gradient[static_cast<Eigen::Index>(i)] * inner.hessian[i];
+  }
+  return result;
+}
+
+}  // namespace
+
+template <typename Emit>
+void Collocation::each_jacobian_entry(const VectorX& x, const Emit& emit) {
+  const std::array<Transcription, 2> both = rules(x);
+  const MatrixX& actuation = arm_->actuation();
+  const int blocks = rules_.blocks;
+  const auto column = [&](int k, int block) {
+    return block < blocks ? knot(k) + block * n_ : knot(k + 1) + (block - blocks) * n_;
+  };
+  const double share = 1.0 / grid_.intervals;  // dh/dt_f
+  const auto torque_entries = [&](int first_row, int k, double weight) {
+    if (weight == 0.0) return;
+    for (int i = 0; i < n_; ++i) {
+      for (int u = 0; u < inputs_; ++u) {
+        if (actuation(i, u) != 0.0) {
+          emit(first_row + i, torque_at(k) + u, -weight * actuation(i, u));
+        }
+      }
+    }
+  };
+  for (int k = 0; k < grid_.intervals; ++k) {
+    const Transcription& rules = both[k > 0 ? 1 : 0];
+    const MatrixX knots = pair(x, k);
+    for (int i = 0; i < n_; ++i) {
+      for (int b = 0; b < 2 * blocks; ++b) {
+        if (rules.defect.value(0, b) != 0.0) {
+          emit(row(k) + i, column(k, b) + i, rules.defect.value(0, b));
+        }
+      }
+      if (grid_.free()) {
+        emit(row(k) + i, time_at(), share * knots.row(i).dot(rules.defect.slope.row(0)));
+      }
+    }
+    for (std::size_t s = 0; s < rules.stages.size(); ++s) {
+      const Stage& stage = rules.stages[s];
+      const int first = stage_row(k, static_cast<int>(s));
+      const MatrixX motion = knots * stage.state.value.transpose();
+      const auto& linear = equations_.linearise(motion.col(0), motion.col(1), motion.col(2));
+      const std::array<const MatrixX*, 3> by{&linear.by_position, &linear.by_rate,
+                                             &linear.by_acceleration};
+      for (int b = 0; b < 2 * blocks; ++b) {
+        if (stage.state.value.col(b).isZero(0.0)) continue;
+        MatrixX block = MatrixX::Zero(n_, n_);
+        for (int a = 0; a < 3; ++a) {
+          block += stage.state.value(a, b) * *by[static_cast<std::size_t>(a)];
+        }
+        for (int i = 0; i < n_; ++i) {
+          for (int j = 0; j < n_; ++j) emit(first + i, column(k, b) + j, block(i, j));
+        }
+      }
+      if (grid_.free()) {
+        const MatrixX slope = share * knots * stage.state.slope.transpose();
+        const VectorX total = *by[0] * slope.col(0) + *by[1] * slope.col(1) + *by[2] * slope.col(2);
+        for (int i = 0; i < n_; ++i) emit(first + i, time_at(), total[i]);
+      }
+      torque_entries(first, k, stage.torque[0]);
+      torque_entries(first, k + 1, stage.torque[1]);
+    }
+    if (rate_limited_) {
+      const double per = 1.0 / (share * duration(x));
+      for (int u = 0; u < inputs_; ++u) {
+        emit(rate_row(k) + u, torque_at(k) + u, -per);
+        emit(rate_row(k) + u, torque_at(k + 1) + u, per);
+        if (grid_.free()) {
+          emit(rate_row(k) + u, time_at(),
+               -per / duration(x) * (x[torque_at(k + 1) + u] - x[torque_at(k) + u]));
+        }
+      }
+    }
+    if (task_.obstacles.empty()) continue;
+    const auto& where = points_.positions(state(x, k + 1, 0), backbone_);
+    int at = clearance_row(k);
+    for (const Obstacle& obstacle : task_.obstacles) {
+      for (const VectorDerivatives& point : where) {
+        const VectorX slope = point.jacobian.transpose() * obstacle.gradient(point.value);
+        for (int j = 0; j < n_; ++j) emit(at, knot(k + 1) + j, slope[j]);
+        ++at;
+      }
+    }
+  }
+  const int last = knot(grid_.intervals);
+  const Goal& goal = task_.goal;
+  const auto& tip = tip_position(x);
+  const VectorX distance =
+      tip.jacobian.transpose() * SmoothLength(tip.value - goal.position, goal.tolerance).gradient;
+  for (int j = 0; j < n_; ++j) emit(goal_row(), last + j, distance[j]);
+  if (!speed_limited_) return;
+  const auto& velocity = tip_velocity(x);
+  const VectorX speed =
+      velocity.jacobian.transpose() * SmoothLength(velocity.value, goal.speed_tolerance).gradient;
+  for (int j = 0; j < 2 * n_; ++j) emit(speed_row(), last + j, speed[j]);
+}
+
+void Collocation::jacobian(const VectorX& x, double* values) {
+  each_jacobian_entry(x, [&](int, int, double value) { *values++ = value; });
+}
+
+template <typename Emit>
+void Collocation::effort_hessian(const VectorX& x, double factor, const Emit& emit) {
+  const double effort = factor * task_.objective.effort, h = duration(x) / grid_.intervals;
+  const double own = rules_.linear_torque ? 2.0 / 3.0 : 2.0;
+  for (int k = 0; k < grid_.intervals; ++k) {
+    for (int u = 0; u < inputs_; ++u) {
+      const int before = torque_at(k) + u, after = torque_at(k + 1) + u;
+      emit(after, after, effort * h * own);
+      if (rules_.linear_torque) {
+        emit(before, before, effort * h * own);
+        emit(after, before, effort * h / 3.0);
+      }
+      if (!grid_.free()) continue;
+      const double per = effort / grid_.intervals;
+      if (rules_.linear_torque) {
+        emit(time_at(), before, per / 3.0 * (2.0 * x[before] + x[after]));
+        emit(time_at(), after, per / 3.0 * (x[before] + 2.0 * x[after]));
+      } else {
+        emit(time_at(), after, 2.0 * per * x[after]);
+      }
+    }
+  }
+}
+
+template <typename Emit>
+void Collocation::interval_hessian(const VectorX& x, int k, const VectorX& multipliers,
+                                   const Emit& emit) {
+  // In the interval's own variables: 2 blocks of n, and h.
+  const Transcription rules(grid_.method, duration(x) / grid_.intervals, k == 0);
+  const int blocks = 2 * rules.blocks, size = blocks * n_;
+  const MatrixX knots = pair(x, k);
+  const double share = 1.0 / grid_.intervals;
+  MatrixX sum = MatrixX::Zero(size, size);
+  VectorX cross = VectorX::Zero(size);
+  double by_time = 0.0;
+  for (std::size_t s = 0; s < rules.stages.size(); ++s) {
+    const Weights& weights = rules.stages[s].state;
+    const MatrixX motion = knots * weights.value.transpose();
+    const VectorX weight = multipliers.segment(stage_row(k, static_cast<int>(s)), n_);
+    const MatrixX& curvature =
+        equations_.curvature(weight, motion.col(0), motion.col(1), motion.col(2));
+    for (int a = 0; a < 3; ++a) {
+      for (int c = 0; c < 3; ++c) {
+        const MatrixX part = curvature.block(a * n_, c * n_, n_, n_);
+        for (int i = 0; i < blocks; ++i) {
+          for (int j = 0; j <= i; ++j) {
+            const double scale = weights.value(a, i) * weights.value(c, j);
+            if (scale != 0.0) sum.block(i * n_, j * n_, n_, n_) += scale * part;
+          }
+        }
+      }
+    }
+    if (!grid_.free()) continue;
+    // d/dh of the stage's motion is its slope: K slope, and the gradient by the weights' slopes.
+    const MatrixX slope = knots * weights.slope.transpose();
+    const MatrixX bend = knots * weights.bend.transpose();
+    const VectorX slopes = slope.reshaped(), curved = curvature * slopes;
+    const auto& linear = equations_.linearise(motion.col(0), motion.col(1), motion.col(2));
+    MatrixX gradient(n_, 3);
+    gradient << linear.by_position.transpose() * weight, linear.by_rate.transpose() * weight,
+        linear.by_acceleration.transpose() * weight;
+    for (int i = 0; i < blocks; ++i) {
+      for (int a = 0; a < 3; ++a) {
+        cross.segment(i * n_, n_) += weights.value(a, i) * curved.segment(a * n_, n_) +
+                                     weights.slope(a, i) * gradient.col(a);
+      }
+    }
+    by_time += slopes.dot(curved) + gradient.cwiseProduct(bend).sum();
+  }
+  const auto column = [&](int local) {
+    const int half = size / 2;
+    return local < half ? knot(k) + local : knot(k + 1) + local - half;
+  };
+  for (int i = 0; i < size; ++i) {
+    for (int j = 0; j <= i; ++j) emit(column(i), column(j), sum(i, j));
+  }
+  if (grid_.free()) {
+    const VectorX weight = multipliers.segment(row(k), n_);
+    for (int i = 0; i < blocks; ++i) {
+      cross.segment(i * n_, n_) += rules.defect.slope(0, i) * weight;
+    }
+    by_time += weight.dot(knots * rules.defect.bend.row(0).transpose());
+    for (int i = 0; i < size; ++i) emit(time_at(), column(i), share * cross[i]);
+    emit(time_at(), time_at(), share * share * by_time);
+  }
+  if (rate_limited_ && grid_.free()) {
+    const double t = duration(x), per = grid_.intervals / (t * t);
+    for (int u = 0; u < inputs_; ++u) {
+      const double weight = multipliers[rate_row(k) + u];
+      const int before = torque_at(k) + u, after = torque_at(k + 1) + u;
+      emit(time_at(), before, weight * per);
+      emit(time_at(), after, -weight * per);
+      emit(time_at(), time_at(), 2.0 * weight * per / t * (x[after] - x[before]));
+    }
+  }
+  if (task_.obstacles.empty()) return;
+  const auto& where = points_.positions(state(x, k + 1, 0), backbone_);
+  MatrixX clearances = MatrixX::Zero(n_, n_);
+  int at = clearance_row(k);
+  for (const Obstacle& obstacle : task_.obstacles) {
+    for (const VectorDerivatives& point : where) {
+      clearances += multipliers[at++] *
+                    composed(obstacle.gradient(point.value), obstacle.hessian(point.value), point);
+    }
+  }
+  for (int i = 0; i < n_; ++i) {
+    for (int j = 0; j <= i; ++j) emit(knot(k + 1) + i, knot(k + 1) + j, clearances(i, j));
+  }
+}
+
+template <typename Emit>
+void Collocation::terminal_hessian(const VectorX& x, double factor, const VectorX& multipliers,
+                                   const Emit& emit) {
+  const Goal& goal = task_.goal;
+  MatrixX sum = MatrixX::Zero(2 * n_, 2 * n_);
+  const auto& tip = tip_position(x);
+  const SmoothLength distance(tip.value - goal.position, goal.tolerance);
+  sum.topLeftCorner(n_, n_) =
+      multipliers[goal_row()] * composed(distance.gradient, distance.hessian, tip);
+  if (speed_limited_ || task_.objective.tip_speed > 0.0) {
+    const auto& velocity = tip_velocity(x);
+    if (speed_limited_) {
+      const SmoothLength speed(velocity.value, goal.speed_tolerance);
+      sum += multipliers[speed_row()] * composed(speed.gradient, speed.hessian, velocity);
+    }
+    sum += factor * task_.objective.tip_speed *
+           composed(2.0 * velocity.value, 2.0 * Matrix3::Identity(), velocity);
+  }
+  const int last = knot(grid_.intervals);
+  for (int i = 0; i < 2 * n_; ++i) {
+    for (int j = 0; j <= i; ++j) emit(last + i, last + j, sum(i, j));
+  }
+}
+
+template <typename Emit>
+void Collocation::each_hessian_entry(const VectorX& x, double factor, const VectorX& multipliers,
+                                     const Emit& emit) {
+  effort_hessian(x, factor, emit);
+  for (int k = 0; k < grid_.intervals; ++k) interval_hessian(x, k, multipliers, emit);
+  terminal_hessian(x, factor, multipliers, emit);
+}
+
+void Collocation::hessian(const VectorX& x, double factor, const VectorX& multipliers,
+                          double* values) {
+  each_hessian_entry(x, factor, multipliers, [&](int, int, double value) { *values++ = value; });
+}
+
+void Collocation::note_patterns() {
+  const VectorX x = variable_scale_;
+  each_jacobian_entry(x, [&](int row, int column, double) {
+    jacobian_pattern_.push_back({row, column});
+  });
+  each_hessian_entry(x, 1.0, VectorX::Ones(constraints()), [&](int row, int column, double) {
+    hessian_pattern_.push_back({row, column});
+  });
+}
+
+}  // namespace sinew::plan
