@@ -46,7 +46,8 @@ class Contact : public Constraint {
   std::size_t entry(std::size_t point) const {
     return static_cast<std::size_t>(first_entry_) + 3 * point;
   }
-  /// Exact gap of a point now, m. @param pose of the surface.
+  /// Exact gap of a point now, m. @param placement of the points. @param pose of the surface.
+  /// @param point of points().
   SurfaceDistance distance_now(const Placement& placement, const Eigen::Isometry3d& pose,
                                std::size_t point) const;
 

@@ -41,6 +41,7 @@ class ArmEquations {
   const Linearisation& linearise(const VectorX& q, const VectorX& rate,
                                  const VectorX& acceleration);
   /// Second derivative of weights . r by (q, q', q''), (3n, 3n). @param weights (n,).
+  /// @param q,rate,acceleration (n,) each.
   const MatrixX& curvature(const VectorX& weights, const VectorX& q, const VectorX& rate,
                            const VectorX& acceleration);
 

@@ -43,7 +43,7 @@ class ArmSimulation {
     const ArmEquations::Linearisation* linear = nullptr;  ///< until the equations are used again
   };
   const LastStep& last_step() const { return last_; }
-  /// A new start. @param q,rate (coordinates,).
+  /// A new start. @param q,rate (coordinates,). @param time s.
   void set_state(const VectorX& q, const VectorX& rate, double time = 0.0);
 
   /// Advances one time step. @param torque (inputs,) N m at its end.

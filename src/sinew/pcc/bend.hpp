@@ -38,7 +38,8 @@ class Bend {
     if (segment.bending == Bending::spatial) squared_ += q[1] * q[1];
   }
 
-  /// @param fraction of the arc. @param scale of the position. @param section filled when given.
+  /// @param fraction of the arc. @param scale of the position. @param point filled.
+  /// @param section filled when given.
   void at(double fraction, double scale, BendPoint<T>& point, BendSection<T>* section) const {
     const T s = fraction * fraction * squared_;
     if (segment_.bending == Bending::planar) {

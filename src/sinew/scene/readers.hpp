@@ -24,7 +24,7 @@ struct ReadContext {
 };
 
 BodyDescription read_body(const Node::Entry& entry, const ReadContext& context);
-/// What a body of type pcc is. @param name of the body.
+/// What a body of type pcc is. @param fields of it. @param name of the body.
 pcc::ArmSettings read_arm(const Fields& fields, const std::string& name);
 /// The region that one of the keys box, sphere, plane and set gives.
 FixedRegion read_region(const Fields& fields);

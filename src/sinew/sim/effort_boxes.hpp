@@ -27,7 +27,7 @@ class EffortBoxes {
   std::size_t size() const { return branch_.size(); }
   /// @param range number. @param what its range is.
   EffortBox box(std::size_t range, const ActuatorRange& what) const;
-  /// Whether a range changed its branch. @param what,motion of range `range`.
+  /// Whether a range changed its branch. @param range number. @param what,motion of it.
   bool switch_branch(std::size_t range, const ActuatorRange& what, double motion);
   /// The worst miss of any range, m. @param problem,effort as Law::violation().
   double violation(const LawProblem& problem, std::span<const double> effort) const;
