@@ -96,6 +96,7 @@ void ReplaySource::show() {
   RecordedState recorded;
   for (const auto& body : state_.simulation().model().bodies()) {
     recorded.positions.push_back(file_.positions(body->name(), at_));
+    recorded.coordinates.push_back(file_.coordinates(body->name(), at_));
   }
   for (std::size_t i = 0; i < efforts_.size(); ++i) {
     recorded.efforts.push_back(efforts_[i][static_cast<std::size_t>(at_)]);

@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "sinew/pcc/arm_body.hpp"
+
 namespace sinew::viewer {
 
 namespace {
@@ -214,23 +216,38 @@ void RobotState::set_target(const SetTarget& target) {
   targets_[target.effector] = *target.position;
 }
 
-// The layout is that of sim::Simulation::save_state().
+// The layout is that of sim::Simulation::save_state(): bodies, whose states begin with where they
+// are, efforts of all rows, drives, and two motions an actuator.
 void RobotState::show(const RecordedState& recorded) {
   std::vector<double> state(simulation_->state_size(), 0.0);
-  auto at = state.begin();
-  for (const Points& positions : recorded.positions) {
-    at = std::copy_n(positions.data(), positions.size(), at) + positions.size();
-  }
   const sim::Model& model = simulation_->model();
+  auto at = state.begin();
+  for (std::size_t b = 0; b < recorded.positions.size(); ++b) {
+    const mechanics::Body& body = simulation_->world().body(static_cast<int>(b));
+    const bool arm = dynamic_cast<const pcc::ArmBody*>(&body) != nullptr;
+    const VectorX& angles = recorded.coordinates[b];
+    const Points& nodes = recorded.positions[b];
+    const double* from = arm ? angles.data() : nodes.data();
+    const auto count = static_cast<std::size_t>(arm ? angles.size() : nodes.size());
+    const auto wanted =
+        arm ? static_cast<const pcc::ArmBody&>(body).coordinates().size() : body.positions().size();
+    if (count != static_cast<std::size_t>(wanted)) {
+      throw Error(ErrorKind::malformed_file, {.item = "body '" + body.model().name() + "'"},
+                  fmt::format("{} numbers are recorded, its scene has {}", count, wanted),
+                  "record the run again with this version");
+    }
+    std::copy_n(from, count, at);
+    at += static_cast<std::ptrdiff_t>(body.state_size());
+  }
   for (std::size_t i = 0; i < model.actuators().size(); ++i) {
     at[model.actuators()[i].row] = recorded.efforts[i];
   }
-  at += model.rows().rows();
+  at += model.rows().rows() + model.drive_states();
   for (const double motion : recorded.motions) {
     *at++ = motion;
     *at++ = motion;
   }
-  state.back() = 1.0;
+  at[0] = 1.0;  // the volumes are not recorded
   simulation_->load_state(state, recorded.step);
   ++shape_;
 }

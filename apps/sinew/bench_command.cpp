@@ -118,9 +118,9 @@ nlohmann::ordered_json to_json(const Samples& samples, Session& session, int war
       {"sinew_version", version()},
       {"date", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))},
       {"tangent", model.step().tangent == mechanics::Tangent::exact ? "exact" : "rotated"}};
-  for (std::size_t b = 0; b < model.bodies().size(); ++b) {
-    const mesh::Mesh& mesh = model.bodies()[b]->mesh();
-    json["bodies"].push_back({{"name", model.bodies()[b]->name()},
+  for (const auto& body : model.bodies()) {
+    const mesh::Mesh& mesh = body->mesh();
+    json["bodies"].push_back({{"name", body->name()},
                               {"nodes", mesh.node_count()},
                               {"tetrahedra", mesh.tetrahedra.size()}});
   }

@@ -60,7 +60,7 @@ class Plot {
       width: 300, height: 160, cursor: {show: true}, legend: {live: false},
       scales: {x: {time: false}},
       axes: [{...axis, label: 'time (s)', labelSize: 16, size: 30},
-             {...axis, size: 64, values: (_, ticks) => ticks.map((v) => told(v / this.scale, this.unit))}],
+             {...axis, size: 76, values: (_, ticks) => ticks.map((v) => told(v / this.scale, this.unit))}],
       series: [{}, ...signals.map((s, k) => ({label: s.label, stroke: COLOURS[k % COLOURS.length],
                                                width: 1.5, dash: k >= COLOURS.length ? [5, 4] : undefined}))],
     }, this.data as uPlot.AlignedData, this.box);

@@ -143,7 +143,7 @@ mesh::Mesh RunFile::rest_mesh(std::string_view body) const {
   return mesh;
 }
 
-Points RunFile::positions(std::string_view body, std::int64_t frame) const {
+void RunFile::require_state(std::string_view body, std::int64_t frame) const {
   const Hdf5Reader& file = content_->file;
   require_known(file.path(), content_->bodies, body);
   if (!content_->states) {
@@ -156,6 +156,24 @@ Points RunFile::positions(std::string_view body, std::int64_t frame) const {
                 fmt::format("there is no frame {}", frame),
                 fmt::format("the frames are 0 to {}", frames() - 1));
   }
+}
+
+VectorX RunFile::coordinates(std::string_view body, std::int64_t frame) const {
+  require_state(body, frame);
+  const Hdf5Reader& file = content_->file;
+  const std::string name = "/coordinates/" + std::string(body);
+  if (!file.has("/coordinates") || !file.has(name)) return {};
+  const auto shape = file.shape(name);
+  if (shape.size() != 2 || shape[0] < static_cast<std::uint64_t>(frames())) {
+    file.fail(name + " holds no coordinates");
+  }
+  const std::vector<double> numbers = file.rows(name, static_cast<std::uint64_t>(frame), 1);
+  return Eigen::Map<const VectorX>(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
+}
+
+Points RunFile::positions(std::string_view body, std::int64_t frame) const {
+  require_state(body, frame);
+  const Hdf5Reader& file = content_->file;
   const std::string name = "/positions/" + std::string(body);
   const auto shape = file.shape(name);
   if (shape.size() != 3 || shape[2] != 3) file.fail(name + " holds no positions");

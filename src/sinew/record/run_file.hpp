@@ -51,6 +51,10 @@ class RunFile {
   /// missing-key when states were not recorded, malformed-file.
   /// @param body its name. @param frame from 0.
   Points positions(std::string_view body, std::int64_t frame) const;
+  /// Coordinates (n,) rad, extensions in m, of a constant-curvature arm; empty of other bodies.
+  /// Throws as positions().
+  /// @param body its name. @param frame from 0.
+  VectorX coordinates(std::string_view body, std::int64_t frame) const;
   /// (frames,) of "long_0/effort" or "long_0/motion"; throws as positions().
   /// @param actuator its name. @param what "effort" (N) or "motion" (m).
   std::vector<double> actuator(std::string_view actuator, std::string_view what) const;
@@ -62,6 +66,8 @@ class RunFile {
   std::vector<double> probe(std::string_view probe) const;
 
  private:
+  void require_state(std::string_view body, std::int64_t frame) const;
+
   struct Content;
   std::unique_ptr<Content> content_;
 };

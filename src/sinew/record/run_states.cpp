@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "sinew/core/build_info.hpp"
+#include "sinew/pcc/arm_body.hpp"
 
 namespace sinew::record {
 
@@ -71,6 +72,9 @@ void RunStates::declare_bodies(bool states) {
     if (!states) continue;
     positions_.push_back(declare("/positions/" + name, {nodes, 3}, "m"));
     if (moving) velocities_.push_back(declare("/velocities/" + name, {nodes, 3}, "m/s"));
+    const auto* arm = dynamic_cast<const pcc::ArmBodyModel*>(model.bodies()[b].get());
+    const auto count = static_cast<std::uint64_t>(arm == nullptr ? 0 : arm->arm().coordinates());
+    coordinates_.push_back(arm == nullptr ? -1 : declare("/coordinates/" + name, {count}, "rad"));
   }
 }
 
@@ -142,6 +146,10 @@ void RunStates::write() {
     const mechanics::Body& body = simulation_.world().body(static_cast<int>(b));
     file_.append(positions_[b], numbers(body.positions()));
     if (!velocities_.empty()) file_.append(velocities_[b], numbers(body.velocities()));
+    if (const auto* arm = dynamic_cast<const pcc::ArmBody*>(&body)) {
+      const VectorX& q = arm->coordinates();
+      file_.append(coordinates_[b], {q.data(), static_cast<std::size_t>(q.size())});
+    }
   }
   for (std::size_t a = 0; a < efforts_.size(); ++a) {
     append(efforts_[a], simulation_.actuator(static_cast<int>(a)).effort);

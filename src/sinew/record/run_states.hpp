@@ -41,6 +41,7 @@ class RunStates {
   Hdf5Writer file_;
   int time_ = -1;
   std::vector<int> positions_, velocities_, efforts_, motions_, effectors_, targets_, errors_;
+  std::vector<int> coordinates_;  // one a body, of arms; -1 of others
   struct ProbeSeries {
     int value, positions;  // the latter of a line, else -1
   };
