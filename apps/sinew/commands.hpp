@@ -26,7 +26,10 @@ void add_info(CLI::App& app, Actions& actions);
 void add_mesh(CLI::App& app, Actions& actions);
 void add_view(CLI::App& app, Actions& actions);
 void add_schema(CLI::App& app, Actions& actions);
-void add_fit(CLI::App& app, Actions& actions);  ///< where built with Ceres
+void add_fit(CLI::App& app, Actions& actions);
+void add_reach(CLI::App& app, Actions& actions);
+void add_plan(CLI::App& app, Actions& actions);
+void add_identify(CLI::App& app, Actions& actions);
 void add_plot(CLI::App& app, Actions& actions);
 /// @}
 

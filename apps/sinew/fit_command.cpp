@@ -1,7 +1,5 @@
 // sinew fit: coefficients of rubber from tests.
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -128,14 +126,7 @@ int fit(const FitOptions& options) {
     mesh::write_file(options.out, identify::material_yaml(own, tests, settings.poisson_ratio));
     fmt::print("wrote {}: in a scene, material: {{file: {}}}\n", options.out, options.out);
   }
-  if (options.plot.empty()) return 0;
-  const std::string data = options.plot + ".json";
-  mesh::write_file(data, json_of(tests, fits));
-  std::fflush(stdout);
-  const int code = draw_plot({"fit", data, options.plot});
-  std::error_code ignored;
-  std::filesystem::remove(data, ignored);
-  return code;
+  return options.plot.empty() ? 0 : draw_json("fit", json_of(tests, fits), options.plot);
 }
 
 }  // namespace

@@ -28,6 +28,7 @@ constexpr const char* kExamples =
     "  sinew mesh finger.stl -o finger.vtu --size 5mm --unit mm\n"
     "  sinew plot out/circle\n"
     "  sinew fit tensile.csv --model ogden3 -o rubber.yaml --plot rubber.png\n"
+    "  sinew plan examples/fluidic_arm/arm.yaml --goal \"20 0 -40 cm\" -o plan.csv\n"
     "  sinew bench examples/trunk/circle.yaml --steps 400 --json bench.json\n"
     "\n"
     "Exit codes: 0 done, 1 the run failed, 2 wrong input.";
@@ -51,9 +52,10 @@ int run(int argc, const char* const* argv) {
   cli::add_validate(app, actions);
   cli::add_info(app, actions);
   cli::add_mesh(app, actions);
-#ifdef SINEW_HAS_IDENTIFY
   cli::add_fit(app, actions);
-#endif
+  cli::add_identify(app, actions);
+  cli::add_reach(app, actions);
+  cli::add_plan(app, actions);
   cli::add_plot(app, actions);
   cli::add_schema(app, actions);
   try {

@@ -1,6 +1,7 @@
 #include "python_tool.hpp"
 
 #include <cerrno>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -11,6 +12,7 @@
 #include <unistd.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/mesh/write.hpp"
 
 #include "program_folder.hpp"
 
@@ -60,6 +62,16 @@ int draw_plot(const std::vector<std::string>& arguments) {
                 "apt-get install python3 python3-numpy python3-matplotlib");
   }
   return WEXITSTATUS(status);
+}
+
+int draw_json(const std::string& kind, const std::string& json, const std::string& out) {
+  const std::string data = out + ".json";
+  mesh::write_file(data, json);
+  std::fflush(stdout);
+  const int code = draw_plot({kind, data, out});
+  std::error_code ignored;
+  std::filesystem::remove(data, ignored);
+  return code;
 }
 
 }  // namespace sinew::cli

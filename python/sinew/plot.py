@@ -142,13 +142,122 @@ def fit(data, out) -> pathlib.Path:
     return pathlib.Path(out)
 
 
+def reach(data, out) -> pathlib.Path:
+    """Draws where an arm's tip can rest, and goals with what comes nearest to each.
+
+    Parameters
+    ----------
+    data : path-like
+        JSON of `sinew reach`.
+    out : path-like
+        PNG file.
+    """
+    plt = _pyplot()
+    content = json.loads(pathlib.Path(data).read_text(encoding="utf-8"))
+    goals = content["goals"]
+    points = content["tip_m"] + [goal["goal_m"] for goal in goals]
+    # Seen from the side on which the points spread more.
+    spread = [max((p[k] for p in points), default=0) - min((p[k] for p in points), default=0) for k in (0, 1)]
+    aside = int(spread[1] > spread[0])
+    figure, axis = plt.subplots(figsize=(6.4, 5))
+    axis.plot([100 * p[aside] for p in content["tip_m"]], [100 * p[2] for p in content["tip_m"]], ".", ms=2,
+              color=QUIET, label="can be held at rest")
+    for k, goal in enumerate(goals):
+        colour, at = COLOURS[k % len(COLOURS)], goal["goal_m"]
+        label = " ".join(f"{100 * x:g}" for x in at) + f" cm: {goal.get('proof', 'not proven')}"
+        axis.plot(100 * at[aside], 100 * at[2], "o", color=colour, label=label)
+        if goal["found"]:
+            axis.plot([100 * at[aside], 100 * goal["tip_m"][aside]], [100 * at[2], 100 * goal["tip_m"][2]], lw=1,
+                      color=colour)
+    axis.set(xlabel=f"{'xy'[aside]} (cm)", ylabel="z (cm)", aspect="equal")
+    axis.legend(loc="upper left", bbox_to_anchor=(1.0, 1.02))
+    figure.savefig(out, dpi=110)
+    plt.close(figure)
+    return pathlib.Path(out)
+
+
+def plan(data, out) -> pathlib.Path:
+    """Draws a plan's torques, the tip's path with the goal, and its distance and speed over time.
+
+    Parameters
+    ----------
+    data : path-like
+        JSON of `sinew plan`.
+    out : path-like
+        PNG file.
+    """
+    plt = _pyplot()
+    content = json.loads(pathlib.Path(data).read_text(encoding="utf-8"))
+    goal, run = content["goal_m"], content["replay"]
+    time, tip = run["times_s"], run["tip_m"]
+    figure, (torques, path, end) = plt.subplots(1, 3, figsize=(13, 4))
+    for k, name in enumerate(content["actuators"]):
+        torques.plot(time, [1e3 * row[k] for row in run["torque_N_m"]], color=COLOURS[k % len(COLOURS)], label=name)
+    torques.set(xlabel="time (s)", ylabel="torque (mN m)")
+    torques.legend()
+    spread = [max(p[k] for p in tip) - min(p[k] for p in tip) for k in (0, 1)]
+    aside = int(spread[1] > spread[0])
+    path.plot([100 * p[aside] for p in tip], [100 * p[2] for p in tip], color=OURS, label="tip")
+    path.plot(100 * goal[aside], 100 * goal[2], "o", color=SECOND, label="goal")
+    path.set(xlabel=f"{'xy'[aside]} (cm)", ylabel="z (cm)", aspect="equal")
+    path.legend()
+    end.semilogy(time, [100 * math.dist(p, goal) for p in tip], color=OURS, label="distance from the goal (cm)")
+    end.semilogy(time, [100 * math.hypot(*v) or math.nan for v in run["tip_velocity_m_s"]], color=SECOND,
+                 label="speed (cm/s)")
+    end.set(xlabel="time (s)", title=f"at the end {100 * content['tip_error_m']:.2g} cm, "
+                                     f"{100 * content['tip_speed_m_s']:.2g} cm/s")
+    end.legend()
+    figure.savefig(out, dpi=110)
+    plt.close(figure)
+    return pathlib.Path(out)
+
+
+def identify(data, out) -> pathlib.Path:
+    """Draws measured and predicted ends of an arm's segments, and their distances.
+
+    Parameters
+    ----------
+    data : path-like
+        JSON of `sinew identify`.
+    out : path-like
+        PNG file.
+    """
+    plt = _pyplot()
+    records = json.loads(pathlib.Path(data).read_text(encoding="utf-8"))["records"]
+    figure, axes = plt.subplots(2, len(records), figsize=(5 * len(records), 6), squeeze=False, sharex="col")
+
+    def numbers(column):
+        return [math.nan if value is None else value for value in column]
+
+    for (upper, lower), record in zip(axes.T, records):
+        measured = [numbers(column) for column in record["measured"]]
+        predicted = [numbers(column) for column in record["predicted"]]
+        for segment in range(len(measured) // 3):
+            colour = COLOURS[segment % len(COLOURS)]
+            upper.plot(record["time"], [100 * x for x in measured[3 * segment]], ".", ms=3, color=colour)
+            upper.plot(record["time"], [100 * x for x in predicted[3 * segment]], color=colour, lw=1)
+            # Over the axes that were measured.
+            seen = [k for k in range(3 * segment, 3 * segment + 3) if not all(map(math.isnan, measured[k]))]
+            off = [1e3 * math.dist([measured[k][i] for k in seen], [predicted[k][i] for k in seen])
+                   for i in range(len(record["time"]))]
+            lower.plot(record["time"], off, color=colour, lw=1, label=f"end {segment}")
+        kind = "fitted" if record["fitted"] else "not fitted to"
+        upper.set(title=f"{record['name']} ({kind}): NRMSE {100 * record['nrmse']:.2g} %", ylabel="x (cm): dots seen")
+        lower.set(xlabel="time (s)", ylabel="distance of prediction (mm)")
+    axes[1, 0].legend()
+    figure.savefig(out, dpi=110)
+    plt.close(figure)
+    return pathlib.Path(out)
+
+
 def main(words: list[str]) -> int:
-    """`run DIR OUT.png` or `fit DATA.json OUT.png`."""
-    if len(words) != 3 or words[0] not in ("run", "fit"):
-        print("usage: python3 -m sinew.plot run|fit SOURCE OUT.png", file=sys.stderr)
+    """`run DIR OUT.png`, or `fit|identify|plan|reach DATA.json OUT.png`."""
+    kinds = {"run": run, "fit": fit, "identify": identify, "plan": plan, "reach": reach}
+    if len(words) != 3 or words[0] not in kinds:
+        print(f"usage: python3 -m sinew.plot {'|'.join(kinds)} SOURCE OUT.png", file=sys.stderr)
         return 2
     try:
-        path = (run if words[0] == "run" else fit)(words[1], words[2])
+        path = kinds[words[0]](words[1], words[2])
     except ImportError as missing:
         print(f"sinew: error: plots need matplotlib: {missing}; apt-get install python3-matplotlib", file=sys.stderr)
         return 2

@@ -1,17 +1,17 @@
-// Planning for constant-curvature arms: tasks, plans, replays, regulators, static reach.
+// Planning for constant-curvature arms: tasks, plans, replays, regulators.
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "sinew/plan/reach.hpp"
 #include "sinew/plan/tracking.hpp"
 
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "errors.hpp"
 #include "pcc_arm.hpp"
+#include "plan_limits.hpp"
 
 namespace sinew::python {
 
@@ -28,45 +28,6 @@ struct TrackerOf {
   plan::Tracker tracker;
 };
 
-/// Lower and upper limits from (n,), either way, or (2, n).
-void set_limits(const py::object& value, const std::string& place, Eigen::Index n,
-                const std::string& unit, VectorX& lower, VectorX& upper) {
-  if (value.is_none()) return;
-  const Array array =
-      to_array(value, place, fmt::format("({},) either way or (2, {}) {}", n, n, unit));
-  if (array.ndim() == 2) {
-    const MatrixX both = to_matrix(value, place, fmt::format("(2, {}) {}", n, unit));
-    if (both.rows() != 2 || both.cols() != n) {
-      throw Error(ErrorKind::wrong_shape, {.item = place},
-                  fmt::format("its shape is ({}, {})", both.rows(), both.cols()),
-                  fmt::format("give ({},), or (2, {}) with the lower ones first", n, n));
-    }
-    lower = both.row(0);
-    upper = both.row(1);
-    return;
-  }
-  upper = array.ndim() == 0 ? VectorX(VectorX::Constant(n, array.data()[0]))
-                            : to_vector(value, place, n, unit);
-  lower = -upper;
-}
-
-VectorX optional(const py::object& value, const std::string& place, Eigen::Index n,
-                 const std::string& unit) {
-  if (value.is_none()) return {};
-  const Array array = to_array(value, place, fmt::format("({},) {}", n, unit));
-  if (array.ndim() == 0) return VectorX::Constant(n, array.data()[0]);
-  return to_vector(value, place, n, unit);
-}
-
-plan::Limits reach_limits(const pcc::Arm& arm, const py::object& torque, const py::object& angle) {
-  plan::Limits limits;
-  set_limits(torque, "torque_limits", arm.inputs(), "N m", limits.torque_lower,
-             limits.torque_upper);
-  set_limits(angle, "angle_limits", arm.coordinates(), "rad", limits.angle_lower,
-             limits.angle_upper);
-  return limits;
-}
-
 PlanTask make_task(const PccArm& of, const py::object& goal, const py::object& torque_limits,
                    const py::object& angle_limits, const py::object& rate_limits,
                    const py::object& torque_rate_limits, double tolerance,
@@ -82,10 +43,10 @@ PlanTask make_task(const PccArm& of, const py::object& goal, const py::object& t
   task.goal.speed_tolerance = speed_tolerance.is_none()
                                   ? plan::kNoBound
                                   : to_number(speed_tolerance, "Task(speed_tolerance)", "m/s");
-  task.limits = reach_limits(arm, torque_limits, angle_limits);
-  task.limits.rate = optional(rate_limits, "Task(rate_limits)", arm.coordinates(), "rad/s");
+  task.limits = to_limits(arm, torque_limits, angle_limits);
+  task.limits.rate = to_optional(rate_limits, "Task(rate_limits)", arm.coordinates(), "rad/s");
   task.limits.torque_rate =
-      optional(torque_rate_limits, "Task(torque_rate_limits)", arm.inputs(), "N m/s");
+      to_optional(torque_rate_limits, "Task(torque_rate_limits)", arm.inputs(), "N m/s");
   task.objective = {effort, tip_speed, time};
   task.grid.duration = duration;
   task.grid.intervals = intervals;
@@ -105,9 +66,9 @@ PlanTask make_task(const PccArm& of, const py::object& goal, const py::object& t
                 fmt::format("there is no '{}'", method),
                 "use 'hermite-simpson' or 'backward-euler'");
   }
-  task.start.position = optional(theta, "Task(theta)", arm.coordinates(), "rad");
-  task.start.rate = optional(theta_dot, "Task(theta_dot)", arm.coordinates(), "rad/s");
-  task.start.torque = optional(torque, "Task(torque)", arm.inputs(), "N m");
+  task.start.position = to_optional(theta, "Task(theta)", arm.coordinates(), "rad");
+  task.start.rate = to_optional(theta_dot, "Task(theta_dot)", arm.coordinates(), "rad/s");
+  task.start.torque = to_optional(torque, "Task(torque)", arm.inputs(), "N m");
   task.obstacles = obstacles;
   task.backbone_points = backbone_points;
   return {of.arm, plan::completed(arm, task)};
@@ -367,8 +328,8 @@ Error
              const py::object& theta_dot, bool feedback, double time_step) {
             const auto on = other(arm, self.arm);
             const plan::TrackingTrial trial{
-                optional(theta, "run(theta)", on->coordinates(), "rad"),
-                optional(theta_dot, "run(theta_dot)", on->coordinates(), "rad/s"), feedback,
+                to_optional(theta, "run(theta)", on->coordinates(), "rad"),
+                to_optional(theta_dot, "run(theta_dot)", on->coordinates(), "rad/s"), feedback,
                 time_step};
             const py::gil_scoped_release release;
             return plan::track(on, self.tracker, trial);
@@ -393,112 +354,6 @@ time_step : float
     s, of the simulation.)");
 }
 
-void bind_reach(py::module_& module) {
-  module.def(
-      "plan_sample_reach",
-      [](const PccArm& arm, const py::object& torque_limits, int samples, std::uint64_t seed,
-         const py::object& angle_limits) {
-        const plan::Limits limits = reach_limits(*arm.arm, torque_limits, angle_limits);
-        const plan::ReachMap map = plan::sample_reach(arm.arm, limits, samples, seed);
-        py::dict result;
-        result["tip"] = copy(map.tip);
-        result["theta"] = copy(map.position);
-        result["torque"] = copy(map.torque);
-        return result;
-      },
-      py::arg("arm"), py::arg("torque_limits"), py::arg("samples") = 1000, py::arg("seed") = 1,
-      py::kw_only(), py::arg("angle_limits") = py::none(),
-      R"(plan_sample_reach(arm, torque_limits, samples=1000, seed=1, *, angle_limits=None)
---
-
-Where the tip can rest: stable equilibria under random torques within the limits.
-
-Parameters
-----------
-arm : sinew.pcc.Arm
-torque_limits : (inputs,) or (2, inputs) N m
-samples : int
-    Of torques, each from two starts.
-seed : int
-angle_limits : (coordinates,) or (2, coordinates) rad, optional
-
-Returns
--------
-dict
-    "tip" (found, 3) m, "theta" (found, coordinates) rad, "torque" (found, inputs) N m.)");
-  module.def(
-      "plan_nearest_reach",
-      [](const PccArm& arm, const py::object& torque_limits, const py::object& goal, int starts,
-         std::uint64_t seed, const py::object& angle_limits) {
-        const plan::Limits limits = reach_limits(*arm.arm, torque_limits, angle_limits);
-        const auto best = plan::nearest_reach(
-            arm.arm, limits, to_vector3(goal, "nearest_reach(goal)", "m"), starts, seed);
-        py::dict result;
-        result["found"] = best.found;
-        result["stable"] = best.stable;
-        result["distance"] = best.distance;
-        result["tip"] = copy(best.tip);
-        result["theta"] = copy(best.position);
-        result["torque"] = copy(best.torque);
-        result["solved"] = best.solved;
-        return result;
-      },
-      py::arg("arm"), py::arg("torque_limits"), py::arg("goal"), py::arg("starts") = 20,
-      py::arg("seed") = 1, py::kw_only(), py::arg("angle_limits") = py::none(),
-      R"(plan_nearest_reach(arm, torque_limits, goal, starts=20, seed=1, *, angle_limits=None)
---
-
-The equilibrium, stable or not, whose tip is nearest to a goal (3,) m: the best of many starts.
-
-Returns
--------
-dict
-    "found", "stable", "distance" m, "tip" (3,) m, "theta", "torque", and "solved", how many of the
-    starts led to one.)");
-  module.def(
-      "plan_prove_out_of_reach",
-      [](const PccArm& arm, const py::object& torque_limits, const py::object& goal,
-         double tolerance, double angle, long max_boxes, const py::object& angle_limits) {
-        const plan::Limits limits = reach_limits(*arm.arm, torque_limits, angle_limits);
-        const Vector3 at = to_vector3(goal, "prove_out_of_reach(goal)", "m");
-        const auto proof =
-            plan::prove_out_of_reach(arm.arm, limits, at, {tolerance, angle, max_boxes});
-        py::dict result;
-        result["verdict"] = std::string(plan::verdict_name(proof.verdict));
-        result["boxes"] = proof.boxes;
-        result["smallest"] = proof.smallest;
-        result["theta"] = copy(proof.position);
-        return result;
-      },
-      py::arg("arm"), py::arg("torque_limits"), py::arg("goal"), py::kw_only(),
-      py::arg("tolerance") = 0.02, py::arg("angle") = plan::ReachProofSettings{}.angle,
-      py::arg("max_boxes") = plan::ReachProofSettings{}.max_boxes,
-      py::arg("angle_limits") = py::none(),
-      R"(plan_prove_out_of_reach(arm, torque_limits, goal, *, tolerance=0.02, angle=3.141592653589793, max_boxes=5000000, angle_limits=None)
---
-
-Whether any equilibrium, stable or not, has its tip within `tolerance` (m, along each axis) of a
-goal (3,) m, by branch and bound over the angles.
-
-Parameters
-----------
-arm : sinew.pcc.Arm
-    Of planar segments.
-torque_limits : (inputs,) or (2, inputs) N m
-goal : (3,) m
-tolerance : float
-angle : float
-    rad, how far a segment may bend either way where `angle_limits` do not say.
-max_boxes : int
-angle_limits : (coordinates,) or (2, coordinates) rad, optional
-
-Returns
--------
-dict
-    "verdict" ('out-of-reach', 'reachable' or 'undecided'), "boxes" looked at, "smallest" half-width
-    needed in rad, "theta" of an equilibrium found there.)");
-}
-
 }  // namespace
 
 void bind_plan(py::module_& module) {
@@ -506,7 +361,6 @@ void bind_plan(py::module_& module) {
   bind_plans(module);
   bind_task(module);
   bind_tracker(module);
-  bind_reach(module);
 }
 
 }  // namespace sinew::python

@@ -854,6 +854,7 @@ TEST_P(BrokenFiles, AreRefusedWithPlace) {
 }
 
 const char* const kPull = "{displacement: {file: pull.csv, unit: mm}}";
+const char* const kColumn = "{displacement: {file: pull.csv, column: second}}";
 
 INSTANTIATE_TEST_SUITE_P(
     Files, BrokenFiles,
@@ -916,6 +917,27 @@ INSTANTIATE_TEST_SUITE_P(
                    K::bad_signal,
                    "scene.yaml:22:36",
                    "-1 s"},
+        BrokenFile{"no_column",
+                   {{kCommand, kColumn}},
+                   "pull.csv",
+                   "time [s],first [mm]\n0,0\n2,1\n",
+                   K::wrong_columns,
+                   "actuators.long_0.command.displacement.column",
+                   "no column 'second'"},
+        BrokenFile{"no_headings",
+                   {{kCommand, kColumn}},
+                   "pull.csv",
+                   "0,0\n2,1\n",
+                   K::wrong_columns,
+                   "actuators.long_0.command.displacement.column",
+                   "no column 'second'"},
+        BrokenFile{"column_of_another_unit",
+                   {{kCommand, kColumn}},
+                   "pull.csv",
+                   "time [s],second [kg]\n0,0\n2,1\n",
+                   K::wrong_dimension,
+                   "pull.csv:1: actuators.long_0.command.displacement.file",
+                   "kg"},
         BrokenFile{"nan",
                    {{kCommand, kPull}},
                    "pull.csv",

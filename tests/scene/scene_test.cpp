@@ -169,6 +169,23 @@ TEST(Scene, SignalsAndTargetsComeFromTables) {
   EXPECT_DOUBLE_EQ(scene.run_duration(), 2.0);
 }
 
+TEST(Scene, SignalsTakeAColumnByItsHeading) {
+  const SceneFolder folder;
+  folder.write("trunk.vtk", "x");
+  folder.write("long_0.csv", "0, 10, 0\n0, 10, 21\n");
+  folder.write("pull.csv", "time [s],first [cm],second [mm],third\n0,0,0,0\n1,7,10,2\n");
+  const auto at_half = [&](const std::string& file) {
+    const std::string text =
+        edited({{"{displacement: 0 mm}", "{displacement: {file: pull.csv, " + file + "}}"}});
+    return parse_scene_text(text, "s.yaml", folder.path()).actuators[0].command->signal.value(0.5);
+  };
+  EXPECT_DOUBLE_EQ(at_half("column: second"), 0.005);
+  EXPECT_DOUBLE_EQ(at_half("column: 'second [mm]'"), 0.005);
+  EXPECT_DOUBLE_EQ(at_half("column: first"), 0.035);
+  EXPECT_DOUBLE_EQ(at_half("column: third, unit: mm"), 0.001);
+  EXPECT_DOUBLE_EQ(at_half("column: third"), 1.0);
+}
+
 TEST(Scene, PolylinesTakeASpeedOrAPeriod) {
   const SceneDescription scene = parse_edited(
       {{"{circle: {center: 0 0 190 mm, radius: 30 mm, normal: 0 0 1, period: 10 s}}",

@@ -217,8 +217,15 @@ std::shared_ptr<const KeyTable> signal_table(const Measure& measure, const char*
                 .forms = {samples(measure)},
                 .example = "[[0 s, 0 " + std::string(measure.unit) + "], [1 s, " + value + "]]",
                 .description = "Jumps: pairs of time and value, the first at 0 s."},
-               path_file_key("A CSV table with two columns, time and value; straight lines "
-                             "between.")},
+               path_file_key("A CSV table with two columns, time and value, or with `column`; "
+                             "straight lines between."),
+               {.name = "column",
+                .forms = {text()},
+                .example = "second",
+                .description = "Which column of a table with headings has the values: a heading, "
+                               "or what stands in it before \" [unit]\", whose unit then holds. "
+                               "Times are in the first column.",
+                .only_with = "file"}},
       .alternatives = {{{"ramp", "sine", "steps", "file"}, true}}};
   if (!plain) signal.keys.push_back(path_unit_key(measure, measure.unit));
   return make_table(std::move(signal));

@@ -24,6 +24,46 @@ Table read_scaled(const Fields& fields, int columns, Eigen::Index first,
   return table;
 }
 
+// The column that a heading "NAME" or "NAME [unit]" names.
+Eigen::Index column_of(const Table& table, const std::string& name, const Place& place) {
+  for (std::size_t k = 1; k < table.names.size(); ++k) {
+    const std::string& heading = table.names[k];
+    if (heading == name || heading.substr(0, heading.find(" [")) == name) {
+      return static_cast<Eigen::Index>(k);
+    }
+  }
+  throw Error(ErrorKind::wrong_columns, place, fmt::format("there is no column {}", show(name)),
+              table.names.size() < 2
+                  ? "give the table a first row of headings"
+                  : fmt::format("the columns behind the time are {}",
+                                fmt::join(table.names.begin() + 1, table.names.end(), ", ")));
+}
+
+// What one of a column's heading is in SI; 1 where it says nothing.
+double heading_unit(const std::string& heading, const Fields& fields, const Place& place) {
+  const std::size_t open = heading.find(" [");
+  const Key* key = fields.table().find("unit");
+  if (open == std::string::npos || !heading.ends_with(']') || key == nullptr) return 1.0;
+  return parse_unit(std::string_view(heading).substr(open + 2, heading.size() - open - 3),
+                    key->forms.front().dimension, place);
+}
+
+// Time and one column of a table with headings.
+Table read_column(const Fields& fields, const ReadContext& context) {
+  const std::filesystem::path path = context.path(fields, "file");
+  Table table = at_place(fields.place("file"), [&] { return read_csv(path); });
+  std::string name;
+  fields.read("column", name);
+  const Eigen::Index column = column_of(table, name, fields.place("column"));
+  double unit = heading_unit(table.names[static_cast<std::size_t>(column)], fields,
+                             {.file = path.string(), .line = 1, .item = fields.place("file").item});
+  if (fields.table().find("unit") != nullptr) fields.read("unit", unit);
+  MatrixX values(table.values.rows(), 2);
+  values << table.values.col(0), unit * table.values.col(column);
+  table.values = std::move(values);
+  return table;
+}
+
 }  // namespace
 
 std::filesystem::path ReadContext::path(const Fields& fields, std::string_view key) const {
@@ -48,7 +88,9 @@ std::filesystem::path ReadContext::path(const Fields& fields, std::string_view k
 TimeTable read_time_table(const Fields& fields, int columns, const ReadContext& context) {
   TimeTable result;
   if (context.files == Files::ignore) return result;
-  const Table table = read_scaled(fields, columns + 1, 1, context);
+  const bool named = columns == 1 && fields.find("column") != nullptr;
+  const Table table =
+      named ? read_column(fields, context) : read_scaled(fields, columns + 1, 1, context);
   for (Eigen::Index row = 0; row < table.values.rows(); ++row) {
     const double time = table.values(row, 0);
     if (row > 0 && time <= result.times.back()) {

@@ -55,7 +55,9 @@ struct TimeTable {
   std::vector<double> times;                                                      ///< (n,) s
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> values;  ///< (n, columns)
 };
-/// Reads the CSV under `file` with the unit under `unit`; empty when files are not opened.
+/// Reads the CSV under `file` with the unit under `unit`; empty when files are not opened. With one
+/// value and a name under `column`, of which column: its unit is the heading's where `unit` is left
+/// out.
 TimeTable read_time_table(const Fields& fields, int columns, const ReadContext& context);
 
 /// The value of `make()`; an Error without a place gets `place`.

@@ -1,0 +1,153 @@
+#include "arm_scene.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "sinew/core/error.hpp"
+#include "sinew/scene/build.hpp"
+
+namespace sinew::cli {
+
+namespace {
+
+using scene::ActuatorDescription;
+using scene::BodyDescription;
+using scene::SceneDescription;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+const BodyDescription& choose(const SceneDescription& scene, const std::string& name) {
+  std::vector<std::string> names, arms;
+  for (const BodyDescription& body : scene.bodies) {
+    names.push_back(body.name);
+    if (body.arm) arms.push_back(body.name);
+  }
+  if (arms.empty()) {
+    throw Error(ErrorKind::wrong_type, {.item = "bodies"},
+                fmt::format("the scene has no arm; its bodies are {}", fmt::join(names, ", ")),
+                "give a scene with a body of type pcc, such as examples/fluidic_arm/arm.yaml");
+  }
+  if (name.empty() && arms.size() > 1) {
+    throw Error(ErrorKind::bad_argument, {.item = "--body"},
+                fmt::format("the scene has {} arms", arms.size()),
+                fmt::format("name one of {}", fmt::join(arms, ", ")));
+  }
+  const std::string& wanted = name.empty() ? arms.front() : name;
+  const auto found = std::ranges::find(scene.bodies, wanted, &BodyDescription::name);
+  if (found == scene.bodies.end()) {
+    const std::string near = nearest_word(wanted, names);
+    throw Error(ErrorKind::unknown_name, {.item = "--body"},
+                fmt::format("the scene has no body '{}'", wanted),
+                near.empty() ? fmt::format("its arms are {}", fmt::join(arms, ", "))
+                             : fmt::format("did you mean '{}'?", near));
+  }
+  if (!found->arm) {
+    throw Error(ErrorKind::wrong_type, {.item = "--body"},
+                fmt::format("body '{}' is no arm of type pcc", wanted),
+                fmt::format("name one of {}", fmt::join(arms, ", ")));
+  }
+  return *found;
+}
+
+const char* type_name(ActuatorDescription::Type type) {
+  switch (type) {
+    case ActuatorDescription::Type::cable:
+      return "cable";
+    case ActuatorDescription::Type::force:
+      return "force";
+    case ActuatorDescription::Type::pressure:
+      return "pressure";
+    case ActuatorDescription::Type::spring:
+      return "spring";
+    case ActuatorDescription::Type::torque:
+      return "torque";
+  }
+  return "actuator";
+}
+
+std::vector<const ActuatorDescription*> torques_on(const SceneDescription& scene,
+                                                   const std::string& body) {
+  std::vector<const ActuatorDescription*> torques;
+  for (const ActuatorDescription& actuator : scene.actuators) {
+    if (actuator.body == body && actuator.type == ActuatorDescription::Type::torque) {
+      torques.push_back(&actuator);
+    }
+  }
+  return torques;
+}
+
+std::vector<std::string> left_out(const SceneDescription& scene, const std::string& body) {
+  std::vector<std::string> names;
+  for (const ActuatorDescription& actuator : scene.actuators) {
+    if (actuator.body != body || actuator.type == ActuatorDescription::Type::torque) continue;
+    names.push_back(fmt::format("{} '{}'", type_name(actuator.type), actuator.name));
+  }
+  for (const auto& load : scene.loads) {
+    if (load.body == body) names.push_back(fmt::format("load '{}'", load.name));
+  }
+  for (const auto& contact : scene.contacts) {
+    if (contact.body == body) names.push_back(fmt::format("contact '{}'", contact.name));
+  }
+  return names;
+}
+
+// Actuators as the arm's inputs, with their limits; those of several on one bend are all kept.
+void take_inputs(ArmScene& scene, pcc::ArmSettings settings,
+                 const std::vector<const ActuatorDescription*>& torques) {
+  const pcc::Arm plain(settings);
+  const Eigen::Index n = plain.coordinates(), inputs = std::ssize(torques);
+  settings.actuation = MatrixX::Zero(n, inputs);
+  scene.torque_lower = VectorX::Constant(inputs, -kInfinity);
+  scene.torque_upper = scene.torque_rate = VectorX::Constant(inputs, kInfinity);
+  scene.angle_lower = VectorX::Constant(n, -kInfinity);
+  scene.angle_upper = scene.rate = VectorX::Constant(n, kInfinity);
+  for (Eigen::Index u = 0; u < inputs; ++u) {
+    const ActuatorDescription& torque = *torques[static_cast<std::size_t>(u)];
+    const Eigen::Index bend = plain.first(torque.segment) + static_cast<int>(torque.towards);
+    settings.actuation(bend, u) = 1.0;
+    scene.inputs.push_back(torque.name);
+    scene.torque_lower[u] = torque.effort.min;
+    scene.torque_upper[u] = torque.effort.max;
+    scene.torque_rate[u] = torque.effort.rate;
+    scene.angle_lower[bend] = std::max(scene.angle_lower[bend], torque.motion.min);
+    scene.angle_upper[bend] = std::min(scene.angle_upper[bend], torque.motion.max);
+    scene.rate[bend] = std::min(scene.rate[bend], torque.motion.rate);
+  }
+  scene.arm = std::make_shared<const pcc::Arm>(std::move(settings));
+}
+
+}  // namespace
+
+ArmScene load_arm_scene(const ArmSceneOptions& options) {
+  ArmScene result;
+  // Built as it would be to run, so that what is wrong in it is said here as it is there.
+  result.description = scene::load(options.file, options.overrides).description;
+  try {
+    const BodyDescription& body = choose(result.description, options.body);
+    pcc::ArmSettings settings = *body.arm;
+    settings.gravity = result.description.gravity;
+    take_inputs(result, std::move(settings), torques_on(result.description, body.name));
+    result.left_out = left_out(result.description, body.name);
+  } catch (const Error& error) {
+    throw error.at({.file = options.file.string()});
+  }
+  return result;
+}
+
+void add_arm_scene_options(CLI::App& command, ArmSceneOptions& options) {
+  command.add_option("SCENE", options.file, "Scene file (YAML) with a body of type pcc")
+      ->required();
+  command
+      .add_option("--set", options.overrides,
+                  "Set a value of the scene: bodies.arm.segments.0.mass=200g; may be repeated")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false);
+  command.add_option("--body", options.body, "Which arm (default: the only one)")
+      ->type_name("NAME");
+}
+
+}  // namespace sinew::cli

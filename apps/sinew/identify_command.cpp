@@ -1,0 +1,338 @@
+// sinew identify: an arm's masses, stiffness, damping and actuators from motion capture.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "sinew/core/csv.hpp"
+#include "sinew/core/error.hpp"
+#include "sinew/identify/arm_fit.hpp"
+#include "sinew/mesh/write.hpp"
+#include "sinew/scene/scene.hpp"
+
+#include "arguments.hpp"
+#include "arm_scene.hpp"
+#include "commands.hpp"
+#include "python_tool.hpp"
+#include "terminal.hpp"
+
+namespace sinew::cli {
+
+namespace {
+
+using identify::ArmFit;
+using identify::ArmFitSettings;
+using identify::MotionRecord;
+using identify::RecordFit;
+
+constexpr int kMostStarts = 1000;
+constexpr Dimension kAngularDamping{2, 1, -1};  // N m s
+constexpr Dimension kCubic{-7, 1, -2};          // N m/m^9
+
+struct IdentifyOptions {
+  ArmSceneOptions scene;
+  std::vector<std::string> records, validate;
+  std::vector<std::string> fixed;
+  bool passive = false, moving = false;
+  std::optional<std::string> coefficient, delay, damping, time_step;
+  std::optional<double> mass_spread, stiffness_spread;
+  int starts = 1;
+  std::uint64_t seed = 1;
+  std::optional<std::string> json;
+  std::string out, plot;
+};
+
+bool holds_volumes(const std::string& file) {
+  CsvSettings settings;
+  settings.allow_non_finite = settings.allow_empty = true;
+  const Table table = read_csv(file, settings);
+  return std::ranges::any_of(table.names, [](const auto& n) { return n.starts_with("volume_"); });
+}
+
+// What drove the arm must be what the model is told: nothing, torques, or volumes.
+MotionRecord read_record(const std::string& file, const IdentifyOptions& options,
+                         const ArmScene& scene) {
+  MotionRecord record = identify::read_motion_record(file, scene.arm->segments());
+  if (options.passive) {
+    record.input.resize(record.samples(), 0);
+    return record;
+  }
+  const Eigen::Index inputs = record.input.cols(), wanted = std::ssize(scene.inputs);
+  if (inputs == 0) {
+    throw Error(ErrorKind::wrong_columns, {.file = file},
+                "it does not say what drove the arm: no column torque_0 or volume_0",
+                "add a column for each actuator, or say --passive if nothing did");
+  }
+  if (inputs != wanted) {
+    throw Error(
+        ErrorKind::wrong_columns, {.file = file},
+        fmt::format("it has {} inputs, and {} torques drive the scene's arm", inputs, wanted),
+        wanted == 0 ? "add actuators of type torque to the scene, or say --passive"
+                    : fmt::format("give a column for each of {}, numbered from 0",
+                                  fmt::join(scene.inputs, ", ")));
+  }
+  const bool volumes = holds_volumes(file);
+  if (volumes != options.coefficient.has_value()) {
+    throw Error(ErrorKind::bad_argument, {.file = file, .item = "--coefficient"},
+                volumes ? "volumes drove the arm, and nothing says what torque they make"
+                        : "torques drove the arm, and no actuator is to be fitted",
+                volumes ? "give a first guess of c in torque = c volume^3: --coefficient 4e12"
+                        : "leave --coefficient out");
+  }
+  return record;
+}
+
+std::vector<MotionRecord> read_records(const std::vector<std::string>& files,
+                                       const IdentifyOptions& options, const ArmScene& scene) {
+  std::vector<MotionRecord> records;
+  for (const std::string& file : files) records.push_back(read_record(file, options, scene));
+  return records;
+}
+
+ArmFitSettings settings_of(const IdentifyOptions& options) {
+  ArmFitSettings settings;
+  settings.fixed = options.fixed;
+  if (options.moving) settings.start = identify::RecordStart::moving;
+  if (options.mass_spread) settings.mass_spread = *options.mass_spread;
+  if (options.stiffness_spread) settings.stiffness_spread = *options.stiffness_spread;
+  if (options.damping) {
+    const auto range = parse_list(*options.damping, kAngularDamping, 2, {.item = "--damping"});
+    settings.damping_lower = range[0];
+    settings.damping_upper = range[1];
+  }
+  if (options.time_step) {
+    settings.step.time_step =
+        positive_quantity("--time-step", *options.time_step, dimension::kTime);
+  }
+  require_range("--starts", options.starts, 1, kMostStarts);
+  settings.search.starts = options.starts;
+  settings.search.seed = options.seed;
+  return settings;
+}
+
+identify::ArmModel model_of(const IdentifyOptions& options, const ArmScene& scene) {
+  identify::ArmModel model{scene.arm, {}};
+  if (options.passive) {  // inputs that nothing drives would be asked for in the records
+    pcc::ArmSettings settings = scene.arm->settings();
+    settings.actuation = MatrixX::Zero(scene.arm->coordinates(), 0);
+    model.arm = std::make_shared<const pcc::Arm>(std::move(settings));
+  }
+  if (!options.coefficient) return model;
+  pcc::FluidicActuator actuator;
+  actuator.cubic = positive_quantity("--coefficient", *options.coefficient, kCubic);
+  if (options.delay) {
+    actuator.delay = parse_quantity(*options.delay, dimension::kTime, {.item = "--delay"});
+  }
+  actuator.check();
+  model.actuators.assign(scene.inputs.size(), actuator);
+  return model;
+}
+
+void print_records(const char* title, const std::vector<RecordFit>& records, bool fitted) {
+  if (records.empty()) return;
+  std::vector<std::vector<std::string>> rows = {{title, "NRMSE %", "mean error mm"}};
+  if (fitted) rows.front().insert(rows.front().end(), {"summed before m", "after m"});
+  for (const RecordFit& record : records) {
+    rows.push_back({record.name, fmt::format("{:.3g}", 100.0 * record.nrmse),
+                    fmt::format("{:.3g}", 1e3 * record.mean_error)});
+    if (!fitted) continue;
+    rows.back().push_back(fmt::format("{:.4g}", record.start_summed_error));
+    rows.back().push_back(fmt::format("{:.4g}", record.summed_error));
+  }
+  fmt::print("\n{}", format_table(rows));
+}
+
+nlohmann::ordered_json json_of(const std::vector<RecordFit>& records) {
+  auto json = nlohmann::ordered_json::array();
+  for (const RecordFit& record : records) {
+    json.push_back({{"name", record.name},
+                    {"nrmse", record.nrmse},
+                    {"mean_error_m", record.mean_error},
+                    {"summed_error_m", record.summed_error},
+                    {"summed_error_before_m", record.start_summed_error}});
+  }
+  return json;
+}
+
+nlohmann::ordered_json to_json(const ArmScene& scene, const ArmFit& found,
+                               const std::vector<RecordFit>& validated) {
+  nlohmann::ordered_json json = {{"scene", scene.description.name},
+                                 {"body", scene.arm->settings().name},
+                                 {"converged", found.fit.converged},
+                                 {"undetermined", found.undetermined()},
+                                 {"noise_m", found.fit.noise}};
+  for (Eigen::Index k = 0; k < found.own; ++k) {
+    const auto& p = found.fit.parameters[static_cast<std::size_t>(k)];
+    nlohmann::ordered_json one = {{"name", p.name},         {"unit", p.unit},
+                                  {"value", p.value},       {"fixed", p.fixed},
+                                  {"at_bound", p.at_bound}, {"determined", p.determined}};
+    if (!p.fixed && !p.at_bound && p.determined) {
+      one["standard_error"] = p.standard_error;
+      one["interval"] = {p.interval_lower, p.interval_upper};
+    }
+    json["parameters"].push_back(std::move(one));
+  }
+  json["records"] = json_of(found.records);
+  json["validated"] = json_of(validated);
+  return json;
+}
+
+// Measured and predicted ends of each record; what was not seen is null.
+std::string plot_data(const std::vector<MotionRecord>& measured,
+                      const std::vector<RecordFit>& predicted, std::size_t fitted) {
+  auto json = nlohmann::json::array();
+  for (std::size_t k = 0; k < measured.size(); ++k) {
+    const auto columns = [](const MatrixX& values) {
+      auto list = nlohmann::json::array();
+      for (Eigen::Index c = 0; c < values.cols(); ++c) {
+        const VectorX column = values.col(c);
+        list.push_back(std::vector<double>(column.begin(), column.end()));
+      }
+      return list;
+    };
+    const VectorX& time = measured[k].time;
+    json.push_back({{"name", measured[k].name},
+                    {"fitted", k < fitted},
+                    {"nrmse", predicted[k].nrmse},
+                    {"time", std::vector<double>(time.begin(), time.end())},
+                    {"measured", columns(measured[k].position)},
+                    {"predicted", columns(predicted[k].predicted)}});
+  }
+  return nlohmann::json{{"records", std::move(json)}}.dump();
+}
+
+// The scene with the arm as it was identified.
+std::string scene_yaml(const IdentifyOptions& options, const ArmScene& scene, const ArmFit& found) {
+  const pcc::ArmSettings& settings = found.model.arm->settings();
+  scene::Node tree = scene.description.tree;
+  for (std::size_t k = 0; k < settings.segments.size(); ++k) {
+    const pcc::Segment& segment = settings.segments[k];
+    const auto set = [&](const char* key, double value, const char* unit) {
+      scene::apply_override(
+          tree, fmt::format("bodies.{}.segments.{}.{}={} {}", settings.name, k, key, value, unit));
+    };
+    set("mass", segment.mass, "kg");
+    set("stiffness", segment.stiffness, "N m");
+    set("damping", segment.damping, "N m s");
+    if (!segment.extensible) continue;
+    set("axial_stiffness", segment.axial_stiffness, "N/m");
+    set("axial_damping", segment.axial_damping, "N s/m");
+  }
+  scene::resolve_paths(tree, std::filesystem::absolute(options.scene.file).parent_path());
+  std::string text = fmt::format("# {} with the arm '{}' as identified by sinew identify from",
+                                 options.scene.file.filename().string(), settings.name);
+  for (const RecordFit& record : found.records) {
+    text += fmt::format(" {} (NRMSE {:.2g} %)", record.name, 100.0 * record.nrmse);
+  }
+  for (std::size_t u = 0; u < found.model.actuators.size(); ++u) {
+    const pcc::FluidicActuator& actuator = found.model.actuators[u];
+    text += fmt::format("\n# {}: torque = {} N m/m^9 volume^3, {} s late", scene.inputs[u],
+                        actuator.cubic, actuator.delay);
+  }
+  return text + "\n" + scene::to_yaml(tree);
+}
+
+int run_identify(const IdentifyOptions& options) {
+  const ArmScene scene = load_arm_scene(options.scene);
+  const ArmFitSettings settings = settings_of(options);
+  const identify::ArmModel model = model_of(options, scene);
+  std::vector<MotionRecord> records = read_records(options.records, options, scene);
+  const std::vector<MotionRecord> others = read_records(options.validate, options, scene);
+  if (!scene.left_out.empty()) {
+    fmt::print("not taken into account: {}\n", fmt::join(scene.left_out, ", "));
+  }
+  std::fflush(stdout);
+  ArmFit found;
+  std::vector<RecordFit> validated;
+  {
+    ProgressBar bar(2, true);
+    bar.update(0, "fitting");
+    found = identify::fit_arm(model, records, settings);
+    bar.update(1, "validating");
+    validated = identify::validate_arm(found.model, others, settings.step);
+  }
+  fmt::print("{}", identify::fit_table(found.fit, found.own));
+  print_records("fitted to", found.records, true);
+  print_records("not fitted to", validated, false);
+  if (options.json) {
+    mesh::write_file(*options.json, to_json(scene, found, validated).dump(2) + "\n");
+  }
+  if (!options.out.empty()) {
+    mesh::write_file(options.out, scene_yaml(options, scene, found));
+    fmt::print("wrote {}\n", options.out);
+  }
+  if (options.plot.empty()) return 0;
+  std::vector<RecordFit> shown = found.records;
+  shown.insert(shown.end(), validated.begin(), validated.end());
+  records.insert(records.end(), others.begin(), others.end());
+  return draw_json("identify", plot_data(records, shown, found.records.size()), options.plot);
+}
+
+}  // namespace
+
+void add_identify(CLI::App& app, Actions& actions) {
+  CLI::App* command = app.add_subcommand(
+      "identify", "Fit an arm's masses, stiffness and damping to recorded motion");
+  const auto options = std::make_shared<IdentifyOptions>();
+  add_arm_scene_options(*command, options->scene);
+  command
+      ->add_option("RECORD", options->records,
+                   "Tables of motion: time [s], x_0 [mm], z_0 [mm], x_1 [mm] ..., and torque_0 "
+                   "[N m] or volume_0 [ml] ... of the scene's torques in their order")
+      ->required();
+  command->add_option("--fixed", options->fixed, "Known parameters: mass_1,stiffness")
+      ->delimiter(',')
+      ->type_name("NAMES")
+      ->allow_extra_args(false);
+  command->add_flag("--passive", options->passive,
+                    "Nothing drove the arm; inputs are not looked at");
+  command->add_flag("--moving", options->moving, "Records begin in motion, not at rest");
+  command
+      ->add_option("--coefficient", options->coefficient,
+                   "With volumes: a first guess of c in torque = c volume^3, N m/m^9")
+      ->type_name("C");
+  command->add_option("--delay", options->delay, "With volumes: a first guess (default: 0s)")
+      ->type_name("TIME");
+  command
+      ->add_option("--mass-spread", options->mass_spread,
+                   "How far masses may go from the scene's, as a share (default: 0.38)")
+      ->type_name("X");
+  command
+      ->add_option("--stiffness-spread", options->stiffness_spread,
+                   "The same of the stiffness (default: 0.23)")
+      ->type_name("X");
+  command->add_option("--damping", options->damping, "Its bounds (default: \"1e-3 5e-3 N m s\")")
+      ->type_name("RANGE");
+  command->add_option("--time-step", options->time_step, "Of the simulation (default: 5ms)")
+      ->type_name("TIME");
+  command->add_option("--starts", options->starts, "Of the search; the rest random (default: 1)")
+      ->type_name("N");
+  command->add_option("--seed", options->seed, "Of the random starts (default: 1)")->type_name("S");
+  command
+      ->add_option("--validate", options->validate,
+                   "A record to predict that is not fitted to; may be repeated")
+      ->type_name("RECORD")
+      ->allow_extra_args(false);
+  command->add_option("--json", options->json, "Also write the figures to a file")
+      ->type_name("FILE");
+  command->add_option("-o,--out", options->out, "YAML file: the scene with the identified arm")
+      ->type_name("FILE");
+  command->add_option("--plot", options->plot, "PNG file to draw measured and predicted ends into")
+      ->type_name("FILE");
+  command->footer(
+      "Example:\n"
+      "  sinew identify arm.yaml take_1.csv take_2.csv --fixed mass_1 --validate take_3.csv -o "
+      "identified.yaml");
+  actions[command] = [options] { return run_identify(*options); };
+}
+
+}  // namespace sinew::cli

@@ -1,0 +1,306 @@
+// sinew plan: torques that swing an arm's tip to a goal.
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "sinew/core/csv.hpp"
+#include "sinew/core/error.hpp"
+#include "sinew/mesh/write.hpp"
+#include "sinew/plan/replay.hpp"
+
+#include "arguments.hpp"
+#include "arm_limits.hpp"
+#include "arm_scene.hpp"
+#include "commands.hpp"
+#include "python_tool.hpp"
+#include "terminal.hpp"
+
+namespace sinew::cli {
+
+namespace {
+
+using plan::Method;
+using plan::Plan;
+using plan::Replay;
+using plan::Task;
+
+constexpr int kMostSeeds = 1000;
+constexpr int kMostIntervals = 10000;
+// How far a free duration goes below and above what was asked for.
+constexpr double kLeastShare = 0.5, kMostShare = 2.0;
+// A jump of a torque, as rows of a table whose times grow; a share of an interval.
+constexpr double kJump = 1e-6;
+
+struct PlanOptions {
+  ArmSceneOptions scene;
+  std::string goal;
+  std::optional<std::string> duration, rate_limit, tolerance, speed_tolerance;
+  bool free_duration = false;
+  std::string method = "hermite-simpson";
+  int intervals = plan::Grid{}.intervals;
+  int seeds = 1;
+  std::uint64_t seed = 1;
+  std::optional<std::string> json;
+  std::string out, plot;
+};
+
+/// What one random start led to.
+struct Attempt {
+  std::uint64_t seed = 0;
+  Plan plan;
+  Replay replay;  ///< where a plan was found
+};
+
+Method method_of(const std::string& name) {
+  for (const Method method : {Method::hermite_simpson, Method::backward_euler}) {
+    if (name == plan::method_name(method)) return method;
+  }
+  throw Error(ErrorKind::unknown_choice, {.item = "--method"},
+              fmt::format("there is no method '{}'", name),
+              "write hermite-simpson or backward-euler");
+}
+
+Task task_of(const PlanOptions& options, const ArmScene& scene) {
+  Task task;
+  task.goal.position = parse_vector3(options.goal, dimension::kLength, {.item = "--goal"});
+  if (options.tolerance) {
+    task.goal.tolerance = positive_quantity("--tolerance", *options.tolerance, dimension::kLength);
+  }
+  if (options.speed_tolerance) {
+    task.goal.speed_tolerance =
+        positive_quantity("--speed-tolerance", *options.speed_tolerance, dimension::kVelocity);
+  }
+  task.limits = limits_of(scene);
+  if (options.rate_limit) {
+    // A torque's dimension is an energy's, so that its rate is a power's.
+    const double rate = positive_quantity("--rate-limit", *options.rate_limit, dimension::kPower);
+    task.limits.torque_rate = task.limits.torque_rate.cwiseMin(rate);
+  }
+  task.grid.method = method_of(options.method);
+  require_range("--intervals", options.intervals, 2, kMostIntervals);
+  task.grid.intervals = options.intervals;
+  if (options.duration) {
+    task.grid.duration = positive_quantity("--duration", *options.duration, dimension::kTime);
+  }
+  if (options.free_duration) {
+    task.grid.least_duration = kLeastShare * task.grid.duration;
+    task.grid.most_duration = kMostShare * task.grid.duration;
+  }
+  return plan::completed(*scene.arm, std::move(task));
+}
+
+std::vector<Attempt> search(const PlanOptions& options, const ArmScene& scene, const Task& task) {
+  plan::Planner planner(scene.arm, task);
+  std::vector<Attempt> attempts;
+  ProgressBar bar(options.seeds, true);
+  const Interrupt interrupt;
+  for (int k = 0; k < options.seeds && !Interrupt::requested(); ++k) {
+    bar.update(k, fmt::format("start {} of {}", k + 1, options.seeds));
+    Attempt attempt{options.seed + static_cast<std::uint64_t>(k), {}, {}};
+    attempt.plan = planner.plan(attempt.seed);
+    if (attempt.plan.found()) attempt.replay = plan::replay(scene.arm, task, attempt.plan);
+    attempts.push_back(std::move(attempt));
+  }
+  return attempts;
+}
+
+void print_attempts(const std::vector<Attempt>& attempts) {
+  std::vector<std::vector<std::string>> rows = {{"seed", "status", "iterations", "time s",
+                                                 "duration s", "cost", "tip error cm",
+                                                 "tip speed cm/s"}};
+  for (const Attempt& attempt : attempts) {
+    const Plan& plan = attempt.plan;
+    rows.push_back({fmt::format("{}", attempt.seed), std::string(plan::status_name(plan.status)),
+                    fmt::format("{}", plan.iterations), fmt::format("{:.2f}", plan.seconds)});
+    if (!plan.found()) continue;
+    for (const double value : {plan.duration(), plan.objective}) {
+      rows.back().push_back(fmt::format("{:.4g}", value));
+    }
+    for (const double value : {attempt.replay.tip_error, attempt.replay.tip_speed}) {
+      rows.back().push_back(fmt::format("{:.3f}", 100.0 * value));
+    }
+  }
+  fmt::print("{}tip error and speed are those of the torques carried out in steps of 1 ms\n",
+             format_table(rows));
+}
+
+// The cheapest plan; null when there is none.
+const Attempt* best_of(const std::vector<Attempt>& attempts) {
+  const Attempt* best = nullptr;
+  for (const Attempt& attempt : attempts) {
+    if (!attempt.plan.found()) continue;
+    if (best == nullptr || attempt.plan.objective < best->plan.objective) best = &attempt;
+  }
+  return best;
+}
+
+[[noreturn]] void give_up(const std::vector<Attempt>& attempts) {
+  const auto all = [&](plan::Status status) {
+    return std::ranges::all_of(attempts, [&](const Attempt& a) { return a.plan.status == status; });
+  };
+  const bool infeasible = all(plan::Status::infeasible);
+  throw Error(
+      ErrorKind::not_converged, {.item = "plan"},
+      fmt::format("none of {} start{} led to a plan{}", attempts.size(),
+                  attempts.size() == 1 ? "" : "s", infeasible ? ": all are infeasible" : ""),
+      "give a longer --duration or --free-duration, more --seeds or --intervals, wider "
+      "tolerances, or limits that leave more torque");
+}
+
+// Times and torques as signals of files read them: straight lines between rows.
+std::string torque_table(const ArmScene& scene, const Plan& plan) {
+  std::vector<std::string> names = {"time [s]"};
+  for (const std::string& input : scene.inputs) names.push_back(input + " [N m]");
+  std::string text;
+  append_csv_header(text, names);
+  std::vector<double> row(names.size());
+  const auto add = [&](double time, Eigen::Index knot) {
+    row[0] = time;
+    for (std::size_t u = 1; u < row.size(); ++u) {
+      row[u] = plan.knots.torque(knot, static_cast<Eigen::Index>(u) - 1);
+    }
+    append_csv_row(text, row);
+  };
+  const VectorX& times = plan.knots.times;
+  const bool constant = plan.method == Method::backward_euler;
+  if (!constant) add(times[0], 0);
+  for (Eigen::Index k = 1; k < times.size(); ++k) {
+    // An interval's constant torque is that of its end.
+    const double jump = k == 1 ? 0.0 : kJump * (times[k] - times[k - 1]);
+    if (constant) add(times[k - 1] + jump, k);
+    add(times[k], k);
+  }
+  return text;
+}
+
+nlohmann::ordered_json rows_of(const MatrixX& values) {
+  auto rows = nlohmann::ordered_json::array();
+  for (Eigen::Index i = 0; i < values.rows(); ++i) {
+    const VectorX row = values.row(i);
+    rows.push_back(std::vector<double>(row.begin(), row.end()));
+  }
+  return rows;
+}
+
+nlohmann::ordered_json to_json(const ArmScene& scene, const Task& task,
+                               const std::vector<Attempt>& attempts) {
+  const auto list = [](const VectorX& v) { return std::vector<double>(v.begin(), v.end()); };
+  nlohmann::ordered_json json = {{"scene", scene.description.name},
+                                 {"body", scene.arm->settings().name},
+                                 {"goal_m", list(task.goal.position)},
+                                 {"method", plan::method_name(task.grid.method)},
+                                 {"actuators", scene.inputs}};
+  for (const Attempt& attempt : attempts) {
+    nlohmann::ordered_json one = {{"seed", attempt.seed},
+                                  {"status", plan::status_name(attempt.plan.status)},
+                                  {"iterations", attempt.plan.iterations},
+                                  {"seconds", attempt.plan.seconds}};
+    if (attempt.plan.found()) {
+      one["cost"] = attempt.plan.objective;
+      one["duration_s"] = attempt.plan.duration();
+      one["tip_error_m"] = attempt.replay.tip_error;
+      one["tip_speed_m_s"] = attempt.replay.tip_speed;
+    }
+    json["starts"].push_back(std::move(one));
+  }
+  const Attempt* best = best_of(attempts);
+  if (best == nullptr) return json;
+  json["seed"] = best->seed;
+  json["tip_error_m"] = best->replay.tip_error;
+  json["tip_speed_m_s"] = best->replay.tip_speed;
+  json["times_s"] = list(best->plan.knots.times);
+  json["torque_N_m"] = rows_of(best->plan.knots.torque);
+  json["replay"] = {{"times_s", list(best->replay.times)},
+                    {"torque_N_m", rows_of(best->replay.torque)},
+                    {"tip_m", rows_of(best->replay.tip)},
+                    {"tip_velocity_m_s", rows_of(best->replay.tip_velocity)}};
+  return json;
+}
+
+void say_how_to_play(const PlanOptions& options, const ArmScene& scene, const Plan& plan) {
+  const std::string table = std::filesystem::absolute(options.out).lexically_normal().string();
+  fmt::print("wrote {}; to play it:\n  sinew run {} --duration {:.6g}s", options.out,
+             options.scene.file.string(), plan.duration());
+  for (const std::string& input : scene.inputs) {
+    fmt::print(" \\\n    --set 'actuators.{}.command.torque={{file: {}, column: {}}}'", input,
+               table, input);
+  }
+  fmt::print("\n");
+}
+
+int make_plan(const PlanOptions& options) {
+  require_range("--seeds", options.seeds, 1, kMostSeeds);
+  const ArmScene scene = load_arm_scene(options.scene);
+  require_inputs(scene);
+  const Task task = task_of(options, scene);
+  print_left_out(scene);
+  const std::vector<Attempt> attempts = search(options, scene, task);
+  if (attempts.empty()) return 0;  // interrupted
+  print_attempts(attempts);
+  const nlohmann::ordered_json json = to_json(scene, task, attempts);
+  if (options.json) mesh::write_file(*options.json, json.dump(2) + "\n");
+  const Attempt* best = best_of(attempts);
+  if (best == nullptr) give_up(attempts);
+  if (!options.out.empty()) {
+    mesh::write_file(options.out, torque_table(scene, best->plan));
+    say_how_to_play(options, scene, best->plan);
+  }
+  return options.plot.empty() ? 0 : draw_json("plan", json.dump(), options.plot);
+}
+
+}  // namespace
+
+void add_plan(CLI::App& app, Actions& actions) {
+  CLI::App* command = app.add_subcommand("plan", "Plan torques that bring an arm's tip to a goal");
+  const auto options = std::make_shared<PlanOptions>();
+  add_arm_scene_options(*command, options->scene);
+  command->add_option("--goal", options->goal, "Where the tip is to be: \"20 0 -40 cm\"")
+      ->required()
+      ->type_name("POINT");
+  command->add_option("--duration", options->duration, "Of the motion (default: 1.6s)")
+      ->type_name("TIME");
+  command->add_flag("--free-duration", options->free_duration,
+                    "Let it be chosen, from half of that to twice that");
+  command
+      ->add_option("--rate-limit", options->rate_limit,
+                   "Of every torque, beside the scene's own: 2Nm/s")
+      ->type_name("RATE");
+  command->add_option("--tolerance", options->tolerance, "Of the tip's distance (default: 2mm)")
+      ->type_name("LENGTH");
+  command
+      ->add_option("--speed-tolerance", options->speed_tolerance,
+                   "Of the tip's speed at the end (default: 5mm/s)")
+      ->type_name("SPEED");
+  command
+      ->add_option("--method", options->method,
+                   "hermite-simpson or backward-euler (default: hermite-simpson)")
+      ->type_name("NAME");
+  command->add_option("--intervals", options->intervals, "Between knots (default: 50)")
+      ->type_name("N");
+  command->add_option("--seeds", options->seeds, "Random starts; the cheapest plan is kept (1)")
+      ->type_name("N");
+  command->add_option("--seed", options->seed, "Of the first start (default: 1)")->type_name("S");
+  command->add_option("--json", options->json, "Also write the figures to a file")
+      ->type_name("FILE");
+  command->add_option("-o,--out", options->out, "CSV file of times and torques, for scenes")
+      ->type_name("FILE");
+  command->add_option("--plot", options->plot, "PNG file to draw torques and the tip's path into")
+      ->type_name("FILE");
+  command->footer(
+      "Example:\n"
+      "  sinew plan examples/fluidic_arm/arm.yaml --goal \"20 0 -40 cm\" --rate-limit 2Nm/s -o "
+      "plan.csv\n"
+      "The actuators of type torque drive it, within their limits.");
+  actions[command] = [options] { return make_plan(*options); };
+}
+
+}  // namespace sinew::cli

@@ -1,0 +1,291 @@
+"""sinew reach, plan and identify from outside, their numbers against the Python package's.
+
+    SINEW_PROGRAM=build/release/bin/sinew /usr/bin/python3 -m pytest tests/cli
+"""
+
+import csv
+import json
+import os
+import pathlib
+import subprocess
+
+import numpy as np
+import pytest
+
+PROGRAM = os.environ.get("SINEW_PROGRAM", "build/release/bin/sinew")
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+ARM = ROOT / "examples" / "fluidic_arm" / "arm.yaml"
+DONE, FAILED, WRONG = 0, 1, 2
+TORQUES = [0.12, 0.13, 0.18]  # N m, as in the scene
+ACTUATION = np.vstack([np.zeros(3), np.eye(3)])  # its first segment has no actuator
+
+
+def sinew(*arguments, cwd=None, timeout=300):
+    words = [os.path.abspath(PROGRAM), *map(str, arguments)]
+    return subprocess.run(words, capture_output=True, text=True, cwd=cwd, timeout=timeout, check=False)
+
+
+def needs(command):
+    if "Not in this build" in sinew(command, "--help").stdout:
+        pytest.skip(f"built without what `sinew {command}` needs")
+
+
+def module(name):
+    return pytest.importorskip(f"sinew.{name}")
+
+
+def rows_of(path):
+    with open(path, newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def scene_arm(masses=(0.19, 0.146, 0.09, 0.09), stiffness=0.108, damping=4.2e-3, actuation=ACTUATION):
+    return module("pcc").Arm([0.14] * 4, masses, stiffness, damping, actuation=actuation)
+
+
+def edited(tmp_path, *edits, name="arm.yaml"):
+    """The example with some of its text replaced."""
+    text = ARM.read_text(encoding="utf-8")
+    for old, new in edits:
+        assert old in text
+        text = text.replace(old, new)
+    (tmp_path / name).write_text(text, encoding="utf-8")
+    return tmp_path / name
+
+
+def test_reach_tells_what_python_does(tmp_path):
+    needs("reach")
+    plan = module("plan")
+    goal = [0.20, 0.0, -0.40]
+    done = sinew("reach", ARM, "--samples", "60", "--seed", "3", "--goal", "20 0 -40 cm", "--goal", "0 0 -56 cm",
+                 "--json", "reach.json", "-o", "reach.csv", "--plot", "reach.png", cwd=tmp_path)
+    assert done.returncode == DONE, done.stderr
+    assert done.stderr == "", "no progress bar unless there is a terminal"
+    told = json.loads((tmp_path / "reach.json").read_text())
+    arm = scene_arm()
+    map_ = plan.sample_reach(arm, TORQUES, 60, 3)
+    np.testing.assert_allclose(told["tip_m"], map_["tip"], atol=1e-9)
+    far, straight = told["goals"]
+    nearest = plan.nearest_reach(arm, TORQUES, goal)
+    assert far["distance_m"] == pytest.approx(nearest["distance"], rel=1e-6) and far["distance_m"] > 0.05
+    np.testing.assert_allclose(far["tip_m"], nearest["tip"], atol=1e-6)
+    assert far["proof"] == plan.prove_out_of_reach(arm, TORQUES, goal)["verdict"] == "out-of-reach"
+    assert straight["proof"] == "reachable" and straight["distance_m"] < 1e-4
+    assert "out-of-reach" in done.stdout and "reachable" in done.stdout
+    rows = rows_of(tmp_path / "reach.csv")
+    assert len(rows) == len(map_["tip"]) > 60
+    assert float(rows[5]["z [m]"]) == pytest.approx(map_["tip"][5, 2], abs=1e-9)
+    assert float(rows[5]["fourth [N m]"]) == pytest.approx(map_["torque"][5, 2], abs=1e-12)
+    assert (tmp_path / "reach.png").read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize("step_ms", [2, 1])
+def test_a_planned_motion_runs_to_its_goal(tmp_path, step_ms):
+    needs("plan")
+    plan = module("plan")
+    goal = np.array([0.20, 0.0, -0.40])
+    done = sinew("plan", ARM, "--goal", "20 0 -40 cm", "--rate-limit", "2Nm/s", "--seed", "1", "-o", "plan.csv",
+                 "--json", "plan.json", "--plot", "plan.png", cwd=tmp_path)
+    assert done.returncode == DONE, done.stderr
+    assert done.stderr == "" and "solved" in done.stdout
+    assert (tmp_path / "plan.png").read_bytes().startswith(b"\x89PNG")
+    told = json.loads((tmp_path / "plan.json").read_text())
+    task = plan.Task(scene_arm(), goal, TORQUES, torque_rate_limits=2.0)
+    found = task.solve(1)
+    replay = task.replay(found)
+    np.testing.assert_allclose(told["torque_N_m"], found.torque, atol=1e-6)
+    assert told["tip_error_m"] == pytest.approx(replay.tip_error, abs=1e-5)
+    assert told["tip_speed_m_s"] == pytest.approx(replay.tip_speed, abs=1e-4)
+    rows = rows_of(tmp_path / "plan.csv")
+    assert list(rows[0]) == ["time [s]", "second [N m]", "third [N m]", "fourth [N m]"]
+    torque = np.array([[float(cell) for cell in row.values()] for row in rows])
+    assert np.all(np.abs(torque[:, 1:]) <= np.array(TORQUES) + 1e-6)
+    assert np.abs(np.diff(torque[:, 1:], axis=0) / np.diff(torque[:, 0])[:, None]).max() < 2.0 + 1e-4
+    # What the command says to type, with the scene's own step.
+    words = [word.strip(" '\\") for word in done.stdout.split("--set")[1:]]
+    run = sinew("run", ARM, "--duration", "1.6s", "--out", "out", "--quiet", "--set", f"time_step={step_ms}ms",
+                *[word for value in words for word in ("--set", value.splitlines()[0].strip(" '\\"))], cwd=tmp_path)
+    assert run.returncode == DONE, run.stderr
+    last = rows_of(tmp_path / "out" / "run.csv")[-1]
+    tip = np.array([float(last[f"tip.{axis} [m]"]) for axis in "xyz"])
+    assert float(last["time [s]"]) == pytest.approx(1.6)
+    # Another integrator at a coarser step than the replay's: its error on top, falling with the step.
+    assert np.linalg.norm(tip - goal) < 2e-3 + 1e-3 * step_ms
+
+
+def test_plans_of_backward_euler_are_steps_of_the_simulation(tmp_path):
+    needs("plan")
+    done = sinew("plan", ARM, "--goal", "20 0 -40 cm", "--method", "backward-euler", "--intervals", "80", "--duration",
+                 "1.6s", "--seeds", "2", "-o", "plan.csv", "--json", "plan.json", cwd=tmp_path)
+    assert done.returncode == DONE, done.stderr
+    starts = json.loads((tmp_path / "plan.json").read_text())["starts"]
+    assert [start["seed"] for start in starts] == [1, 2]
+    rows = rows_of(tmp_path / "plan.csv")
+    assert len(rows) == 160, "an interval's torque is constant: a row at each of its ends"
+    run = sinew("run", ARM, "--duration", "1.6s", "--out", "out", "--quiet", "--set", "time_step=20ms", "--set",
+                "integrator=backward-euler", *[word for name in ("second", "third", "fourth") for word in
+                ("--set", f"actuators.{name}.command.torque={{file: {tmp_path}/plan.csv, column: {name}}}")],
+                cwd=tmp_path)
+    assert run.returncode == DONE, run.stderr
+    last = rows_of(tmp_path / "out" / "run.csv")[-1]
+    tip = np.array([float(last[f"tip.{axis} [m]"]) for axis in "xyz"])
+    assert np.linalg.norm(tip - [0.2, 0.0, -0.4]) < 2e-3 + 1e-4
+
+
+def test_a_free_duration_and_tolerances(tmp_path):
+    needs("plan")
+    done = sinew("plan", ARM, "--goal", "20 0 -40 cm", "--free-duration", "--tolerance", "1cm", "--speed-tolerance",
+                 "2cm/s", "--json", "plan.json", cwd=tmp_path)
+    assert done.returncode == DONE, done.stderr
+    told = json.loads((tmp_path / "plan.json").read_text())
+    assert 0.8 <= told["times_s"][-1] <= 3.2
+    assert told["starts"][0]["duration_s"] == pytest.approx(told["times_s"][-1])
+
+
+def test_what_cannot_be_planned_fails_with_its_status(tmp_path):
+    needs("plan")
+    done = sinew("plan", ARM, "--goal", "-30 0 -30 cm", "--duration", "100ms", "-o", "plan.csv", cwd=tmp_path)
+    assert done.returncode == FAILED
+    assert "not-converged" in done.stderr and "--duration" in done.stderr
+    assert "infeasible" in done.stdout or "limit" in done.stdout or "failed" in done.stdout
+    assert not (tmp_path / "plan.csv").exists()
+
+
+@pytest.mark.parametrize("command", ["plan", "reach"])
+def test_bad_goals_limits_and_bodies(tmp_path, command):
+    needs(command)
+    crossed = edited(tmp_path, ("{min: -0.12 N m, max: 0.12 N m}", "{min: 0.12 N m, max: -0.12 N m}"))
+    beam = ROOT / "examples" / "beam" / "swing.yaml"
+    for scene, goal, more, words in (
+            (ARM, "0 0 -57 cm", [], ["goal", "0.57 m", "0.56 m", "out-of-range"]),
+            (ARM, "20 0 cm", [], ["--goal", "wrong-length"]),
+            (ARM, "20 0 -40 kg", [], ["--goal", "wrong-dimension"]),
+            (crossed, "20 0 -40 cm", [], ["limits", "contradictory-limits"]),
+            (beam, "20 0 -40 cm", [], ["no arm", "type pcc", "wrong-type"]),
+            (ARM, "20 0 -40 cm", ["--body", "amr"], ["did you mean 'arm'?", "unknown-name"]),
+            (ARM, "20 0 -40 cm", ["--set", "bodies.arm.segments.1.mass=-1 g"], ["-1 g", "out-of-range"])):
+        wrong = sinew(command, scene, "--goal", goal, *more)
+        assert wrong.returncode == WRONG, (goal, more, wrong.stdout)
+        for word in words:
+            assert word in wrong.stderr, (word, wrong.stderr)
+
+
+def test_reach_wants_limits(tmp_path):
+    needs("reach")
+    free = edited(tmp_path, ("    limits: {torque: {min: -0.13 N m, max: 0.13 N m}}\n", ""))
+    wrong = sinew("reach", free)
+    assert wrong.returncode == WRONG and "actuators.third" in wrong.stderr and "limits:" in wrong.stderr
+
+
+@pytest.fixture(name="takes", scope="module")
+def record_takes(tmp_path_factory):
+    """Two records of a driven arm whose masses, stiffness and damping are not the scene's."""
+    needs("identify")
+    identify = module("identify")
+    folder = tmp_path_factory.mktemp("takes")
+    truth = scene_arm((0.21, 0.135, 0.1, 0.085), 0.115, 3.6e-3)
+    for seed in (1, 2):
+        random = np.random.default_rng(seed)
+        time = np.arange(0.0, 3.0001, 0.02)
+        frequency, phase = random.uniform(2, 8, (2, 3)), random.uniform(0, 6, (2, 3))
+        torque = 0.04 * sum(np.sin(np.outer(time, f) + p) for f, p in zip(frequency, phase))
+        torque *= np.clip(2 * time, 0, 1)[:, None]
+        ends = identify.predict_motion(truth, time, np.zeros(4), inputs=torque, time_step=2e-3)
+        ends += 3e-4 * random.standard_normal(ends.shape)
+        ends[random.random(ends.shape[:2]) < 0.02] = np.nan
+        names = ["time [s]"] + [f"{axis}_{k} [mm]" for k in range(4) for axis in "xz"]
+        names += [f"torque_{k} [N m]" for k in range(3)]
+        table = np.column_stack([time, 1e3 * ends[:, :, [0, 2]].reshape(len(time), -1), torque])
+        cells = [",".join("" if np.isnan(x) else f"{x:.9g}" for x in row) for row in table]
+        (folder / f"take_{seed}.csv").write_text("\n".join([",".join(names), *cells]) + "\n")
+    return folder
+
+
+def test_identify_finds_what_python_does(takes, tmp_path):
+    identify = module("identify")
+    done = sinew("identify", ARM, takes / "take_1.csv", "--fixed", "mass_0", "--set", "bodies.arm.segments.0.mass=210g",
+                 "--validate", takes / "take_2.csv", "--json", "arm.json", "-o", "found.yaml", "--plot", "arm.png",
+                 cwd=tmp_path)
+    assert done.returncode == DONE, done.stderr
+    assert done.stderr == ""
+    told = json.loads((tmp_path / "arm.json").read_text())
+    start = scene_arm((0.21, 0.146, 0.09, 0.09))
+    record = identify.read_motion(takes / "take_1.csv", segments=4)
+    found = identify.fit_arm(start, [record], fixed=["mass_0"])
+    truth = {"mass_0": 0.21, "mass_1": 0.135, "mass_2": 0.1, "mass_3": 0.085, "stiffness": 0.115, "damping": 3.6e-3}
+    assert [one["name"] for one in told["parameters"]] == list(truth)
+    for one in told["parameters"]:
+        assert one["value"] == pytest.approx(found.fit.values[list(truth).index(one["name"])], rel=1e-6)
+        assert one["name"] in done.stdout
+        assert one["value"] == pytest.approx(truth[one["name"]], rel=0.03)
+    assert told["parameters"][0]["fixed"] and "interval" not in told["parameters"][0]
+    assert told["undetermined"] == found.undetermined == 0
+    checked = identify.validate_arm(found, [identify.read_motion(takes / "take_2.csv", segments=4)])[0]
+    assert told["validated"][0]["nrmse"] == pytest.approx(checked.nrmse, rel=1e-4)
+    assert checked.nrmse < 0.05
+    assert (tmp_path / "arm.png").read_bytes().startswith(b"\x89PNG")
+    info = json.loads(sinew("info", "found.yaml", "--json", cwd=tmp_path).stdout)
+    assert info["bodies"][0]["mass_kg"] == pytest.approx(sum(p["value"] for p in told["parameters"][:4]), rel=1e-9)
+    # The scene that was written holds them: fitted once more, they stay.
+    again = sinew("identify", "found.yaml", takes / "take_1.csv", "--fixed", "mass_0", "--json", "again.json",
+                  cwd=tmp_path)
+    assert again.returncode == DONE, again.stderr
+    for one, other in zip(told["parameters"], json.loads((tmp_path / "again.json").read_text())["parameters"]):
+        assert other["value"] == pytest.approx(one["value"], rel=1e-4)
+    assert sinew("run", "found.yaml", "--duration", "20ms", "--quiet", "--out", "out", cwd=tmp_path).returncode == DONE
+
+
+def test_a_passive_arm_shows_the_scale_that_motion_leaves_open(tmp_path):
+    needs("identify")
+    identify = module("identify")
+    truth = scene_arm((0.21, 0.135, 0.1, 0.085), 0.115, 3.6e-3)
+    time = np.arange(0.0, 2.0, 0.02)
+    ends = identify.predict_motion(truth, time, np.array([0.3, 0.5, -0.4, 0.8]), time_step=2e-3)
+    ends += 3e-4 * np.random.default_rng(1).standard_normal(ends.shape)
+    names = ["time [s]"] + [f"{axis}_{k} [m]" for k in range(4) for axis in "xyz"]
+    np.savetxt(tmp_path / "let_go.csv", np.column_stack([time, ends.reshape(len(time), 12)]), delimiter=",",
+               header=",".join(names), comments="")
+    done = sinew("identify", ARM, "let_go.csv", "--passive", "--json", "arm.json", cwd=tmp_path)
+    assert done.returncode == DONE, done.stderr
+    assert "not determined by the data" in done.stdout and "fix one of them" in done.stdout
+    assert json.loads((tmp_path / "arm.json").read_text())["undetermined"] == 1
+    asked = sinew("identify", ARM, "let_go.csv", cwd=tmp_path)
+    assert asked.returncode == WRONG and "--passive" in asked.stderr and "wrong-columns" in asked.stderr
+
+
+def test_bad_records(takes, tmp_path):
+    lines = (takes / "take_1.csv").read_text().splitlines()
+    swapped = lines[:5] + [lines[6], lines[5]] + lines[7:]
+    for name, rows, words in (("short", lines[:6], ["short", "too-few-points"]),
+                              ("back", swapped, ["0.08 s", "non-monotonic-time"]),
+                              ("volumes", [lines[0].replace("torque", "volume").replace("N m", "ml"), *lines[1:]],
+                               ["--coefficient", "bad-argument"])):
+        (tmp_path / f"{name}.csv").write_text("\n".join(rows) + "\n")
+        wrong = sinew("identify", ARM, f"{name}.csv", "-o", "found.yaml", cwd=tmp_path)
+        assert wrong.returncode == WRONG, wrong.stdout
+        for word in words:
+            assert word in wrong.stderr, (word, wrong.stderr)
+    for arguments, words in (
+            ([ARM, takes / "take_1.csv", "--fixed", "mas_1"], ["did you mean 'mass_1'?", "unknown-name"]),
+            ([ARM, takes / "none.csv"], ["file-not-found"]),
+            ([ROOT / "examples" / "beam" / "swing.yaml", takes / "take_1.csv"], ["type pcc", "wrong-type"]),
+            ([ARM, takes / "take_1.csv", "--damping", "5e-3 1e-3 N m s"], ["damping", "contradictory-limits"])):
+        wrong = sinew("identify", *arguments, "-o", "found.yaml", cwd=tmp_path)
+        assert wrong.returncode == WRONG, wrong.stdout
+        for word in words:
+            assert word in wrong.stderr, (word, wrong.stderr)
+    assert not (tmp_path / "found.yaml").exists()
+
+
+def test_signals_read_columns_by_name(tmp_path):
+    (tmp_path / "pull.csv").write_text("time [s],other [N m],second [mN m]\n0,1,0\n1,1,50\n")
+    command = "{torque: {sine: {amplitude: 0.10 N m, period: 1.4 s}}}"
+    scene = edited(tmp_path, (f"max: 0.12 N m}}}}}}\n    command: {command}",
+                              "max: 0.12 N m}}\n    command: {torque: {file: pull.csv, column: second}}"))
+    done = sinew("run", scene, "--duration", "0.5s", "--quiet", "--out", "out", cwd=tmp_path)
+    assert done.returncode == DONE, done.stderr
+    last = rows_of(tmp_path / "out" / "run.csv")[-1]
+    (name,) = [key for key in last if key.startswith("second.") and key.endswith("[N m]")]
+    assert float(last[name]) == pytest.approx(0.025, abs=1e-9), "the heading's unit holds"
+    missing = sinew("run", scene, "--quiet", "--set", "actuators.second.command.torque={file: pull.csv, column: secnd}")
+    assert missing.returncode == WRONG and "second [mN m]" in missing.stderr and "wrong-columns" in missing.stderr
