@@ -258,7 +258,9 @@ int run_identify(const IdentifyOptions& options) {
     bar.update(0, "fitting");
     found = identify::fit_arm(model, records, settings);
     bar.update(1, "validating");
-    validated = identify::validate_arm(found.model, others, settings.step);
+    if (!others.empty()) {
+      validated = identify::validate_arm(found.model, others, settings.step);
+    }
   }
   fmt::print("{}", identify::fit_table(found.fit, found.own));
   print_records("fitted to", found.records, true);

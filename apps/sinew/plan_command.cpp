@@ -144,16 +144,15 @@ const Attempt* best_of(const std::vector<Attempt>& attempts) {
 }
 
 [[noreturn]] void give_up(const std::vector<Attempt>& attempts) {
-  const auto all = [&](plan::Status status) {
-    return std::ranges::all_of(attempts, [&](const Attempt& a) { return a.plan.status == status; });
-  };
-  const bool infeasible = all(plan::Status::infeasible);
-  throw Error(
-      ErrorKind::not_converged, {.item = "plan"},
-      fmt::format("none of {} start{} led to a plan{}", attempts.size(),
-                  attempts.size() == 1 ? "" : "s", infeasible ? ": all are infeasible" : ""),
-      "give a longer --duration or --free-duration, more --seeds or --intervals, wider "
-      "tolerances, or limits that leave more torque");
+  const plan::Status status = attempts.front().plan.status;
+  const bool alike = std::ranges::all_of(
+      attempts, [&](const Attempt& attempt) { return attempt.plan.status == status; });
+  throw Error(ErrorKind::not_converged, {.item = "plan"},
+              fmt::format("no plan was found from {} start{}: {}", attempts.size(),
+                          attempts.size() == 1 ? "" : "s",
+                          alike ? plan::status_name(status) : "see the table"),
+              "give a longer --duration or --free-duration, more --seeds or --intervals, wider "
+              "tolerances, or limits that leave more torque");
 }
 
 // Times and torques as signals of files read them: straight lines between rows.

@@ -406,7 +406,7 @@ def test_fit_writes_a_material_that_a_scene_takes(scene, tmp_path):
     stress = 12.0 * 2 * (stretch - stretch**-2) + 0.3 * 4 * (stretch**2 + 2 / stretch - 3) * (stretch - stretch**-2)
     table = "\n".join(f"{a:.6f},{b:.8f}" for a, b in zip(stretch, stress))
     (tmp_path / "tensile.csv").write_text("stretch,nominal stress [kPa]\n" + table + "\n")
-    if sinew("fit", "--help").returncode != DONE:
+    if "Not in this build" in sinew("fit", "--help").stdout:
         pytest.skip("built without Ceres")
     done = sinew("fit", "tensile.csv", "--model", "yeoh2", "-o", "rubber.yaml", "--plot", "rubber.png", cwd=tmp_path)
     assert done.returncode == DONE, done.stderr
