@@ -254,6 +254,31 @@ def test_a_passive_arm_shows_the_scale_that_motion_leaves_open(tmp_path):
     assert asked.returncode == WRONG and "--passive" in asked.stderr and "wrong-columns" in asked.stderr
 
 
+def test_identify_finds_actuators_driven_by_volumes(tmp_path):
+    needs("identify")
+    identify, pcc = module("identify"), module("pcc")
+    time = np.arange(0.0, 5.0, 0.02)
+    fade = np.sin(np.pi * np.clip(time, 0, 0.5)) ** 2
+    volumes = np.stack([fade * pcc.Excitation(3e-5, seed=k).at(time) for k in range(3)], axis=1)
+    ends = identify.predict_motion(scene_arm(), time, np.zeros(4), inputs=volumes,
+                                   actuators=[pcc.FluidicActuator(4e12, delay=0.08)] * 3, time_step=2e-3)
+    ends += 3e-4 * np.random.default_rng(1).standard_normal(ends.shape)
+    names = ["time [s]"] + [f"{axis}_{k} [m]" for k in range(4) for axis in "xyz"]
+    names += [f"volume_{k} [ml]" for k in range(3)]
+    np.savetxt(tmp_path / "take.csv", np.column_stack([time, ends.reshape(len(time), 12), 1e6 * volumes]),
+               delimiter=",", header=",".join(names), comments="")
+    done = sinew("identify", ARM, "take.csv", "--coefficient", "2.8e12", "--delay", "20ms", "--fixed",
+                 "mass_0,mass_1", "--json", "arm.json", "-o", "found.yaml", cwd=tmp_path)
+    assert done.returncode == DONE, done.stderr
+    found = {one["name"]: one for one in json.loads((tmp_path / "arm.json").read_text())["parameters"]}
+    assert found["mass_0"]["fixed"] and found["mass_1"]["fixed"] and not found["mass_2"]["fixed"]
+    for k in range(3):
+        assert found[f"coefficient_{k}"]["value"] == pytest.approx(4e12, rel=0.03)
+    assert found["delay"]["value"] == pytest.approx(0.08, abs=1e-3)
+    # Volumes are no torques: scenes do not take them, and what was found is said where it is not forgotten.
+    assert "second: torque =" in (tmp_path / "found.yaml").read_text()
+
+
 def test_bad_records(takes, tmp_path):
     lines = (takes / "take_1.csv").read_text().splitlines()
     swapped = lines[:5] + [lines[6], lines[5]] + lines[7:]
