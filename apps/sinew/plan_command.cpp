@@ -69,6 +69,17 @@ Method method_of(const std::string& name) {
               "write hermite-simpson or backward-euler");
 }
 
+// A torque's dimension is an energy's, so that its rate is a power's, and would be called one.
+double torque_rate(const std::string& text) {
+  try {
+    return positive_quantity("--rate-limit", text, dimension::kPower);
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::wrong_dimension) throw;
+    throw Error(error.kind(), error.place(), fmt::format("'{}' is no torque a second", text),
+                "write for example 2Nm/s");
+  }
+}
+
 Task task_of(const PlanOptions& options, const ArmScene& scene) {
   Task task;
   task.goal.position = parse_vector3(options.goal, dimension::kLength, {.item = "--goal"});
@@ -81,9 +92,7 @@ Task task_of(const PlanOptions& options, const ArmScene& scene) {
   }
   task.limits = limits_of(scene);
   if (options.rate_limit) {
-    // A torque's dimension is an energy's, so that its rate is a power's.
-    const double rate = positive_quantity("--rate-limit", *options.rate_limit, dimension::kPower);
-    task.limits.torque_rate = task.limits.torque_rate.cwiseMin(rate);
+    task.limits.torque_rate = task.limits.torque_rate.cwiseMin(torque_rate(*options.rate_limit));
   }
   task.grid.method = method_of(options.method);
   require_range("--intervals", options.intervals, 2, kMostIntervals);
@@ -229,6 +238,7 @@ void say_how_to_play(const PlanOptions& options, const ArmScene& scene, const Pl
   const std::string table = std::filesystem::absolute(options.out).lexically_normal().string();
   fmt::print("wrote {}; to play it:\n  sinew run {} --duration {:.6g}s", options.out,
              options.scene.file.string(), plan.duration());
+  for (const std::string& set : options.scene.overrides) fmt::print(" \\\n    --set '{}'", set);
   for (const std::string& input : scene.inputs) {
     fmt::print(" \\\n    --set 'actuators.{}.command.torque={{file: {}, column: {}}}'", input,
                table, input);

@@ -143,6 +143,16 @@ def test_a_free_duration_and_tolerances(tmp_path):
     assert told["starts"][0]["duration_s"] == pytest.approx(told["times_s"][-1])
 
 
+def test_bad_options_of_plans():
+    needs("plan")
+    for arguments, words in ((["--rate-limit", "2N"], ["--rate-limit", "'2N'", "2Nm/s", "wrong-dimension"]),
+                             (["--duration", "-1s"], ["--duration", "not positive"]),
+                             (["--method", "euler"], ["'euler'", "backward-euler", "unknown-choice"]),
+                             (["--seeds", "0"], ["--seeds", "out-of-range"])):
+        wrong = sinew("plan", ARM, "--goal", "20 0 -40 cm", *arguments)
+        assert wrong.returncode == WRONG and all(word in wrong.stderr for word in words), wrong.stderr
+
+
 def test_what_cannot_be_planned_fails_with_its_status(tmp_path):
     needs("plan")
     done = sinew("plan", ARM, "--goal", "-30 0 -30 cm", "--duration", "100ms", "-o", "plan.csv", cwd=tmp_path)
