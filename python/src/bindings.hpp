@@ -34,6 +34,7 @@ void bind_pcc(py::module_& module);
 void bind_bending(py::module_& module);
 void bind_bending_fit(py::module_& module);
 void bind_plan(py::module_& module);
+void bind_plan_drive(py::module_& module);
 void bind_drive(py::module_& module);
 void bind_identify(py::module_& module);
 void bind_identify_arm(py::module_& module);

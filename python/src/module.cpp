@@ -38,6 +38,7 @@ PYBIND11_MODULE(_core, module) {
   python::bind_drive(module);
 #ifdef SINEW_HAS_PLAN
   python::bind_plan(module);
+  python::bind_plan_drive(module);
 #endif
 #ifdef SINEW_HAS_IDENTIFY
   python::bind_identify(module);
