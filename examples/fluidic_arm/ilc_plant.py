@@ -31,6 +31,13 @@ def model():
             [pcc.FluidicActuator(MODEL["cubic"], delay=MODEL["delay"])] * 3, [cylinder()] * 3)
 
 
+def excitation(seconds=4.0, seed=1):
+    """Commands (samples, 3) that move the arm all over its range, from rest."""
+    time = MODEL["cylinder"]["sample_time"] * np.arange(round(seconds / MODEL["cylinder"]["sample_time"]) + 1)
+    fade = np.sin(np.pi * np.clip(time, 0, 0.5))[:, None] ** 2
+    return fade * np.stack([pcc.Excitation(3e-5, seed=10 * seed + k).at(time) for k in range(3)], axis=1)
+
+
 class Plant:
     """Runs commands (samples, 3) and gives what is measured; `true_tip` is where the tip was, without noise."""
 

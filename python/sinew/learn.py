@@ -118,7 +118,7 @@ class Learner:
         torque_rate_limits: Any = 2.0,
         duration: float = 1.6,
         lead: float = 0.25,
-        memory: int = 2,
+        memory: int = 1,
         corrections: int = 4,
         close: float = 2e-3,
         fit_options: Optional[Mapping[str, Any]] = None,
@@ -136,6 +136,7 @@ class Learner:
         self.arm, self.actuators, self.cylinders = arm, list(actuators), list(cylinders)
         self.goal = np.array(goal, dtype=float)
         self.attempts: list[Attempt] = []
+        self._motions: list[tuple[np.ndarray, identify.MotionRecord]] = []
         self._task = {"torque_limits": torque_limits, "torque_rate_limits": torque_rate_limits, "duration": duration,
                       **(plan_options or {})}
         self._fit_options = dict(fit_options or {})
@@ -146,6 +147,33 @@ class Learner:
         self._aim = self.goal.copy()
         self._missed = np.zeros(3)  # of the fitted model at the last attempt's end
         plan.Task(arm, self.goal, **self._task)
+
+    def learn_from(self, command: np.ndarray, record: identify.MotionRecord) -> Optional[identify.ArmFit]:
+        """Fits the model to a motion before the first attempt, from rest, of the arm's free excitation for example.
+
+        Parameters
+        ----------
+        command : (samples, inputs)
+            Of the cylinders, in their sample time.
+        record : sinew.identify.MotionRecord
+            What was measured at the same times; its inputs are the volumes delivered, m^3.
+
+        Returns
+        -------
+        ArmFit or None
+            None where the fit failed and the model stays.
+
+        Raises
+        ------
+        Error
+            wrong-length: another number of samples.
+        """
+        command = np.asarray(command, dtype=float)
+        if len(record.time) != len(command):
+            raise errors.Error("wrong-length", errors.Place(item="record"),
+                               f"{len(record.time)} samples for {len(command)} commands", "measure at their times")
+        self._motions.append((command, record))
+        return self._identify()
 
     def propose(self) -> Proposal:
         """The next attempt's commands.
@@ -189,16 +217,14 @@ class Learner:
         proposal = self._proposal
         if proposal is None:
             raise errors.Error("out-of-range", errors.Place(item="observe"), "nothing was proposed", "call propose()")
-        if len(record.time) != len(proposal.times):
-            raise errors.Error("wrong-length", errors.Place(item="record"),
-                               f"{len(record.time)} samples for {len(proposal.times)} commands",
-                               "measure at the proposal's times")
+        fit = self.learn_from(proposal.command, record)
+        residual = (record.positions - fit.records[-1].predicted)[-5:, -1] if fit else np.full((1, 3), np.nan)
+        if np.isfinite(residual).any(axis=0).all():
+            self._missed = np.nanmean(residual, axis=0)
         ends = record.positions[:, -1]
         seen = np.flatnonzero(np.isfinite(ends).all(axis=1))
         error = float(np.linalg.norm(ends[seen[-1]] - self.goal)) if len(seen) else float("nan")
-        self.attempts.append(Attempt(proposal, record, error, None))
-        fit = self._identify()
-        self.attempts[-1] = self.attempts[-1]._replace(fit=fit)
+        self.attempts.append(Attempt(proposal, record, error, fit))
         self._proposal = None
         return self.attempts[-1]
 
@@ -226,7 +252,7 @@ class Learner:
                         self.arm, self.actuators, self.cylinders)
 
     def _identify(self) -> Optional[identify.ArmFit]:
-        records = [a.record for a in self.attempts]
+        records = [record for _, record in self._motions]
         self.cylinders = [self._fitted_cylinder(k) for k in range(len(self.cylinders))]
         try:
             fit = identify.fit_arm(self._first_arm, records[-self._memory:], actuators=self._first_actuators,
@@ -234,15 +260,12 @@ class Learner:
         except errors.RunError:
             return None
         self.arm, self.actuators = fit.arm, list(fit.actuators)
-        residual = (records[-1].positions - fit.records[-1].predicted)[-5:, -1]
-        if np.isfinite(residual).any(axis=0).all():
-            self._missed = np.nanmean(residual, axis=0)
         return fit
 
     def _fitted_cylinder(self, k: int) -> pcc.DriveCylinder:
         """Fitted to all records, with the limits of the one before."""
         before = self.cylinders[k]
-        records = [(a.proposal.command[:, k], a.record.inputs[:, k], before.sample_time) for a in self.attempts]
+        records = [(command[:, k], record.inputs[:, k], before.sample_time) for command, record in self._motions]
         try:
             found = identify.fit_cylinder(records)[0]
             return pcc.DriveCylinder(found.a, found.b, found.c, found.d, sample_time=before.sample_time,
