@@ -212,7 +212,7 @@ class Learner:
         Raises
         ------
         Error
-            wrong-length: another number of samples; no-proposal: nothing was proposed.
+            wrong-length: another number of samples; out-of-range: nothing was proposed.
         """
         proposal = self._proposal
         if proposal is None:

@@ -38,7 +38,8 @@ void bind_plan_drive(py::module_& module) {
          double smoothing) {
         const auto list = to_list(volume, "invert_cylinder(volume)", "m^3");
         const auto found = plan::invert_cylinder(
-            cylinder, Eigen::Map<const VectorX>(list.data(), static_cast<Eigen::Index>(list.size())),
+            cylinder,
+            Eigen::Map<const VectorX>(list.data(), static_cast<Eigen::Index>(list.size())),
             {to_vector(start, "invert_cylinder(start)", 2, ""), smoothing});
         py::dict result;
         result["status"] = name(found.status);

@@ -1,11 +1,12 @@
 // Commands of drive cylinders from volumes and from planned torques.
+#include "sinew/plan/drive_inversion.hpp"
+
 #include <cmath>
 #include <numbers>
 
 #include <gtest/gtest.h>
 
 #include "sinew/core/random.hpp"
-#include "sinew/plan/drive_inversion.hpp"
 
 #include "support/error_kind.hpp"
 

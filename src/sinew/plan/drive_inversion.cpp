@@ -61,8 +61,8 @@ void check(const pcc::DriveCylinder& cylinder, const VectorX& volume,
                 fmt::format("the smoothing is {:g}", settings.smoothing), "give more than zero");
   }
   if (cylinder.gain() == 0.0) {
-    throw Error(ErrorKind::out_of_range, {.item = kPlace},
-                "the cylinder's gain at rest is zero", "give one whose command moves the volume");
+    throw Error(ErrorKind::out_of_range, {.item = kPlace}, "the cylinder's gain at rest is zero",
+                "give one whose command moves the volume");
   }
 }
 
@@ -113,8 +113,8 @@ CylinderInversion invert_cylinder(const pcc::DriveCylinder& cylinder, const Vect
   if (scale == 0.0) scale = 1.0;
   const MatrixX response = toeplitz(impulse_response(cylinder, count) / gain);
 
-  const bool limited = std::isfinite(cylinder.lowest_volume) ||
-                       std::isfinite(cylinder.highest_volume);
+  const bool limited =
+      std::isfinite(cylinder.lowest_volume) || std::isfinite(cylinder.highest_volume);
   // Without feedthrough the first volume is the start's and no row can move it.
   const Eigen::Index first = cylinder.d == 0.0 ? 1 : 0;
   const Eigen::Index rows = limited ? count - first : 0;

@@ -46,12 +46,12 @@ struct DriveChannel {
 
 /// Commands for all inputs of an arm; columns are inputs.
 struct DriveInversion {
-  bool found = false;       ///< all of `status` are optimal
+  bool found = false;                ///< all of `status` are optimal
   std::vector<qp::QpStatus> status;  ///< (inputs,)
-  VectorX times;            ///< (samples,) s
-  MatrixX command;          ///< (samples, inputs)
-  MatrixX wanted;           ///< (samples, inputs) m^3, the actuators' inverse of the plan
-  MatrixX volume;           ///< (samples, inputs) m^3, that the commands give
+  VectorX times;                     ///< (samples,) s
+  MatrixX command;                   ///< (samples, inputs)
+  MatrixX wanted;                    ///< (samples, inputs) m^3, the actuators' inverse of the plan
+  MatrixX volume;                    ///< (samples, inputs) m^3, that the commands give
 };
 
 /// The plan's torque is to act from `lead` on, the volume therefore the line's delay earlier:
