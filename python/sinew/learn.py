@@ -85,6 +85,8 @@ class Learner:
         The model at first; one of each for each input, cylinders of one sample time.
     goal : (3,) m
     torque_limits : (inputs,) N m
+        Either way, by the first model; what is kept are the volumes that they take, as motion leaves the scale of
+        torques open.
     torque_rate_limits : (inputs,) or float, N m/s
     duration : float
         s, of the plan.
@@ -137,8 +139,8 @@ class Learner:
         self.goal = np.array(goal, dtype=float)
         self.attempts: list[Attempt] = []
         self._motions: list[tuple[np.ndarray, identify.MotionRecord]] = []
-        self._task = {"torque_limits": torque_limits, "torque_rate_limits": torque_rate_limits, "duration": duration,
-                      **(plan_options or {})}
+        self._task = {"torque_rate_limits": torque_rate_limits, "duration": duration, **(plan_options or {})}
+        self._volume_limits = [float(a.volume(t)) for a, t in zip(self.actuators, torque_limits)]
         self._fit_options = dict(fit_options or {})
         self._lead, self._memory, self._corrections, self._close = lead, memory, corrections, close
         self._seed = seed
@@ -146,7 +148,7 @@ class Learner:
         self._proposal: Optional[Proposal] = None
         self._aim = self.goal.copy()
         self._missed = np.zeros(3)  # of the fitted model at the last attempt's end
-        plan.Task(arm, self.goal, **self._task)
+        plan.Task(arm, self.goal, torque_limits, **self._task)
 
     def learn_from(self, command: np.ndarray, record: identify.MotionRecord) -> Optional[identify.ArmFit]:
         """Fits the model to a motion before the first attempt, from rest, of the arm's free excitation for example.
@@ -181,7 +183,7 @@ class Learner:
         Raises
         ------
         RunError
-            not-converged: no plan was found.
+            not-converged: no plan could be simulated.
         """
         best, least = None, np.inf
         aim = self._aim
@@ -196,7 +198,7 @@ class Learner:
                 break
             aim = aim + left
         if best is None:
-            raise errors.RunError("not-converged", errors.Place(item="goal"), "no plan was found",
+            raise errors.RunError("not-converged", errors.Place(item="goal"), "no plan could be simulated",
                                   "give more time or torque, or a looser plan")
         self._proposal = best
         return best
@@ -235,19 +237,22 @@ class Learner:
 
     def _candidate(self, aim: np.ndarray) -> Optional[Proposal]:
         try:
-            task = plan.Task(self.arm, aim, **self._task)
+            limits = [float(a.torque(v)) for a, v in zip(self.actuators, self._volume_limits)]
+            task = plan.Task(self.arm, aim, limits, **self._task)
         except errors.Error:
             return None  # the aim went beyond the arm
-        found = task.solve(self._seed) if self._plan is None else task.solve(warm=self._plan)
-        if not found.found:
-            found = task.solve(self._seed)
-        if not found.found:
-            return None
+        found = None if self._plan is None else task.solve(warm=self._plan, max_iterations=100)
+        if found is None or not found.found:
+            found = task.solve(self._seed, max_iterations=100)
+        # One that breaks a limit or ends beside its aim is still worth an attempt: its motion, as simulated here, decides.
         drive = plan.invert_drive(found, self.actuators, self.cylinders, lead=self._lead)
         if not drive["found"]:
             return None
-        ends = identify.predict_motion(self.arm, drive["times"], np.zeros(found.theta.shape[1]),
-                                       inputs=drive["volume"], actuators=self.actuators)
+        try:
+            ends = identify.predict_motion(self.arm, drive["times"], np.zeros(found.theta.shape[1]),
+                                           inputs=drive["volume"], actuators=self.actuators)
+        except errors.RunError:
+            return None
         return Proposal(drive["times"], drive["command"], drive["volume"], found, ends[-1, -1] + self._missed,
                         self.arm, self.actuators, self.cylinders)
 

@@ -33,8 +33,9 @@ struct CylinderInversion {
 /// the gain at rest. States are eliminated, y = y_free + T u with T Toeplitz of the impulse
 /// response, which leaves a dense quadratic program in u. Where no command keeps the volume within
 /// its limits the status is infeasible.
-/// @param volume (samples,) V at the cylinder's sample times, >= 2. Throws Error(out-of-range |
-/// not-finite | contradictory-limits | too-few-points).
+/// @param cylinder that is driven. @param volume (samples,) V at its sample times, >= 2.
+/// @param settings start and smoothing. Throws Error(out-of-range | not-finite |
+/// contradictory-limits | too-few-points).
 CylinderInversion invert_cylinder(const pcc::DriveCylinder& cylinder, const VectorX& volume,
                                   const CylinderInversionSettings& settings = {});
 
