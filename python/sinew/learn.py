@@ -244,7 +244,8 @@ class Learner:
         found = None if self._plan is None else task.solve(warm=self._plan, max_iterations=100)
         if found is None or not found.found:
             found = task.solve(self._seed, max_iterations=100)
-        # One that breaks a limit or ends beside its aim is still worth an attempt: its motion, as simulated here, decides.
+        # One that breaks a limit or ends beside its aim is still worth an attempt: its motion decides, as simulated
+        # here.
         drive = plan.invert_drive(found, self.actuators, self.cylinders, lead=self._lead)
         if not drive["found"]:
             return None
