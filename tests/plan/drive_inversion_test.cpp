@@ -1,6 +1,7 @@
 // Commands of drive cylinders from volumes and from planned torques.
 #include "sinew/plan/drive_inversion.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 

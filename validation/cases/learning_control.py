@@ -17,8 +17,8 @@ off, noise of 1 mm at markers and 0.1 ml at volumes. Errors and seeds were fixed
 (examples/fluidic_arm/ilc_plants.json), and tuning used other seeds. Identify (4 s of free motion first, then the last
 attempt), plan (torque rates within 2 N m/s), invert, run, repeat. Success: the true tip within 2 cm of the ball's
 centre at the end. Four experiments of 10, 10, 5 and 12 attempts, goals A to D, every attempt counted; and four attempts
-on each of 107 further plants, run once by examples/fluidic_arm/ilc.py --further, of which some are run again here
-(docs/learning.md says what became of the first 93 of the 200 that were set apart)."""
+on each of the further plants in validation/reference/learning_further.csv, run once by examples/fluidic_arm/ilc.py
+--further, of which some are run again here (docs/learning.md says what became of the others of the 200 set apart)."""
 SOURCES = {
     "Marchese 2016": "A. D. Marchese, R. Tedrake, D. Rus, Dynamics and trajectory optimization for a soft spatial "
                      "fluidic elastomer manipulator, Int. J. Robotics Research 35 (2016) 1000-1019: 34 of 37 grabs of "
