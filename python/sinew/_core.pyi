@@ -934,6 +934,10 @@ class DriveCylinder:
     @property
     def sample_time(self) -> float: ...
     @property
+    def input_limits(self) -> tuple[float, float]: ...
+    @property
+    def volume_limits(self) -> tuple[float, float]: ...
+    @property
     def gain(self) -> float: ...
     def simulate(self, command: ArrayLike, start: ArrayLike = (0.0, 0.0)) -> _Floats: ...
 
@@ -1097,3 +1101,18 @@ def fit_arm(
 def validate_arm(
     found: ArmFit, records: Iterable[MotionRecord], time_step: float = 5e-3
 ) -> list[RecordFit]: ...
+def plan_invert_cylinder(
+    cylinder: DriveCylinder,
+    volume: ArrayLike,
+    *,
+    start: ArrayLike = (0.0, 0.0),
+    smoothing: float = 1e-6,
+) -> dict[str, Any]: ...
+def plan_invert_drive(
+    plan: Plan,
+    actuators: Iterable[FluidicActuator],
+    cylinders: Iterable[DriveCylinder],
+    *,
+    lead: float,
+    smoothing: float = 1e-6,
+) -> dict[str, Any]: ...

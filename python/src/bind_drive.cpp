@@ -135,6 +135,18 @@ Error
           "c", [](const DriveCylinder& self) { return copy(VectorX(self.c.transpose())); }, "(2,).")
       .def_readonly("d", &DriveCylinder::d, "float.")
       .def_readonly("sample_time", &DriveCylinder::sample_time, "float: s.")
+      .def_property_readonly(
+          "input_limits",
+          [](const DriveCylinder& self) {
+            return std::pair(self.lowest_input, self.highest_input);
+          },
+          "(lowest, highest) of the command.")
+      .def_property_readonly(
+          "volume_limits",
+          [](const DriveCylinder& self) {
+            return std::pair(self.lowest_volume, self.highest_volume);
+          },
+          "(lowest, highest), m^3.")
       .def_property_readonly("gain", &DriveCylinder::gain, "float: volume over command at rest.")
       .def(
           "simulate",

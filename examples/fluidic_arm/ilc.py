@@ -1,0 +1,143 @@
+"""A fluidic arm learns to grab what it cannot hold: identify, plan, invert, run, repeat, on arms that are not quite
+their model (ilc_plants.json).
+
+    python ilc.py [--out learning.png]                  # four experiments as published, with a figure
+    python ilc.py --further further.csv --processes 2   # 200 further arms, a line each as they come
+"""
+
+import argparse
+import concurrent.futures
+import csv
+import math
+import multiprocessing
+
+import ilc_plant
+import numpy as np
+from sinew import learn
+
+
+def experiment(seed, goal, attempts, excite=True):
+    """True distance (m) of the tip from the goal at the end of each attempt, and its paths. With `excite` the arm is
+    identified from 4 s of free motion before the first attempt, else that is planned with the model as given."""
+    at, model = np.array(ilc_plant.GOALS[goal]), ilc_plant.MODEL
+    learner = learn.Learner(*ilc_plant.model(), at, model["torque_limits"], duration=model["duration"],
+                            lead=model["lead"], torque_rate_limits=model["torque_rate_limit"],
+                            fit_options={"time_step": 0.02})
+    plant = ilc_plant.Plant(seed)
+    if excite:
+        command = ilc_plant.excitation()
+        learner.learn_from(command, plant(command))
+    distances, paths = [], []
+    for k in range(attempts):
+        record = plant(learner.propose().command)
+        distances.append(float(np.linalg.norm(plant.true_tip[-1] - at)))
+        paths.append(plant.true_tip)
+        if k + 1 < attempts:  # nothing is planned after the last
+            learner.observe(record)
+    return distances, paths
+
+
+def interval(successes, trials, z=1.959964):
+    """Wilson's 95 % interval of a share (Wilson, J. American Statistical Association 22, 1927)."""
+    share, n = successes / trials, trials
+    centre = (share + z * z / (2 * n)) / (1 + z * z / n)
+    half = z * math.sqrt(share * (1 - share) / n + z * z / (4 * n * n)) / (1 + z * z / n)
+    return centre - half, centre + half
+
+
+def published(excite=True):
+    """The four experiments: [(goal, distances, paths)]."""
+    return [(e["goal"], *experiment(e["seed"], e["goal"], e["attempts"], excite))
+            for e in ilc_plant.SETUP["experiments"]]
+
+
+def _one(job):
+    try:
+        return job, experiment(*job)[0]
+    except Exception as error:  # a learner that gives up has failed, and says so
+        return job, [math.inf] * job[2] + [str(error)]
+
+
+def further(path, processes, kind="further_seeds", first=None, count=None):
+    """Distances of the further seeds, written line by line."""
+    given = ilc_plant.SETUP[kind]
+    seeds = range(first or given["first"], given["first"] + given["count"])[:count]
+    goals = given["goals"]
+    jobs = [(seed, goals[(seed - given["first"]) % len(goals)], given["attempts"]) for seed in seeds]
+    rows = []
+    context = multiprocessing.get_context("spawn")
+    with concurrent.futures.ProcessPoolExecutor(processes, mp_context=context) as pool, open(path, "w") as file:
+        table = csv.writer(file)
+        table.writerow(["seed", "goal"] + [f"attempt_{k + 1} [cm]" for k in range(given["attempts"])])
+        for done in concurrent.futures.as_completed([pool.submit(_one, job) for job in jobs]):
+            (seed, goal, _), distances = done.result()
+            table.writerow([seed, goal] + [f"{100 * d:.3f}" if isinstance(d, float) else d for d in distances])
+            file.flush()
+            rows.append(distances[:given["attempts"]])
+    summary(rows)
+
+
+def summary(rows):
+    hits = np.array(rows) < ilc_plant.SETUP["success_distance"]
+    for k in range(hits.shape[1]):
+        low, high = interval(hits[:, k].sum(), len(hits))
+        print(f"attempt {k + 1}: {hits[:, k].sum()} of {len(hits)}, {100 * hits[:, k].mean():.1f} %, "
+              f"95 % interval {100 * low:.1f} to {100 * high:.1f} %")
+    low, high = interval(hits.sum(), hits.size)
+    print(f"all: {hits.sum()} of {hits.size}, {100 * hits.mean():.1f} %")
+    low, high = interval(hits[:, 1:].sum(), hits[:, 1:].size)
+    print(f"after the first: {hits[:, 1:].sum()} of {hits[:, 1:].size}, {100 * hits[:, 1:].mean():.1f} %, "
+          f"95 % interval (attempts taken as independent) {100 * low:.1f} to {100 * high:.1f} %")
+
+
+def draw(path, experiments, cold):
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4.5), layout="constrained")
+    for k, ((goal, distances, paths), (_, bare, _)) in enumerate(zip(experiments, cold)):
+        attempts = np.arange(1, len(distances) + 1)
+        left.semilogy(attempts, 100 * np.array(distances), "o-", color=f"C{k}", ms=4, label=f"goal {goal}")
+        left.semilogy(attempts, 100 * np.array(bare), "o:", color=f"C{k}", ms=3, lw=1)
+        right.plot(100 * paths[-1][:, 0], 100 * paths[-1][:, 2], color=f"C{k}")
+        right.plot(100 * paths[0][:, 0], 100 * paths[0][:, 2], ":", color=f"C{k}", lw=1)
+        x, _, z = ilc_plant.GOALS[goal]
+        right.add_patch(plt.Circle((100 * x, 100 * z), 2, fill=False, color=f"C{k}"))
+    left.axhline(100 * ilc_plant.SETUP["success_distance"], color="k", lw=0.8)
+    left.set(xlabel="attempt", ylabel="tip from the ball's centre at the end (cm)")
+    left.set_title("line: identified before, dotted: from the model as given", fontsize=9)
+    left.legend(frameon=False)
+    right.set(xlabel="x (cm)", ylabel="z (cm)", aspect="equal")
+    right.set_title("tip's paths: last attempt, dotted: first; circles: the balls", fontsize=9)
+    figure.savefig(path, dpi=100)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--out", default="learning.png", help="figure to write")
+    parser.add_argument("--further", metavar="CSV", help="run the further seeds instead, results to this table")
+    parser.add_argument("--kind", default="further_seeds", choices=["further_seeds", "tuning_seeds"])
+    parser.add_argument("--first", type=int, help="seed to begin with")
+    parser.add_argument("--count", type=int, help="how many of them")
+    parser.add_argument("--processes", type=int, default=2)
+    options = parser.parse_args()
+    if options.further:
+        further(options.further, options.processes, options.kind, options.first, options.count)
+        return
+    experiments, cold = published(), published(excite=False)
+    for title, runs in (("identified before the first attempt", experiments), ("from the model as given", cold)):
+        print(title)
+        for goal, distances, _ in runs:
+            print(f"  {goal}: " + " ".join(f"{100 * d:.2f}" for d in distances) + " cm")
+        hits = sum(d < ilc_plant.SETUP["success_distance"] for _, distances, _ in runs for d in distances)
+        trials = sum(len(distances) for _, distances, _ in runs)
+        low, high = interval(hits, trials)
+        print(f"  {hits} of {trials}, {100 * hits / trials:.0f} % ({100 * low:.0f} to {100 * high:.0f} %)")
+    draw(options.out, experiments, cold)
+    print(f"wrote {options.out}")
+
+
+if __name__ == "__main__":
+    main()

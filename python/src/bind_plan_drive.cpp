@@ -1,0 +1,125 @@
+// From planned torques to the commands of drive cylinders.
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "sinew/plan/drive_inversion.hpp"
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+
+namespace sinew::python {
+
+namespace {
+
+std::vector<plan::DriveChannel> channels_of(const std::vector<pcc::FluidicActuator>& actuators,
+                                            const std::vector<pcc::DriveCylinder>& cylinders) {
+  if (actuators.size() != cylinders.size()) {
+    throw Error(ErrorKind::wrong_length, {.item = "invert_drive"},
+                fmt::format("{} actuators and {} cylinders", actuators.size(), cylinders.size()),
+                "give a cylinder for each actuator");
+  }
+  std::vector<plan::DriveChannel> channels;
+  for (std::size_t i = 0; i < actuators.size(); ++i) {
+    channels.push_back({actuators[i], cylinders[i]});
+  }
+  return channels;
+}
+
+std::string name(qp::QpStatus status) { return std::string(qp::qp_status_name(status)); }
+
+}  // namespace
+
+void bind_plan_drive(py::module_& module) {
+  module.def(
+      "plan_invert_cylinder",
+      [](const pcc::DriveCylinder& cylinder, const py::object& volume, const py::object& start,
+         double smoothing) {
+        const auto list = to_list(volume, "invert_cylinder(volume)", "m^3");
+        const auto found = plan::invert_cylinder(
+            cylinder,
+            Eigen::Map<const VectorX>(list.data(), static_cast<Eigen::Index>(list.size())),
+            {to_vector(start, "invert_cylinder(start)", 2, ""), smoothing});
+        py::dict result;
+        result["status"] = name(found.status);
+        result["command"] = copy(found.command);
+        result["volume"] = copy(found.volume);
+        return result;
+      },
+      py::arg("cylinder"), py::arg("volume"), py::kw_only(),
+      py::arg("start") = py::make_tuple(0.0, 0.0),
+      py::arg("smoothing") = plan::CylinderInversionSettings{}.smoothing,
+      R"(plan_invert_cylinder(cylinder, volume, *, start=(0.0, 0.0), smoothing=1e-06)
+--
+
+Commands that make a cylinder deliver volumes as nearly as its dynamics and limits allow: the least
+``sum (volume - C x - D u)**2``, by a quadratic program.
+
+Parameters
+----------
+cylinder : sinew.pcc.DriveCylinder
+volume : (samples,) m^3
+    At its sample times.
+start : (2,)
+    Its state at the first of them.
+smoothing : float
+    What changes of the command cost beside errors of volume, above zero.
+
+Returns
+-------
+dict
+    "status" ('optimal', or 'infeasible' where no command keeps the volume within its limits),
+    "command" (samples,), "volume" (samples,) m^3 that it gives.
+
+Raises
+------
+Error
+    out-of-range, not-finite, too-few-points, contradictory-limits.)");
+  module.def(
+      "plan_invert_drive",
+      [](const plan::Plan& of, const std::vector<pcc::FluidicActuator>& actuators,
+         const std::vector<pcc::DriveCylinder>& cylinders, double lead, double smoothing) {
+        const auto channels = channels_of(actuators, cylinders);
+        const auto found = plan::invert_drive(of, channels, lead, {.smoothing = smoothing});
+        py::list status;
+        for (const qp::QpStatus one : found.status) status.append(name(one));
+        py::dict result;
+        result["found"] = found.found;
+        result["status"] = status;
+        result["times"] = copy(found.times);
+        result["command"] = copy(found.command);
+        result["wanted"] = copy(found.wanted);
+        result["volume"] = copy(found.volume);
+        return result;
+      },
+      py::arg("plan"), py::arg("actuators"), py::arg("cylinders"), py::kw_only(), py::arg("lead"),
+      py::arg("smoothing") = plan::CylinderInversionSettings{}.smoothing,
+      R"(plan_invert_drive(plan, actuators, cylinders, *, lead, smoothing=1e-06)
+--
+
+Commands of the cylinders that carry a plan out: its torques through the inverse of the actuators,
+earlier by their delay, then each cylinder's commands as by invert_cylinder().
+
+Parameters
+----------
+plan : Plan
+actuators, cylinders : list of FluidicActuator, list of DriveCylinder
+    One each for each input of the arm; cylinders of one sample time.
+lead : float
+    s before the plan's torque begins, at least the longest delay: cylinders start moving in it.
+
+Returns
+-------
+dict
+    "found", "status" of each cylinder, "times" (samples,) s from 0 to lead + duration, and
+    (samples, inputs) "command", "wanted" (m^3, by the actuators' inverse) and "volume" (m^3, that
+    the commands give).
+
+Raises
+------
+Error
+    wrong-length, out-of-range and what invert_cylinder() raises.)");
+}
+
+}  // namespace sinew::python
