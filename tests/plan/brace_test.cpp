@@ -1,6 +1,7 @@
 // Braces: exact derivatives, the three conditions, what is found and what is not.
 #include "sinew/plan/brace.hpp"
 
+#include <chrono>
 #include <cmath>
 #include <random>
 
@@ -29,23 +30,44 @@ BraceTask wall() {
 
 TEST(Brace, Try) {
   const auto arm = make(pcc::testing::fluidic());
-  for (const double x : {-0.025, -0.03}) for (const double least : {0.1, 0.2, 0.3, 0.4}) for (int n : {2, 3}) {
-  BraceTask task = wall();
-  task.least_force = least;
-  task.objects = {{constraint::Plane{{x, 0.0, 0.0}, Vector3::UnitX()}}};
-    const Brace b = find_brace(arm, task, n);
-    std::cout << " x " << x << " least " << least << " n " << n << " " << status_name(b.status) << " solved " << b.solved << "/" << b.tried << " unstable "
-              << b.unstable;
-    if (b.found()) { std::cout << " q " << b.position.transpose() << " tau "
+  const auto now = [] { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); };
+  const auto show = [&](const char* name, const BraceTask& task) {
+    double t0 = now();
+    const Brace b = find_brace(arm, task);
+    double t1 = now();
+    std::cout << name << " n " << b.segments << " " << status_name(b.status) << " solved " << b.solved << "/" << b.tried << " unstable "
+              << b.unstable << " time " << t1 - t0;
+    if (b.found()) { std::cout << " q " << b.position.transpose() << " turn " << b.turn << " tau "
               << b.torque.transpose() << " f " << b.force.transpose() << " place " << b.place.transpose()
               << " C " << b.tip_compliance;
+    t0 = now();
     const BraceRun r = run_brace(arm, task, b);
-    std::cout << "\n   run " << status_name(r.status) << " contact " << r.contact_time << " slips " << r.slips << " cone " << r.cone_residual << " res " << r.contact_residual << " err " << r.mean_error << " off " << r.offset << " spread " << r.spread << " measured " << r.measured.transpose() << " after " << status_name(r.after.status) << " " << r.after.position.transpose() << " tau " << r.after.torque.transpose() << " fn " << r.normal_force.tail(2000).minCoeff() << "\n";
+    const BraceRun f = run_free(arm, task);
+    std::cout << "\n   run " << status_name(r.status) << " time " << now() - t0 << " contact " << r.contact_time << " slips " << r.slips << " cone " << r.cone_residual << " res " << r.contact_residual << " err " << r.mean_error << " off " << r.offset << " spread " << r.spread << " measured " << r.measured.transpose() << " after " << status_name(r.after.status) << " " << r.after.position.transpose() << " tau " << r.after.torque.transpose() << " fn " << (r.times.size() > 4000 ? r.normal_force.tail(4000).minCoeff() : -1.0) << "\n";
+    std::cout << "  free " << status_name(f.status) << " err " << f.mean_error << " off " << f.offset << " spread " << f.spread << "\n";
     }
     std::cout << std::endl;
+  };
+  BraceTask task = wall();
+  task.least_force = 0.15;
+  task.objects = {{constraint::Plane{{-0.022, 0.0, 0.0}, Vector3::UnitX()}}};
+  show("wall 22", task);
+  task.least_force = 0.2;
+  task.objects = {{constraint::Plane{{-0.025, 0.0, 0.0}, Vector3::UnitX()}}};
+  show("wall", task);
+  task.least_force = 0.3;
+  show("wall .3", task);
+  task.least_force = 0.1;
+  for (const double z : {-0.2, -0.28, -0.35}) {
+  task.objects = {{constraint::Sphere{{-0.08, 0.0, z}, 0.05}}};
+  show("sphere", task);
+  task.objects = {{constraint::Capsule{{-0.08, -0.1, z}, {-0.08, 0.1, z}, 0.05}}};
+  show("capsule", task);
   }
-  const BraceRun r = run_free(arm, wall());
-    std::cout << "free " << status_name(r.status) << " err " << r.mean_error << " off " << r.offset << " spread " << r.spread << "\n";
+  task.goal = Vector3(0.1 * std::cos(0.5), 0.1 * std::sin(0.5), -0.5);
+  task.objects = {{constraint::Plane{{-0.025 * std::cos(0.5), -0.025 * std::sin(0.5), 0.0}, Vector3(std::cos(0.5), std::sin(0.5), 0.0)}}};
+  task.turn_lower = -1; task.turn_upper = 1;
+  show("turned", task);
 }
 
 /// Jacobian against constraints, Hessian against Jacobian and gradient, everywhere.

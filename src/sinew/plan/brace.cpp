@@ -23,7 +23,9 @@ namespace {
 
 // What the solver leaves of its constraints, and what is asked of an equilibrium.
 constexpr double kGapTolerance = 1e-6;  // m
-constexpr SolverSettings kSolver{.tolerance = 1e-9, .max_iterations = 100, .max_time = 5.0};
+constexpr double kPlanShare = 0.4;  // of the tip's tolerance
+constexpr double kReplanShare = 0.95, kReplanForce = 0.5;
+constexpr SolverSettings kSolver{.tolerance = 1e-9, .max_iterations = 80, .max_time = 5.0};
 
 [[noreturn]] void refuse(const char* item, const std::string& what, const char* remedy) {
   throw Error(ErrorKind::out_of_range, {.item = item}, what, remedy);
@@ -206,7 +208,7 @@ BraceProblem problem_of(const pcc::Arm& arm, const BraceTask& task, int object,
   problem.turn_lower = task.turn_lower;
   problem.turn_upper = task.turn_upper;
   problem.goal = task.goal;
-  problem.tolerance = task.tolerance;
+  problem.tolerance = held == 0 ? kPlanShare * task.tolerance : task.tolerance;
   problem.point = point;
   problem.patch = patch;
   problem.touches = held == 0;
@@ -381,6 +383,9 @@ Brace replan_brace(const std::shared_ptr<const pcc::Arm>& arm, const BraceTask& 
   task.limits.angle_lower.head(end) = measured.head(end);
   task.limits.angle_upper.head(end) = measured.head(end);
   task.turn_lower = task.turn_upper = before.turn;
+  // What lay in reserve for the way there may be used now.
+  task.friction_share = std::max(task.friction_share, kReplanShare);
+  task.least_force *= kReplanForce;
   Search search(arm, task);
   // The normal at the braced point: of the piece that it is nearest to being on.
   const auto& surface = task.objects[static_cast<std::size_t>(before.object)].surface;

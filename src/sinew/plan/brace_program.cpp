@@ -151,6 +151,8 @@ BraceProgram::BraceProgram(std::shared_ptr<const pcc::Arm> arm, BraceProblem pro
 }
 
 void BraceProgram::look(const VectorX& x) {
+  if (looked_.size() == x.size() && looked_ == x) return;
+  looked_ = x;
   rotation_ =
       Eigen::AngleAxisd(x[turn_], arm_->settings().frame.col(2).normalized()).toRotationMatrix();
   const auto& local = points_.positions(x.head(n_), looked_at_);

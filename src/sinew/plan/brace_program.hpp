@@ -105,6 +105,7 @@ class BraceProgram final : public NonlinearProgram {
   VectorX variable_scale_, row_scale_;
   std::vector<SparseEntry> jacobian_, hessian_;
 
+  VectorX looked_;            // x of what follows
   VectorDerivatives braced_;  // before the turn, by q
   std::vector<VectorDerivatives> world_;
   Matrix3 rotation_, spin_;  // R(gamma); [a]x

@@ -91,7 +91,6 @@ class Bench {
     sim::StepSettings step;
     step.time_step = settings.time_step;
     step.integrator = mechanics::Integrator::backward_euler;
-    step.method = sim::Method::newton;
     sim::ModelBuilder builder(step);
     builder.add_arm(body);
     for (int segment = 0; segment < arm->segments(); ++segment) {

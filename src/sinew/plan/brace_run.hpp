@@ -16,14 +16,14 @@ namespace sinew::plan {
 /// Forces on the tip while it is to hold still: along x, y and z a sum of sines of random
 /// frequencies and phases, of equal amplitudes.
 struct Disturbance {
-  double force = 0.02;  ///< N, root mean square along each axis over long times, >= 0
+  double force = 0.01;  ///< N, root mean square along each axis over long times, >= 0
   double least_frequency = 0.2, most_frequency = 2.0;  ///< Hz, > 0
   int sines = 4;                                       ///< >= 1
   std::uint64_t seed = 1;
 };
 
 struct BraceRunSettings {
-  double time_step = 2e-3;  ///< s, > 0, of backward Euler
+  double time_step = 1e-3;  ///< s, > 0, of backward Euler
   double approach = 1.5;    ///< s, > 0, of moving to contact
   double press = 1.0;       ///< s, > 0, of holding the brace's torque
   double move = 1.0;        ///< s, > 0, from there to the goal
