@@ -12,6 +12,7 @@
 #include "bindings.hpp"
 #include "errors.hpp"
 #include "pcc_arm.hpp"
+#include "plan_limits.hpp"
 
 namespace sinew::python {
 
@@ -58,6 +59,8 @@ VectorX optional(const py::object& value, const std::string& place, Eigen::Index
   return to_vector(value, place, n, unit);
 }
 
+}  // namespace
+
 plan::Limits reach_limits(const pcc::Arm& arm, const py::object& torque, const py::object& angle) {
   plan::Limits limits;
   set_limits(torque, "torque_limits", arm.inputs(), "N m", limits.torque_lower,
@@ -66,6 +69,8 @@ plan::Limits reach_limits(const pcc::Arm& arm, const py::object& torque, const p
              limits.angle_upper);
   return limits;
 }
+
+namespace {
 
 PlanTask make_task(const PccArm& of, const py::object& goal, const py::object& torque_limits,
                    const py::object& angle_limits, const py::object& rate_limits,
@@ -507,6 +512,7 @@ void bind_plan(py::module_& module) {
   bind_task(module);
   bind_tracker(module);
   bind_reach(module);
+  bind_brace(module);
 }
 
 }  // namespace sinew::python

@@ -1,10 +1,10 @@
 // Braces: exact derivatives, the three conditions, what is found and what is not.
 #include "sinew/plan/brace.hpp"
 
-#include <chrono>
 #include <cmath>
 #include <random>
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
@@ -20,54 +20,14 @@ namespace {
 using pcc::testing::make;
 using testing::grab;
 
-BraceTask wall() {
+/// A bar across the arm's plane, beside its second segment.
+BraceTask bar() {
   BraceTask task;
   task.goal = {0.10, 0.0, -0.50};
   task.limits = grab().limits;
-  task.objects = {{constraint::Plane{{-0.05, 0.0, 0.0}, Vector3::UnitX()}}};
-  return task;
-}
-
-TEST(Brace, Try) {
-  const auto arm = make(pcc::testing::fluidic());
-  const auto now = [] { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); };
-  const auto show = [&](const char* name, const BraceTask& task) {
-    double t0 = now();
-    const Brace b = find_brace(arm, task);
-    double t1 = now();
-    std::cout << name << " n " << b.segments << " " << status_name(b.status) << " solved " << b.solved << "/" << b.tried << " unstable "
-              << b.unstable << " time " << t1 - t0;
-    if (b.found()) { std::cout << " q " << b.position.transpose() << " turn " << b.turn << " tau "
-              << b.torque.transpose() << " f " << b.force.transpose() << " place " << b.place.transpose()
-              << " C " << b.tip_compliance;
-    t0 = now();
-    const BraceRun r = run_brace(arm, task, b);
-    const BraceRun f = run_free(arm, task);
-    std::cout << "\n   run " << status_name(r.status) << " time " << now() - t0 << " contact " << r.contact_time << " slips " << r.slips << " cone " << r.cone_residual << " res " << r.contact_residual << " err " << r.mean_error << " off " << r.offset << " spread " << r.spread << " measured " << r.measured.transpose() << " after " << status_name(r.after.status) << " " << r.after.position.transpose() << " tau " << r.after.torque.transpose() << " fn " << (r.times.size() > 4000 ? r.normal_force.tail(4000).minCoeff() : -1.0) << "\n";
-    std::cout << "  free " << status_name(f.status) << " err " << f.mean_error << " off " << f.offset << " spread " << f.spread << "\n";
-    }
-    std::cout << std::endl;
-  };
-  BraceTask task = wall();
   task.least_force = 0.15;
-  task.objects = {{constraint::Plane{{-0.022, 0.0, 0.0}, Vector3::UnitX()}}};
-  show("wall 22", task);
-  task.least_force = 0.2;
-  task.objects = {{constraint::Plane{{-0.025, 0.0, 0.0}, Vector3::UnitX()}}};
-  show("wall", task);
-  task.least_force = 0.3;
-  show("wall .3", task);
-  task.least_force = 0.1;
-  for (const double z : {-0.2, -0.28, -0.35}) {
-  task.objects = {{constraint::Sphere{{-0.08, 0.0, z}, 0.05}}};
-  show("sphere", task);
-  task.objects = {{constraint::Capsule{{-0.08, -0.1, z}, {-0.08, 0.1, z}, 0.05}}};
-  show("capsule", task);
-  }
-  task.goal = Vector3(0.1 * std::cos(0.5), 0.1 * std::sin(0.5), -0.5);
-  task.objects = {{constraint::Plane{{-0.025 * std::cos(0.5), -0.025 * std::sin(0.5), 0.0}, Vector3(std::cos(0.5), std::sin(0.5), 0.0)}}};
-  task.turn_lower = -1; task.turn_upper = 1;
-  show("turned", task);
+  task.objects = {{constraint::Capsule{{-0.072, -0.1, -0.28}, {-0.072, 0.1, -0.28}, 0.05}}};
+  return task;
 }
 
 /// Jacobian against constraints, Hessian against Jacobian and gradient, everywhere.
@@ -150,6 +110,122 @@ TEST(Brace, DerivativesAreExact) {
       }
     }
   }
+}
+
+TEST(Brace, ConditionsHaveNamedRanges) {
+  using Verdict = BraceCondition::Verdict;
+  EXPECT_EQ(check_friction(1.0, 0.04, friction_range("coated-rigid")).verdict, Verdict::holds);
+  EXPECT_EQ(check_friction(1.0, 0.1, kCoatedRigid).verdict, Verdict::uncertain);
+  EXPECT_EQ(check_friction(1.0, 0.3, kCoatedRigid).verdict, Verdict::violated);
+  EXPECT_EQ(check_friction(1.0, 0.3, friction_range("silicone-on-steel")).verdict, Verdict::holds);
+  EXPECT_EQ(check_friction(0.0, 0.0, kSiliconeOnSteel).verdict, Verdict::violated);
+  EXPECT_THROW(friction_range("ice"), Error);
+  EXPECT_EQ(check_stiffness(kRigid, kSoftArm, 10.0).verdict, Verdict::holds);
+  EXPECT_EQ(check_stiffness({1e5, 1.0}, kSoftArm, 10.0).verdict, Verdict::violated);
+  EXPECT_DOUBLE_EQ(check_stiffness({1e5, 1.0}, kSoftArm, 10.0).value, 5.0);
+  EXPECT_EQ(check_kinematics(1e-8, 0.1, -0.001, 1e-6).verdict, Verdict::holds);
+  EXPECT_EQ(check_kinematics(0.0, -0.01, 0.0, 1e-6).verdict, Verdict::violated);
+}
+
+TEST(Brace, IsAnEquilibriumWithinItsCone) {
+  const auto arm = make(pcc::testing::fluidic());
+  const BraceTask task = bar();
+  const Brace brace = find_brace(arm, task, 2);
+  ASSERT_TRUE(brace.found());
+  // The balance once more, from the arm's own equations and the point's Jacobian.
+  pcc::ArmEquations equations(arm);
+  const VectorX still = VectorX::Zero(4);
+  const MatrixX jacobian = equations.point(brace.point, brace.position, still).jacobian;
+  EXPECT_LT((equations.residual(brace.position, still, still) - brace.torque -
+             jacobian.transpose() * brace.force)
+                .norm(),
+            1e-8);
+  EXPECT_LT(std::abs(constraint::distance(task.objects[0].surface, brace.place).gap), 1e-8);
+  EXPECT_GE(brace.normal_force, task.least_force - 1e-8);
+  EXPECT_LE(brace.friction_force, 0.5 * 0.6 * brace.normal_force + 1e-8);
+  EXPECT_LE(brace.tip_error, task.tolerance);
+  EXPECT_GE(brace.clearance, task.clearance - 1e-8);
+  EXPECT_TRUE((brace.torque.cwiseAbs().array() <= task.limits.torque_upper.array() + 1e-8).all());
+  EXPECT_LT(brace.tip_compliance, 0.8 * free_tip_compliance(arm, brace.position));
+  // What it needs of friction is more than coated plastic has.
+  EXPECT_NE(check_friction(brace.normal_force, brace.friction_force + 1e-3, {"tiny", 1e-3, 1e-3})
+                .verdict,
+            BraceCondition::Verdict::holds);
+}
+
+TEST(Brace, HoldsInContactAndSteadiesTheTip) {
+  const auto arm = make(pcc::testing::fluidic());
+  const BraceTask task = bar();
+  const Brace brace = find_brace(arm, task, 2);
+  ASSERT_TRUE(brace.found());
+  BraceRunSettings settings;
+  settings.hold = 1.0;
+  settings.disturbance.force = 0.0;
+  const BraceRun still = run_brace(arm, task, brace, settings);
+  EXPECT_EQ(still.status, BraceRunStatus::held) << status_name(still.status);
+  EXPECT_GT(still.contact_time, 0.0);
+  EXPECT_LT(still.cone_residual, 1e-9);
+  EXPECT_LT(still.offset, task.tolerance + 1e-3);
+  EXPECT_LT(still.spread, 1e-4);
+  ASSERT_TRUE(still.after.found());
+  EXPECT_NEAR(still.normal_force[still.normal_force.size() - 1], still.after.normal_force,
+              0.1 * still.after.normal_force);
+
+  settings.hold = 3.0;
+  settings.disturbance.force = 0.01;
+  const BraceRun braced = run_brace(arm, task, brace, settings);
+  const BraceRun bare = run_free(arm, task, settings);
+  EXPECT_LT(braced.spread, 0.8 * bare.spread);
+  EXPECT_GT(braced.spread, 1e-4);
+}
+
+TEST(Brace, WithoutAnObjectThereIsNone) {
+  const auto arm = make(pcc::testing::fluidic());
+  BraceTask task = bar();
+  task.objects.clear();
+  EXPECT_EQ(find_brace(arm, task).status, BraceStatus::infeasible);
+  EXPECT_EQ(find_brace(arm, task, 2).tried, 0);
+  task.objects = {{constraint::Sphere{{2.0, 0.0, 0.0}, 0.1}}};
+  const Brace far = find_brace(arm, task);
+  EXPECT_EQ(far.status, BraceStatus::no_object_in_reach);
+  EXPECT_EQ(run_brace(arm, task, far).status, BraceRunStatus::not_planned);
+}
+
+TEST(Brace, RefusesWhatMakesNoSense) {
+  const auto arm = make(pcc::testing::fluidic());
+  const auto refused = [&](const auto& change) {
+    BraceTask task = bar();
+    change(task);
+    EXPECT_THROW(completed(*arm, task), Error);
+  };
+  refused([](BraceTask& task) { task.goal = {1.0, 0.0, 0.0}; });
+  refused([](BraceTask& task) { task.fractions = {0.0}; });
+  refused([](BraceTask& task) { task.least_force = 0.0; });
+  refused([](BraceTask& task) { task.most_force = 0.01; });
+  refused([](BraceTask& task) { task.turn_lower = 1.0; });
+  refused([](BraceTask& task) { task.objects[0].friction = {"given", 0.5, 0.2}; });
+  refused([](BraceTask& task) { task.objects[0].surface = constraint::Sphere{}; });
+  EXPECT_THROW(find_brace(arm, bar(), 5), Error);
+  pcc::ArmSettings tilted = pcc::testing::fluidic();
+  tilted.gravity = {3.0, 0.0, -9.0};
+  BraceTask task = bar();
+  task.turn_upper = 1.0;
+  EXPECT_THROW(completed(*make(tilted), task), Error);
+}
+
+/// A base that turns brings the arm's plane to where the goal and the bar are.
+TEST(Brace, TurnsTheBase) {
+  const auto arm = make(pcc::testing::fluidic());
+  const Matrix3 turn = Eigen::AngleAxisd(0.5, Vector3::UnitZ()).toRotationMatrix();
+  BraceTask task = bar();
+  task.goal = turn * task.goal;
+  task.objects = {{constraint::Capsule{turn * Vector3(-0.072, -0.1, -0.28),
+                                       turn * Vector3(-0.072, 0.1, -0.28), 0.05}}};
+  task.turn_lower = -1.0;
+  task.turn_upper = 1.0;
+  const Brace brace = find_brace(arm, task, 2);
+  ASSERT_TRUE(brace.found());
+  EXPECT_NEAR(brace.turn, -0.5, 0.1);  // the base's axis points down
 }
 
 }  // namespace

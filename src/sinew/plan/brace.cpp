@@ -219,6 +219,7 @@ BraceProblem problem_of(const pcc::Arm& arm, const BraceTask& task, int object,
   for (const pcc::ArmPoint& other : skin_points(arm, task)) {
     if (other.segment >= held && !same_point(other, point)) problem.clear_points.push_back(other);
   }
+  problem.clearance = held == 0 ? task.clearance : 0.0;
   for (const BraceObject& other : task.objects) problem.surfaces.push_back(other.surface);
   return problem;
 }
@@ -259,6 +260,9 @@ BraceTask completed(const pcc::Arm& arm, BraceTask task) {
   if (task.sides < 2) refuse("sides", fmt::format("{}", task.sides), "give 2 or more, or 0");
   if (!(task.friction_share > 0.0) || task.friction_share > 1.0) {
     refuse("friction_share", fmt::format("{:g}", task.friction_share), "give above 0, up to 1");
+  }
+  if (!(task.clearance >= 0.0)) {
+    refuse("clearance", fmt::format("{:g} m", task.clearance), "give zero or more");
   }
   if (!(task.least_force > 0.0)) {
     refuse("least_force", fmt::format("{:g} N", task.least_force), "give a positive force");

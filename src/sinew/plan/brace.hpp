@@ -32,6 +32,7 @@ struct BraceTask {
   /// Points of the skin that may touch: in every segment at these parts of its length, each > 0 ...
   std::vector<double> fractions{0.5, 1.0};
   int sides = 0;  ///< ... at so many places round the section from x on; 0: 2, spatial arms 4
+  double clearance = 1e-3;  ///< m, >= 0, of the points of the skin that are not braced
   double friction_share = 0.5;   ///< 0 to 1: of the friction's least, that a brace may need
   double least_force = 0.2;      ///< N, > 0, of the normal force
   double most_force = 20.0;      ///< N

@@ -139,6 +139,7 @@ BraceProgram::BraceProgram(std::shared_ptr<const pcc::Arm> arm, BraceProblem pro
   rows_.upper[n_ + 3] = kNoBound;
   rows_.lower[n_ + 4] = -kNoBound;
   rows_.upper[n_ + 4] = std::sqrt(2.0) * problem_.tolerance;
+  rows_.lower.tail(clear).setConstant(problem_.clearance);
   rows_.upper.tail(clear).setConstant(kNoBound);
   for (int row = 0; row < rows_.lower.size(); ++row) {
     for (int column = 0; column < size; ++column) jacobian_.push_back({row, column});

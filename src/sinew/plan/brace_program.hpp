@@ -47,7 +47,8 @@ struct BraceProblem {
   double friction = 0.0;
   double least_force = 0.0, most_force = kNoBound;  ///< N
   double force_weight = 0.0;                        ///< 1/N^2
-  std::vector<pcc::ArmPoint> clear_points;          ///< that keep outside of ...
+  std::vector<pcc::ArmPoint> clear_points;          ///< that keep ...
+  double clearance = 0.0;                           ///< m, away from ...
   std::vector<constraint::Surface> surfaces;
 };
 
