@@ -67,8 +67,9 @@ stiffness : (2,), optional
           "sphere",
           [](const py::object& centre, double radius, const py::object& friction,
              const py::object& stiffness) {
-            return BraceObject{constraint::Sphere{to_vector3(centre, "sphere(centre)", "m"), radius},
-                               friction_of(friction), stiffness_of(stiffness)};
+            return BraceObject{
+                constraint::Sphere{to_vector3(centre, "sphere(centre)", "m"), radius},
+                friction_of(friction), stiffness_of(stiffness)};
           },
           py::arg("centre"), py::arg("radius"), py::kw_only(),
           py::arg("friction") = "silicone-on-steel", py::arg("stiffness") = py::none(),
@@ -80,10 +81,9 @@ A ball of centre (3,) m and radius in m; see plane().)")
           "capsule",
           [](const py::object& start, const py::object& end, double radius,
              const py::object& friction, const py::object& stiffness) {
-            return BraceObject{
-                constraint::Capsule{to_vector3(start, "capsule(start)", "m"),
-                                    to_vector3(end, "capsule(end)", "m"), radius},
-                friction_of(friction), stiffness_of(stiffness)};
+            return BraceObject{constraint::Capsule{to_vector3(start, "capsule(start)", "m"),
+                                                   to_vector3(end, "capsule(end)", "m"), radius},
+                               friction_of(friction), stiffness_of(stiffness)};
           },
           py::arg("start"), py::arg("end"), py::arg("radius"), py::kw_only(),
           py::arg("friction") = "silicone-on-steel", py::arg("stiffness") = py::none(),
@@ -96,8 +96,9 @@ A bar with round ends, from (3,) to (3,) m, of a radius in m; see plane().)");
 BraceOf find(const PccArm& arm, const py::object& goal, const py::object& torque_limits,
              const std::vector<plan::BraceObject>& objects, double tolerance,
              const py::object& angle_limits, const py::object& turn, const py::object& segments,
-             const py::object& fractions, int sides, double clearance, double friction_share, double least_force,
-             double most_force, double stiffness_ratio, int starts, std::uint64_t seed) {
+             const py::object& fractions, int sides, double clearance, double friction_share,
+             double least_force, double most_force, double stiffness_ratio, int starts,
+             std::uint64_t seed) {
   plan::BraceTask task;
   task.goal = to_vector3(goal, "brace(goal)", "m");
   task.tolerance = tolerance;
@@ -119,8 +120,8 @@ BraceOf find(const PccArm& arm, const py::object& goal, const py::object& torque
   task.seed = seed;
   const int only = segments.is_none() ? 0 : segments.cast<int>();
   const py::gil_scoped_release release;
-  plan::Brace brace = segments.is_none() ? plan::find_brace(arm.arm, task)
-                                         : plan::find_brace(arm.arm, task, only);
+  plan::Brace brace =
+      segments.is_none() ? plan::find_brace(arm.arm, task) : plan::find_brace(arm.arm, task, only);
   return {arm.arm, task, std::move(brace)};
 }
 
@@ -212,11 +213,12 @@ void bind_found(py::module_& module) {
           "conditions", [](const BraceOf& self) { return conditions_of(self.brace); },
           "list of dict: 'name' (friction, stiffness, kinematic), 'verdict' (holds, uncertain, "
           "violated), 'value' and 'limit'; empty where nothing was found.")
-      .def("run", &carry_out, py::arg("braced") = true, py::kw_only(),
-           py::arg("friction") = py::none(), py::arg("force") = plan::Disturbance{}.force,
-           py::arg("seed") = 1, py::arg("hold") = plan::BraceRunSettings{}.hold,
-           py::arg("time_step") = plan::BraceRunSettings{}.time_step,
-           R"(run($self, braced=True, *, friction=None, force=0.01, seed=1, hold=4.0, time_step=0.001)
+      .def(
+          "run", &carry_out, py::arg("braced") = true, py::kw_only(),
+          py::arg("friction") = py::none(), py::arg("force") = plan::Disturbance{}.force,
+          py::arg("seed") = 1, py::arg("hold") = plan::BraceRunSettings{}.hold,
+          py::arg("time_step") = plan::BraceRunSettings{}.time_step,
+          R"(run($self, braced=True, *, friction=None, force=0.01, seed=1, hold=4.0, time_step=0.001)
 --
 
 Moves to contact, presses, plans anew, moves to the goal, and is disturbed there: a BraceRun.
@@ -298,16 +300,16 @@ void bind_brace(py::module_& module) {
   bind_found(module);
   bind_run(module);
   const plan::BraceTask task;
-  module.def("plan_brace", &find, py::arg("arm"), py::arg("goal"), py::arg("torque_limits"),
-             py::arg("objects"), py::kw_only(), py::arg("tolerance") = task.tolerance,
-             py::arg("angle_limits") = py::none(), py::arg("turn") = py::none(),
-             py::arg("segments") = py::none(), py::arg("fractions") = py::make_tuple(0.5, 1.0),
-             py::arg("sides") = task.sides, py::arg("clearance") = task.clearance,
-             py::arg("friction_share") = task.friction_share,
-             py::arg("least_force") = task.least_force, py::arg("most_force") = task.most_force,
-             py::arg("stiffness_ratio") = task.stiffness_ratio, py::arg("starts") = task.starts,
-             py::arg("seed") = task.seed,
-             R"(plan_brace(arm, goal, torque_limits, objects, *, tolerance=0.005, angle_limits=None, turn=None, segments=None, fractions=(0.5, 1.0), sides=0, clearance=0.001, friction_share=0.5, least_force=0.2, most_force=20.0, stiffness_ratio=10.0, starts=2, seed=1)
+  module.def(
+      "plan_brace", &find, py::arg("arm"), py::arg("goal"), py::arg("torque_limits"),
+      py::arg("objects"), py::kw_only(), py::arg("tolerance") = task.tolerance,
+      py::arg("angle_limits") = py::none(), py::arg("turn") = py::none(),
+      py::arg("segments") = py::none(), py::arg("fractions") = py::make_tuple(0.5, 1.0),
+      py::arg("sides") = task.sides, py::arg("clearance") = task.clearance,
+      py::arg("friction_share") = task.friction_share, py::arg("least_force") = task.least_force,
+      py::arg("most_force") = task.most_force, py::arg("stiffness_ratio") = task.stiffness_ratio,
+      py::arg("starts") = task.starts, py::arg("seed") = task.seed,
+      R"(plan_brace(arm, goal, torque_limits, objects, *, tolerance=0.005, angle_limits=None, turn=None, segments=None, fractions=(0.5, 1.0), sides=0, clearance=0.001, friction_share=0.5, least_force=0.2, most_force=20.0, stiffness_ratio=10.0, starts=2, seed=1)
 --
 
 Where an arm leans against its surroundings so that its tip is held steadier: a Brace.

@@ -69,10 +69,9 @@ void check_derivatives(BraceProgram& program, std::mt19937& random) {
     program.constraints(less, down);
     EXPECT_LT(((up - down) / (2.0 * h) - jacobian.col(i)).cwiseAbs().maxCoeff(), 1e-7) << i;
     EXPECT_NEAR((program.objective(more) - program.objective(less)) / (2.0 * h), gradient[i], 1e-6);
-    EXPECT_LT(((slope_at(more) - slope_at(less)) / (2.0 * h) - hessian.col(i))
-                  .cwiseAbs()
-                  .maxCoeff(),
-              1e-6)
+    EXPECT_LT(
+        ((slope_at(more) - slope_at(less)) / (2.0 * h) - hessian.col(i)).cwiseAbs().maxCoeff(),
+        1e-6)
         << i;
   }
 }
@@ -148,9 +147,9 @@ TEST(Brace, IsAnEquilibriumWithinItsCone) {
   EXPECT_TRUE((brace.torque.cwiseAbs().array() <= task.limits.torque_upper.array() + 1e-8).all());
   EXPECT_LT(brace.tip_compliance, 0.8 * free_tip_compliance(arm, brace.position));
   // What it needs of friction is more than coated plastic has.
-  EXPECT_NE(check_friction(brace.normal_force, brace.friction_force + 1e-3, {"tiny", 1e-3, 1e-3})
-                .verdict,
-            BraceCondition::Verdict::holds);
+  EXPECT_NE(
+      check_friction(brace.normal_force, brace.friction_force + 1e-3, {"tiny", 1e-3, 1e-3}).verdict,
+      BraceCondition::Verdict::holds);
 }
 
 TEST(Brace, HoldsInContactAndSteadiesTheTip) {

@@ -23,7 +23,7 @@ namespace {
 
 // What the solver leaves of its constraints, and what is asked of an equilibrium.
 constexpr double kGapTolerance = 1e-6;  // m
-constexpr double kPlanShare = 0.4;  // of the tip's tolerance
+constexpr double kPlanShare = 0.4;      // of the tip's tolerance
 constexpr double kReplanShare = 0.95, kReplanForce = 0.5;
 constexpr SolverSettings kSolver{.tolerance = 1e-9, .max_iterations = 80, .max_time = 5.0};
 
@@ -132,8 +132,8 @@ class Search {
     const Matrix3 turn =
         Eigen::AngleAxisd(brace.turn, arm_->settings().frame.col(2)).toRotationMatrix();
     const VectorX still = VectorX::Zero(n);
-    const auto at = points_.positions(brace.position, {{.segment = arm_->segments() - 1},
-                                                       problem.point});
+    const auto at =
+        points_.positions(brace.position, {{.segment = arm_->segments() - 1}, problem.point});
     brace.tip = base + turn * (at[0].value - base);
     brace.place = base + turn * (at[1].value - base);
     brace.tip_error = (brace.tip - task_.goal).norm();
@@ -145,8 +145,8 @@ class Search {
     brace.gap = touch.gap;
     brace.normal_force = touch.normal.dot(brace.force);
     brace.friction_force = (brace.force - brace.normal_force * touch.normal).norm();
-    const Eigen::Index clear = static_cast<Eigen::Index>(problem.clear_points.size() *
-                                                         problem.surfaces.size());
+    const Eigen::Index clear =
+        static_cast<Eigen::Index>(problem.clear_points.size() * problem.surfaces.size());
     brace.clearance = clear > 0 ? values.tail(clear).minCoeff() : kNoBound;
 
     MatrixX stiffness = equations_.linearise(brace.position, still, still).by_position;
@@ -161,11 +161,10 @@ class Search {
     brace.tip_compliance = answer.compliance;
     brace.mobility = answer.mobility;
     // With measured angles the point is where it was measured to be.
-    brace.conditions = {
-        check_friction(brace.normal_force, brace.friction_force, on.friction),
-        check_stiffness(on.stiffness, task_.arm, task_.stiffness_ratio),
-        check_kinematics(problem.touches ? brace.gap : 0.0, brace.clearance,
-                         brace.tip_error - task_.tolerance, kGapTolerance)};
+    brace.conditions = {check_friction(brace.normal_force, brace.friction_force, on.friction),
+                        check_stiffness(on.stiffness, task_.arm, task_.stiffness_ratio),
+                        check_kinematics(problem.touches ? brace.gap : 0.0, brace.clearance,
+                                         brace.tip_error - task_.tolerance, kGapTolerance)};
     for (const BraceCondition& condition : brace.conditions) {
       if (condition.verdict != BraceCondition::Verdict::holds) return;
     }
@@ -269,8 +268,7 @@ BraceTask completed(const pcc::Arm& arm, BraceTask task) {
   }
   if (!(task.most_force >= task.least_force)) {
     throw Error(ErrorKind::contradictory_limits, {.item = "most_force"},
-                fmt::format("{:g} N is below the least, {:g} N", task.most_force,
-                            task.least_force),
+                fmt::format("{:g} N is below the least, {:g} N", task.most_force, task.least_force),
                 "swap them");
   }
   if (!(task.force_weight > 0.0)) refuse("force_weight", "it is not positive", "give 1/N^2");
@@ -359,8 +357,8 @@ Brace find_brace(const std::shared_ptr<const pcc::Arm>& arm, const BraceTask& gi
       }
     }
   }
-  Brace result = search.finish(any_in_reach ? BraceStatus::infeasible
-                                            : BraceStatus::no_object_in_reach);
+  Brace result =
+      search.finish(any_in_reach ? BraceStatus::infeasible : BraceStatus::no_object_in_reach);
   result.segments = segments;
   return result;
 }
@@ -382,8 +380,8 @@ Brace replan_brace(const std::shared_ptr<const pcc::Arm>& arm, const BraceTask& 
                 fmt::format("{} angles are given", measured.size()),
                 fmt::format("give {}", arm->coordinates()));
   }
-  const int end = before.segments < arm->segments() ? arm->first(before.segments)
-                                                    : arm->coordinates();
+  const int end =
+      before.segments < arm->segments() ? arm->first(before.segments) : arm->coordinates();
   task.limits.angle_lower.head(end) = measured.head(end);
   task.limits.angle_upper.head(end) = measured.head(end);
   task.turn_lower = task.turn_upper = before.turn;
@@ -406,8 +404,7 @@ Brace replan_brace(const std::shared_ptr<const pcc::Arm>& arm, const BraceTask& 
       problem_of(*arm, task, before.object, before.point, *patch, before.segments);
   VectorX start(arm->coordinates() + 1 + arm->inputs());
   start << measured, before.turn, before.torque;
-  start.segment(end, arm->coordinates() - end) =
-      before.position.tail(arm->coordinates() - end);
+  start.segment(end, arm->coordinates() - end) = before.position.tail(arm->coordinates() - end);
   search.attempt(problem, before.object, start);
   start.segment(end, arm->coordinates() - end) = measured.tail(arm->coordinates() - end);
   search.attempt(problem, before.object, start);

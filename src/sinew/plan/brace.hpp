@@ -32,11 +32,11 @@ struct BraceTask {
   /// Points of the skin that may touch: in every segment at these parts of its length, each > 0 ...
   std::vector<double> fractions{0.5, 1.0};
   int sides = 0;  ///< ... at so many places round the section from x on; 0: 2, spatial arms 4
-  double clearance = 1e-3;  ///< m, >= 0, of the points of the skin that are not braced
-  double friction_share = 0.5;   ///< 0 to 1: of the friction's least, that a brace may need
-  double least_force = 0.2;      ///< N, > 0, of the normal force
-  double most_force = 20.0;      ///< N
-  double force_weight = 1e-3;    ///< 1/N^2, > 0, see BraceProgram
+  double clearance = 1e-3;      ///< m, >= 0, of the points of the skin that are not braced
+  double friction_share = 0.5;  ///< 0 to 1: of the friction's least, that a brace may need
+  double least_force = 0.2;     ///< N, > 0, of the normal force
+  double most_force = 20.0;     ///< N
+  double force_weight = 1e-3;   ///< 1/N^2, > 0, see BraceProgram
   TouchStiffness arm = kSoftArm;
   double stiffness_ratio = 10.0;  ///< > 0, what k_O >> k_R means
   int starts = 2;                 ///< >= 1, a candidate
@@ -62,15 +62,15 @@ std::string_view status_name(BraceStatus status);
 /// An equilibrium of the arm with one point of its skin on an object, which sticks there.
 struct Brace {
   BraceStatus status = BraceStatus::infeasible;
-  int segments = 0;     ///< n: the braced point is on segment n - 1
-  int object = -1;      ///< of BraceTask::objects
-  pcc::ArmPoint point;  ///< that touches
-  VectorX position;     ///< (coordinates,)
-  VectorX torque;       ///< (inputs,) N m
-  double turn = 0.0;    ///< rad, of the base
-  Vector3 place = Vector3::Zero();   ///< m, of the braced point, on the object
-  Vector3 normal = Vector3::Zero();  ///< out of the object
-  Vector3 force = Vector3::Zero();   ///< N, on the arm
+  int segments = 0;                                 ///< n: the braced point is on segment n - 1
+  int object = -1;                                  ///< of BraceTask::objects
+  pcc::ArmPoint point;                              ///< that touches
+  VectorX position;                                 ///< (coordinates,)
+  VectorX torque;                                   ///< (inputs,) N m
+  double turn = 0.0;                                ///< rad, of the base
+  Vector3 place = Vector3::Zero();                  ///< m, of the braced point, on the object
+  Vector3 normal = Vector3::Zero();                 ///< out of the object
+  Vector3 force = Vector3::Zero();                  ///< N, on the arm
   double normal_force = 0.0, friction_force = 0.0;  ///< N
   Vector3 tip = Vector3::Zero();                    ///< m
   double tip_error = 0.0;                           ///< m

@@ -112,8 +112,8 @@ BraceProgram::BraceProgram(std::shared_ptr<const pcc::Arm> arm, BraceProblem pro
       still_(VectorX::Zero(n_)),
       spin_(cross_matrix(arm->settings().frame.col(2))) {
   const Limits& limits = problem_.limits;
-  torque_scale_ = std::max({limits.torque_upper.cwiseAbs().maxCoeff(),
-                            limits.torque_lower.cwiseAbs().maxCoeff(), 1e-6});
+  torque_scale_ = std::max(
+      {limits.torque_upper.cwiseAbs().maxCoeff(), limits.torque_lower.cwiseAbs().maxCoeff(), 1e-6});
   const int inputs = arm_->inputs(), size = variables();
   variables_ = {VectorX::Constant(size, -kNoBound), VectorX::Constant(size, kNoBound)};
   variables_.lower.head(n_) = limits.angle_lower;
@@ -312,9 +312,9 @@ void BraceProgram::hessian(const VectorX& x, double factor, const VectorX& multi
     for (const constraint::Surface& surface : problem_.surfaces) {
       const double weight = multipliers[row++];
       add_hessian(world_[p], weight * constraint::distance(surface, world_[p].value).normal);
-      dense_.topLeftCorner(size, size) +=
-          weight * world_[p].jacobian.transpose() *
-          distance_hessian(surface, world_[p].value) * world_[p].jacobian;
+      dense_.topLeftCorner(size, size) += weight * world_[p].jacobian.transpose() *
+                                          distance_hessian(surface, world_[p].value) *
+                                          world_[p].jacobian;
     }
   }
   for (const SparseEntry& entry : hessian_) *values++ = dense_(entry.row, entry.column);

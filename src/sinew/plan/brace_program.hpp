@@ -19,11 +19,11 @@ namespace sinew::plan {
 /// a ball) or the projection across an axis (of a cylinder). On it the outward normal N(p) =
 /// P (p - c)/R is linear in p, so that derivatives of every order are simple.
 struct SurfacePatch {
-  Matrix3 projection = Matrix3::Zero();  ///< P; of a plane zero
-  Vector3 centre = Vector3::Zero();      ///< c, m
-  Vector3 normal = Vector3::Zero();      ///< of a plane; else zero
-  double radius = 1.0;                   ///< R, m; of a plane any
-  Vector3 axis = Vector3::UnitX();       ///< unit length: the piece ends where ...
+  Matrix3 projection = Matrix3::Zero();        ///< P; of a plane zero
+  Vector3 centre = Vector3::Zero();            ///< c, m
+  Vector3 normal = Vector3::Zero();            ///< of a plane; else zero
+  double radius = 1.0;                         ///< R, m; of a plane any
+  Vector3 axis = Vector3::UnitX();             ///< unit length: the piece ends where ...
   double lower = -kNoBound, upper = kNoBound;  ///< ... axis . p leaves these, m
 
   Vector3 normal_at(const Vector3& p) const { return normal + projection * (p - centre) / radius; }

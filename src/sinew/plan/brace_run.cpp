@@ -40,8 +40,7 @@ void check(const BraceRunSettings& settings) {
                 "give a force of zero or more, positive frequencies, the least first, and a sine");
   }
   if (!(settings.proportional >= 0.0) || !(settings.derivative >= 0.0)) {
-    throw Error(ErrorKind::out_of_range, {.item = "gains"}, "one is negative",
-                "give zero or more");
+    throw Error(ErrorKind::out_of_range, {.item = "gains"}, "one is negative", "give zero or more");
   }
 }
 
@@ -55,9 +54,9 @@ class Sines {
     amplitude_ = settings.force * std::sqrt(2.0 / settings.sines);
     for (auto& axis : sines_) {
       for (int k = 0; k < settings.sines; ++k) {
-        axis.push_back({2.0 * std::numbers::pi *
-                            draw(settings.least_frequency, settings.most_frequency),
-                        draw(0.0, 2.0 * std::numbers::pi)});
+        axis.push_back(
+            {2.0 * std::numbers::pi * draw(settings.least_frequency, settings.most_frequency),
+             draw(0.0, 2.0 * std::numbers::pi)});
       }
     }
   }
@@ -305,9 +304,9 @@ BraceRun run_brace(const std::shared_ptr<const pcc::Arm>& arm, const BraceTask& 
     const double share = smooth(static_cast<double>(k) / static_cast<double>(move));
     const VectorX angles = run.measured + share * (run.after.position - run.measured);
     const VectorX torque = brace.torque + share * (run.after.torque - brace.torque);
-    bench.step(torque, share < 1.0 ? VectorX(bench.angles() + (1.0 - share) *
-                                                                 (angles - bench.angles()))
-                                   : VectorX(),
+    bench.step(torque,
+               share < 1.0 ? VectorX(bench.angles() + (1.0 - share) * (angles - bench.angles()))
+                           : VectorX(),
                false);
   }
   for (long k = steps_in(settings.settle, settings); k > 0; --k) {
@@ -331,13 +330,13 @@ BraceRun run_free(const std::shared_ptr<const pcc::Arm>& arm, const BraceTask& g
   BraceRun run;
   if (!reach.found) return run;
   Bench bench(arm, task, settings, 0.0, false);
-  const long approach = steps_in(
-      settings.approach + settings.press + settings.move, settings);
+  const long approach = steps_in(settings.approach + settings.press + settings.move, settings);
   for (long k = 1; k <= approach; ++k) {
     bench.step(smooth(static_cast<double>(k) / static_cast<double>(approach)) * reach.torque, {},
                false);
   }
-  for (long k = steps_in(settings.settle, settings); k > 0; --k) bench.step(reach.torque, {}, false);
+  for (long k = steps_in(settings.settle, settings); k > 0; --k)
+    bench.step(reach.torque, {}, false);
   const double from = bench.time();
   for (long k = steps_in(settings.hold, settings); k > 0; --k) bench.step(reach.torque, {}, true);
   run.status = BraceRunStatus::held;

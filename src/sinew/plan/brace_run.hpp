@@ -31,8 +31,8 @@ struct BraceRunSettings {
   double hold = 4.0;        ///< s, > 0, disturbed
   /// Per-segment PD about the plan's angles: torque = plan + proportional error - derivative rate,
   /// within the limits. Steps are explicit in it: the derivative stays below the arm's own damping.
-  double proportional = 0.1;    ///< N m/rad, >= 0
-  double derivative = 1e-3;     ///< N m s, >= 0
+  double proportional = 0.1;       ///< N m/rad, >= 0
+  double derivative = 1e-3;        ///< N m s, >= 0
   std::optional<double> friction;  ///< Coulomb's; none: the least of each object's range
   Disturbance disturbance;
 };
@@ -49,14 +49,14 @@ std::string_view status_name(BraceRunStatus status);
 /// What an arm did over equal steps.
 struct BraceRun {
   BraceRunStatus status = BraceRunStatus::not_planned;
-  VectorX times;                             ///< (steps + 1,) s
-  MatrixX position, torque;                  ///< (steps + 1, coordinates or inputs)
-  Points tip;                                ///< (steps + 1, 3) m
-  VectorX normal_force, friction_force;      ///< (steps + 1,) N, of the braced point
+  VectorX times;                         ///< (steps + 1,) s
+  MatrixX position, torque;              ///< (steps + 1, coordinates or inputs)
+  Points tip;                            ///< (steps + 1, 3) m
+  VectorX normal_force, friction_force;  ///< (steps + 1,) N, of the braced point
   double contact_time = 0.0, replan_time = 0.0, disturbed_from = 0.0;  ///< s; contact: 0 is never
-  Brace before, after;  ///< as planned, and anew with the measured angles
-  VectorX measured;     ///< (coordinates,) when it was planned anew
-  int slips = 0;        ///< steps, disturbed, in which the braced point did not stick
+  Brace before, after;            ///< as planned, and anew with the measured angles
+  VectorX measured;               ///< (coordinates,) when it was planned anew
+  int slips = 0;                  ///< steps, disturbed, in which the braced point did not stick
   double cone_residual = 0.0;     ///< N, largest of |f_t| - mu F_n in any step
   double contact_residual = 0.0;  ///< largest relative residual of the contacts' laws in any step
   /// Of the tip while disturbed: mean distance from the goal, distance of its mean from the goal,
@@ -64,8 +64,8 @@ struct BraceRun {
   double mean_error = 0.0, offset = 0.0, spread = 0.0;
 };
 
-/// The arm with its objects as a simulation sees them: contact points on the whole skin, a torque on
-/// each coordinate.
+/// The arm with its objects as a simulation sees them: contact points on the whole skin, a torque
+/// on each coordinate.
 /// @param arm,task,brace as of find_brace(). @param settings see there.
 BraceRun run_brace(const std::shared_ptr<const pcc::Arm>& arm, const BraceTask& task,
                    const Brace& brace, const BraceRunSettings& settings = {});
