@@ -43,6 +43,8 @@ def run(case):
             case.report(f"{word}: {name}, standard deviation over seeds", float(np.std(values, ddof=1)), unit="mm", source="none")
     case.report("runs in which the braced point stuck all the while", f"{sum(r.status == 'held' for r in braced)} of {len(braced)}",
                 source="none")
+    mean = np.mean([r.spread for r in braced]) / np.mean([r.spread for r in bare])
+    case.bound("mean spread braced over mean spread not braced", float(mean), 1.0, source="unbraced")
     worst = max(a.spread / b.spread for a, b in zip(braced, bare))
     case.bound("spread braced over spread not braced, worst seed", worst, 1.0, source="unbraced")
     figure, (left, right) = plots.axes(2)
