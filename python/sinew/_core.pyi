@@ -3,7 +3,7 @@
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from types import TracebackType
-from typing import Any, Literal, Optional, Type, Union
+from typing import Any, Literal, Optional, Sequence, Type, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -872,6 +872,143 @@ class PlanTracker:
         time_step: float = 0.001,
     ) -> PlanReplay: ...
 
+class PlanBraceObject:
+    @staticmethod
+    def plane(
+        point: ArrayLike,
+        normal: ArrayLike,
+        *,
+        friction: Union[str, ArrayLike] = "silicone-on-steel",
+        stiffness: Optional[ArrayLike] = None,
+    ) -> PlanBraceObject: ...
+    @staticmethod
+    def sphere(
+        centre: ArrayLike,
+        radius: float,
+        *,
+        friction: Union[str, ArrayLike] = "silicone-on-steel",
+        stiffness: Optional[ArrayLike] = None,
+    ) -> PlanBraceObject: ...
+    @staticmethod
+    def capsule(
+        start: ArrayLike,
+        end: ArrayLike,
+        radius: float,
+        *,
+        friction: Union[str, ArrayLike] = "silicone-on-steel",
+        stiffness: Optional[ArrayLike] = None,
+    ) -> PlanBraceObject: ...
+
+class PlanBrace:
+    @property
+    def status(self) -> str: ...
+    @property
+    def found(self) -> bool: ...
+    @property
+    def segments(self) -> int: ...
+    @property
+    def object(self) -> int: ...
+    @property
+    def fraction(self) -> float: ...
+    @property
+    def theta(self) -> _Floats: ...
+    @property
+    def torque(self) -> _Floats: ...
+    @property
+    def turn(self) -> float: ...
+    @property
+    def place(self) -> _Floats: ...
+    @property
+    def normal(self) -> _Floats: ...
+    @property
+    def force(self) -> _Floats: ...
+    @property
+    def normal_force(self) -> float: ...
+    @property
+    def friction_force(self) -> float: ...
+    @property
+    def tip(self) -> _Floats: ...
+    @property
+    def tip_error(self) -> float: ...
+    @property
+    def gap(self) -> float: ...
+    @property
+    def clearance(self) -> float: ...
+    @property
+    def balance(self) -> float: ...
+    @property
+    def tip_compliance(self) -> float: ...
+    @property
+    def mobility(self) -> int: ...
+    @property
+    def conditions(self) -> list[dict[str, Any]]: ...
+    def run(
+        self,
+        braced: bool = True,
+        *,
+        friction: Optional[float] = None,
+        force: float = 0.01,
+        seed: int = 1,
+        hold: float = 4.0,
+        time_step: float = 0.001,
+    ) -> PlanBraceRun: ...
+
+class PlanBraceRun:
+    @property
+    def status(self) -> str: ...
+    @property
+    def times(self) -> _Floats: ...
+    @property
+    def theta(self) -> _Floats: ...
+    @property
+    def torque(self) -> _Floats: ...
+    @property
+    def tip(self) -> _Floats: ...
+    @property
+    def normal_force(self) -> _Floats: ...
+    @property
+    def friction_force(self) -> _Floats: ...
+    @property
+    def contact_time(self) -> float: ...
+    @property
+    def replan_time(self) -> float: ...
+    @property
+    def disturbed_from(self) -> float: ...
+    @property
+    def measured(self) -> _Floats: ...
+    @property
+    def slips(self) -> int: ...
+    @property
+    def cone_residual(self) -> float: ...
+    @property
+    def contact_residual(self) -> float: ...
+    @property
+    def mean_error(self) -> float: ...
+    @property
+    def offset(self) -> float: ...
+    @property
+    def spread(self) -> float: ...
+
+def plan_brace(
+    arm: Arm,
+    goal: ArrayLike,
+    torque_limits: ArrayLike,
+    objects: Sequence[PlanBraceObject],
+    *,
+    tolerance: float = 0.005,
+    angle_limits: Optional[ArrayLike] = None,
+    turn: Optional[ArrayLike] = None,
+    segments: Optional[int] = None,
+    fractions: Sequence[float] = (0.5, 1.0),
+    sides: int = 0,
+    clearance: float = 0.001,
+    friction_share: float = 0.5,
+    least_force: float = 0.2,
+    most_force: float = 20.0,
+    stiffness_ratio: float = 10.0,
+    starts: int = 2,
+    seed: int = 1,
+) -> PlanBrace: ...
 def plan_sample_reach(
     arm: Arm,
     torque_limits: ArrayLike,

@@ -6,16 +6,22 @@
     found = task.solve()                    # a Plan: found.status, found.torque, ...
     task.replay(found).tip_error            # m, carried out in fine steps
     plan.Tracker(task, found).run()         # with feedback
+    wall = plan.BraceObject.plane([-0.022, 0.0, 0.0], [1.0, 0.0, 0.0])
+    plan.brace(arm, [0.1, 0.0, -0.5], limits, [wall]).run()     # steadied by leaning on the wall
 
-SI units everywhere. docs/planning.md has the equations and what they assume.
+SI units everywhere. docs/planning.md and docs/bracing.md have the equations and what they assume.
 """
 
 from ._core import (
     Plan,
+    PlanBrace as Brace,
+    PlanBraceObject as BraceObject,
+    PlanBraceRun as BraceRun,
     PlanObstacle as Obstacle,
     PlanReplay as Replay,
     PlanTask as Task,
     PlanTracker as Tracker,
+    plan_brace as brace,
     plan_invert_cylinder as invert_cylinder,
     plan_invert_drive as invert_drive,
     plan_nearest_reach as nearest_reach,
@@ -26,6 +32,9 @@ from ._core import (
 )
 
 __all__ = [
+    "Brace",
+    "BraceObject",
+    "BraceRun",
     "Obstacle",
     "Plan",
     "Plane",
@@ -33,6 +42,7 @@ __all__ = [
     "Sphere",
     "Task",
     "Tracker",
+    "brace",
     "invert_cylinder",
     "invert_drive",
     "nearest_reach",
@@ -40,6 +50,7 @@ __all__ = [
     "sample_reach",
 ]
 
-for _type, _name in ((Obstacle, "Obstacle"), (Plan, "Plan"), (Replay, "Replay"), (Task, "Task"), (Tracker, "Tracker")):
+for _name in ("Brace", "BraceObject", "BraceRun", "Obstacle", "Plan", "Replay", "Task", "Tracker"):
+    _type = globals()[_name]
     _type.__module__, _type.__name__, _type.__qualname__ = "sinew.plan", _name, _name
 del _type, _name

@@ -35,6 +35,7 @@ void bind_bending(py::module_& module);
 void bind_bending_fit(py::module_& module);
 void bind_plan(py::module_& module);
 void bind_plan_reach(py::module_& module);
+void bind_brace(py::module_& module);
 void bind_plan_drive(py::module_& module);
 void bind_drive(py::module_& module);
 void bind_identify(py::module_& module);

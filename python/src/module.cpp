@@ -39,6 +39,7 @@ PYBIND11_MODULE(_core, module) {
 #ifdef SINEW_HAS_PLAN
   python::bind_plan(module);
   python::bind_plan_reach(module);
+  python::bind_brace(module);
   python::bind_plan_drive(module);
 #endif
 #ifdef SINEW_HAS_IDENTIFY

@@ -29,7 +29,10 @@ ArmBody::ArmBody(const ArmBodyModel& model, int histories)
     : model_(model),
       equations_(model.shared_arm()),
       kinematics_(model.shared_arm()),
-      slopes_(model.shared_arm()) {
+      slopes_(model.shared_arm()),
+      decomposed_(model.arm().coordinates()),
+      pivots_(model.arm().coordinates()),
+      spectrum_(model.arm().coordinates()) {
   const Eigen::Index n = model.arm().coordinates();
   const auto rows = static_cast<Eigen::Index>(model.rows_.size());
   for (VectorX* v : {&q_, &rate_, &start_, &right_, &motion_, &base_, &scratch_, &new_rate_,
@@ -38,9 +41,6 @@ ArmBody::ArmBody(const ArmBodyModel& model, int histories)
   }
   history_.assign(static_cast<std::size_t>(histories), VectorX::Zero(n));
   for (MatrixX* m : {&matrix_, &symmetric_}) m->setZero(n, n);
-  decomposed_ = Eigen::PartialPivLU<MatrixX>(n);
-  pivots_ = Eigen::LDLT<MatrixX>(n);
-  spectrum_ = Eigen::SelfAdjointEigenSolver<MatrixX>(n);
   rows_.setZero(n, rows);
   moved_rows_.setZero(n, rows);
   compliance_.setZero(rows, rows);

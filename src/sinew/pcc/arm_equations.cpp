@@ -34,14 +34,16 @@ std::span<const double> view(const VectorX& values) {
 
 struct ArmEquations::Work {
   explicit Work(std::shared_ptr<const Arm> arm_)
-      : arm(std::move(arm_)), plain(arm), n(static_cast<std::size_t>(arm->coordinates())) {
+      : arm(std::move(arm_)),
+        plain(arm),
+        n(static_cast<std::size_t>(arm->coordinates())),
+        decomposed(arm->coordinates()) {
     const Eigen::Index size = arm->coordinates();
     zero = bias = acceleration = VectorX::Zero(size);
     mass = coriolis = MatrixX::Zero(size, size);
     regressor = MatrixX::Zero(size, arm->segments());
     ends = MatrixX::Zero(3 * arm->segments(), size);
     columns.resize(n);
-    decomposed = Eigen::LLT<MatrixX>(size);
     linear.residual = VectorX::Zero(size);
     linear.by_position = linear.by_rate = linear.by_acceleration = MatrixX::Zero(size, size);
   }

@@ -1,0 +1,58 @@
+#!/usr/bin/env python3
+"""A soft fluidic arm leans on a bar to hold its tip steadier: the sequence of poses and the tip's error, braced and not,
+as a figure beside this script or in the folder given."""
+
+import sys
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+from sinew import pcc, plan
+
+GOAL = np.array([0.10, 0.0, -0.50])
+CENTRE, RADIUS = np.array([-0.072, -0.28]), 0.05
+
+
+def backbone(arm, theta):
+    """(n, 2) cm in the arm's plane: the segments' ends."""
+    return 100 * np.vstack([[0.0, 0.0], arm.endpoints(theta)[:, [0, 2]]])
+
+
+def main():
+    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).resolve().parent
+    arm, limits = pcc.published_arm(), pcc.published_torque_limits()
+    ends = [[CENTRE[0], y, CENTRE[1]] for y in (-0.1, 0.1)]
+    bar = plan.BraceObject.capsule(*ends, RADIUS)
+    brace = plan.brace(arm, GOAL, limits, [bar], least_force=0.15)
+    print(f"{brace.status} with segment {brace.segments}, force {np.round(brace.force, 3)} N")
+    for condition in brace.conditions:
+        print(f"  {condition['name']}: {condition['verdict']}, {condition['value']:.3g} against {condition['limit']:.3g}")
+    if not brace.found:
+        raise SystemExit(1)
+    braced, bare = brace.run(), brace.run(braced=False)
+    print(f"{braced.status}; tip's spread {1e3 * braced.spread:.1f} mm braced, {1e3 * bare.spread:.1f} mm not")
+
+    figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4.5), constrained_layout=True)
+    left.add_patch(plt.Circle(100 * CENTRE, 100 * RADIUS, color="#dddddd"))
+    moments = {"start": 0.0, "contact": braced.contact_time, "pressed": braced.replan_time,
+               "at the goal": braced.disturbed_from}
+    for label, time in moments.items():
+        line = backbone(arm, braced.theta[np.argmin(np.abs(braced.times - time))])
+        left.plot(*line.T, "o-", ms=3, label=label)
+    left.plot(*(100 * GOAL[[0, 2]]), "k+", ms=10)
+    left.set(xlabel="x (cm)", ylabel="z (cm)", aspect="equal")
+    left.legend(frameon=False)
+    for label, run in (("not braced", bare), ("braced", braced)):
+        shown = run.times >= run.disturbed_from - 0.5
+        error = 1e3 * np.linalg.norm(run.tip - GOAL, axis=1)
+        right.plot(run.times[shown] - run.disturbed_from, error[shown], label=label)
+    right.set(xlabel="time since the disturbance began (s)", ylabel="tip from goal (mm)")
+    right.legend(frameon=False)
+    figure.savefig(folder / "brace.png", dpi=100)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,354 @@
+// Bracing: objects, what is found, and how it is carried out.
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "sinew/plan/brace_run.hpp"
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "pcc_arm.hpp"
+#include "plan_limits.hpp"
+
+namespace sinew::python {
+
+namespace {
+
+/// What Python knows as sinew.plan.Brace.
+struct BraceOf {
+  std::shared_ptr<const pcc::Arm> arm;
+  plan::BraceTask task;
+  plan::Brace brace;
+};
+
+/// A name of a pair of surfaces, a coefficient, or (least, most).
+plan::FrictionRange friction_of(const py::object& value) {
+  if (py::isinstance<py::str>(value)) return plan::friction_range(value.cast<std::string>());
+  const Array array = to_array(value, "friction", "a number or (2,)");
+  if (array.ndim() == 0) return {"given", array.data()[0], array.data()[0]};
+  const VectorX both = to_vector(value, "friction", 2, "");
+  return {"given", both[0], both[1]};
+}
+
+plan::TouchStiffness stiffness_of(const py::object& value) {
+  if (value.is_none()) return plan::kRigid;
+  const VectorX both = to_vector(value, "stiffness", 2, "N/m and N m/rad");
+  return {both[0], both[1]};
+}
+
+void bind_objects(py::module_& module) {
+  using plan::BraceObject;
+  py::class_<BraceObject>(module, "PlanBraceObject",
+                          "What an arm may lean against: plane(), sphere() or capsule().")
+      .def_static(
+          "plane",
+          [](const py::object& point, const py::object& normal, const py::object& friction,
+             const py::object& stiffness) {
+            return BraceObject{constraint::Plane{to_vector3(point, "plane(point)", "m"),
+                                                 to_vector3(normal, "plane(normal)", "")},
+                               friction_of(friction), stiffness_of(stiffness)};
+          },
+          py::arg("point"), py::arg("normal"), py::kw_only(),
+          py::arg("friction") = "silicone-on-steel", py::arg("stiffness") = py::none(),
+          R"(plane(point, normal, *, friction='silicone-on-steel', stiffness=None)
+--
+
+A half space through a point (3,) m; its normal (3,) points out of what is solid.
+
+Parameters
+----------
+friction : str, float or (2,)
+    Of the pair: 'silicone-on-steel' (0.6 to 0.9), 'coated-rigid' (0.05 to 0.20), or numbers.
+stiffness : (2,), optional
+    Radial N/m and torsional N m/rad; rigid when left out.)")
+      .def_static(
+          "sphere",
+          [](const py::object& centre, double radius, const py::object& friction,
+             const py::object& stiffness) {
+            return BraceObject{
+                constraint::Sphere{to_vector3(centre, "sphere(centre)", "m"), radius},
+                friction_of(friction), stiffness_of(stiffness)};
+          },
+          py::arg("centre"), py::arg("radius"), py::kw_only(),
+          py::arg("friction") = "silicone-on-steel", py::arg("stiffness") = py::none(),
+          R"(sphere(centre, radius, *, friction='silicone-on-steel', stiffness=None)
+--
+
+A ball of centre (3,) m and radius in m; see plane().)")
+      .def_static(
+          "capsule",
+          [](const py::object& start, const py::object& end, double radius,
+             const py::object& friction, const py::object& stiffness) {
+            return BraceObject{constraint::Capsule{to_vector3(start, "capsule(start)", "m"),
+                                                   to_vector3(end, "capsule(end)", "m"), radius},
+                               friction_of(friction), stiffness_of(stiffness)};
+          },
+          py::arg("start"), py::arg("end"), py::arg("radius"), py::kw_only(),
+          py::arg("friction") = "silicone-on-steel", py::arg("stiffness") = py::none(),
+          R"(capsule(start, end, radius, *, friction='silicone-on-steel', stiffness=None)
+--
+
+A bar with round ends, from (3,) to (3,) m, of a radius in m; see plane().)");
+}
+
+BraceOf find(const PccArm& arm, const py::object& goal, const py::object& torque_limits,
+             const std::vector<plan::BraceObject>& objects, double tolerance,
+             const py::object& angle_limits, const py::object& turn, const py::object& segments,
+             const py::object& fractions, int sides, double clearance, double friction_share,
+             double least_force, double most_force, double stiffness_ratio, int starts,
+             std::uint64_t seed) {
+  plan::BraceTask task;
+  task.goal = to_vector3(goal, "brace(goal)", "m");
+  task.tolerance = tolerance;
+  task.limits = to_limits(*arm.arm, torque_limits, angle_limits);
+  task.objects = objects;
+  if (!turn.is_none()) {
+    const VectorX both = to_vector(turn, "brace(turn)", 2, "rad");
+    task.turn_lower = both[0];
+    task.turn_upper = both[1];
+  }
+  task.fractions = to_list(fractions, "brace(fractions)", "of a segment's length");
+  task.sides = sides;
+  task.clearance = clearance;
+  task.friction_share = friction_share;
+  task.least_force = least_force;
+  task.most_force = most_force;
+  task.stiffness_ratio = stiffness_ratio;
+  task.starts = starts;
+  task.seed = seed;
+  const int only = segments.is_none() ? 0 : segments.cast<int>();
+  const py::gil_scoped_release release;
+  plan::Brace brace =
+      segments.is_none() ? plan::find_brace(arm.arm, task) : plan::find_brace(arm.arm, task, only);
+  return {arm.arm, task, std::move(brace)};
+}
+
+py::list conditions_of(const plan::Brace& brace) {
+  py::list result;
+  if (!brace.found()) return result;
+  for (const plan::BraceCondition& condition : brace.conditions) {
+    py::dict entry;
+    entry["name"] = std::string(condition.name);
+    entry["verdict"] = std::string(plan::verdict_name(condition.verdict));
+    entry["value"] = condition.value;
+    entry["limit"] = condition.limit;
+    result.append(entry);
+  }
+  return result;
+}
+
+plan::BraceRun carry_out(const BraceOf& self, bool braced, const py::object& friction, double force,
+                         std::uint64_t seed, double hold, double time_step) {
+  plan::BraceRunSettings settings;
+  settings.time_step = time_step;
+  settings.hold = hold;
+  settings.disturbance.force = force;
+  settings.disturbance.seed = seed;
+  if (!friction.is_none()) settings.friction = to_number(friction, "run(friction)", "");
+  const py::gil_scoped_release release;
+  return braced ? plan::run_brace(self.arm, self.task, self.brace, settings)
+                : plan::run_free(self.arm, self.task, settings);
+}
+
+void bind_found(py::module_& module) {
+  py::class_<BraceOf>(module, "PlanBrace", "What brace() found.")
+      .def_property_readonly(
+          "status",
+          [](const BraceOf& self) { return std::string(plan::status_name(self.brace.status)); },
+          "str: 'braced', 'infeasible' or 'no-object-in-reach'.")
+      .def_property_readonly(
+          "found", [](const BraceOf& self) { return self.brace.found(); }, "bool: braced.")
+      .def_property_readonly(
+          "segments", [](const BraceOf& self) { return self.brace.segments; },
+          "int: n, the braced point is on the n-th segment from the base.")
+      .def_property_readonly(
+          "object", [](const BraceOf& self) { return self.brace.object; },
+          "int: which of the objects; -1: none.")
+      .def_property_readonly(
+          "fraction", [](const BraceOf& self) { return self.brace.point.fraction; },
+          "float: of the segment's length, where the braced point is.")
+      .def_property_readonly(
+          "theta", [](const BraceOf& self) { return copy(self.brace.position); },
+          "(coordinates,) rad.")
+      .def_property_readonly(
+          "torque", [](const BraceOf& self) { return copy(self.brace.torque); }, "(inputs,) N m.")
+      .def_property_readonly(
+          "turn", [](const BraceOf& self) { return self.brace.turn; }, "float: rad, of the base.")
+      .def_property_readonly(
+          "place", [](const BraceOf& self) { return copy(self.brace.place); },
+          "(3,) m: the braced point, on the object.")
+      .def_property_readonly(
+          "normal", [](const BraceOf& self) { return copy(self.brace.normal); },
+          "(3,): out of the object.")
+      .def_property_readonly(
+          "force", [](const BraceOf& self) { return copy(self.brace.force); },
+          "(3,) N: on the arm.")
+      .def_property_readonly(
+          "normal_force", [](const BraceOf& self) { return self.brace.normal_force; }, "float: N.")
+      .def_property_readonly(
+          "friction_force", [](const BraceOf& self) { return self.brace.friction_force; },
+          "float: N.")
+      .def_property_readonly(
+          "tip", [](const BraceOf& self) { return copy(self.brace.tip); }, "(3,) m.")
+      .def_property_readonly(
+          "tip_error", [](const BraceOf& self) { return self.brace.tip_error; }, "float: m.")
+      .def_property_readonly(
+          "gap", [](const BraceOf& self) { return self.brace.gap; },
+          "float: m, of the braced point.")
+      .def_property_readonly(
+          "clearance", [](const BraceOf& self) { return self.brace.clearance; },
+          "float: m, the least of the skin's other points.")
+      .def_property_readonly(
+          "balance", [](const BraceOf& self) { return self.brace.balance; },
+          "float: N m, largest component of the equilibrium's residual.")
+      .def_property_readonly(
+          "tip_compliance", [](const BraceOf& self) { return self.brace.tip_compliance; },
+          "float: m/N, the largest while the braced point sticks.")
+      .def_property_readonly(
+          "mobility", [](const BraceOf& self) { return self.brace.mobility; },
+          "int: directions in which the tip still moves then.")
+      .def_property_readonly(
+          "conditions", [](const BraceOf& self) { return conditions_of(self.brace); },
+          "list of dict: 'name' (friction, stiffness, kinematic), 'verdict' (holds, uncertain, "
+          "violated), 'value' and 'limit'; empty where nothing was found.")
+      .def(
+          "run", &carry_out, py::arg("braced") = true, py::kw_only(),
+          py::arg("friction") = py::none(), py::arg("force") = plan::Disturbance{}.force,
+          py::arg("seed") = 1, py::arg("hold") = plan::BraceRunSettings{}.hold,
+          py::arg("time_step") = plan::BraceRunSettings{}.time_step,
+          R"(run($self, braced=True, *, friction=None, force=0.01, seed=1, hold=4.0, time_step=0.001)
+--
+
+Moves to contact, presses, plans anew, moves to the goal, and is disturbed there: a BraceRun.
+
+Parameters
+----------
+braced : bool
+    False: without objects, by the torque of the equilibrium nearest to the goal.
+friction : float, optional
+    Coulomb's coefficient of every object; the least of its range when left out.
+force : float
+    N, root mean square of the disturbance along x, y and z, a sum of sines of 0.2 to 2 Hz.
+seed : int
+    Of the disturbance.
+hold : float
+    s, of being disturbed.
+time_step : float
+    s, of backward Euler.)");
+}
+
+void bind_run(py::module_& module) {
+  using plan::BraceRun;
+  py::class_<BraceRun>(module, "PlanBraceRun", "A brace carried out, over equal steps.")
+      .def_property_readonly(
+          "status",
+          [](const BraceRun& self) { return std::string(plan::status_name(self.status)); },
+          "str: 'held', 'slipped', 'no-contact' or 'not-planned'.")
+      .def_property_readonly(
+          "times", [](const BraceRun& self) { return copy(self.times); }, "(steps + 1,) s.")
+      .def_property_readonly(
+          "theta", [](const BraceRun& self) { return copy(self.position); },
+          "(steps + 1, coordinates) rad.")
+      .def_property_readonly(
+          "torque", [](const BraceRun& self) { return copy(self.torque); },
+          "(steps + 1, inputs) N m.")
+      .def_property_readonly(
+          "tip", [](const BraceRun& self) { return copy(self.tip); }, "(steps + 1, 3) m.")
+      .def_property_readonly(
+          "normal_force", [](const BraceRun& self) { return copy(self.normal_force); },
+          "(steps + 1,) N, of the braced point.")
+      .def_property_readonly(
+          "friction_force", [](const BraceRun& self) { return copy(self.friction_force); },
+          "(steps + 1,) N, of the braced point.")
+      .def_property_readonly(
+          "contact_time", [](const BraceRun& self) { return self.contact_time; },
+          "float: s, of the first touch; 0: never.")
+      .def_property_readonly(
+          "replan_time", [](const BraceRun& self) { return self.replan_time; },
+          "float: s, when the rest was planned anew.")
+      .def_property_readonly(
+          "disturbed_from", [](const BraceRun& self) { return self.disturbed_from; }, "float: s.")
+      .def_property_readonly(
+          "measured", [](const BraceRun& self) { return copy(self.measured); },
+          "(coordinates,) rad, when the rest was planned anew.")
+      .def_property_readonly(
+          "slips", [](const BraceRun& self) { return self.slips; },
+          "int: steps, disturbed, in which the braced point did not stick.")
+      .def_property_readonly(
+          "cone_residual", [](const BraceRun& self) { return self.cone_residual; },
+          "float: N, largest of friction less its limit in any step.")
+      .def_property_readonly(
+          "contact_residual", [](const BraceRun& self) { return self.contact_residual; },
+          "float: largest relative residual of the contacts' laws in any step.")
+      .def_property_readonly(
+          "mean_error", [](const BraceRun& self) { return self.mean_error; },
+          "float: m, the tip's mean distance from the goal while disturbed.")
+      .def_property_readonly(
+          "offset", [](const BraceRun& self) { return self.offset; },
+          "float: m, its mean's distance.")
+      .def_property_readonly(
+          "spread", [](const BraceRun& self) { return self.spread; },
+          "float: m, root mean square about its mean.");
+}
+
+}  // namespace
+
+void bind_brace(py::module_& module) {
+  bind_objects(module);
+  bind_found(module);
+  bind_run(module);
+  const plan::BraceTask task;
+  module.def(
+      "plan_brace", &find, py::arg("arm"), py::arg("goal"), py::arg("torque_limits"),
+      py::arg("objects"), py::kw_only(), py::arg("tolerance") = task.tolerance,
+      py::arg("angle_limits") = py::none(), py::arg("turn") = py::none(),
+      py::arg("segments") = py::none(), py::arg("fractions") = py::make_tuple(0.5, 1.0),
+      py::arg("sides") = task.sides, py::arg("clearance") = task.clearance,
+      py::arg("friction_share") = task.friction_share, py::arg("least_force") = task.least_force,
+      py::arg("most_force") = task.most_force, py::arg("stiffness_ratio") = task.stiffness_ratio,
+      py::arg("starts") = task.starts, py::arg("seed") = task.seed,
+      R"(plan_brace(arm, goal, torque_limits, objects, *, tolerance=0.005, angle_limits=None, turn=None, segments=None, fractions=(0.5, 1.0), sides=0, clearance=0.001, friction_share=0.5, least_force=0.2, most_force=20.0, stiffness_ratio=10.0, starts=2, seed=1)
+--
+
+Where an arm leans against its surroundings so that its tip is held steadier: a Brace.
+
+Parameters
+----------
+arm : sinew.pcc.Arm
+goal : (3,) m
+    Of the tip.
+torque_limits : (inputs,) or (2, inputs) N m
+objects : list of BraceObject
+    None: infeasible.
+tolerance : float
+    m; a brace is found with 40 % of it, the rest is for the way there.
+angle_limits : (coordinates,) or (2, coordinates) rad, optional
+turn : (2,) rad, optional
+    The base turns about the arm's axis by an angle between these.
+segments : int, optional
+    The braced point is on this segment, counted from 1; else on the first for which there is one.
+fractions : sequence of float
+    Of a segment's length: which points of its skin may touch ...
+sides : int
+    ... at so many places round the section; 0: 2, spatial arms 4.
+clearance : float
+    m, that the other points of the skin keep from the objects.
+friction_share : float
+    Of the least friction, that the brace may need.
+least_force, most_force : float
+    N, of the normal force.
+stiffness_ratio : float
+    From which on an object is much stiffer than the arm (1 N/mm, 0.2 N m/rad).
+starts : int
+    Of the search, for each candidate.
+seed : int
+
+Raises
+------
+Error
+    out-of-range, contradictory-limits, not-finite, wrong-shape, unknown-choice.)");
+}
+
+}  // namespace sinew::python

@@ -1,0 +1,118 @@
+/// @file
+/// Static equilibrium of an arm that one point of its skin braces against a smooth piece of a
+/// surface, as a nonlinear program.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "sinew/constraint/surface.hpp"
+#include "sinew/pcc/arm_equations.hpp"
+#include "sinew/plan/nonlinear_program.hpp"
+#include "sinew/plan/point_derivatives.hpp"
+#include "sinew/plan/task.hpp"
+
+namespace sinew::plan {
+
+/// A smooth piece of a surface: a plane n . (p - c) = 0, or |P (p - c)| = R with P the identity (of
+/// a ball) or the projection across an axis (of a cylinder). On it the outward normal N(p) =
+/// P (p - c)/R is linear in p, so that derivatives of every order are simple.
+struct SurfacePatch {
+  Matrix3 projection = Matrix3::Zero();        ///< P; of a plane zero
+  Vector3 centre = Vector3::Zero();            ///< c, m
+  Vector3 normal = Vector3::Zero();            ///< of a plane; else zero
+  double radius = 1.0;                         ///< R, m; of a plane any
+  Vector3 axis = Vector3::UnitX();             ///< unit length: the piece ends where ...
+  double lower = -kNoBound, upper = kNoBound;  ///< ... axis . p leaves these, m
+
+  Vector3 normal_at(const Vector3& p) const { return normal + projection * (p - centre) / radius; }
+  /// (|P (p - c)|^2 - R^2)/(2 R), the signed distance to first order; of a plane exactly that.
+  double gap(const Vector3& p) const;
+};
+/// One for a plane or a sphere, three for a capsule: the cylinder and two half balls.
+std::vector<SurfacePatch> patches_of(const constraint::Surface& surface);
+/// Second derivative of constraint::distance().
+Matrix3 distance_hessian(const constraint::Surface& surface, const Vector3& point);
+
+/// See BraceProgram.
+struct BraceProblem {
+  Limits limits;                              ///< completed_limits()
+  double turn_lower = 0.0, turn_upper = 0.0;  ///< rad, of the base about the arm's axis
+  Vector3 goal = Vector3::Zero();             ///< m
+  double tolerance = 2e-3;                    ///< m, > 0
+  pcc::ArmPoint point;                        ///< that is braced
+  SurfacePatch patch;
+  bool touches = true;  ///< false: where the point is, is given by fixed angles
+  double friction = 0.0;
+  double least_force = 0.0, most_force = kNoBound;  ///< N
+  double force_weight = 0.0;                        ///< 1/N^2
+  std::vector<pcc::ArmPoint> clear_points;          ///< that keep ...
+  double clearance = 0.0;                           ///< m, away from ...
+  std::vector<constraint::Surface> surfaces;
+};
+
+/// min |tau|^2/s^2 + w |f|^2 over x = (q, gamma, tau, f), s the largest limit on a torque, so that
+///   K q + G(q) = B tau + J(q)^T f,
+///   gap(p) = 0, p within the patch,   F_n = N(p) . f within its limits,
+///   |f|^2 <= (1 + mu^2) F_n^2,        which is |f_t| <= mu F_n,
+///   sqrt(|e|^2 + d^2) <= sqrt(2) d,   e the tip's error, d its tolerance,
+/// and the other points of the skin outside every object. f (N) is in the frame of the base before
+/// it turns by gamma, in which neither the equilibrium nor J knows gamma; p, N and e are the
+/// world's, with R(gamma) f in place of f.
+class BraceProgram final : public NonlinearProgram {
+ public:
+  BraceProgram(std::shared_ptr<const pcc::Arm> arm, BraceProblem problem);
+
+  int variables() const { return force_ + 3; }
+  int turn_index() const { return turn_; }
+  int torque_index() const { return torque_; }
+  int force_index() const { return force_; }
+  const BraceProblem& problem() const { return problem_; }
+
+  const Bounds& variable_bounds() const override { return variables_; }
+  const Bounds& constraint_bounds() const override { return rows_; }
+  const VectorX& variable_scale() const override { return variable_scale_; }
+  const VectorX& constraint_scale() const override { return row_scale_; }
+  double objective_scale() const override { return 1.0; }
+  const std::vector<SparseEntry>& jacobian_pattern() const override { return jacobian_; }
+  const std::vector<SparseEntry>& hessian_pattern() const override { return hessian_; }
+
+  double objective(const VectorX& x) override;
+  void gradient(const VectorX& x, VectorX& result) override;
+  void constraints(const VectorX& x, VectorX& result) override;
+  void jacobian(const VectorX& x, double* values) override;
+  void hessian(const VectorX& x, double factor, const VectorX& multipliers,
+               double* values) override;
+
+ private:
+  /// Tip, braced point, then those that keep clear, by (q, gamma) in the world; the braced point's
+  /// by q before the turn.
+  void look(const VectorX& x);
+  void add_hessian(const VectorDerivatives& of, const Vector3& weights);
+  void add_force_hessian(double by_force, double by_cone);
+  /// dF_n/dx.
+  VectorX force_gradient() const;
+
+  std::shared_ptr<const pcc::Arm> arm_;
+  pcc::ArmEquations equations_;
+  PointDerivatives points_, velocity_;
+  BraceProblem problem_;
+  int n_, turn_, torque_, force_, first_clear_;
+  double torque_scale_;
+  VectorX still_;
+  std::vector<pcc::ArmPoint> looked_at_;
+  Bounds variables_, rows_;
+  VectorX variable_scale_, row_scale_;
+  std::vector<SparseEntry> jacobian_, hessian_;
+
+  VectorX looked_;            // x of what follows
+  VectorDerivatives braced_;  // before the turn, by q
+  std::vector<VectorDerivatives> world_;
+  Matrix3 rotation_, spin_;  // R(gamma); [a]x
+  Vector3 world_force_, normal_;
+  double normal_force_ = 0.0;
+  MatrixX dense_;
+};
+
+}  // namespace sinew::plan

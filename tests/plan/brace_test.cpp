@@ -1,0 +1,230 @@
+// Braces: exact derivatives, the three conditions, what is found and what is not.
+#include "sinew/plan/brace.hpp"
+
+#include <cmath>
+#include <random>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include "sinew/core/error.hpp"
+#include "sinew/plan/brace_program.hpp"
+#include "sinew/plan/brace_run.hpp"
+#include "sinew/plan/reach.hpp"
+
+#include "tasks.hpp"
+
+namespace sinew::plan {
+namespace {
+
+using pcc::testing::make;
+using testing::grab;
+
+/// A bar across the arm's plane, beside its second segment.
+BraceTask bar() {
+  BraceTask task;
+  task.goal = {0.10, 0.0, -0.50};
+  task.limits = grab().limits;
+  task.least_force = 0.15;
+  task.objects = {{constraint::Capsule{{-0.072, -0.1, -0.28}, {-0.072, 0.1, -0.28}, 0.05}}};
+  return task;
+}
+
+/// Jacobian against constraints, Hessian against Jacobian and gradient, everywhere.
+void check_derivatives(BraceProgram& program, std::mt19937& random) {
+  const int size = program.variables();
+  const Eigen::Index rows = program.constraint_bounds().lower.size();
+  const VectorX x = pcc::testing::random_vector(random, size, 0.7);
+  const VectorX multipliers = pcc::testing::random_vector(random, rows, 1.0);
+  const auto jacobian_at = [&](const VectorX& at) {
+    MatrixX result(rows, size);
+    std::vector<double> values(program.jacobian_pattern().size());
+    program.jacobian(at, values.data());
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      result(program.jacobian_pattern()[k].row, program.jacobian_pattern()[k].column) = values[k];
+    }
+    return result;
+  };
+  const double factor = 0.6, h = 1e-6;
+  const auto slope_at = [&](const VectorX& at) {
+    VectorX gradient;
+    program.gradient(at, gradient);
+    return VectorX(factor * gradient + jacobian_at(at).transpose() * multipliers);
+  };
+  const MatrixX jacobian = jacobian_at(x);
+  std::vector<double> values(program.hessian_pattern().size());
+  program.hessian(x, factor, multipliers, values.data());
+  MatrixX hessian = MatrixX::Zero(size, size);
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    hessian(program.hessian_pattern()[k].row, program.hessian_pattern()[k].column) = values[k];
+    hessian(program.hessian_pattern()[k].column, program.hessian_pattern()[k].row) = values[k];
+  }
+  VectorX gradient;
+  program.gradient(x, gradient);
+  for (int i = 0; i < size; ++i) {
+    VectorX more = x, less = x, up, down;
+    more[i] += h;
+    less[i] -= h;
+    program.constraints(more, up);
+    program.constraints(less, down);
+    EXPECT_LT(((up - down) / (2.0 * h) - jacobian.col(i)).cwiseAbs().maxCoeff(), 1e-7) << i;
+    EXPECT_NEAR((program.objective(more) - program.objective(less)) / (2.0 * h), gradient[i], 1e-6);
+    EXPECT_LT(
+        ((slope_at(more) - slope_at(less)) / (2.0 * h) - hessian.col(i)).cwiseAbs().maxCoeff(),
+        1e-6)
+        << i;
+  }
+}
+
+BraceProblem problem(const pcc::Arm& arm, const constraint::Surface& surface, std::size_t patch) {
+  BraceTask task;
+  task.limits.torque_upper = VectorX::Constant(arm.inputs(), 0.2);
+  task.limits.torque_lower = -task.limits.torque_upper;
+  BraceProblem result;
+  result.limits = completed_limits(arm, task.limits);
+  result.turn_lower = -1.0;
+  result.turn_upper = 1.0;
+  result.goal = {0.1, 0.05, -0.3};
+  result.point = {.segment = arm.segments() - 2, .fraction = 0.7, .x = 0.01, .y = -0.015};
+  result.patch = patches_of(surface)[patch];
+  result.friction = 0.6;
+  result.force_weight = 0.1;
+  result.clear_points = skin_points(arm, task);
+  result.surfaces = {surface};
+  return result;
+}
+
+TEST(Brace, DerivativesAreExact) {
+  std::mt19937 random(3);
+  const std::vector<constraint::Surface> surfaces{
+      constraint::Plane{{0.3, 0.1, 0.0}, Vector3(1.0, 2.0, -0.5).normalized()},
+      constraint::Sphere{{0.9, 0.4, -0.3}, 0.2},
+      constraint::Capsule{{0.9, 0.0, -0.3}, {1.1, 0.5, 0.1}, 0.1}};
+  for (const bool spatial : {false, true}) {
+    const auto arm = make(spatial ? pcc::testing::mixed() : pcc::testing::fluidic());
+    for (const constraint::Surface& surface : surfaces) {
+      for (std::size_t patch = 0; patch < patches_of(surface).size(); ++patch) {
+        BraceProgram program(arm, problem(*arm, surface, patch));
+        check_derivatives(program, random);
+      }
+    }
+  }
+}
+
+TEST(Brace, ConditionsHaveNamedRanges) {
+  using Verdict = BraceCondition::Verdict;
+  EXPECT_EQ(check_friction(1.0, 0.04, friction_range("coated-rigid")).verdict, Verdict::holds);
+  EXPECT_EQ(check_friction(1.0, 0.1, kCoatedRigid).verdict, Verdict::uncertain);
+  EXPECT_EQ(check_friction(1.0, 0.3, kCoatedRigid).verdict, Verdict::violated);
+  EXPECT_EQ(check_friction(1.0, 0.3, friction_range("silicone-on-steel")).verdict, Verdict::holds);
+  EXPECT_EQ(check_friction(0.0, 0.0, kSiliconeOnSteel).verdict, Verdict::violated);
+  EXPECT_THROW(friction_range("ice"), Error);
+  EXPECT_EQ(check_stiffness(kRigid, kSoftArm, 10.0).verdict, Verdict::holds);
+  EXPECT_EQ(check_stiffness({1e5, 1.0}, kSoftArm, 10.0).verdict, Verdict::violated);
+  EXPECT_DOUBLE_EQ(check_stiffness({1e5, 1.0}, kSoftArm, 10.0).value, 5.0);
+  EXPECT_EQ(check_kinematics(1e-8, 0.1, -0.001, 1e-6).verdict, Verdict::holds);
+  EXPECT_EQ(check_kinematics(0.0, -0.01, 0.0, 1e-6).verdict, Verdict::violated);
+}
+
+TEST(Brace, IsAnEquilibriumWithinItsCone) {
+  const auto arm = make(pcc::testing::fluidic());
+  const BraceTask task = bar();
+  const Brace brace = find_brace(arm, task, 2);
+  ASSERT_TRUE(brace.found());
+  // The balance once more, from the arm's own equations and the point's Jacobian.
+  pcc::ArmEquations equations(arm);
+  const VectorX still = VectorX::Zero(4);
+  const MatrixX jacobian = equations.point(brace.point, brace.position, still).jacobian;
+  EXPECT_LT((equations.residual(brace.position, still, still) - brace.torque -
+             jacobian.transpose() * brace.force)
+                .norm(),
+            1e-8);
+  EXPECT_LT(std::abs(constraint::distance(task.objects[0].surface, brace.place).gap), 1e-8);
+  EXPECT_GE(brace.normal_force, task.least_force - 1e-8);
+  EXPECT_LE(brace.friction_force, 0.5 * 0.6 * brace.normal_force + 1e-8);
+  EXPECT_LE(brace.tip_error, task.tolerance);
+  EXPECT_GE(brace.clearance, task.clearance - 1e-8);
+  EXPECT_TRUE((brace.torque.cwiseAbs().array() <= task.limits.torque_upper.array() + 1e-8).all());
+  EXPECT_LT(brace.tip_compliance, 0.8 * free_tip_compliance(arm, brace.position));
+  // It would not stick where friction is that of a coated rigid surface.
+  EXPECT_EQ(check_friction(brace.normal_force, brace.friction_force, kCoatedRigid).verdict,
+            BraceCondition::Verdict::violated);
+}
+
+TEST(Brace, HoldsInContactAndSteadiesTheTip) {
+  const auto arm = make(pcc::testing::fluidic());
+  const BraceTask task = bar();
+  const Brace brace = find_brace(arm, task, 2);
+  ASSERT_TRUE(brace.found());
+  BraceRunSettings settings;
+  settings.hold = 1.0;
+  settings.disturbance.force = 0.0;
+  const BraceRun still = run_brace(arm, task, brace, settings);
+  EXPECT_EQ(still.status, BraceRunStatus::held) << status_name(still.status);
+  EXPECT_GT(still.contact_time, 0.0);
+  EXPECT_LT(still.cone_residual, 1e-9);
+  EXPECT_LT(still.offset, task.tolerance + 1e-3);
+  EXPECT_LT(still.spread, 1e-4);
+  ASSERT_TRUE(still.after.found());
+  EXPECT_NEAR(still.normal_force[still.normal_force.size() - 1], still.after.normal_force,
+              0.1 * still.after.normal_force);
+
+  settings.hold = 3.0;
+  settings.disturbance.force = 0.01;
+  const BraceRun braced = run_brace(arm, task, brace, settings);
+  const BraceRun bare = run_free(arm, task, settings);
+  EXPECT_LT(braced.spread, 0.8 * bare.spread);
+  EXPECT_GT(braced.spread, 1e-4);
+}
+
+TEST(Brace, WithoutAnObjectThereIsNone) {
+  const auto arm = make(pcc::testing::fluidic());
+  BraceTask task = bar();
+  task.objects.clear();
+  EXPECT_EQ(find_brace(arm, task).status, BraceStatus::infeasible);
+  EXPECT_EQ(find_brace(arm, task, 2).tried, 0);
+  task.objects = {{constraint::Sphere{{2.0, 0.0, 0.0}, 0.1}}};
+  const Brace far = find_brace(arm, task);
+  EXPECT_EQ(far.status, BraceStatus::no_object_in_reach);
+  EXPECT_EQ(run_brace(arm, task, far).status, BraceRunStatus::not_planned);
+}
+
+TEST(Brace, RefusesWhatMakesNoSense) {
+  const auto arm = make(pcc::testing::fluidic());
+  const auto refused = [&](const auto& change) {
+    BraceTask task = bar();
+    change(task);
+    EXPECT_THROW(completed(*arm, task), Error);
+  };
+  refused([](BraceTask& task) { task.goal = {1.0, 0.0, 0.0}; });
+  refused([](BraceTask& task) { task.fractions = {0.0}; });
+  refused([](BraceTask& task) { task.least_force = 0.0; });
+  refused([](BraceTask& task) { task.most_force = 0.01; });
+  refused([](BraceTask& task) { task.turn_lower = 1.0; });
+  refused([](BraceTask& task) { task.objects[0].friction = {"given", 0.5, 0.2}; });
+  refused([](BraceTask& task) { task.objects[0].surface = constraint::Sphere{}; });
+  EXPECT_THROW(find_brace(arm, bar(), 5), Error);
+  pcc::ArmSettings tilted = pcc::testing::fluidic();
+  tilted.gravity = {3.0, 0.0, -9.0};
+  BraceTask task = bar();
+  task.turn_upper = 1.0;
+  EXPECT_THROW(completed(*make(tilted), task), Error);
+}
+
+/// A base that turns brings the arm's plane to where the goal and the bar are.
+TEST(Brace, TurnsTheBase) {
+  const auto arm = make(pcc::testing::fluidic());
+  const Matrix3 turn = Eigen::AngleAxisd(0.5, Vector3::UnitZ()).toRotationMatrix();
+  BraceTask task = bar();
+  task.goal = turn * task.goal;
+  task.objects = {{constraint::Capsule{turn * Vector3(-0.072, -0.1, -0.28),
+                                       turn * Vector3(-0.072, 0.1, -0.28), 0.05}}};
+  task.turn_lower = -1.0;
+  task.turn_upper = 1.0;
+  const Brace brace = find_brace(arm, task, 2);
+  ASSERT_TRUE(brace.found());
+  EXPECT_NEAR(brace.turn, -0.5, 0.1);  // the base's axis points down
+}
+
+}  // namespace
+}  // namespace sinew::plan
