@@ -239,21 +239,30 @@ const std::vector<FieldInfo>& list_fields() {
   static const std::vector<FieldInfo> list = [] {
     std::vector<FieldInfo> all = {
         {"displacement", "Displacement", "m", "distance from the place at rest",
-         [](const fem::FemBody& body, const sim::Simulation&, const fem::NodalMean&) {
+         [](const mechanics::Body& body, const sim::Simulation&, const fem::NodalMean*) {
            return fem::displacement_field(body);
          }}};
+    const auto add = [&](FieldInfo info, const auto& values) {
+      info.values = [values](const mechanics::Body& body, const sim::Simulation& simulation,
+                             const fem::NodalMean* mean) {
+        const auto* own = dynamic_cast<const fem::FemBody*>(&body);
+        return own == nullptr
+                   ? std::vector<double>(static_cast<std::size_t>(body.positions().rows()), 0.0)
+                   : values(*own, simulation, *mean);
+      };
+      all.push_back(std::move(info));
+    };
     for (const fem::ElementFieldInfo& info : fem::element_fields()) {
-      all.push_back({info.name, info.label, info.unit, info.description,
-                     [field = info.field](const fem::FemBody& body, const sim::Simulation&,
-                                          const fem::NodalMean& mean) {
-                       return mean(fem::element_field(body, field));
-                     }});
+      add({info.name, info.label, info.unit, info.description, {}},
+          [field = info.field](const fem::FemBody& body, const sim::Simulation&,
+                               const fem::NodalMean& mean) {
+            return mean(fem::element_field(body, field));
+          });
     }
-    all.push_back(
-        {"actuator_force", "Actuators' force", "N", "force of the actuators on each node",
-         [](const fem::FemBody& body, const sim::Simulation& simulation, const fem::NodalMean&) {
-           return fem::row_force_field(body, simulation.efforts());
-         }});
+    add({"actuator_force", "Actuators' force", "N", "force of the actuators on each node", {}},
+        [](const fem::FemBody& body, const sim::Simulation& simulation, const fem::NodalMean&) {
+          return fem::row_force_field(body, simulation.efforts());
+        });
     return all;
   }();
   return list;

@@ -14,13 +14,14 @@
 
 namespace sinew::viewer {
 
-/// Fields that finite-element bodies can be coloured by: the displacement, those of the elements,
-/// and the force of the actuators on each node. In the order of Description::fields.
+/// Fields that bodies can be coloured by: the displacement, and of finite elements those of the
+/// elements and the force of the actuators on each node. In the order of Description::fields.
 struct FieldInfo {
   std::string name, label, unit, description;
-  /// (n,) at all nodes. @param body,simulation one of its bodies. @param mean of that body.
-  std::function<std::vector<double>(const fem::FemBody&, const sim::Simulation&,
-                                    const fem::NodalMean&)>
+  /// (n,) at all nodes; zero where the body has no such field. @param body,simulation one of its
+  /// bodies. @param mean of that body; null of one without elements.
+  std::function<std::vector<double>(const mechanics::Body&, const sim::Simulation&,
+                                    const fem::NodalMean*)>
       values;
 };
 const std::vector<FieldInfo>& list_fields();

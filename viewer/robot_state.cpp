@@ -309,20 +309,6 @@ void RobotState::fill_signals(Frame& frame, double real_time_factor) {
   values.insert(values.end(), {real_time_factor, report.residual, report.smallest_volume_ratio});
 }
 
-namespace {
-
-// (n,) m of a body without elements; zeros for fields that it has not.
-std::vector<double> displacements(const mechanics::Body& body, bool known) {
-  const Points& rest = body.model().mesh().nodes;
-  std::vector<double> result(static_cast<std::size_t>(rest.rows()), 0.0);
-  for (Eigen::Index i = 0; known && i < rest.rows(); ++i) {
-    result[static_cast<std::size_t>(i)] = (body.positions().row(i) - rest.row(i)).norm();
-  }
-  return result;
-}
-
-}  // namespace
-
 void RobotState::fill_body(std::size_t index, const FieldChoice& wanted, BodyFrame& frame) {
   const mechanics::Body& body = simulation_->world().body(static_cast<int>(index));
   const Surface& surface = description_.surfaces[index];
@@ -335,11 +321,8 @@ void RobotState::fill_body(std::size_t index, const FieldChoice& wanted, BodyFra
   frame.fields.resize(wanted.size());
   for (std::size_t f = 0; f < wanted.size(); ++f) {
     if (!wanted[f]) continue;
-    // A body that is not of finite elements has displacements alone to show.
-    const auto* fem = dynamic_cast<const fem::FemBody*>(&body);
     const std::vector<double> nodal =
-        fem != nullptr ? list_fields()[f].values(*fem, *simulation_, *means_[index])
-                       : displacements(body, list_fields()[f].name == "displacement");
+        list_fields()[f].values(body, *simulation_, means_[index].get());
     for (const NodeId node : surface.nodes) {
       frame.fields[f].push_back(static_cast<float>(nodal[static_cast<std::size_t>(node)]));
     }

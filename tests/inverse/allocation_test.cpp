@@ -1,9 +1,12 @@
 // A steady step allocates nothing, steered or not, on one thread or four.
+#include <memory>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "sinew/inverse/inverse_controller.hpp"
+#include "sinew/pcc/published.hpp"
 
 #include "../sim/contact_robots.hpp"
 #include "../sim/robots.hpp"
@@ -87,6 +90,51 @@ TEST_P(SteadyStep, OfContacts) {
     for (int i = 0; i < 100; ++i) simulation.step();  // lands, sticks here and slides there
     EXPECT_EQ(allocations(), before);
     EXPECT_GT(simulation.contact_sum(0).normal_force, 0.0);
+  }
+}
+
+// An arm with torques and a cable, told and steered.
+TEST_P(SteadyStep, OfConstantCurvatureArms) {
+  for (const bool steered : {false, true}) {
+    sim::StepSettings step;
+    step.time_step = 2e-3;
+    step.integrator = mechanics::Integrator::generalized_alpha;
+    step.method = sim::Method::newton;
+    sim::ModelBuilder builder(step);
+    builder.add_arm(pcc::published_arm(pcc::MassCentre::distributed));
+    for (int segment = 1; segment < 4; ++segment) {
+      sim::TorqueSettings torque;
+      torque.name = "torque_" + std::to_string(segment);
+      torque.segment = segment;
+      torque.torque = {.min = -0.1, .max = 0.1};
+      torque.command = {sim::CommandKind::effort, sim::Signal::sine({0.0, 0.05, 1.0, 0})};
+      builder.add_torque(torque);
+    }
+    sim::CableSettings cable;
+    cable.name = "tendon";
+    cable.points.resize(3, 3);
+    cable.points << 0.01, 0.0, -0.001, 0.01, 0.0, -0.2, 0.01, 0.0, -0.5;
+    cable.geometric_stiffness = true;
+    cable.tension = {.min = 0.0, .max = 2.0};
+    cable.command = {sim::CommandKind::effort, sim::Signal::constant(0.5)};
+    builder.add_cable(cable);
+    sim::EffectorSettings tip;
+    tip.name = "tip";
+    tip.points = Points(Vector3(0.0, 0.0, -0.56).transpose());
+    tip.directions = {Vector3::UnitX(), Vector3::UnitZ()};
+    builder.add_effector(tip);
+    sim::Simulation simulation(builder.build(), GetParam());
+    std::unique_ptr<InverseController> controller;
+    if (steered) {
+      const Target circle =
+          Target::circle({Vector3(0.0, 0.0, -0.54), 0.01, Vector3::UnitY(), 1.0, 0});
+      controller = std::make_unique<InverseController>(
+          simulation, InverseSettings{.tasks = {{0, circle, {1.0, 1.0}}}, .actuators = {}});
+    }
+    for (int i = 0; i < 20; ++i) simulation.step();
+    const long before = allocations();
+    for (int i = 0; i < 100; ++i) simulation.step();
+    EXPECT_EQ(allocations(), before) << steered;
   }
 }
 

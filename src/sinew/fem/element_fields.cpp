@@ -191,8 +191,8 @@ std::vector<double> NodalMean::operator()(std::span<const double> values, std::s
   return means;
 }
 
-std::vector<double> displacement_field(const FemBody& body) {
-  const VectorX sizes = (body.positions() - body.fem_model().mesh().nodes).rowwise().norm();
+std::vector<double> displacement_field(const mechanics::Body& body) {
+  const VectorX sizes = (body.positions() - body.model().mesh().nodes).rowwise().norm();
   return {sizes.data(), sizes.data() + sizes.size()};
 }
 

@@ -73,8 +73,8 @@ class NodalMean {
   std::vector<double> around_;  // (n,) m^3 of the elements round a node
 };
 
-/// (n,) |x - X|, m. @param body at its present state.
-std::vector<double> displacement_field(const FemBody& body);
+/// (n,) |x - X|, m. @param body of any kind, at its present state.
+std::vector<double> displacement_field(const mechanics::Body& body);
 
 /// (n,) size of the force that the rows (cables, chambers) put on each free node, N, as of the last
 /// linearisation. @param body which. @param effort (rows,) of the world's rows.

@@ -8,11 +8,11 @@
 #include <optional>
 
 #include <Eigen/LU>
-#include <ceres/ceres.h>
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
 #include "sinew/core/types.hpp"
+#include "sinew/identify/bounded_least_squares.hpp"
 
 namespace sinew::identify {
 
@@ -197,38 +197,16 @@ BendingFit fit_bending(const BendingParameters& parameters, std::span<const TipR
   const double start = start_modulus(parameters, settings, pressures);
   std::vector<double> scales(static_cast<std::size_t>(form.nodes()), start);
   if (settings.damping) scales.push_back(settings.highest_damping);
-  std::vector<double> values(scales.size(), 1.0);
+  std::vector<BoundedValue> values(scales.size(),
+                                   {1.0, settings.lowest / start, settings.highest / start});
   if (settings.damping) {
-    values.back() = std::clamp(parameters.stiffness_damping / settings.highest_damping, 1e-4, 1.0);
+    const double share = parameters.stiffness_damping / settings.highest_damping;
+    values.back() = {std::clamp(share, 1e-4, 1.0), 0.0, 1.0};
   }
-
-  auto* cost = new ceres::DynamicNumericDiffCostFunction<Residuals, ceres::CENTRAL>(
-      new Residuals{&form, records, &settings, scales, parameters.length});
-  int rows = 0;
-  for (const TipRecord& record : records) rows += static_cast<int>(record.tip.size());
-  cost->SetNumResiduals(rows);
-  ceres::Problem problem;
-  std::vector<double*> blocks;
-  for (double& value : values) {
-    cost->AddParameterBlock(1);
-    blocks.push_back(&value);
-  }
-  problem.AddResidualBlock(cost, nullptr, blocks);
-  std::vector<Range> bounds(values.size(), {settings.lowest / start, settings.highest / start});
-  if (settings.damping) bounds.back() = {0.0, 1.0};
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    problem.SetParameterLowerBound(blocks[k], 0, bounds[k].lowest);
-    problem.SetParameterUpperBound(blocks[k], 0, bounds[k].highest);
-  }
-  ceres::Solver::Options options;
-  options.max_num_iterations = 200;
-  options.function_tolerance = 1e-12;
-  options.gradient_tolerance = 1e-14;
-  options.parameter_tolerance = 1e-10;
-  options.linear_solver_type = ceres::DENSE_QR;
-  options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
+  std::size_t rows = 0;
+  for (const TipRecord& record : records) rows += static_cast<std::size_t>(record.tip.size());
+  const ceres::Solver::Summary summary = solve_bounded(
+      Residuals{&form, records, &settings, scales, parameters.length}, rows, values, 200, 1e-12);
   if (!summary.IsSolutionUsable()) {
     throw Error(ErrorKind::not_converged, {.item = "fit_bending"},
                 fmt::format("no motion can be simulated from a modulus of {:g} Pa", start),
@@ -238,17 +216,18 @@ BendingFit fit_bending(const BendingParameters& parameters, std::span<const TipR
   BendingFit fit;
   fit.cost = 2.0 * summary.final_cost / static_cast<double>(records.size());
   fit.converged = summary.termination_type == ceres::CONVERGENCE;
+  std::vector<double> found(scales.size());
   for (std::size_t k = 0; k < values.size(); ++k) {
-    const double above = values[k] - bounds[k].lowest, below = bounds[k].highest - values[k];
-    fit.at_bound = fit.at_bound || above < kAtBound || below < kAtBound * bounds[k].highest;
-    values[k] *= scales[k];
+    const auto [value, lower, upper] = values[k];
+    fit.at_bound = fit.at_bound || value - lower < kAtBound || upper - value < kAtBound * upper;
+    found[k] = value * scales[k];
   }
-  const BendingParameters held = form.build(values.data(), pcc::OutsideRange::hold);
+  const BendingParameters held = form.build(found.data(), pcc::OutsideRange::hold);
   for (const TipRecord& record : records) {
     fit.tips.push_back(simulate_tip(held, record, settings));
     fit.errors.push_back(tip_errors(fit.tips.back(), record.tip, parameters.length));
   }
-  fit.parameters = form.build(values.data(), pcc::OutsideRange::refuse);
+  fit.parameters = form.build(found.data(), pcc::OutsideRange::refuse);
   return fit;
 }
 

@@ -7,10 +7,10 @@
 #include <memory>
 #include <random>
 
-#include <ceres/ceres.h>
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/identify/bounded_least_squares.hpp"
 
 namespace sinew::identify {
 
@@ -207,33 +207,13 @@ Attempt solve(const Residuals& residuals, std::vector<Parameter> start) {
   if (residuals.mullins) {
     start.insert(start.end(), {{0.5, 0.0, 0.999}, {0.3, 0.0, 1e3}, {0.1, 0.0, 1e2}});
   }
-  Attempt attempt;
-  for (const Parameter& p : start) attempt.parameters.push_back(p.start);
+  std::vector<BoundedValue> values;
+  for (const Parameter& p : start) values.push_back({p.start, p.lower, p.upper});
   std::size_t rows = 0;
   for (const RubberTest& test : residuals.tests) rows += test.stretch.size();
-  auto* cost = new ceres::DynamicNumericDiffCostFunction<Residuals, ceres::CENTRAL>(
-      new Residuals(residuals));
-  cost->SetNumResiduals(static_cast<int>(rows));
-  ceres::Problem problem;
-  std::vector<double*> blocks;
-  for (double& value : attempt.parameters) {
-    cost->AddParameterBlock(1);
-    blocks.push_back(&value);
-  }
-  problem.AddResidualBlock(cost, nullptr, blocks);
-  for (std::size_t k = 0; k < start.size(); ++k) {
-    if (std::isfinite(start[k].lower)) problem.SetParameterLowerBound(blocks[k], 0, start[k].lower);
-    if (std::isfinite(start[k].upper)) problem.SetParameterUpperBound(blocks[k], 0, start[k].upper);
-  }
-  ceres::Solver::Options options;
-  options.max_num_iterations = 400;
-  options.function_tolerance = 1e-10;
-  options.gradient_tolerance = 1e-14;
-  options.parameter_tolerance = 1e-10;
-  options.linear_solver_type = ceres::DENSE_QR;
-  options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
+  const ceres::Solver::Summary summary = solve_bounded(residuals, rows, values, 400, 1e-10);
+  Attempt attempt;
+  for (const BoundedValue& value : values) attempt.parameters.push_back(value.value);
   attempt.converged = summary.termination_type == ceres::CONVERGENCE;
   if (summary.IsSolutionUsable()) attempt.cost = 2.0 * summary.final_cost;
   return attempt;

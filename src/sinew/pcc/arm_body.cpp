@@ -41,6 +41,7 @@ ArmBody::ArmBody(const ArmBodyModel& model, int histories)
   }
   history_.assign(static_cast<std::size_t>(histories), VectorX::Zero(n));
   for (MatrixX* m : {&matrix_, &symmetric_}) m->setZero(n, n);
+  for (MatrixX* m : {&first_jacobian_, &second_jacobian_, &pulled_}) m->setZero(3, n);
   rows_.setZero(n, rows);
   moved_rows_.setZero(n, rows);
   compliance_.setZero(rows, rows);
@@ -53,7 +54,8 @@ ArmBody::ArmBody(const ArmBodyModel& model, int histories)
   slope_still_.resize(columns_.size());
   least_force_ = kLeastAngle * std::max(model.arm().stiffness().maxCoeff(), 1e-9);
   force_scale_ = least_force_;
-  rest_gravity_energy_ = equations_.energy(q_, rate_).gravity;
+  look();
+  rest_gravity_energy_ = kinematics_.gravity_energy();
   equations_.linearise(q_, rate_, acceleration_);  // takes its workspace now
   const Eigen::Index nodes = model.skin_.nodes.rows();
   shown_.setZero(nodes, 3);
@@ -144,26 +146,27 @@ void ArmBody::stiffen_by_rows() {
   }
 }
 
+void ArmBody::point_jacobian(int point, MatrixX& result) {
+  const auto& attachment = model_.attachments_[static_cast<std::size_t>(point)];
+  result.setZero();
+  if (attachment.coordinate >= 0) {
+    result(0, attachment.coordinate) = 1.0;
+    return;
+  }
+  look();
+  kinematics_.jacobian(attachment.point, columns_);
+  for (std::size_t i = 0; i < columns_.size(); ++i) {
+    result.col(static_cast<Eigen::Index>(i)) = plain(columns_[i]);
+  }
+}
+
 void ArmBody::add_curvature(const mechanics::RowCurvature& curvature) {
-  const auto columns_of = [&](int point, MatrixX& result) {
-    const auto& attachment = model_.attachments_[static_cast<std::size_t>(point)];
-    result.setZero(3, q_.size());
-    if (attachment.coordinate >= 0) {
-      result(0, attachment.coordinate) = 1.0;
-      return;
-    }
-    look();
-    kinematics_.jacobian(attachment.point, columns_);
-    for (std::size_t i = 0; i < columns_.size(); ++i) {
-      result.col(static_cast<Eigen::Index>(i)) = plain(columns_[i]);
-    }
-  };
-  MatrixX first, second;
-  columns_of(curvature.first.point, first);
-  columns_of(curvature.second.point, second);
-  const MatrixX block = first.transpose() * curvature.curvature * second;
-  matrix_ -= block;
-  if (curvature.first.point != curvature.second.point) matrix_ -= block.transpose();
+  point_jacobian(curvature.first.point, first_jacobian_);
+  point_jacobian(curvature.second.point, second_jacobian_);
+  pulled_.noalias() = curvature.curvature * second_jacobian_;
+  symmetric_.noalias() = first_jacobian_.transpose() * pulled_;
+  matrix_ -= symmetric_;
+  if (curvature.first.point != curvature.second.point) matrix_ -= symmetric_.transpose();
 }
 
 void ArmBody::take_rows(const mechanics::RowValues& rows) {
@@ -201,7 +204,6 @@ linalg::FactorStatus ArmBody::condense() {
   if (negative_pivots_ > 0 && definite_wanted_) make_definite();
   decomposed_.compute(matrix_);
   moved_rows_ = decomposed_.solve(rows_);
-  free_motion_.noalias() = moved_rows_.transpose() * right_;
   if (rows_.cols() > 0) {
     motion_ = decomposed_.solve(right_);
     free_motion_.noalias() = rows_.transpose() * motion_;
@@ -352,10 +354,17 @@ void ArmBody::load_state(std::span<const double> state) {
   looking_ = showing_ = false;
 }
 
-double ArmBody::strain_energy() { return equations_.energy(q_, rate_).strain; }
-double ArmBody::kinetic_energy() const { return equations_.energy(q_, rate_).kinetic; }
+double ArmBody::strain_energy() {
+  look();
+  return kinematics_.strain_energy();
+}
+double ArmBody::kinetic_energy() const {
+  look();
+  return kinematics_.kinetic_energy();
+}
 double ArmBody::gravity_energy() const {
-  return equations_.energy(q_, rate_).gravity - rest_gravity_energy_;
+  look();
+  return kinematics_.gravity_energy() - rest_gravity_energy_;
 }
 
 std::size_t ArmBody::bytes() const {

@@ -122,11 +122,13 @@ class ArmBody : public mechanics::Body {
   void look() const;
   void combine(const mechanics::Combination& weights, VectorX& result) const;
   void stiffen_by_rows();
+  /// Of an attached point, (3, n).
+  void point_jacobian(int point, MatrixX& result);
   void make_definite();
   void show() const;
 
   const ArmBodyModel& model_;
-  mutable ArmEquations equations_;
+  ArmEquations equations_;
   mutable ArmDynamics<double> kinematics_;
   mutable bool looking_ = false;  // the workspace is at q_ and rate_
   ArmDynamics<Dual<8>> slopes_;
@@ -135,6 +137,7 @@ class ArmBody : public mechanics::Body {
   VectorX right_, motion_, base_, scratch_, new_rate_, acceleration_, imbalance_;
   double imbalance_share_ = 0.0;
   MatrixX matrix_, symmetric_;
+  MatrixX first_jacobian_, second_jacobian_, pulled_;  // (3, n), of a curvature's points
   Eigen::PartialPivLU<MatrixX> decomposed_;
   Eigen::LDLT<MatrixX> pivots_;
   Eigen::SelfAdjointEigenSolver<MatrixX> spectrum_;

@@ -191,42 +191,40 @@ void ArmDynamics<T>::mass_matrix(std::span<T> mass) {
 }
 
 template <typename T>
-Vec3<T> ArmDynamics<T>::position(const ArmPoint& point) const {
-  BendPoint<T> own;
-  BendSection<T> section;
-  bend(point.segment).at(point.fraction, 1.0, own, &section);
+typename ArmDynamics<T>::Spot ArmDynamics<T>::spot(const ArmPoint& point) const {
+  Spot result;
+  bend(point.segment).at(point.fraction, 1.0, result.own, &result.section);
+  const Rotation<T>& turned = result.section.rotation;
+  result.aside = point.x * turned.x + point.y * turned.y + point.z * turned.z;
   const Frame& frame = frames_[at(point.segment)];
-  const Vec3<T> aside =
-      point.x * section.rotation.x + point.y * section.rotation.y + point.z * section.rotation.z;
-  return frame.origin + frame.rotation * (own.position + aside);
+  result.position = frame.origin + frame.rotation * (result.own.position + result.aside);
+  return result;
+}
+
+template <typename T>
+Vec3<T> ArmDynamics<T>::position(const ArmPoint& point) const {
+  return spot(point).position;
 }
 
 template <typename T>
 Rotation<T> ArmDynamics<T>::rotation(const ArmPoint& point) const {
-  BendPoint<T> own;
-  BendSection<T> section;
-  bend(point.segment).at(point.fraction, 1.0, own, &section);
-  return frames_[at(point.segment)].rotation * section.rotation;
+  return frames_[at(point.segment)].rotation * spot(point).section.rotation;
 }
 
 template <typename T>
 void ArmDynamics<T>::jacobian(const ArmPoint& point, std::span<Vec3<T>> columns) const {
-  BendPoint<T> own;
-  BendSection<T> section;
-  bend(point.segment).at(point.fraction, 1.0, own, &section);
+  const Spot here = spot(point);
   const Frame& frame = frames_[at(point.segment)];
-  const Vec3<T> aside =
-      point.x * section.rotation.x + point.y * section.rotation.y + point.z * section.rotation.z;
-  const Vec3<T> x = frame.origin + frame.rotation * (own.position + aside);
   for (int k = 0; k < arm_->segments(); ++k) {
     const std::size_t first = at(arm_->first(k));
     const Frame& before = frames_[at(k)];
     for (int i = 0; i < arm_->settings().segments[at(k)].coordinates(); ++i) {
       Vec3<T>& column = columns[first + at(i)];
       if (k < point.segment) {
-        column = before.gradient[at(i)] + cross(before.turn[at(i)], x - before.end);
+        column = before.gradient[at(i)] + cross(before.turn[at(i)], here.position - before.end);
       } else if (k == point.segment) {
-        column = frame.rotation * (own.gradient[at(i)] + cross(section.spin[at(i)], aside));
+        column = frame.rotation *
+                 (here.own.gradient[at(i)] + cross(here.section.spin[at(i)], here.aside));
       } else {
         column = {};
       }

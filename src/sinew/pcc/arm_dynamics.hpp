@@ -69,7 +69,16 @@ class ArmDynamics {
     std::array<Vec3<T>, 3> gradient;  ///< by its own segment's coordinates
   };
 
+  /// A point of the material: of its segment's bend, and in the world.
+  struct Spot {
+    BendPoint<T> own;
+    BendSection<T> section;
+    Vec3<T> aside;     ///< from the axis, in the segment's frame
+    Vec3<T> position;  ///< m
+  };
+
   Bend<T> bend(int segment) const;
+  Spot spot(const ArmPoint& point) const;
 
   std::shared_ptr<const Arm> arm_;
   std::vector<double> cosine_, sine_;  // of gamma

@@ -17,6 +17,8 @@ namespace {
 /// First derivatives go by so many variables a pass: angles and rates of four planar segments.
 constexpr std::size_t kDirections = 8;
 using First = Dual<kDirections>;
+/// In time.
+using Timed = Dual<1>;
 /// Second derivatives go by pairs of groups of variables.
 constexpr std::size_t kGroup = kDirections / 2;
 using Second = SecondDual<kDirections>;
@@ -58,6 +60,7 @@ struct ArmEquations::Work {
   Linearisation linear;
   ForwardDerivatives forward;
   // Those with derivatives are made when first asked for.
+  std::unique_ptr<ArmDynamics<Timed>> timed;
   std::unique_ptr<ArmDynamics<First>> first;
   std::vector<First> first_q, first_rate, first_acceleration, first_result;
   std::unique_ptr<ArmDynamics<Second>> second;
@@ -296,8 +299,8 @@ ArmEquations::PointMotion ArmEquations::point(const ArmPoint& point, const Vecto
                                               const VectorX& rate) {
   Work& w = *work_;
   const std::size_t n = w.n;
-  using Timed = Dual<1>;
-  ArmDynamics<Timed> moving(w.arm);
+  if (!w.timed) w.timed = std::make_unique<ArmDynamics<Timed>>(w.arm);
+  ArmDynamics<Timed>& moving = *w.timed;
   std::vector<Timed> values(n), still(n);
   for (std::size_t k = 0; k < n; ++k) {
     values[k].value = q[static_cast<Eigen::Index>(k)];

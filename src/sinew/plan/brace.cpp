@@ -5,7 +5,6 @@
 #include <limits>
 #include <numbers>
 #include <optional>
-#include <random>
 #include <utility>
 
 #include <Eigen/Eigenvalues>
@@ -16,6 +15,7 @@
 #include "sinew/core/error.hpp"
 #include "sinew/plan/brace_program.hpp"
 #include "sinew/plan/reach.hpp"
+#include "sinew/plan/uniform.hpp"
 
 namespace sinew::plan {
 
@@ -69,7 +69,7 @@ Answer answer_of(const MatrixX& stiffness, const MatrixX& held, const MatrixX& t
 class Search {
  public:
   Search(const std::shared_ptr<const pcc::Arm>& arm, const BraceTask& task)
-      : arm_(arm), task_(task), equations_(arm), points_(arm), random_(task.seed) {}
+      : arm_(arm), task_(task), equations_(arm), points_(arm), draw_(task.seed) {}
 
   /// @param problem of a candidate. @param object which. @param start of x without the force.
   void attempt(const BraceProblem& problem, int object, const VectorX& start) {
@@ -90,19 +90,16 @@ class Search {
   }
 
   VectorX random_start(const BraceProblem& problem) {
-    const auto draw = [&](double from, double to) {
-      return from + (to - from) * std::generate_canonical<double, 53>(random_);
-    };
     const Limits& limits = problem.limits;
     VectorX start(arm_->coordinates() + 1 + arm_->inputs());
     Eigen::Index at = 0;
     for (Eigen::Index i = 0; i < arm_->coordinates(); ++i) {
-      start[at++] = draw(std::max(limits.angle_lower[i], -std::numbers::pi / 2.0),
-                         std::min(limits.angle_upper[i], std::numbers::pi / 2.0));
+      start[at++] = draw_(std::max(limits.angle_lower[i], -std::numbers::pi / 2.0),
+                          std::min(limits.angle_upper[i], std::numbers::pi / 2.0));
     }
-    start[at++] = draw(problem.turn_lower, problem.turn_upper);
+    start[at++] = draw_(problem.turn_lower, problem.turn_upper);
     for (Eigen::Index u = 0; u < arm_->inputs(); ++u) {
-      start[at++] = draw(limits.torque_lower[u], limits.torque_upper[u]);
+      start[at++] = draw_(limits.torque_lower[u], limits.torque_upper[u]);
     }
     return start;
   }
@@ -179,7 +176,7 @@ class Search {
   const BraceTask& task_;
   pcc::ArmEquations equations_;
   PointDerivatives points_;
-  std::mt19937_64 random_;
+  Uniform draw_;
   Brace best_;
 };
 

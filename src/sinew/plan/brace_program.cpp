@@ -115,37 +115,38 @@ BraceProgram::BraceProgram(std::shared_ptr<const pcc::Arm> arm, BraceProblem pro
   torque_scale_ = std::max(
       {limits.torque_upper.cwiseAbs().maxCoeff(), limits.torque_lower.cwiseAbs().maxCoeff(), 1e-6});
   const int inputs = arm_->inputs(), size = variables();
-  variables_ = {VectorX::Constant(size, -kNoBound), VectorX::Constant(size, kNoBound)};
-  variables_.lower.head(n_) = limits.angle_lower;
-  variables_.upper.head(n_) = limits.angle_upper;
-  variables_.lower[turn_] = problem_.turn_lower;
-  variables_.upper[turn_] = problem_.turn_upper;
-  variables_.lower.segment(torque_, inputs) = limits.torque_lower;
-  variables_.upper.segment(torque_, inputs) = limits.torque_upper;
+  variable_bounds_ = {VectorX::Constant(size, -kNoBound), VectorX::Constant(size, kNoBound)};
+  variable_bounds_.lower.head(n_) = limits.angle_lower;
+  variable_bounds_.upper.head(n_) = limits.angle_upper;
+  variable_bounds_.lower[turn_] = problem_.turn_lower;
+  variable_bounds_.upper[turn_] = problem_.turn_upper;
+  variable_bounds_.lower.segment(torque_, inputs) = limits.torque_lower;
+  variable_bounds_.upper.segment(torque_, inputs) = limits.torque_upper;
   variable_scale_ = VectorX::Ones(size);
   variable_scale_.segment(torque_, inputs).setConstant(torque_scale_);
 
   const auto clear =
       static_cast<Eigen::Index>(problem_.clear_points.size() * problem_.surfaces.size());
-  rows_ = {VectorX::Zero(first_clear_ + clear), VectorX::Zero(first_clear_ + clear)};
-  row_scale_ = VectorX::Constant(first_clear_ + clear, kLengthScale);
-  row_scale_.head(n_).setConstant(torque_scale_);
-  if (!problem_.touches) rows_.lower[n_] = -kNoBound, rows_.upper[n_] = kNoBound;
-  rows_.lower[n_ + 1] = problem_.touches ? problem_.patch.lower : -kNoBound;
-  rows_.upper[n_ + 1] = problem_.touches ? problem_.patch.upper : kNoBound;
-  rows_.lower[n_ + 2] = problem_.least_force;
-  rows_.upper[n_ + 2] = problem_.most_force;
-  row_scale_[n_ + 2] = row_scale_[n_ + 3] = 1.0;
-  rows_.upper[n_ + 3] = kNoBound;
-  rows_.lower[n_ + 4] = -kNoBound;
-  rows_.upper[n_ + 4] = std::sqrt(2.0) * problem_.tolerance;
-  rows_.lower.tail(clear).setConstant(problem_.clearance);
-  rows_.upper.tail(clear).setConstant(kNoBound);
-  for (int row = 0; row < rows_.lower.size(); ++row) {
-    for (int column = 0; column < size; ++column) jacobian_.push_back({row, column});
+  constraint_bounds_ = {VectorX::Zero(first_clear_ + clear), VectorX::Zero(first_clear_ + clear)};
+  constraint_scale_ = VectorX::Constant(first_clear_ + clear, kLengthScale);
+  constraint_scale_.head(n_).setConstant(torque_scale_);
+  if (!problem_.touches)
+    constraint_bounds_.lower[n_] = -kNoBound, constraint_bounds_.upper[n_] = kNoBound;
+  constraint_bounds_.lower[n_ + 1] = problem_.touches ? problem_.patch.lower : -kNoBound;
+  constraint_bounds_.upper[n_ + 1] = problem_.touches ? problem_.patch.upper : kNoBound;
+  constraint_bounds_.lower[n_ + 2] = problem_.least_force;
+  constraint_bounds_.upper[n_ + 2] = problem_.most_force;
+  constraint_scale_[n_ + 2] = constraint_scale_[n_ + 3] = 1.0;
+  constraint_bounds_.upper[n_ + 3] = kNoBound;
+  constraint_bounds_.lower[n_ + 4] = -kNoBound;
+  constraint_bounds_.upper[n_ + 4] = std::sqrt(2.0) * problem_.tolerance;
+  constraint_bounds_.lower.tail(clear).setConstant(problem_.clearance);
+  constraint_bounds_.upper.tail(clear).setConstant(kNoBound);
+  for (int row = 0; row < constraint_bounds_.lower.size(); ++row) {
+    for (int column = 0; column < size; ++column) jacobian_pattern_.push_back({row, column});
   }
   for (int i = 0; i < size; ++i) {
-    for (int j = 0; j <= i; ++j) hessian_.push_back({i, j});
+    for (int j = 0; j <= i; ++j) hessian_pattern_.push_back({i, j});
   }
   looked_at_ = {{.segment = arm_->segments() - 1}, problem_.point};
   looked_at_.insert(looked_at_.end(), problem_.clear_points.begin(), problem_.clear_points.end());
@@ -183,7 +184,7 @@ void BraceProgram::gradient(const VectorX& x, VectorX& result) {
 void BraceProgram::constraints(const VectorX& x, VectorX& result) {
   look(x);
   const Vector3 force = x.tail<3>();
-  result.resize(rows_.lower.size());
+  result.resize(constraint_bounds_.lower.size());
   result.head(n_) = equations_.residual(x.head(n_), still_, still_) -
                     arm_->actuation() * x.segment(torque_, arm_->inputs()) -
                     braced_.jacobian.transpose() * force;
@@ -213,7 +214,7 @@ VectorX BraceProgram::force_gradient() const {
 
 void BraceProgram::jacobian(const VectorX& x, double* values) {
   look(x);
-  dense_.setZero(rows_.lower.size(), variables());
+  dense_.setZero(constraint_bounds_.lower.size(), variables());
   const Vector3 force = x.tail<3>();
   dense_.topLeftCorner(n_, n_) = equations_.linearise(x.head(n_), still_, still_).by_position;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -238,7 +239,7 @@ void BraceProgram::jacobian(const VectorX& x, double* values) {
           constraint::distance(surface, world_[p].value).normal.transpose() * world_[p].jacobian;
     }
   }
-  for (const SparseEntry& entry : jacobian_) *values++ = dense_(entry.row, entry.column);
+  for (const SparseEntry& entry : jacobian_pattern_) *values++ = dense_(entry.row, entry.column);
 }
 
 void BraceProgram::add_hessian(const VectorDerivatives& of, const Vector3& weights) {
@@ -317,7 +318,7 @@ void BraceProgram::hessian(const VectorX& x, double factor, const VectorX& multi
                                           world_[p].jacobian;
     }
   }
-  for (const SparseEntry& entry : hessian_) *values++ = dense_(entry.row, entry.column);
+  for (const SparseEntry& entry : hessian_pattern_) *values++ = dense_(entry.row, entry.column);
 }
 
 }  // namespace sinew::plan

@@ -70,14 +70,6 @@ class BraceProgram final : public NonlinearProgram {
   int force_index() const { return force_; }
   const BraceProblem& problem() const { return problem_; }
 
-  const Bounds& variable_bounds() const override { return variables_; }
-  const Bounds& constraint_bounds() const override { return rows_; }
-  const VectorX& variable_scale() const override { return variable_scale_; }
-  const VectorX& constraint_scale() const override { return row_scale_; }
-  double objective_scale() const override { return 1.0; }
-  const std::vector<SparseEntry>& jacobian_pattern() const override { return jacobian_; }
-  const std::vector<SparseEntry>& hessian_pattern() const override { return hessian_; }
-
   double objective(const VectorX& x) override;
   void gradient(const VectorX& x, VectorX& result) override;
   void constraints(const VectorX& x, VectorX& result) override;
@@ -102,9 +94,6 @@ class BraceProgram final : public NonlinearProgram {
   double torque_scale_;
   VectorX still_;
   std::vector<pcc::ArmPoint> looked_at_;
-  Bounds variables_, rows_;
-  VectorX variable_scale_, row_scale_;
-  std::vector<SparseEntry> jacobian_, hessian_;
 
   VectorX looked_;            // x of what follows
   VectorDerivatives braced_;  // before the turn, by q

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <random>
 #include <utility>
 #include <vector>
 
@@ -12,6 +11,7 @@
 #include "sinew/core/error.hpp"
 #include "sinew/pcc/arm_body.hpp"
 #include "sinew/plan/reach.hpp"
+#include "sinew/plan/uniform.hpp"
 #include "sinew/sim/model_builder.hpp"
 #include "sinew/sim/simulation.hpp"
 
@@ -47,10 +47,7 @@ void check(const BraceRunSettings& settings) {
 class Sines {
  public:
   explicit Sines(const Disturbance& settings) {
-    std::mt19937_64 random(settings.seed);
-    const auto draw = [&](double from, double to) {
-      return from + (to - from) * std::generate_canonical<double, 53>(random);
-    };
+    Uniform draw(settings.seed);
     amplitude_ = settings.force * std::sqrt(2.0 / settings.sines);
     for (auto& axis : sines_) {
       for (int k = 0; k < settings.sines; ++k) {

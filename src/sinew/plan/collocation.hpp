@@ -41,13 +41,6 @@ class Collocation final : public NonlinearProgram {
   Knots unpack(const VectorX& x) const;
   double duration(const VectorX& x) const;
 
-  const Bounds& variable_bounds() const override { return variable_bounds_; }
-  const Bounds& constraint_bounds() const override { return constraint_bounds_; }
-  const VectorX& variable_scale() const override { return variable_scale_; }
-  const VectorX& constraint_scale() const override { return constraint_scale_; }
-  double objective_scale() const override { return objective_scale_; }
-  const std::vector<SparseEntry>& jacobian_pattern() const override { return jacobian_pattern_; }
-  const std::vector<SparseEntry>& hessian_pattern() const override { return hessian_pattern_; }
   double objective(const VectorX& x) override;
   void gradient(const VectorX& x, VectorX& result) override;
   void constraints(const VectorX& x, VectorX& result) override;
@@ -102,10 +95,6 @@ class Collocation final : public NonlinearProgram {
   pcc::ArmPoint tip_;
   int n_, inputs_, knot_size_, variables_, rows_;
   bool rate_limited_ = false, speed_limited_ = true;
-  Bounds variable_bounds_, constraint_bounds_;
-  VectorX variable_scale_, constraint_scale_;
-  double objective_scale_ = 1.0;
-  std::vector<SparseEntry> jacobian_pattern_, hessian_pattern_;
 };
 
 }  // namespace sinew::plan

@@ -31,14 +31,14 @@ class NonlinearProgram {
   NonlinearProgram& operator=(const NonlinearProgram&) = delete;
   virtual ~NonlinearProgram() = default;
 
-  virtual const Bounds& variable_bounds() const = 0;
-  virtual const Bounds& constraint_bounds() const = 0;
+  const Bounds& variable_bounds() const { return variable_bounds_; }
+  const Bounds& constraint_bounds() const { return constraint_bounds_; }
   /// Typical magnitudes, > 0, by which the solver scales. (variables,), (constraints,).
-  virtual const VectorX& variable_scale() const = 0;
-  virtual const VectorX& constraint_scale() const = 0;
-  virtual double objective_scale() const = 0;
-  virtual const std::vector<SparseEntry>& jacobian_pattern() const = 0;
-  virtual const std::vector<SparseEntry>& hessian_pattern() const = 0;  ///< lower triangle
+  const VectorX& variable_scale() const { return variable_scale_; }
+  const VectorX& constraint_scale() const { return constraint_scale_; }
+  double objective_scale() const { return objective_scale_; }
+  const std::vector<SparseEntry>& jacobian_pattern() const { return jacobian_pattern_; }
+  const std::vector<SparseEntry>& hessian_pattern() const { return hessian_pattern_; }  ///< lower
 
   virtual double objective(const VectorX& x) = 0;
   virtual void gradient(const VectorX& x, VectorX& result) = 0;
@@ -48,6 +48,13 @@ class NonlinearProgram {
   /// Of factor f + multipliers . c.
   virtual void hessian(const VectorX& x, double factor, const VectorX& multipliers,
                        double* values) = 0;
+
+ protected:
+  // Set by the derived program's constructor.
+  Bounds variable_bounds_, constraint_bounds_;
+  VectorX variable_scale_, constraint_scale_;
+  double objective_scale_ = 1.0;
+  std::vector<SparseEntry> jacobian_pattern_, hessian_pattern_;
 };
 
 enum class Status {

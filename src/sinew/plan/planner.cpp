@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <random>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
 #include "sinew/pcc/arm_simulation.hpp"
+#include "sinew/plan/uniform.hpp"
 
 namespace sinew::plan {
 
@@ -19,10 +19,7 @@ namespace {
 class Excitation {
  public:
   Excitation(const Task& task, double torque, double frequency, std::uint64_t seed) : task_(task) {
-    std::mt19937_64 random(seed);
-    const auto uniform = [&](double from, double to) {
-      return from + (to - from) * std::generate_canonical<double, 53>(random);
-    };
+    Uniform uniform(seed);
     const Eigen::Index inputs = task.start.torque.size();
     for (auto* part : {&sizes_, &frequencies_}) part->resize(inputs, kSines);
     for (Eigen::Index u = 0; u < inputs; ++u) {

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <numbers>
-#include <random>
 #include <utility>
 
 #include <Eigen/Eigenvalues>
@@ -11,26 +10,11 @@
 #include "sinew/core/error.hpp"
 #include "sinew/pcc/arm_simulation.hpp"
 #include "sinew/plan/point_derivatives.hpp"
+#include "sinew/plan/uniform.hpp"
 
 namespace sinew::plan {
 
 namespace {
-
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : engine_(seed) {}
-  double operator()(double from, double to) {
-    return from + (to - from) * std::generate_canonical<double, 53>(engine_);
-  }
-  VectorX vector(const VectorX& from, const VectorX& to) {
-    VectorX result(from.size());
-    for (Eigen::Index i = 0; i < from.size(); ++i) result[i] = (*this)(from[i], to[i]);
-    return result;
-  }
-
- private:
-  std::mt19937_64 engine_;
-};
 
 /// min |tip - goal|^2 over (q, tau) at rest.
 class NearestProgram final : public NonlinearProgram {
@@ -44,28 +28,21 @@ class NearestProgram final : public NonlinearProgram {
         inputs_(arm->inputs()),
         still_(VectorX::Zero(n_)),
         tip_{arm->segments() - 1} {
-    variables_ = {VectorX(n_ + inputs_), VectorX(n_ + inputs_)};
-    variables_.lower << limits.angle_lower, limits.torque_lower;
-    variables_.upper << limits.angle_upper, limits.torque_upper;
-    rows_ = {VectorX::Zero(n_), VectorX::Zero(n_)};
+    variable_bounds_ = {VectorX(n_ + inputs_), VectorX(n_ + inputs_)};
+    variable_bounds_.lower << limits.angle_lower, limits.torque_lower;
+    variable_bounds_.upper << limits.angle_upper, limits.torque_upper;
+    constraint_bounds_ = {VectorX::Zero(n_), VectorX::Zero(n_)};
     const double torque = std::max(limits.torque_upper.cwiseAbs().maxCoeff(), 1e-6);
     variable_scale_ = VectorX::Ones(n_ + inputs_);
     variable_scale_.tail(inputs_).setConstant(torque);
-    row_scale_ = VectorX::Constant(n_, torque);
+    constraint_scale_ = VectorX::Constant(n_, torque);
+    objective_scale_ = std::pow(0.1 * arm_->length(), 2);
     for (int i = 0; i < n_; ++i) {
-      for (int j = 0; j < n_; ++j) jacobian_.push_back({i, j});
-      for (int u = 0; u < inputs_; ++u) jacobian_.push_back({i, n_ + u});
-      for (int j = 0; j <= i; ++j) hessian_.push_back({i, j});
+      for (int j = 0; j < n_; ++j) jacobian_pattern_.push_back({i, j});
+      for (int u = 0; u < inputs_; ++u) jacobian_pattern_.push_back({i, n_ + u});
+      for (int j = 0; j <= i; ++j) hessian_pattern_.push_back({i, j});
     }
   }
-
-  const Bounds& variable_bounds() const override { return variables_; }
-  const Bounds& constraint_bounds() const override { return rows_; }
-  const VectorX& variable_scale() const override { return variable_scale_; }
-  const VectorX& constraint_scale() const override { return row_scale_; }
-  double objective_scale() const override { return std::pow(0.1 * arm_->length(), 2); }
-  const std::vector<SparseEntry>& jacobian_pattern() const override { return jacobian_; }
-  const std::vector<SparseEntry>& hessian_pattern() const override { return hessian_; }
 
   double objective(const VectorX& x) override { return (tip(x).value - goal_).squaredNorm(); }
   void gradient(const VectorX& x, VectorX& result) override {
@@ -110,9 +87,6 @@ class NearestProgram final : public NonlinearProgram {
   int n_, inputs_;
   VectorX still_;
   pcc::ArmPoint tip_;
-  Bounds variables_, rows_;
-  VectorX variable_scale_, row_scale_;
-  std::vector<SparseEntry> jacobian_, hessian_;
 };
 
 }  // namespace
@@ -148,7 +122,7 @@ ReachMap sample_reach(std::shared_ptr<const pcc::Arm> arm, const Limits& given, 
   }
   const Limits limits = completed_limits(*arm, given);
   pcc::ArmEquations equations(arm);
-  Random random(seed);
+  Uniform random(seed);
   const Eigen::Index n = arm->coordinates(), inputs = arm->inputs();
   ReachMap result{MatrixX(2 * samples, n), MatrixX(2 * samples, inputs), Points(2 * samples, 3)};
   Eigen::Index found = 0;
@@ -189,7 +163,7 @@ NearestReach nearest_reach(std::shared_ptr<const pcc::Arm> arm, const Limits& gi
   const Limits limits = completed_limits(*arm, given);
   NearestProgram program(arm, limits, goal);
   pcc::ArmEquations equations(arm);
-  Random random(seed);
+  Uniform random(seed);
   const Eigen::Index n = arm->coordinates();
   const VectorX still = VectorX::Zero(n);
   NearestReach best;
