@@ -28,17 +28,23 @@ ArmDynamics<T>::ArmDynamics(std::shared_ptr<const Arm> arm)
 }
 
 template <typename T>
-Bend<T> ArmDynamics<T>::bend(int segment) const {
-  const std::size_t first = at(arm_->first(segment));
-  return {arm_->settings().segments[at(segment)], &q_[first], &rate_[first]};
-}
-
-template <typename T>
 void ArmDynamics<T>::set(std::span<const T> q, std::span<const T> rate,
                          std::span<const T> acceleration) {
   std::copy(q.begin(), q.end(), q_.begin());
   std::copy(rate.begin(), rate.end(), rate_.begin());
   std::copy(acceleration.begin(), acceleration.end(), acceleration_.begin());
+  sweep<true>();
+}
+
+template <typename T>
+void ArmDynamics<T>::place(std::span<const T> q) {
+  std::copy(q.begin(), q.end(), q_.begin());
+  sweep<false>();
+}
+
+template <typename T>
+template <bool kMoves>
+void ArmDynamics<T>::sweep() {
   const ArmSettings& settings = arm_->settings();
   Vec3<T> origin(settings.base), velocity, moved(Vector3(-settings.gravity)), spin, spin_rate;
   Rotation<T> rotation{Vec3<T>(settings.frame.col(0)), Vec3<T>(settings.frame.col(1)),
@@ -55,33 +61,39 @@ void ArmDynamics<T>::set(std::span<const T> q, std::span<const T> rate,
                       cosine_[at(n)] * rotation.y - sine_[at(n)] * rotation.x, rotation.z};
     if (segment.dead_length > 0.0) {
       const Vec3<T> arm = segment.dead_length * rotation.z;
-      const Vec3<T> swept = cross(spin, arm);
       origin += arm;
-      velocity += swept;
-      moved += cross(spin_rate, arm) + cross(spin, swept);
+      if constexpr (kMoves) {
+        const Vec3<T> swept = cross(spin, arm);
+        velocity += swept;
+        moved += cross(spin_rate, arm) + cross(spin, swept);
+      }
     }
     frame.origin = origin;
-    frame.velocity = velocity;
-    frame.acceleration = moved;
-    frame.spin = spin;
-    frame.spin_rate = spin_rate;
+    if constexpr (kMoves) {
+      frame.velocity = velocity;
+      frame.acceleration = moved;
+      frame.spin = spin;
+      frame.spin_rate = spin_rate;
+    }
 
-    const Bend<T> own = bend(n);
+    const Bend<T, kMoves> own(segment, &q_[first], &rate_[first]);
     // Of a point in the moving frame: position, velocity, acceleration.
     const auto carry = [&](Vec3<T>& x, Vec3<T>& v, Vec3<T>& a, std::array<Vec3<T>, 3>& gradient) {
       const Vec3<T> arm = frame.rotation * point.position;
-      Vec3<T> slide, push = point.bias;
-      for (int i = 0; i < count; ++i) {
-        slide += rate_[first + at(i)] * point.gradient[at(i)];
-        push += acceleration_[first + at(i)] * point.gradient[at(i)];
-        gradient[at(i)] = frame.rotation * point.gradient[at(i)];
-      }
-      slide = frame.rotation * slide;
-      const Vec3<T> swept = cross(frame.spin, arm);
       x = frame.origin + arm;
-      v = frame.velocity + swept + slide;
-      a = frame.acceleration + cross(frame.spin_rate, arm) +
-          cross(frame.spin, swept + 2.0 * slide) + frame.rotation * push;
+      for (int i = 0; i < count; ++i) gradient[at(i)] = frame.rotation * point.gradient[at(i)];
+      if constexpr (kMoves) {
+        Vec3<T> slide, push = point.bias;
+        for (int i = 0; i < count; ++i) {
+          slide += rate_[first + at(i)] * point.gradient[at(i)];
+          push += acceleration_[first + at(i)] * point.gradient[at(i)];
+        }
+        slide = frame.rotation * slide;
+        const Vec3<T> swept = cross(frame.spin, arm);
+        v = frame.velocity + swept + slide;
+        a = frame.acceleration + cross(frame.spin_rate, arm) +
+            cross(frame.spin, swept + 2.0 * slide) + frame.rotation * push;
+      }
     };
     for (; particle < bodies_.size() && arm_->particles()[particle].segment == n; ++particle) {
       const Particle& settings_of = arm_->particles()[particle];
@@ -91,15 +103,17 @@ void ArmDynamics<T>::set(std::span<const T> q, std::span<const T> rate,
     }
     own.at(1.0, 1.0, point, &section);
     carry(origin, velocity, moved, frame.gradient);
-    Vec3<T> turn, turn_rate = section.spin_bias;
-    for (int i = 0; i < count; ++i) {
-      turn += rate_[first + at(i)] * section.spin[at(i)];
-      turn_rate += acceleration_[first + at(i)] * section.spin[at(i)];
-      frame.turn[at(i)] = frame.rotation * section.spin[at(i)];
+    for (int i = 0; i < count; ++i) frame.turn[at(i)] = frame.rotation * section.spin[at(i)];
+    if constexpr (kMoves) {
+      Vec3<T> turn, turn_rate = section.spin_bias;
+      for (int i = 0; i < count; ++i) {
+        turn += rate_[first + at(i)] * section.spin[at(i)];
+        turn_rate += acceleration_[first + at(i)] * section.spin[at(i)];
+      }
+      turn = frame.rotation * turn;
+      spin_rate += cross(spin, turn) + frame.rotation * turn_rate;
+      spin += turn;
     }
-    turn = frame.rotation * turn;
-    spin_rate += cross(spin, turn) + frame.rotation * turn_rate;
-    spin += turn;
     rotation = frame.rotation * section.rotation;
     frame.end = origin;
     frame.end_rotation = rotation;
@@ -161,25 +175,31 @@ void ArmDynamics<T>::mass_regressor(std::span<T> torque) {
 }
 
 template <typename T>
+std::span<const Vec3<T>> ArmDynamics<T>::particle_jacobian(std::size_t particle) {
+  const Particle& of = arm_->particles()[particle];
+  const Body& body = bodies_[particle];
+  const std::size_t own = at(arm_->first(of.segment));
+  for (int k = 0; k < of.segment; ++k) {
+    const Frame& frame = frames_[at(k)];
+    const Vec3<T> arm = body.position - frame.end;
+    const std::size_t first = at(arm_->first(k));
+    for (int i = 0; i < arm_->settings().segments[at(k)].coordinates(); ++i) {
+      columns_[first + at(i)] = frame.gradient[at(i)] + cross(frame.turn[at(i)], arm);
+    }
+  }
+  const std::size_t count = at(arm_->settings().segments[at(of.segment)].coordinates());
+  for (std::size_t i = 0; i < count; ++i) columns_[own + i] = body.gradient[i];
+  return {columns_.data(), own + count};
+}
+
+template <typename T>
 void ArmDynamics<T>::mass_matrix(std::span<T> mass) {
   const auto n = at(arm_->coordinates());
   std::fill(mass.begin(), mass.end(), T(0.0));
   for (std::size_t p = 0; p < bodies_.size(); ++p) {
     const Particle& of = arm_->particles()[p];
     if (of.mass == 0.0) continue;
-    const Body& body = bodies_[p];
-    const std::size_t own = at(arm_->first(of.segment));
-    for (int k = 0; k < of.segment; ++k) {
-      const Frame& frame = frames_[at(k)];
-      const Vec3<T> arm = body.position - frame.end;
-      const std::size_t first = at(arm_->first(k));
-      for (int i = 0; i < arm_->settings().segments[at(k)].coordinates(); ++i) {
-        columns_[first + at(i)] = frame.gradient[at(i)] + cross(frame.turn[at(i)], arm);
-      }
-    }
-    const int count = arm_->settings().segments[at(of.segment)].coordinates();
-    for (int i = 0; i < count; ++i) columns_[own + at(i)] = body.gradient[at(i)];
-    const std::size_t used = own + at(count);
+    const std::size_t used = particle_jacobian(p).size();
     for (std::size_t i = 0; i < used; ++i) {
       const Vec3<T> heavy = of.mass * columns_[i];
       for (std::size_t j = 0; j <= i; ++j) mass[i * n + j] += dot(heavy, columns_[j]);
@@ -193,7 +213,9 @@ void ArmDynamics<T>::mass_matrix(std::span<T> mass) {
 template <typename T>
 typename ArmDynamics<T>::Spot ArmDynamics<T>::spot(const ArmPoint& point) const {
   Spot result;
-  bend(point.segment).at(point.fraction, 1.0, result.own, &result.section);
+  const Bend<T, false> own(arm_->settings().segments[at(point.segment)],
+                           &q_[at(arm_->first(point.segment))], nullptr);
+  own.at(point.fraction, 1.0, result.own, &result.section);
   const Rotation<T>& turned = result.section.rotation;
   result.aside = point.x * turned.x + point.y * turned.y + point.z * turned.z;
   const Frame& frame = frames_[at(point.segment)];
@@ -275,5 +297,6 @@ template class ArmDynamics<std::complex<double>>;
 template class ArmDynamics<Dual<1>>;
 template class ArmDynamics<Dual<8>>;
 template class ArmDynamics<SecondDual<8>>;
+template class ArmDynamics<Varied<Dual<8>>>;
 
 }  // namespace sinew::pcc

@@ -16,6 +16,7 @@
 #include "sinew/pcc/arm.hpp"
 #include "sinew/pcc/bend.hpp"
 #include "sinew/pcc/spatial_vector.hpp"
+#include "sinew/pcc/varied.hpp"
 
 namespace sinew::pcc {
 
@@ -27,7 +28,7 @@ struct ArmPoint {
 };
 
 /// Workspace of one arm; nothing allocates after construction. T: double, std::complex<double>,
-/// Dual<1>, Dual<8>, SecondDual<8>.
+/// Dual<1>, Dual<8>, SecondDual<8>, Varied<Dual<8>>.
 template <typename T>
 class ArmDynamics {
  public:
@@ -37,6 +38,9 @@ class ArmDynamics {
   /// Sets the state that all others look at. @param q,rate,acceleration (coordinates,) each.
   void set(std::span<const T> q, std::span<const T> rate, std::span<const T> acceleration);
 
+  /// Sets the coordinates alone: for positions, Jacobians, H, and energies but the kinetic one.
+  void place(std::span<const T> q);
+
   /// H q'' + C q' + G + b q' (coordinates,): what B tau must be.
   void inverse_dynamics(std::span<T> torque);
   /// What inverse_dynamics() is linear in the segments' masses by: (coordinates, segments) column
@@ -44,6 +48,13 @@ class ArmDynamics {
   void mass_regressor(std::span<T> torque);
   /// H (coordinates^2,), row by row.
   void mass_matrix(std::span<T> mass);
+
+  /// Of a particle of the arm's: where it is (m), and its Jacobian, columns for the coordinates
+  /// that move it, valid until the next call.
+  const Vec3<T>& particle_position(std::size_t particle) const {
+    return bodies_[particle].position;
+  }
+  std::span<const Vec3<T>> particle_jacobian(std::size_t particle);
 
   /// Where a point is (m); its Jacobian (coordinates,) of columns.
   Vec3<T> position(const ArmPoint& point) const;
@@ -77,7 +88,8 @@ class ArmDynamics {
     Vec3<T> position;  ///< m
   };
 
-  Bend<T> bend(int segment) const;
+  template <bool kMoves>
+  void sweep();
   Spot spot(const ArmPoint& point) const;
 
   std::shared_ptr<const Arm> arm_;

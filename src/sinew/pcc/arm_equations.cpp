@@ -19,9 +19,7 @@ constexpr std::size_t kDirections = 8;
 using First = Dual<kDirections>;
 /// In time.
 using Timed = Dual<1>;
-/// Second derivatives go by pairs of groups of variables.
-constexpr std::size_t kGroup = kDirections / 2;
-using Second = SecondDual<kDirections>;
+using Second = Varied<First>;
 
 template <typename T>
 std::span<const T> view(const std::vector<T>& values) {
@@ -35,6 +33,9 @@ std::span<const double> view(const VectorX& values) {
 }  // namespace
 
 struct ArmEquations::Work {
+  /// Of curvature(), to by_position, by_rate and by_acceleration.
+  void gradient_of_work();
+
   explicit Work(std::shared_ptr<const Arm> arm_)
       : arm(std::move(arm_)),
         plain(arm),
@@ -64,8 +65,32 @@ struct ArmEquations::Work {
   std::unique_ptr<ArmDynamics<First>> first;
   std::vector<First> first_q, first_rate, first_acceleration, first_result;
   std::unique_ptr<ArmDynamics<Second>> second;
-  std::vector<Second> second_q, second_rate, second_acceleration, second_result;
+  std::vector<Second> second_q;
+  std::vector<First> by_position, by_rate, by_acceleration;  // of the varied scalar
 };
+
+void ArmEquations::Work::gradient_of_work() {
+  for (auto* part : {&by_position, &by_rate, &by_acceleration}) {
+    std::fill(part->begin(), part->end(), First(0.0));
+  }
+  const auto part = [](const Vec3<Second>& v, First Second::*which) {
+    return Vec3<First>(v.x.*which, v.y.*which, v.z.*which);
+  };
+  for (std::size_t p = 0; p < arm->particles().size(); ++p) {
+    const Particle& of = arm->particles()[p];
+    const Vec3<Second>& x = second->particle_position(p);
+    const Vec3<First> heavy = of.mass * part(x, &Second::variation);
+    const Vec3<First> pull = of.mass * part(x, &Second::acceleration) +
+                             Vec3<First>(Vector3(-of.mass * arm->settings().gravity - of.force));
+    const std::span<const Vec3<Second>> jacobian = second->particle_jacobian(p);
+    for (std::size_t k = 0; k < jacobian.size(); ++k) {
+      by_position[k] += dot(part(jacobian[k], &Second::variation), pull) +
+                        dot(heavy, part(jacobian[k], &Second::acceleration));
+      by_rate[k] += 2.0 * dot(heavy, part(jacobian[k], &Second::rate));
+      by_acceleration[k] += dot(heavy, part(jacobian[k], &Second::value));
+    }
+  }
+}
 
 ArmEquations::ArmEquations(std::shared_ptr<const Arm> arm)
     : work_(std::make_unique<Work>(std::move(arm))) {}
@@ -93,7 +118,7 @@ const MatrixX& ArmEquations::mass_regressor(const VectorX& q, const VectorX& rat
 
 const MatrixX& ArmEquations::mass_matrix(const VectorX& q) {
   Work& w = *work_;
-  w.plain.set(view(q), view(w.zero), view(w.zero));
+  w.plain.place(view(q));
   w.plain.mass_matrix({w.mass.data(), w.n * w.n});
   return w.mass;
 }
@@ -121,13 +146,13 @@ const MatrixX& ArmEquations::coriolis_matrix(const VectorX& q, const VectorX& ra
   const std::size_t n = w.n;
   std::vector<MatrixX> slope(n, MatrixX::Zero(static_cast<Eigen::Index>(n), w.mass.cols()));
   if (!w.first) w.first = std::make_unique<ArmDynamics<First>>(w.arm);
-  std::vector<First> values(n), still(n), mass(n * n);
+  std::vector<First> values(n), mass(n * n);
   for (std::size_t from = 0; from < n; from += kDirections) {
     for (std::size_t k = 0; k < n; ++k) {
       values[k] = q[static_cast<Eigen::Index>(k)];
       if (k >= from && k < from + kDirections) values[k].grad[k - from] = 1.0;
     }
-    w.first->set(view(values), view(still), view(still));
+    w.first->place(view(values));
     w.first->mass_matrix({mass.data(), n * n});
     for (std::size_t d = 0; d < std::min(kDirections, n - from); ++d) {
       for (std::size_t e = 0; e < n * n; ++e) slope[from + d].data()[e] = mass[e].grad[d];
@@ -183,7 +208,7 @@ const ArmEquations::Linearisation& ArmEquations::linearise(const VectorX& q, con
     }
   }
   // dr/dq'' is H.
-  w.plain.set(view(q), view(w.zero), view(w.zero));
+  w.plain.place(view(q));
   w.plain.mass_matrix({w.linear.by_acceleration.data(), n * n});
   for (std::size_t i = 0; i < n; ++i) {
     w.linear.residual[static_cast<Eigen::Index>(i)] = w.first_result[i].value;
@@ -193,63 +218,50 @@ const ArmEquations::Linearisation& ArmEquations::linearise(const VectorX& q, con
 
 const MatrixX& ArmEquations::curvature(const VectorX& weights, const VectorX& q,
                                        const VectorX& rate, const VectorX& acceleration) {
+  // S = weights . r is the virtual work of r on the variation dq = weights. Over particles, along
+  // q(t) with these rates and accelerations,
+  //   S = sum_p dx . (m (x'' - g) - f) + linear terms,   x' = J q', x'' = J q'' + J' q', dx = J dq,
+  // and, since dx''/dq_k = J_k'', dx''/dq'_k = 2 J_k', dx''/dq''_k = J_k and d(dx)/dq_k = dJ_k,
+  //   dS/dq_k = sum_p dJ_k . (m (x'' - g) - f) + m dx . J_k'',
+  //   dS/dq'_k = 2 m dx . J_k',   dS/dq''_k = m dx . J_k.
+  // The kinematics with numbers of time and variation give all of these, and numbers that carry
+  // derivatives inside them the gradient's own.
   Work& w = *work_;
   const std::size_t n = w.n, all = 2 * n;
+  const auto size = static_cast<Eigen::Index>(n);
   if (!w.second) {
     w.second = std::make_unique<ArmDynamics<Second>>(w.arm);
     w.second_q.resize(n);
-    w.second_rate.resize(n);
-    w.second_acceleration.resize(n);
-    w.second_result.resize(n);
-    const auto size = static_cast<Eigen::Index>(3 * n);
-    w.curvature.setZero(size, size);
+    w.by_position.resize(n);
+    w.by_rate.resize(n);
+    w.by_acceleration.resize(n);
+    w.curvature.setZero(3 * size, 3 * size);
   }
   for (std::size_t k = 0; k < n; ++k) {
-    w.second_q[k] = q[static_cast<Eigen::Index>(k)];
-    w.second_rate[k] = rate[static_cast<Eigen::Index>(k)];
-    w.second_acceleration[k] = acceleration[static_cast<Eigen::Index>(k)];
+    const auto i = static_cast<Eigen::Index>(k);
+    w.second_q[k] = {q[i], rate[i], acceleration[i], weights[i]};
   }
-  const auto variable = [&](std::size_t k) -> Second& {
-    return k < n ? w.second_q[k] : w.second_rate[k - n];
+  const auto direction = [&](std::size_t k) -> First::Lanes& {
+    return k < n ? w.second_q[k].value.grad : w.second_q[k - n].rate.grad;
   };
-  const std::size_t groups = (all + kGroup - 1) / kGroup;
-  std::array<std::size_t, kDirections> of{};
-  // Every pair of groups, so that every pair of variables shares a pass; one group goes alone.
-  for (std::size_t a = 0; a < groups; ++a) {
-    for (std::size_t b = groups > 1 ? a + 1 : a; b < groups; ++b) {
-      std::size_t used = 0;
-      const auto take = [&](std::size_t group) {
-        const std::size_t end = std::min(all, (group + 1) * kGroup);
-        for (std::size_t k = group * kGroup; k < end; ++k) of[used++] = k;
-      };
-      take(a);
-      if (b != a) take(b);
-      for (std::size_t d = 0; d < used; ++d) variable(of[d]).grad[d] = 1.0;
-      w.second->set(view(w.second_q), view(w.second_rate), view(w.second_acceleration));
-      w.second->inverse_dynamics({w.second_result.data(), n});
-      for (std::size_t i = 0; i < used; ++i) {
-        variable(of[i]).grad[i] = 0.0;
-        for (std::size_t j = 0; j <= i; ++j) {
-          double sum = 0.0;
-          for (std::size_t r = 0; r < n; ++r) {
-            sum += weights[static_cast<Eigen::Index>(r)] * w.second_result[r].hess[i][j];
-          }
-          const auto row = static_cast<Eigen::Index>(of[i]),
-                     column = static_cast<Eigen::Index>(of[j]);
-          w.curvature(row, column) = w.curvature(column, row) = sum;
-        }
+  for (std::size_t from = 0; from < all; from += kDirections) {
+    const std::size_t used = std::min(kDirections, all - from);
+    for (std::size_t d = 0; d < used; ++d) direction(from + d)[d] = 1.0;
+    w.second->place({w.second_q.data(), n});
+    w.gradient_of_work();
+    for (std::size_t d = 0; d < used; ++d) {
+      direction(from + d)[d] = 0.0;
+      const auto column = static_cast<Eigen::Index>(from + d);
+      for (Eigen::Index k = 0; k < size; ++k) {
+        const auto i = static_cast<std::size_t>(k);
+        w.curvature(k, column) = w.by_position[i].grad[d];
+        w.curvature(size + k, column) = w.by_rate[i].grad[d];
+        w.curvature(2 * size + k, column) = w.by_acceleration[i].grad[d];
       }
     }
   }
-  // r is linear in q'': what is left is d(H weights)/dq, that of r at q'' = weights and at rest
-  // less that of r at rest.
-  const auto size = static_cast<Eigen::Index>(n);
-  const MatrixX& moved = linearise(q, w.zero, weights).by_position;
-  w.curvature.block(2 * size, 0, size, size) = moved;
-  const MatrixX& still = linearise(q, w.zero, w.zero).by_position;
-  w.curvature.block(2 * size, 0, size, size) -= still;
-  w.curvature.block(0, 2 * size, size, size) =
-      w.curvature.block(2 * size, 0, size, size).transpose();
+  w.curvature.topRightCorner(2 * size, size) =
+      w.curvature.bottomLeftCorner(size, 2 * size).transpose();
   return w.curvature;
 }
 
@@ -267,7 +279,7 @@ const ArmEquations::ForwardDerivatives& ArmEquations::forward_derivatives(const 
 
 Points ArmEquations::endpoints(const VectorX& q) {
   Work& w = *work_;
-  w.plain.set(view(q), view(w.zero), view(w.zero));
+  w.plain.place(view(q));
   Points result(w.arm->segments(), 3);
   for (int n = 0; n < w.arm->segments(); ++n) {
     const Vec3<double> x = w.plain.position({.segment = n});
@@ -278,7 +290,7 @@ Points ArmEquations::endpoints(const VectorX& q) {
 
 const MatrixX& ArmEquations::endpoint_jacobian(const VectorX& q) {
   Work& w = *work_;
-  w.plain.set(view(q), view(w.zero), view(w.zero));
+  w.plain.place(view(q));
   for (int s = 0; s < w.arm->segments(); ++s) {
     w.plain.jacobian({s, 1.0, 0.0, 0.0}, w.columns);
     for (std::size_t k = 0; k < w.n; ++k) {
@@ -301,12 +313,12 @@ ArmEquations::PointMotion ArmEquations::point(const ArmPoint& point, const Vecto
   const std::size_t n = w.n;
   if (!w.timed) w.timed = std::make_unique<ArmDynamics<Timed>>(w.arm);
   ArmDynamics<Timed>& moving = *w.timed;
-  std::vector<Timed> values(n), still(n);
+  std::vector<Timed> values(n);
   for (std::size_t k = 0; k < n; ++k) {
     values[k].value = q[static_cast<Eigen::Index>(k)];
     values[k].grad[0] = rate[static_cast<Eigen::Index>(k)];
   }
-  moving.set(view(values), view(still), view(still));
+  moving.place(view(values));
   std::vector<Vec3<Timed>> columns(n);
   moving.jacobian(point, columns);
   const auto plain = [](const Vec3<Timed>& v) { return Vector3(v.x.value, v.y.value, v.z.value); };

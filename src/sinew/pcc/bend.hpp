@@ -28,11 +28,13 @@ struct BendSection {
   Vec3<T> spin_bias;            ///< angular acceleration at constant coordinate rates
 };
 
-/// A segment's bend at some coordinates and rates.
-template <typename T>
+/// A segment's bend at some coordinates and, where it moves, rates. Of one that does not, biases
+/// are left alone.
+template <typename T, bool kMoves>
 class Bend {
  public:
-  /// @param segment whose. @param q,rate (coordinates,) of it.
+  /// @param segment whose. @param q (coordinates,) of it. @param rate likewise; nullptr where it
+  /// does not move.
   Bend(const Segment& segment, const T* q, const T* rate) : segment_(segment), q_(q), rate_(rate) {
     squared_ = q[0] * q[0];
     if (segment.bending == Bending::spatial) squared_ += q[1] * q[1];
@@ -43,41 +45,44 @@ class Bend {
   void at(double fraction, double scale, BendPoint<T>& point, BendSection<T>* section) const {
     const T s = fraction * fraction * squared_;
     if (segment_.bending == Bending::planar) {
-      planar(stumpff<5>(s), fraction, scale, point, section);
+      planar(stumpff < kMoves ? 5 : 4 > (s), fraction, scale, point, section);
     } else {
-      spatial(stumpff<7>(s), fraction, scale, point, section);
+      spatial(stumpff < kMoves ? 7 : 5 > (s), fraction, scale, point, section);
     }
   }
 
  private:
-  void planar(const std::array<T, 5>& c, double fraction, double scale, BendPoint<T>& point,
+  template <std::size_t K>
+  void planar(const std::array<T, K>& c, double fraction, double scale, BendPoint<T>& point,
               BendSection<T>* section) const {
     const double length = scale * fraction * segment_.length;
     const T angle = fraction * q_[0];
-    const T rate = fraction * rate_[0];
     const T zero(0.0);
     point.position = {length * (angle * c[2]), zero, length * c[1]};
     const double slope = fraction * length;
     point.gradient[0] = {slope * (c[1] - c[2]), zero, slope * (angle * (c[3] - c[2]))};
-    const T squared_rate = length * (rate * rate);
-    point.bias = {squared_rate * (angle * (2.0 * c[3] - c[2] - 2.0 * c[4])), zero,
-                  squared_rate * (2.0 * c[2] - 2.0 * c[3] - c[1])};
+    if constexpr (kMoves) {
+      const T rate = fraction * rate_[0];
+      const T squared_rate = length * (rate * rate);
+      point.bias = {squared_rate * (angle * (2.0 * c[3] - c[2] - 2.0 * c[4])), zero,
+                    squared_rate * (2.0 * c[2] - 2.0 * c[3] - c[1])};
+    }
     if (section == nullptr) return;
     const T sine = angle * c[1];
     const T one(1.0);
     section->rotation = {{c[0], zero, -sine}, {zero, one, zero}, {sine, zero, c[0]}};
     section->spin[0] = {zero, T(fraction), zero};
-    section->spin_bias = {zero, zero, zero};
+    if constexpr (kMoves) section->spin_bias = {zero, zero, zero};
   }
 
-  void spatial(const std::array<T, 7>& c, double fraction, double scale, BendPoint<T>& point,
+  template <std::size_t K>
+  void spatial(const std::array<T, K>& c, double fraction, double scale, BendPoint<T>& point,
                BendSection<T>* section) const {
     const bool extensible = segment_.extensible;
     const double share = scale * fraction;
     T length = share * segment_.length;
     if (extensible) length += share * q_[2];
     const T u = fraction * q_[0], v = fraction * q_[1];
-    const T du = fraction * rate_[0], dv = fraction * rate_[1];
     // dc_k/ds, and twice for the point's own.
     const auto slope = [&](std::size_t k) {
       return 0.5 * (static_cast<double>(k) * c[k + 2] - c[k + 1]);
@@ -93,38 +98,44 @@ class Bend {
     point.gradient[1] = v * common;
     point.gradient[1].y += plain;
     if (extensible) point.gradient[2] = share * along;
-    // In time: s' = 2 (u u' + v v'), s'' = 2 (u'^2 + v'^2).
-    const T ds = 2.0 * (u * du + v * dv);
-    const T dds = 2.0 * (du * du + dv * dv);
-    const T c1_ss = 0.5 * (slope(3) - slope(2));
-    const T c2_ss = 0.5 * (2.0 * slope(4) - slope(3));
-    const T c2_t = c2_s * ds;
-    const T c2_tt = c2_ss * (ds * ds) + c2_s * dds;
-    const T c1_tt = c1_ss * (ds * ds) + c1_s * dds;
-    point.bias =
-        length * Vec3<T>(2.0 * (du * c2_t) + u * c2_tt, 2.0 * (dv * c2_t) + v * c2_tt, c1_tt);
-    if (extensible) {
-      const Vec3<T> along_t(du * c[2] + u * c2_t, dv * c[2] + v * c2_t, c1_s * ds);
-      point.bias += ((2.0 * share) * rate_[2]) * along_t;
-    }
-    if (section == nullptr) return;
     const T zero(0.0), one(1.0);
     const Vec3<T> w(-v, u, zero);
-    const auto turned = [&](const Vec3<T>& x, const T& a, const T& b) {
-      const Vec3<T> first = cross(w, x);
-      return x + a * first + b * cross(w, first);
-    };
-    section->rotation = {turned({one, zero, zero}, c[1], c[2]),
-                         turned({zero, one, zero}, c[1], c[2]),
-                         turned({zero, zero, one}, c[1], c[2])};
-    // Left Jacobian of the rotation vector w (e.g. Sola et al. 2018, eq. 145): I + c_2 w^ + c_3
-    // w^2.
-    section->spin[0] = turned({zero, T(fraction), zero}, c[2], c[3]);
-    section->spin[1] = turned({T(-fraction), zero, zero}, c[2], c[3]);
-    section->spin[2] = {zero, zero, zero};
-    const Vec3<T> dw(-dv, du, zero);
-    const Vec3<T> swept = cross(w, dw);
-    section->spin_bias = c2_t * swept + (slope(3) * ds) * cross(w, swept) + c[3] * cross(dw, swept);
+    if (section != nullptr) {
+      const auto turned = [&](const Vec3<T>& x, const T& a, const T& b) {
+        const Vec3<T> first = cross(w, x);
+        return x + a * first + b * cross(w, first);
+      };
+      section->rotation = {turned({one, zero, zero}, c[1], c[2]),
+                           turned({zero, one, zero}, c[1], c[2]),
+                           turned({zero, zero, one}, c[1], c[2])};
+      // Left Jacobian of the rotation vector w (e.g. Sola et al. 2018, eq. 145): I + c_2 w^ + c_3
+      // w^2.
+      section->spin[0] = turned({zero, T(fraction), zero}, c[2], c[3]);
+      section->spin[1] = turned({T(-fraction), zero, zero}, c[2], c[3]);
+      section->spin[2] = {zero, zero, zero};
+    }
+    if constexpr (kMoves) {
+      // In time: s' = 2 (u u' + v v'), s'' = 2 (u'^2 + v'^2).
+      const T du = fraction * rate_[0], dv = fraction * rate_[1];
+      const T ds = 2.0 * (u * du + v * dv);
+      const T dds = 2.0 * (du * du + dv * dv);
+      const T c1_ss = 0.5 * (slope(3) - slope(2));
+      const T c2_ss = 0.5 * (2.0 * slope(4) - slope(3));
+      const T c2_t = c2_s * ds;
+      const T c2_tt = c2_ss * (ds * ds) + c2_s * dds;
+      const T c1_tt = c1_ss * (ds * ds) + c1_s * dds;
+      point.bias =
+          length * Vec3<T>(2.0 * (du * c2_t) + u * c2_tt, 2.0 * (dv * c2_t) + v * c2_tt, c1_tt);
+      if (extensible) {
+        const Vec3<T> along_t(du * c[2] + u * c2_t, dv * c[2] + v * c2_t, c1_s * ds);
+        point.bias += ((2.0 * share) * rate_[2]) * along_t;
+      }
+      if (section == nullptr) return;
+      const Vec3<T> dw(-dv, du, zero);
+      const Vec3<T> swept = cross(w, dw);
+      section->spin_bias =
+          c2_t * swept + (slope(3) * ds) * cross(w, swept) + c[3] * cross(dw, swept);
+    }
   }
 
   const Segment& segment_;

@@ -48,7 +48,7 @@ template <std::size_t K, typename T>
 requires(std::is_same_v<T, double> ||
          std::is_same_v<T, std::complex<double>>) std::array<T, K> stumpff(const T& s) {
   using stumpff_detail::kInverseFactorial;
-  static_assert(K >= 2 && K <= 12);
+  static_assert(K >= 2 && K <= 13);
   std::array<T, K> c;
   if (std::real(s) < stumpff_detail::kSeries) {
     c[K - 1] = stumpff_detail::series(K - 1, s);
