@@ -48,14 +48,15 @@ TEST(Stumpff, DerivativesAgreeWithComplexStep) {
     const double tiny = 1e-30;
     const auto by_step = stumpff<7>(Complex(s, tiny));
     const auto first = stumpff<7>(Dual<2>::variable(s, 1));
-    const auto second = stumpff<7>(SecondDual<1>::variable(s, 0));
+    const auto second = stumpff<7>(Varied<double>(s, 1.0, 0.0, 1.0));
     const auto slope_after = stumpff<7>(Dual<1>::variable(s + 1e-5, 0));
     const auto slope_before = stumpff<7>(Dual<1>::variable(s - 1e-5, 0));
     for (std::size_t k = 0; k < 7; ++k) {
       EXPECT_NEAR(first[k].grad[1], by_step[k].imag() / tiny, 1e-14) << s << " " << k;
       EXPECT_EQ(first[k].grad[0], 0.0);
-      EXPECT_NEAR(second[k].grad[0], first[k].grad[1], 1e-14);
-      EXPECT_NEAR(second[k].hess[0][0], (slope_after[k].grad[0] - slope_before[k].grad[0]) / 2e-5,
+      EXPECT_NEAR(second[k].rate, first[k].grad[1], 1e-14);
+      EXPECT_NEAR(second[k].variation, first[k].grad[1], 1e-14);
+      EXPECT_NEAR(second[k].acceleration, (slope_after[k].grad[0] - slope_before[k].grad[0]) / 2e-5,
                   1e-9);
     }
   }

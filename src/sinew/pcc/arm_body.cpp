@@ -51,7 +51,6 @@ ArmBody::ArmBody(const ArmBodyModel& model, int histories)
   columns_.resize(static_cast<std::size_t>(n));
   slope_columns_.resize(columns_.size());
   slope_q_.resize(columns_.size());
-  slope_still_.resize(columns_.size());
   least_force_ = kLeastAngle * std::max(model.arm().stiffness().maxCoeff(), 1e-9);
   force_scale_ = least_force_;
   look();
@@ -126,7 +125,7 @@ void ArmBody::stiffen_by_rows() {
     const std::size_t used = std::min<std::size_t>(8, n - from);
     for (std::size_t k = 0; k < n; ++k) slope_q_[k] = q_[static_cast<Eigen::Index>(k)];
     for (std::size_t d = 0; d < used; ++d) slope_q_[from + d].grad[d] = 1.0;
-    slopes_.set(slope_q_, slope_still_, slope_still_);
+    slopes_.place(slope_q_);
     for (std::size_t e = 0; e < model_.entries_.size(); ++e) {
       const auto& entry = model_.entries_[e];
       const auto& attachment = model_.attachments_[static_cast<std::size_t>(entry.attachment)];

@@ -148,7 +148,7 @@ class ArmBody : public mechanics::Body {
   std::vector<Vector3> directions_;  // of the entries, as last taken
   std::vector<Vec3<double>> columns_;
   std::vector<Vec3<Dual<8>>> slope_columns_;
-  std::vector<Dual<8>> slope_q_, slope_still_;
+  std::vector<Dual<8>> slope_q_;
   double force_scale_ = 1.0, least_force_ = 1e-12;
   double rest_gravity_energy_ = 0.0;
   mechanics::StepWork work_;

@@ -87,7 +87,7 @@ Vector3 ArmBodyModel::rest_position(int point) const {
   if (attachment.coordinate >= 0) return Vector3::Zero();
   ArmDynamics<double> dynamics(arm_);
   const std::vector<double> still(static_cast<std::size_t>(arm_->coordinates()));
-  dynamics.set(still, still, still);
+  dynamics.place(still);
   const Vec3<double> x = dynamics.position(attachment.point);
   return {x.x, x.y, x.z};
 }

@@ -296,7 +296,6 @@ template class ArmDynamics<double>;
 template class ArmDynamics<std::complex<double>>;
 template class ArmDynamics<Dual<1>>;
 template class ArmDynamics<Dual<8>>;
-template class ArmDynamics<SecondDual<8>>;
 template class ArmDynamics<Varied<Dual<8>>>;
 
 }  // namespace sinew::pcc

@@ -28,7 +28,7 @@ struct ArmPoint {
 };
 
 /// Workspace of one arm; nothing allocates after construction. T: double, std::complex<double>,
-/// Dual<1>, Dual<8>, SecondDual<8>, Varied<Dual<8>>.
+/// Dual<1>, Dual<8>, Varied<Dual<8>>.
 template <typename T>
 class ArmDynamics {
  public:

@@ -15,7 +15,7 @@ struct Vec3 {
   T x{}, y{}, z{};
 
   Vec3() = default;
-  Vec3(T x_, T y_, T z_) : x(std::move(x_)), y(std::move(y_)), z(std::move(z_)) {}
+  Vec3(const T& x_, const T& y_, const T& z_) : x(x_), y(y_), z(z_) {}
   explicit Vec3(const Vector3& v) : x(v.x()), y(v.y()), z(v.z()) {}
 
   Vec3& operator+=(const Vec3& b) {
@@ -24,7 +24,7 @@ struct Vec3 {
     z += b.z;
     return *this;
   }
-  friend Vec3 operator+(Vec3 a, const Vec3& b) { return a += b; }
+  friend Vec3 operator+(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
   friend Vec3 operator-(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
   template <typename S>
   friend Vec3 operator*(const S& s, const Vec3& a) {

@@ -73,18 +73,4 @@ std::array<Dual<N>, K> stumpff(const Dual<N>& s) {
   return result;
 }
 
-template <std::size_t K, std::size_t N>
-std::array<SecondDual<N>, K> stumpff(const SecondDual<N>& s) {
-  const auto c = stumpff<K + 4>(s.value);
-  const auto first = [&](std::size_t k) {
-    return 0.5 * (static_cast<double>(k) * c[k + 2] - c[k + 1]);
-  };
-  std::array<SecondDual<N>, K> result;
-  for (std::size_t k = 0; k < K; ++k) {
-    result[k] =
-        s.chain(c[k], first(k), 0.5 * (static_cast<double>(k) * first(k + 2) - first(k + 1)));
-  }
-  return result;
-}
-
 }  // namespace sinew::pcc

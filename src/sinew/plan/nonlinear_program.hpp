@@ -69,11 +69,10 @@ enum class Status {
 std::string_view status_name(Status status);
 
 struct SolverSettings {
-  double tolerance = 1e-6;     ///< of the scaled optimality and violation
-  int max_iterations = 300;    ///< >= 1
-  double max_time = 30.0;      ///< s of processor time
-  double warm_barrier = 1e-3;  ///< mu at a warm start
-  bool verbose = false;        ///< the solver's own table on stdout
+  double tolerance = 1e-6;   ///< of the scaled optimality and violation
+  int max_iterations = 300;  ///< >= 1
+  double max_time = 30.0;    ///< s of processor time
+  bool verbose = false;      ///< the solver's own table on stdout
 };
 
 /// A point with its multipliers. Multipliers may be empty: a cold start.

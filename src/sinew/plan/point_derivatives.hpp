@@ -30,15 +30,18 @@ class PointDerivatives {
                                     const pcc::ArmPoint& point);
 
  private:
-  using Number = SecondDual<8>;
-  template <typename Of>
-  void evaluate(const VectorX& q, const VectorX& rate, std::size_t variables,
-                const std::vector<pcc::ArmPoint>& points, const Of& of);
+  using First = Dual<8>;
+  using Moving = pcc::Varied<First>;
+  /// In passes of some variables, q first, then q': `take` is called with the first of each.
+  template <typename Take>
+  void pass(const VectorX& q, const VectorX& rate, Eigen::Index variables, const Take& take);
 
-  pcc::ArmDynamics<Number> dynamics_;
+  pcc::ArmDynamics<Moving> dynamics_;
   std::size_t n_;
-  std::vector<Number> q_, rate_, still_;
-  std::vector<VectorDerivatives> results_;
+  std::vector<Moving> q_;
+  std::vector<pcc::Vec3<Moving>> columns_;
+  std::vector<VectorDerivatives> positions_;
+  VectorDerivatives velocity_;
 };
 
 }  // namespace sinew::plan

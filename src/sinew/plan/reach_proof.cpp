@@ -80,7 +80,7 @@ class Search {
       const auto view = [](const VectorX& v) {
         return std::span<const double>(v.data(), static_cast<std::size_t>(v.size()));
       };
-      dynamics_.set(view(centre), view(still_), view(still_));
+      dynamics_.place(view(centre));
       const auto at = dynamics_.position(tip_);
       values_.tail(3) << at.x, at.y, at.z;
       dynamics_.jacobian(tip_, gradients_);
