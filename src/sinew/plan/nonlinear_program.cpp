@@ -8,6 +8,7 @@
 #include <IpTNLP.hpp>
 
 #include "sinew/core/error.hpp"
+#include "sinew/plan/interior_newton.hpp"
 
 namespace sinew::plan {
 
@@ -206,11 +207,14 @@ std::string_view status_name(Status status) {
 
 ProgramResult solve(NonlinearProgram& program, const ProgramPoint& start,
                     const SolverSettings& settings) {
+  const bool warm = start.constraint_multipliers.size() > 0;
+  if (warm) {
+    if (std::optional<ProgramResult> near = solve_nearby(program, start, settings)) return *near;
+  }
   static std::mutex one_at_a_time;
   const std::lock_guard lock(one_at_a_time);
   ProgramResult result;
   result.point = start;
-  const bool warm = start.constraint_multipliers.size() > 0;
   Ipopt::SmartPtr<Ipopt::IpoptApplication> application = new Ipopt::IpoptApplication(false);
   if (settings.verbose) {
     application->Jnlst()->AddFileJournal("console", "stdout", Ipopt::J_ITERSUMMARY);

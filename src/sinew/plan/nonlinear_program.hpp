@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sinew/core/types.hpp"
+#include "sinew/linalg/frontal_factorisation.hpp"
 
 namespace sinew::plan {
 
@@ -18,10 +19,7 @@ struct Bounds {
   VectorX lower, upper;  ///< +-kNoBound: none; equal: an equality
 };
 
-/// Where an entry of a sparse matrix stands. Entries that stand in one place add up.
-struct SparseEntry {
-  int row = 0, column = 0;
-};
+using linalg::SparseEntry;
 
 /// What the solver asks of a problem. Derivatives are exact.
 class NonlinearProgram {
