@@ -1,7 +1,7 @@
 /// @file
-/// Smooth sparse nonlinear programs, min f(x) with bounds on x and on c(x), and their solution by
-/// Ipopt's interior-point method with a filter line search (Waechter & Biegler, Mathematical
-/// Programming 106, 2006). Knows no physics.
+/// Smooth sparse nonlinear programs, min f(x) with bounds on x and on c(x), and their solution by an
+/// interior-point method, from far by Ipopt with its filter line search (Waechter & Biegler,
+/// Mathematical Programming 106, 2006). Knows no physics.
 #pragma once
 
 #include <string_view>
@@ -89,8 +89,9 @@ struct ProgramResult {
   double seconds = 0.0;
 };
 
-/// Solves a program. Not to be called from two threads at once: the linear solver below (MUMPS,
-/// sequential) keeps global state, and a lock makes callers wait.
+/// Solves a program: by solve_nearby() where the start has multipliers, and by Ipopt where it has
+/// none or that does not converge. Ipopt runs in one thread at a time, callers wait: its linear
+/// solver (MUMPS, sequential) keeps global state.
 ProgramResult solve(NonlinearProgram& program, const ProgramPoint& start,
                     const SolverSettings& settings = {});
 
