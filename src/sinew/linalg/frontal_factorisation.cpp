@@ -48,6 +48,7 @@ void FrontalFactorisation::order() {
   }
   // Rows so full that they would join all levels.
   std::vector<std::size_t> degrees;
+  degrees.reserve(beside.size());
   for (const auto& list : beside) degrees.push_back(list.size());
   const auto middle = degrees.begin() + static_cast<std::ptrdiff_t>(degrees.size() / 2);
   std::nth_element(degrees.begin(), middle, degrees.end());
