@@ -11,6 +11,7 @@
 #include "bindings.hpp"
 #include "errors.hpp"
 #include "pcc_arm.hpp"
+#include "plan_drive.hpp"
 #include "plan_limits.hpp"
 
 namespace sinew::python {
@@ -35,7 +36,8 @@ PlanTask make_task(const PccArm& of, const py::object& goal, const py::object& t
                    double duration, const py::object& duration_range, int intervals,
                    const std::string& method, const py::object& theta, const py::object& theta_dot,
                    const py::object& torque, const std::vector<plan::Obstacle>& obstacles,
-                   int backbone_points) {
+                   int backbone_points, const py::object& actuators, const py::object& cylinders,
+                   const py::object& lead, const py::object& command_rate_limits, double command) {
   const pcc::Arm& arm = *of.arm;
   plan::Task task;
   task.goal.position = to_vector3(goal, "Task(goal)", "m");
@@ -47,7 +49,9 @@ PlanTask make_task(const PccArm& of, const py::object& goal, const py::object& t
   task.limits.rate = to_optional(rate_limits, "Task(rate_limits)", arm.coordinates(), "rad/s");
   task.limits.torque_rate =
       to_optional(torque_rate_limits, "Task(torque_rate_limits)", arm.inputs(), "N m/s");
-  task.objective = {effort, tip_speed, time};
+  task.limits.command_rate =
+      to_optional(command_rate_limits, "Task(command_rate_limits)", arm.inputs(), "1/s");
+  task.objective = {effort, tip_speed, time, command};
   task.grid.duration = duration;
   task.grid.intervals = intervals;
   if (!duration_range.is_none()) {
@@ -71,6 +75,7 @@ PlanTask make_task(const PccArm& of, const py::object& goal, const py::object& t
   task.start.torque = to_optional(torque, "Task(torque)", arm.inputs(), "N m");
   task.obstacles = obstacles;
   task.backbone_points = backbone_points;
+  task.drive = to_drive(actuators, cylinders, lead, "Task");
   return {of.arm, plan::completed(arm, task)};
 }
 
@@ -158,13 +163,23 @@ void bind_plans(py::module_& module) {
           "iterations", [](const Plan& self) { return self.iterations; }, "int.")
       .def_property_readonly(
           "seconds", [](const Plan& self) { return self.seconds; }, "float: of the solver.")
+      .def_property_readonly(
+          "drive",
+          [](const Plan& self) -> py::object {
+            if (!self.knots.drive) return py::none();
+            return drive_result(*self.knots.drive);
+          },
+          R"(dict or None: of a task with actuators and cylinders. "times" (samples,) s, from 0: the
+commands' own, "lead" s before the plan's; (samples, inputs) "command" and "volume" (m^3, that the
+commands give).)")
       .def(
           "torque_at", [](const Plan& self, double time) { return copy(self.torque(time)); },
           py::arg("time"),
           R"(torque_at($self, time)
 --
 
-(inputs,) N m at a time in s: linear between knots, with backward Euler constant.)");
+(inputs,) N m at a time in s: linear between knots, with backward Euler constant; with a drive what
+its commands cause.)");
   using plan::Replay;
   py::class_<Replay>(module, "PlanReplay", "An arm's motion over equal steps.")
       .def_property_readonly(
@@ -221,6 +236,14 @@ theta, theta_dot, torque : (coordinates,) rad, rad/s and (inputs,) N m, optional
 obstacles : list of Obstacle
 backbone_points : int
     A segment, that keep clear of the obstacles at the knots.
+actuators, cylinders : list of FluidicActuator, list of DriveCylinder, optional
+    One each for each input, cylinders of one sample time: the plan is one of their commands
+    (Plan.drive), which keeps to what they can do. The duration is fixed.
+lead : float, optional
+    s by which the commands begin before the motion; the longest delay, in whole samples.
+command_rate_limits : (inputs,) or float, 1/s, optional
+command : float
+    The cost of (torque per command * rate of the command)^2, s/(N m)^2, above zero.
 
 Raises
 ------
@@ -236,7 +259,10 @@ Error
            py::arg("intervals") = 50, py::arg("method") = "hermite-simpson",
            py::arg("theta") = py::none(), py::arg("theta_dot") = py::none(),
            py::arg("torque") = py::none(), py::arg("obstacles") = std::vector<plan::Obstacle>{},
-           py::arg("backbone_points") = 4)
+           py::arg("backbone_points") = 4, py::arg("actuators") = py::none(),
+           py::arg("cylinders") = py::none(), py::arg("lead") = py::none(),
+           py::arg("command_rate_limits") = py::none(),
+           py::arg("command") = plan::Objective{}.command)
       .def("solve", &solve, py::arg("seed") = 0, py::kw_only(), py::arg("warm") = nullptr,
            py::arg("tolerance") = 1e-6, py::arg("max_iterations") = 300, py::arg("max_time") = 30.0,
            R"(solve($self, seed=0, *, warm=None, tolerance=1e-06, max_iterations=300, max_time=30.0)
@@ -270,7 +296,29 @@ Error
           R"(replay($self, plan, arm=None, *, time_step=0.001)
 --
 
-The plan's torque on the arm, or on another one, in fine implicit steps: a Replay.)");
+The plan's torque on the arm, or on another one, in fine implicit steps: a Replay.)")
+      .def(
+          "replay_commands",
+          [](const PlanTask& self, const py::object& command, const py::object& actuators,
+             const py::object& cylinders, double lead, const PccArm* arm, double time_step) {
+            const auto on = other(arm, self.arm);
+            auto drive = to_drive(actuators, cylinders, py::float_(lead), "replay_commands");
+            if (!drive) drive = self.task.drive;
+            const plan::DriveRun run(drive ? drive->channels : std::vector<plan::DriveChannel>{},
+                                     to_matrix(command, "replay_commands(command)",
+                                               "(samples, inputs)"),
+                                     lead);
+            const py::gil_scoped_release release;
+            return plan::replay(on, self.task, run, time_step);
+          },
+          py::arg("command"), py::arg("actuators") = py::none(), py::arg("cylinders") = py::none(),
+          py::kw_only(), py::arg("lead"), py::arg("arm") = nullptr, py::arg("time_step") = 1e-3,
+          R"(replay_commands($self, command, actuators=None, cylinders=None, *, lead, arm=None, time_step=0.001)
+--
+
+Commands (samples, inputs) through the whole chain, cylinders, lines, actuators and the arm or
+another one, in fine implicit steps: a Replay of lead + duration whose times begin with the
+commands. Actuators and cylinders are the task's when left out; all is at rest before.)");
 }
 
 void bind_tracker(py::module_& module) {

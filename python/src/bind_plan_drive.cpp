@@ -8,15 +8,17 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "plan_drive.hpp"
 
 namespace sinew::python {
 
 namespace {
 
 std::vector<plan::DriveChannel> channels_of(const std::vector<pcc::FluidicActuator>& actuators,
-                                            const std::vector<pcc::DriveCylinder>& cylinders) {
+                                            const std::vector<pcc::DriveCylinder>& cylinders,
+                                            const char* item) {
   if (actuators.size() != cylinders.size()) {
-    throw Error(ErrorKind::wrong_length, {.item = "invert_drive"},
+    throw Error(ErrorKind::wrong_length, {.item = item},
                 fmt::format("{} actuators and {} cylinders", actuators.size(), cylinders.size()),
                 "give a cylinder for each actuator");
   }
@@ -30,6 +32,32 @@ std::vector<plan::DriveChannel> channels_of(const std::vector<pcc::FluidicActuat
 std::string name(qp::QpStatus status) { return std::string(qp::qp_status_name(status)); }
 
 }  // namespace
+
+std::optional<plan::Drive> to_drive(const py::object& actuators, const py::object& cylinders,
+                                    const py::object& lead, const char* item) {
+  if (actuators.is_none() && cylinders.is_none()) return {};
+  const auto list = [](const py::object& given) { return given.is_none() ? py::list() : given; };
+  plan::Drive drive;
+  drive.channels = channels_of(list(actuators).cast<std::vector<pcc::FluidicActuator>>(),
+                               list(cylinders).cast<std::vector<pcc::DriveCylinder>>(), item);
+  if (!lead.is_none()) {
+    drive.lead = to_number(lead, item, "s");
+    if (!(drive.lead >= 0.0)) {
+      throw Error(ErrorKind::out_of_range, {.item = item},
+                  fmt::format("the lead is {:g} s", drive.lead), "give zero or more");
+    }
+  }
+  return drive;
+}
+
+py::dict drive_result(const plan::DriveRun& run) {
+  py::dict result;
+  result["times"] = copy(run.times);
+  result["command"] = copy(run.command);
+  result["volume"] = copy(run.volume);
+  result["lead"] = run.lead;
+  return result;
+}
 
 void bind_plan_drive(py::module_& module) {
   module.def(
@@ -80,7 +108,7 @@ Error
       "plan_invert_drive",
       [](const plan::Plan& of, const std::vector<pcc::FluidicActuator>& actuators,
          const std::vector<pcc::DriveCylinder>& cylinders, double lead, double smoothing) {
-        const auto channels = channels_of(actuators, cylinders);
+        const auto channels = channels_of(actuators, cylinders, "invert_drive");
         const auto found = plan::invert_drive(of, channels, lead, {.smoothing = smoothing});
         py::list status;
         for (const qp::QpStatus one : found.status) status.append(name(one));

@@ -58,7 +58,11 @@ void DriveCylinder::check() const {
 }
 
 double DriveCylinder::gain() const {
-  return c.dot((Eigen::Matrix2d::Identity() - a).inverse() * b) + d;
+  return c.dot(rest(1.0)) + d;
+}
+
+Eigen::Vector2d DriveCylinder::rest(double command) const {
+  return (Eigen::Matrix2d::Identity() - a).inverse() * b * command;
 }
 
 double DriveCylinder::spectral_radius() const { return a.eigenvalues().cwiseAbs().maxCoeff(); }

@@ -34,6 +34,7 @@ struct DriveCylinder {
   void check() const;
   double gain() const;             ///< y over u at rest
   double spectral_radius() const;  ///< of A
+  Eigen::Vector2d rest(double command) const;  ///< state in which it stays, (I - A)^-1 B u
   /// Volumes (samples,) of commands (samples,), from state zero or `start`. Commands are cut at
   /// their limits; volumes beyond theirs are held there, the state going on.
   VectorX simulate(const VectorX& command,

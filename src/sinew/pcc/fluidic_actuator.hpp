@@ -20,6 +20,8 @@ struct FluidicActuator {
   double torque(double volume) const { return (linear + cubic * volume * volume) * volume; }
   /// d tau / dV, N m/m^3.
   double slope(double volume) const { return linear + 3.0 * cubic * volume * volume; }
+  /// d2 tau / dV2, N m/m^6.
+  double curvature(double volume) const { return 6.0 * cubic * volume; }
   /// The only volume, m^3, of a torque, N m: with a = 0 the cube root of tau/c, sign kept; else
   /// 2 sqrt(a/(3c)) sinh(asinh(3 tau/(2a) sqrt(3c/a))/3) (the hyperbolic solution of a depressed
   /// cubic).

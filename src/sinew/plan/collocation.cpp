@@ -35,15 +35,20 @@ Collocation::Collocation(std::shared_ptr<const pcc::Arm> arm, Task task)
       tip_{arm_->segments() - 1},
       n_(arm_->coordinates()),
       inputs_(arm_->inputs()),
-      knot_size_(rules_.blocks * n_ + inputs_),
+      knot_size_(rules_.blocks * n_ + (task_.drive ? 0 : inputs_)),
       variables_((grid_.intervals + 1) * knot_size_ + (grid_.free() ? 1 : 0)) {
   if (!task_.obstacles.empty()) backbone_ = backbone(*arm_, task_.backbone_points);
   rate_limited_ = task_.limits.torque_rate.minCoeff() < kNoBound;
   speed_limited_ = task_.goal.speed_tolerance < kNoBound;
   const auto clearances = static_cast<int>(backbone_.size() * task_.obstacles.size());
   rows_ = clearance_row(0) + clearances;
+  const double torque = typical_torque();
+  if (task_.drive) {
+    drive_ = std::make_unique<const DriveTranscription>(task_, torque, variables_, drive_row());
+    variables_ += drive_->variables();
+  }
   set_bounds();
-  set_scales();
+  set_scales(torque);
   note_patterns();
 }
 
@@ -56,6 +61,7 @@ void Collocation::set_bounds() {
     variable_bounds_.upper.segment(knot(k), n_) = limits.angle_upper;
     variable_bounds_.lower.segment(knot(k) + n_, n_) = -limits.rate;
     variable_bounds_.upper.segment(knot(k) + n_, n_) = limits.rate;
+    if (drive_) continue;
     variable_bounds_.lower.segment(torque_at(k), inputs_) = limits.torque_lower;
     variable_bounds_.upper.segment(torque_at(k), inputs_) = limits.torque_upper;
   }
@@ -64,13 +70,13 @@ void Collocation::set_bounds() {
     bound->segment(n_, n_) = task_.start.rate;
     // The first acceleration takes no part.
     if (rules_.blocks == 3) bound->segment(2 * n_, n_).setZero();
-    bound->segment(torque_at(0), inputs_) = task_.start.torque;
+    if (!drive_) bound->segment(torque_at(0), inputs_) = task_.start.torque;
   }
   if (grid_.free()) {
     variable_bounds_.lower[time_at()] = grid_.least_duration;
     variable_bounds_.upper[time_at()] = grid_.most_duration;
   }
-  const int rows = speed_row() + (speed_limited_ ? 1 : 0);
+  const int rows = drive_row() + (drive_ ? drive_->rows() : 0);
   constraint_bounds_ = {VectorX::Zero(rows), VectorX::Zero(rows)};
   for (int k = 0; k < grid_.intervals; ++k) {
     if (rate_limited_) {
@@ -91,25 +97,35 @@ void Collocation::set_bounds() {
     constraint_bounds_.lower[speed_row()] = -kNoBound;
     constraint_bounds_.upper[speed_row()] = std::sqrt(2.0) * task_.goal.speed_tolerance;
   }
+  if (!drive_) return;
+  variable_bounds_.lower.tail(drive_->variables()) = drive_->variable_bounds().lower;
+  variable_bounds_.upper.tail(drive_->variables()) = drive_->variable_bounds().upper;
+  constraint_bounds_.lower.tail(drive_->rows()) = drive_->row_bounds().lower;
+  constraint_bounds_.upper.tail(drive_->rows()) = drive_->row_bounds().upper;
 }
 
-void Collocation::set_scales() {
+double Collocation::typical_torque() {
+  const double most = std::max(task_.limits.torque_upper.cwiseAbs().maxCoeff(),
+                               task_.limits.torque_lower.cwiseAbs().maxCoeff());
+  if (most < kNoBound) return std::max(most, 1e-9);
+  const VectorX zero = VectorX::Zero(n_);
+  const auto& linear = equations_.linearise(task_.start.position, zero, zero);
+  return std::max(linear.by_position.cwiseAbs().diagonal().mean(), 1e-9);
+}
+
+void Collocation::set_scales(double torque) {
   // Time by the arm's own: inertia over stiffness, gravity's included.
   const VectorX zero = VectorX::Zero(n_);
   const auto& linear = equations_.linearise(task_.start.position, zero, zero);
   const double stiffness = linear.by_position.cwiseAbs().diagonal().sum();
   const double own = std::sqrt(linear.by_acceleration.trace() / std::max(stiffness, 1e-12));
-  const double most = std::max(task_.limits.torque_upper.cwiseAbs().maxCoeff(),
-                               task_.limits.torque_lower.cwiseAbs().maxCoeff());
-  const double torque =
-      most < kNoBound ? std::max(most, 1e-9) : std::max(stiffness / static_cast<double>(n_), 1e-9);
   variable_scale_ = VectorX::Ones(variables_);
   for (int k = 0; k <= grid_.intervals; ++k) {
     double unit = 1.0;
     for (int b = 0; b < rules_.blocks; ++b, unit /= own) {
       variable_scale_.segment(knot(k) + b * n_, n_).setConstant(unit);
     }
-    variable_scale_.segment(torque_at(k), inputs_).setConstant(torque);
+    if (!drive_) variable_scale_.segment(torque_at(k), inputs_).setConstant(torque);
   }
   const double length = arm_->length();
   constraint_scale_ = VectorX::Ones(constraints());
@@ -122,6 +138,10 @@ void Collocation::set_scales() {
   }
   constraint_scale_[goal_row()] = 0.1 * length;
   if (speed_limited_) constraint_scale_[speed_row()] = 0.1 * length / own;
+  if (drive_) {
+    variable_scale_.tail(drive_->variables()) = drive_->variable_scale();
+    constraint_scale_.tail(drive_->rows()) = drive_->row_scale();
+  }
   const Objective& cost = task_.objective;
   // A tenth of what limits on torque allow is what plans come to.
   objective_scale_ =
@@ -159,19 +179,42 @@ const VectorDerivatives& Collocation::tip_velocity(const VectorX& x) {
   return points_.velocity(state(x, grid_.intervals, 0), state(x, grid_.intervals, 1), tip_);
 }
 
+LinearForm Collocation::input(int k, double share, int u) const {
+  if (drive_) return drive_->volume(u, (k + share) * grid_.duration / grid_.intervals);
+  return {{torque_at(k) + u, torque_at(k + 1) + u}, {1.0 - share, share}, 2};
+}
+
+Collocation::Response Collocation::response(const VectorX& x, const LinearForm& form, int u) const {
+  const double value = form.of(x);
+  if (!drive_) return {value, 1.0, 0.0};
+  const auto& actuator = task_.drive->channels[static_cast<std::size_t>(u)].actuator;
+  return {actuator.torque(value), actuator.slope(value), actuator.curvature(value)};
+}
+
+VectorX Collocation::torque(const VectorX& x, int k, double share) const {
+  VectorX result(inputs_);
+  for (int u = 0; u < inputs_; ++u) result[u] = response(x, input(k, share, u), u).torque;
+  return result;
+}
+
+VectorX Collocation::torque(const VectorX& x, int k) const {
+  return k < grid_.intervals ? torque(x, k, 0.0) : torque(x, k - 1, 1.0);
+}
+
 double Collocation::objective(const VectorX& x) {
   const double h = duration(x) / grid_.intervals;
   double effort = 0.0;
-  for (int k = 0; k < grid_.intervals; ++k) {
-    const VectorX before = torque(x, k), after = torque(x, k + 1);
-    effort += rules_.linear_torque
-                  ? (before.squaredNorm() + before.dot(after) + after.squaredNorm()) / 3.0
-                  : after.squaredNorm();
-  }
+  each_effort_point(x, [&](int k, double share, double weight) {
+    effort += weight * torque(x, k, share).squaredNorm();
+  });
   const Objective& cost = task_.objective;
   double result = cost.effort * h * effort;
   if (cost.tip_speed > 0.0) result += cost.tip_speed * tip_velocity(x).value.squaredNorm();
   if (grid_.free()) result += cost.time * duration(x);
+  if (!drive_) return result;
+  for (const auto& [row, column, value] : drive_->cost_hessian()) {
+    result += (row == column ? 0.5 : 1.0) * value * x[row] * x[column];
+  }
   return result;
 }
 
@@ -179,28 +222,28 @@ void Collocation::gradient(const VectorX& x, VectorX& result) {
   const double h = duration(x) / grid_.intervals;
   const Objective& cost = task_.objective;
   result.setZero(variables_);
-  for (int k = 0; k < grid_.intervals; ++k) {
-    const VectorX before = torque(x, k), after = torque(x, k + 1);
-    if (rules_.linear_torque) {
-      result.segment(torque_at(k), inputs_) += cost.effort * h / 3.0 * (2.0 * before + after);
-      result.segment(torque_at(k + 1), inputs_) += cost.effort * h / 3.0 * (before + 2.0 * after);
-    } else {
-      result.segment(torque_at(k + 1), inputs_) += 2.0 * cost.effort * h * after;
+  each_effort_point(x, [&](int k, double share, double weight) {
+    const double per = cost.effort * weight;
+    for (int u = 0; u < inputs_; ++u) {
+      const LinearForm form = input(k, share, u);
+      const Response of = response(x, form, u);
+      for (std::size_t i = 0; i < static_cast<std::size_t>(form.count); ++i) {
+        result[form.at[i]] += 2.0 * per * h * of.torque * of.slope * form.weight[i];
+      }
+      if (grid_.free()) result[time_at()] += per / grid_.intervals * of.torque * of.torque;
     }
-    if (grid_.free()) {
-      result[time_at()] +=
-          cost.effort / grid_.intervals *
-          (rules_.linear_torque
-               ? (before.squaredNorm() + before.dot(after) + after.squaredNorm()) / 3.0
-               : after.squaredNorm());
-    }
-  }
+  });
   if (cost.tip_speed > 0.0) {
     const auto& velocity = tip_velocity(x);
     result.segment(knot(grid_.intervals), 2 * n_) +=
         2.0 * cost.tip_speed * velocity.jacobian.transpose() * velocity.value;
   }
   if (grid_.free()) result[time_at()] += cost.time;
+  if (!drive_) return;
+  for (const auto& [row, column, value] : drive_->cost_hessian()) {
+    result[row] += value * x[column];
+    if (row != column) result[column] += value * x[row];
+  }
 }
 
 void Collocation::constraints(const VectorX& x, VectorX& result) {
@@ -210,17 +253,17 @@ void Collocation::constraints(const VectorX& x, VectorX& result) {
   for (int k = 0; k < grid_.intervals; ++k) {
     const Transcription& rules = both[k > 0 ? 1 : 0];
     const MatrixX knots = pair(x, k);
-    const VectorX before = torque(x, k), after = torque(x, k + 1);
     result.segment(row(k), n_) = knots * rules.defect.value.transpose();
     for (std::size_t s = 0; s < rules.stages.size(); ++s) {
       const Stage& stage = rules.stages[s];
       const MatrixX motion = knots * stage.state.value.transpose();
       result.segment(stage_row(k, static_cast<int>(s)), n_) =
           equations_.residual(motion.col(0), motion.col(1), motion.col(2)) -
-          actuation * (stage.torque[0] * before + stage.torque[1] * after);
+          actuation * torque(x, k, stage.torque[1]);
     }
     if (rate_limited_) {
-      result.segment(rate_row(k), inputs_) = (after - before) * grid_.intervals / duration(x);
+      result.segment(rate_row(k), inputs_) =
+          (torque(x, k + 1) - torque(x, k)) * grid_.intervals / duration(x);
     }
     if (task_.obstacles.empty()) continue;
     const auto& where = points_.positions(state(x, k + 1, 0), backbone_);
@@ -234,6 +277,9 @@ void Collocation::constraints(const VectorX& x, VectorX& result) {
   if (speed_limited_) {
     result[speed_row()] = SmoothLength(tip_velocity(x).value, goal.speed_tolerance).value;
   }
+  if (!drive_) return;
+  result.tail(drive_->rows()).setZero();
+  for (const auto& [row, column, value] : drive_->jacobian()) result[row] += value * x[column];
 }
 
 VectorX Collocation::pack(const Knots& knots) const {
@@ -242,8 +288,9 @@ VectorX Collocation::pack(const Knots& knots) const {
     x.segment(knot(k), n_) = knots.position.row(k);
     x.segment(knot(k) + n_, n_) = knots.rate.row(k);
     if (rules_.blocks == 3) x.segment(knot(k) + 2 * n_, n_) = knots.acceleration.row(k);
-    x.segment(torque_at(k), inputs_) = knots.torque.row(k);
+    if (!drive_) x.segment(torque_at(k), inputs_) = knots.torque.row(k);
   }
+  if (drive_) x.tail(drive_->variables()) = drive_->pack(knots.drive.value());
   if (grid_.free()) x[time_at()] = knots.times[knots.times.size() - 1];
   return x;
 }
@@ -251,7 +298,8 @@ VectorX Collocation::pack(const Knots& knots) const {
 Knots Collocation::unpack(const VectorX& x) const {
   const int count = grid_.intervals + 1;
   Knots knots{VectorX::LinSpaced(count, 0.0, duration(x)), MatrixX(count, n_), MatrixX(count, n_),
-              MatrixX::Zero(count, n_), MatrixX(count, inputs_)};
+              MatrixX::Zero(count, n_), MatrixX(count, inputs_), {}};
+  if (drive_) knots.drive = drive_->unpack(x);
   for (int k = 0; k < count; ++k) {
     knots.position.row(k) = state(x, k, 0);
     knots.rate.row(k) = state(x, k, 1);

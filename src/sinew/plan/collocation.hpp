@@ -5,9 +5,11 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "sinew/pcc/arm_equations.hpp"
+#include "sinew/plan/drive_transcription.hpp"
 #include "sinew/plan/nonlinear_program.hpp"
 #include "sinew/plan/point_derivatives.hpp"
 #include "sinew/plan/task.hpp"
@@ -19,16 +21,21 @@ struct Knots {
   VectorX times;                         ///< (knots,) s, from 0
   MatrixX position, rate, acceleration;  ///< (knots, coordinates)
   MatrixX torque;                        ///< (knots, inputs) N m
+  std::optional<DriveRun> drive;         ///< of a task with a drive: what makes the torque
 };
 
 /// Variables, with b = 2 (q, v) or 3 (q, v, a) blocks a knot:
 ///
 ///     knot 0: q v (a) torque | knot 1: q v (a) torque | ... | t_f where the duration is free
 ///
+/// With a drive its volumes and commands stand behind the knots instead of torques in them, and the
+/// torque of a stage is the actuator's at the volume of the stage's time.
+///
 /// Constraints, interval by interval: defects (n), equations of motion of each stage (n each),
 /// torque rates (inputs, where limited), clearances of its second knot (points by obstacles); then
 /// the tip's distance from the goal and its speed, both as
-/// sqrt(|e|^2 + tolerance^2) <= sqrt(2) tolerance: as good as linear far away, smooth at the goal.
+/// sqrt(|e|^2 + tolerance^2) <= sqrt(2) tolerance: as good as linear far away, smooth at the goal;
+/// then the drive's rows.
 class Collocation final : public NonlinearProgram {
  public:
   /// @param arm what moves. @param task completed().
@@ -65,12 +72,14 @@ class Collocation final : public NonlinearProgram {
 
   void note_patterns();
   void set_bounds();
-  void set_scales();
+  /// N m, by which torques are scaled.
+  double typical_torque();
+  void set_scales(double torque);
   /// Of the first interval, of the others.
   std::array<Transcription, 2> rules(const VectorX& x) const;
   int knot(int k) const { return k * knot_size_; }
   int torque_at(int k) const { return knot(k) + rules_.blocks * n_; }
-  int time_at() const { return variables_ - 1; }
+  int time_at() const { return knot(grid_.intervals + 1); }
   /// First constraint of an interval, of its stage s, of its torque rates, of its clearances.
   int row(int k) const { return k * rows_; }
   int stage_row(int k, int stage) const { return row(k) + n_ * (1 + stage); }
@@ -81,7 +90,24 @@ class Collocation final : public NonlinearProgram {
   /// (n, 2 blocks) of what two knots hold; of one.
   MatrixX pair(const VectorX& x, int k) const;
   VectorX state(const VectorX& x, int k, int block) const;
-  VectorX torque(const VectorX& x, int k) const { return x.segment(torque_at(k), inputs_); }
+  int drive_row() const { return speed_row() + (speed_limited_ ? 1 : 0); }
+  /// What an input's torque follows from at a share of interval k: the knots' torques or, with a
+  /// drive, volumes.
+  LinearForm input(int k, double share, int u) const;
+  /// Torque of such a value and its derivatives by it.
+  struct Response {
+    double torque, slope, curvature;
+  };
+  Response response(const VectorX& x, const LinearForm& form, int u) const;
+  VectorX torque(const VectorX& x, int k, double share) const;
+  /// At knot k.
+  VectorX torque(const VectorX& x, int k) const;
+  /// of(k, share of the interval, weight) for the points of the effort's quadrature.
+  template <typename Do>
+  void each_effort_point(const VectorX& x, const Do& of) const;
+  template <typename Emit>
+  void torque_hessian(const VectorX& x, int k, const Transcription& rules,
+                      const VectorX& multipliers, const Emit& emit);
   const VectorDerivatives& tip_position(const VectorX& x);
   const VectorDerivatives& tip_velocity(const VectorX& x);
 
@@ -94,7 +120,18 @@ class Collocation final : public NonlinearProgram {
   std::vector<pcc::ArmPoint> backbone_;
   pcc::ArmPoint tip_;
   int n_, inputs_, knot_size_, variables_, rows_;
+  std::unique_ptr<const DriveTranscription> drive_;
   bool rate_limited_ = false, speed_limited_ = true;
 };
+
+template <typename Do>
+void Collocation::each_effort_point(const VectorX& x, const Do& of) const {
+  const std::array<Transcription, 2> both = rules(x);
+  for (int k = 0; k < grid_.intervals; ++k) {
+    const Transcription& rules = both[k > 0 ? 1 : 0];
+    if (rules.begin_share != 0.0) of(k, 0.0, rules.begin_share);
+    for (const Stage& stage : rules.stages) of(k, stage.torque[1], stage.share);
+  }
+}
 
 }  // namespace sinew::plan

@@ -17,6 +17,18 @@ MatrixX composed(const Vector3& gradient, const Matrix3& hessian, const VectorDe
   return result;
 }
 
+/// scale w w^T on the form's unknowns, lower triangle.
+template <typename Emit>
+void emit_square(const LinearForm& form, double scale, const Emit& emit) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(form.count); ++i) {
+    for (std::size_t j = 0; j < static_cast<std::size_t>(form.count); ++j) {
+      const double weight = form.weight[i] * form.weight[j];
+      if (weight == 0.0 || form.at[i] < form.at[j]) continue;
+      emit(form.at[i], form.at[j], scale * weight);
+    }
+  }
+}
+
 }  // namespace
 
 template <typename Emit>
@@ -28,12 +40,15 @@ void Collocation::each_jacobian_entry(const VectorX& x, const Emit& emit) {
     return block < blocks ? knot(k) + block * n_ : knot(k + 1) + (block - blocks) * n_;
   };
   const double share = 1.0 / grid_.intervals;  // dh/dt_f
-  const auto torque_entries = [&](int first_row, int k, double weight) {
-    if (weight == 0.0) return;
-    for (int i = 0; i < n_; ++i) {
-      for (int u = 0; u < inputs_; ++u) {
-        if (actuation(i, u) != 0.0) {
-          emit(first_row + i, torque_at(k) + u, -weight * actuation(i, u));
+  const auto torque_entries = [&](int first_row, int k, double when) {
+    for (int u = 0; u < inputs_; ++u) {
+      const LinearForm form = input(k, when, u);
+      const double slope = response(x, form, u).slope;
+      for (std::size_t m = 0; m < static_cast<std::size_t>(form.count); ++m) {
+        if (form.weight[m] == 0.0) continue;
+        for (int i = 0; i < n_; ++i) {
+          if (actuation(i, u) == 0.0) continue;
+          emit(first_row + i, form.at[m], -form.weight[m] * slope * actuation(i, u));
         }
       }
     }
@@ -73,18 +88,23 @@ void Collocation::each_jacobian_entry(const VectorX& x, const Emit& emit) {
         const VectorX total = *by[0] * slope.col(0) + *by[1] * slope.col(1) + *by[2] * slope.col(2);
         for (int i = 0; i < n_; ++i) emit(first + i, time_at(), total[i]);
       }
-      torque_entries(first, k, stage.torque[0]);
-      torque_entries(first, k + 1, stage.torque[1]);
+      torque_entries(first, k, stage.torque[1]);
     }
     if (rate_limited_) {
       const double per = 1.0 / (share * duration(x));
       for (int u = 0; u < inputs_; ++u) {
-        emit(rate_row(k) + u, torque_at(k) + u, -per);
-        emit(rate_row(k) + u, torque_at(k + 1) + u, per);
-        if (grid_.free()) {
-          emit(rate_row(k) + u, time_at(),
-               -per / duration(x) * (x[torque_at(k + 1) + u] - x[torque_at(k) + u]));
+        double change = 0.0;
+        for (const double when : {0.0, 1.0}) {
+          const LinearForm form = input(k, when, u);
+          const Response of = response(x, form, u);
+          const double sign = when > 0.0 ? 1.0 : -1.0;
+          change += sign * of.torque;
+          for (std::size_t m = 0; m < static_cast<std::size_t>(form.count); ++m) {
+            if (form.weight[m] == 0.0) continue;
+            emit(rate_row(k) + u, form.at[m], sign * per * of.slope * form.weight[m]);
+          }
         }
+        if (grid_.free()) emit(rate_row(k) + u, time_at(), -per / duration(x) * change);
       }
     }
     if (task_.obstacles.empty()) continue;
@@ -104,6 +124,9 @@ void Collocation::each_jacobian_entry(const VectorX& x, const Emit& emit) {
   const VectorX distance =
       tip.jacobian.transpose() * SmoothLength(tip.value - goal.position, goal.tolerance).gradient;
   for (int j = 0; j < n_; ++j) emit(goal_row(), last + j, distance[j]);
+  if (drive_) {
+    for (const auto& [row, at, value] : drive_->jacobian()) emit(row, at, value);
+  }
   if (!speed_limited_) return;
   const auto& velocity = tip_velocity(x);
   const VectorX speed =
@@ -117,25 +140,41 @@ void Collocation::jacobian(const VectorX& x, double* values) {
 
 template <typename Emit>
 void Collocation::effort_hessian(const VectorX& x, double factor, const Emit& emit) {
-  const double effort = factor * task_.objective.effort, h = duration(x) / grid_.intervals;
-  const double own = rules_.linear_torque ? 2.0 / 3.0 : 2.0;
-  for (int k = 0; k < grid_.intervals; ++k) {
+  const double effort = 2.0 * factor * task_.objective.effort;
+  const double h = duration(x) / grid_.intervals;
+  each_effort_point(x, [&](int k, double share, double weight) {
     for (int u = 0; u < inputs_; ++u) {
-      const int before = torque_at(k) + u, after = torque_at(k + 1) + u;
-      emit(after, after, effort * h * own);
-      if (rules_.linear_torque) {
-        emit(before, before, effort * h * own);
-        emit(after, before, effort * h / 3.0);
-      }
+      const LinearForm form = input(k, share, u);
+      const Response of = response(x, form, u);
+      const double second = of.slope * of.slope + of.torque * of.curvature;
+      emit_square(form, effort * weight * h * second, emit);
       if (!grid_.free()) continue;
-      const double per = effort / grid_.intervals;
-      if (rules_.linear_torque) {
-        emit(time_at(), before, per / 3.0 * (2.0 * x[before] + x[after]));
-        emit(time_at(), after, per / 3.0 * (x[before] + 2.0 * x[after]));
-      } else {
-        emit(time_at(), after, 2.0 * per * x[after]);
+      for (std::size_t m = 0; m < static_cast<std::size_t>(form.count); ++m) {
+        if (form.weight[m] == 0.0) continue;
+        emit(time_at(), form.at[m],
+             effort * weight / grid_.intervals * of.torque * of.slope * form.weight[m]);
       }
     }
+  });
+}
+
+template <typename Emit>
+void Collocation::torque_hessian(const VectorX& x, int k, const Transcription& rules,
+                                 const VectorX& multipliers, const Emit& emit) {
+  const auto add = [&](double share, int u, double multiplier) {
+    const LinearForm form = input(k, share, u);
+    emit_square(form, multiplier * response(x, form, u).curvature, emit);
+  };
+  for (std::size_t s = 0; s < rules.stages.size(); ++s) {
+    const VectorX weight = -arm_->actuation().transpose() *
+                           multipliers.segment(stage_row(k, static_cast<int>(s)), n_);
+    for (int u = 0; u < inputs_; ++u) add(rules.stages[s].torque[1], u, weight[u]);
+  }
+  if (!rate_limited_) return;
+  const double per = grid_.intervals / duration(x);
+  for (int u = 0; u < inputs_; ++u) {
+    add(0.0, u, -per * multipliers[rate_row(k) + u]);
+    add(1.0, u, per * multipliers[rate_row(k) + u]);
   }
 }
 
@@ -200,6 +239,7 @@ void Collocation::interval_hessian(const VectorX& x, int k, const VectorX& multi
     for (int i = 0; i < size; ++i) emit(time_at(), column(i), share * cross[i]);
     emit(time_at(), time_at(), share * share * by_time);
   }
+  if (drive_) torque_hessian(x, k, rules, multipliers, emit);
   if (rate_limited_ && grid_.free()) {
     const double t = duration(x), per = grid_.intervals / (t * t);
     for (int u = 0; u < inputs_; ++u) {
@@ -255,6 +295,8 @@ void Collocation::each_hessian_entry(const VectorX& x, double factor, const Vect
   effort_hessian(x, factor, emit);
   for (int k = 0; k < grid_.intervals; ++k) interval_hessian(x, k, multipliers, emit);
   terminal_hessian(x, factor, multipliers, emit);
+  if (!drive_) return;
+  for (const auto& [row, at, value] : drive_->cost_hessian()) emit(row, at, factor * value);
 }
 
 void Collocation::hessian(const VectorX& x, double factor, const VectorX& multipliers,

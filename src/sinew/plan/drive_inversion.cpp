@@ -76,30 +76,6 @@ VectorX wanted_volume(const Plan& plan, const pcc::FluidicActuator& actuator, Ei
   return volume;
 }
 
-void check(const Plan& plan, const std::vector<DriveChannel>& channels, double lead) {
-  const Eigen::Index inputs = plan.knots.torque.cols();
-  if (channels.empty() || static_cast<Eigen::Index>(channels.size()) != inputs) {
-    throw Error(ErrorKind::wrong_length, {.item = kPlace},
-                fmt::format("{} actuators and cylinders for {} inputs", channels.size(), inputs),
-                "give one for each input");
-  }
-  for (const DriveChannel& channel : channels) {
-    channel.actuator.check();
-    channel.cylinder.check();
-    if (channel.cylinder.sample_time != channels.front().cylinder.sample_time) {
-      throw Error(ErrorKind::out_of_range, {.item = kPlace},
-                  fmt::format("cylinders are sampled by {:g} s and {:g} s",
-                              channels.front().cylinder.sample_time, channel.cylinder.sample_time),
-                  "give cylinders of one sample time");
-    }
-    if (!(lead >= channel.actuator.delay) || !std::isfinite(lead)) {
-      throw Error(ErrorKind::out_of_range, {.item = kPlace},
-                  fmt::format("the lead is {:g} s, a delay {:g} s", lead, channel.actuator.delay),
-                  "give a lead of at least the longest delay");
-    }
-  }
-}
-
 }  // namespace
 
 CylinderInversion invert_cylinder(const pcc::DriveCylinder& cylinder, const VectorX& volume,
@@ -145,13 +121,14 @@ CylinderInversion invert_cylinder(const pcc::DriveCylinder& cylinder, const Vect
 
 DriveInversion invert_drive(const Plan& plan, const std::vector<DriveChannel>& channels,
                             double lead, const CylinderInversionSettings& settings) {
-  check(plan, channels, lead);
-  const double step = channels.front().cylinder.sample_time;
-  const auto steps = static_cast<Eigen::Index>(std::ceil((lead + plan.duration()) / step - 1e-9));
+  check_channels(channels, plan.knots.torque.cols(), lead, kPlace);
+  const pcc::DriveCylinder& first = channels.front().cylinder;
+  const Eigen::Index count = sample_count(first, lead + plan.duration());
   const auto inputs = static_cast<Eigen::Index>(channels.size());
   DriveInversion result;
-  result.times = VectorX::LinSpaced(steps + 1, 0.0, static_cast<double>(steps) * step);
-  result.command = result.wanted = result.volume = MatrixX(steps + 1, inputs);
+  result.times =
+      VectorX::LinSpaced(count, 0.0, static_cast<double>(count - 1) * first.sample_time);
+  result.command = result.wanted = result.volume = MatrixX(count, inputs);
   result.found = true;
   for (Eigen::Index i = 0; i < inputs; ++i) {
     const DriveChannel& channel = channels[static_cast<std::size_t>(i)];

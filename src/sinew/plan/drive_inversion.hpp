@@ -5,8 +5,7 @@
 
 #include <vector>
 
-#include "sinew/pcc/drive_cylinder.hpp"
-#include "sinew/pcc/fluidic_actuator.hpp"
+#include "sinew/plan/drive_channel.hpp"
 #include "sinew/plan/planner.hpp"
 #include "sinew/qp/quadratic_program.hpp"
 
@@ -38,12 +37,6 @@ struct CylinderInversion {
 /// contradictory-limits | too-few-points).
 CylinderInversion invert_cylinder(const pcc::DriveCylinder& cylinder, const VectorX& volume,
                                   const CylinderInversionSettings& settings = {});
-
-/// An actuator and the cylinder that drives it.
-struct DriveChannel {
-  pcc::FluidicActuator actuator;
-  pcc::DriveCylinder cylinder;
-};
 
 /// Commands for all inputs of an arm; columns are inputs.
 struct DriveInversion {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -46,9 +47,30 @@ class Excitation {
   MatrixX sizes_, frequencies_;  // N m, rad/s
 };
 
+/// What the drive makes of commands that would give the torques at rest.
+DriveRun driven(const Task& task, const Excitation& wanted) {
+  const auto& [channels, lead] = *task.drive;
+  const double step = channels.front().cylinder.sample_time;
+  const auto inputs = static_cast<Eigen::Index>(channels.size());
+  MatrixX command(sample_count(channels.front().cylinder, lead + task.grid.duration), inputs);
+  VectorX rest(inputs);
+  for (Eigen::Index i = 0; i < inputs; ++i) {
+    const auto& [actuator, cylinder] = channels[static_cast<std::size_t>(i)];
+    rest[i] = actuator.volume(task.start.torque[i]) / cylinder.gain();
+    for (Eigen::Index k = 0; k < command.rows(); ++k) {
+      const double time = static_cast<double>(k) * step + actuator.delay - lead;
+      const double volume = actuator.volume(wanted(std::max(time, 0.0))[i]);
+      command(k, i) = std::clamp(volume / cylinder.gain(), cylinder.lowest_input,
+                                 cylinder.highest_input);
+    }
+  }
+  return {channels, std::move(command), lead, std::move(rest)};
+}
+
 }  // namespace
 
 VectorX Plan::torque(double time) const {
+  if (knots.drive) return knots.drive->torque(std::clamp(time, 0.0, duration()));
   const Eigen::Index last = knots.times.size() - 1;
   const double at = std::clamp(time / duration(), 0.0, 1.0) * static_cast<double>(last);
   const double rounding = 1e-9;
@@ -87,18 +109,23 @@ Knots Planner::guess(std::uint64_t seed) const {
   }
   if (torque == 0.0) torque = arm_->stiffness().maxCoeff();
   const Excitation excitation(task_, torque, frequency, seed);
+  std::optional<DriveRun> drive;
+  if (task_.drive) drive.emplace(driven(task_, excitation));
+  const auto torque_at = [&](double time) {
+    return drive ? drive->torque(time) : excitation(time);
+  };
   const int steps = std::max(1, static_cast<int>(std::ceil(h / 0.005)));
   pcc::ArmSimulation simulation(arm_, {.time_step = h / steps});
   simulation.set_state(task_.start.position, task_.start.rate);
   Knots knots{VectorX::LinSpaced(count, 0.0, grid.duration), MatrixX(count, n), MatrixX(count, n),
-              MatrixX(count, n), MatrixX(count, arm_->inputs())};
+              MatrixX(count, n), MatrixX(count, arm_->inputs()), drive};
   for (Eigen::Index k = 0; k < count; ++k) {
     for (int s = 0; k > 0 && s < steps; ++s) {
-      simulation.step(excitation(simulation.time() + h / steps));
+      simulation.step(torque_at(simulation.time() + h / steps));
     }
     knots.position.row(k) = simulation.position();
     knots.rate.row(k) = simulation.rate();
-    knots.torque.row(k) = excitation(knots.times[k]);
+    knots.torque.row(k) = torque_at(knots.times[k]);
   }
   for (Eigen::Index k = 0; k < count; ++k) {
     const Eigen::Index from = std::max<Eigen::Index>(k - 1, 0), to = std::min(k + 1, count - 1);
@@ -124,6 +151,10 @@ Plan Planner::finish(ProgramResult result) {
 Plan Planner::plan(std::uint64_t seed) { return plan(guess(seed)); }
 
 Plan Planner::plan(const Knots& guess) {
+  if (task_.drive && !guess.drive) {
+    throw Error(ErrorKind::wrong_length, {.item = "guess"}, "it has no commands of the drive",
+                "give them, or a seed");
+  }
   return finish(solve(program_, {program_.pack(guess), {}, {}, {}}, settings_));
 }
 

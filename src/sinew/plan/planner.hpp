@@ -23,7 +23,8 @@ struct Plan {
 
   bool found() const { return status == Status::solved || status == Status::acceptable; }
   double duration() const { return knots.times[knots.times.size() - 1]; }
-  /// (inputs,) N m, as the method means it: constant over an interval or linear.
+  /// (inputs,) N m, as the method means it: constant over an interval or linear; with a drive what
+  /// its commands cause.
   /// @param time s; before the plan its first, after it its last.
   VectorX torque(double time) const;
 };
@@ -38,7 +39,7 @@ class Planner {
   const Task& task() const { return task_; }
   /// From the motion that random torques within the limits cause. @param seed of the torques.
   Plan plan(std::uint64_t seed);
-  /// From a guess at the task's knots.
+  /// From a guess at the task's knots, with its drive where the task has one: Error(wrong-length).
   Plan plan(const Knots& guess);
   /// From a plan for another start, goal or limits, on a grid of as many knots.
   /// Throws Error(wrong-length).

@@ -27,6 +27,24 @@ double clearance(const pcc::ArmDynamics<double>& dynamics, const std::vector<Obs
   return least;
 }
 
+template <typename Torque>
+Replay replay_torque(std::shared_ptr<const pcc::Arm> arm, const Task& task_given,
+                     const Torque& torque_at, double duration, double time_step) {
+  const Task task = completed(*arm, task_given);
+  const auto count = static_cast<Eigen::Index>(std::max(1.0, std::round(duration / time_step)));
+  const double h = duration / static_cast<double>(count);
+  pcc::ArmSimulation simulation(arm, {.time_step = h});
+  simulation.set_state(task.start.position, task.start.rate);
+  Recorder recorder(arm, task, count, h);
+  recorder.add(simulation.position(), simulation.rate(), torque_at(0.0));
+  for (Eigen::Index k = 1; k <= count; ++k) {
+    const VectorX torque = torque_at(static_cast<double>(k) * h);
+    simulation.step(torque);
+    recorder.add(simulation.position(), simulation.rate(), torque);
+  }
+  return recorder.finish();
+}
+
 }  // namespace
 
 Recorder::Recorder(std::shared_ptr<const pcc::Arm> arm, const Task& task, Eigen::Index steps,
@@ -65,22 +83,19 @@ Replay Recorder::finish() {
   return std::move(replay_);
 }
 
-Replay replay(std::shared_ptr<const pcc::Arm> arm, const Task& task_given, const Plan& plan,
+Replay replay(std::shared_ptr<const pcc::Arm> arm, const Task& task, const Plan& plan,
               double time_step) {
-  const Task task = completed(*arm, task_given);
-  const auto count =
-      static_cast<Eigen::Index>(std::max(1.0, std::round(plan.duration() / time_step)));
-  const double h = plan.duration() / static_cast<double>(count);
-  pcc::ArmSimulation simulation(arm, {.time_step = h});
-  simulation.set_state(task.start.position, task.start.rate);
-  Recorder recorder(arm, task, count, h);
-  recorder.add(simulation.position(), simulation.rate(), plan.torque(0.0));
-  for (Eigen::Index k = 1; k <= count; ++k) {
-    const VectorX torque = plan.torque(static_cast<double>(k) * h);
-    simulation.step(torque);
-    recorder.add(simulation.position(), simulation.rate(), torque);
-  }
-  return recorder.finish();
+  return replay_torque(
+      std::move(arm), task, [&](double time) { return plan.torque(time); }, plan.duration(),
+      time_step);
+}
+
+Replay replay(std::shared_ptr<const pcc::Arm> arm, const Task& task, const DriveRun& run,
+              double time_step) {
+  check_channels(run.channels, arm->inputs(), run.lead, "drive run");
+  return replay_torque(
+      std::move(arm), task, [&](double time) { return run.torque(time - run.lead); },
+      run.lead + task.grid.duration, time_step);
 }
 
 }  // namespace sinew::plan

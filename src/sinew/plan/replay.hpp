@@ -43,4 +43,12 @@ class Recorder {
 Replay replay(std::shared_ptr<const pcc::Arm> arm, const Task& task, const Plan& plan,
               double time_step = 1e-3);
 
+/// Commands through the whole chain, open loop: cylinders at rest, lines, actuators and an arm that
+/// stands as the task starts, from the first command to `lead` + the task's duration. The replay's
+/// times begin with the commands. @param arm,task,time_step as above. @param run the commands, and
+/// what they drive.
+/// Throws Error(wrong-length): not a channel for each input.
+Replay replay(std::shared_ptr<const pcc::Arm> arm, const Task& task, const DriveRun& run,
+              double time_step = 1e-3);
+
 }  // namespace sinew::plan

@@ -1,5 +1,6 @@
 #include "sinew/plan/task.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -116,6 +117,43 @@ void check_obstacles(std::vector<Obstacle>& obstacles) {
   }
 }
 
+void complete_drive(Task& task) {
+  Drive& drive = *task.drive;
+  double delay = 0.0;
+  for (const DriveChannel& channel : drive.channels) {
+    delay = std::max(delay, channel.actuator.delay);
+  }
+  if (drive.lead < 0.0 && !drive.channels.empty()) {
+    const double step = drive.channels.front().cylinder.sample_time;
+    drive.lead = std::max(delay, std::ceil(delay / step - 1e-9) * step);
+  }
+  check_channels(drive.channels, task.start.torque.size(), drive.lead, "drive");
+  check_positive(task.objective.command, "objective.command", "s/(N m)^2");
+  if (task.grid.free()) {
+    throw Error(ErrorKind::contradictory_limits, {.item = "grid.most_duration"},
+                "with a drive the duration is not free, as its cylinders are sampled",
+                "give the duration alone");
+  }
+  for (std::size_t i = 0; i < drive.channels.size(); ++i) {
+    const auto& [actuator, cylinder] = drive.channels[i];
+    const std::string item = fmt::format("drive[{}]", i);
+    if (cylinder.gain() == 0.0) {
+      throw Error(ErrorKind::out_of_range, {.item = item}, "the cylinder's gain at rest is zero",
+                  "give one whose command moves the volume");
+    }
+    const double volume = actuator.volume(task.start.torque[static_cast<Eigen::Index>(i)]);
+    const double command = volume / cylinder.gain();
+    if (volume < cylinder.lowest_volume || volume > cylinder.highest_volume ||
+        command < cylinder.lowest_input || command > cylinder.highest_input) {
+      throw Error(ErrorKind::contradictory_limits, {.item = item},
+                  fmt::format("the start's torque needs a volume of {:g} m^3 and the command {:g}, "
+                              "outside the cylinder's limits",
+                              volume, command),
+                  "start within the limits, or widen them");
+    }
+  }
+}
+
 }  // namespace
 
 double Obstacle::distance(const Vector3& at) const {
@@ -146,10 +184,12 @@ Task completed(const pcc::Arm& arm, Task task) {
   fill(limits.angle_upper, n, kNoBound, "limits.angle_upper");
   fill(limits.rate, n, kNoBound, "limits.rate");
   fill(limits.torque_rate, inputs, kNoBound, "limits.torque_rate");
+  fill(limits.command_rate, inputs, kNoBound, "limits.command_rate");
   check_order(limits.torque_lower, limits.torque_upper, "limits.torque");
   check_order(limits.angle_lower, limits.angle_upper, "limits.angle");
   for (const double rate : limits.rate) check_not_negative(rate, "limits.rate");
   for (const double rate : limits.torque_rate) check_positive(rate, "limits.torque_rate", "N m/s");
+  for (const double rate : limits.command_rate) check_positive(rate, "limits.command_rate", "1/s");
   check_within(task.start.position, limits.angle_lower, limits.angle_upper, "start.position",
                "rad");
   check_within(task.start.rate, -limits.rate, limits.rate, "start.rate", "rad/s");
@@ -164,6 +204,7 @@ Task completed(const pcc::Arm& arm, Task task) {
   check_goal(arm, task.goal);
   check_grid(task.grid);
   check_obstacles(task.obstacles);
+  if (task.drive) complete_drive(task);
   return task;
 }
 

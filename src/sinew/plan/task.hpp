@@ -4,9 +4,11 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "sinew/pcc/arm.hpp"
+#include "sinew/plan/drive_channel.hpp"
 #include "sinew/plan/transcription.hpp"
 
 namespace sinew::plan {
@@ -33,6 +35,7 @@ struct Limits {
   VectorX angle_lower, angle_upper;    ///< (coordinates,) rad; extension: m
   VectorX rate;                        ///< (coordinates,) rad/s, >= 0, either way
   VectorX torque_rate;                 ///< (inputs,) N m/s, > 0, either way
+  VectorX command_rate;  ///< (inputs,) of a drive's commands, 1/s, > 0, either way
 };
 
 /// What the arm's axis keeps clear of, at the knots, at points along it.
@@ -51,11 +54,13 @@ struct Obstacle {
 };
 
 /// Cost = effort * integral of tau . tau dt + tip_speed * |v|^2 + time * t_f, v the tip's at the
-/// end.
+/// end; with a drive + command * integral of |k du/dt|^2 dt, k the torque per command, at rest, at
+/// the largest volume within the limits.
 struct Objective {
   double effort = 0.1;     ///< R, 1/((N m)^2 s), >= 0
   double tip_speed = 0.0;  ///< (s/m)^2, >= 0
   double time = 0.0;       ///< 1/s, >= 0, where the duration is free
+  double command = 1e-5;   ///< s/(N m)^2, > 0, with a drive
 };
 
 struct Grid {
@@ -66,6 +71,14 @@ struct Grid {
   bool free() const { return most_duration > 0.0; }
 };
 
+/// What the plan is made for, instead of torques that come as told: a plan of commands.
+struct Drive {
+  std::vector<DriveChannel> channels;  ///< of the inputs
+  /// s, by which commands begin before the motion, at least the longest delay; negative: that, in
+  /// whole samples.
+  double lead = -1.0;
+};
+
 struct Task {
   Start start;
   Goal goal;
@@ -74,12 +87,14 @@ struct Task {
   std::vector<Obstacle> obstacles;
   int backbone_points = 4;  ///< a segment, >= 1, that keep clear of obstacles
   Grid grid;
+  std::optional<Drive> drive;  ///< its duration is fixed
 };
 
 /// Fills in what is empty, so that every vector has its size. Throws Error(wrong-length |
 /// not-finite | out-of-range | contradictory-limits): vectors of the wrong length, limits that
 /// cross or that the start breaks, tolerances and grids that make no sense, a goal that is further
-/// from the base than the arm is long.
+/// from the base than the arm is long, drives that do not fit the arm or each other or that cannot
+/// hold the start.
 Task completed(const pcc::Arm& arm, Task task);
 
 }  // namespace sinew::plan

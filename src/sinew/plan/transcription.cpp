@@ -27,7 +27,7 @@ Transcription::Transcription(Method method, double h, bool first) {
 
 void Transcription::set_euler(double h) {
   blocks = 2;
-  Stage end{zeros(3, blocks), {0.0, 1.0}};
+  Stage end{zeros(3, blocks), {0.0, 1.0}, 1.0};
   end.state.value << 0.0, 0.0, 1.0, 0.0,  //
       0.0, 0.0, 0.0, 1.0,                 //
       0.0, -1.0 / h, 0.0, 1.0 / h;
@@ -41,8 +41,8 @@ void Transcription::set_euler(double h) {
 
 void Transcription::set_hermite(double h) {
   blocks = 3;
-  linear_torque = true;
-  Stage middle{zeros(3, blocks), {0.5, 0.5}};
+  begin_share = 1.0 / 6.0;  // Simpson's rule
+  Stage middle{zeros(3, blocks), {0.5, 0.5}, 4.0 / 6.0};
   middle.state.value << 0.5, h / 8.0, 0.0, 0.5, -h / 8.0, 0.0,  //
       0.0, 0.5, h / 8.0, 0.0, 0.5, -h / 8.0,                    //
       0.0, -1.5 / h, -0.25, 0.0, 1.5 / h, -0.25;
@@ -50,7 +50,7 @@ void Transcription::set_hermite(double h) {
       0.0, 0.0, 0.125, 0.0, 0.0, -0.125,                    //
       0.0, 1.5 / (h * h), 0.0, 0.0, -1.5 / (h * h), 0.0;
   middle.state.bend.row(2) = -2.0 / h * middle.state.slope.row(2);
-  Stage end{zeros(3, blocks), {0.0, 1.0}};
+  Stage end{zeros(3, blocks), {0.0, 1.0}, 1.0 / 6.0};
   end.state.value.rightCols(3).setIdentity();
   stages = {middle, end};
   defect = zeros(1, blocks);
@@ -62,8 +62,7 @@ void Transcription::set_hermite(double h) {
 
 void Transcription::set_radau(double h) {
   blocks = 3;
-  linear_torque = true;
-  Stage third{zeros(3, blocks), {2.0 / 3.0, 1.0 / 3.0}};
+  Stage third{zeros(3, blocks), {2.0 / 3.0, 1.0 / 3.0}, 0.75};
   third.state.value << 1.0, 5.0 / 27.0 * h, 0.0, 0.0, 4.0 / 27.0 * h, -5.0 / 54.0 * h * h,  //
       0.0, 4.0 / 9.0, 0.0, 0.0, 5.0 / 9.0, -2.0 / 9.0 * h,                                  //
       0.0, -4.0 / (3.0 * h), 0.0, 0.0, 4.0 / (3.0 * h), -1.0 / 3.0;
@@ -72,7 +71,7 @@ void Transcription::set_radau(double h) {
       0.0, 4.0 / (3.0 * h * h), 0.0, 0.0, -4.0 / (3.0 * h * h), 0.0;
   third.state.bend(0, 5) = -5.0 / 27.0;
   third.state.bend.row(2) = -2.0 / h * third.state.slope.row(2);
-  Stage end{zeros(3, blocks), {0.0, 1.0}};
+  Stage end{zeros(3, blocks), {0.0, 1.0}, 0.25};
   end.state.value.rightCols(3).setIdentity();
   stages = {third, end};
   defect = zeros(1, blocks);

@@ -43,14 +43,15 @@ struct Weights {
 
 struct Stage {
   Weights state;                   ///< rows: position, rate, acceleration
-  std::array<double, 2> torque{};  ///< of the two knots'
+  std::array<double, 2> torque{};  ///< of the two knots'; the second: where in the interval it is
+  double share = 0.0;              ///< of the interval in integrals over it
 };
 
 struct Transcription {
   int blocks = 0;              ///< a knot holds: q, v and, with 3, a
   std::vector<Stage> stages;   ///< of an interval
   Weights defect;              ///< one row, zero
-  bool linear_torque = false;  ///< else constant over an interval
+  double begin_share = 0.0;    ///< as the stages', of the interval's begin
 
   /// @param method which one. @param h interval, s, > 0. @param first whether it is the first.
   Transcription(Method method, double h, bool first);

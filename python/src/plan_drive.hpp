@@ -1,0 +1,19 @@
+// Drives of plans between Python and C++.
+#pragma once
+
+#include <optional>
+
+#include "sinew/plan/drive_run.hpp"
+#include "sinew/plan/task.hpp"
+
+#include "arrays.hpp"
+
+namespace sinew::python {
+
+/// None where neither actuators nor cylinders are given. Throws Error(wrong-length | out-of-range).
+std::optional<plan::Drive> to_drive(const py::object& actuators, const py::object& cylinders,
+                                    const py::object& lead, const char* item);
+/// "times", "command", "volume", "lead".
+py::dict drive_result(const plan::DriveRun& run);
+
+}  // namespace sinew::python

@@ -1,0 +1,90 @@
+/// @file
+/// Drives as a block of a plan's program: volumes and commands at the cylinders' own samples.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "sinew/plan/drive_run.hpp"
+#include "sinew/plan/nonlinear_program.hpp"
+#include "sinew/plan/task.hpp"
+
+namespace sinew::plan {
+
+/// A number that is linear in a few unknowns: sum of weight[i] x[at[i]], i below count.
+struct LinearForm {
+  std::array<int, 4> at{};
+  std::array<double, 4> weight{};
+  int count = 0;
+  double of(const VectorX& x) const;
+};
+
+/// Unknowns of a channel: volumes y_0 ... y_M at its samples, then commands u_0 ... u_M. A sample is
+/// at the time at which its volume acts, begin + j T: the delay is a shift of time and no more. The
+/// states are eliminated by the theorem of Cayley and Hamilton, which leaves one row a sample
+///
+///     y_j - tr A y_(j-1) + det A y_(j-2)
+///         = D u_j + (C B - tr A D) u_(j-1) + (C A B - tr A C B + det A D) u_(j-2)
+///
+/// and limits of volume and torque, which grows with it, as bounds on y. Before the plan all is at
+/// rest. An input whose limits leave one volume is not driven and has no rows. The cost of commands
+/// is weight sum_j (k (u_j - u_(j-1))/T)^2 T, with k the torque per command at their largest.
+class DriveTranscription {
+ public:
+  /// @param task completed(), with a drive. @param torque N m, a typical one.
+  /// @param variable,row first unknown and constraint of the block.
+  DriveTranscription(const Task& task, double torque, int variable, int row);
+
+  int variables() const { return variables_; }
+  int rows() const { return static_cast<int>(row_bounds_.lower.size()); }
+  /// Volume of an input that acts at a time within the plan. @param input which. @param time s.
+  LinearForm volume(int input, double time) const;
+
+  /// Of the block's own variables or rows.
+  const Bounds& variable_bounds() const { return variable_bounds_; }
+  const Bounds& row_bounds() const { return row_bounds_; }
+  const VectorX& variable_scale() const { return variable_scale_; }
+  const VectorX& row_scale() const { return row_scale_; }
+
+  /// Places are those of the whole program.
+  struct Entry {
+    int row, column;
+    double value;
+  };
+  const std::vector<Entry>& jacobian() const { return entries_; }
+  const std::vector<Entry>& cost_hessian() const { return cost_; }  ///< lower; cost = x'Hx/2
+
+  /// The block's unknowns of commands from the time 0 on, `lead` before the plan, and back.
+  /// @param run of the task's drive.
+  VectorX pack(const DriveRun& run) const;
+  /// @param x of the whole program.
+  DriveRun unpack(const VectorX& x) const;
+
+ private:
+  struct Channel {
+    DriveChannel drive;
+    int volume = 0, command = 0;  ///< first unknowns
+    int count = 0;                ///< of samples
+    int offset = 0;               ///< number of its first sample, from the first command
+    double begin = 0.0;           ///< s, when that acts
+    int at_rest = 0;              ///< its last sample of volume at rest
+    double rest_volume = 0.0, rest_command = 0.0;
+    double lower = 0.0, upper = 0.0, scale = 0.0;  ///< m^3
+    bool driven() const { return lower < upper; }
+  };
+  Channel channel(const Task& task, int input, double torque) const;
+  void add_bounds(const Channel& of);
+  void add_rows(const Channel& of, int row);
+  void add_rate_rows(const Channel& of, int row, double limit);
+  void add_cost(const Channel& of, double weight);
+
+  Drive drive_;
+  double step_ = 0.0, duration_ = 0.0;  // s
+  int first_ = 0, variables_ = 0;
+  std::vector<Channel> channels_;
+  Bounds variable_bounds_, row_bounds_;
+  VectorX variable_scale_, row_scale_;
+  std::vector<Entry> entries_, cost_;
+};
+
+}  // namespace sinew::plan
