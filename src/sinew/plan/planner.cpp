@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
 #include "sinew/pcc/arm_simulation.hpp"
+#include "sinew/plan/drive_inversion.hpp"
 #include "sinew/plan/uniform.hpp"
 
 namespace sinew::plan {
@@ -47,24 +47,23 @@ class Excitation {
   MatrixX sizes_, frequencies_;  // N m, rad/s
 };
 
-/// What the drive makes of commands that would give the torques at rest.
-DriveRun driven(const Task& task, const Excitation& wanted) {
-  const auto& [channels, lead] = *task.drive;
-  const double step = channels.front().cylinder.sample_time;
-  const auto inputs = static_cast<Eigen::Index>(channels.size());
-  MatrixX command(sample_count(channels.front().cylinder, lead + task.grid.duration), inputs);
-  VectorX rest(inputs);
-  for (Eigen::Index i = 0; i < inputs; ++i) {
-    const auto& [actuator, cylinder] = channels[static_cast<std::size_t>(i)];
-    rest[i] = actuator.volume(task.start.torque[i]) / cylinder.gain();
-    for (Eigen::Index k = 0; k < command.rows(); ++k) {
-      const double time = static_cast<double>(k) * step + actuator.delay - lead;
-      const double volume = actuator.volume(wanted(std::max(time, 0.0))[i]);
-      command(k, i) = std::clamp(volume / cylinder.gain(), cylinder.lowest_input,
-                                 cylinder.highest_input);
+/// The task in torques alone, within what the drives' volumes allow.
+Task without_drive(Task task) {
+  Limits& limits = task.limits;
+  for (std::size_t i = 0; i < task.drive->channels.size(); ++i) {
+    const auto& [actuator, cylinder] = task.drive->channels[i];
+    const auto u = static_cast<Eigen::Index>(i);
+    if (std::isfinite(cylinder.lowest_volume)) {
+      limits.torque_lower[u] =
+          std::max(limits.torque_lower[u], actuator.torque(cylinder.lowest_volume));
+    }
+    if (std::isfinite(cylinder.highest_volume)) {
+      limits.torque_upper[u] =
+          std::min(limits.torque_upper[u], actuator.torque(cylinder.highest_volume));
     }
   }
-  return {channels, std::move(command), lead, std::move(rest)};
+  task.drive.reset();
+  return task;
 }
 
 }  // namespace
@@ -109,23 +108,18 @@ Knots Planner::guess(std::uint64_t seed) const {
   }
   if (torque == 0.0) torque = arm_->stiffness().maxCoeff();
   const Excitation excitation(task_, torque, frequency, seed);
-  std::optional<DriveRun> drive;
-  if (task_.drive) drive.emplace(driven(task_, excitation));
-  const auto torque_at = [&](double time) {
-    return drive ? drive->torque(time) : excitation(time);
-  };
   const int steps = std::max(1, static_cast<int>(std::ceil(h / 0.005)));
   pcc::ArmSimulation simulation(arm_, {.time_step = h / steps});
   simulation.set_state(task_.start.position, task_.start.rate);
   Knots knots{VectorX::LinSpaced(count, 0.0, grid.duration), MatrixX(count, n), MatrixX(count, n),
-              MatrixX(count, n), MatrixX(count, arm_->inputs()), drive};
+              MatrixX(count, n), MatrixX(count, arm_->inputs()), {}};
   for (Eigen::Index k = 0; k < count; ++k) {
     for (int s = 0; k > 0 && s < steps; ++s) {
-      simulation.step(torque_at(simulation.time() + h / steps));
+      simulation.step(excitation(simulation.time() + h / steps));
     }
     knots.position.row(k) = simulation.position();
     knots.rate.row(k) = simulation.rate();
-    knots.torque.row(k) = torque_at(knots.times[k]);
+    knots.torque.row(k) = excitation(knots.times[k]);
   }
   for (Eigen::Index k = 0; k < count; ++k) {
     const Eigen::Index from = std::max<Eigen::Index>(k - 1, 0), to = std::min(k + 1, count - 1);
@@ -148,7 +142,30 @@ Plan Planner::finish(ProgramResult result) {
   return plan;
 }
 
-Plan Planner::plan(std::uint64_t seed) { return plan(guess(seed)); }
+Plan Planner::plan(std::uint64_t seed) {
+  return task_.drive ? plan_drive(seed) : plan(guess(seed));
+}
+
+Plan Planner::plan_drive(std::uint64_t seed) {
+  Plan before = Planner(arm_, without_drive(task_), settings_).plan(seed);
+  const auto& [channels, lead] = *task_.drive;
+  VectorX rest(task_.start.torque.size());
+  for (Eigen::Index i = 0; i < rest.size(); ++i) {
+    const auto& [actuator, cylinder] = channels[static_cast<std::size_t>(i)];
+    rest[i] = actuator.volume(task_.start.torque[i]) / cylinder.gain();
+  }
+  before.knots.drive.emplace(channels, invert_drive(before, channels, lead).command, lead, rest);
+  // All rows but the drive's are those of the plan of torques.
+  const VectorX none = VectorX::Zero(program_.variables());
+  ProgramPoint start{program_.pack(before.knots), VectorX::Zero(program_.constraints()), none,
+                     none};
+  const VectorX& multipliers = before.point.constraint_multipliers;
+  start.constraint_multipliers.head(multipliers.size()) = multipliers;
+  Plan found = finish(solve(program_, start, settings_));
+  found.iterations += before.iterations;
+  found.seconds += before.seconds;
+  return found;
+}
 
 Plan Planner::plan(const Knots& guess) {
   if (task_.drive && !guess.drive) {

@@ -18,7 +18,7 @@ struct Plan {
   double tip_error = 0.0;  ///< m, of the plan itself at its end
   double tip_speed = 0.0;  ///< m/s
   int iterations = 0;
-  double seconds = 0.0;  ///< of the solver
+  double seconds = 0.0;  ///< of the solver; with a drive, like the iterations, of both programs
   ProgramPoint point;    ///< with multipliers: the start of the next
 
   bool found() const { return status == Status::solved || status == Status::acceptable; }
@@ -37,7 +37,8 @@ class Planner {
           const SolverSettings& settings = {});
 
   const Task& task() const { return task_; }
-  /// From the motion that random torques within the limits cause. @param seed of the torques.
+  /// From the motion that random torques within the limits cause; with a drive from the plan of
+  /// torques found so, inverted, with its multipliers. @param seed of the random torques.
   Plan plan(std::uint64_t seed);
   /// From a guess at the task's knots, with its drive where the task has one: Error(wrong-length).
   Plan plan(const Knots& guess);
@@ -45,10 +46,11 @@ class Planner {
   /// Throws Error(wrong-length).
   Plan replan(const Plan& before);
 
-  /// That of plan(seed).
+  /// That of plan(seed), without a drive.
   Knots guess(std::uint64_t seed) const;
 
  private:
+  Plan plan_drive(std::uint64_t seed);
   Plan finish(ProgramResult result);
 
   std::shared_ptr<const pcc::Arm> arm_;

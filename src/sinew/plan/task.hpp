@@ -60,7 +60,7 @@ struct Objective {
   double effort = 0.1;     ///< R, 1/((N m)^2 s), >= 0
   double tip_speed = 0.0;  ///< (s/m)^2, >= 0
   double time = 0.0;       ///< 1/s, >= 0, where the duration is free
-  double command = 1e-5;   ///< s/(N m)^2, > 0, with a drive
+  double command = 3e-5;   ///< s/(N m)^2, > 0, with a drive
 };
 
 struct Grid {
