@@ -784,6 +784,8 @@ class Plan:
     def iterations(self) -> int: ...
     @property
     def seconds(self) -> float: ...
+    @property
+    def drive(self) -> Optional[dict[str, Any]]: ...
     def torque_at(self, time: float) -> _Floats: ...
 
 class PlanReplay:
@@ -830,6 +832,11 @@ class PlanTask:
         torque: Optional[ArrayLike] = None,
         obstacles: list[PlanObstacle] = [],
         backbone_points: int = 4,
+        actuators: Optional[Sequence[FluidicActuator]] = None,
+        cylinders: Optional[Sequence[DriveCylinder]] = None,
+        lead: Optional[float] = None,
+        command_rate_limits: Optional[ArrayLike] = None,
+        command: float = 3e-5,
     ) -> None: ...
     def solve(
         self,
@@ -842,6 +849,16 @@ class PlanTask:
     ) -> Plan: ...
     def replay(
         self, plan: Plan, arm: Optional[Arm] = None, *, time_step: float = 0.001
+    ) -> PlanReplay: ...
+    def replay_commands(
+        self,
+        command: ArrayLike,
+        actuators: Optional[Sequence[FluidicActuator]] = None,
+        cylinders: Optional[Sequence[DriveCylinder]] = None,
+        *,
+        lead: float,
+        arm: Optional[Arm] = None,
+        time_step: float = 0.001,
     ) -> PlanReplay: ...
 
 class PlanTracker:

@@ -6,6 +6,7 @@
     found = task.solve()                    # a Plan: found.status, found.torque, ...
     task.replay(found).tip_error            # m, carried out in fine steps
     plan.Tracker(task, found).run()         # with feedback
+    plan.Task(arm, goal, limits, actuators=actuators, cylinders=cylinders).solve().drive["command"]
     wall = plan.BraceObject.plane([-0.022, 0.0, 0.0], [1.0, 0.0, 0.0])
     plan.brace(arm, [0.1, 0.0, -0.5], limits, [wall]).run()     # steadied by leaning on the wall
 

@@ -304,10 +304,9 @@ The plan's torque on the arm, or on another one, in fine implicit steps: a Repla
             const auto on = other(arm, self.arm);
             auto drive = to_drive(actuators, cylinders, py::float_(lead), "replay_commands");
             if (!drive) drive = self.task.drive;
-            const plan::DriveRun run(drive ? drive->channels : std::vector<plan::DriveChannel>{},
-                                     to_matrix(command, "replay_commands(command)",
-                                               "(samples, inputs)"),
-                                     lead);
+            const plan::DriveRun run(
+                drive ? drive->channels : std::vector<plan::DriveChannel>{},
+                to_matrix(command, "replay_commands(command)", "(samples, inputs)"), lead);
             const py::gil_scoped_release release;
             return plan::replay(on, self.task, run, time_step);
           },

@@ -52,6 +52,56 @@ def test_feedback_helps_a_disturbed_arm(grab):
         tracker.gain(10000)
 
 
+def drives(arm, frequency):
+    cylinder = pcc.second_order_cylinder(1.0, frequency, 0.8, 0.01)
+    limited = pcc.DriveCylinder(cylinder.a, cylinder.b, cylinder.c, cylinder.d, sample_time=0.01,
+                                input_limits=(-8e-5, 8e-5), volume_limits=(-4e-5, 4e-5))
+    return [pcc.FluidicActuator(4e12, delay=0.08)] * arm.inputs, [limited] * arm.inputs
+
+
+def test_a_plan_in_commands_of_cylinders(grab):
+    arm = pcc.published_arm()
+    actuators, cylinders = drives(arm, 20.0)
+    task = plan.Task(arm, GOAL, LIMITS, actuators=actuators, cylinders=cylinders, lead=0.25)
+    found = task.solve(1)
+    assert found.found
+    drive = found.drive
+    assert drive["command"].shape == drive["volume"].shape == (186, 4) and drive["lead"] == 0.25
+    np.testing.assert_allclose(np.diff(drive["times"]), 0.01)
+    np.testing.assert_allclose(drive["volume"][:, 3], cylinders[3].simulate(drive["command"][:, 3]), atol=1e-20)
+    assert (np.abs(drive["command"]) <= 8e-5 * (1 + 1e-6)).all()
+    # Volumes act after the delay: those at 1.0 s do 0.83 s into the plan.
+    np.testing.assert_allclose(found.torque_at(0.83), [actuators[0].torque(v) for v in drive["volume"][100]],
+                               atol=1e-14)
+    run = task.replay_commands(drive["command"], lead=0.25)
+    assert run.times[-1] == pytest.approx(1.85)
+    assert run.tip_error < 0.003 and run.tip_speed < 0.01
+    # Torques planned first do not become the cylinders' so well.
+    before, torques = grab
+    inverted = plan.invert_drive(torques, actuators, cylinders, lead=0.25)
+    after = before.replay_commands(inverted["command"], actuators, cylinders, lead=0.25)
+    assert after.tip_speed > 2 * run.tip_speed
+    assert torques.drive is None
+
+
+def test_what_drives_cannot_be():
+    arm = pcc.published_arm()
+    actuators, cylinders = drives(arm, 40.0)
+    with pytest.raises(sinew.Error, match="give a cylinder for each actuator"):
+        plan.Task(arm, GOAL, LIMITS, actuators=actuators)
+    with pytest.raises(sinew.Error, match="give one for each input"):
+        plan.Task(arm, GOAL, LIMITS, actuators=actuators[:2], cylinders=cylinders[:2])
+    with pytest.raises(sinew.Error, match="at least the longest delay"):
+        plan.Task(arm, GOAL, LIMITS, actuators=actuators, cylinders=cylinders, lead=0.05)
+    with pytest.raises(sinew.Error, match="give zero or more"):
+        plan.Task(arm, GOAL, LIMITS, actuators=actuators, cylinders=cylinders, lead=-0.1)
+    with pytest.raises(sinew.Error, match="the duration is not free"):
+        plan.Task(arm, GOAL, LIMITS, actuators=actuators, cylinders=cylinders, duration_range=[1, 2])
+    task = plan.Task(arm, GOAL, LIMITS)
+    with pytest.raises(sinew.Error, match="0 actuators and cylinders for 4 inputs"):
+        task.replay_commands(np.zeros((9, 4)), lead=0.25)
+
+
 def test_static_reach():
     arm = pcc.published_arm()
     held = plan.sample_reach(arm, LIMITS, samples=20)

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "sinew/plan/drive_inversion.hpp"
 #include "sinew/pcc/arm_simulation.hpp"
+#include "sinew/plan/drive_inversion.hpp"
 #include "sinew/plan/replay.hpp"
 
 #include "support/error_kind.hpp"
@@ -86,8 +86,8 @@ TEST(DrivePlan, KeepsItsLimits) {
   const double rounding = 1e-6;
   EXPECT_LE(run.volume.maxCoeff(), volume * (1.0 + rounding));
   EXPECT_LE(run.command.maxCoeff(), command * (1.0 + rounding));
-  const MatrixX change = run.command.bottomRows(run.command.rows() - 1) -
-                         run.command.topRows(run.command.rows() - 1);
+  const MatrixX change =
+      run.command.bottomRows(run.command.rows() - 1) - run.command.topRows(run.command.rows() - 1);
   EXPECT_LE(change.cwiseAbs().maxCoeff() / 0.01, rate * (1.0 + rounding));
   // All are reached, or they would not have been at stake; the tip is at the goal all the same.
   EXPECT_GT(run.volume.maxCoeff(), volume * 0.999);
@@ -137,8 +137,7 @@ TEST(DrivePlan, BeginsAtATorqueHeld) {
   const Plan next = Planner(arm, task).replan(found);
   ASSERT_TRUE(next.found());
   EXPECT_LT(replay(arm, task, *next.knots.drive).tip_error, 3e-3);
-  EXPECT_EQ(kind_of([&] { planner.plan(Planner(arm, grab()).guess(1)); }),
-            ErrorKind::wrong_length);
+  EXPECT_EQ(kind_of([&] { planner.plan(Planner(arm, grab()).guess(1)); }), ErrorKind::wrong_length);
 }
 
 }  // namespace

@@ -44,7 +44,8 @@ DriveRun commands(const Task& task) {
   for (Eigen::Index k = 0; k < count; ++k) {
     for (Eigen::Index i = 1; i < 4; ++i) {
       const double delay = task.drive->channels[static_cast<std::size_t>(i)].actuator.delay;
-      const double time = std::max(0.0, static_cast<double>(k) * kStep - task.drive->lead + delay - 1.01 * kStep);
+      const double time =
+          std::max(0.0, static_cast<double>(k) * kStep - task.drive->lead + delay - 1.01 * kStep);
       command(k, i) = 2e-5 * std::sin((5.0 + static_cast<double>(i)) * time);
     }
   }

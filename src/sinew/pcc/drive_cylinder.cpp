@@ -57,9 +57,7 @@ void DriveCylinder::check() const {
           "give lowest < highest");
 }
 
-double DriveCylinder::gain() const {
-  return c.dot(rest(1.0)) + d;
-}
+double DriveCylinder::gain() const { return c.dot(rest(1.0)) + d; }
 
 Eigen::Vector2d DriveCylinder::rest(double command) const {
   return (Eigen::Matrix2d::Identity() - a).inverse() * b * command;

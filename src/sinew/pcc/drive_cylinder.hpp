@@ -32,8 +32,8 @@ struct DriveCylinder {
 
   /// Throws Error: out-of-range (sample time, an unstable A), contradictory-limits, not-finite.
   void check() const;
-  double gain() const;             ///< y over u at rest
-  double spectral_radius() const;  ///< of A
+  double gain() const;                         ///< y over u at rest
+  double spectral_radius() const;              ///< of A
   Eigen::Vector2d rest(double command) const;  ///< state in which it stays, (I - A)^-1 B u
   /// Volumes (samples,) of commands (samples,), from state zero or `start`. Commands are cut at
   /// their limits; volumes beyond theirs are held there, the state going on.

@@ -297,8 +297,12 @@ VectorX Collocation::pack(const Knots& knots) const {
 
 Knots Collocation::unpack(const VectorX& x) const {
   const int count = grid_.intervals + 1;
-  Knots knots{VectorX::LinSpaced(count, 0.0, duration(x)), MatrixX(count, n_), MatrixX(count, n_),
-              MatrixX::Zero(count, n_), MatrixX(count, inputs_), {}};
+  Knots knots{VectorX::LinSpaced(count, 0.0, duration(x)),
+              MatrixX(count, n_),
+              MatrixX(count, n_),
+              MatrixX::Zero(count, n_),
+              MatrixX(count, inputs_),
+              {}};
   if (drive_) knots.drive = drive_->unpack(x);
   for (int k = 0; k < count; ++k) {
     knots.position.row(k) = state(x, k, 0);

@@ -166,8 +166,8 @@ void Collocation::torque_hessian(const VectorX& x, int k, const Transcription& r
     emit_square(form, multiplier * response(x, form, u).curvature, emit);
   };
   for (std::size_t s = 0; s < rules.stages.size(); ++s) {
-    const VectorX weight = -arm_->actuation().transpose() *
-                           multipliers.segment(stage_row(k, static_cast<int>(s)), n_);
+    const VectorX weight =
+        -arm_->actuation().transpose() * multipliers.segment(stage_row(k, static_cast<int>(s)), n_);
     for (int u = 0; u < inputs_; ++u) add(rules.stages[s].torque[1], u, weight[u]);
   }
   if (!rate_limited_) return;

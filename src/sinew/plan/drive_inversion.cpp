@@ -126,8 +126,7 @@ DriveInversion invert_drive(const Plan& plan, const std::vector<DriveChannel>& c
   const Eigen::Index count = sample_count(first, lead + plan.duration());
   const auto inputs = static_cast<Eigen::Index>(channels.size());
   DriveInversion result;
-  result.times =
-      VectorX::LinSpaced(count, 0.0, static_cast<double>(count - 1) * first.sample_time);
+  result.times = VectorX::LinSpaced(count, 0.0, static_cast<double>(count - 1) * first.sample_time);
   result.command = result.wanted = result.volume = MatrixX(count, inputs);
   result.found = true;
   for (Eigen::Index i = 0; i < inputs; ++i) {

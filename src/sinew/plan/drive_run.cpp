@@ -48,8 +48,8 @@ VectorX DriveRun::torque(double time) const {
   VectorX result(command.cols());
   for (Eigen::Index i = 0; i < result.size(); ++i) {
     const pcc::FluidicActuator& actuator = channels[static_cast<std::size_t>(i)].actuator;
-    const double at = std::clamp((time + lead - actuator.delay) / step, 0.0,
-                                 static_cast<double>(last));
+    const double at =
+        std::clamp((time + lead - actuator.delay) / step, 0.0, static_cast<double>(last));
     const auto j = std::min(static_cast<Eigen::Index>(at), last - 1);
     const std::array<double, 4> weights = sample_weights(at - static_cast<double>(j));
     double value = 0.0;

@@ -19,9 +19,9 @@ struct LinearForm {
   double of(const VectorX& x) const;
 };
 
-/// Unknowns of a channel: volumes y_0 ... y_M at its samples, then commands u_0 ... u_M. A sample is
-/// at the time at which its volume acts, begin + j T: the delay is a shift of time and no more. The
-/// states are eliminated by the theorem of Cayley and Hamilton, which leaves one row a sample
+/// Unknowns of a channel: volumes y_0 ... y_M at its samples, then commands u_0 ... u_M. A sample
+/// is at the time at which its volume acts, begin + j T: the delay is a shift of time and no more.
+/// The states are eliminated by the theorem of Cayley and Hamilton, which leaves one row a sample
 ///
 ///     y_j - tr A y_(j-1) + det A y_(j-2)
 ///         = D u_j + (C B - tr A D) u_(j-1) + (C A B - tr A C B + det A D) u_(j-2)

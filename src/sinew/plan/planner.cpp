@@ -111,8 +111,12 @@ Knots Planner::guess(std::uint64_t seed) const {
   const int steps = std::max(1, static_cast<int>(std::ceil(h / 0.005)));
   pcc::ArmSimulation simulation(arm_, {.time_step = h / steps});
   simulation.set_state(task_.start.position, task_.start.rate);
-  Knots knots{VectorX::LinSpaced(count, 0.0, grid.duration), MatrixX(count, n), MatrixX(count, n),
-              MatrixX(count, n), MatrixX(count, arm_->inputs()), {}};
+  Knots knots{VectorX::LinSpaced(count, 0.0, grid.duration),
+              MatrixX(count, n),
+              MatrixX(count, n),
+              MatrixX(count, n),
+              MatrixX(count, arm_->inputs()),
+              {}};
   for (Eigen::Index k = 0; k < count; ++k) {
     for (int s = 0; k > 0 && s < steps; ++s) {
       simulation.step(excitation(simulation.time() + h / steps));

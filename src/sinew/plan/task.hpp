@@ -35,7 +35,7 @@ struct Limits {
   VectorX angle_lower, angle_upper;    ///< (coordinates,) rad; extension: m
   VectorX rate;                        ///< (coordinates,) rad/s, >= 0, either way
   VectorX torque_rate;                 ///< (inputs,) N m/s, > 0, either way
-  VectorX command_rate;  ///< (inputs,) of a drive's commands, 1/s, > 0, either way
+  VectorX command_rate;                ///< (inputs,) of a drive's commands, 1/s, > 0, either way
 };
 
 /// What the arm's axis keeps clear of, at the knots, at points along it.

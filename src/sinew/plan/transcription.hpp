@@ -48,10 +48,10 @@ struct Stage {
 };
 
 struct Transcription {
-  int blocks = 0;              ///< a knot holds: q, v and, with 3, a
-  std::vector<Stage> stages;   ///< of an interval
-  Weights defect;              ///< one row, zero
-  double begin_share = 0.0;    ///< as the stages', of the interval's begin
+  int blocks = 0;             ///< a knot holds: q, v and, with 3, a
+  std::vector<Stage> stages;  ///< of an interval
+  Weights defect;             ///< one row, zero
+  double begin_share = 0.0;   ///< as the stages', of the interval's begin
 
   /// @param method which one. @param h interval, s, > 0. @param first whether it is the first.
   Transcription(Method method, double h, bool first);
