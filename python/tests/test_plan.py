@@ -52,16 +52,16 @@ def test_feedback_helps_a_disturbed_arm(grab):
         tracker.gain(10000)
 
 
-def drives(arm, frequency):
+def drives(frequency):
     cylinder = pcc.second_order_cylinder(1.0, frequency, 0.8, 0.01)
     limited = pcc.DriveCylinder(cylinder.a, cylinder.b, cylinder.c, cylinder.d, sample_time=0.01,
                                 input_limits=(-8e-5, 8e-5), volume_limits=(-4e-5, 4e-5))
-    return [pcc.FluidicActuator(4e12, delay=0.08)] * arm.inputs, [limited] * arm.inputs
+    return [pcc.FluidicActuator(4e12, delay=0.08)] * 4, [limited] * 4
 
 
 def test_a_plan_in_commands_of_cylinders(grab):
     arm = pcc.published_arm()
-    actuators, cylinders = drives(arm, 20.0)
+    actuators, cylinders = drives(20.0)
     task = plan.Task(arm, GOAL, LIMITS, actuators=actuators, cylinders=cylinders, lead=0.25)
     found = task.solve(1)
     assert found.found
@@ -86,7 +86,7 @@ def test_a_plan_in_commands_of_cylinders(grab):
 
 def test_what_drives_cannot_be():
     arm = pcc.published_arm()
-    actuators, cylinders = drives(arm, 40.0)
+    actuators, cylinders = drives(40.0)
     with pytest.raises(sinew.Error, match="give a cylinder for each actuator"):
         plan.Task(arm, GOAL, LIMITS, actuators=actuators)
     with pytest.raises(sinew.Error, match="give one for each input"):
