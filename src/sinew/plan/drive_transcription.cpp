@@ -45,7 +45,8 @@ DriveTranscription::DriveTranscription(const Task& task, double torque, int vari
 DriveTranscription::Channel DriveTranscription::channel(const Task& task, int input,
                                                         double torque) const {
   Channel of{.drive = drive_.channels[static_cast<std::size_t>(input)]};
-  const auto& [actuator, cylinder] = of.drive;
+  const pcc::FluidicActuator& actuator = of.drive.actuator;
+  const pcc::DriveCylinder& cylinder = of.drive.cylinder;
   // The first sample is followed by one that acts at the plan's begin or before it.
   const double shift = drive_.lead - actuator.delay;
   of.offset = static_cast<int>(std::floor(shift / step_ + 1e-9)) - 1;

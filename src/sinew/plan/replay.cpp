@@ -28,7 +28,7 @@ double clearance(const pcc::ArmDynamics<double>& dynamics, const std::vector<Obs
 }
 
 template <typename Torque>
-Replay replay_torque(std::shared_ptr<const pcc::Arm> arm, const Task& task_given,
+Replay replay_torque(const std::shared_ptr<const pcc::Arm>& arm, const Task& task_given,
                      const Torque& torque_at, double duration, double time_step) {
   const Task task = completed(*arm, task_given);
   const auto count = static_cast<Eigen::Index>(std::max(1.0, std::round(duration / time_step)));
@@ -47,7 +47,7 @@ Replay replay_torque(std::shared_ptr<const pcc::Arm> arm, const Task& task_given
 
 }  // namespace
 
-Recorder::Recorder(std::shared_ptr<const pcc::Arm> arm, const Task& task, Eigen::Index steps,
+Recorder::Recorder(const std::shared_ptr<const pcc::Arm>& arm, const Task& task, Eigen::Index steps,
                    double time_step)
     : dynamics_(arm), task_(task), still_(VectorX::Zero(arm->coordinates())) {
   const Eigen::Index count = steps + 1;
@@ -83,18 +83,17 @@ Replay Recorder::finish() {
   return std::move(replay_);
 }
 
-Replay replay(std::shared_ptr<const pcc::Arm> arm, const Task& task, const Plan& plan,
+Replay replay(const std::shared_ptr<const pcc::Arm>& arm, const Task& task, const Plan& plan,
               double time_step) {
   return replay_torque(
-      std::move(arm), task, [&](double time) { return plan.torque(time); }, plan.duration(),
-      time_step);
+      arm, task, [&](double time) { return plan.torque(time); }, plan.duration(), time_step);
 }
 
-Replay replay(std::shared_ptr<const pcc::Arm> arm, const Task& task, const DriveRun& run,
+Replay replay(const std::shared_ptr<const pcc::Arm>& arm, const Task& task, const DriveRun& run,
               double time_step) {
   check_channels(run.channels, arm->inputs(), run.lead, "drive run");
   return replay_torque(
-      std::move(arm), task, [&](double time) { return run.torque(time - run.lead); },
+      arm, task, [&](double time) { return run.torque(time - run.lead); },
       run.lead + task.grid.duration, time_step);
 }
 

@@ -23,7 +23,7 @@ class Recorder {
  public:
   /// @param arm that moves. @param task completed(), of the goal and the obstacles.
   /// @param steps how many. @param time_step s.
-  Recorder(std::shared_ptr<const pcc::Arm> arm, const Task& task, Eigen::Index steps,
+  Recorder(const std::shared_ptr<const pcc::Arm>& arm, const Task& task, Eigen::Index steps,
            double time_step);
   /// @param q,rate (coordinates,). @param torque (inputs,) that led there.
   void add(const VectorX& q, const VectorX& rate, const VectorX& torque);
@@ -40,7 +40,7 @@ class Recorder {
 /// The plan's torque on an arm, open loop, by generalized-alpha steps. @param arm that carries it
 /// out, the planned one or another of as many coordinates and inputs. @param task that was planned.
 /// @param plan what to do. @param time_step s, about: a whole number of steps makes the duration.
-Replay replay(std::shared_ptr<const pcc::Arm> arm, const Task& task, const Plan& plan,
+Replay replay(const std::shared_ptr<const pcc::Arm>& arm, const Task& task, const Plan& plan,
               double time_step = 1e-3);
 
 /// Commands through the whole chain, open loop: cylinders at rest, lines, actuators and an arm that
@@ -48,7 +48,7 @@ Replay replay(std::shared_ptr<const pcc::Arm> arm, const Task& task, const Plan&
 /// times begin with the commands. @param arm,task,time_step as above. @param run the commands, and
 /// what they drive.
 /// Throws Error(wrong-length): not a channel for each input.
-Replay replay(std::shared_ptr<const pcc::Arm> arm, const Task& task, const DriveRun& run,
+Replay replay(const std::shared_ptr<const pcc::Arm>& arm, const Task& task, const DriveRun& run,
               double time_step = 1e-3);
 
 }  // namespace sinew::plan
