@@ -87,7 +87,9 @@ BraceProblem problem(const pcc::Arm& arm, const constraint::Surface& surface, st
   result.goal = {0.1, 0.05, -0.3};
   result.point = {.segment = arm.segments() - 2, .fraction = 0.7, .x = 0.01, .y = -0.015};
   result.patch = patches_of(surface)[patch];
+  result.tolerance = 0.3;  // so that all terms are of one size
   result.friction = 0.6;
+  result.reserve = 0.4;
   result.force_weight = 0.1;
   result.clear_points = skin_points(arm, task);
   result.surfaces = {surface};
@@ -104,8 +106,13 @@ TEST(Brace, DerivativesAreExact) {
     const auto arm = make(spatial ? pcc::testing::mixed() : pcc::testing::fluidic());
     for (const constraint::Surface& surface : surfaces) {
       for (std::size_t patch = 0; patch < patches_of(surface).size(); ++patch) {
-        BraceProgram program(arm, problem(*arm, surface, patch));
+        BraceProblem of = problem(*arm, surface, patch);
+        BraceProgram program(arm, of);
         check_derivatives(program, random);
+        of.held = Matrix3::Identity().leftCols(2);
+        of.place = {0.2, 0.1, 0.3};
+        BraceProgram held(arm, of);
+        check_derivatives(held, random);
       }
     }
   }
