@@ -96,7 +96,7 @@ A bar with round ends, from (3,) to (3,) m, of a radius in m; see plane().)");
 BraceOf find(const PccArm& arm, const py::object& goal, const py::object& torque_limits,
              const std::vector<plan::BraceObject>& objects, double tolerance,
              const py::object& angle_limits, const py::object& turn, const py::object& segments,
-             const py::object& fractions, int sides, double clearance, double hold_force,
+             const py::object& fractions, int along, int sides, double clearance, double hold_force,
              double hold_frequency, double friction_share, double least_force, double most_force, double stiffness_ratio, int starts,
              std::uint64_t seed) {
   plan::BraceTask task;
@@ -110,6 +110,7 @@ BraceOf find(const PccArm& arm, const py::object& goal, const py::object& torque
     task.turn_upper = both[1];
   }
   task.fractions = to_list(fractions, "brace(fractions)", "of a segment's length");
+  task.along = along;
   task.sides = sides;
   task.clearance = clearance;
   task.hold_force = hold_force;
@@ -282,8 +283,8 @@ void bind_run(py::module_& module) {
           "measured", [](const BraceRun& self) { return copy(self.measured); },
           "(coordinates,) rad, when the rest was planned anew.")
       .def_property_readonly(
-          "after", [](const BraceRun& self) { return self.after.hold_force; },
-          "float")
+          "hold_force", [](const BraceRun& self) { return self.after.hold_force; },
+          "float: N, on the tip, up to which the braced point sticks as planned anew.")
       .def_property_readonly(
           "slips", [](const BraceRun& self) { return self.slips; },
           "int: steps, disturbed, in which the braced point did not stick.")
@@ -315,13 +316,13 @@ void bind_brace(py::module_& module) {
       "plan_brace", &find, py::arg("arm"), py::arg("goal"), py::arg("torque_limits"),
       py::arg("objects"), py::kw_only(), py::arg("tolerance") = task.tolerance,
       py::arg("angle_limits") = py::none(), py::arg("turn") = py::none(),
-      py::arg("segments") = py::none(), py::arg("fractions") = py::make_tuple(0.5, 1.0),
+      py::arg("segments") = py::none(), py::arg("fractions") = py::make_tuple(0.25, 0.5, 0.75, 1.0), py::arg("along") = task.along,
       py::arg("sides") = task.sides, py::arg("clearance") = task.clearance,
       py::arg("hold_force") = task.hold_force, py::arg("hold_frequency") = task.hold_frequency,
       py::arg("friction_share") = task.friction_share, py::arg("least_force") = task.least_force,
       py::arg("most_force") = task.most_force, py::arg("stiffness_ratio") = task.stiffness_ratio,
       py::arg("starts") = task.starts, py::arg("seed") = task.seed,
-      R"(plan_brace(arm, goal, torque_limits, objects, *, tolerance=0.005, angle_limits=None, turn=None, segments=None, fractions=(0.5, 1.0), sides=0, clearance=0.001, hold_force=0.03, hold_frequency=2.0, friction_share=0.9, least_force=0.05, most_force=20.0, stiffness_ratio=10.0, starts=2, seed=1)
+      R"(plan_brace(arm, goal, torque_limits, objects, *, tolerance=0.005, angle_limits=None, turn=None, segments=None, fractions=(0.25, 0.5, 0.75, 1.0), along=8, sides=0, clearance=0.001, hold_force=0.04, hold_frequency=2.0, friction_share=0.9, least_force=0.05, most_force=20.0, stiffness_ratio=10.0, starts=2, seed=1)
 --
 
 Where an arm leans against its surroundings so that its tip is held steadier: a Brace.
@@ -342,7 +343,9 @@ turn : (2,) rad, optional
 segments : int, optional
     The braced point is on this segment, counted from 1; else on the first for which there is one.
 fractions : sequence of float
-    Of a segment's length: which points of its skin may touch ...
+    Of a segment's length: which points of its skin may be braced.
+along : int
+    Points of the skin are there and at so many equal steps of a segment ...
 sides : int
     ... at so many places round the section; 0: 2, spatial arms 4.
 clearance : float

@@ -184,9 +184,9 @@ Brace replan_brace(const std::shared_ptr<const pcc::Arm>& arm, const BraceTask& 
   hold_as_measured(problem, *arm, before.turn, measured);
   BraceSearch search(arm, task, Reserve::wished);
   VectorX start(arm->coordinates() + 1 + arm->inputs());
-  start << before.position, before.turn, before.torque;
+  start << measured, before.turn, before.torque;
   search.attempt(problem, before.object, start);
-  start.head(arm->coordinates()) = measured;
+  start.head(arm->coordinates()) = before.position;
   search.attempt(problem, before.object, start);
   Brace result = search.finish(BraceStatus::infeasible);
   result.segments = before.segments;

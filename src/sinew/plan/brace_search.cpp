@@ -2,9 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
-#include <string>
 #include <numbers>
 #include <utility>
 
@@ -15,9 +12,16 @@ namespace sinew::plan {
 namespace {
 
 constexpr double kGapTolerance = 1e-6;  // m, of what the solver leaves of its constraints
-constexpr SolverSettings kSolver{.tolerance = 1e-9, .max_iterations = 80, .max_time = 5.0};
+constexpr double kViolation = 1e-9;
+constexpr SolverSettings kSolver{.tolerance = 1e-9, .max_iterations = 120, .max_time = 5.0};
 constexpr int kRounds = 5;
 constexpr double kReserveTolerance = 1e-3;  // relative
+
+/// Whether constraints are met; that the cost could still fall does no harm.
+bool is_equilibrium(const ProgramResult& result) {
+  return result.status == Status::solved || result.status == Status::acceptable ||
+         (result.status == Status::iteration_limit && result.violation < kViolation);
+}
 
 }  // namespace
 
@@ -48,8 +52,7 @@ void BraceSearch::attempt(BraceProblem problem, int object, const VectorX& start
       x.tail<3>() = 2.0 * problem.least_force * constraint::distance(surface, near).normal;
     }
     const ProgramResult found = solve(program, {x, {}, {}, {}}, kSolver);
-    if (getenv("BDBG")) fprintf(stderr,"round %d %s it %d viol %g obj %g\n",round,std::string(status_name(found.status)).c_str(),found.iterations,found.violation,found.objective);
-    if (found.status != Status::solved && found.status != Status::acceptable) {
+    if (!is_equilibrium(found)) {
       if (round == 0) return;
       break;  // the last equilibrium's condition of friction says what it lacks
     }
@@ -157,10 +160,20 @@ BraceSearch::Judged BraceSearch::judge(BraceProgram& program, int object, const 
   return result;
 }
 
+/// Of two braces.
+bool BraceSearch::better(const Brace& one, const Brace& other) const {
+  if (reserve_ == Reserve::demanded) return one.peak_compliance < other.peak_compliance;
+  const auto holds = [](const Brace& brace) {
+    return brace.conditions[0].verdict == BraceCondition::Verdict::holds;
+  };
+  // The first with the reserve: the equilibrium that is nearest by, which the arm comes to.
+  return !holds(other) && one.hold_force > other.hold_force;
+}
+
 void BraceSearch::keep(const Judged& judged) {
   const Brace& brace = judged.brace;
   if (brace.found()) {
-    if (!best_.found() || brace.peak_compliance < best_.peak_compliance) best_ = brace;
+    if (!best_.found() || better(brace, best_)) best_ = brace;
     return;
   }
   const bool nearer =

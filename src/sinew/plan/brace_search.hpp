@@ -13,7 +13,8 @@
 
 namespace sinew::plan {
 
-/// Whether friction must have the reserve that the task asks for, or as much of it as there can be.
+/// Whether friction must have the reserve that the task asks for, and the best is what moves least;
+/// or as much of it as there can be, and the best is the first that has it.
 enum class Reserve { demanded, wished };
 
 /// Tries candidates and keeps the best. Workspace of one search.
@@ -38,6 +39,7 @@ class BraceSearch {
     int held = 0;          // conditions
   };
   Judged judge(BraceProgram& program, int object, const VectorX& x);
+  bool better(const Brace& one, const Brace& other) const;
   void keep(const Judged& judged);
 
   std::shared_ptr<const pcc::Arm> arm_;
