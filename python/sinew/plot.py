@@ -225,7 +225,7 @@ def _draw_object(axis, shape, aside):
     plt = _pyplot()
     for share in (k / 40 for k in range(41)):
         centre = [100 * ((1 - share) * first[k] + share * last[k]) for k in (aside, 2)]
-        axis.add_patch(plt.Circle(centre, 100 * shape["capsule"]["radius_m"], color=QUIET, lw=0))
+        axis.add_patch(plt.Circle(centre, 100 * shape["capsule"]["radius_m"], color=QUIET, lw=0, zorder=2))
 
 
 def brace(data, out) -> pathlib.Path:
