@@ -47,8 +47,7 @@ struct BraceOptions {
 /// A name of a pair of surfaces, or one coefficient, or two.
 plan::FrictionRange friction_of(const std::string& text) {
   if (text.find_first_of("0123456789") == std::string::npos) return plan::friction_range(text);
-  const std::vector<double> values =
-      parse_list(text, dimension::kNone, -1, {.item = "--friction"});
+  const std::vector<double> values = parse_list(text, dimension::kNone, -1, {.item = "--friction"});
   if (values.size() <= 2) return {"given", values.front(), values.back()};
   throw Error(ErrorKind::wrong_length, {.item = "--friction"},
               fmt::format("'{}' has {} numbers", text, values.size()),
@@ -127,7 +126,7 @@ Brace search(const BraceOptions& options, const ArmScene& scene, const BraceTask
 }
 
 std::vector<BraceTrial> carry_out(const BraceOptions& options, const ArmScene& scene,
-                             const BraceTask& task, const Brace& brace) {
+                                  const BraceTask& task, const Brace& brace) {
   plan::BraceRunSettings settings = run_settings(options);
   std::vector<BraceTrial> trials;
   ProgressBar bar(options.seeds, true);
@@ -147,9 +146,9 @@ void print_conditions(const Brace& brace) {
   if (brace.object < 0) return;
   std::vector<std::vector<std::string>> rows = {{"condition", "verdict", "value", "limit"}};
   for (const plan::BraceCondition& condition : brace.conditions) {
-    rows.push_back({std::string(condition.name),
-                    std::string(plan::verdict_name(condition.verdict)),
-                    fmt::format("{:.3g}", condition.value), fmt::format("{:.3g}", condition.limit)});
+    rows.push_back({std::string(condition.name), std::string(plan::verdict_name(condition.verdict)),
+                    fmt::format("{:.3g}", condition.value),
+                    fmt::format("{:.3g}", condition.limit)});
   }
   fmt::print("{}", format_table(rows));
 }
@@ -184,19 +183,21 @@ void print_trials(const std::vector<BraceTrial>& trials) {
       rows.back().push_back(fmt::format("{:.2f}", 1e3 * run->mean_error));
     }
   }
-  fmt::print("{}spread: of the tip about its mean while disturbed; error: its mean distance from "
-             "the goal\n",
-             format_table(rows));
+  fmt::print(
+      "{}spread: of the tip about its mean while disturbed; error: its mean distance from "
+      "the goal\n",
+      format_table(rows));
 }
 
 [[noreturn]] void give_up(const Brace& brace, const BraceTask& task, const ArmScene& scene) {
   const std::string& arm = scene.arm->settings().name;
   if (task.objects.empty()) {
-    throw Error(ErrorKind::not_converged, {.item = "brace"},
-                fmt::format("infeasible: the scene has no contact of '{}' to lean on", arm),
-                fmt::format("add one: contacts: {{wall: {{body: {}, surface: {{plane: {{point: -4 0 "
-                            "0 cm, normal: 1 0 0}}}}, points: [-25 0 -280 mm], friction: 0.6}}}}",
-                            arm));
+    throw Error(
+        ErrorKind::not_converged, {.item = "brace"},
+        fmt::format("infeasible: the scene has no contact of '{}' to lean on", arm),
+        fmt::format("add one: contacts: {{wall: {{body: {}, surface: {{plane: {{point: -4 0 "
+                    "0 cm, normal: 1 0 0}}}}, points: [-25 0 -280 mm], friction: 0.6}}}}",
+                    arm));
   }
   throw Error(ErrorKind::not_converged, {.item = "brace"},
               fmt::format("no brace was found: {}", plan::status_name(brace.status)),
@@ -290,7 +291,8 @@ void add_brace(CLI::App& app, Actions& actions) {
       ->type_name("FILE");
   command->add_option("-o,--out", options->out, "CSV file of the first run")->type_name("FILE");
   command
-      ->add_option("--plot", options->plot, "PNG file to draw poses, forces and the tip's error into")
+      ->add_option("--plot", options->plot,
+                   "PNG file to draw poses, forces and the tip's error into")
       ->type_name("FILE");
   command->footer(
       "Example:\n"

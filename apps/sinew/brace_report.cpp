@@ -97,8 +97,9 @@ std::string brace_table(const ArmScene& scene, const BraceRun& run) {
   return text;
 }
 
-nlohmann::ordered_json brace_json(const ArmScene& scene, const BraceTask& task, const std::vector<std::string>& names,
-             const Brace& brace, const std::vector<BraceTrial>& trials) {
+nlohmann::ordered_json brace_json(const ArmScene& scene, const BraceTask& task,
+                                  const std::vector<std::string>& names, const Brace& brace,
+                                  const std::vector<BraceTrial>& trials) {
   Json json = {{"scene", scene.description.name},
                {"body", scene.arm->settings().name},
                {"goal_m", list(task.goal)},

@@ -97,8 +97,8 @@ BraceOf find(const PccArm& arm, const py::object& goal, const py::object& torque
              const std::vector<plan::BraceObject>& objects, double tolerance,
              const py::object& angle_limits, const py::object& turn, const py::object& segments,
              const py::object& fractions, int along, int sides, double clearance, double hold_force,
-             double hold_frequency, double friction_share, double least_force, double most_force, double stiffness_ratio, int starts,
-             std::uint64_t seed) {
+             double hold_frequency, double friction_share, double least_force, double most_force,
+             double stiffness_ratio, int starts, std::uint64_t seed) {
   plan::BraceTask task;
   task.goal = to_vector3(goal, "brace(goal)", "m");
   task.tolerance = tolerance;
@@ -221,7 +221,8 @@ void bind_found(py::module_& module) {
       .def_property_readonly(
           "conditions", [](const BraceOf& self) { return conditions_of(self.brace); },
           "list of dict: 'name' (friction, stiffness, kinematic), 'verdict' (holds, uncertain, "
-          "violated), 'value' and 'limit'; where no brace was found, of what came nearest, or empty.")
+          "violated), 'value' and 'limit'; where no brace was found, of what came nearest, or "
+          "empty.")
       .def(
           "run", &carry_out, py::arg("braced") = true, py::kw_only(),
           py::arg("friction") = py::none(), py::arg("force") = plan::Disturbance{}.force,
@@ -316,9 +317,10 @@ void bind_brace(py::module_& module) {
       "plan_brace", &find, py::arg("arm"), py::arg("goal"), py::arg("torque_limits"),
       py::arg("objects"), py::kw_only(), py::arg("tolerance") = task.tolerance,
       py::arg("angle_limits") = py::none(), py::arg("turn") = py::none(),
-      py::arg("segments") = py::none(), py::arg("fractions") = py::make_tuple(0.25, 0.5, 0.75, 1.0), py::arg("along") = task.along,
-      py::arg("sides") = task.sides, py::arg("clearance") = task.clearance,
-      py::arg("hold_force") = task.hold_force, py::arg("hold_frequency") = task.hold_frequency,
+      py::arg("segments") = py::none(), py::arg("fractions") = py::make_tuple(0.25, 0.5, 0.75, 1.0),
+      py::arg("along") = task.along, py::arg("sides") = task.sides,
+      py::arg("clearance") = task.clearance, py::arg("hold_force") = task.hold_force,
+      py::arg("hold_frequency") = task.hold_frequency,
       py::arg("friction_share") = task.friction_share, py::arg("least_force") = task.least_force,
       py::arg("most_force") = task.most_force, py::arg("stiffness_ratio") = task.stiffness_ratio,
       py::arg("starts") = task.starts, py::arg("seed") = task.seed,

@@ -176,9 +176,8 @@ TEST(Brace, AnswersForcesOnTheTip) {
   std::mt19937 random(5);
   const int n = 6;
   HeldEquilibrium of;
-  const MatrixX root = MatrixX::NullaryExpr(n, n, [&] {
-    return std::uniform_real_distribution<double>(-1.0, 1.0)(random);
-  });
+  const MatrixX root = MatrixX::NullaryExpr(
+      n, n, [&] { return std::uniform_real_distribution<double>(-1.0, 1.0)(random); });
   of.stiffness = root * root.transpose() + 0.5 * MatrixX::Identity(n, n);
   of.mass = 0.01 * MatrixX::Identity(n, n) + 0.002 * root.transpose() * root;
   of.damping = 0.05 * MatrixX::Identity(n, n);
@@ -206,8 +205,7 @@ TEST(Brace, AnswersForcesOnTheTip) {
       for (int d = 0; d < 720; ++d) {
         const double angle = 2.0 * std::numbers::pi * d / 720.0;
         const Vector3 u = std::cos(angle) * first + std::sin(angle) * second - friction * normal;
-        gain = std::max(
-            gain, (u.transpose().cast<Complex>() * answer.bottomRows(3)).norm());
+        gain = std::max(gain, (u.transpose().cast<Complex>() * answer.bottomRows(3)).norm());
       }
     }
     const TipResponse response = tip_response(of, frequency, normal, friction);

@@ -78,8 +78,7 @@ void hold_as_measured(BraceProblem& problem, const pcc::Arm& arm, double turn,
                       const VectorX& measured) {
   PointDerivatives points(std::make_shared<const pcc::Arm>(arm));
   const Vector3 base = arm.settings().base;
-  const Matrix3 rotation =
-      Eigen::AngleAxisd(turn, arm.settings().frame.col(2)).toRotationMatrix();
+  const Matrix3 rotation = Eigen::AngleAxisd(turn, arm.settings().frame.col(2)).toRotationMatrix();
   std::vector<pcc::ArmPoint> looked_at{problem.point};
   looked_at.insert(looked_at.end(), problem.clear_points.begin(), problem.clear_points.end());
   const auto& at = points.positions(measured, looked_at);

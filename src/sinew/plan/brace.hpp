@@ -29,11 +29,13 @@ struct BraceTask {
   std::vector<BraceObject> objects;
   /// rad: the base turns about the arm's axis by an angle between these. Both 0: it does not.
   double turn_lower = 0.0, turn_upper = 0.0;
-  /// Points of the skin that may be braced: in every segment at these parts of its length, each > 0.
+  /// Points of the skin that may be braced: in every segment at these parts of its length, each >
+  /// 0.
   std::vector<double> fractions{0.25, 0.5, 0.75, 1.0};
-  int along = 8;  ///< >= 1: points of the skin are there, and at so many equal steps of a segment ...
+  int along =
+      8;  ///< >= 1: points of the skin are there, and at so many equal steps of a segment ...
   int sides = 0;  ///< ... at so many places round the section from x on; 0: 2, spatial arms 4
-  double clearance = 1e-3;      ///< m, >= 0, of the points of the skin that are not braced
+  double clearance = 1e-3;  ///< m, >= 0, of the points of the skin that are not braced
   /// The braced point is to stick under any force on the tip that is a sum of sines up to this
   /// frequency (Hz, >= 0) whose amplitudes add up to this (N, >= 0): see tip_response().
   double hold_force = 0.04, hold_frequency = 2.0;
@@ -66,8 +68,8 @@ enum class BraceStatus {
 /// "braced", "infeasible", "no-object-in-reach".
 std::string_view status_name(BraceStatus status);
 
-/// An equilibrium of the arm with one point of its skin on an object, which sticks there. Where none
-/// was found: the one that came nearest to meeting the conditions, if object >= 0.
+/// An equilibrium of the arm with one point of its skin on an object, which sticks there. Where
+/// none was found: the one that came nearest to meeting the conditions, if object >= 0.
 struct Brace {
   BraceStatus status = BraceStatus::infeasible;
   int segments = 0;                                 ///< n: the braced point is on segment n - 1
@@ -84,11 +86,11 @@ struct Brace {
   double tip_error = 0.0;                           ///< m
   double gap = 0.0;                                 ///< m, of the braced point
   double clearance = 0.0;                           ///< m, the least of the skin's other points
-  double balance = 0.0;         ///< N m, largest component of K q + G - B tau - J^T f
+  double balance = 0.0;  ///< N m, largest component of K q + G - B tau - J^T f
   /// m/N, the largest while the braced point sticks: at rest, and of all up to the frequency.
   double tip_compliance = 0.0, peak_compliance = 0.0;
   double hold_force = 0.0;  ///< N, on the tip, up to which it sticks where friction is least
-  int mobility = 0;             ///< directions in which the tip still moves then
+  int mobility = 0;         ///< directions in which the tip still moves then
   std::array<BraceCondition, 3> conditions;
   int solved = 0, unstable = 0, tried = 0;  ///< programs: equilibria found, unstable ones of them
 

@@ -250,8 +250,7 @@ void BraceProgram::jacobian(const VectorX& x, double* values) {
   const double left = spare(x);
   dense_.row(n_ + 5) = problem_.friction * by_force.transpose();
   dense_(n_ + 5, hold_) -= problem_.reserve;
-  dense_.row(n_ + 3) =
-      2.0 * normal_force_ * by_force.transpose() + 2.0 * left * dense_.row(n_ + 5);
+  dense_.row(n_ + 3) = 2.0 * normal_force_ * by_force.transpose() + 2.0 * left * dense_.row(n_ + 5);
   dense_.row(n_ + 3).tail<3>() -= 2.0 * force.transpose();
   dense_.block(first_held_, 0, problem_.held.cols(), n_ + 1) =
       problem_.held.transpose() * world_[1].jacobian;
@@ -278,8 +277,7 @@ void BraceProgram::add_hessian(const VectorDerivatives& of, const Vector3& weigh
 /// Of by_force F_n + by_cone (F_n^2 + s^2 - |f|^2), s = mu F_n - h r, F_n = N(p) . R f with
 /// dN = P dp/R.
 void BraceProgram::add_force_hessian(double by_force, double by_cone, double left) {
-  const double factor =
-      by_force + 2.0 * by_cone * (normal_force_ + problem_.friction * left);
+  const double factor = by_force + 2.0 * by_cone * (normal_force_ + problem_.friction * left);
   const Matrix3 bend = problem_.patch.projection / problem_.patch.radius;
   const auto& moved = world_[1].jacobian;
   const Eigen::Index size = n_ + 1;
@@ -331,8 +329,7 @@ void BraceProgram::hessian(const VectorX& x, double factor, const VectorX& multi
                                       world_[1].jacobian;
   add_force_hessian(multipliers[n_ + 2] + problem_.friction * multipliers[n_ + 5],
                     multipliers[n_ + 3], spare(x));
-  add_hessian(world_[1],
-              problem_.held * multipliers.segment(first_held_, problem_.held.cols()));
+  add_hessian(world_[1], problem_.held * multipliers.segment(first_held_, problem_.held.cols()));
 
   const Vector3 error = world_[0].value - problem_.goal;
   const double length = std::hypot(error.norm(), problem_.tolerance);
@@ -340,9 +337,9 @@ void BraceProgram::hessian(const VectorX& x, double factor, const VectorX& multi
   const VectorX slope = world_[0].jacobian.transpose() * error / length;
   const double by_square = by_tip + 2.0 * factor * tip_factor_;
   add_hessian(world_[0], by_square * error);
-  dense_.topLeftCorner(size, size) += by_square * world_[0].jacobian.transpose() *
-                                      world_[0].jacobian -
-                                      by_tip * slope * slope.transpose();
+  dense_.topLeftCorner(size, size) +=
+      by_square * world_[0].jacobian.transpose() * world_[0].jacobian -
+      by_tip * slope * slope.transpose();
   Eigen::Index row = first_clear_;
   for (std::size_t p = 2; p < world_.size(); ++p) {
     for (const constraint::Surface& surface : problem_.surfaces) {

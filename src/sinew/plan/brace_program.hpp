@@ -47,27 +47,27 @@ struct BraceProblem {
   /// anywhere on the patch.
   MatrixX held = MatrixX(3, 0);
   Vector3 place = Vector3::Zero();
-  double friction = 0.0;  ///< mu
-  double reserve = 0.0;   ///< r, N, >= 0, see BraceProgram
+  double friction = 0.0;                            ///< mu
+  double reserve = 0.0;                             ///< r, N, >= 0, see BraceProgram
   double least_force = 0.0, most_force = kNoBound;  ///< N
   double force_weight = 0.0;                        ///< w_f, 1/N^2
-  double tip_weight = 10.0, hold_weight = 10.0;      ///< w_e, w_h
+  double tip_weight = 10.0, hold_weight = 10.0;     ///< w_e, w_h
   std::vector<pcc::ArmPoint> clear_points;          ///< that keep ...
   double clearance = 0.0;                           ///< m, away from ...
   std::vector<constraint::Surface> surfaces;
 };
 
-/// min |tau|^2/s^2 + w_f |f|^2 + w_e |e|^2/d^2 - w_h h over x = (q, gamma, tau, h, f), s the largest
-/// limit on a torque, e the tip's error and d its tolerance, so that
+/// min |tau|^2/s^2 + w_f |f|^2 + w_e |e|^2/d^2 - w_h h over x = (q, gamma, tau, h, f), s the
+/// largest limit on a torque, e the tip's error and d its tolerance, so that
 ///   K q + G(q) = B tau + J(q)^T f,
 ///   gap(p) = 0, p within the patch,   F_n = N(p) . f within its limits,
 ///   |f|^2 <= F_n^2 + (mu F_n - h r)^2, mu F_n >= h r,    which is |f_t| + h r <= mu F_n,
 ///   sqrt(|e|^2 + d^2) <= sqrt(2) d,   0 <= h <= 1,
 /// and the other points of the skin outside every object. h is how much of the friction's reserve r
-/// is there: as much as can be. Where the point is held, u . (p - place) = 0 along every direction u
-/// stands for the gap. f (N) is in the frame of the base
-/// before it turns by gamma, in which neither the equilibrium nor J knows gamma; p, N and e are
-/// the world's, with R(gamma) f in place of f.
+/// is there: as much as can be. Where the point is held, u . (p - place) = 0 along every direction
+/// u stands for the gap. f (N) is in the frame of the base before it turns by gamma, in which
+/// neither the equilibrium nor J knows gamma; p, N and e are the world's, with R(gamma) f in place
+/// of f.
 class BraceProgram final : public NonlinearProgram {
  public:
   BraceProgram(std::shared_ptr<const pcc::Arm> arm, BraceProblem problem);

@@ -45,8 +45,8 @@ double gain_of(const ComplexMatrix& contact, const Vector3& normal, double frict
   double gain = 0.0;
   for (int k = 0; k < kDirections; ++k) {
     const double angle = 2.0 * std::numbers::pi * k / kDirections;
-    const Vector3 across = std::cos(angle) * frame.col(1) + std::sin(angle) * frame.col(2) -
-                           friction * normal;
+    const Vector3 across =
+        std::cos(angle) * frame.col(1) + std::sin(angle) * frame.col(2) - friction * normal;
     gain = std::max(gain, (across.transpose().cast<Complex>() * contact).norm());
   }
   return gain;
@@ -66,8 +66,9 @@ TipResponse tip_response(const HeldEquilibrium& of, double frequency, const Vect
         (Eigen::JacobiSVD<MatrixX>(moved).singularValues().array() > 1e-6).count());
     MatrixX reduced = free.transpose() * of.stiffness * free;
     reduced = 0.5 * (reduced + reduced.transpose().eval());
-    result.stable = Eigen::SelfAdjointEigenSolver<MatrixX>(reduced, Eigen::EigenvaluesOnly)
-                        .eigenvalues()[0] > 0.0;
+    result.stable =
+        Eigen::SelfAdjointEigenSolver<MatrixX>(reduced, Eigen::EigenvaluesOnly).eigenvalues()[0] >
+        0.0;
   }
   if (!result.stable) return result;
   const ComplexMatrix tip = of.tip.cast<Complex>();

@@ -18,8 +18,8 @@ struct HeldEquilibrium {
 };
 
 struct TipResponse {
-  bool stable = false;     ///< Z^T K Z is positive definite; what follows is of stable ones
-  int mobility = 0;        ///< directions in which the tip still moves
+  bool stable = false;           ///< Z^T K Z is positive definite; what follows is of stable ones
+  int mobility = 0;              ///< directions in which the tip still moves
   double compliance = 0.0;       ///< m/N, the largest at rest
   double peak_compliance = 0.0;  ///< m/N, the largest of all frequencies
   /// N/N: what friction must hold, |f_t| + gain |phi| <= mu F_n, for a force phi on the tip.

@@ -134,8 +134,8 @@ BraceSearch::Judged BraceSearch::judge(BraceProgram& program, int object, const 
   for (std::size_t k = 0; k < 3; ++k) {
     about.stiffness -= force[static_cast<Eigen::Index>(k)] * at[1].hessian[k];
   }
-  const TipResponse response = tip_response(about, task_.hold_frequency,
-                                            turn.transpose() * brace.normal, on.friction.least);
+  const TipResponse response =
+      tip_response(about, task_.hold_frequency, turn.transpose() * brace.normal, on.friction.least);
   if (!response.stable) return result;
   brace.object = object;
   brace.tip_compliance = response.compliance;

@@ -23,9 +23,9 @@ class BraceSearch {
   /// @param arm which. @param task completed(), outlives this. @param reserve of friction.
   BraceSearch(std::shared_ptr<const pcc::Arm> arm, const BraceTask& task, Reserve reserve);
 
-  /// Solves a candidate's program, and again while the reserve of friction that it keeps is not what
-  /// its equilibrium needs. @param problem of the candidate; its reserve is set here. @param object
-  /// which. @param start (coordinates + 1 + inputs,): angles, turn, torques.
+  /// Solves a candidate's program, and again while the reserve of friction that it keeps is not
+  /// what its equilibrium needs. @param problem of the candidate; its reserve is set here. @param
+  /// object which. @param start (coordinates + 1 + inputs,): angles, turn, torques.
   void attempt(BraceProblem problem, int object, const VectorX& start);
   /// Within the problem's limits. @param problem of a candidate.
   VectorX random_start(const BraceProblem& problem);
