@@ -98,7 +98,7 @@ Matrix3 distance_hessian(const constraint::Surface& surface, const Vector3& poin
   return (across - axis * axis.transpose() / axis.squaredNorm()) / far;
 }
 
-BraceProgram::BraceProgram(std::shared_ptr<const pcc::Arm> arm, BraceProblem problem)
+BraceProgram::BraceProgram(const std::shared_ptr<const pcc::Arm>& arm, BraceProblem problem)
     : arm_(arm),
       equations_(arm),
       points_(arm),

@@ -70,7 +70,7 @@ struct BraceProblem {
 /// of f.
 class BraceProgram final : public NonlinearProgram {
  public:
-  BraceProgram(std::shared_ptr<const pcc::Arm> arm, BraceProblem problem);
+  BraceProgram(const std::shared_ptr<const pcc::Arm>& arm, BraceProblem problem);
 
   int variables() const { return force_ + 3; }
   int turn_index() const { return turn_; }
