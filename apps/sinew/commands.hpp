@@ -29,6 +29,7 @@ void add_schema(CLI::App& app, Actions& actions);
 void add_fit(CLI::App& app, Actions& actions);
 void add_reach(CLI::App& app, Actions& actions);
 void add_plan(CLI::App& app, Actions& actions);
+void add_brace(CLI::App& app, Actions& actions);
 void add_identify(CLI::App& app, Actions& actions);
 void add_plot(CLI::App& app, Actions& actions);
 /// @}

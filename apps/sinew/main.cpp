@@ -56,6 +56,7 @@ int run(int argc, const char* const* argv) {
   cli::add_identify(app, actions);
   cli::add_reach(app, actions);
   cli::add_plan(app, actions);
+  cli::add_brace(app, actions);
   cli::add_plot(app, actions);
   cli::add_schema(app, actions);
   try {

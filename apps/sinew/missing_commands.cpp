@@ -45,6 +45,9 @@ void add_reach(CLI::App& app, Actions& actions) {
 void add_plan(CLI::App& app, Actions& actions) {
   add_missing(app, actions, "plan", "planning", "SINEW_PLAN", "Ipopt");
 }
+void add_brace(CLI::App& app, Actions& actions) {
+  add_missing(app, actions, "brace", "planning", "SINEW_PLAN", "Ipopt");
+}
 #endif
 
 }  // namespace sinew::cli

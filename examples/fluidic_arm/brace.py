@@ -12,13 +12,22 @@ import matplotlib.pyplot as plt
 import numpy as np
 from sinew import pcc, plan
 
-GOAL = np.array([0.10, 0.0, -0.50])
-CENTRE, RADIUS = np.array([-0.072, -0.28]), 0.05
+GOAL = np.array([0.05, 0.0, -0.53])
+CENTRE, RADIUS = np.array([-0.077, -0.445]), 0.05  # brace.yaml is the same scene
+STEPS = 8  # points of a drawn segment
 
 
-def backbone(arm, theta):
-    """(n, 2) cm in the arm's plane: the segments' ends."""
-    return 100 * np.vstack([[0.0, 0.0], arm.endpoints(theta)[:, [0, 2]]])
+def backbone(length, theta):
+    """(n, 2) cm in the arm's plane: points along its axis."""
+    line, heading = [np.zeros(2)], 0.0
+    for bend in theta:
+        start = line[-1]
+        for share in np.arange(1, STEPS + 1) / STEPS:
+            half = 0.5 * bend * share
+            chord = length * share * np.sinc(half / np.pi)
+            line.append(start + chord * np.array([np.sin(heading + half), -np.cos(heading + half)]))
+        heading += bend
+    return 100 * np.array(line)
 
 
 def main():
@@ -26,8 +35,9 @@ def main():
     arm, limits = pcc.published_arm(), pcc.published_torque_limits()
     ends = [[CENTRE[0], y, CENTRE[1]] for y in (-0.1, 0.1)]
     bar = plan.BraceObject.capsule(*ends, RADIUS)
-    brace = plan.brace(arm, GOAL, limits, [bar], least_force=0.15)
-    print(f"{brace.status} with segment {brace.segments}, force {np.round(brace.force, 3)} N")
+    brace = plan.brace(arm, GOAL, limits, [bar])
+    print(f"{brace.status} with segment {brace.segments}, force {np.round(brace.force, 3)} N, sticks under up to "
+          f"{brace.hold_force:.3f} N on the tip")
     for condition in brace.conditions:
         print(f"  {condition['name']}: {condition['verdict']}, {condition['value']:.3g} against {condition['limit']:.3g}")
     if not brace.found:
@@ -35,20 +45,24 @@ def main():
     braced, bare = brace.run(), brace.run(braced=False)
     print(f"{braced.status}; tip's spread {1e3 * braced.spread:.1f} mm braced, {1e3 * bare.spread:.1f} mm not")
 
-    figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4.5), constrained_layout=True)
+    figure, (left, middle, right) = plt.subplots(1, 3, figsize=(14, 4.5), constrained_layout=True)
     left.add_patch(plt.Circle(100 * CENTRE, 100 * RADIUS, color="#dddddd"))
     moments = {"start": 0.0, "contact": braced.contact_time, "pressed": braced.replan_time,
                "at the goal": braced.disturbed_from}
     for label, time in moments.items():
-        line = backbone(arm, braced.theta[np.argmin(np.abs(braced.times - time))])
-        left.plot(*line.T, "o-", ms=3, label=label)
+        line = backbone(arm.length / 4, braced.theta[np.argmin(np.abs(braced.times - time))])
+        left.plot(*line.T, label=label)
     left.plot(*(100 * GOAL[[0, 2]]), "k+", ms=10)
     left.set(xlabel="x (cm)", ylabel="z (cm)", aspect="equal")
-    left.legend(frameon=False)
+    left.legend(frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    middle.plot(braced.times, braced.normal_force, label="normal")
+    middle.plot(braced.times, braced.friction_force, label="friction")
+    middle.set(xlabel="time (s)", ylabel="force on the braced point (N)", ylim=(0, 0.3))
+    middle.legend(frameon=False)
     for label, run in (("not braced", bare), ("braced", braced)):
         shown = run.times >= run.disturbed_from - 0.5
         error = 1e3 * np.linalg.norm(run.tip - GOAL, axis=1)
-        right.plot(run.times[shown] - run.disturbed_from, error[shown], label=label)
+        right.semilogy(run.times[shown] - run.disturbed_from, error[shown], label=label)
     right.set(xlabel="time since the disturbance began (s)", ylabel="tip from goal (mm)")
     right.legend(frameon=False)
     figure.savefig(folder / "brace.png", dpi=100)

@@ -956,6 +956,10 @@ class PlanBrace:
     @property
     def tip_compliance(self) -> float: ...
     @property
+    def peak_compliance(self) -> float: ...
+    @property
+    def hold_force(self) -> float: ...
+    @property
     def mobility(self) -> int: ...
     @property
     def conditions(self) -> list[dict[str, Any]]: ...
@@ -994,6 +998,8 @@ class PlanBraceRun:
     @property
     def measured(self) -> _Floats: ...
     @property
+    def hold_force(self) -> float: ...
+    @property
     def slips(self) -> int: ...
     @property
     def cone_residual(self) -> float: ...
@@ -1016,11 +1022,14 @@ def plan_brace(
     angle_limits: Optional[ArrayLike] = None,
     turn: Optional[ArrayLike] = None,
     segments: Optional[int] = None,
-    fractions: Sequence[float] = (0.5, 1.0),
+    fractions: Sequence[float] = (0.25, 0.5, 0.75, 1.0),
+    along: int = 8,
     sides: int = 0,
     clearance: float = 0.001,
-    friction_share: float = 0.5,
-    least_force: float = 0.2,
+    hold_force: float = 0.04,
+    hold_frequency: float = 2.0,
+    friction_share: float = 0.9,
+    least_force: float = 0.05,
     most_force: float = 20.0,
     stiffness_ratio: float = 10.0,
     starts: int = 2,

@@ -7,8 +7,9 @@
     task.replay(found).tip_error            # m, carried out in fine steps
     plan.Tracker(task, found).run()         # with feedback
     plan.Task(arm, goal, limits, actuators=actuators, cylinders=cylinders).solve().drive["command"]
-    wall = plan.BraceObject.plane([-0.022, 0.0, 0.0], [1.0, 0.0, 0.0])
-    plan.brace(arm, [0.1, 0.0, -0.5], limits, [wall]).run()     # steadied by leaning on the wall
+    bar = plan.BraceObject.capsule([-0.077, -0.1, -0.445], [-0.077, 0.1, -0.445], 0.05)
+    limits = pcc.published_torque_limits()
+    plan.brace(arm, [0.05, 0.0, -0.53], limits, [bar]).run()    # steadied by leaning on the bar
 
 SI units everywhere. docs/planning.md and docs/bracing.md have the equations and what they assume.
 """

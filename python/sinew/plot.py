@@ -212,6 +212,61 @@ def plan(data, out) -> pathlib.Path:
     return pathlib.Path(out)
 
 
+def _draw_object(axis, shape, aside):
+    """A brace's object as it looks from the side on which x or y and z are seen."""
+    if "plane" in shape:
+        point, normal = shape["plane"]["point_m"], shape["plane"]["normal"]
+        along = normal[2], -normal[aside]
+        if math.hypot(*along):
+            axis.axline((100 * point[aside], 100 * point[2]), (100 * (point[aside] + along[0]), 100 * (point[2] + along[1])),
+                        color=QUIET, lw=2)
+        return
+    first, last = shape["capsule"]["ends_m"]
+    plt = _pyplot()
+    for share in (k / 40 for k in range(41)):
+        centre = [100 * ((1 - share) * first[k] + share * last[k]) for k in (aside, 2)]
+        axis.add_patch(plt.Circle(centre, 100 * shape["capsule"]["radius_m"], color=QUIET, lw=0, zorder=2))
+
+
+def brace(data, out) -> pathlib.Path:
+    """Draws a braced arm's poses, the forces of the braced point, and the tip's error with and without the brace.
+
+    Parameters
+    ----------
+    data : path-like
+        JSON of `sinew brace`.
+    out : path-like
+        PNG file.
+    """
+    plt = _pyplot()
+    content = json.loads(pathlib.Path(data).read_text(encoding="utf-8"))
+    goal, poses, force = content["goal_m"], content["poses"], content["force"]
+    points = [point for pose in poses for point in pose["axis_m"]]
+    spread = [max(p[k] for p in points) - min(p[k] for p in points) for k in (0, 1)]
+    aside = int(spread[1] > spread[0])
+    figure, (arm, forces, error) = plt.subplots(1, 3, figsize=(13, 4))
+    for shape in content["objects"]:
+        _draw_object(arm, shape, aside)
+    for k, pose in enumerate(poses):
+        arm.plot([100 * p[aside] for p in pose["axis_m"]], [100 * p[2] for p in pose["axis_m"]],
+                 color=COLOURS[k % len(COLOURS)], label=f"{pose['label']}, {pose['time_s']:.2g} s")
+    arm.plot(100 * goal[aside], 100 * goal[2], "k+", ms=10, label="goal")
+    arm.set(xlabel=f"{'xy'[aside]} (cm)", ylabel="z (cm)", aspect="equal")
+    arm.legend(loc="upper left", bbox_to_anchor=(1.0, 1.02))
+    forces.plot(force["times_s"], force["normal_N"], color=OURS, label="normal")
+    forces.plot(force["times_s"], force["friction_N"], color=SECOND, label="friction")
+    forces.set(xlabel="time (s)", ylabel="force on the braced point (N)")
+    forces.legend()
+    for key, colour in (("not_braced", SECOND), ("braced", OURS)):
+        error.semilogy(content[key]["times_s"], [1e3 * x or math.nan for x in content[key]["error_m"]], color=colour,
+                       label=key.replace("_", " "))
+    error.set(xlabel="time disturbed (s)", ylabel="tip from goal (mm)")
+    error.legend()
+    figure.savefig(out, dpi=110)
+    plt.close(figure)
+    return pathlib.Path(out)
+
+
 def identify(data, out) -> pathlib.Path:
     """Draws measured and predicted ends of an arm's segments, and their distances.
 
@@ -251,8 +306,8 @@ def identify(data, out) -> pathlib.Path:
 
 
 def main(words: list[str]) -> int:
-    """`run DIR OUT.png`, or `fit|identify|plan|reach DATA.json OUT.png`."""
-    kinds = {"run": run, "fit": fit, "identify": identify, "plan": plan, "reach": reach}
+    """`run DIR OUT.png`, or `brace|fit|identify|plan|reach DATA.json OUT.png`."""
+    kinds = {"run": run, "brace": brace, "fit": fit, "identify": identify, "plan": plan, "reach": reach}
     if len(words) != 3 or words[0] not in kinds:
         print(f"usage: python3 -m sinew.plot {'|'.join(kinds)} SOURCE OUT.png", file=sys.stderr)
         return 2

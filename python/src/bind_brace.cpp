@@ -96,9 +96,9 @@ A bar with round ends, from (3,) to (3,) m, of a radius in m; see plane().)");
 BraceOf find(const PccArm& arm, const py::object& goal, const py::object& torque_limits,
              const std::vector<plan::BraceObject>& objects, double tolerance,
              const py::object& angle_limits, const py::object& turn, const py::object& segments,
-             const py::object& fractions, int sides, double clearance, double friction_share,
-             double least_force, double most_force, double stiffness_ratio, int starts,
-             std::uint64_t seed) {
+             const py::object& fractions, int along, int sides, double clearance, double hold_force,
+             double hold_frequency, double friction_share, double least_force, double most_force,
+             double stiffness_ratio, int starts, std::uint64_t seed) {
   plan::BraceTask task;
   task.goal = to_vector3(goal, "brace(goal)", "m");
   task.tolerance = tolerance;
@@ -110,8 +110,11 @@ BraceOf find(const PccArm& arm, const py::object& goal, const py::object& torque
     task.turn_upper = both[1];
   }
   task.fractions = to_list(fractions, "brace(fractions)", "of a segment's length");
+  task.along = along;
   task.sides = sides;
   task.clearance = clearance;
+  task.hold_force = hold_force;
+  task.hold_frequency = hold_frequency;
   task.friction_share = friction_share;
   task.least_force = least_force;
   task.most_force = most_force;
@@ -127,7 +130,7 @@ BraceOf find(const PccArm& arm, const py::object& goal, const py::object& torque
 
 py::list conditions_of(const plan::Brace& brace) {
   py::list result;
-  if (!brace.found()) return result;
+  if (brace.object < 0) return result;
   for (const plan::BraceCondition& condition : brace.conditions) {
     py::dict entry;
     entry["name"] = std::string(condition.name);
@@ -205,14 +208,21 @@ void bind_found(py::module_& module) {
           "float: N m, largest component of the equilibrium's residual.")
       .def_property_readonly(
           "tip_compliance", [](const BraceOf& self) { return self.brace.tip_compliance; },
-          "float: m/N, the largest while the braced point sticks.")
+          "float: m/N, the largest at rest while the braced point sticks.")
+      .def_property_readonly(
+          "peak_compliance", [](const BraceOf& self) { return self.brace.peak_compliance; },
+          "float: m/N, the largest of all up to hold_frequency while the braced point sticks.")
+      .def_property_readonly(
+          "hold_force", [](const BraceOf& self) { return self.brace.hold_force; },
+          "float: N, on the tip, up to which the braced point sticks where friction is least.")
       .def_property_readonly(
           "mobility", [](const BraceOf& self) { return self.brace.mobility; },
           "int: directions in which the tip still moves then.")
       .def_property_readonly(
           "conditions", [](const BraceOf& self) { return conditions_of(self.brace); },
           "list of dict: 'name' (friction, stiffness, kinematic), 'verdict' (holds, uncertain, "
-          "violated), 'value' and 'limit'; empty where nothing was found.")
+          "violated), 'value' and 'limit'; where no brace was found, of what came nearest, or "
+          "empty.")
       .def(
           "run", &carry_out, py::arg("braced") = true, py::kw_only(),
           py::arg("friction") = py::none(), py::arg("force") = plan::Disturbance{}.force,
@@ -274,6 +284,9 @@ void bind_run(py::module_& module) {
           "measured", [](const BraceRun& self) { return copy(self.measured); },
           "(coordinates,) rad, when the rest was planned anew.")
       .def_property_readonly(
+          "hold_force", [](const BraceRun& self) { return self.after.hold_force; },
+          "float: N, on the tip, up to which the braced point sticks as planned anew.")
+      .def_property_readonly(
           "slips", [](const BraceRun& self) { return self.slips; },
           "int: steps, disturbed, in which the braced point did not stick.")
       .def_property_readonly(
@@ -304,12 +317,14 @@ void bind_brace(py::module_& module) {
       "plan_brace", &find, py::arg("arm"), py::arg("goal"), py::arg("torque_limits"),
       py::arg("objects"), py::kw_only(), py::arg("tolerance") = task.tolerance,
       py::arg("angle_limits") = py::none(), py::arg("turn") = py::none(),
-      py::arg("segments") = py::none(), py::arg("fractions") = py::make_tuple(0.5, 1.0),
-      py::arg("sides") = task.sides, py::arg("clearance") = task.clearance,
+      py::arg("segments") = py::none(), py::arg("fractions") = py::make_tuple(0.25, 0.5, 0.75, 1.0),
+      py::arg("along") = task.along, py::arg("sides") = task.sides,
+      py::arg("clearance") = task.clearance, py::arg("hold_force") = task.hold_force,
+      py::arg("hold_frequency") = task.hold_frequency,
       py::arg("friction_share") = task.friction_share, py::arg("least_force") = task.least_force,
       py::arg("most_force") = task.most_force, py::arg("stiffness_ratio") = task.stiffness_ratio,
       py::arg("starts") = task.starts, py::arg("seed") = task.seed,
-      R"(plan_brace(arm, goal, torque_limits, objects, *, tolerance=0.005, angle_limits=None, turn=None, segments=None, fractions=(0.5, 1.0), sides=0, clearance=0.001, friction_share=0.5, least_force=0.2, most_force=20.0, stiffness_ratio=10.0, starts=2, seed=1)
+      R"(plan_brace(arm, goal, torque_limits, objects, *, tolerance=0.005, angle_limits=None, turn=None, segments=None, fractions=(0.25, 0.5, 0.75, 1.0), along=8, sides=0, clearance=0.001, hold_force=0.04, hold_frequency=2.0, friction_share=0.9, least_force=0.05, most_force=20.0, stiffness_ratio=10.0, starts=2, seed=1)
 --
 
 Where an arm leans against its surroundings so that its tip is held steadier: a Brace.
@@ -330,13 +345,18 @@ turn : (2,) rad, optional
 segments : int, optional
     The braced point is on this segment, counted from 1; else on the first for which there is one.
 fractions : sequence of float
-    Of a segment's length: which points of its skin may touch ...
+    Of a segment's length: which points of its skin may be braced.
+along : int
+    Points of the skin are there and at so many equal steps of a segment ...
 sides : int
     ... at so many places round the section; 0: 2, spatial arms 4.
 clearance : float
     m, that the other points of the skin keep from the objects.
+hold_force, hold_frequency : float
+    N and Hz: the braced point is to stick under any force on the tip that is a sum of sines up to this
+    frequency whose amplitudes add up to this force.
 friction_share : float
-    Of the least friction, that the brace may need.
+    Of the least friction, that the brace may need for it.
 least_force, most_force : float
     N, of the normal force.
 stiffness_ratio : float

@@ -1,4 +1,4 @@
-"""sinew reach, plan and identify from outside, their numbers against the Python package's.
+"""sinew reach, plan, brace and identify from outside, their numbers against the Python package's.
 
     SINEW_PROGRAM=build/release/bin/sinew /usr/bin/python3 -m pytest tests/cli
 """
@@ -162,7 +162,77 @@ def test_what_cannot_be_planned_fails_with_its_status(tmp_path):
     assert not (tmp_path / "plan.csv").exists()
 
 
-@pytest.mark.parametrize("command", ["plan", "reach"])
+BAR = ARM.with_name("brace.yaml")
+
+
+def test_brace_leans_on_the_scenes_contacts(tmp_path):
+    needs("brace")
+    done = sinew("brace", BAR, "--goal", "5 0 -53 cm", "--segment", "4", "--disturbances", "2", "--duration", "0.5s",
+                 "--friction", "silicone-on-steel", "-o", "run.csv", "--json", "brace.json", "--plot", "brace.png",
+                 cwd=tmp_path)
+    assert done.returncode == DONE, done.stderr
+    assert done.stderr == "" and "not taken into account" not in done.stdout
+    for word in ("braced: segment 4", "'bar'", "friction", "stiffness", "kinematic", "holds", "held"):
+        assert word in done.stdout, (word, done.stdout)
+    assert (tmp_path / "brace.png").read_bytes().startswith(b"\x89PNG")
+    told = json.loads((tmp_path / "brace.json").read_text())
+    assert told["status"] == "braced" and told["object"] == "bar"
+    tip = scene_arm().endpoints(np.array(told["angle_rad"]))[-1]
+    assert np.linalg.norm(tip - [0.05, 0.0, -0.53]) < 2e-3
+    assert np.all(np.abs(told["torque_N_m"]) <= np.array(TORQUES) + 1e-6)
+    assert np.linalg.norm(np.array(told["place_m"])[[0, 2]] - [-0.077, -0.445]) == pytest.approx(0.05, abs=1e-6)
+    assert told["hold_force_N"] > 0.04 and told["friction_force_N"] < 0.6 * told["normal_force_N"]
+    assert [c["verdict"] for c in told["conditions"]] == ["holds"] * 3
+    assert [run["seed"] for run in told["runs"]] == [1, 2]
+    for run in told["runs"]:
+        assert run["status"] == "held" and run["slips"] == 0
+        assert run["spread_m"] < run["not_braced_spread_m"]
+    rows = rows_of(tmp_path / "run.csv")
+    assert list(rows[0]) == ["time [s]", "tip.x [m]", "tip.y [m]", "tip.z [m]", *[f"angle_{k} [rad]" for k in range(4)],
+                             *[f"{name} [N m]" for name in ("second", "third", "fourth")], "normal_force [N]",
+                             "friction_force [N]"]
+    last = rows[-1]
+    assert float(last["time [s]"]) == pytest.approx(5.0)
+    assert np.linalg.norm([float(last[f"tip.{x} [m]"]) - goal for x, goal in zip("xyz", (0.05, 0.0, -0.53))]) < 5e-3
+    assert float(last["friction_force [N]"]) <= 0.6 * float(last["normal_force [N]"]) + 1e-9
+
+
+def test_a_brace_that_cannot_be_fails_with_its_status(tmp_path):
+    needs("brace")
+    bare = sinew("brace", ARM, "--goal", "5 0 -53 cm", "--json", "brace.json", cwd=tmp_path)
+    assert bare.returncode == FAILED
+    assert "infeasible" in bare.stdout and "no contact of 'arm'" in bare.stderr and "contacts:" in bare.stderr
+    assert json.loads((tmp_path / "brace.json").read_text())["status"] == "infeasible"
+    slippery = sinew("brace", BAR, "--goal", "5 0 -53 cm", "--segment", "4", "--friction", "coated-rigid", "-o",
+                     "run.csv", cwd=tmp_path)
+    assert slippery.returncode == FAILED
+    assert "violated" in slippery.stdout and "not-converged" in slippery.stderr
+    assert not (tmp_path / "run.csv").exists()
+    far = sinew("brace", BAR, "--goal", "5 0 -53 cm", "--set",
+                "contacts.bar.surface.capsule.ends=[-2 -0.1 -0.4 m, -2 0.1 -0.4 m]")
+    assert far.returncode == FAILED and "no-object-in-reach" in far.stdout
+
+
+def test_bad_options_of_braces(tmp_path):
+    needs("brace")
+    moving = BAR.read_text(encoding="utf-8").replace("    outside: nearest\n",
+                                                     "    outside: nearest\n    motion: {z: 1 mm}\n")
+    (tmp_path / "moving.yaml").write_text(moving, encoding="utf-8")
+    for scene, arguments, words in (
+            (BAR, ["--friction", "ice"], ["'ice'", "coated-rigid", "unknown-choice"]),
+            (BAR, ["--friction", "0.5 0.2"], ["0.5 to 0.2", "out-of-range"]),
+            (BAR, ["--friction", "1 2 3"], ["--friction", "wrong-length"]),
+            (BAR, ["--hold-force", "0.04 m"], ["--hold-force", "wrong-dimension"]),
+            (BAR, ["--tolerance", "-1mm"], ["--tolerance", "not positive"]),
+            (BAR, ["--segment", "5"], ["--segment", "out-of-range"]),
+            (BAR, ["--disturbances", "0"], ["--disturbances", "out-of-range"]),
+            (tmp_path / "moving.yaml", [], ["contacts.bar.motion", "moves"])):
+        wrong = sinew("brace", scene, "--goal", "5 0 -53 cm", *arguments)
+        assert wrong.returncode == WRONG, (arguments, wrong.stdout)
+        assert all(word in wrong.stderr for word in words), wrong.stderr
+
+
+@pytest.mark.parametrize("command", ["brace", "plan", "reach"])
 def test_bad_goals_limits_and_bodies(tmp_path, command):
     needs(command)
     crossed = edited(tmp_path, ("{min: -0.12 N m, max: 0.12 N m}", "{min: 0.12 N m, max: -0.12 N m}"))

@@ -29,12 +29,18 @@ struct BraceTask {
   std::vector<BraceObject> objects;
   /// rad: the base turns about the arm's axis by an angle between these. Both 0: it does not.
   double turn_lower = 0.0, turn_upper = 0.0;
-  /// Points of the skin that may touch: in every segment at these parts of its length, each > 0 ...
-  std::vector<double> fractions{0.5, 1.0};
+  /// Points of the skin that may be braced: in every segment at these parts of its length, each >
+  /// 0.
+  std::vector<double> fractions{0.25, 0.5, 0.75, 1.0};
+  int along =
+      8;  ///< >= 1: points of the skin are there, and at so many equal steps of a segment ...
   int sides = 0;  ///< ... at so many places round the section from x on; 0: 2, spatial arms 4
-  double clearance = 1e-3;      ///< m, >= 0, of the points of the skin that are not braced
-  double friction_share = 0.5;  ///< 0 to 1: of the friction's least, that a brace may need
-  double least_force = 0.2;     ///< N, > 0, of the normal force
+  double clearance = 1e-3;  ///< m, >= 0, of the points of the skin that are not braced
+  /// The braced point is to stick under any force on the tip that is a sum of sines up to this
+  /// frequency (Hz, >= 0) whose amplitudes add up to this (N, >= 0): see tip_response().
+  double hold_force = 0.04, hold_frequency = 2.0;
+  double friction_share = 0.9;  ///< 0 to 1: of the friction's least, that a brace may need for it
+  double least_force = 0.05;    ///< N, > 0, of the normal force
   double most_force = 20.0;     ///< N
   double force_weight = 1e-3;   ///< 1/N^2, > 0, see BraceProgram
   TouchStiffness arm = kSoftArm;
@@ -48,8 +54,11 @@ struct BraceTask {
 /// than the arm is long, a base that turns where gravity is not along its axis or loads are.
 BraceTask completed(const pcc::Arm& arm, BraceTask task);
 
-/// Points of the skin, by segment, then fraction, then side.
+/// Points of the skin, by segment, then part of its length, then side. @param arm which.
+/// @param task completed().
 std::vector<pcc::ArmPoint> skin_points(const pcc::Arm& arm, const BraceTask& task);
+/// Those of them that may be braced.
+std::vector<pcc::ArmPoint> brace_points(const pcc::Arm& arm, const BraceTask& task);
 
 enum class BraceStatus {
   braced,              ///< found: all three conditions hold
@@ -59,7 +68,8 @@ enum class BraceStatus {
 /// "braced", "infeasible", "no-object-in-reach".
 std::string_view status_name(BraceStatus status);
 
-/// An equilibrium of the arm with one point of its skin on an object, which sticks there.
+/// An equilibrium of the arm with one point of its skin on an object, which sticks there. Where
+/// none was found: the one that came nearest to meeting the conditions, if object >= 0.
 struct Brace {
   BraceStatus status = BraceStatus::infeasible;
   int segments = 0;                                 ///< n: the braced point is on segment n - 1
@@ -76,9 +86,11 @@ struct Brace {
   double tip_error = 0.0;                           ///< m
   double gap = 0.0;                                 ///< m, of the braced point
   double clearance = 0.0;                           ///< m, the least of the skin's other points
-  double balance = 0.0;         ///< N m, largest component of K q + G - B tau - J^T f
-  double tip_compliance = 0.0;  ///< m/N, the largest while the braced point sticks
-  int mobility = 0;             ///< directions in which the tip still moves then
+  double balance = 0.0;  ///< N m, largest component of K q + G - B tau - J^T f
+  /// m/N, the largest while the braced point sticks: at rest, and of all up to the frequency.
+  double tip_compliance = 0.0, peak_compliance = 0.0;
+  double hold_force = 0.0;  ///< N, on the tip, up to which it sticks where friction is least
+  int mobility = 0;         ///< directions in which the tip still moves then
   std::array<BraceCondition, 3> conditions;
   int solved = 0, unstable = 0, tried = 0;  ///< programs: equilibria found, unstable ones of them
 
@@ -86,22 +98,29 @@ struct Brace {
 };
 
 /// Braces on segment n - 1: of every object, candidate point, smooth piece of the surface and start
-/// one program (see BraceProgram); of the stable equilibria for which all conditions hold, the one
-/// with the least tip compliance. @param arm which. @param task completed() is applied.
+/// one program (see BraceProgram), solved anew until the reserve of friction that it keeps is its
+/// own equilibrium's; of the stable equilibria for which all conditions hold, friction's under the
+/// force to be held against, the one with the least peak compliance of the tip.
+/// @param arm which. @param task completed() is applied.
 /// @param segments n, 1 to the arm's. Throws what completed() throws, and Error(out-of-range).
 Brace find_brace(const std::shared_ptr<const pcc::Arm>& arm, const BraceTask& task, int segments);
 /// The first found with n = 1, 2, ... Without any: the last, and why. Without objects: infeasible.
 Brace find_brace(const std::shared_ptr<const pcc::Arm>& arm, const BraceTask& task);
 
-/// The rest of the arm anew, with the braced segments' angles as measured: torques of all segments,
-/// the angles behind the brace, and the force, of which half the least will do and which may need
-/// 95 % of the friction's least, and the whole tolerance: reserves are for the way there.
+/// The rest anew, with the braced point where the measured angles put it: torques, force, and what
+/// angles it leaves (those behind the brace, and where more are before it than hold the point, a
+/// bend there too). Half the least force will do, 95 % of the friction's least may be needed, and
+/// the whole tolerance: reserves are for the way there. Friction may have less in reserve than was
+/// asked for; then its condition says so.
 /// @param arm,task as of find_brace(). @param before what was found.
-/// @param measured (coordinates,) rad; those behind the brace are a first guess.
+/// @param measured (coordinates,) rad.
 Brace replan_brace(const std::shared_ptr<const pcc::Arm>& arm, const BraceTask& task,
                    const Brace& before, const VectorX& measured);
 
-/// Largest compliance (m/N) of the tip at rest under these torques, without a brace.
-double free_tip_compliance(const std::shared_ptr<const pcc::Arm>& arm, const VectorX& position);
+/// Largest compliance (m/N) of the tip about a pose at rest without a brace, of all up to a
+/// frequency; infinite where the pose is not stable. @param arm which. @param position of it,
+/// (coordinates,). @param frequency Hz, >= 0.
+double free_tip_compliance(const std::shared_ptr<const pcc::Arm>& arm, const VectorX& position,
+                           double frequency = 0.0);
 
 }  // namespace sinew::plan

@@ -98,7 +98,7 @@ Matrix3 distance_hessian(const constraint::Surface& surface, const Vector3& poin
   return (across - axis * axis.transpose() / axis.squaredNorm()) / far;
 }
 
-BraceProgram::BraceProgram(std::shared_ptr<const pcc::Arm> arm, BraceProblem problem)
+BraceProgram::BraceProgram(const std::shared_ptr<const pcc::Arm>& arm, BraceProblem problem)
     : arm_(arm),
       equations_(arm),
       points_(arm),
@@ -107,13 +107,16 @@ BraceProgram::BraceProgram(std::shared_ptr<const pcc::Arm> arm, BraceProblem pro
       n_(arm->coordinates()),
       turn_(n_),
       torque_(n_ + 1),
-      force_(n_ + 1 + arm->inputs()),
-      first_clear_(n_ + 5),
+      hold_(n_ + 1 + arm->inputs()),
+      force_(hold_ + 1),
+      first_held_(n_ + 6),
+      first_clear_(first_held_ + static_cast<int>(problem_.held.cols())),
       still_(VectorX::Zero(n_)),
       spin_(cross_matrix(arm->settings().frame.col(2))) {
   const Limits& limits = problem_.limits;
   torque_scale_ = std::max(
       {limits.torque_upper.cwiseAbs().maxCoeff(), limits.torque_lower.cwiseAbs().maxCoeff(), 1e-6});
+  tip_factor_ = problem_.tip_weight / (problem_.tolerance * problem_.tolerance);
   const int inputs = arm_->inputs(), size = variables();
   variable_bounds_ = {VectorX::Constant(size, -kNoBound), VectorX::Constant(size, kNoBound)};
   variable_bounds_.lower.head(n_) = limits.angle_lower;
@@ -122,6 +125,8 @@ BraceProgram::BraceProgram(std::shared_ptr<const pcc::Arm> arm, BraceProblem pro
   variable_bounds_.upper[turn_] = problem_.turn_upper;
   variable_bounds_.lower.segment(torque_, inputs) = limits.torque_lower;
   variable_bounds_.upper.segment(torque_, inputs) = limits.torque_upper;
+  variable_bounds_.lower[hold_] = 0.0;
+  variable_bounds_.upper[hold_] = 1.0;
   variable_scale_ = VectorX::Ones(size);
   variable_scale_.segment(torque_, inputs).setConstant(torque_scale_);
 
@@ -130,16 +135,18 @@ BraceProgram::BraceProgram(std::shared_ptr<const pcc::Arm> arm, BraceProblem pro
   constraint_bounds_ = {VectorX::Zero(first_clear_ + clear), VectorX::Zero(first_clear_ + clear)};
   constraint_scale_ = VectorX::Constant(first_clear_ + clear, kLengthScale);
   constraint_scale_.head(n_).setConstant(torque_scale_);
-  if (!problem_.touches)
-    constraint_bounds_.lower[n_] = -kNoBound, constraint_bounds_.upper[n_] = kNoBound;
-  constraint_bounds_.lower[n_ + 1] = problem_.touches ? problem_.patch.lower : -kNoBound;
-  constraint_bounds_.upper[n_ + 1] = problem_.touches ? problem_.patch.upper : kNoBound;
+  const bool touches = problem_.held.cols() == 0;
+  if (!touches) constraint_bounds_.lower[n_] = -kNoBound, constraint_bounds_.upper[n_] = kNoBound;
+  constraint_bounds_.lower[n_ + 1] = touches ? problem_.patch.lower : -kNoBound;
+  constraint_bounds_.upper[n_ + 1] = touches ? problem_.patch.upper : kNoBound;
   constraint_bounds_.lower[n_ + 2] = problem_.least_force;
   constraint_bounds_.upper[n_ + 2] = problem_.most_force;
   constraint_scale_[n_ + 2] = constraint_scale_[n_ + 3] = 1.0;
   constraint_bounds_.upper[n_ + 3] = kNoBound;
   constraint_bounds_.lower[n_ + 4] = -kNoBound;
   constraint_bounds_.upper[n_ + 4] = std::sqrt(2.0) * problem_.tolerance;
+  constraint_bounds_.upper[n_ + 5] = kNoBound;
+  constraint_scale_[n_ + 5] = 1.0;
   constraint_bounds_.lower.tail(clear).setConstant(problem_.clearance);
   constraint_bounds_.upper.tail(clear).setConstant(kNoBound);
   for (int row = 0; row < constraint_bounds_.lower.size(); ++row) {
@@ -168,9 +175,16 @@ void BraceProgram::look(const VectorX& x) {
   normal_force_ = normal_.dot(world_force_);
 }
 
+double BraceProgram::spare(const VectorX& x) const {
+  return problem_.friction * normal_force_ - problem_.reserve * x[hold_];
+}
+
 double BraceProgram::objective(const VectorX& x) {
+  look(x);
   return x.segment(torque_, arm_->inputs()).squaredNorm() / (torque_scale_ * torque_scale_) +
-         problem_.force_weight * x.tail<3>().squaredNorm();
+         problem_.force_weight * x.tail<3>().squaredNorm() +
+         tip_factor_ * (world_[0].value - problem_.goal).squaredNorm() -
+         problem_.hold_weight * x[hold_];
 }
 
 void BraceProgram::gradient(const VectorX& x, VectorX& result) {
@@ -178,6 +192,10 @@ void BraceProgram::gradient(const VectorX& x, VectorX& result) {
   const Eigen::Index inputs = arm_->inputs();
   result.segment(torque_, inputs) =
       2.0 / (torque_scale_ * torque_scale_) * x.segment(torque_, inputs);
+  look(x);
+  result.head(n_ + 1) =
+      2.0 * tip_factor_ * world_[0].jacobian.transpose() * (world_[0].value - problem_.goal);
+  result[hold_] = -problem_.hold_weight;
   result.tail<3>() = 2.0 * problem_.force_weight * x.tail<3>();
 }
 
@@ -191,9 +209,12 @@ void BraceProgram::constraints(const VectorX& x, VectorX& result) {
   result[n_] = problem_.patch.gap(world_[1].value);
   result[n_ + 1] = problem_.patch.axis.dot(world_[1].value);
   result[n_ + 2] = normal_force_;
-  result[n_ + 3] = (1.0 + problem_.friction * problem_.friction) * normal_force_ * normal_force_ -
-                   force.squaredNorm();
+  const double left = spare(x);
+  result[n_ + 3] = normal_force_ * normal_force_ + left * left - force.squaredNorm();
   result[n_ + 4] = std::hypot((world_[0].value - problem_.goal).norm(), problem_.tolerance);
+  result[n_ + 5] = left;
+  result.segment(first_held_, problem_.held.cols()) =
+      problem_.held.transpose() * (world_[1].value - problem_.place);
   Eigen::Index row = first_clear_;
   for (std::size_t p = 2; p < world_.size(); ++p) {
     for (const constraint::Surface& surface : problem_.surfaces) {
@@ -226,9 +247,13 @@ void BraceProgram::jacobian(const VectorX& x, double* values) {
   dense_.row(n_ + 1).head(n_ + 1) = problem_.patch.axis.transpose() * world_[1].jacobian;
   const VectorX by_force = force_gradient();
   dense_.row(n_ + 2) = by_force.transpose();
-  dense_.row(n_ + 3) =
-      2.0 * (1.0 + problem_.friction * problem_.friction) * normal_force_ * by_force.transpose();
+  const double left = spare(x);
+  dense_.row(n_ + 5) = problem_.friction * by_force.transpose();
+  dense_(n_ + 5, hold_) -= problem_.reserve;
+  dense_.row(n_ + 3) = 2.0 * normal_force_ * by_force.transpose() + 2.0 * left * dense_.row(n_ + 5);
   dense_.row(n_ + 3).tail<3>() -= 2.0 * force.transpose();
+  dense_.block(first_held_, 0, problem_.held.cols(), n_ + 1) =
+      problem_.held.transpose() * world_[1].jacobian;
   const Vector3 error = world_[0].value - problem_.goal;
   dense_.row(n_ + 4).head(n_ + 1) =
       error.transpose() * world_[0].jacobian / std::hypot(error.norm(), problem_.tolerance);
@@ -249,10 +274,10 @@ void BraceProgram::add_hessian(const VectorDerivatives& of, const Vector3& weigh
   }
 }
 
-/// Of by_force F_n + by_cone ((1 + mu^2) F_n^2 - |f|^2), F_n = N(p) . R f with dN = P dp/R.
-void BraceProgram::add_force_hessian(double by_force, double by_cone) {
-  const double cone = 2.0 * (1.0 + problem_.friction * problem_.friction) * by_cone;
-  const double factor = by_force + cone * normal_force_;
+/// Of by_force F_n + by_cone (F_n^2 + s^2 - |f|^2), s = mu F_n - h r, F_n = N(p) . R f with
+/// dN = P dp/R.
+void BraceProgram::add_force_hessian(double by_force, double by_cone, double left) {
+  const double factor = by_force + 2.0 * by_cone * (normal_force_ + problem_.friction * left);
   const Matrix3 bend = problem_.patch.projection / problem_.patch.radius;
   const auto& moved = world_[1].jacobian;
   const Eigen::Index size = n_ + 1;
@@ -267,8 +292,11 @@ void BraceProgram::add_force_hessian(double by_force, double by_cone) {
   dense_.block(force_, 0, 3, size) += mixed.transpose();
   dense_.block<1, 3>(turn_, force_) += twist.transpose();
   dense_.block<3, 1>(force_, turn_) += twist;
-  const VectorX slope = force_gradient();
-  dense_ += cone * slope * slope.transpose();
+  VectorX slope = force_gradient();
+  dense_ += 2.0 * by_cone * slope * slope.transpose();
+  slope *= problem_.friction;
+  slope[hold_] -= problem_.reserve;
+  dense_ += 2.0 * by_cone * slope * slope.transpose();
   dense_.bottomRightCorner<3, 3>().diagonal().array() -= 2.0 * by_cone;
 }
 
@@ -299,15 +327,19 @@ void BraceProgram::hessian(const VectorX& x, double factor, const VectorX& multi
   dense_.topLeftCorner(size, size) += by_gap / problem_.patch.radius *
                                       world_[1].jacobian.transpose() * problem_.patch.projection *
                                       world_[1].jacobian;
-  add_force_hessian(multipliers[n_ + 2], multipliers[n_ + 3]);
+  add_force_hessian(multipliers[n_ + 2] + problem_.friction * multipliers[n_ + 5],
+                    multipliers[n_ + 3], spare(x));
+  add_hessian(world_[1], problem_.held * multipliers.segment(first_held_, problem_.held.cols()));
 
   const Vector3 error = world_[0].value - problem_.goal;
   const double length = std::hypot(error.norm(), problem_.tolerance);
   const double by_tip = multipliers[n_ + 4] / length;
   const VectorX slope = world_[0].jacobian.transpose() * error / length;
-  add_hessian(world_[0], by_tip * error);
+  const double by_square = by_tip + 2.0 * factor * tip_factor_;
+  add_hessian(world_[0], by_square * error);
   dense_.topLeftCorner(size, size) +=
-      by_tip * (world_[0].jacobian.transpose() * world_[0].jacobian - slope * slope.transpose());
+      by_square * world_[0].jacobian.transpose() * world_[0].jacobian -
+      by_tip * slope * slope.transpose();
   Eigen::Index row = first_clear_;
   for (std::size_t p = 2; p < world_.size(); ++p) {
     for (const constraint::Surface& surface : problem_.surfaces) {

@@ -43,31 +43,39 @@ struct BraceProblem {
   double tolerance = 2e-3;                    ///< m, > 0
   pcc::ArmPoint point;                        ///< that is braced
   SurfacePatch patch;
-  bool touches = true;  ///< false: where the point is, is given by fixed angles
-  double friction = 0.0;
+  /// Orthonormal directions (3, any) along which the point stays at a place (m); none: it is
+  /// anywhere on the patch.
+  MatrixX held = MatrixX(3, 0);
+  Vector3 place = Vector3::Zero();
+  double friction = 0.0;                            ///< mu
+  double reserve = 0.0;                             ///< r, N, >= 0, see BraceProgram
   double least_force = 0.0, most_force = kNoBound;  ///< N
-  double force_weight = 0.0;                        ///< 1/N^2
+  double force_weight = 0.0;                        ///< w_f, 1/N^2
+  double tip_weight = 10.0, hold_weight = 10.0;     ///< w_e, w_h
   std::vector<pcc::ArmPoint> clear_points;          ///< that keep ...
   double clearance = 0.0;                           ///< m, away from ...
   std::vector<constraint::Surface> surfaces;
 };
 
-/// min |tau|^2/s^2 + w |f|^2 over x = (q, gamma, tau, f), s the largest limit on a torque, so that
+/// min |tau|^2/s^2 + w_f |f|^2 + w_e |e|^2/d^2 - w_h h over x = (q, gamma, tau, h, f), s the
+/// largest limit on a torque, e the tip's error and d its tolerance, so that
 ///   K q + G(q) = B tau + J(q)^T f,
 ///   gap(p) = 0, p within the patch,   F_n = N(p) . f within its limits,
-///   |f|^2 <= (1 + mu^2) F_n^2,        which is |f_t| <= mu F_n,
-///   sqrt(|e|^2 + d^2) <= sqrt(2) d,   e the tip's error, d its tolerance,
-/// and the other points of the skin outside every object. f (N) is in the frame of the base before
-/// it turns by gamma, in which neither the equilibrium nor J knows gamma; p, N and e are the
-/// world's, with R(gamma) f in place of f.
+///   |f|^2 <= F_n^2 + (mu F_n - h r)^2, mu F_n >= h r,    which is |f_t| + h r <= mu F_n,
+///   sqrt(|e|^2 + d^2) <= sqrt(2) d,   0 <= h <= 1,
+/// and the other points of the skin outside every object. h is how much of the friction's reserve r
+/// is there: as much as can be. Where the point is held, u . (p - place) = 0 along every direction
+/// u stands for the gap. f (N) is in the frame of the base before it turns by gamma, in which
+/// neither the equilibrium nor J knows gamma; p, N and e are the world's, with R(gamma) f in place
+/// of f.
 class BraceProgram final : public NonlinearProgram {
  public:
-  BraceProgram(std::shared_ptr<const pcc::Arm> arm, BraceProblem problem);
+  BraceProgram(const std::shared_ptr<const pcc::Arm>& arm, BraceProblem problem);
 
   int variables() const { return force_ + 3; }
   int turn_index() const { return turn_; }
   int torque_index() const { return torque_; }
-  int force_index() const { return force_; }
+  int hold_index() const { return hold_; }
   const BraceProblem& problem() const { return problem_; }
 
   double objective(const VectorX& x) override;
@@ -82,7 +90,9 @@ class BraceProgram final : public NonlinearProgram {
   /// by q before the turn.
   void look(const VectorX& x);
   void add_hessian(const VectorDerivatives& of, const Vector3& weights);
-  void add_force_hessian(double by_force, double by_cone);
+  void add_force_hessian(double by_force, double by_cone, double left);
+  /// mu F_n - h r.
+  double spare(const VectorX& x) const;
   /// dF_n/dx.
   VectorX force_gradient() const;
 
@@ -90,8 +100,8 @@ class BraceProgram final : public NonlinearProgram {
   pcc::ArmEquations equations_;
   PointDerivatives points_, velocity_;
   BraceProblem problem_;
-  int n_, turn_, torque_, force_, first_clear_;
-  double torque_scale_;
+  int n_, turn_, torque_, hold_, force_, first_held_, first_clear_;
+  double torque_scale_, tip_factor_ = 0.0;
   VectorX still_;
   std::vector<pcc::ArmPoint> looked_at_;
 

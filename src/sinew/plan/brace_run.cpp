@@ -130,6 +130,7 @@ class Bench {
 
   double time() const { return simulation_->time(); }
   const VectorX& angles() const { return body().coordinates(); }
+  const VectorX& torque() const { return efforts_.back(); }
 
   /// Which point is watched.
   void watch(int object, const pcc::ArmPoint& point) {
@@ -295,12 +296,14 @@ BraceRun run_brace(const std::shared_ptr<const pcc::Arm>& arm, const BraceTask& 
     bench.finish(run, run.replan_time - settings.time_step);
     return run;
   }
-  // The PD fades out on the way, so that at the goal the plan's torque alone holds the arm.
+  // From the torque as it is; the PD fades out on the way, so that at the goal the plan's alone
+  // holds the arm.
+  const VectorX pressing = bench.torque();
   const long move = steps_in(settings.move, settings);
   for (long k = 1; k <= move; ++k) {
     const double share = smooth(static_cast<double>(k) / static_cast<double>(move));
     const VectorX angles = run.measured + share * (run.after.position - run.measured);
-    const VectorX torque = brace.torque + share * (run.after.torque - brace.torque);
+    const VectorX torque = pressing + share * (run.after.torque - pressing);
     bench.step(torque,
                share < 1.0 ? VectorX(bench.angles() + (1.0 - share) * (angles - bench.angles()))
                            : VectorX(),
