@@ -11,7 +11,8 @@
 namespace sinew::python {
 
 /// None where neither actuators nor cylinders are given. Throws Error(wrong-length | out-of-range).
-/// @param actuators,cylinders lists from Python, or None. @param lead s, or None: the longest delay.
+/// @param actuators,cylinders lists from Python, or None. @param lead s, or None: the longest
+/// delay.
 /// @param item what an error names.
 std::optional<plan::Drive> to_drive(const py::object& actuators, const py::object& cylinders,
                                     const py::object& lead, const char* item);

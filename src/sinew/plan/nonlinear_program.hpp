@@ -1,6 +1,6 @@
 /// @file
-/// Smooth sparse nonlinear programs, min f(x) with bounds on x and on c(x), and their solution by an
-/// interior-point method, from far by Ipopt with its filter line search (Waechter & Biegler,
+/// Smooth sparse nonlinear programs, min f(x) with bounds on x and on c(x), and their solution by
+/// an interior-point method, from far by Ipopt with its filter line search (Waechter & Biegler,
 /// Mathematical Programming 106, 2006). Knows no physics.
 #pragma once
 
