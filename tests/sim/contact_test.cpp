@@ -1,5 +1,7 @@
 #include <array>
 #include <cmath>
+#include <functional>
+#include <map>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -305,6 +307,63 @@ TEST(Contact, RunsGoOnFromASavedStateBitForBit) {
   whole.reset();
   for (int k = 0; k < 60; ++k) whole.step();
   EXPECT_EQ(second.state_hash(), whole.state_hash());
+}
+
+/// The fingerprint of a block with one contact, changed.
+std::uint64_t fingerprint(const std::function<void(ContactSettings&)>& change) {
+  ModelBuilder builder = block_on_plane({.floor = false});
+  ContactSettings contact;
+  contact.name = "tool";
+  contact.surface = constraint::Capsule{{0.0, 0.0, -0.02}, {0.01, 0.0, -0.02}, 0.01};
+  contact.points = Points::Zero(2, 3);
+  contact.points.row(1) << 0.01, 0.0, 0.0;
+  BaseMotion motion;
+  motion.translation[2] = Signal::ramp({0.0, 0.001, 0.0, 1.0});
+  contact.motion = motion;
+  change(contact);
+  builder.add_contact(contact);
+  return builder.build()->fingerprint();
+}
+
+TEST(Contact, FingerprintsTellApartWhatMovesDifferently) {
+  using Change = std::function<void(ContactSettings&)>;
+  const auto capsule = [](ContactSettings& c) -> constraint::Capsule& {
+    return std::get<constraint::Capsule>(c.surface);
+  };
+  const std::vector<Change> changes = {
+      [](ContactSettings&) {},
+      [](ContactSettings& c) { c.friction = 0.25; },
+      [&](ContactSettings& c) { capsule(c).radius = 0.011; },
+      [&](ContactSettings& c) { capsule(c).from[1] = 0.001; },
+      [&](ContactSettings& c) { capsule(c).to[1] = 0.001; },
+      [](ContactSettings& c) { c.points.row(1) << 0.011, 0.0, 0.0; },
+      [](ContactSettings& c) { c.points.conservativeResize(1, 3); },
+      [](ContactSettings& c) { c.motion.reset(); },
+      [](ContactSettings& c) { c.motion->translation[2] = Signal::ramp({0.0, 0.001, 0.0, 2.0}); },
+      [](ContactSettings& c) { c.motion->translation[2] = Signal::constant(0.001); },
+      [](ContactSettings& c) { c.motion->translation[2] = Signal::sine({0.0, 0.001, 1.0, 0.0}); },
+      [](ContactSettings& c) { c.motion->translation[2] = Signal::steps({{0.0, 0.001}}); },
+      [](ContactSettings& c) {
+        c.motion->translation[2] = Signal::sampled({0.0}, {0.001});
+      },
+      [](ContactSettings& c) { c.motion->axis = Vector3::UnitX(); },
+      [](ContactSettings& c) { c.motion->centre[0] = 0.001; },
+      [](ContactSettings& c) { c.motion->angle = Signal::constant(0.1); },
+      [](ContactSettings& c) { c.surface = constraint::Plane{{0.0, 0.0, -0.03}}; },
+      [](ContactSettings& c) { c.surface = constraint::Plane{{0.0, 0.0, -0.04}}; },
+      [](ContactSettings& c) {
+        c.surface = constraint::Plane{{0.0, 0.0, -0.03}, {0.0, 0.1, 1.0}};
+      },
+      [](ContactSettings& c) { c.surface = constraint::Sphere{{0.0, 0.0, -0.03}, 0.01}; },
+      [](ContactSettings& c) { c.surface = constraint::Sphere{{0.0, 0.0, -0.04}, 0.01}; },
+      [](ContactSettings& c) { c.surface = constraint::Sphere{{0.0, 0.0, -0.03}, 0.02}; },
+  };
+  std::map<std::uint64_t, std::size_t> seen;
+  for (std::size_t k = 0; k < changes.size(); ++k) {
+    const auto [other, is_new] = seen.emplace(fingerprint(changes[k]), k);
+    EXPECT_TRUE(is_new) << k << " and " << other->second;
+    EXPECT_EQ(fingerprint(changes[k]), other->first) << k;
+  }
 }
 
 TEST(Contact, ThreadsGiveTheSameBits) {
