@@ -145,6 +145,8 @@ class Simulation {
   ContactPoint contact_point(int index, std::size_t point) const;
   std::vector<ContactPoint> contact_points(int index) const;
   ContactSum contact_sum(int index) const;
+  /// The points and where the surface stands.
+  ContactMoment contact_moment(int index) const;
   /// How the contacts' forces were last found.
   const qp::ConeResult& contact_result() const { return contact_.result(); }
 
