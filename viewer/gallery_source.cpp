@@ -76,8 +76,9 @@ GallerySource::GallerySource(std::vector<Example> examples) : examples_(std::mov
                             {"gravity", {0, 0, 0}}, {"bounds", {{0, 0, 0}, {1, 1, 1}}},
                             {"bodies", empty},      {"fields", empty},
                             {"actuators", empty},   {"effectors", empty},
-                            {"probes", empty},      {"controllers", empty},
-                            {"signals", empty},     {"examples", list}}
+                            {"probes", empty},      {"contacts", empty},
+                            {"controllers", empty}, {"signals", empty},
+                            {"examples", list}}
                            .dump();
 }
 
