@@ -14,6 +14,9 @@ namespace sinew::sim {
 namespace {
 
 constexpr int kMostHalvings = 10;
+// Of the robot's size: a point that is deeper in a surface after one linearisation, and is not
+// pushed out, is not there by rounding.
+constexpr double kDeepest = 1e-6;
 
 }  // namespace
 
@@ -276,6 +279,18 @@ void Simulation::step_once(Law& law, const LawProblem& problem) {
   clock_.mark(Stage::law);
   world_.solve_motion(effort_);
   move_soundly();
+  require_outside();
+}
+
+// Points that commanded motions leave nothing to give way are beyond any contact force.
+void Simulation::require_outside() {
+  if (model_->contacts().empty()) return;
+  const double depth = world_.deepest_free_point(effort_);
+  if (depth <= kDeepest * model_->size()) return;
+  fail(ErrorKind::not_converged,
+       fmt::format("a point would be {:.3g} m inside a surface, and no contact force can move it",
+                   depth),
+       "take a smaller time step, or command no motion that ends in the surface");
 }
 
 int Simulation::negative_pivots() const {

@@ -200,6 +200,7 @@ class Simulation {
   void step_once(Law& law, const LawProblem& problem);
   void step_newton(Law& law, const LawProblem& problem);
   void move_soundly();
+  void require_outside();
   void finish_step();
   int negative_pivots() const;
   [[noreturn]] void fail(ErrorKind kind, const std::string& message, const std::string& remedy);

@@ -63,6 +63,22 @@ double World::contact_drift(std::span<const double> effort, double time) const {
   return worst;
 }
 
+double World::deepest_free_point(std::span<const double> effort) const {
+  double deepest = 0.0;
+  for (std::size_t i = 0; i < model_->contacts().size(); ++i) {
+    const constraint::Contact& contact = model_->contact(static_cast<int>(i));
+    for (std::size_t k = 0; k < contact.points().size(); ++k) {
+      const int row = contact.row(k);
+      if (effort[static_cast<std::size_t>(row)] > 0.0) continue;
+      const double gap =
+          rows_.offset[row] +
+          rows_.direction[contact.entry(k)].dot(placement_.position(contact.points()[k]));
+      deepest = std::max(deepest, -gap);
+    }
+  }
+  return deepest;
+}
+
 void World::linearise(const mechanics::LinearisationRequest& request) {
   for (auto& body : bodies_) body->linearise(request);
 }

@@ -22,6 +22,9 @@ class World {
   /// m: the farthest that any touching point's gap is from that of its tangent plane, at the pose
   /// that surfaces have at a time. @param effort (rows,) N; who touches. @param time s.
   double contact_drift(std::span<const double> effort, double time) const;
+  /// m, >= 0: how deep the deepest point without a normal force is in its surface's tangent plane.
+  /// @param effort (rows,) N.
+  double deepest_free_point(std::span<const double> effort) const;
   /// Assembly: every body at its current state.
   void linearise(const mechanics::LinearisationRequest& request);
   /// H and delta at the current placement, handed to the bodies; adds the curvature of
