@@ -32,7 +32,7 @@ class ContactLaw : public Law {
 
   EffortBoxes ranges_;
   std::vector<qp::BoxBlock> boxes_;  // (ranges,)
-  std::vector<qp::ConeBlock> cones_;
+  std::vector<qp::ConeBlock> all_cones_, cones_;  // of all points, and of those in the step
   qp::ConeSolver solver_;
 };
 

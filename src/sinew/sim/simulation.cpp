@@ -8,6 +8,7 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/core/state_hash.hpp"
+#include "sinew/sim/solve_law.hpp"
 
 namespace sinew::sim {
 
@@ -210,7 +211,7 @@ double Simulation::substep(double end, double time_step) {
   save_state(state_before_);
   move_bases(end);
   set_loads(end);
-  world_.begin_step(end - time_step, end);
+  world_.begin_step(end - time_step, end, effort_);
   Law& law = complete(law_);
   const LawProblem problem{*model_,
                            world_.placement(),
@@ -219,7 +220,8 @@ double Simulation::substep(double end, double time_step) {
                            world_.delta_free(),
                            world_.delta(),
                            end,
-                           time_step};
+                           time_step,
+                           world_.rows().present};
   if (model_->step().method == Method::newton) {
     step_newton(law, problem);
   } else {
@@ -256,7 +258,7 @@ void Simulation::step_once(Law& law, const LawProblem& problem) {
     fail(ErrorKind::singular_matrix, "the stiffness matrix is singular",
          "fix a region of every body, or look for loose or crushed elements");
   }
-  report_.law = law.solve(problem, effort_);
+  report_.law = solve_law(world_, law, problem, effort_);
   if (report_.law == LawStatus::failed && status == linalg::FactorStatus::indefinite) {
     fail(ErrorKind::not_converged,
          fmt::format("the tangent stiffness has {} negative directions, so the robot is about to "
