@@ -160,9 +160,8 @@ Json surface_json(const constraint::Surface& surface) {
             {"normal", vector_json(plane->normal)}};
   }
   if (const auto* sphere = std::get_if<constraint::Sphere>(&surface)) {
-    return {{"kind", "sphere"},
-            {"centre", vector_json(sphere->centre)},
-            {"radius", sphere->radius}};
+    return {
+        {"kind", "sphere"}, {"centre", vector_json(sphere->centre)}, {"radius", sphere->radius}};
   }
   const auto& capsule = std::get<constraint::Capsule>(surface);
   return {{"kind", "capsule"},

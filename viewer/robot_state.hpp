@@ -37,9 +37,9 @@ Steering scene_controller(const scene::Robot& robot, const std::string& name);
 
 /// A moment of a recorded run.
 struct RecordedState {
-  std::vector<Points> positions;         ///< (n, 3) m a body, in the model's order
-  std::vector<VectorX> coordinates;      ///< of arms, (n,) rad a body; empty of others
-  std::vector<double> efforts, motions;  ///< (actuators,) N and m
+  std::vector<Points> positions;             ///< (n, 3) m a body, in the model's order
+  std::vector<VectorX> coordinates;          ///< of arms, (n,) rad a body; empty of others
+  std::vector<double> efforts, motions;      ///< (actuators,) N and m
   std::vector<sim::ContactMoment> contacts;  ///< in the model's order; empty: not recorded
   std::int64_t step = 0;
 };

@@ -133,7 +133,8 @@ void expect_passing_agrees(Factorisation& factorisation, const BlockSystem& syst
     const auto count = 3 * static_cast<Eigen::Index>(groups.size());
     MatrixX rows = MatrixX::Zero(count, border.cols());
     for (Eigen::Index k = 0; k < count; ++k) {
-      const auto row = static_cast<std::size_t>(3 * groups[static_cast<std::size_t>(k / 3)] + k % 3);
+      const auto row =
+          static_cast<std::size_t>(3 * groups[static_cast<std::size_t>(k / 3)] + k % 3);
       for (int e = passing.row_start[row]; e < passing.row_start[row + 1]; ++e) {
         const auto entry = static_cast<std::size_t>(e);
         for (int c = 0; c < 3; ++c) {
@@ -146,11 +147,11 @@ void expect_passing_agrees(Factorisation& factorisation, const BlockSystem& syst
     MatrixX coupling(count, border.rows() + 1);
     coupling << solved.transpose() * border.transpose(), solved.transpose() * right;
     const MatrixX compliance = rows * solved;
-    const MatrixX found =
-        MatrixX(factorisation.passing_compliance().topLeftCorner(count, count))
-            .selfadjointView<Eigen::Lower>();
+    const MatrixX found = MatrixX(factorisation.passing_compliance().topLeftCorner(count, count))
+                              .selfadjointView<Eigen::Lower>();
     const double scale = lu.inverse().cwiseAbs().maxCoeff();
-    EXPECT_LE((found - compliance).cwiseAbs().sum(), 1e-8 * scale * (1.0 + static_cast<double>(count)));
+    EXPECT_LE((found - compliance).cwiseAbs().sum(),
+              1e-8 * scale * (1.0 + static_cast<double>(count)));
     EXPECT_LE((factorisation.passing_coupling().topLeftCorner(count, coupling.cols()) - coupling)
                   .cwiseAbs()
                   .sum(),
@@ -175,7 +176,8 @@ TEST_P(RandomSystems, PassingRowsAgreeWithDense) {
     std::vector<double> values;
     for (int g = 0; g < std::min(nodes, 20); ++g) {
       std::vector<int> on = {(7 * g + 3) % nodes};
-      if (g % 3 == 0 && nodes > 4) on = {(5 * g) % nodes, (5 * g + 1) % nodes, (11 * g + 4) % nodes};
+      if (g % 3 == 0 && nodes > 4)
+        on = {(5 * g) % nodes, (5 * g + 1) % nodes, (11 * g + 4) % nodes};
       std::ranges::sort(on);
       on.erase(std::unique(on.begin(), on.end()), on.end());
       for (int r = 0; r < 3; ++r) {

@@ -213,8 +213,8 @@ TEST_F(RunRecorderTest, ContactsReadBackBitForBit) {
   int touching = 0;
   for (std::size_t frame = 0; frame < seen.size(); ++frame) {
     for (const int contact : {0, 1}) {
-      const sim::ContactMoment read = run.contact(contact == 0 ? "floor" : "wall",
-                                                  static_cast<std::int64_t>(frame));
+      const sim::ContactMoment read =
+          run.contact(contact == 0 ? "floor" : "wall", static_cast<std::int64_t>(frame));
       const sim::ContactMoment& was = seen[frame][static_cast<std::size_t>(contact)];
       EXPECT_EQ(read.pose.affine(), was.pose.affine());
       ASSERT_EQ(read.points.size(), was.points.size());

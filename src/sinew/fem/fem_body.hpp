@@ -148,7 +148,8 @@ class FemBody : public mechanics::Body {
   // imbalance from the first time that it is held.
   VectorX right_, motion_, base_, scratch_, travel_, momentum_, imbalance_;
   std::vector<double> row_effort_;
-  std::vector<std::int32_t> passing_;  // groups of three of the rows that come and go: those present
+  std::vector<std::int32_t>
+      passing_;  // groups of three of the rows that come and go: those present
   double imbalance_share_ = 0.0;
   std::optional<Tether> tether_;
   std::optional<Eigen::Isometry3d> base_pose_;                                // asked for

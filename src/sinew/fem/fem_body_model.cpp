@@ -158,8 +158,7 @@ FemSystem FemBodyModel::make_system(const FemModelSettings& elements) const {
   system.passing.row_start.assign(starts.begin() + split, starts.end());
   for (std::int32_t& start : system.passing.row_start) start -= entries;
   system.passing.node.assign(system.border.node.begin() + entries, system.border.node.end());
-  system.plan =
-      linalg::analyse(system.elements->pattern(), fixed, factorisation_, system.passing);
+  system.plan = linalg::analyse(system.elements->pattern(), fixed, factorisation_, system.passing);
   return system;
 }
 

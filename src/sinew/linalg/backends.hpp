@@ -16,10 +16,12 @@ PlanPointer make_block_plan(const BlockPattern& pattern, const BorderPattern& bo
 
 /// Eigen's SimplicialLDLT, as a reference; unlike ours, its solves allocate.
 PlanPointer make_eigen_ldlt_plan(const BlockPattern& pattern, const BorderPattern& border,
-                                 const FactorisationSettings& settings, const BorderPattern& passing);
+                                 const FactorisationSettings& settings,
+                                 const BorderPattern& passing);
 
 /// Eigen's SimplicialLLT, as a reference; reports indefinite matrices as singular.
 PlanPointer make_eigen_llt_plan(const BlockPattern& pattern, const BorderPattern& border,
-                                const FactorisationSettings& settings, const BorderPattern& passing);
+                                const FactorisationSettings& settings,
+                                const BorderPattern& passing);
 
 }  // namespace sinew::linalg

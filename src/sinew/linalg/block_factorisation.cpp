@@ -74,8 +74,8 @@ class BlockFactorisation final : public Factorisation {
 
   std::size_t bytes() const override {
     const Eigen::Index rows = symbolic_->border_rows;
-    return numeric_.bytes() + schedule_.bytes() + passing_.bytes() + unknowns_.bytes() + weights_.bytes() +
-           static_cast<std::size_t>(rows * (rows + 1)) * sizeof(double);
+    return numeric_.bytes() + schedule_.bytes() + passing_.bytes() + unknowns_.bytes() +
+           weights_.bytes() + static_cast<std::size_t>(rows * (rows + 1)) * sizeof(double);
   }
 
  private:

@@ -131,7 +131,8 @@ class EigenFactorisation final : public Factorisation {
                        std::span<const double> values, Eigen::Ref<VectorX> column) {
     for (int e = pattern.row_start[row]; e < pattern.row_start[row + 1]; ++e) {
       const int node = pattern.node[static_cast<std::size_t>(e)];
-      for (int c = 0; c < 3; ++c) column[3 * node + c] = values[static_cast<std::size_t>(3 * e + c)];
+      for (int c = 0; c < 3; ++c)
+        column[3 * node + c] = values[static_cast<std::size_t>(3 * e + c)];
     }
   }
 

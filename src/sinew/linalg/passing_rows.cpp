@@ -135,9 +135,8 @@ void PassingRows::update(BlockNumeric& numeric, int p) {
     const double* const rows =
         with_signs(numeric, update.descendant, numeric.values(descendant) + update.first,
                    descendant.leading, update.columns);
-    const Product product{values_.data() + from.offset, from.leading,
-                          rows,                         descendant.leading,
-                          3 * descendant.width,         update.columns};
+    const Product product{values_.data() + from.offset, from.leading,         rows,
+                          descendant.leading,           3 * descendant.width, update.columns};
     multiply_whole(product, 3 * from.count, product_.data(), from.leading);
     for (int j = 0; j < update.columns; ++j) {
       double* const to = x + (column_place_[at(j / 3)] + j % 3) * long{store.leading};
@@ -167,10 +166,9 @@ void PassingRows::add_compliance(const BlockNumeric& numeric, int p) {
     }
   }
   const int nodes = panel.row_end - panel.border_row;
-  const double* const border =
-      with_signs(numeric, p,
-                 numeric.values(panel) + panel.below + 3L * (panel.border_row - panel.row_begin),
-                 panel.leading, 3 * nodes);
+  const double* const border = with_signs(
+      numeric, p, numeric.values(panel) + panel.below + 3L * (panel.border_row - panel.row_begin),
+      panel.leading, 3 * nodes);
   const Product across{x, store.leading, border, panel.leading, 3 * panel.width, 3 * nodes};
   multiply_whole(across, count, product_.data(), store.leading);
   for (int j = 0; j < 3 * nodes; ++j) {

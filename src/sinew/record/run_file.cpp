@@ -233,8 +233,7 @@ sim::ContactMoment RunFile::contact(std::string_view contact, std::int64_t frame
   sim::ContactMoment moment;
   moment.pose.affine() = Eigen::Map<const Pose>(read("pose", 12).data());
   const std::vector<double> position = read("position", 3 * count), gap = read("gap", count),
-                            normal = read("normal", 3 * count),
-                            force = read("normal_force", count),
+                            normal = read("normal", 3 * count), force = read("normal_force", count),
                             friction = read("friction_force", 3 * count),
                             state = read("state", count);
   moment.points.resize(count);

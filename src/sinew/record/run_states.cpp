@@ -143,13 +143,12 @@ void RunStates::declare_contacts() {
     const std::string folder = "/contacts/" + model.contacts()[c].name;
     const auto count =
         static_cast<std::uint64_t>(model.contact(static_cast<int>(c)).points().size());
-    contacts_.push_back({declare(folder + "/pose", {3, 4}, "1, m"),
-                         declare(folder + "/position", {count, 3}, "m"),
-                         declare(folder + "/gap", {count}, "m"),
-                         declare(folder + "/normal", {count, 3}, "1"),
-                         declare(folder + "/normal_force", {count}, "N"),
-                         declare(folder + "/friction_force", {count, 3}, "N"),
-                         declare(folder + "/state", {count}, "1")});
+    contacts_.push_back(
+        {declare(folder + "/pose", {3, 4}, "1, m"), declare(folder + "/position", {count, 3}, "m"),
+         declare(folder + "/gap", {count}, "m"), declare(folder + "/normal", {count, 3}, "1"),
+         declare(folder + "/normal_force", {count}, "N"),
+         declare(folder + "/friction_force", {count, 3}, "N"),
+         declare(folder + "/state", {count}, "1")});
     file_.attribute(folder + "/state", "meaning", std::string_view("0 open, 1 stick, 2 slip"));
   }
 }

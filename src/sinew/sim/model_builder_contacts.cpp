@@ -70,8 +70,7 @@ void ModelBuilder::hash_contacts(StateHash& hash) const {
     hash.add(static_cast<std::uint64_t>(motion.has_value()));
     if (motion) add(hash, *motion);
     for (const mechanics::MaterialPoint& point : contact.points()) {
-      add(hash,
-          model_->bodies_[static_cast<std::size_t>(point.body)]->rest_position(point.point));
+      add(hash, model_->bodies_[static_cast<std::size_t>(point.body)]->rest_position(point.point));
     }
   }
   if (!model_->contacts_.empty()) hash.add(model_->step_.contact_tolerance);

@@ -10,8 +10,8 @@
 namespace sinew::sim {
 
 /// Solves the law and, as long as the motion that follows takes a point that was left out into its
-/// surface, takes in all of these and solves it again: what is found obeys Signorini's and Coulomb's
-/// laws at all points, as if none had been left out.
+/// surface, takes in all of these and solves it again: what is found obeys Signorini's and
+/// Coulomb's laws at all points, as if none had been left out.
 /// @param world condensed. @param law,problem,effort as for Law::solve().
 LawStatus solve_law(World& world, Law& law, const LawProblem& problem, std::span<double> effort);
 

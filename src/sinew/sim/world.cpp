@@ -56,8 +56,8 @@ void World::begin_step(double from, double to, std::span<const double> effort) {
 }
 
 // A guess, and a function of the state alone so that a run goes on from a saved one bit for bit:
-// points that touched, are near, or would arrive at their speed. take_in_violators() makes good what
-// it misses.
+// points that touched, are near, or would arrive at their speed. take_in_violators() makes good
+// what it misses.
 void World::choose_present(std::span<const double> effort, double time_step) {
   left_out_ = false;
   const double near = kNear * model_->size();
@@ -125,9 +125,8 @@ double World::deepest_free_point(std::span<const double> effort) const {
     for (std::size_t k = 0; k < contact.points().size(); ++k) {
       const int row = contact.row(k);
       if (effort[static_cast<std::size_t>(row)] > 0.0) continue;
-      const double gap =
-          rows_.offset[row] +
-          rows_.direction[contact.entry(k)].dot(placement_.position(contact.points()[k]));
+      const double gap = rows_.offset[row] + rows_.direction[contact.entry(k)].dot(
+                                                 placement_.position(contact.points()[k]));
       deepest = std::max(deepest, -gap);
     }
   }

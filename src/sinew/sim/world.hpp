@@ -91,8 +91,8 @@ class World {
   MatrixX compliance_;
   VectorX delta_free_, contact_start_;
   std::vector<double> kept_effort_;
-  bool left_out_ = false;           // some point
-  std::vector<char> formed_;        // (rows,) columns of W that are not zero
+  bool left_out_ = false;     // some point
+  std::vector<char> formed_;  // (rows,) columns of W that are not zero
 };
 
 }  // namespace sinew::sim
