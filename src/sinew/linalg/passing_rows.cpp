@@ -23,6 +23,7 @@ PassingRows::PassingRows(const BlockSymbolic& symbolic, const BorderPattern& row
       members_(symbolic.panels.size() * groups_),
       place_(groups_),
       column_place_(at(symbolic.max_width)) {
+  if (groups_ == 0) return;  // most bodies: no memory is taken
   for (std::size_t p = 0; p + 1 < symbolic.panels.size(); ++p) {
     const Panel& panel = symbolic.panels[p];
     std::fill_n(panel_of_.begin() + panel.first, panel.width, static_cast<std::int32_t>(p));
