@@ -70,6 +70,10 @@ await draw('docs/images/view_fields.png', [join(root, 'examples/ring/sma.yaml')]
   await page.selectOption('[aria-label="Signals to plot"]', 'probe');
   await step(page, 400);
 });
+await draw('docs/images/view_contact.png', [join(root, 'examples/contact/squeeze.yaml')], {}, async (page) => {
+  await page.selectOption('[aria-label="Signals to plot"]', 'contact');
+  await step(page, 500);
+});
 const folder = mkdtempSync(join(tmpdir(), 'sinew-pictures-'));
 execFileSync(program, ['run', circle, '--duration', '4s', '--out', folder, '--quiet']);
 await draw('docs/images/view_replay.png', [folder], {}, async (page) => {

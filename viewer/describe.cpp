@@ -1,5 +1,6 @@
 #include "describe.hpp"
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -140,6 +141,49 @@ Json probe_json(const constraint::Probe& probe) {
           {"signals", signals}};
 }
 
+// What of a contact is plotted and told; quantities of run.csv.
+struct ContactSignal {
+  const char* name;
+  const char* unit;
+  const char* group;
+};
+constexpr std::array<ContactSignal, 5> kContactSignals = {{{"normal_force", "N", "contact"},
+                                                           {"friction_force", "N", "contact"},
+                                                           {"gap", "m", "gap"},
+                                                           {"sticking", "", "touching"},
+                                                           {"slipping", "", "touching"}}};
+
+Json surface_json(const constraint::Surface& surface) {
+  if (const auto* plane = std::get_if<constraint::Plane>(&surface)) {
+    return {{"kind", "plane"},
+            {"point", vector_json(plane->point)},
+            {"normal", vector_json(plane->normal)}};
+  }
+  if (const auto* sphere = std::get_if<constraint::Sphere>(&surface)) {
+    return {
+        {"kind", "sphere"}, {"centre", vector_json(sphere->centre)}, {"radius", sphere->radius}};
+  }
+  const auto& capsule = std::get<constraint::Capsule>(surface);
+  return {{"kind", "capsule"},
+          {"ends", {vector_json(capsule.from), vector_json(capsule.to)}},
+          {"radius", capsule.radius}};
+}
+
+Json contact_json(const sim::Model& model, int index) {
+  const constraint::Contact& contact = model.contact(index);
+  Json signals = Json::array();
+  for (const ContactSignal& signal : kContactSignals) {
+    signals.push_back(fmt::format("{}.{}", contact.name(), signal.name));
+  }
+  const int body = contact.points().front().body;
+  return {{"name", contact.name()},
+          {"body", model.bodies()[static_cast<std::size_t>(body)]->name()},
+          {"surface", surface_json(contact.surface())},
+          {"friction", contact.friction()},
+          {"points", contact.points().size()},
+          {"signals", signals}};
+}
+
 Json body_json(const mechanics::BodyModel& model, const Surface& surface) {
   const mesh::Mesh& mesh = model.mesh();
   return {{"name", model.name()},
@@ -220,6 +264,12 @@ std::vector<SignalInfo> list_signals(const sim::Model& model) {
     for (const ProbeSignal& signal : probe_signals(*probe)) {
       const bool angle = std::string_view(signal.unit) == "rad";
       list.push_back({signal.key, signal.label, signal.unit, angle ? "angle" : "probe"});
+    }
+  }
+  for (const sim::ContactModel& contact : model.contacts()) {
+    for (const ContactSignal& signal : kContactSignals) {
+      const std::string key = fmt::format("{}.{}", contact.name, signal.name);
+      list.push_back({key, key, signal.unit, signal.group});
     }
   }
   for (const char* kind : {"strain", "kinetic", "gravity"}) {
@@ -307,6 +357,10 @@ Description describe(const scene::Robot& robot) {
     result.effectors.push_back(model.effectors()[i].name);
   }
   for (const auto& probe : model.probes()) probes.push_back(probe_json(*probe));
+  Json contacts = Json::array();
+  for (std::size_t c = 0; c < model.contacts().size(); ++c) {
+    contacts.push_back(contact_json(model, static_cast<int>(c)));
+  }
   result.signals = list_signals(model);
   Json fields = Json::array();
   for (const FieldInfo& field : list_fields()) {
@@ -325,6 +379,7 @@ Description describe(const scene::Robot& robot) {
                       {"actuators", actuators},
                       {"effectors", effectors},
                       {"probes", probes},
+                      {"contacts", contacts},
                       {"controllers", controllers_json(robot)},
                       {"signals", signals_json(result.signals)}};
   result.scene = scene.dump();

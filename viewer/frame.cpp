@@ -24,7 +24,8 @@ enum class Section : std::uint16_t {
   effectors,
   targets,
   pull,
-  probes
+  probes,
+  contacts
 };
 
 /// Appends numbers to bytes.
@@ -109,6 +110,9 @@ void encode_frame(const Frame& frame, const FrameChoice& choice, std::vector<std
     writer.section(Section::cables, 0, frame.cables);
     writer.section(Section::effectors, 0, frame.effectors);
     if (!frame.probes.empty()) writer.section(Section::probes, 0, frame.probes);
+    for (std::size_t c = 0; c < frame.contacts.size(); ++c) {
+      writer.section(Section::contacts, c, frame.contacts[c]);
+    }
   }
   writer.section(Section::targets, 0, frame.targets);
   if (frame.pull) {

@@ -69,6 +69,10 @@ struct Frame {
   std::vector<float> effectors;  ///< (3 effectors,) m
   std::vector<float> targets;    ///< (3 effectors,) m; NaN where there is none
   std::vector<float> probes;     ///< (3 marks,) m, all probes' marks one after the other
+  /// One a contact: (7 + 7 points,) the surface's position, m, and quaternion (x, y, z, w) from
+  /// where the scene puts it, then of each point its position, m, the force on the body, N, and its
+  /// qp::ContactState.
+  std::vector<std::vector<float>> contacts;
   std::optional<PullFrame> pull;
 };
 

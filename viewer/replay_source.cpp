@@ -102,6 +102,11 @@ void ReplaySource::show() {
     recorded.efforts.push_back(efforts_[i][static_cast<std::size_t>(at_)]);
     recorded.motions.push_back(motions_[i][static_cast<std::size_t>(at_)]);
   }
+  if (!file_.contacts().empty()) {
+    for (const sim::ContactModel& contact : state_.simulation().model().contacts()) {
+      recorded.contacts.push_back(file_.contact(contact.name, at_));
+    }
+  }
   recorded.step = std::llround(time() / state_.time_step());
   state_.show(recorded);
 }

@@ -248,8 +248,25 @@ void RobotState::show(const RecordedState& recorded) {
     *at++ = motion;
   }
   at[0] = 1.0;  // the volumes are not recorded
+  for (std::size_t c = 0; c < recorded.contacts.size(); ++c) {
+    const constraint::Contact& contact = model.contact(static_cast<int>(c));
+    if (recorded.contacts[c].points.size() != contact.points().size()) {
+      throw Error(ErrorKind::malformed_file, {.item = "contact '" + contact.name() + "'"},
+                  fmt::format("{} points are recorded, its scene has {}",
+                              recorded.contacts[c].points.size(), contact.points().size()),
+                  "record the run again with this version");
+    }
+  }
+  recorded_contacts_ = recorded.contacts;
   simulation_->load_state(state, recorded.step);
   ++shape_;
+}
+
+// Forces and frames of contacts are those of the step that led here, which a recorded moment has
+// not made.
+sim::ContactMoment RobotState::contact(std::size_t index) const {
+  if (!recorded_contacts_.empty()) return recorded_contacts_[index];
+  return simulation_->contact_moment(static_cast<int>(index));
 }
 
 void RobotState::pull(const Pull& pull) {
@@ -300,6 +317,13 @@ void RobotState::fill_signals(Frame& frame, double real_time_factor) {
     const bool line =
         dynamic_cast<const constraint::LineProbe*>(model.probes()[p].get()) != nullptr;
     values.insert(values.end(), measured.begin(), line ? measured.begin() + 1 : measured.end());
+  }
+  for (std::size_t c = 0; c < model.contacts().size(); ++c) {
+    sim::ContactSum sum;
+    for (const sim::ContactPoint& point : contact(c).points) sum.add(point);
+    values.insert(values.end(),
+                  {sum.normal_force, sum.friction_force, sum.smallest_gap,
+                   static_cast<double>(sum.sticking), static_cast<double>(sum.slipping)});
   }
   const sim::Energies energies = simulation_->energies();
   values.insert(values.end(), {energies.strain, energies.kinetic, energies.gravity});
@@ -357,6 +381,26 @@ void RobotState::fill_points(Frame& frame) const {
   }
 }
 
+void RobotState::fill_contacts(Frame& frame) const {
+  for (std::size_t c = 0; c < simulation_->model().contacts().size(); ++c) {
+    const sim::ContactMoment moment = contact(c);
+    std::vector<float>& values = frame.contacts.emplace_back();
+    values.reserve(7 * (1 + moment.points.size()));
+    const auto put = [&](const auto& numbers) {
+      for (Eigen::Index k = 0; k < numbers.size(); ++k) {
+        values.push_back(static_cast<float>(numbers[k]));
+      }
+    };
+    put(moment.pose.translation());
+    put(Eigen::Quaterniond(moment.pose.linear()).coeffs());  // x, y, z, w
+    for (const sim::ContactPoint& point : moment.points) {
+      put(point.position);
+      put(Vector3(point.normal_force * point.normal + point.friction_force));
+      values.push_back(static_cast<float>(point.state));
+    }
+  }
+}
+
 std::shared_ptr<const Frame> RobotState::frame(const FieldChoice& wanted, double real_time_factor) {
   auto frame = std::make_shared<Frame>();
   frame->step = static_cast<std::uint64_t>(simulation_->steps());
@@ -367,6 +411,7 @@ std::shared_ptr<const Frame> RobotState::frame(const FieldChoice& wanted, double
   frame->bodies.resize(description_.surfaces.size());
   for (std::size_t b = 0; b < frame->bodies.size(); ++b) fill_body(b, wanted, frame->bodies[b]);
   fill_points(*frame);
+  fill_contacts(*frame);
   if (pulled_) {
     const fem::FemBody& body = simulation_->fem_body(*pulled_);
     const Vector3 point = body.tether_point();

@@ -37,9 +37,10 @@ Steering scene_controller(const scene::Robot& robot, const std::string& name);
 
 /// A moment of a recorded run.
 struct RecordedState {
-  std::vector<Points> positions;         ///< (n, 3) m a body, in the model's order
-  std::vector<VectorX> coordinates;      ///< of arms, (n,) rad a body; empty of others
-  std::vector<double> efforts, motions;  ///< (actuators,) N and m
+  std::vector<Points> positions;             ///< (n, 3) m a body, in the model's order
+  std::vector<VectorX> coordinates;          ///< of arms, (n,) rad a body; empty of others
+  std::vector<double> efforts, motions;      ///< (actuators,) N and m
+  std::vector<sim::ContactMoment> contacts;  ///< in the model's order; empty: not recorded
   std::int64_t step = 0;
 };
 
@@ -95,6 +96,8 @@ class RobotState {
   void fill_signals(Frame& frame, double real_time_factor);
   void fill_body(std::size_t index, const FieldChoice& wanted, BodyFrame& frame);
   void fill_points(Frame& frame) const;
+  void fill_contacts(Frame& frame) const;
+  sim::ContactMoment contact(std::size_t index) const;
 
   scene::Robot robot_;
   Description description_;
@@ -106,7 +109,8 @@ class RobotState {
   bool observing_ = false;
   std::vector<std::unique_ptr<fem::NodalMean>> means_;  ///< one a body; none of an arm
   std::map<std::string, Vector3> targets_;
-  std::optional<int> pulled_;  ///< body
+  std::vector<sim::ContactMoment> recorded_contacts_;  ///< of the moment that is shown; or empty
+  std::optional<int> pulled_;                          ///< body
   std::optional<StoppedRun> stopped_;
   std::uint64_t shape_ = 0;
 };

@@ -246,14 +246,16 @@ Facts run_facts(const InfoOptions& options) {
                 {"bodies", run.bodies()},
                 {"actuators", run.actuators()},
                 {"effectors", run.effectors()},
-                {"probes", run.probes()}};
+                {"probes", run.probes()},
+                {"contacts", run.contacts()}};
   facts.text = fmt::format(
       "{}: run of {} by Sinew {}\n  {} frames from {:g} s to {:g} s, {}\n  bodies: {}\n"
-      "  actuators: {}\n  effectors: {}\n  probes: {}\n",
+      "  actuators: {}\n  effectors: {}\n  probes: {}\n  contacts: {}\n",
       options.file, run.scene_name(), run.sinew_version(), run.frames(), first, last,
       run.has_states() ? "with positions of all nodes" : "without positions of nodes",
       fmt::join(run.bodies(), ", "), fmt::join(run.actuators(), ", "),
-      fmt::join(run.effectors(), ", "), fmt::join(run.probes(), ", "));
+      fmt::join(run.effectors(), ", "), fmt::join(run.probes(), ", "),
+      fmt::join(run.contacts(), ", "));
   return facts;
 }
 

@@ -119,6 +119,87 @@ TEST_P(RandomSystems, IndefiniteOnesHaveTheRightInertia) {
   EXPECT_GT(indefinite, 0);
 }
 
+/// Of the passing rows all, none, and some groups, against the inverse.
+void expect_passing_agrees(Factorisation& factorisation, const BlockSystem& system,
+                           const BorderPattern& passing, const std::vector<double>& values) {
+  const Eigen::PartialPivLU<MatrixX> lu(system.dense_matrix());
+  const MatrixX border = system.dense_rows();
+  const Eigen::Map<const VectorX> right(system.right.data(),
+                                        static_cast<Eigen::Index>(system.right.size()));
+  const int most = passing.rows() / 3;
+  for (const int stride : {1, 3, 2, most + 1}) {
+    std::vector<std::int32_t> groups;
+    for (int g = stride > most ? most : 0; g < most; g += stride) groups.push_back(g);
+    const auto count = 3 * static_cast<Eigen::Index>(groups.size());
+    MatrixX rows = MatrixX::Zero(count, border.cols());
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const auto row =
+          static_cast<std::size_t>(3 * groups[static_cast<std::size_t>(k / 3)] + k % 3);
+      for (int e = passing.row_start[row]; e < passing.row_start[row + 1]; ++e) {
+        const auto entry = static_cast<std::size_t>(e);
+        for (int c = 0; c < 3; ++c) {
+          rows(k, 3 * passing.node[entry] + c) = values[3 * entry + static_cast<std::size_t>(c)];
+        }
+      }
+    }
+    factorisation.pass(values, groups);
+    const MatrixX solved = lu.solve(rows.transpose());
+    MatrixX coupling(count, border.rows() + 1);
+    coupling << solved.transpose() * border.transpose(), solved.transpose() * right;
+    const MatrixX compliance = rows * solved;
+    const MatrixX found = MatrixX(factorisation.passing_compliance().topLeftCorner(count, count))
+                              .selfadjointView<Eigen::Lower>();
+    const double scale = lu.inverse().cwiseAbs().maxCoeff();
+    EXPECT_LE((found - compliance).cwiseAbs().sum(),
+              1e-8 * scale * (1.0 + static_cast<double>(count)));
+    EXPECT_LE((factorisation.passing_coupling().topLeftCorner(count, coupling.cols()) - coupling)
+                  .cwiseAbs()
+                  .sum(),
+              1e-8 * scale * (1.0 + static_cast<double>(coupling.size())));
+  }
+}
+
+TEST_P(RandomSystems, PassingRowsAgreeWithDense) {
+  const int nodes = GetParam();
+  ThreadPool pool(1);
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    RandomSettings random;
+    random.nodes = nodes;
+    random.cliques = seed % 3 == 0 ? nodes / 2 : 2 * nodes;
+    random.clique_size = 3;
+    random.negative = seed % 2 == 0 ? 0.3 : 0.0;
+    random.rows = static_cast<int>(seed % 5);
+    random.seed = seed * 100 + static_cast<unsigned>(nodes);
+    const BlockSystem system = testing::random_system(random);
+    // Points on one node, or on several.
+    BorderPattern passing;
+    std::vector<double> values;
+    for (int g = 0; g < std::min(nodes, 20); ++g) {
+      std::vector<int> on = {(7 * g + 3) % nodes};
+      if (g % 3 == 0 && nodes > 4)
+        on = {(5 * g) % nodes, (5 * g + 1) % nodes, (11 * g + 4) % nodes};
+      std::ranges::sort(on);
+      on.erase(std::unique(on.begin(), on.end()), on.end());
+      for (int r = 0; r < 3; ++r) {
+        for (const int node : on) {
+          passing.node.push_back(node);
+          for (int c = 0; c < 3; ++c) {
+            values.push_back(std::sin(1.0 + static_cast<double>(values.size())));
+          }
+        }
+        passing.row_start.push_back(passing.entries());
+      }
+    }
+    for (const char* backend : {"block", "eigen-ldlt"}) {
+      SCOPED_TRACE(::testing::Message() << backend << " nodes " << nodes << " seed " << seed);
+      const auto factorisation =
+          analyse(system.pattern, system.border, settings_of(backend), passing)->create(pool);
+      ASSERT_NE(factorise(*factorisation, system), FactorStatus::singular);
+      expect_passing_agrees(*factorisation, system, passing, values);
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Sizes, RandomSystems,
                          ::testing::Values(1, 2, 3, 4, 5, 7, 8, 11, 13, 16, 17, 24, 31, 50, 77, 120,
                                            200));

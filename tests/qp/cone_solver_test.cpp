@@ -57,10 +57,12 @@ void expect_laws(const Contacts& contacts, const VectorX& x, double tolerance) {
 
 TEST(ProjectOnCone, IsTheNearestPoint) {
   Random random(3);
-  for (int trial = 0; trial < 200; ++trial) {
-    const Vector3 r = random.vector(3);
-    const double mu = random.uniform(0.0, 2.0);
+  for (int trial = 0; trial < 400; ++trial) {
+    Vector3 r = random.vector(3);
+    if (trial % 4 == 0) r.tail<2>().setZero();
+    const double mu = trial % 8 < 2 ? 0.0 : random.uniform(0.0, 2.0);
     const Vector3 nearest = project_on_cone(r, mu);
+    EXPECT_GE(nearest[0], 0.0);
     EXPECT_LE(nearest.tail<2>().norm(), mu * nearest[0] + 1e-15);
     // r - P(r) is in the polar cone and orthogonal to P(r).
     const Vector3 rest = r - nearest;

@@ -1,5 +1,6 @@
 #include "sinew/record/run_recorder.hpp"
 
+#include <array>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
@@ -18,6 +19,7 @@
 #include "sinew/mesh/read.hpp"
 #include "sinew/record/run_file.hpp"
 
+#include "sim/contact_robots.hpp"
 #include "sim/robots.hpp"
 
 namespace sinew::record {
@@ -180,6 +182,59 @@ TEST_F(RunRecorderTest, ProbesHaveATableAndSeries) {
   record_pull(bare, settings(), 1);
   EXPECT_FALSE(fs::exists(run / "probes.csv")) << "an older run's";
   EXPECT_TRUE(RunFile(run / "run.h5").probes().empty());
+}
+
+TEST_F(RunRecorderTest, ContactsReadBackBitForBit) {
+  sinew::testing::BlockOptions options{.angle = 0.5, .height = 1e-4};
+  sim::ModelBuilder builder = block_on_plane(options);
+  sim::ContactSettings wall;
+  wall.name = "wall";
+  wall.surface = constraint::Sphere{{0.0, 0.0, 0.1}, 0.01};
+  wall.points = Points::Zero(1, 3);
+  wall.points(0, 2) = 0.02;
+  sim::BaseMotion motion;
+  motion.translation[2] = sim::Signal::ramp({0.0, -0.01, 0.0, 1.0});
+  motion.angle = sim::Signal::ramp({0.0, 1.0, 0.0, 1.0});
+  wall.motion = motion;
+  builder.add_contact(wall);
+  sim::Simulation simulation(builder.build());
+  RecordSettings what = settings();
+  what.vtk = true;
+  RunRecorder recorder(simulation, nullptr, what);
+  std::vector<std::array<sim::ContactMoment, 2>> seen;
+  for (int k = 0; k <= 40; ++k) {
+    seen.push_back({simulation.contact_moment(0), simulation.contact_moment(1)});
+    simulation.step();
+    recorder.after_step();
+  }
+  recorder.finish();
+  const RunFile run(folder_ / "run" / "run.h5");
+  EXPECT_EQ(run.contacts(), (std::vector<std::string>{"floor", "wall"}));
+  int touching = 0;
+  for (std::size_t frame = 0; frame < seen.size(); ++frame) {
+    for (const int contact : {0, 1}) {
+      const sim::ContactMoment read =
+          run.contact(contact == 0 ? "floor" : "wall", static_cast<std::int64_t>(frame));
+      const sim::ContactMoment& was = seen[frame][static_cast<std::size_t>(contact)];
+      EXPECT_EQ(read.pose.affine(), was.pose.affine());
+      ASSERT_EQ(read.points.size(), was.points.size());
+      for (std::size_t k = 0; k < was.points.size(); ++k) {
+        const sim::ContactPoint &a = read.points[k], &b = was.points[k];
+        EXPECT_EQ(a.position, b.position);
+        EXPECT_EQ(a.gap, b.gap);
+        EXPECT_EQ(a.normal, b.normal);
+        EXPECT_EQ(a.normal_force, b.normal_force);
+        EXPECT_EQ(a.friction_force, b.friction_force);
+        EXPECT_EQ(a.state, b.state);
+        touching += a.state == qp::ContactState::open ? 0 : 1;
+      }
+    }
+  }
+  EXPECT_GT(touching, 100);
+  EXPECT_EQ(kind_of([&] { run.contact("flor", 0); }), ErrorKind::unknown_name);
+  EXPECT_EQ(kind_of([&] { run.contact("floor", 42); }), ErrorKind::out_of_range);
+  EXPECT_NE(text(folder_ / "run" / "run" / "run_000041.vtu").find("contact_force"),
+            std::string::npos);
 }
 
 TEST_F(RunRecorderTest, EveryOtherStepAndNoStates) {

@@ -69,6 +69,77 @@ TEST(ArmBody, MovesAsTheArmByItself) {
   }
 }
 
+/// The fluidic arm with all bends commanded, and a wall at x = far that points along it may touch.
+std::shared_ptr<const Model> commanded(const StepSettings& step, double angle, double far,
+                                       double friction) {
+  ModelBuilder builder(step);
+  builder.add_arm(fluidic(MassCentre::arc));
+  for (int segment = 0; segment < 4; ++segment) {
+    TorqueSettings bend = torque(segment, 0.0);
+    bend.command = {CommandKind::motion, Signal::constant(angle)};
+    builder.add_torque(bend);
+  }
+  if (far > 0.0) {
+    ContactSettings wall;
+    wall.name = "wall";
+    wall.surface = constraint::Plane{{far, 0.0, 0.0}, -Vector3::UnitX()};
+    wall.points = Points::Zero(2, 3);
+    wall.points(0, 2) = -0.2;
+    wall.points(1, 2) = -0.4;
+    wall.outside = mesh::Outside::nearest;
+    wall.friction = friction;
+    builder.add_contact(wall);
+  }
+  return builder.build();
+}
+
+// A jump makes the gyroscopic part of A large, which the law does not see.
+TEST(ArmBody, NewtonReachesACommandedAngleInOneStep) {
+  for (const auto integrator :
+       {mechanics::Integrator::backward_euler, mechanics::Integrator::bdf2}) {
+    StepSettings step;
+    step.time_step = 5e-3;
+    step.integrator = integrator;
+    step.method = Method::newton;
+    Simulation simulation(commanded(step, 0.1, 0.0, 0.0));
+    for (int k = 0; k < 10; ++k) {
+      simulation.step();
+      ASSERT_EQ(simulation.report().newton, NewtonStatus::converged);
+      for (int segment = 0; segment < 4; ++segment) {
+        EXPECT_NEAR(simulation.actuator(segment).motion, 0.1, 1e-7);
+      }
+    }
+  }
+}
+
+// Held bends leave a compliance of nothing but rounding to points that may touch.
+TEST(ArmBody, HeldBendsAreNoHindranceToOpenContacts) {
+  for (const Method method : {Method::one_linearisation, Method::newton}) {
+    for (const double friction : {0.0, 0.5}) {
+      StepSettings step;
+      step.integrator = mechanics::Integrator::quasi_static;
+      step.method = method;
+      Simulation simulation(commanded(step, 0.1, 1.0, friction));
+      for (int k = 0; k < 5; ++k) simulation.step();
+      EXPECT_NEAR(simulation.actuator(0).motion, 0.1, 1e-9);
+      EXPECT_EQ(simulation.contact_sum(0).normal_force, 0.0);
+      // Where they lead into the wall, no force can help.
+      Simulation blocked(commanded(step, 0.5, 0.05, friction));
+      Simulation mirrored(commanded(step, -0.5, 0.05, friction));
+      int failed = 0;
+      for (Simulation* one : {&blocked, &mirrored}) {
+        try {
+          for (int k = 0; k < 5; ++k) one->step();
+        } catch (const Error& error) {
+          EXPECT_EQ(error.kind(), ErrorKind::not_converged);
+          ++failed;
+        }
+      }
+      EXPECT_EQ(failed, 1);
+    }
+  }
+}
+
 TEST(ArmBody, SettlesInTheArmsEquilibrium) {
   StepSettings step;
   step.integrator = mechanics::Integrator::quasi_static;

@@ -1,5 +1,7 @@
 #include <array>
 #include <cmath>
+#include <functional>
+#include <map>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -7,6 +9,7 @@
 #include "sinew/core/error.hpp"
 
 #include "contact_robots.hpp"
+#include "support/allocation_guard.hpp"
 
 namespace sinew::sim {
 namespace {
@@ -291,6 +294,97 @@ TEST(Contact, ActuatorsAndContactsShareOneProblem) {
   }
 }
 
+/// A block that falls onto the floor and slides, and whose whole outside or bottom alone may touch.
+Simulation sliding(bool whole, Method method) {
+  BlockOptions options{.angle = 0.6, .height = 2e-3, .floor = false};
+  options.step.method = method;
+  ModelBuilder builder = block_on_plane(options);
+  const mesh::Mesh mesh = mesh::block({.corner = {-0.02, -0.02, options.height},
+                                       .size = {0.04, 0.04, 0.02},
+                                       .cells = options.cells});
+  ContactSettings floor;
+  floor.name = "floor";
+  floor.surface = constraint::Plane{};
+  floor.friction = 0.5;
+  if (whole) {
+    for (Eigen::Index n = 0; n < mesh.nodes.rows(); ++n) {
+      floor.nodes.push_back(static_cast<NodeId>(n));
+    }
+  } else {
+    floor.nodes = mesh.node_sets.at("z_min");
+  }
+  builder.add_contact(floor);
+  return Simulation(builder.build());
+}
+
+TEST(Contact, PointsThatStayAwayChangeNothing) {
+  for (const Method method : {Method::one_linearisation, Method::newton}) {
+    Simulation whole = sliding(true, method), bottom = sliding(false, method);
+    int left_out = 0;
+    for (int k = 0; k < 150; ++k) {
+      whole.step();
+      bottom.step();
+      left_out += whole.world().leaves_points_out() ? 1 : 0;
+    }
+    EXPECT_EQ(left_out, 150);
+    EXPECT_GT(bottom.contact_sum(0).normal_force, 0.0);
+    EXPECT_LT(
+        (whole.fem_body(0).positions() - bottom.fem_body(0).positions()).cwiseAbs().maxCoeff(),
+        1e-9 * 0.06);
+    EXPECT_NEAR(whole.contact_sum(0).normal_force, bottom.contact_sum(0).normal_force,
+                1e-6 * kBlockWeight);
+  }
+}
+
+// One step takes the block across a gap that is far larger than what counts as near.
+TEST(Contact, PointsThatArriveUnexpectedlyAreTakenIn) {
+  for (const Method method : {Method::one_linearisation, Method::newton}) {
+    for (const double pushed : {0.05, 1.5}) {
+      ModelBuilder builder(StepSettings{.time_step = 0.1, .method = method});
+      fem::FemBodySettings body;
+      body.name = "block";
+      const auto mesh = std::make_shared<const mesh::Mesh>(block_mesh(4));
+      body.mesh = mesh;
+      body.elements.regions = {{{1e5, 0.3}, material::Law::corotational, 1000.0, {}}};
+      body.elements.fixed_nodes = mesh->node_sets.at("x_min");
+      builder.add_fem_body(std::move(body));
+      ContactSettings floor;
+      floor.name = "floor";
+      floor.surface = constraint::Plane{{0.0, 0.0, -0.003}};
+      floor.nodes = mesh->node_sets.at("z_min");
+      floor.friction = 0.3;
+      builder.add_contact(floor);
+      ForceSettings push;
+      push.name = "push";
+      push.point = {0.02, 0.0, 0.02};
+      push.direction = -Vector3::UnitZ();
+      push.command = {CommandKind::effort, Signal::constant(pushed)};
+      builder.add_force(push);
+      Simulation simulation(builder.build());
+      simulation.step();
+      const ContactSum sum = simulation.contact_sum(0);
+      EXPECT_GE(sum.smallest_gap, -1e-9 * 0.06);
+      if (pushed < 1.0) {
+        EXPECT_EQ(sum.normal_force, 0.0);
+        EXPECT_GT(sum.smallest_gap, 1e-3);
+      } else {
+        EXPECT_GT(sum.normal_force, 0.1);
+        EXPECT_LT(sum.smallest_gap, 1e-9);
+      }
+    }
+  }
+}
+
+TEST(Contact, StepsDoNotAllocate) {
+  if (!sinew::testing::counts_allocations()) GTEST_SKIP();
+  Simulation simulation = sliding(true, Method::one_linearisation);
+  for (int k = 0; k < 60; ++k) simulation.step();
+  const long before = sinew::testing::allocations();
+  for (int k = 0; k < 60; ++k) simulation.step();
+  EXPECT_EQ(sinew::testing::allocations(), before);
+  EXPECT_TRUE(simulation.world().leaves_points_out());
+}
+
 TEST(Contact, RunsGoOnFromASavedStateBitForBit) {
   BlockOptions options{.angle = 0.3, .height = 1e-4};
   const auto model = block_on_plane(options).build();
@@ -305,6 +399,77 @@ TEST(Contact, RunsGoOnFromASavedStateBitForBit) {
   whole.reset();
   for (int k = 0; k < 60; ++k) whole.step();
   EXPECT_EQ(second.state_hash(), whole.state_hash());
+}
+
+/// The fingerprint of a block with one contact, changed.
+std::uint64_t fingerprint(const std::function<void(ContactSettings&)>& change) {
+  ModelBuilder builder = block_on_plane({.floor = false});
+  ContactSettings contact;
+  contact.name = "tool";
+  contact.surface = constraint::Capsule{{0.0, 0.0, -0.02}, {0.01, 0.0, -0.02}, 0.01};
+  contact.points = Points::Zero(2, 3);
+  contact.points.row(1) << 0.01, 0.0, 0.0;
+  BaseMotion motion;
+  motion.translation[2] = Signal::ramp({0.0, 0.001, 0.0, 1.0});
+  contact.motion = motion;
+  change(contact);
+  builder.add_contact(contact);
+  return builder.build()->fingerprint();
+}
+
+TEST(Contact, FingerprintsTellApartWhatMovesDifferently) {
+  using Change = std::function<void(ContactSettings&)>;
+  const auto capsule = [](ContactSettings& c) -> constraint::Capsule& {
+    return std::get<constraint::Capsule>(c.surface);
+  };
+  const std::vector<Change> changes = {
+      [](ContactSettings&) {},
+      [](ContactSettings& c) { c.friction = 0.25; },
+      [&](ContactSettings& c) { capsule(c).radius = 0.011; },
+      [&](ContactSettings& c) { capsule(c).from[1] = 0.001; },
+      [&](ContactSettings& c) { capsule(c).to[1] = 0.001; },
+      [](ContactSettings& c) { c.points.row(1) << 0.011, 0.0, 0.0; },
+      [](ContactSettings& c) { c.points.conservativeResize(1, 3); },
+      [](ContactSettings& c) { c.motion.reset(); },
+      [](ContactSettings& c) {
+        c.motion->translation[2] = Signal::ramp({0.0, 0.001, 0.0, 2.0});
+      },
+      [](ContactSettings& c) { c.motion->translation[2] = Signal::constant(0.001); },
+      [](ContactSettings& c) {
+        c.motion->translation[2] = Signal::sine({0.0, 0.001, 1.0, 0.0});
+      },
+      [](ContactSettings& c) {
+        c.motion->translation[2] = Signal::steps({{0.0, 0.001}});
+      },
+      [](ContactSettings& c) { c.motion->translation[2] = Signal::sampled({0.0}, {0.001}); },
+      [](ContactSettings& c) { c.motion->axis = Vector3::UnitX(); },
+      [](ContactSettings& c) { c.motion->centre[0] = 0.001; },
+      [](ContactSettings& c) { c.motion->angle = Signal::constant(0.1); },
+      [](ContactSettings& c) {
+        c.surface = constraint::Plane{{0.0, 0.0, -0.03}};
+      },
+      [](ContactSettings& c) {
+        c.surface = constraint::Plane{{0.0, 0.0, -0.04}};
+      },
+      [](ContactSettings& c) {
+        c.surface = constraint::Plane{{0.0, 0.0, -0.03}, {0.0, 0.1, 1.0}};
+      },
+      [](ContactSettings& c) {
+        c.surface = constraint::Sphere{{0.0, 0.0, -0.03}, 0.01};
+      },
+      [](ContactSettings& c) {
+        c.surface = constraint::Sphere{{0.0, 0.0, -0.04}, 0.01};
+      },
+      [](ContactSettings& c) {
+        c.surface = constraint::Sphere{{0.0, 0.0, -0.03}, 0.02};
+      },
+  };
+  std::map<std::uint64_t, std::size_t> seen;
+  for (std::size_t k = 0; k < changes.size(); ++k) {
+    const auto [other, is_new] = seen.emplace(fingerprint(changes[k]), k);
+    EXPECT_TRUE(is_new) << k << " and " << other->second;
+    EXPECT_EQ(fingerprint(changes[k]), other->first) << k;
+  }
 }
 
 TEST(Contact, ThreadsGiveTheSameBits) {

@@ -43,6 +43,7 @@ Frame sample() {
   frame.effectors = {7, 8, 9};
   frame.targets = {4, 5, 6};
   frame.probes = {3, 2, 1};
+  frame.contacts = {{}, {0, 0, 1, 0, 0, 0, 1, 1, 2, 3, 4, 5, 6, 2}};
   return frame;
 }
 
@@ -74,7 +75,7 @@ TEST(Frame, StandsAsDocumented) {
   EXPECT_EQ(number<std::uint64_t>(bytes, 32), 0xfedcba9876543210ULL);
   EXPECT_EQ(number<double>(bytes, 48), -3.0);
   const auto list = parts(bytes, 2);
-  ASSERT_EQ(list.size(), 6U);
+  ASSERT_EQ(list.size(), 8U);
   EXPECT_EQ(list[0].kind, 1);
   EXPECT_EQ(number<float>(bytes, list[0].at + 8), 3.0F);
   EXPECT_EQ(list[1].kind, 2);
@@ -85,7 +86,13 @@ TEST(Frame, StandsAsDocumented) {
   EXPECT_EQ(list[3].kind, 4);
   EXPECT_EQ(list[4].kind, 7);
   EXPECT_EQ(number<float>(bytes, list[4].at), 3.0F);
-  EXPECT_EQ(list[5].kind, 5);
+  EXPECT_EQ(list[5].kind, 8);
+  EXPECT_EQ(list[5].bytes, 0U);
+  EXPECT_EQ(list[6].kind, 8);
+  EXPECT_EQ(list[6].index, 1);
+  ASSERT_EQ(list[6].bytes, 4U * 14U);
+  EXPECT_EQ(number<float>(bytes, list[6].at + 4 * 13), 2.0F);
+  EXPECT_EQ(list[7].kind, 5);
 }
 
 TEST(Frame, LeavesOutWhatHasNotChanged) {

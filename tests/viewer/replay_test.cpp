@@ -63,6 +63,58 @@ TEST(Replay, ShowsAnArmAsItWas) {
   EXPECT_EQ(was->signals[1], 1.0);
 }
 
+constexpr const char* kFall = R"(sinew: 1
+time_step: 2 ms
+gravity: 0 0 -9.81 m/s^2
+integrator: backward-euler
+bodies:
+  block:
+    type: fem
+    mesh: {shape: block, length: 20 mm, width: 20 mm, height: 20 mm, element_size: 10 mm}
+    material: {model: corotational, young_modulus: 100 kPa, poisson_ratio: 0.4}
+    density: 1070 kg/m^3
+contacts:
+  floor:
+    body: block
+    surface: {plane: {normal: 0 0.1 1}}
+    nodes: {set: z_min}
+    friction: 0.5
+    motion: {z: {ramp: {to: 2 mm, duration: 0.1 s}}, angle: {ramp: {to: 90 deg, duration: 0.1 s}}, axis: 0 0 1}
+  roof:
+    body: block
+    surface: {sphere: {center: 10 10 30.5 mm, radius: 10 mm}}
+    nodes: {set: z_max}
+    friction: 0
+)";
+
+RecordedState moment_with_contacts(RobotState& state) {
+  RecordedState recorded = moment(state);
+  for (int c = 0; c < 2; ++c) recorded.contacts.push_back(state.simulation().contact_moment(c));
+  return recorded;
+}
+
+TEST(Replay, ShowsContactsAsTheyWere) {
+  RobotState run = state_of(kFall), replay = state_of(kFall);
+  for (int i = 0; i < 30; ++i) run.step();
+  replay.show(moment_with_contacts(run));
+  const auto was = run.frame({}, 1.0), seen = replay.frame({}, 1.0);
+  ASSERT_EQ(was->contacts.size(), 2U);
+  ASSERT_EQ(was->contacts[0].size(), 7U * (1U + 9U));
+  EXPECT_EQ(was->contacts, seen->contacts);
+  const auto& list = run.description().signals;
+  bool touches = false;
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    if (!list[k].key.starts_with("floor.") && !list[k].key.starts_with("roof.")) continue;
+    EXPECT_EQ(was->signals[k], seen->signals[k]) << list[k].key;
+    touches |= list[k].key == "floor.normal_force" && was->signals[k] > 0.0;
+  }
+  EXPECT_TRUE(touches);
+  EXPECT_NEAR(was->contacts[0][2], 0.002 * 30 * 0.002 / 0.1, 1e-9);  // the floor has risen
+  RecordedState short_of = moment_with_contacts(run);
+  short_of.contacts[0].points.pop_back();
+  EXPECT_THROW(replay.show(short_of), Error);
+}
+
 TEST(Replay, AnotherArmsAnglesAreRefused) {
   RobotState run = state_of(kArm), replay = state_of(kArm);
   RecordedState recorded = moment(run);

@@ -260,6 +260,7 @@ const connection = new Connection({
       frame.cables ??= latest.cables;
       frame.effectors ??= latest.effectors;
       frame.probes ??= latest.probes;
+      for (const [k, v] of latest.contacts) if (!frame.contacts.has(k)) frame.contacts.set(k, v);
     }
     // One that was under way when another field was chosen.
     for (const [body, {field: shown}] of frame.fields) {
@@ -339,6 +340,7 @@ const view = {
   request: (message: Record<string, unknown>) => connection.request(message),
   colour: chooseField,
   arrows: () => robot.arrows(),
+  contacts: () => robot.contacts.told(),
   screen: (x: number, y: number, z: number) => robot.screen(new Vector3(x, y, z)),
   plain: () => robot.plain(),
 };

@@ -1,5 +1,6 @@
 // The controls: run, view, actuators, targets, and how things stand.
 import {told} from './colours';
+import {STATES} from './contacts3d';
 import {button, make} from './dom';
 import type {Actuator, Effector, Quantity, Scene, Status} from './protocol';
 
@@ -25,6 +26,7 @@ export class Panel {
                                 'aria-label': 'Frame of the recorded run'});
   private recorder = button('Record', 'Record the run from now on', () => this.record());
   private probes: {value: HTMLElement; columns: number[]; unit: string}[] = [];
+  private contacts: {value: HTMLElement; columns: number[]}[] = [];
   private recorded = make('span', {className: 'recorded'});
   private status: Status | null = null;
   stiffness = 20;  // N/m, of the hand's spring
@@ -47,6 +49,7 @@ export class Panel {
     this.rows.clear();
     this.targets.clear();
     this.probes = [];
+    this.contacts = [];
     if (mode === 'gallery') return this.gallery(scene);
     if (mode === 'replay') return this.replay(scene);
     this.controller.replaceChildren(new Option('none (by hand)', ''),
@@ -67,7 +70,7 @@ export class Panel {
       heading('Control'),
       ...(scripted ? [] : [make('div', {className: 'line'}, make('label', {}, 'Controller', this.controller))]),
       ...scene.effectors.filter((e) => e.kind === 'point').map((e) => this.target(e)),
-      ...this.measured(scene), heading('Hand'), this.hand(),
+      ...this.measured(scene), ...this.touching(scene), heading('Hand'), this.hand(),
     );
   }
 
@@ -93,7 +96,7 @@ export class Panel {
       make('div', {className: 'line'}, make('label', {}, 'Speed', this.speed)), this.time,
       make('div', {className: 'line'}, this.who, this.drive,
            ...this.files()),
-      ...this.measured(scene));
+      ...this.measured(scene), ...this.touching(scene));
   }
 
   /** Names of probes and their numbers, which show() keeps up to date. */
@@ -109,7 +112,31 @@ export class Panel {
     return [make('h2', {textContent: 'Probes'}), ...rows];
   }
 
+  /** Names of contacts, their forces and states, and what the points' colours mean. */
+  private touching(scene: Scene): HTMLElement[] {
+    this.contacts = scene.contacts.map((contact) => ({
+      value: make('output', {'aria-label': `${contact.name}: contact`}),
+      columns: contact.signals.map((key) => scene.signals.findIndex((s) => s.key === key)),
+    }));
+    if (scene.contacts.length === 0) return [];
+    const key = STATES.map(([state, color]) => {
+      const dot = make('i', {className: 'dot'});
+      dot.style.background = `#${color.toString(16).padStart(6, '0')}`;
+      return make('span', {}, dot, state);
+    });
+    const rows = scene.contacts.map((contact, k) => make('div', {
+      className: 'measured', title: `${contact.points} points of ${contact.body} and a ${contact.surface.kind}; friction ${contact.friction}`},
+      make('span', {className: 'name', textContent: contact.name}), this.contacts[k].value));
+    return [make('h2', {textContent: 'Contacts'}), make('div', {className: 'line key'}, ...key), ...rows];
+  }
+
   private show(signals: Float64Array): void {
+    for (const {value, columns} of this.contacts) {
+      const [normal, , gap, sticking, slipping] = columns.map((k) => signals[k]);
+      const text = sticking + slipping > 0 ? `${told(normal, 'N')}, ${sticking} stick, ${slipping} slip`
+        : `open, ${told(gap, 'm')} away`;
+      if (value.textContent !== text) value.textContent = text;
+    }
     for (const {value, columns, unit} of this.probes) {
       const text = columns.map((k) => told(signals[k], unit)).join(', ');
       if (value.textContent !== text) value.textContent = text;

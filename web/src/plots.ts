@@ -9,7 +9,7 @@ const SAMPLES = 1200;   // at most
 const COLOURS = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#7a5195', '#5c5c5c'];
 const TITLES: Record<string, string> = {
   effort: 'Effort', motion: 'Motion', torque: 'Torque', pressure: 'Pressure', volume: 'Volume', effector: 'Effector', error: 'Error', rotation: 'Rotation',
-  'rotation error': 'Rotation error', probe: 'Probes', angle: 'Angles', energy: 'Energy',
+  'rotation error': 'Rotation error', probe: 'Probes', angle: 'Angles', contact: 'Contact forces', gap: 'Gaps', touching: 'Points that touch', energy: 'Energy',
   time: 'Time of a step', solver: 'Solver',
 };
 

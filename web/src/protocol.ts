@@ -8,13 +8,20 @@ export interface Actuator {name: string; type: string; body: string; quantities:
 export interface Effector {name: string; kind: 'point' | 'orientation'; directions: number[][]}
 /** `marks`: its points in the frame's `probes`; `signals`: keys of its numbers. */
 export interface Probe {name: string; kind: string; marks: number; signals: string[]}
+export type ContactSurface = {kind: 'plane'; point: number[]; normal: number[]}
+  | {kind: 'sphere'; centre: number[]; radius: number} | {kind: 'capsule'; ends: number[][]; radius: number};
+/** Points of a body that may touch a surface; `signals`: keys of its numbers. */
+export interface Contact {
+  name: string; body: string; surface: ContactSurface; friction: number; points: number; signals: string[];
+}
 export interface Controller {name: string; type: string; effectors: string[]}
 export interface Signal {key: string; label: string; unit: string; group: string}
 export interface FieldInfo {name: string; label: string; unit: string; description: string}
 export interface Scene {
   name: string; time_step: number; gravity: number[]; bounds: number[][];
   bodies: {name: string; vertices: number; triangles: number; nodes: number; elements: number}[];
-  fields: FieldInfo[]; actuators: Actuator[]; effectors: Effector[]; probes: Probe[]; controllers: Controller[];
+  fields: FieldInfo[]; actuators: Actuator[]; effectors: Effector[]; probes: Probe[]; contacts: Contact[];
+  controllers: Controller[];
   signals: Signal[];
   frames?: number; duration?: number; gallery?: boolean;
   examples?: {name: string; title: string; thumbnail: string | null}[];
@@ -36,6 +43,8 @@ export interface Frame {
   positions: Map<number, Float32Array>; fields: Map<number, {field: number; values: Float32Array}>;
   cables?: Float32Array; effectors?: Float32Array; targets?: Float32Array; pull?: Float32Array;
   probes?: Float32Array;
+  /** By contact: position (3) and quaternion (4) of the surface, then of each point position (3), force (3), state. */
+  contacts: Map<number, Float32Array>;
 }
 
 const MAGIC = 0x31574e53;
@@ -68,7 +77,7 @@ function decodeFrame(buffer: ArrayBuffer, view: DataView): Frame {
     time: view.getFloat64(24, true),
     hash: view.getBigUint64(32, true).toString(16).padStart(16, '0'),
     signals: new Float64Array(buffer, 40, count),
-    positions: new Map(), fields: new Map(),
+    positions: new Map(), fields: new Map(), contacts: new Map(),
   };
   for (let at = 40 + 8 * count; at + 8 <= buffer.byteLength;) {
     const kind = view.getUint16(at, true), index = view.getUint16(at + 2, true);
@@ -85,6 +94,7 @@ function decodeFrame(buffer: ArrayBuffer, view: DataView): Frame {
       if (kind === 5) frame.targets = values;
       if (kind === 6) frame.pull = values;
       if (kind === 7) frame.probes = values;
+      if (kind === 8) frame.contacts.set(index, values);
     }
     at += bytes;
   }

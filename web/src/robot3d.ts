@@ -11,6 +11,7 @@ import {Line2} from 'three/addons/lines/Line2.js';
 import {LineGeometry} from 'three/addons/lines/LineGeometry.js';
 import {LineMaterial} from 'three/addons/lines/LineMaterial.js';
 import {linearTable, paint, told} from './colours';
+import {Contacts3d} from './contacts3d';
 import {make} from './dom';
 import type {Frame, Scene, Surface} from './protocol';
 
@@ -57,6 +58,7 @@ export class Robot3d {
   private effectors: Mesh[] = [];
   private targets: Mesh[] = [];
   private probes: {line: Line; ends: Mesh[]; marks: number}[] = [];
+  readonly contacts = new Contacts3d();
   private spring = new Line(new BufferGeometry(), new LineBasicMaterial({color: STRONG}));
   private size = 0.2;
   private table = linearTable('viridis');
@@ -180,6 +182,8 @@ export class Robot3d {
       this.robot.add(line, ...ends);
       return {line, ends, marks};
     });
+    this.contacts.scene(scene, this.size);
+    this.robot.add(this.contacts.root);
     this.chosen = -1;
     this.camera.near = 1e-3 * this.size;
     this.camera.far = 50 * this.size;
@@ -261,6 +265,7 @@ export class Robot3d {
     }
     if (frame.cables) this.drawCables(frame.cables, frame.signals);
     if (frame.probes) this.drawProbes(frame.probes);
+    this.contacts.update(frame.contacts);
     if (frame.effectors) this.place(this.effectors, frame.effectors);
     if (frame.targets) this.place(this.targets, frame.targets);
     this.steer();

@@ -15,6 +15,7 @@ const PACKAGE = process.env.SINEW_PYTHON_PATH ?? join(ROOT, 'build/release/pytho
 const CHROMIUM = process.env.SINEW_CHROMIUM ?? '/usr/bin/chromium';
 const DIRECT = join(ROOT, 'examples/trunk/trunk.yaml');
 const MODULE = join(ROOT, 'examples/finger/module.yaml');
+const SQUEEZE = join(ROOT, 'examples/contact/squeeze.yaml');
 const STEERED = join(ROOT, 'examples/trunk/circle.yaml');
 
 let browser;
@@ -290,6 +291,46 @@ test('probes are told as numbers and plotted', async () => {
   assert.match(await page.locator('#plots .u-legend').first().innerText(), /bending/);
   await page.close();
   await stop(served);
+});
+
+test('contacts are drawn, live and as they were recorded', async () => {
+  const folder = mkdtempSync(join(tmpdir(), 'sinew-view-'));
+  execFileSync(PROGRAM, ['run', SQUEEZE, '--duration', '0.1s', '--out', folder, '--quiet']);
+  const expected = python(`
+import json, sinew
+sim = sinew.load(${JSON.stringify(SQUEEZE)})
+sim.step(80)
+left = sim.contact("left")
+print(json.dumps({"force": left.normal_force, "states": list(left.states), "forces": left.normal_forces.tolist()}))`);
+  const count = (state) => expected.states.filter((s) => s === state).length;
+  assert.ok(count('stick') + count('slip') > 3, 'it is held');
+  const shown = async (page) => {
+    await until(page, (s) => s.step === 80);
+    return (await drawn(page, () => window.sinewView.contacts()))[0];
+  };
+  const check = async (page) => {
+    const left = await shown(page);
+    assert.deepEqual(left.points, ['open', 'stick', 'slip'].map(count));
+    assert.ok(left.arrows > 0 && left.arrows <= count('stick') + count('slip'));
+    assert.ok(Math.abs(left.position[0] - 0.005) < 1e-6, 'the rod has closed');
+    assert.ok(Math.abs((await state(page)).signals['left.normal_force'] - expected.force) < 1e-9);
+    assert.match(await page.locator('output[aria-label="left: contact"]').innerText(), / N, \d+ stick, \d+ slip/);
+  };
+  const live = await serve(SQUEEZE, 0, '--paused');
+  const errors = [];
+  const page = await open(live.url, errors);
+  await ask(page, {type: 'step', count: 80});
+  await check(page);
+  await page.close();
+  await stop(live);
+  const replayed = await serve(folder, 0, '--paused');
+  const again = await open(replayed.url, errors);
+  await again.locator('[aria-label="Frame of the recorded run"]').fill('80');
+  await check(again);
+  assert.deepEqual(errors, []);
+  await again.close();
+  await stop(replayed);
+  rmSync(folder, {recursive: true});
 });
 
 test('the robot goes where its target is put', async () => {

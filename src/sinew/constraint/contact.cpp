@@ -30,7 +30,7 @@ void Contact::declare(mechanics::RowPattern& rows, std::vector<mechanics::RowCur
   first_entry_ = rows.entries();
   row_count_ = 3 * static_cast<int>(points_.size());
   for (const auto& point : points_) {
-    for (int k = 0; k < 3; ++k) rows.add_row({point});
+    for (int k = 0; k < 3; ++k) rows.add_row({point}, true);
   }
 }
 

@@ -36,7 +36,8 @@ FemBody::FemBody(const FemBodyModel& model, ThreadPool& pool, bool with_curvatur
   const auto nodes = model.elements().free_nodes();
   const auto size = 3 * static_cast<Eigen::Index>(nodes.size());
   for (VectorX* v : {&right_, &motion_, &base_, &scratch_}) v->setZero(size);
-  row_effort_.resize(model.rows().size());
+  row_effort_.resize(model.fixed_rows());
+  passing_.reserve((model.rows().size() - model.fixed_rows()) / 3);
   double modulus = 0.0;
   for (const Region& region : model.settings().elements.regions) {
     modulus = std::max(modulus, region.young_modulus());
@@ -237,6 +238,7 @@ void FemBody::take_rows(const mechanics::RowValues& rows) {
     const Vector3& direction = rows.direction[static_cast<std::size_t>(s.entry)];
     for (int c = 0; c < 3; ++c) value[c] += s.weight * direction[c];
   }
+  take_presence(rows);
   const auto held = model_.elements().held();
   if (held.empty()) return;
   for (std::size_t e = 0; e < active_->system.border.node.size(); ++e) {
@@ -247,6 +249,26 @@ void FemBody::take_rows(const mechanics::RowValues& rows) {
       }
     }
   }
+}
+
+void FemBody::take_presence(const mechanics::RowValues& rows) {
+  passing_.clear();
+  const auto& own = model_.rows();
+  for (std::size_t k = model_.fixed_rows(); k < own.size(); k += 3) {
+    if (rows.present[static_cast<std::size_t>(own[k])] == 0) continue;
+    passing_.push_back(static_cast<std::int32_t>((k - model_.fixed_rows()) / 3));
+  }
+}
+
+Vector3 FemBody::proposed_motion(int point) const {
+  const auto& a = model_.attachment(point);
+  const auto free = model_.elements().free_index();
+  Vector3 sum = Vector3::Zero();
+  for (std::size_t k = 0; k < a.nodes.size(); ++k) {
+    const auto node = free[static_cast<std::size_t>(a.nodes[k])];
+    if (node >= 0) sum += a.weights[k] * motion_.segment<3>(3 * node);
+  }
+  return sum;
 }
 
 double FemBody::residual(std::span<const double> effort) {
@@ -284,28 +306,65 @@ void FemBody::hold_imbalance(std::span<const double> effort) {
 
 linalg::FactorStatus FemBody::condense() {
   active_->assembly.hold();
-  return active_->factorisation->factorise(active_->assembly.matrix(), active_->border,
-                                           span_of(right_));
+  const std::span<const double> border(active_->border);
+  return active_->factorisation->factorise(
+      active_->assembly.matrix(), border.first(3 * active_->system.fixed_entries), span_of(right_));
 }
 
 void FemBody::add_compliance(MatrixX& compliance, VectorX& free_motion) const {
   const MatrixX& own = active_->factorisation->compliance();
   const VectorX& motion = active_->factorisation->free_motion();
-  const auto& rows = model_.rows();
-  for (std::size_t j = 0; j < rows.size(); ++j) {
+  const std::span<const std::int32_t> rows(model_.rows());
+  const std::size_t fixed = model_.fixed_rows();
+  for (std::size_t j = 0; j < fixed; ++j) {
     const auto column = static_cast<Eigen::Index>(j);
     free_motion[rows[j]] += motion[column];
-    for (std::size_t i = 0; i < rows.size(); ++i) {
+    for (std::size_t i = 0; i < fixed; ++i) {
       compliance(rows[i], rows[j]) += own(static_cast<Eigen::Index>(i), column);
+    }
+  }
+  if (!passing_.empty()) add_passing_compliance(compliance, free_motion);
+}
+
+void FemBody::add_passing_compliance(MatrixX& compliance, VectorX& free_motion) const {
+  const std::span<const double> border(active_->border);
+  active_->factorisation->pass(border.subspan(3 * active_->system.fixed_entries), passing_);
+  const MatrixX& own = active_->factorisation->passing_compliance();
+  const MatrixX& coupling = active_->factorisation->passing_coupling();
+  const std::span<const std::int32_t> rows(model_.rows());
+  const std::size_t fixed = model_.fixed_rows();
+  const auto row_of = [&](Eigen::Index k) {
+    const auto group = static_cast<std::size_t>(passing_[static_cast<std::size_t>(k / 3)]);
+    return rows[fixed + 3 * group + static_cast<std::size_t>(k % 3)];
+  };
+  const auto count = 3 * static_cast<Eigen::Index>(passing_.size());
+  for (Eigen::Index j = 0; j < count; ++j) {
+    const std::int32_t column = row_of(j);
+    free_motion[column] += coupling(j, static_cast<Eigen::Index>(fixed));
+    for (std::size_t i = 0; i < fixed; ++i) {
+      const double value = coupling(j, static_cast<Eigen::Index>(i));
+      compliance(rows[i], column) += value;
+      compliance(column, rows[i]) += value;
+    }
+    compliance(column, column) += own(j, j);
+    for (Eigen::Index i = j + 1; i < count; ++i) {
+      const std::int32_t row = row_of(i);
+      compliance(row, column) += own(i, j);
+      compliance(column, row) += own(i, j);
     }
   }
 }
 
 void FemBody::solve_motion(std::span<const double> effort) {
-  for (std::size_t k = 0; k < row_effort_.size(); ++k) {
-    row_effort_[k] = effort[static_cast<std::size_t>(model_.rows()[k])];
+  if (model_.rows().size() > model_.fixed_rows()) {
+    residual(effort);
+    active_->factorisation->solve(span_of(scratch_), span_of(motion_));
+  } else {
+    for (std::size_t k = 0; k < row_effort_.size(); ++k) {
+      row_effort_[k] = effort[static_cast<std::size_t>(model_.rows()[k])];
+    }
+    active_->factorisation->solve_with_effort(row_effort_, span_of(motion_));
   }
-  active_->factorisation->solve_with_effort(row_effort_, span_of(motion_));
   if (!open_stiffness_.empty()) correct_for_open_pressure();
   remember_base();
 }

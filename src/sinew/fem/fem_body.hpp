@@ -32,6 +32,8 @@ class FemBody : public mechanics::Body {
   void linearise(const mechanics::LinearisationRequest& request) override;
   void add_curvature(const mechanics::RowCurvature& curvature) override;
   void take_rows(const mechanics::RowValues& rows) override;
+  void take_presence(const mechanics::RowValues& rows) override;
+  Vector3 proposed_motion(int point) const override;
   double residual(std::span<const double> effort) override;
   linalg::FactorStatus condense() override;
   void hold_imbalance(std::span<const double> effort) override;
@@ -120,6 +122,7 @@ class FemBody : public mechanics::Body {
   void place_base();
   void remember_base();
   void prepare_history(double time_step);
+  void add_passing_compliance(MatrixX& compliance, VectorX& free_motion) const;
   /// (3,) N on a mesh node.
   Vector3 weight(NodeId node) const {
     return model_.elements().load_mass()[node] * model_.settings().gravity;
@@ -145,6 +148,8 @@ class FemBody : public mechanics::Body {
   // imbalance from the first time that it is held.
   VectorX right_, motion_, base_, scratch_, travel_, momentum_, imbalance_;
   std::vector<double> row_effort_;
+  std::vector<std::int32_t>
+      passing_;  // groups of three of the rows that come and go: those present
   double imbalance_share_ = 0.0;
   std::optional<Tether> tether_;
   std::optional<Eigen::Isometry3d> base_pose_;                                // asked for

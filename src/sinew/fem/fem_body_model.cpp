@@ -69,6 +69,10 @@ void FemBodyModel::finish(int body, const mechanics::RowPattern& rows,
                                   [&](const auto& point) { return point.body == body; });
     if (mine) rows_.push_back(row);
   }
+  const auto passing = std::stable_partition(rows_.begin(), rows_.end(), [&](std::int32_t row) {
+    return rows.passing[static_cast<std::size_t>(row)] == 0;
+  });
+  fixed_rows_ = static_cast<std::size_t>(passing - rows_.begin());
   plain_ = make_system(settings_.elements);
   for (const auto& curvature : curvatures) {
     const bool mine = curvature.first.body == body && curvature.second.body == body;
@@ -143,7 +147,18 @@ FemSystem FemBodyModel::make_system(const FemModelSettings& elements) const {
       }
     }
   }
-  system.plan = linalg::analyse(system.elements->pattern(), system.border, factorisation_);
+  // What stands in the factorisation's border, and what beside it.
+  linalg::BorderPattern fixed;
+  const auto& starts = system.border.row_start;
+  const auto split = static_cast<std::ptrdiff_t>(fixed_rows_);
+  const std::int32_t entries = starts[fixed_rows_];
+  system.fixed_entries = static_cast<std::size_t>(entries);
+  fixed.row_start.assign(starts.begin(), starts.begin() + split + 1);
+  fixed.node.assign(system.border.node.begin(), system.border.node.begin() + entries);
+  system.passing.row_start.assign(starts.begin() + split, starts.end());
+  for (std::int32_t& start : system.passing.row_start) start -= entries;
+  system.passing.node.assign(system.border.node.begin() + entries, system.border.node.end());
+  system.plan = linalg::analyse(system.elements->pattern(), fixed, factorisation_, system.passing);
   return system;
 }
 

@@ -39,7 +39,9 @@ struct FemSystem {
     double weight = 0.0;
   };
   std::shared_ptr<const FemModel> elements;
-  linalg::BorderPattern border;
+  linalg::BorderPattern border;   ///< of all rows, those that come and go behind the others
+  linalg::BorderPattern passing;  ///< these alone
+  std::size_t fixed_entries = 0;  ///< of the border, before those
   std::vector<Scatter> scatter;
   std::shared_ptr<const linalg::FactorisationPlan> plan;
 };
@@ -79,8 +81,12 @@ class FemBodyModel : public mechanics::BodyModel {
   const Attachment& attachment(int point) const {
     return attachments_[static_cast<std::size_t>(point)];
   }
-  /// World rows that touch this body, ascending.
+  /// World rows that touch this body: those that are always there ascending, then those that come
+  /// and go.
   const std::vector<std::int32_t>& rows() const { return rows_; }
+  /// How many of them are always there.
+  std::size_t fixed_rows() const { return fixed_rows_; }
+  bool leaves_rows_out() const override { return true; }
   /// The plain system, or the one whose pattern holds the rows' curvature (made at first use; safe
   /// from several threads).
   const FemSystem& system(bool with_curvature) const;
@@ -96,6 +102,7 @@ class FemBodyModel : public mechanics::BodyModel {
 
   int body_ = -1;
   std::vector<std::int32_t> rows_;
+  std::size_t fixed_rows_ = 0;
   mechanics::RowPattern world_rows_;
   std::vector<std::array<std::int32_t, 2>> coupled_points_;
   linalg::FactorisationSettings factorisation_;

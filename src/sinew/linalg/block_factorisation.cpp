@@ -6,6 +6,7 @@
 #include "sinew/linalg/block_numeric.hpp"
 #include "sinew/linalg/block_schedule.hpp"
 #include "sinew/linalg/block_symbolic.hpp"
+#include "sinew/linalg/passing_rows.hpp"
 
 namespace sinew::linalg {
 
@@ -17,11 +18,13 @@ constexpr double kDissectionBonus = 1.1;
 
 class BlockFactorisation final : public Factorisation {
  public:
-  BlockFactorisation(std::shared_ptr<const BlockSymbolic> symbolic, ThreadPool& pool)
+  BlockFactorisation(std::shared_ptr<const BlockSymbolic> symbolic, const BorderPattern& passing,
+                     ThreadPool& pool)
       : symbolic_(std::move(symbolic)),
         pool_(pool),
         numeric_(*symbolic_, pool.size()),
         schedule_(*symbolic_, pool.size()),
+        passing_(*symbolic_, passing),
         unknowns_(3 * static_cast<std::size_t>(symbolic_->nodes)),
         weights_(3 * static_cast<std::size_t>(symbolic_->border_nodes)),
         compliance_(symbolic_->border_rows, symbolic_->border_rows),
@@ -59,14 +62,20 @@ class BlockFactorisation final : public Factorisation {
     }
   }
 
+  void pass(std::span<const double> values, std::span<const std::int32_t> groups) override {
+    passing_.condense(numeric_, values, groups);
+  }
+  const MatrixX& passing_compliance() const override { return passing_.compliance(); }
+  const MatrixX& passing_coupling() const override { return passing_.coupling(); }
+
   std::span<double> spare_memory() override { return numeric_.panels(); }
 
   int negative_pivots() const override { return numeric_.negative_pivots(); }
 
   std::size_t bytes() const override {
     const Eigen::Index rows = symbolic_->border_rows;
-    return numeric_.bytes() + schedule_.bytes() + unknowns_.bytes() + weights_.bytes() +
-           static_cast<std::size_t>(rows * (rows + 1)) * sizeof(double);
+    return numeric_.bytes() + schedule_.bytes() + passing_.bytes() + unknowns_.bytes() +
+           weights_.bytes() + static_cast<std::size_t>(rows * (rows + 1)) * sizeof(double);
   }
 
  private:
@@ -98,6 +107,7 @@ class BlockFactorisation final : public Factorisation {
   ThreadPool& pool_;
   BlockNumeric numeric_;
   BlockSchedule schedule_;
+  PassingRows passing_;
   AlignedBuffer unknowns_;
   AlignedBuffer weights_;
   MatrixX compliance_;
@@ -107,8 +117,9 @@ class BlockFactorisation final : public Factorisation {
 
 class BlockPlan final : public FactorisationPlan {
  public:
-  BlockPlan(std::shared_ptr<const BlockSymbolic> symbolic, Ordering ordering)
-      : symbolic_(std::move(symbolic)), ordering_(ordering) {}
+  BlockPlan(std::shared_ptr<const BlockSymbolic> symbolic, Ordering ordering,
+            const BorderPattern& passing)
+      : symbolic_(std::move(symbolic)), ordering_(ordering), passing_(passing) {}
 
   std::string_view backend() const override { return "block"; }
   std::string_view ordering() const override {
@@ -119,29 +130,30 @@ class BlockPlan final : public FactorisationPlan {
   }
   double factor_flops() const override { return symbolic_->flops; }
   std::unique_ptr<Factorisation> create(ThreadPool& pool) const override {
-    return std::make_unique<BlockFactorisation>(symbolic_, pool);
+    return std::make_unique<BlockFactorisation>(symbolic_, passing_, pool);
   }
 
  private:
   std::shared_ptr<const BlockSymbolic> symbolic_;
   Ordering ordering_;
+  BorderPattern passing_;
 };
 
 }  // namespace
 
 PlanPointer make_block_plan(const BlockPattern& pattern, const BorderPattern& border,
-                            const FactorisationSettings& settings) {
+                            const FactorisationSettings& settings, const BorderPattern& passing) {
   const auto make = [&](Ordering ordering) {
     return std::make_shared<const BlockSymbolic>(pattern, border, ordering, SupernodeSettings{});
   };
   if (settings.ordering != Ordering::fastest) {
-    return std::make_shared<BlockPlan>(make(settings.ordering), settings.ordering);
+    return std::make_shared<BlockPlan>(make(settings.ordering), settings.ordering, passing);
   }
   auto amd = make(Ordering::amd);
   auto metis = make(Ordering::metis);
   const bool keep_metis = estimated_time(*metis) < kDissectionBonus * estimated_time(*amd);
   return std::make_shared<BlockPlan>(keep_metis ? metis : amd,
-                                     keep_metis ? Ordering::metis : Ordering::amd);
+                                     keep_metis ? Ordering::metis : Ordering::amd, passing);
 }
 
 }  // namespace sinew::linalg

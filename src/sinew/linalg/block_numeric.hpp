@@ -56,6 +56,13 @@ class BlockNumeric {
     return {factor_.data(), static_cast<std::size_t>(symbolic_->doubles)};
   }
 
+  /// Of a factorised panel: its values, S of its own columns, whether all of them are positive, and
+  /// its diagonal block to substitute with.
+  const double* values(const Panel& panel) const { return factor_.data() + panel.offset; }
+  const double* sign(const Panel& panel) const { return sign_.data() + 3 * panel.first; }
+  bool positive(int panel) const { return negatives_[static_cast<std::size_t>(panel)] == 0; }
+  DiagonalBlock diagonal_block(int panel, Scratch& scratch);
+
   const BlockSymbolic& symbolic() const { return *symbolic_; }
   Scratch& scratch(int thread) { return scratch_[static_cast<std::size_t>(thread)]; }
   /// Entry (i, j), i >= j, of the border's panel.
@@ -67,8 +74,6 @@ class BlockNumeric {
  private:
   void apply(const Update& update, const Panel& target, double* panel, int row_begin, int row_end,
              Scratch& scratch) const;
-  DiagonalBlock diagonal_block(int panel, Scratch& scratch);
-
   const BlockSymbolic* symbolic_;
   AlignedBuffer factor_;
   AlignedBuffer inverse_;  ///< 1 / L_jj; before a panel is factorised, the magnitude of A_jj

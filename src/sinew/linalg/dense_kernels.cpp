@@ -65,10 +65,13 @@ inline void product_tile(const Product& p, int row, int column, double* c, long 
   }
 }
 
-template <Store mode>
+enum class Part { lower, whole };
+
+template <Store mode, Part part = Part::lower>
 void product_rows(const Product& p, int row_begin, int row_end, double* c, long leading) {
   const auto strip = [&]<int C>(int column) {
-    for_row_tiles(std::max(row_begin, column), row_end, [&]<int V>(int row) {
+    const int first = part == Part::whole ? row_begin : std::max(row_begin, column);
+    for_row_tiles(first, row_end, [&]<int V>(int row) {
       if constexpr (V <= kMaxVectors) {
         product_tile<V, C, mode>(p, row, column, c + (row - row_begin) + column * leading, leading);
       }
@@ -266,6 +269,10 @@ void multiply(const Product& product, int row_begin, int row_end, double* w, lon
   product_rows<Store::assign>(product, row_begin, row_end, w, leading_w);
 }
 
+void multiply_whole(const Product& product, int rows, double* w, long leading_w) {
+  product_rows<Store::assign, Part::whole>(product, 0, rows, w, leading_w);
+}
+
 void multiply_subtract(const Product& product, int rows, double* c, long leading_c) {
   product_rows<Store::subtract>(product, 0, rows, c, leading_c);
 }
@@ -284,6 +291,19 @@ void factorise_panel(DiagonalBlock& block, int row_end) {
 void solve_panel_rows(const DiagonalBlock& block, int row_begin, int row_end) {
   for_strips(block.columns, [&]<int C>(int column) {
     solve_strip<C>(block, finished_columns<C>(block, column), column, row_begin, row_end);
+  });
+}
+
+void solve_rows_apart(const DiagonalBlock& block, double* rows, long leading, int count) {
+  for_strips(block.columns, [&]<int C>(int column) {
+    const Triangle<C> triangle(block, column);
+    Product finished = finished_columns<C>(block, column);
+    finished.a = rows;
+    finished.leading_a = leading;
+    double* const c = rows + column * leading;
+    for_row_tiles(0, count, [&]<int V>(int row) {
+      if constexpr (V <= kMaxVectors) solve_tile<V, C>(finished, triangle, row, c + row);
+    });
   });
 }
 

@@ -21,6 +21,9 @@ struct Product {
 /// 7 rows of w, past the end.
 void multiply(const Product& product, int row_begin, int row_end, double* w, long leading_w);
 
+/// w = A B^T, all of it: likewise.
+void multiply_whole(const Product& product, int rows, double* w, long leading_w);
+
 /// c -= A B^T, likewise; up to 7 rows of c past the end change by what A holds there.
 void multiply_subtract(const Product& product, int rows, double* c, long leading_c);
 
@@ -43,6 +46,9 @@ void factorise_panel(DiagonalBlock& block, int row_end);
 /// Carries a finished factorisation through rows row_begin .. row_end-1 (row_end - row_begin a
 /// multiple of 8, or zeros behind).
 void solve_panel_rows(const DiagonalBlock& block, int row_begin, int row_end);
+
+/// The same for `count` rows that stand by themselves, column-major; changes up to 7 rows more.
+void solve_rows_apart(const DiagonalBlock& block, double* rows, long leading, int count);
 
 /// Backward substitution with one panel: v holds the values of the rows below, zeros at the
 /// padding, and y in its first `columns` entries, which become x: L^T x = y - L_below^T v_below.

@@ -21,7 +21,7 @@ using Llt = Eigen::SimplicialLLT<SparseMatrix, Eigen::Lower, AmdOrdering>;
 struct ScalarPattern {
   SparseMatrix matrix;  ///< values are 1
   std::vector<int> source;
-  BorderPattern border;
+  BorderPattern border, passing;
   std::size_t entries = 0;
   double flops = 0;
 };
@@ -96,6 +96,22 @@ class EigenFactorisation final : public Factorisation {
     Eigen::Map<MatrixX>(x.data(), matrix_.rows(), count) = solver_.solve(b).eval();
   }
 
+  void pass(std::span<const double> values, std::span<const std::int32_t> groups) override {
+    MatrixX rows = MatrixX::Zero(matrix_.rows(), 3 * static_cast<Eigen::Index>(groups.size()));
+    const BorderPattern& pattern = pattern_->passing;
+    for (Eigen::Index k = 0; k < rows.cols(); ++k) {
+      const auto row = 3 * static_cast<std::size_t>(groups[static_cast<std::size_t>(k / 3)]) +
+                       static_cast<std::size_t>(k % 3);
+      fill_row(pattern, row, values, rows.col(k));
+    }
+    const MatrixX solved = solver_.solve(rows);
+    passing_compliance_ = rows.transpose() * solved;
+    passing_coupling_.resize(rows.cols(), rows_.cols() + 1);
+    passing_coupling_ << solved.transpose() * rows_, rows.transpose() * solved_right_;
+  }
+  const MatrixX& passing_compliance() const override { return passing_compliance_; }
+  const MatrixX& passing_coupling() const override { return passing_coupling_; }
+
   int negative_pivots() const override { return negatives_; }
 
   std::size_t bytes() const override {
@@ -106,15 +122,17 @@ class EigenFactorisation final : public Factorisation {
  private:
   void fill_rows(std::span<const double> border) {
     rows_.setZero();
-    const BorderPattern& pattern = pattern_->border;
-    for (int k = 0; k < pattern.rows(); ++k) {
-      for (int e = pattern.row_start[static_cast<std::size_t>(k)];
-           e < pattern.row_start[static_cast<std::size_t>(k) + 1]; ++e) {
-        const int node = pattern.node[static_cast<std::size_t>(e)];
-        for (int c = 0; c < 3; ++c) {
-          rows_(3 * node + c, k) = border[static_cast<std::size_t>(3 * e + c)];
-        }
-      }
+    for (Eigen::Index k = 0; k < rows_.cols(); ++k) {
+      fill_row(pattern_->border, static_cast<std::size_t>(k), border, rows_.col(k));
+    }
+  }
+
+  static void fill_row(const BorderPattern& pattern, std::size_t row,
+                       std::span<const double> values, Eigen::Ref<VectorX> column) {
+    for (int e = pattern.row_start[row]; e < pattern.row_start[row + 1]; ++e) {
+      const int node = pattern.node[static_cast<std::size_t>(e)];
+      for (int c = 0; c < 3; ++c)
+        column[3 * node + c] = values[static_cast<std::size_t>(3 * e + c)];
     }
   }
 
@@ -135,7 +153,7 @@ class EigenFactorisation final : public Factorisation {
   MatrixX rows_;
   MatrixX solved_rows_;
   VectorX solved_right_;
-  MatrixX compliance_;
+  MatrixX compliance_, passing_compliance_, passing_coupling_;
   VectorX free_motion_;
   double free_energy_ = 0;
   int negatives_ = 0;
@@ -144,9 +162,11 @@ class EigenFactorisation final : public Factorisation {
 template <typename Solver>
 class EigenPlan final : public FactorisationPlan {
  public:
-  EigenPlan(const BlockPattern& pattern, const BorderPattern& border, std::string_view name)
+  EigenPlan(const BlockPattern& pattern, const BorderPattern& border, const BorderPattern& passing,
+            std::string_view name)
       : name_(name) {
     auto scalars = std::make_shared<ScalarPattern>(expand(pattern, border));
+    scalars->passing = passing;
     count_factor(*scalars);
     scalars_ = std::move(scalars);
   }
@@ -199,13 +219,13 @@ class EigenPlan final : public FactorisationPlan {
 }  // namespace
 
 PlanPointer make_eigen_ldlt_plan(const BlockPattern& pattern, const BorderPattern& border,
-                                 const FactorisationSettings&) {
-  return std::make_shared<EigenPlan<Ldlt>>(pattern, border, "eigen-ldlt");
+                                 const FactorisationSettings&, const BorderPattern& passing) {
+  return std::make_shared<EigenPlan<Ldlt>>(pattern, border, passing, "eigen-ldlt");
 }
 
 PlanPointer make_eigen_llt_plan(const BlockPattern& pattern, const BorderPattern& border,
-                                const FactorisationSettings&) {
-  return std::make_shared<EigenPlan<Llt>>(pattern, border, "eigen-llt");
+                                const FactorisationSettings&, const BorderPattern& passing) {
+  return std::make_shared<EigenPlan<Llt>>(pattern, border, passing, "eigen-llt");
 }
 
 }  // namespace sinew::linalg

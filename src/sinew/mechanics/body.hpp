@@ -80,6 +80,10 @@ class BodyModel {
   /// points of one element it does. After finish().
   virtual bool couples(int first, int second) const = 0;
 
+  /// Whether rows that come and go are worth leaving out (see RowValues::present); a body of few
+  /// coordinates takes all rows always.
+  virtual bool leaves_rows_out() const { return false; }
+
   /// A volume mesh that shows the body at rest, for records and the view.
   virtual const mesh::Mesh& mesh() const = 0;
 
@@ -125,6 +129,10 @@ class Body {
   virtual void take_rows(const RowValues& rows) = 0;
   /// |b + H^T effort|, N: how far the current state is from satisfying the step's equation.
   virtual double residual(std::span<const double> effort) = 0;
+  /// Takes which rows are present alone, the directions being those of take_rows().
+  virtual void take_presence(const RowValues&) {}
+  /// (3,) m: how far solve_motion() would move an attached point; of bodies that leave rows out.
+  virtual Vector3 proposed_motion(int) const { return Vector3::Zero(); }
   /// Factorises A bordered by the rows taken.
   virtual linalg::FactorStatus condense() = 0;
   /// Adds this body's W (rows, rows) and H A^-1 b (rows,) to those of the world.

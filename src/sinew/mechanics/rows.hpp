@@ -23,11 +23,13 @@ struct MaterialPoint {
 struct RowPattern {
   std::vector<std::int32_t> row_start{0};
   std::vector<MaterialPoint> point;
+  std::vector<char> passing;  ///< (rows,) 1: rows that come and go, three by three, on one point
 
   int rows() const { return static_cast<int>(row_start.size()) - 1; }
   int entries() const { return static_cast<int>(point.size()); }
   /// Closes a row that consists of `points`; returns its number.
-  int add_row(const std::vector<MaterialPoint>& points) {
+  int add_row(const std::vector<MaterialPoint>& points, bool passes = false) {
+    passing.push_back(passes ? 1 : 0);
     point.insert(point.end(), points.begin(), points.end());
     row_start.push_back(entries());
     return rows() - 1;
@@ -50,12 +52,15 @@ struct RowValues {
   /// (rows,) m, of contacts alone, whose rows are delta = direction . x + offset through a step,
   /// and `reference` where the point would be carried by the surface (see constraint::Contact).
   VectorX offset, reference;
+  /// (rows,) 0: a passing row that is left out; its motion and compliance are not computed.
+  std::vector<char> present;
 
   void resize(const RowPattern& pattern) {
     direction.assign(static_cast<std::size_t>(pattern.entries()), Vector3::Zero());
     delta.setZero(pattern.rows());
     offset.setZero(pattern.rows());
     reference.setZero(pattern.rows());
+    present.assign(static_cast<std::size_t>(pattern.rows()), 1);
   }
 };
 

@@ -92,6 +92,7 @@ void ArmBody::combine(const mechanics::Combination& weights, VectorX& result) co
 void ArmBody::linearise(const mechanics::LinearisationRequest& request) {
   const auto& weights = request.weights;
   definite_wanted_ = request.tangent == mechanics::Tangent::real_time;
+  iterating_ = request.iterating;
   if (weights.dynamic()) {
     combine(weights.velocity, new_rate_);
     combine(weights.acceleration, acceleration_);
@@ -230,7 +231,9 @@ void ArmBody::make_definite() {
 }
 
 // The law's programs want a symmetric W: gyroscopic terms, of the order of h times the rates, are
-// averaged out of it here but not of the motion.
+// averaged out of it here but not of the motion. Newton's iterations would then end where the law
+// holds of the averaged W alone, off by (W - W_sym) lambda of what it holds; the free motion takes
+// that difference at the efforts known last, and in the limit the law holds of the motion.
 void ArmBody::add_compliance(MatrixX& compliance, VectorX& free_motion) const {
   const auto& rows = model_.rows_;
   for (std::size_t j = 0; j < rows.size(); ++j) {
@@ -238,7 +241,9 @@ void ArmBody::add_compliance(MatrixX& compliance, VectorX& free_motion) const {
     free_motion[rows[j]] += free_motion_[column];
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const auto row = static_cast<Eigen::Index>(i);
-      compliance(rows[i], rows[j]) += 0.5 * (compliance_(row, column) + compliance_(column, row));
+      const double mean = 0.5 * (compliance_(row, column) + compliance_(column, row));
+      compliance(rows[i], rows[j]) += mean;
+      if (iterating_) free_motion[rows[i]] += (compliance_(row, column) - mean) * effort_[column];
     }
   }
 }

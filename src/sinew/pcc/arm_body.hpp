@@ -143,6 +143,7 @@ class ArmBody : public mechanics::Body {
   Eigen::SelfAdjointEigenSolver<MatrixX> spectrum_;
   int negative_pivots_ = 0;
   bool definite_wanted_ = true;
+  bool iterating_ = false;                  // further linearisations of this step may follow
   MatrixX rows_, moved_rows_, compliance_;  // (n, own rows): H^T, A^-1 H^T; (own rows, own rows)
   VectorX free_motion_, effort_;
   std::vector<Vector3> directions_;  // of the entries, as last taken

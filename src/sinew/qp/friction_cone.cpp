@@ -30,7 +30,7 @@ const char* contact_state_name(ContactState state) {
 
 Vector3 project_on_cone(const Vector3& r, double friction) {
   const double across = r.tail<2>().norm();
-  if (across <= friction * r[0]) return r;
+  if (r[0] >= 0.0 && across <= friction * r[0]) return r;
   const double along = r[0] + friction * across;
   if (along <= 0.0) return Vector3::Zero();  // in the polar cone
   const double normal = along / (1.0 + friction * friction);

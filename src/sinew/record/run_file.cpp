@@ -14,6 +14,8 @@ namespace sinew::record {
 namespace {
 
 constexpr std::uint64_t kMostFrames = std::uint64_t{1} << 28;
+constexpr std::array kContactSeries = {"pose",         "position",       "gap",  "normal",
+                                       "normal_force", "friction_force", "state"};
 
 void require_known(const std::string& file, const std::vector<std::string>& known,
                    std::string_view name) {
@@ -47,6 +49,7 @@ struct RunFile::Content {
     actuators = file.names("/actuators");
     effectors = file.names("/effectors");
     if (file.has("/probes")) probes = file.names("/probes");
+    if (file.has("/contacts")) contacts = file.names("/contacts");
     states = file.has("/positions");
     frames = complete_frames();
     times = file.rows("/time", 0, frames);
@@ -66,6 +69,11 @@ struct RunFile::Content {
       series.push_back("/effectors/" + effector + "/position");
     }
     for (const std::string& probe : probes) series.push_back("/probes/" + probe + "/value");
+    for (const std::string& contact : contacts) {
+      for (const char* what : kContactSeries) {
+        series.push_back("/contacts/" + contact + "/" + what);
+      }
+    }
     std::uint64_t least = kMostFrames;
     for (const std::string& one : series) {
       const Hdf5Reader::Shape shape = file.shape(one);
@@ -81,7 +89,7 @@ struct RunFile::Content {
   std::uint64_t frames = 0;
   bool states = false;
   std::vector<double> times;
-  std::vector<std::string> bodies, actuators, effectors, probes;
+  std::vector<std::string> bodies, actuators, effectors, probes, contacts;
 };
 
 RunFile::RunFile(const std::filesystem::path& path) : content_(std::make_unique<Content>(path)) {}
@@ -107,6 +115,7 @@ const std::vector<std::string>& RunFile::bodies() const { return content_->bodie
 const std::vector<std::string>& RunFile::actuators() const { return content_->actuators; }
 const std::vector<std::string>& RunFile::effectors() const { return content_->effectors; }
 const std::vector<std::string>& RunFile::probes() const { return content_->probes; }
+const std::vector<std::string>& RunFile::contacts() const { return content_->contacts; }
 bool RunFile::has_states() const { return content_->states; }
 
 mesh::Mesh RunFile::rest_mesh(std::string_view body) const {
@@ -151,8 +160,12 @@ void RunFile::require_state(std::string_view body, std::int64_t frame) const {
                 "the run was recorded without states",
                 "write record: {states: true} in the scene and run it again");
   }
+  require_frame(frame);
+}
+
+void RunFile::require_frame(std::int64_t frame) const {
   if (frame < 0 || frame >= frames()) {
-    throw Error(ErrorKind::out_of_range, {.file = file.path()},
+    throw Error(ErrorKind::out_of_range, {.file = content_->file.path()},
                 fmt::format("there is no frame {}", frame),
                 fmt::format("the frames are 0 to {}", frames() - 1));
   }
@@ -203,6 +216,40 @@ std::vector<double> RunFile::probe(std::string_view probe) const {
   const Hdf5Reader& file = content_->file;
   require_known(file.path(), content_->probes, probe);
   return file.rows(fmt::format("/probes/{}/value", probe), 0, content_->frames);
+}
+
+sim::ContactMoment RunFile::contact(std::string_view contact, std::int64_t frame) const {
+  const Hdf5Reader& file = content_->file;
+  require_known(file.path(), content_->contacts, contact);
+  require_frame(frame);
+  const auto count = file.shape(fmt::format("/contacts/{}/gap", contact)).back();
+  const auto read = [&](const char* what, std::uint64_t size) {
+    const std::string name = fmt::format("/contacts/{}/{}", contact, what);
+    std::vector<double> numbers = file.rows(name, static_cast<std::uint64_t>(frame), 1);
+    if (numbers.size() != size) file.fail(name + " has another number of points than its gaps");
+    return numbers;
+  };
+  using Pose = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
+  sim::ContactMoment moment;
+  moment.pose.affine() = Eigen::Map<const Pose>(read("pose", 12).data());
+  const std::vector<double> position = read("position", 3 * count), gap = read("gap", count),
+                            normal = read("normal", 3 * count), force = read("normal_force", count),
+                            friction = read("friction_force", 3 * count),
+                            state = read("state", count);
+  moment.points.resize(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    sim::ContactPoint& point = moment.points[k];
+    point.position = Eigen::Map<const Vector3>(&position[3 * k]);
+    point.normal = Eigen::Map<const Vector3>(&normal[3 * k]);
+    point.friction_force = Eigen::Map<const Vector3>(&friction[3 * k]);
+    point.gap = gap[k];
+    point.normal_force = force[k];
+    if (state[k] != 0.0 && state[k] != 1.0 && state[k] != 2.0) {
+      file.fail(fmt::format("a point of contact {} has the state {}", contact, state[k]));
+    }
+    point.state = static_cast<qp::ContactState>(static_cast<int>(state[k]));
+  }
+  return moment;
 }
 
 }  // namespace sinew::record

@@ -11,6 +11,7 @@
 
 #include "sinew/core/types.hpp"
 #include "sinew/mesh/mesh.hpp"
+#include "sinew/sim/contact_state.hpp"
 
 namespace sinew::record {
 
@@ -40,6 +41,7 @@ class RunFile {
   const std::vector<std::string>& actuators() const;
   const std::vector<std::string>& effectors() const;
   const std::vector<std::string>& probes() const;
+  const std::vector<std::string>& contacts() const;  ///< whose points were recorded
   /// Whether positions of all nodes were recorded.
   bool has_states() const;
 
@@ -64,8 +66,12 @@ class RunFile {
   /// (frames,) m or rad, (frames 3,) m of a point, of a line its length; throws as positions().
   /// @param probe its name.
   std::vector<double> probe(std::string_view probe) const;
+  /// The points of a contact and the pose of its surface in a frame; throws as positions().
+  /// @param contact its name. @param frame from 0.
+  sim::ContactMoment contact(std::string_view contact, std::int64_t frame) const;
 
  private:
+  void require_frame(std::int64_t frame) const;
   void require_state(std::string_view body, std::int64_t frame) const;
 
   struct Content;

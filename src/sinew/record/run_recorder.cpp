@@ -1,5 +1,6 @@
 #include "sinew/record/run_recorder.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <optional>
@@ -116,6 +117,20 @@ class ParaviewSeries {
         fem::reactions(body, states, simulation_.efforts(), simulation_.world().rows().direction,
                        simulation_.model().rows(), index);
     fields.points.push_back({"reaction", 3, {held.data(), held.data() + held.size()}});
+    if (!simulation_.model().contacts().empty()) add_contact_force(body, fields);
+  }
+
+  void add_contact_force(const fem::FemBody& body, mesh::VtuFields& fields) {
+    const sim::Model& model = simulation_.model();
+    std::vector<double> efforts(simulation_.efforts().size(), 0.0);
+    for (std::size_t c = 0; c < model.contacts().size(); ++c) {
+      const constraint::Contact& contact = model.contact(static_cast<int>(c));
+      std::copy_n(simulation_.efforts().begin() + contact.first_row(), contact.row_count(),
+                  efforts.begin() + contact.first_row());
+    }
+    Points forces = Points::Zero(body.positions().rows(), 3);
+    body.add_row_forces(efforts, forces);
+    fields.points.push_back({"contact_force", 3, {forces.data(), forces.data() + forces.size()}});
   }
 
   static std::vector<double> rows_of(const std::vector<Matrix3>& tensors) {

@@ -23,7 +23,7 @@ struct RecordSettings {
   std::string scene_name;  ///< kept in run.h5
   std::string scene;       ///< the scene as resolved, YAML; kept in run.h5 and scene.yaml
   int every = 1;           ///< steps per frame, >= 1
-  bool states = true;      ///< positions of all nodes in run.h5
+  bool states = true;      ///< positions of all nodes and points of contacts in run.h5
   bool vtk = false;        ///< run.pvd, a series of VTU files for ParaView
 };
 
@@ -49,7 +49,10 @@ struct RecordSettings {
 /// run.h5: /time (frames,) s; /positions/BODY (frames, n, 3) m; /velocities/BODY in dynamics, m/s;
 /// /actuators/NAME/{effort,motion} (frames,); /effectors/NAME/position (frames, 3);
 /// /probes/NAME/value (frames,), of a point (frames, 3), of a line its length, with
-/// /probes/NAME/positions (frames, k, 3);
+/// /probes/NAME/positions (frames, k, 3); with states, of n points that may touch a surface,
+/// /contacts/NAME/{gap,normal_force,state} (frames, n) (state: 0 open, 1 stick, 2 slip),
+/// /contacts/NAME/{position,normal,friction_force} (frames, n, 3) and the surface's
+/// /contacts/NAME/pose (frames, 3, 4), rotation and translation from where the scene puts it;
 /// /controller/EFFECTOR/{target,error}; /report/{residual,...} (frames,);
 /// /mesh/BODY/{nodes,tetrahedra,hexahedra}; /scene, YAML text. Attributes of the file: format,
 /// format_version, sinew_version, scene_name, time_step, record_every, fingerprint; every series

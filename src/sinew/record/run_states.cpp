@@ -13,8 +13,9 @@ namespace {
 
 constexpr std::chrono::milliseconds kFlushInterval{500};
 
-std::span<const double> numbers(const Points& points) {
-  return {points.data(), static_cast<std::size_t>(points.size())};
+template <typename Array>
+std::span<const double> numbers(const Array& array) {
+  return {array.data(), static_cast<std::size_t>(array.size())};
 }
 
 }  // namespace
@@ -28,6 +29,7 @@ RunStates::RunStates(const std::filesystem::path& path, const sim::Simulation& s
   declare_actuators();
   declare_effectors();
   declare_probes();
+  if (settings.states) declare_contacts();
   declare_report();
 }
 
@@ -134,6 +136,48 @@ void RunStates::write_probe(int index) {
   file_.append(positions, all.subspan(1));
 }
 
+void RunStates::declare_contacts() {
+  const sim::Model& model = simulation_.model();
+  if (!model.contacts().empty()) file_.group("/contacts");
+  for (std::size_t c = 0; c < model.contacts().size(); ++c) {
+    const std::string folder = "/contacts/" + model.contacts()[c].name;
+    const auto count =
+        static_cast<std::uint64_t>(model.contact(static_cast<int>(c)).points().size());
+    contacts_.push_back(
+        {declare(folder + "/pose", {3, 4}, "1, m"), declare(folder + "/position", {count, 3}, "m"),
+         declare(folder + "/gap", {count}, "m"), declare(folder + "/normal", {count, 3}, "1"),
+         declare(folder + "/normal_force", {count}, "N"),
+         declare(folder + "/friction_force", {count, 3}, "N"),
+         declare(folder + "/state", {count}, "1")});
+    file_.attribute(folder + "/state", "meaning", std::string_view("0 open, 1 stick, 2 slip"));
+  }
+}
+
+void RunStates::write_contact(int index) {
+  const ContactSeries& series = contacts_[static_cast<std::size_t>(index)];
+  const sim::ContactMoment moment = simulation_.contact_moment(index);
+  const Eigen::Matrix<double, 3, 4, Eigen::RowMajor> pose = moment.pose.affine();
+  file_.append(series.pose, numbers(pose));
+  const auto count = static_cast<Eigen::Index>(moment.points.size());
+  Points position(count, 3), normal(count, 3), friction(count, 3);
+  VectorX gap(count), force(count), state(count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const sim::ContactPoint& point = moment.points[static_cast<std::size_t>(k)];
+    position.row(k) = point.position.transpose();
+    normal.row(k) = point.normal.transpose();
+    friction.row(k) = point.friction_force.transpose();
+    gap[k] = point.gap;
+    force[k] = point.normal_force;
+    state[k] = static_cast<double>(point.state);
+  }
+  file_.append(series.position, numbers(position));
+  file_.append(series.gap, numbers(gap));
+  file_.append(series.normal, numbers(normal));
+  file_.append(series.normal_force, numbers(force));
+  file_.append(series.friction_force, numbers(friction));
+  file_.append(series.state, numbers(state));
+}
+
 void RunStates::declare_report() {
   report_ = {declare("/report/residual", {}, "N"), declare("/report/relative_residual", {}, "1"),
              declare("/report/iterations", {}, "1"), declare("/report/scale", {}, "1"),
@@ -159,6 +203,7 @@ void RunStates::write() {
     append(effectors_[e], simulation_.effector_value(static_cast<int>(e)));
   }
   for (std::size_t p = 0; p < probes_.size(); ++p) write_probe(static_cast<int>(p));
+  for (std::size_t c = 0; c < contacts_.size(); ++c) write_contact(static_cast<int>(c));
   for (std::size_t t = 0; t < targets_.size(); ++t) {
     append(targets_[t], controller_->settings().tasks[t].target.at(simulation_.time()));
     append(errors_[t], controller_->error(static_cast<int>(t)));

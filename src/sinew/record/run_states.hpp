@@ -30,8 +30,10 @@ class RunStates {
   void declare_actuators();
   void declare_effectors();
   void declare_probes();
+  void declare_contacts();
   void declare_report();
   void write_probe(int index);
+  void write_contact(int index);
   int declare(const std::string& path, const std::vector<std::uint64_t>& shape, const char* unit);
   void append(int series, double value) { file_.append(series, {&value, 1}); }
   void append(int series, const Vector3& value) { file_.append(series, {value.data(), 3}); }
@@ -46,6 +48,10 @@ class RunStates {
     int value, positions;  // the latter of a line, else -1
   };
   std::vector<ProbeSeries> probes_;
+  struct ContactSeries {
+    int pose, position, gap, normal, normal_force, friction_force, state;
+  };
+  std::vector<ContactSeries> contacts_;  // empty without states
   std::array<int, 5> report_{};
 };
 

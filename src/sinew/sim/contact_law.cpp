@@ -27,7 +27,8 @@ std::vector<qp::ConeBlock> cones_of(const Model& model) {
 ContactLaw::ContactLaw(const Model& model)
     : ranges_(static_cast<int>(model.range_count())),
       boxes_(model.range_count()),
-      cones_(cones_of(model)),
+      all_cones_(cones_of(model)),
+      cones_(all_cones_),
       solver_(model.rows().rows(), static_cast<int>(boxes_.size()), static_cast<int>(cones_.size()),
               {.tolerance = model.step().contact_tolerance}) {}
 
@@ -48,6 +49,15 @@ bool ContactLaw::switch_branches(const LawProblem& problem, std::span<const doub
 
 LawStatus ContactLaw::solve(const LawProblem& problem, std::span<double> effort) {
   const std::size_t most_rounds = 2 * boxes_.size() + 2;
+  cones_.clear();
+  for (const qp::ConeBlock& cone : all_cones_) {
+    const auto row = static_cast<std::size_t>(cone.row);
+    if (problem.present[row] != 0) {
+      cones_.push_back(cone);
+    } else {
+      std::fill_n(effort.begin() + cone.row, 3, 0.0);
+    }
+  }
   for (std::size_t round = 0; round < most_rounds; ++round) {
     for (std::size_t i = 0; i < boxes_.size(); ++i) {
       const EffortBox box = ranges_.box(i, problem.actuators[i]);
@@ -66,8 +76,12 @@ LawStatus ContactLaw::solve(const LawProblem& problem, std::span<double> effort)
 
 double ContactLaw::violation(const LawProblem& problem, std::span<const double> effort) const {
   double worst = ranges_.violation(problem, effort);
-  for (const qp::ConeBlock& cone : cones_) {
+  for (const qp::ConeBlock& cone : all_cones_) {
     const auto row = static_cast<std::size_t>(cone.row);
+    if (problem.present[row] == 0) {
+      worst = std::max(worst, -problem.delta[cone.row]);
+      continue;
+    }
     const Vector3 r(effort[row], effort[row + 1], effort[row + 2]);
     const double scale = problem.compliance.diagonal().segment<3>(cone.row).sum() / 3.0;
     if (!(scale > 0.0)) continue;

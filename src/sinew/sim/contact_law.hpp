@@ -31,8 +31,8 @@ class ContactLaw : public Law {
   bool switch_branches(const LawProblem& problem, std::span<const double> effort);
 
   EffortBoxes ranges_;
-  std::vector<qp::BoxBlock> boxes_;  // (ranges,)
-  std::vector<qp::ConeBlock> cones_;
+  std::vector<qp::BoxBlock> boxes_;               // (ranges,)
+  std::vector<qp::ConeBlock> all_cones_, cones_;  // of all points, and of those in the step
   qp::ConeSolver solver_;
 };
 

@@ -2,6 +2,12 @@
 /// What touches what, and how hard: contacts as a user reads them.
 #pragma once
 
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include <Eigen/Geometry>
+
 #include "sinew/core/types.hpp"
 #include "sinew/qp/friction_cone.hpp"
 
@@ -23,8 +29,24 @@ struct ContactSum {
   Vector3 force = Vector3::Zero();  ///< (3,) N, on the body
   double normal_force = 0.0;        ///< N, sum over the points
   double friction_force = 0.0;      ///< N, sum of the points' magnitudes
-  double smallest_gap = 0.0;        ///< m
-  int sticking = 0, slipping = 0;   ///< points
+  double smallest_gap = std::numeric_limits<double>::infinity();  ///< m
+  int sticking = 0, slipping = 0;                                 ///< points
+
+  /// @param point to be counted in.
+  void add(const ContactPoint& point) {
+    force += point.normal_force * point.normal + point.friction_force;
+    normal_force += point.normal_force;
+    friction_force += point.friction_force.norm();
+    smallest_gap = std::min(smallest_gap, point.gap);
+    sticking += point.state == qp::ContactState::stick ? 1 : 0;
+    slipping += point.state == qp::ContactState::slip ? 1 : 0;
+  }
+};
+
+/// One contact at one moment.
+struct ContactMoment {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< of the surface, from the scene's
+  std::vector<ContactPoint> points;
 };
 
 }  // namespace sinew::sim

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Eigenvalues>
 
@@ -11,6 +12,8 @@ namespace {
 
 constexpr int kMostRounds = 60;
 constexpr double kTolerance = 1e-13;  // of the effort and of what the robot's compliance allows
+// Each row that is taken out leaves a rounding of the others' own compliance behind.
+constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
@@ -78,6 +81,16 @@ void DrivenLaw::eliminate() {
   }
 }
 
+// Where held rows leave nothing to move, what is left of W is rounding, of either sign.
+void DrivenLaw::round_off(const LawProblem& problem) {
+  const double share = kRounding * static_cast<double>(driven_.size());
+  for (Eigen::Index i = 0; i < compliance_.rows(); ++i) {
+    if (std::abs(compliance_(i, i)) > share * std::abs(problem.compliance(i, i))) continue;
+    compliance_.col(i).setZero();
+    compliance_.row(i).setZero();
+  }
+}
+
 // Efforts and motions of the driven rows, the last one eliminated first; the farthest that a curve
 // was left, relative.
 double DrivenLaw::close(const LawProblem& problem, std::span<double> effort) {
@@ -130,10 +143,12 @@ LawStatus DrivenLaw::solve(const LawProblem& problem, std::span<double> effort) 
     compliance_ = problem.compliance;
     delta_free_ = problem.delta_free;
     eliminate();
+    round_off(problem);
     std::ranges::copy(before_, effort.begin());
     for (const Row& row : driven_) effort[static_cast<std::size_t>(row.row)] = 0.0;
-    const LawProblem rest{problem.model, problem.placement, ranges_,      compliance_,
-                          delta_free_,   problem.delta,     problem.time, problem.time_step};
+    const LawProblem rest{problem.model, problem.placement, ranges_,
+                          compliance_,   delta_free_,       problem.delta,
+                          problem.time,  problem.time_step, problem.present};
     status = law_->solve(rest, effort);
     if (status == LawStatus::failed) return status;
     if (close(problem, effort) <= kTolerance) return status;

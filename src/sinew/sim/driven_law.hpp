@@ -42,6 +42,7 @@ class DrivenLaw : public Law {
  private:
   void linearise(const LawProblem& problem);
   void eliminate();
+  void round_off(const LawProblem& problem);
   double close(const LawProblem& problem, std::span<double> effort);
 
   struct Row {

@@ -95,8 +95,9 @@ LawStatus FrictionLaw::control(const LawProblem& problem, std::span<double> effo
       delta_free_ +=
           effort[static_cast<std::size_t>(guide.row)] * problem.compliance.col(guide.row);
     }
-    const LawProblem rest{problem.model, problem.placement, own,          problem.compliance,
-                          delta_free_,   problem.delta,     problem.time, problem.time_step};
+    const LawProblem rest{problem.model,      problem.placement, own,
+                          problem.compliance, delta_free_,       problem.delta,
+                          problem.time,       problem.time_step, problem.present};
     std::ranges::copy(before_, chosen_.begin());  // a law may look back at the last step
     for (const GuideModel& guide : model_.guides()) {
       chosen_[static_cast<std::size_t>(guide.row)] = 0.0;

@@ -23,6 +23,7 @@ struct LawProblem {
   const VectorX& delta;                      ///< (rows,) m or m^3, at the linearisation
   double time = 0.0;                         ///< s, end of the step
   double time_step = 0.0;                    ///< s
+  std::span<const char> present;             ///< (rows,) 0: a contact's row that is left out
 };
 
 /// How solving went.

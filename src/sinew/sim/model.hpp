@@ -143,7 +143,8 @@ class Model {
   int drive_states() const { return drive_states_; }
   /// A length of the robot's size, m: the largest diagonal of its bodies at rest.
   double size() const { return size_; }
-  /// Tells models apart: a hash of meshes, materials, rows and settings. Saved states carry it.
+  /// Tells models apart: a hash of meshes, materials, rows, contacts and settings. Saved
+  /// states carry it.
   std::uint64_t fingerprint() const { return fingerprint_; }
 
  private:

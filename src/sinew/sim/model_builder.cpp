@@ -551,10 +551,7 @@ std::shared_ptr<const Model> ModelBuilder::build(const linalg::FactorisationSett
     }
   }
   for (const GuideModel& guide : model_->guides_) hash.add(guide.friction);
-  for (std::size_t i = 0; i < model_->contacts_.size(); ++i) {
-    hash.add(model_->contact(static_cast<int>(i)).friction());
-    hash.add(static_cast<double>(model_->contact(static_cast<int>(i)).surface().index()));
-  }
+  hash_contacts(hash);
   hash.add(model_->step_.time_step);
   for (const auto& point : model_->rows_.point) hash.add(static_cast<double>(point.point));
   model_->fingerprint_ = hash.value();

@@ -173,6 +173,7 @@ class ModelBuilder {
 
  private:
   static void hash_arm(StateHash& hash, const mechanics::BodyModel& body);
+  void hash_contacts(StateHash& hash) const;
   mechanics::BodyModel& body(int index);
   void check_body(int index, const Place& place) const;
   fem::FemBodyModel& fem_body(int index, const Place& place, const char* what);

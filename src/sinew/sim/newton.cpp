@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sinew/sim/driven_law.hpp"
+#include "sinew/sim/solve_law.hpp"
 
 namespace sinew::sim {
 
@@ -34,7 +35,7 @@ class NewtonSolver {
     for (report_.iterations = 0; report_.iterations < settings_.max_iterations;) {
       if (report_.iterations > 0 && converged()) return finish(NewtonStatus::converged);
       if (!condense()) return finish(NewtonStatus::singular);
-      report_.law = law_.solve(problem_, effort_);
+      report_.law = solve_law(world_, law_, problem_, effort_);
       clock_.mark(Stage::law);
       if (report_.law == LawStatus::failed) return finish(NewtonStatus::law_failed);
       const NewtonStatus moved = move();

@@ -136,7 +136,7 @@ std::vector<PathPoint> Simulation::follow_path(const PathSettings& settings,
   now_ = time();
   move_bases(now_);
   plan_path();
-  world_.begin_step(time(), time());
+  world_.begin_step(time(), time(), effort_);
   std::vector<PathPoint> path;
   VectorX direction;
   double share = 0.0;
@@ -144,7 +144,7 @@ std::vector<PathPoint> Simulation::follow_path(const PathSettings& settings,
   const double longest = settings.largest_step * model_->size();
   const auto rest = [&] {
     world_.end_step({});
-    world_.begin_step(time(), time());
+    world_.begin_step(time(), time(), effort_);
     finish_step();
   };
   while (share < 1.0 && static_cast<int>(path.size()) < settings.max_points) {

@@ -6,6 +6,8 @@
 #include <variant>
 #include <vector>
 
+#include "sinew/core/state_hash.hpp"
+
 namespace sinew::sim {
 
 /// `from` until `start`, then straight to `to` within `duration`, then held.
@@ -54,6 +56,9 @@ class Signal {
   /// When the signal has shown all it has (s): 0 for a constant, the end of a ramp, one period of a
   /// sine, the last time of steps and samples. A run without a duration lasts this long.
   double end_time() const;
+
+  /// Adds its form and numbers: equal signals add the same.
+  void add_to(StateHash& hash) const;
 
   /// True when the value is the same at all times.
   bool is_constant() const { return std::holds_alternative<Constant>(form_); }

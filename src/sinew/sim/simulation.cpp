@@ -8,12 +8,16 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/core/state_hash.hpp"
+#include "sinew/sim/solve_law.hpp"
 
 namespace sinew::sim {
 
 namespace {
 
 constexpr int kMostHalvings = 10;
+// Of the robot's size: a point that is deeper in a surface after one linearisation, and is not
+// pushed out, is not there by rounding.
+constexpr double kDeepest = 1e-6;
 
 }  // namespace
 
@@ -207,7 +211,7 @@ double Simulation::substep(double end, double time_step) {
   save_state(state_before_);
   move_bases(end);
   set_loads(end);
-  world_.begin_step(end - time_step, end);
+  world_.begin_step(end - time_step, end, effort_);
   Law& law = complete(law_);
   const LawProblem problem{*model_,
                            world_.placement(),
@@ -216,7 +220,8 @@ double Simulation::substep(double end, double time_step) {
                            world_.delta_free(),
                            world_.delta(),
                            end,
-                           time_step};
+                           time_step,
+                           world_.rows().present};
   if (model_->step().method == Method::newton) {
     step_newton(law, problem);
   } else {
@@ -253,7 +258,7 @@ void Simulation::step_once(Law& law, const LawProblem& problem) {
     fail(ErrorKind::singular_matrix, "the stiffness matrix is singular",
          "fix a region of every body, or look for loose or crushed elements");
   }
-  report_.law = law.solve(problem, effort_);
+  report_.law = solve_law(world_, law, problem, effort_);
   if (report_.law == LawStatus::failed && status == linalg::FactorStatus::indefinite) {
     fail(ErrorKind::not_converged,
          fmt::format("the tangent stiffness has {} negative directions, so the robot is about to "
@@ -276,6 +281,18 @@ void Simulation::step_once(Law& law, const LawProblem& problem) {
   clock_.mark(Stage::law);
   world_.solve_motion(effort_);
   move_soundly();
+  require_outside();
+}
+
+// Points that commanded motions leave nothing to give way are beyond any contact force.
+void Simulation::require_outside() {
+  if (model_->contacts().empty()) return;
+  const double depth = world_.deepest_free_point(effort_);
+  if (depth <= kDeepest * model_->size()) return;
+  fail(ErrorKind::not_converged,
+       fmt::format("a point would be {:.3g} m inside a surface, and no contact force can move it",
+                   depth),
+       "take a smaller time step, or command no motion that ends in the surface");
 }
 
 int Simulation::negative_pivots() const {

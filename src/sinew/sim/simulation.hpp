@@ -145,6 +145,8 @@ class Simulation {
   ContactPoint contact_point(int index, std::size_t point) const;
   std::vector<ContactPoint> contact_points(int index) const;
   ContactSum contact_sum(int index) const;
+  /// The points and where the surface stands.
+  ContactMoment contact_moment(int index) const;
   /// How the contacts' forces were last found.
   const qp::ConeResult& contact_result() const { return contact_.result(); }
 
@@ -198,6 +200,7 @@ class Simulation {
   void step_once(Law& law, const LawProblem& problem);
   void step_newton(Law& law, const LawProblem& problem);
   void move_soundly();
+  void require_outside();
   void finish_step();
   int negative_pivots() const;
   [[noreturn]] void fail(ErrorKind kind, const std::string& message, const std::string& remedy);

@@ -1,7 +1,5 @@
 // What Simulation says of contacts.
-#include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "sinew/sim/simulation.hpp"
 
@@ -39,17 +37,15 @@ std::vector<ContactPoint> Simulation::contact_points(int index) const {
   return result;
 }
 
+ContactMoment Simulation::contact_moment(int index) const {
+  return {model_->contacts().at(static_cast<std::size_t>(index)).pose(time()),
+          contact_points(index)};
+}
+
 ContactSum Simulation::contact_sum(int index) const {
   ContactSum sum;
-  sum.smallest_gap = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < model_->contact(index).points().size(); ++k) {
-    const ContactPoint point = contact_point(index, k);
-    sum.force += point.normal_force * point.normal + point.friction_force;
-    sum.normal_force += point.normal_force;
-    sum.friction_force += point.friction_force.norm();
-    sum.smallest_gap = std::min(sum.smallest_gap, point.gap);
-    sum.sticking += point.state == qp::ContactState::stick ? 1 : 0;
-    sum.slipping += point.state == qp::ContactState::slip ? 1 : 0;
+    sum.add(contact_point(index, k));
   }
   return sum;
 }

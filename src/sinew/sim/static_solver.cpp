@@ -42,7 +42,7 @@ void blend(std::span<ActuatorRange> ranges, std::span<const ActuatorState> start
 NewtonReport Simulation::equilibrate(const StaticSettings& settings, double share,
                                      StaticReport& report) {
   world_.set_imbalance_share(share);
-  world_.begin_step(time(), time());
+  world_.begin_step(time(), time(), effort_);
   const LawProblem problem{*model_,
                            world_.placement(),
                            ranges_,
@@ -50,7 +50,8 @@ NewtonReport Simulation::equilibrate(const StaticSettings& settings, double shar
                            world_.delta_free(),
                            world_.delta(),
                            time(),
-                           kInfinity};
+                           kInfinity,
+                           world_.rows().present};
   const NewtonSettings newton{{{}, mechanics::Tangent::exact, true, true},
                               settings.tolerance,
                               settings.max_iterations,
@@ -168,7 +169,7 @@ StaticReport Simulation::solve_static(const StaticSettings& settings) {
   follow_surfaces(settings, report, last);
   volume_ratio_ = last.motion.smallest_volume_ratio;
   ranges_ = goal;
-  world_.begin_step(time(), time());
+  world_.begin_step(time(), time(), effort_);
   world_.end_step({});
   step_before_ = 0.0;
   finish_step();

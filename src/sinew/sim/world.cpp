@@ -8,6 +8,9 @@ namespace sinew::sim {
 
 namespace {
 
+// Points whose gap is under this part of the robot's size take part in a step at once.
+constexpr double kNear = 0.01;
+
 std::vector<std::unique_ptr<mechanics::Body>> create_bodies(const Model& model, ThreadPool& pool) {
   std::vector<std::unique_ptr<mechanics::Body>> bodies;
   const bool curved = model.stiffening_widens();
@@ -28,6 +31,8 @@ World::World(std::shared_ptr<const Model> model, ThreadPool& pool)
   compliance_.setZero(rows, rows);
   delta_free_.setZero(rows);
   contact_start_.setZero(rows);
+  formed_ = rows_.present;
+  kept_effort_.resize(static_cast<std::size_t>(rows));
   place_contacts(0.0, 0.0);
   measure_delta();
 }
@@ -41,12 +46,62 @@ void World::place_contacts(double from, double to) {
   }
 }
 
-void World::begin_step(double from, double to) {
+void World::begin_step(double from, double to, std::span<const double> effort) {
   if (!model_->contacts().empty()) {
     place_contacts(from, to);
     contact_start_ = measure_delta();
+    choose_present(effort, to - from);
   }
   for (auto& body : bodies_) body->begin_step();
+}
+
+// A guess, and a function of the state alone so that a run goes on from a saved one bit for bit:
+// points that touched, are near, or would arrive at their speed. take_in_violators() makes good
+// what it misses.
+void World::choose_present(std::span<const double> effort, double time_step) {
+  left_out_ = false;
+  const double near = kNear * model_->size();
+  for (std::size_t i = 0; i < model_->contacts().size(); ++i) {
+    const constraint::Contact& contact = model_->contact(static_cast<int>(i));
+    for (std::size_t k = 0; k < contact.points().size(); ++k) {
+      const mechanics::MaterialPoint& point = contact.points()[k];
+      const mechanics::Body& body = *bodies_[static_cast<std::size_t>(point.body)];
+      const int row = contact.row(k);
+      const double approach =
+          -time_step * rows_.direction[contact.entry(k)].dot(body.velocity(point.point));
+      const bool present = !body.model().leaves_rows_out() ||
+                           effort[static_cast<std::size_t>(row)] > 0.0 ||
+                           rows_.reference[row] <= near + std::max(0.0, approach);
+      set_present(contact, k, present);
+      left_out_ |= !present;
+    }
+  }
+}
+
+void World::set_present(const constraint::Contact& contact, std::size_t point, bool present) {
+  std::fill_n(rows_.present.begin() + contact.row(point), 3, static_cast<char>(present));
+}
+
+bool World::take_in_violators() {
+  if (!left_out_) return false;
+  bool found = false;
+  for (std::size_t i = 0; i < model_->contacts().size(); ++i) {
+    const constraint::Contact& contact = model_->contact(static_cast<int>(i));
+    for (std::size_t k = 0; k < contact.points().size(); ++k) {
+      const int row = contact.row(k);
+      if (rows_.present[static_cast<std::size_t>(row)] != 0) continue;
+      const mechanics::MaterialPoint& point = contact.points()[k];
+      const Vector3 moved =
+          bodies_[static_cast<std::size_t>(point.body)]->proposed_motion(point.point);
+      if (rows_.delta[row] + rows_.direction[contact.entry(k)].dot(moved) >= 0.0) continue;
+      set_present(contact, k, true);
+      found = true;
+    }
+  }
+  if (!found) return false;
+  for (auto& body : bodies_) body->take_presence(rows_);
+  form_compliance();
+  return true;
 }
 
 double World::contact_drift(std::span<const double> effort, double time) const {
@@ -61,6 +116,21 @@ double World::contact_drift(std::span<const double> effort, double time) const {
     }
   }
   return worst;
+}
+
+double World::deepest_free_point(std::span<const double> effort) const {
+  double deepest = 0.0;
+  for (std::size_t i = 0; i < model_->contacts().size(); ++i) {
+    const constraint::Contact& contact = model_->contact(static_cast<int>(i));
+    for (std::size_t k = 0; k < contact.points().size(); ++k) {
+      const int row = contact.row(k);
+      if (effort[static_cast<std::size_t>(row)] > 0.0) continue;
+      const double gap = rows_.offset[row] + rows_.direction[contact.entry(k)].dot(
+                                                 placement_.position(contact.points()[k]));
+      deepest = std::max(deepest, -gap);
+    }
+  }
+  return deepest;
 }
 
 void World::linearise(const mechanics::LinearisationRequest& request) {
@@ -114,15 +184,19 @@ void World::set_imbalance_share(double share) {
 }
 
 linalg::FactorStatus World::condense() {
-  compliance_.setZero();
-  delta_free_ = rows_.delta;
   auto worst = linalg::FactorStatus::positive_definite;
-  for (auto& body : bodies_) {
-    const auto status = body->condense();
-    worst = std::max(worst, status);
-    if (status != linalg::FactorStatus::singular) body->add_compliance(compliance_, delta_free_);
-  }
+  for (auto& body : bodies_) worst = std::max(worst, body->condense());
+  if (worst != linalg::FactorStatus::singular) form_compliance();
   return worst;
+}
+
+void World::form_compliance() {
+  for (std::size_t row = 0; row < formed_.size(); ++row) {
+    if (formed_[row] != 0) compliance_.col(static_cast<Eigen::Index>(row)).setZero();
+  }
+  formed_ = rows_.present;
+  delta_free_ = rows_.delta;
+  for (auto& body : bodies_) body->add_compliance(compliance_, delta_free_);
 }
 
 void World::solve_motion(std::span<const double> effort) {

@@ -17,11 +17,15 @@ class World {
   /// @param model shared. @param pool must outlive the world.
   World(std::shared_ptr<const Model> model, ThreadPool& pool);
 
-  /// @param from,to s, when the step begins and ends: where surfaces stand then.
-  void begin_step(double from, double to);
+  /// @param from,to s, when the step begins and ends: where surfaces stand then. @param effort
+  ///   (rows,) N of the last step: points with a force are near, whatever their gap.
+  void begin_step(double from, double to, std::span<const double> effort);
   /// m: the farthest that any touching point's gap is from that of its tangent plane, at the pose
   /// that surfaces have at a time. @param effort (rows,) N; who touches. @param time s.
   double contact_drift(std::span<const double> effort, double time) const;
+  /// m, >= 0: how deep the deepest point without a normal force is in its surface's tangent plane.
+  /// @param effort (rows,) N.
+  double deepest_free_point(std::span<const double> effort) const;
   /// Assembly: every body at its current state.
   void linearise(const mechanics::LinearisationRequest& request);
   /// H and delta at the current placement, handed to the bodies; adds the curvature of
@@ -36,6 +40,13 @@ class World {
   /// W and delta_free. The worst status of any body.
   linalg::FactorStatus condense();
   void solve_motion(std::span<const double> effort);
+  /// Of the points that the step left out, those that solve_motion() would take into their surfaces
+  /// are taken in, and W and delta_free are formed anew of the same factorisation. Whether there
+  /// were any.
+  bool take_in_violators();
+  bool leaves_points_out() const { return left_out_; }
+  /// (rows,) N, for solve_law() to keep efforts in.
+  std::span<double> kept_effort() { return kept_effort_; }
   /// The same by hand, see mechanics::Body: (all bodies' motion_size(),), one behind the other.
   void imbalance(std::span<const double> effort, VectorX& result);
   void solve(const VectorX& right, VectorX& result);
@@ -68,6 +79,9 @@ class World {
 
  private:
   void place_contacts(double from, double to);
+  void choose_present(std::span<const double> effort, double time_step);
+  void set_present(const constraint::Contact& contact, std::size_t point, bool present);
+  void form_compliance();
 
   std::shared_ptr<const Model> model_;
   std::vector<std::unique_ptr<mechanics::Body>> bodies_;
@@ -76,6 +90,9 @@ class World {
   std::vector<mechanics::RowCurvature> curvatures_;
   MatrixX compliance_;
   VectorX delta_free_, contact_start_;
+  std::vector<double> kept_effort_;
+  bool left_out_ = false;     // some point
+  std::vector<char> formed_;  // (rows,) columns of W that are not zero
 };
 
 }  // namespace sinew::sim
