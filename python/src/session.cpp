@@ -162,7 +162,7 @@ Linearisation Session::linearise(const LinearisationChoice& choice) {
                                                                    model().step().time_step);
   sim::World& world = simulation_.world();
   const pybind11::gil_scoped_release release;
-  world.begin_step(simulation_.time(), simulation_.time());
+  world.look_at_all(simulation_.time());
   world.linearise({weights, choice.tangent, !curved.empty(), false});
   world.form_rows(simulation_.efforts(), curved);
   Linearisation result;

@@ -8,7 +8,7 @@ import sinew
 WEIGHT = 1000.0 * 0.04 * 0.04 * 0.02 * 9.81
 
 
-def block(friction=0.5, angle=0.0, **more):
+def block(friction=0.5, angle=0.0, floor=0.0, **more):
     return sinew.load({
         "sinew": 1, "integrator": "backward-euler", "time_step": "1 ms",
         "gravity": [9.81 * np.sin(angle), 0.0, -9.81 * np.cos(angle)],
@@ -17,7 +17,7 @@ def block(friction=0.5, angle=0.0, **more):
             "material": {"young_modulus": "1 MPa", "poisson_ratio": 0.3},
             "mesh": {"shape": "block", "length": 0.04, "width": 0.04, "height": 0.02, "element_size": 0.01}}},
         "contacts": {"floor": {"body": "block", "nodes": {"set": "z_min"}, "friction": friction,
-                               "surface": {"plane": {}}}}, **more})
+                               "surface": {"plane": {"point": [0.0, 0.0, floor]}}}}, **more})
 
 
 def test_resting_block():
@@ -58,3 +58,14 @@ def test_errors():
     with pytest.raises(sinew.Error) as error:
         sim.follow_path()
     assert error.value.kind == "not-in-this-version"
+
+
+@pytest.mark.parametrize("floor", [0.0, -0.05])
+def test_compliance_has_every_point(floor):
+    sim = block(floor=floor)
+    sim.step(1)
+    compliance = sim.compliance(statics=False)
+    assert compliance.shape == (75, 75)
+    assert np.diag(compliance).min() > 0.0
+    far = block(floor=-0.05)
+    assert compliance == pytest.approx(far.compliance(statics=False), rel=1e-2)

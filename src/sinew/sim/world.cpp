@@ -55,6 +55,16 @@ void World::begin_step(double from, double to, std::span<const double> effort) {
   for (auto& body : bodies_) body->begin_step();
 }
 
+void World::look_at_all(double at) {
+  if (!model_->contacts().empty()) {
+    place_contacts(at, at);
+    contact_start_ = measure_delta();
+    left_out_ = false;
+    std::ranges::fill(rows_.present, static_cast<char>(true));
+  }
+  for (auto& body : bodies_) body->begin_step();
+}
+
 // A guess, and a function of the state alone so that a run goes on from a saved one bit for bit:
 // points that touched, are near, or would arrive at their speed. take_in_violators() makes good
 // what it misses.

@@ -20,6 +20,8 @@ class World {
   /// @param from,to s, when the step begins and ends: where surfaces stand then. @param effort
   ///   (rows,) N of the last step: points with a force are near, whatever their gap.
   void begin_step(double from, double to, std::span<const double> effort);
+  /// The same with every point taking part. @param at s, when surfaces are looked at.
+  void look_at_all(double at);
   /// m: the farthest that any touching point's gap is from that of its tangent plane, at the pose
   /// that surfaces have at a time. @param effort (rows,) N; who touches. @param time s.
   double contact_drift(std::span<const double> effort, double time) const;
