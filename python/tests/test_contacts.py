@@ -63,9 +63,8 @@ def test_errors():
 @pytest.mark.parametrize("floor", [0.0, -0.05])
 def test_compliance_has_every_point(floor):
     sim = block(floor=floor)
-    sim.step(1)
     compliance = sim.compliance(statics=False)
     assert compliance.shape == (75, 75)
     assert np.diag(compliance).min() > 0.0
     far = block(floor=-0.05)
-    assert compliance == pytest.approx(far.compliance(statics=False), rel=1e-2)
+    assert compliance == pytest.approx(far.compliance(statics=False), abs=1e-6 * compliance.max())
