@@ -23,11 +23,12 @@ IDENTIFIED = {
 }
 
 
-def experiment(seed, goal, attempts, identified="rehearsed"):
+def experiment(seed, goal, attempts, identified="rehearsed", centre="arc"):
     """True distance (m) of the tip from the goal at the end of each attempt, and its paths. Before the first attempt
-    the arm is `identified` as IDENTIFIED says; a rehearsal is the planned motion at a share of its volumes."""
+    the arm is `identified` as IDENTIFIED says; a rehearsal is the planned motion at a share of its volumes. `centre`:
+    where the model has its masses."""
     at, model = np.array(ilc_plant.GOALS[goal]), ilc_plant.MODEL
-    learner = learn.Learner(*ilc_plant.model(), at, model["torque_limits"], duration=model["duration"],
+    learner = learn.Learner(*ilc_plant.model(centre), at, model["torque_limits"], duration=model["duration"],
                             lead=model["lead"], torque_rate_limits=model["torque_rate_limit"])
     plant = ilc_plant.Plant(seed)
     if identified != "no":
@@ -75,11 +76,12 @@ def _one(job):
         return job, [math.inf] * job[2] + [str(error)]
 
 
-def further(path, processes, kind, identified):
+def further(path, processes, kind, identified, centre):
     """Distances of the further seeds, written line by line."""
     given = ilc_plant.SETUP[kind]
     goals = given["goals"]
-    jobs = [(given["first"] + k, goals[k % len(goals)], given["attempts"], identified) for k in range(given["count"])]
+    jobs = [(given["first"] + k, goals[k % len(goals)], given["attempts"], identified, centre)
+            for k in range(given["count"])]
     rows = []
     context = multiprocessing.get_context("spawn")
     with concurrent.futures.ProcessPoolExecutor(processes, mp_context=context) as pool, open(path, "w") as file:
@@ -135,10 +137,11 @@ def main():
     parser.add_argument("--further", metavar="CSV", help="run the further seeds instead, results to this table")
     parser.add_argument("--kind", default="further_seeds", choices=["further_seeds", "tuning_seeds"])
     parser.add_argument("--identified", default="rehearsed", choices=list(IDENTIFIED))
+    parser.add_argument("--centre", default="arc", choices=["arc", "distributed"], help="of the model's masses")
     parser.add_argument("--processes", type=int, default=2)
     options = parser.parse_args()
     if options.further:
-        further(options.further, options.processes, options.kind, options.identified)
+        further(options.further, options.processes, options.kind, options.identified, options.centre)
         return
     runs = {identified: published(identified) for identified in IDENTIFIED}
     for identified, experiments in runs.items():

@@ -25,9 +25,9 @@ def cylinder(gain=1.0, frequency=1.0):
                              input_limits=tuple(given["input_limits"]), volume_limits=tuple(given["volume_limits"]))
 
 
-def model():
-    """(arm, actuators, cylinders) that the learner starts from."""
-    return (arm(MODEL["masses"], MODEL["stiffness"], MODEL["damping"]),
+def model(centre="arc"):
+    """(arm, actuators, cylinders) that the learner starts from: lumped, or as the plant, "distributed"."""
+    return (arm(MODEL["masses"], MODEL["stiffness"], MODEL["damping"], centre),
             [pcc.FluidicActuator(MODEL["cubic"], delay=MODEL["delay"])] * 3, [cylinder()] * 3)
 
 
