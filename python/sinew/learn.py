@@ -326,6 +326,7 @@ class Learner:
         return np.maximum(0.0, 1.0 - np.abs(time[:, None] - centres) / width)
 
     def _simulated(self, found: plan.Plan, command: np.ndarray) -> Optional[Proposal]:
+        command = np.stack([np.clip(u, *c.input_limits) for c, u in zip(self.cylinders, command.T)], axis=1)
         volume = np.stack([c.simulate(u) for c, u in zip(self.cylinders, command.T)], axis=1)
         try:
             end = self._end(volume)

@@ -13,9 +13,9 @@ def arm(mass=1.0, stiffness=1.0, centre="arc"):
     return pcc.Arm([0.14, 0.14], mass * np.array([0.12, 0.09]), 0.108 * stiffness, 4.2e-3, centre=centre)
 
 
-def cylinder(frequency=60.0):
+def cylinder(frequency=60.0, largest=8e-5):
     free = pcc.second_order_cylinder(1.0, frequency, 0.8, STEP)
-    return pcc.DriveCylinder(free.a, free.b, free.c, free.d, sample_time=STEP, input_limits=(-8e-5, 8e-5),
+    return pcc.DriveCylinder(free.a, free.b, free.c, free.d, sample_time=STEP, input_limits=(-largest, largest),
                              volume_limits=(-5e-5, 5e-5))
 
 
@@ -94,6 +94,19 @@ def test_changed_commands_keep_the_limits_of_volume():
         share = np.abs(attempt.proposal.volume).max(axis=0) / most
         assert share.max() < 1.001
         assert share.max() > 0.98
+    assert attempt.tip_error < 0.005
+
+
+def test_changed_commands_keep_the_limits_of_cylinders():
+    # A little more than volumes at rest take, so that what drives the cylinders fast is cut off.
+    plant = Plant()
+    plant.cylinder = cylinder(52.0, 3.6e-5)
+    student = learn.Learner(arm(), [pcc.FluidicActuator(4e12, delay=0.05)] * 2, [cylinder(60.0, 3.6e-5)] * 2, GOAL,
+                            (0.15, 0.15), duration=0.8, lead=LEAD, plan_options={"intervals": 25})
+    command = student.rehearsal(0.9)
+    student.learn_from(command, plant(command))
+    for attempt in student.run(plant, 3):
+        assert np.abs(attempt.proposal.command).max() == 3.6e-5
     assert attempt.tip_error < 0.005
 
 
