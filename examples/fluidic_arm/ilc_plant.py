@@ -32,7 +32,7 @@ def model(centre="arc"):
 
 
 def excitation():
-    """Commands (samples, 3) that move the arm all over its range with volumes of the size that grabs take, from rest."""
+    """Commands (samples, 3) that move the arm all over its range from rest, with volumes as large as those of grabs."""
     given, step = SETUP["excitation"], MODEL["cylinder"]["sample_time"]
     time = step * np.arange(round(given["seconds"] / step) + 1)
     fade = np.sin(np.pi * np.clip(time, 0, 0.5))[:, None] ** 2

@@ -104,7 +104,7 @@ class Learner:
     time_step : float
         s, of the simulations that the model is fitted with and judged by.
     fit_options, plan_options : dict, optional
-        More for identify.fit_arm and plan.Task.
+        More for identify.fit_arm, whose time step is `time_step`, and plan.Task.
     seed : int
         Of the first plan.
 
@@ -276,7 +276,10 @@ class Learner:
         for _ in range(self._corrections):
             if best is None or self._left(best) < 0.1 * self._close:
                 break
-            change = self._least_change(best)
+            try:
+                change = self._least_change(best)
+            except errors.RunError:
+                break
             tried = (self._simulated(found, best.command + share * change) for share in (1.0, 0.5, 0.25))
             nearer = next((t for t in tried if t is not None and self._left(t) < self._left(best)), None)
             if nearer is None:

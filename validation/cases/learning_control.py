@@ -14,11 +14,11 @@ assumed), its actuators (tau = c V^3, with a delay) and drive cylinders (two sta
 plants that differ from it: mass distributed along the arm, each mass and the stiffness 10 % off either way, damping and
 c within 10 %, delays of 50 to 120 ms for 80, cylinders 10 % slower or faster and 5 % off in gain, a start 0.01 rad
 off, noise of 1 mm at markers and 0.1 ml at volumes. Errors were fixed before anything was tuned, and the seeds of
-further plants before any was run (examples/fluidic_arm/ilc_plants.json); tuning used other seeds. Identify (before the first attempt from 4 s of
-excitation by the cylinders and one rehearsal, the planned motion at 90 % of its volumes; then from the last attempt),
-plan (torque rates within 2 N m/s), invert, run, repeat. Success: the true tip within 2 cm of the ball's centre at the
-end. Four experiments of 10, 10, 5 and 12 attempts, goals A to D, every attempt counted; and four attempts on each of
-200 further plants, run once by examples/fluidic_arm/ilc.py --further
+further plants before any was run (examples/fluidic_arm/ilc_plants.json); tuning used other seeds. Identify (before the
+first attempt from 4 s of excitation by the cylinders and one rehearsal, the planned motion at 90 % of its volumes; then
+from the last attempt), plan (torque rates within 2 N m/s), invert, run, repeat. Success: the true tip within 2 cm of
+the ball's centre at the end. Four experiments of 10, 10, 5 and 12 attempts, goals A to D, every attempt counted; and
+four attempts on each of 200 further plants, run once by examples/fluidic_arm/ilc.py --further
 (validation/reference/learning_further.csv; learning_excited.csv without the rehearsal), of which some are run again."""
 SOURCES = {
     "Marchese 2016": "A. D. Marchese, R. Tedrake, D. Rus, Dynamics and trajectory optimization for a soft spatial "
