@@ -3,6 +3,7 @@ their model (ilc_plants.json).
 
     python ilc.py [--out learning.png]                  # four experiments as published, with a figure
     python ilc.py --further further.csv --processes 2   # 200 further arms, a line each as they come
+    python ilc.py --further further.csv --identified excited
 """
 
 import argparse
@@ -15,17 +16,26 @@ import ilc_plant
 import numpy as np
 from sinew import learn
 
+IDENTIFIED = {
+    "rehearsed": "identified from 4 s of excitation and a rehearsal",
+    "excited": "identified from 4 s of excitation",
+    "no": "from the model as given",
+}
 
-def experiment(seed, goal, attempts, excite=True):
-    """True distance (m) of the tip from the goal at the end of each attempt, and its paths. With `excite` the arm is
-    identified from 4 s of free motion before the first attempt, else that is planned with the model as given."""
+
+def experiment(seed, goal, attempts, identified="rehearsed", centre="arc"):
+    """True distance (m) of the tip from the goal at the end of each attempt, and its paths. Before the first attempt
+    the arm is `identified` as IDENTIFIED says; a rehearsal is the planned motion at a share of its volumes. `centre`:
+    where the model has its masses."""
     at, model = np.array(ilc_plant.GOALS[goal]), ilc_plant.MODEL
-    learner = learn.Learner(*ilc_plant.model(), at, model["torque_limits"], duration=model["duration"],
-                            lead=model["lead"], torque_rate_limits=model["torque_rate_limit"],
-                            fit_options={"time_step": 0.02})
+    learner = learn.Learner(*ilc_plant.model(centre), at, model["torque_limits"], duration=model["duration"],
+                            lead=model["lead"], torque_rate_limits=model["torque_rate_limit"])
     plant = ilc_plant.Plant(seed)
-    if excite:
+    if identified != "no":
         command = ilc_plant.excitation()
+        learner.learn_from(command, plant(command))
+    if identified == "rehearsed":
+        command = learner.rehearsal(ilc_plant.SETUP["rehearsal_share"])
         learner.learn_from(command, plant(command))
     distances, paths = [], []
     for k in range(attempts):
@@ -45,9 +55,17 @@ def interval(successes, trials, z=1.959964):
     return centre - half, centre + half
 
 
-def published(excite=True):
+def by_plants(hits, draws=10000, seed=1):
+    """95 % interval of the share of all attempts (plants, attempts) with attempts on one plant kept together: bootstrap
+    over plants, percentiles (Davison and Hinkley, Bootstrap Methods and their Application, 1997, sec. 3.8 and 5.3)."""
+    share = hits.mean(axis=1)
+    chosen = np.random.default_rng(seed).integers(len(share), size=(draws, len(share)))
+    return np.quantile(share[chosen].mean(axis=1), [0.025, 0.975])
+
+
+def published(identified="rehearsed"):
     """The four experiments: [(goal, distances, paths)]."""
-    return [(e["goal"], *experiment(e["seed"], e["goal"], e["attempts"], excite))
+    return [(e["goal"], *experiment(e["seed"], e["goal"], e["attempts"], identified))
             for e in ilc_plant.SETUP["experiments"]]
 
 
@@ -58,36 +76,35 @@ def _one(job):
         return job, [math.inf] * job[2] + [str(error)]
 
 
-def further(path, processes, kind="further_seeds", first=None, count=None):
+def further(path, processes, kind, identified, centre):
     """Distances of the further seeds, written line by line."""
     given = ilc_plant.SETUP[kind]
-    seeds = range(first or given["first"], given["first"] + given["count"])[:count]
     goals = given["goals"]
-    jobs = [(seed, goals[(seed - given["first"]) % len(goals)], given["attempts"]) for seed in seeds]
+    jobs = [(given["first"] + k, goals[k % len(goals)], given["attempts"], identified, centre)
+            for k in range(given["count"])]
     rows = []
     context = multiprocessing.get_context("spawn")
     with concurrent.futures.ProcessPoolExecutor(processes, mp_context=context) as pool, open(path, "w") as file:
         table = csv.writer(file)
         table.writerow(["seed", "goal"] + [f"attempt_{k + 1} [cm]" for k in range(given["attempts"])])
-        for done in concurrent.futures.as_completed([pool.submit(_one, job) for job in jobs]):
-            (seed, goal, _), distances = done.result()
+        for (seed, goal, *_), distances in pool.map(_one, jobs):
             table.writerow([seed, goal] + [f"{100 * d:.3f}" if isinstance(d, float) else d for d in distances])
             file.flush()
             rows.append(distances[:given["attempts"]])
-    summary(rows)
+    summary(np.array(rows))
 
 
-def summary(rows):
-    hits = np.array(rows) < ilc_plant.SETUP["success_distance"]
-    for k in range(hits.shape[1]):
-        low, high = interval(hits[:, k].sum(), len(hits))
-        print(f"attempt {k + 1}: {hits[:, k].sum()} of {len(hits)}, {100 * hits[:, k].mean():.1f} %, "
-              f"95 % interval {100 * low:.1f} to {100 * high:.1f} %")
-    low, high = interval(hits.sum(), hits.size)
-    print(f"all: {hits.sum()} of {hits.size}, {100 * hits.mean():.1f} %")
-    low, high = interval(hits[:, 1:].sum(), hits[:, 1:].size)
-    print(f"after the first: {hits[:, 1:].sum()} of {hits[:, 1:].size}, {100 * hits[:, 1:].mean():.1f} %, "
-          f"95 % interval (attempts taken as independent) {100 * low:.1f} to {100 * high:.1f} %")
+def summary(distances):
+    hits = distances < ilc_plant.SETUP["success_distance"]
+    for name, chosen in [(f"attempt {k + 1}", hits[:, k]) for k in range(hits.shape[1])] + [
+            ("attempts after the first", hits[:, 1:]), ("all", hits), ("plants without a miss", hits.all(axis=1))]:
+        low, high = interval(chosen.sum(), chosen.size)
+        print(f"{name}: {chosen.sum()} of {chosen.size}, {100 * chosen.mean():.1f} % "
+              f"({100 * low:.1f} to {100 * high:.1f} %)")
+    low, high = by_plants(hits)
+    print(f"all, attempts on a plant kept together: {100 * low:.1f} to {100 * high:.1f} %")
+    print("distance, median and 95th percentile by attempt: " + ", ".join(
+        f"{100 * np.median(d):.2f} and {100 * np.quantile(d, 0.95):.2f} cm" for d in distances.T))
 
 
 def draw(path, experiments, cold):
@@ -107,7 +124,7 @@ def draw(path, experiments, cold):
         right.add_patch(plt.Circle((100 * x, 100 * z), 2, fill=False, color=f"C{k}"))
     left.axhline(100 * ilc_plant.SETUP["success_distance"], color="k", lw=0.8)
     left.set(xlabel="attempt", ylabel="tip from the ball's centre at the end (cm)")
-    left.set_title("line: identified before, dotted: from the model as given", fontsize=9)
+    left.set_title("line: identified and rehearsed, dotted: from the model as given", fontsize=9)
     left.legend(frameon=False)
     right.set(xlabel="x (cm)", ylabel="z (cm)", aspect="equal")
     right.set_title("tip's paths: last attempt, dotted: first; circles: the balls", fontsize=9)
@@ -119,23 +136,23 @@ def main():
     parser.add_argument("--out", default="learning.png", help="figure to write")
     parser.add_argument("--further", metavar="CSV", help="run the further seeds instead, results to this table")
     parser.add_argument("--kind", default="further_seeds", choices=["further_seeds", "tuning_seeds"])
-    parser.add_argument("--first", type=int, help="seed to begin with")
-    parser.add_argument("--count", type=int, help="how many of them")
+    parser.add_argument("--identified", default="rehearsed", choices=list(IDENTIFIED))
+    parser.add_argument("--centre", default="arc", choices=["arc", "distributed"], help="of the model's masses")
     parser.add_argument("--processes", type=int, default=2)
     options = parser.parse_args()
     if options.further:
-        further(options.further, options.processes, options.kind, options.first, options.count)
+        further(options.further, options.processes, options.kind, options.identified, options.centre)
         return
-    experiments, cold = published(), published(excite=False)
-    for title, runs in (("identified before the first attempt", experiments), ("from the model as given", cold)):
-        print(title)
-        for goal, distances, _ in runs:
+    runs = {identified: published(identified) for identified in IDENTIFIED}
+    for identified, experiments in runs.items():
+        print(IDENTIFIED[identified])
+        for goal, distances, _ in experiments:
             print(f"  {goal}: " + " ".join(f"{100 * d:.2f}" for d in distances) + " cm")
-        hits = sum(d < ilc_plant.SETUP["success_distance"] for _, distances, _ in runs for d in distances)
-        trials = sum(len(distances) for _, distances, _ in runs)
+        hits = sum(d < ilc_plant.SETUP["success_distance"] for _, distances, _ in experiments for d in distances)
+        trials = sum(len(distances) for _, distances, _ in experiments)
         low, high = interval(hits, trials)
         print(f"  {hits} of {trials}, {100 * hits / trials:.0f} % ({100 * low:.0f} to {100 * high:.0f} %)")
-    draw(options.out, experiments, cold)
+    draw(options.out, runs["rehearsed"], runs["no"])
     print(f"wrote {options.out}")
 
 

@@ -25,17 +25,19 @@ def cylinder(gain=1.0, frequency=1.0):
                              input_limits=tuple(given["input_limits"]), volume_limits=tuple(given["volume_limits"]))
 
 
-def model():
-    """(arm, actuators, cylinders) that the learner starts from."""
-    return (arm(MODEL["masses"], MODEL["stiffness"], MODEL["damping"]),
+def model(centre="arc"):
+    """(arm, actuators, cylinders) that the learner starts from: lumped, or as the plant, "distributed"."""
+    return (arm(MODEL["masses"], MODEL["stiffness"], MODEL["damping"], centre),
             [pcc.FluidicActuator(MODEL["cubic"], delay=MODEL["delay"])] * 3, [cylinder()] * 3)
 
 
-def excitation(seconds=4.0, seed=1):
-    """Commands (samples, 3) that move the arm all over its range, from rest."""
-    time = MODEL["cylinder"]["sample_time"] * np.arange(round(seconds / MODEL["cylinder"]["sample_time"]) + 1)
+def excitation():
+    """Commands (samples, 3) that move the arm all over its range from rest, with volumes as large as those of grabs."""
+    given, step = SETUP["excitation"], MODEL["cylinder"]["sample_time"]
+    time = step * np.arange(round(given["seconds"] / step) + 1)
     fade = np.sin(np.pi * np.clip(time, 0, 0.5))[:, None] ** 2
-    return fade * np.stack([pcc.Excitation(3e-5, seed=10 * seed + k).at(time) for k in range(3)], axis=1)
+    waves = [pcc.Excitation(given["amplitude"], seed=10 * given["seed"] + k).at(time) for k in range(3)]
+    return np.clip(fade * np.stack(waves, axis=1), -given["largest"], given["largest"])
 
 
 class Plant:

@@ -19,6 +19,8 @@ from . import errors, identify, pcc, plan
 
 __all__ = ["Attempt", "Learner", "Proposal"]
 
+_HAT = 0.1  # s, half the width of what commands are changed by
+
 
 class Proposal(NamedTuple):
     """What is to be run next.
@@ -32,7 +34,7 @@ class Proposal(NamedTuple):
     volume : (samples, inputs) m^3
         That they are expected to deliver.
     plan : Plan
-        Of the model; its time 0 is `lead`.
+        What the commands came from before they were changed; its time 0 is `lead`.
     predicted : (3,) m
         Where the tip is expected at the end.
     arm, actuators, cylinders
@@ -72,10 +74,11 @@ class Attempt(NamedTuple):
 class Learner:
     """Brings an arm's tip to a goal that it cannot hold, with a model that learns from each attempt.
 
-    An attempt is planned with the model as it is (plan.Task), taken back through actuators and
+    A swing is planned with the model as it is (plan.Task), taken back through actuators and
     cylinders (plan.invert_drive), run and measured; then arm and actuators are fitted to the latest
-    records (identify.fit_arm) and the cylinders to all (identify.fit_cylinder). What the model still
-    misses at the end of the last attempt, and what the cylinders cannot follow, moves the plan's aim.
+    records (identify.fit_arm) and the cylinders to all (identify.fit_cylinder). Each attempt's commands are those of
+    the one before with the least change that takes the model's tip to the goal, less what the model missed at the end
+    of that attempt; only where there is no such change the swing is planned anew.
 
     Parameters
     ----------
@@ -95,11 +98,13 @@ class Learner:
     memory : int
         Latest records that the arm is fitted to: a model that is wrong is right near them only.
     corrections : int
-        Most plans made for a proposal, until the model with its cylinders is within `close` of the goal.
+        Most steps of Gauss-Newton in changing commands.
     close : float
-        m.
+        m, distance of the model's tip from the goal, beyond which the swing is planned anew.
+    time_step : float
+        s, of the simulations that the model is fitted with and judged by.
     fit_options, plan_options : dict, optional
-        More for identify.fit_arm and plan.Task.
+        More for identify.fit_arm, whose time step is `time_step`, and plan.Task.
     seed : int
         Of the first plan.
 
@@ -123,6 +128,7 @@ class Learner:
         memory: int = 1,
         corrections: int = 4,
         close: float = 2e-3,
+        time_step: float = 0.02,
         fit_options: Optional[Mapping[str, Any]] = None,
         plan_options: Optional[Mapping[str, Any]] = None,
         seed: int = 1,
@@ -143,15 +149,14 @@ class Learner:
         self._volume_limits = [float(a.volume(t)) for a, t in zip(self.actuators, torque_limits)]
         self._fit_options = dict(fit_options or {})
         self._lead, self._memory, self._corrections, self._close = lead, memory, corrections, close
-        self._seed = seed
-        self._plan: Optional[plan.Plan] = None
+        self._seed, self._time_step = seed, time_step
+        self._last: Optional[Proposal] = None
         self._proposal: Optional[Proposal] = None
-        self._aim = self.goal.copy()
         self._missed = np.zeros(3)  # of the fitted model at the last attempt's end
         plan.Task(arm, self.goal, torque_limits, **self._task)
 
     def learn_from(self, command: np.ndarray, record: identify.MotionRecord) -> Optional[identify.ArmFit]:
-        """Fits the model to a motion before the first attempt, from rest, of the arm's free excitation for example.
+        """Fits the model to a motion before the first attempt, from rest: of an excitation or a rehearsal.
 
         Parameters
         ----------
@@ -177,6 +182,27 @@ class Learner:
         self._motions.append((command, record))
         return self._identify()
 
+    def rehearsal(self, share: float = 0.9) -> np.ndarray:
+        """Commands (samples, inputs) of the next attempt at a share of its volumes, to be run and learned from
+        (learn_from) before it.
+
+        Parameters
+        ----------
+        share : float
+            Above 0, below 1; torque goes with its cube.
+
+        Raises
+        ------
+        Error
+            out-of-range: the share.
+        RunError
+            not-converged: no plan could be simulated.
+        """
+        if not 0.0 < share < 1.0:
+            raise errors.Error("out-of-range", errors.Place(item="share"), f"it is {share}",
+                               "give a number between 0 and 1")
+        return share * self._next().command
+
     def propose(self) -> Proposal:
         """The next attempt's commands.
 
@@ -185,23 +211,8 @@ class Learner:
         RunError
             not-converged: no plan could be simulated.
         """
-        best, least = None, np.inf
-        aim = self._aim
-        for _ in range(self._corrections):
-            candidate = self._candidate(aim)
-            if candidate is None:
-                break
-            left = self.goal - candidate.predicted
-            if np.linalg.norm(left) < least:
-                best, least, self._aim, self._plan = candidate, np.linalg.norm(left), aim, candidate.plan
-            if least < self._close:
-                break
-            aim = aim + left
-        if best is None:
-            raise errors.RunError("not-converged", errors.Place(item="goal"), "no plan could be simulated",
-                                  "give more time or torque, or a looser plan")
-        self._proposal = best
-        return best
+        self._proposal = self._next()
+        return self._proposal
 
     def observe(self, record: identify.MotionRecord) -> Attempt:
         """Takes in what was measured of the last proposal.
@@ -235,34 +246,113 @@ class Learner:
         for _ in range(attempts):
             yield self.observe(plant(self.propose().command))
 
-    def _candidate(self, aim: np.ndarray) -> Optional[Proposal]:
-        try:
-            limits = [float(a.torque(v)) for a, v in zip(self.actuators, self._volume_limits)]
-            task = plan.Task(self.arm, aim, limits, **self._task)
-        except errors.Error:
-            return None  # the aim went beyond the arm
-        found = None if self._plan is None else task.solve(warm=self._plan, max_iterations=100)
+    def _next(self) -> Proposal:
+        """The last commands corrected, or a new plan's where the model says that these do not reach the goal."""
+        best = self._corrected(self._last.plan, self._last.command) if self._last else None
+        if best is None or self._left(best) > self._close:
+            planned = self._planned()
+            if planned is not None and (best is None or self._left(planned) < self._left(best)):
+                best = planned
+        if best is None:
+            raise errors.RunError("not-converged", errors.Place(item="goal"), "no plan could be simulated",
+                                  "give more time or torque, or a looser plan")
+        self._last = best
+        return best
+
+    def _planned(self) -> Optional[Proposal]:
+        limits = [float(a.torque(v)) for a, v in zip(self.actuators, self._volume_limits)]
+        task = plan.Task(self.arm, self.goal, limits, **self._task)
+        found = task.solve(warm=self._last.plan, max_iterations=100) if self._last else None
         if found is None or not found.found:
             found = task.solve(self._seed, max_iterations=100)
-        # One that breaks a limit or ends beside its aim is still worth an attempt: its motion decides, as simulated
-        # here.
+        # One that breaks a limit or ends beside the goal is still where the correction may start.
         drive = plan.invert_drive(found, self.actuators, self.cylinders, lead=self._lead)
-        if not drive["found"]:
-            return None
+        return self._corrected(found, drive["command"]) if drive["found"] else None
+
+    def _corrected(self, found: plan.Plan, command: np.ndarray) -> Optional[Proposal]:
+        """The commands with the least change that takes the model's tip to the goal: Gauss-Newton, each step halved
+        until it brings the tip nearer."""
+        best = self._simulated(found, command)
+        for _ in range(self._corrections):
+            if best is None or self._left(best) < 0.1 * self._close:
+                break
+            try:
+                change = self._least_change(best)
+            except errors.RunError:
+                break
+            tried = (self._simulated(found, best.command + share * change) for share in (1.0, 0.5, 0.25))
+            nearer = next((t for t in tried if t is not None and self._left(t) < self._left(best)), None)
+            if nearer is None:
+                break
+            best = nearer
+        return best
+
+    def _least_change(self, proposal: Proposal) -> np.ndarray:
+        """Of the commands, (samples, inputs): with x the heights of hats along time, the columns of B, for each input,
+        min |B x|^2 subject to J x = what is left to the goal, J by differences. Hats that take a volume beyond its
+        limit are left out."""
+        samples, inputs = proposal.command.shape
+        hats = self._hats(samples)
+        count = hats.shape[1]
+        size = 0.01 * max(self._volume_limits)
+        end = self._end(proposal.volume)
+        by_height = np.zeros((3, inputs, count))
+        raised = np.zeros((samples, inputs, count))  # volumes by heights
+        for k in range(inputs):
+            for i in range(count):
+                volume = proposal.volume.copy()
+                volume[:, k] = self.cylinders[k].simulate(proposal.command[:, k] + size * hats[:, i])
+                by_height[:, k, i] = (self._end(volume) - end) / size
+                raised[:, k, i] = (volume[:, k] - proposal.volume[:, k]) / size
+        # In y = R x with B^T B = R^T R the change has the length of y.
+        shape = np.linalg.inv(np.linalg.cholesky(hats.T @ hats)).T
+        used = np.ones((inputs, count), dtype=bool)
+        limits = np.maximum(self._volume_limits, np.abs(proposal.volume))
+        left = self.goal - proposal.predicted
+        for _ in range(count):
+            weighted = np.where(used, by_height, 0.0) @ shape
+            heights = np.linalg.lstsq(weighted.reshape(3, -1), left, rcond=1e-6)[0].reshape(inputs, count) @ shape.T
+            heights = np.where(used, heights, 0.0)
+            volume = proposal.volume + np.einsum("ski,ki->sk", raised, heights)
+            beyond = np.abs(volume) > limits * (1.0 + 1e-9)
+            outward = np.einsum("sk,ski->ki", beyond * np.sign(volume), raised) * heights > 0.0
+            if not (outward & used).any():
+                break
+            used &= ~outward
+        return hats @ heights.T
+
+    def _hats(self, samples: int) -> np.ndarray:
+        step = self.cylinders[0].sample_time
+        time = step * np.arange(samples)
+        width = min(_HAT, 0.25 * time[-1])
+        centres = np.arange(width, time[-1] - 0.5 * width, width)  # none for the last moments, which move nothing
+        return np.maximum(0.0, 1.0 - np.abs(time[:, None] - centres) / width)
+
+    def _simulated(self, found: plan.Plan, command: np.ndarray) -> Optional[Proposal]:
+        command = np.stack([np.clip(u, *c.input_limits) for c, u in zip(self.cylinders, command.T)], axis=1)
+        volume = np.stack([c.simulate(u) for c, u in zip(self.cylinders, command.T)], axis=1)
         try:
-            ends = identify.predict_motion(self.arm, drive["times"], np.zeros(found.theta.shape[1]),
-                                           inputs=drive["volume"], actuators=self.actuators)
+            end = self._end(volume)
         except errors.RunError:
             return None
-        return Proposal(drive["times"], drive["command"], drive["volume"], found, ends[-1, -1] + self._missed,
-                        self.arm, self.actuators, self.cylinders)
+        times = self.cylinders[0].sample_time * np.arange(len(command))
+        return Proposal(times, command, volume, found, end + self._missed, self.arm, self.actuators, self.cylinders)
+
+    def _end(self, volume: np.ndarray) -> np.ndarray:
+        """(3,) m, where volumes (samples, inputs) take the model's tip."""
+        times = self.cylinders[0].sample_time * np.arange(len(volume))
+        return identify.predict_motion(self.arm, times, np.zeros(self.arm.coordinates), inputs=volume,
+                                       actuators=self.actuators, time_step=self._time_step)[-1, -1]
+
+    def _left(self, proposal: Proposal) -> float:
+        return float(np.linalg.norm(self.goal - proposal.predicted))
 
     def _identify(self) -> Optional[identify.ArmFit]:
         records = [record for _, record in self._motions]
         self.cylinders = [self._fitted_cylinder(k) for k in range(len(self.cylinders))]
         try:
             fit = identify.fit_arm(self._first_arm, records[-self._memory:], actuators=self._first_actuators,
-                                   **self._fit_options)
+                                   time_step=self._time_step, **self._fit_options)
         except errors.RunError:
             return None
         self.arm, self.actuators = fit.arm, list(fit.actuators)

@@ -13,16 +13,23 @@ def arm(mass=1.0, stiffness=1.0, centre="arc"):
     return pcc.Arm([0.14, 0.14], mass * np.array([0.12, 0.09]), 0.108 * stiffness, 4.2e-3, centre=centre)
 
 
-def cylinder(frequency=60.0):
+def cylinder(frequency=60.0, largest=8e-5):
     free = pcc.second_order_cylinder(1.0, frequency, 0.8, STEP)
-    return pcc.DriveCylinder(free.a, free.b, free.c, free.d, sample_time=STEP, input_limits=(-8e-5, 8e-5),
+    return pcc.DriveCylinder(free.a, free.b, free.c, free.d, sample_time=STEP, input_limits=(-largest, largest),
                              volume_limits=(-5e-5, 5e-5))
 
 
-def learner(**more):
+def learner(torque_limits=(0.15, 0.15), **more):
     options = {"duration": 0.8, "lead": LEAD, "plan_options": {"intervals": 25}, **more}
-    return learn.Learner(arm(), [pcc.FluidicActuator(4e12, delay=0.05)] * 2, [cylinder()] * 2, GOAL, [0.15, 0.15],
+    return learn.Learner(arm(), [pcc.FluidicActuator(4e12, delay=0.05)] * 2, [cylinder()] * 2, GOAL, torque_limits,
                          **options)
+
+
+def rehearsed(plant, **more):
+    student = learner(**more)
+    command = student.rehearsal(0.9)
+    student.learn_from(command, plant(command))
+    return student
 
 
 class Plant:
@@ -68,6 +75,54 @@ def test_a_motion_before_the_first_attempt_helps():
     told = next(student.run(plant, 1))
     untold = next(learner().run(plant, 1))
     assert told.tip_error < 0.5 * untold.tip_error
+
+
+def test_the_next_commands_are_the_last_with_a_small_change():
+    plant = Plant()
+    first, second, third = (attempt.proposal for attempt in rehearsed(plant).run(plant, 3))
+    for before, after in ((first, second), (second, third)):
+        assert after.plan is before.plan
+        assert 0.0 < np.linalg.norm(after.command - before.command) < 0.1 * np.linalg.norm(before.command)
+        assert np.linalg.norm(after.predicted - GOAL) < 2e-3
+
+
+def test_changed_commands_keep_the_limits_of_volume():
+    # Torques that the goal takes nearly all of: without the limits the volumes would go 15 % beyond.
+    plant, limits = Plant(), (0.075, 0.105)
+    most = [pcc.FluidicActuator(4e12).volume(torque) for torque in limits]
+    for attempt in rehearsed(plant, torque_limits=limits).run(plant, 3):
+        share = np.abs(attempt.proposal.volume).max(axis=0) / most
+        assert share.max() < 1.001
+        assert share.max() > 0.98
+    assert attempt.tip_error < 0.005
+
+
+def test_changed_commands_keep_the_limits_of_cylinders():
+    # A little more than volumes at rest take, so that what drives the cylinders fast is cut off.
+    plant = Plant()
+    plant.cylinder = cylinder(52.0, 3.6e-5)
+    student = learn.Learner(arm(), [pcc.FluidicActuator(4e12, delay=0.05)] * 2, [cylinder(60.0, 3.6e-5)] * 2, GOAL,
+                            (0.15, 0.15), duration=0.8, lead=LEAD, plan_options={"intervals": 25})
+    command = student.rehearsal(0.9)
+    student.learn_from(command, plant(command))
+    for attempt in student.run(plant, 3):
+        assert np.abs(attempt.proposal.command).max() == 3.6e-5
+    assert attempt.tip_error < 0.005
+
+
+def test_a_rehearsal_makes_the_first_attempt_better():
+    plant = Plant()
+    student = learner()
+    command = student.rehearsal(0.9)
+    np.testing.assert_allclose(command, 0.9 * learner().propose().command, rtol=1e-9, atol=1e-15)
+    assert student.attempts == []
+    record = plant(command)
+    assert np.linalg.norm(record.positions[-1, -1] - GOAL) > 0.02
+    student.learn_from(command, record)
+    assert next(student.run(plant, 1)).tip_error < 0.5 * next(learner().run(plant, 1)).tip_error
+    for share in (0.0, 1.0):
+        with pytest.raises(sinew.Error, match="between 0 and 1"):
+            student.rehearsal(share)
 
 
 def test_a_cylinder_is_told_what_gives_the_volumes():
