@@ -143,6 +143,7 @@ void expect_passing_agrees(Factorisation& factorisation, const BlockSystem& syst
       }
     }
     factorisation.pass(values, groups);
+    if (count == 0) continue;  // none may come; Eigen's dense solution is not for nothing
     const MatrixX solved = lu.solve(rows.transpose());
     MatrixX coupling(count, border.rows() + 1);
     coupling << solved.transpose() * border.transpose(), solved.transpose() * right;
