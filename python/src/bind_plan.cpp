@@ -101,8 +101,8 @@ std::shared_ptr<const pcc::Arm> other(const PccArm* arm,
 }
 
 void bind_obstacles(py::module_& module) {
-  py::class_<plan::Obstacle>(module, "PlanObstacle",
-                             "What the arm's axis keeps clear of: a Sphere() or a Plane().");
+  const py::class_<plan::Obstacle> obstacle(
+      module, "PlanObstacle", "What the arm's axis keeps clear of: a Sphere() or a Plane().");
   module.def(
       "plan_sphere",
       [](const py::object& centre, double radius, double clearance) {

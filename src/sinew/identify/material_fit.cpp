@@ -208,6 +208,7 @@ Attempt solve(const Residuals& residuals, std::vector<Parameter> start) {
     start.insert(start.end(), {{0.5, 0.0, 0.999}, {0.3, 0.0, 1e3}, {0.1, 0.0, 1e2}});
   }
   std::vector<BoundedValue> values;
+  values.reserve(start.size());
   for (const Parameter& p : start) values.push_back({p.start, p.lower, p.upper});
   std::size_t rows = 0;
   for (const RubberTest& test : residuals.tests) rows += test.stretch.size();
