@@ -19,7 +19,8 @@ namespace {
 /// min |tip - goal|^2 over (q, tau) at rest.
 class NearestProgram final : public NonlinearProgram {
  public:
-  NearestProgram(std::shared_ptr<const pcc::Arm> arm, const Limits& limits, const Vector3& goal)
+  NearestProgram(const std::shared_ptr<const pcc::Arm>& arm, const Limits& limits,
+                 const Vector3& goal)
       : arm_(arm),
         equations_(arm),
         points_(arm),
@@ -114,7 +115,7 @@ Limits completed_limits(const pcc::Arm& arm, const Limits& limits) {
   return result;
 }
 
-ReachMap sample_reach(std::shared_ptr<const pcc::Arm> arm, const Limits& given, int samples,
+ReachMap sample_reach(const std::shared_ptr<const pcc::Arm>& arm, const Limits& given, int samples,
                       std::uint64_t seed) {
   if (samples < 1) {
     throw Error(ErrorKind::out_of_range, {.item = "samples"}, fmt::format("{}", samples),
@@ -158,7 +159,7 @@ ReachMap sample_reach(std::shared_ptr<const pcc::Arm> arm, const Limits& given, 
   return result;
 }
 
-NearestReach nearest_reach(std::shared_ptr<const pcc::Arm> arm, const Limits& given,
+NearestReach nearest_reach(const std::shared_ptr<const pcc::Arm>& arm, const Limits& given,
                            const Vector3& goal, int starts, std::uint64_t seed) {
   const Limits limits = completed_limits(*arm, given);
   NearestProgram program(arm, limits, goal);

@@ -44,7 +44,7 @@ struct Interval {
 
 class Search {
  public:
-  Search(std::shared_ptr<const pcc::Arm> arm, const Limits& limits, const Vector3& goal,
+  Search(const std::shared_ptr<const pcc::Arm>& arm, const Limits& limits, const Vector3& goal,
          const ReachProofSettings& settings)
       : arm_(arm),
         equations_(arm),
@@ -92,9 +92,9 @@ class Search {
         from = to = centre;
         return Answer::found;
       }
-      const VectorX before = half;
+      const double before = half.maxCoeff();
       if (!shrink(half, from, to, centre)) return Answer::gone;
-      if ((to - from).maxCoeff() > 1.4 * before.maxCoeff()) break;
+      if ((to - from).maxCoeff() > 1.4 * before) break;
     }
     return Answer::open;
   }
@@ -202,7 +202,7 @@ std::string_view verdict_name(ReachProof::Verdict verdict) {
   return "undecided";
 }
 
-ReachProof prove_out_of_reach(std::shared_ptr<const pcc::Arm> arm, const Limits& given,
+ReachProof prove_out_of_reach(const std::shared_ptr<const pcc::Arm>& arm, const Limits& given,
                               const Vector3& goal, const ReachProofSettings& settings) {
   check(*arm, settings);
   const Limits limits = completed_limits(*arm, given);

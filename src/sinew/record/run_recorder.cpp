@@ -73,11 +73,9 @@ class ParaviewSeries {
   ParaviewSeries(const fs::path& folder, const sim::Simulation& simulation)
       : simulation_(simulation) {
     const auto& bodies = simulation.model().bodies();
-    for (std::size_t b = 0; b < bodies.size(); ++b) {
-      const auto* fem = dynamic_cast<const fem::FemBodyModel*>(bodies[b].get());
-      means_.push_back(fem == nullptr ? nullptr : std::make_unique<fem::NodalMean>(*fem));
-    }
     for (const auto& body : bodies) {
+      const auto* fem = dynamic_cast<const fem::FemBodyModel*>(body.get());
+      means_.push_back(fem == nullptr ? nullptr : std::make_unique<fem::NodalMean>(*fem));
       lists_.emplace_back(folder /
                           (bodies.size() == 1 ? "run.pvd" : "run_" + body->name() + ".pvd"));
     }

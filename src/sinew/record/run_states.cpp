@@ -55,9 +55,9 @@ void RunStates::describe(const RecordSettings& settings) {
 void RunStates::declare_bodies(bool states) {
   const sim::Model& model = simulation_.model();
   const bool moving = model.step().integrator != mechanics::Integrator::quasi_static;
-  for (std::size_t b = 0; b < model.bodies().size(); ++b) {
-    const std::string& name = model.bodies()[b]->name();
-    const mesh::Mesh& mesh = model.bodies()[b]->mesh();
+  for (const auto& body : model.bodies()) {
+    const std::string& name = body->name();
+    const mesh::Mesh& mesh = body->mesh();
     const auto nodes = static_cast<std::uint64_t>(mesh.node_count());
     const std::string folder = "/mesh/" + name;
     file_.dataset(folder + "/nodes", {nodes, 3}, numbers(mesh.nodes));
@@ -74,7 +74,7 @@ void RunStates::declare_bodies(bool states) {
     if (!states) continue;
     positions_.push_back(declare("/positions/" + name, {nodes, 3}, "m"));
     if (moving) velocities_.push_back(declare("/velocities/" + name, {nodes, 3}, "m/s"));
-    const auto* arm = dynamic_cast<const pcc::ArmBodyModel*>(model.bodies()[b].get());
+    const auto* arm = dynamic_cast<const pcc::ArmBodyModel*>(body.get());
     const auto count = static_cast<std::uint64_t>(arm == nullptr ? 0 : arm->arm().coordinates());
     coordinates_.push_back(arm == nullptr ? -1 : declare("/coordinates/" + name, {count}, "rad"));
   }

@@ -178,8 +178,9 @@ Conduit set_guides(const Points& written, const std::vector<Place>& places, doub
           fmt::format("guides {:g} m apart would be {:g} between two points", spacing, parts),
           "give a greater spacing, or check its unit");
     }
-    for (double k = 1.0; k <= std::max(parts, 1.0); k += 1.0) {
-      all.push_back(from + k / std::max(parts, 1.0) * (to - from));
+    const int pieces = std::max(static_cast<int>(parts), 1);
+    for (int k = 1; k <= pieces; ++k) {
+      all.push_back(from + static_cast<double>(k) / pieces * (to - from));
       if (static_cast<std::size_t>(i) < places.size()) {
         result.places.push_back(places[static_cast<std::size_t>(i)]);
       }
