@@ -88,8 +88,8 @@ RobotState::RobotState(scene::Robot robot, std::shared_ptr<sim::Simulation> simu
       description_(describe(robot_)),
       simulation_(std::move(simulation)),
       first_(std::move(first)) {
-  for (std::size_t b = 0; b < robot_.model->bodies().size(); ++b) {
-    const auto* fem = dynamic_cast<const fem::FemBodyModel*>(robot_.model->bodies()[b].get());
+  for (const auto& body : robot_.model->bodies()) {
+    const auto* fem = dynamic_cast<const fem::FemBodyModel*>(body.get());
     means_.push_back(fem == nullptr ? nullptr : std::make_unique<fem::NodalMean>(*fem));
   }
   if (first_) attach(first_->name, first_->settings);
