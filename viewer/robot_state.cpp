@@ -89,8 +89,7 @@ RobotState::RobotState(scene::Robot robot, std::shared_ptr<sim::Simulation> simu
       simulation_(std::move(simulation)),
       first_(std::move(first)) {
   for (const auto& body : robot_.model->bodies()) {
-    const auto* fem = dynamic_cast<const fem::FemBodyModel*>(body.get());
-    means_.push_back(fem == nullptr ? nullptr : std::make_unique<fem::NodalMean>(*fem));
+    means_.push_back(fem::nodal_mean(*body));
   }
   if (first_) attach(first_->name, first_->settings);
 }

@@ -31,9 +31,4 @@ void require_inputs(const ArmScene& scene) {
                           name));
 }
 
-void print_left_out(const ArmScene& scene) {
-  if (scene.left_out.empty()) return;
-  fmt::print("not taken into account: {}\n", fmt::join(scene.left_out, ", "));
-}
-
 }  // namespace sinew::cli

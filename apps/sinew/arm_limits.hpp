@@ -14,7 +14,4 @@ plan::Limits limits_of(const ArmScene& scene);
 /// Throws Error(no-actuators) where no torque drives the arm.
 void require_inputs(const ArmScene& scene);
 
-/// Says on standard output what acts on the arm in the scene and is not taken into account.
-void print_left_out(const ArmScene& scene);
-
 }  // namespace sinew::cli

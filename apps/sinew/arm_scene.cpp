@@ -80,7 +80,8 @@ std::vector<const ActuatorDescription*> torques_on(const SceneDescription& scene
   return torques;
 }
 
-std::vector<std::string> left_out(const SceneDescription& scene, const std::string& body) {
+std::vector<std::string> left_out(const SceneDescription& scene, const std::string& body,
+                                  bool takes_contacts) {
   std::vector<std::string> names;
   for (const ActuatorDescription& actuator : scene.actuators) {
     if (actuator.body != body || actuator.type == ActuatorDescription::Type::torque) continue;
@@ -90,7 +91,8 @@ std::vector<std::string> left_out(const SceneDescription& scene, const std::stri
     if (load.body == body) names.push_back(fmt::format("load '{}'", load.name));
   }
   for (const auto& contact : scene.contacts) {
-    if (contact.body == body) names.push_back(fmt::format("contact '{}'", contact.name));
+    if (takes_contacts || contact.body != body) continue;
+    names.push_back(fmt::format("contact '{}'", contact.name));
   }
   return names;
 }
@@ -131,11 +133,16 @@ ArmScene load_arm_scene(const ArmSceneOptions& options) {
     pcc::ArmSettings settings = *body.arm;
     settings.gravity = result.description.gravity;
     take_inputs(result, std::move(settings), torques_on(result.description, body.name));
-    result.left_out = left_out(result.description, body.name);
+    result.left_out = left_out(result.description, body.name, options.takes_contacts);
   } catch (const Error& error) {
     throw error.at({.file = options.file.string()});
   }
   return result;
+}
+
+void print_left_out(const ArmScene& scene) {
+  if (scene.left_out.empty()) return;
+  fmt::print("not taken into account: {}\n", fmt::join(scene.left_out, ", "));
 }
 
 void add_arm_scene_options(CLI::App& command, ArmSceneOptions& options) {

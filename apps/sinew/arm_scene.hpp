@@ -22,6 +22,7 @@ struct ArmSceneOptions {
   std::filesystem::path file;
   std::vector<std::string> overrides;  ///< "path=value"
   std::string body;                    ///< empty: the only arm
+  bool takes_contacts = false;         ///< the command makes use of contacts with the arm
 };
 
 /// The arm alone: its inputs are the scene's actuators of type torque, in the scene's order.
@@ -40,6 +41,10 @@ struct ArmScene {
 /// Error(bad-argument) where it has several and none was named.
 /// @param options see there.
 ArmScene load_arm_scene(const ArmSceneOptions& options);
+
+/// Says what of the scene a command does not take into account, if anything.
+/// @param scene which.
+void print_left_out(const ArmScene& scene);
 
 /// Adds SCENE, --set and --body to a command.
 /// @param command to add to. @param options to fill.

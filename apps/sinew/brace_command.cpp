@@ -207,23 +207,15 @@ void print_trials(const std::vector<BraceTrial>& trials) {
                     "--tolerance, more --starts, or limits that leave more torque");
 }
 
-// Of all contacts, of which objects are made here.
-void drop_contacts(ArmScene& scene, const std::vector<std::string>& names) {
-  for (const std::string& name : names) {
-    std::erase(scene.left_out, fmt::format("contact '{}'", name));
-  }
-}
-
 int find_and_carry_out(const BraceOptions& options) {
   require_range("--disturbances", options.seeds, 1, kMostSeeds);
   require_range("--starts", options.starts, 1, kMostSeeds);
-  ArmScene scene = load_arm_scene(options.scene);
+  const ArmScene scene = load_arm_scene(options.scene);
   require_inputs(scene);
   require_range("--segment", options.segments, 0, scene.arm->segments());
   std::vector<std::string> names;
   const BraceTask task = task_of(options, scene, names);
   static_cast<void>(run_settings(options));  // what is wrong is said before the search
-  drop_contacts(scene, names);
   print_left_out(scene);
   const Brace brace = search(options, scene, task);
   print_brace(brace, task, names);
@@ -253,6 +245,7 @@ void add_brace(CLI::App& app, Actions& actions) {
   CLI::App* command =
       app.add_subcommand("brace", "Lean an arm on what is around it, so that its tip is steadier");
   const auto options = std::make_shared<BraceOptions>();
+  options->scene.takes_contacts = true;  // its objects
   add_arm_scene_options(*command, options->scene);
   command->add_option("--goal", options->goal, "Where the tip is to be: \"5 0 -53 cm\"")
       ->required()

@@ -247,9 +247,7 @@ int run_identify(const IdentifyOptions& options) {
   const identify::ArmModel model = model_of(options, scene);
   std::vector<MotionRecord> records = read_records(options.records, options, scene);
   const std::vector<MotionRecord> others = read_records(options.validate, options, scene);
-  if (!scene.left_out.empty()) {
-    fmt::print("not taken into account: {}\n", fmt::join(scene.left_out, ", "));
-  }
+  print_left_out(scene);
   std::fflush(stdout);
   ArmFit found;
   std::vector<RecordFit> validated;

@@ -171,6 +171,11 @@ NodalMean::NodalMean(const FemBodyModel& model)
   }
 }
 
+std::unique_ptr<NodalMean> nodal_mean(const mechanics::BodyModel& model) {
+  const auto* fem = dynamic_cast<const FemBodyModel*>(&model);
+  return fem == nullptr ? nullptr : std::make_unique<NodalMean>(*fem);
+}
+
 std::vector<double> NodalMean::operator()(std::span<const double> values, std::size_t width) const {
   const ElementList list(model_.mesh());
   std::vector<double> means(width * around_.size(), 0.0);

@@ -3,6 +3,7 @@
 /// ParaView series and Python all take them from here.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -72,6 +73,9 @@ class NodalMean {
   std::vector<double> volume_;  // (m,) m^3 of elements
   std::vector<double> around_;  // (n,) m^3 of the elements round a node
 };
+
+/// Null for a body that has no elements. @param model must outlive the result.
+std::unique_ptr<NodalMean> nodal_mean(const mechanics::BodyModel& model);
 
 /// (n,) |x - X|, m. @param body of any kind, at its present state.
 std::vector<double> displacement_field(const mechanics::Body& body);

@@ -13,18 +13,6 @@ namespace {
 
 constexpr const char* kPlace = "drive inversion";
 
-/// Impulse response h_0 = D, h_k = C A^(k-1) B.
-VectorX impulse_response(const pcc::DriveCylinder& cylinder, Eigen::Index count) {
-  VectorX response(count);
-  response[0] = cylinder.d;
-  Eigen::Vector2d x = cylinder.b;
-  for (Eigen::Index k = 1; k < count; ++k) {
-    response[k] = cylinder.c.dot(x);
-    x = cylinder.a * x;
-  }
-  return response;
-}
-
 /// y of no command.
 VectorX free_response(const pcc::DriveCylinder& cylinder, Eigen::Vector2d x, Eigen::Index count) {
   VectorX response(count);
@@ -32,6 +20,13 @@ VectorX free_response(const pcc::DriveCylinder& cylinder, Eigen::Vector2d x, Eig
     response[k] = cylinder.c.dot(x);
     x = cylinder.a * x;
   }
+  return response;
+}
+
+/// Impulse response h_0 = D, h_k = C A^(k-1) B.
+VectorX impulse_response(const pcc::DriveCylinder& cylinder, Eigen::Index count) {
+  VectorX response(count);
+  response << cylinder.d, free_response(cylinder, cylinder.b, count - 1);
   return response;
 }
 

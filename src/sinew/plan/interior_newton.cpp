@@ -214,14 +214,8 @@ void Solver::evaluate() {
   gradient_ = VectorX(slope(variable_)).cwiseProduct(variable_scale_) / objective_scale_;
   jacobian_.resize(program_.jacobian_pattern().size());
   program_.jacobian(all_, jacobian_.data());
-  hessian_.resize(program_.hessian_pattern().size());
-  program_.hessian(all_, 1.0 / objective_scale_, y_.cwiseQuotient(row_scale_), hessian_.data());
-  // Into the order of places(), scaled; the diagonal is the step's.
-  values_.clear();
-  for (const std::size_t e : hessian_taken_) {
-    const auto& [i, j] = program_.hessian_pattern()[e];
-    values_.push_back(hessian_[e] * program_.variable_scale()[i] * program_.variable_scale()[j]);
-  }
+  // Into the order of places(), scaled; the Hessian and the diagonal are the step's.
+  values_.resize(hessian_taken_.size());
   const auto& pattern = program_.jacobian_pattern();
   for (const std::size_t e : jacobian_taken_) {
     const auto& [row, column] = pattern[e];
@@ -256,6 +250,13 @@ double Solver::error() const {
 }
 
 bool Solver::factor() {
+  hessian_.resize(program_.hessian_pattern().size());
+  program_.hessian(all_, 1.0 / objective_scale_, y_.cwiseQuotient(row_scale_), hessian_.data());
+  for (std::size_t k = 0; k < hessian_taken_.size(); ++k) {
+    const std::size_t e = hessian_taken_[k];
+    const auto& [i, j] = program_.hessian_pattern()[e];
+    values_[k] = hessian_[e] * program_.variable_scale()[i] * program_.variable_scale()[j];
+  }
   const auto unknowns = x_.size(), rows = y_.size();
   const std::size_t diagonal = hessian_taken_.size() + jacobian_taken_.size();
   values_.resize(diagonal + static_cast<std::size_t>(unknowns + rows));

@@ -74,8 +74,7 @@ class ParaviewSeries {
       : simulation_(simulation) {
     const auto& bodies = simulation.model().bodies();
     for (const auto& body : bodies) {
-      const auto* fem = dynamic_cast<const fem::FemBodyModel*>(body.get());
-      means_.push_back(fem == nullptr ? nullptr : std::make_unique<fem::NodalMean>(*fem));
+      means_.push_back(fem::nodal_mean(*body));
       lists_.emplace_back(folder /
                           (bodies.size() == 1 ? "run.pvd" : "run_" + body->name() + ".pvd"));
     }
