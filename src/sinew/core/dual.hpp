@@ -3,7 +3,7 @@
 /// allocation.
 #pragma once
 
-#include <cmath>
+#include <algorithm>
 #include <cstddef>
 
 namespace sinew {
@@ -71,5 +71,19 @@ struct Dual {
   friend Dual operator*(double a, const Dual& b) { return {a * b.value, a * b.grad}; }
   friend Dual operator*(const Dual& a, double b) { return b * a; }
 };
+
+/// Derivatives by any number of variables, in passes of as many as a Dual<N> carries.
+/// @param variables how many. @param direction of a variable: its number's gradient, zero; lent to
+/// the pass and zero again after it. @param take called with the pass's first variable and how many
+/// it has, in the order of the directions.
+template <std::size_t N, typename Direction, typename Take>
+void in_passes(std::size_t variables, const Direction& direction, const Take& take) {
+  for (std::size_t from = 0; from < variables; from += N) {
+    const std::size_t used = std::min(N, variables - from);
+    for (std::size_t d = 0; d < used; ++d) direction(from + d)[d] = 1.0;
+    take(from, used);
+    for (std::size_t d = 0; d < used; ++d) direction(from + d)[d] = 0.0;
+  }
+}
 
 }  // namespace sinew

@@ -122,10 +122,9 @@ void ArmBody::linearise(const mechanics::LinearisationRequest& request) {
 void ArmBody::stiffen_by_rows() {
   if (effort_.size() == 0 || effort_.isZero(0.0)) return;
   const std::size_t n = slope_q_.size();
-  for (std::size_t from = 0; from < n; from += 8) {
-    const std::size_t used = std::min<std::size_t>(8, n - from);
-    for (std::size_t k = 0; k < n; ++k) slope_q_[k] = q_[static_cast<Eigen::Index>(k)];
-    for (std::size_t d = 0; d < used; ++d) slope_q_[from + d].grad[d] = 1.0;
+  for (std::size_t k = 0; k < n; ++k) slope_q_[k] = q_[static_cast<Eigen::Index>(k)];
+  const auto direction = [&](std::size_t k) -> Dual<8>::Lanes& { return slope_q_[k].grad; };
+  in_passes<8>(n, direction, [&](std::size_t from, std::size_t used) {
     slopes_.place(slope_q_);
     for (std::size_t e = 0; e < model_.entries_.size(); ++e) {
       const auto& entry = model_.entries_[e];
@@ -143,7 +142,7 @@ void ArmBody::stiffen_by_rows() {
         }
       }
     }
-  }
+  });
 }
 
 void ArmBody::point_jacobian(int point, MatrixX& result) {

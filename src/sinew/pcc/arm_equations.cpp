@@ -147,17 +147,15 @@ const MatrixX& ArmEquations::coriolis_matrix(const VectorX& q, const VectorX& ra
   std::vector<MatrixX> slope(n, MatrixX::Zero(static_cast<Eigen::Index>(n), w.mass.cols()));
   if (!w.first) w.first = std::make_unique<ArmDynamics<First>>(w.arm);
   std::vector<First> values(n), mass(n * n);
-  for (std::size_t from = 0; from < n; from += kDirections) {
-    for (std::size_t k = 0; k < n; ++k) {
-      values[k] = q[static_cast<Eigen::Index>(k)];
-      if (k >= from && k < from + kDirections) values[k].grad[k - from] = 1.0;
-    }
+  for (std::size_t k = 0; k < n; ++k) values[k] = q[static_cast<Eigen::Index>(k)];
+  const auto direction = [&](std::size_t k) -> First::Lanes& { return values[k].grad; };
+  in_passes<kDirections>(n, direction, [&](std::size_t from, std::size_t used) {
     w.first->place(view(values));
     w.first->mass_matrix({mass.data(), n * n});
-    for (std::size_t d = 0; d < std::min(kDirections, n - from); ++d) {
+    for (std::size_t d = 0; d < used; ++d) {
       for (std::size_t e = 0; e < n * n; ++e) slope[from + d].data()[e] = mass[e].grad[d];
     }
-  }
+  });
   w.coriolis.setZero();
   const auto size = static_cast<Eigen::Index>(n);
   for (Eigen::Index k = 0; k < size; ++k) {
@@ -189,24 +187,21 @@ const ArmEquations::Linearisation& ArmEquations::linearise(const VectorX& q, con
     w.first_rate[k] = rate[static_cast<Eigen::Index>(k)];
     w.first_acceleration[k] = acceleration[static_cast<Eigen::Index>(k)];
   }
-  const auto variable = [&](std::size_t k) -> First& {
-    return k < n ? w.first_q[k] : w.first_rate[k - n];
+  const auto direction = [&](std::size_t k) -> First::Lanes& {
+    return k < n ? w.first_q[k].grad : w.first_rate[k - n].grad;
   };
-  for (std::size_t from = 0; from < 2 * n; from += kDirections) {
-    const std::size_t used = std::min(kDirections, 2 * n - from);
-    for (std::size_t d = 0; d < used; ++d) variable(from + d).grad[d] = 1.0;
+  in_passes<kDirections>(2 * n, direction, [&](std::size_t from, std::size_t used) {
     w.first->set(view(w.first_q), view(w.first_rate), view(w.first_acceleration));
     w.first->inverse_dynamics({w.first_result.data(), n});
     for (std::size_t d = 0; d < used; ++d) {
       const std::size_t k = from + d;
-      variable(k).grad[d] = 0.0;
       MatrixX& matrix = k < n ? w.linear.by_position : w.linear.by_rate;
       const auto column = static_cast<Eigen::Index>(k % n);
       for (std::size_t i = 0; i < n; ++i) {
         matrix(static_cast<Eigen::Index>(i), column) = w.first_result[i].grad[d];
       }
     }
-  }
+  });
   // dr/dq'' is H.
   w.plain.place(view(q));
   w.plain.mass_matrix({w.linear.by_acceleration.data(), n * n});
@@ -227,7 +222,7 @@ const MatrixX& ArmEquations::curvature(const VectorX& weights, const VectorX& q,
   // The kinematics with numbers of time and variation give all of these, and numbers that carry
   // derivatives inside them the gradient's own.
   Work& w = *work_;
-  const std::size_t n = w.n, all = 2 * n;
+  const std::size_t n = w.n;
   const auto size = static_cast<Eigen::Index>(n);
   if (!w.second) {
     w.second = std::make_unique<ArmDynamics<Second>>(w.arm);
@@ -244,13 +239,10 @@ const MatrixX& ArmEquations::curvature(const VectorX& weights, const VectorX& q,
   const auto direction = [&](std::size_t k) -> First::Lanes& {
     return k < n ? w.second_q[k].value.grad : w.second_q[k - n].rate.grad;
   };
-  for (std::size_t from = 0; from < all; from += kDirections) {
-    const std::size_t used = std::min(kDirections, all - from);
-    for (std::size_t d = 0; d < used; ++d) direction(from + d)[d] = 1.0;
+  in_passes<kDirections>(2 * n, direction, [&](std::size_t from, std::size_t used) {
     w.second->place({w.second_q.data(), n});
     w.gradient_of_work();
     for (std::size_t d = 0; d < used; ++d) {
-      direction(from + d)[d] = 0.0;
       const auto column = static_cast<Eigen::Index>(from + d);
       for (Eigen::Index k = 0; k < size; ++k) {
         const auto i = static_cast<std::size_t>(k);
@@ -259,7 +251,7 @@ const MatrixX& ArmEquations::curvature(const VectorX& weights, const VectorX& q,
         w.curvature(2 * size + k, column) = w.by_acceleration[i].grad[d];
       }
     }
-  }
+  });
   w.curvature.topRightCorner(2 * size, size) =
       w.curvature.bottomLeftCorner(size, 2 * size).transpose();
   return w.curvature;

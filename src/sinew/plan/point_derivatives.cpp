@@ -3,7 +3,6 @@
 // second ones.
 #include "sinew/plan/point_derivatives.hpp"
 
-#include <algorithm>
 #include <span>
 #include <utility>
 
@@ -11,7 +10,7 @@ namespace sinew::plan {
 
 namespace {
 
-constexpr Eigen::Index kDirections = 8;
+constexpr std::size_t kDirections = 8;
 
 void resize(VectorDerivatives& result, Eigen::Index variables) {
   result.jacobian.resize(3, variables);
@@ -39,17 +38,14 @@ void PointDerivatives::pass(const VectorX& q, const VectorX& rate, Eigen::Index 
     const auto i = static_cast<Eigen::Index>(k);
     q_[k] = {q[i], rate[i], 0.0, 0.0};
   }
-  const auto direction = [&](Eigen::Index variable) -> First::Lanes& {
-    const auto k = static_cast<std::size_t>(variable);
+  const auto direction = [&](std::size_t k) -> First::Lanes& {
     return k < n_ ? q_[k].value.grad : q_[k - n_].rate.grad;
   };
-  for (Eigen::Index from = 0; from < variables; from += kDirections) {
-    const Eigen::Index used = std::min(kDirections, variables - from);
-    for (Eigen::Index d = 0; d < used; ++d) direction(from + d)[d] = 1.0;
-    dynamics_.place(std::span<const Moving>(q_));
-    take(from, used);
-    for (Eigen::Index d = 0; d < used; ++d) direction(from + d)[d] = 0.0;
-  }
+  in_passes<kDirections>(static_cast<std::size_t>(variables), direction,
+                         [&](std::size_t from, std::size_t used) {
+                           dynamics_.place(std::span<const Moving>(q_));
+                           take(static_cast<Eigen::Index>(from), static_cast<Eigen::Index>(used));
+                         });
 }
 
 const std::vector<VectorDerivatives>& PointDerivatives::positions(
