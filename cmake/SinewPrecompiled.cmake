@@ -1,35 +1,61 @@
-# Eigen and GoogleTest are read once, not once a source. There are two precompiled headers, because
-# libraries are compiled with -fPIC and programs with -fPIE; a target adopts one of them.
-set(sinew_standard_headers <array> <cmath> <memory> <span> <string> <vector>)
-
-function(sinew_adopt_precompiled target)
-  if(SINEW_PCH)
-    target_precompile_headers(${target} REUSE_FROM sinew_precompiled)
-  endif()
+# How hard a target is optimised, and which system headers it reads precompiled.
+#
+# Element kernels, factorisations and solvers are worth -O3; the rest is compiled to be built quickly. Tests come with
+# -O1: what they time is nothing. All levels share one -march, so that vectors have one size everywhere.
+#
+# sinew_optimise(<target> <level>): -O<level> in release builds, in place of -O3.
+function(sinew_optimise target level)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O${level}>)
 endfunction()
 
-function(sinew_adopt_precompiled_test target)
-  if(SINEW_PCH)
-    target_precompile_headers(${target} REUSE_FROM sinew_precompiled_test)
-  endif()
+# A precompiled header serves targets with the same flags: -fPIC or -fPIE, and one level.
+set(sinew_standard_headers <algorithm> <array> <cmath> <functional> <map> <memory> <optional> <span> <string> <vector>)
+
+function(_sinew_precompiled_options target level)
+  target_link_libraries(${target} PRIVATE sinew_options Eigen3::Eigen fmt::fmt Threads::Threads)
+  target_compile_definitions(${target} PRIVATE EIGEN_MAX_ALIGN_BYTES=64)
+  sinew_optimise(${target} ${level})
 endfunction()
 
 if(SINEW_PCH)
-  file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/precompiled/library.cpp CONTENT "")
-  add_library(sinew_precompiled OBJECT ${CMAKE_BINARY_DIR}/precompiled/library.cpp)
-  target_link_libraries(sinew_precompiled PRIVATE sinew_options Eigen3::Eigen fmt::fmt Threads::Threads)
-  target_compile_definitions(sinew_precompiled PRIVATE EIGEN_MAX_ALIGN_BYTES=64)
-  target_precompile_headers(sinew_precompiled PRIVATE ${sinew_standard_headers} <Eigen/Dense>)
+  foreach(level 2 3)
+    file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/precompiled/library.cpp CONTENT "")
+    add_library(sinew_precompiled_${level} OBJECT ${CMAKE_BINARY_DIR}/precompiled/library.cpp)
+    _sinew_precompiled_options(sinew_precompiled_${level} ${level})
+    target_precompile_headers(sinew_precompiled_${level} PRIVATE ${sinew_standard_headers} <Eigen/Dense> <fmt/format.h>)
+  endforeach()
 
   if(SINEW_TESTS)
     file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/precompiled/test.cpp CONTENT "int main() {}\n")
     add_executable(sinew_precompiled_test ${CMAKE_BINARY_DIR}/precompiled/test.cpp)
-    target_link_libraries(sinew_precompiled_test PRIVATE
-                          sinew_options Eigen3::Eigen fmt::fmt Threads::Threads GTest::gmock)
-    target_compile_definitions(sinew_precompiled_test PRIVATE EIGEN_MAX_ALIGN_BYTES=64)
+    _sinew_precompiled_options(sinew_precompiled_test 1)
+    target_link_libraries(sinew_precompiled_test PRIVATE GTest::gmock)
     target_precompile_headers(sinew_precompiled_test PRIVATE
       ${sinew_standard_headers} <Eigen/Dense> <gmock/gmock.h> <gtest/gtest.h>)
     set_target_properties(sinew_precompiled_test PROPERTIES
                           RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/precompiled)
   endif()
 endif()
+
+# sinew_build_library(<target> <level>), sinew_build_test(<target>): a level, and the precompiled header for it.
+function(sinew_build_library target level)
+  sinew_optimise(${target} ${level})
+  if(SINEW_PCH)
+    target_precompile_headers(${target} REUSE_FROM sinew_precompiled_${level})
+  endif()
+endfunction()
+
+function(sinew_build_test target)
+  sinew_optimise(${target} 1)
+  if(SINEW_PCH)
+    target_precompile_headers(${target} REUSE_FROM sinew_precompiled_test)
+  endif()
+endfunction()
+
+# sinew_build_consumer(<target> <header>...): level 2, and a precompiled header of its own.
+function(sinew_build_consumer target)
+  sinew_optimise(${target} 2)
+  if(SINEW_PCH)
+    target_precompile_headers(${target} PRIVATE ${sinew_standard_headers} <Eigen/Dense> <fmt/format.h> ${ARGN})
+  endif()
+endfunction()
