@@ -66,7 +66,7 @@ struct Assembly::Workspace {
 
   double* records(Tangent tangent) {
     if (tangent == Tangent::none) return nullptr;
-    return tangent == Tangent::exact ? exact_records : rotated_records;
+    return tangent == Tangent::rotated ? rotated_records : exact_records;
   }
 };
 
@@ -115,7 +115,8 @@ Assembly::~Assembly() = default;
 Assembly::Assembly(Assembly&&) noexcept = default;
 
 void Assembly::reserve(Tangent tangent) {
-  if (tangent != Tangent::exact || work_->exact_records != nullptr) return;
+  const bool whole = tangent == Tangent::exact || tangent == Tangent::projected;
+  if (!whole || work_->exact_records != nullptr) return;
   const std::size_t size =
       kLanes * kExactRecord * static_cast<std::size_t>(model_->elements().batches());
   if (work_->lent.size() < size) work_->own_exact_records = linalg::AlignedBuffer(size);

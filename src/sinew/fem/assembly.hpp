@@ -20,6 +20,9 @@ enum class Tangent {
   /// Positive semi-definite: R K0 R^T with the rotation held fixed, what real-time codes use; of
   /// hyperelastic laws the projected derivative.
   rotated,
+  /// The exact derivative of each element (of hyperelastic laws: of each point) projected onto the
+  /// positive semi-definite matrices: never less than the exact one.
+  projected,
   exact,  ///< second derivative of the energy, rotation's derivative included; may be indefinite
 };
 
@@ -30,6 +33,8 @@ struct AssemblyWeights {
   Tangent tangent = Tangent::rotated;
   double stiffness = 1.0;
   double mass = 0.0;
+
+  bool operator==(const AssemblyWeights&) const = default;
 };
 
 /// The element whose volume shrank most.

@@ -88,32 +88,55 @@ void FemBody::begin_step() {
 }
 
 void FemBody::linearise(const mechanics::LinearisationRequest& request) {
+  Numbers* const before = active_;
   active_ = &numbers(request.with_curvature);
+  if (active_ != before) before->present.reset();
+  tangent_ = request.tangent;
   prepare_history(request.weights.time_step);
+  evaluate_elements(request);
+  if (!model_.loads().empty()) apply_loads(request);
+  form_right_side(request);
+  first_linearisation_ = false;
+}
+
+namespace {
+
+Tangent element_tangent(mechanics::Tangent tangent) {
+  switch (tangent) {
+    case mechanics::Tangent::real_time:
+      return Tangent::rotated;
+    case mechanics::Tangent::projected:
+      return Tangent::projected;
+    case mechanics::Tangent::exact:
+      return Tangent::exact;
+  }
+  return Tangent::exact;
+}
+
+}  // namespace
+
+// C = alpha M + beta K with the rotated K at the start of the step: positive semi-definite, so that
+// damping damps, and constant, so that Newton's derivative is exact.
+void FemBody::evaluate_elements(const mechanics::LinearisationRequest& request) {
   const auto& weights = request.weights;
   const auto& damping = model_.settings().damping;
   const double mass = weights.acceleration.motion + damping.mass * weights.velocity.motion;
   const double rate = damping.stiffness * weights.velocity.motion;
-  const bool exact = request.tangent == mechanics::Tangent::exact;
-  // C = alpha M + beta K with the rotated K at the start of the step: positive semi-definite, so
-  // that damping damps, and constant, so that Newton's derivative is exact.
-  active_->damped = rate > 0.0 && (request.iterating || exact);
+  const AssemblyWeights wanted{element_tangent(request.tangent), 1.0, mass};
+  active_->damped = rate > 0.0;
   if (active_->damped && first_linearisation_) {
     active_->assembly.evaluate(positions_, {Tangent::rotated, 1.0, 0.0});
     const auto matrix = active_->assembly.matrix();
     active_->start_stiffness.assign(matrix.begin(), matrix.end());
+    active_->present.reset();
   }
-  active_->assembly.evaluate(positions_, {exact ? Tangent::exact : Tangent::rotated,
-                                          active_->damped ? 1.0 : 1.0 + rate, mass});
-  if (active_->damped) {
-    const auto matrix = active_->assembly.matrix();
-    for (std::size_t i = 0; i < matrix.size(); ++i) matrix[i] += rate * active_->start_stiffness[i];
-  }
-  if (!model_.loads().empty()) apply_loads(request);
-  form_right_side(request);
-  if (tether_) stiffen_by_tether();
-  stiffen_by_loads();
-  first_linearisation_ = false;
+  const bool historic = !element_history_.empty();
+  if (active_->present == wanted && !historic && !active_->damped) return;
+  active_->assembly.evaluate(positions_, wanted);
+  active_->present = wanted;
+  if (!active_->damped) return;
+  const auto matrix = active_->assembly.matrix();
+  for (std::size_t i = 0; i < matrix.size(); ++i) matrix[i] += rate * active_->start_stiffness[i];
 }
 
 // b = p - f - M a - C v, a and v combinations of the motion since the step began and of what was
@@ -174,24 +197,11 @@ void FemBody::add_inertia(const mechanics::StepWeights& weights) {
   active_->system.elements->apply_mass(span_of(momentum_), span_of(scratch_));
   right_ += scratch_;
   force_scale_ += scratch_.norm();
-  if (!(damping.stiffness > 0.0)) return;
-  if (active_->damped) {
-    combine_velocity(weights, travel_);
-    linalg::multiply(active_->system.elements->pattern(), active_->start_stiffness,
-                     span_of(travel_), span_of(scratch_));
-    right_ -= damping.stiffness * scratch_;
-    return;
-  }
-  // One linearisation, at the start: the matrix is (1 + rate) K + mass M, and no motion is yet made
-  // but a base's.
-  if (v.velocity == 0.0 && v.first == 0.0 && v.second == 0.0 && !carried_) return;
+  if (!active_->damped) return;
   combine_velocity(weights, travel_);
-  const double mass = a.motion + damping.mass * v.motion;
-  const double rate = damping.stiffness * v.motion;
-  linalg::multiply(active_->system.elements->pattern(), active_->assembly.matrix(),
-                   span_of(travel_), span_of(scratch_));
-  active_->system.elements->apply_mass(span_of(travel_), span_of(momentum_));
-  right_ -= damping.stiffness / (1.0 + rate) * (scratch_ - mass * momentum_);
+  linalg::multiply(active_->system.elements->pattern(), active_->start_stiffness, span_of(travel_),
+                   span_of(scratch_));
+  right_ -= damping.stiffness * scratch_;
 }
 
 void FemBody::hold_right_side() {
@@ -215,6 +225,7 @@ void FemBody::add_curvature(const mechanics::RowCurvature& curvature) {
       active_->assembly.add_block(i, j, block);
     }
   }
+  active_->present.reset();
 }
 
 // A += stiffness w_a w_b I at the blocks of its nodes.
@@ -305,7 +316,10 @@ void FemBody::hold_imbalance(std::span<const double> effort) {
 }
 
 linalg::FactorStatus FemBody::condense() {
+  if (tether_) stiffen_by_tether();
+  stiffen_by_loads();
   active_->assembly.hold();
+  active_->present.reset();
   const std::span<const double> border(active_->border);
   return active_->factorisation->factorise(
       active_->assembly.matrix(), border.first(3 * active_->system.fixed_entries), span_of(right_));
@@ -402,6 +416,7 @@ mechanics::MotionReport FemBody::apply_motion(double scale) {
   mechanics::MotionReport report;
   report.largest_move = scale * motion_.cwiseAbs().maxCoeff();
   report.finite = std::isfinite(sum) && sum < blow_up_;
+  active_->present.reset();
   if (report.finite) {
     const auto volume = active_->assembly.measure_volume(positions_);
     report.smallest_volume_ratio = volume.smallest_ratio;
@@ -453,8 +468,10 @@ double FemBody::end_step(const mechanics::StepWeights& weights) {
 int FemBody::negative_pivots() const { return active_->factorisation->negative_pivots(); }
 
 double FemBody::strain_energy() {
-  prepare_history(0.0);  // what relaxing parts store beside the law's energy is not in it
-  active_->assembly.evaluate(positions_, {Tangent::none, 1.0, 0.0});
+  // What relaxing parts store beside the law's energy is not in it.
+  prepare_history(0.0);
+  const bool present = active_->present.has_value() && element_history_.empty();
+  if (!present) active_->assembly.evaluate(positions_, {Tangent::none, 1.0, 0.0});
   return active_->assembly.strain_energy();
 }
 

@@ -47,6 +47,7 @@ class FemBody : public mechanics::Body {
   mechanics::MotionReport apply_motion(double scale) override;
   double end_step(const mechanics::StepWeights& weights) override;
   mechanics::StepWork step_work() const override { return work_; }
+  bool moved_from_outside() const override { return tether_.has_value() || base_pose_.has_value(); }
 
   void restart() override;
   std::size_t state_size() const override;
@@ -110,9 +111,11 @@ class FemBody : public mechanics::Body {
   void combine(const mechanics::Combination& weights, VectorX& result) const;
   void combine_velocity(const mechanics::StepWeights& weights, VectorX& result) const;
   void hold_right_side();
+  void evaluate_elements(const mechanics::LinearisationRequest& request);
   void stiffen_by_tether();
   void apply_loads(const mechanics::LinearisationRequest& request);
   void stiffen_by_loads();
+  void add_majorant(std::int32_t row, std::int32_t column, const Matrix3& block);
   void correct_for_open_pressure();
   void multiply_blocks(const std::vector<LoadBlock>& blocks, const VectorX& x, VectorX& y) const;
   void add_work(const mechanics::StepWeights& weights);
@@ -143,6 +146,7 @@ class FemBody : public mechanics::Body {
   Points start_positions_;  // of the step; velocities_ stay those of its start until it ends
   std::unique_ptr<Numbers> plain_, curved_;
   Numbers* active_ = nullptr;
+  mechanics::Tangent tangent_ = mechanics::Tangent::real_time;  // of the last linearisation
 
   // Over free nodes, (3 free,); travel and momentum from the first step of dynamics on, the
   // imbalance from the first time that it is held.

@@ -4,6 +4,7 @@
 #include "sinew/fem/fem_body.hpp"
 #include "sinew/fem/fem_body_numbers.hpp"
 #include "sinew/linalg/block_product.hpp"
+#include "sinew/linalg/positive_part.hpp"
 
 namespace sinew::fem {
 
@@ -54,8 +55,25 @@ void FemBody::apply_loads(const mechanics::LinearisationRequest& request) {
 
 void FemBody::stiffen_by_loads() {
   for (const auto& [row, column, block] : load_stiffness_) {
-    active_->assembly.add_block(row, column, block);
+    if (tangent_ == mechanics::Tangent::exact) {
+      active_->assembly.add_block(row, column, block);
+    } else {
+      add_majorant(row, column, block);
+    }
   }
+}
+
+// Never less than the block and its transpose: of a diagonal block its positive part; for another
+// one |C| I at both ends, since [|C| I, -C; -C^T, |C| I] is positive semi-definite (by its Schur
+// complement |C| I - C^T C/|C|).
+void FemBody::add_majorant(std::int32_t row, std::int32_t column, const Matrix3& block) {
+  if (row == column) {
+    active_->assembly.add_block(row, row, linalg::positive_part(block));
+    return;
+  }
+  const Matrix3 bound = block.norm() * Matrix3::Identity();
+  active_->assembly.add_block(row, row, bound);
+  active_->assembly.add_block(column, column, bound);
 }
 
 void FemBody::multiply_blocks(const std::vector<LoadBlock>& blocks, const VectorX& x,
@@ -144,27 +162,12 @@ double FemBody::rayleigh_work(const mechanics::StepWeights& weights) {
     elements.apply_mass({travel_.data(), size}, {scratch_.data(), size});
     work += damping.mass * along(scratch_);
   }
-  if (!(damping.stiffness > 0.0)) return work;
+  if (!active_->damped) return work;
   combine_velocity(weights, travel_);
   const std::span<const double> travel(travel_.data(), size);
   const std::span<double> force(scratch_.data(), size);
-  if (active_->damped) {
-    linalg::multiply(elements.pattern(), active_->start_stiffness, travel, force);
-    return work + damping.stiffness * along(scratch_);
-  }
-  // The matrix is (1 + rate) K + mass M and what the loads added.
-  const double rate = damping.stiffness * weights.velocity.motion;
-  const double mass = weights.acceleration.motion + damping.mass * weights.velocity.motion;
-  linalg::multiply(elements.pattern(), active_->assembly.matrix(), travel, force);
-  double stiff = along(scratch_);
-  momentum_.resize(scratch_.size());
-  elements.apply_mass(travel, {momentum_.data(), size});
-  stiff -= mass * along(momentum_);
-  for (const auto& [row, column, block] : load_stiffness_) {
-    stiff -= moved(row).dot(block * travel_.segment<3>(3 * column));
-    if (row != column) stiff -= moved(column).dot(block.transpose() * travel_.segment<3>(3 * row));
-  }
-  return work + damping.stiffness / (1.0 + rate) * stiff;
+  linalg::multiply(elements.pattern(), active_->start_stiffness, travel, force);
+  return work + damping.stiffness * along(scratch_);
 }
 
 }  // namespace sinew::fem

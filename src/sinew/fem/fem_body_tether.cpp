@@ -5,6 +5,7 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/fem/fem_body.hpp"
+#include "sinew/fem/fem_body_numbers.hpp"
 
 namespace sinew::fem {
 
@@ -81,6 +82,7 @@ void FemBody::set_base(const Vector3& translation, const Vector3& rotation, cons
 // All nodes of elements follow the base rigidly, which strains nothing; then the fixed ones stand
 // where they must, without rounding adding up.
 void FemBody::place_base() {
+  if (!base_at_ || !base_at_->isApprox(*base_pose_, 0.0)) active_->present.reset();
   const auto free = model_.elements().free_index();
   const Points& rest = model_.mesh().nodes;
   if (base_at_ && !base_at_->isApprox(*base_pose_, 0.0)) {

@@ -167,7 +167,7 @@ void evaluate(const SolidGroup& group, int begin, int end, const double* points,
       }
       if constexpr (kTangent != Tangent::none) {
         material::Lanes9x9 a9;
-        material::tangent(f[q], at, response, kTangent == Tangent::rotated, a9);
+        material::tangent(f[q], at, response, kTangent == Tangent::projected, a9);
         if (kTangent == Tangent::exact && past.carried != nullptr) {
           Overstress(past.carried + 6 * q, split, f[q], cof[q], ratio[q]).add_tangent(a9);
         }
@@ -284,7 +284,8 @@ void evaluate_kind(const SolidGroup& group, int begin, int end, const double* po
     case Tangent::none:
       return evaluate<N, Q, Tangent::none>(group, begin, end, points, output, minimum);
     case Tangent::rotated:
-      return evaluate<N, Q, Tangent::rotated>(group, begin, end, points, output, minimum);
+    case Tangent::projected:
+      return evaluate<N, Q, Tangent::projected>(group, begin, end, points, output, minimum);
     case Tangent::exact:
       return evaluate<N, Q, Tangent::exact>(group, begin, end, points, output, minimum);
   }

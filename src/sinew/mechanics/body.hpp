@@ -30,7 +30,8 @@ namespace sinew::mechanics {
 
 /// Which derivative of the internal force is used.
 enum class Tangent {
-  real_time,  ///< what the body offers for one linearisation a step (corotational: R K0 R^T); SPD
+  real_time,  ///< the cheapest that the body offers (corotational: R K0 R^T); SPD
+  projected,  ///< the exact derivative, projected piece by piece to be positive semi-definite
   exact,      ///< the exact derivative df/dq, which may be indefinite
 };
 
@@ -123,7 +124,8 @@ class Body {
   virtual void begin_step() = 0;
   virtual void linearise(const LinearisationRequest& request) = 0;
   /// Adds the curvature of a constraint's loads (geometric stiffness): A -= effort d2(delta)/dq2.
-  /// Between linearise (with_curvature) and condense.
+  /// Between linearise (with_curvature) and condense. A linearisation to which nothing was added is
+  /// taken up by the next one at the same state.
   virtual void add_curvature(const RowCurvature& curvature) = 0;
   /// Takes this body's part of H for what follows.
   virtual void take_rows(const RowValues& rows) = 0;
@@ -156,6 +158,8 @@ class Body {
   virtual double end_step(const StepWeights& weights) = 0;
   /// Of the step that ended last.
   virtual StepWork step_work() const = 0;
+  /// Whether something that no ledger counts moves it: its base, a hand in the view.
+  virtual bool moved_from_outside() const { return false; }
 
   /// Back to rest: the model's own q, v = 0. Inputs (outside forces) stay.
   virtual void restart() = 0;

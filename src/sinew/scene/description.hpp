@@ -37,7 +37,7 @@ inline constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
 using mechanics::Integrator;
 enum class Method { one_linearisation, newton };
-enum class Tangent { rotated, exact };
+enum class Tangent { rotated, projected, exact };
 enum class MaterialModel { linear, corotational, hyperelastic };
 enum class Element { any, tet4, tet4_patch, tet10, hex8 };
 enum class MassDistribution { volume, even };
@@ -47,10 +47,10 @@ enum class PullPoint { world, body };
 /// How each step is solved.
 struct SolverDescription {
   Place place;
-  Method method = Method::one_linearisation;
-  Tangent tangent = Tangent::rotated;
+  Method method = Method::newton;
+  Tangent tangent = Tangent::exact;
   std::optional<sim::AdaptiveStep> adaptive;
-  double tolerance = 1e-8;  ///< Newton: residual relative to the loads
+  std::optional<double> tolerance;  ///< Newton: residual relative to the loads
   int max_iterations = 50;  ///< Newton
   double contact_tolerance = 1e-10;
   int threads = 1;                ///< inside a step
@@ -173,7 +173,7 @@ struct ActuatorDescription {
   // cable
   PointList points;  ///< the first is the pull point
   PullPoint pull = PullPoint::world;
-  bool geometric_stiffness = false;
+  bool geometric_stiffness = true;
   double friction = 0.0;       ///< Coulomb's coefficient, >= 0
   double guide_radius = 0.0;   ///< m, >= 0
   double guide_spacing = 0.0;  ///< m, >= 0

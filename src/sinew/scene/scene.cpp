@@ -38,13 +38,15 @@ void read_solver(const Fields& fields, SolverDescription& solver) {
   const Fields values = fields.below("solver");
   values.read_choice("method", solver.method, methods);
   values.read_choice("tangent", solver.tangent,
-                     {{"rotated", Tangent::rotated}, {"exact", Tangent::exact}});
+                     {{"rotated", Tangent::rotated},
+                      {"projected", Tangent::projected},
+                      {"exact", Tangent::exact}});
   if (values.find("adaptive") != nullptr) {
     auto& adaptive = solver.adaptive.emplace();
     values.below("adaptive").read("tolerance", adaptive.tolerance);
     values.below("adaptive").read("smallest", adaptive.smallest);
   }
-  values.read("tolerance", solver.tolerance);
+  if (values.find("tolerance") != nullptr) values.read("tolerance", solver.tolerance.emplace());
   values.read("max_iterations", solver.max_iterations);
   values.read("contact_tolerance", solver.contact_tolerance);
   values.read("threads", solver.threads);

@@ -55,7 +55,7 @@ class NewtonSolver {
     clock_.mark(Stage::compliance);
   }
 
-  // The exact tangent may be indefinite far from equilibrium; the real-time one is not.
+  // The exact tangent may be indefinite far from equilibrium; the projected one is not.
   bool condense() {
     auto status = world_.condense();
     ++report_.factorisations;
@@ -66,7 +66,7 @@ class NewtonSolver {
         (status == linalg::FactorStatus::indefinite && DrivenLaw::stabilised(problem_, negative));
     if (!stable && settings_.request.tangent == mechanics::Tangent::exact) {
       clock_.mark(Stage::factorisation);
-      linearise(mechanics::Tangent::real_time);
+      linearise(mechanics::Tangent::projected);
       status = world_.condense();
       ++report_.factorisations;
       ++report_.tangent_fallbacks;
@@ -91,7 +91,7 @@ class NewtonSolver {
     const bool at_rest = full_step_ && report_.motion.largest_move <= kRounding * size &&
                          report_.relative_residual <= kRoundedResidual;
     return (report_.relative_residual <= settings_.tolerance || at_rest) &&
-           report_.violation <= std::max(settings_.tolerance, kRounding) * size;
+           report_.violation <= std::max(settings_.motion_tolerance, kRounding) * size;
   }
 
   NewtonStatus move() {

@@ -16,6 +16,7 @@
 #include "sinew/sim/friction_law.hpp"
 #include "sinew/sim/newton.hpp"
 #include "sinew/sim/stages.hpp"
+#include "sinew/sim/step_status.hpp"
 #include "sinew/sim/world.hpp"
 
 namespace sinew::sim {
@@ -27,16 +28,17 @@ struct Energies {
 
 /// What a step did.
 struct StepReport {
+  StepStatus status = StepStatus::solved;
   LawStatus law = LawStatus::solved;
-  /// One linearisation: of the state that the step began from, before it moved. Newton: of the end.
-  double residual = 0.0;           ///< N, |p - f - ... + H^T lambda|
+  double residual = 0.0;           ///< N, |p - f - ... + H^T lambda| at the end of the step
   double relative_residual = 0.0;  ///< of the sum of the forces' norms
-  double violation = 0.0;          ///< m, of the law by the motion at that state
-  int iterations = 1;              ///< linearisations, of the last substep
+  double violation = 0.0;          ///< m, of the law by the motion at the end
+  int iterations = 1;              ///< linear solutions, of the last substep
   int substeps = 1;                ///< that the step was made of
   int retries = 0;                 ///< substeps that were taken back and tried smaller
   double error = 0.0;              ///< m, largest estimate of a substep's error in any coordinate
   double scale = 1.0;  ///< of the motion; < 1 when it was cut back to keep elements from inverting
+  double energy_gained = 0.0;  ///< J, since the start: energy beyond what was put in, if > 0
   double smallest_volume_ratio = 1.0;  ///< min det F at the end of the step
   double contact_residual = 0.0;       ///< relative, see qp::ConeResult; 0 without contacts
   int contact_sweeps = 0;              ///< of Gauss-Seidel, in the last solution of the law
@@ -197,8 +199,18 @@ class Simulation {
   void count_contact_work();
   void follow_surfaces(const StaticSettings& settings, StaticReport& report, NewtonReport& last);
   void step_adaptively();
+  void step_in_parts();
+  LawProblem law_problem(double time, double time_step) const;
+  NewtonSettings newton_settings(double time_step) const;
+  void solve_equation(double time_step);
   void step_once(Law& law, const LawProblem& problem);
   void step_newton(Law& law, const LawProblem& problem);
+  NewtonReport approach(Law& law, const LawProblem& problem);
+  NewtonReport descend(Law& law, const LawProblem& problem);
+  [[noreturn]] void fail_law();
+  void take_report(const NewtonReport& result);
+  void watch();
+  void watch_energy();
   void move_soundly();
   void require_outside();
   void finish_step();
@@ -224,6 +236,14 @@ class Simulation {
   double step_before_ = 0.0;           // s, the last substep; 0: the integrator starts afresh
   double substep_ = 0.0;               // s, adaptive: what the next one tries
   double now_ = 0.0;                   // s, end of the substep in hand
+  // Commands of a step that is made in parts go there in proportion.
+  struct Part {
+    double fraction = 1.0;             // of the step, at the end of the part
+    std::vector<ActuatorState> start;  // of the step
+  };
+  std::optional<Part> part_;
+  std::optional<double> energy_at_start_;  // J, less what was put in
+  double largest_energy_ = 0.0;            // J, to judge gains by
   std::vector<double> motion_before_;  // (actuators, then guides) m
   std::vector<Signal> load_factors_;
   std::vector<double> load_applied_;  // (loads,) factors that acted last; 0 at the start

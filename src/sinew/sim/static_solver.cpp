@@ -54,6 +54,7 @@ NewtonReport Simulation::equilibrate(const StaticSettings& settings, double shar
                            world_.rows().present};
   const NewtonSettings newton{{{}, mechanics::Tangent::exact, true, true},
                               settings.tolerance,
+                              settings.tolerance,
                               settings.max_iterations,
                               model_->curved_constraints()};
   const NewtonReport result =

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "sinew/linalg/positive_part.hpp"
+
 namespace sinew::sim {
 
 namespace {
@@ -33,6 +35,7 @@ World::World(std::shared_ptr<const Model> model, ThreadPool& pool)
   contact_start_.setZero(rows);
   formed_ = rows_.present;
   kept_effort_.resize(static_cast<std::size_t>(rows));
+  curving_effort_.resize(static_cast<std::size_t>(rows));
   place_contacts(0.0, 0.0);
   measure_delta();
 }
@@ -144,6 +147,7 @@ double World::deepest_free_point(std::span<const double> effort) const {
 }
 
 void World::linearise(const mechanics::LinearisationRequest& request) {
+  tangent_ = request.tangent;
   for (auto& body : bodies_) body->linearise(request);
 }
 
@@ -155,7 +159,13 @@ const VectorX& World::measure_delta() {
 void World::form_rows(std::span<const double> effort, std::span<const int> curved) {
   measure_delta();
   for (auto& body : bodies_) body->take_rows(rows_);
-  for (const int index : curved) {
+  curved_ = curved;
+  if (!curved.empty()) std::ranges::copy(effort, curving_effort_.begin());
+}
+
+void World::add_curvatures() {
+  const std::span<const double> effort(curving_effort_);
+  for (const int index : curved_) {
     const auto& constraint = *model_->constraints()[static_cast<std::size_t>(index)];
     const std::span<mechanics::RowCurvature> pairs(
         curvatures_.data() + constraint.first_curvature(),
@@ -164,10 +174,29 @@ void World::form_rows(std::span<const double> effort, std::span<const int> curve
                                     static_cast<std::size_t>(constraint.row_count()));
     if (std::ranges::all_of(own, [](double lambda) { return lambda == 0.0; })) continue;
     constraint.curve(placement_, effort, pairs);
+    const bool exact = tangent_ == mechanics::Tangent::exact || constraint.stiffens(effort);
     for (const auto& pair : pairs) {
-      bodies_[static_cast<std::size_t>(pair.first.body)]->add_curvature(pair);
+      if (exact) {
+        bodies_[static_cast<std::size_t>(pair.first.body)]->add_curvature(pair);
+      } else {
+        add_majorant(pair);
+      }
     }
   }
+  curved_ = {};
+}
+
+// A pair (x_i, x_j) with block C puts -C at (i, j) and -C^T at (j, i) into A. What is never less:
+// |C| I at (i, i) and (j, j), see FemBody::add_majorant; a pair of one point gives its positive
+// part. All stays on points' own blocks.
+void World::add_majorant(const mechanics::RowCurvature& pair) {
+  const auto add = [&](const mechanics::MaterialPoint& point, const Matrix3& stiffness) {
+    bodies_[static_cast<std::size_t>(point.body)]->add_curvature({point, point, -stiffness});
+  };
+  if (pair.first == pair.second) return add(pair.first, linalg::positive_part(-pair.curvature));
+  const Matrix3 bound = pair.curvature.norm() * Matrix3::Identity();
+  add(pair.first, bound);
+  add(pair.second, bound);
 }
 
 double World::residual(std::span<const double> effort) {
@@ -194,6 +223,7 @@ void World::set_imbalance_share(double share) {
 }
 
 linalg::FactorStatus World::condense() {
+  add_curvatures();
   auto worst = linalg::FactorStatus::positive_definite;
   for (auto& body : bodies_) worst = std::max(worst, body->condense());
   if (worst != linalg::FactorStatus::singular) form_compliance();

@@ -30,8 +30,9 @@ class World {
   double deepest_free_point(std::span<const double> effort) const;
   /// Assembly: every body at its current state.
   void linearise(const mechanics::LinearisationRequest& request);
-  /// H and delta at the current placement, handed to the bodies; adds the curvature of
-  /// `curved` constraints at `effort`.
+  /// H and delta at the current placement, handed to the bodies. condense() adds the curvature of
+  /// `curved` constraints at `effort`: as it is, or, where the linearisation's tangent is not exact,
+  /// what is never less and positive semi-definite.
   void form_rows(std::span<const double> effort, std::span<const int> curved);
   /// |b + H^T effort| (N) and the scale (N) to judge it by.
   double residual(std::span<const double> effort);
@@ -84,6 +85,8 @@ class World {
   void choose_present(std::span<const double> effort, double time_step);
   void set_present(const constraint::Contact& contact, std::size_t point, bool present);
   void form_compliance();
+  void add_curvatures();
+  void add_majorant(const mechanics::RowCurvature& pair);
 
   std::shared_ptr<const Model> model_;
   std::vector<std::unique_ptr<mechanics::Body>> bodies_;
@@ -93,6 +96,9 @@ class World {
   MatrixX compliance_;
   VectorX delta_free_, contact_start_;
   std::vector<double> kept_effort_;
+  std::vector<double> curving_effort_;  // (rows,) N, at which constraints curve
+  std::span<const int> curved_;         // whose curvature the next condensation adds
+  mechanics::Tangent tangent_ = mechanics::Tangent::real_time;
   bool left_out_ = false;     // some point
   std::vector<char> formed_;  // (rows,) columns of W that are not zero
 };
