@@ -435,9 +435,10 @@ std::string RobotState::status_members() const {
     targets[name] = {position.x(), position.y(), position.z()};
   }
   if (controller_) add_controller(*controller_, controller_name_, troubles);
-  if (simulation_->report().scale < 1.0) {
-    troubles.push_back(trouble("warning", "cut-back", "step",
-                               "the motion was cut back, or elements would have inverted"));
+  if (const sim::StepStatus step = simulation_->report().status; sim::is_flagged(step)) {
+    troubles.push_back(trouble("warning", std::string(sim::step_status_name(step)).c_str(), "step",
+                               fmt::format("this step is {}; {}", sim::step_status_name(step),
+                                           sim::step_status_remedy(step))));
   }
   Json status = {{"controller", controller_ ? Json(controller_name_) : Json(nullptr)},
                  {"commands", commands},

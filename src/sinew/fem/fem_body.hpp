@@ -57,7 +57,7 @@ class FemBody : public mechanics::Body {
   int negative_pivots() const override;
   double force_scale() const override { return force_scale_; }
   double strain_energy() override;
-  double kinetic_energy() const override;
+  double kinetic_energy() override;
   double gravity_energy() const override;
   std::size_t bytes() const override;
 

@@ -43,16 +43,15 @@ void FemBody::load_state(std::span<const double> state) {
   prepared_step_.reset();
 }
 
-double FemBody::kinetic_energy() const {
+double FemBody::kinetic_energy() {
   const auto nodes = model_.elements().free_nodes();
-  VectorX velocity(3 * static_cast<Eigen::Index>(nodes.size()));
-  VectorX momentum(velocity.size());
-  const auto size = static_cast<std::size_t>(velocity.size());
+  travel_.resize(right_.size());
+  const auto size = static_cast<std::size_t>(travel_.size());
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    velocity.segment<3>(3 * static_cast<Eigen::Index>(i)) = velocities_.row(nodes[i]).transpose();
+    travel_.segment<3>(3 * static_cast<Eigen::Index>(i)) = velocities_.row(nodes[i]).transpose();
   }
-  model_.elements().apply_mass({velocity.data(), size}, {momentum.data(), size});
-  return 0.5 * velocity.dot(momentum);
+  model_.elements().apply_mass({travel_.data(), size}, {scratch_.data(), size});
+  return 0.5 * travel_.dot(scratch_);
 }
 
 double FemBody::gravity_energy() const {

@@ -175,7 +175,7 @@ class Body {
   virtual double force_scale() const = 0;
   /// Stored energy (J): strain; kinetic; gravity's potential with respect to rest.
   virtual double strain_energy() = 0;
-  virtual double kinetic_energy() const = 0;
+  virtual double kinetic_energy() = 0;
   virtual double gravity_energy() const = 0;
   /// Of the nodes of the model's mesh, (n, 3) m and m/s.
   virtual const Points& positions() const = 0;

@@ -361,7 +361,7 @@ double ArmBody::strain_energy() {
   look();
   return kinematics_.strain_energy();
 }
-double ArmBody::kinetic_energy() const {
+double ArmBody::kinetic_energy() {
   look();
   return kinematics_.kinetic_energy();
 }

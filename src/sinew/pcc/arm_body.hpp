@@ -106,7 +106,7 @@ class ArmBody : public mechanics::Body {
   int negative_pivots() const override { return negative_pivots_; }
   double force_scale() const override { return force_scale_; }
   double strain_energy() override;
-  double kinetic_energy() const override;
+  double kinetic_energy() override;
   double gravity_energy() const override;
   std::size_t bytes() const override;
   const Points& positions() const override;

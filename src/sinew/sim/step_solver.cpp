@@ -96,6 +96,7 @@ void Simulation::step_once(Law& law, const LawProblem& problem) {
   clock_.mark(Stage::law);
   world_.solve_motion(effort_);
   move_soundly();
+  clock_.mark(Stage::correction);
   require_outside();
   request.tangent = model_->step().tangent;
   request.iterating = true;
@@ -179,7 +180,9 @@ void Simulation::step_newton(Law& law, const LawProblem& problem) {
     result.iterations += tried;
   }
   take_report(result);
-  const bool usable = !model_->step().dynamic() && result.motion.finite &&
+  // Of contacts there is no such thing as nearly: a point would be inside a surface.
+  const bool usable = !model_->step().dynamic() && model_->contacts().empty() &&
+                      result.motion.finite &&
                       result.motion.smallest_volume_ratio > 0.0 &&
                       result.law != LawStatus::failed;
   if (converged() || usable) return;
@@ -246,6 +249,7 @@ NewtonReport Simulation::descend(Law& law, const LawProblem& problem) {
 // What users are told of the step.
 void Simulation::watch() {
   const auto raise = [&](StepStatus status) { report_.status = std::max(report_.status, status); };
+  if (report_.law == LawStatus::limits_conflict) raise(StepStatus::limits_conflict);
   if (report_.scale < 1.0) raise(StepStatus::cut_back);
   if (report_.violation > kReached * model_->size()) raise(StepStatus::command_not_reached);
   const bool unbalanced = report_.relative_residual > kBalanced;

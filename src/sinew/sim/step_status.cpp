@@ -6,6 +6,8 @@ std::string_view step_status_name(StepStatus status) {
   switch (status) {
     case StepStatus::solved:
       return "solved";
+    case StepStatus::limits_conflict:
+      return "limits-conflict";
     case StepStatus::command_not_reached:
       return "command-not-reached";
     case StepStatus::cut_back:
@@ -22,6 +24,8 @@ std::string_view step_status_remedy(StepStatus status) {
   switch (status) {
     case StepStatus::solved:
       return "";
+    case StepStatus::limits_conflict:
+      return "loosen the limits that contradict each other";
     case StepStatus::command_not_reached:
       return "change the command more slowly, or use `solver: newton`";
     case StepStatus::cut_back:
