@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "sinew/fem/element_count.hpp"
 #include "sinew/record/run_recorder.hpp"
 #include "sinew/record/run_table.hpp"
 
@@ -97,6 +98,11 @@ std::vector<std::vector<std::string>> summary(const Tally& tally, Session& sessi
   const double simulated =
       static_cast<double>(tally.steps) * session.robot().model->step().time_step;
   std::vector<std::vector<std::string>> rows;
+  for (const auto& model : session.robot().model->bodies()) {
+    const auto* body = dynamic_cast<const fem::FemBodyModel*>(model.get());
+    if (body == nullptr) continue;
+    rows.push_back({"body " + body->name(), fem::describe_elements(body->elements())});
+  }
   rows.push_back({"steps", fmt::format("{}", tally.steps)});
   rows.push_back({"simulated time", fmt::format("{:.3f} s", simulated)});
   rows.push_back({"wall time", fmt::format("{:.3f} s", tally.wall)});

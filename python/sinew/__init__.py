@@ -39,7 +39,7 @@ from ._core import (
     materials,
     view,
 )
-from .errors import Error, Place, RunError
+from .errors import Error, Notice, Place, RunError, SinewWarning
 from .scene import load, loads
 
 __all__ = [
@@ -54,6 +54,7 @@ __all__ = [
     "Limits",
     "Linearisation",
     "Material",
+    "Notice",
     "Place",
     "Polyline",
     "Probe",
@@ -63,6 +64,7 @@ __all__ = [
     "Signal",
     "Simulation",
     "Sine",
+    "SinewWarning",
     "StaticReport",
     "StepReport",
     "Steps",

@@ -8,6 +8,8 @@ from typing import Any, Literal, Optional, Sequence, Type, Union
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .errors import Notice
+
 __version__: str
 compiler: str
 instruction_set: str
@@ -292,6 +294,8 @@ class Body:
     def rest_positions(self) -> _Floats: ...
     @property
     def tetrahedra(self) -> NDArray[np.int32]: ...
+    @property
+    def elements(self) -> dict[str, int]: ...
     def move_base(
         self,
         translation: ArrayLike = (0.0, 0.0, 0.0),
@@ -396,6 +400,8 @@ class Simulation:
     def memory(self) -> int: ...
     @property
     def name(self) -> str: ...
+    @property
+    def notices(self) -> list[Notice]: ...
     def to_yaml(self) -> str: ...
     @property
     def rows(self) -> list[str]: ...

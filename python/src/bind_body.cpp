@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "sinew/fem/assembly.hpp"
+#include "sinew/fem/element_count.hpp"
 #include "sinew/mesh/self_touch.hpp"
 #include "sinew/pcc/arm_body.hpp"
 
@@ -178,7 +179,8 @@ center : (3,) array_like
 )");
   type.def_property_readonly(
           "positions", [](const Body& self) { return points_view(self, any(self).positions()); },
-          R"((n, 3) ndarray: positions of all nodes now, in the mesh's order (m).
+          R"((n, 3) ndarray: positions of all nodes now, in the mesh's order (m). Where a mesh of linear
+tetrahedra is made quadratic, its own nodes come first and the middle nodes after them.
 
 A live, read-only view: it shows every later step, keeps the simulation alive, and must not be read
 while another thread steps. Copy it to keep a moment: `body.positions.copy()`.)")
@@ -275,6 +277,16 @@ void bind_mesh_of(py::class_<Body>& type) {
                                 static_cast<py::ssize_t>(list.size()), 8, py::cast(self.session));
           },
           "(m, 8) ndarray of int32: the nodes of every hexahedron, in VTK's order. Read-only.")
+      .def_property_readonly(
+          "elements",
+          [](const Body& self) {
+            py::dict result;
+            for (const auto& [element, count] : fem::count_elements(elements(self))) {
+              result[py::str(std::string(element))] = count;
+            }
+            return result;
+          },
+          "dict: number of elements by kind, as {'tet10': 2639}; kinds are those of scenes.")
       .def_property_readonly("fixed", &fixed,
                              "(n,) ndarray of bool: nodes that never move: fixed ones and those "
                              "that belong to no element.")

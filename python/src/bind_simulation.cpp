@@ -4,6 +4,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "errors.hpp"
 #include "tree.hpp"
 
 namespace sinew::python {
@@ -444,6 +445,16 @@ Error
       .def_property_readonly(
           "name", [](const Session& self) { return self.robot().robot.description.name; },
           "str: of the scene.")
+      .def_property_readonly(
+          "notices",
+          [](const Session& self) {
+            py::list result;
+            for (const Notice& notice : self.robot().robot.notices) {
+              result.append(to_python(notice));
+            }
+            return result;
+          },
+          "list of Notice: what a user should know of the scene, warnings and remarks.")
       .def("to_yaml", &to_yaml,
            R"(to_yaml($self)
 --

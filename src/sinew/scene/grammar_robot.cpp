@@ -269,18 +269,22 @@ std::shared_ptr<const KeyTable> fem_table() {
        .description = "The shape at rest.",
        .required = true},
       {.name = "element",
-       .forms = {choice({{"tet4", "Linear tetrahedra; near nu = 0.5 they lock."},
-                         {"tet4-patch",
-                          "Linear tetrahedra that share the dilatation of about eight neighbours: "
-                          "no locking in volume. For hyperelastic materials."},
-                         {"tet10",
-                          "Quadratic tetrahedra: no locking. A linear mesh gets middle nodes. For "
-                          "hyperelastic materials."},
-                         {"hex8",
-                          "Trilinear hexahedra with the pressure of their mean dilatation: "
-                          "no locking in volume. For hyperelastic materials."}})},
+       .forms = {choice(
+           {{"tet4", "Linear tetrahedra; above nu = 0.4 they lock, and much more near 0.5."},
+            {"tet4-patch",
+             "Linear tetrahedra that share the dilatation of about eight neighbours: "
+             "no locking in volume. For hyperelastic materials."},
+            {"tet10",
+             "Quadratic tetrahedra: no locking. A linear mesh gets middle nodes, "
+             "numbered after its own. For hyperelastic materials."},
+            {"hex8",
+             "Trilinear hexahedra with the pressure of their mean dilatation: "
+             "no locking in volume. For hyperelastic materials."}})},
        .example = "hex8",
-       .description = "The finite element. Without: what a mesh file holds, and tet4 for shapes."},
+       .description = "The finite element. Without: what a mesh file holds, and tetrahedra for "
+                      "shapes. Linear tetrahedra that lock are then made quadratic (tet10): those "
+                      "of a hyperelastic material, such as the library's silicones, with a "
+                      "Poisson's ratio above 0.4."},
       {.name = "material",
        .forms = material_forms(),
        .example = "{young_modulus: 450 kPa, poisson_ratio: 0.45}",
