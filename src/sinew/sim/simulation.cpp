@@ -260,12 +260,7 @@ void Simulation::step_once(Law& law, const LawProblem& problem) {
                      negative_pivots()),
          "use the rotated tangent, which passes through, or lessen the load");
   }
-  if (report_.law == LawStatus::failed && !model_->contacts().empty()) {
-    fail(ErrorKind::not_converged,
-         fmt::format("no contact forces obey this step: residual {:.3g} after {} sweeps",
-                     contact_.result().residual, contact_.result().sweeps),
-         "take a smaller time step, or look for a body that is squeezed where it cannot give way");
-  }
+  if (report_.law == LawStatus::failed && !model_->contacts().empty()) fail_contacts();
   if (report_.law == LawStatus::failed) {
     fail(ErrorKind::not_converged, "no efforts obey the law of this step",
          "loosen the limits of the actuators");
@@ -334,6 +329,7 @@ void Simulation::step_newton(Law& law, const LawProblem& problem) {
   report_.newton = result.status;
   report_.scale = 1.0;
   volume_ratio_ = report_.smallest_volume_ratio = result.motion.smallest_volume_ratio;
+  if (result.status == NewtonStatus::law_failed && !model_->contacts().empty()) fail_contacts();
   if (result.status != NewtonStatus::converged) {
     fail(
         ErrorKind::not_converged,

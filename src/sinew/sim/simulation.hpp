@@ -204,6 +204,7 @@ class Simulation {
   void finish_step();
   int negative_pivots() const;
   [[noreturn]] void fail(ErrorKind kind, const std::string& message, const std::string& remedy);
+  [[noreturn]] void fail_contacts();
   std::string describe_limit_point();
   NewtonReport equilibrate(const StaticSettings& settings, double share, StaticReport& report);
 
