@@ -32,7 +32,7 @@ class FemBody : public mechanics::Body {
   void linearise(const mechanics::LinearisationRequest& request) override;
   void add_curvature(const mechanics::RowCurvature& curvature) override;
   void take_rows(const mechanics::RowValues& rows) override;
-  void take_presence(const mechanics::RowValues& rows) override;
+  void retake_rows(const mechanics::RowValues& rows) override { take_rows(rows); }
   Vector3 proposed_motion(int point) const override;
   double residual(std::span<const double> effort) override;
   linalg::FactorStatus condense() override;
@@ -125,6 +125,7 @@ class FemBody : public mechanics::Body {
   void place_base();
   void remember_base();
   void prepare_history(double time_step);
+  void take_presence(const mechanics::RowValues& rows);
   void add_passing_compliance(MatrixX& compliance, VectorX& free_motion) const;
   /// (3,) N on a mesh node.
   Vector3 weight(NodeId node) const {

@@ -131,8 +131,9 @@ class Body {
   virtual void take_rows(const RowValues& rows) = 0;
   /// |b + H^T effort|, N: how far the current state is from satisfying the step's equation.
   virtual double residual(std::span<const double> effort) = 0;
-  /// Takes which rows are present alone, the directions being those of take_rows().
-  virtual void take_presence(const RowValues&) {}
+  /// Takes which passing rows are present, and their directions, anew after condense(): what
+  /// follows is as if take_rows() had done so before it.
+  virtual void retake_rows(const RowValues& rows) = 0;
   /// (3,) m: how far solve_motion() would move an attached point; of bodies that leave rows out.
   virtual Vector3 proposed_motion(int) const { return Vector3::Zero(); }
   /// Factorises A bordered by the rows taken.

@@ -187,6 +187,11 @@ void ArmBody::take_rows(const mechanics::RowValues& rows) {
   }
 }
 
+void ArmBody::retake_rows(const mechanics::RowValues& rows) {
+  take_rows(rows);
+  respond();
+}
+
 double ArmBody::residual(std::span<const double> effort) {
   for (std::size_t k = 0; k < model_.rows_.size(); ++k) {
     effort_[static_cast<Eigen::Index>(k)] = effort[static_cast<std::size_t>(model_.rows_[k])];
@@ -202,17 +207,20 @@ linalg::FactorStatus ArmBody::condense() {
   negative_pivots_ = static_cast<int>((pivots_.vectorD().array() < 0.0).count());
   if (negative_pivots_ > 0 && definite_wanted_) make_definite();
   decomposed_.compute(matrix_);
-  moved_rows_ = decomposed_.solve(rows_);
-  if (rows_.cols() > 0) {
-    motion_ = decomposed_.solve(right_);
-    free_motion_.noalias() = rows_.transpose() * motion_;
-    compliance_.noalias() = rows_.transpose() * moved_rows_;
-  }
+  respond();
   if (!moved_rows_.allFinite() || pivots_.vectorD().cwiseAbs().minCoeff() == 0.0) {
     return linalg::FactorStatus::singular;
   }
   return negative_pivots_ > 0 ? linalg::FactorStatus::indefinite
                               : linalg::FactorStatus::positive_definite;
+}
+
+void ArmBody::respond() {
+  moved_rows_ = decomposed_.solve(rows_);
+  if (rows_.cols() == 0) return;
+  motion_ = decomposed_.solve(right_);
+  free_motion_.noalias() = rows_.transpose() * motion_;
+  compliance_.noalias() = rows_.transpose() * moved_rows_;
 }
 
 // In the directions in which the arm would buckle the real-time tangent is as stiff as it is soft

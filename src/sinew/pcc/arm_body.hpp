@@ -84,6 +84,7 @@ class ArmBody : public mechanics::Body {
   void linearise(const mechanics::LinearisationRequest& request) override;
   void add_curvature(const mechanics::RowCurvature& curvature) override;
   void take_rows(const mechanics::RowValues& rows) override;
+  void retake_rows(const mechanics::RowValues& rows) override;
   double residual(std::span<const double> effort) override;
   linalg::FactorStatus condense() override;
   void add_compliance(MatrixX& compliance, VectorX& free_motion) const override;
@@ -125,6 +126,7 @@ class ArmBody : public mechanics::Body {
   /// Of an attached point, (3, n).
   void point_jacobian(int point, MatrixX& result);
   void make_definite();
+  void respond();
   void show() const;
 
   const ArmBodyModel& model_;

@@ -254,7 +254,9 @@ double Simulation::substep(double end, double time_step) {
     report_.contact_sweeps = contact_.result().sweeps;
   }
   const double error = world_.end_step(step_weights(time_step));
-  step_before_ = time_step;
+  // A gap that closes stops its point at once. A multistep formula that reaches back over such a
+  // jump would have the point rebound, and gain energy: it starts afresh behind it.
+  step_before_ = world_.gap_closed(effort_) ? 0.0 : time_step;
   std::ranges::transform(actuators_, motion_before_.begin(), &ActuatorState::motion);
   for (std::size_t k = actuators_.size(); k < ranges_.size(); ++k) {
     motion_before_[k] = ranges_[k].value;

@@ -200,7 +200,6 @@ class Simulation {
   void follow_surfaces(const StaticSettings& settings, StaticReport& report, NewtonReport& last);
   void step_adaptively();
   void step_in_parts();
-  LawProblem law_problem(double time, double time_step) const;
   NewtonSettings newton_settings(double time_step) const;
   void solve_equation(double time_step);
   void step_once(Law& law, const LawProblem& problem);
@@ -216,6 +215,7 @@ class Simulation {
   void finish_step();
   int negative_pivots() const;
   [[noreturn]] void fail(ErrorKind kind, const std::string& message, const std::string& remedy);
+  [[noreturn]] void fail_contacts();
   std::string describe_limit_point();
   NewtonReport equilibrate(const StaticSettings& settings, double share, StaticReport& report);
 

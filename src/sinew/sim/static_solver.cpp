@@ -43,15 +43,7 @@ NewtonReport Simulation::equilibrate(const StaticSettings& settings, double shar
                                      StaticReport& report) {
   world_.set_imbalance_share(share);
   world_.begin_step(time(), time(), effort_);
-  const LawProblem problem{*model_,
-                           world_.placement(),
-                           ranges_,
-                           world_.compliance(),
-                           world_.delta_free(),
-                           world_.delta(),
-                           time(),
-                           kInfinity,
-                           world_.rows().present};
+  const LawProblem problem = world_.law_problem(ranges_, time(), kInfinity);
   const NewtonSettings newton{{{}, mechanics::Tangent::exact, true, true},
                               settings.tolerance,
                               settings.tolerance,

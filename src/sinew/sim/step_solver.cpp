@@ -34,18 +34,6 @@ constexpr int kIterationsOfPart = 25;
 
 }  // namespace
 
-LawProblem Simulation::law_problem(double time, double time_step) const {
-  return {*model_,
-          world_.placement(),
-          ranges_,
-          world_.compliance(),
-          world_.delta_free(),
-          world_.delta(),
-          time,
-          time_step,
-          world_.rows().present};
-}
-
 NewtonSettings Simulation::newton_settings(double time_step) const {
   const auto& settings = model_->step();
   return {{step_weights(time_step), settings.tangent, model_->stiffening_widens(), true},
@@ -57,7 +45,7 @@ NewtonSettings Simulation::newton_settings(double time_step) const {
 
 void Simulation::solve_equation(double time_step) {
   Law& law = complete(law_);
-  const LawProblem problem = law_problem(now_, time_step);
+  const LawProblem problem = world_.law_problem(ranges_, now_, time_step);
   if (model_->step().method == Method::newton) {
     step_newton(law, problem);
   } else {
@@ -107,12 +95,7 @@ void Simulation::step_once(Law& law, const LawProblem& problem) {
 }
 
 void Simulation::fail_law() {
-  if (!model_->contacts().empty()) {
-    fail(ErrorKind::not_converged,
-         fmt::format("no contact forces obey this step: residual {:.3g} after {} sweeps",
-                     contact_.result().residual, contact_.result().sweeps),
-         "take a smaller time step, or look for a body that is squeezed where it cannot give way");
-  }
+  if (!model_->contacts().empty()) fail_contacts();
   fail(ErrorKind::not_converged, "no efforts obey the law of this step",
        "loosen the limits of the actuators");
 }
