@@ -787,7 +787,15 @@ class Plan:
     @property
     def tip_speed(self) -> float: ...
     @property
+    def clearance(self) -> float: ...
+    @property
+    def planned_tip_error(self) -> float: ...
+    @property
+    def planned_tip_speed(self) -> float: ...
+    @property
     def iterations(self) -> int: ...
+    @property
+    def corrections(self) -> int: ...
     @property
     def seconds(self) -> float: ...
     @property
@@ -832,7 +840,7 @@ class PlanTask:
         duration: float = 1.6,
         duration_range: Optional[ArrayLike] = None,
         intervals: int = 50,
-        method: str = "hermite-simpson",
+        method: str = "radau",
         theta: Optional[ArrayLike] = None,
         theta_dot: Optional[ArrayLike] = None,
         torque: Optional[ArrayLike] = None,
@@ -852,6 +860,7 @@ class PlanTask:
         tolerance: float = 1e-6,
         max_iterations: int = 300,
         max_time: float = 30.0,
+        corrections: int = 6,
     ) -> Plan: ...
     def replay(
         self, plan: Plan, arm: Optional[Arm] = None, *, time_step: float = 0.001
