@@ -9,25 +9,30 @@ PREFIX ?= /usr/local
 help:  ## list these targets
 	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  \1|\2/p' Makefile | column -t -s '|'
 
-setup:  ## install the Debian packages that are missing (root or sudo)
+setup:  ## install the Debian packages of all targets (root or sudo); each installs its own otherwise
 	@scripts/setup.sh
 
 build:  ## optimised build: build/release/bin/sinew and build/release/python
-	@scripts/build.sh release
+	@scripts/setup.sh build
+	@scripts/build.sh release sinew sinew_python
 
-demo: setup build  ## a soft trunk follows a circle by inverse control: a table and a picture
+demo:  ## a soft trunk follows a circle by inverse control: a table and a picture
+	@scripts/setup.sh demo
+	@scripts/build.sh release sinew sinew_python
 	@scripts/demo.sh
 
 view: build  ## the trunk follows its circle in the browser
 	@build/release/bin/sinew view examples/trunk/circle.yaml
 
-test: setup  ## build, and run all C++ and Python tests
+test:  ## build, and run all C++ and Python tests
 	@scripts/test.sh release
 
-validate: build  ## numbers against their references: docs/scorecard.md
+validate:  ## numbers against their references: docs/scorecard.md
+	@scripts/setup.sh validate
+	@scripts/build.sh release sinew sinew_python
 	@build/release/bin/sinew validate
 
-bench: build  ## the time of a step, stage by stage, beside other solvers
+bench:  ## the time of a step, stage by stage, beside other solvers
 	@scripts/bench.sh
 
 docs:  ## API reference in docs/api/html, where a warning is an error

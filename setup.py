@@ -32,7 +32,7 @@ class CMakeBuild(build_ext):
     def build_extension(self, ext):
         """Leaves the module where setuptools expects it."""
         if shutil.which("cmake") is None or shutil.which("ninja") is None:
-            raise RuntimeError("cmake and ninja are needed; scripts/setup.sh --minimal installs them")
+            raise RuntimeError("cmake and ninja are needed; `scripts/setup.sh wheel` installs them")
         build = Path(self.build_temp).resolve()
         # The view's page is bundled by Node.js; without it the package lacks sinew.view().
         bundler = "ON" if shutil.which("npm") else "OFF"

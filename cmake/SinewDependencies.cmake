@@ -1,4 +1,4 @@
-# Everything here is a Debian package; scripts/setup.sh installs them.
+# Everything here is a Debian package; scripts/setup.sh installs them by need.
 # What the installed library still needs when others link it is found again by sinewConfig.cmake.in.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(Threads REQUIRED)
@@ -23,10 +23,18 @@ if(SINEW_VIEWER)
 endif()
 
 if(SINEW_TESTS)
-  find_package(GTest REQUIRED)
+  find_package(GTest)
+  if(NOT GTest_FOUND)
+    message(FATAL_ERROR "The tests need GoogleTest with GoogleMock. On Debian, `scripts/setup.sh test` installs "
+                        "them; -DSINEW_TESTS=OFF builds without tests.")
+  endif()
 endif()
 if(SINEW_BENCHMARKS)
-  find_package(benchmark REQUIRED)
+  find_package(benchmark)
+  if(NOT benchmark_FOUND)
+    message(FATAL_ERROR "The benchmarks need Google's benchmark library. On Debian, `scripts/setup.sh bench` "
+                        "installs it; -DSINEW_BENCHMARKS=OFF builds without benchmarks.")
+  endif()
 endif()
 if(SINEW_TESTS OR SINEW_BENCHMARKS)
   # An independent oracle. It holds GPL modules, so the library itself never links it.

@@ -17,7 +17,7 @@ function(sinew_system_library name)
       return()
     endif()
     message(FATAL_ERROR "Sinew needs ${arg_LIBRARY} with its header ${arg_HEADER}, which were not found. "
-                        "On Debian, scripts/setup.sh installs all that Sinew needs; elsewhere set "
+                        "On Debian, `scripts/setup.sh build` installs all that Sinew needs; elsewhere set "
                         "${variable}_LIBRARY and ${variable}_INCLUDE.")
   endif()
   add_library(SinewSystem::${name} UNKNOWN IMPORTED GLOBAL)

@@ -7,11 +7,9 @@
 # wait for busy cores cost milliseconds.
 set -eu
 cd "$(dirname "$0")/.."
+scripts/setup.sh bench >&2
+scripts/build.sh release -DSINEW_BENCHMARKS=ON sinew sinew_python benchmarks >&2
 program=build/release/bin/sinew
-if [ ! -x "$program" ]; then
-  echo "bench: $program was not built; run 'make build' first" >&2
-  exit 1
-fi
 data=${SINEW_DATA:-../shared/data}
 out=build/bench
 scenes=$("${PYTHON:-/usr/bin/python3}" benchmarks/scenes.py "$out" --data "$data")

@@ -2,6 +2,7 @@
 # Formats the project's C++ sources by .clang-format; with --check only says which are not formatted.
 set -eu
 cd "$(dirname "$0")/.."
+scripts/setup.sh format
 mode=-i
 if [ "${1:-}" = --check ]; then
   mode="--dry-run --Werror"

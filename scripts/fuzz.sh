@@ -5,6 +5,7 @@
 set -eu
 cd "$(dirname "$0")/.."
 seconds=${1:-60}
+scripts/setup.sh fuzz
 cmake --preset fuzz >/dev/null
 cmake --build build/fuzz --parallel "${JOBS:-$(scripts/jobs.sh)}" \
   --target fuzz_vtk_legacy fuzz_vtu fuzz_gmsh fuzz_csv fuzz_scene fuzz_state fuzz_message

@@ -3,6 +3,7 @@
 #   scripts/lint.sh [FILE...]      all sources when none is named
 set -eu
 cd "$(dirname "$0")/.."
+scripts/setup.sh lint
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 if ! cmake --preset lint >"$log" 2>&1; then

@@ -1,39 +1,68 @@
 #!/bin/sh
 # Installs the Debian packages that Sinew needs and that are missing; does nothing when none is.
-#   scripts/setup.sh             everything: library, program, Python, tests, documentation, lint
-#   scripts/setup.sh --minimal   what the library, the program and the Python package need
-#   scripts/setup.sh --list      prints the packages, one a line, and ends
+#   scripts/setup.sh [NEED...]      packages for what is named; for everything when nothing is
+#   scripts/setup.sh --minimal      what the library, the program and the Python package need: build wheel
+#   scripts/setup.sh --list [...]   prints the packages, one a line, and ends
+# NEED is one or more of: build demo wheel test validate bench docs format lint fuzz.
 # Runs as root or with sudo. SINEW_SKIP_SETUP=1 leaves the machine as it is.
 set -eu
 
-minimal="build-essential cmake ninja-build pkg-config
+needs_known="build demo wheel test validate bench docs format lint fuzz"
+
+# What a need adds to those that it rests on (packages_for).
+build="build-essential cmake ninja-build
   libeigen3-dev libmetis-dev libsuitesparse-dev libtbb-dev libhdf5-dev libyaml-cpp-dev
   libpugixml-dev libassimp-dev libcli11-dev libfmt-dev nlohmann-json3-dev zlib1g-dev
-  libceres-dev
-  coinor-libipopt-dev
-  libboost-dev
-  python3 python3-dev python3-numpy python3-pip python3-venv python3-setuptools python3-wheel
-  pybind11-dev"
-further="git libgtest-dev libgmock-dev libbenchmark-dev
-  python3-scipy python3-matplotlib python3-meshio python3-h5py python3-tqdm python3-yaml
-  python3-pytest python3-cvxopt python3-jsonschema
-  gmsh calculix-ccx doxygen graphviz clang clang-format clang-tidy libclang-rt-dev chromium"
-
+  libceres-dev coinor-libipopt-dev libboost-dev
+  python3 python3-dev python3-numpy pybind11-dev"
 # The view's page is bundled by Node.js. One that did not come from Debian (and brings its own npm,
 # with which Debian's npm cannot be installed) is as good.
-command -v node >/dev/null || minimal="$minimal nodejs"
-command -v npm >/dev/null || minimal="$minimal npm"
+command -v node >/dev/null || build="$build nodejs"
+command -v npm >/dev/null || build="$build npm"
+demo="python3-matplotlib"
+wheel="python3-pip python3-venv python3-setuptools python3-wheel"
+test="libgtest-dev libgmock-dev gmsh chromium python3-pytest python3-scipy python3-meshio
+  python3-h5py python3-yaml python3-cvxopt python3-jsonschema"
+validate="calculix-ccx gmsh python3-scipy python3-meshio"
+bench="libbenchmark-dev chromium"
+docs="doxygen graphviz"
+format="git clang-format"
+lint="clang clang-tidy"
+fuzz="clang libclang-rt-dev"
 
-packages="$minimal $further"
+packages_for() {
+  case $1 in
+    build)    echo $build ;;
+    demo)     echo $build $demo ;;
+    wheel)    echo $build $wheel ;;
+    test)     echo $build $demo $test ;;
+    validate) echo $build $demo $validate ;;
+    bench)    echo $build $demo $validate $bench ;;
+    docs)     echo $docs ;;
+    format)   echo $format ;;
+    lint)     echo $build $test $bench $format $lint ;;
+    fuzz)     echo $build $fuzz ;;
+    *) echo "setup: unknown need '$1'; known are: $needs_known" >&2; return 2 ;;
+  esac
+}
+
+needs=""
 list_only=no
 for argument in "$@"; do
   case $argument in
-    --minimal) packages=$minimal ;;
+    --minimal) needs="$needs build wheel" ;;
     --list) list_only=yes ;;
-    -h|--help) sed -n '2,6s/^# \{0,1\}//p' "$0"; exit 0 ;;
-    *) echo "setup: unknown option '$argument'; see scripts/setup.sh --help" >&2; exit 2 ;;
+    -h|--help) sed -n '2,7s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    -*) echo "setup: unknown option '$argument'; see scripts/setup.sh --help" >&2; exit 2 ;;
+    *) needs="$needs $argument" ;;
   esac
 done
+packages=""
+for need in ${needs:-$needs_known}; do
+  own=$(packages_for "$need")
+  packages="$packages $own"
+done
+packages=$(printf '%s\n' $packages | awk '!seen[$0]++')
 
 if [ "$list_only" = yes ]; then
   printf '%s\n' $packages
@@ -57,7 +86,7 @@ for package in $packages; do
   printf '%s\n' "$installed" | grep -qx "$package" || missing="$missing $package"
 done
 if [ -z "$missing" ]; then
-  echo "setup: all $(printf '%s\n' $packages | wc -l) packages are installed"
+  echo "setup: all $(printf '%s\n' $packages | wc -l) packages are installed (for:${needs:- everything})"
   exit 0
 fi
 
@@ -66,6 +95,7 @@ if [ "$(id -u)" -ne 0 ]; then
   if ! command -v sudo >/dev/null; then
     echo "setup: these packages are missing, and there is neither root nor sudo to install them:" >&2
     echo "  apt-get install$missing" >&2
+    echo "setup: SINEW_SKIP_SETUP=1 goes on without them" >&2
     exit 1
   fi
   as_root="sudo"

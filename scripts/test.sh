@@ -9,7 +9,8 @@ python=${PYTHON:-/usr/bin/python3}
 build=$PWD/build/$preset
 results=$build/test-results
 
-scripts/build.sh "$preset"
+scripts/setup.sh test
+scripts/build.sh "$preset" -DSINEW_TESTS=ON
 rm -rf "$results"
 mkdir -p "$results/gtest"
 
