@@ -101,8 +101,9 @@ def rolls(case, axis, right):
                    source="McGeer")
     case.check(f"{points} points, 100 kPa: acceleration over a round wheel's", seen["soft"][-1], 1.0, 0.02, source="round")
     case.report("24 points, 100 kPa: acceleration over a round wheel's", seen["soft"][0], source="round")
-    case.bound("largest gain of energy in a step of backward Euler, of the drop's", gains["stiff"], 1e-9, source="round")
-    case.bound("largest gain of energy in a step of BDF2, of the drop's", gains["soft"], 1e-3, source="round")
+    case.bound("largest gain of energy in a step of backward Euler, of the drop's", gains["stiff"], 1e-4, source="round",
+               remark="not zero: where elements are pressed, their energy is not convex in the turning")
+    case.bound("largest gain of energy in a step of BDF2, of the drop's", gains["soft"], 1e-4, source="round")
     axis.plot(seen["points"], seen["rigid"], "s--", color=plots.REFERENCE, label="rigid wheel of points")
     axis.plot(seen["points"], seen["stiff"], "o-", color=plots.OURS, label="10 MPa")
     axis.plot(seen["points"], seen["soft"], "o-", color=plots.SECOND, label="100 kPa")
