@@ -84,11 +84,13 @@ void FemBody::begin_step() {
   first_linearisation_ = true;
   carried_ = false;
   prepared_step_.reset();
+  active_->assembly.linearise_from(nullptr);
   if (base_pose_) place_base();
 }
 
 void FemBody::linearise(const mechanics::LinearisationRequest& request) {
   active_ = &numbers(request.with_curvature);
+  active_->iterating = request.iterating;
   prepare_history(request.weights.time_step);
   const auto& weights = request.weights;
   const auto& damping = model_.settings().damping;
@@ -374,6 +376,7 @@ void FemBody::remember_base() {
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     base_.segment<3>(3 * static_cast<Eigen::Index>(i)) = positions_.row(nodes[i]).transpose();
   }
+  if (active_->iterating) active_->assembly.linearise_from(&positions_);
 }
 
 void FemBody::imbalance(std::span<const double> effort, std::span<double> result) {

@@ -22,6 +22,7 @@ struct FemBody::Numbers {
   std::vector<double> border;
   std::vector<double> start_stiffness;  // rotated K at the start of the step, for damping
   bool damped = false;
+  bool iterating = false;  // further linearisations follow where the body moves to
 };
 
 }  // namespace sinew::fem

@@ -2,10 +2,12 @@
 #include <algorithm>
 
 #include "sinew/fem/fem_body.hpp"
+#include "sinew/fem/fem_body_numbers.hpp"
 
 namespace sinew::fem {
 
 void FemBody::restart() {
+  active_->assembly.linearise_from(nullptr);
   positions_ = model_.mesh().nodes;
   velocities_.setZero();
   for (Points& kept : history_) kept.setZero();
@@ -29,6 +31,7 @@ void FemBody::save_state(std::span<double> state) const {
 
 void FemBody::load_state(std::span<const double> state) {
   base_at_.reset();
+  active_->assembly.linearise_from(nullptr);
   std::copy_n(state.data(), positions_.size(), positions_.data());
   const double* from = state.data() + positions_.size();
   std::copy_n(from, velocities_.size(), velocities_.data());

@@ -345,7 +345,11 @@ void Simulation::step_newton(Law& law, const LawProblem& problem) {
         ErrorKind::not_converged,
         fmt::format("Newton ended as '{}' after {} iterations, relative residual {:.3g}",
                     newton_status_name(result.status), result.iterations, result.relative_residual),
-        "take a smaller time step, change commands more slowly, or allow more iterations");
+        settings.tangent == mechanics::Tangent::exact
+            ? "take a smaller time step, change commands more slowly, or allow more iterations"
+            : "use solver tangent: exact, with which Newton converges quadratically, a smaller "
+              "time "
+              "step or slower commands");
   }
 }
 
