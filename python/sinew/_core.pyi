@@ -96,6 +96,12 @@ class StaticReport:
     def iterations(self) -> int: ...
     @property
     def load_steps(self) -> int: ...
+    @property
+    def relaxation_steps(self) -> int: ...
+    @property
+    def negative_pivots(self) -> int: ...
+    @property
+    def stable(self) -> bool: ...
 
 class Linearisation:
     @property
@@ -368,7 +374,13 @@ class Simulation:
     def bodies(self) -> dict[str, Body]: ...
     def step(self, n: int = 1) -> None: ...
     def solve_static(
-        self, *, tolerance: float = 1e-10, max_iterations: int = 60, max_load_steps: int = 256
+        self,
+        *,
+        tolerance: float = 1e-10,
+        max_iterations: int = 60,
+        max_load_steps: int = 256,
+        max_relaxation_steps: int = 200,
+        stability: Literal["stable", "any"] = "stable",
     ) -> StaticReport: ...
     def run(
         self,

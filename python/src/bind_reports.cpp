@@ -69,9 +69,20 @@ void bind_static_report(py::module_& module) {
       .def_readonly("iterations", &StaticReport::iterations,
                     "int: Newton's iterations over all load steps.")
       .def_readonly("load_steps", &StaticReport::load_steps, "int: load steps taken.")
+      .def_readonly("relaxation_steps", &StaticReport::relaxation_steps,
+                    "int: steps of overdamped motion taken, from where load steps ended or an "
+                    "unstable equilibrium was left.")
+      .def_readonly("negative_pivots", &StaticReport::negative_pivots,
+                    "int: negative eigenvalues of the exact tangent on the motions that commanded "
+                    "motions, drives and contacts leave free. Of pressure on open surfaces, whose "
+                    "tangent is not symmetric, the symmetric part is counted.")
+      .def_readonly("stable", &StaticReport::stable,
+                    "bool: whether small disturbances die out: no negative pivots, or, without a "
+                    "potential, overdamped motion came back from a disturbance.")
       .def("__repr__", [](const StaticReport& self) {
-        return fmt::format("<StaticReport {} in {} iterations, residual {:.3g} N>",
-                           newton_status_name(self.status), self.iterations, self.residual);
+        return fmt::format("<StaticReport {} in {} iterations, residual {:.3g} N, {}>",
+                           newton_status_name(self.status), self.iterations, self.residual,
+                           self.stable ? "stable" : "unstable");
       });
 }
 

@@ -107,16 +107,25 @@ LinearisationChoice choice(const std::string& tangent, bool geometric_stiffness,
           geometric_stiffness, statics};
 }
 
+sim::StabilityChoice stability_choice(const std::string& name) {
+  if (name == "stable") return sim::StabilityChoice::stable;
+  if (name == "any") return sim::StabilityChoice::any;
+  throw Error(ErrorKind::unknown_choice, {.item = "solve_static(stability)"},
+              fmt::format("there is no stability '{}'", name), "use 'stable' or 'any'");
+}
+
 sim::StaticReport solve_static(Session& self, double tolerance, int max_iterations,
-                               int max_load_steps) {
-  if (!(tolerance > 0.0) || max_iterations < 1 || max_load_steps < 1) {
+                               int max_load_steps, int max_relaxation_steps,
+                               const std::string& stability) {
+  if (!(tolerance > 0.0) || max_iterations < 1 || max_load_steps < 1 || max_relaxation_steps < 0) {
     throw Error(ErrorKind::out_of_range, {.item = "solve_static()"},
                 fmt::format("tolerance {:g}, max_iterations {} and max_load_steps {} must be "
-                            "positive",
-                            tolerance, max_iterations, max_load_steps),
+                            "positive, max_relaxation_steps {} not negative",
+                            tolerance, max_iterations, max_load_steps, max_relaxation_steps),
                 "leave them out for the defaults");
   }
-  return self.solve_static({tolerance, max_iterations, max_load_steps});
+  return self.solve_static({tolerance, max_iterations, max_load_steps, max_relaxation_steps,
+                            stability_choice(stability)});
 }
 
 template <typename Get>
@@ -307,15 +316,21 @@ RunError
     diverged, inverted-in-run, singular-matrix or not-converged, with the step, the body and the
     likely cause; the state is then that before the step that failed.
 )")
-      .def("solve_static", &solve_static, py::kw_only(), py::arg("tolerance") = 1e-10,
-           py::arg("max_iterations") = 60, py::arg("max_load_steps") = 256,
-           R"(solve_static($self, *, tolerance=1e-10, max_iterations=60, max_load_steps=256)
+      .def(
+          "solve_static", &solve_static, py::kw_only(), py::arg("tolerance") = 1e-10,
+          py::arg("max_iterations") = 60, py::arg("max_load_steps") = 256,
+          py::arg("max_relaxation_steps") = 200, py::arg("stability") = "stable",
+          R"(solve_static($self, *, tolerance=1e-10, max_iterations=60, max_load_steps=256, max_relaxation_steps=200, stability='stable')
 --
 
-Newton to the static equilibrium at the present inputs: exact tangent, cables' geometric stiffness.
+A stable static equilibrium at the present inputs, by Newton with the exact tangent and the cables'
+geometric stiffness.
 
 Limits on rates are lifted and the actuators of a controller hold their efforts. Velocities become
-zero; time stands still.
+zero; time stands still. Where Newton fails in one go, the load comes in parts; where that ends
+before the full load, the robot moves on by overdamped motion. An unstable equilibrium (a column
+straight beyond its buckling load) is disturbed along the direction of its lowest curvature and left
+for a stable one.
 
 Parameters
 ----------
@@ -325,6 +340,11 @@ max_iterations : int
     Of Newton in one load step.
 max_load_steps : int
     Where one go fails, the load comes in parts, the least of which is its inverse.
+max_relaxation_steps : int
+    Steps of overdamped motion.
+stability : str
+    'stable', or 'any' for the equilibrium that Newton finds, stable or not: to follow an unstable
+    branch. See StaticReport.negative_pivots.
 
 Returns
 -------
@@ -333,7 +353,7 @@ StaticReport
 Raises
 ------
 RunError
-    not-converged when no equilibrium is found; the state is then as before.
+    not-converged when no equilibrium is found, or none that is stable; the state is then as before.
 )")
       .def("run", &run, py::arg("duration") = py::none(), py::kw_only(),
            py::arg("record") = py::none(), py::arg("every") = 1, py::arg("progress") = py::none(),

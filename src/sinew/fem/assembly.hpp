@@ -68,6 +68,11 @@ class Assembly {
   /// not finite are seen by minimum_volume_ratio() = -infinity.
   void evaluate(const Points& positions, const AssemblyWeights& weights);
 
+  /// From the next evaluate() on, the tangent's pressures are linearised from these positions,
+  /// which the body moved from (SolidOutput::start); null: they are those of the forces.
+  /// @param positions (n, 3) m; copied.
+  bool linearise_from(const Points* positions);
+
   /// From the next evaluate() on: what elements that relax or soften have behind them; null:
   /// nothing. The energy is then the incremental one, whose derivative the forces are.
   /// @param history must outlive this object.
@@ -104,6 +109,7 @@ class Assembly {
  private:
   struct Workspace;
   void load_positions(const Points& positions);
+  void pad(const Points& positions, double* to);
   void find_smallest();
   void evaluate_elements(const Points& positions, Tangent tangent);
   void average_patches(const SolidGroup& group);

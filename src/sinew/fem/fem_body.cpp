@@ -84,6 +84,8 @@ void FemBody::begin_step() {
   first_linearisation_ = true;
   carried_ = false;
   prepared_step_.reset();
+  // What the last step's motion lent the tangent's pressure must not outlive it: a state says all.
+  if (active_->assembly.linearise_from(nullptr)) active_->present.reset();
   if (base_pose_) place_base();
 }
 
@@ -92,6 +94,7 @@ void FemBody::linearise(const mechanics::LinearisationRequest& request) {
   active_ = &numbers(request.with_curvature);
   if (active_ != before) before->present.reset();
   tangent_ = request.tangent;
+  active_->iterating = request.iterating;
   prepare_history(request.weights.time_step);
   evaluate_elements(request);
   if (!model_.loads().empty()) apply_loads(request);
@@ -388,6 +391,7 @@ void FemBody::remember_base() {
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     base_.segment<3>(3 * static_cast<Eigen::Index>(i)) = positions_.row(nodes[i]).transpose();
   }
+  if (active_->iterating) active_->assembly.linearise_from(&positions_);
 }
 
 void FemBody::imbalance(std::span<const double> effort, std::span<double> result) {

@@ -43,7 +43,8 @@ void FemBody::apply_loads(const mechanics::LinearisationRequest& request) {
     if (i >= 0 && j >= 0) blocks.push_back({i, j, block});
   };
   LoadSet::AddBlock rest;
-  if (loads.is_open() && !weights.dynamic() && request.tangent == mechanics::Tangent::exact) {
+  const bool of_statics = !weights.dynamic() || weights.time_step == 0.0;
+  if (loads.is_open() && of_statics && request.tangent == mechanics::Tangent::exact) {
     rest = [&](NodeId a, NodeId b, const Matrix3& block) { keep(open_stiffness_, a, b, block); };
   }
   loads.evaluate(

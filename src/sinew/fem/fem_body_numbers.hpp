@@ -27,6 +27,7 @@ struct FemBody::Numbers {
   /// the next linearisation there takes them as they are. None once the body moved or something
   /// was added to the matrix.
   std::optional<AssemblyWeights> present;
+  bool iterating = false;  // further linearisations follow where the body moves to
 };
 
 }  // namespace sinew::fem

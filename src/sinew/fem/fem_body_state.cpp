@@ -8,6 +8,7 @@ namespace sinew::fem {
 
 void FemBody::restart() {
   active_->present.reset();
+  active_->assembly.linearise_from(nullptr);
   positions_ = model_.mesh().nodes;
   velocities_.setZero();
   for (Points& kept : history_) kept.setZero();
@@ -32,6 +33,7 @@ void FemBody::save_state(std::span<double> state) const {
 void FemBody::load_state(std::span<const double> state) {
   active_->present.reset();
   base_at_.reset();
+  active_->assembly.linearise_from(nullptr);
   std::copy_n(state.data(), positions_.size(), positions_.data());
   const double* from = state.data() + positions_.size();
   std::copy_n(from, velocities_.size(), velocities_.data());

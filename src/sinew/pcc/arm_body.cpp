@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -199,6 +200,12 @@ double ArmBody::residual(std::span<const double> effort) {
   scratch_ = right_;
   scratch_.noalias() += rows_ * effort_;
   return scratch_.norm();
+}
+
+// A turn of 1 is the least that angles are rounded by: their sines and cosines are.
+double ArmBody::rounding_floor() const {
+  const double angle = std::max(1.0, q_.cwiseAbs().maxCoeff());
+  return std::numeric_limits<double>::epsilon() * angle * matrix_.cwiseAbs().rowwise().sum().norm();
 }
 
 linalg::FactorStatus ArmBody::condense() {

@@ -17,6 +17,7 @@
 #include "sinew/sim/newton.hpp"
 #include "sinew/sim/stages.hpp"
 #include "sinew/sim/step_status.hpp"
+#include "sinew/sim/static_settings.hpp"
 #include "sinew/sim/world.hpp"
 
 namespace sinew::sim {
@@ -44,21 +45,6 @@ struct StepReport {
   int contact_sweeps = 0;              ///< of Gauss-Seidel, in the last solution of the law
   NewtonStatus newton = NewtonStatus::converged;
   StageTimes times;
-};
-
-struct StaticSettings {
-  double tolerance = 1e-10;  ///< residual relative to the loads; law's violation relative to size
-  int max_iterations = 60;   ///< of Newton in one load step
-  int max_load_steps = 256;  ///< smallest load step is its inverse
-};
-
-struct StaticReport {
-  NewtonStatus status = NewtonStatus::converged;
-  int iterations = 0;              ///< Newton's, over all load steps
-  int load_steps = 1;              ///< that were taken
-  double residual = 0.0;           ///< N
-  double relative_residual = 0.0;  ///< of the sum of the forces' norms
-  double violation = 0.0;          ///< m
 };
 
 struct PathSettings {
@@ -106,10 +92,10 @@ class Simulation {
   double outside_work() const { return work_.outside; }
   double dissipation() const { return work_.dissipated; }
 
-  /// Newton to the static equilibrium at the present inputs: commands at the present time, limits
-  /// on rates lifted, actuators of a controller held at their efforts; exact tangent, cables'
-  /// geometric stiffness, load stepping when needed. Velocities become zero; time stands still.
-  /// Friction of contacts is that of one slow motion from the present state.
+  /// A stable static equilibrium at the present inputs: commands at the present time, limits on
+  /// rates lifted, actuators of a controller held at their efforts; see StaticSolver. Velocities
+  /// become zero; time stands still. Friction of contacts is that of one slow motion from the
+  /// present state.
   /// Throws Error(not-converged) and restores the state when there is none to be found.
   StaticReport solve_static(const StaticSettings& settings = {});
 
@@ -197,7 +183,6 @@ class Simulation {
   int step_path(double length, double& share, VectorX& direction, double tolerance);
   void count_work();
   void count_contact_work();
-  void follow_surfaces(const StaticSettings& settings, StaticReport& report, NewtonReport& last);
   void step_adaptively();
   void step_in_parts();
   NewtonSettings newton_settings(double time_step) const;
@@ -216,8 +201,8 @@ class Simulation {
   int negative_pivots() const;
   [[noreturn]] void fail(ErrorKind kind, const std::string& message, const std::string& remedy);
   [[noreturn]] void fail_contacts();
-  std::string describe_limit_point();
-  NewtonReport equilibrate(const StaticSettings& settings, double share, StaticReport& report);
+
+  friend class StaticSolver;
 
   std::shared_ptr<const Model> model_;
   std::unique_ptr<ThreadPool> pool_;

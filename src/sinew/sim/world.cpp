@@ -283,6 +283,15 @@ double World::force_scale() const {
   return scale;
 }
 
+double World::rounding_floor() const {
+  double sum = 0.0;
+  for (const auto& body : bodies_) {
+    const double part = body->rounding_floor();
+    sum += part * part;
+  }
+  return std::sqrt(sum);
+}
+
 void World::hold_imbalance(std::span<const double> effort) {
   for (auto& body : bodies_) body->hold_imbalance(effort);
 }

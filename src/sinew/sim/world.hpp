@@ -38,6 +38,8 @@ class World {
   /// |b + H^T effort| (N) and the scale (N) to judge it by.
   double residual(std::span<const double> effort);
   double force_scale() const;
+  /// N: what rounding leaves of residual(), see mechanics::Body.
+  double rounding_floor() const;
   /// For load stepping: see mechanics::Body.
   void hold_imbalance(std::span<const double> effort);
   void set_imbalance_share(double share);
