@@ -61,7 +61,7 @@ class Dump {
  public:
   explicit Dump(const SceneDescription& scene) {
     add(scene.gravity, scene.time_step, scene.integrator, scene.duration.value_or(-1));
-    add(scene.solver.method, scene.solver.tangent, scene.solver.tolerance);
+    add(scene.solver.method, scene.solver.tangent, scene.solver.tolerance.value_or(-1));
     add(scene.solver.max_iterations, scene.solver.threads, scene.solver.backend);
     add(scene.solver.contact_tolerance);
     add(scene.solver.ordering, scene.record.every, scene.record.states);

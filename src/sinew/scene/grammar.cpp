@@ -96,9 +96,9 @@ std::shared_ptr<const KeyTable> solver_table() {
            {.name = "tolerance",
             .forms = {quantity(plain_number(), Range{0.0, 1.0, true, true})},
             .example = "1e-8",
-            .default_text = "5e-3 in quasi-static steps, 1e-8 in dynamics",
             .description = "Newton: residual force relative to the sum of internal and outside "
-                           "forces."},
+                           "forces. Without: 5e-3 in quasi-static steps, which hand the rest to "
+                           "the next step, and 1e-8 in dynamics."},
            {.name = "max_iterations",
             .forms = {integer(1, 100000)},
             .example = "50",
