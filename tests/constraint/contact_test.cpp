@@ -100,7 +100,9 @@ TEST(Surface, ApproachIsTheFirstMeetingOrTheNearestPoint) {
         ++missed;
         between += share > 1e-6 && share < 1.0 - 1e-6 ? 1 : 0;
         EXPECT_NEAR(found.distance.gap, least, 1e-6);
-        if (least > 1e-3) EXPECT_NEAR(share, at, 0.01);
+        if (least > 1e-3) {
+          EXPECT_NEAR(share, at, 0.01);
+        }
         EXPECT_GT(found.distance.gap + normal.dot(to - found.at), 0.0);  // no plane in its way
       }
       EXPECT_GE(found.distance.gap + normal.dot(from - found.at), -1e-14);

@@ -1,5 +1,6 @@
 // Bodies that pass curved surfaces: no force where they miss, no way through where they do not.
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -25,7 +26,7 @@ struct Flight {
 };
 
 /// A free block, 40 x 40 x 20 mm about the origin, its bottom at z = 0; every node may touch.
-Simulation flying(const Flight& flight) {
+std::unique_ptr<Simulation> flying(const Flight& flight) {
   BlockOptions options{.floor = false};
   options.step.time_step = flight.time_step;
   options.step.method = flight.method;
@@ -47,12 +48,12 @@ Simulation flying(const Flight& flight) {
     contact.nodes.push_back(static_cast<NodeId>(n));
   }
   builder.add_contact(contact);
-  Simulation simulation(builder.build());
-  std::vector<double> state(simulation.state_size());
-  simulation.save_state(state);
+  auto simulation = std::make_unique<Simulation>(builder.build());
+  std::vector<double> state(simulation->state_size());
+  simulation->save_state(state);
   const auto size = static_cast<std::size_t>(mesh->nodes.size());
   for (std::size_t i = 0; i < size; i += 3) state[size + i] = flight.speed;
-  simulation.load_state(state, 0);
+  simulation->load_state(state, 0);
   return simulation;
 }
 
@@ -73,8 +74,9 @@ TEST(Passing, BodiesThatMissFeelNothing) {
       const double x = 0.06 + phase * c.speed * c.time_step;
       for (const constraint::Surface& surface : obstacles(x, c.below)) {
         for (const Method method : {Method::one_linearisation, Method::newton}) {
-          Simulation simulation = flying(
+          const auto flown = flying(
               {.surface = surface, .speed = c.speed, .time_step = c.time_step, .method = method});
+          Simulation& simulation = *flown;
           const auto steps = std::lround(0.16 / c.speed / c.time_step) + 1;
           for (long k = 0; k < steps; ++k) {
             simulation.step();
@@ -94,7 +96,8 @@ TEST(Passing, SurfacesThatMissAreNotFelt) {
   for (const constraint::Surface& surface : obstacles(0.06, 0.001)) {
     BaseMotion motion;
     motion.translation[0] = Signal::ramp({0.0, -0.12, 0.0, 0.12});
-    Simulation simulation = flying({.surface = surface, .speed = 0.0, .motion = motion});
+    const auto flown = flying({.surface = surface, .speed = 0.0, .motion = motion});
+    Simulation& simulation = *flown;
     for (int k = 0; k < 13; ++k) {
       simulation.step();
       EXPECT_EQ(simulation.contact_sum(0).normal_force, 0.0);
@@ -125,7 +128,8 @@ TEST(Passing, NothingGoesThroughASurface) {
       for (const constraint::Surface& surface :
            {constraint::Surface(ball), constraint::Surface(bar)}) {
         for (const Method method : {Method::one_linearisation, Method::newton}) {
-          Simulation simulation = flying({.surface = surface, .speed = speed, .method = method});
+          const auto flown = flying({.surface = surface, .speed = speed, .method = method});
+          Simulation& simulation = *flown;
           const double start = simulation.energies().kinetic;
           bool touched = false;
           for (int k = 0; k < 4; ++k) {
@@ -151,8 +155,9 @@ TEST(Passing, ImpactsAreThoseOfThePlaceWhereTheyHappen) {
   const constraint::Sphere ball{{0.045, 0.0, -0.003}, 0.005};
   for (const double time_step : {1e-3, 4e-3, 1e-2}) {
     for (const Method method : {Method::one_linearisation, Method::newton}) {
-      Simulation simulation =
+      const auto flown =
           flying({.surface = ball, .speed = 1.0, .time_step = time_step, .method = method});
+      Simulation& simulation = *flown;
       while (!(simulation.contact_sum(0).normal_force > 0.0)) {
         ASSERT_LT(simulation.time(), 0.05);
         simulation.step();
@@ -174,14 +179,15 @@ TEST(Passing, RunsGoOnFromASavedStateBitForBit) {
   for (const Integrator integrator : {Integrator::backward_euler, Integrator::bdf2}) {
     Flight own = flight;
     own.integrator = integrator;
-    Simulation whole = flying(own), first = flying(own), second = flying(own);
-    for (int k = 0; k < 12; ++k) whole.step();
-    for (int k = 0; k < 3; ++k) first.step();
-    std::vector<double> state(first.state_size());
-    first.save_state(state);
-    second.load_state(state, first.steps());
-    for (int k = 0; k < 9; ++k) second.step();
-    EXPECT_EQ(second.state_hash(), whole.state_hash());
+    const auto whole = flying(own), first = flying(own), second = flying(own);
+    for (int k = 0; k < 12; ++k) whole->step();
+    for (int k = 0; k < 3; ++k) first->step();
+    std::vector<double> state(first->state_size());
+    first->save_state(state);
+    second->load_state(state, first->steps());
+    for (int k = 0; k < 9; ++k) second->step();
+    EXPECT_EQ(second->state_hash(), whole->state_hash());
+    EXPECT_LT(mean_velocity(*whole)[0], 0.99);  // it did touch
   }
 }
 
