@@ -28,7 +28,7 @@ struct SolidOutput {
   /// on displacements and pressures (u, p), with p condensed out of each iteration. An iteration
   /// that turns an element by theta leaves kappa theta^2/2 in its true pressure, which the next
   /// takes away, but which would make the tangent useless where kappa is large (Magisano,
-  /// Leonetti, Garcea, Int. J. Numer. Meth. Engng 109 (2017) 1237, for all stresses).
+  /// Leonetti, Garcea, Comput. Methods Appl. Mech. Engng 313 (2017) 986, for all stresses).
   const double* start = nullptr;
 };
 

@@ -184,9 +184,13 @@ class Body {
   /// Bytes of this body's own data, the model not counted.
   virtual std::size_t bytes() const = 0;
   /// A bound on what rounding leaves of residual(), N, at the last linearisation. Coordinates are
-  /// known to eps |q|, so that no state obeys its equation better than |A| eps |q| (Higham, Accuracy
-  /// and Stability of Numerical Algorithms, 2002, sec. 12.1 and 25.2: the limiting residual).
+  /// known to eps |q|, so that no state obeys its equation better than |A| eps |q| (Higham,
+  /// Accuracy and Stability of Numerical Algorithms, 2002, sec. 12.1 and 25.2: the limiting
+  /// residual).
   virtual double rounding_floor() const = 0;
+  /// Whether the last linearisation has an unsymmetric part, which condense() leaves out and
+  /// solve_motion() takes into account: the inertia of what was factorised then says nothing.
+  virtual bool is_unsymmetric() const { return false; }
 };
 
 }  // namespace sinew::mechanics

@@ -60,15 +60,21 @@ class NewtonSolver {
     clock_.mark(Stage::compliance);
   }
 
-  // The exact tangent may be indefinite far from equilibrium; the projected one is not.
+  // The exact tangent may be indefinite far from equilibrium; the projected one is not. Where a
+  // part of it is not symmetric (pressure on an open surface that has curled up), the rest may be
+  // indefinite at stable equilibria, and no other tangent leads to them.
   bool condense() {
     auto status = world_.condense();
     ++report_.factorisations;
     int negative = 0;
-    for (const auto& body : world_.bodies()) negative += body->negative_pivots();
-    const bool stable =
-        status == linalg::FactorStatus::positive_definite ||
-        (status == linalg::FactorStatus::indefinite && DrivenLaw::stabilised(problem_, negative));
+    bool unsymmetric = false;
+    for (const auto& body : world_.bodies()) {
+      negative += body->negative_pivots();
+      unsymmetric = unsymmetric || body->is_unsymmetric();
+    }
+    const bool stable = status == linalg::FactorStatus::positive_definite ||
+                        (status == linalg::FactorStatus::indefinite &&
+                         (unsymmetric || DrivenLaw::stabilised(problem_, negative)));
     if (!stable && settings_.request.tangent == mechanics::Tangent::exact) {
       clock_.mark(Stage::factorisation);
       linearise(mechanics::Tangent::projected);

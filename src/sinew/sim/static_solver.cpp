@@ -122,7 +122,7 @@ void StaticSolver::approach() {
   const std::string known = describe(share);
   blend(0.0);
   sim_.world_.set_imbalance_share(0.0);
-  if (relax_from_here()) return;
+  if (!limit_point_ && relax_from_here()) return;
   fail_to_find(known);
 }
 
@@ -230,6 +230,8 @@ void StaticSolver::follow_surfaces() {
 void StaticSolver::settle() {
   double disturbance = kDisturbance;
   for (int departures = 0;; ++departures) {
+    sim_.world_.begin_step(sim_.time(), sim_.time(),
+                           sim_.effort_);  // the tangent here, not on the way
     linearise({});
     report_.stable = true;
     report_.negative_pivots = 0;
