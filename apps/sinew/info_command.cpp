@@ -225,6 +225,11 @@ Facts scene_facts(const InfoOptions& options) {
     facts.text +=
         fmt::format("  {} {}{}\n", actuator_type_name(actuator.type), actuator.name, size);
   }
+  for (const sim::MassModel& mass : model.masses()) {
+    const std::string& body = model.bodies()[static_cast<std::size_t>(mass.body)]->name();
+    facts.json["masses"].push_back({{"name", mass.name}, {"body", body}, {"mass_kg", mass.mass}});
+    facts.text += fmt::format("  mass {}: {:.4g} g on {}\n", mass.name, 1e3 * mass.mass, body);
+  }
   for (const auto& effector : model.effectors()) {
     facts.json["effectors"].push_back(effector.name);
     facts.text += fmt::format("  effector {}\n", effector.name);

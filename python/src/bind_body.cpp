@@ -155,7 +155,7 @@ void move_base(const Body& self, const py::object& translation, const py::object
   const Vector3 turn = read(rotation, "move_base(rotation)");
   const Vector3 centre = read(center, "move_base(center)");
   const Session::Use use(*self.session);
-  self.session->simulation().fem_body(self.index).set_base(shift, turn, centre);
+  self.session->simulation().move_base(self.index, shift, turn, centre);
 }
 
 void bind_state(py::class_<Body>& type) {
@@ -166,7 +166,8 @@ void bind_state(py::class_<Body>& type) {
       R"(move_base($self, translation=(0.0, 0.0, 0.0), rotation=(0.0, 0.0, 0.0), center=(0.0, 0.0, 0.0))
 --
 
-Moves the fixed nodes from the next step on: turned about `center`, then shifted, from rest.
+Moves the fixed nodes in the next step: turned about `center`, then shifted, from rest. An input, as
+commands are: reset() puts the base back, and a saved state says where the base was.
 
 Parameters
 ----------
@@ -176,6 +177,11 @@ rotation : (3,) array_like
     Rotation vector, rad.
 center : (3,) array_like
     m, at rest.
+
+Raises
+------
+Error
+    bad-argument where the scene moves this base by `base`; nothing-fixed; not-finite.
 )");
   type.def_property_readonly(
           "positions", [](const Body& self) { return points_view(self, any(self).positions()); },

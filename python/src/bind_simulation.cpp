@@ -80,6 +80,15 @@ py::dict all_probes(const std::shared_ptr<Session>& self) {
   return result;
 }
 
+py::dict all_masses(const std::shared_ptr<Session>& self) {
+  py::dict result;
+  int index = 0;
+  for (const auto& mass : self->model().masses()) {
+    result[mass.name.c_str()] = PointMass{{self, index++}};
+  }
+  return result;
+}
+
 py::dict all_contacts(const std::shared_ptr<Session>& self) {
   py::dict result;
   int index = 0;
@@ -171,6 +180,17 @@ An effector by its name. Raises Error (unknown-name) with a suggestion.
 --
 
 A load by its name. Raises Error (unknown-name) with a suggestion.
+)")
+      .def(
+          "mass",
+          [](const std::shared_ptr<Session>& self, const std::string& name) {
+            return PointMass{{self, self->model().mass_index(name)}};
+          },
+          py::arg("name"),
+          R"(mass($self, name)
+--
+
+A mass that hangs on a body, by its name. Raises Error (unknown-name) with a suggestion.
 )")
       .def(
           "follow_path",
@@ -292,6 +312,8 @@ A body by its name. Raises Error (unknown-name) with a suggestion.
                              "dict: all effectors by name, in the scene's order.")
       .def_property_readonly("probes", &all_probes,
                              "dict: all probes by name, in the scene's order.")
+      .def_property_readonly("masses", &all_masses,
+                             "dict: all masses that hang on bodies by name, body by body.")
       .def_property_readonly("contacts", &all_contacts,
                              "dict: all contacts by name, in the scene's order.")
       .def_property_readonly("bodies", &all_bodies,
@@ -395,7 +417,8 @@ void bind_state(Type& type) {
            R"(reset($self)
 --
 
-Back to the start, bit for bit: state, time, and the scene's commands; external forces become zero.
+Back to the start, bit for bit: state, time, and the scene's commands; external forces become zero,
+and a base that move_base() moved is back.
 Controllers stay attached and keep their targets.
 )")
       .def("clone", &Session::clone,
@@ -415,8 +438,8 @@ Simulation
            R"(save_state($self, path)
 --
 
-Writes the state: positions, velocities, efforts, drives, time. Commands and external forces are
-inputs and are not part of it.
+Writes the state: positions, velocities, bases, efforts, drives, time. Commands and external forces
+are inputs and are not part of it.
 
 Parameters
 ----------

@@ -22,6 +22,7 @@ void bind_reports(py::module_& module);
 void bind_actuator(py::module_& module);
 void bind_effector(py::module_& module);
 void bind_load(py::module_& module);
+void bind_mass(py::module_& module);
 void bind_probe(py::module_& module);
 void bind_contact(py::module_& module);
 void bind_body(py::module_& module);
@@ -49,6 +50,7 @@ struct Part {
 struct Actuator : Part {};
 struct Effector : Part {};
 struct Load : Part {};
+struct PointMass : Part {};
 struct Probe : Part {};
 struct Contact : Part {};
 struct Body : Part {};

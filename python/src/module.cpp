@@ -25,6 +25,7 @@ PYBIND11_MODULE(_core, module) {
   python::bind_actuator(module);
   python::bind_effector(module);
   python::bind_load(module);
+  python::bind_mass(module);
   python::bind_probe(module);
   python::bind_contact(module);
   python::bind_body(module);

@@ -81,8 +81,13 @@ std::shared_ptr<Session> Session::clone() const {
   for (std::size_t i = 0; i < model().bodies().size(); ++i) {
     const auto index = static_cast<int>(i);
     if (!of_elements(simulation_, index)) continue;
-    other->simulation_.fem_body(index).external_forces() =
-        simulation_.fem_body(index).external_forces();
+    const fem::FemBody& body = simulation_.fem_body(index);
+    other->simulation_.fem_body(index).external_forces() = body.external_forces();
+    other->simulation_.fem_body(index).rigid_base().ask(body.rigid_base().asked());
+  }
+  for (std::size_t i = 0; i < model().loads().size(); ++i) {
+    const auto index = static_cast<int>(i);
+    other->simulation_.set_load(index, simulation_.load_factor(index));
   }
   std::vector<double> state(simulation_.state_size());
   simulation_.save_state(state);

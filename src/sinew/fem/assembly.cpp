@@ -262,7 +262,7 @@ VolumeMeasure Assembly::measure_volume(const Points& positions) {
 void Assembly::gather(const AssemblyWeights& weights) {
   Workspace& work = *work_;
   const FemModel& model = *model_;
-  const bool consistent = model.has_consistent_mass();
+  const bool blocks = model.has_mass_blocks();
   const double* records = work.records(weights.tangent);
   const double* solids = work.solid_blocks;
   const double* patch_rows = work.patch_ratios.empty() ? nullptr : work.patch_rows.data();
@@ -271,8 +271,8 @@ void Assembly::gather(const AssemblyWeights& weights) {
     const int end = work.column_splits[static_cast<std::size_t>(thread) + 1];
     gather_forces(model.gather(), begin, end, work.force_records, work.forces.data());
     gather_blocks(model.gather(), model.pattern(), begin, end, records, solids, patch_rows, weights,
-                  consistent ? nullptr : model.free_mass().data(),
-                  consistent ? model.mass_blocks().data() : nullptr, work.matrix.data());
+                  blocks ? nullptr : model.free_mass().data(),
+                  blocks ? model.mass_blocks().data() : nullptr, work.matrix.data());
   });
 }
 

@@ -24,15 +24,16 @@ FemBody::FemBody(const FemBodyModel& model, ThreadPool& pool, bool with_curvatur
     : model_(model),
       pool_(pool),
       positions_(model.mesh().nodes),
-      velocities_(Points::Zero(positions_.rows(), 3)),
-      external_forces_(velocities_),
-      history_(static_cast<std::size_t>(histories), velocities_),
+      velocities_(model.start_velocities()),
+      external_forces_(Points::Zero(positions_.rows(), 3)),
+      history_(static_cast<std::size_t>(histories), external_forces_),
       load_factors_(model.loads().size(), 1.0),
       load_forces_(Points::Zero(positions_.rows(), 3)),
       drag_forces_(load_forces_),
       element_history_(model.elements().solids()),
       start_positions_(positions_),
-      active_(&numbers(with_curvature)) {
+      active_(&numbers(with_curvature)),
+      rigid_base_(histories) {
   const auto nodes = model.elements().free_nodes();
   const auto size = 3 * static_cast<Eigen::Index>(nodes.size());
   for (VectorX* v : {&right_, &motion_, &base_, &scratch_}) v->setZero(size);
@@ -82,11 +83,10 @@ Vector3 FemBody::velocity(int point) const { return weighted(velocities_, point)
 void FemBody::begin_step() {
   start_positions_ = positions_;
   first_linearisation_ = true;
-  carried_ = false;
   prepared_step_.reset();
   // What the last step's motion lent the tangent's pressure must not outlive it: a state says all.
   if (active_->assembly.linearise_from(nullptr)) active_->present.reset();
-  if (base_pose_) place_base();
+  place_base();
 }
 
 void FemBody::linearise(const mechanics::LinearisationRequest& request) {
@@ -168,39 +168,37 @@ void FemBody::form_right_side(const mechanics::LinearisationRequest& request) {
   hold_right_side();
 }
 
+Vector3 FemBody::combined(const mechanics::Combination& weights, NodeId node) const {
+  Vector3 sum = weights.velocity * velocities_.row(node).transpose() +
+                weights.motion * (positions_.row(node) - start_positions_.row(node)).transpose();
+  const bool kept = !history_.empty() && (weights.first != 0.0 || weights.second != 0.0);
+  if (!kept) return sum;
+  sum += weights.first * history_[0].row(node).transpose() +
+         weights.second * history_[1].row(node).transpose();
+  return sum;
+}
+
 void FemBody::combine(const mechanics::Combination& weights, VectorX& result) const {
   const auto nodes = model_.elements().free_nodes();
   result.resize(3 * static_cast<Eigen::Index>(nodes.size()));
-  const bool kept = !history_.empty() && (weights.first != 0.0 || weights.second != 0.0);
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const auto k = 3 * static_cast<Eigen::Index>(i);
-    result.segment<3>(k) =
-        weights.velocity * velocities_.row(nodes[i]).transpose() +
-        weights.motion * (positions_.row(nodes[i]) - start_positions_.row(nodes[i])).transpose();
-    if (!kept) continue;
-    result.segment<3>(k) += weights.first * history_[0].row(nodes[i]).transpose() +
-                            weights.second * history_[1].row(nodes[i]).transpose();
+    result.segment<3>(3 * static_cast<Eigen::Index>(i)) = combined(weights, nodes[i]);
   }
-}
-
-// Velocity at the end of the step that stiffness damping acts on: beside a moving base, which the
-// rows and columns of fixed nodes in K would take away.
-void FemBody::combine_velocity(const mechanics::StepWeights& weights, VectorX& result) const {
-  combine(weights.velocity, result);
-  if (carried_) result -= carry_ / weights.time_step;
 }
 
 void FemBody::add_inertia(const mechanics::StepWeights& weights) {
   const auto& damping = model_.settings().damping;
   const auto sum = [&](double a, double v) { return -(a + damping.mass * v); };
   const mechanics::Combination &a = weights.acceleration, &v = weights.velocity;
-  combine({sum(a.motion, v.motion), sum(a.velocity, v.velocity), sum(a.first, v.first),
-           sum(a.second, v.second)},
-          momentum_);
+  const mechanics::Combination inertia{sum(a.motion, v.motion), sum(a.velocity, v.velocity),
+                                       sum(a.first, v.first), sum(a.second, v.second)};
+  combine(inertia, momentum_);
   active_->system.elements->apply_mass(span_of(momentum_), span_of(scratch_));
+  add_base_momentum(inertia, scratch_);
   right_ += scratch_;
   force_scale_ += scratch_.norm();
   if (!active_->damped) return;
+  if (first_linearisation_) find_base_velocity(weights);
   combine_velocity(weights, travel_);
   linalg::multiply(active_->system.elements->pattern(), active_->start_stiffness, span_of(travel_),
                    span_of(scratch_));
@@ -437,6 +435,7 @@ double FemBody::end_step(const mechanics::StepWeights& weights) {
     active_->assembly.advance(positions_, element_history_);
     prepared_step_.reset();
   }
+  rigid_base_.end_step(weights);
   if (!weights.dynamic()) {  // nothing moves, and nothing is kept
     velocities_.setZero();
     for (Points& kept : history_) kept.setZero();
@@ -481,7 +480,8 @@ double FemBody::strain_energy() {
 
 std::size_t FemBody::bytes() const {
   const Eigen::Index free = right_.size() + motion_.size() + base_.size() + scratch_.size() +
-                            travel_.size() + momentum_.size() + imbalance_.size();
+                            travel_.size() + momentum_.size() + imbalance_.size() + carry_.size() +
+                            base_velocity_.size();
   const auto points = (4 + history_.size()) * static_cast<std::size_t>(positions_.size());
   auto total = sizeof(double) * (points + static_cast<std::size_t>(free) + element_history_.size());
   for (const Numbers* n : {plain_.get(), curved_.get()}) {

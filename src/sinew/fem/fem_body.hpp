@@ -6,11 +6,10 @@
 #include <optional>
 #include <vector>
 
-#include <Eigen/Geometry>
-
 #include "sinew/fem/assembly.hpp"
 #include "sinew/fem/element_history.hpp"
 #include "sinew/fem/fem_body_model.hpp"
+#include "sinew/fem/rigid_base.hpp"
 #include "sinew/fem/tether.hpp"
 
 namespace sinew::fem {
@@ -47,7 +46,7 @@ class FemBody : public mechanics::Body {
   mechanics::MotionReport apply_motion(double scale) override;
   double end_step(const mechanics::StepWeights& weights) override;
   mechanics::StepWork step_work() const override { return work_; }
-  bool moved_from_outside() const override { return tether_.has_value() || base_pose_.has_value(); }
+  bool moved_from_outside() const override { return tether_.has_value() || rigid_base_.moves(); }
 
   void restart() override;
   std::size_t state_size() const override;
@@ -71,13 +70,10 @@ class FemBody : public mechanics::Body {
   Points& external_forces() { return external_forces_; }
   const Points& external_forces() const { return external_forces_; }
 
-  /// Where the fixed nodes stand from the next step on: turned about `centre` by a rotation vector
-  /// and then moved, from rest. An input as external forces are, but that where the nodes stand is
-  /// part of the state. Each step begins its search where the base's motion takes the whole body.
-  /// What moves the base puts in or takes out work.
-  /// @param translation (3,) m. @param rotation (3,) rad. @param centre (3,) m, at rest.
-  /// Throws Error(not-finite).
-  void set_base(const Vector3& translation, const Vector3& rotation, const Vector3& centre);
+  /// The motion of the fixed nodes. Each step begins its search where that motion takes the whole
+  /// body. What moves the base puts in or takes out work.
+  RigidBase& rigid_base() { return rigid_base_; }
+  const RigidBase& rigid_base() const { return rigid_base_; }
 
   /// (loads,) of FemBodyModel::loads(), 1 unless set: an input as external forces are.
   std::vector<double>& load_factors() { return load_factors_; }
@@ -110,6 +106,7 @@ class FemBody : public mechanics::Body {
   Numbers& numbers(bool with_curvature);
   void form_right_side(const mechanics::LinearisationRequest& request);
   void add_inertia(const mechanics::StepWeights& weights);
+  Vector3 combined(const mechanics::Combination& weights, NodeId node) const;
   void combine(const mechanics::Combination& weights, VectorX& result) const;
   void combine_velocity(const mechanics::StepWeights& weights, VectorX& result) const;
   void hold_right_side();
@@ -125,6 +122,8 @@ class FemBody : public mechanics::Body {
   void pull_by_tether();
   Vector3 weighted(const Points& field, int point) const;
   void place_base();
+  void find_base_velocity(const mechanics::StepWeights& weights);
+  void add_base_momentum(const mechanics::Combination& weights, VectorX& result) const;
   void remember_base();
   void prepare_history(double time_step);
   void take_presence(const mechanics::RowValues& rows);
@@ -159,10 +158,11 @@ class FemBody : public mechanics::Body {
       passing_;  // groups of three of the rows that come and go: those present
   double imbalance_share_ = 0.0;
   std::optional<Tether> tether_;
-  std::optional<Eigen::Isometry3d> base_pose_;                                // asked for
-  std::optional<Eigen::Isometry3d> base_at_ = Eigen::Isometry3d::Identity();  // if it is known
-  bool carried_ = false;  // the base's motion took all nodes along at the start of the step
-  VectorX carry_;         // by this much, (3 free,) m
+  RigidBase rigid_base_;
+  bool carried_ = false;     // the base's motion took all nodes along at the start of the step
+  VectorX carry_;            // by this much, (3 free,) m
+  bool base_moves_ = false;  // base_velocity_ is not zero
+  VectorX base_velocity_;    // see find_base_velocity(), (3 free,) m/s
   double blow_up_ = 0.0;  // sum of squared positions, m^2, beyond which the state is taken as lost
   bool first_linearisation_ = true;
   double force_scale_ = 0.0;

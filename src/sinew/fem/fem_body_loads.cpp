@@ -1,6 +1,8 @@
 // What FemBody does with the loads of its surroundings.
 #include <cmath>
 
+#include <Eigen/QR>
+
 #include "sinew/fem/fem_body.hpp"
 #include "sinew/fem/fem_body_numbers.hpp"
 #include "sinew/linalg/block_product.hpp"
@@ -140,7 +142,8 @@ void FemBody::add_work(const mechanics::StepWeights& weights) {
   }
 }
 
-// (C v) . d with C = alpha M + beta K as the step had it.
+// (C v) . d with C = alpha M + beta K as the step had it. K v is without the base's velocity, and
+// dissipates in the motion beside the base's: the rest of its work is the base's.
 double FemBody::rayleigh_work(const mechanics::StepWeights& weights) {
   const auto& damping = model_.settings().damping;
   const FemModel& elements = *active_->system.elements;
@@ -150,10 +153,13 @@ double FemBody::rayleigh_work(const mechanics::StepWeights& weights) {
     const NodeId node = nodes[static_cast<std::size_t>(i)];
     return (positions_.row(node) - start_positions_.row(node)).transpose();
   };
-  const auto along = [&](const VectorX& force) {
+  const auto strayed = [&](std::int32_t i) -> Vector3 {
+    return carried_ ? Vector3(moved(i) - carry_.segment<3>(3 * i)) : moved(i);
+  };
+  const auto along = [&](const auto& motion, const VectorX& force) {
     double sum = 0.0;
     for (std::int32_t i = 0; i < static_cast<std::int32_t>(nodes.size()); ++i) {
-      sum += force.segment<3>(3 * i).dot(moved(i));
+      sum += force.segment<3>(3 * i).dot(motion(i));
     }
     return sum;
   };
@@ -161,14 +167,15 @@ double FemBody::rayleigh_work(const mechanics::StepWeights& weights) {
   if (damping.mass > 0.0) {
     combine(weights.velocity, travel_);
     elements.apply_mass({travel_.data(), size}, {scratch_.data(), size});
-    work += damping.mass * along(scratch_);
+    add_base_momentum(weights.velocity, scratch_);
+    work += damping.mass * along(moved, scratch_);
   }
   if (!active_->damped) return work;
   combine_velocity(weights, travel_);
   const std::span<const double> travel(travel_.data(), size);
   const std::span<double> force(scratch_.data(), size);
   linalg::multiply(elements.pattern(), active_->start_stiffness, travel, force);
-  return work + damping.stiffness * along(scratch_);
+  return work + damping.stiffness * along(strayed, scratch_);
 }
 
 }  // namespace sinew::fem

@@ -40,6 +40,13 @@ fem::FemBodySettings fem_settings(const SceneDescription& scene, const BodyDescr
   check_element(body, *settings.mesh);
   settings.gravity = scene.gravity;
   settings.damping = {body.mass_damping, body.stiffness_damping};
+  for (const MassDescription& mass : scene.masses) {
+    if (mass.body != body.name) continue;
+    settings.masses.push_back({mass.name, mass.place, mass.point, mass.mass, mass.outside});
+  }
+  if (const auto& start = body.initial_velocity) {
+    settings.initial_velocity = {start->linear, start->angular};
+  }
   fem::Region region;
   if (body.material.model == MaterialModel::hyperelastic) {
     region.hyperelastic = body.material.energy;

@@ -104,6 +104,13 @@ struct BaseDescription {
   Vector3 center = Vector3::Zero();        ///< m
 };
 
+/// How the free nodes of a body move at the start.
+struct InitialVelocityDescription {
+  Place place;
+  Vector3 linear = Vector3::Zero();   ///< m/s, of the centre of mass
+  Vector3 angular = Vector3::Zero();  ///< rad/s, about it
+};
+
 struct BodyDescription {
   std::string name;
   Place place;
@@ -121,6 +128,7 @@ struct BodyDescription {
   double stiffness_damping = 0.0;  ///< s, ... + stiffness_damping K
   std::vector<FixedRegion> fixed;
   std::optional<BaseDescription> base;
+  std::optional<InitialVelocityDescription> initial_velocity;
 };
 
 /// (n, 3) m, each row with the place where it was written (a scene line or a line of a CSV).
@@ -209,6 +217,17 @@ struct LoadDescription {
   mesh::Outside outside = mesh::Outside::error;
   sim::WaterSettings water;                         ///< its faces are not yet known
   sim::Signal factor = sim::Signal::constant(1.0);  ///< pressure: Pa
+};
+
+/// A mass that hangs on a point of a body.
+struct MassDescription {
+  std::string name;
+  Place place;
+  std::string body;
+  Place body_place;
+  Vector3 point = Vector3::Zero();  ///< m
+  double mass = 0.0;                ///< kg, > 0
+  mesh::Outside outside = mesh::Outside::error;
 };
 
 /// Something on the robot whose motion matters.
@@ -308,6 +327,7 @@ struct SceneDescription {
   std::vector<BodyDescription> bodies;
   std::vector<ActuatorDescription> actuators;
   std::vector<LoadDescription> loads;
+  std::vector<MassDescription> masses;
   std::vector<EffectorDescription> effectors;
   std::vector<ProbeDescription> probes;
   std::vector<ContactDescription> contacts;

@@ -195,6 +195,10 @@ KeyTable scene_table() {
                         .forms = {names(load_form())},
                         .example = "{sea: {type: water, body: arm}}",
                         .description = "What the surroundings do to them."});
+  scene.keys.push_back({.name = "masses",
+                        .forms = {names(mass_form())},
+                        .example = "{hung: {body: trunk, point: 0 0 195 mm, mass: 52 g}}",
+                        .description = "Masses that hang on points of finite-element bodies."});
   scene.keys.push_back({.name = "effectors",
                         .forms = {names(effector_form())},
                         .example = "{tip: {body: trunk, point: 0 0 195 mm}}",

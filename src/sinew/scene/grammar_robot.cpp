@@ -234,6 +234,23 @@ std::shared_ptr<const KeyTable> base_table() {
                      .keys = motion_keys()});
 }
 
+std::shared_ptr<const KeyTable> initial_velocity_table() {
+  return make_table(
+      {.name = "initial velocity",
+       .description = "How a body moves at the start, as a rigid one would; fixed nodes stay. Acts "
+                      "in dynamics.",
+       .keys = {{.name = "linear",
+                 .forms = {vector(speed())},
+                 .example = "0 0 -1 m/s",
+                 .default_text = "0 0 0 m/s",
+                 .description = "Of the centre of mass."},
+                {.name = "angular",
+                 .forms = {vector(angular_speed())},
+                 .example = "0 0 20 rad/s",
+                 .default_text = "0 0 0 rad/s",
+                 .description = "About the centre of mass."}}});
+}
+
 std::vector<Key> mass_keys() {
   return {
       {.name = "mass",
@@ -297,6 +314,11 @@ std::shared_ptr<const KeyTable> fem_table() {
                       .example = "{mass: 0.1 1/s, stiffness: 0.01 s}",
                       .default_text = "{}",
                       .description = "Rayleigh damping."});
+  fem.keys.push_back({.name = "initial_velocity",
+                      .forms = {table(initial_velocity_table())},
+                      .example = "{linear: 0 0 -1 m/s}",
+                      .default_text = "{}",
+                      .description = "How it moves at the start. Without: it is at rest."});
   fem.keys.push_back({.name = "base",
                       .forms = {table(base_table())},
                       .example = "{x: {sine: {amplitude: 10 mm, period: 2 s}}}",

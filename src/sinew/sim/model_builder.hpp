@@ -133,6 +133,7 @@ class ModelBuilder {
 
   /// All return the new part's position. Names are unique among their kind: Error(duplicate-key).
   int add_body(std::unique_ptr<mechanics::BodyModel> body);
+  /// Throws what fem::FemBodyModel does, and Error: missing-mass, nothing-fixed.
   int add_fem_body(fem::FemBodySettings settings);
   /// A constant-curvature arm. Throws what pcc::Arm does.
   int add_arm(pcc::ArmSettings settings);
@@ -176,6 +177,7 @@ class ModelBuilder {
   void hash_contacts(StateHash& hash) const;
   mechanics::BodyModel& body(int index);
   void check_body(int index, const Place& place) const;
+  void add_masses(const fem::FemBodyModel& body);
   fem::FemBodyModel& fem_body(int index, const Place& place, const char* what);
   void add_liquid_weight(const CavitySettings& settings);
   int add_actuator(ActuatorModel actuator, std::unique_ptr<constraint::Constraint> constraint);

@@ -200,8 +200,27 @@ void Simulation::step_adaptively() {
 void Simulation::move_bases(double time) {
   for (const BaseMotion& motion : model_->base_motions()) {
     fem_body(motion.body)
-        .set_base(motion.translation_at(time), motion.rotation_at(time), motion.centre);
+        .rigid_base()
+        .ask(fem::rigid_displacement(motion.translation_at(time), motion.rotation_at(time),
+                                     motion.centre));
   }
+}
+
+void Simulation::move_base(int body, const Vector3& translation, const Vector3& rotation,
+                           const Vector3& centre) {
+  fem::FemBody& moved = fem_body(body);
+  const Place place{.item = fmt::format("base of body '{}'", moved.model().name())};
+  if (std::ranges::any_of(model_->base_motions(),
+                          [&](const BaseMotion& motion) { return motion.body == body; })) {
+    throw Error(ErrorKind::bad_argument, place, "the scene moves this base",
+                "leave `base` out of the scene to move it from a script, or write the motion there "
+                "as signals");
+  }
+  if (moved.fem_model().settings().elements.fixed_nodes.empty()) {
+    throw Error(ErrorKind::nothing_fixed, place, "the body has no fixed node to move",
+                "fix the region that moves");
+  }
+  moved.rigid_base().ask(fem::rigid_displacement(translation, rotation, centre));
 }
 
 void Simulation::set_loads(double time) {

@@ -118,6 +118,13 @@ class Simulation {
   const ActuatorState& actuator(int index) const {
     return actuators_[static_cast<std::size_t>(index)];
   }
+  /// Moves a body's fixed nodes in the next step: turned about `centre` by a rotation vector and
+  /// then shifted, from rest. An input, as commands are: where the nodes then are is state.
+  /// @param translation (3,) m. @param rotation (3,) rad. @param centre (3,) m, at rest.
+  /// Throws Error: wrong-type (no finite elements), nothing-fixed, not-finite, bad-argument where
+  /// the model moves this base.
+  void move_base(int body, const Vector3& translation, const Vector3& rotation,
+                 const Vector3& centre);
   /// A load's factor from the next step on.
   void set_load(int load, Signal factor);
   const Signal& load_factor(int load) const {
