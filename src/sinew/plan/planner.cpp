@@ -230,6 +230,11 @@ Plan Planner::plan(const Knots& guess) {
     throw Error(ErrorKind::wrong_length, {.item = "guess"}, "it has no commands of the drive",
                 "give them, or a seed");
   }
+  if (guess.times.size() != asked_.grid.intervals + 1) {
+    throw Error(ErrorKind::wrong_length, {.item = "guess"},
+                fmt::format("it has {} knots", guess.times.size()),
+                fmt::format("give {}, one more than intervals", asked_.grid.intervals + 1));
+  }
   set_mesh(asked_.grid.shares);
   program_->set_aim({.clearance = VectorX::Zero(obstacles())});
   return solve_verified({program_->pack(guess), {}, {}, {}});

@@ -41,7 +41,8 @@ struct Planner::Verdict {
   /// The tip at the end of the motion less the program's, m and m/s.
   Vector3 position = Vector3::Zero(), velocity = Vector3::Zero();
   VectorX shortfall;        ///< (obstacles,) m, of clearance; <= 0: none
-  double miss = kInfinity;  ///< largest of what is missed over what is allowed; <= 1: met
+  double miss = kInfinity;  ///< largest of what is missed over what is allowed; <= 1: met; +inf:
+                            ///< there is no motion
   bool coarse = true;       ///< the motions differ by more than the tolerances
 };
 
@@ -127,8 +128,8 @@ Plan Planner::solve_verified(const ProgramPoint& start) {
     best.seconds = by.seconds;
     best.corrections = by.corrections;
   };
-  while (plan.found() && verdict.miss > 1.0 && plan.corrections < settings_.corrections &&
-         plan.seconds < settings_.solver.max_time) {
+  while (plan.found() && verdict.miss > 1.0 && verdict.miss < kInfinity &&
+         plan.corrections < settings_.corrections && plan.seconds < settings_.solver.max_time) {
     constexpr int kMostAimed = 3;
     const bool refine = verdict.coarse || aimed == kMostAimed;
     aimed = refine ? 0 : aimed + 1;
