@@ -181,9 +181,14 @@ void Planner::set_mesh(const VectorX& shares) {
   program_ = std::make_unique<Collocation>(arm_, task_);
 }
 
-Plan Planner::solve_program(const ProgramPoint& start, double spent) {
+double Planner::time_left() const {
+  const double spent = static_cast<double>(std::clock() - begun_) / CLOCKS_PER_SEC;
+  return settings_.solver.max_time - spent;
+}
+
+Plan Planner::solve_program(const ProgramPoint& start) {
   SolverSettings settings = settings_.solver;
-  settings.max_time = std::max(settings.max_time - spent, 1e-3);
+  settings.max_time = std::max(time_left(), 1e-3);
   ProgramResult result = solve(*program_, start, settings);
   Plan plan{status_of(result.status), task_.grid.method, program_->unpack(result.point.x),
             result.objective};
@@ -200,7 +205,8 @@ ProgramPoint Planner::cold_start(std::uint64_t seed) {
 
 ProgramPoint Planner::drive_start(std::uint64_t seed) {
   Planner torques(arm_, without_drive(asked_), settings_);
-  Plan before = torques.solve_program(torques.cold_start(seed), 0.0);
+  torques.begun_ = begun_;
+  Plan before = torques.solve_program(torques.cold_start(seed));
   before_iterations_ = before.iterations;
   before_seconds_ = before.seconds;
   const auto& [channels, lead] = *task_.drive;
@@ -220,6 +226,7 @@ ProgramPoint Planner::drive_start(std::uint64_t seed) {
 }
 
 Plan Planner::plan(std::uint64_t seed) {
+  begun_ = std::clock();
   set_mesh(asked_.grid.shares);
   program_->set_aim({.clearance = VectorX::Zero(obstacles())});
   return solve_verified(task_.drive ? drive_start(seed) : cold_start(seed));
@@ -230,12 +237,19 @@ Plan Planner::plan(const Knots& guess) {
     throw Error(ErrorKind::wrong_length, {.item = "guess"}, "it has no commands of the drive",
                 "give them, or a seed");
   }
+  if (guess.times.size() != asked_.grid.intervals + 1) {
+    throw Error(ErrorKind::wrong_length, {.item = "guess"},
+                fmt::format("it has {} knots", guess.times.size()),
+                fmt::format("give {}, one more than intervals", asked_.grid.intervals + 1));
+  }
+  begun_ = std::clock();
   set_mesh(asked_.grid.shares);
   program_->set_aim({.clearance = VectorX::Zero(obstacles())});
   return solve_verified({program_->pack(guess), {}, {}, {}});
 }
 
 Plan Planner::replan(const Plan& before) {
+  begun_ = std::clock();
   if (before.knots.times.size() > 1) set_mesh(before.shares());
   if (before.point.x.size() != program_->variables() ||
       before.point.constraint_multipliers.size() != program_->constraints() ||

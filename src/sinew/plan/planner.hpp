@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <ctime>
 #include <memory>
 #include <string_view>
 
@@ -54,7 +55,7 @@ struct Plan {
 };
 
 struct PlannerSettings {
-  SolverSettings solver;  ///< of each program; its time is that of all together
+  SolverSettings solver;  ///< of each program; processor time is that of all together
   /// >= 0, most programs after the first while the motion of the torques does not do what is asked
   /// for: with the aim moved by what it misses or, where the motion differs from the program's by
   /// more than the tolerances, on a finer mesh.
@@ -89,8 +90,9 @@ class Planner {
   void set_mesh(const VectorX& shares);
   ProgramPoint cold_start(std::uint64_t seed);
   ProgramPoint drive_start(std::uint64_t seed);
-  /// The program's plan, not yet replayed. @param spent s, of the time that settings give.
-  Plan solve_program(const ProgramPoint& start, double spent);
+  /// The program's plan, not yet replayed, within the processor time that is left.
+  Plan solve_program(const ProgramPoint& start);
+  double time_left() const;  ///< s
   /// Solves, replays, and corrects until the torques do what is asked for.
   Plan solve_verified(const ProgramPoint& start);
   Verdict verify(Plan& plan);
@@ -102,6 +104,7 @@ class Planner {
   PlannerSettings settings_;
   std::unique_ptr<Collocation> program_;
   pcc::ArmEquations equations_;
+  std::clock_t begun_ = 0;
   int before_iterations_ = 0;  // of what led to the start
   double before_seconds_ = 0.0;
 };

@@ -41,7 +41,8 @@ struct Planner::Verdict {
   /// The tip at the end of the motion less the program's, m and m/s.
   Vector3 position = Vector3::Zero(), velocity = Vector3::Zero();
   VectorX shortfall;        ///< (obstacles,) m, of clearance; <= 0: none
-  double miss = kInfinity;  ///< largest of what is missed over what is allowed; <= 1: met
+  double miss = kInfinity;  ///< largest of what is missed over what is allowed; <= 1: met; +inf:
+                            ///< there is no motion
   bool coarse = true;       ///< the motions differ by more than the tolerances
 };
 
@@ -89,7 +90,7 @@ Plan Planner::corrected(const Plan& plan, const Verdict& verdict) {
   // A little more, as the closest points move.
   aim.clearance += 1.1 * verdict.shortfall.cwiseMax(0.0);
   program_->set_aim(aim);
-  return solve_program(plan.point, plan.seconds);
+  return solve_program(plan.point);
 }
 
 Plan Planner::refined_plan(const Plan& plan) {
@@ -108,14 +109,14 @@ Plan Planner::refined_plan(const Plan& plan) {
   guess.rate = run.rate;
   guess.acceleration = slopes(run.times, run.rate);
   guess.torque = run.torque;
-  const double spent = plan.seconds + seconds_since(begin);
-  Plan next = solve_program({program_->pack(guess), {}, {}, {}}, spent);
-  next.seconds += spent - plan.seconds;
+  const double spent = seconds_since(begin);
+  Plan next = solve_program({program_->pack(guess), {}, {}, {}});
+  next.seconds += spent;
   return next;
 }
 
 Plan Planner::solve_verified(const ProgramPoint& start) {
-  Plan best = solve_program(start, before_seconds_);
+  Plan best = solve_program(start);
   best.iterations += std::exchange(before_iterations_, 0);
   best.seconds += std::exchange(before_seconds_, 0.0);
   Verdict verdict = verify(best);
@@ -127,8 +128,8 @@ Plan Planner::solve_verified(const ProgramPoint& start) {
     best.seconds = by.seconds;
     best.corrections = by.corrections;
   };
-  while (plan.found() && verdict.miss > 1.0 && plan.corrections < settings_.corrections &&
-         plan.seconds < settings_.solver.max_time) {
+  while (plan.found() && verdict.miss > 1.0 && verdict.miss < kInfinity &&
+         plan.corrections < settings_.corrections && time_left() > 0.0) {
     constexpr int kMostAimed = 3;
     const bool refine = verdict.coarse || aimed == kMostAimed;
     aimed = refine ? 0 : aimed + 1;
