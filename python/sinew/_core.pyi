@@ -1166,6 +1166,40 @@ def second_order_cylinder(
     gain: float, frequency: float, damping: float, sample_time: float
 ) -> DriveCylinder: ...
 
+class MaterialFit:
+    @property
+    def model(self) -> str: ...
+    @property
+    def coefficients(self) -> list[tuple[str, float]]: ...
+    @property
+    def shear_modulus(self) -> float: ...
+    @property
+    def rms(self) -> list[float]: ...
+    @property
+    def relative_rms(self) -> list[float]: ...
+    @property
+    def information(self) -> float: ...
+    @property
+    def stable_range(self) -> tuple[float, float]: ...
+    @property
+    def converged(self) -> bool: ...
+    @property
+    def yaml(self) -> str: ...
+
+_RubberTest = Union[_Path, tuple[str, ArrayLike, ArrayLike]]
+
+def fit_materials(
+    tests: Union[_RubberTest, list[_RubberTest]],
+    models: Sequence[str] = (),
+    *,
+    min_stretch: float = 0.0,
+    max_stretch: float = ...,
+    starts: int = 5,
+    seed: int = 1,
+    mullins: bool = False,
+    poisson_ratio: float = 0.49,
+) -> list[MaterialFit]: ...
+
 class ParameterFit:
     @property
     def values(self) -> dict[str, float]: ...

@@ -41,6 +41,7 @@ void bind_plan_drive(py::module_& module);
 void bind_drive(py::module_& module);
 void bind_identify(py::module_& module);
 void bind_identify_arm(py::module_& module);
+void bind_identify_material(py::module_& module);
 
 /// A part of a simulation: keeps the whole alive.
 struct Part {

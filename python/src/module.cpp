@@ -46,5 +46,6 @@ PYBIND11_MODULE(_core, module) {
 #ifdef SINEW_HAS_IDENTIFY
   python::bind_identify(module);
   python::bind_identify_arm(module);
+  python::bind_identify_material(module);
 #endif
 }

@@ -1,10 +1,11 @@
 /// @file
-/// Bounded least squares over parameters of one block each, by Ceres with central differences.
+/// Bounded least squares over parameters of one block each, by Ceres.
 /// Internal to this folder: it needs Ceres' headers.
 #pragma once
 
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -19,24 +20,16 @@ struct BoundedValue {
 };
 
 /// Lessens 1/2 |residuals|^2 by a trust region. Cost is of that form.
-/// @param residuals (values, residuals) -> bool, false where they cannot be had.
-/// @param rows how many residuals.
+/// @param cost over blocks of one parameter each.
 /// @param values in and out.
 /// @param max_iterations,function_tolerance Ceres' own.
-template <typename Residuals>
-ceres::Solver::Summary solve_bounded(Residuals residuals, std::size_t rows,
-                                     std::vector<BoundedValue>& values, int max_iterations,
-                                     double function_tolerance) {
-  auto* cost = new ceres::DynamicNumericDiffCostFunction<Residuals, ceres::CENTRAL>(
-      new Residuals(std::move(residuals)));
-  cost->SetNumResiduals(static_cast<int>(rows));
+inline ceres::Solver::Summary solve_bounded(std::unique_ptr<ceres::CostFunction> cost,
+                                            std::vector<BoundedValue>& values, int max_iterations,
+                                            double function_tolerance) {
   ceres::Problem problem;
   std::vector<double*> blocks;
-  for (BoundedValue& value : values) {
-    cost->AddParameterBlock(1);
-    blocks.push_back(&value.value);
-  }
-  problem.AddResidualBlock(cost, nullptr, blocks);
+  for (BoundedValue& value : values) blocks.push_back(&value.value);
+  problem.AddResidualBlock(cost.release(), nullptr, blocks);
   for (std::size_t k = 0; k < values.size(); ++k) {
     const auto [value, lower, upper] = values[k];
     if (std::isfinite(lower)) problem.SetParameterLowerBound(blocks[k], 0, lower);
@@ -52,6 +45,21 @@ ceres::Solver::Summary solve_bounded(Residuals residuals, std::size_t rows,
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
   return summary;
+}
+
+/// The same with derivatives by central differences.
+/// @param residuals (values, residuals) -> bool, false where they cannot be had.
+/// @param rows how many residuals.
+/// @param values,max_iterations,function_tolerance as above.
+template <typename Residuals>
+ceres::Solver::Summary solve_bounded(Residuals residuals, std::size_t rows,
+                                     std::vector<BoundedValue>& values, int max_iterations,
+                                     double function_tolerance) {
+  using Cost = ceres::DynamicNumericDiffCostFunction<Residuals, ceres::CENTRAL>;
+  auto cost = std::make_unique<Cost>(new Residuals(std::move(residuals)));
+  cost->SetNumResiduals(static_cast<int>(rows));
+  for (std::size_t k = 0; k < values.size(); ++k) cost->AddParameterBlock(1);
+  return solve_bounded(std::move(cost), values, max_iterations, function_tolerance);
 }
 
 }  // namespace sinew::identify
