@@ -52,7 +52,9 @@ void add_controller(const inverse::InverseController& controller, const std::str
                     Json& list) {
   const std::string kind(inverse::inverse_status_name(controller.status()));
   switch (controller.status()) {
+    case inverse::InverseStatus::not_started:
     case inverse::InverseStatus::on_target:
+    case inverse::InverseStatus::moving:
       break;
     case inverse::InverseStatus::rate_limited:
       list.push_back(trouble("info", "rate-limited", name, "on the way; rates are limited"));
@@ -62,8 +64,14 @@ void add_controller(const inverse::InverseController& controller, const std::str
           "warning", "out-of-reach", name,
           fmt::format("the target is out of reach by {:.3g} mm", 1e3 * controller.error())));
       break;
+    case inverse::InverseStatus::local_optimum:
+      list.push_back(trouble("warning", "local-optimum", name,
+                             fmt::format("no small change of efforts comes nearer than {:.3g} mm",
+                                         1e3 * controller.error())));
+      break;
     case inverse::InverseStatus::limits_conflict:
-      list.push_back(trouble("error", "limits-conflict", name, "limits contradict each other"));
+      list.push_back(trouble("error", "limits-conflict", name,
+                             "limits contradict each other: " + controller.conflict()));
       break;
   }
 }

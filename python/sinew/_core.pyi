@@ -575,7 +575,19 @@ class InverseController:
         traceback: Optional[TracebackType],
     ) -> None: ...
     @property
-    def status(self) -> str: ...
+    def status(
+        self,
+    ) -> Literal[
+        "not-started",
+        "on-target",
+        "moving",
+        "rate-limited",
+        "out-of-reach",
+        "local-optimum",
+        "limits-conflict",
+    ]: ...
+    @property
+    def conflict(self) -> str: ...
     @property
     def efforts(self) -> _Floats: ...
     @property
