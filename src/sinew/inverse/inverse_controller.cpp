@@ -96,7 +96,9 @@ void InverseController::begin_step(const sim::LawProblem& problem) {
     for (Eigen::Index k = 0; k < gap_.size(); ++k) {
       if (row_weights_[k] > 0.0) surprise_ = std::hypot(surprise_, gap_[k] - foreseen_[k]);
     }
-    damping_.review(objective(gap_before_), objective(foreseen_), objective(gap_));
+    const double still = kStill * settings_.tolerance;
+    damping_.review(objective(gap_before_), objective(foreseen_), objective(gap_),
+                    0.5 * row_weights_.maxCoeff() * still * still);
   }
   time_ = problem.time;
   for (std::size_t t = 0; t < asked_.size(); ++t) asked_[t] = settings_.tasks[t].target.at(time_);
@@ -326,7 +328,9 @@ InverseStatus InverseController::judge(const sim::LawProblem& problem, double mo
     return surprise_ <= settings_.tolerance ? InverseStatus::on_target : InverseStatus::moving;
   }
   if (rate_binds(problem)) return InverseStatus::rate_limited;
-  const bool rests = moved <= kStill * settings_.tolerance && surprise_ <= settings_.tolerance &&
+  // A step that was damped would have gone so much farther.
+  const bool still = moved * damping_.value() <= kStill * settings_.tolerance;
+  const bool rests = still && surprise_ <= settings_.tolerance &&
                      simulation_.report().relative_residual <= kBalanced;
   if (!rests) return InverseStatus::moving;
   return limit_holds() ? InverseStatus::out_of_reach : InverseStatus::local_optimum;
