@@ -93,7 +93,8 @@ TEST(WriteMesh, AnStlHoldsTheOutside) {
 TEST(WriteMesh, OtherEndingsAreRefusedAndNothingIsWritten) {
   const ScratchFolder scratch;
   for (const char* name : {"a.msh", "a.vtx", "a"}) {
-    const std::string text = error_text(ErrorKind::unknown_format, [&] { write_mesh(scratch / name, block()); });
+    const std::string text =
+        error_text(ErrorKind::unknown_format, [&] { write_mesh(scratch / name, block({})); });
     for (const char* word : {"unknown-format", ".vtu", ".vtk", ".stl", name}) {
       EXPECT_THAT(text, HasSubstr(word));
     }
