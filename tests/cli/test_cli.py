@@ -436,6 +436,12 @@ def test_fit_writes_a_material_that_a_scene_takes(scene, tmp_path):
     assert sinew("run", path, "--duration", "20ms", "--out", tmp_path / "run", "--quiet").returncode == DONE
     every = sinew("fit", "tensile.csv", "--all", "--starts", "2", cwd=tmp_path)
     assert every.returncode == DONE and "arruda-boyce" in every.stdout and "ogden6" in every.stdout
+    best = [line.split()[0] for line in every.stdout.splitlines() if line.endswith((" *", " * +"))]
+    assert len(best) == 1 and f"\n{best[0]}:\n" in every.stdout
+    part = sinew("fit", "tensile.csv", "--model", "yeoh1", "--max-stretch", "1.5", cwd=tmp_path)
+    assert part.returncode == DONE and "; 5 in the range" in part.stdout, part.stdout
+    none = sinew("fit", "tensile.csv", "--max-stretch", "1.01", cwd=tmp_path)
+    assert none.returncode == WRONG and "too-few-points" in none.stderr
     for arguments, kind in ((["tensile.csv", "--model", "yoeh2"], "unknown-choice"), (["none.csv"], "file-not-found")):
         wrong = sinew("fit", *arguments, cwd=tmp_path)
         assert wrong.returncode == WRONG and kind in wrong.stderr
@@ -454,6 +460,25 @@ def test_validate_passes_cases_on(tmp_path):
 
 if __name__ == "__main__":
     sys.exit(pytest.main([__file__, "-q", "-p", "no:cacheprovider", *sys.argv[1:]]))
+
+
+def test_elements_are_named_and_warned_of(scene, tmp_path):
+    law = ("{model: corotational, young_modulus: 200 kPa, poisson_ratio: 0.4}",
+           "{model: corotational, young_modulus: 200 kPa, poisson_ratio: 0.45}")
+    short = ["--duration", "20ms", "--out", tmp_path / "o"]
+    tacit = sinew("run", scene(replace=law), *short)
+    assert tacit.returncode == DONE and tacit.stderr.count("\n") == 1, tacit.stderr
+    assert tacit.stderr.startswith("sinew: warning: ") and "bodies.beam.material" in tacit.stderr
+    assert "element: tet10" in tacit.stderr and "[locking-element]" in tacit.stderr
+    assert " tet4 elements" in tacit.stdout
+    chosen = scene(replace=(law[0], law[1] + "\n    element: tet4"))
+    assert sinew("run", chosen, *short).stderr == ""
+    told = sinew("info", chosen)
+    assert "remark: " in told.stdout and "times too stiffly" in told.stdout
+    facts = json.loads(sinew("info", chosen, "--json").stdout)
+    assert facts["notices"][0]["level"] == "remark" and list(facts["bodies"][0]["elements"]) == ["tet4"]
+    rubber = sinew("run", scene(replace=(law[0], "dragon-skin-30")), *short)
+    assert rubber.returncode == DONE and rubber.stderr == "" and " tet10 elements" in rubber.stdout
 
 
 DESIGN = """\

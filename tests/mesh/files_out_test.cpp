@@ -19,6 +19,7 @@
 #include "sinew/mesh/tetrahedralise.hpp"
 #include "sinew/mesh/topology.hpp"
 #include "sinew/mesh/write.hpp"
+#include "sinew/mesh/write_mesh.hpp"
 
 #include "support.hpp"
 
@@ -53,6 +54,52 @@ TEST(WriteVtu, RoundTripsBitForBit) {
   EXPECT_EQ(back.triangle_sets, mesh.triangle_sets);
   EXPECT_EQ(back.tetrahedron_sets, mesh.tetrahedron_sets);
   EXPECT_EQ(format_vtu(back), format_vtu(mesh));
+}
+
+TEST(WriteMesh, LegacyFilesRoundTripBitForBit) {
+  const ScratchFolder scratch;
+  const Mesh mesh = decorated_trunk();
+  write_mesh(scratch / "trunk.VTK", mesh);
+  EXPECT_THAT(read_file(scratch / "trunk.VTK"), testing::StartsWith("# vtk DataFile Version 4.2"));
+  const Mesh back = read_mesh(scratch / "trunk.VTK");
+  EXPECT_EQ(back.nodes, mesh.nodes);
+  EXPECT_EQ(back.tetrahedra, mesh.tetrahedra);
+  EXPECT_EQ(back.triangles, mesh.triangles);
+  EXPECT_EQ(back.node_sets, mesh.node_sets);
+  EXPECT_EQ(back.triangle_sets, mesh.triangle_sets);
+  EXPECT_EQ(back.tetrahedron_sets, mesh.tetrahedron_sets);
+}
+
+TEST(WriteMesh, LegacyFilesHoldHexahedraAndQuadraticTetrahedra) {
+  Mesh cubes = block({.cells = {2, 2, 2}}, Cells::hexahedra);
+  cubes.hexahedron_sets["core"] = {3};
+  const Mesh same = parse_mesh(format_vtk_legacy(cubes), "cubes.vtk");
+  EXPECT_EQ(same.hexahedra, cubes.hexahedra);
+  EXPECT_EQ(same.hexahedron_sets, cubes.hexahedron_sets);
+  const Mesh curved = with_middle_nodes(block({.cells = {2, 1, 1}}));
+  EXPECT_EQ(parse_mesh(format_vtk_legacy(curved), "curved.vtk").quadratic, curved.quadratic);
+}
+
+TEST(WriteMesh, AnStlHoldsTheOutside) {
+  const ScratchFolder scratch;
+  const Mesh mesh = block({.size = {0.1, 0.02, 0.02}, .cells = {5, 1, 1}});
+  write_mesh(scratch / "block.stl", mesh);
+  const Surface surface = read_surface(scratch / "block.stl");
+  require_closed(surface);
+  EXPECT_EQ(surface.triangles.size(), boundary_surface(mesh).triangles.size());
+  EXPECT_NEAR(enclosed_volume(surface), 4e-5, 1e-11);
+}
+
+TEST(WriteMesh, OtherEndingsAreRefusedAndNothingIsWritten) {
+  const ScratchFolder scratch;
+  for (const char* name : {"a.msh", "a.vtx", "a"}) {
+    const std::string text =
+        error_text(ErrorKind::unknown_format, [&] { write_mesh(scratch / name, block({})); });
+    for (const char* word : {"unknown-format", ".vtu", ".vtk", ".stl", name}) {
+      EXPECT_THAT(text, HasSubstr(word));
+    }
+    EXPECT_FALSE(std::filesystem::exists(scratch / name));
+  }
 }
 
 TEST(WriteVtu, RoundTripsHexahedra) {

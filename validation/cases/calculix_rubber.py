@@ -30,7 +30,7 @@ def ours(law):
     sim = sinew.load({
         "sinew": 1, "gravity": [0, 0, 0], "solver": SOLVER,
         "bodies": {"body": {
-            "type": "fem", "material": law, "density": 1000.0, "fixed": [{"set": "x_min"}],
+            "type": "fem", "element": "tet4", "material": law, "density": 1000.0, "fixed": [{"set": "x_min"}],
             "mesh": {"shape": "block", "length": 0.06, "width": 0.02, "height": 0.02,
                      "element_size": 0.01}}}})
     body = sim.body("body")

@@ -50,7 +50,8 @@ def corner(folder, n, element, scale):
     sim = sinew.load({
         "sinew": 1, "gravity": [0, 0, 0], "solver": SOLVER,
         "bodies": {"panel": {
-            "type": "fem", "density": 1000.0, "mesh": {"file": str(panel(folder, n, element)), "unit": "mm"},
+            "type": "fem", "element": element, "density": 1000.0,
+            "mesh": {"file": str(panel(folder, n, element)), "unit": "mm"},
             "material": {"model": "neo-hookean", "young_modulus": YOUNG, "poisson_ratio": POISSON},
             "fixed": [{"plane": {"point": [0, 0, 0], "normal": [1, 0, 0]}},
                       {"plane": {"point": [0, 0, 0], "normal": [0, 0, 1]}, "axes": "z"},

@@ -1,0 +1,55 @@
+"""The element that a body gets without `element`, and the warning where it locks."""
+
+import warnings
+
+import numpy as np
+import pytest
+
+import sinew
+
+SOFT = {"young_modulus": "60 kPa", "poisson_ratio": 0.45}
+
+
+def beam(material, **more):
+    return {"sinew": 1, "bodies": {"beam": {
+        "type": "fem", "mesh": {"shape": "block", "length": 0.06, "width": 0.02, "height": 0.02},
+        "material": material, "density": 1000.0, "fixed": [{"set": "x_min"}], **more}},
+            "gravity": [0, 0, -9.81]}
+
+
+def sag(scene):
+    sim = sinew.load(scene)
+    sim.solve_static()
+    body = sim.body("beam")
+    end = np.array(body.rest_positions)[:, 0] > 0.06 - 1e-9
+    return -np.mean((np.array(body.positions) - body.rest_positions)[end, 2])
+
+
+def test_a_silicone_is_made_of_quadratic_tetrahedra_without_a_word():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        sim = sinew.load(beam("ecoflex-00-30"))
+    assert sim.body("beam").elements == {"tet10": 144} and sim.notices == []
+    assert len(sim.body("beam").quadratic_tetrahedra) == 144
+
+
+def test_linear_tetrahedra_that_lock_are_warned_of():
+    with pytest.warns(sinew.SinewWarning, match="tet4.*0.45.*3.5 times.*element: tet10") as caught:
+        sim = sinew.load(beam(SOFT))
+    assert caught[0].filename == __file__
+    (notice,) = sim.notices
+    assert (notice.level, notice.kind) == ("warning", "locking-element")
+    assert notice.place.item == "bodies.beam.material" and str(notice) == str(caught[0].message)
+
+
+def test_what_the_scene_chose_is_only_remarked_on():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        sim = sinew.load(beam(SOFT, element="tet4"))
+    assert [notice.level for notice in sim.notices] == ["remark"]
+
+
+def test_the_factor_is_about_what_the_remedy_gains():
+    law = {"model": "neo-hookean", "young_modulus": "600 kPa", "poisson_ratio": 0.45}
+    stiff = sag(beam(law, element="tet4"))
+    assert 2.4 < sag(beam(law)) / stiff < 4.5     # the notice says 3.5
