@@ -236,6 +236,8 @@ void StaticSolver::settle() {
     report_.stable = true;
     report_.negative_pivots = 0;
     if (sim_.world_.condense() == linalg::FactorStatus::singular) return;  // neutral
+    const bool unsymmetric = std::ranges::any_of(
+        sim_.world_.bodies(), [](const auto& body) { return body->is_unsymmetric(); });
     const Stability stability(sim_.world_, problem(), sim_.effort_);
     report_.negative_pivots = stability.negative_pivots();
     report_.stable = report_.negative_pivots == 0;
@@ -251,11 +253,12 @@ void StaticSolver::settle() {
                             report_.relaxation_steps),
                 "approach the load through time steps, or ask for any equilibrium, stable or not");
     }
-    if (ended == Departure::returned) {
+    // With a potential nothing comes back of itself: a step was too long.
+    if (ended == Departure::returned && unsymmetric) {
       report_.stable = true;
       return;
     }
-    follow_surfaces();
+    if (ended == Departure::arrived) follow_surfaces();
     disturbance *= kLargerDisturbance;
   }
 }
