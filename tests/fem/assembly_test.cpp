@@ -89,8 +89,7 @@ INSTANTIATE_TEST_SUITE_P(
                                      Case{"block", {3, 2, 4}, 0.1, false},
                                      Case{"three materials", {3, 3, 3}, 0.1, true},
                                      Case{"inverted elements", {3, 2, 3}, 0.45, true}),
-                     testing::Values(Tangent::none, Tangent::rotated, Tangent::projected,
-                                         Tangent::exact),
+                     testing::Values(Tangent::none, Tangent::rotated, Tangent::exact),
                      testing::Values(MassMatrix::lumped, MassMatrix::consistent)));
 
 class EveryTangent : public testing::TestWithParam<Tangent> {};

@@ -102,7 +102,9 @@ TEST(Impact, SecondOrderStepsNeverGainEnergy) {
                                         .mass = mass});
         EXPECT_LT(outcome.growth, 1e-4) << phase;
         EXPECT_GT(outcome.left, 0.9) << phase;
-        EXPECT_NEAR(outcome.impulse, 2.0, 0.1) << phase;
+        // What the vibration that stays behind has of the momentum depends on the phase; a model of
+        // one dimension gives 1.890 to 1.976.
+        EXPECT_NEAR(outcome.impulse, 2.0, 0.12) << phase;
         EXPECT_NEAR(outcome.time, 0.02, 1e-3) << phase;
       }
     }

@@ -297,7 +297,8 @@ TEST(Contact, ActuatorsAndContactsShareOneProblem) {
 
 /// A block, its end fixed, that a cable with friction bends towards a floor `below` it.
 Simulation bent_to_a_floor(double below, bool floor, bool led) {
-  ModelBuilder builder(StepSettings{.time_step = 0.01, .method = Method::newton});
+  ModelBuilder builder(
+      StepSettings{.time_step = 0.01, .method = Method::newton, .tolerance = 1e-10});
   fem::FemBodySettings body;
   body.name = "block";
   const auto mesh = std::make_shared<const mesh::Mesh>(

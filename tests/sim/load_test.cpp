@@ -279,7 +279,7 @@ TEST(LineLoad, IsExactInEveryElement) {
           (leave - enter) * (to - from).norm() * weights[a] * by.transpose();
     }
   }
-  EXPECT_GT(crossed, 600);
+  EXPECT_GT(crossed, 500);
   EXPECT_LT((found - expected).cwiseAbs().maxCoeff(), 1e-13);
   EXPECT_LT((found.colwise().sum().transpose() - (to - from).norm() * by).norm(), 1e-13);
   Vector3 moment = Vector3::Zero();

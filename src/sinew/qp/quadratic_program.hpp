@@ -53,8 +53,8 @@ struct QpResult {
   VectorX ray;     ///< (n,) of an unbounded problem: feasible for ever, largest entry 1
 };
 
-/// Holds the workspace and the last active set; solve() allocates nothing once sized, but for the
-/// first problem with a singular Hessian. Such a problem may have many solutions: the one with the
+/// Holds the workspace and the last active set; solve() allocates nothing once sized, but for
+/// problems with a singular Hessian. Such a problem may have many solutions: the one with the
 /// least sum of G_ii x_i^2 is found (of x_i^2, where G_ii = 0), see SemidefiniteSolver.
 class QpSolver {
  public:

@@ -57,7 +57,8 @@ LoadDescription read_load(const Node::Entry& entry, const ReadContext& context) 
 }
 
 MassDescription read_hung_mass(const Node::Entry& entry) {
-  const Fields fields(entry.value, forms::mass_form());
+  const Form form = forms::mass_form();
+  const Fields fields(entry.value, form);
   MassDescription mass;
   mass.name = entry.key;
   mass.place = entry.key_place;

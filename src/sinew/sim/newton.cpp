@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "sinew/sim/driven_law.hpp"
 #include "sinew/sim/solve_law.hpp"
@@ -14,10 +13,6 @@ namespace {
 // A step may raise the merit by this factor: slender bodies stretch before they turn, and refusing
 // that costs more iterations than it saves.
 constexpr double kMeritGrowth = 50.0;
-// Further rises, of any size, that may follow on the least merit so far (a watchdog: Chamberlain,
-// Powell, Lemarechal, Pedersen, Math. Program. Study 16 (1982) 1): a step that turns a nearly
-// incompressible body leaves a pressure behind that is large, and that the next step takes away.
-constexpr int kMostRises = 4;
 constexpr int kMostHalvings = 12;
 // Motions under this part of a robot's size are rounding, and then residuals under this part of its
 // forces may be: those of laws that are solved by iterations of their own.
@@ -124,17 +119,9 @@ class NewtonSolver {
       const double after = merit();
       full_step_ = halving == 0;
       stagnant_ = full_step_ && report_.residual > kLessened * residual_before;
-      if (converged() || forgives(after) || after < kMeritGrowth * before) {
-        return NewtonStatus::converged;
-      }
+      if (converged() || after < kMeritGrowth * before) return NewtonStatus::converged;
     }
     return inverted ? NewtonStatus::inverted : NewtonStatus::stalled;
-  }
-
-  bool forgives(double merit) {
-    rises_ = merit < least_merit_ ? 0 : rises_ + 1;
-    least_merit_ = std::min(least_merit_, merit);
-    return rises_ <= kMostRises && std::isfinite(merit);
   }
 
   NewtonReport finish(NewtonStatus status) {
@@ -149,8 +136,6 @@ class NewtonSolver {
   const NewtonSettings& settings_;
   StageClock& clock_;
   NewtonReport report_;
-  double least_merit_ = std::numeric_limits<double>::infinity();
-  int rises_ = 0;  // iterations since least_merit_
   bool full_step_ = false;
   bool stagnant_ = false;  // the last full step did not lessen the residual
 };
