@@ -61,10 +61,14 @@ SINEW_INLINE double sum(const Lanes& value) {
 struct BulkModuli {
   double shared = 0.0;
   double own = 0.0;
+  /// Whether pressures dominate what turns leave in the tangent: nu above about 0.45. Elsewhere the
+  /// tangent's pressure is that of the forces, which large steps need.
+  bool dominates = false;
 
   explicit BulkModuli(const SolidGroup& group)
       : shared(group.law.saint_venant_shear == 0.0 ? group.law.bulk_modulus : 0.0),
-        own(own_bulk_modulus(group)) {}
+        own(own_bulk_modulus(group)),
+        dominates(shared > 9.0 * group.law.shear_modulus()) {}
 };
 
 /// What a batch's elements share.

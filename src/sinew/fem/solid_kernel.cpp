@@ -151,7 +151,8 @@ void evaluate(const SolidGroup& group, int begin, int end, const double* points,
     }
     const Dilatation shared = shared_dilatation(group, batch, b, ratio, patch_ratio, bulk.shared);
     Lanes lag = lanes(0.0);  // of the tangent's pressure behind the force's
-    if (kTangent != Tangent::none && output.start != nullptr && patch_ratio == nullptr) {
+    if (kTangent != Tangent::none && bulk.dominates && output.start != nullptr &&
+        patch_ratio == nullptr) {
       lag = linear_pressure(group, batch, b, f, output, bulk.shared) - shared.pressure;
     }
     Sums<N> sums;
@@ -279,7 +280,7 @@ void evaluate_neo_hookean(const SolidGroup& group, int begin, int end, const dou
         sums.store_vectors(sums.spread, spread_records(group, output, b));
       }
       Lanes lag = lanes(0.0);
-      if (output.start != nullptr && patch_ratio == nullptr) {
+      if (bulk.dominates && output.start != nullptr && patch_ratio == nullptr) {
         lag = j *
               (linear_pressure<4, 1>(group, batch, b, {f}, output, bulk.shared) - shared.pressure);
       }
