@@ -1205,7 +1205,7 @@ def fit_materials(
     models: Sequence[str] = (),
     *,
     min_stretch: float = 0.0,
-    max_stretch: float = ...,
+    max_stretch: float | None = ...,
     starts: int = 5,
     seed: int = 1,
     mullins: bool = False,

@@ -1,3 +1,5 @@
+#include <limits>
+#include <optional>
 // Identification: coefficients of rubber's laws from tests.
 #include <filesystem>
 
@@ -63,20 +65,21 @@ RubberTest to_test(const py::handle& value, std::size_t index) {
 
 std::vector<MaterialFit> fit_materials(const py::object& tests,
                                        const std::vector<std::string>& models, double min_stretch,
-                                       double max_stretch, int starts, std::uint64_t seed,
-                                       bool mullins, double poisson_ratio) {
+                                       std::optional<double> max_stretch, int starts,
+                                       std::uint64_t seed, bool mullins, double poisson_ratio) {
   std::vector<RubberTest> given;
   if (py::isinstance<py::list>(tests)) {
     for (const py::handle& test : tests) given.push_back(to_test(test, given.size()));
   } else {
     given.push_back(to_test(tests, 0));
   }
-  FitSettings settings{.starts = starts,
-                       .seed = seed,
-                       .mullins = mullins,
-                       .poisson_ratio = poisson_ratio,
-                       .least_stretch = min_stretch,
-                       .most_stretch = max_stretch};
+  FitSettings settings{
+      .starts = starts,
+      .seed = seed,
+      .mullins = mullins,
+      .poisson_ratio = poisson_ratio,
+      .least_stretch = min_stretch,
+      .most_stretch = max_stretch.value_or(std::numeric_limits<double>::infinity())};
   const py::gil_scoped_release release;
   const std::vector<FitResult> fits =
       identify::fit_materials(given, models.empty() ? fit_models() : models, settings);
@@ -146,10 +149,10 @@ void bind_identify_material(py::module_& module) {
   bind_result(module);
   module.def(
       "fit_materials", &fit_materials, py::arg("tests"), py::arg("models") = py::list(),
-      py::kw_only(), py::arg("min_stretch") = 0.0,
-      py::arg("max_stretch") = std::numeric_limits<double>::infinity(), py::arg("starts") = 5,
-      py::arg("seed") = 1, py::arg("mullins") = false, py::arg("poisson_ratio") = 0.49,
-      R"(fit_materials(tests, models=[], *, min_stretch=0.0, max_stretch=inf, starts=5, seed=1, mullins=False, poisson_ratio=0.49)
+      py::kw_only(), py::arg("min_stretch") = 0.0, py::arg("max_stretch") = py::none(),
+      py::arg("starts") = 5, py::arg("seed") = 1, py::arg("mullins") = false,
+      py::arg("poisson_ratio") = 0.49,
+      R"(fit_materials(tests, models=[], *, min_stretch=0.0, max_stretch=None, starts=5, seed=1, mullins=False, poisson_ratio=0.49)
 --
 
 Hyperelastic laws by least squares over tests of rubber, as `sinew fit`.

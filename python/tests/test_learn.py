@@ -106,7 +106,8 @@ def test_changed_commands_keep_the_limits_of_cylinders():
     command = student.rehearsal(0.9)
     student.learn_from(command, plant(command))
     for attempt in student.run(plant, 3):
-        assert np.abs(attempt.proposal.command).max() == 3.6e-5
+        most = np.abs(attempt.proposal.command).max()
+        assert 0.999 * 3.6e-5 < most <= 3.6e-5 * (1 + 1e-12)
     assert attempt.tip_error < 0.005
 
 

@@ -19,7 +19,7 @@ def test_a_plan_is_carried_out(grab):
     task, found = grab
     assert found.status == "solved" and found.found
     assert found.theta.shape == found.torque.shape == (51, 4)
-    assert found.times[-1] == found.duration == 1.6
+    assert found.times[-1] == found.duration == pytest.approx(1.6)
     assert (np.abs(found.torque) <= np.array(LIMITS) + 1e-8).all()
     np.testing.assert_allclose(found.torque_at(0.016), 0.5 * (found.torque[0] + found.torque[1]))
     run = task.replay(found)

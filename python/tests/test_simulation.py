@@ -339,7 +339,7 @@ def test_run_records(scene):
 
 
 def test_a_failed_run_hands_over_what_it_recorded(sim):
-    sim.actuator("push").force = sinew.Ramp(0, 4e4, duration=0.2)
+    sim.actuator("push").force = sinew.Ramp(0, 4e3, duration=2.0)
     with pytest.raises(sinew.RunError) as caught:
         sim.run(0.5)
     recorded = caught.value.recorded

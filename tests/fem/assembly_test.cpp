@@ -5,8 +5,8 @@
 #include <limits>
 #include <random>
 
-#include <Eigen/Geometry>
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
@@ -170,8 +170,8 @@ VectorX eigenvalues_of(const MatrixX& matrix) {
   return Eigen::SelfAdjointEigenSolver<MatrixX>(matrix, Eigen::EigenvaluesOnly).eigenvalues();
 }
 
-// What steps rely on where the exact matrix is indefinite: A >= 0 and A >= K, element by element and
-// so for the whole.
+// What steps rely on where the exact matrix is indefinite: A >= 0 and A >= K, element by element
+// and so for the whole.
 TEST(Assembly, ProjectedMatrixIsPositiveAndNeverLessThanTheExactOne) {
   const auto mesh = block_mesh(2, 2, 3, kEdge, 0.1);
   const auto model = std::make_shared<const FemModel>(mesh, mixed_settings(*mesh));

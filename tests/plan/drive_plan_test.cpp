@@ -8,8 +8,8 @@
 #include "sinew/plan/drive_inversion.hpp"
 #include "sinew/plan/replay.hpp"
 
-#include "support/error_kind.hpp"
 #include "reintegration.hpp"
+#include "support/error_kind.hpp"
 #include "tasks.hpp"
 
 namespace sinew::plan {

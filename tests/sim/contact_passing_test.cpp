@@ -136,8 +136,8 @@ TEST(Passing, NothingGoesThroughASurface) {
             simulation.step();
             const ContactSum sum = simulation.contact_sum(0);
             EXPECT_GE(sum.smallest_gap, -1e-9);
-            // A fraction of a millimetre is slip. Later on, or in Newton's later iterates, the front may slip off sideways: a ball
-            // before its middle is no rest.
+            // A fraction of a millimetre is slip. Later on, or in Newton's later iterates, the
+            // front may slip off sideways: a ball before its middle is no rest.
             if (!touched && method == Method::one_linearisation) {
               EXPECT_LT(front(simulation), x - radius + 1e-4);
             }
@@ -173,7 +173,8 @@ TEST(Passing, ImpactsAreThoseOfThePlaceWhereTheyHappen) {
         most = point.normal_force;
         normal = point.normal;
       }
-      // Newton's planes are those of the ways that its last iterate foresees, which the impact bends.
+      // Newton's planes are those of the ways that its last iterate foresees, which the impact
+      // bends.
       const double bent = method == Method::newton ? 40.0 * time_step : 1e-6;
       EXPECT_LT((normal - Vector3(-0.8, 0.0, 0.6)).norm(), bent) << time_step;
     }

@@ -3,9 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include "sim/robots.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/sim/simulation.hpp"
+
+#include "sim/robots.hpp"
 
 namespace sinew::sim {
 namespace {
@@ -84,9 +85,8 @@ TEST(DefaultStep, OneLinearisationSaysThatItLeftEquilibrium) {
 // With one linearisation about the start a swing gains energy, which its status says; solved steps
 // do not.
 TEST(DefaultStep, ASwingKeepsItsEnergyOrSaysThatItDoesNot) {
-  for (const auto integrator :
-       {mechanics::Integrator::backward_euler, mechanics::Integrator::bdf2,
-        mechanics::Integrator::generalized_alpha}) {
+  for (const auto integrator : {mechanics::Integrator::backward_euler, mechanics::Integrator::bdf2,
+                                mechanics::Integrator::generalized_alpha}) {
     for (const Method method : {Method::newton, Method::one_linearisation}) {
       BeamOptions options;
       options.gravity = {0.0, 0.0, -9.81};

@@ -69,7 +69,8 @@ struct ExactTangent {
 /// det G is held at or above this (it is 8 at rest), where the two smallest stretches cancel and
 /// the rotation has no derivative: the tangent stays finite.
 inline constexpr double kSmallestPairSums = 1e-9;
-/// The same of each eigenvalue of G, where a stretched element's stiffening keeps it from the clamp.
+/// The same of each eigenvalue of G, where a stretched element's stiffening keeps it from the
+/// clamp.
 inline constexpr double kSmallestPairSum = 1e-3;
 
 template <Law law>

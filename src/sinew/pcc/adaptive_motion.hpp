@@ -16,9 +16,9 @@ namespace sinew::pcc {
 
 /// What a step may leave of error in each coordinate: absolute + relative * size.
 struct Accuracy {
-  double relative = 1e-5;  ///< >= 0
-  double angle = 1e-7;     ///< rad (extension: m), > 0
-  double rate = 1e-5;      ///< rad/s, > 0
+  double relative = 1e-6;  ///< >= 0
+  double angle = 1e-8;     ///< rad (extension: m), > 0
+  double rate = 1e-6;      ///< rad/s, > 0
   long most_steps = 100000;
 };
 

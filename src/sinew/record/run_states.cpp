@@ -179,8 +179,10 @@ void RunStates::write_contact(int index) {
 }
 
 void RunStates::declare_report() {
-  report_ = {declare("/report/residual", {}, "N"), declare("/report/relative_residual", {}, "1"),
-             declare("/report/iterations", {}, "1"), declare("/report/scale", {}, "1"),
+  report_ = {declare("/report/residual", {}, "N"),
+             declare("/report/relative_residual", {}, "1"),
+             declare("/report/iterations", {}, "1"),
+             declare("/report/scale", {}, "1"),
              declare("/report/smallest_volume_ratio", {}, "1"),
              declare("/report/status", {}, "1")};
 }

@@ -56,10 +56,10 @@ std::vector<std::string> RunTable::names(const sim::Simulation& simulation,
       names.push_back(fmt::format("{}.error [{}]", effector, unit(e)));
     }
   }
-  for (const char* name :
-       {"strain_energy [J]", "kinetic_energy [J]", "gravity_energy [J]", "actuator_work [J]",
-        "outside_work [J]", "dissipation [J]", "numerical_loss [J]", "residual [N]",
-        "relative_residual", "iterations", "scale", "smallest_volume_ratio", "status", "controller"}) {
+  for (const char* name : {"strain_energy [J]", "kinetic_energy [J]", "gravity_energy [J]",
+                           "actuator_work [J]", "outside_work [J]", "dissipation [J]",
+                           "numerical_loss [J]", "residual [N]", "relative_residual", "iterations",
+                           "scale", "smallest_volume_ratio", "status", "controller"}) {
     names.emplace_back(name);
   }
   return names;

@@ -51,7 +51,7 @@ struct SolverDescription {
   Tangent tangent = Tangent::exact;
   std::optional<sim::AdaptiveStep> adaptive;
   std::optional<double> tolerance;  ///< Newton: residual relative to the loads
-  int max_iterations = 50;  ///< Newton
+  int max_iterations = 50;          ///< Newton
   double contact_tolerance = 1e-10;
   int threads = 1;                ///< inside a step
   std::string backend = "block";  ///< a name of linalg::backends()

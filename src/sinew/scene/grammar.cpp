@@ -17,11 +17,13 @@ Key later_key(const char* name, const char* description) {
 }
 
 Form method_choice(const char* short_for = "") {
-  return choice({{"newton", "Iterates until the step's equation holds to `tolerance`: once where "
-                            "little changes."},
-                 {"one-linearisation", "One linear solution a step, in a time known beforehand. A "
-                                       "step that leaves forces out of balance or gains energy "
-                                       "says so in its status, and is not corrected."}},
+  return choice({{"newton",
+                  "Iterates until the step's equation holds to `tolerance`: once where "
+                  "little changes."},
+                 {"one-linearisation",
+                  "One linear solution a step, in a time known beforehand. A "
+                  "step that leaves forces out of balance or gains energy "
+                  "says so in its status, and is not corrected."}},
                 short_for);
 }
 
@@ -83,12 +85,15 @@ std::shared_ptr<const KeyTable> solver_table() {
             .example = "{tolerance: 1e-4, smallest: 0.1 ms}",
             .description = "Substeps. Without: one step of `time_step` each."},
            {.name = "tangent",
-            .forms = {choice({{"exact", "The derivative of the forces; projected where that is "
-                                        "indefinite for the robot as it is held."},
-                              {"projected", "The derivative, each element's part made positive "
-                                            "semi-definite: never too soft, slower to converge."},
-                              {"rotated", "Corotational elements: the rotated stiffness of "
-                                          "real-time codes, which leaves out what tension does."}})},
+            .forms = {choice({{"exact",
+                               "The derivative of the forces; projected where that is "
+                               "indefinite for the robot as it is held."},
+                              {"projected",
+                               "The derivative, each element's part made positive "
+                               "semi-definite: never too soft, slower to converge."},
+                              {"rotated",
+                               "Corotational elements: the rotated stiffness of "
+                               "real-time codes, which leaves out what tension does."}})},
             .example = "exact",
             .default_text = "exact",
             .description = "The matrix of a step's linear equations. It decides how fast a step "

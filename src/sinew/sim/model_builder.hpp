@@ -37,7 +37,7 @@ struct CableSettings {
   Limits displacement;         ///< m
   Command command;
   bool geometric_stiffness = true;  ///< in every step; solve_static always has it
-  double friction = 0.0;  ///< Coulomb's coefficient at every point between its ends, >= 0
+  double friction = 0.0;            ///< Coulomb's coefficient at every point between its ends, >= 0
   /// m, >= 0: every point is the mean of a ball of this radius, such as a tube set into the
   /// material; 0: a bare point
   double guide_radius = 0.0;

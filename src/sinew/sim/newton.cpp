@@ -97,7 +97,8 @@ class NewtonSolver {
   // nothing left to find.
   bool converged() const {
     const double size = problem_.model.size();
-    if (!(report_.violation <= std::max(settings_.motion_tolerance, kRounding) * size)) return false;
+    if (!(report_.violation <= std::max(settings_.motion_tolerance, kRounding) * size))
+      return false;
     const bool at_rest = full_step_ && report_.motion.largest_move <= kRounding * size &&
                          report_.relative_residual <= kRoundedResidual;
     return report_.relative_residual <= settings_.tolerance || at_rest ||

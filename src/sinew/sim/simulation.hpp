@@ -16,8 +16,8 @@
 #include "sinew/sim/friction_law.hpp"
 #include "sinew/sim/newton.hpp"
 #include "sinew/sim/stages.hpp"
-#include "sinew/sim/step_status.hpp"
 #include "sinew/sim/static_settings.hpp"
+#include "sinew/sim/step_status.hpp"
 #include "sinew/sim/world.hpp"
 
 namespace sinew::sim {
@@ -236,7 +236,7 @@ class Simulation {
   std::optional<Part> part_;
   std::optional<double> energy_at_start_;  // J, less what was put in
   double largest_energy_ = 0.0;            // J, to judge gains by
-  std::vector<double> motion_before_;  // (actuators, then guides) m
+  std::vector<double> motion_before_;      // (actuators, then guides) m
   std::vector<Signal> load_factors_;
   std::vector<double> load_applied_;  // (loads,) factors that acted last; 0 at the start
   struct Stretch {

@@ -66,8 +66,7 @@ void Simulation::step_once(Law& law, const LawProblem& problem) {
   };
   linearise();
   auto status = world_.condense();
-  if (status == linalg::FactorStatus::indefinite &&
-      request.tangent == mechanics::Tangent::exact &&
+  if (status == linalg::FactorStatus::indefinite && request.tangent == mechanics::Tangent::exact &&
       !DrivenLaw::stabilised(problem, negative_pivots())) {
     request.tangent = mechanics::Tangent::projected;
     linearise();
@@ -165,8 +164,7 @@ void Simulation::step_newton(Law& law, const LawProblem& problem) {
   take_report(result);
   // Of contacts there is no such thing as nearly: a point would be inside a surface.
   const bool usable = !model_->step().dynamic() && model_->contacts().empty() &&
-                      result.motion.finite &&
-                      result.motion.smallest_volume_ratio > 0.0 &&
+                      result.motion.finite && result.motion.smallest_volume_ratio > 0.0 &&
                       result.law != LawStatus::failed;
   if (converged() || usable) return;
   if (result.status == NewtonStatus::law_failed) fail_law();

@@ -20,7 +20,8 @@ enum class StepStatus {
 /// own affair.
 constexpr bool is_flagged(StepStatus status) { return status > StepStatus::limits_conflict; }
 
-/// "solved", "limits-conflict", "command-not-reached", "cut-back", "not-in-equilibrium", "gaining-energy".
+/// "solved", "limits-conflict", "command-not-reached", "cut-back", "not-in-equilibrium",
+/// "gaining-energy".
 std::string_view step_status_name(StepStatus status);
 
 /// What to do about it, in a clause; empty for solved.

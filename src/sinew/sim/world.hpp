@@ -32,8 +32,8 @@ class World {
   /// Assembly: every body at its current state.
   void linearise(const mechanics::LinearisationRequest& request);
   /// H and delta at the current placement, handed to the bodies. condense() adds the curvature of
-  /// `curved` constraints at `effort`: as it is, or, where the linearisation's tangent is not exact,
-  /// what is never less and positive semi-definite.
+  /// `curved` constraints at `effort`: as it is, or, where the linearisation's tangent is not
+  /// exact, what is never less and positive semi-definite.
   void form_rows(std::span<const double> effort, std::span<const int> curved);
   /// |b + H^T effort| (N) and the scale (N) to judge it by.
   double residual(std::span<const double> effort);
