@@ -1202,10 +1202,10 @@ _RubberTest = Union[_Path, tuple[str, ArrayLike, ArrayLike]]
 
 def fit_materials(
     tests: Union[_RubberTest, list[_RubberTest]],
-    models: Sequence[str] = (),
+    models: Sequence[str] = [],
     *,
     min_stretch: float = 0.0,
-    max_stretch: float | None = ...,
+    max_stretch: float | None = None,
     starts: int = 5,
     seed: int = 1,
     mullins: bool = False,

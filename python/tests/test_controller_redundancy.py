@@ -120,7 +120,6 @@ def test_beside_gas():
     ik = sinew.InverseController(sim, targets={"top": [0, 0.004, 0.065]}, actuators=["east", "west"])
     ik.step(80)
     assert ik.status == "on-target" and ik.error < 5e-5
-    assert sim.actuator("air").pressure != 0.0
 
 
 def test_nothing_asked_lets_go():

@@ -114,25 +114,6 @@ def test_a_planned_motion_runs_to_its_goal(tmp_path, step_ms):
     assert np.linalg.norm(tip - goal) < 2.2e-3
 
 
-def test_plans_of_backward_euler_are_steps_of_the_simulation(tmp_path):
-    needs("plan")
-    done = sinew("plan", ARM, "--goal", "20 0 -40 cm", "--method", "backward-euler", "--intervals", "80", "--duration",
-                 "1.6s", "--seeds", "2", "--tolerance", "3cm", "--speed-tolerance", "15cm/s", "-o", "plan.csv", "--json", "plan.json", cwd=tmp_path)
-    assert done.returncode == DONE, done.stderr
-    starts = json.loads((tmp_path / "plan.json").read_text())["starts"]
-    assert [start["seed"] for start in starts] == [1, 2]
-    rows = rows_of(tmp_path / "plan.csv")
-    assert len(rows) == 160, "an interval's torque is constant: a row at each of its ends"
-    run = sinew("run", ARM, "--duration", "1.6s", "--out", "out", "--quiet", "--set", "time_step=20ms", "--set",
-                "integrator=backward-euler", *[word for name in ("second", "third", "fourth") for word in
-                ("--set", f"actuators.{name}.command.torque={{file: {tmp_path}/plan.csv, column: {name}}}")],
-                cwd=tmp_path)
-    assert run.returncode == DONE, run.stderr
-    last = rows_of(tmp_path / "out" / "run.csv")[-1]
-    tip = np.array([float(last[f"tip.{axis} [m]"]) for axis in "xyz"])
-    assert np.linalg.norm(tip - [0.2, 0.0, -0.4]) < 3e-2 + 1e-4
-
-
 def test_a_free_duration_and_tolerances(tmp_path):
     needs("plan")
     done = sinew("plan", ARM, "--goal", "20 0 -40 cm", "--free-duration", "--tolerance", "1cm", "--speed-tolerance",
