@@ -27,19 +27,23 @@ constexpr double kMotionTolerance = 1e-5;
 // Energy that came out of nothing, of the largest energy so far.
 constexpr double kEnergyGain = 0.05;
 // Iterations with the projected tangent, which end wherever a stable equilibrium is downhill.
-constexpr int kMostDescents = 200;
+constexpr int kMostDescents = 60;
 // The smallest part of a quasi-static step, inverse.
 constexpr double kMostParts = 64.0;
 constexpr int kIterationsOfPart = 25;
+// A controller chooses where to go anew in every iteration, and has to keep up with a clock: a step
+// that it steers takes no parts and this many iterations with either tangent at most.
+constexpr int kSteeredIterations = 8;
 
 }  // namespace
 
 NewtonSettings Simulation::newton_settings(double time_step) const {
   const auto& settings = model_->step();
+  const bool steered = law_ != nullptr && !settings.dynamic();
   return {{step_weights(time_step), settings.tangent, model_->stiffening_widens(), true},
           settings.newton_tolerance(),
           std::min(settings.newton_tolerance(), kMotionTolerance),
-          settings.max_iterations,
+          steered ? std::min(settings.max_iterations, kSteeredIterations) : settings.max_iterations,
           model_->stiffening_constraints()};
 }
 
@@ -157,7 +161,7 @@ void Simulation::step_newton(Law& law, const LawProblem& problem) {
   const auto converged = [&] { return result.status == NewtonStatus::converged; };
   if (!converged() && !model_->step().dynamic()) {
     const int tried = result.iterations;
-    result = approach(law, problem);
+    if (law_ == nullptr) result = approach(law, problem);
     if (!converged()) result = descend(law, problem);
     result.iterations += tried;
   }
@@ -223,7 +227,7 @@ NewtonReport Simulation::approach(Law& law, const LawProblem& problem) {
 NewtonReport Simulation::descend(Law& law, const LawProblem& problem) {
   NewtonSettings settings = newton_settings(problem.time_step);
   settings.request.tangent = mechanics::Tangent::projected;
-  settings.max_iterations = kMostDescents;
+  settings.max_iterations = law_ == nullptr ? kMostDescents : kSteeredIterations;
   return solve_newton(world_, law, problem, effort_, settings, clock_);
 }
 
