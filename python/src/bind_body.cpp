@@ -1,12 +1,14 @@
 #include <fmt/format.h>
 
 #include "sinew/fem/assembly.hpp"
+#include "sinew/mechanics/body.hpp"
 #include "sinew/mesh/self_touch.hpp"
 #include "sinew/pcc/arm_body.hpp"
 
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "pcc_arm.hpp"
+#include "session.hpp"
 
 namespace sinew::python {
 

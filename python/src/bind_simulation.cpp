@@ -1,9 +1,12 @@
 #include <fmt/format.h>
 
+#include "sinew/constraint/probe.hpp"
+#include "sinew/mechanics/body.hpp"
 #include "sinew/scene/scene.hpp"
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "session.hpp"
 #include "tree.hpp"
 
 namespace sinew::python {

@@ -169,7 +169,7 @@ constexpr std::size_t kMullinsParameters = 3;
 
 MullinsEffect mullins_of(const double* p, double scale) { return {1.0 / p[0], scale * p[1], p[2]}; }
 
-/// Residuals of all tests over all parameters in one block.
+/// Residuals of all tests over all parameters.
 struct Residuals {
   const Form* form;
   std::span<const RubberTest> tests;
@@ -177,12 +177,10 @@ struct Residuals {
   std::size_t own;  // parameters of the law; the softening's follow
   bool mullins;
 
-  bool operator()(const double* const* blocks, double* residuals) const {
-    std::vector<double> p(own + (mullins ? kMullinsParameters : 0));
-    for (std::size_t k = 0; k < p.size(); ++k) p[k] = blocks[k][0];
-    const Hyperelastic law = form->build(p.data(), scale);
+  bool operator()(const double* p, double* residuals) const {
+    const Hyperelastic law = form->build(p, scale);
     MullinsEffect softening;
-    if (mullins) softening = mullins_of(p.data() + own, scale);
+    if (mullins) softening = mullins_of(p + own, scale);
     std::size_t at = 0;
     for (const RubberTest& test : tests) {
       const double weight =
@@ -212,11 +210,12 @@ Attempt solve(const Residuals& residuals, std::vector<Parameter> start) {
   for (const Parameter& p : start) values.push_back({p.start, p.lower, p.upper});
   std::size_t rows = 0;
   for (const RubberTest& test : residuals.tests) rows += test.stretch.size();
-  const ceres::Solver::Summary summary = solve_bounded(residuals, rows, values, 400, 1e-10);
+  const BoundedResult found =
+      solve_bounded_by_differences(residuals, rows, values, {.max_iterations = 400});
   Attempt attempt;
   for (const BoundedValue& value : values) attempt.parameters.push_back(value.value);
-  attempt.converged = summary.termination_type == ceres::CONVERGENCE;
-  if (summary.IsSolutionUsable()) attempt.cost = 2.0 * summary.final_cost;
+  attempt.converged = found.converged;
+  if (found.usable) attempt.cost = found.cost;
   return attempt;
 }
 

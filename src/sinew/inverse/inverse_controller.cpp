@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "sinew/constraint/effector.hpp"
 #include "sinew/core/error.hpp"
 
 namespace sinew::inverse {

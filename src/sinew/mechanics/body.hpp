@@ -23,16 +23,11 @@
 #include "sinew/linalg/factorisation.hpp"
 #include "sinew/mechanics/integrator.hpp"
 #include "sinew/mechanics/rows.hpp"
+#include "sinew/mechanics/tangent.hpp"
 #include "sinew/mesh/embedding.hpp"
 #include "sinew/mesh/mesh.hpp"
 
 namespace sinew::mechanics {
-
-/// Which derivative of the internal force is used.
-enum class Tangent {
-  real_time,  ///< what the body offers for one linearisation a step (corotational: R K0 R^T); SPD
-  exact,      ///< the exact derivative df/dq, which may be indefinite
-};
 
 /// What a body looks at when it linearises.
 struct LinearisationRequest {

@@ -3,50 +3,37 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "sinew/constraint/cable.hpp"
-#include "sinew/constraint/cavity.hpp"
-#include "sinew/constraint/contact.hpp"
-#include "sinew/constraint/effector.hpp"
-#include "sinew/constraint/point_force.hpp"
-#include "sinew/constraint/probe.hpp"
-#include "sinew/fem/fem_body_model.hpp"
-#include "sinew/mechanics/body.hpp"
+#include <Eigen/Geometry>
+
+#include "sinew/core/error.hpp"
+#include "sinew/core/types.hpp"
+#include "sinew/mechanics/rows.hpp"
 #include "sinew/sim/actuator.hpp"
+#include "sinew/sim/signal.hpp"
+#include "sinew/sim/step_settings.hpp"
+
+namespace sinew::constraint {
+class Cable;
+class Cavity;
+class Constraint;
+class Contact;
+class Effector;
+class Probe;
+}  // namespace sinew::constraint
+
+namespace sinew::mechanics {
+class BodyModel;
+}  // namespace sinew::mechanics
 
 namespace sinew::sim {
-
-/// How many linearisations a step takes.
-enum class Method {
-  one_linearisation,  ///< one linear solve a step, as real-time codes do
-  newton,             ///< Newton's iterations to the tolerance
-};
-
-/// Smaller steps inside each time step where the integrator's error asks for them or a step fails.
-struct AdaptiveStep {
-  double tolerance = 1e-4;  ///< error of a step in any coordinate, relative to the robot's size
-  double smallest = 0.0;    ///< s, > 0
-};
-
-/// How each step is solved.
-struct StepSettings {
-  double time_step = 0.01;  ///< s, > 0
-  mechanics::Integrator integrator = mechanics::Integrator::quasi_static;
-  double spectral_radius = 0.8;  ///< of generalized-alpha, 0 to 1
-  std::optional<AdaptiveStep> adaptive;
-  Method method = Method::one_linearisation;
-  /// The exact tangent comes with the geometric stiffness of all cables, without which it says
-  /// little: a compressed robot's own tangent may be indefinite where the held robot is stable.
-  mechanics::Tangent tangent = mechanics::Tangent::real_time;
-  double tolerance = 1e-8;  ///< Newton: residual relative to the loads, and motion to the size
-  int max_iterations = 50;  ///< Newton
-  double contact_tolerance = 1e-10;  ///< of the contacts' residual, see qp::ConeResult
-};
 
 /// A point that a cable slides through with friction.
 struct GuideModel {
@@ -101,6 +88,10 @@ struct LoadModel {
 /// Immutable; made by ModelBuilder. Several simulations and threads may share one.
 class Model {
  public:
+  ~Model();
+  Model(const Model&) = delete;
+  Model& operator=(const Model&) = delete;
+
   const std::vector<std::unique_ptr<mechanics::BodyModel>>& bodies() const { return bodies_; }
   const std::vector<std::unique_ptr<constraint::Constraint>>& constraints() const {
     return constraints_;
@@ -149,6 +140,8 @@ class Model {
 
  private:
   friend class ModelBuilder;
+
+  Model();
 
   std::vector<std::unique_ptr<mechanics::BodyModel>> bodies_;
   std::vector<std::unique_ptr<constraint::Constraint>> constraints_;

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/fem/fem_body_model.hpp"
 #include "sinew/sim/model_builder.hpp"
 
 namespace sinew::sim {

@@ -1,6 +1,7 @@
 // What Simulation says of contacts.
 #include <cmath>
 
+#include "sinew/constraint/contact.hpp"
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::sim {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "sinew/constraint/contact.hpp"
+
 namespace sinew::sim {
 
 namespace {
