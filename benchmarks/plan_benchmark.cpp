@@ -28,13 +28,14 @@ std::shared_ptr<const pcc::Arm> arm() { return pcc::testing::make(pcc::testing::
 template <typename Make>
 void plan_each(benchmark::State& state, const Make& make) {
   std::vector<double> seconds;
-  double iterations = 0.0, found = 0.0;
+  double iterations = 0.0, corrections = 0.0, found = 0.0;
   for (auto _ : state) {
     const auto begin = std::chrono::steady_clock::now();
     const Plan plan = make();
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
     seconds.push_back(taken.count());
     iterations += plan.iterations;
+    corrections += plan.corrections;
     found += plan.found() ? 1.0 : 0.0;
   }
   const auto middle = seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 2);
@@ -42,6 +43,7 @@ void plan_each(benchmark::State& state, const Make& make) {
   const auto runs = static_cast<double>(seconds.size());
   state.counters["median_ms"] = 1e3 * *middle;
   state.counters["iterations"] = iterations / runs;
+  state.counters["corrections"] = corrections / runs;
   state.counters["found"] = found / runs;
 }
 

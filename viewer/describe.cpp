@@ -199,6 +199,18 @@ Json body_json(const mechanics::BodyModel& model, const Surface& surface) {
           {"elements", mesh.tetrahedra.size() + mesh.hexahedra.size()}};
 }
 
+Json notices_json(const std::vector<Notice>& notices) {
+  Json list = Json::array();
+  for (const Notice& notice : notices) {
+    list.push_back({{"level", notice_level_name(notice.level)},
+                    {"kind", notice_kind_name(notice.kind)},
+                    {"subject", notice.place.item},
+                    {"text", notice.message},
+                    {"remedy", notice.remedy}});
+  }
+  return list;
+}
+
 Json bounds_json(const sim::Model& model) {
   Vector3 low = Vector3::Constant(std::numeric_limits<double>::infinity());
   Vector3 high = -low;
@@ -387,6 +399,7 @@ Description describe(const scene::Robot& robot) {
                       {"probes", probes},
                       {"contacts", contacts},
                       {"controllers", controllers_json(robot)},
+                      {"notices", notices_json(robot.notices)},
                       {"signals", signals_json(result.signals)}};
   result.scene = scene.dump();
   return result;

@@ -57,7 +57,9 @@ void add_controller(const inverse::InverseController& controller, const std::str
                     Json& list) {
   const std::string kind(inverse::inverse_status_name(controller.status()));
   switch (controller.status()) {
+    case inverse::InverseStatus::not_started:
     case inverse::InverseStatus::on_target:
+    case inverse::InverseStatus::moving:
       break;
     case inverse::InverseStatus::rate_limited:
       list.push_back(trouble("info", "rate-limited", name, "on the way; rates are limited"));
@@ -67,8 +69,14 @@ void add_controller(const inverse::InverseController& controller, const std::str
           "warning", "out-of-reach", name,
           fmt::format("the target is out of reach by {:.3g} mm", 1e3 * controller.error())));
       break;
+    case inverse::InverseStatus::local_optimum:
+      list.push_back(trouble("warning", "local-optimum", name,
+                             fmt::format("no small change of efforts comes nearer than {:.3g} mm",
+                                         1e3 * controller.error())));
+      break;
     case inverse::InverseStatus::limits_conflict:
-      list.push_back(trouble("error", "limits-conflict", name, "limits contradict each other"));
+      list.push_back(trouble("error", "limits-conflict", name,
+                             "limits contradict each other: " + controller.conflict()));
       break;
   }
 }
@@ -440,9 +448,10 @@ std::string RobotState::status_members() const {
     targets[name] = {position.x(), position.y(), position.z()};
   }
   if (controller_) add_controller(*controller_, controller_name_, troubles);
-  if (simulation_->report().scale < 1.0) {
-    troubles.push_back(trouble("warning", "cut-back", "step",
-                               "the motion was cut back, or elements would have inverted"));
+  if (const sim::StepStatus step = simulation_->report().status; sim::is_flagged(step)) {
+    troubles.push_back(trouble("warning", std::string(sim::step_status_name(step)).c_str(), "step",
+                               fmt::format("this step is {}; {}", sim::step_status_name(step),
+                                           sim::step_status_remedy(step))));
   }
   Json status = {{"controller", controller_ ? Json(controller_name_) : Json(nullptr)},
                  {"commands", commands},

@@ -1,6 +1,8 @@
 // sinew fit: coefficients of rubber from tests.
-#include <cstdio>
+#include <algorithm>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -13,6 +15,7 @@
 
 #include "commands.hpp"
 #include "python_tool.hpp"
+#include "terminal.hpp"
 
 namespace sinew::cli {
 
@@ -24,7 +27,7 @@ using material::DeformationMode;
 
 struct FitOptions {
   std::vector<std::string> files;
-  std::string model = "ogden3";
+  std::string model;
   bool all = false;
   identify::FitSettings settings;
   std::string out, plot;
@@ -41,31 +44,68 @@ RubberTest read_test(const std::string& word) {
   return identify::read_rubber_test(word);
 }
 
-void print_header(const std::vector<RubberTest>& tests) {
+void print_header(const std::vector<RubberTest>& tests, const identify::FitSettings& settings) {
   for (const RubberTest& test : tests) {
-    fmt::print("{}: {}, {} points, stretch {:.4g} to {:.4g}, up to {:.4g} kPa\n", test.name,
+    const auto counts = std::ranges::count_if(test.stretch, [&](double stretch) {
+      return stretch >= settings.least_stretch && stretch <= settings.most_stretch;
+    });
+    fmt::print("{}: {}, {} points, stretch {:.4g} to {:.4g}, up to {:.4g} kPa{}\n", test.name,
                identify::mode_name(test.mode), test.stretch.size(),
                *std::ranges::min_element(test.stretch), *std::ranges::max_element(test.stretch),
-               1e-3 * test.largest_stress());
+               1e-3 * test.largest_stress(),
+               counts < std::ssize(test.stretch) ? fmt::format("; {} in the range", counts) : "");
   }
   fmt::print("\n{:<14} {:>6}", "model", "mu_0");
   for (const RubberTest& test : tests) fmt::print(" {:>16}", test.name.substr(0, 16));
-  fmt::print(" {:>18}\n{:<14} {:>6}", "stable in tension", "", "kPa");
+  fmt::print(" {:>18} {:>8}\n{:<14} {:>6}", "stable in tension", "numbers", "", "kPa");
   for (std::size_t k = 0; k < tests.size(); ++k) fmt::print(" {:>16}", "RMS kPa (%)");
-  fmt::print(" {:>18}\n", "(uniaxial)");
+  fmt::print(" {:>18} {:>8}\n", "(uniaxial)", "fitted");
 }
 
-void print_row(const FitResult& fit) {
+void print_row(const FitResult& fit, const std::string& marks) {
   fmt::print("{:<14} {:>6.4g}", fit.model, 1e-3 * fit.energy.shear_modulus());
   for (const auto& test : fit.tests) {
     fmt::print(" {:>16}", fmt::format("{:.3g} ({:.2g})", 1e-3 * test.rms, 100.0 * test.relative));
   }
-  fmt::print(" {:>18}\n",
-             fmt::format("{:.3g} to {:.3g}", fit.uniaxial_range.first, fit.uniaxial_range.second));
+  fmt::print(" {:>18} {:>8}{}\n",
+             fmt::format("{:.3g} to {:.3g}", fit.uniaxial_range.first, fit.uniaxial_range.second),
+             fit.parameters(), marks);
+}
+
+std::size_t least(std::span<const double> values) {
+  return static_cast<std::size_t>(std::ranges::min_element(values) - values.begin());
+}
+
+/// All rows, the best ones marked. Which one the tests support best.
+std::size_t print_rows(const std::vector<FitResult>& fits) {
+  std::vector<double> costs;
+  for (const FitResult& fit : fits) costs.push_back(fit.cost);
+  const std::vector<double> information = identify::bayes_information(fits);
+  const std::size_t closest = least(costs), supported = least(information);
+  for (std::size_t k = 0; k < fits.size(); ++k) {
+    std::string marks;
+    if (fits.size() > 1 && k == supported) marks += " *";
+    if (fits.size() > 1 && k == closest) marks += " +";
+    print_row(fits[k], marks);
+  }
+  if (fits.size() > 1) {
+    fmt::print("* best supported (least Bayesian information criterion)   + least error\n");
+  }
+  return supported;
+}
+
+/// Ogden's law may need fewer terms than were asked for.
+void print_terms(const FitResult& fit) {
+  if (!fit.model.starts_with("ogden")) return;
+  const std::size_t asked = static_cast<std::size_t>(fit.model.back() - '0');
+  const std::size_t found = fit.coefficients.size() / 2;
+  if (found == asked) return;
+  fmt::print("  {} of {} terms: further ones do not lessen the error\n", found, asked);
 }
 
 void print_fit(const FitResult& fit) {
   fmt::print("\n{}:\n", fit.model);
+  print_terms(fit);
   for (const auto& c : fit.coefficients) {
     if (std::string_view(c.unit) == "Pa") {
       fmt::print("  {:<16} {:.6g} kPa\n", c.name, 1e-3 * c.value);
@@ -104,26 +144,33 @@ std::string json_of(const std::vector<RubberTest>& tests, const std::vector<FitR
   return json.dump();
 }
 
+std::vector<FitResult> fit_all(const std::vector<RubberTest>& tests,
+                               const std::vector<std::string>& models,
+                               const identify::FitSettings& settings) {
+  std::optional<ProgressBar> bar;
+  return identify::fit_materials(tests, models, settings,
+                                 [&](int done, int all, const std::string& at_work) {
+                                   if (!bar) bar.emplace(all, true);
+                                   bar->update(done, at_work);
+                                 });
+}
+
 int fit(const FitOptions& options) {
   std::vector<RubberTest> tests;
   for (const std::string& file : options.files) tests.push_back(read_test(file));
-  std::vector<FitResult> fits;
-  print_header(tests);
-  auto settings = options.settings;
+  const identify::FitSettings& settings = options.settings;
+  const std::string model = options.model.empty() ? settings.model : options.model;
   const std::vector<std::string> models =
-      options.all ? identify::fit_models() : std::vector<std::string>{options.model};
-  for (const std::string& model : models) {
-    settings.model = model;
-    fits.push_back(identify::fit_material(tests, settings));
-    print_row(fits.back());
-    std::fflush(stdout);
-  }
-  settings.model = options.model;
-  const auto chosen = std::ranges::find(fits, options.model, &FitResult::model);
-  const FitResult& own = chosen != fits.end() ? *chosen : fits.front();
+      options.all ? identify::fit_models() : std::vector<std::string>{model};
+  const std::vector<FitResult> fits = fit_all(tests, models, settings);
+  print_header(tests, settings);
+  const std::size_t supported = print_rows(fits);
+  const auto chosen = std::ranges::find(fits, model, &FitResult::model);
+  const bool best = options.all && options.model.empty();
+  const FitResult& own = best || chosen == fits.end() ? fits[supported] : *chosen;
   print_fit(own);
   if (!options.out.empty()) {
-    mesh::write_file(options.out, identify::material_yaml(own, tests, settings.poisson_ratio));
+    mesh::write_file(options.out, identify::material_yaml(own, tests, settings));
     fmt::print("wrote {}: in a scene, material: {{file: {}}}\n", options.out, options.out);
   }
   return options.plot.empty() ? 0 : draw_json("fit", json_of(tests, fits), options.plot);
@@ -142,9 +189,13 @@ void add_fit(CommandLine& line) {
       .required();
   command.add_option("--model", options->model,
                      "neo-hookean, mooney-rivlin, yeoh1 to yeoh3, ogden1 to ogden6, arruda-boyce "
-                     "(default: ogden3)");
+                     "(default: ogden3; with --all the best supported)");
   command.add_flag("--all", options->all, "Compare all models in one table");
-  command.add_option("--starts", options->settings.starts, "Random starts (default: 20)");
+  command.add_option("--min-stretch", options->settings.least_stretch,
+                     "Leave out rows of a smaller stretch (default: 0)");
+  command.add_option("--max-stretch", options->settings.most_stretch,
+                     "Leave out rows of a larger stretch (default: none)");
+  command.add_option("--starts", options->settings.starts, "Random starts (default: 5)");
   command.add_option("--seed", options->settings.seed, "Of the random starts");
   command.add_flag("--mullins", options->settings.mullins,
                    "Fit the softening on unloading, too; rows in the order measured");
@@ -155,7 +206,7 @@ void add_fit(CommandLine& line) {
   command.footer(
       "Examples:\n"
       "  sinew fit uniaxial.csv equibiaxial.csv --model ogden3 -o rubber.yaml --plot rubber.png\n"
-      "  sinew fit tensile.csv --all");
+      "  sinew fit tensile.csv --all --max-stretch 4");
   command.set_action([options] { return fit(*options); });
 }
 

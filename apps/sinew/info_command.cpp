@@ -13,6 +13,7 @@
 #include "sinew/constraint/contact.hpp"
 #include "sinew/constraint/probe.hpp"
 #include "sinew/core/quantity.hpp"
+#include "sinew/fem/element_count.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mesh/read.hpp"
@@ -165,17 +166,31 @@ void add_body(Facts& facts, const mechanics::BodyModel& model) {
   if (const auto* arm = dynamic_cast<const pcc::ArmBodyModel*>(&model)) return add_arm(facts, *arm);
   const auto* body = dynamic_cast<const fem::FemBodyModel*>(&model);
   if (body == nullptr) return;
+  ordered_json elements = ordered_json::object();
+  for (const auto& [element, count] : fem::count_elements(body->elements())) {
+    elements[std::string(element)] = count;
+  }
   facts.json["bodies"].push_back({{"name", body->name()},
+                                  {"elements", elements},
                                   {"nodes", body->mesh().node_count()},
                                   {"free_nodes", body->elements().free_count()},
                                   {"tetrahedra", body->mesh().tetrahedra.size()},
                                   {"hexahedra", body->mesh().hexahedra.size()},
                                   {"mass_kg", body->elements().total_mass()},
                                   {"volume_m3", body->elements().volume()}});
-  facts.text += fmt::format("  body {}: {} nodes ({} free), {} elements, {:.4g} g, {:.4g} cm^3\n",
+  facts.text += fmt::format("  body {}: {} nodes ({} free), {}, {:.4g} g, {:.4g} cm^3\n",
                             body->name(), body->mesh().node_count(), body->elements().free_count(),
-                            body->mesh().tetrahedra.size() + body->mesh().hexahedra.size(),
+                            fem::describe_elements(body->elements()),
                             1e3 * body->elements().total_mass(), 1e6 * body->elements().volume());
+}
+
+void add_notice(Facts& facts, const Notice& notice) {
+  facts.json["notices"].push_back({{"level", notice_level_name(notice.level)},
+                                   {"kind", notice_kind_name(notice.kind)},
+                                   {"item", notice.place.item},
+                                   {"message", notice.message},
+                                   {"remedy", notice.remedy}});
+  facts.text += fmt::format("  {}: {}\n", notice_level_name(notice.level), notice.text());
 }
 
 Facts scene_facts(const InfoOptions& options) {
@@ -194,6 +209,7 @@ Facts scene_facts(const InfoOptions& options) {
       format_quantity(model.step().time_step, dimension::kTime),
       duration > 0.0 ? format_quantity(duration, dimension::kTime) : "without a duration");
   for (const auto& body : model.bodies()) add_body(facts, *body);
+  for (const Notice& notice : robot.notices) add_notice(facts, notice);
   for (std::size_t a = 0; a < model.actuators().size(); ++a) {
     const sim::ActuatorModel& actuator = model.actuators()[a];
     const constraint::Cable* cable = model.cable(static_cast<int>(a));
@@ -214,6 +230,11 @@ Facts scene_facts(const InfoOptions& options) {
     facts.json["actuators"].push_back(entry);
     facts.text +=
         fmt::format("  {} {}{}\n", actuator_type_name(actuator.type), actuator.name, size);
+  }
+  for (const sim::MassModel& mass : model.masses()) {
+    const std::string& body = model.bodies()[static_cast<std::size_t>(mass.body)]->name();
+    facts.json["masses"].push_back({{"name", mass.name}, {"body", body}, {"mass_kg", mass.mass}});
+    facts.text += fmt::format("  mass {}: {:.4g} g on {}\n", mass.name, 1e3 * mass.mass, body);
   }
   for (const auto& effector : model.effectors()) {
     facts.json["effectors"].push_back(effector.name);

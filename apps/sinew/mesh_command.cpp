@@ -8,7 +8,7 @@
 #include "sinew/mesh/refine.hpp"
 #include "sinew/mesh/report.hpp"
 #include "sinew/mesh/tetrahedralise.hpp"
-#include "sinew/mesh/write.hpp"
+#include "sinew/mesh/write_mesh.hpp"
 #include "sinew/scene/build.hpp"
 
 #include "arguments.hpp"
@@ -62,16 +62,14 @@ int make(const MeshOptions& options) {
     throw Error(
         ErrorKind::bad_argument, {.item = "mesh"},
         options.surface.empty() ? "there is nothing to mesh" : "there are two things to mesh",
-        "give a surface file or --shape block|cylinder|cone|hollow-cylinder|trunk");
+        "give a surface file or --shape block|cylinder|cone|hollow-cylinder|chambered-cylinder|"
+        "trunk");
   }
-  if (!options.out.ends_with(".vtu")) {
-    throw Error(ErrorKind::unknown_format, {.item = "-o"},
-                fmt::format("'{}' is no VTU file", options.out), "end its name in .vtu");
-  }
+  mesh::require_writable_format(options.out);
   require_range("--refine", options.refine, 0, kMostRefinements);
   mesh::Mesh mesh = options.shape.empty() ? from_surface(options) : from_shape(options);
   for (int i = 0; i < options.refine; ++i) mesh = mesh::refine(mesh);
-  mesh::write_vtu(options.out, mesh);
+  mesh::write_mesh(options.out, mesh);
   fmt::print("{}written to {}, lengths in m\n", mesh::format_report(mesh::describe(mesh)),
              options.out);
   return 0;
@@ -83,9 +81,14 @@ void add_mesh(CommandLine& line) {
   Command command = line.add_command("mesh", "Fill a surface with tetrahedra, or make a shape");
   const auto options = std::make_shared<MeshOptions>();
   command.add_option("SURFACE", options->surface, "Closed surface: STL, OBJ or PLY");
-  command.add_option("--shape", options->shape,
-                     "Make block, cylinder, cone, hollow-cylinder or trunk instead");
-  command.add_option("-o,--out", options->out, "VTU file to write").required().type_name("FILE");
+  command.add_option(
+      "--shape", options->shape,
+      "Make block, cylinder, cone, hollow-cylinder, chambered-cylinder or trunk instead");
+  command
+      .add_option("-o,--out", options->out,
+                  "File to write: .vtu, .vtk, or .stl for the surface alone")
+      .required()
+      .type_name("FILE");
   command.add_option("--size", options->size, "Wanted edge length: 5mm").type_name("LENGTH");
   command.add_option("--unit", options->unit, "Unit of the surface file: mm").type_name("UNIT");
   command.add_option("--refine", options->refine, "Cut every tetrahedron in eight, N times")

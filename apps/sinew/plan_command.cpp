@@ -45,7 +45,7 @@ struct PlanOptions {
   std::string goal;
   std::optional<std::string> duration, rate_limit, tolerance, speed_tolerance;
   bool free_duration = false;
-  std::string method = "hermite-simpson";
+  std::string method = "radau";
   int intervals = plan::Grid{}.intervals;
   int seeds = 1;
   std::uint64_t seed = 1;
@@ -57,16 +57,14 @@ struct PlanOptions {
 struct Attempt {
   std::uint64_t seed = 0;
   Plan plan;
-  Replay replay;  ///< where a plan was found
 };
 
 Method method_of(const std::string& name) {
-  for (const Method method : {Method::hermite_simpson, Method::backward_euler}) {
+  for (const Method method : {Method::radau, Method::backward_euler}) {
     if (name == plan::method_name(method)) return method;
   }
   throw Error(ErrorKind::unknown_choice, {.item = "--method"},
-              fmt::format("there is no method '{}'", name),
-              "write hermite-simpson or backward-euler");
+              fmt::format("there is no method '{}'", name), "write radau or backward-euler");
 }
 
 // A torque's dimension is an energy's, so that its rate is a power's, and would be called one.
@@ -114,32 +112,32 @@ std::vector<Attempt> search(const PlanOptions& options, const ArmScene& scene, c
   const Interrupt interrupt;
   for (int k = 0; k < options.seeds && !Interrupt::requested(); ++k) {
     bar.update(k, fmt::format("start {} of {}", k + 1, options.seeds));
-    Attempt attempt{options.seed + static_cast<std::uint64_t>(k), {}, {}};
-    attempt.plan = planner.plan(attempt.seed);
-    if (attempt.plan.found()) attempt.replay = plan::replay(scene.arm, task, attempt.plan);
-    attempts.push_back(std::move(attempt));
+    const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(k);
+    attempts.push_back({seed, planner.plan(seed)});
   }
   return attempts;
 }
 
 void print_attempts(const std::vector<Attempt>& attempts) {
-  std::vector<std::vector<std::string>> rows = {{"seed", "status", "iterations", "time s",
+  std::vector<std::vector<std::string>> rows = {{"seed", "status", "knots", "iterations", "time s",
                                                  "duration s", "cost", "tip error cm",
                                                  "tip speed cm/s"}};
   for (const Attempt& attempt : attempts) {
     const Plan& plan = attempt.plan;
     rows.push_back({fmt::format("{}", attempt.seed), std::string(plan::status_name(plan.status)),
-                    fmt::format("{}", plan.iterations), fmt::format("{:.2f}", plan.seconds)});
-    if (!plan.found()) continue;
+                    fmt::format("{}", plan.knots.times.size()), fmt::format("{}", plan.iterations),
+                    fmt::format("{:.2f}", plan.seconds)});
+    if (!plan.found() && plan.status != plan::PlanStatus::not_met_on_replay) continue;
     for (const double value : {plan.duration(), plan.objective}) {
       rows.back().push_back(fmt::format("{:.4g}", value));
     }
-    for (const double value : {attempt.replay.tip_error, attempt.replay.tip_speed}) {
+    for (const double value : {plan.tip_error, plan.tip_speed}) {
       rows.back().push_back(fmt::format("{:.3f}", 100.0 * value));
     }
   }
-  fmt::print("{}tip error and speed are those of the torques carried out in steps of 1 ms\n",
-             format_table(rows));
+  fmt::print(
+      "{}tip error and speed are those of the motion that the torques cause, integrated anew\n",
+      format_table(rows));
 }
 
 // The cheapest plan; null when there is none.
@@ -153,15 +151,22 @@ const Attempt* best_of(const std::vector<Attempt>& attempts) {
 }
 
 [[noreturn]] void give_up(const std::vector<Attempt>& attempts) {
-  const plan::Status status = attempts.front().plan.status;
+  const plan::PlanStatus status = attempts.front().plan.status;
   const bool alike = std::ranges::all_of(
       attempts, [&](const Attempt& attempt) { return attempt.plan.status == status; });
-  throw Error(ErrorKind::not_converged, {.item = "plan"},
-              fmt::format("no plan was found from {} start{}: {}", attempts.size(),
-                          attempts.size() == 1 ? "" : "s",
-                          alike ? plan::status_name(status) : "see the table"),
-              "give a longer --duration or --free-duration, more --seeds or --intervals, wider "
-              "tolerances, or limits that leave more torque");
+  const Plan& first = attempts.front().plan;
+  const std::string missed =
+      first.status == plan::PlanStatus::not_met_on_replay
+          ? fmt::format(", the motion of the torques ends {:.3g} mm from the goal at {:.3g} mm/s",
+                        1e3 * first.tip_error, 1e3 * first.tip_speed)
+          : "";
+  throw Error(
+      ErrorKind::not_converged, {.item = "plan"},
+      fmt::format("no plan was found from {} start{}: {}", attempts.size(),
+                  attempts.size() == 1 ? "" : "s",
+                  alike ? std::string(plan::status_name(status)) + missed : "see the table"),
+      "give a longer --duration or --free-duration, more --seeds or --intervals, wider "
+      "tolerances, or limits that leave more torque");
 }
 
 // Times and torques as signals of files read them: straight lines between rows.
@@ -211,26 +216,28 @@ nlohmann::ordered_json to_json(const ArmScene& scene, const Task& task,
     nlohmann::ordered_json one = {{"seed", attempt.seed},
                                   {"status", plan::status_name(attempt.plan.status)},
                                   {"iterations", attempt.plan.iterations},
-                                  {"seconds", attempt.plan.seconds}};
-    if (attempt.plan.found()) {
-      one["cost"] = attempt.plan.objective;
-      one["duration_s"] = attempt.plan.duration();
-      one["tip_error_m"] = attempt.replay.tip_error;
-      one["tip_speed_m_s"] = attempt.replay.tip_speed;
-    }
+                                  {"seconds", attempt.plan.seconds},
+                                  {"corrections", attempt.plan.corrections},
+                                  {"cost", attempt.plan.objective},
+                                  {"duration_s", attempt.plan.duration()},
+                                  {"tip_error_m", attempt.plan.tip_error},
+                                  {"tip_speed_m_s", attempt.plan.tip_speed},
+                                  {"planned_tip_error_m", attempt.plan.planned_tip_error},
+                                  {"planned_tip_speed_m_s", attempt.plan.planned_tip_speed}};
     json["starts"].push_back(std::move(one));
   }
   const Attempt* best = best_of(attempts);
   if (best == nullptr) return json;
   json["seed"] = best->seed;
-  json["tip_error_m"] = best->replay.tip_error;
-  json["tip_speed_m_s"] = best->replay.tip_speed;
+  json["tip_error_m"] = best->plan.tip_error;
+  json["tip_speed_m_s"] = best->plan.tip_speed;
   json["times_s"] = list(best->plan.knots.times);
   json["torque_N_m"] = rows_of(best->plan.knots.torque);
-  json["replay"] = {{"times_s", list(best->replay.times)},
-                    {"torque_N_m", rows_of(best->replay.torque)},
-                    {"tip_m", rows_of(best->replay.tip)},
-                    {"tip_velocity_m_s", rows_of(best->replay.tip_velocity)}};
+  const Replay replay = plan::replay(scene.arm, task, best->plan);
+  json["replay"] = {{"times_s", list(replay.times)},
+                    {"torque_N_m", rows_of(replay.torque)},
+                    {"tip_m", rows_of(replay.tip)},
+                    {"tip_velocity_m_s", rows_of(replay.tip_velocity)}};
   return json;
 }
 
@@ -289,11 +296,10 @@ void add_plan(CommandLine& line) {
       .add_option("--speed-tolerance", options->speed_tolerance,
                   "Of the tip's speed at the end (default: 5mm/s)")
       .type_name("SPEED");
-  command
-      .add_option("--method", options->method,
-                  "hermite-simpson or backward-euler (default: hermite-simpson)")
+  command.add_option("--method", options->method, "radau or backward-euler (default: radau)")
       .type_name("NAME");
-  command.add_option("--intervals", options->intervals, "Between knots (default: 50)")
+  command
+      .add_option("--intervals", options->intervals, "Between knots, to begin with (default: 50)")
       .type_name("N");
   command.add_option("--seeds", options->seeds, "Random starts; the cheapest plan is kept (1)")
       .type_name("N");

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "sinew/constraint/effector.hpp"
+#include "sinew/fem/element_count.hpp"
 #include "sinew/record/run_recorder.hpp"
 #include "sinew/record/run_table.hpp"
 
@@ -29,6 +30,7 @@ struct RunOptions {
   std::string out;
   bool vtk = false;
   bool quiet = false;
+  bool keep_going = false;
 };
 
 // What happened, for the table at the end.
@@ -36,7 +38,11 @@ struct Tally {
   std::int64_t steps = 0;
   double wall = 0.0;  ///< s
   double least_volume_ratio = 1.0;
-  std::int64_t cut_back = 0;
+  struct Flagged {
+    std::int64_t steps = 0;
+    double first = 0.0;  ///< s
+  };
+  std::map<sim::StepStatus, Flagged> flagged;
   std::map<std::string, std::int64_t> statuses;
   double judged_from = 0.0;  ///< s
   std::int64_t judged = 0;
@@ -47,10 +53,14 @@ void count(Tally& tally, Session& session) {
   const sim::StepReport& report = session.simulation().report();
   ++tally.steps;
   tally.least_volume_ratio = std::min(tally.least_volume_ratio, report.smallest_volume_ratio);
-  tally.cut_back += report.scale < 1.0 ? 1 : 0;
+  if (sim::is_flagged(report.status)) {
+    Tally::Flagged& flagged = tally.flagged[report.status];
+    if (flagged.steps++ == 0) flagged.first = session.simulation().time();
+  }
   const inverse::InverseController* controller = session.controller();
-  ++tally.statuses[std::string(controller != nullptr ? inverse_status_name(controller->status())
-                                                     : record::law_status_name(report.law))];
+  const bool told = controller != nullptr && !sim::is_flagged(report.status);
+  ++tally.statuses[std::string(told ? inverse_status_name(controller->status())
+                                    : sim::step_status_name(report.status))];
   if (controller == nullptr || session.simulation().time() < tally.judged_from) return;
   ++tally.judged;
   tally.error_sum += controller->error();
@@ -71,7 +81,7 @@ double run_duration(const scene::Robot& robot) {
   const double duration = robot.description.run_duration();
   if (duration > 0.0) return duration;
   throw Error(ErrorKind::missing_key, {.file = robot.description.place.file, .item = "duration"},
-              "the scene says not how long to run, and no signal or target in it ends",
+              "the scene does not say how long to run, and none of its signals or targets ends",
               "add --duration 5s, or duration: 5 s to the scene");
 }
 
@@ -89,6 +99,11 @@ std::vector<std::vector<std::string>> summary(const Tally& tally, Session& sessi
   const double simulated =
       static_cast<double>(tally.steps) * session.robot().model->step().time_step;
   std::vector<std::vector<std::string>> rows;
+  for (const auto& model : session.robot().model->bodies()) {
+    const auto* body = dynamic_cast<const fem::FemBodyModel*>(model.get());
+    if (body == nullptr) continue;
+    rows.push_back({"body " + body->name(), fem::describe_elements(body->elements())});
+  }
   rows.push_back({"steps", fmt::format("{}", tally.steps)});
   rows.push_back({"simulated time", fmt::format("{:.3f} s", simulated)});
   rows.push_back({"wall time", fmt::format("{:.3f} s", tally.wall)});
@@ -104,9 +119,17 @@ std::vector<std::vector<std::string>> summary(const Tally& tally, Session& sessi
   for (const auto& [status, times] : tally.statuses) {
     rows.push_back({"steps " + status, fmt::format("{}", times)});
   }
-  if (tally.cut_back > 0) rows.push_back({"steps cut back", fmt::format("{}", tally.cut_back)});
   rows.push_back({"smallest volume ratio", fmt::format("{:.3f}", tally.least_volume_ratio)});
   return rows;
+}
+
+// What the steps' statuses mean for those who use the numbers, on stderr.
+void warn(const Tally& tally) {
+  for (const auto& [status, flagged] : tally.flagged) {
+    fmt::print(stderr, "sinew: warning: {} of {} steps are {}, the first at t = {:g} s; {}\n",
+               flagged.steps, tally.steps, sim::step_status_name(status), flagged.first,
+               sim::step_status_remedy(status));
+  }
 }
 
 void advance(Session& session, record::RunRecorder& recorder, std::int64_t steps, bool quiet,
@@ -166,12 +189,13 @@ int run(const RunOptions& options) {
     throw;
   }
   finish();
+  warn(tally);
   if (tally.steps < steps) {
     fmt::print(stderr,
                "sinew: interrupted at t = {:g} s of {:g} s; what was recorded is complete\n",
                session.simulation().time(), duration);
   }
-  return 0;
+  return tally.flagged.empty() || options.keep_going ? 0 : 1;
 }
 
 }  // namespace
@@ -188,6 +212,9 @@ void add_run(CommandLine& line) {
   command.add_option("--out", options->out, "Folder for the record (default: out/<scene name>)")
       .type_name("DIR");
   command.add_flag("--vtk", options->vtk, "Also write a series for ParaView, run.pvd");
+  command.add_flag("--keep-going", options->keep_going,
+                   "End with 0 although steps were flagged: out of equilibrium, gaining energy, "
+                   "cut back, or short of their commands");
   command.add_flag("--quiet", options->quiet, "No progress bar and no summary");
   command.footer(
       "Writes DIR/run.csv, DIR/run.h5 and DIR/scene.yaml. Ctrl-C ends the run; what was recorded "

@@ -8,6 +8,7 @@
 
 #include "arguments.hpp"
 #include "command_line.hpp"
+#include "terminal.hpp"
 
 namespace sinew::cli {
 
@@ -21,7 +22,9 @@ scene::Robot load(const SceneOptions& options) {
     require_range("--threads", *options.threads, 1, kMostThreads);
     overrides.push_back(fmt::format("solver.threads={}", *options.threads));
   }
-  return scene::load(options.file, overrides);
+  scene::Robot robot = scene::load(options.file, overrides);
+  print_warnings(robot.notices);
+  return robot;
 }
 
 // The controller to attach: none, the one that was named, or the first.

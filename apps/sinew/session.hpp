@@ -30,16 +30,16 @@ struct LoadedScene {
   std::string controller;  ///< to be attached; empty for none
 };
 
-/// Reads and builds. Throws what scene::load() does, and Error(unknown-name) for a controller that
-/// the scene does not have.
+/// Reads, builds and prints the warnings. Throws what scene::load() does, and Error(unknown-name)
+/// for a controller that the scene does not have.
 /// @param options see there.
 LoadedScene load_scene(const SceneOptions& options);
 
 /// A robot, one simulation of it, and the controller that steers it.
 class Session {
  public:
-  /// Reads, builds and attaches. Throws what scene::load() does, and Error(unknown-name) for a
-  /// controller that the scene does not have.
+  /// Reads, builds, prints the warnings and attaches. Throws what scene::load() does, and
+  /// Error(unknown-name) for a controller that the scene does not have.
   /// @param options see there.
   explicit Session(const SceneOptions& options);
 

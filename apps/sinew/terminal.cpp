@@ -60,6 +60,13 @@ void ProgressBar::update(std::int64_t done, const std::string& note) {
   std::fflush(stderr);
 }
 
+void print_warnings(std::span<const Notice> notices) {
+  for (const Notice& notice : notices) {
+    if (notice.level != NoticeLevel::warning) continue;
+    fmt::print(stderr, "sinew: warning: {}\n", notice.text());
+  }
+}
+
 std::string format_table(const std::vector<std::vector<std::string>>& rows) {
   std::vector<std::size_t> widths;
   for (const auto& row : rows) {

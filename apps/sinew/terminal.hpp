@@ -4,8 +4,11 @@
 
 #include <chrono>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
+
+#include "sinew/core/notice.hpp"
 
 namespace sinew::cli {
 
@@ -43,6 +46,9 @@ class ProgressBar {
   bool drawn_ = false;
   std::chrono::steady_clock::time_point last_{};
 };
+
+/// Warnings on standard error, a line each, as errors are printed; remarks are left out.
+void print_warnings(std::span<const Notice> notices);
 
 /// Rows of text with columns under each other.
 /// @param rows of cells; the first column is set left, the others right.

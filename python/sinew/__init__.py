@@ -21,6 +21,7 @@ from ._core import (
     Limits,
     Linearisation,
     Material,
+    PointMass,
     Polyline,
     Probe,
     Ramp,
@@ -39,7 +40,7 @@ from ._core import (
     materials,
     view,
 )
-from .errors import Error, Place, RunError
+from .errors import Error, Notice, Place, RunError, SinewWarning
 from .scene import load, loads
 
 __all__ = [
@@ -54,7 +55,9 @@ __all__ = [
     "Limits",
     "Linearisation",
     "Material",
+    "Notice",
     "Place",
+    "PointMass",
     "Polyline",
     "Probe",
     "Ramp",
@@ -63,6 +66,7 @@ __all__ = [
     "Signal",
     "Simulation",
     "Sine",
+    "SinewWarning",
     "StaticReport",
     "StepReport",
     "Steps",

@@ -1,10 +1,10 @@
-"""What sinew raises."""
+"""What sinew raises and warns of."""
 
 from __future__ import annotations
 
 from typing import Any, NamedTuple, Union
 
-__all__ = ["Error", "Place", "RunError"]
+__all__ = ["Error", "Notice", "Place", "RunError", "SinewWarning"]
 
 
 class Place(NamedTuple):
@@ -61,6 +61,41 @@ class Error(Exception):
         self.place = place
         self.message = message
         self.remedy = remedy
+
+    def __str__(self) -> str:
+        text = ": ".join(part for part in (str(self.place), self.message) if part)
+        if self.remedy:
+            text += f"; {self.remedy}"
+        return f"{text} [{self.kind}]"
+
+
+class SinewWarning(UserWarning):
+    """A notice of the level "warning", through Python's warnings."""
+
+
+class Notice(NamedTuple):
+    """Something that a user should know of a scene, and that stops nothing.
+
+    Attributes
+    ----------
+    level : str
+        "warning": it follows from a default, and load() warns of it. "remark": the scene asks for
+        what it is about.
+    kind : str
+        "locking-element": the elements make a body much stiffer than its material.
+    place : Place
+        Where in the scene.
+    message : str
+        With the value that it is about.
+    remedy : str
+        What to write instead.
+    """
+
+    level: str
+    kind: str
+    place: Place
+    message: str
+    remedy: str
 
     def __str__(self) -> str:
         text = ": ".join(part for part in (str(self.place), self.message) if part)

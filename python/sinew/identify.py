@@ -17,6 +17,7 @@ if not hasattr(_core, "fit_arm"):
 
 from ._core import (
     ArmFit,
+    MaterialFit,
     MotionRecord,
     ParameterFit,
     RecordFit,
@@ -24,6 +25,7 @@ from ._core import (
     fit_actuator,
     fit_arm,
     fit_cylinder,
+    fit_materials,
     nrmse,
     predict_motion,
     read_motion,
@@ -33,6 +35,7 @@ from ._core import (
 
 __all__ = [
     "ArmFit",
+    "MaterialFit",
     "MotionRecord",
     "ParameterFit",
     "RecordFit",
@@ -40,6 +43,7 @@ __all__ = [
     "fit_actuator",
     "fit_arm",
     "fit_cylinder",
+    "fit_materials",
     "nrmse",
     "predict_motion",
     "read_motion",
@@ -47,5 +51,5 @@ __all__ = [
     "validate_cylinder",
 ]
 
-for _type in (ArmFit, MotionRecord, ParameterFit, RecordFit):
+for _type in (ArmFit, MaterialFit, MotionRecord, ParameterFit, RecordFit):
     _type.__module__ = "sinew.identify"

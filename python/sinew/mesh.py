@@ -1,4 +1,4 @@
-"""Volume meshes: read them, make simple shapes, write VTU. Lengths in m."""
+"""Volume meshes: read them, make simple shapes, write VTU, VTK and STL. Lengths in m."""
 
 from __future__ import annotations
 

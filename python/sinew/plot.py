@@ -55,8 +55,31 @@ def _split(heading: str) -> tuple[str, str]:
     return name, unit.rstrip("]")
 
 
+def _panel(heading: str) -> tuple[str, str] | None:
+    """The panel that a column of run.csv belongs to, and its name there; None: in none."""
+    name, unit = _split(heading)
+    of, _, last = name.rpartition(".")
+    if unit == "J":
+        return "Energy", name
+    if not of:
+        return None
+    if last == "error":
+        return "Error", name
+    if last in ("x", "y", "z", "rx", "ry", "rz") or last.startswith("target_"):
+        return f"Effectors ({unit})", name
+    if last in ("force_x", "force_y", "force_z", "normal_force", "friction_force"):
+        return "Contact force (N)", f"{of} {last.removesuffix('_force')}"
+    if last in ("sticking", "slipping"):
+        return "Contact points", f"{of} {last}"
+    if last == "gap":
+        return "Contact gap (m)", of
+    if last in ("displacement", "volume_growth"):
+        return f"Motion ({unit})", of
+    return f"Effort ({unit})", of
+
+
 def run(folder, out) -> pathlib.Path:
-    """Draws efforts, motions, effectors, probes, errors and energies of a recorded run over time.
+    """Draws efforts, motions, effectors, contacts, probes, errors and energies of a recorded run over time.
 
     Of a line that is probed its length is drawn.
 
@@ -72,23 +95,8 @@ def run(folder, out) -> pathlib.Path:
     time = columns.pop("time [s]")
     panels: dict[str, list[tuple[str, str, list[float]]]] = {}
     for heading, values in columns.items():
-        name, unit = _split(heading)
-        last = name.rsplit(".", 1)[-1]
-        if unit == "J":
-            group = "Energy"
-        elif "." not in name:
-            continue
-        elif last == "error":
-            group = "Error"
-        elif last in ("x", "y", "z", "rx", "ry", "rz") or last.startswith("target_"):
-            group = f"Effectors ({unit})"
-        elif last in ("displacement", "volume_growth"):
-            group = f"Motion ({unit})"
-        else:
-            group = f"Effort ({unit})"
-        if group.startswith(("Effort", "Motion")):
-            name = name.rsplit(".", 1)[0]
-        panels.setdefault(group, []).append((name, unit, values))
+        if (panel := _panel(heading)) is not None:
+            panels.setdefault(panel[0], []).append((panel[1], _split(heading)[1], values))
     probes = read_run(folder, "probes.csv") if (pathlib.Path(folder) / "probes.csv").exists() else {}
     for heading, values in probes.items():
         name, unit = _split(heading)

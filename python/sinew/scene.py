@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import json
 import os
+import warnings
 from collections.abc import Iterable, Mapping
 from typing import Any, Optional, Union
 
 from . import _core
 from ._core import Simulation
-from .errors import Error
+from .errors import Error, SinewWarning
 
 __all__ = ["load", "loads"]
 
@@ -46,13 +47,21 @@ def load(
     Error
         What is wrong, with file, line and column, and the remedy.
 
+    Warns
+    -----
+    SinewWarning
+        Where a default makes a robot that is not what its material says: the warnings among
+        `Simulation.notices`.
+
     Examples
     --------
     >>> sim = sinew.load("trunk.yaml", set=["time_step=5ms"])
     """
     overrides = _assignments(set)
     if isinstance(scene, Mapping):
-        return _core.load_tree(scene, overrides, os.fspath(folder), "scene", _count(threads))
+        return _warned(
+            _core.load_tree(scene, overrides, os.fspath(folder), "scene", _count(threads))
+        )
     if not isinstance(scene, (str, os.PathLike)):
         raise Error(
             "wrong-type",
@@ -60,7 +69,7 @@ def load(
             f"a value of type {type(scene).__name__} is no scene",
             "give the path of a YAML file, or a dict",
         )
-    return _core.load_file(os.fspath(scene), overrides, _count(threads))
+    return _warned(_core.load_file(os.fspath(scene), overrides, _count(threads)))
 
 
 def loads(
@@ -83,7 +92,17 @@ def loads(
     -------
     Simulation
     """
-    return _core.load_text(text, _assignments(set), os.fspath(folder), "scene", _count(threads))
+    return _warned(
+        _core.load_text(text, _assignments(set), os.fspath(folder), "scene", _count(threads))
+    )
+
+
+def _warned(sim: Simulation) -> Simulation:
+    """Warns of a scene's notices where load() or loads() was called."""
+    for notice in sim.notices:
+        if notice.level == "warning":
+            warnings.warn(str(notice), SinewWarning, stacklevel=3)
+    return sim
 
 
 def _count(threads: Optional[int]) -> Optional[int]:

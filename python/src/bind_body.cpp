@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "sinew/fem/assembly.hpp"
+#include "sinew/fem/element_count.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mesh/self_touch.hpp"
 #include "sinew/pcc/arm_body.hpp"
@@ -156,7 +157,7 @@ void move_base(const Body& self, const py::object& translation, const py::object
   const Vector3 turn = read(rotation, "move_base(rotation)");
   const Vector3 centre = read(center, "move_base(center)");
   const Session::Use use(*self.session);
-  self.session->simulation().fem_body(self.index).set_base(shift, turn, centre);
+  self.session->simulation().move_base(self.index, shift, turn, centre);
 }
 
 void bind_state(py::class_<Body>& type) {
@@ -167,7 +168,8 @@ void bind_state(py::class_<Body>& type) {
       R"(move_base($self, translation=(0.0, 0.0, 0.0), rotation=(0.0, 0.0, 0.0), center=(0.0, 0.0, 0.0))
 --
 
-Moves the fixed nodes from the next step on: turned about `center`, then shifted, from rest.
+Moves the fixed nodes in the next step: turned about `center`, then shifted, from rest. An input, as
+commands are: reset() puts the base back, and a saved state says where the base was.
 
 Parameters
 ----------
@@ -177,10 +179,16 @@ rotation : (3,) array_like
     Rotation vector, rad.
 center : (3,) array_like
     m, at rest.
+
+Raises
+------
+Error
+    bad-argument where the scene moves this base by `base`; nothing-fixed; not-finite.
 )");
   type.def_property_readonly(
           "positions", [](const Body& self) { return points_view(self, any(self).positions()); },
-          R"((n, 3) ndarray: positions of all nodes now, in the mesh's order (m).
+          R"((n, 3) ndarray: positions of all nodes now, in the mesh's order (m). Where a mesh of linear
+tetrahedra is made quadratic, its own nodes come first and the middle nodes after them.
 
 A live, read-only view: it shows every later step, keeps the simulation alive, and must not be read
 while another thread steps. Copy it to keep a moment: `body.positions.copy()`.)")
@@ -277,6 +285,16 @@ void bind_mesh_of(py::class_<Body>& type) {
                                 static_cast<py::ssize_t>(list.size()), 8, py::cast(self.session));
           },
           "(m, 8) ndarray of int32: the nodes of every hexahedron, in VTK's order. Read-only.")
+      .def_property_readonly(
+          "elements",
+          [](const Body& self) {
+            py::dict result;
+            for (const auto& [element, count] : fem::count_elements(elements(self))) {
+              result[py::str(std::string(element))] = count;
+            }
+            return result;
+          },
+          "dict: number of elements by kind, as {'tet10': 2639}; kinds are those of scenes.")
       .def_property_readonly("fixed", &fixed,
                              "(n,) ndarray of bool: nodes that never move: fixed ones and those "
                              "that belong to no element.")

@@ -222,7 +222,8 @@ Raises
 ------
 Error
     actuator-owned while another controller is attached, unknown-name, no-effectors, wrong-shape,
-    not-finite, out-of-range.
+    not-finite, out-of-range; suspicious-unit for a target farther than a hundred sizes of the
+    robot.
 )";
 
 void bind_methods(py::class_<Controller>& type) {
@@ -281,9 +282,16 @@ void bind_results(py::class_<Controller>& type) {
   type.def_property_readonly("status", guarded([](const InverseController& law) {
                                return std::string(inverse_status_name(law.status()));
                              }),
-                             "str: how the last step served the targets: 'on-target'; "
-                             "'rate-limited', still on the way; 'out-of-reach', as near as limits "
-                             "allow; 'limits-conflict'.")
+                             "str: how the last step served the targets: 'not-started'; "
+                             "'on-target', within the tolerance and as foreseen; 'moving', on the "
+                             "way; 'rate-limited', on the way at the limits on rates; "
+                             "'out-of-reach', at rest as near as limits allow; 'local-optimum', at "
+                             "rest where no small change of efforts comes nearer, though no limit "
+                             "is in the way; 'limits-conflict', see `conflict`.")
+      .def_property_readonly(
+          "conflict", guarded([](const InverseController& law) { return law.conflict(); }),
+          "str: with 'limits-conflict', which limits of which actuators contradict each other; "
+          "else empty.")
       .def_property_readonly(
           "efforts", guarded([](const InverseController& law) { return copy(law.efforts()); }),
           "(k,) ndarray: efforts chosen last (N), in the order of `actuators`. A copy.")
@@ -291,12 +299,13 @@ void bind_results(py::class_<Controller>& type) {
       .def_property_readonly("error",
                              guarded([](const InverseController& law) { return law.error(); }),
                              "float: distance of the effectors from their targets now, the "
-                             "largest one (m or rad).")
+                             "largest one (m or rad); measured, before the first step too.")
       .def_property_readonly("errors", &errors, "dict: `error` of every effector.")
       .def_property_readonly("predicted_error", guarded([](const InverseController& law) {
                                return law.predicted_error();
                              }),
-                             "float: what the last linearisation left (m or rad).")
+                             "float: what the last linearisation left (m or rad), all effectors "
+                             "together; NaN before a step.")
       .def_property_readonly(
           "attached", [](const Controller& self) { return self.attached->attached; },
           "bool: whether it still owns its actuators.")

@@ -7,7 +7,7 @@
 #include "sinew/mesh/read.hpp"
 #include "sinew/mesh/report.hpp"
 #include "sinew/mesh/shapes.hpp"
-#include "sinew/mesh/write.hpp"
+#include "sinew/mesh/write_mesh.hpp"
 
 #include "arrays.hpp"
 #include "bindings.hpp"
@@ -97,16 +97,23 @@ str
 )")
       .def(
           "write",
-          [](const Mesh& self, const std::filesystem::path& path) { mesh::write_vtu(path, self); },
+          [](const Mesh& self, const std::filesystem::path& path) { mesh::write_mesh(path, self); },
           py::arg("path"),
           R"(write($self, path)
 --
 
-Writes a VTU file (binary, compressed; lengths in m) with the named sets.
+Writes the mesh in the format of the file's ending, lengths in m.
 
 Parameters
 ----------
 path : path-like
+    .vtu (VTK XML, compressed) or .vtk (VTK legacy, binary), both with the named sets; .stl: the
+    outside alone, as triangles.
+
+Raises
+------
+Error
+    unknown-format for another ending, file-unwritable.
 )")
       .def("__repr__", [](const Mesh& self) {
         return fmt::format("<sinew.mesh.Mesh '{}', {} nodes, {} elements>", self.name,

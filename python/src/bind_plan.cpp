@@ -65,10 +65,9 @@ PlanTask make_task(const PccArm& of, const py::object& goal, const py::object& t
   }
   if (method == plan::method_name(plan::Method::backward_euler)) {
     task.grid.method = plan::Method::backward_euler;
-  } else if (method != plan::method_name(plan::Method::hermite_simpson)) {
+  } else if (method != plan::method_name(plan::Method::radau)) {
     throw Error(ErrorKind::unknown_choice, {.item = "Task(method)"},
-                fmt::format("there is no '{}'", method),
-                "use 'hermite-simpson' or 'backward-euler'");
+                fmt::format("there is no '{}'", method), "use 'radau' or 'backward-euler'");
   }
   task.start.position = to_optional(theta, "Task(theta)", arm.coordinates(), "rad");
   task.start.rate = to_optional(theta_dot, "Task(theta_dot)", arm.coordinates(), "rad/s");
@@ -80,11 +79,16 @@ PlanTask make_task(const PccArm& of, const py::object& goal, const py::object& t
 }
 
 plan::Plan solve(const PlanTask& self, std::uint64_t seed, const plan::Plan* warm, double tolerance,
-                 int max_iterations, double max_time) {
+                 int max_iterations, double max_time, int corrections) {
+  if (corrections < 0) {
+    throw Error(ErrorKind::out_of_range, {.item = "solve(corrections)"},
+                fmt::format("{}", corrections), "give zero or more");
+  }
   const py::gil_scoped_release release;
   plan::Planner planner(
       self.arm, self.task,
-      {.tolerance = tolerance, .max_iterations = max_iterations, .max_time = max_time});
+      {{.tolerance = tolerance, .max_iterations = max_iterations, .max_time = max_time},
+       corrections});
   return warm == nullptr ? planner.plan(seed) : planner.replan(*warm);
 }
 
@@ -136,8 +140,10 @@ void bind_plans(py::module_& module) {
   py::class_<Plan>(module, "Plan", "What Task.solve() found.")
       .def_property_readonly(
           "status", [](const Plan& self) { return std::string(plan::status_name(self.status)); },
-          "str: 'solved', 'acceptable', 'infeasible', 'iteration-limit', 'time-limit' or "
-          "'failed'.")
+          R"(str: 'solved' or 'acceptable' where the program was solved and the motion of its torques
+ends within the tolerances and clear of the obstacles; 'not-met-on-replay' where that motion
+misses; 'infeasible', 'iteration-limit', 'time-limit' or 'failed' where the program was not
+solved.)")
       .def_property_readonly("found", &Plan::found, "bool: solved or acceptable.")
       .def_property_readonly(
           "times", [](const Plan& self) { return copy(self.knots.times); }, "(knots,) s.")
@@ -155,14 +161,27 @@ void bind_plans(py::module_& module) {
           "objective", [](const Plan& self) { return self.objective; }, "float.")
       .def_property_readonly(
           "tip_error", [](const Plan& self) { return self.tip_error; },
-          "float: m, of the plan itself, at its end.")
+          "float: m, at the end of the motion that the torques cause, integrated anew.")
       .def_property_readonly(
           "tip_speed", [](const Plan& self) { return self.tip_speed; },
-          "float: m/s, of the plan itself, at its end.")
+          "float: m/s, at the end of that motion.")
       .def_property_readonly(
-          "iterations", [](const Plan& self) { return self.iterations; }, "int.")
+          "clearance", [](const Plan& self) { return self.clearance; },
+          "float: m, the least between axis and obstacles in that motion; inf without any.")
       .def_property_readonly(
-          "seconds", [](const Plan& self) { return self.seconds; }, "float: of the solver.")
+          "planned_tip_error", [](const Plan& self) { return self.planned_tip_error; },
+          "float: m, of the last knot, theta[-1].")
+      .def_property_readonly(
+          "planned_tip_speed", [](const Plan& self) { return self.planned_tip_speed; },
+          "float: m/s, of the last knot.")
+      .def_property_readonly(
+          "iterations", [](const Plan& self) { return self.iterations; }, "int: of all programs.")
+      .def_property_readonly(
+          "corrections", [](const Plan& self) { return self.corrections; },
+          "int: programs solved after the first, with another aim or more knots.")
+      .def_property_readonly(
+          "seconds", [](const Plan& self) { return self.seconds; },
+          "float: of all programs and replays.")
       .def_property_readonly(
           "drive",
           [](const Plan& self) -> py::object {
@@ -181,29 +200,28 @@ commands give).)")
 (inputs,) N m at a time in s: linear between knots, with backward Euler constant; with a drive what
 its commands cause.)");
   using plan::Replay;
-  py::class_<Replay>(module, "PlanReplay", "An arm's motion over equal steps.")
+  py::class_<Replay>(module, "PlanReplay", "An arm's motion at equally spaced times.")
       .def_property_readonly(
-          "times", [](const Replay& self) { return copy(self.times); }, "(steps + 1,) s.")
+          "times", [](const Replay& self) { return copy(self.times); }, "(samples,) s.")
       .def_property_readonly(
           "theta", [](const Replay& self) { return copy(self.position); },
-          "(steps + 1, coordinates) rad.")
+          "(samples, coordinates) rad.")
       .def_property_readonly(
           "theta_dot", [](const Replay& self) { return copy(self.rate); },
-          "(steps + 1, coordinates) rad/s.")
+          "(samples, coordinates) rad/s.")
       .def_property_readonly(
-          "torque", [](const Replay& self) { return copy(self.torque); },
-          "(steps + 1, inputs) N m.")
+          "torque", [](const Replay& self) { return copy(self.torque); }, "(samples, inputs) N m.")
       .def_property_readonly(
-          "tip", [](const Replay& self) { return copy(self.tip); }, "(steps + 1, 3) m.")
+          "tip", [](const Replay& self) { return copy(self.tip); }, "(samples, 3) m.")
       .def_property_readonly(
           "tip_velocity", [](const Replay& self) { return copy(self.tip_velocity); },
-          "(steps + 1, 3) m/s.")
+          "(samples, 3) m/s.")
       .def_property_readonly(
           "tip_error", [](const Replay& self) { return self.tip_error; }, "float: m, at the end.")
       .def_property_readonly(
           "tip_speed", [](const Replay& self) { return self.tip_speed; }, "float: m/s, at the end.")
       .def_property_readonly(
-          "clearance", [](const Replay& self) { return self.clearance; },
+          "clearance", &Replay::clearance,
           "float: m, the least between the axis and the obstacles; inf without any.");
 }
 
@@ -229,8 +247,9 @@ effort, tip_speed, time : float
 duration : float
     s; with duration_range (least, most) it is free and this its first guess.
 intervals : int
+    Of the first mesh, equal ones; a plan may end with more, and uneven ones.
 method : str
-    "hermite-simpson" or "backward-euler".
+    "radau" (Radau IIA of three stages) or "backward-euler".
 theta, theta_dot, torque : (coordinates,) rad, rad/s and (inputs,) N m, optional
     The start; straight, at rest, without torque when left out.
 obstacles : list of Obstacle
@@ -256,30 +275,37 @@ Error
            py::arg("torque_rate_limits") = py::none(), py::arg("tolerance") = 2e-3,
            py::arg("speed_tolerance") = 5e-3, py::arg("effort") = 0.1, py::arg("tip_speed") = 0.0,
            py::arg("time") = 0.0, py::arg("duration") = 1.6, py::arg("duration_range") = py::none(),
-           py::arg("intervals") = 50, py::arg("method") = "hermite-simpson",
-           py::arg("theta") = py::none(), py::arg("theta_dot") = py::none(),
-           py::arg("torque") = py::none(), py::arg("obstacles") = std::vector<plan::Obstacle>{},
-           py::arg("backbone_points") = 4, py::arg("actuators") = py::none(),
-           py::arg("cylinders") = py::none(), py::arg("lead") = py::none(),
-           py::arg("command_rate_limits") = py::none(),
+           py::arg("intervals") = 50, py::arg("method") = "radau", py::arg("theta") = py::none(),
+           py::arg("theta_dot") = py::none(), py::arg("torque") = py::none(),
+           py::arg("obstacles") = std::vector<plan::Obstacle>{}, py::arg("backbone_points") = 4,
+           py::arg("actuators") = py::none(), py::arg("cylinders") = py::none(),
+           py::arg("lead") = py::none(), py::arg("command_rate_limits") = py::none(),
            py::arg("command") = plan::Objective{}.command)
-      .def("solve", &solve, py::arg("seed") = 0, py::kw_only(), py::arg("warm") = nullptr,
-           py::arg("tolerance") = 1e-6, py::arg("max_iterations") = 300, py::arg("max_time") = 30.0,
-           R"(solve($self, seed=0, *, warm=None, tolerance=1e-06, max_iterations=300, max_time=30.0)
+      .def(
+          "solve", &solve, py::arg("seed") = 0, py::kw_only(), py::arg("warm") = nullptr,
+          py::arg("tolerance") = 1e-6, py::arg("max_iterations") = 300, py::arg("max_time") = 30.0,
+          py::arg("corrections") = plan::PlannerSettings{}.corrections,
+          R"(solve($self, seed=0, *, warm=None, tolerance=1e-06, max_iterations=300, max_time=30.0, corrections=6)
 --
 
-A Plan; look at its status.
+A Plan; look at its status. The motion of its torques is integrated anew, to an accuracy of its own;
+where it misses the goal's tolerances or an obstacle's clearance the program is solved again with
+its aim moved by what was missed, or with more knots where they are too coarse.
 
 Parameters
 ----------
 seed : int
     Of the random torques whose motion is the first guess.
 warm : Plan, optional
-    Of a similar task with as many intervals: start there instead.
+    Of a similar task: start there instead, on its knots.
 tolerance : float
     Of the solver, scaled.
-max_iterations, max_time : int, float
-    The latter in s.
+max_iterations : int
+    Of each program.
+max_time : float
+    s, of all programs together.
+corrections : int
+    Most programs after the first, 0: the first as it is.
 
 Raises
 ------
@@ -296,7 +322,8 @@ Error
           R"(replay($self, plan, arm=None, *, time_step=0.001)
 --
 
-The plan's torque on the arm, or on another one, in fine implicit steps: a Replay.)")
+The plan's torque on the arm, or on another one, to an accuracy far finer than the plan's: a Replay,
+in samples `time_step` (s) apart.)")
       .def(
           "replay_commands",
           [](const PlanTask& self, const py::object& command, const py::object& actuators,
@@ -316,7 +343,7 @@ The plan's torque on the arm, or on another one, in fine implicit steps: a Repla
 --
 
 Commands (samples, inputs) through the whole chain, cylinders, lines, actuators and the arm or
-another one, in fine implicit steps: a Replay of lead + duration whose times begin with the
+another one, integrated like a plan: a Replay of lead + duration whose times begin with the
 commands. Actuators and cylinders are the task's when left out; all is at rest before.)");
 }
 

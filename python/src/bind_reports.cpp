@@ -12,18 +12,6 @@ namespace {
 using sim::StaticReport;
 using sim::StepReport;
 
-const char* law_status_name(sim::LawStatus status) {
-  switch (status) {
-    case sim::LawStatus::solved:
-      return "solved";
-    case sim::LawStatus::limits_conflict:
-      return "limits-conflict";
-    case sim::LawStatus::failed:
-      return "failed";
-  }
-  return "unknown";
-}
-
 py::dict times_of(const StepReport& report) {
   py::dict times;
   for (std::size_t i = 0; i < sim::kStageCount; ++i) {
@@ -36,17 +24,23 @@ py::dict times_of(const StepReport& report) {
 void bind_step_report(py::module_& module) {
   py::class_<StepReport>(module, "StepReport", "What the last step did.")
       .def_property_readonly(
-          "status", [](const StepReport& self) { return law_status_name(self.law); },
+          "status", [](const StepReport& self) { return sim::step_status_name(self.status); },
           "str: 'solved'; 'limits-conflict' when limits contradict each other and the least "
-          "violation was taken.")
+          "violation was taken; or a flag, of which step() and run() warn: 'command-not-reached', "
+          "'cut-back', 'not-in-equilibrium', 'gaining-energy'.")
+      .def_property_readonly(
+          "flagged", [](const StepReport& self) { return sim::is_flagged(self.status); },
+          "bool: whether the step's numbers are not those of the robot.")
       .def_readonly("residual", &StepReport::residual,
-                    "float: norm of the imbalance of forces (N). One linearisation: of the state "
-                    "that the step began from; Newton: of its end.")
+                    "float: norm of the imbalance of forces at the end of the step (N).")
+      .def_readonly("energy_gained", &StepReport::energy_gained,
+                    "float: energy (J) that dynamics holds beyond what was put in since the start; "
+                    "negative where the integrator damps.")
       .def_readonly("relative_residual", &StepReport::relative_residual,
                     "float: residual over the sum of the forces' norms.")
       .def_readonly("violation", &StepReport::violation,
-                    "float: how far the actuators are from their law at that state (m).")
-      .def_readonly("iterations", &StepReport::iterations, "int: linearisations in the step.")
+                    "float: how far the actuators are from their law at the end (m).")
+      .def_readonly("iterations", &StepReport::iterations, "int: linear solutions in the step.")
       .def_readonly("scale", &StepReport::scale,
                     "float: 1, or less when the motion was cut back to keep elements from "
                     "inverting.")
@@ -56,8 +50,8 @@ void bind_step_report(py::module_& module) {
                              "dict: seconds in 'assembly', 'compliance', 'factorisation', 'law', "
                              "'correction' and 'total'.")
       .def("__repr__", [](const StepReport& self) {
-        return fmt::format("<StepReport {}, residual {:.3g} N, {} linearisation(s), {:.3g} ms>",
-                           law_status_name(self.law), self.residual, self.iterations,
+        return fmt::format("<StepReport {}, residual {:.3g} N, {} iteration(s), {:.3g} ms>",
+                           sim::step_status_name(self.status), self.residual, self.iterations,
                            1e3 * self.times.total);
       });
 }
@@ -77,9 +71,20 @@ void bind_static_report(py::module_& module) {
       .def_readonly("iterations", &StaticReport::iterations,
                     "int: Newton's iterations over all load steps.")
       .def_readonly("load_steps", &StaticReport::load_steps, "int: load steps taken.")
+      .def_readonly("relaxation_steps", &StaticReport::relaxation_steps,
+                    "int: steps of overdamped motion taken, from where load steps ended or an "
+                    "unstable equilibrium was left.")
+      .def_readonly("negative_pivots", &StaticReport::negative_pivots,
+                    "int: negative eigenvalues of the exact tangent on the motions that commanded "
+                    "motions, drives and contacts leave free. Of pressure on open surfaces, whose "
+                    "tangent is not symmetric, the symmetric part is counted.")
+      .def_readonly("stable", &StaticReport::stable,
+                    "bool: whether small disturbances die out: no negative pivots, or, without a "
+                    "potential, overdamped motion came back from a disturbance.")
       .def("__repr__", [](const StaticReport& self) {
-        return fmt::format("<StaticReport {} in {} iterations, residual {:.3g} N>",
-                           newton_status_name(self.status), self.iterations, self.residual);
+        return fmt::format("<StaticReport {} in {} iterations, residual {:.3g} N, {}>",
+                           newton_status_name(self.status), self.iterations, self.residual,
+                           self.stable ? "stable" : "unstable");
       });
 }
 

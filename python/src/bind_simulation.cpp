@@ -6,6 +6,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "errors.hpp"
 #include "session.hpp"
 #include "tree.hpp"
 
@@ -82,6 +83,15 @@ py::dict all_probes(const std::shared_ptr<Session>& self) {
   return result;
 }
 
+py::dict all_masses(const std::shared_ptr<Session>& self) {
+  py::dict result;
+  int index = 0;
+  for (const auto& mass : self->model().masses()) {
+    result[mass.name.c_str()] = PointMass{{self, index++}};
+  }
+  return result;
+}
+
 py::dict all_contacts(const std::shared_ptr<Session>& self) {
   py::dict result;
   int index = 0;
@@ -109,16 +119,25 @@ LinearisationChoice choice(const std::string& tangent, bool geometric_stiffness,
           geometric_stiffness, statics};
 }
 
+sim::StabilityChoice stability_choice(const std::string& name) {
+  if (name == "stable") return sim::StabilityChoice::stable;
+  if (name == "any") return sim::StabilityChoice::any;
+  throw Error(ErrorKind::unknown_choice, {.item = "solve_static(stability)"},
+              fmt::format("there is no stability '{}'", name), "use 'stable' or 'any'");
+}
+
 sim::StaticReport solve_static(Session& self, double tolerance, int max_iterations,
-                               int max_load_steps) {
-  if (!(tolerance > 0.0) || max_iterations < 1 || max_load_steps < 1) {
+                               int max_load_steps, int max_relaxation_steps,
+                               const std::string& stability) {
+  if (!(tolerance > 0.0) || max_iterations < 1 || max_load_steps < 1 || max_relaxation_steps < 0) {
     throw Error(ErrorKind::out_of_range, {.item = "solve_static()"},
                 fmt::format("tolerance {:g}, max_iterations {} and max_load_steps {} must be "
-                            "positive",
-                            tolerance, max_iterations, max_load_steps),
+                            "positive, max_relaxation_steps {} not negative",
+                            tolerance, max_iterations, max_load_steps, max_relaxation_steps),
                 "leave them out for the defaults");
   }
-  return self.solve_static({tolerance, max_iterations, max_load_steps});
+  return self.solve_static({tolerance, max_iterations, max_load_steps, max_relaxation_steps,
+                            stability_choice(stability)});
 }
 
 template <typename Get>
@@ -164,6 +183,17 @@ An effector by its name. Raises Error (unknown-name) with a suggestion.
 --
 
 A load by its name. Raises Error (unknown-name) with a suggestion.
+)")
+      .def(
+          "mass",
+          [](const std::shared_ptr<Session>& self, const std::string& name) {
+            return PointMass{{self, self->model().mass_index(name)}};
+          },
+          py::arg("name"),
+          R"(mass($self, name)
+--
+
+A mass that hangs on a body, by its name. Raises Error (unknown-name) with a suggestion.
 )")
       .def(
           "follow_path",
@@ -285,6 +315,8 @@ A body by its name. Raises Error (unknown-name) with a suggestion.
                              "dict: all effectors by name, in the scene's order.")
       .def_property_readonly("probes", &all_probes,
                              "dict: all probes by name, in the scene's order.")
+      .def_property_readonly("masses", &all_masses,
+                             "dict: all masses that hang on bodies by name, body by body.")
       .def_property_readonly("contacts", &all_contacts,
                              "dict: all contacts by name, in the scene's order.")
       .def_property_readonly("bodies", &all_bodies,
@@ -309,15 +341,21 @@ RunError
     diverged, inverted-in-run, singular-matrix or not-converged, with the step, the body and the
     likely cause; the state is then that before the step that failed.
 )")
-      .def("solve_static", &solve_static, py::kw_only(), py::arg("tolerance") = 1e-10,
-           py::arg("max_iterations") = 60, py::arg("max_load_steps") = 256,
-           R"(solve_static($self, *, tolerance=1e-10, max_iterations=60, max_load_steps=256)
+      .def(
+          "solve_static", &solve_static, py::kw_only(), py::arg("tolerance") = 1e-10,
+          py::arg("max_iterations") = 60, py::arg("max_load_steps") = 256,
+          py::arg("max_relaxation_steps") = 200, py::arg("stability") = "stable",
+          R"(solve_static($self, *, tolerance=1e-10, max_iterations=60, max_load_steps=256, max_relaxation_steps=200, stability='stable')
 --
 
-Newton to the static equilibrium at the present inputs: exact tangent, cables' geometric stiffness.
+A stable static equilibrium at the present inputs, by Newton with the exact tangent and the cables'
+geometric stiffness.
 
 Limits on rates are lifted and the actuators of a controller hold their efforts. Velocities become
-zero; time stands still.
+zero; time stands still. Where Newton fails in one go, the load comes in parts; where that ends
+before the full load, the robot moves on by overdamped motion. An unstable equilibrium (a column
+straight beyond its buckling load) is disturbed along the direction of its lowest curvature and left
+for a stable one.
 
 Parameters
 ----------
@@ -327,6 +365,11 @@ max_iterations : int
     Of Newton in one load step.
 max_load_steps : int
     Where one go fails, the load comes in parts, the least of which is its inverse.
+max_relaxation_steps : int
+    Steps of overdamped motion.
+stability : str
+    'stable', or 'any' for the equilibrium that Newton finds, stable or not: to follow an unstable
+    branch. See StaticReport.negative_pivots.
 
 Returns
 -------
@@ -335,7 +378,7 @@ StaticReport
 Raises
 ------
 RunError
-    not-converged when no equilibrium is found; the state is then as before.
+    not-converged when no equilibrium is found, or none that is stable; the state is then as before.
 )")
       .def("run", &run, py::arg("duration") = py::none(), py::kw_only(),
            py::arg("record") = py::none(), py::arg("every") = 1, py::arg("progress") = py::none(),
@@ -377,7 +420,8 @@ void bind_state(Type& type) {
            R"(reset($self)
 --
 
-Back to the start, bit for bit: state, time, and the scene's commands; external forces become zero.
+Back to the start, bit for bit: state, time, and the scene's commands; external forces become zero,
+and a base that move_base() moved is back.
 Controllers stay attached and keep their targets.
 )")
       .def("clone", &Session::clone,
@@ -397,8 +441,8 @@ Simulation
            R"(save_state($self, path)
 --
 
-Writes the state: positions, velocities, efforts, drives, time. Commands and external forces are
-inputs and are not part of it.
+Writes the state: positions, velocities, bases, efforts, drives, time. Commands and external forces
+are inputs and are not part of it.
 
 Parameters
 ----------
@@ -447,6 +491,16 @@ Error
       .def_property_readonly(
           "name", [](const Session& self) { return self.robot().robot.description.name; },
           "str: of the scene.")
+      .def_property_readonly(
+          "notices",
+          [](const Session& self) {
+            py::list result;
+            for (const Notice& notice : self.robot().robot.notices) {
+              result.append(to_python(notice));
+            }
+            return result;
+          },
+          "list of Notice: what a user should know of the scene, warnings and remarks.")
       .def("to_yaml", &to_yaml,
            R"(to_yaml($self)
 --

@@ -32,6 +32,7 @@ void bind_reports(py::module_& module);
 void bind_actuator(py::module_& module);
 void bind_effector(py::module_& module);
 void bind_load(py::module_& module);
+void bind_mass(py::module_& module);
 void bind_probe(py::module_& module);
 void bind_contact(py::module_& module);
 void bind_body(py::module_& module);
@@ -50,6 +51,7 @@ void bind_plan_drive(py::module_& module);
 void bind_drive(py::module_& module);
 void bind_identify(py::module_& module);
 void bind_identify_arm(py::module_& module);
+void bind_identify_material(py::module_& module);
 
 /// A part of a simulation: keeps the whole alive.
 struct Part {
@@ -59,6 +61,7 @@ struct Part {
 struct Actuator : Part {};
 struct Effector : Part {};
 struct Load : Part {};
+struct PointMass : Part {};
 struct Probe : Part {};
 struct Contact : Part {};
 struct Body : Part {};

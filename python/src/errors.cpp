@@ -6,11 +6,15 @@ namespace sinew::python {
 
 namespace {
 
+py::object to_python(const Place& place) {
+  return py::module_::import("sinew.errors")
+      .attr("Place")(place.file, place.line, place.column, place.item);
+}
+
 py::object make(const char* type, std::string_view kind, const Place& place,
                 const std::string& message, const std::string& remedy) {
-  const auto errors = py::module_::import("sinew.errors");
-  const auto python_place = errors.attr("Place")(place.file, place.line, place.column, place.item);
-  return errors.attr(type)(std::string(kind), python_place, message, remedy);
+  return py::module_::import("sinew.errors")
+      .attr(type)(std::string(kind), to_python(place), message, remedy);
 }
 
 void raise(const py::object& error) { PyErr_SetObject(py::type::of(error).ptr(), error.ptr()); }
@@ -20,6 +24,13 @@ void raise(const py::object& error) { PyErr_SetObject(py::type::of(error).ptr(),
 py::object to_python(const Error& error) {
   return make(error.is_run_failure() ? "RunError" : "Error", error_kind_name(error.kind()),
               error.place(), error.message(), error.remedy());
+}
+
+py::object to_python(const Notice& notice) {
+  return py::module_::import("sinew.errors")
+      .attr("Notice")(std::string(notice_level_name(notice.level)),
+                      std::string(notice_kind_name(notice.kind)), to_python(notice.place),
+                      notice.message, notice.remedy);
 }
 
 void register_errors() {

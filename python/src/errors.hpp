@@ -1,5 +1,5 @@
 /// @file
-/// How C++ errors become sinew.Error and sinew.RunError.
+/// How C++ errors become sinew.Error and sinew.RunError, and notices sinew.Notice.
 #pragma once
 
 #include <string>
@@ -8,6 +8,7 @@
 #include <pybind11/pybind11.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/notice.hpp"
 
 namespace sinew::python {
 
@@ -20,6 +21,9 @@ struct SimulationBusy {};
 /// The Python exception for an error: an instance of sinew.Error, or sinew.RunError for a failed
 /// run.
 py::object to_python(const Error& error);
+
+/// A sinew.Notice.
+py::object to_python(const Notice& notice);
 
 /// The value of `make()`; an Error without a place gets the argument's name.
 /// @param argument as "Ramp". @param make called once.

@@ -25,6 +25,7 @@ PYBIND11_MODULE(_core, module) {
   python::bind_actuator(module);
   python::bind_effector(module);
   python::bind_load(module);
+  python::bind_mass(module);
   python::bind_probe(module);
   python::bind_contact(module);
   python::bind_body(module);
@@ -45,5 +46,6 @@ PYBIND11_MODULE(_core, module) {
 #ifdef SINEW_HAS_IDENTIFY
   python::bind_identify(module);
   python::bind_identify_arm(module);
+  python::bind_identify_material(module);
 #endif
 }

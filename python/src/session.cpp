@@ -83,8 +83,13 @@ std::shared_ptr<Session> Session::clone() const {
   for (std::size_t i = 0; i < model().bodies().size(); ++i) {
     const auto index = static_cast<int>(i);
     if (!of_elements(simulation_, index)) continue;
-    other->simulation_.fem_body(index).external_forces() =
-        simulation_.fem_body(index).external_forces();
+    const fem::FemBody& body = simulation_.fem_body(index);
+    other->simulation_.fem_body(index).external_forces() = body.external_forces();
+    other->simulation_.fem_body(index).rigid_base().ask(body.rigid_base().asked());
+  }
+  for (std::size_t i = 0; i < model().loads().size(); ++i) {
+    const auto index = static_cast<int>(i);
+    other->simulation_.set_load(index, simulation_.load_factor(index));
   }
   std::vector<double> state(simulation_.state_size());
   simulation_.save_state(state);
@@ -118,11 +123,31 @@ void Session::advance(std::int64_t count) {
       const auto pause = Clock::now() + kSignalInterval;
       do {
         simulation_.step();
+        note_status();
         steps_.store(simulation_.steps(), std::memory_order_relaxed);
         ++done;
       } while (done < count && Clock::now() < pause);
     }
     if (PyErr_CheckSignals() != 0) throw pybind11::error_already_set();
+  }
+  warn();
+}
+
+void Session::note_status() {
+  const sim::StepStatus status = simulation_.report().status;
+  if (!sim::is_flagged(status)) return;
+  Flagged& flagged = flagged_[status];
+  if (flagged.steps++ == 0) flagged.first = simulation_.time();
+}
+
+void Session::warn() {
+  for (auto& [status, flagged] : flagged_) {
+    if (std::exchange(flagged.warned, true)) continue;
+    const std::string message = fmt::format("the step to t = {:g} s is {}; {}", flagged.first,
+                                            sim::step_status_name(status),
+                                            sim::step_status_remedy(status));
+    const pybind11::object kind = pybind11::module_::import("sinew.errors").attr("SinewWarning");
+    if (PyErr_WarnEx(kind.ptr(), message.c_str(), 1) != 0) throw pybind11::error_already_set();
   }
 }
 
@@ -140,6 +165,7 @@ void Session::reset() {
     simulation_.fem_body(static_cast<int>(i)).external_forces().setZero();
   }
   simulation_.reset();
+  flagged_.clear();
   steps_ = 0;
 }
 

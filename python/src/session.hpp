@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -82,7 +83,8 @@ class Session {
   std::int64_t steps() const { return steps_.load(std::memory_order_relaxed); }
   double time() const { return static_cast<double>(steps()) * model().step().time_step; }
 
-  /// Advances `count` steps without the interpreter's lock; looks for Ctrl-C now and then. Throws
+  /// Advances `count` steps without the interpreter's lock; looks for Ctrl-C now and then. Warns
+  /// (sinew.SinewWarning) of flagged steps, of each status once until the next reset. Throws
   /// what sim::Simulation::step() does, and Error(not-finite) for external forces that are not.
   void advance(std::int64_t count);
   sim::StaticReport solve_static(const sim::StaticSettings& settings);
@@ -116,11 +118,19 @@ class Session {
 
  private:
   void check_loads() const;
+  void note_status();
+  void warn();
 
   std::shared_ptr<const LoadedRobot> robot_;
   sim::Simulation simulation_;
   std::shared_ptr<AttachedController> controller_;
   std::vector<std::string> row_names_;
+  struct Flagged {
+    std::int64_t steps = 0;
+    double first = 0.0;  // s
+    bool warned = false;
+  };
+  std::map<sim::StepStatus, Flagged> flagged_;  // since the last reset
   std::atomic<std::int64_t> steps_{0};
   mutable std::atomic<bool> busy_{false};
 };

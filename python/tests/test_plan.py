@@ -25,8 +25,22 @@ def test_a_plan_is_carried_out(grab):
     run = task.replay(found)
     assert run.tip.shape == (1601, 3)
     assert run.tip_error == pytest.approx(np.linalg.norm(run.tip[-1] - GOAL))
-    assert run.tip_error < 0.003 and run.tip_speed < 0.01
+    assert found.tip_error <= 2e-3 and found.tip_speed <= 5e-3
+    assert run.tip_error == pytest.approx(found.tip_error, abs=2e-6)
+    assert run.tip_speed == pytest.approx(found.tip_speed, abs=5e-6)
+    at = np.linalg.norm(pcc.published_arm().endpoints(found.theta[-1])[-1] - GOAL)
+    assert found.planned_tip_error == pytest.approx(at, abs=1e-12)
+    assert found.corrections >= 0 and found.clearance == np.inf
     assert run.clearance == np.inf
+
+
+def test_what_the_torques_miss_is_said():
+    settings = {"method": "backward-euler", "duration": 2.4, "intervals": 30}
+    found = plan.Task(pcc.published_arm(), GOAL, LIMITS, **settings).solve(1, corrections=0)
+    assert found.status == "not-met-on-replay" and not found.found
+    assert found.planned_tip_error <= 2e-3 and found.tip_error > 0.05
+    with pytest.raises(sinew.Error, match="give zero or more"):
+        plan.Task(pcc.published_arm(), GOAL, LIMITS).solve(1, corrections=-1)
 
 
 def test_warm_starts_and_obstacles(grab):
@@ -122,7 +136,7 @@ def test_static_reach():
         ({"torque_limits": [[0.1] * 4, [-0.1] * 4]}, "contradictory-limits", "above the upper"),
         ({"torque_limits": [0.1] * 3}, "wrong-shape", "torque_limits"),
         ({"theta": [0.5] * 4, "angle_limits": 0.1}, "contradictory-limits", "start.position"),
-        ({"method": "euler"}, "unknown-choice", "hermite-simpson"),
+        ({"method": "euler"}, "unknown-choice", "radau"),
         ({"intervals": 1}, "out-of-range", "intervals"),
         ({"duration_range": [2.0, 1.0]}, "contradictory-limits", "duration"),
     ],

@@ -16,6 +16,7 @@
 #include "sinew/mesh/selection.hpp"
 #include "sinew/mesh/shapes.hpp"
 #include "sinew/mesh/write.hpp"
+#include "sinew/mesh/write_mesh.hpp"
 #include "sinew/pcc/bending_motion.hpp"
 #include "sinew/qp/quadratic_program.hpp"
 #include "sinew/sim/model_builder.hpp"

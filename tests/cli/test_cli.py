@@ -158,7 +158,7 @@ def test_a_controller_is_attached_unless_none(scene, tmp_path):
     assert "mean error after 0.2 s" in steered.stdout
     rows = rows_of(tmp_path / "a" / "run.csv")
     assert rows[0]["controller"] == "start"
-    assert {r["controller"] for r in rows[1:]} <= {"on-target", "rate-limited", "out-of-reach"}
+    assert {r["controller"] for r in rows[1:]} <= {"on-target", "moving", "rate-limited", "out-of-reach"}
     assert float(rows[5]["tip.target_x [m]"]) == pytest.approx(0.097)
     direct = sinew("run", path, "--duration", "0.05 s", "--controller", "none", "--out", tmp_path / "b")
     assert direct.returncode == DONE, direct.stderr

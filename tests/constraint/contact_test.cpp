@@ -68,6 +68,72 @@ TEST(Surface, TangentFrameIsOrthonormal) {
   }
 }
 
+// Against many points of the way: the first that is inside, else the nearest.
+TEST(Surface, ApproachIsTheFirstMeetingOrTheNearestPoint) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> coordinate(-0.06, 0.06);
+  constexpr int kParts = 4000;
+  int met = 0, missed = 0, between = 0;
+  for (const Surface& surface : surfaces()) {
+    for (int trial = 0; trial < 400; ++trial) {
+      const Vector3 from(coordinate(random), coordinate(random), coordinate(random));
+      const Vector3 to(coordinate(random), coordinate(random), coordinate(random));
+      if (distance(surface, from).gap <= 0.0) continue;
+      double least = distance(surface, from).gap, first = -1.0, at = 0.0;
+      for (int k = 1; k <= kParts && first < 0.0; ++k) {
+        const double share = static_cast<double>(k) / kParts;
+        const double gap = distance(surface, from + share * (to - from)).gap;
+        if (gap < 0.0) first = share;
+        if (gap < least) at = share;
+        least = std::min(least, gap);
+      }
+      const SurfaceApproach found = approach(surface, from, to);
+      const double share = (found.at - from).norm() / (to - from).norm();
+      const Vector3 normal = found.distance.normal;
+      if (std::abs(least) < 1e-6) continue;  // grazes
+      EXPECT_EQ(found.meets, first >= 0.0);
+      EXPECT_LE(found.distance.gap, least + 1e-12);
+      if (found.meets) {
+        ++met;
+        EXPECT_NEAR(share, first, 1.0 / kParts + 1e-9);
+        EXPECT_GE(found.distance.gap, -1e-14);
+        EXPECT_LT(normal.dot(to - found.at), 0.0);
+      } else {
+        ++missed;
+        between += share > 1e-6 && share < 1.0 - 1e-6 ? 1 : 0;
+        EXPECT_NEAR(found.distance.gap, least, 1e-6);
+        if (least > 1e-3) {
+          EXPECT_NEAR(share, at, 0.01);
+        }
+        EXPECT_GT(found.distance.gap + normal.dot(to - found.at), 0.0);  // no plane in its way
+      }
+      EXPECT_GE(found.distance.gap + normal.dot(from - found.at), -1e-14);
+      // No point of the solid lies beyond the plane.
+      const Vector3 foot = found.at - (found.distance.gap - 1e-9) * normal;
+      EXPECT_GE(distance(surface, foot + 0.02 * normal.unitOrthogonal()).gap, 0.0);
+    }
+  }
+  EXPECT_GT(met, 100);
+  EXPECT_GT(missed, 300);
+  EXPECT_GT(between, 50);
+}
+
+TEST(Surface, ApproachOfPointsThatRestTouchOrLeave) {
+  const Sphere ball{Vector3::Zero(), 1.0};
+  const Vector3 top(0.0, 0.0, 1.0);
+  const SurfaceApproach rests = approach(ball, top, top);
+  EXPECT_EQ(rests.at, top);
+  EXPECT_FALSE(rests.meets);
+  EXPECT_FALSE(approach(ball, top, {0.0, 0.0, 2.0}).meets);  // leaves
+  EXPECT_FALSE(approach(ball, top, {1.0, 0.0, 1.0}).meets);  // along the tangent
+  EXPECT_TRUE(approach(ball, top, {1.0, 0.0, 0.99}).meets);  // into it at once
+  EXPECT_EQ(approach(ball, top, {0.0, 0.0, -3.0}).at, top);  // not out at the other side
+  EXPECT_FALSE(approach(ball, {0.0, 0.0, 0.5}, {0.0, 0.0, 2.0}).meets);  // from inside, out
+  const SurfaceApproach inside = approach(ball, {0.0, 0.0, 0.5}, {0.0, 0.0, 0.1});
+  EXPECT_TRUE(inside.meets);
+  EXPECT_DOUBLE_EQ(inside.distance.gap, -0.5);
+}
+
 TEST(Surface, RefusesWhatHasNoSize) {
   EXPECT_THROW(checked(Plane{{}, Vector3::Zero()}), Error);
   EXPECT_THROW(checked(Sphere{{}, 0.0}), Error);
@@ -110,7 +176,7 @@ TEST_F(ContactRows, AreTheDerivativeOfGapAndSlip) {
     mechanics::RowValues values;
     values.resize(pattern);
     const Placement& placement = simulation_.world().placement();
-    contact.begin_step(placement, pose(1.0), pose(1.5), values);
+    contact.begin_step(placement, pose(1.0), pose(1.5), 0.0, values);
     contact.linearise(placement, values);
     const VectorX before = values.delta;
     const Vector3 at = placement.position(effector.point());
@@ -131,6 +197,35 @@ TEST_F(ContactRows, AreTheDerivativeOfGapAndSlip) {
   }
 }
 
+// The frame of a step is that of the way at the point's velocity; rows and positions agree in it.
+TEST_F(ContactRows, FrameIsThatOfTheWay) {
+  const auto& effector = dynamic_cast<const PointEffector&>(model_->effector(0));
+  const Placement& placement = simulation_.world().placement();
+  auto& body = simulation_.fem_body(0);
+  std::vector<double> state(body.state_size());
+  body.save_state(state);
+  for (std::size_t i = state.size() / 2; i < state.size(); i += 3) state[i] = 1.0;  // along x
+  body.load_state(state);
+  const Vector3 at = placement.position(effector.point());
+  const Sphere ball{at + Vector3(0.05, 0.0, -0.0051), 0.005};
+  Contact contact("contact", {effector.point()}, ball, 0.5);
+  mechanics::RowPattern pattern;
+  std::vector<mechanics::RowCurvature> curvatures;
+  contact.declare(pattern, curvatures);
+  mechanics::RowValues values;
+  values.resize(pattern);
+  const Eigen::Isometry3d rest = Eigen::Isometry3d::Identity();
+  contact.begin_step(placement, rest, rest, 0.1, values);
+  EXPECT_LT((values.direction[0] - Vector3::UnitZ()).norm(), 1e-9);  // where it passes
+  EXPECT_NEAR(values.reference[0], 1e-4, 1e-12);
+  for (const Vector3& point : {at, Vector3(0.3, -0.2, 0.1)}) {
+    const Vector3 rows = contact.row_values(0, point, values);
+    EXPECT_LT((contact.position(0, rows, values) - point).norm(), 1e-15);
+  }
+  contact.begin_step(placement, rest, rest, 0.0, values);  // stays
+  EXPECT_LT(values.direction[0][0], -0.9);
+}
+
 TEST_F(ContactRows, PointThatTheSurfaceCarriesDoesNotSlip) {
   const auto& effector = dynamic_cast<const PointEffector&>(model_->effector(0));
   Contact contact("contact", {effector.point()}, Sphere{{0.1, 0.0, 0.03}, 0.03}, 0.5);
@@ -141,7 +236,7 @@ TEST_F(ContactRows, PointThatTheSurfaceCarriesDoesNotSlip) {
   values.resize(pattern);
   auto& body = simulation_.fem_body(0);
   const Placement& placement = simulation_.world().placement();
-  contact.begin_step(placement, pose(0.0), pose(2.0), values);
+  contact.begin_step(placement, pose(0.0), pose(2.0), 0.0, values);
   std::vector<double> state(body.state_size());
   body.save_state(state);
   const Eigen::Isometry3d carry = pose(2.0) * pose(0.0).inverse();

@@ -6,6 +6,7 @@
 #include <random>
 
 #include <Eigen/Geometry>
+#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
@@ -89,12 +90,14 @@ INSTANTIATE_TEST_SUITE_P(
                                      Case{"block", {3, 2, 4}, 0.1, false},
                                      Case{"three materials", {3, 3, 3}, 0.1, true},
                                      Case{"inverted elements", {3, 2, 3}, 0.45, true}),
-                     testing::Values(Tangent::none, Tangent::rotated, Tangent::exact),
+                     testing::Values(Tangent::none, Tangent::rotated, Tangent::projected,
+                                         Tangent::exact),
                      testing::Values(MassMatrix::lumped, MassMatrix::consistent)));
 
 class EveryTangent : public testing::TestWithParam<Tangent> {};
 INSTANTIATE_TEST_SUITE_P(Tangents, EveryTangent,
-                         testing::Values(Tangent::none, Tangent::rotated, Tangent::exact));
+                         testing::Values(Tangent::none, Tangent::rotated, Tangent::projected,
+                                         Tangent::exact));
 
 TEST_P(EveryTangent, ThreadsDoNotChangeABit) {
   const auto mesh = block_mesh(4, 3, 12, kEdge, 0.1);
@@ -163,6 +166,39 @@ TEST(Assembly, ExactMatrixIsTheDerivativeOfTheForces) {
     }
   }
   EXPECT_LT(worst, 1e-7 * matrix.cwiseAbs().maxCoeff());
+}
+
+VectorX eigenvalues_of(const MatrixX& matrix) {
+  return Eigen::SelfAdjointEigenSolver<MatrixX>(matrix, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
+// What steps rely on where the exact matrix is indefinite: A >= 0 and A >= K, element by element and
+// so for the whole.
+TEST(Assembly, ProjectedMatrixIsPositiveAndNeverLessThanTheExactOne) {
+  const auto mesh = block_mesh(2, 2, 3, kEdge, 0.1);
+  const auto model = std::make_shared<const FemModel>(mesh, mixed_settings(*mesh));
+  ThreadPool pool(1);
+  Assembly assembly(model, pool);
+  const auto matrix = [&](const Points& x, Tangent tangent) {
+    assembly.evaluate(x, {.tangent = tangent});
+    return dense_matrix(assembly);
+  };
+  bool indefinite = false;
+  for (const double pressed : {1.0, 0.8, 0.55}) {
+    Points x = moved(*mesh, kEdge, 0.1);
+    x.col(2) *= pressed;
+    const MatrixX exact = matrix(x, Tangent::exact), projected = matrix(x, Tangent::projected);
+    const double scale = exact.cwiseAbs().maxCoeff();
+    indefinite = indefinite || eigenvalues_of(exact).minCoeff() < 0.0;
+    EXPECT_GT(eigenvalues_of(projected).minCoeff(), -1e-10 * scale) << pressed;
+    EXPECT_GT(eigenvalues_of(projected - exact).minCoeff(), -1e-10 * scale) << pressed;
+  }
+  EXPECT_TRUE(indefinite);
+  // Pulled apart, no mode is negative and there is nothing to project.
+  Points x = mesh->nodes;
+  x *= 1.2;
+  const MatrixX exact = matrix(x, Tangent::exact);
+  EXPECT_LT((matrix(x, Tangent::projected) - exact).norm(), 1e-12 * exact.norm());
 }
 
 TEST(Assembly, ForcesAreTheDerivativeOfTheEnergy) {

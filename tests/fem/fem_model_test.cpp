@@ -192,7 +192,7 @@ TEST(FemModel, RefusesBadInputByItsKind) {
        [](auto& m, auto&) {
          m.tetrahedra[2] = {0, 1, 2, 0};
        }},
-      {"nan node", K::zero_volume, [nan](auto& m, auto&) { m.nodes(4, 1) = nan; }},
+      {"nan node", K::non_finite_node, [nan](auto& m, auto&) { m.nodes(4, 1) = nan; }},
       {"no material", K::empty_list, [](auto&, auto& s) { s.regions.clear(); }},
       {"bad material", K::invalid_material,
        [](auto&, auto& s) { s.regions[0].constants.poisson_ratio = 0.5; }},

@@ -106,6 +106,25 @@ TEST(InverseController, HoldsStillWhereTheTargetIsOutOfReach) {
   EXPECT_LE(simulation.actuator(0).effort, 2.0);
 }
 
+TEST(StepDamping, GrowsWhereTheLinearisationMisleadsAndShrinksWhereItHolds) {
+  StepDamping damping;
+  EXPECT_EQ(damping.value(), 1.0);
+  damping.review(1.0, 0.5, 0.5);  // as foreseen: nothing to let go of
+  EXPECT_EQ(damping.value(), 1.0);
+  damping.review(1.0, 0.5, 1.2);  // worse than before
+  EXPECT_EQ(damping.value(), 4.0);
+  damping.review(1.0, 0.5, 0.9);  // a fifth of what was foreseen
+  EXPECT_EQ(damping.value(), 16.0);
+  damping.review(1.0, 0.5, 0.7);  // neither good nor bad
+  EXPECT_EQ(damping.value(), 16.0);
+  damping.review(1.0, 0.5, 0.55);
+  EXPECT_EQ(damping.value(), 8.0);
+  damping.review(1.0, 1.0, 1.0);  // at rest: nothing to judge by
+  EXPECT_EQ(damping.value(), 8.0);
+  damping.reset();
+  EXPECT_EQ(damping.value(), 1.0);
+}
+
 TEST(InverseController, KeepsLimitsOfTensionAndStroke) {
   BeamOptions options;
   options.tension = {.min = 0.05, .max = 1.0};
@@ -130,6 +149,8 @@ TEST(InverseController, SaysWhenLimitsContradictEachOther) {
   InverseController controller(simulation, to({0.099, 0.0, 0.0}));
   controller.step();
   EXPECT_EQ(controller.status(), InverseStatus::limits_conflict);
+  EXPECT_NE(controller.conflict().find("displacement of 'cable_0'"), std::string::npos)
+      << controller.conflict();
   EXPECT_GE(simulation.actuator(0).effort, 3.0);
 }
 

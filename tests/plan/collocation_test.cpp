@@ -1,6 +1,7 @@
 // Exact derivatives of every part of the program against differences.
 #include "sinew/plan/collocation.hpp"
 
+#include <Eigen/LU>
 #include <gtest/gtest.h>
 
 #include "tasks.hpp"
@@ -26,6 +27,7 @@ class Derivatives : public ::testing::TestWithParam<Kind> {
     task.goal.position = {0.1, 0.05, -0.2};
     task.grid.method = GetParam().method;
     task.grid.intervals = 3;
+    task.grid.shares = VectorX{{0.3, 0.5, 0.2}};
     task.grid.duration = 0.3;
     if (GetParam().free) {
       task.grid.least_duration = 0.1;
@@ -59,6 +61,9 @@ class Derivatives : public ::testing::TestWithParam<Kind> {
   Derivatives()
       : arm_(make(GetParam().mixed ? pcc::testing::mixed() : pcc::testing::fluidic())),
         program_(arm_, completed(*arm_, task())) {
+    program_.set_aim({.position = {0.01, 0.0, -0.02},
+                      .velocity = {-0.1, 0.2, 0.0},
+                      .clearance = VectorX{{0.003, 0.0}}});
     std::mt19937 random(7);
     x_ = pcc::testing::random_vector(random, program_.variables(), 0.5);
     if (GetParam().free) x_[x_.size() - 1] = 0.35;
@@ -151,42 +156,77 @@ TEST_P(Derivatives, KnotsPackAndUnpack) {
   EXPECT_EQ(program_.pack(program_.unpack(x_)), x_);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Kinds, Derivatives,
-    ::testing::Values(Kind{"Euler", Method::backward_euler, false, false},
-                      Kind{"EulerFree", Method::backward_euler, true, false},
-                      Kind{"Hermite", Method::hermite_simpson, false, false},
-                      Kind{"HermiteFree", Method::hermite_simpson, true, false},
-                      Kind{"HermiteFreeMixed", Method::hermite_simpson, true, true},
-                      Kind{"EulerDriven", Method::backward_euler, false, false, true},
-                      Kind{"HermiteDriven", Method::hermite_simpson, false, false, true}),
-    [](const auto& kind) { return kind.param.name; });
+INSTANTIATE_TEST_SUITE_P(Kinds, Derivatives,
+                         ::testing::Values(Kind{"Euler", Method::backward_euler, false, false},
+                                           Kind{"EulerFree", Method::backward_euler, true, false},
+                                           Kind{"Radau", Method::radau, false, false},
+                                           Kind{"RadauFree", Method::radau, true, false},
+                                           Kind{"RadauFreeMixed", Method::radau, true, true},
+                                           Kind{"EulerDriven", Method::backward_euler, false, false,
+                                                true},
+                                           Kind{"RadauDriven", Method::radau, false, false, true}),
+                         [](const auto& kind) { return kind.param.name; });
 
-/// Hermite-Simpson and its first interval are exact where the position is a cubic (its own degree:
-/// the rate's parabola); backward Euler on a straight line.
+/// Radau's stages are exact where the position is a cubic, its last where it is of degree four;
+/// backward Euler on a straight line.
 TEST(Transcription, IsExactOnPolynomials) {
   const double h = 0.3;
-  const auto cubic = [](double t) {
-    return std::array{1.0 - 2.0 * t + 3.0 * t * t - 4.0 * t * t * t, -2.0 + 6.0 * t - 12.0 * t * t,
-                      6.0 - 24.0 * t};
+  const auto quartic = [](double t, double fourth) {
+    return std::array{1.0 - 2.0 * t + 3.0 * t * t - 4.0 * t * t * t + fourth * t * t * t * t,
+                      -2.0 + 6.0 * t - 12.0 * t * t + 4.0 * fourth * t * t * t,
+                      6.0 - 24.0 * t + 12.0 * fourth * t * t};
   };
-  VectorX knots(6);
-  for (int k = 0; k < 2; ++k) {
-    for (int b = 0; b < 3; ++b) knots[3 * k + b] = cubic(k * h)[static_cast<std::size_t>(b)];
-  }
-  for (const bool first : {false, true}) {
-    const Transcription rules(Method::hermite_simpson, h, first);
-    EXPECT_NEAR((rules.defect.value * knots)[0], 0.0, 1e-14) << first;
-    const VectorX stage = rules.stages[0].state.value * knots;
-    for (int b = first ? 1 : 0; b < 3; ++b) {  // Radau's inner position is of second order
-      EXPECT_NEAR(stage[b], cubic(h / (first ? 3 : 2))[static_cast<std::size_t>(b)], 1e-13) << b;
+  const Transcription rules(Method::radau, h);
+  EXPECT_EQ(rules.defects(), 0);
+  for (const double fourth : {0.0, 5.0}) {
+    VectorX knots(6);
+    for (int k = 0; k < 2; ++k) {
+      for (int b = 0; b < 3; ++b) {
+        knots[3 * k + b] = quartic(k * h, fourth)[static_cast<std::size_t>(b)];
+      }
     }
-    EXPECT_EQ(rules.stages[1].state.value * knots, knots.tail(3));
+    double area = 0.0;
+    for (const Stage& stage : rules.stages) {
+      const VectorX motion = stage.state.value * knots;
+      const auto expected = quartic(stage.time * h, fourth);
+      // The position within is that of a cubic.
+      for (int b = fourth == 0.0 || stage.time == 1.0 ? 0 : 1; b < 3; ++b) {
+        EXPECT_NEAR(motion[b], expected[static_cast<std::size_t>(b)], 1e-12) << b;
+      }
+      area += h * stage.share * expected[1];
+    }
+    EXPECT_NEAR(area, knots[3] - knots[0], 1e-14);
   }
-  const Transcription euler(Method::backward_euler, h, false);
+  const Transcription euler(Method::backward_euler, h);
   const VectorX line{{1.0, -2.0, 1.0 - 2.0 * h, -2.0}};
   EXPECT_NEAR((euler.defect.value * line)[0], 0.0, 1e-15);
   EXPECT_NEAR((euler.stages[0].state.value * line)[2], 0.0, 1e-15);
+}
+
+/// v' = -rate v over one interval: a mode that is faster than the knots is gone at its end, where
+/// Hermite-Simpson would keep it whole.
+TEST(Transcription, DampsWhatKnotsDoNotResolve) {
+  const double h = 0.032;
+  const Transcription rules(Method::radau, h);
+  for (const double rate : {1.0, 1e3, 1e5, 1e7}) {
+    Matrix3 left;
+    Vector3 right;
+    const VectorX start{{0.0, 1.0, 0.0}};
+    for (int i = 0; i < 3; ++i) {
+      const MatrixX& state = rules.stages[static_cast<std::size_t>(i)].state.value;
+      const VectorX row = state.row(2) + rate * state.row(1);
+      left.row(i) = row.tail(3);
+      right[i] = -row.head(3).dot(start);
+    }
+    const double after = left.partialPivLu().solve(right)[1], z = -rate * h;
+    // The (2, 3) entry of Pade's table (Hairer & Wanner 1996, IV.5).
+    const double stability = (1.0 + 2.0 / 5.0 * z + z * z / 20.0) /
+                             (1.0 - 3.0 / 5.0 * z + 3.0 / 20.0 * z * z - z * z * z / 60.0);
+    EXPECT_NEAR(after, stability, 1e-9);
+    if (rate > 1e4) {
+      EXPECT_LT(std::abs(after), 1e-3);
+    }
+  }
 }
 
 }  // namespace

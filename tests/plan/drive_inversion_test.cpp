@@ -34,7 +34,7 @@ VectorX commands(int count) {
   return u;
 }
 
-/// A plan of one input whose torque rises and falls, Hermite-Simpson's linear between knots.
+/// A plan of one input whose torque rises and falls, linear between knots.
 Plan swing(double size = 0.15) {
   constexpr int kIntervals = 50;
   Plan plan;

@@ -6,6 +6,7 @@
 #include "sinew/pcc/arm_simulation.hpp"
 #include "sinew/plan/replay.hpp"
 
+#include "reintegration.hpp"
 #include "tasks.hpp"
 
 namespace sinew::plan {
@@ -14,6 +15,8 @@ namespace {
 using testing::grab;
 using testing::kGoals;
 using testing::make;
+using testing::reintegrated;
+using testing::TipEnd;
 
 std::shared_ptr<const pcc::Arm> fluidic() { return make(pcc::testing::fluidic()); }
 
@@ -26,18 +29,71 @@ ErrorKind kind_of(const Task& task) {
   return ErrorKind::internal;
 }
 
+/// What a plan says of its end is what its torques do, by an integration that has nothing in common
+/// with the planner's, and within the tolerances; with limits on the torques' rates and without.
+TEST(Planner, ClaimsAreThoseOfAnIndependentIntegration) {
+  const auto arm = fluidic();
+  std::vector<Vector3> goals(std::begin(kGoals), std::end(kGoals));
+  goals.emplace_back(0.35, 0.0, -0.28);
+  for (const double rate : {kNoBound, 2.0}) {
+    for (const Vector3& goal : goals) {
+      Task task = grab(goal);
+      task.limits.torque_rate = VectorX::Constant(4, rate);
+      const Plan plan = Planner(arm, task).plan(1);
+      ASSERT_EQ(plan.status, PlanStatus::solved) << goal.transpose();
+      EXPECT_LE(plan.tip_error, task.goal.tolerance);
+      EXPECT_LE(plan.tip_speed, task.goal.speed_tolerance);
+      const TipEnd end = reintegrated(arm, task, plan);
+      EXPECT_NEAR((end.position - goal).norm(), plan.tip_error, 0.005 * task.goal.tolerance);
+      EXPECT_NEAR(end.velocity.norm(), plan.tip_speed, 0.005 * task.goal.speed_tolerance);
+    }
+  }
+}
+
+/// Backward Euler's damping at 80 ms is the plan's alone.
+TEST(Planner, SaysWhereTheMotionOfTheTorquesMisses) {
+  const auto arm = fluidic();
+  Task task = grab(kGoals[2]);
+  task.grid = {.method = Method::backward_euler, .duration = 2.4, .intervals = 30};
+  const Plan plan = Planner(arm, task, {.corrections = 0}).plan(1);
+  EXPECT_EQ(plan.status, PlanStatus::not_met_on_replay);
+  EXPECT_EQ(status_name(plan.status), "not-met-on-replay");
+  EXPECT_FALSE(plan.found());
+  EXPECT_LE(plan.planned_tip_error, task.goal.tolerance);
+  EXPECT_LE(plan.planned_tip_speed, task.goal.speed_tolerance);
+  EXPECT_GT(plan.tip_error, 0.05);
+  const TipEnd end = reintegrated(arm, task, plan);
+  EXPECT_NEAR((end.position - task.goal.position).norm(), plan.tip_error, 1e-5);
+}
+
+/// Few knots are too coarse: what is missed moves the aim or cuts intervals.
+TEST(Planner, CorrectsWhatCoarseKnotsMiss) {
+  const auto arm = fluidic();
+  Task task = grab(kGoals[0]);
+  task.grid.intervals = 8;
+  const Plan before = Planner(arm, task, {.corrections = 0}).plan(1);
+  ASSERT_EQ(before.status, PlanStatus::not_met_on_replay);
+  const Plan plan = Planner(arm, task).plan(1);
+  ASSERT_TRUE(plan.found());
+  EXPECT_GT(plan.corrections, 0);
+  EXPECT_NEAR(plan.shares().sum(), 1.0, 1e-12);
+  // A plan made anew keeps the knots.
+  task.goal.position.x() += 0.005;
+  const Plan next = Planner(arm, task).replan(plan);
+  ASSERT_TRUE(next.found());
+  EXPECT_GE(next.knots.times.size(), plan.knots.times.size());
+}
+
 TEST(Planner, PlansThatAreCarriedOutReachTheirGoals) {
   const auto arm = fluidic();
   for (const Vector3& goal : kGoals) {
     Task task = grab(goal);
     task.limits.torque_rate = VectorX::Constant(4, 2.0);
     const Plan plan = Planner(arm, task).plan(1);
-    ASSERT_EQ(plan.status, Status::solved);
-    EXPECT_LE(plan.tip_error, task.goal.tolerance * 1.001);
-    EXPECT_LE(plan.tip_speed, task.goal.speed_tolerance * 1.001);
+    ASSERT_EQ(plan.status, PlanStatus::solved);
     const Replay run = replay(arm, task, plan);
-    EXPECT_LT(run.tip_error, 0.003) << goal.transpose();
-    EXPECT_LT(run.tip_speed, 0.01) << goal.transpose();
+    EXPECT_NEAR(run.tip_error, plan.tip_error, 1e-3 * task.goal.tolerance);
+    EXPECT_NEAR(run.tip_speed, plan.tip_speed, 1e-3 * task.goal.speed_tolerance);
     EXPECT_TRUE(
         (plan.knots.torque.cwiseAbs().rowwise() - pcc::published_torque_limits().transpose())
             .maxCoeff() < 1e-8);
@@ -51,8 +107,8 @@ TEST(Planner, EulersPlanIsTheSimulationsMotion) {
   const auto arm = fluidic();
   Task task = grab(kGoals[2]);
   task.grid = {.method = Method::backward_euler, .duration = 2.4, .intervals = 30};
-  const Plan plan = Planner(arm, task).plan(1);
-  ASSERT_EQ(plan.status, Status::solved);
+  const Plan plan = Planner(arm, task, {.corrections = 0}).plan(1);
+  ASSERT_EQ(plan.status, PlanStatus::not_met_on_replay);
   pcc::ArmSimulation simulation(
       arm, {.time_step = 0.08, .integrator = mechanics::Integrator::backward_euler});
   for (int k = 1; k <= 30; ++k) {
@@ -61,18 +117,16 @@ TEST(Planner, EulersPlanIsTheSimulationsMotion) {
   }
 }
 
-/// The gap between the plan and the motion of its torque falls with the fourth power of the knots'
-/// distance, less what the arm's fast modes take from it.
-TEST(Planner, HermiteSimpsonConverges) {
+/// The gap between the program's motion and that of its torque falls fast with the knots' distance,
+/// without limits on the torques' rates too.
+TEST(Planner, RadauConverges) {
   const auto arm = fluidic();
   std::vector<double> gaps;
   for (const int intervals : {20, 40}) {
     Task task = grab(kGoals[1]);
-    task.limits.torque_rate = VectorX::Constant(4, 2.0);
     task.grid.intervals = intervals;
-    const Plan plan = Planner(arm, task).plan(1);
-    ASSERT_EQ(plan.status, Status::solved);
-    const Replay run = replay(arm, task, plan, 5e-4);
+    const Plan plan = Planner(arm, task, {.corrections = 0}).plan(1);
+    const Replay run = replay(arm, task, plan);
     gaps.push_back((run.position.bottomRows(1) - plan.knots.position.bottomRows(1)).norm());
   }
   EXPECT_GT(gaps[0] / gaps[1], 8.0);
@@ -98,7 +152,7 @@ TEST(Planner, AWarmStartNeedsFewerIterations) {
   EXPECT_NEAR(warm.objective, cold.objective, 1e-4 * cold.objective);
   EXPECT_LT(warm.iterations, cold.iterations);
   Task other = grab(kGoals[2]);
-  other.grid.intervals = 40;
+  other.limits.torque_rate = VectorX::Constant(4, 2.0);
   EXPECT_THROW(Planner(arm, other).replan(before), Error);
 }
 
@@ -113,9 +167,9 @@ TEST(Planner, PlansFromDisturbedStarts) {
     task.start.rate = pcc::testing::random_vector(random, 4, 0.5);
     const Plan plan = Planner(arm, task).plan(1);
     ASSERT_TRUE(plan.found()) << trial;
-    const Replay run = replay(arm, task, plan);
-    EXPECT_LT(run.tip_error, 0.004) << trial;
-    EXPECT_LT(run.tip_speed, 0.02) << trial;
+    const TipEnd end = reintegrated(arm, task, plan);
+    EXPECT_LT((end.position - task.goal.position).norm(), 1.005 * task.goal.tolerance) << trial;
+    EXPECT_LT(end.velocity.norm(), 1.005 * task.goal.speed_tolerance) << trial;
   }
 }
 
@@ -127,7 +181,8 @@ TEST(Planner, AFreeDurationDoesNotCostMore) {
   task.grid.most_duration = 2.0;
   const Plan free = Planner(arm, task).plan(1);
   ASSERT_TRUE(free.found());
-  EXPECT_LE(free.objective, fixed.objective * (1.0 + 1e-6));
+  // Each to its own correction.
+  EXPECT_LE(free.objective, fixed.objective * (1.0 + 1e-2));
   EXPECT_GE(free.duration(), 1.0 - 1e-8);
   EXPECT_LE(free.duration(), 2.0 + 1e-8);
 }
@@ -142,12 +197,14 @@ TEST(Planner, KeepsClearOfObstacles) {
   (tip.rowwise() - task.goal.position.transpose()).rowwise().norm().maxCoeff(&furthest);
   const Vector3 swing = tip.row(furthest) - 0.02 * tip.row(furthest).normalized();
   task.obstacles = {{.point = swing, .radius = 0.03, .clearance = 0.01}};
-  ASSERT_LT(replay(arm, task, before).clearance, 0.0);
+  ASSERT_LT(replay(arm, task, before).clearance(), 0.0);
   const Plan plan = Planner(arm, task).plan(1);
   ASSERT_TRUE(plan.found());
   const Replay run = replay(arm, task, plan);
-  EXPECT_GT(run.clearance, 0.0);
-  EXPECT_LT(run.tip_error, 0.004);
+  // Between the knots and between the points that the program looks at as well.
+  EXPECT_GT(run.clearance(), 0.01 - 1e-4);
+  EXPECT_GE(plan.clearance, 0.01);
+  EXPECT_LE(run.tip_error, 1.001 * task.goal.tolerance);
 }
 
 TEST(Planner, SaysWhereThereIsNoPlan) {
@@ -155,15 +212,15 @@ TEST(Planner, SaysWhereThereIsNoPlan) {
   task.grid.duration = 0.3;  // no time for a swing
   task.grid.intervals = 10;
   const Plan plan = Planner(fluidic(), task).plan(1);
-  EXPECT_EQ(plan.status, Status::infeasible);
+  EXPECT_EQ(plan.status, PlanStatus::infeasible);
   EXPECT_FALSE(plan.found());
   EXPECT_EQ(status_name(plan.status), "infeasible");
 }
 
 TEST(Planner, StopsAtItsLimits) {
-  Planner planner(fluidic(), grab(), {.max_iterations = 3});
+  Planner planner(fluidic(), grab(), {.solver = {.max_iterations = 3}});
   const Plan plan = planner.plan(1);
-  EXPECT_EQ(plan.status, Status::iteration_limit);
+  EXPECT_EQ(plan.status, PlanStatus::iteration_limit);
   EXPECT_EQ(plan.iterations, 3);
 }
 
@@ -186,6 +243,9 @@ TEST(Planner, RefusesTasksThatMakeNoSense) {
   task.grid.least_duration = 2.0;
   task.grid.most_duration = 1.0;
   EXPECT_EQ(kind_of(task), ErrorKind::contradictory_limits);
+  task = grab();
+  task.grid.shares = VectorX::Constant(50, 0.01);
+  EXPECT_EQ(kind_of(task), ErrorKind::out_of_range);
   task = grab();
   task.obstacles = {{.radius = -0.1}};
   EXPECT_EQ(kind_of(task), ErrorKind::out_of_range);

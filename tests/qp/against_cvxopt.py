@@ -3,8 +3,8 @@
 usage: against_cvxopt.py DUMP_PROGRAM
 
 DUMP_PROGRAM FILE writes the problems with our answers. Infeasible ones are compared with the linear
-programs for the least worst and the least summed violation, solved by SciPy's HiGHS. Fails when
-cvxopt or SciPy is missing.
+programs for the least worst and the least summed violation, solved by SciPy's HiGHS. Semidefinite
+ones are compared with Tikhonov's regularisation. Fails when cvxopt or SciPy is missing.
 """
 
 import json
@@ -42,11 +42,17 @@ def one_sided(problem, row_share):
     return np.vstack(blocks), np.concatenate(right)
 
 
-def reference(problem):
+def unit_scale(problem):
+    """What makes the Hessian's diagonal one, where it is not zero."""
+    diagonal = np.diag(np.array(problem["hessian"]))
+    return np.where(diagonal > 0.0, np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0)), 1.0)
+
+
+def reference(problem, shift=0.0):
     """x of the quadratic program, scaled to a unit diagonal; equalities as pairs would have no
-    interior, so they go apart, without dependent ones."""
+    interior, so they go apart, without dependent ones. `shift` is added to the scaled diagonal."""
     a, b = one_sided(problem, np.zeros((len(problem["rows"]), 0)))
-    scale = 1.0 / np.sqrt(np.diag(np.array(problem["hessian"])))
+    scale = 1.0 / unit_scale(problem)
     a = a * scale
     length = np.linalg.norm(a, axis=1)
     a, b = a / length[:, None], b / length
@@ -58,7 +64,7 @@ def reference(problem):
         if np.linalg.matrix_rank(np.array(e + [row]), tol=1e-9) > len(e):
             e.append(row)
             f.append(value)
-    hessian = np.array(problem["hessian"]) * np.outer(scale, scale)
+    hessian = np.array(problem["hessian"]) * np.outer(scale, scale) + shift * np.eye(len(scale))
     size = max(1.0, np.abs(np.array(problem["gradient"]) * scale).max())
     arguments = [matrix(hessian), matrix(np.array(problem["gradient"]) * scale / size),
                  matrix(a[~equal]), matrix(b[~equal] / size)]
@@ -97,6 +103,20 @@ def compare_feasible(problem, report):
     report("x", distance, 1e-5 if problem["kind"] == "badly_scaled" else 1e-6)
 
 
+def compare_semidefinite(problem, report):
+    """Many x are optimal. Tikhonov's solution tends to the least of them as the shift goes to zero,
+    at a rate that is the problem's own; it is never longer."""
+    theirs = reference(problem, shift=1e-5)
+    ours = np.array(problem["x"])
+    scale = unit_scale(problem)
+    size = np.linalg.norm(scale * ours) + 1e-2
+    magnitude = abs(objective(problem, ours)) + 0.5 * size**2
+    report("objective", max(0.0, objective(problem, ours) - objective(problem, theirs)) / magnitude, 1e-9)
+    longer = np.linalg.norm(scale * theirs) - np.linalg.norm(scale * ours)
+    report("effort above Tikhonov's", max(0.0, longer) / size, 1e-5)
+    report("x", np.linalg.norm(scale * (ours - theirs)) / size, 3e-3)
+
+
 def compare_infeasible(problem, report):
     for measure in ("worst", "sum"):
         answer = problem[measure]
@@ -126,7 +146,8 @@ def main():
         feasible = problem["kind"] != "infeasible"
         expected = "optimal" if feasible else "infeasible"
         report("status " + problem["status"], float(problem["status"] != expected), 0.0)
-        (compare_feasible if feasible else compare_infeasible)(problem, report)
+        compare = {"infeasible": compare_infeasible, "semidefinite": compare_semidefinite}
+        compare.get(problem["kind"], compare_feasible)(problem, report)
     for (kind, what), value in worst.items():
         print(f"{kind:16s} {what:20s} {value:.2e}")
     print(f"{len(problems)} problems against cvxopt {cvxopt.__version__}, {len(failures)} differences")

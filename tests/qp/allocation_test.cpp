@@ -76,6 +76,19 @@ TEST(Allocation, NeverHappensInSolve) {
   }
 }
 
+TEST(Allocation, HappensOnceForSingularHessians) {
+  Random random(8);
+  QpSolver solver(12, 20);
+  solver.solve(random_problem(ProblemKind::semidefinite, 12, 20, random));
+  std::vector<QuadraticProgram> problems;
+  for (int trial = 0; trial < 60; ++trial) {
+    problems.push_back(random_problem(ProblemKind::semidefinite, 12, 20, random));
+  }
+  const long before = allocations;
+  for (const QuadraticProgram& problem : problems) solver.solve(problem);
+  EXPECT_EQ(allocations, before);
+}
+
 TEST(Allocation, NeverHappensInElasticSolve) {
   Random random(8);
   for (const ElasticMeasure measure : {ElasticMeasure::worst, ElasticMeasure::sum}) {

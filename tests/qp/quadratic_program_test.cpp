@@ -64,7 +64,7 @@ TEST_P(RandomProblems, MeetKktConditions) {
 INSTANTIATE_TEST_SUITE_P(Kinds, RandomProblems,
                          ::testing::Values(ProblemKind::well_scaled, ProblemKind::badly_scaled,
                                            ProblemKind::degenerate, ProblemKind::equality_heavy,
-                                           ProblemKind::infeasible),
+                                           ProblemKind::infeasible, ProblemKind::semidefinite),
                          kind_of_case);
 
 // A controller's problems: the target moves a little, limits move with the state, and now and then
@@ -111,7 +111,7 @@ TEST(QpSolver, SurvivesUnrelatedProblemsBetweenWarmStarts) {
   Random random(5);
   QpSolver solver(12, 20);
   for (int trial = 0; trial < 1500; ++trial) {
-    const auto kind = static_cast<ProblemKind>(random.integer(0, 4));
+    const auto kind = static_cast<ProblemKind>(random.integer(0, 5));
     const QuadraticProgram problem = random_problem(kind, 12, 20, random);
     const QpResult& result = solver.solve(problem);
     const bool feasible = kind != ProblemKind::infeasible;
@@ -231,10 +231,10 @@ TEST(QpSolver, WorksWithoutRowsOrVariables) {
 TEST(QpSolver, NamesProblemsItCannotSolve) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   QuadraticProgram problem = identity_problem(2, 1);
-  problem.hessian << 1.0, 1.0, 1.0, 1.0;
   QpSolver solver(2, 1);
-  EXPECT_EQ(solver.solve(problem).status, QpStatus::not_convex);
   problem.hessian << 1.0, 0.0, 0.0, -1.0;
+  EXPECT_EQ(solver.solve(problem).status, QpStatus::not_convex);
+  problem.hessian << 1.0, 1.0, 1.0, 0.0;
   EXPECT_EQ(solver.solve(problem).status, QpStatus::not_convex);
   problem.hessian << 1.0, 0.0, nan, 1.0;
   EXPECT_EQ(solver.solve(problem).status, QpStatus::not_finite);
@@ -276,7 +276,54 @@ TEST(QpSolver, NamesEachStatusOnce) {
   for (int i = 0; i <= static_cast<int>(QpStatus::not_finite); ++i) {
     names.insert(qp_status_name(static_cast<QpStatus>(i)));
   }
-  EXPECT_EQ(names.size(), 5u);
+  EXPECT_EQ(names.size(), 6u);
+}
+
+// Two cables on one path share the pull; where one is at its limit the other takes the rest.
+TEST(QpSolver, TwinsShareEvenlyWithinTheirLimits) {
+  QuadraticProgram problem = QuadraticProgram::sized(3, 0);
+  problem.hessian << 1.0, 1.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 2.0;
+  problem.gradient << -3.0, -3.0, -2.0;
+  problem.lower.setZero();
+  QpSolver solver(3, 0);
+  EXPECT_LE((solver.solve(problem).x - Vector3(1.5, 1.5, 1.0)).norm(), 1e-14);
+  EXPECT_EQ(solver.solve(problem).status, QpStatus::optimal);
+  problem.upper[0] = 1.0;
+  EXPECT_LE((solver.solve(problem).x - Vector3(1.0, 2.0, 1.0)).norm(), 1e-14);
+  problem.upper[1] = 1.5;  // not enough: the limits' multipliers are the pull that is missing
+  const QpResult& result = solver.solve(problem);
+  EXPECT_LE((result.x - Vector3(1.0, 1.5, 1.0)).norm(), 1e-14);
+  EXPECT_LE((result.bound_multiplier - Vector3(-0.5, -0.5, 0.0)).norm(), 1e-8);
+  EXPECT_LE(kkt_residual(problem, result), 1e-12);
+}
+
+// The last variables of a program that has no quadratic part: a linear program, whose optimal edge
+// leaves a choice.
+TEST(QpSolver, SolvesLinearProgramsToTheLeastPoint) {
+  QuadraticProgram problem = QuadraticProgram::sized(3, 1);
+  problem.gradient << -1.0, -1.0, 0.0;
+  problem.rows << 1.0, 1.0, 1.0;
+  problem.row_upper[0] = 4.0;
+  problem.lower << 0.0, 0.0, -5.0;
+  QpSolver solver(3, 1);
+  const QpResult& result = solver.solve(problem);
+  ASSERT_EQ(qp_status_name(result.status), "optimal");
+  EXPECT_LE((result.x - Vector3(4.5, 4.5, -5.0)).norm(), 1e-10);
+  EXPECT_LE(kkt_residual(problem, result), 1e-10);
+}
+
+TEST(QpSolver, NamesTheRayOfAnUnboundedProblem) {
+  QuadraticProgram problem = QuadraticProgram::sized(4, 1);
+  problem.hessian(0, 0) = 1.0;
+  problem.hessian.block(1, 1, 2, 2) << 2.0, 2.0, 2.0, 2.0;
+  problem.gradient << -7.0, 1.0, -1.0, 0.0;  // twins pulled apart
+  QpSolver solver(4, 1);
+  const QpResult& result = solver.solve(problem);
+  ASSERT_EQ(qp_status_name(result.status), "unbounded");
+  EXPECT_LE((result.ray - Eigen::Vector4d(0.0, -1.0, 1.0, 0.0)).norm(), 1e-6);
+  problem.lower[1] = -20.0;
+  EXPECT_EQ(qp_status_name(solver.solve(problem).status), "optimal");
+  EXPECT_LE((solver.solve(problem).x - Eigen::Vector4d(7.0, -20.0, 20.5, 0.0)).norm(), 1e-8);
 }
 
 TEST(KktResidual, SeesEachKindOfError) {

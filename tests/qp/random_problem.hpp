@@ -10,11 +10,18 @@
 
 namespace sinew::qp {
 
-enum class ProblemKind { well_scaled, badly_scaled, degenerate, equality_heavy, infeasible };
+enum class ProblemKind {
+  well_scaled,
+  badly_scaled,
+  degenerate,
+  equality_heavy,
+  infeasible,
+  semidefinite
+};
 
 inline const char* problem_kind_name(ProblemKind kind) {
-  constexpr const char* kNames[] = {"well_scaled", "badly_scaled", "degenerate", "equality_heavy",
-                                    "infeasible"};
+  constexpr const char* kNames[] = {"well_scaled",    "badly_scaled", "degenerate",
+                                    "equality_heavy", "infeasible",   "semidefinite"};
   return kNames[static_cast<int>(kind)];
 }
 
@@ -115,12 +122,47 @@ inline void make_dependent(QuadraticProgram& problem, Random& random) {
   }
 }
 
+/// Of a rank below n: twins among the columns, and now and then a variable that it leaves out.
+inline MatrixX random_semidefinite_hessian(int n, Random& random) {
+  const int rank = random.integer(0, n - 1);
+  MatrixX root = random.matrix(rank, n);
+  for (int i = 1; i < n; ++i) {
+    if (random.chance(0.2)) root.col(i) = root.col(random.integer(0, i - 1));
+    if (random.chance(0.1)) root.col(i).setZero();
+  }
+  return root.transpose() * root;
+}
+
+/// A multiplier that an optimal point whose value is `value` may have with these limits.
+inline double random_multiplier(double value, double lower, double upper, Random& random) {
+  if (!random.chance(0.5)) return 0.0;
+  if (lower == upper) return random.uniform(-1.0, 1.0);
+  if (value == lower) return random.uniform(0.0, 1.0);
+  return value == upper ? random.uniform(-1.0, 0.0) : 0.0;
+}
+
+/// Gives the problem a gradient with which `point` is optimal, and the objective bounded.
+inline void make_optimal(QuadraticProgram& problem, const VectorX& point, Random& random) {
+  problem.gradient = -problem.hessian * point;
+  for (Eigen::Index i = 0; i < point.size(); ++i) {
+    problem.gradient[i] += random_multiplier(point[i], problem.lower[i], problem.upper[i], random);
+  }
+  for (Eigen::Index i = 0; i < problem.rows.rows(); ++i) {
+    const double value = problem.rows.row(i).dot(point);
+    const double multiplier =
+        random_multiplier(value, problem.row_lower[i], problem.row_upper[i], random);
+    problem.gradient += multiplier * problem.rows.row(i).transpose();
+  }
+}
+
 /// A problem of n variables and m >= 4 rows. All kinds but `infeasible` have a feasible point.
 inline QuadraticProgram random_problem(ProblemKind kind, int n, int m, Random& random) {
   const bool bad = kind == ProblemKind::badly_scaled;
   const bool degenerate = kind == ProblemKind::degenerate;
   QuadraticProgram problem = QuadraticProgram::sized(n, m);
-  problem.hessian = random_hessian(n, bad ? 1e8 : 10.0, random);
+  const bool singular = kind == ProblemKind::semidefinite;
+  problem.hessian = singular ? random_semidefinite_hessian(n, random)
+                             : random_hessian(n, bad ? 1e8 : 10.0, random);
   problem.rows = random.matrix(m, n);
   VectorX unit = VectorX::Ones(n);
   if (bad) {
@@ -134,7 +176,7 @@ inline QuadraticProgram random_problem(ProblemKind kind, int n, int m, Random& r
   const VectorX wanted = 3.0 * random.vector(n).cwiseQuotient(unit);
   problem.gradient = -problem.hessian * wanted;
   const double equal = kind == ProblemKind::equality_heavy ? 0.5 : (degenerate ? 0.1 : 0.02);
-  const double tight = degenerate ? 0.5 : 0.05;
+  const double tight = degenerate || singular ? 0.5 : 0.05;
   for (int i = 0; i < n; ++i) {
     random_limits(feasible[i], degenerate ? 0.1 : 0.0, tight, random, &problem.lower[i],
                   &problem.upper[i]);
@@ -144,6 +186,7 @@ inline QuadraticProgram random_problem(ProblemKind kind, int n, int m, Random& r
                   &problem.row_upper[i]);
   }
   if (kind == ProblemKind::infeasible) contradict(problem, feasible, random);
+  if (singular) make_optimal(problem, feasible, random);
   return problem;
 }
 

@@ -39,6 +39,8 @@ actuators:
     command: {force: {sine: {amplitude: 1, period: 1}}}
 effectors:
   tip: {body: a, point: 0 0 1}
+masses:
+  hung: {body: a, point: 0 0 1, mass: 1}
 probes:
   axis: {body: a, line: [0 0 0, 0 0 1]}
   girth: {body: a, extent: {across: z}}
@@ -61,12 +63,13 @@ class Dump {
  public:
   explicit Dump(const SceneDescription& scene) {
     add(scene.gravity, scene.time_step, scene.integrator, scene.duration.value_or(-1));
-    add(scene.solver.method, scene.solver.tangent, scene.solver.tolerance);
+    add(scene.solver.method, scene.solver.tangent, scene.solver.tolerance.value_or(-1));
     add(scene.solver.max_iterations, scene.solver.threads, scene.solver.backend);
     add(scene.solver.contact_tolerance);
     add(scene.solver.ordering, scene.record.every, scene.record.states);
     for (const auto& body : scene.bodies) add_body(body);
     for (const auto& actuator : scene.actuators) add_actuator(actuator);
+    for (const auto& mass : scene.masses) add(mass.outside);
     for (const auto& effector : scene.effectors) add(effector.directions, effector.outside);
     for (const auto& probe : scene.probes) add(probe.samples, probe.way, probe.outside);
     for (const auto& contact : scene.contacts) {
@@ -88,6 +91,8 @@ class Dump {
   void add_body(const BodyDescription& body) {
     add(body.mesh.unit, body.material.model, body.mass_distribution, body.mass_matrix);
     add(body.mass_damping, body.stiffness_damping, body.fixed[0].normal, body.fixed[0].within);
+    const auto start = body.initial_velocity.value_or(InitialVelocityDescription{});
+    add(start.linear, start.angular);
   }
   void add_actuator(const ActuatorDescription& actuator) {
     add(actuator.outside, actuator.pull, actuator.geometric_stiffness);

@@ -105,6 +105,7 @@ TEST(Contact, ImpactTakesEnergyAndNeverGivesAny) {
   }
 }
 
+// Impulse and time of an impact, and its energy, are measured in contact_impact_test.cpp.
 TEST(Contact, SecondOrderStepsDoNotGainEnergyInAnImpact) {
   BlockOptions options{.angle = 0.3, .height = 0.005, .modulus = 1e5};
   options.damping = {};
@@ -291,6 +292,65 @@ TEST(Contact, ActuatorsAndContactsShareOneProblem) {
     } else {
       EXPECT_LT(state.effort, pushed);  // the stroke ends first
       EXPECT_NEAR(state.motion, 0.004, 1e-9);
+    }
+  }
+}
+
+/// A block, its end fixed, that a cable with friction bends towards a floor `below` it.
+Simulation bent_to_a_floor(double below, bool floor, bool led) {
+  ModelBuilder builder(StepSettings{.time_step = 0.01, .method = Method::newton});
+  fem::FemBodySettings body;
+  body.name = "block";
+  const auto mesh = std::make_shared<const mesh::Mesh>(
+      mesh::block({.size = {0.1, 0.02, 0.02}, .cells = {10, 2, 2}}));
+  body.mesh = mesh;
+  body.elements.regions = {{{1e5, 0.3}, material::Law::corotational, 1000.0, {}}};
+  body.elements.fixed_nodes = mesh->node_sets.at("x_min");
+  builder.add_fem_body(std::move(body));
+  CableSettings cable;
+  cable.name = "rope";
+  cable.friction = 0.3;
+  cable.points.resize(4, 3);
+  cable.points << 0.0, 0.01, 0.004, 0.04, 0.01, 0.003, 0.07, 0.01, 0.004, 0.095, 0.01, 0.004;
+  cable.command = {led ? CommandKind::motion : CommandKind::effort,
+                   Signal::ramp({0.0, led ? 0.004 : 0.5, 0.0, 0.1})};
+  builder.add_cable(cable);
+  if (floor) {
+    ContactSettings contact;
+    contact.name = "floor";
+    contact.surface = constraint::Plane{{0.0, 0.0, -below}};
+    contact.nodes = mesh->node_sets.at("z_min");
+    contact.friction = 0.4;
+    builder.add_contact(contact);
+  }
+  return Simulation(builder.build());
+}
+
+TEST(Contact, CablesWithFrictionAndContactsShareOneProblem) {
+  for (const bool led : {true, false}) {
+    Simulation free = bent_to_a_floor(0.0, false, led), far = bent_to_a_floor(1.0, true, led),
+               near = bent_to_a_floor(0.002, true, led);
+    for (int k = 0; k < 12; ++k) {
+      free.step();
+      far.step();
+      near.step();
+      EXPECT_LT(near.report().violation, 1e-9);
+    }
+    EXPECT_LT((far.fem_body(0).positions() - free.fem_body(0).positions()).cwiseAbs().maxCoeff(),
+              1e-9);
+    EXPECT_LT(far.fem_body(0).positions().col(2).minCoeff(), -0.004);
+    EXPECT_EQ(far.contact_sum(0).normal_force, 0.0);
+    const ContactSum sum = near.contact_sum(0);
+    EXPECT_GE(sum.smallest_gap, -1e-9);
+    EXPECT_GT(sum.normal_force, 0.01);
+    // Along the cable the tension falls by no more than friction takes.
+    const auto tensions = near.model().cable(0)->tensions(near.efforts());
+    for (int via = 0; via + 1 < static_cast<int>(tensions.size()); ++via) {
+      const auto i = static_cast<std::size_t>(via);
+      const double most =
+          std::exp(0.3 * near.model().cable(0)->turn(near.world().placement(), via));
+      EXPECT_LE(tensions[i], most * tensions[i + 1] * (1.0 + 1e-6)) << via;
+      EXPECT_LE(tensions[i + 1], most * tensions[i] * (1.0 + 1e-6)) << via;
     }
   }
 }

@@ -24,6 +24,7 @@ constexpr double kFriction = 0.3;
 /// A block with a cable that runs straight in, along a quarter of a circle of 40 mm, and out.
 std::shared_ptr<const Model> bollard(int points_on_arc) {
   StepSettings step;
+  step.tolerance = 1e-8;  // the laws of friction are checked to the last digits
   step.method = Method::newton;
   ModelBuilder builder(step);
   fem::FemBodySettings body;
@@ -122,6 +123,7 @@ TEST(Friction, ForcesOfRowsAreThoseOfTheSegments) {
 // The same length costs more tension.
 TEST(Friction, BentBeamLosesTensionAlongItsCable) {
   StepSettings step;
+  step.tolerance = 1e-8;  // the laws of friction are checked to the last digits
   step.method = Method::newton;
   Simulation smooth(beam({.step = step})), rough(beam({.step = step, .friction = kFriction}));
   for (Simulation* simulation : {&smooth, &rough}) {
@@ -137,6 +139,7 @@ TEST(Friction, BentBeamLosesTensionAlongItsCable) {
 
 TEST(Friction, CyclesDissipate) {
   StepSettings step;
+  step.tolerance = 1e-8;  // the laws of friction are checked to the last digits
   step.method = Method::newton;
   const auto work_of_cycle = [&](double friction) {
     Simulation simulation(beam({.step = step, .cables = 1, .friction = friction}));

@@ -1,8 +1,11 @@
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
@@ -219,6 +222,100 @@ TEST(Pressure, OpenSurfaceConvergesQuadraticallyInStatics) {
   // The top has turned towards +x, and what presses on it points the other way.
   const Vector3 load = simulation.fem_body(0).load_forces().colwise().sum().transpose();
   EXPECT_LT(load.x(), -0.01);
+}
+
+// Shares of a line inside a tetrahedron, entry and exit, by its four planes; none: {1, 0}.
+std::array<double, 2> clip(const Eigen::Matrix<double, 3, 4>& x, const Vector3& from,
+                           const Vector3& to) {
+  double enter = 0.0, leave = 1.0;
+  for (int a = 0; a < 4; ++a) {
+    const Vector3 b = x.col((a + 1) % 4), c = x.col((a + 2) % 4), d = x.col((a + 3) % 4);
+    const Vector3 normal = (c - b).cross(d - b);
+    const double inside = normal.dot(x.col(a) - b);
+    const double first = normal.dot(from - b) / inside, last = normal.dot(to - b) / inside;
+    if (first < 0.0 && last < 0.0) return {1.0, 0.0};
+    if (first < 0.0) enter = std::max(enter, first / (first - last));
+    if (last < 0.0) leave = std::min(leave, first / (first - last));
+  }
+  return {enter, leave};
+}
+
+// A line through 200 cells: in every tetrahedron that it crosses, the integral of linear shape
+// functions is the length of the piece times their values at its middle.
+TEST(LineLoad, IsExactInEveryElement) {
+  ModelBuilder builder;
+  fem::FemBodySettings body;
+  body.name = "bar";
+  const auto mesh = std::make_shared<const mesh::Mesh>(
+      mesh::block({.size = {1.0, 0.01, 0.01}, .cells = {200, 2, 2}}));
+  body.mesh = mesh;
+  body.elements.regions = {{{1e5, 0.3}, material::Law::corotational, 1000.0, {}}};
+  body.elements.fixed_nodes = mesh->node_sets.at("x_min");
+  const int bar = builder.add_fem_body(std::move(body));
+  const Vector3 from(0.0013, 0.0021, 0.0031), to(0.9971, 0.0087, 0.0074), by(0.1, -0.3, 0.2);
+  LineLoadSettings line{Points(2, 3), by};
+  line.points << from.transpose(), to.transpose();
+  builder.add_load({.name = "line", .body = bar, .load = line});
+  const auto model = builder.build();
+  Simulation simulation(model);
+  simulation.fem_body(0).load_factors()[0] = 1.0;
+  simulation.fem_body(0).linearise({});
+  const Points found = simulation.fem_body(0).load_forces();
+  Points expected = Points::Zero(found.rows(), 3);
+  int crossed = 0;
+  for (const mesh::Tetrahedron& tetrahedron : mesh->tetrahedra) {
+    Eigen::Matrix<double, 3, 4> x;
+    for (int a = 0; a < 4; ++a)
+      x.col(a) = mesh->nodes.row(tetrahedron[static_cast<std::size_t>(a)]);
+    const auto [enter, leave] = clip(x, from, to);
+    if (!(enter < leave)) continue;
+    ++crossed;
+    Eigen::Matrix4d vertices;
+    vertices << x, Eigen::RowVector4d::Ones();
+    Eigen::Vector4d middle;
+    middle << from + 0.5 * (enter + leave) * (to - from), 1.0;
+    const Eigen::Vector4d weights = vertices.inverse() * middle;
+    for (int a = 0; a < 4; ++a) {
+      expected.row(tetrahedron[static_cast<std::size_t>(a)]) +=
+          (leave - enter) * (to - from).norm() * weights[a] * by.transpose();
+    }
+  }
+  EXPECT_GT(crossed, 600);
+  EXPECT_LT((found - expected).cwiseAbs().maxCoeff(), 1e-13);
+  EXPECT_LT((found.colwise().sum().transpose() - (to - from).norm() * by).norm(), 1e-13);
+  Vector3 moment = Vector3::Zero();
+  for (Eigen::Index i = 0; i < found.rows(); ++i) {
+    moment += Vector3(mesh->nodes.row(i)).cross(Vector3(found.row(i)));
+  }
+  EXPECT_LT((moment - 0.5 * (from + to).cross((to - from).norm() * by)).norm(), 1e-13);
+}
+
+// What lies beside the body is held by what is nearest: no force is lost.
+TEST(LineLoad, MayLeaveTheBody) {
+  for (const auto cells : {mesh::Cells::quadratic, mesh::Cells::hexahedra}) {
+    ModelBuilder builder;
+    fem::FemBodySettings body;
+    body.name = "block";
+    const auto mesh = std::make_shared<const mesh::Mesh>(
+        mesh::block({.size = {0.1, 0.02, 0.02}, .cells = {5, 1, 1}}, cells));
+    body.mesh = mesh;
+    fem::Region region;
+    region.hyperelastic = material::neo_hookean(4e4);
+    region.hyperelastic->bulk_modulus = 1e5;
+    body.elements.regions = {region};
+    body.elements.fixed_nodes = mesh->node_sets.at("x_min");
+    builder.add_fem_body(std::move(body));
+    LineLoadSettings line{Points(3, 3), {0.0, 0.0, -1.0}};
+    line.points << 0.01, 0.005, 0.005, 0.08, 0.012, 0.011, 0.13, 0.01, 0.01;
+    builder.add_load({.name = "line", .outside = mesh::Outside::nearest, .load = line});
+    Simulation simulation(builder.build());
+    simulation.fem_body(0).load_factors()[0] = 1.0;
+    simulation.fem_body(0).linearise({});
+    const Points forces = simulation.fem_body(0).load_forces();
+    const double length = (line.points.row(1) - line.points.row(0)).norm() +
+                          (line.points.row(2) - line.points.row(1)).norm();
+    EXPECT_NEAR(forces.col(2).sum(), -length, 1e-14);
+  }
 }
 
 TEST(Loads, BadOnesAreErrors) {

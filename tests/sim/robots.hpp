@@ -30,6 +30,7 @@ struct BeamOptions {
   bool clamped = true;
   fem::MassMatrix mass = fem::MassMatrix::lumped;
   material::Law law = material::Law::corotational;
+  double young_modulus = 200e3;  // Pa
   linalg::FactorisationSettings factorisation;
   bool probes = false;  ///< "end" where the tip is, "axis" of six points, "bend" of both ends
 };
@@ -43,7 +44,7 @@ inline std::shared_ptr<const sim::Model> beam(const BeamOptions& options = {}) {
   body.mesh = mesh;
   body.gravity = options.gravity;
   body.damping = options.damping;
-  body.elements.regions = {{{200e3, 0.4}, options.law, 1070.0, {}}};
+  body.elements.regions = {{{options.young_modulus, 0.4}, options.law, 1070.0, {}}};
   body.elements.mass = options.mass;
   if (options.clamped) body.elements.fixed_nodes = mesh->node_sets.at("x_min");
   const int beam = builder.add_fem_body(std::move(body));

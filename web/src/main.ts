@@ -171,6 +171,10 @@ function alerts(): void {
   if (isFrozen()) list.push(mode === 'follow' ? ['info', 'The script has not stepped for two seconds.']
                                              : ['error', 'No frames for two seconds.']);
   for (const [key, text] of notices) if (key !== 'connection') list.push(['warning', text]);
+  for (const n of scene?.notices ?? []) {
+    list.push([n.level === 'remark' ? 'info' : 'warning', `${n.subject}: ${n.text}${n.remedy ? `; ${n.remedy}` : ''}`,
+               button('Dismiss', 'Do not show this again', () => { scene!.notices = scene!.notices!.filter((x) => x !== n); alerts(); })]);
+  }
   const troubles = source?.troubles ?? [];
   for (const t of troubles.filter((x) => x.level !== 'info').slice(0, 5)) list.push([t.level, `${t.subject}: ${t.text}`]);
   const slack = troubles.filter((t) => t.kind === 'slack').map((t) => t.subject);

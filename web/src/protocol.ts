@@ -23,6 +23,7 @@ export interface Scene {
   fields: FieldInfo[]; actuators: Actuator[]; effectors: Effector[]; probes: Probe[]; contacts: Contact[];
   controllers: Controller[];
   signals: Signal[];
+  notices?: {level: 'remark' | 'warning'; kind: string; subject: string; text: string; remedy: string}[];
   frames?: number; duration?: number; gallery?: boolean;
   examples?: {name: string; title: string; thumbnail: string | null}[];
 }

@@ -173,6 +173,16 @@ double Cable::wrap(const Placement& placement) const {
   return angle;
 }
 
+bool Cable::stiffens(std::span<const double> effort) const {
+  double tension = effort[static_cast<std::size_t>(first_row_)];
+  bool taut = tension >= 0.0;
+  for (int via = 0; friction_ && via < via_count(); ++via) {
+    tension -= effort[static_cast<std::size_t>(friction_row(via))];
+    taut = taut && tension >= 0.0;
+  }
+  return taut;
+}
+
 std::vector<double> Cable::tensions(std::span<const double> effort) const {
   std::vector<double> result{effort[static_cast<std::size_t>(first_row_)]};
   for (int via = 0; via < via_count(); ++via) {

@@ -43,6 +43,9 @@ class Cable : public Constraint {
   void curve(const Placement& placement, std::span<const double> effort,
              std::span<mechanics::RowCurvature> curvatures) const override;
 
+  /// While every segment is under tension.
+  bool stiffens(std::span<const double> effort) const override;
+
   /// L_0, m.
   double rest_length() const { return rest_length_; }
   /// L now, m.

@@ -32,6 +32,10 @@ class Constraint {
   virtual void curve(const Placement& placement, std::span<const double> effort,
                      std::span<mechanics::RowCurvature> curvatures) const;
 
+  /// Whether its curvature at these efforts can only stiffen: a taut cable's is of one sign.
+  /// @param effort (rows,) N or Pa, of all rows of the world.
+  virtual bool stiffens(std::span<const double>) const { return false; }
+
   const std::string& name() const { return name_; }
   int first_row() const { return first_row_; }
   int row_count() const { return row_count_; }

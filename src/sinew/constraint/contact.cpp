@@ -36,31 +36,62 @@ void Contact::declare(mechanics::RowPattern& rows, std::vector<mechanics::RowCur
 }
 
 void Contact::begin_step(const Placement& placement, const Eigen::Isometry3d& start,
-                         const Eigen::Isometry3d& end, mechanics::RowValues& values) const {
+                         const Eigen::Isometry3d& end, double time_step,
+                         mechanics::RowValues& values) const {
   const Eigen::Isometry3d carry = end * start.inverse();
-  const Eigen::Isometry3d into = end.inverse();
   const bool rests = start.isApprox(end, 0.0);
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const Vector3 at = placement.position(points_[i]);
     const Vector3 carried = rests ? at : Vector3(carry * at);
-    const SurfaceDistance under = distance(surface_, into * carried);
-    const Matrix3 frame = tangent_frame(end.linear() * under.normal);
-    const Vector3 reference(under.gap, 0.0, 0.0);
-    for (int k = 0; k < 3; ++k) {
-      values.direction[entry(i) + static_cast<std::size_t>(k)] = frame.col(k);
-      values.reference[row(i) + k] = reference[k];
-      values.offset[row(i) + k] = reference[k] - frame.col(k).dot(carried);
-    }
+    const Vector3 towards = curved() ? Vector3(at + time_step * placement.velocity(points_[i]))
+                                     : carried;  // a plane is its own tangent plane anywhere
+    place(i, carried, approach(carried, towards, end), values);
   }
+}
+
+SurfaceApproach Contact::approach(const Vector3& from, const Vector3& to,
+                                  const Eigen::Isometry3d& pose) const {
+  const Eigen::Isometry3d into = pose.inverse();
+  SurfaceApproach result = constraint::approach(surface_, into * from, into * to);
+  result.at = pose * result.at;
+  result.distance.normal = pose.linear() * result.distance.normal;
+  return result;
+}
+
+void Contact::place(std::size_t point, const Vector3& carried, const SurfaceApproach& plane,
+                    mechanics::RowValues& values) const {
+  const Matrix3 frame = tangent_frame(plane.distance.normal);
+  const double gap = plane.distance.gap + frame.col(0).dot(carried - plane.at);
+  const Vector3 reference(gap, 0.0, 0.0);
+  for (int k = 0; k < 3; ++k) {
+    values.direction[entry(point) + static_cast<std::size_t>(k)] = frame.col(k);
+  }
+  values.reference.segment<3>(row(point)) = reference;
+  values.offset.segment<3>(row(point)) = reference - frame.transpose() * carried;
+}
+
+Vector3 Contact::row_values(std::size_t point, const Vector3& at,
+                            const mechanics::RowValues& values) const {
+  Vector3 result = values.offset.segment<3>(row(point));
+  for (int k = 0; k < 3; ++k) {
+    result[k] += values.direction[entry(point) + static_cast<std::size_t>(k)].dot(at);
+  }
+  return result;
+}
+
+Vector3 Contact::position(std::size_t point, const Vector3& row_values,
+                          const mechanics::RowValues& values) const {
+  Vector3 result = Vector3::Zero();
+  for (int k = 0; k < 3; ++k) {
+    result += values.direction[entry(point) + static_cast<std::size_t>(k)] *
+              (row_values[k] - values.offset[row(point) + k]);
+  }
+  return result;
 }
 
 void Contact::linearise(const Placement& placement, mechanics::RowValues& values) const {
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    const Vector3 at = placement.position(points_[i]);
-    for (int k = 0; k < 3; ++k) {
-      values.delta[row(i) + k] = values.direction[entry(i) + static_cast<std::size_t>(k)].dot(at) +
-                                 values.offset[row(i) + k];
-    }
+    values.delta.segment<3>(row(i)) = row_values(i, placement.position(points_[i]), values);
   }
 }
 

@@ -16,12 +16,15 @@ namespace sinew::constraint {
 /// surface since the step began (m). Efforts (N): the normal force, >= 0, along the outward normal
 /// on the body, and friction along the tangents.
 ///
-/// The frame (n, t_1, t_2) is that of the surface under the point where the surface's own motion in
-/// the step would carry it, x_s = P_end P_start^-1 x_start, and is held through the step:
-///   gap = g(x_s) + n.(x - x_s),   slid = (t_1, t_2).(x - x_s),   g the signed distance at P_end,
-/// so that rows are exactly linear in the step and the surface counts as its tangent plane in it;
-/// the gap of the next step is exact again. What is left out is of second order in the motion of
-/// one step along a curved surface: |x - x_s|^2/(2 R).
+/// In a step the surface counts as one of its tangent planes, so that rows are linear in the
+/// motion. Relative to the surface a point moves from x_s, where the surface's own motion would
+/// carry it, x_s = P_end P_start^-1 x_start, to x. The plane touches at x_c, where a given way from
+/// x_s meets the surface first, or where a way that misses it comes nearest (approach()):
+///   gap = g(x_c) + n.(x - x_c),   slid = (t_1, t_2).(x - x_s),   g the signed distance at P_end.
+/// The surfaces are convex, and so are the half spaces that their planes bound: what keeps to the
+/// plane's outer side is outside the surface, and a point on the way of a miss is not pushed.
+/// begin_step() takes the way at the point's velocity; World::correct_contacts() replaces it by
+/// that which the point would go without its own force.
 class Contact : public Constraint {
  public:
   /// @param name for messages. @param points that may touch. @param surface checked() is applied.
@@ -32,15 +35,30 @@ class Contact : public Constraint {
   void declare(mechanics::RowPattern& rows,
                std::vector<mechanics::RowCurvature>& curvatures) override;
   /// Sets the frames of a step. @param placement at its start. @param start,end the surface's
-  /// poses.
-  /// @param values gets directions, and reference: the rows' values at x_s.
+  /// poses. @param time_step s; 0: points are taken to stay.
+  /// @param values gets directions, offset, and reference: the rows' values at x_s.
   void begin_step(const Placement& placement, const Eigen::Isometry3d& start,
-                  const Eigen::Isometry3d& end, mechanics::RowValues& values) const;
-  /// Writes delta alone; directions are those of begin_step().
+                  const Eigen::Isometry3d& end, double time_step,
+                  mechanics::RowValues& values) const;
+  /// Writes delta alone; directions are those of begin_step() and place().
   void linearise(const Placement& placement, mechanics::RowValues& values) const override;
+
+  /// @param from,to (3,) m, a way at the step's end. @param pose of the surface there.
+  SurfaceApproach approach(const Vector3& from, const Vector3& to,
+                           const Eigen::Isometry3d& pose) const;
+  /// Sets the frame of one point. @param point of points(). @param carried (3,) m, x_s.
+  /// @param plane where the tangent plane touches. @param values gets direction, offset, reference.
+  void place(std::size_t point, const Vector3& carried, const SurfaceApproach& plane,
+             mechanics::RowValues& values) const;
+  /// The three rows of a point (m) where it is at (3,) m, and back, by its frame in `values`.
+  Vector3 row_values(std::size_t point, const Vector3& at,
+                     const mechanics::RowValues& values) const;
+  Vector3 position(std::size_t point, const Vector3& row_values,
+                   const mechanics::RowValues& values) const;
 
   const std::vector<mechanics::MaterialPoint>& points() const { return points_; }
   const Surface& surface() const { return surface_; }
+  bool curved() const { return !std::holds_alternative<Plane>(surface_); }
   double friction() const { return friction_; }
   int row(std::size_t point) const { return first_row_ + 3 * static_cast<int>(point); }
   std::size_t entry(std::size_t point) const {

@@ -35,6 +35,46 @@ SurfaceDistance distance_to(const Capsule& capsule, const Vector3& point) {
   return result;
 }
 
+// Of the way's length: what counts as touching, and how near the least gap is found.
+constexpr double kTouches = 1e-12;
+constexpr int kMostTries = 100;  // a way that grazes a surface halves its distance in each
+
+// The gap along a way, at shares of it.
+class GapOnWay {
+ public:
+  GapOnWay(const Surface& surface, const Vector3& from, const Vector3& to)
+      : surface_(surface), from_(from), way_(to - from), touches_(kTouches * way_.norm()) {
+    move(0.0);
+  }
+  void move(double share) {
+    share_ = share;
+    at_ = from_ + share * way_;
+    here_ = distance(surface_, at_);
+  }
+  double share() const { return share_; }
+  double slope() const { return here_.normal.dot(way_); }
+  bool touches() const { return here_.gap <= touches_; }
+  double next_zero() const { return share_ - here_.gap / slope(); }
+  SurfaceApproach result(bool meets) const { return {at_, here_, meets}; }
+
+ private:
+  const Surface& surface_;
+  Vector3 from_, way_, at_;
+  double touches_, share_ = 0.0;
+  SurfaceDistance here_;
+};
+
+// The least gap lies where its slope, which rises, passes zero.
+SurfaceApproach nearest_between(GapOnWay& gap, double falling, double rising) {
+  while (rising - falling > kTouches) {
+    const double middle = 0.5 * (falling + rising);
+    gap.move(middle);
+    (gap.slope() < 0.0 ? falling : rising) = middle;
+  }
+  gap.move(rising);
+  return gap.result(false);
+}
+
 void check_radius(double radius) {
   if (radius > 0.0 && std::isfinite(radius)) return;
   throw Error(ErrorKind::out_of_range, {}, fmt::format("the radius is {:g} m", radius),
@@ -45,6 +85,19 @@ void check_radius(double radius) {
 
 SurfaceDistance distance(const Surface& surface, const Vector3& point) {
   return std::visit([&](const auto& shape) { return distance_to(shape, point); }, surface);
+}
+
+SurfaceApproach approach(const Surface& surface, const Vector3& from, const Vector3& to) {
+  GapOnWay gap(surface, from, to);
+  if (!(gap.slope() < 0.0)) return gap.result(false);
+  for (int k = 0; k < kMostTries && !gap.touches(); ++k) {
+    const double before = gap.share(), next = gap.next_zero();
+    if (next - before <= kTouches) break;
+    gap.move(std::min(next, 1.0));
+    if (gap.slope() >= 0.0 && !gap.touches()) return nearest_between(gap, before, gap.share());
+    if (next >= 1.0) return gap.result(false);
+  }
+  return gap.result(true);
 }
 
 Matrix3 tangent_frame(const Vector3& normal) {

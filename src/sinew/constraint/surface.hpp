@@ -34,6 +34,21 @@ struct SurfaceDistance {
 ///   capsule, where the gap has no gradient, the normal is any one.
 SurfaceDistance distance(const Surface& surface, const Vector3& point);
 
+/// Where a point that moves straight on first meets a surface, or, if it misses it, comes nearest.
+struct SurfaceApproach {
+  Vector3 at = Vector3::Zero();  ///< (3,) m, on the way
+  SurfaceDistance distance;      ///< there; the gap of a meeting is zero but for rounding
+  bool meets = false;            ///< false: the whole way lies outside
+};
+/// Every surface here bounds a convex solid, and so the gap along the way is a convex function of
+/// it: Newton's method from the beginning finds its first zero from the near side, never beyond,
+/// and a zero that does not exist shows in a rising gap, before which the least gap lies.
+/// The tangent plane at the result has the way's beginning on its outer side, and where the way
+/// misses the surface, all of it.
+/// @param surface see Surface. @param from (3,) m, outside; a way that begins inside meets the
+///   surface there, unless it leads out. @param to (3,) m.
+SurfaceApproach approach(const Surface& surface, const Vector3& from, const Vector3& to);
+
 /// Normal and two tangents as columns, right-handed (Duff et al. 2017); continuous in the normal
 /// but where its z changes sign.
 /// @param normal (3,) unit length.

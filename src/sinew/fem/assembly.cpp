@@ -55,7 +55,8 @@ struct Assembly::Workspace {
   linalg::AlignedBuffer own_records, own_exact_records, own_solid_blocks;
   std::vector<double> slot_ratios, patch_ratios;   // det F of members, Jm of patches
   linalg::AlignedBuffer patch_spread, patch_rows;  // see sum_rows()
-  linalg::AlignedBuffer points;                    // (n, 4) m
+  linalg::AlignedBuffer points, start_points;      // (n, 4) m
+  bool started = false;                            // start_points are those that count
   linalg::AlignedBuffer matrix;
   std::vector<double> forces;
   std::vector<double> batch_energy;          // one a batch, groups of solids behind the others
@@ -66,7 +67,7 @@ struct Assembly::Workspace {
 
   double* records(Tangent tangent) {
     if (tangent == Tangent::none) return nullptr;
-    return tangent == Tangent::exact ? exact_records : rotated_records;
+    return tangent == Tangent::rotated ? rotated_records : exact_records;
   }
 };
 
@@ -115,7 +116,8 @@ Assembly::~Assembly() = default;
 Assembly::Assembly(Assembly&&) noexcept = default;
 
 void Assembly::reserve(Tangent tangent) {
-  if (tangent != Tangent::exact || work_->exact_records != nullptr) return;
+  const bool whole = tangent == Tangent::exact || tangent == Tangent::projected;
+  if (!whole || work_->exact_records != nullptr) return;
   const std::size_t size =
       kLanes * kExactRecord * static_cast<std::size_t>(model_->elements().batches());
   if (work_->lent.size() < size) work_->own_exact_records = linalg::AlignedBuffer(size);
@@ -135,13 +137,25 @@ void Assembly::evaluate(const Points& positions, const AssemblyWeights& weights)
   gather(weights);
 }
 
-void Assembly::load_positions(const Points& positions) {
-  Workspace& work = *work_;
+bool Assembly::linearise_from(const Points* positions) {
+  const bool before = work_->started;
+  work_->started = positions != nullptr && !model_->solids().empty();
+  if (!work_->started) return before;
+  if (work_->start_points.size() == 0) {
+    work_->start_points = linalg::AlignedBuffer(work_->points.size());
+  }
+  pad(*positions, work_->start_points.data());
+  return before;
+}
+
+void Assembly::load_positions(const Points& positions) { pad(positions, work_->points.data()); }
+
+void Assembly::pad(const Points& positions, double* to) {
   const int nodes = static_cast<int>(positions.rows());
   pool_->for_range(nodes, kNodeGrain, [&](int begin, int end, int) {
     for (Eigen::Index i = begin; i < end; ++i) {
       for (Eigen::Index c = 0; c < 3; ++c) {
-        work.points.data()[4 * i + c] = positions(i, c);
+        to[4 * i + c] = positions(i, c);
       }
     }
   });
@@ -164,6 +178,7 @@ void Assembly::evaluate_elements(const Points& positions, Tangent tangent) {
   SolidOutput solids{work.force_records, work.solid_blocks,
                      work.batch_energy.data() + elements.batches(), work.patch_ratios.data(),
                      work.patch_spread.data()};
+  if (work.started) solids.start = work.start_points.data();
   for (std::size_t g = 0; g < model_->solids().size(); ++g) {
     const SolidGroup& group = model_->solids()[g];
     if (history_ != nullptr) solids.history = history_->of_step(g);
@@ -247,7 +262,7 @@ VolumeMeasure Assembly::measure_volume(const Points& positions) {
 void Assembly::gather(const AssemblyWeights& weights) {
   Workspace& work = *work_;
   const FemModel& model = *model_;
-  const bool consistent = model.has_consistent_mass();
+  const bool blocks = model.has_mass_blocks();
   const double* records = work.records(weights.tangent);
   const double* solids = work.solid_blocks;
   const double* patch_rows = work.patch_ratios.empty() ? nullptr : work.patch_rows.data();
@@ -256,8 +271,8 @@ void Assembly::gather(const AssemblyWeights& weights) {
     const int end = work.column_splits[static_cast<std::size_t>(thread) + 1];
     gather_forces(model.gather(), begin, end, work.force_records, work.forces.data());
     gather_blocks(model.gather(), model.pattern(), begin, end, records, solids, patch_rows, weights,
-                  consistent ? nullptr : model.free_mass().data(),
-                  consistent ? model.mass_blocks().data() : nullptr, work.matrix.data());
+                  blocks ? nullptr : model.free_mass().data(),
+                  blocks ? model.mass_blocks().data() : nullptr, work.matrix.data());
   });
 }
 
@@ -311,9 +326,10 @@ std::size_t Assembly::bytes() const {
   const Workspace& work = *work_;
   return sizeof(Assembly) + sizeof(Workspace) + work.own_records.bytes() +
          work.own_exact_records.bytes() + work.own_solid_blocks.bytes() + work.points.bytes() +
-         work.patch_spread.bytes() + work.patch_rows.bytes() + bytes_of(work.slot_ratios) +
-         bytes_of(work.patch_ratios) + bytes_of(work.forces) + work.matrix.bytes() +
-         bytes_of(work.batch_energy) + bytes_of(work.thread_ratios) + bytes_of(work.column_splits);
+         work.start_points.bytes() + work.patch_spread.bytes() + work.patch_rows.bytes() +
+         bytes_of(work.slot_ratios) + bytes_of(work.patch_ratios) + bytes_of(work.forces) +
+         work.matrix.bytes() + bytes_of(work.batch_energy) + bytes_of(work.thread_ratios) +
+         bytes_of(work.column_splits);
 }
 
 }  // namespace sinew::fem

@@ -20,6 +20,9 @@ enum class Tangent {
   /// Positive semi-definite: R K0 R^T with the rotation held fixed, what real-time codes use; of
   /// hyperelastic laws the projected derivative.
   rotated,
+  /// The exact derivative of each element (of hyperelastic laws: of each point) projected onto the
+  /// positive semi-definite matrices: never less than the exact one.
+  projected,
   exact,  ///< second derivative of the energy, rotation's derivative included; may be indefinite
 };
 
@@ -30,6 +33,8 @@ struct AssemblyWeights {
   Tangent tangent = Tangent::rotated;
   double stiffness = 1.0;
   double mass = 0.0;
+
+  bool operator==(const AssemblyWeights&) const = default;
 };
 
 /// The element whose volume shrank most.
@@ -62,6 +67,11 @@ class Assembly {
   /// Throws Error(wrong-shape) unless positions has a row for every mesh node. Positions that are
   /// not finite are seen by minimum_volume_ratio() = -infinity.
   void evaluate(const Points& positions, const AssemblyWeights& weights);
+
+  /// From the next evaluate() on, the tangent's pressures are linearised from these positions,
+  /// which the body moved from (SolidOutput::start); null: they are those of the forces.
+  /// @param positions (n, 3) m; copied.
+  bool linearise_from(const Points* positions);
 
   /// From the next evaluate() on: what elements that relax or soften have behind them; null:
   /// nothing. The energy is then the incremental one, whose derivative the forces are.
@@ -99,6 +109,7 @@ class Assembly {
  private:
   struct Workspace;
   void load_positions(const Points& positions);
+  void pad(const Points& positions, double* to);
   void find_smallest();
   void evaluate_elements(const Points& positions, Tangent tangent);
   void average_patches(const SolidGroup& group);

@@ -69,10 +69,10 @@ SINEW_INLINE Block rotation_terms(const GatherLists& lists, std::int32_t begin, 
 template <Tangent tangent>
 SINEW_INLINE Block gather_block(const GatherLists& lists, std::size_t visit,
                                 const double* records) {
-  constexpr int kRecord = tangent == Tangent::exact ? kExactRecord : kRotatedRecord;
+  constexpr int kRecord = tangent == Tangent::rotated ? kRotatedRecord : kExactRecord;
   const std::int32_t first = lists.contribution_start[visit];
   Block result;
-  if constexpr (tangent == Tangent::exact) {
+  if constexpr (tangent != Tangent::rotated) {
     result = rotation_terms(lists, first, lists.contribution_start[visit + 1], records);
   }
   std::int32_t begin = first;
@@ -116,7 +116,7 @@ void gather_columns(const GatherLists& lists, const linalg::BlockPattern& patter
                     int end, const double* records, const double* solids, const double* patch_rows,
                     const AssemblyWeights& weights, const double* node_mass,
                     const double* block_mass, double* matrix) {
-  const double diagonal = weights.stiffness * (tangent == Tangent::exact ? 2.0 : 1.0);
+  const double diagonal = weights.stiffness * (tangent == Tangent::rotated ? 1.0 : 2.0);
   for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
     const auto j = static_cast<std::size_t>(lists.column[k]);
     const auto first = static_cast<std::size_t>(pattern.column_start[j]);
@@ -141,7 +141,7 @@ void gather_blocks(const GatherLists& lists, const linalg::BlockPattern& pattern
                    int end, const double* records, const double* solids, const double* patch_rows,
                    const AssemblyWeights& weights, const double* node_mass,
                    const double* block_mass, double* matrix) {
-  if (weights.tangent == Tangent::exact) {
+  if (weights.tangent == Tangent::exact || weights.tangent == Tangent::projected) {
     gather_columns<Tangent::exact>(lists, pattern, begin, end, records, solids, patch_rows, weights,
                                    node_mass, block_mass, matrix);
   } else if (weights.tangent == Tangent::rotated) {

@@ -124,8 +124,10 @@ void evaluate(const ElementBatches& elements, int begin, int end, const double* 
       if constexpr (tangent == Tangent::rotated) {
         h.store(output.records + kRotatedRecord * kLanes * b, kRotatedRecord);
       } else {
-        store_exact(h, material::exact_tangent<law>(f, moduli, response), moduli.mu,
-                    output.records + kExactRecord * kLanes * b);
+        const material::ExactTangent full =
+            tangent == Tangent::exact ? material::exact_tangent<law>(f, moduli, response)
+                                      : material::projected_tangent<law>(f, moduli, response);
+        store_exact(h, full, moduli.mu, output.records + kExactRecord * kLanes * b);
       }
     }
   }
@@ -151,6 +153,9 @@ SmallestRatio evaluate_batches(const ElementBatches& elements, int begin, int en
       break;
     case Tangent::rotated:
       evaluate_laws<Tangent::rotated>(elements, begin, end, points, output, minimum);
+      break;
+    case Tangent::projected:
+      evaluate_laws<Tangent::projected>(elements, begin, end, points, output, minimum);
       break;
     case Tangent::exact:
       evaluate_laws<Tangent::exact>(elements, begin, end, points, output, minimum);

@@ -24,15 +24,16 @@ FemBody::FemBody(const FemBodyModel& model, ThreadPool& pool, bool with_curvatur
     : model_(model),
       pool_(pool),
       positions_(model.mesh().nodes),
-      velocities_(Points::Zero(positions_.rows(), 3)),
-      external_forces_(velocities_),
-      history_(static_cast<std::size_t>(histories), velocities_),
+      velocities_(model.start_velocities()),
+      external_forces_(Points::Zero(positions_.rows(), 3)),
+      history_(static_cast<std::size_t>(histories), external_forces_),
       load_factors_(model.loads().size(), 1.0),
       load_forces_(Points::Zero(positions_.rows(), 3)),
       drag_forces_(load_forces_),
       element_history_(model.elements().solids()),
       start_positions_(positions_),
-      active_(&numbers(with_curvature)) {
+      active_(&numbers(with_curvature)),
+      rigid_base_(histories) {
   const auto nodes = model.elements().free_nodes();
   const auto size = 3 * static_cast<Eigen::Index>(nodes.size());
   for (VectorX* v : {&right_, &motion_, &base_, &scratch_}) v->setZero(size);
@@ -82,38 +83,63 @@ Vector3 FemBody::velocity(int point) const { return weighted(velocities_, point)
 void FemBody::begin_step() {
   start_positions_ = positions_;
   first_linearisation_ = true;
-  carried_ = false;
   prepared_step_.reset();
-  if (base_pose_) place_base();
+  // What the last step's motion lent the tangent's pressure must not outlive it: a state says all.
+  if (active_->assembly.linearise_from(nullptr)) active_->present.reset();
+  place_base();
 }
 
 void FemBody::linearise(const mechanics::LinearisationRequest& request) {
+  Numbers* const before = active_;
   active_ = &numbers(request.with_curvature);
+  if (active_ != before) before->present.reset();
+  tangent_ = request.tangent;
+  active_->iterating = request.iterating;
   prepare_history(request.weights.time_step);
+  evaluate_elements(request);
+  if (!model_.loads().empty()) apply_loads(request);
+  form_right_side(request);
+  first_linearisation_ = false;
+}
+
+namespace {
+
+Tangent element_tangent(mechanics::Tangent tangent) {
+  switch (tangent) {
+    case mechanics::Tangent::real_time:
+      return Tangent::rotated;
+    case mechanics::Tangent::projected:
+      return Tangent::projected;
+    case mechanics::Tangent::exact:
+      return Tangent::exact;
+  }
+  return Tangent::exact;
+}
+
+}  // namespace
+
+// C = alpha M + beta K with the rotated K at the start of the step: positive semi-definite, so that
+// damping damps, and constant, so that Newton's derivative is exact.
+void FemBody::evaluate_elements(const mechanics::LinearisationRequest& request) {
   const auto& weights = request.weights;
   const auto& damping = model_.settings().damping;
   const double mass = weights.acceleration.motion + damping.mass * weights.velocity.motion;
   const double rate = damping.stiffness * weights.velocity.motion;
-  const bool exact = request.tangent == mechanics::Tangent::exact;
-  // C = alpha M + beta K with the rotated K at the start of the step: positive semi-definite, so
-  // that damping damps, and constant, so that Newton's derivative is exact.
-  active_->damped = rate > 0.0 && (request.iterating || exact);
+  const AssemblyWeights wanted{element_tangent(request.tangent), 1.0, mass};
+  active_->damped = rate > 0.0;
   if (active_->damped && first_linearisation_) {
     active_->assembly.evaluate(positions_, {Tangent::rotated, 1.0, 0.0});
     const auto matrix = active_->assembly.matrix();
     active_->start_stiffness.assign(matrix.begin(), matrix.end());
+    active_->present.reset();
   }
-  active_->assembly.evaluate(positions_, {exact ? Tangent::exact : Tangent::rotated,
-                                          active_->damped ? 1.0 : 1.0 + rate, mass});
-  if (active_->damped) {
-    const auto matrix = active_->assembly.matrix();
-    for (std::size_t i = 0; i < matrix.size(); ++i) matrix[i] += rate * active_->start_stiffness[i];
-  }
-  if (!model_.loads().empty()) apply_loads(request);
-  form_right_side(request);
-  if (tether_) stiffen_by_tether();
-  stiffen_by_loads();
-  first_linearisation_ = false;
+  const bool historic = !element_history_.empty();
+  if (active_->present == wanted && !historic && !active_->damped) return;
+  active_->assembly.evaluate(positions_, wanted);
+  active_->present = wanted;
+  if (!active_->damped) return;
+  const auto matrix = active_->assembly.matrix();
+  for (std::size_t i = 0; i < matrix.size(); ++i) matrix[i] += rate * active_->start_stiffness[i];
 }
 
 // b = p - f - M a - C v, a and v combinations of the motion since the step began and of what was
@@ -142,56 +168,41 @@ void FemBody::form_right_side(const mechanics::LinearisationRequest& request) {
   hold_right_side();
 }
 
+Vector3 FemBody::combined(const mechanics::Combination& weights, NodeId node) const {
+  Vector3 sum = weights.velocity * velocities_.row(node).transpose() +
+                weights.motion * (positions_.row(node) - start_positions_.row(node)).transpose();
+  const bool kept = !history_.empty() && (weights.first != 0.0 || weights.second != 0.0);
+  if (!kept) return sum;
+  sum += weights.first * history_[0].row(node).transpose() +
+         weights.second * history_[1].row(node).transpose();
+  return sum;
+}
+
 void FemBody::combine(const mechanics::Combination& weights, VectorX& result) const {
   const auto nodes = model_.elements().free_nodes();
   result.resize(3 * static_cast<Eigen::Index>(nodes.size()));
-  const bool kept = !history_.empty() && (weights.first != 0.0 || weights.second != 0.0);
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const auto k = 3 * static_cast<Eigen::Index>(i);
-    result.segment<3>(k) =
-        weights.velocity * velocities_.row(nodes[i]).transpose() +
-        weights.motion * (positions_.row(nodes[i]) - start_positions_.row(nodes[i])).transpose();
-    if (!kept) continue;
-    result.segment<3>(k) += weights.first * history_[0].row(nodes[i]).transpose() +
-                            weights.second * history_[1].row(nodes[i]).transpose();
+    result.segment<3>(3 * static_cast<Eigen::Index>(i)) = combined(weights, nodes[i]);
   }
-}
-
-// Velocity at the end of the step that stiffness damping acts on: beside a moving base, which the
-// rows and columns of fixed nodes in K would take away.
-void FemBody::combine_velocity(const mechanics::StepWeights& weights, VectorX& result) const {
-  combine(weights.velocity, result);
-  if (carried_) result -= carry_ / weights.time_step;
 }
 
 void FemBody::add_inertia(const mechanics::StepWeights& weights) {
   const auto& damping = model_.settings().damping;
   const auto sum = [&](double a, double v) { return -(a + damping.mass * v); };
   const mechanics::Combination &a = weights.acceleration, &v = weights.velocity;
-  combine({sum(a.motion, v.motion), sum(a.velocity, v.velocity), sum(a.first, v.first),
-           sum(a.second, v.second)},
-          momentum_);
+  const mechanics::Combination inertia{sum(a.motion, v.motion), sum(a.velocity, v.velocity),
+                                       sum(a.first, v.first), sum(a.second, v.second)};
+  combine(inertia, momentum_);
   active_->system.elements->apply_mass(span_of(momentum_), span_of(scratch_));
+  add_base_momentum(inertia, scratch_);
   right_ += scratch_;
   force_scale_ += scratch_.norm();
-  if (!(damping.stiffness > 0.0)) return;
-  if (active_->damped) {
-    combine_velocity(weights, travel_);
-    linalg::multiply(active_->system.elements->pattern(), active_->start_stiffness,
-                     span_of(travel_), span_of(scratch_));
-    right_ -= damping.stiffness * scratch_;
-    return;
-  }
-  // One linearisation, at the start: the matrix is (1 + rate) K + mass M, and no motion is yet made
-  // but a base's.
-  if (v.velocity == 0.0 && v.first == 0.0 && v.second == 0.0 && !carried_) return;
+  if (!active_->damped) return;
+  if (first_linearisation_) find_base_velocity(weights);
   combine_velocity(weights, travel_);
-  const double mass = a.motion + damping.mass * v.motion;
-  const double rate = damping.stiffness * v.motion;
-  linalg::multiply(active_->system.elements->pattern(), active_->assembly.matrix(),
-                   span_of(travel_), span_of(scratch_));
-  active_->system.elements->apply_mass(span_of(travel_), span_of(momentum_));
-  right_ -= damping.stiffness / (1.0 + rate) * (scratch_ - mass * momentum_);
+  linalg::multiply(active_->system.elements->pattern(), active_->start_stiffness, span_of(travel_),
+                   span_of(scratch_));
+  right_ -= damping.stiffness * scratch_;
 }
 
 void FemBody::hold_right_side() {
@@ -215,6 +226,7 @@ void FemBody::add_curvature(const mechanics::RowCurvature& curvature) {
       active_->assembly.add_block(i, j, block);
     }
   }
+  active_->present.reset();
 }
 
 // A += stiffness w_a w_b I at the blocks of its nodes.
@@ -305,7 +317,10 @@ void FemBody::hold_imbalance(std::span<const double> effort) {
 }
 
 linalg::FactorStatus FemBody::condense() {
+  if (tether_) stiffen_by_tether();
+  stiffen_by_loads();
   active_->assembly.hold();
+  active_->present.reset();
   const std::span<const double> border(active_->border);
   return active_->factorisation->factorise(
       active_->assembly.matrix(), border.first(3 * active_->system.fixed_entries), span_of(right_));
@@ -374,6 +389,7 @@ void FemBody::remember_base() {
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     base_.segment<3>(3 * static_cast<Eigen::Index>(i)) = positions_.row(nodes[i]).transpose();
   }
+  if (active_->iterating) active_->assembly.linearise_from(&positions_);
 }
 
 void FemBody::imbalance(std::span<const double> effort, std::span<double> result) {
@@ -402,6 +418,7 @@ mechanics::MotionReport FemBody::apply_motion(double scale) {
   mechanics::MotionReport report;
   report.largest_move = scale * motion_.cwiseAbs().maxCoeff();
   report.finite = std::isfinite(sum) && sum < blow_up_;
+  active_->present.reset();
   if (report.finite) {
     const auto volume = active_->assembly.measure_volume(positions_);
     report.smallest_volume_ratio = volume.smallest_ratio;
@@ -418,6 +435,7 @@ double FemBody::end_step(const mechanics::StepWeights& weights) {
     active_->assembly.advance(positions_, element_history_);
     prepared_step_.reset();
   }
+  rigid_base_.end_step(weights);
   if (!weights.dynamic()) {  // nothing moves, and nothing is kept
     velocities_.setZero();
     for (Points& kept : history_) kept.setZero();
@@ -453,14 +471,17 @@ double FemBody::end_step(const mechanics::StepWeights& weights) {
 int FemBody::negative_pivots() const { return active_->factorisation->negative_pivots(); }
 
 double FemBody::strain_energy() {
-  prepare_history(0.0);  // what relaxing parts store beside the law's energy is not in it
-  active_->assembly.evaluate(positions_, {Tangent::none, 1.0, 0.0});
+  // What relaxing parts store beside the law's energy is not in it.
+  prepare_history(0.0);
+  const bool present = active_->present.has_value() && element_history_.empty();
+  if (!present) active_->assembly.evaluate(positions_, {Tangent::none, 1.0, 0.0});
   return active_->assembly.strain_energy();
 }
 
 std::size_t FemBody::bytes() const {
   const Eigen::Index free = right_.size() + motion_.size() + base_.size() + scratch_.size() +
-                            travel_.size() + momentum_.size() + imbalance_.size();
+                            travel_.size() + momentum_.size() + imbalance_.size() + carry_.size() +
+                            base_velocity_.size();
   const auto points = (4 + history_.size()) * static_cast<std::size_t>(positions_.size());
   auto total = sizeof(double) * (points + static_cast<std::size_t>(free) + element_history_.size());
   for (const Numbers* n : {plain_.get(), curved_.get()}) {

@@ -6,11 +6,10 @@
 #include <optional>
 #include <vector>
 
-#include <Eigen/Geometry>
-
 #include "sinew/fem/assembly.hpp"
 #include "sinew/fem/element_history.hpp"
 #include "sinew/fem/fem_body_model.hpp"
+#include "sinew/fem/rigid_base.hpp"
 #include "sinew/fem/tether.hpp"
 
 namespace sinew::fem {
@@ -32,7 +31,7 @@ class FemBody : public mechanics::Body {
   void linearise(const mechanics::LinearisationRequest& request) override;
   void add_curvature(const mechanics::RowCurvature& curvature) override;
   void take_rows(const mechanics::RowValues& rows) override;
-  void take_presence(const mechanics::RowValues& rows) override;
+  void retake_rows(const mechanics::RowValues& rows) override { take_rows(rows); }
   Vector3 proposed_motion(int point) const override;
   double residual(std::span<const double> effort) override;
   linalg::FactorStatus condense() override;
@@ -47,6 +46,7 @@ class FemBody : public mechanics::Body {
   mechanics::MotionReport apply_motion(double scale) override;
   double end_step(const mechanics::StepWeights& weights) override;
   mechanics::StepWork step_work() const override { return work_; }
+  bool moved_from_outside() const override { return tether_.has_value() || rigid_base_.moves(); }
 
   void restart() override;
   std::size_t state_size() const override;
@@ -55,8 +55,10 @@ class FemBody : public mechanics::Body {
 
   int negative_pivots() const override;
   double force_scale() const override { return force_scale_; }
+  double rounding_floor() const override;
+  bool is_unsymmetric() const override { return !open_stiffness_.empty(); }
   double strain_energy() override;
-  double kinetic_energy() const override;
+  double kinetic_energy() override;
   double gravity_energy() const override;
   std::size_t bytes() const override;
 
@@ -68,13 +70,10 @@ class FemBody : public mechanics::Body {
   Points& external_forces() { return external_forces_; }
   const Points& external_forces() const { return external_forces_; }
 
-  /// Where the fixed nodes stand from the next step on: turned about `centre` by a rotation vector
-  /// and then moved, from rest. An input as external forces are, but that where the nodes stand is
-  /// part of the state. Each step begins its search where the base's motion takes the whole body.
-  /// What moves the base puts in or takes out work.
-  /// @param translation (3,) m. @param rotation (3,) rad. @param centre (3,) m, at rest.
-  /// Throws Error(not-finite).
-  void set_base(const Vector3& translation, const Vector3& rotation, const Vector3& centre);
+  /// The motion of the fixed nodes. Each step begins its search where that motion takes the whole
+  /// body. What moves the base puts in or takes out work.
+  RigidBase& rigid_base() { return rigid_base_; }
+  const RigidBase& rigid_base() const { return rigid_base_; }
 
   /// (loads,) of FemBodyModel::loads(), 1 unless set: an input as external forces are.
   std::vector<double>& load_factors() { return load_factors_; }
@@ -107,12 +106,15 @@ class FemBody : public mechanics::Body {
   Numbers& numbers(bool with_curvature);
   void form_right_side(const mechanics::LinearisationRequest& request);
   void add_inertia(const mechanics::StepWeights& weights);
+  Vector3 combined(const mechanics::Combination& weights, NodeId node) const;
   void combine(const mechanics::Combination& weights, VectorX& result) const;
   void combine_velocity(const mechanics::StepWeights& weights, VectorX& result) const;
   void hold_right_side();
+  void evaluate_elements(const mechanics::LinearisationRequest& request);
   void stiffen_by_tether();
   void apply_loads(const mechanics::LinearisationRequest& request);
   void stiffen_by_loads();
+  void add_majorant(std::int32_t row, std::int32_t column, const Matrix3& block);
   void correct_for_open_pressure();
   void multiply_blocks(const std::vector<LoadBlock>& blocks, const VectorX& x, VectorX& y) const;
   void add_work(const mechanics::StepWeights& weights);
@@ -120,8 +122,11 @@ class FemBody : public mechanics::Body {
   void pull_by_tether();
   Vector3 weighted(const Points& field, int point) const;
   void place_base();
+  void find_base_velocity(const mechanics::StepWeights& weights);
+  void add_base_momentum(const mechanics::Combination& weights, VectorX& result) const;
   void remember_base();
   void prepare_history(double time_step);
+  void take_presence(const mechanics::RowValues& rows);
   void add_passing_compliance(MatrixX& compliance, VectorX& free_motion) const;
   /// (3,) N on a mesh node.
   Vector3 weight(NodeId node) const {
@@ -143,6 +148,7 @@ class FemBody : public mechanics::Body {
   Points start_positions_;  // of the step; velocities_ stay those of its start until it ends
   std::unique_ptr<Numbers> plain_, curved_;
   Numbers* active_ = nullptr;
+  mechanics::Tangent tangent_ = mechanics::Tangent::real_time;  // of the last linearisation
 
   // Over free nodes, (3 free,); travel and momentum from the first step of dynamics on, the
   // imbalance from the first time that it is held.
@@ -152,10 +158,11 @@ class FemBody : public mechanics::Body {
       passing_;  // groups of three of the rows that come and go: those present
   double imbalance_share_ = 0.0;
   std::optional<Tether> tether_;
-  std::optional<Eigen::Isometry3d> base_pose_;                                // asked for
-  std::optional<Eigen::Isometry3d> base_at_ = Eigen::Isometry3d::Identity();  // if it is known
-  bool carried_ = false;  // the base's motion took all nodes along at the start of the step
-  VectorX carry_;         // by this much, (3 free,) m
+  RigidBase rigid_base_;
+  bool carried_ = false;     // the base's motion took all nodes along at the start of the step
+  VectorX carry_;            // by this much, (3 free,) m
+  bool base_moves_ = false;  // base_velocity_ is not zero
+  VectorX base_velocity_;    // see find_base_velocity(), (3 free,) m/s
   double blow_up_ = 0.0;  // sum of squared positions, m^2, beyond which the state is taken as lost
   bool first_linearisation_ = true;
   double force_scale_ = 0.0;

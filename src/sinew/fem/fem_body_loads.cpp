@@ -1,10 +1,13 @@
 // What FemBody does with the loads of its surroundings.
 #include <cmath>
 
+#include <Eigen/QR>
+
 #include "sinew/fem/fem_body.hpp"
 #include "sinew/fem/fem_body_numbers.hpp"
 #include "sinew/linalg/block_product.hpp"
 #include "sinew/linalg/dense.hpp"
+#include "sinew/linalg/positive_part.hpp"
 
 namespace sinew::fem {
 
@@ -43,7 +46,8 @@ void FemBody::apply_loads(const mechanics::LinearisationRequest& request) {
     if (i >= 0 && j >= 0) blocks.push_back({i, j, block});
   };
   LoadSet::AddBlock rest;
-  if (loads.is_open() && !weights.dynamic() && request.tangent == mechanics::Tangent::exact) {
+  const bool of_statics = !weights.dynamic() || weights.time_step == 0.0;
+  if (loads.is_open() && of_statics && request.tangent == mechanics::Tangent::exact) {
     rest = [&](NodeId a, NodeId b, const Matrix3& block) { keep(open_stiffness_, a, b, block); };
   }
   loads.evaluate(
@@ -55,8 +59,25 @@ void FemBody::apply_loads(const mechanics::LinearisationRequest& request) {
 
 void FemBody::stiffen_by_loads() {
   for (const auto& [row, column, block] : load_stiffness_) {
-    active_->assembly.add_block(row, column, block);
+    if (tangent_ == mechanics::Tangent::exact) {
+      active_->assembly.add_block(row, column, block);
+    } else {
+      add_majorant(row, column, block);
+    }
   }
+}
+
+// Never less than the block and its transpose: of a diagonal block its positive part; for another
+// one |C| I at both ends, since [|C| I, -C; -C^T, |C| I] is positive semi-definite (by its Schur
+// complement |C| I - C^T C/|C|).
+void FemBody::add_majorant(std::int32_t row, std::int32_t column, const Matrix3& block) {
+  if (row == column) {
+    active_->assembly.add_block(row, row, linalg::positive_part(block));
+    return;
+  }
+  const Matrix3 bound = block.norm() * Matrix3::Identity();
+  active_->assembly.add_block(row, row, bound);
+  active_->assembly.add_block(column, column, bound);
 }
 
 void FemBody::multiply_blocks(const std::vector<LoadBlock>& blocks, const VectorX& x,
@@ -122,7 +143,8 @@ void FemBody::add_work(const mechanics::StepWeights& weights) {
   }
 }
 
-// (C v) . d with C = alpha M + beta K as the step had it.
+// (C v) . d with C = alpha M + beta K as the step had it. K v is without the base's velocity, and
+// dissipates in the motion beside the base's: the rest of its work is the base's.
 double FemBody::rayleigh_work(const mechanics::StepWeights& weights) {
   const auto& damping = model_.settings().damping;
   const FemModel& elements = *active_->system.elements;
@@ -132,10 +154,13 @@ double FemBody::rayleigh_work(const mechanics::StepWeights& weights) {
     const NodeId node = nodes[static_cast<std::size_t>(i)];
     return (positions_.row(node) - start_positions_.row(node)).transpose();
   };
-  const auto along = [&](const VectorX& force) {
+  const auto strayed = [&](std::int32_t i) -> Vector3 {
+    return carried_ ? Vector3(moved(i) - carry_.segment<3>(3 * i)) : moved(i);
+  };
+  const auto along = [&](const auto& motion, const VectorX& force) {
     double sum = 0.0;
     for (std::int32_t i = 0; i < static_cast<std::int32_t>(nodes.size()); ++i) {
-      sum += force.segment<3>(3 * i).dot(moved(i));
+      sum += force.segment<3>(3 * i).dot(motion(i));
     }
     return sum;
   };
@@ -143,29 +168,15 @@ double FemBody::rayleigh_work(const mechanics::StepWeights& weights) {
   if (damping.mass > 0.0) {
     combine(weights.velocity, travel_);
     elements.apply_mass({travel_.data(), size}, {scratch_.data(), size});
-    work += damping.mass * along(scratch_);
+    add_base_momentum(weights.velocity, scratch_);
+    work += damping.mass * along(moved, scratch_);
   }
-  if (!(damping.stiffness > 0.0)) return work;
+  if (!active_->damped) return work;
   combine_velocity(weights, travel_);
   const std::span<const double> travel(travel_.data(), size);
   const std::span<double> force(scratch_.data(), size);
-  if (active_->damped) {
-    linalg::multiply(elements.pattern(), active_->start_stiffness, travel, force);
-    return work + damping.stiffness * along(scratch_);
-  }
-  // The matrix is (1 + rate) K + mass M and what the loads added.
-  const double rate = damping.stiffness * weights.velocity.motion;
-  const double mass = weights.acceleration.motion + damping.mass * weights.velocity.motion;
-  linalg::multiply(elements.pattern(), active_->assembly.matrix(), travel, force);
-  double stiff = along(scratch_);
-  momentum_.resize(scratch_.size());
-  elements.apply_mass(travel, {momentum_.data(), size});
-  stiff -= mass * along(momentum_);
-  for (const auto& [row, column, block] : load_stiffness_) {
-    stiff -= moved(row).dot(block * travel_.segment<3>(3 * column));
-    if (row != column) stiff -= moved(column).dot(block.transpose() * travel_.segment<3>(3 * row));
-  }
-  return work + damping.stiffness / (1.0 + rate) * stiff;
+  linalg::multiply(elements.pattern(), active_->start_stiffness, travel, force);
+  return work + damping.stiffness * along(strayed, scratch_);
 }
 
 }  // namespace sinew::fem

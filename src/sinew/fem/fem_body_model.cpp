@@ -1,9 +1,11 @@
 #include "sinew/fem/fem_body_model.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
@@ -18,11 +20,52 @@ FemBodyModel::FemBodyModel(FemBodySettings settings) : settings_(std::move(setti
                   fmt::format("a damping coefficient is {:g}", value), "give zero or more");
     }
   }
-  plain_.elements = std::make_shared<const FemModel>(settings_.mesh, settings_.elements);
+  check_mesh(*settings_.mesh);
   embedder_ = std::make_unique<mesh::Embedder>(*settings_.mesh);
+  for (const PointMassSettings& mass : settings_.masses) attach_mass(mass);
+  plain_.elements = std::make_shared<const FemModel>(settings_.mesh, settings_.elements);
 }
 
 FemBodyModel::~FemBodyModel() = default;
+
+void FemBodyModel::attach_mass(const PointMassSettings& mass) {
+  if (!(mass.mass > 0.0) || !std::isfinite(mass.mass)) {
+    throw Error(ErrorKind::out_of_range, mass.place,
+                fmt::format("mass '{}' is {:g} kg", mass.name, mass.mass),
+                "give a positive mass such as 50 g");
+  }
+  try {
+    const int point = attach(mass.point, mass.outside, fmt::format("mass '{}'", mass.name));
+    mass_points_.push_back(point);
+    settings_.elements.point_masses.push_back(
+        {attachment(point).nodes, attachment(point).weights, mass.mass});
+  } catch (const Error& error) {
+    throw error.at(mass.place);
+  }
+}
+
+Points FemBodyModel::start_velocities() const {
+  const FemModel& model = elements();
+  const Points& rest = mesh().nodes;
+  Points result = Points::Zero(rest.rows(), 3);
+  const auto& [linear, angular] = settings_.initial_velocity;
+  if (linear.isZero(0.0) && angular.isZero(0.0)) return result;
+  const VectorX& mass = model.load_mass();
+  const Vector3 centre = rest.transpose() * mass / mass.sum();
+  for (const NodeId node : model.free_nodes()) {
+    const Vector3 arm = rest.row(node).transpose() - centre;
+    result.row(node) = (linear + angular.cross(arm)).transpose();
+  }
+  for (const std::int32_t held : model.held()) {
+    result(model.free_nodes()[static_cast<std::size_t>(held / 3)], held % 3) = 0.0;
+  }
+  return result;
+}
+
+mesh::EmbeddedPoint FemBodyModel::locate(const Vector3& rest_position, mesh::Outside outside,
+                                         const std::string& what) const {
+  return embedder_->locate(rest_position, outside, what);
+}
 
 int FemBodyModel::attach(const Vector3& rest_position, mesh::Outside outside,
                          const std::string& what) {

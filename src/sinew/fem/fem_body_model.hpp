@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "sinew/core/error.hpp"
 #include "sinew/fem/fem_model.hpp"
 #include "sinew/fem/loads.hpp"
 #include "sinew/mechanics/body.hpp"
@@ -21,12 +22,30 @@ struct RayleighDamping {
   double stiffness = 0.0;  ///< s, >= 0
 };
 
+/// A mass that hangs on a point of the body, such as a weight or a camera: it has weight and
+/// inertia, and no size.
+struct PointMassSettings {
+  std::string name;
+  Place place;                      ///< for errors
+  Vector3 point = Vector3::Zero();  ///< m, at rest
+  double mass = 0.0;                ///< kg, > 0
+  mesh::Outside outside = mesh::Outside::error;
+};
+
+/// Of a rigid body.
+struct InitialVelocity {
+  Vector3 linear = Vector3::Zero();   ///< m/s, of the centre of mass
+  Vector3 angular = Vector3::Zero();  ///< rad/s, about it
+};
+
 struct FemBodySettings {
   std::string name;
   std::shared_ptr<const mesh::Mesh> mesh;
   FemModelSettings elements;          ///< couplings are filled in by finish()
   Vector3 gravity = Vector3::Zero();  ///< m/s^2
   RayleighDamping damping;
+  std::vector<PointMassSettings> masses;
+  InitialVelocity initial_velocity;  ///< of the free nodes; in dynamics
 };
 
 /// What a body factorises: its elements on one pattern, bordered by its rows. A body has two, since
@@ -54,7 +73,8 @@ class FemBodyModel : public mechanics::BodyModel {
     std::vector<double> weights;
   };
 
-  /// Throws what FemModel does, and Error(out-of-range) for negative damping.
+  /// Throws what FemModel does, and Error: out-of-range for negative damping or a mass that is not
+  /// positive, point-outside-mesh for a mass outside.
   explicit FemBodyModel(FemBodySettings settings);
   ~FemBodyModel() override;
 
@@ -64,6 +84,9 @@ class FemBodyModel : public mechanics::BodyModel {
                   const std::string& what) override;
   int attach_nodes(std::span<const NodeId> nodes, std::span<const double> weights) override;
   Vector3 rest_position(int point) const override;
+  /// The nodes and weights of a point, which is not attached. Throws as attach() does.
+  mesh::EmbeddedPoint locate(const Vector3& rest_position, mesh::Outside outside,
+                             const std::string& what) const;
   /// Adds a load, whose number in loads() is returned. Building only.
   int add_load(Load load);
   void finish(int body, const mechanics::RowPattern& rows,
@@ -76,6 +99,10 @@ class FemBodyModel : public mechanics::BodyModel {
   const mesh::Mesh& mesh() const override { return *settings_.mesh; }
   const FemModel& elements() const { return *plain_.elements; }
   const FemBodySettings& settings() const { return settings_; }
+  /// (n, 3) m/s: of all nodes at the start; zero at fixed nodes and along held axes.
+  Points start_velocities() const;
+  /// The attached point of a mass of the settings.
+  int mass_point(std::size_t mass) const { return mass_points_[mass]; }
   /// After finish().
   const LoadSet& loads() const { return *loads_; }
   const Attachment& attachment(int point) const {
@@ -93,10 +120,12 @@ class FemBodyModel : public mechanics::BodyModel {
 
  private:
   FemSystem make_system(const FemModelSettings& elements) const;
+  void attach_mass(const PointMassSettings& mass);
 
   FemBodySettings settings_;
   std::unique_ptr<mesh::Embedder> embedder_;
   std::vector<Attachment> attachments_;
+  std::vector<int> mass_points_;
   std::vector<Load> added_loads_;  // until finish()
   std::unique_ptr<const LoadSet> loads_;
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "sinew/fem/fem_body.hpp"
@@ -22,6 +23,11 @@ struct FemBody::Numbers {
   std::vector<double> border;
   std::vector<double> start_stiffness;  // rotated K at the start of the step, for damping
   bool damped = false;
+  /// What the elements' forces and matrix in `assembly` are of, at the body's present positions:
+  /// the next linearisation there takes them as they are. None once the body moved or something
+  /// was added to the matrix.
+  std::optional<AssemblyWeights> present;
+  bool iterating = false;  // further linearisations follow where the body moves to
 };
 
 }  // namespace sinew::fem

@@ -65,44 +65,6 @@ void FemBody::set_tether(const std::optional<Tether>& tether) {
   tether_ = tether;
 }
 
-void FemBody::set_base(const Vector3& translation, const Vector3& rotation, const Vector3& centre) {
-  if (!translation.allFinite() || !rotation.allFinite() || !centre.allFinite()) {
-    throw Error(ErrorKind::not_finite, {.item = "base"}, "a number is not finite",
-                "give a translation (m), a rotation vector (rad) and a centre (m)");
-  }
-  const double angle = rotation.norm();
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  if (angle > 0.0) pose.rotate(Eigen::AngleAxisd(angle, rotation / angle));
-  const Vector3 turned = pose.linear() * centre;
-  pose.pretranslate(Vector3(translation + centre - turned));
-  base_pose_ = pose;
-}
-
-// All nodes of elements follow the base rigidly, which strains nothing; then the fixed ones stand
-// where they must, without rounding adding up.
-void FemBody::place_base() {
-  const auto free = model_.elements().free_index();
-  const Points& rest = model_.mesh().nodes;
-  if (base_at_ && !base_at_->isApprox(*base_pose_, 0.0)) {
-    const Eigen::Isometry3d step = *base_pose_ * base_at_->inverse();
-    const auto nodes = model_.elements().free_nodes();
-    carry_.resize(3 * static_cast<Eigen::Index>(nodes.size()));
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-      const Vector3 at = positions_.row(nodes[i]).transpose();
-      const Vector3 to = step * at;
-      carry_.segment<3>(3 * static_cast<Eigen::Index>(i)) = to - at;
-      positions_.row(nodes[i]) = to.transpose();
-    }
-    carried_ = true;
-  }
-  for (const NodeId node : model_.settings().elements.fixed_nodes) {
-    if (free[static_cast<std::size_t>(node)] >= 0) continue;
-    const Vector3 at = rest.row(node).transpose();
-    positions_.row(node) = (*base_pose_ * at).transpose();
-  }
-  base_at_ = base_pose_;
-}
-
 Vector3 FemBody::tether_point() const {
   Vector3 point = Vector3::Zero();
   for (std::size_t k = 0; k < 3; ++k) {

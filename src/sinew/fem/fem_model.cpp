@@ -15,14 +15,19 @@
 
 namespace sinew::fem {
 
-namespace {
-
 void check_mesh(const mesh::Mesh& mesh) {
   const Place place{.file = mesh.name, .item = {}};
   const ElementList list(mesh);
   if (list.count() == 0) {
     throw Error(ErrorKind::no_volume_elements, place, "the mesh has no tetrahedra or hexahedra",
                 "mesh the volume, not only its surface");
+  }
+  for (Eigen::Index node = 0; node < mesh.nodes.rows(); ++node) {
+    if (mesh.nodes.row(node).allFinite()) continue;
+    throw Error(ErrorKind::non_finite_node, place,
+                fmt::format("node {} is at ({}, {}, {})", node, mesh.nodes(node, 0),
+                            mesh.nodes(node, 1), mesh.nodes(node, 2)),
+                "give finite positions");
   }
   for (int e = 0; e < list.count(); ++e) {
     for (const NodeId node : list.nodes(e)) {
@@ -33,6 +38,8 @@ void check_mesh(const mesh::Mesh& mesh) {
     }
   }
 }
+
+namespace {
 
 void check_region(const Region& region) {
   if (region.patches && (!region.hyperelastic || region.hyperelastic->saint_venant_shear != 0.0)) {
@@ -186,18 +193,38 @@ FemModel::FemModel(std::shared_ptr<const mesh::Mesh> mesh, const FemModelSetting
 
   const std::vector<double> volumes = element_volumes(*mesh_, *elements_, solids_);
   volume_ = std::accumulate(volumes.begin(), volumes.end(), 0.0);
-  const std::vector<double> masses = element_masses(settings, region_of, volumes);
-  lumped_mass_ = lumped_masses(*mesh_, settings, masses);
-  load_mass_ = mesh_->quadratic.empty() ? lumped_mass_ : load_masses(*mesh_, settings, masses);
-  total_mass_ = lumped_mass_.sum();
-  free_mass_.reserve(free_nodes_.size());
-  for (const NodeId node : free_nodes_) free_mass_.push_back(lumped_mass_[node]);
-  if (settings.mass == MassMatrix::consistent) {
-    mass_blocks_ = consistent_mass_blocks(*mesh_, free_index_, pattern_, masses);
-  }
+  make_masses(settings, element_masses(settings, region_of, volumes));
 }
 
 FemModel::~FemModel() = default;
+
+void FemModel::make_masses(const FemModelSettings& settings, std::span<const double> masses) {
+  lumped_mass_ = lumped_masses(*mesh_, settings, masses);
+  load_mass_ = mesh_->quadratic.empty() ? lumped_mass_ : load_masses(*mesh_, settings, masses);
+  total_mass_ = lumped_mass_.sum();
+  const bool consistent = settings.mass == MassMatrix::consistent;
+  if (consistent) {
+    mass_blocks_ = consistent_mass_blocks(*mesh_, free_index_, pattern_, masses);
+  } else {
+    free_mass_.reserve(free_nodes_.size());
+    for (const NodeId node : free_nodes_) free_mass_.push_back(lumped_mass_[node]);
+  }
+  support_mass_ =
+      support_masses(*mesh_, free_index_, consistent ? masses : std::span<const double>{},
+                     lumped_mass_, settings.point_masses);
+  if (settings.point_masses.empty()) return;
+  if (!consistent) {
+    mass_blocks_ = diagonal_mass_blocks(pattern_, free_mass_);
+    free_mass_.clear();
+  }
+  for (const PointMass& point : settings.point_masses) {
+    for (const NodeId node : point.nodes) check_node(node, *mesh_, "point mass");
+    add_point_mass(point, free_index_, pattern_, mass_blocks_);
+    for (std::size_t k = 0; k < point.nodes.size(); ++k) {
+      load_mass_[point.nodes[k]] += point.mass * point.weights[k];
+    }
+  }
+}
 
 void FemModel::list_held(const std::vector<HeldAxis>& axes) {
   std::vector<std::array<bool, 3>> holds(free_nodes_.size(), {false, false, false});
@@ -239,7 +266,7 @@ void FemModel::apply_mass(std::span<const double> x, std::span<double> y) const 
   using ConstRows = Eigen::Map<const Points>;
   const ConstRows in(x.data(), free_count(), 3);
   Rows out(y.data(), free_count(), 3);
-  if (!has_consistent_mass()) {
+  if (!has_mass_blocks()) {
     for (Eigen::Index i = 0; i < free_count(); ++i) {
       out.row(i) = free_mass_[static_cast<std::size_t>(i)] * in.row(i);
     }

@@ -49,27 +49,47 @@ struct HeldAxis {
   int axis = 0;  ///< 0, 1, 2: x, y, z
 };
 
+/// A mass at a point x = sum weights x_node of the body, nodes of one element: M += m N^T N with N
+/// the weights. The whole of it takes part: it neither turns nor has a size.
+struct PointMass {
+  std::vector<NodeId> nodes;    ///< distinct
+  std::vector<double> weights;  ///< as many, sum 1
+  double mass = 0.0;            ///< kg, > 0
+};
+
+/// An entry of the mass matrix in the column of a fixed node: M(node, support) = mass I. Both
+/// orders of two fixed nodes are entries of their own.
+struct SupportMass {
+  NodeId node = 0, support = 0;
+  double mass = 0.0;  ///< kg
+};
+
 struct FemModelSettings {
   std::vector<Region> regions;      ///< every element stands in exactly one
   std::vector<NodeId> fixed_nodes;  ///< removed from the system; any order, repeats allowed
   std::vector<HeldAxis> held_axes;  ///< of nodes that are not fixed; any order, repeats allowed
   MassMatrix mass = MassMatrix::lumped;
-  std::optional<double> total_mass;  ///< kg, > 0; scales the densities (by volume if all are 0)
-  bool even_mass = false;            ///< total_mass / n at each node used, as published codes do
+  std::optional<double> total_mass;     ///< kg, > 0; scales the densities (by volume if all are 0)
+  bool even_mass = false;               ///< total_mass / n at each node used, as published codes do
+  std::vector<PointMass> point_masses;  ///< beside the material's mass, whatever total_mass says
   /// Further groups of nodes that may couple (the nodes of a cable segment, for its geometric
   /// stiffness); mesh node numbers, fixed ones are skipped.
   std::vector<std::vector<NodeId>> couplings;
 };
 
+/// Throws Error: no-volume-elements, non-finite-node, index-out-of-range (an element names a node
+/// that the mesh has not).
+void check_mesh(const mesh::Mesh& mesh);
+
 /// Immutable and shareable between simulations and threads. "Free" nodes are those that belong to a
 /// element and are not fixed, numbered in mesh order; unused nodes never move.
 class FemModel {
  public:
-  /// Throws Error: no-volume-elements, unsupported-element (hexahedra that are not hyperelastic),
-  /// empty-list (no region),
-  /// invalid-material, out-of-range (density, mass), index-out-of-range (element, node, axis),
-  /// conflicting-keys (an element in two regions; even mass without a total or with a
-  /// consistent matrix), empty-region (an element in none), zero-volume, inverted-element,
+  /// Throws Error: no-volume-elements, non-finite-node, unsupported-element (hexahedra that are not
+  /// hyperelastic), empty-list (no region), invalid-material, out-of-range (density, mass),
+  /// index-out-of-range (element, node, axis), conflicting-keys (an element in two regions; even
+  /// mass without a total or with a consistent matrix), bad-argument (nodes of a point mass that
+  /// are not of one element), empty-region (an element in none), zero-volume, inverted-element,
   /// everything-fixed.
   FemModel(std::shared_ptr<const mesh::Mesh> mesh, const FemModelSettings& settings);
   ~FemModel();
@@ -93,29 +113,34 @@ class FemModel {
   std::span<const std::int64_t> held_diagonals() const { return held_diagonals_; }
 
   /// (n,) kg at each mesh node, positive, before any node is removed: row sums of the mass matrix,
-  /// for quadratic tetrahedra its diagonal scaled to the mass.
+  /// for quadratic tetrahedra its diagonal scaled to the mass. Point masses are not in it.
   const VectorX& lumped_mass() const { return lumped_mass_; }
-  /// (n,) kg at each mesh node: row sums of the mass matrix, what gravity acts on; negative at
-  /// corners of quadratic tetrahedra.
+  /// (n,) kg at each mesh node: row sums of the mass matrix, what gravity acts on, point masses
+  /// included; negative at corners of quadratic tetrahedra.
   const VectorX& load_mass() const { return load_mass_; }
-  double total_mass() const { return total_mass_; }  ///< kg
+  double total_mass() const { return total_mass_; }  ///< kg, of the material
   double volume() const { return volume_; }          ///< m^3 at rest
-  bool has_consistent_mass() const { return !mass_blocks_.empty(); }
+  /// Whether M has blocks beside its diagonal: a consistent matrix, or point masses.
+  bool has_mass_blocks() const { return !mass_blocks_.empty(); }
 
   /// y = M x over free nodes.
   /// @param x (3 free,) for instance velocities in m/s.
   /// @param y (3 free,) for instance momentum in kg m/s; not the same memory as x.
   void apply_mass(std::span<const double> x, std::span<double> y) const;
+  /// What joins free and fixed nodes, and fixed nodes with each other: where these move.
+  std::span<const SupportMass> support_mass() const { return support_mass_; }
 
-  const ElementBatches& elements() const { return *elements_; }     ///< for Assembly
-  std::span<const SolidGroup> solids() const;                       ///< for Assembly
-  const GatherLists& gather() const { return *gather_; }            ///< for Assembly
-  std::span<const double> free_mass() const { return free_mass_; }  ///< (free,) kg, lumped
-  /// (blocks,) kg: block b of M is mass_blocks[b] I. Empty when lumped.
+  const ElementBatches& elements() const { return *elements_; }  ///< for Assembly
+  std::span<const SolidGroup> solids() const;                    ///< for Assembly
+  const GatherLists& gather() const { return *gather_; }         ///< for Assembly
+  /// (free,) kg: M where it has no blocks.
+  std::span<const double> free_mass() const { return free_mass_; }
+  /// (blocks,) kg: block b of M is mass_blocks[b] I. Empty where M is diagonal.
   std::span<const double> mass_blocks() const { return mass_blocks_; }
 
  private:
   void list_held(const std::vector<HeldAxis>& axes);
+  void make_masses(const FemModelSettings& settings, std::span<const double> masses);
 
   std::shared_ptr<const mesh::Mesh> mesh_;
   std::vector<NodeId> free_nodes_, free_index_;
@@ -125,6 +150,7 @@ class FemModel {
   std::unique_ptr<const GatherLists> gather_;
   VectorX lumped_mass_, load_mass_;
   std::vector<double> free_mass_, mass_blocks_;
+  std::vector<SupportMass> support_mass_;
   std::vector<std::int32_t> held_;
   std::vector<std::int64_t> held_entries_, held_diagonals_;
   double total_mass_ = 0.0;

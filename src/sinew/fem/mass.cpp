@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
+#include <utility>
 
 #include <Eigen/LU>
 #include <fmt/format.h>
@@ -179,6 +181,72 @@ std::vector<double> consistent_mass_blocks(const mesh::Mesh& mesh,
       }
     }
   }
+  return result;
+}
+
+std::vector<double> diagonal_mass_blocks(const linalg::BlockPattern& pattern,
+                                         std::span<const double> diagonal) {
+  std::vector<double> result(static_cast<std::size_t>(pattern.blocks()), 0.0);
+  for (std::size_t i = 0; i < diagonal.size(); ++i) {
+    result[static_cast<std::size_t>(pattern.column_start[i])] = diagonal[i];
+  }
+  return result;
+}
+
+void add_point_mass(const PointMass& point, std::span<const NodeId> free_index,
+                    const linalg::BlockPattern& pattern, std::vector<double>& blocks) {
+  for (std::size_t a = 0; a < point.nodes.size(); ++a) {
+    const NodeId i = free_index[static_cast<std::size_t>(point.nodes[a])];
+    for (std::size_t b = 0; b < point.nodes.size(); ++b) {
+      const NodeId j = free_index[static_cast<std::size_t>(point.nodes[b])];
+      if (j < 0 || i < j) continue;
+      const int block = pattern.find(i, j);
+      if (block < 0) {
+        throw Error(ErrorKind::bad_argument, {.file = {}, .item = "point mass"},
+                    fmt::format("nodes {} and {} are not two nodes of one element", point.nodes[a],
+                                point.nodes[b]),
+                    "give the nodes and weights of a point in one element");
+      }
+      blocks[static_cast<std::size_t>(block)] += point.mass * point.weights[a] * point.weights[b];
+    }
+  }
+}
+
+std::vector<SupportMass> support_masses(const mesh::Mesh& mesh, std::span<const NodeId> free_index,
+                                        std::span<const double> masses, const VectorX& lumped,
+                                        const std::vector<PointMass>& points) {
+  std::map<std::pair<NodeId, NodeId>, double> entries;  // by support, then node
+  const auto is_fixed = [&](NodeId node) { return free_index[static_cast<std::size_t>(node)] < 0; };
+  if (masses.empty()) {
+    for (NodeId node = 0; node < static_cast<NodeId>(lumped.size()); ++node) {
+      if (is_fixed(node) && lumped[node] != 0.0) entries[{node, node}] = lumped[node];
+    }
+  } else {
+    const ElementList list(mesh);
+    for (int e = 0; e < list.count(); ++e) {
+      const auto nodes = list.nodes(e);
+      if (std::ranges::none_of(nodes, is_fixed)) continue;
+      const ElementMass shares = element_mass(mesh, list, e);
+      for (std::size_t b = 0; b < nodes.size(); ++b) {
+        if (!is_fixed(nodes[b])) continue;
+        for (std::size_t a = 0; a < nodes.size(); ++a) {
+          entries[{nodes[b], nodes[a]}] += masses[static_cast<std::size_t>(e)] * shares.of(a, b);
+        }
+      }
+    }
+  }
+  for (const PointMass& point : points) {
+    for (std::size_t b = 0; b < point.nodes.size(); ++b) {
+      if (!is_fixed(point.nodes[b])) continue;
+      for (std::size_t a = 0; a < point.nodes.size(); ++a) {
+        entries[{point.nodes[b], point.nodes[a]}] +=
+            point.mass * point.weights[a] * point.weights[b];
+      }
+    }
+  }
+  std::vector<SupportMass> result;
+  result.reserve(entries.size());
+  for (const auto& [pair, mass] : entries) result.push_back({pair.second, pair.first, mass});
   return result;
 }
 

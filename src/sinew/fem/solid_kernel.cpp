@@ -113,6 +113,25 @@ double* spread_records(const SolidGroup& group, const SolidOutput& output, std::
   return output.spread + 16 * (group.patches.slots_before + kLanes * batch);
 }
 
+/// kappa (Jm - 1) with J linearised from where the body was before its last motion,
+/// J0 + cof F0 : (F - F0); see SolidOutput::start.
+/// @param group,batch,number of which batch. @param f F of each point. @param bulk kappa, Pa.
+template <int N, int Q>
+SINEW_INLINE Lanes linear_pressure(const SolidGroup& group, const Batch<N, Q>& batch,
+                                   std::int64_t number, const Lanes3x3 (&f)[Q],
+                                   const SolidOutput& output, double bulk) {
+  const Batch<N, Q> start(group, number, output.start);
+  Lanes ratio[Q];
+  for (int q = 0; q < Q; ++q) {
+    const Lanes3x3 from = start.deformation(q), cof = material::cofactor(from);
+    ratio[q] = material::determinant(from, cof);
+    for (int r = 0; r < 3; ++r) {
+      for (int c = 0; c < 3; ++c) ratio[q] += cof[r][c] * (f[q][r][c] - from[r][c]);
+    }
+  }
+  return shared_dilatation(group, batch, number, ratio, nullptr, bulk).pressure;
+}
+
 template <int N, int Q, Tangent kTangent>
 void evaluate(const SolidGroup& group, int begin, int end, const double* points,
               const SolidOutput& output, LaneMinimum& minimum) {
@@ -131,6 +150,10 @@ void evaluate(const SolidGroup& group, int begin, int end, const double* points,
       minimum.see(ratio[q], b);
     }
     const Dilatation shared = shared_dilatation(group, batch, b, ratio, patch_ratio, bulk.shared);
+    Lanes lag = lanes(0.0);  // of the tangent's pressure behind the force's
+    if (kTangent != Tangent::none && output.start != nullptr && patch_ratio == nullptr) {
+      lag = linear_pressure(group, batch, b, f, output, bulk.shared) - shared.pressure;
+    }
     Sums<N> sums;
     Lanes energy = shared.energy;
     for (int q = 0; q < Q; ++q) {
@@ -166,8 +189,12 @@ void evaluate(const SolidGroup& group, int begin, int end, const double* points,
         }
       }
       if constexpr (kTangent != Tangent::none) {
+        for (int i = 0; i < 3; ++i) {
+          response.first[i] += lag * ratio[q];
+          for (int j = 0; j <= i; ++j) response.second[i][j] += lag * ratio[q];
+        }
         material::Lanes9x9 a9;
-        material::tangent(f[q], at, response, kTangent == Tangent::rotated, a9);
+        material::tangent(f[q], at, response, kTangent == Tangent::projected, a9);
         if (kTangent == Tangent::exact && past.carried != nullptr) {
           Overstress(past.carried + 6 * q, split, f[q], cof[q], ratio[q]).add_tangent(a9);
         }
@@ -200,7 +227,8 @@ bool is_neo_hookean(const material::Hyperelastic& law) {
 ///   P = m F + s H,   s = p J - m I1/3,   p = kappa (Jm - 1) + kappa' (J - Jm),
 ///   K_ab = V { m (g_a . g_b) I - 2/3 m (f_a h_b^T + h_a f_b^T)
 ///              + (2/9 m I1 + p J + kappa' J^2) h_a h_b^T - s h_b h_a^T },
-/// the derivative of P by dJ = J H : dF and dH = -H dF^T H; without patches Jm = J, kappa' = kappa.
+/// the derivative of P by dJ = J H : dF and dH = -H dF^T H; without patches Jm = J, kappa' = kappa
+/// and the tangent's p may be that of SolidOutput::start.
 template <Tangent kTangent>
 void evaluate_neo_hookean(const SolidGroup& group, int begin, int end, const double* points,
                           const SolidOutput& output, LaneMinimum& minimum) {
@@ -250,9 +278,14 @@ void evaluate_neo_hookean(const SolidGroup& group, int begin, int end, const dou
         }
         sums.store_vectors(sums.spread, spread_records(group, output, b));
       }
-      const Lanes vm = volume * m, vs = volume * s;
+      Lanes lag = lanes(0.0);
+      if (output.start != nullptr && patch_ratio == nullptr) {
+        lag = j *
+              (linear_pressure<4, 1>(group, batch, b, {f}, output, bulk.shared) - shared.pressure);
+      }
+      const Lanes vm = volume * m, vs = volume * (s + lag);
       const Lanes mixed = -2.0 / 3.0 * vm;
-      const Lanes square = volume * (2.0 / 9.0 * m * i1 + push + bulk.own * j * j);
+      const Lanes square = volume * (2.0 / 9.0 * m * i1 + push + lag + bulk.own * j * j);
       for (int bb = 1; bb < 4; ++bb) {
         Lanes right[3];  // what h_a is multiplied by
         for (int r = 0; r < 3; ++r) right[r] = mixed * fg[bb][r] + square * h[bb][r];
@@ -284,7 +317,8 @@ void evaluate_kind(const SolidGroup& group, int begin, int end, const double* po
     case Tangent::none:
       return evaluate<N, Q, Tangent::none>(group, begin, end, points, output, minimum);
     case Tangent::rotated:
-      return evaluate<N, Q, Tangent::rotated>(group, begin, end, points, output, minimum);
+    case Tangent::projected:
+      return evaluate<N, Q, Tangent::projected>(group, begin, end, points, output, minimum);
     case Tangent::exact:
       return evaluate<N, Q, Tangent::exact>(group, begin, end, points, output, minimum);
   }

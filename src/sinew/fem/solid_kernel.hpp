@@ -23,6 +23,13 @@ struct SolidOutput {
   const double* patch_ratio = nullptr;  ///< Jm of all patches of the body; read
   double* spread = nullptr;             ///< 16 doubles a slot of a patch; see sum_rows()
   PointHistory history = {};            ///< of this group
+  /// (n, 4) m, where the body was before its last motion, or null. The tangent then has the
+  /// pressure p0 + kappa d(Jm), linearised from there, in its part p d(cof F)/dF: Newton's method
+  /// on displacements and pressures (u, p), with p condensed out of each iteration. An iteration
+  /// that turns an element by theta leaves kappa theta^2/2 in its true pressure, which the next
+  /// takes away, but which would make the tangent useless where kappa is large (Magisano,
+  /// Leonetti, Garcea, Comput. Methods Appl. Mech. Engng 313 (2017) 986, for all stresses).
+  const double* start = nullptr;
 };
 
 /// Evaluates batches begin .. end-1 of a group.

@@ -4,10 +4,9 @@
 #include <cmath>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "sinew/constraint/effector.hpp"
 #include "sinew/core/error.hpp"
+#include "sinew/inverse/limit_conflict.hpp"
 
 namespace sinew::inverse {
 
@@ -18,6 +17,14 @@ using sim::CommandKind;
 
 // A limit is taken to bind when the solution comes this near, relative to its size.
 constexpr double kActive = 1e-9;
+// Part of W's diagonal that makes the regularisation definite.
+constexpr double kEvenly = 1e-6;
+// At rest nothing moves by more than this part of the tolerance in a step, and forces balance to
+// this part of their size.
+constexpr double kStill = 1e-3;
+constexpr double kBalanced = 1e-3;
+// A limit holds effectors back where it resists this part of what the gap could pull with.
+constexpr double kHolds = 1e-3;
 
 bool near(double value, double limit) {
   return std::isfinite(limit) && std::abs(value - limit) <= kActive * (1.0 + std::abs(limit));
@@ -27,24 +34,10 @@ double infinity_norm(const MatrixX& matrix) { return matrix.cwiseAbs().rowwise()
 
 }  // namespace
 
-std::string_view inverse_status_name(InverseStatus status) {
-  switch (status) {
-    case InverseStatus::on_target:
-      return "on-target";
-    case InverseStatus::rate_limited:
-      return "rate-limited";
-    case InverseStatus::out_of_reach:
-      return "out-of-reach";
-    case InverseStatus::limits_conflict:
-      return "limits-conflict";
-  }
-  return "unknown";
-}
-
 InverseController::InverseController(sim::Simulation& simulation, InverseSettings settings)
     : simulation_(simulation), settings_(std::move(settings)) {
-  check_settings();
   const sim::Model& model = simulation_.model();
+  check_settings(simulation_, settings_);
   std::vector<double> weights;
   for (const Task& task : settings_.tasks) {
     const auto& effector = model.effector(task.effector);
@@ -60,7 +53,11 @@ InverseController::InverseController(sim::Simulation& simulation, InverseSetting
   jacobian_.setZero(rows, count);
   weighted_.setZero(rows, count);
   residual_.setZero(rows);
-  goal_.setZero(rows);
+  gap_.setZero(rows);
+  foreseen_.setZero(rows);
+  asked_.resize(settings_.tasks.size());
+  bound_multiplier_.setZero(count);
+  row_multiplier_.setZero(count);
   scale_.setOnes(count);
   scaled_effort_.setZero(count);
   passive_.assign(static_cast<std::size_t>(count), Passive::held);
@@ -79,84 +76,73 @@ void InverseController::detach() {
   attached_ = false;
 }
 
-void InverseController::check_settings() {
-  const sim::Model& model = simulation_.model();
-  if (settings_.tasks.empty()) {
-    throw Error(ErrorKind::no_effectors, {.item = "controller"}, "there is no effector to steer",
-                "name at least one effector and its target");
-  }
-  if (settings_.actuators.empty()) {
-    for (std::size_t i = 0; i < model.actuators().size(); ++i) {
-      if (model.actuators()[i].controllable()) settings_.actuators.push_back(static_cast<int>(i));
-    }
-  }
-  if (settings_.actuators.empty()) {
-    throw Error(ErrorKind::no_actuators, {.item = "controller"}, "the robot has no actuators",
-                "add a cable");
-  }
-  for (const int index : settings_.actuators) {
-    const auto& actuator = model.actuators().at(static_cast<std::size_t>(index));
-    if (actuator.controllable()) continue;
-    throw Error(ErrorKind::wrong_actuator_type, {.item = "actuator '" + actuator.name + "'"},
-                "a spring's tension follows its stretch, a controller cannot choose it",
-                "leave it out of the controller's actuators");
-  }
-  for (const double value : {settings_.epsilon, settings_.largest_step, settings_.tolerance}) {
-    if (!(value > 0.0)) {
-      throw Error(
-          ErrorKind::out_of_range, {.item = "controller"},
-          fmt::format("epsilon, largest_step and tolerance must be positive; one is {:g}", value),
-          "leave it out for the default");
-    }
-  }
-  for (const Task& task : settings_.tasks) {
-    const auto& effector = model.effector(task.effector);
-    const auto given = static_cast<int>(task.weights.size());
-    if (given != 1 && given != effector.row_count()) {
-      throw Error(ErrorKind::wrong_length, {.item = "weights of '" + effector.name() + "'"},
-                  fmt::format("{} weights for {} directions", given, effector.row_count()),
-                  "give one weight, or one for each direction");
-    }
-    for (const double weight : task.weights) {
-      if (!(weight >= 0.0) || !std::isfinite(weight)) {
-        throw Error(ErrorKind::out_of_range, {.item = "weights of '" + effector.name() + "'"},
-                    fmt::format("a weight is {:g}", weight), "give zero or more");
-      }
-    }
-  }
-}
-
 InverseStatus InverseController::step() {
   simulation_.step();
   return status_;
 }
 
 void InverseController::set_target(int task, Target target) {
+  check_target(simulation_, settings_.tasks.at(static_cast<std::size_t>(task)).effector, target);
   settings_.tasks.at(static_cast<std::size_t>(task)).target = std::move(target);
 }
 
-void InverseController::form_residual(const sim::LawProblem& problem) {
+// Once a step, whose law may be solved several times: what became of the step before, and what is
+// asked in this one.
+void InverseController::begin_step(const sim::LawProblem& problem) {
+  if (!(problem.time > time_)) return;
+  if (std::isfinite(time_)) {
+    measure_gap(problem);
+    surprise_ = 0.0;
+    for (Eigen::Index k = 0; k < gap_.size(); ++k) {
+      if (row_weights_[k] > 0.0) surprise_ = std::hypot(surprise_, gap_[k] - foreseen_[k]);
+    }
+    damping_.review(objective_before_, objective(foreseen_), objective(gap_));
+  }
+  time_ = problem.time;
+  for (std::size_t t = 0; t < asked_.size(); ++t) asked_[t] = settings_.tasks[t].target.at(time_);
+  measure_gap(problem);
+  objective_before_ = objective(gap_);
+}
+
+void InverseController::measure_gap(const sim::LawProblem& problem) {
   Eigen::Index at = 0;
-  for (const Task& task : settings_.tasks) {
-    const auto& effector = problem.model.effector(task.effector);
-    effector.target_delta(problem.placement, task.target.at(problem.time),
-                          goal_.segment(at, effector.row_count()));
+  for (std::size_t t = 0; t < asked_.size(); ++t) {
+    const auto& effector = problem.model.effector(settings_.tasks[t].effector);
+    effector.target_delta(problem.placement, asked_[t], gap_.segment(at, effector.row_count()));
     at += effector.row_count();
   }
-  // What is still to go from here, and how the free motion differs from here.
+  for (Eigen::Index k = 0; k < gap_.size(); ++k) {
+    gap_[k] -= problem.delta[effector_rows_[static_cast<std::size_t>(k)]];
+  }
+}
+
+double InverseController::objective(const VectorX& gap) const {
+  return 0.5 * gap.dot(row_weights_.cwiseProduct(gap));
+}
+
+void InverseController::form_residual(const sim::LawProblem& problem) {
+  measure_gap(problem);
   double to_go = 0.0;
-  for (Eigen::Index k = 0; k < residual_.size(); ++k) {
-    const int row = effector_rows_[static_cast<std::size_t>(k)];
-    const double gap = goal_[k] - problem.delta[row];
-    if (row_weights_[k] > 0.0) to_go += gap * gap;
+  for (Eigen::Index k = 0; k < gap_.size(); ++k) {
+    if (row_weights_[k] > 0.0) to_go = std::hypot(to_go, gap_[k]);
   }
   const double most = settings_.largest_step * problem.model.size();
-  const double share = std::sqrt(to_go) > most ? most / std::sqrt(to_go) : 1.0;
-  shortened_ = share < 1.0;
+  const double share = to_go > most ? most / to_go : 1.0;
   for (Eigen::Index k = 0; k < residual_.size(); ++k) {
     const int row = effector_rows_[static_cast<std::size_t>(k)];
-    const double step_goal = problem.delta[row] + share * (goal_[k] - problem.delta[row]);
-    residual_[k] = problem.delta_free[row] - step_goal;
+    residual_[k] = problem.delta_free[row] - problem.delta[row] - share * gap_[k];
+  }
+}
+
+void InverseController::form_scales(const sim::LawProblem& problem) {
+  for (std::size_t k = 0; k < problem.actuators.size(); ++k) {
+    const ActuatorRange& range = problem.actuators[k];
+    const double own = problem.compliance(range.row, range.row);
+    const double limit = std::max(std::abs(range.effort_min), std::abs(range.effort_max));
+    scale_[static_cast<Eigen::Index>(k)] = std::isfinite(limit) && limit > 0.0 ? limit
+                                           : own > 0.0
+                                               ? problem.model.size() / (range.motion_scale * own)
+                                               : 1.0;
   }
 }
 
@@ -164,14 +150,7 @@ void InverseController::form_objective(const sim::LawProblem& problem,
                                        std::span<const double> effort) {
   const auto& ranges = problem.actuators;
   const auto count = static_cast<Eigen::Index>(ranges.size());
-  for (Eigen::Index j = 0; j < count; ++j) {
-    const ActuatorRange& range = ranges[static_cast<std::size_t>(j)];
-    const double own = problem.compliance(range.row, range.row);
-    const double limit = std::max(std::abs(range.effort_min), std::abs(range.effort_max));
-    scale_[j] = std::isfinite(limit) && limit > 0.0 ? limit
-                : own > 0.0 ? problem.model.size() / (range.motion_scale * own)
-                            : 1.0;
-  }
+  form_scales(problem);
   for (Eigen::Index j = 0; j < count; ++j) {
     const int column = ranges[static_cast<std::size_t>(j)].row;
     for (Eigen::Index i = 0; i < count; ++i) {
@@ -184,26 +163,36 @@ void InverseController::form_objective(const sim::LawProblem& problem,
       weighted_(k, j) = row_weights_[k] * jacobian_(k, j);
     }
   }
-  auto& hessian = program_.hessian;
-  hessian.noalias() = jacobian_.transpose() * weighted_;
+  program_.hessian.noalias() = jacobian_.transpose() * weighted_;
   program_.gradient.noalias() = weighted_.transpose() * residual_;
-  double regular_norm = 0.0;
+  regularise(problem, effort);
+}
+
+// With p the pull to zero efforts and d the damping, adds
+//   eps/2 (d lambda^T R lambda - 2 (d - p) lambda^T R lambda_0),
+// whose derivative at lambda = lambda_0 is that of p eps/2 lambda^T R lambda: d moves no fixed
+// point.
+void InverseController::regularise(const sim::LawProblem& problem, std::span<const double> effort) {
+  const Eigen::Index count = program_.gradient.size();
+  double norm = 0.0;
   for (Eigen::Index i = 0; i < count; ++i) {
-    double sum = 0.0;
-    for (Eigen::Index j = 0; j < count; ++j) sum += std::abs(scale_[i] * program_.rows(i, j));
-    regular_norm = std::max(regular_norm, sum);
+    norm = std::max(norm, std::abs(scale_[i]) * program_.rows.row(i).cwiseAbs().sum());
   }
-  const double eps =
-      regular_norm > 0.0 ? settings_.epsilon * infinity_norm(hessian) / regular_norm : 1.0;
+  if (!(norm > 0.0)) norm = 1.0;
+  const double asked = infinity_norm(program_.hessian);
+  const double eps = settings_.epsilon * (asked > 0.0 ? asked : norm) / norm;
   const bool change = settings_.regularisation == Regularisation::change;
-  const double keep = change ? 1.0 - settings_.relaxation : 0.0;
-  for (Eigen::Index i = 0; i < count; ++i) {
-    for (Eigen::Index j = 0; j < count; ++j) {
-      const double regular = eps * scale_[i] * program_.rows(i, j);
-      const double before =
-          effort[static_cast<std::size_t>(ranges[static_cast<std::size_t>(j)].row)] / scale_[j];
-      hessian(i, j) += regular;
-      program_.gradient[i] -= keep * regular * before;
+  const double damping = damping_.value();
+  const double keep = damping - (change ? settings_.relaxation : 1.0);
+  for (Eigen::Index j = 0; j < count; ++j) {
+    const int row = problem.actuators[static_cast<std::size_t>(j)].row;
+    const double before = effort[static_cast<std::size_t>(row)] / scale_[j];
+    for (Eigen::Index i = 0; i < count; ++i) {
+      double weight = eps * scale_[i] * program_.rows(i, j);
+      // What moves nothing is held by others: a drive, or the clamp.
+      if (i == j) weight = weight > 0.0 ? (1.0 + kEvenly) * weight : eps * norm;
+      program_.hessian(i, j) += damping * weight;
+      program_.gradient[i] -= keep * weight * before;
     }
   }
 }
@@ -245,11 +234,14 @@ sim::LawStatus InverseController::solve_program(const sim::LawProblem& problem) 
                           nearest.status == qp::ElasticStatus::relaxed;
       if (!usable) return sim::LawStatus::failed;
       scaled_effort_ = nearest.qp.x;
+      conflict_ = describe_conflict(problem, program_, scale_, nearest);
       status = sim::LawStatus::limits_conflict;
     } else if (result.status != qp::QpStatus::optimal) {
       return sim::LawStatus::failed;
     } else {
       scaled_effort_ = result.x;
+      bound_multiplier_ = result.bound_multiplier;
+      row_multiplier_ = result.row_multiplier;
     }
     if (!settle_passive_rows(problem)) break;
   }
@@ -285,8 +277,10 @@ bool InverseController::settle_passive_rows(const sim::LawProblem& problem) {
 }
 
 sim::LawStatus InverseController::solve(const sim::LawProblem& problem, std::span<double> effort) {
+  begin_step(problem);
   form_residual(problem);
   form_objective(problem, effort);
+  conflict_.clear();
   std::ranges::fill(passive_, Passive::held);
   const sim::LawStatus status = solve_program(problem);
   if (status == sim::LawStatus::failed) return status;
@@ -298,41 +292,72 @@ sim::LawStatus InverseController::solve(const sim::LawProblem& problem, std::spa
     const auto& range = problem.actuators[static_cast<std::size_t>(settings_.actuators[k])];
     efforts_[static_cast<Eigen::Index>(k)] = effort[static_cast<std::size_t>(range.row)];
   }
-  judge(problem, status);
+  const double moved = foresee(problem);
+  status_ = status == sim::LawStatus::limits_conflict ? InverseStatus::limits_conflict
+                                                      : judge(problem, moved);
   return status;
 }
 
-void InverseController::judge(const sim::LawProblem& problem, sim::LawStatus law) {
-  double left = 0.0;
-  for (Eigen::Index k = 0; k < residual_.size(); ++k) {
-    if (!(row_weights_[k] > 0.0)) continue;
-    const double gap = residual_[k] + jacobian_.row(k).dot(scaled_effort_);
-    left += gap * gap;
+// What the linearisation says of the step's end: the gaps that stay, and the farthest that an
+// effector or an actuator moves, m.
+double InverseController::foresee(const sim::LawProblem& problem) {
+  double moved = 0.0;
+  predicted_error_ = 0.0;
+  for (Eigen::Index k = 0; k < gap_.size(); ++k) {
+    const int row = effector_rows_[static_cast<std::size_t>(k)];
+    const double motion =
+        problem.delta_free[row] - problem.delta[row] + jacobian_.row(k).dot(scaled_effort_);
+    foreseen_[k] = gap_[k] - motion;
+    moved = std::max(moved, std::abs(motion));
+    if (row_weights_[k] > 0.0) predicted_error_ = std::hypot(predicted_error_, foreseen_[k]);
   }
-  predicted_error_ = std::sqrt(left);
-  if (law == sim::LawStatus::limits_conflict) {
-    status_ = InverseStatus::limits_conflict;
-    return;
+  for (const int index : settings_.actuators) {
+    const ActuatorRange& range = problem.actuators[static_cast<std::size_t>(index)];
+    const double motion = problem.delta_free[range.row] - problem.delta[range.row] +
+                          program_.rows.row(index).dot(scaled_effort_);
+    moved = std::max(moved, range.motion_scale * std::abs(motion));
   }
+  return moved;
+}
+
+InverseStatus InverseController::judge(const sim::LawProblem& problem, double moved) const {
   if (predicted_error_ <= settings_.tolerance) {
-    status_ = shortened_ ? InverseStatus::rate_limited : InverseStatus::on_target;
-    return;
+    return surprise_ <= settings_.tolerance ? InverseStatus::on_target : InverseStatus::moving;
   }
-  bool rate_binds = false;
+  if (rate_binds(problem)) return InverseStatus::rate_limited;
+  const bool rests = moved <= kStill * settings_.tolerance && surprise_ <= settings_.tolerance &&
+                     simulation_.report().relative_residual <= kBalanced;
+  if (!rests) return InverseStatus::moving;
+  return limit_holds() ? InverseStatus::out_of_reach : InverseStatus::local_optimum;
+}
+
+bool InverseController::rate_binds(const sim::LawProblem& problem) const {
   for (const int index : settings_.actuators) {
     const auto k = static_cast<std::size_t>(index);
     const ActuatorRange& range = problem.actuators[k];
     const auto& model = problem.model.actuators()[k];
-    const auto i = static_cast<Eigen::Index>(index);
-    const double lambda = scale_[i] * scaled_effort_[i];
-    const double delta = problem.delta_free[range.row] + program_.rows.row(i).dot(scaled_effort_);
-    rate_binds = rate_binds ||
-                 (range.effort_max < model.effort.max && near(lambda, range.effort_max)) ||
-                 (range.effort_min > model.effort.min && near(lambda, range.effort_min)) ||
-                 (range.motion_max < model.motion.max && near(delta, range.motion_max)) ||
-                 (range.motion_min > model.motion.min && near(delta, range.motion_min));
+    const double lambda = scale_[index] * scaled_effort_[index];
+    const double delta =
+        problem.delta_free[range.row] + program_.rows.row(index).dot(scaled_effort_);
+    const bool binds = (range.effort_max < model.effort.max && near(lambda, range.effort_max)) ||
+                       (range.effort_min > model.effort.min && near(lambda, range.effort_min)) ||
+                       (range.motion_max < model.motion.max && near(delta, range.motion_max)) ||
+                       (range.motion_min > model.motion.min && near(delta, range.motion_min));
+    if (binds) return true;
   }
-  status_ = rate_binds ? InverseStatus::rate_limited : InverseStatus::out_of_reach;
+  return false;
+}
+
+// By the multipliers of its limits.
+bool InverseController::limit_holds() const {
+  const double gap = foreseen_.norm();
+  for (const int i : settings_.actuators) {
+    const double most = kHolds * weighted_.col(i).norm() * gap;
+    const double own = std::abs(program_.rows(i, i));
+    if (std::abs(bound_multiplier_[i]) > most) return true;
+    if (std::abs(row_multiplier_[i]) * own > most) return true;
+  }
+  return false;
 }
 
 double InverseController::violation(const sim::LawProblem&, std::span<const double>) const {
@@ -342,6 +367,12 @@ double InverseController::violation(const sim::LawProblem&, std::span<const doub
 void InverseController::reset() {
   solver_.reset();
   elastic_.reset();
+  damping_.reset();
+  time_ = -std::numeric_limits<double>::infinity();
+  surprise_ = std::numeric_limits<double>::infinity();
+  predicted_error_ = std::numeric_limits<double>::quiet_NaN();
+  status_ = InverseStatus::not_started;
+  conflict_.clear();
 }
 
 double InverseController::error(int task) const {

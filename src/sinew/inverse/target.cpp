@@ -147,6 +147,19 @@ Vector3 Target::at(double time) const {
   return std::get<Path>(form_).at(time);
 }
 
+double Target::farthest_from(const Vector3& point) const {
+  if (const auto* fixed = std::get_if<Fixed>(&form_)) return (fixed->position - point).stableNorm();
+  if (const auto* turn = std::get_if<Turn>(&form_)) {
+    return (turn->center - point).stableNorm() + turn->first.stableNorm();
+  }
+  double farthest = 0.0;
+  const auto& points = std::get<Path>(form_).points;
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    farthest = std::max(farthest, (points.row(i).transpose() - point).stableNorm());
+  }
+  return farthest;
+}
+
 double Target::end_time() const {
   if (const auto* turn = std::get_if<Turn>(&form_)) return turn->period;
   if (const auto* path = std::get_if<Path>(&form_)) return path->times.back();

@@ -57,6 +57,9 @@ class Target {
   /// The position at `time` (s): (3,) m.
   Vector3 at(double time) const;
 
+  /// The largest distance (m) that it ever has from a point, (3,) m; of a circle, a bound on it.
+  double farthest_from(const Vector3& point) const;
+
   /// When the target has shown all it has (s): 0 when fixed, one turn of a circle or closed
   /// polyline, the end of an open polyline or trajectory.
   double end_time() const;

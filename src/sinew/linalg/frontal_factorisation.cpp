@@ -328,7 +328,7 @@ bool FrontalFactorisation::factor(std::span<const double> values) {
   return eliminated == size_;
 }
 
-void FrontalFactorisation::solve(VectorX& x) const {
+void FrontalFactorisation::solve(VectorX& x) {
   x.array() *= scale_.array();
   const auto gather = [&](const Front& front) {
     for (int r = 0; r < front.size; ++r) local_[r] = x[front_rows_[front.rows + at(r)]];

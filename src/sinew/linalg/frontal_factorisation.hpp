@@ -34,8 +34,8 @@ class FrontalFactorisation {
   bool factor(std::span<const double> values);
   /// Negative eigenvalues of A.
   int negative() const { return negative_; }
-  /// x <- A^-1 x. @param x (size,).
-  void solve(VectorX& x) const;
+  /// x <- A^-1 x, by a workspace of its own: one thread at a time. @param x (size,).
+  void solve(VectorX& x);
   /// result <- A x, by the entries. @param values as for factor(). @param x (size,).
   /// @param result (size,).
   void multiply(std::span<const double> values, const VectorX& x, VectorX& result) const;
@@ -82,7 +82,7 @@ class FrontalFactorisation {
   std::vector<double> panels_, diagonal_, beside_;  // D: beside_ is not 0 at the first of a twin
   std::vector<int> front_rows_;
   int negative_ = 0;
-  mutable VectorX local_;
+  VectorX local_;  // of solve()
 };
 
 }  // namespace sinew::linalg

@@ -22,6 +22,14 @@
 ///   kappa = (lambda (tr S - 3) - 2 mu) / det G.
 /// The linear law is the same with R = S = I (G = 2 I), where both tangents agree.
 ///
+/// Projected. dR has three modes, the twists T_k about the axes n_k of R S R^T, orthonormal:
+///   dR = sum_k 2/g_k (T_k : dF) T_k,   g_k the eigenvalues of G,
+/// and R : T_k = 0, so that dP/dF has the eigenvalues 2 mu + 2 s/g_k there, s = lambda (tr S - 3)
+/// - 2 mu, and is positive elsewhere. They are negative where g_k < -s/mu (g_k > 0; Smith, de Goes,
+/// Kim 2019, section 5.1): an element pressed together. Raising g_k to max(g_k, -s/mu) puts them to
+/// zero, which projects dP/dF onto the positive semi-definite matrices; the result is never less
+/// than dP/dF.
+///
 /// Sources: law and P: Sifakis & Barbic, "FEM simulation of 3D deformable solids", SIGGRAPH 2012
 /// course, part I, sections 3.2 and 3.4; rotated stiffness: Muller & Gross, "Interactive virtual
 /// materials", Graphics Interface 2004, section 3; derivative of the rotation: McAdams et al.,
@@ -33,6 +41,7 @@
 #include "sinew/material/elastic_constants.hpp"
 #include "sinew/material/lanes.hpp"
 #include "sinew/material/polar_decomposition.hpp"
+#include "sinew/material/principal.hpp"
 
 namespace sinew::material {
 
@@ -60,6 +69,8 @@ struct ExactTangent {
 /// det G is held at or above this (it is 8 at rest), where the two smallest stretches cancel and
 /// the rotation has no derivative: the tangent stays finite.
 inline constexpr double kSmallestPairSums = 1e-9;
+/// The same of each eigenvalue of G, where a stretched element's stiffening keeps it from the clamp.
+inline constexpr double kSmallestPairSum = 1e-3;
 
 template <Law law>
 SINEW_INLINE Response respond(const Lanes3x3& f, const LaneModuli& moduli);
@@ -123,6 +134,33 @@ SINEW_INLINE ExactTangent exact_tangent(const Lanes3x3& f, const LaneModuli& mod
       {at.trace - left_stretch(0, 0), at.trace - left_stretch(1, 1), at.trace - left_stretch(2, 2),
        -left_stretch(0, 1), -left_stretch(0, 2), -left_stretch(1, 2)},
       kappa};
+}
+
+/// The same for the projection of dP/dF onto the positive semi-definite matrices: G with its
+/// eigenvalues raised where they must be.
+template <Law law>
+SINEW_INLINE ExactTangent projected_tangent(const Lanes3x3& f, const LaneModuli& moduli,
+                                            const Response& at) {
+  ExactTangent tangent = exact_tangent<law>(f, moduli, at);
+  if constexpr (law == Law::linear) return tangent;
+  const Lanes stiffening = moduli.lambda * (at.trace - 3.0) - 2.0 * moduli.mu;
+  const Lanes least = maximum(-stiffening / moduli.mu, lanes(kSmallestPairSum));
+  LanesSymmetric& g = tangent.g;
+  Lanes c[3][3] = {{g.xx, g.xy, g.xz}, {g.xy, g.yy, g.yz}, {g.xz, g.yz, g.zz}};
+  Lanes3x3 axes;
+  detail::diagonalise(c, axes);
+  Lanes values[3], product = lanes(1.0);
+  for (int k = 0; k < 3; ++k) {
+    values[k] = maximum(c[k][k], least);
+    product *= values[k];
+  }
+  const auto entry = [&](int r, int s) {
+    return values[0] * axes[r][0] * axes[s][0] + values[1] * axes[r][1] * axes[s][1] +
+           values[2] * axes[r][2] * axes[s][2];
+  };
+  g = {entry(0, 0), entry(1, 1), entry(2, 2), entry(0, 1), entry(0, 2), entry(1, 2)};
+  tangent.kappa = stiffening / product;
+  return tangent;
 }
 
 }  // namespace sinew::material

@@ -118,14 +118,16 @@ class Body {
   virtual void begin_step() = 0;
   virtual void linearise(const LinearisationRequest& request) = 0;
   /// Adds the curvature of a constraint's loads (geometric stiffness): A -= effort d2(delta)/dq2.
-  /// Between linearise (with_curvature) and condense.
+  /// Between linearise (with_curvature) and condense. A linearisation to which nothing was added is
+  /// taken up by the next one at the same state.
   virtual void add_curvature(const RowCurvature& curvature) = 0;
   /// Takes this body's part of H for what follows.
   virtual void take_rows(const RowValues& rows) = 0;
   /// |b + H^T effort|, N: how far the current state is from satisfying the step's equation.
   virtual double residual(std::span<const double> effort) = 0;
-  /// Takes which rows are present alone, the directions being those of take_rows().
-  virtual void take_presence(const RowValues&) {}
+  /// Takes which passing rows are present, and their directions, anew after condense(): what
+  /// follows is as if take_rows() had done so before it.
+  virtual void retake_rows(const RowValues& rows) = 0;
   /// (3,) m: how far solve_motion() would move an attached point; of bodies that leave rows out.
   virtual Vector3 proposed_motion(int) const { return Vector3::Zero(); }
   /// Factorises A bordered by the rows taken.
@@ -151,6 +153,8 @@ class Body {
   virtual double end_step(const StepWeights& weights) = 0;
   /// Of the step that ended last.
   virtual StepWork step_work() const = 0;
+  /// Whether something that no ledger counts moves it: its base, a hand in the view.
+  virtual bool moved_from_outside() const { return false; }
 
   /// Back to rest: the model's own q, v = 0. Inputs (outside forces) stay.
   virtual void restart() = 0;
@@ -166,13 +170,21 @@ class Body {
   virtual double force_scale() const = 0;
   /// Stored energy (J): strain; kinetic; gravity's potential with respect to rest.
   virtual double strain_energy() = 0;
-  virtual double kinetic_energy() const = 0;
+  virtual double kinetic_energy() = 0;
   virtual double gravity_energy() const = 0;
   /// Of the nodes of the model's mesh, (n, 3) m and m/s.
   virtual const Points& positions() const = 0;
   virtual const Points& velocities() const = 0;
   /// Bytes of this body's own data, the model not counted.
   virtual std::size_t bytes() const = 0;
+  /// A bound on what rounding leaves of residual(), N, at the last linearisation. Coordinates are
+  /// known to eps |q|, so that no state obeys its equation better than |A| eps |q| (Higham,
+  /// Accuracy and Stability of Numerical Algorithms, 2002, sec. 12.1 and 25.2: the limiting
+  /// residual).
+  virtual double rounding_floor() const = 0;
+  /// Whether the last linearisation has an unsymmetric part, which condense() leaves out and
+  /// solve_motion() takes into account: the inertia of what was factorised then says nothing.
+  virtual bool is_unsymmetric() const { return false; }
 };
 
 }  // namespace sinew::mechanics

@@ -16,6 +16,8 @@ namespace sinew::mechanics {
 struct MaterialPoint {
   std::int32_t body = -1;   ///< position in the world's list of bodies
   std::int32_t point = -1;  ///< number returned by BodyModel::attach
+
+  bool operator==(const MaterialPoint&) const = default;
 };
 
 /// Which points each row touches; fixed when the model is built. Entry e of row k stands at

@@ -8,6 +8,7 @@
 #include "sinew/core/error.hpp"
 #include "sinew/mesh/codec.hpp"
 #include "sinew/mesh/raw_mesh.hpp"
+#include "sinew/mesh/set_masks.hpp"
 #include "sinew/mesh/write.hpp"
 
 namespace sinew::mesh {
@@ -138,16 +139,6 @@ void write_cells(const Mesh& mesh, const VtuFields& fields, VtuBuilder& out) {
   out.line("      </Cells>");
 }
 
-using Masks = std::map<std::string, std::vector<std::uint8_t>>;
-
-void mark(Masks& masks, const std::map<std::string, std::vector<NodeId>>& sets, std::size_t first,
-          std::size_t count) {
-  for (const auto& [name, members] : sets) {
-    auto& mask = masks.try_emplace(name, count, std::uint8_t{0}).first->second;
-    for (const NodeId member : members) mask[first + static_cast<std::size_t>(member)] = 1;
-  }
-}
-
 void write_point_data(const Mesh& mesh, const VtuFields& fields, VtuBuilder& out) {
   const auto count = static_cast<std::size_t>(mesh.node_count());
   out.line("      <PointData>");
@@ -155,8 +146,7 @@ void write_point_data(const Mesh& mesh, const VtuFields& fields, VtuBuilder& out
     check_field(field, count, "nodes");
     out.array(field.name, "Float64", field.components, field.values);
   }
-  Masks masks;
-  if (fields.sets) mark(masks, mesh.node_sets, 0, count);
+  const SetMasks masks = fields.sets ? node_masks(mesh) : SetMasks{};
   for (const auto& [name, mask] : masks) out.array(name, "UInt8", 1, mask);
   out.line("      </PointData>");
 }
@@ -172,12 +162,7 @@ void write_cell_data(const Mesh& mesh, const VtuFields& fields, VtuBuilder& out)
                   std::numeric_limits<double>::quiet_NaN());
     out.array(field.name, "Float64", field.components, values);
   }
-  Masks masks;
-  if (fields.sets) {
-    mark(masks, mesh.tetrahedron_sets, 0, volumes + triangles);
-    mark(masks, mesh.hexahedron_sets, mesh.tetrahedra.size(), volumes + triangles);
-    if (fields.triangles) mark(masks, mesh.triangle_sets, volumes, volumes + triangles);
-  }
+  const SetMasks masks = fields.sets ? cell_masks(mesh, fields.triangles) : SetMasks{};
   for (const auto& [name, mask] : masks) out.array(name, "UInt8", 1, mask);
   out.line("      </CellData>");
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -187,6 +188,11 @@ void ArmBody::take_rows(const mechanics::RowValues& rows) {
   }
 }
 
+void ArmBody::retake_rows(const mechanics::RowValues& rows) {
+  take_rows(rows);
+  respond();
+}
+
 double ArmBody::residual(std::span<const double> effort) {
   for (std::size_t k = 0; k < model_.rows_.size(); ++k) {
     effort_[static_cast<Eigen::Index>(k)] = effort[static_cast<std::size_t>(model_.rows_[k])];
@@ -196,23 +202,32 @@ double ArmBody::residual(std::span<const double> effort) {
   return scratch_.norm();
 }
 
+// A turn of 1 is the least that angles are rounded by: their sines and cosines are.
+double ArmBody::rounding_floor() const {
+  const double angle = std::max(1.0, q_.cwiseAbs().maxCoeff());
+  return std::numeric_limits<double>::epsilon() * angle * matrix_.cwiseAbs().rowwise().sum().norm();
+}
+
 linalg::FactorStatus ArmBody::condense() {
   symmetric_ = 0.5 * (matrix_ + matrix_.transpose());
   pivots_.compute(symmetric_);
   negative_pivots_ = pivots_.negative();
   if (negative_pivots_ > 0 && definite_wanted_) make_definite();
   decomposed_.compute(matrix_);
-  decomposed_.solve(rows_, moved_rows_);
-  if (rows_.cols() > 0) {
-    decomposed_.solve(right_, motion_);
-    free_motion_.noalias() = rows_.transpose() * motion_;
-    compliance_.noalias() = rows_.transpose() * moved_rows_;
-  }
+  respond();
   if (!moved_rows_.allFinite() || pivots_.vanishes()) {
     return linalg::FactorStatus::singular;
   }
   return negative_pivots_ > 0 ? linalg::FactorStatus::indefinite
                               : linalg::FactorStatus::positive_definite;
+}
+
+void ArmBody::respond() {
+  decomposed_.solve(rows_, moved_rows_);
+  if (rows_.cols() == 0) return;
+  decomposed_.solve(right_, motion_);
+  free_motion_.noalias() = rows_.transpose() * motion_;
+  compliance_.noalias() = rows_.transpose() * moved_rows_;
 }
 
 // In the directions in which the arm would buckle the real-time tangent is as stiff as it is soft
@@ -361,7 +376,7 @@ double ArmBody::strain_energy() {
   look();
   return kinematics_.strain_energy();
 }
-double ArmBody::kinetic_energy() const {
+double ArmBody::kinetic_energy() {
   look();
   return kinematics_.kinetic_energy();
 }

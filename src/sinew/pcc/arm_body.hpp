@@ -81,6 +81,7 @@ class ArmBody : public mechanics::Body {
   void linearise(const mechanics::LinearisationRequest& request) override;
   void add_curvature(const mechanics::RowCurvature& curvature) override;
   void take_rows(const mechanics::RowValues& rows) override;
+  void retake_rows(const mechanics::RowValues& rows) override;
   double residual(std::span<const double> effort) override;
   linalg::FactorStatus condense() override;
   void add_compliance(MatrixX& compliance, VectorX& free_motion) const override;
@@ -102,8 +103,9 @@ class ArmBody : public mechanics::Body {
 
   int negative_pivots() const override { return negative_pivots_; }
   double force_scale() const override { return force_scale_; }
+  double rounding_floor() const override;
   double strain_energy() override;
-  double kinetic_energy() const override;
+  double kinetic_energy() override;
   double gravity_energy() const override;
   std::size_t bytes() const override;
   const Points& positions() const override;
@@ -122,6 +124,7 @@ class ArmBody : public mechanics::Body {
   /// Of an attached point, (3, n).
   void point_jacobian(int point, MatrixX& result);
   void make_definite();
+  void respond();
   void show() const;
 
   const ArmBodyModel& model_;

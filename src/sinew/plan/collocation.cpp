@@ -4,8 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "sinew/plan/smooth_length.hpp"
-
 namespace sinew::plan {
 
 namespace {
@@ -29,14 +27,19 @@ Collocation::Collocation(std::shared_ptr<const pcc::Arm> arm, Task task)
     : arm_(std::move(arm)),
       task_(std::move(task)),
       grid_(task_.grid),
-      rules_(grid_.method, grid_.duration / grid_.intervals, false),
+      begins_(VectorX::Zero(grid_.intervals + 1)),
       equations_(arm_),
       points_(arm_),
       tip_{arm_->segments() - 1},
       n_(arm_->coordinates()),
-      inputs_(arm_->inputs()),
-      knot_size_(rules_.blocks * n_ + (task_.drive ? 0 : inputs_)),
-      variables_((grid_.intervals + 1) * knot_size_ + (grid_.free() ? 1 : 0)) {
+      inputs_(arm_->inputs()) {
+  for (int k = 0; k < grid_.intervals; ++k) begins_[k + 1] = begins_[k] + grid_.shares[k];
+  const Transcription unit(grid_.method, 1.0);
+  blocks_ = unit.blocks;
+  stages_ = static_cast<int>(unit.stages.size());
+  defects_ = unit.defects();
+  knot_size_ = blocks_ * n_ + (task_.drive ? 0 : inputs_);
+  variables_ = (grid_.intervals + 1) * knot_size_ + (grid_.free() ? 1 : 0);
   if (!task_.obstacles.empty()) backbone_ = backbone(*arm_, task_.backbone_points);
   rate_limited_ = task_.limits.torque_rate.minCoeff() < kNoBound;
   speed_limited_ = task_.goal.speed_tolerance < kNoBound;
@@ -48,6 +51,7 @@ Collocation::Collocation(std::shared_ptr<const pcc::Arm> arm, Task task)
     variables_ += drive_->variables();
   }
   set_bounds();
+  set_aim({.clearance = VectorX::Zero(static_cast<Eigen::Index>(task_.obstacles.size()))});
   set_scales(torque);
   note_patterns();
 }
@@ -69,7 +73,7 @@ void Collocation::set_bounds() {
     bound->segment(0, n_) = task_.start.position;
     bound->segment(n_, n_) = task_.start.rate;
     // The first acceleration takes no part.
-    if (rules_.blocks == 3) bound->segment(2 * n_, n_).setZero();
+    if (blocks_ == 3) bound->segment(2 * n_, n_).setZero();
     if (!drive_) bound->segment(torque_at(0), inputs_) = task_.start.torque;
   }
   if (grid_.free()) {
@@ -83,25 +87,41 @@ void Collocation::set_bounds() {
       constraint_bounds_.lower.segment(rate_row(k), inputs_) = -limits.torque_rate;
       constraint_bounds_.upper.segment(rate_row(k), inputs_) = limits.torque_rate;
     }
-    int at = clearance_row(k);
-    for (const Obstacle& obstacle : task_.obstacles) {
-      const auto points = static_cast<Eigen::Index>(backbone_.size());
-      constraint_bounds_.lower.segment(at, points).setConstant(obstacle.clearance);
-      constraint_bounds_.upper.segment(at, points).setConstant(kNoBound);
-      at += static_cast<int>(points);
-    }
+    constraint_bounds_.upper.segment(clearance_row(k), row(k + 1) - clearance_row(k))
+        .setConstant(kNoBound);
   }
   constraint_bounds_.lower[goal_row()] = -kNoBound;
-  constraint_bounds_.upper[goal_row()] = std::sqrt(2.0) * task_.goal.tolerance;
-  if (speed_limited_) {
-    constraint_bounds_.lower[speed_row()] = -kNoBound;
-    constraint_bounds_.upper[speed_row()] = std::sqrt(2.0) * task_.goal.speed_tolerance;
-  }
+  if (speed_limited_) constraint_bounds_.lower[speed_row()] = -kNoBound;
   if (!drive_) return;
   variable_bounds_.lower.tail(drive_->variables()) = drive_->variable_bounds().lower;
   variable_bounds_.upper.tail(drive_->variables()) = drive_->variable_bounds().upper;
   constraint_bounds_.lower.tail(drive_->rows()) = drive_->row_bounds().lower;
   constraint_bounds_.upper.tail(drive_->rows()) = drive_->row_bounds().upper;
+}
+
+void Collocation::set_aim(const Aim& aim) {
+  aim_ = aim;
+  const auto points = static_cast<Eigen::Index>(backbone_.size());
+  for (int k = 0; k < grid_.intervals; ++k) {
+    Eigen::Index at = clearance_row(k);
+    for (std::size_t o = 0; o < task_.obstacles.size(); ++o, at += points) {
+      constraint_bounds_.lower.segment(at, points)
+          .setConstant(task_.obstacles[o].clearance + aim.clearance[static_cast<Eigen::Index>(o)]);
+    }
+  }
+  const auto at_most = [&](double tolerance) {
+    return std::sqrt(2.0) * (1.0 - aim.reserve) * tolerance;
+  };
+  constraint_bounds_.upper[goal_row()] = at_most(task_.goal.tolerance);
+  if (speed_limited_) constraint_bounds_.upper[speed_row()] = at_most(task_.goal.speed_tolerance);
+}
+
+SmoothLength Collocation::distance(const Vector3& tip) const {
+  return {tip + aim_.position - task_.goal.position, (1.0 - aim_.reserve) * task_.goal.tolerance};
+}
+
+SmoothLength Collocation::speed(const Vector3& velocity) const {
+  return {velocity + aim_.velocity, (1.0 - aim_.reserve) * task_.goal.speed_tolerance};
 }
 
 double Collocation::typical_torque() {
@@ -122,7 +142,7 @@ void Collocation::set_scales(double torque) {
   variable_scale_ = VectorX::Ones(variables_);
   for (int k = 0; k <= grid_.intervals; ++k) {
     double unit = 1.0;
-    for (int b = 0; b < rules_.blocks; ++b, unit /= own) {
+    for (int b = 0; b < blocks_; ++b, unit /= own) {
       variable_scale_.segment(knot(k) + b * n_, n_).setConstant(unit);
     }
     if (!drive_) variable_scale_.segment(torque_at(k), inputs_).setConstant(torque);
@@ -130,7 +150,8 @@ void Collocation::set_scales(double torque) {
   const double length = arm_->length();
   constraint_scale_ = VectorX::Ones(constraints());
   for (int k = 0; k < grid_.intervals; ++k) {
-    constraint_scale_.segment(row(k), n_).setConstant(grid_.duration / grid_.intervals / own);
+    constraint_scale_.segment(row(k), n_ * defects_)
+        .setConstant(grid_.duration * grid_.shares[k] / own);
     constraint_scale_.segment(stage_row(k, 0), rate_row(k) - stage_row(k, 0)).setConstant(torque);
     constraint_scale_.segment(rate_row(k), clearance_row(k) - rate_row(k))
         .setConstant(torque / own);
@@ -150,10 +171,10 @@ void Collocation::set_scales(double torque) {
 }
 
 MatrixX Collocation::pair(const VectorX& x, int k) const {
-  MatrixX result(n_, 2 * rules_.blocks);
-  for (int b = 0; b < rules_.blocks; ++b) {
+  MatrixX result(n_, 2 * blocks_);
+  for (int b = 0; b < blocks_; ++b) {
     result.col(b) = x.segment(knot(k) + b * n_, n_);
-    result.col(rules_.blocks + b) = x.segment(knot(k + 1) + b * n_, n_);
+    result.col(blocks_ + b) = x.segment(knot(k + 1) + b * n_, n_);
   }
   return result;
 }
@@ -166,9 +187,13 @@ double Collocation::duration(const VectorX& x) const {
   return grid_.free() ? x[time_at()] : grid_.duration;
 }
 
-std::array<Transcription, 2> Collocation::rules(const VectorX& x) const {
-  const double h = duration(x) / grid_.intervals;
-  return {Transcription(grid_.method, h, true), Transcription(grid_.method, h, false)};
+const std::vector<Transcription>& Collocation::rules(const VectorX& x) const {
+  if (const double now = duration(x); now != rules_duration_) {
+    rules_.clear();
+    for (const double share : grid_.shares) rules_.emplace_back(grid_.method, share * now);
+    rules_duration_ = now;
+  }
+  return rules_;
 }
 
 const VectorDerivatives& Collocation::tip_position(const VectorX& x) {
@@ -180,7 +205,7 @@ const VectorDerivatives& Collocation::tip_velocity(const VectorX& x) {
 }
 
 LinearForm Collocation::input(int k, double share, int u) const {
-  if (drive_) return drive_->volume(u, (k + share) * grid_.duration / grid_.intervals);
+  if (drive_) return drive_->volume(u, (begins_[k] + share * grid_.shares[k]) * grid_.duration);
   return {{torque_at(k) + u, torque_at(k + 1) + u}, {1.0 - share, share}, 2};
 }
 
@@ -202,13 +227,12 @@ VectorX Collocation::torque(const VectorX& x, int k) const {
 }
 
 double Collocation::objective(const VectorX& x) {
-  const double h = duration(x) / grid_.intervals;
   double effort = 0.0;
   each_effort_point(x, [&](int k, double share, double weight) {
     effort += weight * torque(x, k, share).squaredNorm();
   });
   const Objective& cost = task_.objective;
-  double result = cost.effort * h * effort;
+  double result = cost.effort * duration(x) * effort;
   if (cost.tip_speed > 0.0) result += cost.tip_speed * tip_velocity(x).value.squaredNorm();
   if (grid_.free()) result += cost.time * duration(x);
   if (!drive_) return result;
@@ -219,7 +243,6 @@ double Collocation::objective(const VectorX& x) {
 }
 
 void Collocation::gradient(const VectorX& x, VectorX& result) {
-  const double h = duration(x) / grid_.intervals;
   const Objective& cost = task_.objective;
   result.setZero(variables_);
   each_effort_point(x, [&](int k, double share, double weight) {
@@ -228,9 +251,9 @@ void Collocation::gradient(const VectorX& x, VectorX& result) {
       const LinearForm form = input(k, share, u);
       const Response of = response(x, form, u);
       for (std::size_t i = 0; i < static_cast<std::size_t>(form.count); ++i) {
-        result[form.at[i]] += 2.0 * per * h * of.torque * of.slope * form.weight[i];
+        result[form.at[i]] += 2.0 * per * duration(x) * of.torque * of.slope * form.weight[i];
       }
-      if (grid_.free()) result[time_at()] += per / grid_.intervals * of.torque * of.torque;
+      if (grid_.free()) result[time_at()] += per * of.torque * of.torque;
     }
   });
   if (cost.tip_speed > 0.0) {
@@ -248,22 +271,22 @@ void Collocation::gradient(const VectorX& x, VectorX& result) {
 
 void Collocation::constraints(const VectorX& x, VectorX& result) {
   result.resize(constraints());
-  const std::array<Transcription, 2> both = rules(x);
+  const std::vector<Transcription>& all = rules(x);
   const MatrixX& actuation = arm_->actuation();
   for (int k = 0; k < grid_.intervals; ++k) {
-    const Transcription& rules = both[k > 0 ? 1 : 0];
+    const Transcription& rules = all[static_cast<std::size_t>(k)];
     const MatrixX knots = pair(x, k);
-    result.segment(row(k), n_) = knots * rules.defect.value.transpose();
+    result.segment(row(k), n_ * defects_) = knots * rules.defect.value.transpose();
     for (std::size_t s = 0; s < rules.stages.size(); ++s) {
       const Stage& stage = rules.stages[s];
       const MatrixX motion = knots * stage.state.value.transpose();
       result.segment(stage_row(k, static_cast<int>(s)), n_) =
           equations_.residual(motion.col(0), motion.col(1), motion.col(2)) -
-          actuation * torque(x, k, stage.torque[1]);
+          actuation * torque(x, k, stage.time);
     }
     if (rate_limited_) {
       result.segment(rate_row(k), inputs_) =
-          (torque(x, k + 1) - torque(x, k)) * grid_.intervals / duration(x);
+          (torque(x, k + 1) - torque(x, k)) / (grid_.shares[k] * duration(x));
     }
     if (task_.obstacles.empty()) continue;
     const auto& where = points_.positions(state(x, k + 1, 0), backbone_);
@@ -272,11 +295,8 @@ void Collocation::constraints(const VectorX& x, VectorX& result) {
       for (const VectorDerivatives& point : where) result[at++] = obstacle.distance(point.value);
     }
   }
-  const Goal& goal = task_.goal;
-  result[goal_row()] = SmoothLength(tip_position(x).value - goal.position, goal.tolerance).value;
-  if (speed_limited_) {
-    result[speed_row()] = SmoothLength(tip_velocity(x).value, goal.speed_tolerance).value;
-  }
+  result[goal_row()] = distance(tip_position(x).value).value;
+  if (speed_limited_) result[speed_row()] = speed(tip_velocity(x).value).value;
   if (!drive_) return;
   result.tail(drive_->rows()).setZero();
   for (const auto& [row, column, value] : drive_->jacobian()) result[row] += value * x[column];
@@ -287,7 +307,7 @@ VectorX Collocation::pack(const Knots& knots) const {
   for (int k = 0; k <= grid_.intervals; ++k) {
     x.segment(knot(k), n_) = knots.position.row(k);
     x.segment(knot(k) + n_, n_) = knots.rate.row(k);
-    if (rules_.blocks == 3) x.segment(knot(k) + 2 * n_, n_) = knots.acceleration.row(k);
+    if (blocks_ == 3) x.segment(knot(k) + 2 * n_, n_) = knots.acceleration.row(k);
     if (!drive_) x.segment(torque_at(k), inputs_) = knots.torque.row(k);
   }
   if (drive_) x.tail(drive_->variables()) = drive_->pack(knots.drive.value());
@@ -297,20 +317,17 @@ VectorX Collocation::pack(const Knots& knots) const {
 
 Knots Collocation::unpack(const VectorX& x) const {
   const int count = grid_.intervals + 1;
-  Knots knots{VectorX::LinSpaced(count, 0.0, duration(x)),
-              MatrixX(count, n_),
-              MatrixX(count, n_),
-              MatrixX::Zero(count, n_),
-              MatrixX(count, inputs_),
-              {}};
+  Knots knots{duration(x) * begins_,    MatrixX(count, n_),      MatrixX(count, n_),
+              MatrixX::Zero(count, n_), MatrixX(count, inputs_), {}};
   if (drive_) knots.drive = drive_->unpack(x);
   for (int k = 0; k < count; ++k) {
     knots.position.row(k) = state(x, k, 0);
     knots.rate.row(k) = state(x, k, 1);
-    if (rules_.blocks == 3) {
+    if (blocks_ == 3) {
       knots.acceleration.row(k) = state(x, k, 2);
     } else if (k > 0) {
-      knots.acceleration.row(k) = (knots.rate.row(k) - knots.rate.row(k - 1)) / knots.times[1];
+      knots.acceleration.row(k) =
+          (knots.rate.row(k) - knots.rate.row(k - 1)) / (knots.times[k] - knots.times[k - 1]);
     }
     knots.torque.row(k) = torque(x, k);
   }

@@ -2,7 +2,6 @@
 #include <array>
 
 #include "sinew/plan/collocation.hpp"
-#include "sinew/plan/smooth_length.hpp"
 
 namespace sinew::plan {
 
@@ -33,13 +32,12 @@ void emit_square(const LinearForm& form, double scale, const Emit& emit) {
 
 template <typename Emit>
 void Collocation::each_jacobian_entry(const VectorX& x, const Emit& emit) {
-  const std::array<Transcription, 2> both = rules(x);
+  const std::vector<Transcription>& all = rules(x);
   const MatrixX& actuation = arm_->actuation();
-  const int blocks = rules_.blocks;
+  const int blocks = blocks_;
   const auto column = [&](int k, int block) {
     return block < blocks ? knot(k) + block * n_ : knot(k + 1) + (block - blocks) * n_;
   };
-  const double share = 1.0 / grid_.intervals;  // dh/dt_f
   const auto torque_entries = [&](int first_row, int k, double when) {
     for (int u = 0; u < inputs_; ++u) {
       const LinearForm form = input(k, when, u);
@@ -54,9 +52,10 @@ void Collocation::each_jacobian_entry(const VectorX& x, const Emit& emit) {
     }
   };
   for (int k = 0; k < grid_.intervals; ++k) {
-    const Transcription& rules = both[k > 0 ? 1 : 0];
+    const Transcription& rules = all[static_cast<std::size_t>(k)];
+    const double share = grid_.shares[k];  // dh/dt_f
     const MatrixX knots = pair(x, k);
-    for (int i = 0; i < n_; ++i) {
+    for (int i = 0; i < n_ * defects_; ++i) {
       for (int b = 0; b < 2 * blocks; ++b) {
         if (rules.defect.value(0, b) != 0.0) {
           emit(row(k) + i, column(k, b) + i, rules.defect.value(0, b));
@@ -88,7 +87,7 @@ void Collocation::each_jacobian_entry(const VectorX& x, const Emit& emit) {
         const VectorX total = *by[0] * slope.col(0) + *by[1] * slope.col(1) + *by[2] * slope.col(2);
         for (int i = 0; i < n_; ++i) emit(first + i, time_at(), total[i]);
       }
-      torque_entries(first, k, stage.torque[1]);
+      torque_entries(first, k, stage.time);
     }
     if (rate_limited_) {
       const double per = 1.0 / (share * duration(x));
@@ -119,19 +118,16 @@ void Collocation::each_jacobian_entry(const VectorX& x, const Emit& emit) {
     }
   }
   const int last = knot(grid_.intervals);
-  const Goal& goal = task_.goal;
   const auto& tip = tip_position(x);
-  const VectorX distance =
-      tip.jacobian.transpose() * SmoothLength(tip.value - goal.position, goal.tolerance).gradient;
-  for (int j = 0; j < n_; ++j) emit(goal_row(), last + j, distance[j]);
+  const VectorX nearer = tip.jacobian.transpose() * distance(tip.value).gradient;
+  for (int j = 0; j < n_; ++j) emit(goal_row(), last + j, nearer[j]);
   if (drive_) {
     for (const auto& [row, at, value] : drive_->jacobian()) emit(row, at, value);
   }
   if (!speed_limited_) return;
   const auto& velocity = tip_velocity(x);
-  const VectorX speed =
-      velocity.jacobian.transpose() * SmoothLength(velocity.value, goal.speed_tolerance).gradient;
-  for (int j = 0; j < 2 * n_; ++j) emit(speed_row(), last + j, speed[j]);
+  const VectorX slower = velocity.jacobian.transpose() * speed(velocity.value).gradient;
+  for (int j = 0; j < 2 * n_; ++j) emit(speed_row(), last + j, slower[j]);
 }
 
 void Collocation::jacobian(const VectorX& x, double* values) {
@@ -141,18 +137,16 @@ void Collocation::jacobian(const VectorX& x, double* values) {
 template <typename Emit>
 void Collocation::effort_hessian(const VectorX& x, double factor, const Emit& emit) {
   const double effort = 2.0 * factor * task_.objective.effort;
-  const double h = duration(x) / grid_.intervals;
   each_effort_point(x, [&](int k, double share, double weight) {
     for (int u = 0; u < inputs_; ++u) {
       const LinearForm form = input(k, share, u);
       const Response of = response(x, form, u);
       const double second = of.slope * of.slope + of.torque * of.curvature;
-      emit_square(form, effort * weight * h * second, emit);
+      emit_square(form, effort * weight * duration(x) * second, emit);
       if (!grid_.free()) continue;
       for (std::size_t m = 0; m < static_cast<std::size_t>(form.count); ++m) {
         if (form.weight[m] == 0.0) continue;
-        emit(time_at(), form.at[m],
-             effort * weight / grid_.intervals * of.torque * of.slope * form.weight[m]);
+        emit(time_at(), form.at[m], effort * weight * of.torque * of.slope * form.weight[m]);
       }
     }
   });
@@ -168,10 +162,10 @@ void Collocation::torque_hessian(const VectorX& x, int k, const Transcription& r
   for (std::size_t s = 0; s < rules.stages.size(); ++s) {
     const VectorX weight =
         -arm_->actuation().transpose() * multipliers.segment(stage_row(k, static_cast<int>(s)), n_);
-    for (int u = 0; u < inputs_; ++u) add(rules.stages[s].torque[1], u, weight[u]);
+    for (int u = 0; u < inputs_; ++u) add(rules.stages[s].time, u, weight[u]);
   }
   if (!rate_limited_) return;
-  const double per = grid_.intervals / duration(x);
+  const double per = 1.0 / (grid_.shares[k] * duration(x));
   for (int u = 0; u < inputs_; ++u) {
     add(0.0, u, -per * multipliers[rate_row(k) + u]);
     add(1.0, u, per * multipliers[rate_row(k) + u]);
@@ -182,10 +176,10 @@ template <typename Emit>
 void Collocation::interval_hessian(const VectorX& x, int k, const VectorX& multipliers,
                                    const Emit& emit) {
   // In the interval's own variables: 2 blocks of n, and h.
-  const Transcription rules(grid_.method, duration(x) / grid_.intervals, k == 0);
-  const int blocks = 2 * rules.blocks, size = blocks * n_;
+  const Transcription& rules = this->rules(x)[static_cast<std::size_t>(k)];
+  const int blocks = 2 * blocks_, size = blocks * n_;
   const MatrixX knots = pair(x, k);
-  const double share = 1.0 / grid_.intervals;
+  const double share = grid_.shares[k];
   MatrixX sum = MatrixX::Zero(size, size);
   VectorX cross = VectorX::Zero(size);
   double by_time = 0.0;
@@ -227,21 +221,29 @@ void Collocation::interval_hessian(const VectorX& x, int k, const VectorX& multi
     const int half = size / 2;
     return local < half ? knot(k) + local : knot(k + 1) + local - half;
   };
+  // Radau's stages do not see the acceleration of the first knot.
+  const auto takes_part = [&](int local) { return blocks_ < 3 || local / n_ != 2; };
   for (int i = 0; i < size; ++i) {
-    for (int j = 0; j <= i; ++j) emit(column(i), column(j), sum(i, j));
+    for (int j = 0; j <= i && takes_part(i); ++j) {
+      if (takes_part(j)) emit(column(i), column(j), sum(i, j));
+    }
   }
   if (grid_.free()) {
-    const VectorX weight = multipliers.segment(row(k), n_);
-    for (int i = 0; i < blocks; ++i) {
-      cross.segment(i * n_, n_) += rules.defect.slope(0, i) * weight;
+    if (defects_ > 0) {
+      const VectorX weight = multipliers.segment(row(k), n_);
+      for (int i = 0; i < blocks; ++i) {
+        cross.segment(i * n_, n_) += rules.defect.slope(0, i) * weight;
+      }
+      by_time += weight.dot(knots * rules.defect.bend.row(0).transpose());
     }
-    by_time += weight.dot(knots * rules.defect.bend.row(0).transpose());
-    for (int i = 0; i < size; ++i) emit(time_at(), column(i), share * cross[i]);
+    for (int i = 0; i < size; ++i) {
+      if (takes_part(i)) emit(time_at(), column(i), share * cross[i]);
+    }
     emit(time_at(), time_at(), share * share * by_time);
   }
   if (drive_) torque_hessian(x, k, rules, multipliers, emit);
   if (rate_limited_ && grid_.free()) {
-    const double t = duration(x), per = grid_.intervals / (t * t);
+    const double t = duration(x), per = 1.0 / (share * t * t);
     for (int u = 0; u < inputs_; ++u) {
       const double weight = multipliers[rate_row(k) + u];
       const int before = torque_at(k) + u, after = torque_at(k + 1) + u;
@@ -268,17 +270,16 @@ void Collocation::interval_hessian(const VectorX& x, int k, const VectorX& multi
 template <typename Emit>
 void Collocation::terminal_hessian(const VectorX& x, double factor, const VectorX& multipliers,
                                    const Emit& emit) {
-  const Goal& goal = task_.goal;
   MatrixX sum = MatrixX::Zero(2 * n_, 2 * n_);
   const auto& tip = tip_position(x);
-  const SmoothLength distance(tip.value - goal.position, goal.tolerance);
+  const SmoothLength from_goal = distance(tip.value);
   sum.topLeftCorner(n_, n_) =
-      multipliers[goal_row()] * composed(distance.gradient, distance.hessian, tip);
+      multipliers[goal_row()] * composed(from_goal.gradient, from_goal.hessian, tip);
   if (speed_limited_ || task_.objective.tip_speed > 0.0) {
     const auto& velocity = tip_velocity(x);
     if (speed_limited_) {
-      const SmoothLength speed(velocity.value, goal.speed_tolerance);
-      sum += multipliers[speed_row()] * composed(speed.gradient, speed.hessian, velocity);
+      const SmoothLength slower = speed(velocity.value);
+      sum += multipliers[speed_row()] * composed(slower.gradient, slower.hessian, velocity);
     }
     sum += factor * task_.objective.tip_speed *
            composed(2.0 * velocity.value, 2.0 * Matrix3::Identity(), velocity);

@@ -8,8 +8,9 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
-#include "sinew/pcc/arm_simulation.hpp"
+#include "sinew/pcc/adaptive_motion.hpp"
 #include "sinew/plan/drive_inversion.hpp"
+#include "sinew/plan/mesh.hpp"
 #include "sinew/plan/uniform.hpp"
 
 namespace sinew::plan {
@@ -66,92 +67,148 @@ Task without_drive(Task task) {
   return task;
 }
 
+PlanStatus status_of(Status status) {
+  switch (status) {
+    case Status::solved:
+      return PlanStatus::solved;
+    case Status::acceptable:
+      return PlanStatus::acceptable;
+    case Status::infeasible:
+      return PlanStatus::infeasible;
+    case Status::iteration_limit:
+      return PlanStatus::iteration_limit;
+    case Status::time_limit:
+      return PlanStatus::time_limit;
+    case Status::failed:
+      break;
+  }
+  return PlanStatus::failed;
+}
+
 }  // namespace
+
+std::string_view status_name(PlanStatus status) {
+  switch (status) {
+    case PlanStatus::solved:
+      return "solved";
+    case PlanStatus::acceptable:
+      return "acceptable";
+    case PlanStatus::not_met_on_replay:
+      return "not-met-on-replay";
+    case PlanStatus::infeasible:
+      return "infeasible";
+    case PlanStatus::iteration_limit:
+      return "iteration-limit";
+    case PlanStatus::time_limit:
+      return "time-limit";
+    case PlanStatus::failed:
+      break;
+  }
+  return "failed";
+}
+
+VectorX Plan::shares() const {
+  const Eigen::Index count = knots.times.size() - 1;
+  return (knots.times.tail(count) - knots.times.head(count)) / duration();
+}
 
 VectorX Plan::torque(double time) const {
   if (knots.drive) return knots.drive->torque(std::clamp(time, 0.0, duration()));
-  const Eigen::Index last = knots.times.size() - 1;
-  const double at = std::clamp(time / duration(), 0.0, 1.0) * static_cast<double>(last);
-  const double rounding = 1e-9;
-  if (method == Method::backward_euler) {
-    const auto k = static_cast<Eigen::Index>(std::ceil(at - rounding));
-    return knots.torque.row(std::clamp<Eigen::Index>(k, 1, last));
-  }
-  const auto k = std::min(static_cast<Eigen::Index>(at), last - 1);
-  const double share = at - static_cast<double>(k);
-  return (1.0 - share) * knots.torque.row(k) + share * knots.torque.row(k + 1);
+  const VectorX& times = knots.times;
+  // At a knot, and by rounding behind it, the interval is that before.
+  const double rounding = 1e-12 * duration();
+  const auto after = std::lower_bound(times.begin() + 1, times.end() - 1, time - rounding);
+  const Eigen::Index k = after - times.begin();
+  if (method == Method::backward_euler) return knots.torque.row(k);
+  const double share = std::clamp((time - times[k - 1]) / (times[k] - times[k - 1]), 0.0, 1.0);
+  return (1.0 - share) * knots.torque.row(k - 1) + share * knots.torque.row(k);
 }
 
 Planner::Planner(std::shared_ptr<const pcc::Arm> arm, const Task& task,
-                 const SolverSettings& settings)
+                 const PlannerSettings& settings)
     : arm_(std::move(arm)),
-      task_(completed(*arm_, task)),
+      asked_(completed(*arm_, task)),
+      task_(asked_),
       settings_(settings),
-      program_(arm_, task_),
+      program_(std::make_unique<Collocation>(arm_, task_)),
       equations_(arm_) {}
 
 Knots Planner::guess(std::uint64_t seed) const {
-  const Grid& grid = task_.grid;
-  const double h = grid.duration / grid.intervals;
+  const Grid& grid = asked_.grid;
   const Eigen::Index count = grid.intervals + 1, n = arm_->coordinates();
   // The slow motion of the whole arm, as a pendulum of its mass: what a swing works with.
   pcc::ArmEquations equations(arm_);
   const auto& linear =
-      equations.linearise(task_.start.position, VectorX::Zero(n), VectorX::Zero(n));
+      equations.linearise(asked_.start.position, VectorX::Zero(n), VectorX::Zero(n));
   const double frequency =
       std::sqrt(linear.by_position.diagonal().cwiseAbs().sum() / linear.by_acceleration.trace());
   double torque = 0.0;
-  for (const VectorX* limit : {&task_.limits.torque_lower, &task_.limits.torque_upper}) {
+  for (const VectorX* limit : {&asked_.limits.torque_lower, &asked_.limits.torque_upper}) {
     for (const double value : *limit) {
       if (std::abs(value) < kNoBound) torque = std::max(torque, std::abs(value));
     }
   }
   if (torque == 0.0) torque = arm_->stiffness().maxCoeff();
-  const Excitation excitation(task_, torque, frequency, seed);
-  const int steps = std::max(1, static_cast<int>(std::ceil(h / 0.005)));
-  pcc::ArmSimulation simulation(arm_, {.time_step = h / steps});
-  simulation.set_state(task_.start.position, task_.start.rate);
-  Knots knots{VectorX::LinSpaced(count, 0.0, grid.duration),
+  const Excitation excitation(asked_, torque, frequency, seed);
+  pcc::AdaptiveMotion motion(arm_, {.relative = 1e-3, .angle = 1e-4, .rate = 1e-3});
+  motion.set_state(asked_.start.position, asked_.start.rate);
+  Knots knots{VectorX::Zero(count),
               MatrixX(count, n),
               MatrixX(count, n),
               MatrixX(count, n),
               MatrixX(count, arm_->inputs()),
               {}};
   for (Eigen::Index k = 0; k < count; ++k) {
-    for (int s = 0; k > 0 && s < steps; ++s) {
-      simulation.step(excitation(simulation.time() + h / steps));
+    if (k > 0) {
+      knots.times[k] = knots.times[k - 1] + grid.shares[k - 1] * grid.duration;
+      motion.advance(knots.times[k], excitation);
     }
-    knots.position.row(k) = simulation.position();
-    knots.rate.row(k) = simulation.rate();
+    knots.position.row(k) = motion.position();
+    knots.rate.row(k) = motion.rate();
     knots.torque.row(k) = excitation(knots.times[k]);
   }
-  for (Eigen::Index k = 0; k < count; ++k) {
-    const Eigen::Index from = std::max<Eigen::Index>(k - 1, 0), to = std::min(k + 1, count - 1);
-    knots.acceleration.row(k) =
-        (knots.rate.row(to) - knots.rate.row(from)) / (static_cast<double>(to - from) * h);
-  }
+  knots.acceleration = slopes(knots.times, knots.rate);
   return knots;
 }
 
-Plan Planner::finish(ProgramResult result) {
-  Plan plan{result.status, task_.grid.method, program_.unpack(result.point.x), result.objective};
-  const Eigen::Index last = plan.knots.times.size() - 1;
-  const VectorX q = plan.knots.position.row(last), rate = plan.knots.rate.row(last);
-  const auto tip = equations_.point({arm_->segments() - 1}, q, rate);
-  plan.tip_error = (tip.position - task_.goal.position).norm();
-  plan.tip_speed = (tip.jacobian * rate).norm();
+void Planner::set_mesh(const VectorX& shares) {
+  if (shares.size() == task_.grid.shares.size() &&
+      (shares - task_.grid.shares).lpNorm<Eigen::Infinity>() < 1e-12) {
+    return;
+  }
+  task_.grid.shares = shares;
+  task_.grid.intervals = static_cast<int>(shares.size());
+  program_ = std::make_unique<Collocation>(arm_, task_);
+}
+
+double Planner::time_left() const {
+  const double spent = static_cast<double>(std::clock() - begun_) / CLOCKS_PER_SEC;
+  return settings_.solver.max_time - spent;
+}
+
+Plan Planner::solve_program(const ProgramPoint& start) {
+  SolverSettings settings = settings_.solver;
+  settings.max_time = std::max(time_left(), 1e-3);
+  ProgramResult result = solve(*program_, start, settings);
+  Plan plan{status_of(result.status), task_.grid.method, program_->unpack(result.point.x),
+            result.objective};
   plan.iterations = result.iterations;
   plan.seconds = result.seconds;
   plan.point = std::move(result.point);
+  plan.aim = program_->aim();
   return plan;
 }
 
-Plan Planner::plan(std::uint64_t seed) {
-  return task_.drive ? plan_drive(seed) : plan(guess(seed));
+ProgramPoint Planner::cold_start(std::uint64_t seed) {
+  return {program_->pack(guess(seed)), {}, {}, {}};
 }
 
-Plan Planner::plan_drive(std::uint64_t seed) {
-  Plan before = Planner(arm_, without_drive(task_), settings_).plan(seed);
+ProgramPoint Planner::drive_start(std::uint64_t seed) {
+  Planner torques(arm_, without_drive(asked_), settings_);
+  torques.begun_ = begun_;
+  Plan before = torques.solve_program(torques.cold_start(seed));
+  before_iterations_ = before.iterations;
+  before_seconds_ = before.seconds;
   const auto& [channels, lead] = *task_.drive;
   VectorX rest(task_.start.torque.size());
   for (Eigen::Index i = 0; i < rest.size(); ++i) {
@@ -160,15 +217,19 @@ Plan Planner::plan_drive(std::uint64_t seed) {
   }
   before.knots.drive.emplace(channels, invert_drive(before, channels, lead).command, lead, rest);
   // All rows but the drive's are those of the plan of torques.
-  const VectorX none = VectorX::Zero(program_.variables());
-  ProgramPoint start{program_.pack(before.knots), VectorX::Zero(program_.constraints()), none,
+  const VectorX none = VectorX::Zero(program_->variables());
+  ProgramPoint start{program_->pack(before.knots), VectorX::Zero(program_->constraints()), none,
                      none};
   const VectorX& multipliers = before.point.constraint_multipliers;
   start.constraint_multipliers.head(multipliers.size()) = multipliers;
-  Plan found = finish(solve(program_, start, settings_));
-  found.iterations += before.iterations;
-  found.seconds += before.seconds;
-  return found;
+  return start;
+}
+
+Plan Planner::plan(std::uint64_t seed) {
+  begun_ = std::clock();
+  set_mesh(asked_.grid.shares);
+  program_->set_aim({.clearance = VectorX::Zero(obstacles())});
+  return solve_verified(task_.drive ? drive_start(seed) : cold_start(seed));
 }
 
 Plan Planner::plan(const Knots& guess) {
@@ -176,18 +237,32 @@ Plan Planner::plan(const Knots& guess) {
     throw Error(ErrorKind::wrong_length, {.item = "guess"}, "it has no commands of the drive",
                 "give them, or a seed");
   }
-  return finish(solve(program_, {program_.pack(guess), {}, {}, {}}, settings_));
+  if (guess.times.size() != asked_.grid.intervals + 1) {
+    throw Error(ErrorKind::wrong_length, {.item = "guess"},
+                fmt::format("it has {} knots", guess.times.size()),
+                fmt::format("give {}, one more than intervals", asked_.grid.intervals + 1));
+  }
+  begun_ = std::clock();
+  set_mesh(asked_.grid.shares);
+  program_->set_aim({.clearance = VectorX::Zero(obstacles())});
+  return solve_verified({program_->pack(guess), {}, {}, {}});
 }
 
 Plan Planner::replan(const Plan& before) {
-  if (before.point.x.size() != program_.variables() ||
-      before.point.constraint_multipliers.size() != program_.constraints()) {
+  begun_ = std::clock();
+  if (before.knots.times.size() > 1) set_mesh(before.shares());
+  if (before.point.x.size() != program_->variables() ||
+      before.point.constraint_multipliers.size() != program_->constraints() ||
+      before.aim.clearance.size() != obstacles()) {
     throw Error(ErrorKind::wrong_length, {.item = "before"},
-                fmt::format("it has {} unknowns and this task has {}", before.point.x.size(),
-                            program_.variables()),
-                "replan with the same method, intervals and kinds of limits");
+                fmt::format("it has {} unknowns and {} conditions, and this task on its knots has "
+                            "{} and {}",
+                            before.point.x.size(), before.point.constraint_multipliers.size(),
+                            program_->variables(), program_->constraints()),
+                "replan with the same method and kinds of limits");
   }
-  return finish(solve(program_, before.point, settings_));
+  program_->set_aim(before.aim);
+  return solve_verified(before.point);
 }
 
 }  // namespace sinew::plan

@@ -6,56 +6,69 @@
 #include <span>
 #include <utility>
 
-#include "sinew/pcc/arm_simulation.hpp"
+#include "sinew/pcc/adaptive_motion.hpp"
 
 namespace sinew::plan {
 
 namespace {
 
-/// Least distance of the arm's axis from the obstacles.
-double clearance(const pcc::ArmDynamics<double>& dynamics, const std::vector<Obstacle>& obstacles) {
+/// Least distances of the arm's axis from the obstacles, where they are less.
+void lower(VectorX& clearances, const pcc::ArmDynamics<double>& dynamics,
+           const std::vector<Obstacle>& obstacles) {
   constexpr int kPoints = 20;  // a segment
-  double least = std::numeric_limits<double>::infinity();
   for (int s = 0; s < dynamics.arm().segments(); ++s) {
     for (int i = 0; i <= kPoints; ++i) {
       const pcc::Vec3<double> at = dynamics.position({s, static_cast<double>(i) / kPoints});
-      for (const Obstacle& obstacle : obstacles) {
-        least = std::min(least, obstacle.distance({at.x, at.y, at.z}));
+      for (std::size_t o = 0; o < obstacles.size(); ++o) {
+        double& least = clearances[static_cast<Eigen::Index>(o)];
+        least = std::min(least, obstacles[o].distance({at.x, at.y, at.z}));
       }
     }
   }
-  return least;
 }
 
-template <typename Torque>
+/// @param kinks s, increasing, at which the torque is not smooth.
 Replay replay_torque(const std::shared_ptr<const pcc::Arm>& arm, const Task& task_given,
-                     const Torque& torque_at, double duration, double time_step) {
+                     const pcc::AdaptiveMotion::Torque& torque_at, const VectorX& kinks,
+                     const VectorX& times) {
   const Task task = completed(*arm, task_given);
-  const auto count = static_cast<Eigen::Index>(std::max(1.0, std::round(duration / time_step)));
-  const double h = duration / static_cast<double>(count);
-  pcc::ArmSimulation simulation(arm, {.time_step = h});
-  simulation.set_state(task.start.position, task.start.rate);
-  Recorder recorder(arm, task, count, h);
-  recorder.add(simulation.position(), simulation.rate(), torque_at(0.0));
-  for (Eigen::Index k = 1; k <= count; ++k) {
-    const VectorX torque = torque_at(static_cast<double>(k) * h);
-    simulation.step(torque);
-    recorder.add(simulation.position(), simulation.rate(), torque);
+  pcc::AdaptiveMotion motion(arm);
+  motion.set_state(task.start.position, task.start.rate);
+  Recorder recorder(arm, task, times);
+  recorder.add(motion.position(), motion.rate(), torque_at(0.0));
+  Eigen::Index kink = 0;
+  for (Eigen::Index k = 1; k < times.size(); ++k) {
+    for (; kink < kinks.size() && kinks[kink] < times[k]; ++kink) {
+      if (kinks[kink] > motion.time()) motion.advance(kinks[kink], torque_at);
+    }
+    motion.advance(times[k], torque_at);
+    recorder.add(motion.position(), motion.rate(), torque_at(times[k]));
   }
   return recorder.finish();
 }
 
+/// Equal steps of about a length that make a duration.
+VectorX equal_times(double duration, double time_step) {
+  const double steps = std::max(1.0, std::round(duration / time_step));
+  return VectorX::LinSpaced(static_cast<Eigen::Index>(steps) + 1, 0.0, duration);
+}
+
 }  // namespace
 
-Recorder::Recorder(const std::shared_ptr<const pcc::Arm>& arm, const Task& task, Eigen::Index steps,
-                   double time_step)
+double Replay::clearance() const {
+  return clearances.size() > 0 ? clearances.minCoeff() : std::numeric_limits<double>::infinity();
+}
+
+Recorder::Recorder(const std::shared_ptr<const pcc::Arm>& arm, const Task& task,
+                   const VectorX& times)
     : dynamics_(arm), task_(task), still_(VectorX::Zero(arm->coordinates())) {
-  const Eigen::Index count = steps + 1;
-  replay_.times = VectorX::LinSpaced(count, 0.0, static_cast<double>(steps) * time_step);
+  const Eigen::Index count = times.size();
+  replay_.times = times;
   replay_.position = replay_.rate = MatrixX(count, arm->coordinates());
   replay_.torque = MatrixX(count, arm->inputs());
   replay_.tip = replay_.tip_velocity = Points(count, 3);
-  replay_.clearance = std::numeric_limits<double>::infinity();
+  replay_.clearances = VectorX::Constant(static_cast<Eigen::Index>(task.obstacles.size()),
+                                         std::numeric_limits<double>::infinity());
 }
 
 void Recorder::add(const VectorX& q, const VectorX& rate, const VectorX& torque) {
@@ -70,9 +83,7 @@ void Recorder::add(const VectorX& q, const VectorX& rate, const VectorX& torque)
   const auto at = dynamics_.position(tip), speed = dynamics_.velocity(tip);
   replay_.tip.row(next_) << at.x, at.y, at.z;
   replay_.tip_velocity.row(next_) << speed.x, speed.y, speed.z;
-  if (!task_.obstacles.empty()) {
-    replay_.clearance = std::min(replay_.clearance, clearance(dynamics_, task_.obstacles));
-  }
+  if (!task_.obstacles.empty()) lower(replay_.clearances, dynamics_, task_.obstacles);
   ++next_;
 }
 
@@ -84,17 +95,41 @@ Replay Recorder::finish() {
 }
 
 Replay replay(const std::shared_ptr<const pcc::Arm>& arm, const Task& task, const Plan& plan,
-              double time_step) {
+              const VectorX& times) {
+  // A drive's torque is as smooth as the cubics through its samples, which steps find by the error.
+  const VectorX kinks = plan.knots.drive ? VectorX() : plan.knots.times;
   return replay_torque(
-      arm, task, [&](double time) { return plan.torque(time); }, plan.duration(), time_step);
+      arm, task, [&](double time) { return plan.torque(time); }, kinks, times);
+}
+
+Replay replay(const std::shared_ptr<const pcc::Arm>& arm, const Task& task, const Plan& plan,
+              double time_step) {
+  return replay(arm, task, plan, equal_times(plan.duration(), time_step));
 }
 
 Replay replay(const std::shared_ptr<const pcc::Arm>& arm, const Task& task, const DriveRun& run,
               double time_step) {
   check_channels(run.channels, arm->inputs(), run.lead, "drive run");
   return replay_torque(
-      arm, task, [&](double time) { return run.torque(time - run.lead); },
-      run.lead + task.grid.duration, time_step);
+      arm, task, [&](double time) { return run.torque(time - run.lead); }, {},
+      equal_times(run.lead + task.grid.duration, time_step));
+}
+
+VectorX interval_defects(const std::shared_ptr<const pcc::Arm>& arm, const Task& task,
+                         const Plan& plan) {
+  const Knots& knots = plan.knots;
+  const double angle = task.goal.tolerance / arm->length(),
+               rate = std::min(task.goal.speed_tolerance / arm->length(), kNoBound);
+  pcc::AdaptiveMotion motion(arm);
+  VectorX defects(knots.times.size() - 1);
+  for (Eigen::Index k = 0; k < defects.size(); ++k) {
+    motion.set_state(knots.position.row(k), knots.rate.row(k), knots.times[k]);
+    motion.advance(knots.times[k + 1], [&](double time) { return plan.torque(time); });
+    const VectorX position = motion.position() - knots.position.row(k + 1).transpose(),
+                  speed = motion.rate() - knots.rate.row(k + 1).transpose();
+    defects[k] = position.norm() / angle + speed.norm() / rate;
+  }
+  return defects;
 }
 
 }  // namespace sinew::plan

@@ -1,5 +1,5 @@
 /// @file
-/// A plan carried out by an arm, with fine implicit steps: what the plan is worth.
+/// A plan carried out by an arm, to an accuracy far finer than the plan's: what the plan is worth.
 #pragma once
 
 #include <memory>
@@ -8,23 +8,23 @@
 
 namespace sinew::plan {
 
-/// The arm's motion over equal steps.
+/// The arm's motion at increasing times.
 struct Replay {
-  VectorX times;                   ///< (steps + 1,) s
-  MatrixX position, rate, torque;  ///< (steps + 1, coordinates or inputs)
-  Points tip, tip_velocity;        ///< (steps + 1, 3) m, m/s
+  VectorX times;                   ///< (samples,) s
+  MatrixX position, rate, torque;  ///< (samples, coordinates or inputs)
+  Points tip, tip_velocity;        ///< (samples, 3) m, m/s
   double tip_error = 0.0;          ///< m, at the end
   double tip_speed = 0.0;          ///< m/s, at the end
-  double clearance = 0.0;          ///< m, the least of all times, points and obstacles; none: +inf
+  VectorX clearances;              ///< (obstacles,) m, the least of all samples and points
+  double clearance() const;        ///< m, the least of them; no obstacles: +inf
 };
 
 /// Fills a replay, state by state.
 class Recorder {
  public:
   /// @param arm that moves. @param task completed(), of the goal and the obstacles.
-  /// @param steps how many. @param time_step s.
-  Recorder(const std::shared_ptr<const pcc::Arm>& arm, const Task& task, Eigen::Index steps,
-           double time_step);
+  /// @param times (samples,) s.
+  Recorder(const std::shared_ptr<const pcc::Arm>& arm, const Task& task, const VectorX& times);
   /// @param q,rate (coordinates,). @param torque (inputs,) that led there.
   void add(const VectorX& q, const VectorX& rate, const VectorX& torque);
   Replay finish();
@@ -37,11 +37,16 @@ class Recorder {
   Replay replay_;
 };
 
-/// The plan's torque on an arm, open loop, by generalized-alpha steps. @param arm that carries it
-/// out, the planned one or another of as many coordinates and inputs. @param task that was planned.
-/// @param plan what to do. @param time_step s, about: a whole number of steps makes the duration.
+/// The plan's torque on an arm, open loop, as the plan means it between its knots, by
+/// pcc::AdaptiveMotion. @param arm that carries it out, the planned one or another of as many
+/// coordinates and inputs. @param task that was planned. @param plan what to do.
+/// @param time_step s, about, between samples: a whole number of them makes the duration.
+/// Throws Error(not-converged): a motion without end of speed.
 Replay replay(const std::shared_ptr<const pcc::Arm>& arm, const Task& task, const Plan& plan,
               double time_step = 1e-3);
+/// The same at given times (samples,) s, from 0, increasing.
+Replay replay(const std::shared_ptr<const pcc::Arm>& arm, const Task& task, const Plan& plan,
+              const VectorX& times);
 
 /// Commands through the whole chain, open loop: cylinders at rest, lines, actuators and an arm that
 /// stands as the task starts, from the first command to `lead` + the task's duration. The replay's
@@ -50,5 +55,12 @@ Replay replay(const std::shared_ptr<const pcc::Arm>& arm, const Task& task, cons
 /// Throws Error(wrong-length): not a channel for each input.
 Replay replay(const std::shared_ptr<const pcc::Arm>& arm, const Task& task, const DriveRun& run,
               double time_step = 1e-3);
+
+/// What the transcription leaves out: from each planned knot the arm's motion under the plan's
+/// torque to the next knot, against that knot. (intervals,), the distance of the states over what
+/// moves the tip by the goal's tolerances on a straight arm: 1 is as bad as the goal missed by the
+/// tolerance. @param arm,task that was planned. @param plan of it. Throws Error(not-converged).
+VectorX interval_defects(const std::shared_ptr<const pcc::Arm>& arm, const Task& task,
+                         const Plan& plan);
 
 }  // namespace sinew::plan

@@ -87,11 +87,18 @@ void check_goal(const pcc::Arm& arm, const Goal& goal) {
   }
 }
 
-void check_grid(const Grid& grid) {
+void check_grid(Grid& grid) {
   check_positive(grid.duration, "grid.duration", "s");
   if (grid.intervals < 2) {
     throw Error(ErrorKind::out_of_range, {.item = "grid.intervals"},
                 fmt::format("{}", grid.intervals), "give 2 or more");
+  }
+  fill(grid.shares, grid.intervals, 1.0 / grid.intervals, "grid.shares");
+  if (!(grid.shares.minCoeff() > 0.0) || std::abs(grid.shares.sum() - 1.0) > 1e-9) {
+    throw Error(ErrorKind::out_of_range, {.item = "grid.shares"},
+                fmt::format("the least is {:g} and they add up to {:.12g}", grid.shares.minCoeff(),
+                            grid.shares.sum()),
+                "give positive ones that add up to 1");
   }
   if (!grid.free()) return;
   check_positive(grid.least_duration, "grid.least_duration", "s");

@@ -14,8 +14,7 @@
 namespace sinew::plan {
 
 /// Where the arm is and what drives it at the time 0. The torque goes on from there without a jump
-/// (Hermite-Simpson; with limits on its rate, both methods): a jump sets off the arm's fast damped
-/// modes, which no knot resolves.
+/// (Radau; with limits on its rate, both methods).
 struct Start {
   VectorX position;  ///< (coordinates,) rad; empty: straight
   VectorX rate;      ///< (coordinates,) rad/s; empty: at rest
@@ -64,9 +63,10 @@ struct Objective {
 };
 
 struct Grid {
-  Method method = Method::hermite_simpson;
-  double duration = 1.6;                             ///< s, > 0; where it is free, the first guess
-  int intervals = 50;                                ///< >= 2
+  Method method = Method::radau;
+  double duration = 1.6;  ///< s, > 0; where it is free, the first guess
+  int intervals = 50;     ///< >= 2
+  VectorX shares;         ///< (intervals,) of the duration, > 0, that add up to 1; empty: equal
   double least_duration = 0.0, most_duration = 0.0;  ///< s; both 0: the duration is fixed
   bool free() const { return most_duration > 0.0; }
 };

@@ -139,7 +139,8 @@ Replay track(std::shared_ptr<const pcc::Arm> arm, const Tracker& tracker,
   const double h = tracker.time_step() / static_cast<double>(fine);
   pcc::ArmSimulation simulation(arm, {.time_step = h});
   simulation.set_state(q, rate);
-  Recorder recorder(arm, task, fine * tracker.steps(), h);
+  const Eigen::Index steps = fine * tracker.steps();
+  Recorder recorder(arm, task, VectorX::LinSpaced(steps + 1, 0.0, static_cast<double>(steps) * h));
   VectorX torque = tracker.nominal_torque(0);
   recorder.add(simulation.position(), simulation.rate(), torque);
   for (int k = 0; k < tracker.steps(); ++k) {

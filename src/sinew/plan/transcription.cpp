@@ -1,83 +1,86 @@
 #include "sinew/plan/transcription.hpp"
 
+#include <cmath>
+
+#include <Eigen/LU>
+
 namespace sinew::plan {
 
 namespace {
 
-Weights zeros(int rows, int blocks) {
-  const MatrixX zero = MatrixX::Zero(rows, 2 * blocks);
-  return {zero, zero, zero};
+/// Weights at h from those at 1: what makes the derivative r of what a knot holds as derivative b
+/// goes with h^(b - r). @param unit (rows, 2 blocks): position, rate, acceleration.
+Weights at_interval(const MatrixX& unit, double h) {
+  const Eigen::Index rows = unit.rows(), blocks = unit.cols() / 2;
+  Weights result{unit, MatrixX::Zero(rows, unit.cols()), MatrixX::Zero(rows, unit.cols())};
+  for (Eigen::Index r = 0; r < rows; ++r) {
+    for (Eigen::Index c = 0; c < unit.cols(); ++c) {
+      const int power = static_cast<int>(c % blocks - r);
+      const double value = unit(r, c) * std::pow(h, power);
+      result.value(r, c) = value;
+      result.slope(r, c) = power * value / h;
+      result.bend(r, c) = power * (power - 1) * value / (h * h);
+    }
+  }
+  return result;
 }
 
 }  // namespace
 
 std::string_view method_name(Method method) {
-  return method == Method::backward_euler ? "backward-euler" : "hermite-simpson";
+  return method == Method::backward_euler ? "backward-euler" : "radau";
 }
 
-Transcription::Transcription(Method method, double h, bool first) {
+Transcription::Transcription(Method method, double h) {
   if (method == Method::backward_euler) {
     set_euler(h);
-  } else if (first) {
-    set_radau(h);
   } else {
-    set_hermite(h);
+    set_radau(h);
   }
 }
 
 void Transcription::set_euler(double h) {
   blocks = 2;
-  Stage end{zeros(3, blocks), {0.0, 1.0}, 1.0};
-  end.state.value << 0.0, 0.0, 1.0, 0.0,  //
-      0.0, 0.0, 0.0, 1.0,                 //
-      0.0, -1.0 / h, 0.0, 1.0 / h;
-  end.state.slope.row(2) << 0.0, 1.0 / (h * h), 0.0, -1.0 / (h * h);
-  end.state.bend.row(2) = -2.0 / h * end.state.slope.row(2);
-  stages = {end};
-  defect = zeros(1, blocks);
-  defect.value << -1.0, 0.0, 1.0, -h;
-  defect.slope << 0.0, 0.0, 0.0, -1.0;
-}
-
-void Transcription::set_hermite(double h) {
-  blocks = 3;
-  begin_share = 1.0 / 6.0;  // Simpson's rule
-  Stage middle{zeros(3, blocks), {0.5, 0.5}, 4.0 / 6.0};
-  middle.state.value << 0.5, h / 8.0, 0.0, 0.5, -h / 8.0, 0.0,  //
-      0.0, 0.5, h / 8.0, 0.0, 0.5, -h / 8.0,                    //
-      0.0, -1.5 / h, -0.25, 0.0, 1.5 / h, -0.25;
-  middle.state.slope << 0.0, 0.125, 0.0, 0.0, -0.125, 0.0,  //
-      0.0, 0.0, 0.125, 0.0, 0.0, -0.125,                    //
-      0.0, 1.5 / (h * h), 0.0, 0.0, -1.5 / (h * h), 0.0;
-  middle.state.bend.row(2) = -2.0 / h * middle.state.slope.row(2);
-  Stage end{zeros(3, blocks), {0.0, 1.0}, 1.0 / 6.0};
-  end.state.value.rightCols(3).setIdentity();
-  stages = {middle, end};
-  defect = zeros(1, blocks);
-  const double squared = h * h / 12.0;
-  defect.value << -1.0, -0.5 * h, -squared, 1.0, -0.5 * h, squared;
-  defect.slope << 0.0, -0.5, -h / 6.0, 0.0, -0.5, h / 6.0;
-  defect.bend << 0.0, 0.0, -1.0 / 6.0, 0.0, 0.0, 1.0 / 6.0;
+  MatrixX end(3, 4), joined(1, 4);
+  end << 0.0, 0.0, 1.0, 0.0,  //
+      0.0, 0.0, 0.0, 1.0,     //
+      0.0, -1.0, 0.0, 1.0;
+  joined << -1.0, 0.0, 1.0, -1.0;
+  stages = {{at_interval(end, h), 1.0, 1.0}};
+  defect = at_interval(joined, h);
 }
 
 void Transcription::set_radau(double h) {
   blocks = 3;
-  Stage third{zeros(3, blocks), {2.0 / 3.0, 1.0 / 3.0}, 0.75};
-  third.state.value << 1.0, 5.0 / 27.0 * h, 0.0, 0.0, 4.0 / 27.0 * h, -5.0 / 54.0 * h * h,  //
-      0.0, 4.0 / 9.0, 0.0, 0.0, 5.0 / 9.0, -2.0 / 9.0 * h,                                  //
-      0.0, -4.0 / (3.0 * h), 0.0, 0.0, 4.0 / (3.0 * h), -1.0 / 3.0;
-  third.state.slope << 0.0, 5.0 / 27.0, 0.0, 0.0, 4.0 / 27.0, -5.0 / 27.0 * h,  //
-      0.0, 0.0, 0.0, 0.0, 0.0, -2.0 / 9.0,                                      //
-      0.0, 4.0 / (3.0 * h * h), 0.0, 0.0, -4.0 / (3.0 * h * h), 0.0;
-  third.state.bend(0, 5) = -5.0 / 27.0;
-  third.state.bend.row(2) = -2.0 / h * third.state.slope.row(2);
-  Stage end{zeros(3, blocks), {0.0, 1.0}, 0.25};
-  end.state.value.rightCols(3).setIdentity();
-  stages = {third, end};
-  defect = zeros(1, blocks);
-  defect.value << -1.0, -h / 3.0, 0.0, 1.0, -2.0 / 3.0 * h, h * h / 6.0;
-  defect.slope << 0.0, -1.0 / 3.0, 0.0, 0.0, -2.0 / 3.0, h / 3.0;
-  defect.bend(0, 5) = 1.0 / 3.0;
+  const double s = std::sqrt(6.0);
+  const Vector3 c{(4.0 - s) / 10.0, (4.0 + s) / 10.0, 1.0};
+  Matrix3 a;
+  a << (88.0 - 7.0 * s) / 360.0, (296.0 - 169.0 * s) / 1800.0, (-2.0 + 3.0 * s) / 225.0,  //
+      (296.0 + 169.0 * s) / 1800.0, (88.0 + 7.0 * s) / 360.0, (-2.0 - 3.0 * s) / 225.0,   //
+      (16.0 - s) / 36.0, (16.0 + s) / 36.0, 1.0 / 9.0;
+  const Vector3 b = a.row(2);
+  // Columns: q0 v0 a0, q1 v1 a1, at h = 1.
+  Eigen::Matrix2d ends;
+  ends << b[0], b[1], b[0] * (1.0 - c[0]), b[1] * (1.0 - c[1]);
+  Eigen::Matrix<double, 2, 6> known;
+  known << 0.0, -1.0, 0.0, 0.0, 1.0, -b[2],  //
+      -1.0, -1.0, 0.0, 1.0, 0.0, 0.0;
+  Eigen::Matrix<double, 3, 6> acceleration;
+  acceleration << ends.inverse() * known, Eigen::Matrix<double, 1, 6>::Unit(5);
+  const Eigen::Matrix<double, 3, 6> rate = a * acceleration, position = a * rate;
+  for (int i = 0; i < 3; ++i) {
+    MatrixX unit(3, 6);
+    unit << position.row(i), rate.row(i), acceleration.row(i);
+    unit(0, 0) += 1.0;
+    unit(0, 1) += c[i];
+    unit(1, 1) += 1.0;
+    if (i == 2) {  // the knot itself, but for rounding
+      unit.setZero();
+      unit.rightCols(3).setIdentity();
+    }
+    stages.push_back({at_interval(unit, h), c[i], b[i]});
+  }
+  defect = at_interval(MatrixX(0, 6), h);
 }
 
 }  // namespace sinew::plan

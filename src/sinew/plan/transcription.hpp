@@ -6,21 +6,21 @@
 /// Backward Euler, knots (q, v): q1 = q0 + h v1, stage at the end with a = (v1 - v0)/h; torque
 /// constant over the interval, that of its end.
 ///
-/// Hermite-Simpson (Hargraves & Paris, J. Guidance 10, 1987; Kelly, SIAM Review 59, 2017, sec. 4)
-/// in implicit form, knots (q, v, a): of its equations
-///   v_c = (v0 + v1)/2 + h/8 (a0 - a1),   q_c = (q0 + q1)/2 + h/8 (v0 - v1),
-///   v1 = v0 + h/6 (a0 + 4 a_c + a1),     q1 = q0 + h/6 (v0 + 4 v_c + v1)
-/// the third is solved for a_c and the first put into the fourth, which leaves one linear defect
-///   q1 = q0 + h/2 (v0 + v1) + h^2/12 (a0 - a1)
-/// and the equations of motion at the knots and the middle. The mass matrix, nearly singular for
+/// Radau IIA of three stages, order five (Hairer & Wanner, Solving Ordinary Differential Equations
+/// II, 1996, IV.5, table 5.6), in implicit form, knots (q, v, a): with stages at c_i and
+/// accelerations a_1, a_2, a_3 = a of the second knot,
+///   v_i = v0 + h sum_j A_ij a_j,   q_i = q0 + c_i h v0 + h^2 sum_j (A A)_ij a_j,
+/// whose last rows are the second knot. As (A A)_3j = b_j (1 - c_j), these two,
+///   b_1 a_1 + b_2 a_2 = (v1 - v0)/h - b_3 a_3,
+///   b_1 (1 - c_1) a_1 + b_2 (1 - c_2) a_2 = (q1 - q0 - h v0)/h^2,
+/// give a_1 and a_2, so that all stages follow from the knots, there is no defect, and a knot has
+/// as many unknowns as an interval has equations of motion. The mass matrix, nearly singular for
 /// lumped masses, is never inverted. Torque is linear over the interval.
 ///
-/// Its stability function tends to 1 for fast damped motion, which therefore must not be set off: a
-/// start that is out of balance would stay so. Its first interval is one of Radau IIA, two stages
-/// (Hairer & Wanner 1996, IV.5), which annihilates fast motion, in the same knots:
-///   a_s = 4/(3h) (v1 - v0) - a1/3,   v_s = (4 v0 + 5 v1)/9 - 2/9 h a1,
-///   q_s = q0 + h (5 v0 + 4 v1)/27 - 5/54 h^2 a1,   q1 = q0 + h (v0 + 2 v1)/3 - h^2/6 a1
-/// with equations of motion at a third of the interval and at its end.
+/// The method is stiffly accurate and L-stable: the arm's damped modes that are faster than the
+/// knots follow the torque, as they do in truth. Methods whose stability function tends to 1, such
+/// as Hermite-Simpson (Lobatto IIIA), keep what a kink of torque sets off in them; an optimiser
+/// finds that out, and its motion is then not the arm's, however fine the knots.
 #pragma once
 
 #include <array>
@@ -31,8 +31,8 @@
 
 namespace sinew::plan {
 
-enum class Method { backward_euler, hermite_simpson };
-/// "backward-euler", "hermite-simpson".
+enum class Method { backward_euler, radau };
+/// "backward-euler", "radau".
 std::string_view method_name(Method method);
 
 /// A linear map of what two knots hold, with its derivatives by h. Columns: the blocks of the first
@@ -42,23 +42,22 @@ struct Weights {
 };
 
 struct Stage {
-  Weights state;                   ///< rows: position, rate, acceleration
-  std::array<double, 2> torque{};  ///< of the two knots'; the second: where in the interval it is
-  double share = 0.0;              ///< of the interval in integrals over it
+  Weights state;       ///< rows: position, rate, acceleration
+  double time = 0.0;   ///< where in the interval it is, 0 to 1
+  double share = 0.0;  ///< of the interval in integrals over it
 };
 
 struct Transcription {
   int blocks = 0;             ///< a knot holds: q, v and, with 3, a
   std::vector<Stage> stages;  ///< of an interval
-  Weights defect;             ///< one row, zero
-  double begin_share = 0.0;   ///< as the stages', of the interval's begin
+  Weights defect;             ///< zero; one row or none
 
-  /// @param method which one. @param h interval, s, > 0. @param first whether it is the first.
-  Transcription(Method method, double h, bool first);
+  /// @param method which one. @param h interval, s, > 0.
+  Transcription(Method method, double h);
+  int defects() const { return static_cast<int>(defect.value.rows()); }
 
  private:
   void set_euler(double h);
-  void set_hermite(double h);
   void set_radau(double h);
 };
 

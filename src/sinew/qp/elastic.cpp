@@ -42,8 +42,8 @@ double excess(double value, double lower, double upper) {
 }  // namespace
 
 std::string_view elastic_status_name(ElasticStatus status) {
-  constexpr std::array<std::string_view, 5> kNames = {"optimal", "relaxed", "not-convex",
-                                                      "not-finite", "iteration-limit"};
+  constexpr std::array<std::string_view, 6> kNames = {
+      "optimal", "relaxed", "unbounded", "not-convex", "not-finite", "iteration-limit"};
   return kNames.at(static_cast<std::size_t>(status));
 }
 
@@ -111,6 +111,7 @@ ElasticSolver::Workspace::Workspace(int n, int m, const ElasticSettings& chosen)
   result.qp.x.setZero(n);
   result.qp.bound_multiplier.setZero(n);
   result.qp.row_multiplier.setZero(m);
+  result.qp.ray.setZero(n);
 }
 
 void ElasticSolver::Workspace::check_weights() const {
@@ -138,6 +139,9 @@ void ElasticSolver::Workspace::solve(const QuadraticProgram& problem) {
     case QpStatus::infeasible:
       result.status = relax(problem);
       break;
+    case QpStatus::unbounded:
+      result.status = ElasticStatus::unbounded;
+      break;
     case QpStatus::not_convex:
       result.status = ElasticStatus::not_convex;
       break;
@@ -162,7 +166,8 @@ ElasticStatus ElasticSolver::Workspace::relax(const QuadraticProgram& problem) {
   target.rows = problem.rows;
   target.row_lower = problem.row_lower;
   target.row_upper = problem.row_upper;
-  scale = problem.hessian.diagonal().cwiseSqrt();
+  scale = problem.hessian.diagonal().unaryExpr(
+      [](double diagonal) { return diagonal > 0.0 ? std::sqrt(diagonal) : 1.0; });
   point = result.qp.x.cwiseMax(problem.lower).cwiseMin(problem.upper);
   std::fill(frozen.begin(), frozen.end(), std::uint8_t{0});
   load_bounds(problem);
@@ -179,7 +184,8 @@ ElasticStatus ElasticSolver::Workspace::relax(const QuadraticProgram& problem) {
     return ElasticStatus::relaxed;
   }
   result.qp.x = point;
-  return ElasticStatus::iteration_limit;
+  return relaxed.status == QpStatus::unbounded ? ElasticStatus::unbounded
+                                               : ElasticStatus::iteration_limit;
 }
 
 // Rows with a multiplier stand in each other's way: no point is better in one without being worse

@@ -20,6 +20,7 @@ enum class ElasticMeasure {
 enum class ElasticStatus {
   optimal,          ///< every row is met
   relaxed,          ///< rows conflict; result.violation says which are relaxed and by how much
+  unbounded,        ///< as in QpStatus, within the bounds and the relaxed rows
   not_convex,       ///< as in QpStatus
   not_finite,       ///< as in QpStatus
   iteration_limit,  ///< x keeps the bounds but need not be best

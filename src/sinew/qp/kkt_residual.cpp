@@ -8,7 +8,8 @@ namespace sinew::qp {
 
 namespace {
 
-/// Sizes that make the conditions free of units, in the variables D x with D^2 = diag G.
+/// Sizes that make the conditions free of units, in the variables D x with D^2 = diag G, 1 where
+/// that is 0.
 struct Scales {
   VectorX variable;       ///< D
   double point = 0.0;     ///< max |D x|
@@ -59,7 +60,8 @@ double kkt_residual(const QuadraticProgram& problem, const QpResult& result) {
   if (!finite) return std::numeric_limits<double>::infinity();
   const MatrixX hessian = problem.hessian.selfadjointView<Eigen::Lower>();
   Scales scales;
-  scales.variable = hessian.diagonal().cwiseSqrt();
+  scales.variable = hessian.diagonal().unaryExpr(
+      [](double diagonal) { return diagonal > 0.0 ? std::sqrt(diagonal) : 1.0; });
   scales.point = result.x.cwiseProduct(scales.variable).cwiseAbs().maxCoeff();
 
   double worst = stationarity(problem, result, hessian, &scales);

@@ -25,6 +25,7 @@ QpSolver::Workspace::Workspace(int n, int m, QpSettings chosen)
   result.x.setZero(n);
   result.bound_multiplier.setZero(n);
   result.row_multiplier.setZero(m);
+  result.ray.setZero(n);
   active.reserve(static_cast<std::size_t>(n));
   last_set.resize(static_cast<std::size_t>(n));
   state.assign(static_cast<std::size_t>(n + m), 0);
@@ -38,6 +39,7 @@ QpSolver::Workspace::Workspace(int n, int m, QpSettings chosen)
 void QpSolver::Workspace::solve(const QuadraticProgram& problem) {
   iterations = 0;
   QpStatus status = load_and_factorise(problem);
+  if (status == QpStatus::not_convex) return solve_semidefinite(problem);
   if (status != QpStatus::optimal) {
     reset();
     x.setZero();
@@ -56,6 +58,16 @@ void QpSolver::Workspace::solve(const QuadraticProgram& problem) {
   write_result(status);
 }
 
+void QpSolver::Workspace::solve_semidefinite(const QuadraticProgram& problem) {
+  reset();
+  if (!semidefinite) {
+    semidefinite =
+        std::make_unique<SemidefiniteSolver>(variables, constraints.count() - variables, settings);
+  }
+  semidefinite->solve(problem, &result);
+}
+
+// Says not_convex where the Hessian is not positive definite; it may be semidefinite.
 QpStatus QpSolver::Workspace::load_and_factorise(const QuadraticProgram& problem) {
   if (!constraints.load(problem)) return QpStatus::not_finite;
   if (!factors.factorise(problem.hessian)) {

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "sinew/qp/active_set_factors.hpp"
 #include "sinew/qp/constraint_rows.hpp"
 #include "sinew/qp/quadratic_program.hpp"
+#include "sinew/qp/semidefinite_solver.hpp"
 
 namespace sinew::qp {
 
@@ -57,6 +59,7 @@ struct QpSolver::Workspace {
   void deactivate(int position);
   double active_limit(const ActiveConstraint& entry) const;
   void measure_iterate();
+  void solve_semidefinite(const QuadraticProgram& problem);
   void write_result(QpStatus status);
 
   ConstraintRows constraints;
@@ -69,8 +72,9 @@ struct QpSolver::Workspace {
   VectorX multipliers;              ///< (stride) of the active constraints, in their order
   VectorX values;                   ///< (stride) limits of the active constraints
   VectorX residual, correction, multiplier_correction;
-  double objective_size = 0.0;  ///< |L^-1 g|
-  double iterate_size = 0.0;    ///< |L^-1 g| + max |x_i| sqrt(G_ii): what rounding is relative to
+  std::unique_ptr<SemidefiniteSolver> semidefinite;  ///< made by the first singular Hessian
+  double objective_size = 0.0;                       ///< |L^-1 g|
+  double iterate_size = 0.0;  ///< |L^-1 g| + max |x_i| sqrt(G_ii): what rounding is relative to
   int iterations = 0;
   int iteration_limit = 0;
 };

@@ -19,8 +19,8 @@ QuadraticProgram QuadraticProgram::sized(int variables, int constraints) {
 }
 
 std::string_view qp_status_name(QpStatus status) {
-  constexpr std::array<std::string_view, 5> kNames = {"optimal", "infeasible", "not-convex",
-                                                      "iteration-limit", "not-finite"};
+  constexpr std::array<std::string_view, 6> kNames = {
+      "optimal", "infeasible", "unbounded", "not-convex", "iteration-limit", "not-finite"};
   return kNames.at(static_cast<std::size_t>(status));
 }
 

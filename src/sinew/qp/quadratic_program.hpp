@@ -1,5 +1,5 @@
 /// @file
-/// Dense strictly convex quadratic programs, solved by a dual active-set method. Knows no physics.
+/// Dense convex quadratic programs, solved by a dual active-set method. Knows no physics.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@ namespace sinew::qp {
 
 /// min 1/2 x^T G x + g^T x   s.t.   lower <= x <= upper,   row_lower <= C x <= row_upper.
 /// Infinite limits are allowed; equal limits make an equality. G is (n, n), symmetric positive
-/// definite (only its lower triangle is read); C is (m, n).
+/// semidefinite (only its lower triangle is read); C is (m, n).
 struct QuadraticProgram {
   MatrixX hessian;
   VectorX gradient;
@@ -27,7 +27,8 @@ struct QuadraticProgram {
 enum class QpStatus {
   optimal,
   infeasible,       ///< no x meets all limits
-  not_convex,       ///< G is not positive definite to working precision
+  unbounded,        ///< the objective falls without end along result.ray
+  not_convex,       ///< G has a negative eigenvalue, beyond working precision
   iteration_limit,  ///< settings.max_iterations reached; x is the last iterate
   not_finite,       ///< NaN or infinity in the problem's data
 };
@@ -49,9 +50,12 @@ struct QpResult {
   VectorX row_multiplier;    ///< (m,) z
   int iterations = 0;
   int active = 0;  ///< active limits at the solution
+  VectorX ray;     ///< (n,) of an unbounded problem: feasible for ever, largest entry 1
 };
 
-/// Holds the workspace and the last active set; solve() allocates nothing once sized.
+/// Holds the workspace and the last active set; solve() allocates nothing once sized, but for the
+/// first problem with a singular Hessian. Such a problem may have many solutions: the one with the
+/// least sum of G_ii x_i^2 is found (of x_i^2, where G_ii = 0), see SemidefiniteSolver.
 class QpSolver {
  public:
   QpSolver();

@@ -185,7 +185,8 @@ void RunStates::write_contact(int index) {
 void RunStates::declare_report() {
   report_ = {declare("/report/residual", {}, "N"), declare("/report/relative_residual", {}, "1"),
              declare("/report/iterations", {}, "1"), declare("/report/scale", {}, "1"),
-             declare("/report/smallest_volume_ratio", {}, "1")};
+             declare("/report/smallest_volume_ratio", {}, "1"),
+             declare("/report/status", {}, "1")};
 }
 
 void RunStates::write() {
@@ -218,6 +219,7 @@ void RunStates::write() {
   append(report_[2], report.iterations);
   append(report_[3], report.scale);
   append(report_[4], report.smallest_volume_ratio);
+  append(report_[5], static_cast<double>(report.status));
   file_.flush_after(kFlushInterval);
 }
 

@@ -52,7 +52,7 @@ class RunStates {
     int pose, position, gap, normal, normal_force, friction_force, state;
   };
   std::vector<ContactSeries> contacts_;  // empty without states
-  std::array<int, 5> report_{};
+  std::array<int, 6> report_{};
 };
 
 }  // namespace sinew::record

@@ -17,18 +17,6 @@ void add_vector(std::vector<double>& values, const Vector3& vector) {
 
 }  // namespace
 
-std::string_view law_status_name(sim::LawStatus status) {
-  switch (status) {
-    case sim::LawStatus::solved:
-      return "solved";
-    case sim::LawStatus::limits_conflict:
-      return "limits-conflict";
-    case sim::LawStatus::failed:
-      return "failed";
-  }
-  return "failed";
-}
-
 RunTable::RunTable(const std::filesystem::path& path, sim::Simulation& simulation,
                    const inverse::InverseController* controller)
     : simulation_(simulation),
@@ -74,7 +62,7 @@ std::vector<std::string> RunTable::names(const sim::Simulation& simulation,
   for (const char* name :
        {"strain_energy [J]", "kinetic_energy [J]", "gravity_energy [J]", "actuator_work [J]",
         "outside_work [J]", "dissipation [J]", "numerical_loss [J]", "residual [N]",
-        "relative_residual", "iterations", "scale", "smallest_volume_ratio", "law", "controller"}) {
+        "relative_residual", "iterations", "scale", "smallest_volume_ratio", "status", "controller"}) {
     names.emplace_back(name);
   }
   return names;
@@ -135,7 +123,7 @@ void RunTable::collect_energies() {
 void RunTable::write() {
   collect();
   const bool started = simulation_.steps() > 0;
-  words_[0] = started ? law_status_name(simulation_.report().law) : "start";
+  words_[0] = started ? sim::step_status_name(simulation_.report().status) : "start";
   words_[1] = controller_ == nullptr ? "none"
               : started              ? inverse::inverse_status_name(controller_->status())
                                      : "start";

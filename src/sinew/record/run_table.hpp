@@ -5,7 +5,6 @@
 #include <array>
 #include <filesystem>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "sinew/core/csv.hpp"
@@ -13,10 +12,6 @@
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::record {
-
-/// "solved", "limits-conflict", "failed".
-/// @param status of a step's law.
-std::string_view law_status_name(sim::LawStatus status);
 
 /// Writes run.csv; the columns are those of RunRecorder.
 class RunTable {

@@ -34,43 +34,20 @@ sim::Command command(const ActuatorDescription& actuator) {
   return {};
 }
 
-void check_element(const BodyDescription& body, const mesh::Mesh& mesh) {
-  const bool tetrahedra = !mesh.tetrahedra.empty(), hexahedra = !mesh.hexahedra.empty();
-  const bool quadratic = !mesh.quadratic.empty();
-  const bool linear = body.element == Element::tet4 || body.element == Element::tet4_patch;
-  const bool other =
-      (linear && (hexahedra || quadratic)) || (body.element == Element::hex8 && tetrahedra);
-  if (other) {
-    throw Error(ErrorKind::unsupported_element, body.element_place,
-                fmt::format("the mesh has {}", quadratic    ? "quadratic tetrahedra"
-                                               : tetrahedra ? "tetrahedra"
-                                                            : "hexahedra"),
-                "leave `element` out, or give another mesh");
-  }
-  const bool patches = body.element == Element::tet4_patch;
-  const bool split = body.material.model == MaterialModel::hyperelastic &&
-                     body.material.energy.saint_venant_shear == 0.0;
-  if (patches && !split) {
-    throw Error(ErrorKind::unsupported_element, body.material.place,
-                "tet4-patch needs a law whose volumetric part stands apart",
-                "give it a hyperelastic one other than saint-venant-kirchhoff, for instance model: "
-                "neo-hookean, or take tet4");
-  }
-  if ((hexahedra || quadratic) && body.material.model != MaterialModel::hyperelastic) {
-    throw Error(ErrorKind::unsupported_element, body.material.place,
-                fmt::format("the mesh has {}, and the material is linear or corotational",
-                            hexahedra ? "hexahedra" : "quadratic tetrahedra"),
-                "give them a hyperelastic one, for instance model: neo-hookean");
-  }
-}
-
 fem::FemBodySettings fem_settings(const SceneDescription& scene, const BodyDescription& body) {
   fem::FemBodySettings settings;
   settings.name = body.name;
-  settings.mesh = std::make_shared<const mesh::Mesh>(make_mesh(body.mesh, body.element));
+  settings.mesh = std::make_shared<const mesh::Mesh>(make_body_mesh(body));
   check_element(body, *settings.mesh);
   settings.gravity = scene.gravity;
   settings.damping = {body.mass_damping, body.stiffness_damping};
+  for (const MassDescription& mass : scene.masses) {
+    if (mass.body != body.name) continue;
+    settings.masses.push_back({mass.name, mass.place, mass.point, mass.mass, mass.outside});
+  }
+  if (const auto& start = body.initial_velocity) {
+    settings.initial_velocity = {start->linear, start->angular};
+  }
   fem::Region region;
   if (body.material.model == MaterialModel::hyperelastic) {
     region.hyperelastic = body.material.energy;
@@ -265,8 +242,17 @@ sim::StepSettings step_settings(const SceneDescription& scene) {
   step.adaptive = scene.solver.adaptive;
   step.method =
       scene.solver.method == Method::newton ? sim::Method::newton : sim::Method::one_linearisation;
-  step.tangent = scene.solver.tangent == Tangent::exact ? mechanics::Tangent::exact
-                                                        : mechanics::Tangent::real_time;
+  switch (scene.solver.tangent) {
+    case Tangent::rotated:
+      step.tangent = mechanics::Tangent::real_time;
+      break;
+    case Tangent::projected:
+      step.tangent = mechanics::Tangent::projected;
+      break;
+    case Tangent::exact:
+      step.tangent = mechanics::Tangent::exact;
+      break;
+  }
   step.tolerance = scene.solver.tolerance;
   step.max_iterations = scene.solver.max_iterations;
   step.contact_tolerance = scene.solver.contact_tolerance;
@@ -288,6 +274,7 @@ void check_contacts(const SceneDescription& scene) {
 
 Robot build(SceneDescription description) {
   check_contacts(description);
+  Robot robot;
   sim::ModelBuilder builder(step_settings(description));
   std::vector<std::shared_ptr<const mesh::Mesh>> meshes;
   const auto body_index = [&](const std::string& name) {
@@ -305,6 +292,9 @@ Robot build(SceneDescription description) {
       }
       auto settings = fem_settings(description, body);
       meshes.push_back(settings.mesh);
+      if (auto notice = locking_notice(body, *settings.mesh)) {
+        robot.notices.push_back(std::move(*notice));
+      }
       const int number = builder.add_fem_body(std::move(settings));
       if (body.base) {
         builder.add_base_motion(
@@ -336,7 +326,6 @@ Robot build(SceneDescription description) {
   factorisation.backend = description.solver.backend;
   factorisation.ordering = description.solver.ordering;
   factorisation.threads = description.solver.threads;
-  Robot robot;
   robot.model = builder.build(factorisation);
   for (const ControllerDescription& controller : description.controllers) {
     robot.controllers.push_back(controller_of(controller, *robot.model));

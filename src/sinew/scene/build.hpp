@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "sinew/core/notice.hpp"
 #include "sinew/inverse/inverse_controller.hpp"
 #include "sinew/mesh/mesh.hpp"
 #include "sinew/scene/description.hpp"
@@ -25,6 +26,7 @@ struct Robot {
   SceneDescription description;
   std::shared_ptr<const sim::Model> model;
   std::vector<SceneController> controllers;
+  std::vector<Notice> notices;  ///< what a user should know of it, in the order of the scene
   int threads() const { return description.solver.threads; }
 };
 

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "sinew/core/notice.hpp"
 #include "sinew/mesh/selection.hpp"
 #include "sinew/mesh/topology.hpp"
 #include "sinew/scene/description.hpp"
@@ -20,6 +22,21 @@ struct BuiltBody {
 };
 /// By its name.
 using BodyOf = std::function<BuiltBody(const std::string&)>;
+
+/// The mesh of a body of finite elements, in the element that it names. Without a name: what the
+/// file holds, tetrahedra for shapes; but quadratic tetrahedra in place of linear ones that would
+/// lock, where the material is hyperelastic with a Poisson's ratio above 0.4. A file's nodes keep
+/// their numbers; middle nodes follow them.
+/// Throws what make_mesh() does.
+mesh::Mesh make_body_mesh(const BodyDescription& body);
+
+/// Throws Error(unsupported-element) where the mesh is not what the body asks for, or its elements
+/// do not take its material. @param body,mesh the body, and its make_body_mesh().
+void check_element(const BodyDescription& body, const mesh::Mesh& mesh);
+
+/// What to say about linear tetrahedra at a Poisson's ratio above 0.4: a remark where the scene
+/// asks for them, else a warning. @param body,mesh the body, and its make_body_mesh().
+std::optional<Notice> locking_notice(const BodyDescription& body, const mesh::Mesh& mesh);
 
 /// The region as the mesh's selections know it.
 mesh::Region region_of(const FixedRegion& region);

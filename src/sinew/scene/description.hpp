@@ -37,7 +37,7 @@ inline constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
 using mechanics::Integrator;
 enum class Method { one_linearisation, newton };
-enum class Tangent { rotated, exact };
+enum class Tangent { rotated, projected, exact };
 enum class MaterialModel { linear, corotational, hyperelastic };
 enum class Element { any, tet4, tet4_patch, tet10, hex8 };
 enum class MassDistribution { volume, even };
@@ -47,10 +47,10 @@ enum class PullPoint { world, body };
 /// How each step is solved.
 struct SolverDescription {
   Place place;
-  Method method = Method::one_linearisation;
-  Tangent tangent = Tangent::rotated;
+  Method method = Method::newton;
+  Tangent tangent = Tangent::exact;
   std::optional<sim::AdaptiveStep> adaptive;
-  double tolerance = 1e-8;  ///< Newton: residual relative to the loads
+  std::optional<double> tolerance;  ///< Newton: residual relative to the loads
   int max_iterations = 50;  ///< Newton
   double contact_tolerance = 1e-10;
   int threads = 1;                ///< inside a step
@@ -104,6 +104,13 @@ struct BaseDescription {
   Vector3 center = Vector3::Zero();        ///< m
 };
 
+/// How the free nodes of a body move at the start.
+struct InitialVelocityDescription {
+  Place place;
+  Vector3 linear = Vector3::Zero();   ///< m/s, of the centre of mass
+  Vector3 angular = Vector3::Zero();  ///< rad/s, about it
+};
+
 struct BodyDescription {
   std::string name;
   Place place;
@@ -121,6 +128,7 @@ struct BodyDescription {
   double stiffness_damping = 0.0;  ///< s, ... + stiffness_damping K
   std::vector<FixedRegion> fixed;
   std::optional<BaseDescription> base;
+  std::optional<InitialVelocityDescription> initial_velocity;
 };
 
 /// (n, 3) m, each row with the place where it was written (a scene line or a line of a CSV).
@@ -173,7 +181,7 @@ struct ActuatorDescription {
   // cable
   PointList points;  ///< the first is the pull point
   PullPoint pull = PullPoint::world;
-  bool geometric_stiffness = false;
+  bool geometric_stiffness = true;
   double friction = 0.0;       ///< Coulomb's coefficient, >= 0
   double guide_radius = 0.0;   ///< m, >= 0
   double guide_spacing = 0.0;  ///< m, >= 0
@@ -209,6 +217,17 @@ struct LoadDescription {
   mesh::Outside outside = mesh::Outside::error;
   sim::WaterSettings water;                         ///< its faces are not yet known
   sim::Signal factor = sim::Signal::constant(1.0);  ///< pressure: Pa
+};
+
+/// A mass that hangs on a point of a body.
+struct MassDescription {
+  std::string name;
+  Place place;
+  std::string body;
+  Place body_place;
+  Vector3 point = Vector3::Zero();  ///< m
+  double mass = 0.0;                ///< kg, > 0
+  mesh::Outside outside = mesh::Outside::error;
 };
 
 /// Something on the robot whose motion matters.
@@ -308,6 +327,7 @@ struct SceneDescription {
   std::vector<BodyDescription> bodies;
   std::vector<ActuatorDescription> actuators;
   std::vector<LoadDescription> loads;
+  std::vector<MassDescription> masses;
   std::vector<EffectorDescription> effectors;
   std::vector<ProbeDescription> probes;
   std::vector<ContactDescription> contacts;

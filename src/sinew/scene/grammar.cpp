@@ -17,8 +17,11 @@ Key later_key(const char* name, const char* description) {
 }
 
 Form method_choice(const char* short_for = "") {
-  return choice({{"one-linearisation", "One linear solution a step, for real time."},
-                 {"newton", "Iterates to equilibrium, with line search."}},
+  return choice({{"newton", "Iterates until the step's equation holds to `tolerance`: once where "
+                            "little changes."},
+                 {"one-linearisation", "One linear solution a step, in a time known beforehand. A "
+                                       "step that leaves forces out of balance or gains energy "
+                                       "says so in its status, and is not corrected."}},
                 short_for);
 }
 
@@ -73,24 +76,29 @@ std::shared_ptr<const KeyTable> solver_table() {
            {.name = "method",
             .forms = {method_choice()},
             .example = "newton",
-            .default_text = "one-linearisation",
+            .default_text = "newton",
             .description = "What a step does."},
            {.name = "adaptive",
             .forms = {table(adaptive_table())},
             .example = "{tolerance: 1e-4, smallest: 0.1 ms}",
             .description = "Substeps. Without: one step of `time_step` each."},
            {.name = "tangent",
-            .forms = {choice({{"rotated", "The rotated stiffness of real-time codes."},
-                              {"exact", "With the derivative of the rotation."}})},
+            .forms = {choice({{"exact", "The derivative of the forces; projected where that is "
+                                        "indefinite for the robot as it is held."},
+                              {"projected", "The derivative, each element's part made positive "
+                                            "semi-definite: never too soft, slower to converge."},
+                              {"rotated", "Corotational elements: the rotated stiffness of "
+                                          "real-time codes, which leaves out what tension does."}})},
             .example = "exact",
-            .default_text = "rotated",
-            .description = "The stiffness of corotational elements in a step. Static "
-                           "solutions use the exact one."},
+            .default_text = "exact",
+            .description = "The matrix of a step's linear equations. It decides how fast a step "
+                           "converges, not where to."},
            {.name = "tolerance",
             .forms = {quantity(plain_number(), Range{0.0, 1.0, true, true})},
             .example = "1e-8",
-            .default_text = "1e-8",
-            .description = "Newton: residual force relative to the loads."},
+            .description = "Newton: residual force relative to the sum of internal and outside "
+                           "forces. Without: 5e-3 in quasi-static steps, which hand the rest to "
+                           "the next step, and 1e-8 in dynamics."},
            {.name = "max_iterations",
             .forms = {integer(1, 100000)},
             .example = "50",
@@ -187,6 +195,10 @@ KeyTable scene_table() {
                         .forms = {names(load_form())},
                         .example = "{sea: {type: water, body: arm}}",
                         .description = "What the surroundings do to them."});
+  scene.keys.push_back({.name = "masses",
+                        .forms = {names(mass_form())},
+                        .example = "{hung: {body: trunk, point: 0 0 195 mm, mass: 52 g}}",
+                        .description = "Masses that hang on points of finite-element bodies."});
   scene.keys.push_back({.name = "effectors",
                         .forms = {names(effector_form())},
                         .example = "{tip: {body: trunk, point: 0 0 195 mm}}",

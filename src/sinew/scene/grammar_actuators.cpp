@@ -158,10 +158,10 @@ std::shared_ptr<const KeyTable> cable_table() {
                           "this, as along a conduit. 0: the points alone."},
           {.name = "geometric_stiffness",
            .forms = {boolean()},
-           .example = "true",
-           .default_text = "false",
-           .description = "Adds the stiffness of the loaded cable to every step; "
-                          "static solutions always have it."}}};
+           .example = "false",
+           .default_text = "true",
+           .description = "The stiffness that tension gives a cable joins every step. Without it, "
+                          "steps of strongly loaded cables converge slowly or not at all."}}};
   const DriveWords words = line_words("cable", "tension", non_negative(), "0 N",
                                       "Length of cable pulled in at the pull point.",
                                       "What it is told. Without: slack until told.");

@@ -13,6 +13,7 @@ Measure density() { return {dimension::kDensity, "kg/m^3"}; }
 Measure force() { return {dimension::kForce, "N"}; }
 Measure frequency() { return {dimension::kFrequency, "1/s"}; }
 Measure speed() { return {dimension::kVelocity, "m/s"}; }
+Measure angular_speed() { return {dimension::kFrequency, "rad/s"}; }
 Measure force_rate() { return {Dimension{1, 1, -3}, "N/s"}; }
 Measure torque() { return {dimension::kEnergy, "N m"}; }
 Measure torque_rate() { return {Dimension{2, 1, -3}, "N m/s"}; }

@@ -1,4 +1,4 @@
-// The tables of loads: what the surroundings do to a body.
+// The tables of loads and hung masses: what the surroundings do to a body.
 #include "sinew/scene/grammar_forms.hpp"
 
 namespace sinew::scene::forms {
@@ -136,6 +136,21 @@ Form load_form() {
        {.word = "acceleration", .description = "On all mass.", .table = acceleration_table()},
        {.word = "pressure", .description = "Normal to faces.", .table = pressure_load_table()},
        {.word = "water", .description = "Buoyancy, drag and added mass.", .table = water_table()}});
+}
+
+Form mass_form() {
+  return table(make_table(
+      {.name = "mass",
+       .description = "A mass at a point of a body, such as a hung weight or a camera: it has "
+                      "weight and inertia, and no size. It comes beside the body's own mass.",
+       .keys = {body_key(),
+                vector_key("point", length(), "0 0 195 mm", "Where, in the mesh at rest."),
+                {.name = "mass",
+                 .forms = {quantity(mass(), positive())},
+                 .example = "52 g",
+                 .description = "How much.",
+                 .required = true},
+                outside_key()}}));
 }
 
 }  // namespace sinew::scene::forms

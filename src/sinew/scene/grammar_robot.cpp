@@ -234,6 +234,23 @@ std::shared_ptr<const KeyTable> base_table() {
                      .keys = motion_keys()});
 }
 
+std::shared_ptr<const KeyTable> initial_velocity_table() {
+  return make_table(
+      {.name = "initial velocity",
+       .description = "How a body moves at the start, as a rigid one would; fixed nodes stay. Acts "
+                      "in dynamics.",
+       .keys = {{.name = "linear",
+                 .forms = {vector(speed())},
+                 .example = "0 0 -1 m/s",
+                 .default_text = "0 0 0 m/s",
+                 .description = "Of the centre of mass."},
+                {.name = "angular",
+                 .forms = {vector(angular_speed())},
+                 .example = "0 0 20 rad/s",
+                 .default_text = "0 0 0 rad/s",
+                 .description = "About the centre of mass."}}});
+}
+
 std::vector<Key> mass_keys() {
   return {
       {.name = "mass",
@@ -269,18 +286,22 @@ std::shared_ptr<const KeyTable> fem_table() {
        .description = "The shape at rest.",
        .required = true},
       {.name = "element",
-       .forms = {choice({{"tet4", "Linear tetrahedra; near nu = 0.5 they lock."},
-                         {"tet4-patch",
-                          "Linear tetrahedra that share the dilatation of about eight neighbours: "
-                          "no locking in volume. For hyperelastic materials."},
-                         {"tet10",
-                          "Quadratic tetrahedra: no locking. A linear mesh gets middle nodes. For "
-                          "hyperelastic materials."},
-                         {"hex8",
-                          "Trilinear hexahedra with the pressure of their mean dilatation: "
-                          "no locking in volume. For hyperelastic materials."}})},
+       .forms = {choice(
+           {{"tet4", "Linear tetrahedra; above nu = 0.4 they lock, and much more near 0.5."},
+            {"tet4-patch",
+             "Linear tetrahedra that share the dilatation of about eight neighbours: "
+             "no locking in volume. For hyperelastic materials."},
+            {"tet10",
+             "Quadratic tetrahedra: no locking. A linear mesh gets middle nodes, "
+             "numbered after its own. For hyperelastic materials."},
+            {"hex8",
+             "Trilinear hexahedra with the pressure of their mean dilatation: "
+             "no locking in volume. For hyperelastic materials."}})},
        .example = "hex8",
-       .description = "The finite element. Without: what a mesh file holds, and tet4 for shapes."},
+       .description = "The finite element. Without: what a mesh file holds, and tetrahedra for "
+                      "shapes. Linear tetrahedra that lock are then made quadratic (tet10): those "
+                      "of a hyperelastic material, such as the library's silicones, with a "
+                      "Poisson's ratio above 0.4."},
       {.name = "material",
        .forms = material_forms(),
        .example = "{young_modulus: 450 kPa, poisson_ratio: 0.45}",
@@ -293,6 +314,11 @@ std::shared_ptr<const KeyTable> fem_table() {
                       .example = "{mass: 0.1 1/s, stiffness: 0.01 s}",
                       .default_text = "{}",
                       .description = "Rayleigh damping."});
+  fem.keys.push_back({.name = "initial_velocity",
+                      .forms = {table(initial_velocity_table())},
+                      .example = "{linear: 0 0 -1 m/s}",
+                      .default_text = "{}",
+                      .description = "How it moves at the start. Without: it is at rest."});
   fem.keys.push_back({.name = "base",
                       .forms = {table(base_table())},
                       .example = "{x: {sine: {amplitude: 10 mm, period: 2 s}}}",

@@ -310,6 +310,13 @@ BodyDescription read_body(const Node::Entry& entry, const ReadContext& context) 
   damping.read("mass", body.mass_damping);
   damping.read("stiffness", body.stiffness_damping);
   read_fixed(fields, body);
+  if (fields.find("initial_velocity") != nullptr) {
+    const Fields start = fields.below("initial_velocity");
+    auto& velocity = body.initial_velocity.emplace();
+    velocity.place = fields.place("initial_velocity");
+    start.read("linear", velocity.linear);
+    start.read("angular", velocity.angular);
+  }
   if (fields.find("base") != nullptr) {
     body.base = read_motion(fields.below("base"), fields.place("base"), context);
   }

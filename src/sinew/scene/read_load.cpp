@@ -56,4 +56,18 @@ LoadDescription read_load(const Node::Entry& entry, const ReadContext& context) 
   return load;
 }
 
+MassDescription read_hung_mass(const Node::Entry& entry) {
+  const Fields fields(entry.value, forms::mass_form());
+  MassDescription mass;
+  mass.name = entry.key;
+  mass.place = entry.key_place;
+  fields.read("body", mass.body);
+  mass.body_place = fields.place("body");
+  fields.read("point", mass.point);
+  fields.read("mass", mass.mass);
+  fields.read_choice("outside", mass.outside,
+                     {{"error", mesh::Outside::error}, {"nearest", mesh::Outside::nearest}});
+  return mass;
+}
+
 }  // namespace sinew::scene

@@ -29,6 +29,7 @@ pcc::ArmSettings read_arm(const Fields& fields, const std::string& name);
 /// The region that one of the keys box, sphere, plane and set gives.
 FixedRegion read_region(const Fields& fields);
 ActuatorDescription read_actuator(const Node::Entry& entry, const ReadContext& context);
+MassDescription read_hung_mass(const Node::Entry& entry);
 LoadDescription read_load(const Node::Entry& entry, const ReadContext& context);
 /// The surface that the keys of the surface table give.
 void read_surface(const Fields& fields, SurfaceDescription& surface, const ReadContext& context);

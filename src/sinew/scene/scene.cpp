@@ -38,13 +38,15 @@ void read_solver(const Fields& fields, SolverDescription& solver) {
   const Fields values = fields.below("solver");
   values.read_choice("method", solver.method, methods);
   values.read_choice("tangent", solver.tangent,
-                     {{"rotated", Tangent::rotated}, {"exact", Tangent::exact}});
+                     {{"rotated", Tangent::rotated},
+                      {"projected", Tangent::projected},
+                      {"exact", Tangent::exact}});
   if (values.find("adaptive") != nullptr) {
     auto& adaptive = solver.adaptive.emplace();
     values.below("adaptive").read("tolerance", adaptive.tolerance);
     values.below("adaptive").read("smallest", adaptive.smallest);
   }
-  values.read("tolerance", solver.tolerance);
+  if (values.find("tolerance") != nullptr) values.read("tolerance", solver.tolerance.emplace());
   values.read("max_iterations", solver.max_iterations);
   values.read("contact_tolerance", solver.contact_tolerance);
   values.read("threads", solver.threads);
@@ -91,6 +93,30 @@ void check_mass(const SceneDescription& scene) {
   }
 }
 
+void check_carriers(const SceneDescription& scene) {
+  for (const MassDescription& mass : scene.masses) {
+    const auto body = std::ranges::find(scene.bodies, mass.body, &BodyDescription::name);
+    if (body == scene.bodies.end() || !body->arm) continue;
+    throw Error(ErrorKind::wrong_type, mass.body_place,
+                fmt::format("'{}' is an arm of constant curvature, which carries no point masses",
+                            mass.body),
+                "add the mass to that of its last segment, or make the body of type fem");
+  }
+}
+
+void check_initial_velocities(const SceneDescription& scene) {
+  if (scene.integrator != Integrator::quasi_static) return;
+  for (const BodyDescription& body : scene.bodies) {
+    const auto& start = body.initial_velocity;
+    if (!start || (start->linear.isZero(0.0) && start->angular.isZero(0.0))) continue;
+    throw Error(ErrorKind::conflicting_keys, start->place,
+                fmt::format("'{}' has an initial velocity, but the integrator is quasi-static, "
+                            "which knows no inertia",
+                            body.name),
+                "choose a dynamic integrator such as bdf2, or leave the velocity out");
+  }
+}
+
 // Every actuator has one owner.
 void check_owners(const SceneDescription& scene) {
   std::map<std::string, std::string> owners;
@@ -127,6 +153,8 @@ SceneDescription read_scene(const Node& tree, const ReadContext& context) {
               [&](const auto& entry) { scene.actuators.push_back(read_actuator(entry, context)); });
   for_entries(fields, "loads",
               [&](const auto& entry) { scene.loads.push_back(read_load(entry, context)); });
+  for_entries(fields, "masses",
+              [&](const auto& entry) { scene.masses.push_back(read_hung_mass(entry)); });
   for_entries(fields, "effectors",
               [&](const auto& entry) { scene.effectors.push_back(read_effector(entry, context)); });
   for_entries(fields, "probes",
@@ -137,6 +165,8 @@ SceneDescription read_scene(const Node& tree, const ReadContext& context) {
     scene.controllers.push_back(read_controller(entry, context, scene));
   });
   check_mass(scene);
+  check_carriers(scene);
+  check_initial_velocities(scene);
   check_owners(scene);
   return scene;
 }

@@ -96,4 +96,11 @@ ActuatorRange actuator_range(const ActuatorModel& model, const ActuatorState& st
   return range;
 }
 
+void blend(ActuatorRange& range, const ActuatorState& start, double fraction) {
+  if (range.owned || range.kind == CommandKind::input) return;
+  const double from = range.kind == CommandKind::effort ? start.effort : start.motion;
+  range.value = (1.0 - fraction) * from + fraction * range.value;
+  range.drive_step.command = range.value;
+}
+
 }  // namespace sinew::sim

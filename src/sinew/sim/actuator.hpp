@@ -90,4 +90,8 @@ struct ActuatorRange {
 ActuatorRange actuator_range(const ActuatorModel& model, const ActuatorState& state,
                              std::span<const double> drive_state, double time, double time_step);
 
+/// Moves a range's command towards it from where the actuator was.
+/// @param start of the actuator. @param fraction of the way, 1 for the command itself.
+void blend(ActuatorRange& range, const ActuatorState& start, double fraction);
+
 }  // namespace sinew::sim

@@ -146,9 +146,7 @@ LawStatus DrivenLaw::solve(const LawProblem& problem, std::span<double> effort) 
     round_off(problem);
     std::ranges::copy(before_, effort.begin());
     for (const Row& row : driven_) effort[static_cast<std::size_t>(row.row)] = 0.0;
-    const LawProblem rest{problem.model, problem.placement, ranges_,
-                          compliance_,   delta_free_,       problem.delta,
-                          problem.time,  problem.time_step, problem.present};
+    const LawProblem rest = problem.reduced(ranges_, compliance_, delta_free_);
     status = law_->solve(rest, effort);
     if (status == LawStatus::failed) return status;
     if (close(problem, effort) <= kTolerance) return status;

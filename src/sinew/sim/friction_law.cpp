@@ -16,11 +16,6 @@ constexpr double kTolerance = 1e-12;  // of the largest tension
 constexpr int kControlRounds = 8;
 constexpr double kControlTolerance = 1e-6;
 
-LawProblem with_ranges(const LawProblem& problem, std::span<const ActuatorRange> ranges) {
-  return {problem.model,      problem.placement, ranges,       problem.compliance,
-          problem.delta_free, problem.delta,     problem.time, problem.time_step};
-}
-
 }  // namespace
 
 ActuatorRange guide_range(const GuideModel& guide, const VectorX& delta) {
@@ -67,7 +62,7 @@ bool FrictionLaw::follow(std::span<const double> effort, double share) {
 LawStatus FrictionLaw::slide(const LawProblem& problem, std::span<double> effort) {
   follow(effort, 1.0);
   for (int round = 0; round < kMostRounds; ++round) {
-    if (direct_->solve(with_ranges(problem, ranges_), effort) == LawStatus::failed) {
+    if (direct_->solve(problem.with_ranges(ranges_), effort) == LawStatus::failed) {
       return LawStatus::failed;
     }
     if (follow(effort, round < kPlainRounds ? 1.0 : 0.5)) break;
@@ -96,9 +91,7 @@ LawStatus FrictionLaw::control(const LawProblem& problem, std::span<double> effo
       delta_free_ +=
           effort[static_cast<std::size_t>(guide.row)] * problem.compliance.col(guide.row);
     }
-    const LawProblem rest{problem.model,      problem.placement, own,
-                          problem.compliance, delta_free_,       problem.delta,
-                          problem.time,       problem.time_step, problem.present};
+    const LawProblem rest = problem.reduced(own, problem.compliance, delta_free_);
     std::ranges::copy(before_, chosen_.begin());  // a law may look back at the last step
     for (const GuideModel& guide : model_.guides()) {
       chosen_[static_cast<std::size_t>(guide.row)] = 0.0;
@@ -125,7 +118,7 @@ LawStatus FrictionLaw::control(const LawProblem& problem, std::span<double> effo
 }
 
 double FrictionLaw::violation(const LawProblem& problem, std::span<const double> effort) const {
-  const double own = direct_->violation(with_ranges(problem, ranges_), effort);
+  const double own = direct_->violation(problem.with_ranges(ranges_), effort);
   return controller_ == nullptr ? own : std::max(own, controller_->violation(problem, effort));
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "sinew/constraint/constraint.hpp"
 #include "sinew/core/types.hpp"
@@ -13,7 +14,8 @@ namespace sinew::sim {
 class Model;
 
 /// What a law may look at. delta = delta_free + W lambda is the motion at the end of the step, as
-/// the linearisation sees it.
+/// the linearisation sees it. World::law_problem() makes the first, a law that wraps another the
+/// next with reduced(): every member is then there.
 struct LawProblem {
   const Model& model;
   const constraint::Placement& placement;    ///< at the linearisation
@@ -21,9 +23,20 @@ struct LawProblem {
   const MatrixX& compliance;                 ///< W (rows, rows), m/N
   const VectorX& delta_free;                 ///< (rows,) m or m^3
   const VectorX& delta;                      ///< (rows,) m or m^3, at the linearisation
-  double time = 0.0;                         ///< s, end of the step
-  double time_step = 0.0;                    ///< s
-  std::span<const char> present;             ///< (rows,) 0: a contact's row that is left out
+  const std::vector<char>& present;          ///< (rows,) 0: a contact's row that is left out
+  double time;                               ///< s, end of the step
+  double time_step;                          ///< s
+
+  /// The same problem with other ranges.
+  LawProblem with_ranges(std::span<const ActuatorRange> ranges) const {
+    return reduced(ranges, compliance, delta_free);
+  }
+  /// What is left for an inner law: other ranges, and motions that follow from fewer efforts.
+  LawProblem reduced(std::span<const ActuatorRange> ranges, const MatrixX& inner_compliance,
+                     const VectorX& inner_delta_free) const {
+    return {model, placement, ranges, inner_compliance, inner_delta_free,
+            delta, present,   time,   time_step};
+  }
 };
 
 /// How solving went.

@@ -66,6 +66,10 @@ int Model::load_index(std::string_view name) const {
   return find_by_name(loads_, name, "load", [](const auto& l) { return l.name; });
 }
 
+int Model::mass_index(std::string_view name) const {
+  return find_by_name(masses_, name, "mass", [](const auto& m) { return m.name; });
+}
+
 int Model::probe_index(std::string_view name) const {
   return find_by_name(probes_, name, "probe", [](const auto& p) { return p->name(); });
 }

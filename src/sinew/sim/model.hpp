@@ -76,6 +76,14 @@ struct ContactModel {
   Eigen::Isometry3d pose(double time) const;
 };
 
+/// A mass that hangs on a point of a body.
+struct MassModel {
+  std::string name;
+  int body = 0;
+  int point = -1;     ///< attached, of the body
+  double mass = 0.0;  ///< kg
+};
+
 /// A load on a body, and its factor over time.
 struct LoadModel {
   std::string name;
@@ -109,6 +117,7 @@ class Model {
   const StepSettings& step() const { return step_; }
   const std::vector<BaseMotion>& base_motions() const { return base_motions_; }
   const std::vector<LoadModel>& loads() const { return loads_; }
+  const std::vector<MassModel>& masses() const { return masses_; }
   /// Constraints whose curvature joins A in every step.
   const std::vector<int>& stiffening_constraints() const { return stiffening_; }
   /// Whether that needs blocks that the elements' pattern has not.
@@ -122,6 +131,7 @@ class Model {
   int effector_index(std::string_view name) const;
   int contact_index(std::string_view name) const;
   int load_index(std::string_view name) const;
+  int mass_index(std::string_view name) const;
   int probe_index(std::string_view name) const;
 
   const constraint::Effector& effector(int index) const;
@@ -158,6 +168,7 @@ class Model {
   StepSettings step_;
   std::vector<BaseMotion> base_motions_;
   std::vector<LoadModel> loads_;
+  std::vector<MassModel> masses_;
   double size_ = 1.0;
   std::uint64_t fingerprint_ = 0;
 };

@@ -105,10 +105,24 @@ int ModelBuilder::add_fem_body(fem::FemBodySettings settings) {
                 "nothing holds this body, so it has no static equilibrium",
                 "fix a region of it, or choose a dynamic integrator");
   }
+  add_masses(*body);
   const Points& nodes = body->mesh().nodes;
   const Vector3 extent = nodes.colwise().maxCoeff() - nodes.colwise().minCoeff();
   model_->size_ = model_->bodies_.empty() ? extent.norm() : std::max(model_->size_, extent.norm());
   return add_body(std::move(body));
+}
+
+void ModelBuilder::add_masses(const fem::FemBodyModel& body) {
+  const int number = static_cast<int>(model_->bodies_.size());
+  const auto& masses = body.settings().masses;
+  for (std::size_t k = 0; k < masses.size(); ++k) {
+    for (const MassModel& other : model_->masses_) {
+      if (other.name != masses[k].name) continue;
+      throw Error(ErrorKind::duplicate_key, masses[k].place,
+                  fmt::format("two masses are called '{}'", masses[k].name), "rename one");
+    }
+    model_->masses_.push_back({masses[k].name, number, body.mass_point(k), masses[k].mass});
+  }
 }
 
 int ModelBuilder::add_actuator(ActuatorModel actuator,
@@ -535,6 +549,11 @@ std::shared_ptr<const Model> ModelBuilder::build(const linalg::FactorisationSett
         if (region.patches) hash.add(1.0);
       }
       hash.add(static_cast<double>(fem->elements().free_count()));
+      for (const fem::PointMass& mass : fem->settings().elements.point_masses) {
+        hash.add(mass.mass);
+        hash.add(mass.weights);
+        for (const NodeId node : mass.nodes) hash.add(static_cast<double>(node));
+      }
       for (const std::int32_t held : fem->elements().held()) hash.add(static_cast<double>(held));
       for (const mechanics::MaterialPoint& point : model_->rows_.point) {
         if (point.body != static_cast<int>(i)) continue;

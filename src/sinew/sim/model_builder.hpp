@@ -38,7 +38,7 @@ struct CableSettings {
   Limits tension{.min = 0.0};  ///< N, min >= 0
   Limits displacement;         ///< m
   Command command;
-  bool geometric_stiffness = false;  ///< in every step; solve_static always has it
+  bool geometric_stiffness = true;  ///< in every step; solve_static always has it
   double friction = 0.0;  ///< Coulomb's coefficient at every point between its ends, >= 0
   /// m, >= 0: every point is the mean of a ball of this radius, such as a tube set into the
   /// material; 0: a bare point
@@ -135,6 +135,7 @@ class ModelBuilder {
 
   /// All return the new part's position. Names are unique among their kind: Error(duplicate-key).
   int add_body(std::unique_ptr<mechanics::BodyModel> body);
+  /// Throws what fem::FemBodyModel does, and Error: missing-mass, nothing-fixed.
   int add_fem_body(fem::FemBodySettings settings);
   /// A constant-curvature arm. Throws what pcc::Arm does.
   int add_arm(pcc::ArmSettings settings);
@@ -178,6 +179,7 @@ class ModelBuilder {
   void hash_contacts(StateHash& hash) const;
   mechanics::BodyModel& body(int index);
   void check_body(int index, const Place& place) const;
+  void add_masses(const fem::FemBodyModel& body);
   fem::FemBodyModel& fem_body(int index, const Place& place, const char* what);
   void add_liquid_weight(const CavitySettings& settings);
   int add_actuator(ActuatorModel actuator, std::unique_ptr<constraint::Constraint> constraint);

@@ -1,5 +1,6 @@
 // The part of ModelBuilder that turns loads into forces on nodes.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -8,11 +9,17 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/fem/fem_body_model.hpp"
+#include "sinew/mesh/line_cuts.hpp"
 #include "sinew/sim/model_builder.hpp"
 
 namespace sinew::sim {
 
 namespace {
+
+constexpr const char* kOfLine = "a point of the line";
+/// Three points of Gauss on [-1, 1], and their weights.
+constexpr std::array<std::array<double, 2>, 3> kGauss = {
+    {{-0.7745966692414834, 5.0 / 9.0}, {0.0, 8.0 / 9.0}, {0.7745966692414834, 5.0 / 9.0}}};
 
 /// Makes the loads of one entry; there are two where pressure and motion both matter.
 class LoadMaker {
@@ -25,9 +32,9 @@ class LoadMaker {
     return {dead()};
   }
 
-  // Gauss points every 1/20 of a piece: the elements' own functions are not smooth along it.
+  // Element by element, where the shape functions along the line are polynomials, of degree 3 at
+  // most in undistorted elements: three Gauss points have degree 5.
   std::vector<fem::Load> operator()(const LineLoadSettings& load) {
-    constexpr int kParts = 20;
     if (load.points.rows() < 2) {
       throw Error(ErrorKind::too_few_points, settings_.place,
                   fmt::format("a line needs two points, got {}", load.points.rows()),
@@ -35,12 +42,10 @@ class LoadMaker {
     }
     for (Eigen::Index i = 0; i + 1 < load.points.rows(); ++i) {
       const Vector3 from = load.points.row(i).transpose(), to = load.points.row(i + 1).transpose();
-      const double length = (to - from).norm() / (2 * kParts);
-      for (int k = 0; k < kParts; ++k) {
-        for (const double gauss : {-1.0, 1.0}) {
-          const double share = (k + 0.5 + 0.5 * gauss / std::sqrt(3.0)) / kParts;
-          spread(from + share * (to - from), length * load.force_per_length, "a point of the line");
-        }
+      const std::vector<double> cuts = mesh::line_cuts(body_.mesh(), from, to);
+      for (std::size_t k = 0; k + 1 < cuts.size(); ++k) {
+        spread_evenly(from + cuts[k] * (to - from), from + cuts[k + 1] * (to - from),
+                      load.force_per_length);
       }
     }
     return {dead()};
@@ -109,10 +114,26 @@ class LoadMaker {
   }
 
  private:
+  // A piece in one element. Outside of all, the nearest element holds it, which changes along it.
+  void spread_evenly(const Vector3& from, const Vector3& to, const Vector3& force_per_length) {
+    const bool inside = locate(0.5 * (from + to), kOfLine).distance == 0.0;
+    const int parts = inside ? 1 : 20;
+    const double length = (to - from).norm() / parts;
+    for (int part = 0; part < parts; ++part) {
+      for (const auto& [at, weight] : kGauss) {
+        const double share = (part + 0.5 + 0.5 * at) / parts;
+        spread(from + share * (to - from), 0.5 * weight * length * force_per_length, kOfLine);
+      }
+    }
+  }
+
+  mesh::EmbeddedPoint locate(const Vector3& point, const char* what) const {
+    return body_.locate(point, settings_.outside,
+                        fmt::format("{} of load '{}'", what, settings_.name));
+  }
+
   void spread(const Vector3& point, const Vector3& force, const char* what) {
-    const int number = body_.attach(point, settings_.outside,
-                                    fmt::format("{} of load '{}'", what, settings_.name));
-    const auto& attached = body_.attachment(number);
+    const mesh::EmbeddedPoint attached = locate(point, what);
     for (std::size_t k = 0; k < attached.nodes.size(); ++k) {
       const auto found = forces_.try_emplace(attached.nodes[k], Vector3::Zero()).first;
       found->second += attached.weights[k] * force;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sinew/sim/driven_law.hpp"
 #include "sinew/sim/solve_law.hpp"
@@ -13,11 +14,15 @@ namespace {
 // A step may raise the merit by this factor: slender bodies stretch before they turn, and refusing
 // that costs more iterations than it saves.
 constexpr double kMeritGrowth = 50.0;
+// Further rises, of any size, that may follow on the least merit so far (a watchdog: Chamberlain,
+// Powell, Lemarechal, Pedersen, Math. Program. Study 16 (1982) 1): a step that turns a nearly
+// incompressible body leaves a pressure behind that is large, and that the next step takes away.
+constexpr int kMostRises = 4;
 constexpr int kMostHalvings = 12;
-// Motions under this part of a robot's size are rounding, and then residuals under this part of its
-// forces may be.
+// Motions under this part of a robot's size are rounding.
 constexpr double kRounding = 1e-11;
-constexpr double kRoundedResidual = 1e-7;
+// An iteration that leaves more than this of the residual no longer converges.
+constexpr double kLessened = 0.5;
 
 class NewtonSolver {
  public:
@@ -55,18 +60,24 @@ class NewtonSolver {
     clock_.mark(Stage::compliance);
   }
 
-  // The exact tangent may be indefinite far from equilibrium; the real-time one is not.
+  // The exact tangent may be indefinite far from equilibrium; the projected one is not. Where a
+  // part of it is not symmetric (pressure on an open surface that has curled up), the rest may be
+  // indefinite at stable equilibria, and no other tangent leads to them.
   bool condense() {
     auto status = world_.condense();
     ++report_.factorisations;
     int negative = 0;
-    for (const auto& body : world_.bodies()) negative += body->negative_pivots();
-    const bool stable =
-        status == linalg::FactorStatus::positive_definite ||
-        (status == linalg::FactorStatus::indefinite && DrivenLaw::stabilised(problem_, negative));
+    bool unsymmetric = false;
+    for (const auto& body : world_.bodies()) {
+      negative += body->negative_pivots();
+      unsymmetric = unsymmetric || body->is_unsymmetric();
+    }
+    const bool stable = status == linalg::FactorStatus::positive_definite ||
+                        (status == linalg::FactorStatus::indefinite &&
+                         (unsymmetric || DrivenLaw::stabilised(problem_, negative)));
     if (!stable && settings_.request.tangent == mechanics::Tangent::exact) {
       clock_.mark(Stage::factorisation);
-      linearise(mechanics::Tangent::real_time);
+      linearise(mechanics::Tangent::projected);
       status = world_.condense();
       ++report_.factorisations;
       ++report_.tangent_fallbacks;
@@ -84,18 +95,17 @@ class NewtonSolver {
     return report_.relative_residual + report_.violation / problem_.model.size();
   }
 
-  // Where rounding keeps the residual above the tolerance, a full step that moves nothing by more
-  // than rounding does says that there is nothing left to find.
+  // Where rounding keeps the residual above the tolerance, a full step that no longer lessens it
+  // says that there is nothing left to find.
   bool converged() const {
-    const double size = problem_.model.size();
-    const bool at_rest = full_step_ && report_.motion.largest_move <= kRounding * size &&
-                         report_.relative_residual <= kRoundedResidual;
-    return (report_.relative_residual <= settings_.tolerance || at_rest) &&
-           report_.violation <= std::max(settings_.tolerance, kRounding) * size;
+    const bool at_floor = stagnant_ && report_.residual <= world_.rounding_floor();
+    return (report_.relative_residual <= settings_.tolerance || at_floor) &&
+           report_.violation <= std::max(settings_.motion_tolerance, kRounding) * problem_.model.size();
   }
 
   NewtonStatus move() {
     const double before = merit();
+    const double residual_before = report_.residual;
     world_.solve_motion(effort_);
     bool inverted = false;
     double scale = 1.0;
@@ -104,12 +114,20 @@ class NewtonSolver {
       clock_.mark(Stage::correction);
       inverted = !report_.motion.finite || !(report_.motion.smallest_volume_ratio > 0.0);
       if (inverted) continue;
-      full_step_ = halving == 0;
       linearise(settings_.request.tangent);
       const double after = merit();
-      if (converged() || after < kMeritGrowth * before) return NewtonStatus::converged;
+      stagnant_ = halving == 0 && report_.residual > kLessened * residual_before;
+      if (converged() || forgives(after) || after < kMeritGrowth * before) {
+        return NewtonStatus::converged;
+      }
     }
     return inverted ? NewtonStatus::inverted : NewtonStatus::stalled;
+  }
+
+  bool forgives(double merit) {
+    rises_ = merit < least_merit_ ? 0 : rises_ + 1;
+    least_merit_ = std::min(least_merit_, merit);
+    return rises_ <= kMostRises && std::isfinite(merit);
   }
 
   NewtonReport finish(NewtonStatus status) {
@@ -124,7 +142,9 @@ class NewtonSolver {
   const NewtonSettings& settings_;
   StageClock& clock_;
   NewtonReport report_;
-  bool full_step_ = false;
+  double least_merit_ = std::numeric_limits<double>::infinity();
+  int rises_ = 0;          // iterations since least_merit_
+  bool stagnant_ = false;  // the last full step did not lessen the residual
 };
 
 }  // namespace

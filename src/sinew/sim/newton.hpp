@@ -26,8 +26,8 @@ std::string_view newton_status_name(NewtonStatus status);
 
 struct NewtonSettings {
   mechanics::LinearisationRequest request;
-  double tolerance =
-      1e-8;  ///< on the residual relative to the loads, and on delta relative to size
+  double tolerance = 1e-8;         ///< on the residual relative to the loads
+  double motion_tolerance = 1e-8;  ///< on the law's violation relative to the robot's size
   int max_iterations = 50;
   std::span<const int> curved;  ///< constraints whose curvature joins A
 };

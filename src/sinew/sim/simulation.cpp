@@ -11,16 +11,13 @@
 #include "sinew/core/error.hpp"
 #include "sinew/core/state_hash.hpp"
 #include "sinew/mechanics/body.hpp"
-#include "sinew/sim/solve_law.hpp"
 
 namespace sinew::sim {
 
 namespace {
 
-constexpr int kMostHalvings = 10;
-// Of the robot's size: a point that is deeper in a surface after one linearisation, and is not
-// pushed out, is not there by rounding.
-constexpr double kDeepest = 1e-6;
+// A step that fails is made in parts, the smallest of which is the inverse of this.
+constexpr double kMostParts = 16.0;
 
 }  // namespace
 
@@ -53,6 +50,7 @@ void Simulation::read_ranges(double time, double time_step) {
   for (std::size_t i = 0; i < actuators_.size(); ++i) {
     ranges_[i] =
         actuator_range(model_->actuators()[i], actuators_[i], drive_numbers(i), time, time_step);
+    if (part_) blend(ranges_[i], part_->start[i], part_->fraction);
   }
   if (model_->guides().empty()) return;
   const VectorX& delta = world_.measure_delta();
@@ -106,17 +104,55 @@ const StepReport& Simulation::step() {
   clock_.start();
   report_.substeps = 1;
   report_.retries = 0;
+  report_.status = StepStatus::solved;
   if (model_->step().adaptive) {
     step_adaptively();
   } else {
-    const double time_step = model_->step().time_step;
-    report_.error = substep(static_cast<double>(steps_ + 1) * time_step, time_step);
+    step_in_parts();
   }
   ++steps_;
+  watch();
   clock_.mark(Stage::correction);
   clock_.stop();
   report_.times = times_;
   return report_;
+}
+
+// The whole step, or, where Newton finds no end, halves of it and of those: commands that jump and
+// loads that come at once are then approached.
+void Simulation::step_in_parts() {
+  const double whole = model_->step().time_step, begin = time();
+  try {
+    report_.error = substep(static_cast<double>(steps_ + 1) * whole, whole);
+    return;
+  } catch (const Error& failure) {
+    const bool parts = model_->step().method == Method::newton && model_->step().dynamic();
+    if (!parts || !failure.is_run_failure()) throw;
+  }
+  state_at_step_.assign(state_before_.begin(), state_before_.end());
+  const Work work = work_;
+  part_ = Part{0.0, actuators_};
+  double done = 0.0, length = 0.5;
+  report_.substeps = 0;
+  while (done < 1.0) {
+    const Work before = work_;
+    try {
+      part_->fraction = done + length;
+      report_.error = substep(begin + (done + length) * whole, length * whole);
+      done += length;
+      ++report_.substeps;
+    } catch (const Error& failure) {
+      work_ = before;
+      length *= 0.5;
+      ++report_.retries;
+      if (length * kMostParts >= 1.0 && failure.is_run_failure()) continue;
+      part_.reset();
+      load_state(state_at_step_, steps_);
+      work_ = work;
+      throw;
+    }
+  }
+  part_.reset();
 }
 
 // Halves where a substep fails; else aims at nine tenths of the step that the tolerance allows, by
@@ -167,8 +203,27 @@ void Simulation::step_adaptively() {
 void Simulation::move_bases(double time) {
   for (const BaseMotion& motion : model_->base_motions()) {
     fem_body(motion.body)
-        .set_base(motion.translation_at(time), motion.rotation_at(time), motion.centre);
+        .rigid_base()
+        .ask(fem::rigid_displacement(motion.translation_at(time), motion.rotation_at(time),
+                                     motion.centre));
   }
+}
+
+void Simulation::move_base(int body, const Vector3& translation, const Vector3& rotation,
+                           const Vector3& centre) {
+  fem::FemBody& moved = fem_body(body);
+  const Place place{.item = fmt::format("base of body '{}'", moved.model().name())};
+  if (std::ranges::any_of(model_->base_motions(),
+                          [&](const BaseMotion& motion) { return motion.body == body; })) {
+    throw Error(ErrorKind::bad_argument, place, "the scene moves this base",
+                "leave `base` out of the scene to move it from a script, or write the motion there "
+                "as signals");
+  }
+  if (moved.fem_model().settings().elements.fixed_nodes.empty()) {
+    throw Error(ErrorKind::nothing_fixed, place, "the body has no fixed node to move",
+                "fix the region that moves");
+  }
+  moved.rigid_base().ask(fem::rigid_displacement(translation, rotation, centre));
 }
 
 void Simulation::set_loads(double time) {
@@ -215,27 +270,15 @@ double Simulation::substep(double end, double time_step) {
   move_bases(end);
   set_loads(end);
   world_.begin_step(end - time_step, end, effort_);
-  Law& law = complete(law_);
-  const LawProblem problem{*model_,
-                           world_.placement(),
-                           ranges_,
-                           world_.compliance(),
-                           world_.delta_free(),
-                           world_.delta(),
-                           end,
-                           time_step,
-                           world_.rows().present};
-  if (model_->step().method == Method::newton) {
-    step_newton(law, problem);
-  } else {
-    step_once(law, problem);
-  }
+  solve_equation(time_step);
   if (!model_->contacts().empty()) {
     report_.contact_residual = contact_.result().residual;
     report_.contact_sweeps = contact_.result().sweeps;
   }
   const double error = world_.end_step(step_weights(time_step));
-  step_before_ = time_step;
+  // A gap that closes stops its point at once. A multistep formula that reaches back over such a
+  // jump would have the point rebound, and gain energy: it starts afresh behind it.
+  step_before_ = world_.gap_closed(effort_) ? 0.0 : time_step;
   std::ranges::transform(actuators_, motion_before_.begin(), &ActuatorState::motion);
   for (std::size_t k = actuators_.size(); k < ranges_.size(); ++k) {
     motion_before_[k] = ranges_[k].value;
@@ -244,112 +287,6 @@ double Simulation::substep(double end, double time_step) {
   advance_drives();
   count_work();
   return error;
-}
-
-void Simulation::step_once(Law& law, const LawProblem& problem) {
-  const auto& settings = model_->step();
-  world_.linearise(
-      {step_weights(problem.time_step), settings.tangent, model_->stiffening_widens(), false});
-  clock_.mark(Stage::assembly);
-  world_.form_rows(effort_, model_->stiffening_constraints());
-  report_.residual = world_.residual(effort_);
-  report_.relative_residual = report_.residual / (world_.force_scale() + 1e-300);
-  clock_.mark(Stage::compliance);
-  const auto status = world_.condense();
-  clock_.mark(Stage::factorisation);
-  if (status == linalg::FactorStatus::singular) {
-    fail(ErrorKind::singular_matrix, "the stiffness matrix is singular",
-         "fix a region of every body, or look for loose or crushed elements");
-  }
-  report_.law = solve_law(world_, law, problem, effort_);
-  if (report_.law == LawStatus::failed && status == linalg::FactorStatus::indefinite) {
-    fail(ErrorKind::not_converged,
-         fmt::format("the tangent stiffness has {} negative directions, so the robot is about to "
-                     "buckle",
-                     negative_pivots()),
-         "use the rotated tangent, which passes through, or lessen the load");
-  }
-  if (report_.law == LawStatus::failed && !model_->contacts().empty()) {
-    fail(ErrorKind::not_converged,
-         fmt::format("no contact forces obey this step: residual {:.3g} after {} sweeps",
-                     contact_.result().residual, contact_.result().sweeps),
-         "take a smaller time step, or look for a body that is squeezed where it cannot give way");
-  }
-  if (report_.law == LawStatus::failed) {
-    fail(ErrorKind::not_converged, "no efforts obey the law of this step",
-         "loosen the limits of the actuators");
-  }
-  report_.violation = law.violation(problem, effort_);
-  report_.iterations = 1;
-  clock_.mark(Stage::law);
-  world_.solve_motion(effort_);
-  move_soundly();
-  require_outside();
-}
-
-// Points that commanded motions leave nothing to give way are beyond any contact force.
-void Simulation::require_outside() {
-  if (model_->contacts().empty()) return;
-  const double depth = world_.deepest_free_point(effort_);
-  if (depth <= kDeepest * model_->size()) return;
-  fail(ErrorKind::not_converged,
-       fmt::format("a point would be {:.3g} m inside a surface, and no contact force can move it",
-                   depth),
-       "take a smaller time step, or command no motion that ends in the surface");
-}
-
-int Simulation::negative_pivots() const {
-  int count = 0;
-  for (const auto& body : world_.bodies()) count += body->negative_pivots();
-  return count;
-}
-
-// Takes the motion, or the largest halving of it that inverts no element.
-void Simulation::move_soundly() {
-  const bool was_sound = volume_ratio_ > 0.0;
-  report_.scale = 1.0;
-  mechanics::MotionReport motion;
-  for (int halving = 0; halving <= kMostHalvings; ++halving, report_.scale *= 0.5) {
-    motion = world_.apply_motion(report_.scale);
-    if (motion.finite && (motion.smallest_volume_ratio > 0.0 || !was_sound)) {
-      volume_ratio_ = report_.smallest_volume_ratio = motion.smallest_volume_ratio;
-      return;
-    }
-  }
-  if (!motion.finite) {
-    fail(ErrorKind::diverged, "the motion of this step is not finite or out of all proportion",
-         "take a smaller time step, or check loads and material");
-  }
-  fail(ErrorKind::inverted_in_run,
-       fmt::format("element {} would turn inside out (det F = {:.3g}) even at {:.2g} of the motion",
-                   motion.worst_element, motion.smallest_volume_ratio, 2.0 * report_.scale),
-       "take a smaller time step, change commands more slowly, or refine the mesh there");
-}
-
-void Simulation::step_newton(Law& law, const LawProblem& problem) {
-  const auto& settings = model_->step();
-  const auto curved = std::span<const int>(model_->stiffening_constraints());
-  NewtonSettings newton{
-      {step_weights(problem.time_step), settings.tangent, model_->stiffening_widens(), true},
-      settings.tolerance,
-      settings.max_iterations,
-      curved};
-  const NewtonReport result = solve_newton(world_, law, problem, effort_, newton, clock_);
-  report_.law = result.law;
-  report_.residual = result.residual;
-  report_.relative_residual = result.relative_residual;
-  report_.violation = result.violation;
-  report_.iterations = result.iterations;
-  report_.newton = result.status;
-  report_.scale = 1.0;
-  volume_ratio_ = report_.smallest_volume_ratio = result.motion.smallest_volume_ratio;
-  if (result.status != NewtonStatus::converged) {
-    fail(
-        ErrorKind::not_converged,
-        fmt::format("Newton ended as '{}' after {} iterations, relative residual {:.3g}",
-                    newton_status_name(result.status), result.iterations, result.relative_residual),
-        "take a smaller time step, change commands more slowly, or allow more iterations");
-  }
 }
 
 void Simulation::fail(ErrorKind kind, const std::string& message, const std::string& remedy) {
@@ -525,6 +462,8 @@ void Simulation::reset() {
   }
   volume_ratio_ = 1.0;
   work_ = {};
+  energy_at_start_.reset();
+  largest_energy_ = 0.0;
   step_before_ = substep_ = 0.0;
   steps_ = 0;
   finish_step();

@@ -16,6 +16,8 @@
 #include "sinew/sim/friction_law.hpp"
 #include "sinew/sim/newton.hpp"
 #include "sinew/sim/stages.hpp"
+#include "sinew/sim/step_status.hpp"
+#include "sinew/sim/static_settings.hpp"
 #include "sinew/sim/world.hpp"
 
 namespace sinew::sim {
@@ -27,36 +29,22 @@ struct Energies {
 
 /// What a step did.
 struct StepReport {
+  StepStatus status = StepStatus::solved;
   LawStatus law = LawStatus::solved;
-  /// One linearisation: of the state that the step began from, before it moved. Newton: of the end.
-  double residual = 0.0;           ///< N, |p - f - ... + H^T lambda|
+  double residual = 0.0;           ///< N, |p - f - ... + H^T lambda| at the end of the step
   double relative_residual = 0.0;  ///< of the sum of the forces' norms
-  double violation = 0.0;          ///< m, of the law by the motion at that state
-  int iterations = 1;              ///< linearisations, of the last substep
+  double violation = 0.0;          ///< m, of the law by the motion at the end
+  int iterations = 1;              ///< linear solutions, of the last substep
   int substeps = 1;                ///< that the step was made of
   int retries = 0;                 ///< substeps that were taken back and tried smaller
   double error = 0.0;              ///< m, largest estimate of a substep's error in any coordinate
   double scale = 1.0;  ///< of the motion; < 1 when it was cut back to keep elements from inverting
+  double energy_gained = 0.0;  ///< J, since the start: energy beyond what was put in, if > 0
   double smallest_volume_ratio = 1.0;  ///< min det F at the end of the step
   double contact_residual = 0.0;       ///< relative, see qp::ConeResult; 0 without contacts
   int contact_sweeps = 0;              ///< of Gauss-Seidel, in the last solution of the law
   NewtonStatus newton = NewtonStatus::converged;
   StageTimes times;
-};
-
-struct StaticSettings {
-  double tolerance = 1e-10;  ///< residual relative to the loads; law's violation relative to size
-  int max_iterations = 60;   ///< of Newton in one load step
-  int max_load_steps = 256;  ///< smallest load step is its inverse
-};
-
-struct StaticReport {
-  NewtonStatus status = NewtonStatus::converged;
-  int iterations = 0;              ///< Newton's, over all load steps
-  int load_steps = 1;              ///< that were taken
-  double residual = 0.0;           ///< N
-  double relative_residual = 0.0;  ///< of the sum of the forces' norms
-  double violation = 0.0;          ///< m
 };
 
 struct PathSettings {
@@ -104,10 +92,10 @@ class Simulation {
   double outside_work() const { return work_.outside; }
   double dissipation() const { return work_.dissipated; }
 
-  /// Newton to the static equilibrium at the present inputs: commands at the present time, limits
-  /// on rates lifted, actuators of a controller held at their efforts; exact tangent, cables'
-  /// geometric stiffness, load stepping when needed. Velocities become zero; time stands still.
-  /// Friction of contacts is that of one slow motion from the present state.
+  /// A stable static equilibrium at the present inputs: commands at the present time, limits on
+  /// rates lifted, actuators of a controller held at their efforts; see StaticSolver. Velocities
+  /// become zero; time stands still. Friction of contacts is that of one slow motion from the
+  /// present state.
   /// Throws Error(not-converged) and restores the state when there is none to be found.
   StaticReport solve_static(const StaticSettings& settings = {});
 
@@ -130,6 +118,13 @@ class Simulation {
   const ActuatorState& actuator(int index) const {
     return actuators_[static_cast<std::size_t>(index)];
   }
+  /// Moves a body's fixed nodes in the next step: turned about `centre` by a rotation vector and
+  /// then shifted, from rest. An input, as commands are: where the nodes then are is state.
+  /// @param translation (3,) m. @param rotation (3,) rad. @param centre (3,) m, at rest.
+  /// Throws Error: wrong-type (no finite elements), nothing-fixed, not-finite, bad-argument where
+  /// the model moves this base.
+  void move_base(int body, const Vector3& translation, const Vector3& rotation,
+                 const Vector3& centre);
   /// A load's factor from the next step on.
   void set_load(int load, Signal factor);
   const Signal& load_factor(int load) const {
@@ -195,17 +190,26 @@ class Simulation {
   int step_path(double length, double& share, VectorX& direction, double tolerance);
   void count_work();
   void count_contact_work();
-  void follow_surfaces(const StaticSettings& settings, StaticReport& report, NewtonReport& last);
   void step_adaptively();
+  void step_in_parts();
+  NewtonSettings newton_settings(double time_step) const;
+  void solve_equation(double time_step);
   void step_once(Law& law, const LawProblem& problem);
   void step_newton(Law& law, const LawProblem& problem);
+  NewtonReport approach(Law& law, const LawProblem& problem);
+  NewtonReport descend(Law& law, const LawProblem& problem);
+  [[noreturn]] void fail_law();
+  void take_report(const NewtonReport& result);
+  void watch();
+  void watch_energy();
   void move_soundly();
   void require_outside();
   void finish_step();
   int negative_pivots() const;
   [[noreturn]] void fail(ErrorKind kind, const std::string& message, const std::string& remedy);
-  std::string describe_limit_point();
-  NewtonReport equilibrate(const StaticSettings& settings, double share, StaticReport& report);
+  [[noreturn]] void fail_contacts();
+
+  friend class StaticSolver;
 
   std::shared_ptr<const Model> model_;
   std::unique_ptr<ThreadPool> pool_;
@@ -224,6 +228,14 @@ class Simulation {
   double step_before_ = 0.0;           // s, the last substep; 0: the integrator starts afresh
   double substep_ = 0.0;               // s, adaptive: what the next one tries
   double now_ = 0.0;                   // s, end of the substep in hand
+  // Commands of a step that is made in parts go there in proportion.
+  struct Part {
+    double fraction = 1.0;             // of the step, at the end of the part
+    std::vector<ActuatorState> start;  // of the step
+  };
+  std::optional<Part> part_;
+  std::optional<double> energy_at_start_;  // J, less what was put in
+  double largest_energy_ = 0.0;            // J, to judge gains by
   std::vector<double> motion_before_;  // (actuators, then guides) m
   std::vector<Signal> load_factors_;
   std::vector<double> load_applied_;  // (loads,) factors that acted last; 0 at the start

@@ -1,7 +1,10 @@
 // What Simulation says of contacts.
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "sinew/constraint/contact.hpp"
+#include "sinew/core/error.hpp"
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::sim {
@@ -10,6 +13,8 @@ namespace {
 
 // Friction within this part of its limit is at it.
 constexpr double kAtLimit = 1e-7;
+// More points than this are beyond the solver's Newton method, and slow.
+constexpr std::size_t kManyPoints = static_cast<std::size_t>(qp::ConeSettings{}.newton_limit) / 3;
 
 }  // namespace
 
@@ -49,6 +54,22 @@ ContactSum Simulation::contact_sum(int index) const {
     sum.add(contact_point(index, k));
   }
   return sum;
+}
+
+void Simulation::fail_contacts() {
+  const qp::ConeResult& result = contact_.result();
+  const std::size_t points = result.states.size();
+  fail(
+      ErrorKind::not_converged,
+      fmt::format("no contact forces obey this step: residual {:.3g} after {} sweeps, with {} "
+                  "points near their surfaces",
+                  result.residual, result.sweeps, points),
+      points > kManyPoints
+          ? fmt::format("let fewer points touch (`nodes` or `points` of the contact): up to {} are "
+                        "solved best; or take a smaller time step",
+                        kManyPoints)
+          : "take a smaller time step, or look for a body that is squeezed where it cannot give "
+            "way");
 }
 
 // After finish_step(). Relative to where the surface's motion carries a point (reference), what

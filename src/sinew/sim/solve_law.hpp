@@ -1,5 +1,5 @@
 /// @file
-/// A law's solution in a step that left points out.
+/// A law's solution in a step that guessed which points touch, and where.
 #pragma once
 
 #include <span>
@@ -10,8 +10,8 @@
 namespace sinew::sim {
 
 /// Solves the law and, as long as the motion that follows takes a point that was left out into its
-/// surface, takes in all of these and solves it again: what is found obeys Signorini's and
-/// Coulomb's laws at all points, as if none had been left out.
+/// surface, or a point is pushed by a tangent plane that is not that of its way, mends that and
+/// solves it again, of the same factorisation: see World::correct_contacts().
 /// @param world condensed. @param law,problem,effort as for Law::solve().
 LawStatus solve_law(World& world, Law& law, const LawProblem& problem, std::span<double> effort);
 

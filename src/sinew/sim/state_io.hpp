@@ -13,10 +13,10 @@ namespace sinew::sim {
 
 /// The layout, little-endian: 8 bytes "SINEWST\n", format version (uint32), 4 bytes of zeros, the
 /// model's fingerprint (uint64), step count (int64), count of numbers (uint64), the numbers
-/// (float64: positions and velocities of every body, efforts, motions and drives), and a hash of
-/// fingerprint, step count, count and numbers (uint64). Commands are inputs, not state, and are not
-/// part of it.
-inline constexpr std::uint32_t kStateVersion = 2;
+/// (float64: positions, velocities and base of every body, efforts, motions and drives), and a hash
+/// of fingerprint, step count, count and numbers (uint64). Commands are inputs, not state, and are
+/// not part of it.
+inline constexpr std::uint32_t kStateVersion = 3;
 
 /// What a saved state says of itself.
 struct StateHeader {

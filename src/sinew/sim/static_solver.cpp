@@ -1,15 +1,12 @@
-// Simulation::solve_static: Newton with the exact tangent and the cables' geometric stiffness, in
-// one go or, where that fails, along the path on which the imbalance of the start is taken away bit
-// by bit: r(q, lambda) = (1 - s) r_start, s from 0 to 1 (a convex homotopy; Allgower & Georg
-// 1990, 1.3).
+#include "sinew/sim/static_solver.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
-#include "sinew/sim/simulation.hpp"
 
 namespace sinew::sim {
 
@@ -23,158 +20,244 @@ constexpr double kFlat = 5.0;
 constexpr double kSurfaceTolerance = 1e-9;
 constexpr int kMostSurfaceRounds = 60;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// Unstable equilibria that are left one after the other, each by a larger disturbance: of the
+// robot's size.
+constexpr int kMostDepartures = 6;
+constexpr double kDisturbance = 1e-2;
+constexpr double kLargerDisturbance = 2.0;
 
-// Commands on the way from where the actuators stand (share 1) to where they are told to be (0).
-void blend(std::span<ActuatorRange> ranges, std::span<const ActuatorState> start,
-           std::span<const ActuatorRange> goal, double share) {
-  for (std::size_t i = 0; i < start.size(); ++i) {
-    const double from = goal[i].kind == CommandKind::effort ? start[i].effort : start[i].motion;
-    ranges[i] = goal[i];
-    if (goal[i].kind == CommandKind::input) continue;  // the imbalance alone is taken away
-    ranges[i].value = share * from + (1.0 - share) * goal[i].value;
-    ranges[i].drive_step.command = ranges[i].value;
-  }
-}
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-NewtonReport Simulation::equilibrate(const StaticSettings& settings, double share,
-                                     StaticReport& report) {
-  world_.set_imbalance_share(share);
-  world_.begin_step(time(), time(), effort_);
-  const LawProblem problem{*model_,
-                           world_.placement(),
-                           ranges_,
-                           world_.compliance(),
-                           world_.delta_free(),
-                           world_.delta(),
-                           time(),
-                           kInfinity,
-                           world_.rows().present};
-  const NewtonSettings newton{{{}, mechanics::Tangent::exact, true, true},
-                              settings.tolerance,
-                              settings.max_iterations,
-                              model_->curved_constraints()};
-  const NewtonReport result =
-      solve_newton(world_, complete(nullptr), problem, effort_, newton, clock_);
-  report.iterations += result.iterations;
-  report.status = result.status;
-  report.residual = result.residual;
-  report.relative_residual = result.relative_residual;
-  report.violation = result.violation;
+StaticReport Simulation::solve_static(const StaticSettings& settings) {
+  return StaticSolver(*this, settings).run();
+}
+
+StaticSolver::StaticSolver(Simulation& simulation, const StaticSettings& settings)
+    : sim_(simulation), settings_(settings), sound_(simulation.state_size()) {}
+
+StaticReport StaticSolver::run() {
+  sim_.clock_.start();
+  sim_.now_ = sim_.time();
+  sim_.move_bases(sim_.now_);
+  sim_.set_loads(sim_.now_);
+  sim_.save_state(sim_.state_before_);
+  read_goal();
+  if (!equilibrate(0.0, settings_.max_iterations)) approach();
+  follow_surfaces();
+  settle();
+  report_.status = last_.status;
+  report_.residual = last_.residual;
+  report_.relative_residual = last_.relative_residual;
+  report_.violation = last_.violation;
+  sim_.volume_ratio_ = last_.motion.smallest_volume_ratio;
+  sim_.ranges_ = goal_;
+  sim_.world_.begin_step(sim_.time(), sim_.time(), sim_.effort_);
+  sim_.world_.end_step({});
+  sim_.step_before_ = 0.0;
+  sim_.finish_step();
+  sim_.advance_drives();
+  return report_;
+}
+
+void StaticSolver::read_goal() {
+  start_ = sim_.actuators_;
+  sim_.read_ranges(sim_.time(), kInfinity);
+  for (std::size_t i = 0; i < sim_.ranges_.size(); ++i) {
+    ActuatorRange& range = sim_.ranges_[i];
+    if (!range.owned) continue;
+    range.kind = CommandKind::effort;
+    range.value = start_[i].effort;
+    range.motion_min = -kInfinity;
+    range.motion_max = kInfinity;
+  }
+  goal_ = sim_.ranges_;
+  sim_.direct_.reset();
+  sim_.contact_.reset();
+}
+
+LawProblem StaticSolver::problem() const {
+  return sim_.world_.law_problem(sim_.ranges_, sim_.time(), kInfinity);
+}
+
+mechanics::LinearisationRequest StaticSolver::request(const mechanics::StepWeights& weights) {
+  return {weights, mechanics::Tangent::exact, true, true};
+}
+
+NewtonReport StaticSolver::solve(const mechanics::StepWeights& weights, double tolerance,
+                                 int max_iterations) {
+  sim_.world_.begin_step(sim_.time(), sim_.time(), sim_.effort_);
+  const NewtonSettings newton{request(weights), tolerance, tolerance, max_iterations,
+                              sim_.model_->curved_constraints()};
+  const NewtonReport result = solve_newton(sim_.world_, sim_.complete(nullptr), problem(),
+                                           sim_.effort_, newton, sim_.clock_);
+  report_.iterations += result.iterations;
   return result;
 }
 
-// At the last equilibrium that was found: a chamber whose pressure hardly rises any more while its
-// volume grows, compared with how it did on the average so far.
-std::string Simulation::describe_limit_point() {
-  world_.set_imbalance_share(0.0);
-  world_.linearise({{}, mechanics::Tangent::exact, true, true});
-  world_.form_rows(effort_, model_->curved_constraints());
-  if (world_.condense() == linalg::FactorStatus::singular) return {};
-  for (std::size_t i = 0; i < actuators_.size(); ++i) {
-    const ActuatorModel& model = model_->actuators()[i];
-    const ActuatorRange& range = ranges_[i];
-    if (model.type != ActuatorType::pressure || range.kind != CommandKind::effort) continue;
-    const double reached = effort_[static_cast<std::size_t>(model.row)];
-    const double grown = world_.delta()[model.row];
-    const double compliance = world_.compliance()(model.row, model.row);
+bool StaticSolver::equilibrate(double share, int max_iterations) {
+  sim_.world_.set_imbalance_share(share);
+  last_ = solve({}, settings_.tolerance, max_iterations);
+  return last_.status == NewtonStatus::converged;
+}
+
+void StaticSolver::linearise(const mechanics::StepWeights& weights) {
+  sim_.world_.linearise(request(weights));
+  sim_.world_.form_rows(sim_.effort_, sim_.model_->curved_constraints());
+}
+
+// Commands on the way from where the actuators stand (share 1) to where they are told to be (0).
+void StaticSolver::blend(double share) {
+  for (std::size_t i = 0; i < start_.size(); ++i) {
+    sim_.ranges_[i] = goal_[i];
+    sim::blend(sim_.ranges_[i], start_[i], 1.0 - share);
+  }
+}
+
+// Load steps, then overdamped motion.
+void StaticSolver::approach() {
+  const double share = step_load();
+  if (share == 0.0) return;
+  const std::string known = describe(share);
+  blend(0.0);
+  sim_.world_.set_imbalance_share(0.0);
+  if (!limit_point_ && relax_from_here()) return;
+  fail_to_find(known);
+}
+
+// The share of the imbalance that is left at the end.
+double StaticSolver::step_load() {
+  sim_.load_state(sim_.state_before_, sim_.steps_);
+  linearise({});
+  sim_.world_.hold_imbalance(sim_.effort_);
+  sound_ = sim_.state_before_;
+  double share = 1.0;
+  double part = 0.25;
+  report_.load_steps = 0;
+  while (share > 0.0 && part * settings_.max_load_steps >= 1.0) {
+    const double next = std::max(0.0, share - part);
+    blend(next);
+    if (equilibrate(next, settings_.max_iterations)) {
+      share = next;
+      part *= 2.0;
+      ++report_.load_steps;
+      sim_.save_state(sound_);
+    } else {
+      sim_.load_state(sound_, sim_.steps_);
+      part *= 0.5;
+    }
+  }
+  return share;
+}
+
+// What is known of the last equilibrium on the way, where the world is.
+std::string StaticSolver::describe(double share) {
+  sim_.world_.begin_step(sim_.time(), sim_.time(), sim_.effort_);
+  sim_.world_.set_imbalance_share(share);
+  linearise({});
+  if (sim_.world_.condense() == linalg::FactorStatus::singular) {
+    return "the exact tangent of the last equilibrium on the way is singular";
+  }
+  const std::string limit = describe_limit_point();
+  if (!limit.empty() || share == 1.0) return limit;
+  const int negative = Stability(sim_.world_, problem(), sim_.effort_).negative_pivots();
+  const double percent = 100.0 * (1.0 - share);
+  if (negative == 0) {
+    return fmt::format("the last equilibrium on the way, at {:.3g} % of the load, is stable",
+                       percent);
+  }
+  return fmt::format(
+      "on the way to {:.3g} % of the load {} eigenvalue{} of the exact tangent passed zero: the "
+      "robot buckles there",
+      percent, negative, negative == 1 ? "" : "s");
+}
+
+// A chamber whose pressure hardly rises any more while its volume grows, compared with how it did
+// on the average so far. Of the condensed equilibrium.
+std::string StaticSolver::describe_limit_point() {
+  for (std::size_t i = 0; i < start_.size(); ++i) {
+    const ActuatorModel& model = sim_.model_->actuators()[i];
+    const ActuatorRange& goal = goal_[i];
+    if (model.type != ActuatorType::pressure || goal.kind != CommandKind::effort) continue;
+    const double reached = sim_.effort_[static_cast<std::size_t>(model.row)];
+    const double grown = sim_.world_.delta()[model.row];
+    const double compliance = sim_.world_.compliance()(model.row, model.row);
     const bool flat = compliance < 0.0 || compliance * reached > kFlat * grown;
-    const bool short_of = std::abs(reached) < std::abs(range.value);
+    const bool short_of = std::abs(reached) < std::abs(goal.value);
     if (!(reached * grown > 0.0) || !flat || !short_of) continue;
+    limit_point_ = true;
     return fmt::format(
         "chamber '{}' has no equilibrium at {:.4g} kPa: about {:.4g} kPa its "
         "pressure reaches a peak (limit point), where it has grown by {:.4g} ml",
-        model.name, 1e-3 * range.value, 1e-3 * reached, 1e6 * grown);
+        model.name, 1e-3 * goal.value, 1e-3 * reached, 1e6 * grown);
   }
   return {};
 }
 
+void StaticSolver::fail_to_find(const std::string& known) {
+  if (limit_point_) {
+    sim_.fail(ErrorKind::not_converged, known,
+              "command its volume_growth, which passes the peak, or follow_path()");
+  }
+  sim_.fail(
+      ErrorKind::not_converged,
+      fmt::format("no static equilibrium was found in load steps down to 1/{} and {} steps of "
+                  "overdamped motion: Newton ended as '{}' with a relative residual of "
+                  "{:.3g}{}{}",
+                  settings_.max_load_steps, report_.relaxation_steps,
+                  newton_status_name(last_.status), last_.relative_residual,
+                  known.empty() ? "" : "; ", known),
+      "approach the load through time steps, which show where the robot goes");
+}
+
 // A step takes surfaces for their tangent planes: further ones until no touching point finds its
 // own another.
-void Simulation::follow_surfaces(const StaticSettings& settings, StaticReport& report,
-                                 NewtonReport& last) {
-  const double tolerance = std::max(settings.tolerance, kSurfaceTolerance) * model_->size();
+void StaticSolver::follow_surfaces() {
+  const double tolerance = std::max(settings_.tolerance, kSurfaceTolerance) * sim_.model_->size();
+  const auto off = [&] { return sim_.world_.contact_drift(sim_.effort_, sim_.time()) > tolerance; };
   for (int round = 0; round < kMostSurfaceRounds; ++round) {
-    if (!(world_.contact_drift(effort_, time()) > tolerance)) return;
-    last = equilibrate(settings, 0.0, report);
-    if (last.status != NewtonStatus::converged) break;
+    if (!off()) return;
+    if (!equilibrate(0.0, settings_.max_iterations)) break;
   }
-  if (world_.contact_drift(effort_, time()) > tolerance || last.status != NewtonStatus::converged) {
-    fail(ErrorKind::not_converged, "points keep moving along a curved surface",
-         "approach the load through time steps");
+  if (off() || last_.status != NewtonStatus::converged) {
+    sim_.fail(ErrorKind::not_converged, "points keep moving along a curved surface",
+              "approach the load through time steps");
   }
 }
 
-StaticReport Simulation::solve_static(const StaticSettings& settings) {
-  StaticReport report;
-  clock_.start();
-  now_ = time();
-  move_bases(now_);
-  set_loads(now_);
-  save_state(state_before_);
-  const std::vector<ActuatorState> start = actuators_;
-  read_ranges(time(), kInfinity);
-  for (std::size_t i = 0; i < ranges_.size(); ++i) {
-    if (!ranges_[i].owned) continue;
-    ranges_[i].kind = CommandKind::effort;
-    ranges_[i].value = actuators_[i].effort;
-    ranges_[i].motion_min = -kInfinity;
-    ranges_[i].motion_max = kInfinity;
-  }
-  const std::vector<ActuatorRange> goal = ranges_;
-  direct_.reset();
-  contact_.reset();
-  NewtonReport last = equilibrate(settings, 0.0, report);
-
-  if (last.status != NewtonStatus::converged) {
-    load_state(state_before_, steps_);
-    world_.linearise({{}, mechanics::Tangent::exact, true, true});
-    world_.form_rows(effort_, model_->curved_constraints());
-    world_.hold_imbalance(effort_);
-    std::vector<double> sound = state_before_;
-    double share = 1.0;
-    double part = 0.25;
-    report.load_steps = 0;
-    while (share > 0.0 && part * settings.max_load_steps >= 1.0) {
-      const double next = std::max(0.0, share - part);
-      blend(ranges_, start, goal, next);
-      last = equilibrate(settings, next, report);
-      if (last.status == NewtonStatus::converged) {
-        share = next;
-        part *= 2.0;
-        ++report.load_steps;
-        save_state(sound);
-      } else {
-        load_state(sound, steps_);
-        part *= 0.5;
-      }
+// From the equilibrium at hand, linearised, to a stable one.
+void StaticSolver::settle() {
+  double disturbance = kDisturbance;
+  for (int departures = 0;; ++departures) {
+    sim_.world_.begin_step(sim_.time(), sim_.time(),
+                           sim_.effort_);  // the tangent here, not on the way
+    linearise({});
+    report_.stable = true;
+    report_.negative_pivots = 0;
+    if (sim_.world_.condense() == linalg::FactorStatus::singular) return;  // neutral
+    const Stability stability(sim_.world_, problem(), sim_.effort_);
+    report_.negative_pivots = stability.negative_pivots();
+    report_.stable = report_.negative_pivots == 0;
+    if (report_.stable || settings_.stability == StabilityChoice::any) return;
+    const Departure ended =
+        departures < kMostDepartures ? leave(stability, disturbance) : Departure::failed;
+    if (ended == Departure::failed) {
+      sim_.fail(ErrorKind::not_converged,
+                fmt::format("the equilibrium is unstable in {} direction{} (negative pivots of the "
+                            "exact tangent), and none that is stable was found from it in {} steps "
+                            "of overdamped motion",
+                            report_.negative_pivots, report_.negative_pivots == 1 ? "" : "s",
+                            report_.relaxation_steps),
+                "approach the load through time steps, or ask for any equilibrium, stable or not");
     }
-    world_.set_imbalance_share(0.0);
-  }
-  if (last.status != NewtonStatus::converged) {
-    const std::string limit = describe_limit_point();
-    if (!limit.empty()) {
-      fail(ErrorKind::not_converged, limit,
-           "command its volume_growth, which passes the peak, or follow_path()");
+    if (ended == Departure::returned) {
+      report_.stable = true;
+      return;
     }
-    fail(ErrorKind::not_converged,
-         fmt::format("no static equilibrium was found: Newton ended as '{}' with a relative "
-                     "residual of {:.3g}, in load steps down to 1/{}",
-                     newton_status_name(last.status), last.relative_residual,
-                     settings.max_load_steps),
-         "approach the load through time steps; the robot may buckle on the way");
+    follow_surfaces();
+    disturbance *= kLargerDisturbance;
   }
-  follow_surfaces(settings, report, last);
-  volume_ratio_ = last.motion.smallest_volume_ratio;
-  ranges_ = goal;
-  world_.begin_step(time(), time(), effort_);
-  world_.end_step({});
-  step_before_ = 0.0;
-  finish_step();
-  advance_drives();
-  return report;
 }
 
 }  // namespace sinew::sim

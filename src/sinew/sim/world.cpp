@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "sinew/constraint/contact.hpp"
+#include "sinew/linalg/positive_part.hpp"
 
 namespace sinew::sim {
 
@@ -12,6 +13,10 @@ namespace {
 
 // Points whose gap is under this part of the robot's size take part in a step at once.
 constexpr double kNear = 0.01;
+// Tangent planes this near each other, of the robot's size, are the same.
+constexpr double kSamePlane = 1e-6;
+// Rounds of a step in which tangent planes follow the ways of their points.
+constexpr int kMostTurns = 20;
 
 std::vector<std::unique_ptr<mechanics::Body>> create_bodies(const Model& model, ThreadPool& pool) {
   std::vector<std::unique_ptr<mechanics::Body>> bodies;
@@ -34,25 +39,31 @@ World::World(std::shared_ptr<const Model> model, ThreadPool& pool)
   delta_free_.setZero(rows);
   contact_start_.setZero(rows);
   formed_ = rows_.present;
+  touched_.assign(static_cast<std::size_t>(rows), 0);
   kept_effort_.resize(static_cast<std::size_t>(rows));
+  curving_effort_.resize(static_cast<std::size_t>(rows));
   place_contacts(0.0, 0.0);
-  measure_delta();
 }
 
 // Before bodies follow their bases: what they are carried by counts as motion along the surface.
 void World::place_contacts(double from, double to) {
+  end_ = to;
+  turns_left_ = kMostTurns;
+  curved_ = false;
   for (std::size_t i = 0; i < model_->contacts().size(); ++i) {
-    const ContactModel& contact = model_->contacts()[i];
-    model_->contact(static_cast<int>(i))
-        .begin_step(placement_, contact.pose(from), contact.pose(to), rows_);
+    const ContactModel& model = model_->contacts()[i];
+    const constraint::Contact& contact = model_->contact(static_cast<int>(i));
+    curved_ |= contact.curved();
+    contact.begin_step(placement_, model.pose(from), model.pose(to), to - from, rows_);
   }
+  contact_start_ = measure_delta();
 }
 
 void World::begin_step(double from, double to, std::span<const double> effort) {
   if (!model_->contacts().empty()) {
     place_contacts(from, to);
-    contact_start_ = measure_delta();
     choose_present(effort, to - from);
+    std::ranges::transform(effort, touched_.begin(), [](double r) { return r > 0.0 ? 1 : 0; });
   }
   for (auto& body : bodies_) body->begin_step();
 }
@@ -60,7 +71,6 @@ void World::begin_step(double from, double to, std::span<const double> effort) {
 void World::look_at_all(double at) {
   if (!model_->contacts().empty()) {
     place_contacts(at, at);
-    contact_start_ = measure_delta();
     left_out_ = false;
     std::ranges::fill(rows_.present, static_cast<char>(true));
   }
@@ -68,7 +78,7 @@ void World::look_at_all(double at) {
 }
 
 // A guess, and a function of the state alone so that a run goes on from a saved one bit for bit:
-// points that touched, are near, or would arrive at their speed. take_in_violators() makes good
+// points that touched, are near, or would arrive at their speed. correct_contacts() makes good
 // what it misses.
 void World::choose_present(std::span<const double> effort, double time_step) {
   left_out_ = false;
@@ -79,11 +89,12 @@ void World::choose_present(std::span<const double> effort, double time_step) {
       const mechanics::MaterialPoint& point = contact.points()[k];
       const mechanics::Body& body = *bodies_[static_cast<std::size_t>(point.body)];
       const int row = contact.row(k);
-      const double approach =
-          -time_step * rows_.direction[contact.entry(k)].dot(body.velocity(point.point));
+      const double arrives =
+          contact_start_[row] +
+          time_step * rows_.direction[contact.entry(k)].dot(body.velocity(point.point));
       const bool present = !body.model().leaves_rows_out() ||
                            effort[static_cast<std::size_t>(row)] > 0.0 ||
-                           rows_.reference[row] <= near + std::max(0.0, approach);
+                           std::min(rows_.reference[row], arrives) <= near;
       set_present(contact, k, present);
       left_out_ |= !present;
     }
@@ -94,26 +105,86 @@ void World::set_present(const constraint::Contact& contact, std::size_t point, b
   std::fill_n(rows_.present.begin() + contact.row(point), 3, static_cast<char>(present));
 }
 
-bool World::take_in_violators() {
-  if (!left_out_) return false;
+bool World::correct_contacts(std::span<const double> effort) {
   bool found = false;
+  const bool may_turn = turns_left_ > 0;
   for (std::size_t i = 0; i < model_->contacts().size(); ++i) {
     const constraint::Contact& contact = model_->contact(static_cast<int>(i));
+    const Eigen::Isometry3d pose = model_->contacts()[i].pose(end_);
     for (std::size_t k = 0; k < contact.points().size(); ++k) {
-      const int row = contact.row(k);
-      if (rows_.present[static_cast<std::size_t>(row)] != 0) continue;
-      const mechanics::MaterialPoint& point = contact.points()[k];
-      const Vector3 moved =
-          bodies_[static_cast<std::size_t>(point.body)]->proposed_motion(point.point);
-      if (rows_.delta[row] + rows_.direction[contact.entry(k)].dot(moved) >= 0.0) continue;
-      set_present(contact, k, true);
-      found = true;
+      const auto row = static_cast<std::size_t>(contact.row(k));
+      if (rows_.present[row] == 0) {
+        found = take_in(contact, k, pose) || found;
+      } else if (may_turn && contact.curved() && effort[row] > 0.0) {
+        found = follow_way(contact, k, pose, effort) || found;
+      }
     }
   }
   if (!found) return false;
-  for (auto& body : bodies_) body->take_presence(rows_);
+  --turns_left_;
+  for (auto& body : bodies_) body->retake_rows(rows_);
   form_compliance();
   return true;
+}
+
+// Whether a point that was left out moves into its surface. A plane that it merely crosses beside
+// the surface is replaced by one that it does not.
+bool World::take_in(const constraint::Contact& contact, std::size_t point,
+                    const Eigen::Isometry3d& pose) {
+  const mechanics::MaterialPoint& of = contact.points()[point];
+  const mechanics::Body& body = *bodies_[static_cast<std::size_t>(of.body)];
+  const Vector3 end = placement_.position(of) + body.proposed_motion(of.point);
+  if (contact.row_values(point, end, rows_)[0] >= 0.0) return false;
+  if (contact.curved() && turns_left_ > 0) {
+    const Vector3 reference = rows_.reference.segment<3>(contact.row(point));
+    const auto plane = contact.approach(contact.position(point, reference, rows_), end, pose);
+    turn(contact, point, plane);
+    if (!plane.meets) return false;
+  }
+  set_present(contact, point, true);
+  return true;
+}
+
+// Whether a pushed point's plane is another than that of its way, which it then gets. Where the way
+// meets the surface, planes that find it equally deep in the end are one.
+bool World::follow_way(const constraint::Contact& contact, std::size_t point,
+                       const Eigen::Isometry3d& pose, std::span<const double> effort) {
+  const int row = contact.row(point);
+  const Eigen::Map<const VectorX> lambda(effort.data(), static_cast<Eigen::Index>(effort.size()));
+  const Vector3 free = delta_free_.segment<3>(row) + compliance_.middleRows<3>(row) * lambda -
+                       compliance_.block<3, 3>(row, row) * lambda.segment<3>(row);
+  const Vector3 reference = rows_.reference.segment<3>(row);
+  const Vector3 from = contact.position(point, reference, rows_);
+  const Vector3 to = contact.position(point, free, rows_);
+  const auto plane = contact.approach(from, to, pose);
+  const double gap = plane.distance.gap + plane.distance.normal.dot(to - plane.at);
+  if (plane.meets && std::abs(gap - free[0]) <= kSamePlane * model_->size()) return false;
+  turn(contact, point, plane);
+  return true;
+}
+
+void World::turn(const constraint::Contact& contact, std::size_t point,
+                 const constraint::SurfaceApproach& plane) {
+  const int row = contact.row(point);
+  const auto position = [&](const VectorX& rows) {
+    return contact.position(point, rows.segment<3>(row), rows_);
+  };
+  const Vector3 start = position(contact_start_), carried = position(rows_.reference);
+  const Vector3 now = placement_.position(contact.points()[point]);
+  contact.place(point, carried, plane, rows_);
+  contact_start_.segment<3>(row) = contact.row_values(point, start, rows_);
+  rows_.delta.segment<3>(row) = contact.row_values(point, now, rows_);
+}
+
+bool World::gap_closed(std::span<const double> effort) const {
+  for (std::size_t i = 0; i < model_->contacts().size(); ++i) {
+    const constraint::Contact& contact = model_->contact(static_cast<int>(i));
+    for (std::size_t k = 0; k < contact.points().size(); ++k) {
+      const auto row = static_cast<std::size_t>(contact.row(k));
+      if (effort[row] > 0.0 && touched_[row] == 0) return true;
+    }
+  }
+  return false;
 }
 
 double World::contact_drift(std::span<const double> effort, double time) const {
@@ -146,6 +217,7 @@ double World::deepest_free_point(std::span<const double> effort) const {
 }
 
 void World::linearise(const mechanics::LinearisationRequest& request) {
+  tangent_ = request.tangent;
   for (auto& body : bodies_) body->linearise(request);
 }
 
@@ -157,7 +229,13 @@ const VectorX& World::measure_delta() {
 void World::form_rows(std::span<const double> effort, std::span<const int> curved) {
   measure_delta();
   for (auto& body : bodies_) body->take_rows(rows_);
-  for (const int index : curved) {
+  curving_ = curved;
+  if (!curved.empty()) std::ranges::copy(effort, curving_effort_.begin());
+}
+
+void World::add_curvatures() {
+  const std::span<const double> effort(curving_effort_);
+  for (const int index : curving_) {
     const auto& constraint = *model_->constraints()[static_cast<std::size_t>(index)];
     const std::span<mechanics::RowCurvature> pairs(
         curvatures_.data() + constraint.first_curvature(),
@@ -166,10 +244,29 @@ void World::form_rows(std::span<const double> effort, std::span<const int> curve
                                     static_cast<std::size_t>(constraint.row_count()));
     if (std::ranges::all_of(own, [](double lambda) { return lambda == 0.0; })) continue;
     constraint.curve(placement_, effort, pairs);
+    const bool exact = tangent_ == mechanics::Tangent::exact || constraint.stiffens(effort);
     for (const auto& pair : pairs) {
-      bodies_[static_cast<std::size_t>(pair.first.body)]->add_curvature(pair);
+      if (exact) {
+        bodies_[static_cast<std::size_t>(pair.first.body)]->add_curvature(pair);
+      } else {
+        add_majorant(pair);
+      }
     }
   }
+  curving_ = {};
+}
+
+// A pair (x_i, x_j) with block C puts -C at (i, j) and -C^T at (j, i) into A. What is never less:
+// |C| I at (i, i) and (j, j), see FemBody::add_majorant; a pair of one point gives its positive
+// part. All stays on points' own blocks.
+void World::add_majorant(const mechanics::RowCurvature& pair) {
+  const auto add = [&](const mechanics::MaterialPoint& point, const Matrix3& stiffness) {
+    bodies_[static_cast<std::size_t>(point.body)]->add_curvature({point, point, -stiffness});
+  };
+  if (pair.first == pair.second) return add(pair.first, linalg::positive_part(-pair.curvature));
+  const Matrix3 bound = pair.curvature.norm() * Matrix3::Identity();
+  add(pair.first, bound);
+  add(pair.second, bound);
 }
 
 double World::residual(std::span<const double> effort) {
@@ -187,6 +284,15 @@ double World::force_scale() const {
   return scale;
 }
 
+double World::rounding_floor() const {
+  double sum = 0.0;
+  for (const auto& body : bodies_) {
+    const double part = body->rounding_floor();
+    sum += part * part;
+  }
+  return std::sqrt(sum);
+}
+
 void World::hold_imbalance(std::span<const double> effort) {
   for (auto& body : bodies_) body->hold_imbalance(effort);
 }
@@ -196,6 +302,7 @@ void World::set_imbalance_share(double share) {
 }
 
 linalg::FactorStatus World::condense() {
+  add_curvatures();
   auto worst = linalg::FactorStatus::positive_definite;
   for (auto& body : bodies_) worst = std::max(worst, body->condense());
   if (worst != linalg::FactorStatus::singular) form_compliance();

@@ -8,6 +8,7 @@
 
 #include "sinew/constraint/placement.hpp"
 #include "sinew/mechanics/body.hpp"
+#include "sinew/sim/law.hpp"
 #include "sinew/sim/model.hpp"
 
 namespace sinew::sim {
@@ -32,23 +33,36 @@ class World {
   double deepest_free_point(std::span<const double> effort) const;
   /// Assembly: every body at its current state.
   void linearise(const mechanics::LinearisationRequest& request);
-  /// H and delta at the current placement, handed to the bodies; adds the curvature of
-  /// `curved` constraints at `effort`.
+  /// H and delta at the current placement, handed to the bodies. condense() adds the curvature of
+  /// `curved` constraints at `effort`: as it is, or, where the linearisation's tangent is not
+  /// exact, what is never less and positive semi-definite.
   void form_rows(std::span<const double> effort, std::span<const int> curved);
   /// |b + H^T effort| (N) and the scale (N) to judge it by.
   double residual(std::span<const double> effort);
   double force_scale() const;
+  /// N: what rounding leaves of residual(), see mechanics::Body.
+  double rounding_floor() const;
   /// For load stepping: see mechanics::Body.
   void hold_imbalance(std::span<const double> effort);
   void set_imbalance_share(double share);
   /// W and delta_free. The worst status of any body.
   linalg::FactorStatus condense();
   void solve_motion(std::span<const double> effort);
-  /// Of the points that the step left out, those that solve_motion() would take into their surfaces
-  /// are taken in, and W and delta_free are formed anew of the same factorisation. Whether there
-  /// were any.
-  bool take_in_violators();
+  /// After solve_motion(): mends what the step guessed of contacts, of the same factorisation.
+  /// - Points that were left out are taken in where the motion leads into their surface.
+  /// - A point that is pushed by the tangent plane of a curved surface gets the plane of the way
+  ///   that it would go without its own force (constraint::Contact), if that is another one: where
+  ///   that way misses the surface it is pushed no more.
+  /// Whether there was anything to mend; W and delta_free are then new, and so is the law's
+  /// problem. Planes change in a bounded number of rounds a step, after which they stay as they
+  /// are.
+  /// @param effort (rows,) N, of solve_motion().
+  bool correct_contacts(std::span<const double> effort);
+  /// Whether correct_contacts() could find anything.
+  bool guesses_contacts() const { return left_out_ || curved_; }
   bool leaves_points_out() const { return left_out_; }
+  /// Whether a point has a force that had none when the step began. @param effort (rows,) N.
+  bool gap_closed(std::span<const double> effort) const;
   /// (rows,) N, for solve_law() to keep efforts in.
   std::span<double> kept_effort() { return kept_effort_; }
   /// The same by hand, see mechanics::Body: (all bodies' motion_size(),), one behind the other.
@@ -60,6 +74,13 @@ class World {
   /// The largest error estimate of any body, m.
   double end_step(const mechanics::StepWeights& weights);
 
+  /// What laws look at in this step. @param ranges of the model's actuators, then guides.
+  /// @param time s, end of the step. @param time_step s.
+  LawProblem law_problem(std::span<const ActuatorRange> ranges, double time,
+                         double time_step) const {
+    return {*model_,     placement_,    ranges, compliance_, delta_free_,
+            rows_.delta, rows_.present, time,   time_step};
+  }
   const MatrixX& compliance() const { return compliance_; }  ///< W (rows, rows), m/N
   const VectorX& delta_free() const { return delta_free_; }  ///< (rows,) m
   const VectorX& delta() const { return rows_.delta; }       ///< (rows,) m, as last formed
@@ -85,7 +106,15 @@ class World {
   void place_contacts(double from, double to);
   void choose_present(std::span<const double> effort, double time_step);
   void set_present(const constraint::Contact& contact, std::size_t point, bool present);
+  bool take_in(const constraint::Contact& contact, std::size_t point,
+               const Eigen::Isometry3d& pose);
+  bool follow_way(const constraint::Contact& contact, std::size_t point,
+                  const Eigen::Isometry3d& pose, std::span<const double> effort);
+  void turn(const constraint::Contact& contact, std::size_t point,
+            const constraint::SurfaceApproach& plane);
   void form_compliance();
+  void add_curvatures();
+  void add_majorant(const mechanics::RowCurvature& pair);
 
   std::shared_ptr<const Model> model_;
   std::vector<std::unique_ptr<mechanics::Body>> bodies_;
@@ -95,8 +124,15 @@ class World {
   MatrixX compliance_;
   VectorX delta_free_, contact_start_;
   std::vector<double> kept_effort_;
-  bool left_out_ = false;     // some point
-  std::vector<char> formed_;  // (rows,) columns of W that are not zero
+  std::vector<double> curving_effort_;  // (rows,) N, at which constraints curve
+  std::span<const int> curving_;        // whose curvature the next condensation adds
+  mechanics::Tangent tangent_ = mechanics::Tangent::real_time;
+  bool left_out_ = false;      // some point
+  bool curved_ = false;        // some surface
+  double end_ = 0.0;           // s, of the step: where surfaces stand
+  int turns_left_ = 0;         // rounds of this step in which planes may change
+  std::vector<char> touched_;  // (rows,) normal rows with a force when the step began
+  std::vector<char> formed_;   // (rows,) columns of W that are not zero
 };
 
 }  // namespace sinew::sim

@@ -66,8 +66,8 @@ int main(int argc, char** argv) {
   }
   Random random(99);
   std::ofstream file(argv[1]);
-  for (int trial = 0; trial < 200; ++trial) {
-    file << (trial ? ",\n" : "[") << record(static_cast<ProblemKind>(trial % 5), random);
+  for (int trial = 0; trial < 240; ++trial) {
+    file << (trial ? ",\n" : "[") << record(static_cast<ProblemKind>(trial % 6), random);
   }
   file << "]\n";
   return file.good() ? 0 : 1;

@@ -1,0 +1,55 @@
+#include <fmt/format.h>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+
+namespace sinew::python {
+
+namespace {
+
+const sim::MassModel& model(const PointMass& self) {
+  return self.session->model().masses()[static_cast<std::size_t>(self.index)];
+}
+
+const mechanics::Body& carrier(const PointMass& self) {
+  return self.session->simulation().world().body(model(self).body);
+}
+
+}  // namespace
+
+void bind_mass(py::module_& module) {
+  py::class_<PointMass>(module, "PointMass",
+                        "A mass that hangs on a point of a body. From Simulation.mass() or "
+                        "Simulation.masses.")
+      .def_property_readonly(
+          "name", [](const PointMass& self) { return model(self).name; }, "str: as in the scene.")
+      .def_property_readonly(
+          "body",
+          [](const PointMass& self) {
+            return self.session->model()
+                .bodies()[static_cast<std::size_t>(model(self).body)]
+                ->name();
+          },
+          "str: name of the body that carries it.")
+      .def_property_readonly(
+          "mass", [](const PointMass& self) { return model(self).mass; }, "float: kg.")
+      .def_property_readonly(
+          "position",
+          [](const PointMass& self) {
+            const Session::Use use(*self.session);
+            return copy(carrier(self).position(model(self).point));
+          },
+          "(3,) ndarray: where it is now (m). A copy.")
+      .def_property_readonly(
+          "velocity",
+          [](const PointMass& self) {
+            const Session::Use use(*self.session);
+            return copy(carrier(self).velocity(model(self).point));
+          },
+          "(3,) ndarray: how it moves now (m/s). A copy.")
+      .def("__repr__", [](const PointMass& self) {
+        return fmt::format("<sinew.PointMass '{}', {:g} kg>", model(self).name, model(self).mass);
+      });
+}
+
+}  // namespace sinew::python

@@ -1,0 +1,29 @@
+"""Pictures of runs: which column is drawn where, under which name."""
+
+import pytest
+
+import sinew.plot
+
+
+def test_columns_of_a_run_with_contacts_have_panels_and_names_of_their_own():
+    units = {"force_x": "N", "normal_force": "N", "friction_force": "N", "gap": "m", "sticking": "", "slipping": ""}
+    headings = [f"floor.{name} [{unit}]" if unit else f"floor.{name}" for name, unit in units.items()]
+    panels = [sinew.plot._panel(heading) for heading in headings]
+    assert panels == [("Contact force (N)", "floor force_x"), ("Contact force (N)", "floor normal"),
+                      ("Contact force (N)", "floor friction"), ("Contact gap (m)", "floor"),
+                      ("Contact points", "floor sticking"), ("Contact points", "floor slipping")]
+    assert sinew.plot._panel("rope.tension [N]") == ("Effort (N)", "rope")
+    assert sinew.plot._panel("rope.displacement [m]") == ("Motion (m)", "rope")
+    assert sinew.plot._panel("air.pressure [Pa]") == ("Effort (Pa)", "air")
+    assert sinew.plot._panel("tip.x [m]") == ("Effectors (m)", "tip.x")
+    assert sinew.plot._panel("strain_energy [J]") == ("Energy", "strain_energy")
+    assert sinew.plot._panel("iterations") is None
+
+
+def test_a_run_with_contacts_is_drawn(tmp_path):
+    pytest.importorskip("matplotlib")
+    columns = ["time [s]", "press.force [N]", "press.displacement [m]", "floor.force_x [N]", "floor.normal_force [N]",
+               "floor.gap [m]", "floor.sticking", "strain_energy [J]", "law"]
+    rows = [["0", "1", "0", "0", "2", "0", "3", "0", "solved"], ["0.1", "1", "0", "0", "2", "0", "3", "0", "solved"]]
+    (tmp_path / "run.csv").write_text("\n".join(",".join(row) for row in [columns, *rows]) + "\n")
+    assert sinew.plot.run(tmp_path, tmp_path / "run.png").stat().st_size > 1000

@@ -1,0 +1,52 @@
+/// @file
+/// What an inverse controller is asked, and how it works.
+#pragma once
+
+#include <vector>
+
+#include "sinew/inverse/target.hpp"
+#include "sinew/sim/simulation.hpp"
+
+namespace sinew::inverse {
+
+/// Which efforts are preferred among those that serve the targets equally well.
+enum class Regularisation {
+  change,  ///< those of the step before: no bias of the effector at rest
+  effort,  ///< zero efforts, as published: biases the effector by about epsilon
+};
+
+/// What is asked of one effector.
+struct Task {
+  int effector = 0;
+  Target target;
+  /// One for all rows of the effector, or one each; >= 0. Squared distances are multiplied by it.
+  std::vector<double> weights = {1.0};
+};
+
+struct InverseSettings {
+  std::vector<Task> tasks;
+  std::vector<int> actuators;  ///< that the controller owns; empty: all
+  Regularisation regularisation = Regularisation::change;
+  /// eps = epsilon |W_ea^T Q W_ea|_inf / |W_aa|_inf weighs the regularisation (Coevoet, Escande and
+  /// Duriez, IEEE RA-L 2(3), 2017, section III-C, with 1e-3 and Regularisation::effort).
+  double epsilon = 1e-3;
+  /// With Regularisation::change: share of it that still draws efforts to zero, so that cables that
+  /// pull against each other let go in time.
+  double relaxation = 1e-2;
+  /// A target farther away than this part of the robot's size is approached by steps of that
+  /// length, since beyond it the linearisation is worth nothing.
+  double largest_step = 0.02;
+  /// m (or rad): an effector this near to its target is on target.
+  double tolerance = 1e-4;
+};
+
+/// Names all actuators that a controller may own where the settings name none, and checks the rest.
+/// Throws Error: no-effectors, no-actuators, wrong-actuator-type, wrong-length (weights),
+/// out-of-range, suspicious-unit.
+void check_settings(const sim::Simulation& simulation, InverseSettings& settings);
+
+/// Throws Error(suspicious-unit) for a position farther from the effector than a hundred sizes of
+/// the robot: as a rule millimetres that were taken for metres.
+void check_target(const sim::Simulation& simulation, int effector, const Target& target);
+
+}  // namespace sinew::inverse

@@ -1,0 +1,25 @@
+#include "sinew/inverse/inverse_status.hpp"
+
+namespace sinew::inverse {
+
+std::string_view inverse_status_name(InverseStatus status) {
+  switch (status) {
+    case InverseStatus::not_started:
+      return "not-started";
+    case InverseStatus::on_target:
+      return "on-target";
+    case InverseStatus::moving:
+      return "moving";
+    case InverseStatus::rate_limited:
+      return "rate-limited";
+    case InverseStatus::out_of_reach:
+      return "out-of-reach";
+    case InverseStatus::local_optimum:
+      return "local-optimum";
+    case InverseStatus::limits_conflict:
+      return "limits-conflict";
+  }
+  return "unknown";
+}
+
+}  // namespace sinew::inverse

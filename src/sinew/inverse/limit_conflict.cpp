@@ -1,0 +1,51 @@
+#include "sinew/inverse/limit_conflict.hpp"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "sinew/sim/model.hpp"
+
+namespace sinew::inverse {
+
+namespace {
+
+void append(std::string& text, const std::string& sentence) {
+  if (!text.empty()) text += "; ";
+  text += sentence;
+}
+
+}  // namespace
+
+std::string describe_conflict(const sim::LawProblem& problem, const qp::QuadraticProgram& program,
+                              const VectorX& scale, const qp::ElasticResult& nearest) {
+  std::string text;
+  const auto& models = problem.model.actuators();
+  for (std::size_t k = 0; k < problem.actuators.size() && k < models.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    if (nearest.violation[i] == 0.0) continue;
+    const double free = problem.delta_free[problem.actuators[k].row];
+    const sim::QuantityName what = models[k].motion_name();
+    append(text,
+           fmt::format("{} of '{}' leaves {:.4g}..{:.4g} {} by {:.3g} {}", what.name,
+                       models[k].name, program.row_lower[i] + free, program.row_upper[i] + free,
+                       what.unit, std::abs(nearest.violation[i]), what.unit));
+  }
+  for (std::size_t k = 0; k < problem.actuators.size() && k < models.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    const double x = nearest.qp.x[i];
+    bool blocks = false;  // whether a relaxed row would be met better beyond this limit
+    for (Eigen::Index j = 0; j < nearest.violation.size(); ++j) {
+      const double pull = nearest.violation[j] * program.rows(j, i);
+      blocks =
+          blocks || (pull > 0.0 && x == program.lower[i]) || (pull < 0.0 && x == program.upper[i]);
+    }
+    if (!blocks) continue;
+    const sim::QuantityName what = models[k].effort_name();
+    append(text, fmt::format("{} of '{}' is at its limit, {:.4g} {}", what.name, models[k].name,
+                             scale[i] * x, what.unit));
+  }
+  return text;
+}
+
+}  // namespace sinew::inverse

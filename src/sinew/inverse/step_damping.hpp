@@ -1,0 +1,27 @@
+/// @file
+/// How far a linearisation is trusted: Levenberg and Marquardt's damping.
+#pragma once
+
+namespace sinew::inverse {
+
+/// The least-squares steps of a controller may chatter where the error is large and the robot
+/// curved: then second derivatives, which they leave out, matter as much as the first. The weight
+/// on changes of effort is multiplied by value(): four times larger after a step whose outcome is
+/// farther from what was foreseen than three quarters of the foreseen change, half as large after
+/// one within a quarter. A fixed point of the steps does not depend on it.
+/// Source: J. J. More, The Levenberg-Marquardt algorithm, Lecture Notes in Mathematics 630 (1978)
+/// 105-116, section 4; J. Nocedal and S. J. Wright, Numerical Optimization (2006), algorithm 4.1.
+class StepDamping {
+ public:
+  /// @param before,foreseen,found objectives: before a step, after it by the linearisation, and
+  ///   after it in truth, all with the targets of that step.
+  void review(double before, double foreseen, double found);
+  /// >= 1, no unit.
+  double value() const { return value_; }
+  void reset() { value_ = 1.0; }
+
+ private:
+  double value_ = 1.0;
+};
+
+}  // namespace sinew::inverse

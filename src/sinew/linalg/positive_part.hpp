@@ -1,0 +1,14 @@
+/// @file
+/// The nearest positive semi-definite matrix of a symmetric 3x3 one.
+#pragma once
+
+#include "sinew/core/types.hpp"
+
+namespace sinew::linalg {
+
+/// sum max(l_i, 0) v_i v_i^T over the eigenpairs (l_i, v_i): the nearest positive semi-definite
+/// matrix in the Frobenius norm (Higham, Linear Algebra Appl. 103, 1988, theorem 2.1).
+/// @param matrix (3, 3), taken as symmetric: its lower half is read.
+Matrix3 positive_part(const Matrix3& matrix);
+
+}  // namespace sinew::linalg

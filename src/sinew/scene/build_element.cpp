@@ -1,0 +1,101 @@
+// Which finite element a body is made of, and what there is to say about it.
+#include <fmt/format.h>
+
+#include "sinew/fem/bending_stiffness.hpp"
+#include "sinew/mesh/quadratic.hpp"
+#include "sinew/scene/build.hpp"
+#include "sinew/scene/build_parts.hpp"
+
+namespace sinew::scene {
+
+namespace {
+
+/// Linear tetrahedra are a default up to this Poisson's ratio. Beyond it lambda, which is what they
+/// lock by, is more than twice mu and grows without bound (fem/bending_stiffness.hpp).
+constexpr double kLargestLinearRatio = 0.4;
+
+double poisson_ratio(const MaterialDescription& material) {
+  return material.model == MaterialModel::hyperelastic ? material.energy.poisson_ratio()
+                                                       : material.poisson_ratio;
+}
+
+/// A written 0.4 may come back from bulk and shear modulus with an error of rounding.
+bool locks(const MaterialDescription& material) {
+  return poisson_ratio(material) > kLargestLinearRatio + 1e-9;
+}
+
+bool is_hyperelastic(const BodyDescription& body) {
+  return body.material.model == MaterialModel::hyperelastic;
+}
+
+void check_kind(const BodyDescription& body, const mesh::Mesh& mesh) {
+  const bool tetrahedra = !mesh.tetrahedra.empty(), hexahedra = !mesh.hexahedra.empty();
+  const bool quadratic = !mesh.quadratic.empty();
+  const bool linear = body.element == Element::tet4 || body.element == Element::tet4_patch;
+  const bool other =
+      (linear && (hexahedra || quadratic)) || (body.element == Element::hex8 && tetrahedra);
+  if (!other) return;
+  throw Error(ErrorKind::unsupported_element, body.element_place,
+              fmt::format("the mesh has {}", quadratic    ? "quadratic tetrahedra"
+                                             : tetrahedra ? "tetrahedra"
+                                                          : "hexahedra"),
+              "leave `element` out, or give another mesh");
+}
+
+void check_law(const BodyDescription& body, const mesh::Mesh& mesh) {
+  const bool split = is_hyperelastic(body) && body.material.energy.saint_venant_shear == 0.0;
+  if (body.element == Element::tet4_patch && !split) {
+    throw Error(ErrorKind::unsupported_element, body.material.place,
+                "tet4-patch needs a law whose volumetric part stands apart",
+                "give it a hyperelastic one other than saint-venant-kirchhoff, for instance model: "
+                "neo-hookean, or take tet4");
+  }
+  const bool hexahedra = !mesh.hexahedra.empty();
+  if ((hexahedra || !mesh.quadratic.empty()) && !is_hyperelastic(body)) {
+    throw Error(ErrorKind::unsupported_element, body.material.place,
+                fmt::format("the mesh has {}, and the material is linear or corotational",
+                            hexahedra ? "hexahedra" : "quadratic tetrahedra"),
+                "give them a hyperelastic one, for instance model: neo-hookean");
+  }
+}
+
+std::string remedy(const BodyDescription& body, bool only_tetrahedra) {
+  if (!only_tetrahedra) return "give a mesh of hexahedra or of tetrahedra alone";
+  if (is_hyperelastic(body)) return "write element: tet10, or leave `element` out";
+  return "write element: tet10 and a hyperelastic law, for instance model: neo-hookean with the "
+         "same moduli; element: tet4 keeps it as it is";
+}
+
+}  // namespace
+
+mesh::Mesh make_body_mesh(const BodyDescription& body) {
+  const bool chosen = body.element != Element::any;
+  if (chosen || !is_hyperelastic(body) || !locks(body.material)) {
+    return make_mesh(body.mesh, body.element);
+  }
+  if (!body.mesh.shape.empty()) return make_mesh(body.mesh, Element::tet10);
+  mesh::Mesh mesh = make_mesh(body.mesh);
+  const bool linear = mesh.hexahedra.empty() && mesh.quadratic.empty();
+  return linear ? mesh::with_middle_nodes(mesh) : mesh;
+}
+
+void check_element(const BodyDescription& body, const mesh::Mesh& mesh) {
+  check_kind(body, mesh);
+  check_law(body, mesh);
+}
+
+std::optional<Notice> locking_notice(const BodyDescription& body, const mesh::Mesh& mesh) {
+  const bool linear = !mesh.tetrahedra.empty() && mesh.quadratic.empty();
+  if (!linear || body.element == Element::tet4_patch || !locks(body.material)) return std::nullopt;
+  const double ratio = poisson_ratio(body.material);
+  const bool chosen = body.element == Element::tet4;
+  return Notice{
+      chosen ? NoticeLevel::remark : NoticeLevel::warning, NoticeKind::locking_element,
+      chosen ? body.element_place : body.material.place,
+      fmt::format("linear tetrahedra (tet4) lock at Poisson's ratio {:.4g}: this mesh bends about "
+                  "{:.2g} times too stiffly as a whole, and more where walls are thin",
+                  ratio, fem::bending_stiffness_ratio(mesh, ratio)),
+      remedy(body, mesh.hexahedra.empty())};
+}
+
+}  // namespace sinew::scene

@@ -1,0 +1,195 @@
+#include "sinew/sim/stability.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include <Eigen/Eigenvalues>
+
+namespace sinew::sim {
+
+namespace {
+
+// Efforts nearer to a limit than this, of their size, are at it.
+constexpr double kAtLimit = 1e-9;
+// Eigenvalues of the scaled S below this, of the largest, come from rows that repeat each other.
+constexpr double kRedundant = 1e-11;
+constexpr int kMostDirections = 80;  // of Lanczos' method
+constexpr double kRitzTolerance = 1e-2;
+// A direction is neutral where moving the robot by its size along it changes forces by no more
+// than so many times what rounding does.
+constexpr double kNeutral = 10.0;
+
+bool same(double a, double b) {
+  return std::abs(a - b) <= kAtLimit * std::max(std::abs(a), std::abs(b));
+}
+
+// Whether what an actuator is told, or a limit of its motion, holds the row rigidly.
+bool holds(const ActuatorRange& range, double effort) {
+  if (range.kind == CommandKind::effort) return !same(effort, range.value);
+  if (range.kind != CommandKind::motion) return false;
+  const bool at_lower = effort <= range.effort_min || same(effort, range.effort_min);
+  const bool at_upper = effort >= range.effort_max || same(effort, range.effort_max);
+  return !at_lower && !at_upper;
+}
+
+void add_touching(const LawProblem& problem, std::span<const double> effort,
+                  std::vector<HeldRow>& held) {
+  for (std::size_t i = 0; i < problem.model.contacts().size(); ++i) {
+    const constraint::Contact& contact = problem.model.contact(static_cast<int>(i));
+    for (std::size_t k = 0; k < contact.points().size(); ++k) {
+      const int row = contact.row(k);
+      const double* force = effort.data() + row;
+      if (!(force[0] > 0.0)) continue;
+      held.push_back({row, 0.0});
+      const double across = std::hypot(force[1], force[2]);
+      if (!(across < (1.0 - kAtLimit) * contact.friction() * force[0])) continue;
+      held.push_back({row + 1, 0.0});
+      held.push_back({row + 2, 0.0});
+    }
+  }
+}
+
+// Numbers in [-1, 1) that have no symmetry (Steele, Lea, Flood, OOPSLA 2014: SplitMix64): a start
+// that lacks no mode.
+VectorX scattered(Eigen::Index size) {
+  VectorX result(size);
+  std::uint64_t state = 0;
+  for (double& value : result) {
+    state += 0x9e3779b97f4a7c15U;
+    std::uint64_t z = state;
+    z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9U;
+    z = (z ^ (z >> 27U)) * 0x94d049bb133111ebU;
+    value = static_cast<double>(z >> 11U) * 0x1p-52 - 1.0;
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<HeldRow> held_rows(const LawProblem& problem, std::span<const double> effort) {
+  std::vector<HeldRow> held;
+  for (const ActuatorRange& range : problem.actuators) {
+    if (range.row < 0) continue;
+    if (range.drive != nullptr) {
+      const auto at = range.drive->respond(range.drive_step, problem.delta[range.row]);
+      if (at.slope < 0.0) held.push_back({range.row, -1.0 / at.slope});
+    } else if (holds(range, effort[static_cast<std::size_t>(range.row)])) {
+      held.push_back({range.row, 0.0});
+    }
+  }
+  add_touching(problem, effort, held);
+  return held;
+}
+
+Stability::Stability(World& world, const LawProblem& problem, std::span<const double> effort)
+    : world_(world), held_(held_rows(problem, effort)), negative_(count()) {
+  if (negative_ == 0) return;
+  move_rows(effort.size());
+  const VectorX direction = find_mode();
+  if (direction.size() == 0) return;
+  apply_inverse(direction, mode_);
+  curvature_ = direction.dot(mode_);
+  scale_mode();
+  const double force = -curvature_ / mode_.norm() * problem.model.size();
+  if (force <= kNeutral * world_.rounding_floor()) negative_ = 0;
+}
+
+// Rows are scaled to a diagonal of 1: a cavity's is m^3/Pa, a cable's m/N.
+int Stability::count() {
+  int pivots = 0;
+  for (const auto& body : world_.bodies()) pivots += body->negative_pivots();
+  const auto rows = static_cast<Eigen::Index>(held_.size());
+  inverse_.setZero(rows, rows);
+  if (pivots == 0 || rows == 0) return pivots;
+  MatrixX& s = inverse_;
+  VectorX scale(rows);
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    const HeldRow& own = held_[static_cast<std::size_t>(i)];
+    for (Eigen::Index j = 0; j < rows; ++j) {
+      s(i, j) = world_.compliance()(own.row, held_[static_cast<std::size_t>(j)].row);
+    }
+    s(i, i) += own.compliance;
+    scale[i] = s(i, i) != 0.0 ? 1.0 / std::sqrt(std::abs(s(i, i))) : 1.0;
+  }
+  s = scale.asDiagonal() * s * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<MatrixX> spectrum(s);
+  const double least = kRedundant * spectrum.eigenvalues().cwiseAbs().maxCoeff();
+  VectorX inverted = VectorX::Zero(rows);
+  int negative = 0;
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    const double value = spectrum.eigenvalues()[i];
+    if (std::abs(value) > least) inverted[i] = 1.0 / value;
+    negative += value < -least ? 1 : 0;
+  }
+  const MatrixX vectors = scale.asDiagonal() * spectrum.eigenvectors();
+  inverse_ = vectors * inverted.asDiagonal() * vectors.transpose();
+  return std::max(0, pivots - negative);
+}
+
+void Stability::apply_inverse(const VectorX& right, VectorX& result) {
+  world_.solve(right, result);
+  if (held_.empty()) return;
+  const VectorX efforts = inverse_ * (moved_.transpose() * right);
+  result.noalias() -= moved_ * efforts;
+}
+
+void Stability::move_rows(std::size_t rows) {
+  std::vector<double> unit(rows, 0.0);
+  VectorX rest, row, solved;
+  world_.imbalance(unit, rest);
+  moved_.resize(rest.size(), static_cast<Eigen::Index>(held_.size()));
+  for (std::size_t k = 0; k < held_.size(); ++k) {
+    double& own = unit[static_cast<std::size_t>(held_[k].row)];
+    own = 1.0;
+    world_.imbalance(unit, row);
+    own = 0.0;
+    world_.solve(row - rest, solved);
+    moved_.col(static_cast<Eigen::Index>(k)) = solved;
+  }
+}
+
+// Lanczos' method on T (Parlett, The Symmetric Eigenvalue Problem, 1998, ch. 13), made orthogonal
+// to all before. The negative eigenvalues of T lie at one end of its spectrum, so that few
+// directions show them; the one nearest to zero belongs to the lowest eigenvalue of the tangent.
+// Of a Ritz vector y with theta < 0, v = T y has v^T A v = y^T T y = theta: the curvature along v
+// is negative however sharp y is.
+VectorX Stability::find_mode() {
+  const Eigen::Index all = moved_.rows();
+  const Eigen::Index most = std::min<Eigen::Index>(kMostDirections, all);
+  VectorX next, ritz;
+  apply_inverse(scattered(all), next);  // into the motions that are free
+  MatrixX basis(all, 0);
+  MatrixX projected = MatrixX::Zero(most, most);
+  for (Eigen::Index size = 1; size <= most && next.norm() > 0.0; ++size) {
+    basis.conservativeResize(Eigen::NoChange, size);
+    basis.col(size - 1) = next.normalized();
+    apply_inverse(basis.col(size - 1), next);
+    for (int pass = 0; pass < 2; ++pass) {  // the second removes what rounding left
+      const VectorX along = basis.transpose() * next;
+      next.noalias() -= basis * along;
+      projected.col(size - 1).head(size) += along;
+    }
+    const MatrixX part = projected.topLeftCorner(size, size).selfadjointView<Eigen::Upper>();
+    const Eigen::SelfAdjointEigenSolver<MatrixX> spectrum(part);
+    const Eigen::Index found = (spectrum.eigenvalues().array() < 0.0).count();
+    if (found == 0) continue;
+    ritz = spectrum.eigenvectors().col(found - 1);  // eigenvalues ascend
+    const double left = next.norm() * std::abs(ritz[size - 1]);
+    const bool sharp = left <= kRitzTolerance * std::abs(spectrum.eigenvalues()[found - 1]);
+    if (sharp && found >= negative_) break;
+  }
+  if (ritz.size() == 0) return {};
+  return basis.leftCols(ritz.size()) * ritz;
+}
+
+// The largest entry becomes 1, which fixes the sign, too.
+void Stability::scale_mode() {
+  Eigen::Index largest = 0;
+  mode_.cwiseAbs().maxCoeff(&largest);
+  const double peak = mode_[largest];
+  mode_ /= peak;
+  curvature_ /= peak * peak;
+}
+
+}  // namespace sinew::sim

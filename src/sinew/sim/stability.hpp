@@ -1,0 +1,63 @@
+/// @file
+/// Stability of an equilibrium on the motions that commands, drives and contacts leave free.
+#pragma once
+
+#include <vector>
+
+#include "sinew/sim/law.hpp"
+#include "sinew/sim/world.hpp"
+
+namespace sinew::sim {
+
+/// A row whose motion something holds at an equilibrium.
+struct HeldRow {
+  int row = -1;
+  double compliance = 0.0;  ///< C, m/N or m^3/Pa: 0 held at a motion, -1/slope behind a drive
+};
+
+/// The rows that are held at an equilibrium: actuators at a commanded motion or at a limit of their
+/// motion, drives by the slope of their curve, normal rows of touching contacts, and tangential
+/// rows that stick. Actuators at a limit of their effort and sliding contacts hold nothing.
+/// @param problem,effort of the equilibrium.
+std::vector<HeldRow> held_rows(const LawProblem& problem, std::span<const double> effort);
+
+/// The exact tangent A of an equilibrium restricted to the motions that held rows H leave, which is
+/// A + H^T C^-1 H, and for C = 0 A on the null space of H. By the inertia of the bordered matrix
+/// (Haynsworth, Linear Algebra Appl. 1 (1968) 73) it has
+///   n_-(A) - n_-(S),  S = H A^-1 H^T + C,
+/// negative eigenvalues. Its inverse on those motions is T = A^-1 - Y S^-1 Y^T, Y = A^-1 H^T.
+///
+/// Loads without a potential (pressure on an open surface) are counted by the symmetric part of
+/// their tangent.
+class Stability {
+ public:
+  /// @param world linearised with the exact tangent, rows formed, and condensed.
+  /// @param problem,effort of the equilibrium.
+  Stability(World& world, const LawProblem& problem, std::span<const double> effort);
+
+  /// Negative eigenvalues of the restricted tangent; directions that rounding cannot tell from
+  /// neutral ones (a body that slides freely) are not counted.
+  int negative_pivots() const { return negative_; }
+  /// The direction of the lowest curvature, largest entry 1, (all bodies' motion_size(),); empty
+  /// where negative_pivots() == 0 or the search found none.
+  const VectorX& mode() const { return mode_; }
+  /// v^T A v of mode(), N/m; negative.
+  double curvature() const { return curvature_; }
+
+ private:
+  int count();
+  void move_rows(std::size_t rows);
+  VectorX find_mode();
+  void scale_mode();
+  void apply_inverse(const VectorX& right, VectorX& result);
+
+  World& world_;
+  std::vector<HeldRow> held_;
+  MatrixX moved_;    // Y, (motion_size, held)
+  MatrixX inverse_;  // pseudo-inverse of S, (held, held)
+  VectorX mode_;
+  double curvature_ = 0.0;
+  int negative_ = 0;
+};
+
+}  // namespace sinew::sim

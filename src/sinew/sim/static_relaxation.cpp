@@ -1,0 +1,161 @@
+// StaticSolver's overdamped motion: implicit Euler steps of M dq/dt = r(q), of length tau, each
+// solved by Newton:
+//   M (q - q_start) sigma = r(q),   sigma = 1/tau;
+// sigma falls while the steps are easily solved, so that they end as Newton's own.
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/sim/solve_law.hpp"
+#include "sinew/sim/static_solver.hpp"
+
+namespace sinew::sim {
+
+namespace {
+
+// Steps follow the motion roughly: where it ends, Newton takes over.
+constexpr double kTolerance = 1e-4;
+constexpr int kMostIterations = 12;
+constexpr int kFewIterations = 4;
+constexpr int kManyIterations = 8;
+constexpr double kLighter = 0.25;  // sigma of the next step after an easy one
+constexpr double kHeavier = 2.0;   // after a hard one
+constexpr double kHeaviest = 8.0;  // after one that failed
+constexpr int kMostFailures = 8;   // in a row
+// Motion that becomes smaller, and is less than this of the robot's size in a step, settles.
+constexpr double kSettling = 0.02;
+constexpr double kLater = 0.25;
+// Of the disturbance: a state that comes so near to what it left has come back.
+constexpr double kBack = 0.1;
+constexpr double kSmall = 1e-6;  // of the robot's size: a motion to measure with
+// Inertia at the start over that at which the softest direction would be neutral.
+constexpr double kStart = 2.0;
+
+mechanics::StepWeights overdamped(double sigma) {
+  mechanics::StepWeights weights;
+  weights.acceleration.motion = sigma;
+  return weights;
+}
+
+}  // namespace
+
+std::vector<Points> StaticSolver::positions() const {
+  std::vector<Points> result;
+  for (const auto& body : sim_.world_.bodies()) result.push_back(body->positions());
+  return result;
+}
+
+double StaticSolver::moved_since(const std::vector<Points>& before) const {
+  double worst = 0.0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const Points& now = sim_.world_.body(static_cast<int>(i)).positions();
+    if (now.rows() > 0) worst = std::max(worst, (now - before[i]).cwiseAbs().maxCoeff());
+  }
+  return worst;
+}
+
+// d^T M d, by what inertia adds to the imbalance of a small motion along d; kg m^2 or alike.
+double StaticSolver::mass_along(const VectorX& direction) {
+  World& world = sim_.world_;
+  world.begin_step(sim_.time(), sim_.time(), sim_.effort_);
+  const double scale = kSmall * sim_.model_->size() / direction.cwiseAbs().maxCoeff();
+  world.propose_motion(direction);
+  world.apply_motion(scale);
+  VectorX still, moving;
+  linearise({});
+  world.imbalance(sim_.effort_, still);
+  double sigma = 1.0;
+  double mass = 0.0;
+  for (int round = 0; round < 2; ++round) {  // the second with inertia that is not lost in rounding
+    linearise(overdamped(sigma));
+    world.imbalance(sim_.effort_, moving);
+    mass = direction.dot(still - moving) / (sigma * scale);
+    const double inertia = (still - moving).norm();
+    if (!(inertia > 0.0)) sigma *= 1e12;
+    if (inertia > 0.0) sigma *= std::max(1.0, still.norm() / inertia);
+  }
+  world.apply_motion(0.0);
+  return mass;
+}
+
+StaticSolver::Departure StaticSolver::leave(const Stability& stability, double disturbance) {
+  const VectorX mode = stability.mode();
+  const double curvature = stability.curvature();
+  if (mode.size() == 0) return Departure::failed;
+  World& world = sim_.world_;
+  const double mass = mass_along(mode);
+  if (!(mass > 0.0)) return Departure::failed;
+  left_ = positions();
+  world.propose_motion(mode);
+  disturbance *= sim_.model_->size();
+  world.apply_motion(kSmall * sim_.model_->size());
+  double scale = kSmall * sim_.model_->size() * disturbance / moved_since(left_);
+  for (auto motion = world.apply_motion(scale);
+       !motion.finite || !(motion.smallest_volume_ratio > 0.0);
+       motion = world.apply_motion(scale)) {
+    scale *= 0.5;
+    disturbance *= 0.5;
+  }
+  return relax(kStart * std::abs(curvature) / mass, kBack * disturbance);
+}
+
+// From the last equilibrium on the way, along the motion that Newton would begin with.
+bool StaticSolver::relax_from_here() {
+  World& world = sim_.world_;
+  world.begin_step(sim_.time(), sim_.time(), sim_.effort_);
+  linearise({});
+  if (world.condense() == linalg::FactorStatus::singular) return false;
+  const std::vector<double> before = sim_.effort_;
+  if (solve_law(world, sim_.complete(nullptr), problem(), sim_.effort_) == LawStatus::failed) {
+    sim_.effort_ = before;
+  }
+  VectorX imbalance, direction;
+  world.imbalance(sim_.effort_, imbalance);
+  world.solve(imbalance, direction);
+  if (!(direction.norm() > 0.0)) return false;
+  const double curvature = std::abs(direction.dot(imbalance));
+  sim_.effort_ = before;
+  const double mass = mass_along(direction);
+  if (!(mass > 0.0)) return false;
+  left_.clear();
+  return relax(kStart * curvature / mass, 0.0) == Departure::arrived;
+}
+
+// @param sigma of the first step, 1/s^2. @param near m: nearer than this to what was left is back.
+StaticSolver::Departure StaticSolver::relax(double sigma, double near) {
+  sim_.world_.set_imbalance_share(0.0);
+  double settled = kSettling * sim_.model_->size();
+  double moved_before = 0.0;
+  int failures = 0;
+  while (report_.relaxation_steps < settings_.max_relaxation_steps) {
+    ++report_.relaxation_steps;
+    sim_.save_state(sound_);
+    const std::vector<Points> before = positions();
+    last_ = solve(overdamped(sigma), kTolerance, kMostIterations);
+    if (last_.status != NewtonStatus::converged) {
+      sim_.load_state(sound_, sim_.steps_);
+      if (++failures == kMostFailures) break;
+      sigma *= kHeaviest;
+      continue;
+    }
+    failures = 0;
+    const double moved = moved_since(before);
+    if (!left_.empty() && moved_since(left_) < near) {
+      const bool back = equilibrate(0.0, settings_.max_iterations);
+      return back ? Departure::returned : Departure::failed;
+    }
+    if (moved < moved_before && moved < settled) {
+      sim_.save_state(sound_);
+      const int steps = last_.iterations;
+      if (equilibrate(0.0, settings_.max_iterations)) return Departure::arrived;
+      sim_.load_state(sound_, sim_.steps_);
+      last_.iterations = steps;
+      settled = kLater * moved;
+    }
+    moved_before = moved;
+    if (last_.iterations <= kFewIterations) sigma *= kLighter;
+    if (last_.iterations > kManyIterations) sigma *= kHeavier;
+  }
+  return Departure::failed;
+}
+
+}  // namespace sinew::sim

@@ -1,0 +1,263 @@
+// How Simulation solves the equation of one step, and what it makes of the solution.
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "sinew/core/error.hpp"
+#include "sinew/sim/driven_law.hpp"
+#include "sinew/sim/simulation.hpp"
+#include "sinew/sim/solve_law.hpp"
+
+namespace sinew::sim {
+
+namespace {
+
+constexpr int kMostHalvings = 10;
+// Of the robot's size: a point that is deeper in a surface after one linearisation, and is not
+// pushed out, is not there by rounding.
+constexpr double kDeepest = 1e-6;
+// Relative residuals above this are no equilibrium, whatever the loads: half of the forces of a
+// slender robot are axial, and bend it by nothing when they are this little out of balance.
+constexpr double kBalanced = 0.02;
+// A command that is missed by more than this of the robot's size was not reached.
+constexpr double kReached = 1e-3;
+// Commanded motions are made to this part of the robot's size.
+constexpr double kMotionTolerance = 1e-5;
+// Energy that came out of nothing, of the largest energy so far.
+constexpr double kEnergyGain = 0.05;
+// Iterations with the projected tangent, which end wherever a stable equilibrium is downhill.
+constexpr int kMostDescents = 200;
+// The smallest part of a quasi-static step, inverse.
+constexpr double kMostParts = 64.0;
+constexpr int kIterationsOfPart = 25;
+
+}  // namespace
+
+NewtonSettings Simulation::newton_settings(double time_step) const {
+  const auto& settings = model_->step();
+  return {{step_weights(time_step), settings.tangent, model_->stiffening_widens(), true},
+          settings.newton_tolerance(),
+          std::min(settings.newton_tolerance(), kMotionTolerance),
+          settings.max_iterations,
+          model_->stiffening_constraints()};
+}
+
+void Simulation::solve_equation(double time_step) {
+  Law& law = complete(law_);
+  const LawProblem problem = world_.law_problem(ranges_, now_, time_step);
+  if (model_->step().method == Method::newton) {
+    step_newton(law, problem);
+  } else {
+    step_once(law, problem);
+  }
+}
+
+// One linear solution, and a look at what it left.
+void Simulation::step_once(Law& law, const LawProblem& problem) {
+  const auto stiffening = std::span<const int>(model_->stiffening_constraints());
+  auto request = newton_settings(problem.time_step).request;
+  request.iterating = false;
+  const auto linearise = [&] {
+    world_.linearise(request);
+    clock_.mark(Stage::assembly);
+    world_.form_rows(effort_, stiffening);
+    clock_.mark(Stage::compliance);
+  };
+  linearise();
+  auto status = world_.condense();
+  if (status == linalg::FactorStatus::indefinite &&
+      request.tangent == mechanics::Tangent::exact &&
+      !DrivenLaw::stabilised(problem, negative_pivots())) {
+    request.tangent = mechanics::Tangent::projected;
+    linearise();
+    status = world_.condense();
+  }
+  clock_.mark(Stage::factorisation);
+  if (status == linalg::FactorStatus::singular) {
+    fail(ErrorKind::singular_matrix, "the stiffness matrix is singular",
+         "fix a region of every body, or look for loose or crushed elements");
+  }
+  report_.law = solve_law(world_, law, problem, effort_);
+  if (report_.law == LawStatus::failed) fail_law();
+  report_.iterations = 1;
+  clock_.mark(Stage::law);
+  world_.solve_motion(effort_);
+  move_soundly();
+  clock_.mark(Stage::correction);
+  require_outside();
+  request.tangent = model_->step().tangent;
+  request.iterating = true;
+  linearise();
+  report_.residual = world_.residual(effort_);
+  report_.relative_residual = report_.residual / (world_.force_scale() + 1e-300);
+  report_.violation = law.violation(problem, effort_);
+}
+
+void Simulation::fail_law() {
+  if (!model_->contacts().empty()) fail_contacts();
+  fail(ErrorKind::not_converged, "no efforts obey the law of this step",
+       "loosen the limits of the actuators");
+}
+
+// Points that commanded motions leave nothing to give way are beyond any contact force.
+void Simulation::require_outside() {
+  if (model_->contacts().empty()) return;
+  const double depth = world_.deepest_free_point(effort_);
+  if (depth <= kDeepest * model_->size()) return;
+  fail(ErrorKind::not_converged,
+       fmt::format("a point would be {:.3g} m inside a surface, and no contact force can move it",
+                   depth),
+       "take a smaller time step, or command no motion that ends in the surface");
+}
+
+int Simulation::negative_pivots() const {
+  int count = 0;
+  for (const auto& body : world_.bodies()) count += body->negative_pivots();
+  return count;
+}
+
+// Takes the motion, or the largest halving of it that inverts no element.
+void Simulation::move_soundly() {
+  const bool was_sound = volume_ratio_ > 0.0;
+  report_.scale = 1.0;
+  mechanics::MotionReport motion;
+  for (int halving = 0; halving <= kMostHalvings; ++halving, report_.scale *= 0.5) {
+    motion = world_.apply_motion(report_.scale);
+    if (motion.finite && (motion.smallest_volume_ratio > 0.0 || !was_sound)) {
+      volume_ratio_ = report_.smallest_volume_ratio = motion.smallest_volume_ratio;
+      return;
+    }
+  }
+  if (!motion.finite) {
+    fail(ErrorKind::diverged, "the motion of this step is not finite or out of all proportion",
+         "take a smaller time step, or check loads and material");
+  }
+  fail(ErrorKind::inverted_in_run,
+       fmt::format("element {} would turn inside out (det F = {:.3g}) even at {:.2g} of the motion",
+                   motion.worst_element, motion.smallest_volume_ratio, 2.0 * report_.scale),
+       "take a smaller time step, change commands more slowly, or refine the mesh there");
+}
+
+void Simulation::take_report(const NewtonReport& result) {
+  report_.law = result.law;
+  report_.residual = result.residual;
+  report_.relative_residual = result.relative_residual;
+  report_.violation = result.violation;
+  report_.iterations = result.iterations;
+  report_.newton = result.status;
+  report_.scale = 1.0;
+  volume_ratio_ = report_.smallest_volume_ratio = result.motion.smallest_volume_ratio;
+}
+
+// Newton; where that finds nothing and there is no inertia to say where to go, along the loads and
+// commands in parts, and last downhill.
+void Simulation::step_newton(Law& law, const LawProblem& problem) {
+  NewtonReport result =
+      solve_newton(world_, law, problem, effort_, newton_settings(problem.time_step), clock_);
+  const auto converged = [&] { return result.status == NewtonStatus::converged; };
+  if (!converged() && !model_->step().dynamic()) {
+    const int tried = result.iterations;
+    result = approach(law, problem);
+    if (!converged()) result = descend(law, problem);
+    result.iterations += tried;
+  }
+  take_report(result);
+  // Of contacts there is no such thing as nearly: a point would be inside a surface.
+  const bool usable = !model_->step().dynamic() && model_->contacts().empty() &&
+                      result.motion.finite &&
+                      result.motion.smallest_volume_ratio > 0.0 &&
+                      result.law != LawStatus::failed;
+  if (converged() || usable) return;
+  if (result.status == NewtonStatus::law_failed) fail_law();
+  fail(ErrorKind::not_converged,
+       fmt::format("Newton ended as '{}' after {} iterations, relative residual {:.3g}",
+                   newton_status_name(result.status), result.iterations, result.relative_residual),
+       "take a smaller time step, or change commands more slowly");
+}
+
+// What the start of the step lacks to equilibrium is taken away bit by bit, as in statics
+// (static_solver.cpp), and commands go in proportion from where the actuators were.
+NewtonReport Simulation::approach(Law& law, const LawProblem& problem) {
+  const std::vector<ActuatorRange> goal = ranges_;
+  const std::vector<ActuatorState> start = actuators_;
+  NewtonSettings settings = newton_settings(problem.time_step);
+  settings.max_iterations = std::min(settings.max_iterations, kIterationsOfPart);
+  const auto back_to = [&](std::span<const double> state) {
+    load_state(state, steps_);
+    world_.begin_step(now_ - problem.time_step, now_, effort_);
+  };
+  back_to(state_before_);
+  world_.linearise(settings.request);
+  world_.form_rows(effort_, settings.curved);
+  world_.hold_imbalance(effort_);
+  std::vector<double> sound = state_before_;
+  NewtonReport result;
+  result.status = NewtonStatus::stalled;
+  double share = 1.0, part = 0.5;
+  int iterations = 0;
+  while (share > 0.0 && part * kMostParts >= 1.0) {
+    const double next = std::max(0.0, share - part);
+    for (std::size_t i = 0; i < start.size(); ++i) {
+      ranges_[i] = goal[i];
+      blend(ranges_[i], start[i], 1.0 - next);
+    }
+    world_.set_imbalance_share(next);
+    result = solve_newton(world_, law, problem, effort_, settings, clock_);
+    iterations += result.iterations;
+    if (result.status == NewtonStatus::converged) {
+      share = next;
+      part *= 2.0;
+      save_state(sound);
+    } else {
+      part *= 0.5;
+      back_to(sound);
+    }
+  }
+  world_.set_imbalance_share(0.0);
+  ranges_ = goal;
+  result.iterations = iterations;
+  return result;
+}
+
+// From where approach() ended: with a matrix that is never less than the derivative every iteration
+// lowers the energy of conservative loads, through a buckling to wherever the robot then rests.
+NewtonReport Simulation::descend(Law& law, const LawProblem& problem) {
+  NewtonSettings settings = newton_settings(problem.time_step);
+  settings.request.tangent = mechanics::Tangent::projected;
+  settings.max_iterations = kMostDescents;
+  return solve_newton(world_, law, problem, effort_, settings, clock_);
+}
+
+// What users are told of the step.
+void Simulation::watch() {
+  const auto raise = [&](StepStatus status) { report_.status = std::max(report_.status, status); };
+  if (report_.law == LawStatus::limits_conflict) raise(StepStatus::limits_conflict);
+  if (report_.scale < 1.0) raise(StepStatus::cut_back);
+  if (report_.violation > kReached * model_->size()) raise(StepStatus::command_not_reached);
+  const bool unbalanced = report_.relative_residual > kBalanced;
+  if (unbalanced) raise(StepStatus::not_in_equilibrium);
+  if (model_->step().dynamic()) watch_energy();
+}
+
+// Stored energy against what actuators and loads put in since the first step. A base that moves and
+// forces from outside the ledger put in what is not counted.
+void Simulation::watch_energy() {
+  for (const auto& body : world_.bodies()) {
+    if (body->moved_from_outside()) {
+      energy_at_start_.reset();
+      return;
+    }
+  }
+  const Energies now = energies();
+  const double stored = now.strain + now.kinetic + now.gravity;
+  const double put_in = work_.actuators + work_.outside - work_.dissipated;
+  if (!energy_at_start_) energy_at_start_ = stored - put_in;
+  report_.energy_gained = stored - put_in - *energy_at_start_;
+  largest_energy_ = std::max({largest_energy_, now.strain + now.kinetic, std::abs(put_in)});
+  if (report_.energy_gained > kEnergyGain * largest_energy_) {
+    report_.status = std::max(report_.status, StepStatus::gaining_energy);
+  }
+}
+
+}  // namespace sinew::sim

@@ -1,0 +1,41 @@
+#include "sinew/sim/step_status.hpp"
+
+namespace sinew::sim {
+
+std::string_view step_status_name(StepStatus status) {
+  switch (status) {
+    case StepStatus::solved:
+      return "solved";
+    case StepStatus::limits_conflict:
+      return "limits-conflict";
+    case StepStatus::command_not_reached:
+      return "command-not-reached";
+    case StepStatus::cut_back:
+      return "cut-back";
+    case StepStatus::not_in_equilibrium:
+      return "not-in-equilibrium";
+    case StepStatus::gaining_energy:
+      return "gaining-energy";
+  }
+  return "unknown";
+}
+
+std::string_view step_status_remedy(StepStatus status) {
+  switch (status) {
+    case StepStatus::solved:
+      return "";
+    case StepStatus::limits_conflict:
+      return "loosen the limits that contradict each other";
+    case StepStatus::command_not_reached:
+      return "change the command more slowly, or use `solver: newton`";
+    case StepStatus::cut_back:
+      return "take a smaller time step, change commands more slowly, or refine the mesh";
+    case StepStatus::not_in_equilibrium:
+      return "take a smaller time step, change commands more slowly, or use `solver: newton`";
+    case StepStatus::gaining_energy:
+      return "use `solver: newton`, or take a smaller time step";
+  }
+  return "";
+}
+
+}  // namespace sinew::sim

@@ -1,0 +1,139 @@
+// What a step does when nothing is asked of it: the right number, or word that it is not.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "sim/robots.hpp"
+#include "sinew/core/error.hpp"
+#include "sinew/sim/simulation.hpp"
+
+namespace sinew::sim {
+namespace {
+
+using sinew::testing::beam;
+using sinew::testing::BeamOptions;
+
+double distance(const Points& a, const Points& b) { return (a - b).rowwise().norm().maxCoeff(); }
+
+Command pull(double metres) { return {CommandKind::motion, Signal::constant(metres)}; }
+Command tension(double newtons) { return {CommandKind::effort, Signal::constant(newtons)}; }
+
+// The last state of `steps` steps against the equilibrium that is found from there.
+double distance_to_rest(Simulation& simulation) {
+  const Points stepped = simulation.fem_body(0).positions();
+  simulation.solve_static();
+  return distance(stepped, simulation.fem_body(0).positions());
+}
+
+TEST(DefaultStep, APulledCableBendsTheBeamToItsEquilibrium) {
+  for (const double length : {0.002, 0.01, 0.02}) {
+    Simulation simulation(beam());
+    simulation.command(0, {CommandKind::motion, Signal::ramp({0.0, length, 0.0, 0.2})});
+    for (int k = 0; k < 25; ++k) {
+      simulation.step();
+      ASSERT_EQ(simulation.report().status, StepStatus::solved) << length;
+    }
+    EXPECT_NEAR(simulation.actuator(0).motion, length, 1e-6);
+    EXPECT_LT(distance_to_rest(simulation), 1e-5) << length;
+  }
+}
+
+TEST(DefaultStep, ACommandThatJumpsIsReachedInTheStep) {
+  Simulation simulation(beam());
+  simulation.command(0, pull(0.01));
+  simulation.step();
+  EXPECT_EQ(simulation.report().status, StepStatus::solved);
+  EXPECT_NEAR(simulation.actuator(0).motion, 0.01, 1e-5);
+  EXPECT_LT(distance_to_rest(simulation), 1e-4);
+}
+
+TEST(DefaultStep, GravityThatComesAtOnceHangsTheBeamWhereItRests) {
+  BeamOptions options;
+  options.gravity = {0.0, 0.0, -9.81};
+  options.young_modulus = 2e4;
+  Simulation simulation(beam(options));
+  for (int k = 0; k < 2; ++k) simulation.step();
+  EXPECT_EQ(simulation.report().status, StepStatus::solved);
+  EXPECT_LT(distance_to_rest(simulation), 1e-6);
+}
+
+TEST(DefaultStep, AStepAtRestTakesOneIteration) {
+  Simulation simulation(beam());
+  simulation.command(0, tension(0.5));
+  for (int k = 0; k < 5; ++k) simulation.step();
+  EXPECT_EQ(simulation.report().iterations, 1);
+  EXPECT_LT(simulation.report().relative_residual, 1e-9);
+}
+
+TEST(DefaultStep, OneLinearisationSaysThatItLeftEquilibrium) {
+  BeamOptions options;
+  options.step.method = Method::one_linearisation;
+  options.step.tangent = mechanics::Tangent::real_time;
+  options.geometric_stiffness = false;
+  Simulation simulation(beam(options));
+  simulation.command(0, {CommandKind::motion, Signal::ramp({0.0, 0.06, 0.0, 0.5})});
+  bool flagged = false;
+  try {
+    for (int k = 0; k < 80; ++k) flagged = is_flagged(simulation.step().status) || flagged;
+  } catch (const Error& error) {
+    flagged = error.is_run_failure();
+  }
+  EXPECT_TRUE(flagged);
+}
+
+// With one linearisation about the start a swing gains energy, which its status says; solved steps
+// do not.
+TEST(DefaultStep, ASwingKeepsItsEnergyOrSaysThatItDoesNot) {
+  for (const auto integrator :
+       {mechanics::Integrator::backward_euler, mechanics::Integrator::bdf2,
+        mechanics::Integrator::generalized_alpha}) {
+    for (const Method method : {Method::newton, Method::one_linearisation}) {
+      BeamOptions options;
+      options.gravity = {0.0, 0.0, -9.81};
+      options.young_modulus = 3e4;
+      options.step.integrator = integrator;
+      options.step.method = method;
+      if (method == Method::one_linearisation) {
+        options.step.tangent = mechanics::Tangent::real_time;
+      }
+      Simulation simulation(beam(options));
+      const double start = simulation.energies().strain + simulation.energies().gravity;
+      double gained = 0.0, swing = 0.0;
+      bool flagged = false;
+      try {
+        for (int k = 0; k < 200; ++k) {
+          flagged = simulation.step().status == StepStatus::gaining_energy || flagged;
+          const auto [strain, kinetic, gravity] = simulation.energies();
+          gained = std::max(gained, strain + kinetic + gravity - start);
+          swing = std::max(swing, kinetic + strain);
+        }
+      } catch (const Error& error) {
+        flagged = error.is_run_failure();
+      }
+      EXPECT_TRUE(flagged || gained < 0.06 * swing)
+          << mechanics::integrator_name(integrator) << " " << gained / swing;
+      if (method == Method::one_linearisation) continue;
+      EXPECT_FALSE(flagged);
+      EXPECT_LT(gained, 0.01 * swing);
+    }
+  }
+}
+
+TEST(DefaultStep, ReusedAssemblyDoesNotChangeABit) {
+  BeamOptions options;
+  const auto model = beam(options);
+  Simulation whole(model), halves(model);
+  for (Simulation* one : {&whole, &halves}) one->command(0, pull(0.003));
+  for (int k = 0; k < 6; ++k) whole.step();
+  std::vector<double> state(halves.state_size());
+  for (int k = 0; k < 6; ++k) {
+    halves.step();
+    halves.save_state(state);
+    halves.load_state(state, halves.steps());
+    halves.energies();
+  }
+  EXPECT_EQ(whole.state_hash(), halves.state_hash());
+}
+
+}  // namespace
+}  // namespace sinew::sim
