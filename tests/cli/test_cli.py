@@ -87,6 +87,23 @@ def test_run_records_what_was_asked(scene, tmp_path):
         assert file["scene"][()].decode() == (folder / "scene.yaml").read_text()
 
 
+def test_flagged_steps_end_with_one_unless_told_to_keep_going(tmp_path):
+    trunk = ROOT / "examples" / "trunk" / "trunk.yaml"
+    pull = ["--duration", "1.5s", "--set", "actuators.long_0.command.displacement.ramp.to=30mm"]
+    rough = ["--set", "solver={method: one-linearisation, tangent: rotated}",
+             "--set", "actuators.long_0.geometric_stiffness=false"]
+    solved = sinew("run", trunk, *pull, "--out", "solved", cwd=tmp_path)
+    assert solved.returncode == DONE and solved.stderr == "", solved.stderr
+    assert {row["status"] for row in rows_of(tmp_path / "solved" / "run.csv")} == {"start", "solved"}
+    flagged = sinew("run", trunk, *pull, *rough, "--out", "rough", cwd=tmp_path)
+    assert flagged.returncode == FAILED
+    assert "steps are not-in-equilibrium, the first at t = " in flagged.stderr
+    assert "solver: newton" in flagged.stderr
+    assert "not-in-equilibrium" in {row["status"] for row in rows_of(tmp_path / "rough" / "run.csv")}
+    told = sinew("run", trunk, *pull, *rough, "--keep-going", "--out", "rough", cwd=tmp_path)
+    assert told.returncode == DONE and "not-in-equilibrium" in told.stderr
+
+
 @pytest.mark.parametrize("step_ms", [4, 2])
 def test_the_energy_ledger_is_kept(tmp_path, step_ms):
     swing = ROOT / "examples" / "beam" / "swing.yaml"

@@ -113,7 +113,7 @@ TEST(Surface, ApproachIsTheFirstMeetingOrTheNearestPoint) {
       EXPECT_GE(distance(surface, foot + 0.02 * normal.unitOrthogonal()).gap, 0.0);
     }
   }
-  EXPECT_GT(met, 100);
+  EXPECT_GT(met, 40);
   EXPECT_GT(missed, 300);
   EXPECT_GT(between, 50);
 }

@@ -109,17 +109,17 @@ TEST(InverseController, HoldsStillWhereTheTargetIsOutOfReach) {
 TEST(StepDamping, GrowsWhereTheLinearisationMisleadsAndShrinksWhereItHolds) {
   StepDamping damping;
   EXPECT_EQ(damping.value(), 1.0);
-  damping.review(1.0, 0.5, 0.5);  // as foreseen: nothing to let go of
+  damping.review(1.0, 0.5, 0.5, 1e-12);  // as foreseen: nothing to let go of
   EXPECT_EQ(damping.value(), 1.0);
-  damping.review(1.0, 0.5, 1.2);  // worse than before
+  damping.review(1.0, 0.5, 1.2, 1e-12);  // worse than before
   EXPECT_EQ(damping.value(), 4.0);
-  damping.review(1.0, 0.5, 0.9);  // a fifth of what was foreseen
+  damping.review(1.0, 0.5, 0.9, 1e-12);  // a fifth of what was foreseen
   EXPECT_EQ(damping.value(), 16.0);
-  damping.review(1.0, 0.5, 0.7);  // neither good nor bad
+  damping.review(1.0, 0.5, 0.7, 1e-12);  // neither good nor bad
   EXPECT_EQ(damping.value(), 16.0);
-  damping.review(1.0, 0.5, 0.55);
+  damping.review(1.0, 0.5, 0.55, 1e-12);
   EXPECT_EQ(damping.value(), 8.0);
-  damping.review(1.0, 1.0, 1.0);  // at rest: nothing to judge by
+  damping.review(1.0, 1.0, 1.0, 1e-12);  // at rest: nothing to judge by
   EXPECT_EQ(damping.value(), 8.0);
   damping.reset();
   EXPECT_EQ(damping.value(), 1.0);

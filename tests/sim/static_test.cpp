@@ -154,8 +154,15 @@ TEST(Statics, StabilityAgreesWithTheDenseTangent) {
     world.linearise({{}, mechanics::Tangent::exact, true, false});
     world.form_rows(simulation.efforts(), simulation.model().curved_constraints());
     ASSERT_NE(world.condense(), linalg::FactorStatus::singular);
-    const LawProblem problem{simulation.model(), world.placement(),  simulation.ranges(),
-                             world.compliance(), world.delta_free(), world.delta()};
+    const LawProblem problem{simulation.model(),
+                             world.placement(),
+                             simulation.ranges(),
+                             world.compliance(),
+                             world.delta_free(),
+                             world.delta(),
+                             0.0,
+                             0.0,
+                             world.rows().present};
     const Stability stability(world, problem, simulation.efforts());
     VectorX rest, row;
     world.imbalance(std::vector<double>(simulation.efforts().size(), 0.0), rest);
@@ -185,7 +192,9 @@ TEST(Statics, StabilityAgreesWithTheDenseTangent) {
     EXPECT_EQ(stability.negative_pivots(), negative);
     EXPECT_EQ(report.negative_pivots, negative);
     const VectorX& mode = stability.mode();
-    if (held) EXPECT_NEAR(row.dot(mode), 0.0, 1e-9 * row.norm() * mode.norm());
+    if (held) {
+      EXPECT_NEAR(row.dot(mode), 0.0, 1e-9 * row.norm() * mode.norm());
+    }
     EXPECT_NEAR(mode.dot(tangent * mode), stability.curvature(),
                 1e-4 * std::abs(stability.curvature()));
     EXPECT_LT(stability.curvature() / mode.squaredNorm(), 0.9 * values[0]);

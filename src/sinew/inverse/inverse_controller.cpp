@@ -54,6 +54,7 @@ InverseController::InverseController(sim::Simulation& simulation, InverseSetting
   weighted_.setZero(rows, count);
   residual_.setZero(rows);
   gap_.setZero(rows);
+  gap_before_.setZero(rows);
   foreseen_.setZero(rows);
   asked_.resize(settings_.tasks.size());
   bound_multiplier_.setZero(count);
@@ -96,12 +97,14 @@ void InverseController::begin_step(const sim::LawProblem& problem) {
     for (Eigen::Index k = 0; k < gap_.size(); ++k) {
       if (row_weights_[k] > 0.0) surprise_ = std::hypot(surprise_, gap_[k] - foreseen_[k]);
     }
-    damping_.review(objective_before_, objective(foreseen_), objective(gap_));
+    const double still = kStill * settings_.tolerance;
+    damping_.review(objective(gap_before_), objective(foreseen_), objective(gap_),
+                    0.5 * row_weights_.maxCoeff() * still * still);
   }
   time_ = problem.time;
   for (std::size_t t = 0; t < asked_.size(); ++t) asked_[t] = settings_.tasks[t].target.at(time_);
   measure_gap(problem);
-  objective_before_ = objective(gap_);
+  gap_before_ = gap_;
 }
 
 void InverseController::measure_gap(const sim::LawProblem& problem) {
@@ -299,7 +302,7 @@ sim::LawStatus InverseController::solve(const sim::LawProblem& problem, std::spa
 }
 
 // What the linearisation says of the step's end: the gaps that stay, and the farthest that an
-// effector or an actuator moves, m.
+// effector or an actuator moves in the step, m.
 double InverseController::foresee(const sim::LawProblem& problem) {
   double moved = 0.0;
   predicted_error_ = 0.0;
@@ -308,13 +311,14 @@ double InverseController::foresee(const sim::LawProblem& problem) {
     const double motion =
         problem.delta_free[row] - problem.delta[row] + jacobian_.row(k).dot(scaled_effort_);
     foreseen_[k] = gap_[k] - motion;
-    moved = std::max(moved, std::abs(motion));
+    moved = std::max(moved, std::abs(gap_before_[k] - foreseen_[k]));
     if (row_weights_[k] > 0.0) predicted_error_ = std::hypot(predicted_error_, foreseen_[k]);
   }
   for (const int index : settings_.actuators) {
     const ActuatorRange& range = problem.actuators[static_cast<std::size_t>(index)];
-    const double motion = problem.delta_free[range.row] - problem.delta[range.row] +
-                          program_.rows.row(index).dot(scaled_effort_);
+    const double motion = problem.delta_free[range.row] +
+                          program_.rows.row(index).dot(scaled_effort_) -
+                          simulation_.actuator(index).motion;
     moved = std::max(moved, range.motion_scale * std::abs(motion));
   }
   return moved;
@@ -325,7 +329,9 @@ InverseStatus InverseController::judge(const sim::LawProblem& problem, double mo
     return surprise_ <= settings_.tolerance ? InverseStatus::on_target : InverseStatus::moving;
   }
   if (rate_binds(problem)) return InverseStatus::rate_limited;
-  const bool rests = moved <= kStill * settings_.tolerance && surprise_ <= settings_.tolerance &&
+  // A step that was damped would have gone so much farther.
+  const bool still = moved * damping_.value() <= kStill * settings_.tolerance;
+  const bool rests = still && surprise_ <= settings_.tolerance &&
                      simulation_.report().relative_residual <= kBalanced;
   if (!rests) return InverseStatus::moving;
   return limit_holds() ? InverseStatus::out_of_reach : InverseStatus::local_optimum;

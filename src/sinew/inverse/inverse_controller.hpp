@@ -99,7 +99,7 @@ class InverseController : public sim::Law {
 
   double time_ = -std::numeric_limits<double>::infinity();  // the end of the step at hand, s
   std::vector<Vector3> asked_;                              // the targets then
-  double objective_before_ = 0.0;                           // of the gap when the step began
+  VectorX gap_before_;                                      // when the step began
   VectorX foreseen_;  // the gap after the step, by the linearisation
   double surprise_ = std::numeric_limits<double>::infinity();  // how far it was off last time, m
   VectorX bound_multiplier_, row_multiplier_;                  // of the program

@@ -7,7 +7,7 @@ namespace sinew::inverse {
 
 namespace {
 
-constexpr double kMost = 1e8;
+constexpr double kMost = 1e6;
 constexpr double kGrowth = 4.0;
 constexpr double kDecay = 0.5;
 constexpr double kBad = 0.75;
@@ -17,12 +17,12 @@ constexpr double kNegligible = 1e-6;
 
 }  // namespace
 
-void StepDamping::review(double before, double foreseen, double found) {
-  const double negligible = kNegligible * before;
+void StepDamping::review(double before, double foreseen, double found, double negligible) {
+  const double noise = kNegligible * before + negligible;
   const double change = std::abs(before - foreseen);
-  if (change <= negligible && std::abs(found - before) <= negligible) return;
+  if (change <= noise && std::abs(found - before) <= noise) return;
   const double worse = found - foreseen;
-  if (worse > kBad * change + negligible) {
+  if (worse > kBad * change + noise) {
     value_ = std::min(kMost, kGrowth * value_);
   } else if (worse <= kGood * change) {
     value_ = std::max(1.0, kDecay * value_);

@@ -15,7 +15,8 @@ class StepDamping {
  public:
   /// @param before,foreseen,found objectives: before a step, after it by the linearisation, and
   ///   after it in truth, all with the targets of that step.
-  void review(double before, double foreseen, double found);
+  /// @param negligible objective that is as good as zero.
+  void review(double before, double foreseen, double found, double negligible);
   /// >= 1, no unit.
   double value() const { return value_; }
   void reset() { value_ = 1.0; }

@@ -156,7 +156,8 @@ class Body {
   /// Whether something that no ledger counts moves it: its base, a hand in the view.
   virtual bool moved_from_outside() const { return false; }
 
-  /// Back to rest: the model's own q, v = 0. Inputs (outside forces) stay.
+  /// Back to the start: the model's own q and v. Inputs (outside forces) stay, but for where a base
+  /// was asked to be.
   virtual void restart() = 0;
   /// q, v and what the integrator keeps as one array, for hashing and saving.
   virtual std::size_t state_size() const = 0;

@@ -19,8 +19,10 @@ constexpr double kMeritGrowth = 50.0;
 // incompressible body leaves a pressure behind that is large, and that the next step takes away.
 constexpr int kMostRises = 4;
 constexpr int kMostHalvings = 12;
-// Motions under this part of a robot's size are rounding.
+// Motions under this part of a robot's size are rounding, and then residuals under this part of its
+// forces may be: those of laws that are solved by iterations of their own.
 constexpr double kRounding = 1e-11;
+constexpr double kRoundedResidual = 1e-7;
 // An iteration that leaves more than this of the residual no longer converges.
 constexpr double kLessened = 0.5;
 
@@ -95,12 +97,16 @@ class NewtonSolver {
     return report_.relative_residual + report_.violation / problem_.model.size();
   }
 
-  // Where rounding keeps the residual above the tolerance, a full step that no longer lessens it
-  // says that there is nothing left to find.
+  // Where rounding keeps the residual above the tolerance, a full step that moves nothing by more
+  // than rounding does, or that no longer lessens a residual at its floor, says that there is
+  // nothing left to find.
   bool converged() const {
-    const bool at_floor = stagnant_ && report_.residual <= world_.rounding_floor();
-    return (report_.relative_residual <= settings_.tolerance || at_floor) &&
-           report_.violation <= std::max(settings_.motion_tolerance, kRounding) * problem_.model.size();
+    const double size = problem_.model.size();
+    if (!(report_.violation <= std::max(settings_.motion_tolerance, kRounding) * size)) return false;
+    const bool at_rest = full_step_ && report_.motion.largest_move <= kRounding * size &&
+                         report_.relative_residual <= kRoundedResidual;
+    return report_.relative_residual <= settings_.tolerance || at_rest ||
+           (stagnant_ && report_.residual <= world_.rounding_floor());
   }
 
   NewtonStatus move() {
@@ -116,7 +122,8 @@ class NewtonSolver {
       if (inverted) continue;
       linearise(settings_.request.tangent);
       const double after = merit();
-      stagnant_ = halving == 0 && report_.residual > kLessened * residual_before;
+      full_step_ = halving == 0;
+      stagnant_ = full_step_ && report_.residual > kLessened * residual_before;
       if (converged() || forgives(after) || after < kMeritGrowth * before) {
         return NewtonStatus::converged;
       }
@@ -143,7 +150,8 @@ class NewtonSolver {
   StageClock& clock_;
   NewtonReport report_;
   double least_merit_ = std::numeric_limits<double>::infinity();
-  int rises_ = 0;          // iterations since least_merit_
+  int rises_ = 0;  // iterations since least_merit_
+  bool full_step_ = false;
   bool stagnant_ = false;  // the last full step did not lessen the residual
 };
 

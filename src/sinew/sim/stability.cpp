@@ -20,8 +20,9 @@ constexpr double kRitzTolerance = 1e-2;
 // than so many times what rounding does.
 constexpr double kNeutral = 10.0;
 
-bool same(double a, double b) {
-  return std::abs(a - b) <= kAtLimit * std::max(std::abs(a), std::abs(b));
+bool same(double effort, double limit) {
+  if (!std::isfinite(limit)) return false;
+  return std::abs(effort - limit) <= kAtLimit * std::max(std::abs(effort), std::abs(limit));
 }
 
 // Whether what an actuator is told, or a limit of its motion, holds the row rigidly.

@@ -1,6 +1,6 @@
 // StaticSolver's overdamped motion: implicit Euler steps of M dq/dt = r(q), of length tau, each
 // solved by Newton:
-//   M (q - q_start) sigma = r(q),   sigma = 1/tau;
+//   sigma M (q - q_start) = r(q),   sigma (1/s^2) the inverse of tau times a unit of time;
 // sigma falls while the steps are easily solved, so that they end as Newton's own.
 #include <algorithm>
 #include <cmath>
@@ -143,7 +143,8 @@ StaticSolver::Departure StaticSolver::relax(double sigma, double near) {
       const bool back = equilibrate(0.0, settings_.max_iterations);
       return back ? Departure::returned : Departure::failed;
     }
-    if (moved < moved_before && moved < settled) {
+    const bool slows = moved < moved_before;
+    if (slows && moved < settled) {
       sim_.save_state(sound_);
       const int steps = last_.iterations;
       if (equilibrate(0.0, settings_.max_iterations)) return Departure::arrived;
@@ -152,7 +153,8 @@ StaticSolver::Departure StaticSolver::relax(double sigma, double near) {
       settled = kLater * moved;
     }
     moved_before = moved;
-    if (last_.iterations <= kFewIterations) sigma *= kLighter;
+    // While it falls away from what it left, less inertia would let a step end on the other side.
+    if (slows && last_.iterations <= kFewIterations) sigma *= kLighter;
     if (last_.iterations > kManyIterations) sigma *= kHeavier;
   }
   return Departure::failed;

@@ -1,0 +1,70 @@
+"""What a step says of itself, and that Python warns of it."""
+
+import pathlib
+import warnings
+
+import pytest
+import sinew
+
+# One linearisation without the cables' own stiffness: what diverges when a slender robot is pulled.
+ROUGH = [
+    "solver={method: one-linearisation, tangent: rotated}",
+    "actuators.long_0.geometric_stiffness=false",
+    "actuators.long_0.command.displacement.ramp.to=30mm",
+]
+
+
+TRUNK = pathlib.Path(__file__).resolve().parents[2] / "examples" / "trunk" / "trunk.yaml"
+
+
+def test_default_steps_are_solved():
+    sim = sinew.load(TRUNK, set=ROUGH[-1:])
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", sinew.SinewWarning)
+        sim.step(120)
+    assert sim.report.status == "solved"
+    assert not sim.report.flagged
+    tip = sim.effector("tip").position.copy()
+    sim.solve_static()
+    assert sim.effector("tip").position == pytest.approx(tip, abs=1e-4)
+
+
+def test_flagged_steps_warn_once():
+    sim = sinew.load(TRUNK, set=ROUGH)
+    with pytest.warns(sinew.SinewWarning, match="not-in-equilibrium; take a smaller time step"):
+        sim.step(200)
+    assert sim.report.flagged
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", sinew.SinewWarning)
+        sim.step(5)
+    sim.reset()
+    with pytest.warns(sinew.SinewWarning):
+        sim.step(200)
+
+
+def test_a_swing_reports_the_energy_that_it_gained():
+    scene = {
+        "sinew": 1,
+        "gravity": [0, 0, -9.81],
+        "integrator": "generalized-alpha",
+        "bodies": {
+            "beam": {
+                "type": "fem",
+                "density": 1000.0,
+                "element": "tet4",
+                "mesh": {"shape": "block", "length": 0.1, "width": 0.02, "height": 0.02, "element_size": 0.01},
+                "material": {"model": "corotational", "young_modulus": 1e6, "poisson_ratio": 0.4},
+                "fixed": [{"box": [-1e-6, -1, -1e-6, 1e-6, 1, 1e-6]}],
+            }
+        },
+    }
+    sim = sinew.load(scene)
+    sim.step(50)
+    assert sim.report.status == "solved"
+    assert sim.report.energy_gained < 2e-4
+    rough = sinew.load({**scene, "solver": {"method": "one-linearisation", "tangent": "rotated"}})
+    with pytest.warns(sinew.SinewWarning, match="gaining-energy"):
+        for _ in range(50):
+            rough.step()
+            if rough.report.status == "gaining-energy":
+                break
