@@ -2,7 +2,7 @@
 # Installs the Debian packages that Sinew needs and that are missing; does nothing when none is.
 #   scripts/setup.sh [NEED...]      packages for what is named; for everything when nothing is
 #   scripts/setup.sh --minimal      what the library, the program and the Python package need: build wheel
-#   scripts/setup.sh --list [...]   prints the packages, one a line, and ends
+#   scripts/setup.sh --list [...]   prints the packages of the same, one a line, and ends
 # NEED is one or more of: build demo wheel test validate bench docs format lint fuzz.
 # Runs as root or with sudo. SINEW_SKIP_SETUP=1 leaves the machine as it is.
 set -eu

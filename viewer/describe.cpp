@@ -7,6 +7,12 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "sinew/constraint/cable.hpp"
+#include "sinew/constraint/cavity.hpp"
+#include "sinew/constraint/contact.hpp"
+#include "sinew/constraint/effector.hpp"
+#include "sinew/constraint/probe.hpp"
+#include "sinew/mechanics/body.hpp"
 #include "sinew/mesh/topology.hpp"
 
 namespace sinew::viewer {

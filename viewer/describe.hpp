@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sinew/fem/element_fields.hpp"
+#include "sinew/mechanics/body.hpp"
 #include "sinew/scene/build.hpp"
 
 #include "frame.hpp"

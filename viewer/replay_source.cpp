@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "sinew/mechanics/body.hpp"
 #include "sinew/scene/scene.hpp"
 
 #include "limits.hpp"

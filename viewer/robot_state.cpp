@@ -7,6 +7,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "sinew/constraint/cable.hpp"
+#include "sinew/constraint/contact.hpp"
+#include "sinew/constraint/effector.hpp"
+#include "sinew/constraint/probe.hpp"
+#include "sinew/mechanics/body.hpp"
 #include "sinew/pcc/arm_body.hpp"
 
 namespace sinew::viewer {

@@ -4,11 +4,12 @@
 #include <limits>
 #include <utility>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
 #include "sinew/scene/build.hpp"
+
+#include "command_line.hpp"
 
 namespace sinew::cli {
 
@@ -145,16 +146,14 @@ void print_left_out(const ArmScene& scene) {
   fmt::print("not taken into account: {}\n", fmt::join(scene.left_out, ", "));
 }
 
-void add_arm_scene_options(CLI::App& command, ArmSceneOptions& options) {
-  command.add_option("SCENE", options.file, "Scene file (YAML) with a body of type pcc")
-      ->required();
+void add_arm_scene_options(Command& command, ArmSceneOptions& options) {
+  command.add_option("SCENE", options.file, "Scene file (YAML) with a body of type pcc").required();
   command
       .add_option("--set", options.overrides,
                   "Set a value of the scene: bodies.arm.segments.0.mass=200g; may be repeated")
-      ->type_name("PATH=VALUE")
-      ->allow_extra_args(false);
-  command.add_option("--body", options.body, "Which arm (default: the only one)")
-      ->type_name("NAME");
+      .type_name("PATH=VALUE")
+      .allow_extra_args(false);
+  command.add_option("--body", options.body, "Which arm (default: the only one)").type_name("NAME");
 }
 
 }  // namespace sinew::cli

@@ -11,11 +11,9 @@
 #include "sinew/pcc/arm.hpp"
 #include "sinew/scene/description.hpp"
 
-namespace CLI {
-class App;
-}
-
 namespace sinew::cli {
+
+class Command;
 
 /// What the command line says about a scene with an arm.
 struct ArmSceneOptions {
@@ -48,6 +46,6 @@ void print_left_out(const ArmScene& scene);
 
 /// Adds SCENE, --set and --body to a command.
 /// @param command to add to. @param options to fill.
-void add_arm_scene_options(CLI::App& command, ArmSceneOptions& options);
+void add_arm_scene_options(Command& command, ArmSceneOptions& options);
 
 }  // namespace sinew::cli

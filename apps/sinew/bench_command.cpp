@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sinew/core/build_info.hpp"
+#include "sinew/mechanics/body.hpp"
 #include "sinew/mesh/write.hpp"
 
 #include "arguments.hpp"
@@ -210,25 +211,24 @@ int bench(const BenchOptions& options) {
 
 }  // namespace
 
-void add_bench(CLI::App& app, Actions& actions) {
-  CLI::App* command = app.add_subcommand("bench", "Time the stages of a step");
+void add_bench(CommandLine& line) {
+  Command command = line.add_command("bench", "Time the stages of a step");
   const auto options = std::make_shared<BenchOptions>();
   add_scene_options(*command, options->scene);
-  command->add_option("--steps", options->steps, "Steps that count (default: 300)")->type_name("N");
+  command.add_option("--steps", options->steps, "Steps that count (default: 300)").type_name("N");
   command
-      ->add_option("--warm-up", options->warm_up,
-                   "Steps before those (default: the targets' first turn, or 20)")
-      ->type_name("N");
-  command->add_option("--json", options->json, "Also write the figures to a file")
-      ->type_name("FILE");
-  command->add_option("--tangent", options->tangent, "exact or rotated (default: the scene's)")
-      ->type_name("NAME");
-  command->add_flag("--compare-eigen", options->compare_eigen,
-                    "Also time Eigen's SimplicialLDLT on the same matrix, on one thread");
-  command->footer(
+      .add_option("--warm-up", options->warm_up,
+                  "Steps before those (default: the targets' first turn, or 20)")
+      .type_name("N");
+  command.add_option("--json", options->json, "Also write the figures to a file").type_name("FILE");
+  command.add_option("--tangent", options->tangent, "exact or rotated (default: the scene's)")
+      .type_name("NAME");
+  command.add_flag("--compare-eigen", options->compare_eigen,
+                   "Also time Eigen's SimplicialLDLT on the same matrix, on one thread");
+  command.footer(
       "Example:\n"
       "  sinew bench trunk.yaml --steps 400 --threads 1 --compare-eigen --json bench.json");
-  actions[command] = [options] { return bench(*options); };
+  command.set_action([options] { return bench(*options); });
 }
 
 }  // namespace sinew::cli

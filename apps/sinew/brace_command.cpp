@@ -241,58 +241,57 @@ int find_and_carry_out(const BraceOptions& options) {
 
 }  // namespace
 
-void add_brace(CLI::App& app, Actions& actions) {
-  CLI::App* command =
-      app.add_subcommand("brace", "Lean an arm on what is around it, so that its tip is steadier");
+void add_brace(CommandLine& line) {
+  Command command =
+      line.add_command("brace", "Lean an arm on what is around it, so that its tip is steadier");
   const auto options = std::make_shared<BraceOptions>();
   options->scene.takes_contacts = true;  // its objects
   add_arm_scene_options(*command, options->scene);
-  command->add_option("--goal", options->goal, "Where the tip is to be: \"5 0 -53 cm\"")
-      ->required()
-      ->type_name("POINT");
+  command.add_option("--goal", options->goal, "Where the tip is to be: \"5 0 -53 cm\"")
+      .required()
+      .type_name("POINT");
   command
-      ->add_option("--friction", options->friction,
-                   "Of all objects: silicone-on-steel, coated-rigid, 0.6 or \"0.6 0.9\" (default: "
-                   "the scene's)")
-      ->type_name("MU");
-  command->add_option("--tolerance", options->tolerance, "Of the tip's distance (default: 5mm)")
-      ->type_name("LENGTH");
+      .add_option("--friction", options->friction,
+                  "Of all objects: silicone-on-steel, coated-rigid, 0.6 or \"0.6 0.9\" (default: "
+                  "the scene's)")
+      .type_name("MU");
+  command.add_option("--tolerance", options->tolerance, "Of the tip's distance (default: 5mm)")
+      .type_name("LENGTH");
   command
-      ->add_option("--hold-force", options->hold_force,
-                   "On the tip, under which the braced point is to stick (default: 0.04N)")
-      ->type_name("FORCE");
+      .add_option("--hold-force", options->hold_force,
+                  "On the tip, under which the braced point is to stick (default: 0.04N)")
+      .type_name("FORCE");
   command
-      ->add_option("--hold-frequency", options->hold_frequency,
-                   "Of that force at most (default: 2Hz)")
-      ->type_name("FREQUENCY");
+      .add_option("--hold-frequency", options->hold_frequency,
+                  "Of that force at most (default: 2Hz)")
+      .type_name("FREQUENCY");
   command
-      ->add_option("--segment", options->segments,
-                   "Brace this one, counted from 1 (default: the first that can be)")
-      ->type_name("N");
-  command->add_option("--starts", options->starts, "Of the search, a candidate (default: 2)")
-      ->type_name("N");
+      .add_option("--segment", options->segments,
+                  "Brace this one, counted from 1 (default: the first that can be)")
+      .type_name("N");
+  command.add_option("--starts", options->starts, "Of the search, a candidate (default: 2)")
+      .type_name("N");
   command
-      ->add_option("--disturbance", options->disturbance,
-                   "Random force on the tip, root mean square along each axis (default: 0.01N)")
-      ->type_name("FORCE");
-  command->add_option("--duration", options->hold, "Of being disturbed (default: 4s)")
-      ->type_name("TIME");
-  command->add_option("--disturbances", options->seeds, "How many are tried (default: 1)")
-      ->type_name("N");
-  command->add_option("--seed", options->seed, "Of the first one (default: 1)")->type_name("S");
-  command->add_option("--json", options->json, "Also write the figures to a file")
-      ->type_name("FILE");
-  command->add_option("-o,--out", options->out, "CSV file of the first run")->type_name("FILE");
+      .add_option("--disturbance", options->disturbance,
+                  "Random force on the tip, root mean square along each axis (default: 0.01N)")
+      .type_name("FORCE");
+  command.add_option("--duration", options->hold, "Of being disturbed (default: 4s)")
+      .type_name("TIME");
+  command.add_option("--disturbances", options->seeds, "How many are tried (default: 1)")
+      .type_name("N");
+  command.add_option("--seed", options->seed, "Of the first one (default: 1)").type_name("S");
+  command.add_option("--json", options->json, "Also write the figures to a file").type_name("FILE");
+  command.add_option("-o,--out", options->out, "CSV file of the first run").type_name("FILE");
   command
-      ->add_option("--plot", options->plot,
-                   "PNG file to draw poses, forces and the tip's error into")
-      ->type_name("FILE");
-  command->footer(
+      .add_option("--plot", options->plot,
+                  "PNG file to draw poses, forces and the tip's error into")
+      .type_name("FILE");
+  command.footer(
       "Example:\n"
       "  sinew brace examples/fluidic_arm/brace.yaml --goal \"5 0 -53 cm\" --disturbances 5 --plot "
       "brace.png\n"
       "Objects are the surfaces of the scene's contacts with the arm.");
-  actions[command] = [options] { return find_and_carry_out(*options); };
+  command.set_action([options] { return find_and_carry_out(*options); });
 }
 
 }  // namespace sinew::cli

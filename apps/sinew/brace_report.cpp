@@ -3,6 +3,7 @@
 #include <variant>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "sinew/core/csv.hpp"
 #include "sinew/pcc/arm_equations.hpp"

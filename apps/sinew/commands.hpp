@@ -3,35 +3,26 @@
 /// was chosen; what goes wrong is thrown as Error.
 #pragma once
 
-#include <functional>
-#include <map>
-#include <string>
-
-#include <CLI/CLI.hpp>
+#include "command_line.hpp"
 
 namespace sinew::cli {
 
-/// What a chosen command does; returns the exit code.
-using Action = std::function<int()>;
-/// Actions by command.
-using Actions = std::map<const CLI::App*, Action>;
-
 /// @name Commands
-/// @param app to add to. @param actions takes what the command does.
+/// @param line to add to.
 /// @{
-void add_run(CLI::App& app, Actions& actions);
-void add_bench(CLI::App& app, Actions& actions);
-void add_validate(CLI::App& app, Actions& actions);
-void add_info(CLI::App& app, Actions& actions);
-void add_mesh(CLI::App& app, Actions& actions);
-void add_view(CLI::App& app, Actions& actions);
-void add_schema(CLI::App& app, Actions& actions);
-void add_fit(CLI::App& app, Actions& actions);
-void add_reach(CLI::App& app, Actions& actions);
-void add_plan(CLI::App& app, Actions& actions);
-void add_brace(CLI::App& app, Actions& actions);
-void add_identify(CLI::App& app, Actions& actions);
-void add_plot(CLI::App& app, Actions& actions);
+void add_run(CommandLine& line);
+void add_bench(CommandLine& line);
+void add_validate(CommandLine& line);
+void add_info(CommandLine& line);
+void add_mesh(CommandLine& line);
+void add_view(CommandLine& line);
+void add_schema(CommandLine& line);
+void add_fit(CommandLine& line);
+void add_reach(CommandLine& line);
+void add_plan(CommandLine& line);
+void add_brace(CommandLine& line);
+void add_identify(CommandLine& line);
+void add_plot(CommandLine& line);
 /// @}
 
 }  // namespace sinew::cli

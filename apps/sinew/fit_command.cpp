@@ -178,36 +178,36 @@ int fit(const FitOptions& options) {
 
 }  // namespace
 
-void add_fit(CLI::App& app, Actions& actions) {
-  CLI::App* command =
-      app.add_subcommand("fit", "Fit a rubber's law to tensile, equibiaxial and planar tests");
+void add_fit(CommandLine& line) {
+  Command command =
+      line.add_command("fit", "Fit a rubber's law to tensile, equibiaxial and planar tests");
   const auto options = std::make_shared<FitOptions>();
   command
-      ->add_option("DATA", options->files,
-                   "Tables with named columns, a strain or stretch and a stress with its unit; "
-                   "FILE:uniaxial, FILE:equibiaxial or FILE:planar where the name does not say")
-      ->required();
-  command->add_option("--model", options->model,
-                      "neo-hookean, mooney-rivlin, yeoh1 to yeoh3, ogden1 to ogden6, arruda-boyce "
-                      "(default: ogden3; with --all the best supported)");
-  command->add_flag("--all", options->all, "Compare all models in one table");
-  command->add_option("--min-stretch", options->settings.least_stretch,
-                      "Leave out rows of a smaller stretch (default: 0)");
-  command->add_option("--max-stretch", options->settings.most_stretch,
-                      "Leave out rows of a larger stretch (default: none)");
-  command->add_option("--starts", options->settings.starts, "Random starts (default: 5)");
-  command->add_option("--seed", options->settings.seed, "Of the random starts");
-  command->add_flag("--mullins", options->settings.mullins,
-                    "Fit the softening on unloading, too; rows in the order measured");
-  command->add_option("--poisson-ratio", options->settings.poisson_ratio,
-                      "Of the material that is written (default: 0.49)");
-  command->add_option("-o,--out", options->out, "YAML file to write, for scenes");
-  command->add_option("--plot", options->plot, "PNG file to draw data, fit and residual into");
-  command->footer(
+      .add_option("DATA", options->files,
+                  "Tables with named columns, a strain or stretch and a stress with its unit; "
+                  "FILE:uniaxial, FILE:equibiaxial or FILE:planar where the name does not say")
+      .required();
+  command.add_option("--model", options->model,
+                     "neo-hookean, mooney-rivlin, yeoh1 to yeoh3, ogden1 to ogden6, arruda-boyce "
+                     "(default: ogden3; with --all the best supported)");
+  command.add_flag("--all", options->all, "Compare all models in one table");
+  command.add_option("--min-stretch", options->settings.least_stretch,
+                     "Leave out rows of a smaller stretch (default: 0)");
+  command.add_option("--max-stretch", options->settings.most_stretch,
+                     "Leave out rows of a larger stretch (default: none)");
+  command.add_option("--starts", options->settings.starts, "Random starts (default: 5)");
+  command.add_option("--seed", options->settings.seed, "Of the random starts");
+  command.add_flag("--mullins", options->settings.mullins,
+                   "Fit the softening on unloading, too; rows in the order measured");
+  command.add_option("--poisson-ratio", options->settings.poisson_ratio,
+                     "Of the material that is written (default: 0.49)");
+  command.add_option("-o,--out", options->out, "YAML file to write, for scenes");
+  command.add_option("--plot", options->plot, "PNG file to draw data, fit and residual into");
+  command.footer(
       "Examples:\n"
       "  sinew fit uniaxial.csv equibiaxial.csv --model ogden3 -o rubber.yaml --plot rubber.png\n"
       "  sinew fit tensile.csv --all --max-stretch 4");
-  actions[command] = [options] { return fit(*options); };
+  command.set_action([options] { return fit(*options); });
 }
 
 }  // namespace sinew::cli

@@ -279,60 +279,59 @@ int run_identify(const IdentifyOptions& options) {
 
 }  // namespace
 
-void add_identify(CLI::App& app, Actions& actions) {
-  CLI::App* command = app.add_subcommand(
-      "identify", "Fit an arm's masses, stiffness and damping to recorded motion");
+void add_identify(CommandLine& line) {
+  Command command =
+      line.add_command("identify", "Fit an arm's masses, stiffness and damping to recorded motion");
   const auto options = std::make_shared<IdentifyOptions>();
   add_arm_scene_options(*command, options->scene);
   command
-      ->add_option("RECORD", options->records,
-                   "Tables of motion: time [s], x_0 [mm], z_0 [mm], x_1 [mm] ..., and torque_0 "
-                   "[N m] or volume_0 [ml] ... of the scene's torques in their order")
-      ->required();
-  command->add_option("--fixed", options->fixed, "Known parameters: mass_1,stiffness")
-      ->delimiter(',')
-      ->type_name("NAMES")
-      ->allow_extra_args(false);
-  command->add_flag("--passive", options->passive,
-                    "Nothing drove the arm; inputs are not looked at");
-  command->add_flag("--moving", options->moving, "Records begin in motion, not at rest");
+      .add_option("RECORD", options->records,
+                  "Tables of motion: time [s], x_0 [mm], z_0 [mm], x_1 [mm] ..., and torque_0 "
+                  "[N m] or volume_0 [ml] ... of the scene's torques in their order")
+      .required();
+  command.add_option("--fixed", options->fixed, "Known parameters: mass_1,stiffness")
+      .delimiter(',')
+      .type_name("NAMES")
+      .allow_extra_args(false);
+  command.add_flag("--passive", options->passive,
+                   "Nothing drove the arm; inputs are not looked at");
+  command.add_flag("--moving", options->moving, "Records begin in motion, not at rest");
   command
-      ->add_option("--coefficient", options->coefficient,
-                   "With volumes: a first guess of c in torque = c volume^3, N m/m^9")
-      ->type_name("C");
-  command->add_option("--delay", options->delay, "With volumes: a first guess (default: 0s)")
-      ->type_name("TIME");
+      .add_option("--coefficient", options->coefficient,
+                  "With volumes: a first guess of c in torque = c volume^3, N m/m^9")
+      .type_name("C");
+  command.add_option("--delay", options->delay, "With volumes: a first guess (default: 0s)")
+      .type_name("TIME");
   command
-      ->add_option("--mass-spread", options->mass_spread,
-                   "How far masses may go from the scene's, as a share (default: 0.38)")
-      ->type_name("X");
+      .add_option("--mass-spread", options->mass_spread,
+                  "How far masses may go from the scene's, as a share (default: 0.38)")
+      .type_name("X");
   command
-      ->add_option("--stiffness-spread", options->stiffness_spread,
-                   "The same of the stiffness (default: 0.23)")
-      ->type_name("X");
-  command->add_option("--damping", options->damping, "Its bounds (default: \"1e-3 5e-3 N m s\")")
-      ->type_name("RANGE");
-  command->add_option("--time-step", options->time_step, "Of the simulation (default: 5ms)")
-      ->type_name("TIME");
-  command->add_option("--starts", options->starts, "Of the search; the rest random (default: 1)")
-      ->type_name("N");
-  command->add_option("--seed", options->seed, "Of the random starts (default: 1)")->type_name("S");
+      .add_option("--stiffness-spread", options->stiffness_spread,
+                  "The same of the stiffness (default: 0.23)")
+      .type_name("X");
+  command.add_option("--damping", options->damping, "Its bounds (default: \"1e-3 5e-3 N m s\")")
+      .type_name("RANGE");
+  command.add_option("--time-step", options->time_step, "Of the simulation (default: 5ms)")
+      .type_name("TIME");
+  command.add_option("--starts", options->starts, "Of the search; the rest random (default: 1)")
+      .type_name("N");
+  command.add_option("--seed", options->seed, "Of the random starts (default: 1)").type_name("S");
   command
-      ->add_option("--validate", options->validate,
-                   "A record to predict that is not fitted to; may be repeated")
-      ->type_name("RECORD")
-      ->allow_extra_args(false);
-  command->add_option("--json", options->json, "Also write the figures to a file")
-      ->type_name("FILE");
-  command->add_option("-o,--out", options->out, "YAML file: the scene with the identified arm")
-      ->type_name("FILE");
-  command->add_option("--plot", options->plot, "PNG file to draw measured and predicted ends into")
-      ->type_name("FILE");
-  command->footer(
+      .add_option("--validate", options->validate,
+                  "A record to predict that is not fitted to; may be repeated")
+      .type_name("RECORD")
+      .allow_extra_args(false);
+  command.add_option("--json", options->json, "Also write the figures to a file").type_name("FILE");
+  command.add_option("-o,--out", options->out, "YAML file: the scene with the identified arm")
+      .type_name("FILE");
+  command.add_option("--plot", options->plot, "PNG file to draw measured and predicted ends into")
+      .type_name("FILE");
+  command.footer(
       "Example:\n"
       "  sinew identify arm.yaml take_1.csv take_2.csv --fixed mass_1 --validate take_3.csv -o "
       "identified.yaml");
-  actions[command] = [options] { return run_identify(*options); };
+  command.set_action([options] { return run_identify(*options); });
 }
 
 }  // namespace sinew::cli

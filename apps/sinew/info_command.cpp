@@ -8,8 +8,14 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "sinew/constraint/cable.hpp"
+#include "sinew/constraint/cavity.hpp"
+#include "sinew/constraint/contact.hpp"
+#include "sinew/constraint/probe.hpp"
 #include "sinew/core/quantity.hpp"
 #include "sinew/fem/element_count.hpp"
+#include "sinew/fem/fem_body_model.hpp"
+#include "sinew/mechanics/body.hpp"
 #include "sinew/mesh/read.hpp"
 #include "sinew/mesh/report.hpp"
 #include "sinew/mesh/surface.hpp"
@@ -332,19 +338,19 @@ int info(const InfoOptions& options) {
 
 }  // namespace
 
-void add_info(CLI::App& app, Actions& actions) {
-  CLI::App* command =
-      app.add_subcommand("info", "Describe a mesh, surface, scene, recorded run or saved state");
+void add_info(CommandLine& line) {
+  Command command =
+      line.add_command("info", "Describe a mesh, surface, scene, recorded run or saved state");
   const auto options = std::make_shared<InfoOptions>();
-  command->add_option("FILE", options->file, "The file")->required();
-  command->add_option("--unit", options->unit, "Unit of a mesh's lengths: mm")->type_name("UNIT");
-  command->add_flag("--json", options->json, "As JSON, in SI units");
-  command->footer(
+  command.add_option("FILE", options->file, "The file").required();
+  command.add_option("--unit", options->unit, "Unit of a mesh's lengths: mm").type_name("UNIT");
+  command.add_flag("--json", options->json, "As JSON, in SI units");
+  command.footer(
       "A mesh with defects is described, not refused.\n\n"
       "Examples:\n"
       "  sinew info finger.vtk --unit mm\n"
       "  sinew info out/trunk/run.h5 --json");
-  actions[command] = [options] { return info(*options); };
+  command.set_action([options] { return info(*options); });
 }
 
 }  // namespace sinew::cli

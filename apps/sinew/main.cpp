@@ -40,34 +40,23 @@ int report(const Error& error) {
 }
 
 int run(int argc, const char* const* argv) {
-  CLI::App app("Simulates soft robots and steers them in real time.", "sinew");
-  app.set_version_flag("--version",
-                       fmt::format("sinew {} ({}, {})", version(), compiler(), instruction_set()));
-  app.footer(kExamples);
-  app.require_subcommand(0, 1);
-  cli::Actions actions;
-  cli::add_run(app, actions);
-  cli::add_view(app, actions);
-  cli::add_bench(app, actions);
-  cli::add_validate(app, actions);
-  cli::add_info(app, actions);
-  cli::add_mesh(app, actions);
-  cli::add_fit(app, actions);
-  cli::add_identify(app, actions);
-  cli::add_reach(app, actions);
-  cli::add_plan(app, actions);
-  cli::add_brace(app, actions);
-  cli::add_plot(app, actions);
-  cli::add_schema(app, actions);
-  try {
-    cli::require_command(app, argc, argv);
-    app.parse(argc, argv);
-  } catch (const CLI::Success& asked) {  // --help, --version
-    return app.exit(asked);
-  } catch (const CLI::ParseError& problem) {
-    throw cli::argument_error(app, problem);
-  }
-  return actions.at(app.get_subcommands().front())();
+  cli::CommandLine line("Simulates soft robots and steers them in real time.",
+                        fmt::format("sinew {} ({}, {})", version(), compiler(), instruction_set()),
+                        kExamples);
+  cli::add_run(line);
+  cli::add_view(line);
+  cli::add_bench(line);
+  cli::add_validate(line);
+  cli::add_info(line);
+  cli::add_mesh(line);
+  cli::add_fit(line);
+  cli::add_identify(line);
+  cli::add_reach(line);
+  cli::add_plan(line);
+  cli::add_brace(line);
+  cli::add_plot(line);
+  cli::add_schema(line);
+  return line.run(argc, argv);
 }
 
 }  // namespace

@@ -77,29 +77,29 @@ int make(const MeshOptions& options) {
 
 }  // namespace
 
-void add_mesh(CLI::App& app, Actions& actions) {
-  CLI::App* command = app.add_subcommand("mesh", "Fill a surface with tetrahedra, or make a shape");
+void add_mesh(CommandLine& line) {
+  Command command = line.add_command("mesh", "Fill a surface with tetrahedra, or make a shape");
   const auto options = std::make_shared<MeshOptions>();
-  command->add_option("SURFACE", options->surface, "Closed surface: STL, OBJ or PLY");
-  command->add_option(
+  command.add_option("SURFACE", options->surface, "Closed surface: STL, OBJ or PLY");
+  command.add_option(
       "--shape", options->shape,
       "Make block, cylinder, cone, hollow-cylinder, chambered-cylinder or trunk instead");
   command
-      ->add_option("-o,--out", options->out,
-                   "File to write: .vtu, .vtk, or .stl for the surface alone")
-      ->required()
-      ->type_name("FILE");
-  command->add_option("--size", options->size, "Wanted edge length: 5mm")->type_name("LENGTH");
-  command->add_option("--unit", options->unit, "Unit of the surface file: mm")->type_name("UNIT");
-  command->add_option("--refine", options->refine, "Cut every tetrahedron in eight, N times")
-      ->type_name("N");
-  command->add_option("--gmsh", options->gmsh, "The Gmsh program that fills surfaces")
-      ->type_name("PROGRAM");
-  command->footer(
+      .add_option("-o,--out", options->out,
+                  "File to write: .vtu, .vtk, or .stl for the surface alone")
+      .required()
+      .type_name("FILE");
+  command.add_option("--size", options->size, "Wanted edge length: 5mm").type_name("LENGTH");
+  command.add_option("--unit", options->unit, "Unit of the surface file: mm").type_name("UNIT");
+  command.add_option("--refine", options->refine, "Cut every tetrahedron in eight, N times")
+      .type_name("N");
+  command.add_option("--gmsh", options->gmsh, "The Gmsh program that fills surfaces")
+      .type_name("PROGRAM");
+  command.footer(
       "Examples:\n"
       "  sinew mesh finger.stl --unit mm --size 5mm -o finger.vtu\n"
       "  sinew mesh --shape trunk -o trunk.vtu");
-  actions[command] = [options] { return make(*options); };
+  command.set_action([options] { return make(*options); });
 }
 
 }  // namespace sinew::cli

@@ -13,16 +13,15 @@ namespace sinew::cli {
 
 namespace {
 
-void add_missing(CLI::App& app, Actions& actions, const char* name, const char* part,
-                 const char* option, const char* library) {
-  CLI::App* command =
-      app.add_subcommand(name, fmt::format("Not in this build, which has no {}", part));
-  command->allow_extras();
-  actions[command] = [=]() -> int {
+void add_missing(CommandLine& line, const char* name, const char* part, const char* option,
+                 const char* library) {
+  Command command = line.add_command(name, fmt::format("Not in this build, which has no {}", part));
+  command.allow_extras();
+  command.set_action([=]() -> int {
     throw Error(ErrorKind::tool_missing, {.item = name},
                 fmt::format("this program was built without {}", part),
                 fmt::format("install {} and configure the build with -D {}=ON", library, option));
-  };
+  });
 }
 
 }  // namespace
@@ -30,24 +29,18 @@ void add_missing(CLI::App& app, Actions& actions, const char* name, const char* 
 #endif
 
 #ifndef SINEW_HAS_IDENTIFY
-void add_fit(CLI::App& app, Actions& actions) {
-  add_missing(app, actions, "fit", "identification", "SINEW_IDENTIFY", "Ceres");
+void add_fit(CommandLine& line) {
+  add_missing(line, "fit", "identification", "SINEW_IDENTIFY", "Ceres");
 }
-void add_identify(CLI::App& app, Actions& actions) {
-  add_missing(app, actions, "identify", "identification", "SINEW_IDENTIFY", "Ceres");
+void add_identify(CommandLine& line) {
+  add_missing(line, "identify", "identification", "SINEW_IDENTIFY", "Ceres");
 }
 #endif
 
 #ifndef SINEW_HAS_PLAN
-void add_reach(CLI::App& app, Actions& actions) {
-  add_missing(app, actions, "reach", "planning", "SINEW_PLAN", "Ipopt");
-}
-void add_plan(CLI::App& app, Actions& actions) {
-  add_missing(app, actions, "plan", "planning", "SINEW_PLAN", "Ipopt");
-}
-void add_brace(CLI::App& app, Actions& actions) {
-  add_missing(app, actions, "brace", "planning", "SINEW_PLAN", "Ipopt");
-}
+void add_reach(CommandLine& line) { add_missing(line, "reach", "planning", "SINEW_PLAN", "Ipopt"); }
+void add_plan(CommandLine& line) { add_missing(line, "plan", "planning", "SINEW_PLAN", "Ipopt"); }
+void add_brace(CommandLine& line) { add_missing(line, "brace", "planning", "SINEW_PLAN", "Ipopt"); }
 #endif
 
 }  // namespace sinew::cli

@@ -275,47 +275,46 @@ int make_plan(const PlanOptions& options) {
 
 }  // namespace
 
-void add_plan(CLI::App& app, Actions& actions) {
-  CLI::App* command = app.add_subcommand("plan", "Plan torques that bring an arm's tip to a goal");
+void add_plan(CommandLine& line) {
+  Command command = line.add_command("plan", "Plan torques that bring an arm's tip to a goal");
   const auto options = std::make_shared<PlanOptions>();
   add_arm_scene_options(*command, options->scene);
-  command->add_option("--goal", options->goal, "Where the tip is to be: \"20 0 -40 cm\"")
-      ->required()
-      ->type_name("POINT");
-  command->add_option("--duration", options->duration, "Of the motion (default: 1.6s)")
-      ->type_name("TIME");
-  command->add_flag("--free-duration", options->free_duration,
-                    "Let it be chosen, from half of that to twice that");
+  command.add_option("--goal", options->goal, "Where the tip is to be: \"20 0 -40 cm\"")
+      .required()
+      .type_name("POINT");
+  command.add_option("--duration", options->duration, "Of the motion (default: 1.6s)")
+      .type_name("TIME");
+  command.add_flag("--free-duration", options->free_duration,
+                   "Let it be chosen, from half of that to twice that");
   command
-      ->add_option("--rate-limit", options->rate_limit,
-                   "Of every torque, beside the scene's own: 2Nm/s")
-      ->type_name("RATE");
-  command->add_option("--tolerance", options->tolerance, "Of the tip's distance (default: 2mm)")
-      ->type_name("LENGTH");
+      .add_option("--rate-limit", options->rate_limit,
+                  "Of every torque, beside the scene's own: 2Nm/s")
+      .type_name("RATE");
+  command.add_option("--tolerance", options->tolerance, "Of the tip's distance (default: 2mm)")
+      .type_name("LENGTH");
   command
-      ->add_option("--speed-tolerance", options->speed_tolerance,
-                   "Of the tip's speed at the end (default: 5mm/s)")
-      ->type_name("SPEED");
-  command->add_option("--method", options->method, "radau or backward-euler (default: radau)")
-      ->type_name("NAME");
+      .add_option("--speed-tolerance", options->speed_tolerance,
+                  "Of the tip's speed at the end (default: 5mm/s)")
+      .type_name("SPEED");
+  command.add_option("--method", options->method, "radau or backward-euler (default: radau)")
+      .type_name("NAME");
   command
-      ->add_option("--intervals", options->intervals, "Between knots, to begin with (default: 50)")
-      ->type_name("N");
-  command->add_option("--seeds", options->seeds, "Random starts; the cheapest plan is kept (1)")
-      ->type_name("N");
-  command->add_option("--seed", options->seed, "Of the first start (default: 1)")->type_name("S");
-  command->add_option("--json", options->json, "Also write the figures to a file")
-      ->type_name("FILE");
-  command->add_option("-o,--out", options->out, "CSV file of times and torques, for scenes")
-      ->type_name("FILE");
-  command->add_option("--plot", options->plot, "PNG file to draw torques and the tip's path into")
-      ->type_name("FILE");
-  command->footer(
+      .add_option("--intervals", options->intervals, "Between knots, to begin with (default: 50)")
+      .type_name("N");
+  command.add_option("--seeds", options->seeds, "Random starts; the cheapest plan is kept (1)")
+      .type_name("N");
+  command.add_option("--seed", options->seed, "Of the first start (default: 1)").type_name("S");
+  command.add_option("--json", options->json, "Also write the figures to a file").type_name("FILE");
+  command.add_option("-o,--out", options->out, "CSV file of times and torques, for scenes")
+      .type_name("FILE");
+  command.add_option("--plot", options->plot, "PNG file to draw torques and the tip's path into")
+      .type_name("FILE");
+  command.footer(
       "Example:\n"
       "  sinew plan examples/fluidic_arm/arm.yaml --goal \"20 0 -40 cm\" --rate-limit 2Nm/s -o "
       "plan.csv\n"
       "The actuators of type torque drive it, within their limits.");
-  actions[command] = [options] { return make_plan(*options); };
+  command.set_action([options] { return make_plan(*options); });
 }
 
 }  // namespace sinew::cli

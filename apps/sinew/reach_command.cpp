@@ -183,33 +183,31 @@ int reach(const ReachOptions& options) {
 
 }  // namespace
 
-void add_reach(CLI::App& app, Actions& actions) {
-  CLI::App* command =
-      app.add_subcommand("reach", "Find where an arm's tip can be held at rest, and where not");
+void add_reach(CommandLine& line) {
+  Command command =
+      line.add_command("reach", "Find where an arm's tip can be held at rest, and where not");
   const auto options = std::make_shared<ReachOptions>();
   add_arm_scene_options(*command, options->scene);
-  command->add_option("--samples", options->samples, "Random torques to try (default: 1000)")
-      ->type_name("N");
-  command->add_option("--seed", options->seed, "Of the random torques (default: 1)")
-      ->type_name("S");
+  command.add_option("--samples", options->samples, "Random torques to try (default: 1000)")
+      .type_name("N");
+  command.add_option("--seed", options->seed, "Of the random torques (default: 1)").type_name("S");
   command
-      ->add_option("--goal", options->goals,
-                   "Find the nearest equilibrium to it, and prove that there is none near it: "
-                   "\"20 0 -40 cm\"; may be repeated")
-      ->type_name("POINT")
-      ->allow_extra_args(false);
-  command->add_option("--json", options->json, "Also write the figures to a file")
-      ->type_name("FILE");
-  command->add_option("-o,--out", options->out, "CSV file of tips, angles and torques")
-      ->type_name("FILE");
-  command->add_option("--plot", options->plot, "PNG file to draw the reachable points into")
-      ->type_name("FILE");
-  command->footer(
+      .add_option("--goal", options->goals,
+                  "Find the nearest equilibrium to it, and prove that there is none near it: "
+                  "\"20 0 -40 cm\"; may be repeated")
+      .type_name("POINT")
+      .allow_extra_args(false);
+  command.add_option("--json", options->json, "Also write the figures to a file").type_name("FILE");
+  command.add_option("-o,--out", options->out, "CSV file of tips, angles and torques")
+      .type_name("FILE");
+  command.add_option("--plot", options->plot, "PNG file to draw the reachable points into")
+      .type_name("FILE");
+  command.footer(
       "Example:\n"
       "  sinew reach examples/fluidic_arm/arm.yaml --goal \"20 0 -40 cm\" --plot reach.png\n"
       "Torques act within the limits of the scene's actuators of type torque; other segments have "
       "none.");
-  actions[command] = [options] { return reach(*options); };
+  command.set_action([options] { return reach(*options); });
 }
 
 }  // namespace sinew::cli

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "sinew/constraint/effector.hpp"
 #include "sinew/fem/element_count.hpp"
 #include "sinew/record/run_recorder.hpp"
 #include "sinew/record/run_table.hpp"
@@ -199,23 +200,23 @@ int run(const RunOptions& options) {
 
 }  // namespace
 
-void add_run(CLI::App& app, Actions& actions) {
-  CLI::App* command = app.add_subcommand("run", "Run a scene and record it");
+void add_run(CommandLine& line) {
+  Command command = line.add_command("run", "Run a scene and record it");
   const auto options = std::make_shared<RunOptions>();
   add_scene_options(*command, options->scene);
   command
-      ->add_option(
+      .add_option(
           "--duration", options->duration,
           "How long to simulate: 5s (default: the scene's duration, or its signals' length)")
-      ->type_name("TIME");
-  command->add_option("--out", options->out, "Folder for the record (default: out/<scene name>)")
-      ->type_name("DIR");
-  command->add_flag("--vtk", options->vtk, "Also write a series for ParaView, run.pvd");
-  command->add_flag("--keep-going", options->keep_going,
-                    "End with 0 although steps were flagged: out of equilibrium, gaining energy, "
-                    "cut back, or short of their commands");
-  command->add_flag("--quiet", options->quiet, "No progress bar and no summary");
-  command->footer(
+      .type_name("TIME");
+  command.add_option("--out", options->out, "Folder for the record (default: out/<scene name>)")
+      .type_name("DIR");
+  command.add_flag("--vtk", options->vtk, "Also write a series for ParaView, run.pvd");
+  command.add_flag("--keep-going", options->keep_going,
+                   "End with 0 although steps were flagged: out of equilibrium, gaining energy, "
+                   "cut back, or short of their commands");
+  command.add_flag("--quiet", options->quiet, "No progress bar and no summary");
+  command.footer(
       "Writes DIR/run.csv, DIR/run.h5 and DIR/scene.yaml. Ctrl-C ends the run; what was recorded "
       "is\n"
       "then complete and readable.\n\n"
@@ -223,7 +224,7 @@ void add_run(CLI::App& app, Actions& actions) {
       "  sinew run trunk.yaml\n"
       "  sinew run trunk.yaml --duration 5s --set actuators.long_0.command.displacement=10mm\n"
       "  sinew run trunk.yaml --out results/first --vtk");
-  actions[command] = [options] { return run(*options); };
+  command.set_action([options] { return run(*options); });
 }
 
 }  // namespace sinew::cli

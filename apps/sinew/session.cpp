@@ -2,12 +2,12 @@
 
 #include <algorithm>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "sinew/scene/scene.hpp"
 
 #include "arguments.hpp"
+#include "command_line.hpp"
 #include "terminal.hpp"
 
 namespace sinew::cli {
@@ -77,20 +77,20 @@ std::string Session::resolved_scene() const {
   return scene::to_yaml(tree);
 }
 
-void add_scene_options(CLI::App& command, SceneOptions& options, bool optional) {
-  command.add_option("SCENE", options.file, "Scene file (YAML)")->required(!optional);
+void add_scene_options(Command& command, SceneOptions& options, bool optional) {
+  command.add_option("SCENE", options.file, "Scene file (YAML)").required(!optional);
   command
       .add_option("--set", options.overrides,
                   "Set a value of the scene: actuators.long_0.command.displacement=10mm; may be "
                   "repeated")
-      ->type_name("PATH=VALUE")
-      ->allow_extra_args(false);
+      .type_name("PATH=VALUE")
+      .allow_extra_args(false);
   command.add_option("--threads", options.threads, "Threads inside a step (default: the scene's)")
-      ->type_name("N");
+      .type_name("N");
   command
       .add_option("--controller", options.controller,
                   "Controller to attach, or none (default: the scene's first)")
-      ->type_name("NAME");
+      .type_name("NAME");
 }
 
 }  // namespace sinew::cli

@@ -12,11 +12,9 @@
 #include "sinew/scene/build.hpp"
 #include "sinew/sim/simulation.hpp"
 
-namespace CLI {
-class App;
-}
-
 namespace sinew::cli {
+
+class Command;
 
 /// What the command line says about a scene.
 struct SceneOptions {
@@ -70,6 +68,6 @@ class Session {
 /// Adds SCENE (which must be given unless `optional`), --set, --threads and --controller to a
 /// command.
 /// @param command to add to. @param options to fill.
-void add_scene_options(CLI::App& command, SceneOptions& options, bool optional = false);
+void add_scene_options(Command& command, SceneOptions& options, bool optional = false);
 
 }  // namespace sinew::cli

@@ -56,38 +56,37 @@ int validate(const std::vector<std::string>& cases) {
               "install Python: apt-get install python3 python3-numpy python3-matplotlib");
 }
 
-void add_page(CLI::App& app, Actions& actions, const char* name, const char* description,
-              std::string (*page)()) {
-  CLI::App* command = app.add_subcommand(name, description);
-  actions[command] = [page] {
+Command add_page(CommandLine& line, const char* name, const char* description,
+                 std::string (*page)()) {
+  Command command = line.add_command(name, description);
+  command.set_action([page] {
     const std::string text = page();
     const bool written =
         std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
     return written ? 0 : 1;
-  };
+  });
+  return command;
 }
 
 }  // namespace
 
-void add_schema(CLI::App& app, Actions& actions) {
-  add_page(app, actions, "schema", "Print the JSON Schema of scene files, for editors",
-           scene::json_schema);
-  add_page(app, actions, "reference", "", scene::reference_page);
-  app.get_subcommand("reference")->group("");
+void add_schema(CommandLine& line) {
+  add_page(line, "schema", "Print the JSON Schema of scene files, for editors", scene::json_schema);
+  add_page(line, "reference", "", scene::reference_page).hide();
 }
 
-void add_validate(CLI::App& app, Actions& actions) {
-  CLI::App* command =
-      app.add_subcommand("validate", "Compare Sinew's numbers with references: docs/scorecard.md");
+void add_validate(CommandLine& line) {
+  Command command =
+      line.add_command("validate", "Compare Sinew's numbers with references: docs/scorecard.md");
   const auto cases = std::make_shared<std::vector<std::string>>();
-  command->add_option("CASE", *cases, "Cases to run (default: all)");
-  command->allow_extras();  // options of the script itself: --list
-  command->footer("Example:\n  sinew validate --list");
-  actions[command] = [cases, command] {
+  command.add_option("CASE", *cases, "Cases to run (default: all)");
+  command.allow_extras();  // options of the script itself: --list
+  command.footer("Example:\n  sinew validate --list");
+  command.set_action([cases, command] {
     std::vector<std::string> all = *cases;
-    for (const std::string& word : command->remaining()) all.push_back(word);
+    for (const std::string& word : command.remaining()) all.push_back(word);
     return validate(all);
-  };
+  });
 }
 
 }  // namespace sinew::cli

@@ -94,28 +94,27 @@ int view(const ViewOptions&) {
 
 }  // namespace
 
-void add_view(CLI::App& app, Actions& actions) {
-  CLI::App* command = app.add_subcommand(
+void add_view(CommandLine& line) {
+  Command command = line.add_command(
       "view", "See a scene run in the browser and drive it, or replay a recorded run");
   const auto options = std::make_shared<ViewOptions>();
   add_scene_options(*command, options->scene, true);
   command
-      ->add_option("--port", options->port,
-                   "Port to listen on; 0: any that is free (default: 8080 or the next free one)")
-      ->type_name("N");
+      .add_option("--port", options->port,
+                  "Port to listen on; 0: any that is free (default: 8080 or the next free one)")
+      .type_name("N");
   command
-      ->add_option(
-          "--host", options->host,
-          "Address to listen on (default: 127.0.0.1, this machine alone). Another one asks "
-          "browsers for the token in the printed URL")
-      ->type_name("ADDRESS");
+      .add_option("--host", options->host,
+                  "Address to listen on (default: 127.0.0.1, this machine alone). Another one asks "
+                  "browsers for the token in the printed URL")
+      .type_name("ADDRESS");
   command
-      ->add_option("--speed", options->speed,
-                   "Simulated seconds a second; 0: as fast as it can (default: 1)")
-      ->type_name("X");
-  command->add_flag("--paused", options->paused, "Start paused");
-  command->add_flag("--no-open", options->no_open, "Do not open a browser");
-  command->footer(
+      .add_option("--speed", options->speed,
+                  "Simulated seconds a second; 0: as fast as it can (default: 1)")
+      .type_name("X");
+  command.add_flag("--paused", options->paused, "Start paused");
+  command.add_flag("--no-open", options->no_open, "Do not open a browser");
+  command.footer(
       "Without SCENE the examples are shown, to choose one. SCENE may also be the folder of a run\n"
       "that 'sinew run' recorded.\n\n"
       "Examples:\n"
@@ -123,7 +122,7 @@ void add_view(CLI::App& app, Actions& actions) {
       "  sinew view examples/trunk/circle.yaml\n"
       "  sinew view trunk.yaml --controller none --paused\n"
       "  sinew view out/circle");
-  actions[command] = [options] { return view(*options); };
+  command.set_action([options] { return view(*options); });
 }
 
 }  // namespace sinew::cli

@@ -4,8 +4,13 @@
 
 #include <fmt/format.h>
 
+#include "sinew/constraint/cable.hpp"
+#include "sinew/constraint/cavity.hpp"
+#include "sinew/constraint/placement.hpp"
+
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "session.hpp"
 
 namespace sinew::python {
 

@@ -2,12 +2,14 @@
 
 #include "sinew/fem/assembly.hpp"
 #include "sinew/fem/element_count.hpp"
+#include "sinew/mechanics/body.hpp"
 #include "sinew/mesh/self_touch.hpp"
 #include "sinew/pcc/arm_body.hpp"
 
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "pcc_arm.hpp"
+#include "session.hpp"
 
 namespace sinew::python {
 

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include "sinew/constraint/effector.hpp"
+
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "session.hpp"
 
 namespace sinew::python {
 

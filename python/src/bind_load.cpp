@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "bindings.hpp"
+#include "session.hpp"
 
 namespace sinew::python {
 

@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 
+#include "sinew/mechanics/body.hpp"
+
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "session.hpp"
 
 namespace sinew::python {
 

@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 
+#include "sinew/constraint/probe.hpp"
+
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "session.hpp"
 
 namespace sinew::python {
 

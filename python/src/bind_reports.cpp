@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include "sinew/sim/simulation.hpp"
+
 #include "arrays.hpp"
 #include "bindings.hpp"
 

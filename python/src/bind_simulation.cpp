@@ -1,10 +1,13 @@
 #include <fmt/format.h>
 
+#include "sinew/constraint/probe.hpp"
+#include "sinew/mechanics/body.hpp"
 #include "sinew/scene/scene.hpp"
 
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "errors.hpp"
+#include "session.hpp"
 #include "tree.hpp"
 
 namespace sinew::python {

@@ -8,6 +8,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "errors.hpp"
+#include "session.hpp"
 
 #ifdef SINEW_HAS_VIEWER
 #include "viewer/browser.hpp"

@@ -3,6 +3,7 @@
 /// "name($self, ...)\n--\n\n", from which Python's inspect and help() take the signature.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -10,11 +11,20 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include "session.hpp"
+namespace sinew::inverse {
+class Target;
+}  // namespace sinew::inverse
+
+namespace sinew::sim {
+class Signal;
+}  // namespace sinew::sim
 
 namespace sinew::python {
 
 namespace py = pybind11;
+
+class Session;
+struct AttachedController;
 
 void bind_signals(py::module_& module);
 void bind_targets(py::module_& module);

@@ -8,9 +8,14 @@
 
 #include <fmt/format.h>
 
+#include "sinew/constraint/effector.hpp"
+#include "sinew/constraint/probe.hpp"
+#include "sinew/mechanics/body.hpp"
+
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "errors.hpp"
+#include "session.hpp"
 
 namespace sinew::python {
 

@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <pybind11/pybind11.h>
 
+#include "sinew/constraint/effector.hpp"
+#include "sinew/mechanics/body.hpp"
 #include "sinew/sim/state_io.hpp"
 
 #include "errors.hpp"

@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/fem/fem_body_model.hpp"
+#include "sinew/mechanics/body.hpp"
+
 #include "../sim/chambers.hpp"
 #include "support/error_kind.hpp"
 

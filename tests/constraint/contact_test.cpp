@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/constraint/effector.hpp"
+#include "sinew/constraint/placement.hpp"
 #include "sinew/core/error.hpp"
 
 #include "../sim/robots.hpp"

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
+#include "sinew/linalg/dense.hpp"
 #include "sinew/pcc/excitation.hpp"
 
 #include "arm_records.hpp"
@@ -139,8 +139,8 @@ TEST(ArmFit, IntervalsHoldTheTruthAsOftenAsTheySay) {
     const MatrixX covariance = fit.fit.covariance(free, free);
     const VectorX unit = covariance.diagonal().cwiseSqrt().cwiseInverse();
     const VectorX scaled = unit.asDiagonal() * error;
-    distance +=
-        scaled.dot((unit.asDiagonal() * covariance * unit.asDiagonal()).llt().solve(scaled));
+    distance += scaled.dot(VectorX(
+        linalg::solve_symmetric(unit.asDiagonal() * covariance * unit.asDiagonal(), scaled)));
   }
   EXPECT_EQ(all, 5 * kSeeds);
   EXPECT_GE(inside, 87);  // 95 expected

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/constraint/cable.hpp"
 #include "sinew/core/error.hpp"
 
 #include "../sim/robots.hpp"

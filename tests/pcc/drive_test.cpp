@@ -1,4 +1,5 @@
 // Fluidic actuators, drive cylinders and the signals that excite them.
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -58,6 +59,46 @@ TEST(DriveCylinder, FollowsTheStepResponseOfASecondOrderSystem) {
   }
   EXPECT_NEAR(cylinder.gain(), gain, 1e-12);
   EXPECT_NEAR(cylinder.spectral_radius(), std::exp(-zeta * w * h), 1e-12);
+}
+
+/// exp(a) by its series of a / 2^k, squared k times.
+Matrix3 exponential(const Matrix3& a) {
+  const int halvings = std::max(0, static_cast<int>(std::ceil(std::log2(a.norm()))) + 1);
+  const Matrix3 small = a / std::pow(2.0, halvings);
+  Matrix3 result = Matrix3::Identity(), term = Matrix3::Identity();
+  for (int k = 1; k < 24; ++k) {
+    term = term * small / k;
+    result += term;
+  }
+  for (int k = 0; k < halvings; ++k) result = result * result;
+  return result;
+}
+
+// exp of [F G; 0 0] h is [A B; 0 1] (Van Loan, IEEE Trans. Automatic Control 23, 1978).
+TEST(DriveCylinder, IsTheMatrixExponentialForAnyDamping) {
+  const double w = 15.0, h = 0.02;
+  constexpr double kSquarings = 1e-13;  // rounding of the reference, doubled five times
+  for (const double zeta : {0.0, 0.4, 1.0 - 1e-9, 1.0, 1.0 + 1e-9, 3.0, 20.0}) {
+    const auto cylinder = DriveCylinder::second_order(1.0, w, zeta, h);
+    Matrix3 continuous = Matrix3::Zero();
+    continuous.topRows<2>() << 0.0, w, 0.0, -w, -2.0 * zeta * w, w;
+    const Matrix3 held = exponential(h * continuous);
+    EXPECT_LT((cylinder.a - held.topLeftCorner<2, 2>()).norm(), kSquarings) << zeta;
+    EXPECT_LT((cylinder.b - held.topRightCorner<2, 1>()).norm(), kSquarings) << zeta;
+  }
+  // A mode that has died out leaves zeros, not infinity times zero.
+  const auto stiff = DriveCylinder::second_order(1.0, 1e3, 1e3, 1.0);
+  EXPECT_TRUE(stiff.a.allFinite());
+  EXPECT_NEAR(stiff.a(0, 0), std::exp(-0.5), 1e-6);
+}
+
+TEST(DriveCylinder, TellsTheSpectralRadiusOfAnyMatrix) {
+  DriveCylinder cylinder;
+  cylinder.a << 0.5, 0.2, 0.1, -0.7;  // -0.1 -+ sqrt(0.6^2 + 0.2 * 0.1)
+  const double root = std::sqrt(0.6 * 0.6 + 0.2 * 0.1);
+  EXPECT_NEAR(cylinder.spectral_radius(), 0.1 + root, 1e-15);
+  cylinder.a << 0.3, -0.8, 0.5, 0.3;  // 0.3 -+ i sqrt(0.4)
+  EXPECT_NEAR(cylinder.spectral_radius(), std::hypot(0.3, std::sqrt(0.4)), 1e-15);
 }
 
 TEST(DriveCylinder, KeepsItsLimits) {

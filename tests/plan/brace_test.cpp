@@ -2,16 +2,14 @@
 #include "sinew/plan/brace.hpp"
 
 #include <cmath>
-#include <complex>
 #include <numbers>
 #include <random>
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
-#include <Eigen/SVD>
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/linalg/dense.hpp"
 #include "sinew/plan/brace_program.hpp"
 #include "sinew/plan/brace_response.hpp"
 #include "sinew/plan/brace_run.hpp"
@@ -185,27 +183,34 @@ TEST(Brace, AnswersForcesOnTheTip) {
   of.tip = root.bottomRows(3);
   const Vector3 normal = Vector3(0.3, -0.2, 0.9).normalized();
   const double friction = 0.6;
-  using Complex = std::complex<double>;
   for (const double frequency : {0.0, 3.0}) {
     double gain = 0.0, compliance = 0.0, rest = 0.0;
     for (int k = 0; k <= 512; ++k) {
       const double omega = 2.0 * std::numbers::pi * frequency * k / 512.0;
-      Eigen::MatrixXcd saddle = Eigen::MatrixXcd::Zero(n + 3, n + 3);
-      saddle.topLeftCorner(n, n) = (of.stiffness - omega * omega * of.mass).cast<Complex>() +
-                                   Complex(0.0, omega) * of.damping;
-      saddle.topRightCorner(n, 3) = -of.held.transpose().cast<Complex>();
-      saddle.bottomLeftCorner(3, n) = of.held.cast<Complex>();
-      Eigen::MatrixXcd load = Eigen::MatrixXcd::Zero(n + 3, 3);
-      load.topRows(n) = of.tip.transpose().cast<Complex>();
-      const Eigen::MatrixXcd answer = saddle.partialPivLu().solve(load);
-      const Eigen::MatrixXcd moved = of.tip.cast<Complex>() * answer.topRows(n);
-      compliance = std::max(compliance, Eigen::JacobiSVD(moved).singularValues()[0]);
+      // Unknowns: real and imaginary motions, then real and imaginary forces.
+      MatrixX saddle = MatrixX::Zero(2 * n + 6, 2 * n + 6);
+      const MatrixX in_phase = of.stiffness - omega * omega * of.mass, lag = omega * of.damping;
+      saddle.topLeftCorner(2 * n, 2 * n) << in_phase, -lag, lag, in_phase;
+      for (const int part : {0, 1}) {
+        saddle.block(part * n, 2 * n + 3 * part, n, 3) = -of.held.transpose();
+        saddle.block(2 * n + 3 * part, part * n, 3, n) = of.held;
+      }
+      MatrixX load = MatrixX::Zero(2 * n + 6, 3);
+      load.topRows(n) = of.tip.transpose();
+      const MatrixX answer = linalg::solve(saddle, load);
+      const MatrixX real = of.tip * answer.topRows(n), imaginary = of.tip * answer.middleRows(n, n);
+      // The largest of |(R + i S) a|^2 over complex a: an eigenvalue of the real form's square.
+      MatrixX whole(6, 6);
+      whole << real, -imaginary, imaginary, real;
+      compliance = std::max(compliance,
+                            std::sqrt(linalg::symmetric_eigenvalues(whole.transpose() * whole)[5]));
       if (k == 0) rest = compliance;
       const Vector3 first = normal.unitOrthogonal(), second = normal.cross(first);
       for (int d = 0; d < 720; ++d) {
         const double angle = 2.0 * std::numbers::pi * d / 720.0;
         const Vector3 u = std::cos(angle) * first + std::sin(angle) * second - friction * normal;
-        gain = std::max(gain, (u.transpose().cast<Complex>() * answer.bottomRows(3)).norm());
+        gain = std::max(gain, std::hypot((u.transpose() * answer.middleRows(2 * n, 3)).norm(),
+                                         (u.transpose() * answer.bottomRows(3)).norm()));
       }
     }
     const TipResponse response = tip_response(of, frequency, normal, friction);

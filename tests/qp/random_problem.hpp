@@ -6,8 +6,6 @@
 #include <cstdint>
 #include <limits>
 
-#include <Eigen/QR>
-
 #include "sinew/qp/quadratic_program.hpp"
 
 namespace sinew::qp {
@@ -53,9 +51,20 @@ class Random {
   std::uint64_t state_;
 };
 
+/// Orthonormal columns by Gram-Schmidt, twice for rounding (Giraud et al., Numer. Math. 101, 2005).
+inline MatrixX orthonormal(MatrixX a) {
+  for (Eigen::Index j = 0; j < a.cols(); ++j) {
+    for (int pass = 0; pass < 2; ++pass) {
+      for (Eigen::Index i = 0; i < j; ++i) a.col(j) -= a.col(i).dot(a.col(j)) * a.col(i);
+    }
+    a.col(j).normalize();
+  }
+  return a;
+}
+
 /// Symmetric positive definite with eigenvalues log-uniform in [1, condition].
 inline MatrixX random_hessian(int n, double condition, Random& random) {
-  const MatrixX q = Eigen::HouseholderQR<MatrixX>(random.matrix(n, n)).householderQ();
+  const MatrixX q = orthonormal(random.matrix(n, n));
   VectorX values(n);
   for (int i = 0; i < n; ++i) values[i] = std::pow(condition, random.uniform(0.0, 1.0));
   values[0] = 1.0;

@@ -14,6 +14,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "sinew/constraint/effector.hpp"
+#include "sinew/constraint/probe.hpp"
 #include "sinew/core/csv.hpp"
 #include "sinew/fem/element_fields.hpp"
 #include "sinew/mesh/read.hpp"

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "sinew/constraint/contact.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/scene/scene.hpp"

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/constraint/cavity.hpp"
 #include "sinew/core/error.hpp"
+#include "sinew/fem/fem_body_model.hpp"
 #include "sinew/sim/spring_drive.hpp"
 
 #include "chambers.hpp"

@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "sinew/constraint/placement.hpp"
 #include "sinew/core/error.hpp"
 
 namespace sinew::constraint {

@@ -3,34 +3,17 @@
 /// (N, Pa) and motion delta (m, m^3) are conjugate: lambda . delta is work done on the bodies.
 #pragma once
 
-#include <memory>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "sinew/core/types.hpp"
-#include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/rows.hpp"
 
 namespace sinew::constraint {
 
-/// Where the material points of all bodies are now.
-class Placement {
- public:
-  explicit Placement(std::span<const std::unique_ptr<mechanics::Body>> bodies) : bodies_(bodies) {}
-  /// (3,) m.
-  Vector3 position(const mechanics::MaterialPoint& point) const {
-    return bodies_[static_cast<std::size_t>(point.body)]->position(point.point);
-  }
-  /// (3,) m/s.
-  Vector3 velocity(const mechanics::MaterialPoint& point) const {
-    return bodies_[static_cast<std::size_t>(point.body)]->velocity(point.point);
-  }
-
- private:
-  std::span<const std::unique_ptr<mechanics::Body>> bodies_;
-};
+class Placement;
 
 /// Immutable once declared; the numbers of a simulation live in its RowValues.
 class Constraint {

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "sinew/constraint/placement.hpp"
 #include "sinew/core/error.hpp"
 
 namespace sinew::constraint {

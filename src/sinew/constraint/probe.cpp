@@ -10,6 +10,7 @@
 #include <Eigen/SVD>
 #include <fmt/format.h>
 
+#include "sinew/constraint/placement.hpp"
 #include "sinew/core/error.hpp"
 
 namespace sinew::constraint {

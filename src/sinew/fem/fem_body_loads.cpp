@@ -6,6 +6,7 @@
 #include "sinew/fem/fem_body.hpp"
 #include "sinew/fem/fem_body_numbers.hpp"
 #include "sinew/linalg/block_product.hpp"
+#include "sinew/linalg/dense.hpp"
 #include "sinew/linalg/positive_part.hpp"
 
 namespace sinew::fem {
@@ -111,7 +112,7 @@ void FemBody::correct_for_open_pressure() {
     VectorX right = VectorX::Zero(k + 2);
     right[0] = size;
     const MatrixX part = hessenberg.topLeftCorner(k + 2, k + 1);
-    weights = part.householderQr().solve(right);
+    weights = linalg::least_squares(part, right).x;
     const bool done = (part * weights - right).norm() <= kTolerance * size;
     if (done || !(hessenberg(k + 1, k) > kTolerance * part.norm())) break;
     basis.push_back(product / hessenberg(k + 1, k));

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/linalg/dense.hpp"
 #include "sinew/pcc/arm_sensitivity.hpp"
 
 namespace sinew::identify {
@@ -166,7 +166,7 @@ ArmStart first_pose(const pcc::Arm& arm, const MotionRecord& record) {
     const MatrixX& jacobian = equations.endpoint_jacobian(q);
     const MatrixX normal =
         jacobian.transpose() * weight.asDiagonal() * jacobian + damping * MatrixX::Identity(n, n);
-    VectorX move = normal.ldlt().solve(jacobian.transpose() * error - damping * q);
+    VectorX move = linalg::solve_symmetric(normal, jacobian.transpose() * error - damping * q);
     move *= std::min(1.0, 1.0 / std::max(1e-300, move.cwiseAbs().maxCoeff()));
     q += move;
     if (move.cwiseAbs().maxCoeff() < 1e-10) break;

@@ -7,12 +7,12 @@
 #include <numbers>
 #include <optional>
 
-#include <Eigen/LU>
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
 #include "sinew/core/types.hpp"
 #include "sinew/identify/bounded_least_squares.hpp"
+#include "sinew/linalg/dense.hpp"
 
 namespace sinew::identify {
 
@@ -66,7 +66,7 @@ class Form {
       for (int k = 0; k < n; ++k) powers(i, k) = std::pow(x, k);
       wanted[i] = values[i];
     }
-    const VectorX found = powers.partialPivLu().solve(wanted);
+    const VectorX found = linalg::solve(powers, wanted);
     std::vector<double> coefficients;
     coefficients.reserve(static_cast<std::size_t>(n));
     for (int k = 0; k < n; ++k) coefficients.push_back(found[k] / std::pow(scale, k));
@@ -99,9 +99,9 @@ struct Residuals {
   std::vector<double> scales;  // of the parameters, so that Ceres sees numbers near one
   double length;
 
-  bool operator()(const double* const* blocks, double* residuals) const {
+  bool operator()(const double* scaled, double* residuals) const {
     std::vector<double> values;
-    for (std::size_t k = 0; k < scales.size(); ++k) values.push_back(scales[k] * blocks[k][0]);
+    for (std::size_t k = 0; k < scales.size(); ++k) values.push_back(scales[k] * scaled[k]);
     try {
       const BendingParameters p = form->build(values.data(), pcc::OutsideRange::hold);
       for (const TipRecord& record : records) {
@@ -205,17 +205,18 @@ BendingFit fit_bending(const BendingParameters& parameters, std::span<const TipR
   }
   std::size_t rows = 0;
   for (const TipRecord& record : records) rows += static_cast<std::size_t>(record.tip.size());
-  const ceres::Solver::Summary summary = solve_bounded(
-      Residuals{&form, records, &settings, scales, parameters.length}, rows, values, 200, 1e-12);
-  if (!summary.IsSolutionUsable()) {
+  const BoundedResult solution = solve_bounded_by_differences(
+      Residuals{&form, records, &settings, scales, parameters.length}, rows, values,
+      {.max_iterations = 200, .function_tolerance = 1e-12});
+  if (!solution.usable) {
     throw Error(ErrorKind::not_converged, {.item = "fit_bending"},
                 fmt::format("no motion can be simulated from a modulus of {:g} Pa", start),
                 "give a modulus nearer to the material's, or check the unit of the pressures");
   }
 
   BendingFit fit;
-  fit.cost = 2.0 * summary.final_cost / static_cast<double>(records.size());
-  fit.converged = summary.termination_type == ceres::CONVERGENCE;
+  fit.cost = solution.cost / static_cast<double>(records.size());
+  fit.converged = solution.converged;
   std::vector<double> found(scales.size());
   for (std::size_t k = 0; k < values.size(); ++k) {
     const auto [value, lower, upper] = values[k];

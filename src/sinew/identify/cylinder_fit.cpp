@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
-#include <Eigen/SVD>
+#include <Eigen/LU>
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
 #include "sinew/identify/statistics.hpp"
+#include "sinew/linalg/dense.hpp"
 
 namespace sinew::identify {
 
@@ -71,8 +70,8 @@ void check_excitation(std::span<const DriveRecord> records) {
       products.noalias() += part * part.transpose();
     }
   }
-  const Eigen::SelfAdjointEigenSolver<decltype(products)> solver(products, Eigen::EigenvaluesOnly);
-  if (solver.eigenvalues()[0] > 1e-13 * solver.eigenvalues()[kRows - 1]) return;
+  const VectorX values = linalg::symmetric_eigenvalues(products);
+  if (values[0] > 1e-13 * values[kRows - 1]) return;
   refuse(ErrorKind::out_of_range, records[0].name, "the input does not excite the cylinder",
          "give a signal of three frequencies or more, fast enough for the sample time");
 }
@@ -91,17 +90,15 @@ DriveCylinder observe(std::span<const DriveRecord> records, Index rows) {
     put_hankel(record.output, rows, rows, own, 3 * rows, column, data);  // future outputs
     column += own;
   }
-  const Eigen::HouseholderQR<MatrixX> decomposed(data.transpose());
-  const MatrixX lower =
-      decomposed.matrixQR().topRows(4 * rows).triangularView<Eigen::Upper>().transpose();
-  const Eigen::BDCSVD<MatrixX> svd(lower.block(3 * rows, rows, rows, 2 * rows),
-                                   Eigen::ComputeThinU);
+  const MatrixX lower = linalg::upper_factor(data.transpose()).transpose();
+  const linalg::Svd svd =
+      linalg::svd(lower.block(3 * rows, rows, rows, 2 * rows), linalg::SingularVectors::thin_u);
   const MatrixX observability =
-      svd.matrixU().leftCols(kOrder) * svd.singularValues().head(kOrder).cwiseSqrt().asDiagonal();
+      svd.u.leftCols(kOrder) * svd.values.head(kOrder).cwiseSqrt().asDiagonal();
   DriveCylinder result;
   result.c = observability.row(0);
-  result.a = observability.topRows(rows - 1).colPivHouseholderQr().solve(
-      observability.bottomRows(rows - 1));
+  result.a =
+      linalg::least_squares(observability.topRows(rows - 1), observability.bottomRows(rows - 1)).x;
   // Noise may put a slow pole outside the unit circle: as far inside as it is out.
   const double radius = result.spectral_radius();
   if (radius >= 1.0) result.a /= radius * radius * (1.0 + 1e-6);
@@ -132,7 +129,7 @@ void solve_inputs(std::span<const DriveRecord> records, bool feedthrough, DriveC
     }
     own += kOrder;
   }
-  const VectorX found = matrix.colPivHouseholderQr().solve(right);
+  const VectorX found = linalg::least_squares(matrix, right).x;
   cylinder.b = found.head<2>();
   cylinder.d = feedthrough ? found[kOrder] : 0.0;
   starts =
@@ -263,7 +260,7 @@ std::vector<CylinderTrial> validate_cylinder(const pcc::DriveCylinder& cylinder,
       matrix.row(k) = cylinder.c * free;
       free = cylinder.a * free;
     }
-    trial.start = matrix.colPivHouseholderQr().solve((record.output - forced).head(block));
+    trial.start = linalg::least_squares(matrix, (record.output - forced).head(block)).x;
     trial.predicted = cylinder.simulate(record.input, trial.start);
     trial.nrmse = nrmse(trial.predicted, record.output);
   }

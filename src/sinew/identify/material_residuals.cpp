@@ -9,52 +9,6 @@
 
 namespace sinew::identify {
 
-namespace {
-
-/// Residuals of Ogden's law without softening, a sum over its terms, with their derivatives.
-class OgdenCost : public ceres::CostFunction {
- public:
-  OgdenCost(const std::vector<CountedTest>& tests, double scale, std::size_t terms,
-            std::size_t rows)
-      : tests_(tests), scale_(scale), terms_(terms) {
-    set_num_residuals(static_cast<int>(rows));
-    mutable_parameter_block_sizes()->assign(2 * terms, 1);
-  }
-
-  bool Evaluate(const double* const* p, double* residuals, double** jacobians) const override {
-    std::size_t row = 0;
-    for (const CountedTest& test : tests_) {
-      const double weight = 1.0 / (test.largest * std::sqrt(static_cast<double>(test.rows)));
-      for (std::size_t i = 0; i < test.counts.size(); ++i) {
-        if (test.counts[i] == 0) continue;
-        double sum = -weight * test.test->stress[i];
-        for (std::size_t k = 0; k < terms_; ++k) {
-          const TermStress unit =
-              term_stress(test.test->mode, test.test->stretch[i], p[2 * k + 1][0]);
-          const double by_share = weight * scale_ * unit.value, share = p[2 * k][0];
-          sum += share * by_share;
-          store(jacobians, 2 * k, row, by_share);
-          store(jacobians, 2 * k + 1, row, share * weight * scale_ * unit.by_alpha);
-        }
-        residuals[row++] = sum;
-        if (!std::isfinite(sum)) return false;
-      }
-    }
-    return true;
-  }
-
- private:
-  static void store(double** jacobians, std::size_t block, std::size_t row, double value) {
-    if (jacobians != nullptr && jacobians[block] != nullptr) jacobians[block][row] = value;
-  }
-
-  const std::vector<CountedTest>& tests_;
-  double scale_;
-  std::size_t terms_;
-};
-
-}  // namespace
-
 std::vector<CountedTest> count_rows(std::span<const RubberTest> tests,
                                     const FitSettings& settings) {
   if (tests.empty()) {
@@ -115,12 +69,10 @@ std::vector<double> predict(const material::Hyperelastic& law, const MullinsEffe
   return result;
 }
 
-bool Residuals::operator()(const double* const* blocks, double* residuals) const {
+bool Residuals::operator()(const double* parameters, double* residuals) const {
   FitParameters softening;
-  std::vector<double> p(own);
-  for (std::size_t k = 0; k < own; ++k) p[k] = blocks[k][0];
-  for (std::size_t k = 0; mullins && k < 3; ++k) softening.push_back({blocks[own + k][0]});
-  const material::Hyperelastic energy = law->build(p.data(), scale);
+  for (std::size_t k = 0; mullins && k < 3; ++k) softening.push_back({parameters[own + k]});
+  const material::Hyperelastic energy = law->build(parameters, scale);
   MullinsEffect effect;
   if (mullins) effect = softening_of(softening, scale);
   std::size_t at = 0;
@@ -136,9 +88,29 @@ bool Residuals::operator()(const double* const* blocks, double* residuals) const
   return true;
 }
 
-std::unique_ptr<ceres::CostFunction> ogden_cost(const std::vector<CountedTest>& tests, double scale,
-                                                std::size_t terms, std::size_t rows) {
-  return std::make_unique<OgdenCost>(tests, scale, terms, rows);
+bool OgdenResiduals::operator()(const double* parameters, double* residuals,
+                                double* derivatives) const {
+  std::size_t row = 0;
+  for (const CountedTest& test : *tests) {
+    const double weight = 1.0 / (test.largest * std::sqrt(static_cast<double>(test.rows)));
+    for (std::size_t i = 0; i < test.counts.size(); ++i) {
+      if (test.counts[i] == 0) continue;
+      double sum = -weight * test.test->stress[i];
+      double* slopes = derivatives == nullptr ? nullptr : derivatives + 2 * terms * row;
+      for (std::size_t k = 0; k < terms; ++k) {
+        const double share = parameters[2 * k], alpha = parameters[2 * k + 1];
+        const TermStress unit = term_stress(test.test->mode, test.test->stretch[i], alpha);
+        const double by_share = weight * scale * unit.value;
+        sum += share * by_share;
+        if (slopes == nullptr) continue;
+        slopes[2 * k] = by_share;
+        slopes[2 * k + 1] = share * weight * scale * unit.by_alpha;
+      }
+      residuals[row++] = sum;
+      if (!std::isfinite(sum)) return false;
+    }
+  }
+  return true;
 }
 
 }  // namespace sinew::identify

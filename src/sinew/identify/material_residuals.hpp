@@ -1,12 +1,10 @@
 /// @file
-/// What a law misses tests by. Internal to this folder: it needs Ceres' headers.
+/// What a law misses tests by. Internal to this folder.
 #pragma once
 
-#include <memory>
+#include <cstddef>
 #include <span>
 #include <vector>
-
-#include <ceres/ceres.h>
 
 #include "sinew/identify/fitted_law.hpp"
 
@@ -34,7 +32,7 @@ std::vector<double> predict(const material::Hyperelastic& law, const MullinsEffe
 MullinsEffect softening_of(const FitParameters& softening, double scale);
 
 /// Residuals of all rows that count, each test's divided by its largest stress and the square root
-/// of its rows, over parameters in blocks of one. For numeric derivatives.
+/// of its rows, over the parameters. For numeric derivatives.
 struct Residuals {
   const FittedLaw* law;
   const std::vector<CountedTest>* tests;
@@ -43,12 +41,18 @@ struct Residuals {
   bool mullins;
 
   /// False where a residual is not finite.
-  bool operator()(const double* const* parameters, double* residuals) const;
+  bool operator()(const double* parameters, double* residuals) const;
 };
 
 /// The same of Ogden's law without softening, a sum over its terms, with exact derivatives.
-/// @param tests kept by reference. @param scale Pa. @param terms,rows how many.
-std::unique_ptr<ceres::CostFunction> ogden_cost(const std::vector<CountedTest>& tests, double scale,
-                                                std::size_t terms, std::size_t rows);
+struct OgdenResiduals {
+  const std::vector<CountedTest>* tests;
+  double scale;       ///< Pa
+  std::size_t terms;  ///< of two parameters each
+
+  /// False where a residual is not finite. @param derivatives (rows, parameters), row-major; null:
+  /// not wanted.
+  bool operator()(const double* parameters, double* residuals, double* derivatives) const;
+};
 
 }  // namespace sinew::identify

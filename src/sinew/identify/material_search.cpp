@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <memory>
 #include <numeric>
 #include <utility>
 
@@ -21,6 +20,7 @@ constexpr std::size_t kTried = 3;       // of them
 constexpr double kSameExponent = 0.02;  // relative: nearer terms are tried as one
 constexpr double kIdleShare = 1e-7;     // of the stress: a term that bears less is tried without
 constexpr double kNoWorse = 1e-6;       // relative change of the cost that counts as none
+constexpr BoundedSettings kSolver = {.max_iterations = 400};
 
 FitParameters all_parameters(const Attempt& attempt) {
   FitParameters all = attempt.law;
@@ -158,24 +158,18 @@ Attempt MaterialSearch::solve(const FittedLaw& law, const Attempt& start) {
   const FitParameters all = all_parameters(start);
   values.reserve(all.size());
   for (const FitParameter& p : all) values.push_back({p.value, p.lower, p.upper});
-  constexpr int kMostIterations = 400;
-  constexpr double kTolerance = 1e-10;
-  ceres::Solver::Summary summary;
-  if (law.ogden && !settings_.mullins) {
-    auto cost = ogden_cost(tests_, scale_, start.law.size() / 2, rows_);
-    summary = solve_bounded(std::move(cost), values, kMostIterations, kTolerance);
-  } else {
-    const Residuals function{&law, &tests_, scale_, start.law.size(), settings_.mullins};
-    summary = solve_bounded(function, rows_, values, kMostIterations, kTolerance);
-  }
+  const std::size_t own = start.law.size();
+  const BoundedResult found =
+      law.ogden && !settings_.mullins
+          ? solve_bounded(OgdenResiduals{&tests_, scale_, own / 2}, rows_, values, kSolver)
+          : solve_bounded_by_differences(Residuals{&law, &tests_, scale_, own, settings_.mullins},
+                                         rows_, values, kSolver);
   Attempt attempt = start;
   for (std::size_t k = 0; k < all.size(); ++k) {
-    const bool own = k < attempt.law.size();
-    (own ? attempt.law[k] : attempt.softening[k - attempt.law.size()]).value = values[k].value;
+    (k < own ? attempt.law[k] : attempt.softening[k - own]).value = values[k].value;
   }
-  attempt.converged = summary.termination_type == ceres::CONVERGENCE;
-  attempt.cost = summary.IsSolutionUsable() ? 2.0 * summary.final_cost
-                                            : std::numeric_limits<double>::infinity();
+  attempt.converged = found.converged;
+  attempt.cost = found.usable ? found.cost : std::numeric_limits<double>::infinity();
   return attempt;
 }
 
@@ -217,10 +211,10 @@ Attempt MaterialSearch::without_idle_terms(const Attempt& attempt) {
 bool MaterialSearch::residuals(const FittedLaw& law, const Attempt& at,
                                std::vector<double>& result) const {
   const FitParameters all = all_parameters(at);
-  std::vector<const double*> blocks;
-  for (const FitParameter& p : all) blocks.push_back(&p.value);
+  std::vector<double> values;
+  for (const FitParameter& p : all) values.push_back(p.value);
   result.assign(rows_, 0.0);
-  return Residuals{&law, &tests_, scale_, at.law.size(), settings_.mullins}(blocks.data(),
+  return Residuals{&law, &tests_, scale_, at.law.size(), settings_.mullins}(values.data(),
                                                                             result.data());
 }
 

@@ -6,13 +6,13 @@
 #include <limits>
 #include <utility>
 
-#include <Eigen/SVD>
-#include <ceres/ceres.h>
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
 #include "sinew/core/random.hpp"
+#include "sinew/identify/bounded_least_squares.hpp"
 #include "sinew/identify/statistics.hpp"
+#include "sinew/linalg/dense.hpp"
 
 namespace sinew::identify {
 
@@ -130,44 +130,27 @@ struct Problem {
     }
     return std::ranges::all_of(seen, [&](Eigen::Index i) { return std::isfinite(prediction[i]); });
   }
+  /// Of what moves, for the solver: no exception passes through it, fit_parameters() throws it on.
+  bool residuals(const double* x, double* result, double* derivatives) const {
+    if (failure) return false;
+    try {
+      if (!evaluate(values(x), derivatives != nullptr)) return false;
+    } catch (...) {
+      failure = std::current_exception();
+      return false;
+    }
+    for (std::size_t r = 0; r < seen.size(); ++r) {
+      result[r] = prediction[seen[r]] - measured[seen[r]];
+      if (derivatives == nullptr) continue;
+      for (const Eigen::Index k : moving) *derivatives++ = jacobian(seen[r], k) * scale[k];
+    }
+    return true;
+  }
   double cost() const {
     double sum = 0.0;
     for (const Eigen::Index i : seen) sum += std::pow(prediction[i] - measured[i], 2);
     return sum;
   }
-};
-
-class Cost : public ceres::CostFunction {
- public:
-  explicit Cost(const Problem& problem) : problem_(problem) {
-    set_num_residuals(static_cast<int>(problem.seen.size()));
-    mutable_parameter_block_sizes()->push_back(static_cast<int>(problem.moving.size()));
-  }
-  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
-    if (problem_.failure) return false;
-    const bool derivatives = jacobians != nullptr && jacobians[0] != nullptr;
-    try {
-      if (!problem_.evaluate(problem_.values(blocks[0]), derivatives)) return false;
-    } catch (...) {
-      // Not through the solver: fit_parameters() throws it on.
-      problem_.failure = std::current_exception();
-      return false;
-    }
-    const std::size_t n = problem_.moving.size();
-    for (std::size_t r = 0; r < problem_.seen.size(); ++r) {
-      const Eigen::Index i = problem_.seen[r];
-      residuals[r] = problem_.prediction[i] - problem_.measured[i];
-      if (!derivatives) continue;
-      for (std::size_t k = 0; k < n; ++k) {
-        jacobians[0][r * n + k] =
-            problem_.jacobian(i, problem_.moving[k]) * problem_.scale[problem_.moving[k]];
-      }
-    }
-    return true;
-  }
-
- private:
-  const Problem& problem_;
 };
 
 struct Attempt {
@@ -177,34 +160,27 @@ struct Attempt {
   bool converged = false;
 };
 
-/// Ceres over what moves, within bounds.
-ceres::Solver::Summary descend(Problem& problem, const ParameterFitSettings& settings,
-                               int iterations) {
-  std::vector<double> x;
-  for (const Eigen::Index k : problem.moving) x.push_back(problem.base[k] / problem.scale[k]);
-  ceres::Problem ceres_problem;
-  ceres_problem.AddResidualBlock(new Cost(problem), nullptr, x.data());
-  for (std::size_t j = 0; j < x.size(); ++j) {
-    const Eigen::Index k = problem.moving[j];
-    const double lower = problem.parameter(k).lower / problem.scale[k],
-                 upper = problem.parameter(k).upper / problem.scale[k];
-    const int index = static_cast<int>(j);
-    if (std::isfinite(lower)) ceres_problem.SetParameterLowerBound(x.data(), index, lower);
-    if (std::isfinite(upper)) ceres_problem.SetParameterUpperBound(x.data(), index, upper);
-    x[j] = std::clamp(x[j], lower, upper);
+/// Over what moves, within bounds.
+BoundedResult descend(Problem& problem, const ParameterFitSettings& settings, int iterations) {
+  std::vector<BoundedValue> values;
+  for (const Eigen::Index k : problem.moving) {
+    const double scale = problem.scale[k], lower = problem.parameter(k).lower / scale,
+                 upper = problem.parameter(k).upper / scale;
+    values.push_back({std::clamp(problem.base[k] / scale, lower, upper), lower, upper});
   }
-  ceres::Solver::Options options;
-  options.max_num_iterations = iterations;
-  options.function_tolerance = settings.tolerance;
-  options.parameter_tolerance = settings.tolerance;
-  options.gradient_tolerance = 1e-16;
-  options.linear_solver_type = ceres::DENSE_QR;
-  options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &ceres_problem, &summary);
+  const auto residuals = [&](const double* x, double* result, double* derivatives) {
+    return problem.residuals(x, result, derivatives);
+  };
+  const BoundedResult result = solve_bounded(residuals, problem.seen.size(), values,
+                                             {.max_iterations = iterations,
+                                              .function_tolerance = settings.tolerance,
+                                              .parameter_tolerance = settings.tolerance,
+                                              .gradient_tolerance = 1e-16});
   if (problem.failure) std::rethrow_exception(problem.failure);
+  std::vector<double> x;
+  for (const BoundedValue& value : values) x.push_back(value.value);
   problem.base = problem.values(x.data());
-  return summary;
+  return result;
 }
 
 bool at_bound(const Parameter& p, double value, double scale) {
@@ -212,9 +188,10 @@ bool at_bound(const Parameter& p, double value, double scale) {
   return value - p.lower <= near || p.upper - value <= near;
 }
 
-/// Ceres projects its steps on bounds, and then creeps along them. So parameters at a bound against
-/// which the cost's gradient pushes are held there, the others go on alone, and those held are let
-/// go when the gradient turns (active sets; Nocedal & Wright, Numerical Optimization, 2006, 16.5).
+/// The solver projects its steps on bounds, and then creeps along them. So parameters at a bound
+/// against which the cost's gradient pushes are held there, the others go on alone, and those held
+/// are let go when the gradient turns (active sets; Nocedal & Wright, Numerical Optimization,
+/// 2006, 16.5).
 Attempt solve(Problem& problem, const VectorX& start, const ParameterFitSettings& settings) {
   constexpr int kRound = 20;
   Attempt attempt;
@@ -224,10 +201,10 @@ Attempt solve(Problem& problem, const VectorX& start, const ParameterFitSettings
   double before = kInfinity;
   while (attempt.iterations < settings.max_iterations) {
     const int most = std::min(kRound, settings.max_iterations - attempt.iterations);
-    const auto summary = descend(problem, settings, most);
-    attempt.iterations += std::max(1, static_cast<int>(summary.iterations.size()) - 1);
-    if (!summary.IsSolutionUsable()) return attempt;
-    attempt.cost = 2.0 * summary.final_cost;
+    const BoundedResult found = descend(problem, settings, most);
+    attempt.iterations += std::max(1, found.iterations);
+    if (!found.usable) return attempt;
+    attempt.cost = found.cost;
     attempt.values = problem.base;
     if (!problem.evaluate(problem.base, true)) return attempt;
     std::vector<Eigen::Index> moving;
@@ -243,7 +220,7 @@ Attempt solve(Problem& problem, const VectorX& start, const ParameterFitSettings
       if (!pushed) moving.push_back(k);
     }
     const bool settled =
-        summary.termination_type == ceres::CONVERGENCE &&
+        found.converged &&
         (moving == problem.moving || before - attempt.cost <= settings.tolerance * attempt.cost);
     if (settled || moving.empty()) {
       attempt.converged = true;
@@ -291,25 +268,25 @@ void judge(const Problem& problem, const ParameterFitSettings& settings, Paramet
       scaled(r, j) = unit[j] * problem.jacobian(problem.seen[static_cast<std::size_t>(r)], k);
     }
   }
-  const Eigen::BDCSVD<MatrixX> svd(scaled, Eigen::ComputeThinV);
+  const linalg::Svd svd = linalg::svd(scaled, linalg::SingularVectors::thin_v);
   MatrixX covariance = MatrixX::Zero(columns, columns);
   for (Eigen::Index i = 0; i < columns; ++i) {
     Direction& direction = fit.directions.emplace_back();
-    direction.singular_value = svd.singularValues()[i];
+    direction.singular_value = svd.values[i];
     direction.relative_error =
         direction.singular_value > 0.0 ? fit.noise / direction.singular_value : kInfinity;
-    direction.undetermined = direction.singular_value <= kVanishing * svd.singularValues()[0] ||
-                             direction.relative_error > 1.0;
+    direction.undetermined =
+        direction.singular_value <= kVanishing * svd.values[0] || direction.relative_error > 1.0;
     direction.weights = VectorX::Zero(fit.values.size());
     for (Eigen::Index j = 0; j < columns; ++j) {
       const Eigen::Index k = inner[static_cast<std::size_t>(j)];
-      direction.weights[k] = svd.matrixV()(j, i);
-      if (direction.undetermined && std::abs(svd.matrixV()(j, i)) > kPartOfDirection) {
+      direction.weights[k] = svd.v(j, i);
+      if (direction.undetermined && std::abs(svd.v(j, i)) > kPartOfDirection) {
         fit.parameters[static_cast<std::size_t>(k)].determined = false;
       }
     }
     if (direction.undetermined) continue;
-    const VectorX part = direction.relative_error * unit.cwiseProduct(svd.matrixV().col(i));
+    const VectorX part = direction.relative_error * unit.cwiseProduct(svd.v.col(i));
     covariance.noalias() += part * part.transpose();
   }
   const double quantile = student_quantile(0.5 + 0.5 * settings.confidence, fit.degrees_of_freedom);

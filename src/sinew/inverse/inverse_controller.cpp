@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "sinew/constraint/effector.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/inverse/limit_conflict.hpp"
 

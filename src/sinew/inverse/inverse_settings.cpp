@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "sinew/constraint/effector.hpp"
 #include "sinew/core/error.hpp"
 
 namespace sinew::inverse {

@@ -23,17 +23,11 @@
 #include "sinew/linalg/factorisation.hpp"
 #include "sinew/mechanics/integrator.hpp"
 #include "sinew/mechanics/rows.hpp"
+#include "sinew/mechanics/tangent.hpp"
 #include "sinew/mesh/embedding.hpp"
 #include "sinew/mesh/mesh.hpp"
 
 namespace sinew::mechanics {
-
-/// Which derivative of the internal force is used.
-enum class Tangent {
-  real_time,  ///< the cheapest that the body offers (corotational: R K0 R^T); SPD
-  projected,  ///< the exact derivative, projected piece by piece to be positive semi-definite
-  exact,      ///< the exact derivative df/dq, which may be indefinite
-};
 
 /// What a body looks at when it linearises.
 struct LinearisationRequest {

@@ -1,9 +1,9 @@
 #include "sinew/pcc/actuator_lengths.hpp"
 
-#include <Eigen/QR>
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/linalg/dense.hpp"
 
 namespace sinew::pcc {
 
@@ -26,13 +26,12 @@ Bent bend_of_lengths(const VectorX& lengths, double radius, const VectorX& angle
   columns.col(0) = -radius * angles.array().cos();
   columns.col(1) = -radius * angles.array().sin();
   columns.col(2).setOnes();
-  const Eigen::ColPivHouseholderQR<MatrixX> fit(columns);
-  if (fit.rank() < 3) {
+  const linalg::LeastSquares fit = linalg::least_squares(columns, lengths);
+  if (fit.rank < 3) {
     throw Error(ErrorKind::singular_matrix, place, "their angles leave the bend open",
                 "spread them round the axis");
   }
-  const Vector3 solution = fit.solve(lengths);
-  return {solution[0], solution[1], solution[2]};
+  return {fit.x(0), fit.x(1), fit.x(2)};
 }
 
 }  // namespace sinew::pcc

@@ -211,11 +211,11 @@ double ArmBody::rounding_floor() const {
 linalg::FactorStatus ArmBody::condense() {
   symmetric_ = 0.5 * (matrix_ + matrix_.transpose());
   pivots_.compute(symmetric_);
-  negative_pivots_ = static_cast<int>((pivots_.vectorD().array() < 0.0).count());
+  negative_pivots_ = pivots_.negative();
   if (negative_pivots_ > 0 && definite_wanted_) make_definite();
   decomposed_.compute(matrix_);
   respond();
-  if (!moved_rows_.allFinite() || pivots_.vectorD().cwiseAbs().minCoeff() == 0.0) {
+  if (!moved_rows_.allFinite() || pivots_.vanishes()) {
     return linalg::FactorStatus::singular;
   }
   return negative_pivots_ > 0 ? linalg::FactorStatus::indefinite
@@ -223,9 +223,9 @@ linalg::FactorStatus ArmBody::condense() {
 }
 
 void ArmBody::respond() {
-  moved_rows_ = decomposed_.solve(rows_);
+  decomposed_.solve(rows_, moved_rows_);
   if (rows_.cols() == 0) return;
-  motion_ = decomposed_.solve(right_);
+  decomposed_.solve(right_, motion_);
   free_motion_.noalias() = rows_.transpose() * motion_;
   compliance_.noalias() = rows_.transpose() * moved_rows_;
 }
@@ -236,9 +236,9 @@ void ArmBody::make_definite() {
   spectrum_.compute(symmetric_);
   const double floor = kSoftest * model_.arm().stiffness().maxCoeff();
   for (Eigen::Index i = 0; i < q_.size(); ++i) {
-    const double value = spectrum_.eigenvalues()[i];
+    const double value = spectrum_.values()[i];
     if (value >= floor) break;  // ascending
-    const auto direction = spectrum_.eigenvectors().col(i);
+    const auto direction = spectrum_.vectors().col(i);
     matrix_.noalias() += (std::max(-value, floor) - value) * direction * direction.transpose();
   }
   negative_pivots_ = 0;
@@ -269,7 +269,7 @@ void ArmBody::hold_imbalance(std::span<const double> effort) {
 
 void ArmBody::solve_motion(std::span<const double> effort) {
   residual(effort);
-  motion_ = decomposed_.solve(scratch_);
+  decomposed_.solve(scratch_, motion_);
   base_ = q_;
 }
 
@@ -280,7 +280,7 @@ void ArmBody::imbalance(std::span<const double> effort, std::span<double> result
 
 void ArmBody::solve(std::span<const double> right, std::span<double> result) {
   scratch_ = Eigen::Map<const VectorX>(right.data(), q_.size());
-  Eigen::Map<VectorX>(result.data(), q_.size()) = decomposed_.solve(scratch_);
+  decomposed_.solve(scratch_, Eigen::Map<VectorX>(result.data(), q_.size()));
 }
 
 void ArmBody::propose_motion(std::span<const double> motion) {

@@ -7,10 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
-
+#include "sinew/linalg/dense_factor.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mesh/mesh.hpp"
 #include "sinew/pcc/arm_equations.hpp"
@@ -141,9 +138,9 @@ class ArmBody : public mechanics::Body {
   double imbalance_share_ = 0.0;
   MatrixX matrix_, symmetric_;
   MatrixX first_jacobian_, second_jacobian_, pulled_;  // (3, n), of a curvature's points
-  Eigen::PartialPivLU<MatrixX> decomposed_;
-  Eigen::LDLT<MatrixX> pivots_;
-  Eigen::SelfAdjointEigenSolver<MatrixX> spectrum_;
+  linalg::LuFactor decomposed_;
+  linalg::SymmetricPivots pivots_;
+  linalg::SymmetricSpectrum spectrum_;
   int negative_pivots_ = 0;
   bool definite_wanted_ = true;
   bool iterating_ = false;                  // further linearisations of this step may follow

@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/Cholesky>
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/linalg/dense_factor.hpp"
 
 namespace sinew::pcc {
 
@@ -57,7 +57,7 @@ struct ArmEquations::Work {
   VectorX zero, bias, acceleration;
   MatrixX mass, coriolis, curvature, regressor, ends;
   std::vector<Vec3<double>> columns;
-  Eigen::LLT<MatrixX> decomposed;
+  linalg::CholeskyFactor decomposed;
   Linearisation linear;
   ForwardDerivatives forward;
   // Those with derivatives are made when first asked for.
@@ -128,15 +128,14 @@ const VectorX& ArmEquations::acceleration(const VectorX& q, const VectorX& rate,
   Work& w = *work_;
   residual(q, rate, w.zero);
   w.plain.mass_matrix({w.mass.data(), w.n * w.n});
-  w.decomposed.compute(w.mass);
-  if (w.decomposed.info() != Eigen::Success) {
+  if (!w.decomposed.compute(w.mass)) {
     throw Error(ErrorKind::singular_matrix, {.item = w.arm->settings().name},
                 "its mass matrix is not positive definite in this pose",
                 "spread the masses (centre: distributed), or check the angles");
   }
   w.acceleration.noalias() = w.arm->actuation() * torque;
   w.acceleration -= w.bias;
-  w.decomposed.solveInPlace(w.acceleration);
+  w.decomposed.solve(w.acceleration, w.acceleration);
   return w.acceleration;
 }
 
@@ -263,9 +262,11 @@ const ArmEquations::ForwardDerivatives& ArmEquations::forward_derivatives(const 
   Work& w = *work_;
   w.forward.acceleration = acceleration(q, rate, torque);
   linearise(q, rate, w.forward.acceleration);
-  w.forward.by_position = w.decomposed.solve(-w.linear.by_position);
-  w.forward.by_rate = w.decomposed.solve(-w.linear.by_rate);
-  w.forward.by_torque = w.decomposed.solve(w.arm->actuation());
+  w.forward.by_position = -w.linear.by_position;
+  w.forward.by_rate = -w.linear.by_rate;
+  w.decomposed.solve(w.forward.by_position, w.forward.by_position);
+  w.decomposed.solve(w.forward.by_rate, w.forward.by_rate);
+  w.decomposed.solve(w.arm->actuation(), w.forward.by_torque);
   return w.forward;
 }
 

@@ -29,7 +29,7 @@ void ArmSensitivity::follow(const ArmSimulation& simulation, const MatrixX& by_p
   right_.noalias() -= last.linear->by_rate * velocity_;
   right_.noalias() -= last.linear->by_acceleration * acceleration_;
   decomposed_.compute(last.matrix);
-  motion_.noalias() = decomposed_.solve(right_);
+  decomposed_.solve(right_, motion_);
   position_ += motion_;
   velocity_ += weights.velocity.motion * motion_;
   known(weights.first, acceleration_);

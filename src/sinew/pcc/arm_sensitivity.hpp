@@ -3,8 +3,7 @@
 /// (Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I, 1993, II.6).
 #pragma once
 
-#include <Eigen/LU>
-
+#include "sinew/linalg/dense_factor.hpp"
 #include "sinew/pcc/arm_simulation.hpp"
 
 namespace sinew::pcc {
@@ -31,7 +30,7 @@ class ArmSensitivity {
  private:
   MatrixX position_, rate_, first_, second_;
   MatrixX motion_, velocity_, acceleration_, right_;
-  Eigen::PartialPivLU<MatrixX> decomposed_;
+  linalg::LuFactor decomposed_;
 };
 
 }  // namespace sinew::pcc

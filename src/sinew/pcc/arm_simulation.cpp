@@ -4,11 +4,10 @@
 #include <cmath>
 #include <utility>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/linalg/dense.hpp"
 
 namespace sinew::pcc {
 
@@ -37,8 +36,8 @@ ArmSimulation::ArmSimulation(std::shared_ptr<const Arm> arm, const ArmStepSettin
   }
   motion_ = start_ = new_rate_ = acceleration_ = residual_ = drive_ = VectorX::Zero(n);
   last_.matrix = MatrixX::Zero(n, n);
-  new_acceleration_ = VectorX::Zero(n);
-  decomposed_ = Eigen::PartialPivLU<MatrixX>(n);
+  new_acceleration_ = correction_ = VectorX::Zero(n);
+  decomposed_ = linalg::LuFactor(n);
   set_state(VectorX::Zero(n), VectorX::Zero(n));
 }
 
@@ -91,7 +90,8 @@ void ArmSimulation::step(const VectorX& torque) {
                   "make the time step smaller, or the damping larger");
     }
     decomposed_.compute(last_.matrix);
-    motion_ -= decomposed_.solve(residual_);
+    decomposed_.solve(residual_, correction_);
+    motion_ -= correction_;
     ++iterations_;
   }
   // What is kept follows from the values at the start.
@@ -121,8 +121,7 @@ ArmEquilibrium find_equilibrium(ArmEquations& equations, const VectorX& torque,
     const auto& linear = equations.linearise(q, still, still);
     const VectorX gradient = linear.residual - drive;
     const MatrixX hessian = 0.5 * (linear.by_position + linear.by_position.transpose());
-    const double lowest =
-        Eigen::SelfAdjointEigenSolver<MatrixX>(hessian, Eigen::EigenvaluesOnly).eigenvalues()[0];
+    const double lowest = linalg::symmetric_eigenvalues(hessian)[0];
     const double scale = drive.cwiseAbs().maxCoeff() +
                          arm.stiffness().cwiseProduct(q).cwiseAbs().maxCoeff() + 1e-3 * unit;
     if (gradient.cwiseAbs().maxCoeff() <= 1e-11 * scale) {
@@ -130,7 +129,7 @@ ArmEquilibrium find_equilibrium(ArmEquations& equations, const VectorX& torque,
       return result;
     }
     const double shift = lowest > 1e-6 * unit ? 0.0 : 1e-3 * unit - lowest;
-    VectorX move = -(hessian + shift * MatrixX::Identity(n, n)).llt().solve(gradient);
+    VectorX move = -linalg::solve_symmetric(hessian + shift * MatrixX::Identity(n, n), gradient);
     // A radian a coordinate is as far as a quadratic model may be trusted.
     move *= std::min(1.0, 1.0 / move.cwiseAbs().maxCoeff());
     const double before = potential(q), slope = gradient.dot(move);

@@ -4,8 +4,7 @@
 
 #include <memory>
 
-#include <Eigen/LU>
-
+#include "sinew/linalg/dense_factor.hpp"
 #include "sinew/mechanics/integrator.hpp"
 #include "sinew/pcc/arm_equations.hpp"
 
@@ -57,9 +56,9 @@ class ArmSimulation {
   int iterations_ = 0;
   VectorX q_, rate_, first_, second_;
   VectorX motion_, start_, new_rate_, acceleration_, residual_, drive_;
-  VectorX new_acceleration_;
+  VectorX new_acceleration_, correction_;
   LastStep last_;
-  Eigen::PartialPivLU<MatrixX> decomposed_;
+  linalg::LuFactor decomposed_;
 };
 
 /// An equilibrium K q + G(q) = B tau.

@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <fmt/format.h>
-#include <unsupported/Eigen/MatrixFunctions>
 
 #include "sinew/core/error.hpp"
 
@@ -18,6 +16,23 @@ void require(bool good, ErrorKind kind, const std::string& message, const char* 
   if (!good) throw Error(kind, {.item = "drive cylinder"}, message, remedy);
 }
 
+/// exp(-s h) cos(n h) and exp(-s h) sin(n h) / n of s = zeta w, n^2 = w^2 - s^2; their hyperbolic
+/// counterparts where n^2 < 0, written so that neither overflows nor cancels.
+struct Decay {
+  double even = 0.0, odd = 0.0;
+};
+
+Decay decay(double w, double zeta, double h) {
+  const double s = zeta * w, square = w * w * (1.0 - zeta) * (1.0 + zeta);
+  if (square > 0.0) {
+    const double n = std::sqrt(square), envelope = std::exp(-s * h);
+    return {envelope * std::cos(n * h), envelope * std::sin(n * h) / n};
+  }
+  const double m = std::sqrt(-square);
+  const double slow = std::exp(-w * w / (s + m) * h), fast = std::exp(-(s + m) * h);
+  return {0.5 * (slow + fast), m > 0.0 ? slow * -std::expm1(-2.0 * m * h) / (2.0 * m) : slow * h};
+}
+
 }  // namespace
 
 DriveCylinder DriveCylinder::second_order(double gain, double frequency, double damping,
@@ -27,16 +42,14 @@ DriveCylinder DriveCylinder::second_order(double gain, double frequency, double 
           fmt::format("gain {:g}, {:g} rad/s, damping {:g}, sampled by {:g} s", gain, frequency,
                       damping, sample_time),
           "give frequency and sample time above zero, damping zero or more");
-  // exp of [F G; 0 0] h is [A B; 0 1] (Van Loan, IEEE Trans. Automatic Control 23, 1978).
-  Matrix3 continuous = Matrix3::Zero();
-  continuous(0, 1) = frequency;
-  continuous(1, 0) = -frequency;
-  continuous(1, 1) = -2.0 * damping * frequency;
-  continuous(1, 2) = frequency;
-  const Matrix3 held = (sample_time * continuous).exp();
+  // x' = F x + G u, F = w [0 1; -1 -2 zeta], G = [0; w]. With s = zeta w, (F + s I)^2 = (s^2 - w^2)
+  // I, so A = exp(F h) = even I + odd (F + s I). B = F^-1 (A - I) G = (I - A) [1; 0]: a held
+  // command u has the rest [u; 0].
+  const auto [even, odd] = decay(frequency, damping, sample_time);
+  const double rate = damping * frequency;
   DriveCylinder cylinder;
-  cylinder.a = held.topLeftCorner<2, 2>();
-  cylinder.b = held.topRightCorner<2, 1>();
+  cylinder.a << even + rate * odd, frequency * odd, -frequency * odd, even - rate * odd;
+  cylinder.b << 1.0 - cylinder.a(0, 0), -cylinder.a(1, 0);
   cylinder.c << gain, 0.0;
   cylinder.sample_time = sample_time;
   return cylinder;
@@ -63,7 +76,11 @@ Eigen::Vector2d DriveCylinder::rest(double command) const {
   return (Eigen::Matrix2d::Identity() - a).inverse() * b * command;
 }
 
-double DriveCylinder::spectral_radius() const { return a.eigenvalues().cwiseAbs().maxCoeff(); }
+double DriveCylinder::spectral_radius() const {
+  const double mean = 0.5 * a.trace(), half = 0.5 * (a(0, 0) - a(1, 1));
+  const double square = half * half + a(0, 1) * a(1, 0);  // of half the eigenvalues' distance
+  return square < 0.0 ? std::hypot(mean, std::sqrt(-square)) : std::abs(mean) + std::sqrt(square);
+}
 
 VectorX DriveCylinder::simulate(const VectorX& command, const Eigen::Vector2d& start) const {
   check();

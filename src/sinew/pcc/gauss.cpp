@@ -3,22 +3,22 @@
 #include <cmath>
 #include <cstddef>
 
-#include <Eigen/Eigenvalues>
+#include "sinew/linalg/dense_factor.hpp"
 
 namespace sinew::pcc {
 
 // Points and weights are eigenvalues and first components of eigenvectors of the Jacobi matrix of
 // Legendre's polynomials (Golub & Welsch, Math. Comp. 23, 1969).
 std::vector<GaussPoint> gauss_points(int count) {
-  Eigen::MatrixXd jacobi = Eigen::MatrixXd::Zero(count, count);
+  MatrixX jacobi = MatrixX::Zero(count, count);
   for (int k = 1; k < count; ++k) {
     jacobi(k, k - 1) = jacobi(k - 1, k) = k / std::sqrt(4.0 * k * k - 1.0);
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(jacobi);
+  const linalg::SymmetricSpectrum spectrum(jacobi);
   std::vector<GaussPoint> result;
   for (int k = 0; k < count; ++k) {
-    const double first = spectrum.eigenvectors()(0, k);
-    result.push_back({0.5 * (1.0 + spectrum.eigenvalues()[k]), first * first});
+    const double first = spectrum.vectors()(0, k);
+    result.push_back({0.5 * (1.0 + spectrum.values()[k]), first * first});
   }
   return result;
 }

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/linalg/dense.hpp"
 #include "sinew/plan/brace_program.hpp"
 #include "sinew/plan/brace_response.hpp"
 #include "sinew/plan/brace_search.hpp"
@@ -84,10 +84,9 @@ void hold_as_measured(BraceProblem& problem, const pcc::Arm& arm, double turn,
   const auto& at = points.positions(measured, looked_at);
   const auto in_world = [&](const Vector3& p) -> Vector3 { return base + rotation * (p - base); };
   problem.place = in_world(at[0].value);
-  const Eigen::JacobiSVD<MatrixX> svd(rotation * at[0].jacobian, Eigen::ComputeFullU);
-  const auto& values = svd.singularValues();
-  const Eigen::Index rank = (values.array() > kLeastMotion * values[0]).count();
-  problem.held = svd.matrixU().leftCols(rank);
+  const linalg::Svd svd = linalg::svd(rotation * at[0].jacobian, linalg::SingularVectors::full_u);
+  const Eigen::Index rank = (svd.values.array() > kLeastMotion * svd.values[0]).count();
+  problem.held = svd.u.leftCols(rank);
   std::vector<pcc::ArmPoint> clear;
   for (std::size_t p = 1; p < looked_at.size(); ++p) {
     const Vector3 place = in_world(at[p].value);

@@ -4,10 +4,10 @@
 #include <numbers>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/linalg/dense.hpp"
 #include "sinew/pcc/arm_simulation.hpp"
 #include "sinew/plan/point_derivatives.hpp"
 #include "sinew/plan/uniform.hpp"
@@ -182,9 +182,8 @@ NearestReach nearest_reach(const std::shared_ptr<const pcc::Arm>& arm, const Lim
     const double distance = (tip - goal).norm();
     if (best.found && distance >= best.distance) continue;
     const MatrixX& stiffness = equations.linearise(q, still, still).by_position;
-    const double lowest = Eigen::SelfAdjointEigenSolver<MatrixX>(
-                              0.5 * (stiffness + stiffness.transpose()), Eigen::EigenvaluesOnly)
-                              .eigenvalues()[0];
+    const double lowest =
+        linalg::symmetric_eigenvalues(0.5 * (stiffness + stiffness.transpose()))[0];
     best = {true, lowest > 0.0, distance, tip, q, found.point.x.tail(arm->inputs()), best.solved};
   }
   return best;

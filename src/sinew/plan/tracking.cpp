@@ -4,11 +4,11 @@
 #include <cmath>
 #include <utility>
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/linalg/dense.hpp"
+#include "sinew/linalg/dense_factor.hpp"
 #include "sinew/pcc/arm_simulation.hpp"
 
 namespace sinew::plan {
@@ -39,10 +39,12 @@ StepLinearisation linearise_step(pcc::ArmEquations& equations, const VectorX& q,
   const auto& linear = equations.linearise(q, rate, acceleration);
   const Eigen::Index n = q.size();
   const MatrixX inertia = linear.by_acceleration / h;
-  const Eigen::PartialPivLU<MatrixX> step(h * linear.by_position + linear.by_rate + inertia);
-  MatrixX rates(n, 2 * n);
-  rates << step.solve(-linear.by_position), step.solve(inertia);
-  const MatrixX driven = step.solve(equations.arm().actuation());
+  const linalg::LuFactor step(h * linear.by_position + linear.by_rate + inertia);
+  const MatrixX& actuation = equations.arm().actuation();
+  MatrixX moved(n, 2 * n), rates(n, 2 * n), driven(n, actuation.cols());
+  moved << -linear.by_position, inertia;
+  step.solve(moved, rates);
+  step.solve(actuation, driven);
   StepLinearisation result{MatrixX(2 * n, 2 * n), MatrixX(2 * n, driven.cols())};
   result.state << h * rates, rates;
   result.state.topLeftCorner(n, n) += MatrixX::Identity(n, n);
@@ -54,7 +56,7 @@ RiccatiStep riccati_step(const StepLinearisation& step, const MatrixX& state_cos
                          const MatrixX& input_cost, const MatrixX& after) {
   const MatrixX weighted = step.input.transpose() * after;
   RiccatiStep result;
-  result.gain = (input_cost + weighted * step.input).ldlt().solve(weighted * step.state);
+  result.gain = linalg::solve_symmetric(input_cost + weighted * step.input, weighted * step.state);
   const MatrixX cost =
       state_cost + step.state.transpose() * after * (step.state - step.input * result.gain);
   result.cost = 0.5 * (cost + cost.transpose());

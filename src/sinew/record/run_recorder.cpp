@@ -9,9 +9,12 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "sinew/constraint/contact.hpp"
+#include "sinew/constraint/probe.hpp"
 #include "sinew/core/build_info.hpp"
 #include "sinew/fem/element_fields.hpp"
 #include "sinew/fem/element_states.hpp"
+#include "sinew/mechanics/body.hpp"
 #include "sinew/mesh/write.hpp"
 #include "sinew/record/run_states.hpp"
 #include "sinew/record/run_table.hpp"

@@ -4,7 +4,11 @@
 
 #include <fmt/format.h>
 
+#include "sinew/constraint/contact.hpp"
+#include "sinew/constraint/effector.hpp"
+#include "sinew/constraint/probe.hpp"
 #include "sinew/core/build_info.hpp"
+#include "sinew/mechanics/body.hpp"
 #include "sinew/pcc/arm_body.hpp"
 
 namespace sinew::record {

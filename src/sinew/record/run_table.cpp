@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "sinew/constraint/effector.hpp"
+#include "sinew/constraint/probe.hpp"
+
 namespace sinew::record {
 
 namespace {

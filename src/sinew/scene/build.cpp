@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "sinew/fem/fem_body_model.hpp"
 #include "sinew/mesh/selection.hpp"
 #include "sinew/mesh/surface.hpp"
 #include "sinew/scene/build_parts.hpp"

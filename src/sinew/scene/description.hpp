@@ -26,9 +26,9 @@
 #include "sinew/scene/node.hpp"
 #include "sinew/sim/fluid_drive.hpp"
 #include "sinew/sim/load_settings.hpp"
-#include "sinew/sim/model.hpp"
 #include "sinew/sim/signal.hpp"
 #include "sinew/sim/spring_drive.hpp"
+#include "sinew/sim/step_settings.hpp"
 #include "sinew/sim/torque_settings.hpp"
 
 namespace sinew::scene {

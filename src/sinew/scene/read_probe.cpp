@@ -1,5 +1,6 @@
 #include <utility>
 
+#include "sinew/constraint/probe.hpp"
 #include "sinew/scene/readers.hpp"
 
 namespace sinew::scene {

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "sinew/constraint/probe.hpp"
+#include "sinew/mechanics/body.hpp"
 #include "sinew/sim/model_builder.hpp"
 
 namespace sinew::sim {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "sinew/constraint/contact.hpp"
 #include "sinew/sim/model.hpp"
 
 namespace sinew::sim {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Eigenvalues>
+#include "sinew/linalg/dense.hpp"
 
 namespace sinew::sim {
 
@@ -41,7 +41,7 @@ bool DrivenLaw::stabilised(const LawProblem& problem, int negative_pivots) {
     if (!(at.slope < 0.0)) return false;  // a flat curve holds nothing
     own(i, i) -= 1.0 / at.slope;
   }
-  const VectorX values = own.selfadjointView<Eigen::Lower>().eigenvalues();
+  const VectorX values = linalg::symmetric_eigenvalues(own);
   return (values.array() < 0.0).count() == negative_pivots;
 }
 

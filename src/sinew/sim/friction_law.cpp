@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sinew/constraint/cable.hpp"
 #include "sinew/sim/model.hpp"
 
 namespace sinew::sim {

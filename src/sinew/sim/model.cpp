@@ -2,7 +2,13 @@
 
 #include <fmt/format.h>
 
+#include "sinew/constraint/cable.hpp"
+#include "sinew/constraint/cavity.hpp"
+#include "sinew/constraint/contact.hpp"
+#include "sinew/constraint/effector.hpp"
+#include "sinew/constraint/probe.hpp"
 #include "sinew/core/error.hpp"
+#include "sinew/mechanics/body.hpp"
 
 namespace sinew::sim {
 
@@ -36,6 +42,9 @@ Eigen::Isometry3d ContactModel::pose(double time) const {
       Vector3(motion->translation_at(time) + motion->centre - pose.linear() * motion->centre));
   return pose;
 }
+
+Model::Model() = default;
+Model::~Model() = default;
 
 int Model::body_index(std::string_view name) const {
   return find_by_name(bodies_, name, "body", [](const auto& b) { return b->name(); });

@@ -3,64 +3,37 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "sinew/constraint/cable.hpp"
-#include "sinew/constraint/cavity.hpp"
-#include "sinew/constraint/contact.hpp"
-#include "sinew/constraint/effector.hpp"
-#include "sinew/constraint/point_force.hpp"
-#include "sinew/constraint/probe.hpp"
-#include "sinew/fem/fem_body_model.hpp"
-#include "sinew/mechanics/body.hpp"
+#include <Eigen/Geometry>
+
+#include "sinew/core/error.hpp"
+#include "sinew/core/types.hpp"
+#include "sinew/mechanics/rows.hpp"
 #include "sinew/sim/actuator.hpp"
+#include "sinew/sim/signal.hpp"
+#include "sinew/sim/step_settings.hpp"
+
+namespace sinew::constraint {
+class Cable;
+class Cavity;
+class Constraint;
+class Contact;
+class Effector;
+class Probe;
+}  // namespace sinew::constraint
+
+namespace sinew::mechanics {
+class BodyModel;
+}  // namespace sinew::mechanics
 
 namespace sinew::sim {
-
-/// How many linearisations a step takes.
-enum class Method {
-  one_linearisation,  ///< one linear solve a step, as real-time codes do; watched, not corrected
-  newton,             ///< as many as the tolerance asks for: one where little changes
-};
-
-/// Smaller steps inside each time step where the integrator's error asks for them or a step fails.
-struct AdaptiveStep {
-  double tolerance = 1e-4;  ///< error of a step in any coordinate, relative to the robot's size
-  double smallest = 0.0;    ///< s, > 0
-};
-
-/// A quasi-static step hands what is left of its residual to the next one, which takes it away: one
-/// linearisation a step keeps a robot this near equilibrium while it moves at usual speeds.
-inline constexpr double kQuasiStaticTolerance = 5e-3;
-/// In dynamics a residual is an impulse that stays.
-inline constexpr double kDynamicTolerance = 1e-8;
-
-/// How each step is solved.
-struct StepSettings {
-  double time_step = 0.01;  ///< s, > 0
-  mechanics::Integrator integrator = mechanics::Integrator::quasi_static;
-  double spectral_radius = 0.8;  ///< of generalized-alpha, 0 to 1
-  std::optional<AdaptiveStep> adaptive;
-  Method method = Method::newton;
-  /// The exact tangent comes with the geometric stiffness of all cables, without which it says
-  /// little: a compressed robot's own tangent may be indefinite where the held robot is stable.
-  /// Where it is indefinite for the held robot, too, the projected one takes its place.
-  mechanics::Tangent tangent = mechanics::Tangent::exact;
-  /// Newton: residual relative to the loads, and motion to the size. None: kQuasiStaticTolerance
-  /// or kDynamicTolerance.
-  std::optional<double> tolerance;
-  int max_iterations = 50;  ///< Newton
-
-  bool dynamic() const { return integrator != mechanics::Integrator::quasi_static; }
-  double newton_tolerance() const {
-    return tolerance.value_or(dynamic() ? kDynamicTolerance : kQuasiStaticTolerance);
-  }
-  double contact_tolerance = 1e-10;  ///< of the contacts' residual, see qp::ConeResult
-};
 
 /// A point that a cable slides through with friction.
 struct GuideModel {
@@ -123,6 +96,10 @@ struct LoadModel {
 /// Immutable; made by ModelBuilder. Several simulations and threads may share one.
 class Model {
  public:
+  ~Model();
+  Model(const Model&) = delete;
+  Model& operator=(const Model&) = delete;
+
   const std::vector<std::unique_ptr<mechanics::BodyModel>>& bodies() const { return bodies_; }
   const std::vector<std::unique_ptr<constraint::Constraint>>& constraints() const {
     return constraints_;
@@ -173,6 +150,8 @@ class Model {
 
  private:
   friend class ModelBuilder;
+
+  Model();
 
   std::vector<std::unique_ptr<mechanics::BodyModel>> bodies_;
   std::vector<std::unique_ptr<constraint::Constraint>> constraints_;

@@ -7,8 +7,13 @@
 
 #include <fmt/format.h>
 
+#include "sinew/constraint/cable.hpp"
+#include "sinew/constraint/cavity.hpp"
+#include "sinew/constraint/effector.hpp"
+#include "sinew/constraint/point_force.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/core/state_hash.hpp"
+#include "sinew/mechanics/body.hpp"
 #include "sinew/mesh/surface.hpp"
 
 namespace sinew::sim {
@@ -53,7 +58,7 @@ void hash_points(StateHash& hash, const Points& points) {
 
 }  // namespace
 
-ModelBuilder::ModelBuilder(StepSettings settings) : model_(std::make_unique<Model>()) {
+ModelBuilder::ModelBuilder(StepSettings settings) : model_(new Model) {
   if (!(settings.time_step > 0.0)) {
     throw Error(ErrorKind::out_of_range, {.item = "time_step"},
                 fmt::format("the time step is {:g} s", settings.time_step),
@@ -576,7 +581,7 @@ std::shared_ptr<const Model> ModelBuilder::build(const linalg::FactorisationSett
   for (const auto& point : model_->rows_.point) hash.add(static_cast<double>(point.point));
   model_->fingerprint_ = hash.value();
   std::shared_ptr<const Model> model = std::move(model_);
-  model_ = std::make_unique<Model>();
+  model_.reset(new Model);
   return model;
 }
 

@@ -9,6 +9,8 @@
 #include <variant>
 #include <vector>
 
+#include "sinew/constraint/surface.hpp"
+#include "sinew/fem/fem_body_model.hpp"
 #include "sinew/mesh/patch.hpp"
 #include "sinew/pcc/arm.hpp"
 #include "sinew/sim/fluid_drive.hpp"

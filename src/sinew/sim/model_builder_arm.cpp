@@ -6,6 +6,7 @@
 #include "sinew/constraint/point_force.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/core/state_hash.hpp"
+#include "sinew/mechanics/body.hpp"
 #include "sinew/pcc/arm_body.hpp"
 #include "sinew/sim/model_builder.hpp"
 

@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
+#include "sinew/constraint/contact.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/core/state_hash.hpp"
+#include "sinew/mechanics/body.hpp"
 #include "sinew/sim/model_builder.hpp"
 
 namespace sinew::sim {

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/fem/fem_body_model.hpp"
 #include "sinew/mesh/line_cuts.hpp"
 #include "sinew/sim/model_builder.hpp"
 

@@ -6,8 +6,11 @@
 
 #include <fmt/format.h>
 
+#include "sinew/constraint/effector.hpp"
+#include "sinew/constraint/probe.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/core/state_hash.hpp"
+#include "sinew/mechanics/body.hpp"
 
 namespace sinew::sim {
 

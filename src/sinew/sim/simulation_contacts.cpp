@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "sinew/constraint/contact.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/sim/simulation.hpp"
 

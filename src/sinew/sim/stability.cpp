@@ -6,6 +6,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "sinew/constraint/contact.hpp"
+
 namespace sinew::sim {
 
 namespace {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "sinew/constraint/contact.hpp"
 #include "sinew/linalg/positive_part.hpp"
 
 namespace sinew::sim {

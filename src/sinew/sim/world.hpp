@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "sinew/constraint/placement.hpp"
+#include "sinew/mechanics/body.hpp"
 #include "sinew/sim/law.hpp"
 #include "sinew/sim/model.hpp"
 

@@ -1,0 +1,36 @@
+#include "sinew/linalg/dense_factor.hpp"
+
+namespace sinew::linalg {
+
+void LuFactor::compute(const MatrixX& a) { lu_.compute(a); }
+
+void LuFactor::solve(const Eigen::Ref<const VectorX>& b, Eigen::Ref<VectorX> x) const {
+  x = lu_.solve(b);
+}
+
+void LuFactor::solve(const MatrixX& b, MatrixX& x) const { x = lu_.solve(b); }
+
+bool CholeskyFactor::compute(const MatrixX& a) {
+  llt_.compute(a);
+  return llt_.info() == Eigen::Success;
+}
+
+void CholeskyFactor::solve(const Eigen::Ref<const VectorX>& b, Eigen::Ref<VectorX> x) const {
+  x = b;
+  llt_.solveInPlace(x);
+}
+
+void CholeskyFactor::solve(const MatrixX& b, MatrixX& x) const {
+  x = b;
+  llt_.solveInPlace(x);
+}
+
+void SymmetricPivots::compute(const MatrixX& a) { ldlt_.compute(a); }
+
+int SymmetricPivots::negative() const {
+  return static_cast<int>((ldlt_.vectorD().array() < 0.0).count());
+}
+
+bool SymmetricPivots::vanishes() const { return (ldlt_.vectorD().array() == 0.0).any(); }
+
+}  // namespace sinew::linalg

@@ -1,0 +1,76 @@
+/// @file
+/// Factors of dense matrices that are made anew in each step: nothing allocates after construction.
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include "sinew/core/types.hpp"
+
+namespace sinew::linalg {
+
+/// P A = L U with partial pivoting. A singular A shows in solutions that are not finite.
+class LuFactor {
+ public:
+  explicit LuFactor(Eigen::Index size = 0) : lu_(size) {}
+  explicit LuFactor(const MatrixX& a) : lu_(a.rows()) { compute(a); }
+
+  /// @param a (size, size)
+  void compute(const MatrixX& a);
+  /// x of A x = b. @param b (size,). @param x (size,), not b.
+  void solve(const Eigen::Ref<const VectorX>& b, Eigen::Ref<VectorX> x) const;
+  /// Column by column. @param b (size, k). @param x (size, k), not b.
+  void solve(const MatrixX& b, MatrixX& x) const;
+
+ private:
+  Eigen::PartialPivLU<MatrixX> lu_;
+};
+
+/// A = L L^T of a positive definite A.
+class CholeskyFactor {
+ public:
+  explicit CholeskyFactor(Eigen::Index size = 0) : llt_(size) {}
+
+  /// @param a (size, size); its lower triangle is read. False when A is not positive definite.
+  bool compute(const MatrixX& a);
+  /// x of A x = b. @param b (size,). @param x (size,), may be b.
+  void solve(const Eigen::Ref<const VectorX>& b, Eigen::Ref<VectorX> x) const;
+  /// Column by column. @param b (size, k). @param x (size, k), may be b.
+  void solve(const MatrixX& b, MatrixX& x) const;
+
+ private:
+  Eigen::LLT<MatrixX> llt_;
+};
+
+/// Signs of a symmetric matrix: D of P A P^T = L D L^T with diagonal pivoting has as many negative
+/// entries as A has negative eigenvalues (Sylvester's law of inertia).
+class SymmetricPivots {
+ public:
+  explicit SymmetricPivots(Eigen::Index size = 0) : ldlt_(size) {}
+
+  /// @param a (size, size); its lower triangle is read.
+  void compute(const MatrixX& a);
+  int negative() const;   ///< how many are below zero
+  bool vanishes() const;  ///< one is zero: A is singular
+
+ private:
+  Eigen::LDLT<MatrixX> ldlt_;
+};
+
+/// Eigenvalues and eigenvectors of a symmetric matrix.
+class SymmetricSpectrum {
+ public:
+  explicit SymmetricSpectrum(Eigen::Index size = 0) : solver_(size) {}
+  explicit SymmetricSpectrum(const MatrixX& a) : solver_(a.rows()) { compute(a); }
+
+  /// @param a (size, size); its lower triangle is read.
+  void compute(const MatrixX& a);
+  const VectorX& values() const { return solver_.eigenvalues(); }    ///< (size,) ascending
+  const MatrixX& vectors() const { return solver_.eigenvectors(); }  ///< (size, size) columns
+
+ private:
+  Eigen::SelfAdjointEigenSolver<MatrixX> solver_;
+};
+
+}  // namespace sinew::linalg
