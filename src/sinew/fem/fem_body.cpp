@@ -298,6 +298,12 @@ double FemBody::residual(std::span<const double> effort) {
   return scratch_.norm();
 }
 
+double FemBody::remaining_move(std::span<const double> effort) {
+  residual(effort);
+  active_->factorisation->solve(span_of(scratch_), span_of(scratch_));
+  return scratch_.cwiseAbs().maxCoeff();
+}
+
 void FemBody::add_row_forces(std::span<const double> effort, Points& forces) const {
   const auto& border = active_->system.border;
   for (std::size_t k = 0; k < model_.rows().size(); ++k) {

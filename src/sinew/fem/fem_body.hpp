@@ -56,6 +56,7 @@ class FemBody : public mechanics::Body {
   int negative_pivots() const override;
   double force_scale() const override { return force_scale_; }
   double rounding_floor() const override;
+  double remaining_move(std::span<const double> effort) override;
   bool is_unsymmetric() const override { return !open_stiffness_.empty(); }
   double strain_energy() override;
   double kinetic_energy() override;

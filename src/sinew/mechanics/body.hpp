@@ -140,6 +140,9 @@ class Body {
   virtual void set_imbalance_share(double share) = 0;
   /// dq = A^-1 (b + H^T effort).
   virtual void solve_motion(std::span<const double> effort) = 0;
+  /// The largest move, m, of any coordinate in A^-1 (b + H^T effort) with the A that was condensed
+  /// last and the b of the last linearisation: about what one more iteration would move.
+  virtual double remaining_move(std::span<const double> effort) = 0;
   /// For those who choose dq themselves: how many numbers it has; b + H^T effort; A^-1 of any right
   /// side, of the last condensation; what the next apply_motion() takes in place of
   /// solve_motion()'s.

@@ -35,7 +35,7 @@ class NewtonSolver {
   NewtonReport run() {
     linearise(settings_.request.tangent);
     for (report_.iterations = 0; report_.iterations < settings_.max_iterations;) {
-      if (report_.iterations > 0 && converged()) return finish(NewtonStatus::converged);
+      if (converged_) return finish(NewtonStatus::converged);
       if (!condense()) return finish(NewtonStatus::singular);
       report_.law = solve_law(world_, law_, problem_, effort_);
       clock_.mark(Stage::law);
@@ -44,7 +44,7 @@ class NewtonSolver {
       ++report_.iterations;
       if (moved != NewtonStatus::converged) return finish(moved);
     }
-    return finish(converged() ? NewtonStatus::converged : NewtonStatus::iteration_limit);
+    return finish(converged_ ? NewtonStatus::converged : NewtonStatus::iteration_limit);
   }
 
  private:
@@ -72,6 +72,7 @@ class NewtonSolver {
     const bool stable = status == linalg::FactorStatus::positive_definite ||
                         (status == linalg::FactorStatus::indefinite &&
                          (unsymmetric || DrivenLaw::stabilised(problem_, negative)));
+    derivative_ = stable && settings_.request.tangent == mechanics::Tangent::exact;
     if (!stable && settings_.request.tangent == mechanics::Tangent::exact) {
       clock_.mark(Stage::factorisation);
       linearise(mechanics::Tangent::projected);
@@ -92,17 +93,31 @@ class NewtonSolver {
     return report_.relative_residual + report_.violation / problem_.model.size();
   }
 
+  // A residual says little about distance: a rotation along its tangent stretches a slender robot,
+  // and the axial forces of that are large where the move that takes them away is small. That move
+  // is known to first order by the factor in hand. It is not where the matrix is larger than the
+  // derivative, as the projected one is, nor where a part of it is left out.
+  bool lags_little() {
+    if (settings_.lag == 0.0 || !full_step_ || !derivative_) return false;
+    for (const auto& body : world_.bodies()) {
+      if (body->is_unsymmetric()) return false;
+    }
+    return world_.remaining_move(effort_) <=
+           std::min(settings_.lag * report_.motion.largest_move,
+                    settings_.lag_of_size * problem_.model.size());
+  }
+
   // Where rounding keeps the residual above the tolerance, a full step that moves nothing by more
   // than rounding does, or that no longer lessens a residual at its floor, says that there is
   // nothing left to find.
-  bool converged() const {
+  bool converged() {
     const double size = problem_.model.size();
     if (!(report_.violation <= std::max(settings_.motion_tolerance, kRounding) * size))
       return false;
     const bool at_rest = full_step_ && report_.motion.largest_move <= kRounding * size &&
                          report_.relative_residual <= kRoundedResidual;
     return report_.relative_residual <= settings_.tolerance || at_rest ||
-           (stagnant_ && report_.residual <= world_.rounding_floor());
+           (stagnant_ && report_.residual <= world_.rounding_floor()) || lags_little();
   }
 
   NewtonStatus move() {
@@ -120,7 +135,8 @@ class NewtonSolver {
       const double after = merit();
       full_step_ = halving == 0;
       stagnant_ = full_step_ && report_.residual > kLessened * residual_before;
-      if (converged() || after < kMeritGrowth * before) return NewtonStatus::converged;
+      converged_ = converged();
+      if (converged_ || after < kMeritGrowth * before) return NewtonStatus::converged;
     }
     return inverted ? NewtonStatus::inverted : NewtonStatus::stalled;
   }
@@ -137,8 +153,10 @@ class NewtonSolver {
   const NewtonSettings& settings_;
   StageClock& clock_;
   NewtonReport report_;
-  bool full_step_ = false;
-  bool stagnant_ = false;  // the last full step did not lessen the residual
+  bool converged_ = false;   // after the last motion
+  bool full_step_ = false;   // of that motion
+  bool derivative_ = false;  // what was condensed for it is the derivative
+  bool stagnant_ = false;    // the last full step did not lessen the residual
 };
 
 }  // namespace

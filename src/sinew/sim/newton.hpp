@@ -29,7 +29,11 @@ struct NewtonSettings {
   double tolerance = 1e-8;         ///< on the residual relative to the loads
   double motion_tolerance = 1e-8;  ///< on the law's violation relative to the robot's size
   int max_iterations = 50;
-  std::span<const int> curved;  ///< constraints whose curvature joins A
+  std::span<const int> curved = {};  ///< constraints whose curvature joins A
+  /// What may be left for the next step although the residual is above its tolerance: a move that
+  /// is at most this part of the last iteration's and of the robot's size. 0: nothing.
+  double lag = 0.0;
+  double lag_of_size = 0.0;
 };
 
 struct NewtonReport {

@@ -105,6 +105,8 @@ const StepReport& Simulation::step() {
   report_.substeps = 1;
   report_.retries = 0;
   report_.status = StepStatus::solved;
+  report_.energy_gained = 0.0;
+  if (model_->step().dynamic()) open_ledger();
   if (model_->step().adaptive) {
     step_adaptively();
   } else {
@@ -130,25 +132,21 @@ void Simulation::step_in_parts() {
     if (!parts || !failure.is_run_failure()) throw;
   }
   state_at_step_.assign(state_before_.begin(), state_before_.end());
-  const Work work = work_;
   part_ = Part{0.0, actuators_};
   double done = 0.0, length = 0.5;
   report_.substeps = 0;
   while (done < 1.0) {
-    const Work before = work_;
     try {
       part_->fraction = done + length;
       report_.error = substep(begin + (done + length) * whole, length * whole);
       done += length;
       ++report_.substeps;
     } catch (const Error& failure) {
-      work_ = before;
       length *= 0.5;
       ++report_.retries;
       if (length * kMostParts >= 1.0 && failure.is_run_failure()) continue;
       part_.reset();
       load_state(state_at_step_, steps_);
-      work_ = work;
       throw;
     }
   }
@@ -165,21 +163,18 @@ void Simulation::step_adaptively() {
   if (!(substep_ > 0.0)) substep_ = whole;
   state_at_step_.resize(state_size());
   save_state(state_at_step_);
-  const Work work = work_;
   report_.substeps = 0;
   report_.error = 0.0;
   double done = 0.0;
   while (done < whole * (1.0 - 1e-9)) {
     const double left = whole - done;
     const double h = substep_ < 0.999 * left ? std::min(substep_, 0.5 * left) : left;
-    const Work before = work_;
     try {
       const double error = substep(begin + done + h, h);
       const double aim =
           error > 0.0 ? std::clamp(0.9 * std::pow(tolerance / error, 1.0 / order), 0.2, 2.0) : 2.0;
       if (error > tolerance && 0.5 * h >= settings.adaptive->smallest) {
         load_state(state_before_, steps_);
-        work_ = before;
         substep_ = std::max(settings.adaptive->smallest, std::min(0.5, aim) * h);
         ++report_.retries;
         continue;
@@ -191,7 +186,6 @@ void Simulation::step_adaptively() {
     } catch (const Error& failure) {
       if (0.5 * h < settings.adaptive->smallest || !failure.is_run_failure()) {
         load_state(state_at_step_, steps_);
-        work_ = work;
         throw;
       }
       substep_ = 0.5 * h;
@@ -247,17 +241,17 @@ void Simulation::set_load(int load, Signal factor) {
 // After finish_step().
 void Simulation::count_work() {
   for (std::size_t i = 0; i < actuators_.size(); ++i) {
-    work_.actuators += actuators_[i].effort * (actuators_[i].motion - motion_before_[i]);
+    ledger_.actuators += actuators_[i].effort * (actuators_[i].motion - motion_before_[i]);
   }
   for (const auto& body : world_.bodies()) {
     const mechanics::StepWork work = body->step_work();
-    work_.outside += work.outside;
-    work_.dissipated += work.damped;
+    ledger_.outside += work.outside;
+    ledger_.dissipated += work.damped;
   }
   for (std::size_t k = actuators_.size(); k < ranges_.size(); ++k) {
     const int row = ranges_[k].row;
     const double slid = world_.delta()[row] - motion_before_[k];
-    work_.dissipated -= effort_[static_cast<std::size_t>(row)] * slid;
+    ledger_.dissipated -= effort_[static_cast<std::size_t>(row)] * slid;
   }
   count_contact_work();
 }
@@ -402,7 +396,8 @@ std::size_t Simulation::bytes() const {
 }
 
 std::size_t Simulation::state_size() const {
-  return world_.state_size() + effort_.size() + drive_state_.size() + 2 * actuators_.size() + 3;
+  return world_.state_size() + effort_.size() + drive_state_.size() + 2 * actuators_.size() + 3 +
+         Ledger::kSize;
 }
 
 void Simulation::save_state(std::span<double> state) const {
@@ -420,6 +415,16 @@ void Simulation::save_state(std::span<double> state) const {
   rest[0] = volume_ratio_;
   rest[1] = step_before_;
   rest[2] = substep_;
+  std::ranges::copy(ledger_.numbers(), rest.begin() + 3);
+}
+
+void Simulation::Ledger::read(std::span<const double> numbers) {
+  actuators = numbers[0];
+  outside = numbers[1];
+  dissipated = numbers[2];
+  begun = numbers[3];
+  start = numbers[4];
+  largest = numbers[5];
 }
 
 void Simulation::load_state(std::span<const double> state, std::int64_t steps) {
@@ -440,6 +445,7 @@ void Simulation::load_state(std::span<const double> state, std::int64_t steps) {
   volume_ratio_ = rest[0];
   step_before_ = rest[1];
   substep_ = rest[2];
+  ledger_.read(rest.subspan(3, Ledger::kSize));
   steps_ = steps;
   direct_.reset();
   contact_.reset();
@@ -461,9 +467,7 @@ void Simulation::reset() {
     if (const auto& drive = model_->actuators()[i].drive) drive->rest(drive_numbers(i));
   }
   volume_ratio_ = 1.0;
-  work_ = {};
-  energy_at_start_.reset();
-  largest_energy_ = 0.0;
+  ledger_ = {};
   step_before_ = substep_ = 0.0;
   steps_ = 0;
   finish_step();

@@ -2,6 +2,7 @@
 /// A running robot: model, state, commands, and the step.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -86,11 +87,11 @@ class Simulation {
   Energies energies();
   /// J: what all actuators have done on the bodies in steps since the start or reset(), the sum of
   /// effort times change of motion, with the effort that acted through each step.
-  double actuator_work() const { return work_.actuators; }
+  double actuator_work() const { return ledger_.actuators; }
   /// The same of loads and outside forces (gravity has its own energy), and what damping, drag and
   /// the friction of cables, and friction and impacts of contacts took.
-  double outside_work() const { return work_.outside; }
-  double dissipation() const { return work_.dissipated; }
+  double outside_work() const { return ledger_.outside; }
+  double dissipation() const { return ledger_.dissipated; }
 
   /// A stable static equilibrium at the present inputs: commands at the present time, limits on
   /// rates lifted, actuators of a controller held at their efforts; see StaticSolver. Velocities
@@ -201,6 +202,7 @@ class Simulation {
   [[noreturn]] void fail_law();
   void take_report(const NewtonReport& result);
   void watch();
+  void open_ledger();
   void watch_energy();
   void move_soundly();
   void require_outside();
@@ -234,18 +236,27 @@ class Simulation {
     std::vector<ActuatorState> start;  // of the step
   };
   std::optional<Part> part_;
-  std::optional<double> energy_at_start_;  // J, less what was put in
-  double largest_energy_ = 0.0;            // J, to judge gains by
-  std::vector<double> motion_before_;      // (actuators, then guides) m
+  std::vector<double> motion_before_;  // (actuators, then guides) m
   std::vector<Signal> load_factors_;
   std::vector<double> load_applied_;  // (loads,) factors that acted last; 0 at the start
   struct Stretch {
     double from = 0.0, to = 0.0;
   };
   std::vector<Stretch> path_loads_, path_efforts_;
-  struct Work {
+  // Part of the state: what was put into the energy, and what it is judged by.
+  struct Ledger {
     double actuators = 0.0, outside = 0.0, dissipated = 0.0;  // J
-  } work_;
+    double begun = 0.0;    // 1 from the first step that is watched; then
+    double start = 0.0;    // J, energy at the start less what had been put in
+    double largest = 0.0;  // J, since then
+    double put_in() const { return actuators + outside - dissipated; }
+    static constexpr std::size_t kSize = 6;
+    std::array<double, kSize> numbers() const {
+      return {actuators, outside, dissipated, begun, start, largest};
+    }
+    void read(std::span<const double> numbers);
+    void restart() { begun = start = largest = 0.0; }
+  } ledger_;
   std::int64_t steps_ = 0;
   double volume_ratio_ = 1.0;
   StepReport report_;

@@ -83,8 +83,8 @@ void Simulation::count_contact_work() {
     const constraint::Contact& contact = model_->contact(static_cast<int>(i));
     for (int row = contact.first_row(); row < contact.first_row() + contact.row_count(); ++row) {
       const double effort = effort_[static_cast<std::size_t>(row)];
-      work_.outside += effort * (carried[row] - start[row]);
-      work_.dissipated -= effort * (end[row] - carried[row]);
+      ledger_.outside += effort * (carried[row] - start[row]);
+      ledger_.dissipated -= effort * (end[row] - carried[row]);
     }
   }
 }

@@ -16,7 +16,7 @@ namespace sinew::sim {
 /// (float64: positions, velocities and base of every body, efforts, motions and drives), and a hash
 /// of fingerprint, step count, count and numbers (uint64). Commands are inputs, not state, and are
 /// not part of it.
-inline constexpr std::uint32_t kStateVersion = 3;
+inline constexpr std::uint32_t kStateVersion = 4;
 
 /// What a saved state says of itself.
 struct StateHeader {

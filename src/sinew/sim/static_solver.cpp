@@ -56,6 +56,7 @@ StaticReport StaticSolver::run() {
   sim_.world_.begin_step(sim_.time(), sim_.time(), sim_.effort_);
   sim_.world_.end_step({});
   sim_.step_before_ = 0.0;
+  sim_.ledger_.restart();
   sim_.finish_step();
   sim_.advance_drives();
   return report_;

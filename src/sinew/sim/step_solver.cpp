@@ -17,6 +17,9 @@ constexpr int kMostHalvings = 10;
 // Of the robot's size: a point that is deeper in a surface after one linearisation, and is not
 // pushed out, is not there by rounding.
 constexpr double kDeepest = 1e-6;
+// Of a quasi-static step's own motion, and of the robot's size: what a step may leave to the next.
+constexpr double kLag = 0.05;
+constexpr double kLagOfSize = 1e-4;
 // Relative residuals above this are no equilibrium, whatever the loads: half of the forces of a
 // slender robot are axial, and bend it by nothing when they are this little out of balance.
 constexpr double kBalanced = 0.02;
@@ -40,11 +43,14 @@ constexpr int kSteeredIterations = 8;
 NewtonSettings Simulation::newton_settings(double time_step) const {
   const auto& settings = model_->step();
   const bool steered = law_ != nullptr && !settings.dynamic();
+  const bool lags = !settings.dynamic() && !settings.tolerance;
   return {{step_weights(time_step), settings.tangent, model_->stiffening_widens(), true},
           settings.newton_tolerance(),
           std::min(settings.newton_tolerance(), kMotionTolerance),
           steered ? std::min(settings.max_iterations, kSteeredIterations) : settings.max_iterations,
-          model_->stiffening_constraints()};
+          model_->stiffening_constraints(),
+          lags ? kLag : 0.0,
+          lags ? kLagOfSize : 0.0};
 }
 
 void Simulation::solve_equation(double time_step) {
@@ -237,9 +243,19 @@ void Simulation::watch() {
   if (report_.law == LawStatus::limits_conflict) raise(StepStatus::limits_conflict);
   if (report_.scale < 1.0) raise(StepStatus::cut_back);
   if (report_.violation > kReached * model_->size()) raise(StepStatus::command_not_reached);
-  const bool unbalanced = report_.relative_residual > kBalanced;
-  if (unbalanced) raise(StepStatus::not_in_equilibrium);
+  const bool converged =
+      model_->step().method == Method::newton && report_.newton == NewtonStatus::converged;
+  if (!converged && report_.relative_residual > kBalanced) raise(StepStatus::not_in_equilibrium);
   if (model_->step().dynamic()) watch_energy();
+}
+
+// Before the first step that is watched, so that its own gain counts.
+void Simulation::open_ledger() {
+  if (ledger_.begun != 0.0) return;
+  const Energies now = energies();
+  ledger_.begun = 1.0;
+  ledger_.start = now.strain + now.kinetic + now.gravity - ledger_.put_in();
+  ledger_.largest = now.strain + now.kinetic;
 }
 
 // Stored energy against what actuators and loads put in since the first step. A base that moves and
@@ -247,17 +263,16 @@ void Simulation::watch() {
 void Simulation::watch_energy() {
   for (const auto& body : world_.bodies()) {
     if (body->moved_from_outside()) {
-      energy_at_start_.reset();
+      ledger_.restart();
       return;
     }
   }
   const Energies now = energies();
   const double stored = now.strain + now.kinetic + now.gravity;
-  const double put_in = work_.actuators + work_.outside - work_.dissipated;
-  if (!energy_at_start_) energy_at_start_ = stored - put_in;
-  report_.energy_gained = stored - put_in - *energy_at_start_;
-  largest_energy_ = std::max({largest_energy_, now.strain + now.kinetic, std::abs(put_in)});
-  if (report_.energy_gained > kEnergyGain * largest_energy_) {
+  const double put_in = ledger_.put_in();
+  report_.energy_gained = stored - put_in - ledger_.start;
+  ledger_.largest = std::max({ledger_.largest, now.strain + now.kinetic, std::abs(put_in)});
+  if (report_.energy_gained > kEnergyGain * ledger_.largest) {
     report_.status = std::max(report_.status, StepStatus::gaining_energy);
   }
 }

@@ -293,6 +293,12 @@ double World::rounding_floor() const {
   return std::sqrt(sum);
 }
 
+double World::remaining_move(std::span<const double> effort) {
+  double worst = 0.0;
+  for (auto& body : bodies_) worst = std::max(worst, body->remaining_move(effort));
+  return worst;
+}
+
 void World::hold_imbalance(std::span<const double> effort) {
   for (auto& body : bodies_) body->hold_imbalance(effort);
 }

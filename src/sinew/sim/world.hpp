@@ -11,6 +11,10 @@
 #include "sinew/sim/law.hpp"
 #include "sinew/sim/model.hpp"
 
+namespace sinew::constraint {
+struct SurfaceApproach;
+}
+
 namespace sinew::sim {
 
 /// Data of one simulation below the level of commands and laws. Nothing allocates after
@@ -42,6 +46,8 @@ class World {
   double force_scale() const;
   /// N: what rounding leaves of residual(), see mechanics::Body.
   double rounding_floor() const;
+  /// m: about what one more iteration would move, see mechanics::Body.
+  double remaining_move(std::span<const double> effort);
   /// For load stepping: see mechanics::Body.
   void hold_imbalance(std::span<const double> effort);
   void set_imbalance_share(double share);
