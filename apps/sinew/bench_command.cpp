@@ -214,7 +214,7 @@ int bench(const BenchOptions& options) {
 void add_bench(CommandLine& line) {
   Command command = line.add_command("bench", "Time the stages of a step");
   const auto options = std::make_shared<BenchOptions>();
-  add_scene_options(*command, options->scene);
+  add_scene_options(command, options->scene);
   command.add_option("--steps", options->steps, "Steps that count (default: 300)").type_name("N");
   command
       .add_option("--warm-up", options->warm_up,

@@ -203,7 +203,7 @@ int run(const RunOptions& options) {
 void add_run(CommandLine& line) {
   Command command = line.add_command("run", "Run a scene and record it");
   const auto options = std::make_shared<RunOptions>();
-  add_scene_options(*command, options->scene);
+  add_scene_options(command, options->scene);
   command
       .add_option(
           "--duration", options->duration,

@@ -98,7 +98,7 @@ void add_view(CommandLine& line) {
   Command command = line.add_command(
       "view", "See a scene run in the browser and drive it, or replay a recorded run");
   const auto options = std::make_shared<ViewOptions>();
-  add_scene_options(*command, options->scene, true);
+  add_scene_options(command, options->scene, true);
   command
       .add_option("--port", options->port,
                   "Port to listen on; 0: any that is free (default: 8080 or the next free one)")
