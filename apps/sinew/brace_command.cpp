@@ -246,7 +246,7 @@ void add_brace(CommandLine& line) {
       line.add_command("brace", "Lean an arm on what is around it, so that its tip is steadier");
   const auto options = std::make_shared<BraceOptions>();
   options->scene.takes_contacts = true;  // its objects
-  add_arm_scene_options(*command, options->scene);
+  add_arm_scene_options(command, options->scene);
   command.add_option("--goal", options->goal, "Where the tip is to be: \"5 0 -53 cm\"")
       .required()
       .type_name("POINT");

@@ -283,7 +283,7 @@ void add_identify(CommandLine& line) {
   Command command =
       line.add_command("identify", "Fit an arm's masses, stiffness and damping to recorded motion");
   const auto options = std::make_shared<IdentifyOptions>();
-  add_arm_scene_options(*command, options->scene);
+  add_arm_scene_options(command, options->scene);
   command
       .add_option("RECORD", options->records,
                   "Tables of motion: time [s], x_0 [mm], z_0 [mm], x_1 [mm] ..., and torque_0 "

@@ -278,7 +278,7 @@ int make_plan(const PlanOptions& options) {
 void add_plan(CommandLine& line) {
   Command command = line.add_command("plan", "Plan torques that bring an arm's tip to a goal");
   const auto options = std::make_shared<PlanOptions>();
-  add_arm_scene_options(*command, options->scene);
+  add_arm_scene_options(command, options->scene);
   command.add_option("--goal", options->goal, "Where the tip is to be: \"20 0 -40 cm\"")
       .required()
       .type_name("POINT");

@@ -187,7 +187,7 @@ void add_reach(CommandLine& line) {
   Command command =
       line.add_command("reach", "Find where an arm's tip can be held at rest, and where not");
   const auto options = std::make_shared<ReachOptions>();
-  add_arm_scene_options(*command, options->scene);
+  add_arm_scene_options(command, options->scene);
   command.add_option("--samples", options->samples, "Random torques to try (default: 1000)")
       .type_name("N");
   command.add_option("--seed", options->seed, "Of the random torques (default: 1)").type_name("S");

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/constraint/cable.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 
