@@ -4,6 +4,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "session.hpp"
 
 namespace sinew::python {
 
