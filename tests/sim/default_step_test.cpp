@@ -149,13 +149,13 @@ TEST(DefaultStep, TheWatchOfEnergyGoesWithTheState) {
 TEST(DefaultStep, AStaticSolutionGainsNoEnergy) {
   Simulation simulation(beam(swinging()));
   for (int k = 0; k < 3; ++k) simulation.step();
-  simulation.command(0, tension(3.0));
+  simulation.command(0, tension(0.3));
   simulation.solve_static();
   for (int k = 0; k < 10; ++k) EXPECT_EQ(simulation.step().status, StepStatus::solved) << k;
   EXPECT_NEAR(simulation.report().energy_gained, 0.0, 1e-9);
   simulation.command(0, tension(0.0));
   simulation.solve_static();
-  simulation.command(0, tension(3.0));
+  simulation.command(0, tension(0.3));
   for (int k = 0; k < 50; ++k) EXPECT_EQ(simulation.step().status, StepStatus::solved) << k;
 }
 
