@@ -298,12 +298,6 @@ double FemBody::residual(std::span<const double> effort) {
   return scratch_.norm();
 }
 
-double FemBody::remaining_move(std::span<const double> effort) {
-  residual(effort);
-  active_->factorisation->solve(span_of(scratch_), span_of(scratch_));
-  return scratch_.cwiseAbs().maxCoeff();
-}
-
 void FemBody::add_row_forces(std::span<const double> effort, Points& forces) const {
   const auto& border = active_->system.border;
   for (std::size_t k = 0; k < model_.rows().size(); ++k) {
@@ -425,12 +419,14 @@ mechanics::MotionReport FemBody::apply_motion(double scale) {
   report.largest_move = scale * motion_.cwiseAbs().maxCoeff();
   report.finite = std::isfinite(sum) && sum < blow_up_;
   active_->present.reset();
-  if (report.finite) {
-    const auto volume = active_->assembly.measure_volume(positions_);
-    report.smallest_volume_ratio = volume.smallest_ratio;
-    report.worst_element = volume.element;
-  }
   return report;
+}
+
+mechanics::SmallestVolume FemBody::smallest_volume() {
+  const Assembly& assembly = active_->assembly;
+  if (active_->present) return {assembly.minimum_volume_ratio(), assembly.worst_element()};
+  const auto volume = active_->assembly.measure_volume(positions_);
+  return {volume.smallest_ratio, volume.element};
 }
 
 double FemBody::end_step(const mechanics::StepWeights& weights) {

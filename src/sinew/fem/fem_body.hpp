@@ -44,6 +44,7 @@ class FemBody : public mechanics::Body {
   void solve(std::span<const double> right, std::span<double> result) override;
   void propose_motion(std::span<const double> motion) override;
   mechanics::MotionReport apply_motion(double scale) override;
+  mechanics::SmallestVolume smallest_volume() override;
   double end_step(const mechanics::StepWeights& weights) override;
   mechanics::StepWork step_work() const override { return work_; }
   bool moved_from_outside() const override { return tether_.has_value() || rigid_base_.moves(); }
@@ -56,7 +57,6 @@ class FemBody : public mechanics::Body {
   int negative_pivots() const override;
   double force_scale() const override { return force_scale_; }
   double rounding_floor() const override;
-  double remaining_move(std::span<const double> effort) override;
   bool is_unsymmetric() const override { return !open_stiffness_.empty(); }
   double strain_energy() override;
   double kinetic_energy() override;

@@ -91,12 +91,17 @@ class BodyModel {
                                        int histories) const = 0;
 };
 
+/// The least deformed volume of any element over its own.
+struct SmallestVolume {
+  double ratio = 1.0;  ///< min det F; <= 0 means inverted
+  int element = -1;    ///< where
+};
+
 /// How a proposed motion turned out.
 struct MotionReport {
-  bool finite = true;                  ///< no NaN or infinity in the new state
-  double smallest_volume_ratio = 1.0;  ///< min det F over the elements; <= 0 means inverted
-  int worst_element = -1;              ///< where
-  double largest_move = 0.0;           ///< m, of any coordinate
+  bool finite = true;         ///< no NaN or infinity in the new state
+  double largest_move = 0.0;  ///< m, of any coordinate
+  SmallestVolume volume;
 };
 
 /// What forces did in a step, with the values they had when it was linearised last, J.
@@ -140,9 +145,6 @@ class Body {
   virtual void set_imbalance_share(double share) = 0;
   /// dq = A^-1 (b + H^T effort).
   virtual void solve_motion(std::span<const double> effort) = 0;
-  /// The largest move, m, of any coordinate in A^-1 (b + H^T effort) with the A that was condensed
-  /// last and the b of the last linearisation: about what one more iteration would move.
-  virtual double remaining_move(std::span<const double> effort) = 0;
   /// For those who choose dq themselves: how many numbers it has; b + H^T effort; A^-1 of any right
   /// side, of the last condensation; what the next apply_motion() takes in place of
   /// solve_motion()'s.
@@ -151,7 +153,10 @@ class Body {
   virtual void solve(std::span<const double> right, std::span<double> result) = 0;
   virtual void propose_motion(std::span<const double> motion) = 0;
   /// State of the last linearisation moved by scale dq; may be called again with another scale.
+  /// Leaves the report's volume to smallest_volume().
   virtual MotionReport apply_motion(double scale) = 0;
+  /// Of the current state, which is finite; costs nothing where it is linearised.
+  virtual SmallestVolume smallest_volume() { return {}; }
   /// @return an estimate of the largest error that the step made in any coordinate, m.
   virtual double end_step(const StepWeights& weights) = 0;
   /// Of the step that ended last.

@@ -273,12 +273,6 @@ void ArmBody::solve_motion(std::span<const double> effort) {
   base_ = q_;
 }
 
-double ArmBody::remaining_move(std::span<const double> effort) {
-  residual(effort);
-  decomposed_.solve(scratch_, acceleration_);
-  return acceleration_.cwiseAbs().maxCoeff() * model_.arm().length();
-}
-
 void ArmBody::imbalance(std::span<const double> effort, std::span<double> result) {
   residual(effort);
   std::copy_n(scratch_.data(), scratch_.size(), result.data());

@@ -104,7 +104,6 @@ class ArmBody : public mechanics::Body {
   int negative_pivots() const override { return negative_pivots_; }
   double force_scale() const override { return force_scale_; }
   double rounding_floor() const override;
-  double remaining_move(std::span<const double> effort) override;
   double strain_energy() override;
   double kinetic_energy() override;
   double gravity_energy() const override;

@@ -93,24 +93,18 @@ class NewtonSolver {
     return report_.relative_residual + report_.violation / problem_.model.size();
   }
 
-  // A residual says little about distance: a rotation along its tangent stretches a slender robot,
-  // and the axial forces of that are large where the move that takes them away is small. That move
-  // is known to first order by the factor in hand. It is not where the matrix is larger than the
-  // derivative, as the projected one is, nor where a part of it is left out.
-  bool lags_little() {
-    if (settings_.lag == 0.0 || !full_step_ || !derivative_) return false;
-    for (const auto& body : world_.bodies()) {
-      if (body->is_unsymmetric()) return false;
-    }
-    return world_.remaining_move(effort_) <=
-           std::min(settings_.lag * report_.motion.largest_move,
-                    settings_.lag_of_size * problem_.model.size());
+  // A residual says little about distance: a small rotation along its tangent stretches a slender
+  // robot, and the axial forces of that are large where the move that takes them away is of second
+  // order in this one.
+  bool lags_little() const {
+    return full_step_ && derivative_ && report_.relative_residual <= settings_.lag.residual &&
+           report_.motion.largest_move <= settings_.lag.move * problem_.model.size();
   }
 
   // Where rounding keeps the residual above the tolerance, a full step that moves nothing by more
   // than rounding does, or that no longer lessens a residual at its floor, says that there is
   // nothing left to find.
-  bool converged() {
+  bool converged() const {
     const double size = problem_.model.size();
     if (!(report_.violation <= std::max(settings_.motion_tolerance, kRounding) * size))
       return false;
@@ -129,9 +123,12 @@ class NewtonSolver {
     for (int halving = 0; halving <= kMostHalvings; ++halving, scale *= 0.5) {
       report_.motion = world_.apply_motion(scale);
       clock_.mark(Stage::correction);
-      inverted = !report_.motion.finite || !(report_.motion.smallest_volume_ratio > 0.0);
-      if (inverted) continue;
+      inverted = true;
+      if (!report_.motion.finite) continue;
       linearise(settings_.request.tangent);
+      report_.motion.volume = world_.smallest_volume();
+      inverted = !(report_.motion.volume.ratio > 0.0);
+      if (inverted) continue;
       const double after = merit();
       full_step_ = halving == 0;
       stagnant_ = full_step_ && report_.residual > kLessened * residual_before;

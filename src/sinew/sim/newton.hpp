@@ -24,16 +24,21 @@ enum class NewtonStatus {
 /// "converged", "iteration-limit", ...
 std::string_view newton_status_name(NewtonStatus status);
 
+/// What an iteration may leave for the next step although the residual is above its tolerance: a
+/// relative residual, where the iteration moved no coordinate by more than a part of the robot's
+/// size.
+struct Lag {
+  double residual = 0.0;  ///< 0: nothing is left
+  double move = 0.0;
+};
+
 struct NewtonSettings {
   mechanics::LinearisationRequest request;
   double tolerance = 1e-8;         ///< on the residual relative to the loads
   double motion_tolerance = 1e-8;  ///< on the law's violation relative to the robot's size
   int max_iterations = 50;
   std::span<const int> curved = {};  ///< constraints whose curvature joins A
-  /// What may be left for the next step although the residual is above its tolerance: a move that
-  /// is at most this part of the last iteration's and of the robot's size. 0: nothing.
-  double lag = 0.0;
-  double lag_of_size = 0.0;
+  Lag lag = {};
 };
 
 struct NewtonReport {

@@ -119,11 +119,12 @@ int Simulation::step_path(double length, double& share, VectorX& direction, doub
       world_.propose_motion(correction);
     }
     const auto motion = world_.apply_motion(1.0);
-    if (!motion.finite || !(motion.smallest_volume_ratio > 0.0) ||
+    const auto volume = motion.finite ? world_.smallest_volume() : mechanics::SmallestVolume{};
+    if (!motion.finite || !(volume.ratio > 0.0) ||
         !(moved.cwiseAbs().maxCoeff() < kFarthest * length)) {
       return give_up();
     }
-    volume_ratio_ = motion.smallest_volume_ratio;
+    volume_ratio_ = volume.ratio;
   }
   return give_up();
 }

@@ -89,9 +89,10 @@ StaticSolver::Departure StaticSolver::leave(const Stability& stability, double d
   disturbance *= sim_.model_->size();
   world.apply_motion(kSmall * sim_.model_->size());
   double scale = kSmall * sim_.model_->size() * disturbance / moved_since(left_);
-  for (auto motion = world.apply_motion(scale);
-       !motion.finite || !(motion.smallest_volume_ratio > 0.0);
-       motion = world.apply_motion(scale)) {
+  const auto is_sound = [&] {
+    return world.apply_motion(scale).finite && world.smallest_volume().ratio > 0.0;
+  };
+  while (!is_sound()) {
     scale *= 0.5;
     disturbance *= 0.5;
   }

@@ -51,7 +51,7 @@ StaticReport StaticSolver::run() {
   report_.residual = last_.residual;
   report_.relative_residual = last_.relative_residual;
   report_.violation = last_.violation;
-  sim_.volume_ratio_ = last_.motion.smallest_volume_ratio;
+  sim_.volume_ratio_ = last_.motion.volume.ratio;
   sim_.ranges_ = goal_;
   sim_.world_.begin_step(sim_.time(), sim_.time(), sim_.effort_);
   sim_.world_.end_step({});

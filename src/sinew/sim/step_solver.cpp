@@ -17,9 +17,9 @@ constexpr int kMostHalvings = 10;
 // Of the robot's size: a point that is deeper in a surface after one linearisation, and is not
 // pushed out, is not there by rounding.
 constexpr double kDeepest = 1e-6;
-// Of a quasi-static step's own motion, and of the robot's size: what a step may leave to the next.
-constexpr double kLag = 0.05;
-constexpr double kLagOfSize = 1e-4;
+// What quasi-static steps leave for the next one. A move of a hundredth of a slender robot leaves a
+// few ten-thousandths.
+constexpr Lag kLag{0.1, 0.01};
 // Relative residuals above this are no equilibrium, whatever the loads: half of the forces of a
 // slender robot are axial, and bend it by nothing when they are this little out of balance.
 constexpr double kBalanced = 0.02;
@@ -49,8 +49,7 @@ NewtonSettings Simulation::newton_settings(double time_step) const {
           std::min(settings.newton_tolerance(), kMotionTolerance),
           steered ? std::min(settings.max_iterations, kSteeredIterations) : settings.max_iterations,
           model_->stiffening_constraints(),
-          lags ? kLag : 0.0,
-          lags ? kLagOfSize : 0.0};
+          lags ? kLag : Lag{}};
 }
 
 void Simulation::solve_equation(double time_step) {
@@ -133,8 +132,9 @@ void Simulation::move_soundly() {
   mechanics::MotionReport motion;
   for (int halving = 0; halving <= kMostHalvings; ++halving, report_.scale *= 0.5) {
     motion = world_.apply_motion(report_.scale);
-    if (motion.finite && (motion.smallest_volume_ratio > 0.0 || !was_sound)) {
-      volume_ratio_ = report_.smallest_volume_ratio = motion.smallest_volume_ratio;
+    if (motion.finite) motion.volume = world_.smallest_volume();
+    if (motion.finite && (motion.volume.ratio > 0.0 || !was_sound)) {
+      volume_ratio_ = report_.smallest_volume_ratio = motion.volume.ratio;
       return;
     }
   }
@@ -144,7 +144,7 @@ void Simulation::move_soundly() {
   }
   fail(ErrorKind::inverted_in_run,
        fmt::format("element {} would turn inside out (det F = {:.3g}) even at {:.2g} of the motion",
-                   motion.worst_element, motion.smallest_volume_ratio, 2.0 * report_.scale),
+                   motion.volume.element, motion.volume.ratio, 2.0 * report_.scale),
        "take a smaller time step, change commands more slowly, or refine the mesh there");
 }
 
@@ -156,7 +156,7 @@ void Simulation::take_report(const NewtonReport& result) {
   report_.iterations = result.iterations;
   report_.newton = result.status;
   report_.scale = 1.0;
-  volume_ratio_ = report_.smallest_volume_ratio = result.motion.smallest_volume_ratio;
+  volume_ratio_ = report_.smallest_volume_ratio = result.motion.volume.ratio;
 }
 
 // Newton; where that finds nothing and there is no inertia to say where to go, along the loads and
@@ -174,7 +174,7 @@ void Simulation::step_newton(Law& law, const LawProblem& problem) {
   take_report(result);
   // Of contacts there is no such thing as nearly: a point would be inside a surface.
   const bool usable = !model_->step().dynamic() && model_->contacts().empty() &&
-                      result.motion.finite && result.motion.smallest_volume_ratio > 0.0 &&
+                      result.motion.finite && result.motion.volume.ratio > 0.0 &&
                       result.law != LawStatus::failed;
   if (converged() || usable) return;
   if (result.status == NewtonStatus::law_failed) fail_law();

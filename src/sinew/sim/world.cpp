@@ -293,12 +293,6 @@ double World::rounding_floor() const {
   return std::sqrt(sum);
 }
 
-double World::remaining_move(std::span<const double> effort) {
-  double worst = 0.0;
-  for (auto& body : bodies_) worst = std::max(worst, body->remaining_move(effort));
-  return worst;
-}
-
 void World::hold_imbalance(std::span<const double> effort) {
   for (auto& body : bodies_) body->hold_imbalance(effort);
 }
@@ -360,17 +354,21 @@ void World::propose_motion(const VectorX& motion) {
 
 mechanics::MotionReport World::apply_motion(double scale) {
   mechanics::MotionReport worst;
-  worst.smallest_volume_ratio = INFINITY;
   for (auto& body : bodies_) {
     const auto report = body->apply_motion(scale);
     worst.finite = worst.finite && report.finite;
     worst.largest_move = std::max(worst.largest_move, report.largest_move);
-    if (report.smallest_volume_ratio < worst.smallest_volume_ratio) {
-      worst.smallest_volume_ratio = report.smallest_volume_ratio;
-      worst.worst_element = report.worst_element;
-    }
   }
   return worst;
+}
+
+mechanics::SmallestVolume World::smallest_volume() {
+  mechanics::SmallestVolume smallest{INFINITY, -1};
+  for (auto& body : bodies_) {
+    const auto volume = body->smallest_volume();
+    if (volume.ratio < smallest.ratio) smallest = volume;
+  }
+  return smallest;
 }
 
 double World::end_step(const mechanics::StepWeights& weights) {

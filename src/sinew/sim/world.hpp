@@ -46,8 +46,6 @@ class World {
   double force_scale() const;
   /// N: what rounding leaves of residual(), see mechanics::Body.
   double rounding_floor() const;
-  /// m: about what one more iteration would move, see mechanics::Body.
-  double remaining_move(std::span<const double> effort);
   /// For load stepping: see mechanics::Body.
   void hold_imbalance(std::span<const double> effort);
   void set_imbalance_share(double share);
@@ -77,6 +75,7 @@ class World {
   void propose_motion(const VectorX& motion);
   /// The worst report of any body.
   mechanics::MotionReport apply_motion(double scale);
+  mechanics::SmallestVolume smallest_volume();
   /// The largest error estimate of any body, m.
   double end_step(const mechanics::StepWeights& weights);
 
