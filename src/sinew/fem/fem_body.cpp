@@ -385,11 +385,15 @@ void FemBody::solve_motion(std::span<const double> effort) {
 }
 
 void FemBody::remember_base() {
+  keep_positions();
+  if (active_->iterating) active_->assembly.linearise_from(&positions_);
+}
+
+void FemBody::keep_positions() {
   const auto nodes = model_.elements().free_nodes();
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     base_.segment<3>(3 * static_cast<Eigen::Index>(i)) = positions_.row(nodes[i]).transpose();
   }
-  if (active_->iterating) active_->assembly.linearise_from(&positions_);
 }
 
 void FemBody::imbalance(std::span<const double> effort, std::span<double> result) {
@@ -404,6 +408,16 @@ void FemBody::solve(std::span<const double> right, std::span<double> result) {
 void FemBody::propose_motion(std::span<const double> motion) {
   std::ranges::copy(motion, motion_.data());
   remember_base();
+}
+
+void FemBody::propose_drift(double time_step) {
+  const auto nodes = model_.elements().free_nodes();
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    motion_.segment<3>(3 * static_cast<Eigen::Index>(i)) =
+        time_step * velocities_.row(nodes[i]).transpose();
+  }
+  for (const std::int32_t held : model_.elements().held()) motion_[held] = 0.0;
+  keep_positions();
 }
 
 mechanics::MotionReport FemBody::apply_motion(double scale) {

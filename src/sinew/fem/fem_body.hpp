@@ -43,6 +43,7 @@ class FemBody : public mechanics::Body {
   void imbalance(std::span<const double> effort, std::span<double> result) override;
   void solve(std::span<const double> right, std::span<double> result) override;
   void propose_motion(std::span<const double> motion) override;
+  void propose_drift(double time_step) override;
   mechanics::MotionReport apply_motion(double scale) override;
   mechanics::SmallestVolume smallest_volume() override;
   double end_step(const mechanics::StepWeights& weights) override;
@@ -126,6 +127,7 @@ class FemBody : public mechanics::Body {
   void find_base_velocity(const mechanics::StepWeights& weights);
   void add_base_momentum(const mechanics::Combination& weights, VectorX& result) const;
   void remember_base();
+  void keep_positions();
   void prepare_history(double time_step);
   void take_presence(const mechanics::RowValues& rows);
   void add_passing_compliance(MatrixX& compliance, VectorX& free_motion) const;

@@ -152,6 +152,9 @@ class Body {
   virtual void imbalance(std::span<const double> effort, std::span<double> result) = 0;
   virtual void solve(std::span<const double> right, std::span<double> result) = 0;
   virtual void propose_motion(std::span<const double> motion) = 0;
+  /// dq = `time_step` times the velocity of the step's start, from the current state, for
+  /// apply_motion().
+  virtual void propose_drift(double time_step) = 0;
   /// State of the last linearisation moved by scale dq; may be called again with another scale.
   /// Leaves the report's volume to smallest_volume().
   virtual MotionReport apply_motion(double scale) = 0;

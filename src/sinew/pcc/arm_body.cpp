@@ -288,6 +288,11 @@ void ArmBody::propose_motion(std::span<const double> motion) {
   base_ = q_;
 }
 
+void ArmBody::propose_drift(double time_step) {
+  motion_ = time_step * rate_;
+  base_ = q_;
+}
+
 mechanics::MotionReport ArmBody::apply_motion(double scale) {
   q_ = base_ + scale * motion_;
   looking_ = showing_ = false;

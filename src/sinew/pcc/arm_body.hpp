@@ -92,6 +92,7 @@ class ArmBody : public mechanics::Body {
   void imbalance(std::span<const double> effort, std::span<double> result) override;
   void solve(std::span<const double> right, std::span<double> result) override;
   void propose_motion(std::span<const double> motion) override;
+  void propose_drift(double time_step) override;
   mechanics::MotionReport apply_motion(double scale) override;
   double end_step(const mechanics::StepWeights& weights) override;
   mechanics::StepWork step_work() const override { return work_; }

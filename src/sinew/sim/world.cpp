@@ -352,6 +352,11 @@ void World::propose_motion(const VectorX& motion) {
   }
 }
 
+void World::drift(double time_step) {
+  for (auto& body : bodies_) body->propose_drift(time_step);
+  if (!apply_motion(1.0).finite || !(smallest_volume().ratio > 0.0)) apply_motion(0.0);
+}
+
 mechanics::MotionReport World::apply_motion(double scale) {
   mechanics::MotionReport worst;
   for (auto& body : bodies_) {

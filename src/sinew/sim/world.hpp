@@ -73,6 +73,9 @@ class World {
   void imbalance(std::span<const double> effort, VectorX& result);
   void solve(const VectorX& right, VectorX& result);
   void propose_motion(const VectorX& motion);
+  /// Moves all bodies to where their velocities lead in `time_step`, unless an element would turn
+  /// inside out there.
+  void drift(double time_step);
   /// The worst report of any body.
   mechanics::MotionReport apply_motion(double scale);
   mechanics::SmallestVolume smallest_volume();
