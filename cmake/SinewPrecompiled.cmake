@@ -6,6 +6,8 @@
 # sinew_optimise(<target> <level>): -O<level> in release builds, in place of -O3.
 function(sinew_optimise target level)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O${level}>)
+  # Collecting the compiler's garbage is a tenth of the time of a source full of templates: memory instead.
+  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=400000>)
 endfunction()
 
 # A precompiled header serves targets with the same flags: -fPIC or -fPIE, and one level.
