@@ -206,7 +206,7 @@ Linearisation Session::linearise(const LinearisationChoice& choice) {
   result.delta_free = world.delta_free();
   result.effort = Eigen::Map<const VectorX>(simulation_.efforts().data(),
                                             static_cast<Eigen::Index>(row_names_.size()));
-  for (const auto& body : world.bodies()) result.negative_pivots += body->negative_pivots();
+  result.negative_pivots = world.negative_pivots();
   return result;
 }
 

@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/linalg/dense_factor.hpp"
 #include "sinew/material/principal.hpp"
 
 #include "lane_matrices.hpp"
@@ -165,10 +165,10 @@ TEST_P(EveryEnergy, TheProjectionIsTheNearestPositiveOne) {
   int indefinite = 0;
   for (const Matrix3& f : gradients()) {
     const Matrix9 a = dense(tangent_at(f, false)), projected = dense(tangent_at(f, true));
-    const Eigen::SelfAdjointEigenSolver<Matrix9> eigen(a);
-    const Matrix9 expected = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() *
-                             eigen.eigenvectors().transpose();
-    indefinite += eigen.eigenvalues().minCoeff() < -1e-6 ? 1 : 0;
+    const linalg::SymmetricSpectrum spectrum(a);
+    const MatrixX expected = spectrum.vectors() * spectrum.values().cwiseMax(0.0).asDiagonal() *
+                             spectrum.vectors().transpose();
+    indefinite += spectrum.values().minCoeff() < -1e-6 ? 1 : 0;
     EXPECT_LT((projected - expected).norm(), 1e-9 * (1.0 + a.norm()));
   }
   EXPECT_GT(indefinite, 0) << "nothing was to be projected";

@@ -4,10 +4,10 @@
 #include <numbers>
 #include <numeric>
 
-#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/linalg/dense.hpp"
 #include "sinew/mesh/shapes.hpp"
 #include "sinew/mesh/topology.hpp"
 #include "sinew/sim/model_builder.hpp"
@@ -173,17 +173,14 @@ TEST(Statics, StabilityAgreesWithTheDenseTangent) {
       world.solve(VectorX::Unit(rest.size(), j), column);
       inverse.col(j) = column;
     }
-    MatrixX tangent = inverse.inverse();
+    MatrixX tangent = linalg::solve(inverse, MatrixX::Identity(rest.size(), rest.size()));
     if (held) {  // far above, what is along the row
       const VectorX along = row.normalized();
       const MatrixX across =
           MatrixX::Identity(rest.size(), rest.size()) - along * along.transpose();
       tangent = across * tangent * across + 1e6 * along * along.transpose();
     }
-    const VectorX values = (0.5 * (tangent + tangent.transpose()))
-                               .eval()
-                               .selfadjointView<Eigen::Lower>()
-                               .eigenvalues();
+    const VectorX values = linalg::symmetric_eigenvalues(0.5 * (tangent + tangent.transpose()));
     const auto negative = static_cast<int>((values.array() < 0.0).count());
     ASSERT_GE(negative, 2) << held << " " << values.head(4).transpose() << " pivots "
                            << stability.negative_pivots() << " report " << report.negative_pivots

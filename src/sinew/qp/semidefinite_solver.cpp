@@ -58,7 +58,7 @@ bool SemidefiniteSolver::split(const QuadraticProgram& problem) {
     }
   }
   eigen_.compute(scaled_);
-  const VectorX& values = eigen_.eigenvalues();
+  const VectorX& values = eigen_.values();
   largest_ = values[variables_ - 1] > 0.0 ? values[variables_ - 1] : 1.0;
   const double rounding = 32.0 * kEpsilon * variables_ * std::max(1.0, largest_);
   if (values[0] < -rounding) return false;
@@ -68,7 +68,7 @@ bool SemidefiniteSolver::split(const QuadraticProgram& problem) {
 }
 
 void SemidefiniteSolver::load(const QuadraticProgram& problem) {
-  const auto null_space = eigen_.eigenvectors().leftCols(nullity_);
+  const auto null_space = eigen_.vectors().leftCols(nullity_);
   gradient_ = problem.gradient.cwiseQuotient(scale_);
   const double whole = gradient_.norm();
   const double flat = (null_space.transpose() * gradient_).norm();
@@ -88,7 +88,7 @@ void SemidefiniteSolver::load(const QuadraticProgram& problem) {
 void SemidefiniteSolver::load_weight(double weight) {
   proximal_.hessian = scaled_;
   for (int k = 0; k < nullity_; ++k) {
-    const auto direction = eigen_.eigenvectors().col(k);
+    const auto direction = eigen_.vectors().col(k);
     for (int j = 0; j < variables_; ++j) {
       proximal_.hessian.col(j) += weight * direction[j] * direction;
     }
@@ -97,7 +97,7 @@ void SemidefiniteSolver::load_weight(double weight) {
 
 // One proximal step from point_; how far from stationary it ends, relative.
 QpStatus SemidefiniteSolver::take_step(double weight, double* stationarity) {
-  const auto null_space = eigen_.eigenvectors().leftCols(nullity_);
+  const auto null_space = eigen_.vectors().leftCols(nullity_);
   proximal_.gradient = gradient_;
   for (int j = 0; j < nullity_; ++j) {
     proximal_.gradient -= weight * null_space.col(j).dot(point_) * null_space.col(j);
@@ -136,7 +136,7 @@ bool SemidefiniteSolver::is_ray(const VectorX& direction) const {
   if (!(length > 0.0) || !(gradient_.dot(direction) < 0.0)) return false;
   const double negligible = kRay * length;
   for (int k = nullity_; k < variables_; ++k) {
-    if (std::abs(eigen_.eigenvectors().col(k).dot(direction)) > negligible) return false;
+    if (std::abs(eigen_.vectors().col(k).dot(direction)) > negligible) return false;
   }
   for (int i = 0; i < variables_; ++i) {
     if (direction[i] < -negligible && proximal_.lower[i] > -kInfinity) return false;
@@ -164,7 +164,7 @@ void SemidefiniteSolver::lessen_effort() {
     least_.row_upper[at] = value;
   };
   for (int k = 0; k < variables_; ++k) {
-    least_.rows.row(constraints_ + k) = eigen_.eigenvectors().col(k).transpose();
+    least_.rows.row(constraints_ + k) = eigen_.vectors().col(k).transpose();
     fix(k, k >= nullity_);
   }
   least_.rows.row(constraints_ + variables_) = gradient_.transpose();

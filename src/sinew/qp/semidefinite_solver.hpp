@@ -2,8 +2,7 @@
 /// Convex quadratic programs whose Hessian is singular: the optimal point of least effort.
 #pragma once
 
-#include <Eigen/Eigenvalues>
-
+#include "sinew/linalg/dense_factor.hpp"
 #include "sinew/qp/quadratic_program.hpp"
 
 namespace sinew::qp {
@@ -42,7 +41,7 @@ class SemidefiniteSolver {
   void write(const QuadraticProgram& problem, QpStatus status, QpResult* result) const;
 
   int variables_ = 0, constraints_ = 0;
-  Eigen::SelfAdjointEigenSolver<MatrixX> eigen_;
+  linalg::SymmetricSpectrum eigen_;
   VectorX scale_;         ///< (n) D
   MatrixX scaled_;        ///< (n, n) D^-1 G D^-1
   int nullity_ = 0;       ///< eigenvalues that are rounding; they come first

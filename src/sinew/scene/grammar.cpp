@@ -102,7 +102,7 @@ std::shared_ptr<const KeyTable> solver_table() {
             .forms = {quantity(plain_number(), Range{0.0, 1.0, true, true})},
             .example = "1e-8",
             .description = "Newton: residual force relative to the sum of internal and outside "
-                           "forces. Without: 5e-3 in quasi-static steps, which hand the rest to "
+                           "forces. Without: 1e-4 in quasi-static steps, which may hand more to "
                            "the next step, and 1e-8 in dynamics."},
            {.name = "max_iterations",
             .forms = {integer(1, 100000)},

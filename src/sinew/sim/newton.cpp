@@ -63,15 +63,10 @@ class NewtonSolver {
   bool condense() {
     auto status = world_.condense();
     ++report_.factorisations;
-    int negative = 0;
-    bool unsymmetric = false;
-    for (const auto& body : world_.bodies()) {
-      negative += body->negative_pivots();
-      unsymmetric = unsymmetric || body->is_unsymmetric();
-    }
-    const bool stable = status == linalg::FactorStatus::positive_definite ||
-                        (status == linalg::FactorStatus::indefinite &&
-                         (unsymmetric || DrivenLaw::stabilised(problem_, negative)));
+    const bool stable =
+        status == linalg::FactorStatus::positive_definite ||
+        (status == linalg::FactorStatus::indefinite &&
+         (world_.is_unsymmetric() || DrivenLaw::stabilised(problem_, world_.negative_pivots())));
     derivative_ = stable && settings_.request.tangent == mechanics::Tangent::exact;
     if (!stable && settings_.request.tangent == mechanics::Tangent::exact) {
       clock_.mark(Stage::factorisation);
@@ -97,8 +92,9 @@ class NewtonSolver {
   // robot, and the axial forces of that are large where the move that takes them away is of second
   // order in this one.
   bool lags_little() const {
+    const double left = report_.motion.largest_move * report_.relative_residual;
     return full_step_ && derivative_ && report_.relative_residual <= settings_.lag.residual &&
-           report_.motion.largest_move <= settings_.lag.move * problem_.model.size();
+           left <= settings_.lag.move * problem_.model.size();
   }
 
   // Where rounding keeps the residual above the tolerance, a full step that moves nothing by more

@@ -24,12 +24,12 @@ enum class NewtonStatus {
 /// "converged", "iteration-limit", ...
 std::string_view newton_status_name(NewtonStatus status);
 
-/// What an iteration may leave for the next step although the residual is above its tolerance: a
-/// relative residual, where the iteration moved no coordinate by more than a part of the robot's
-/// size.
+/// What an iteration may leave for the next step although the residual is above its tolerance. A
+/// full iteration with the derivative leaves a move of second order in its own: about this one
+/// times the relative residual.
 struct Lag {
-  double residual = 0.0;  ///< 0: nothing is left
-  double move = 0.0;
+  double residual = 0.0;  ///< relative; 0: nothing is left
+  double move = 0.0;      ///< largest move times relative residual, of the robot's size
 };
 
 struct NewtonSettings {

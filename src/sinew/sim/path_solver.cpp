@@ -164,7 +164,7 @@ std::vector<PathPoint> Simulation::follow_path(const PathSettings& settings,
       length *= 0.5;
       iterations = step_path(length, share, direction, settings.tolerance);
     }
-    path.push_back({share, negative_pivots()});
+    path.push_back({share, world_.negative_pivots()});
     rest();
     if (visit) visit();
     length = std::min(longest, length * std::clamp(kWantedIterations / iterations, 0.5, 2.0));

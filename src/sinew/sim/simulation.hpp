@@ -197,17 +197,19 @@ class Simulation {
   void solve_equation(double time_step);
   void step_once(Law& law, const LawProblem& problem);
   void step_newton(Law& law, const LawProblem& problem);
+  void blend_ranges(std::span<const ActuatorRange> goal, std::span<const ActuatorState> start,
+                    double fraction);
   NewtonReport approach(Law& law, const LawProblem& problem);
   NewtonReport descend(Law& law, const LawProblem& problem);
   [[noreturn]] void fail_law();
   void take_report(const NewtonReport& result);
+  bool balanced() const;
   void watch();
   void open_ledger();
   void watch_energy();
   void move_soundly();
   void require_outside();
   void finish_step();
-  int negative_pivots() const;
   [[noreturn]] void fail(ErrorKind kind, const std::string& message, const std::string& remedy);
   [[noreturn]] void fail_contacts();
 

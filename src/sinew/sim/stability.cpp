@@ -4,9 +4,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include <Eigen/Eigenvalues>
-
 #include "sinew/constraint/contact.hpp"
+#include "sinew/linalg/dense_factor.hpp"
 
 namespace sinew::sim {
 
@@ -100,8 +99,7 @@ Stability::Stability(World& world, const LawProblem& problem, std::span<const do
 
 // Rows are scaled to a diagonal of 1: a cavity's is m^3/Pa, a cable's m/N.
 int Stability::count() {
-  int pivots = 0;
-  for (const auto& body : world_.bodies()) pivots += body->negative_pivots();
+  const int pivots = world_.negative_pivots();
   const auto rows = static_cast<Eigen::Index>(held_.size());
   inverse_.setZero(rows, rows);
   if (pivots == 0 || rows == 0) return pivots;
@@ -116,16 +114,16 @@ int Stability::count() {
     scale[i] = s(i, i) != 0.0 ? 1.0 / std::sqrt(std::abs(s(i, i))) : 1.0;
   }
   s = scale.asDiagonal() * s * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<MatrixX> spectrum(s);
-  const double least = kRedundant * spectrum.eigenvalues().cwiseAbs().maxCoeff();
+  const linalg::SymmetricSpectrum spectrum(s);
+  const double least = kRedundant * spectrum.values().cwiseAbs().maxCoeff();
   VectorX inverted = VectorX::Zero(rows);
   int negative = 0;
   for (Eigen::Index i = 0; i < rows; ++i) {
-    const double value = spectrum.eigenvalues()[i];
+    const double value = spectrum.values()[i];
     if (std::abs(value) > least) inverted[i] = 1.0 / value;
     negative += value < -least ? 1 : 0;
   }
-  const MatrixX vectors = scale.asDiagonal() * spectrum.eigenvectors();
+  const MatrixX vectors = scale.asDiagonal() * spectrum.vectors();
   inverse_ = vectors * inverted.asDiagonal() * vectors.transpose();
   return std::max(0, pivots - negative);
 }
@@ -174,12 +172,12 @@ VectorX Stability::find_mode() {
       projected.col(size - 1).head(size) += along;
     }
     const MatrixX part = projected.topLeftCorner(size, size).selfadjointView<Eigen::Upper>();
-    const Eigen::SelfAdjointEigenSolver<MatrixX> spectrum(part);
-    const Eigen::Index found = (spectrum.eigenvalues().array() < 0.0).count();
+    const linalg::SymmetricSpectrum spectrum(part);
+    const Eigen::Index found = (spectrum.values().array() < 0.0).count();
     if (found == 0) continue;
-    ritz = spectrum.eigenvectors().col(found - 1);  // eigenvalues ascend
+    ritz = spectrum.vectors().col(found - 1);  // eigenvalues ascend
     const double left = next.norm() * std::abs(ritz[size - 1]);
-    const bool sharp = left <= kRitzTolerance * std::abs(spectrum.eigenvalues()[found - 1]);
+    const bool sharp = left <= kRitzTolerance * std::abs(spectrum.values()[found - 1]);
     if (sharp && found >= negative_) break;
   }
   if (ritz.size() == 0) return {};

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/sim/load_steps.hpp"
 
 namespace sinew::sim {
 
@@ -109,12 +110,7 @@ void StaticSolver::linearise(const mechanics::StepWeights& weights) {
 }
 
 // Commands on the way from where the actuators stand (share 1) to where they are told to be (0).
-void StaticSolver::blend(double share) {
-  for (std::size_t i = 0; i < start_.size(); ++i) {
-    sim_.ranges_[i] = goal_[i];
-    sim::blend(sim_.ranges_[i], start_[i], 1.0 - share);
-  }
-}
+void StaticSolver::blend(double share) { sim_.blend_ranges(goal_, start_, 1.0 - share); }
 
 // Load steps, then overdamped motion.
 void StaticSolver::approach() {
@@ -133,23 +129,17 @@ double StaticSolver::step_load() {
   linearise({});
   sim_.world_.hold_imbalance(sim_.effort_);
   sound_ = sim_.state_before_;
-  double share = 1.0;
-  double part = 0.25;
   report_.load_steps = 0;
-  while (share > 0.0 && part * settings_.max_load_steps >= 1.0) {
-    const double next = std::max(0.0, share - part);
-    blend(next);
-    if (equilibrate(next, settings_.max_iterations)) {
-      share = next;
-      part *= 2.0;
-      ++report_.load_steps;
-      sim_.save_state(sound_);
-    } else {
-      sim_.load_state(sound_, sim_.steps_);
-      part *= 0.5;
-    }
-  }
-  return share;
+  const auto solve = [&](double share) {
+    blend(share);
+    return equilibrate(share, settings_.max_iterations);
+  };
+  const auto keep = [&] {
+    ++report_.load_steps;
+    sim_.save_state(sound_);
+  };
+  return take_load_steps({.least = 1.0 / settings_.max_load_steps}, solve, keep,
+                         [&] { sim_.load_state(sound_, sim_.steps_); });
 }
 
 // What is known of the last equilibrium on the way, where the world is.
@@ -237,8 +227,7 @@ void StaticSolver::settle() {
     report_.stable = true;
     report_.negative_pivots = 0;
     if (sim_.world_.condense() == linalg::FactorStatus::singular) return;  // neutral
-    const bool unsymmetric = std::ranges::any_of(
-        sim_.world_.bodies(), [](const auto& body) { return body->is_unsymmetric(); });
+    const bool unsymmetric = sim_.world_.is_unsymmetric();
     const Stability stability(sim_.world_, problem(), sim_.effort_);
     report_.negative_pivots = stability.negative_pivots();
     report_.stable = report_.negative_pivots == 0;

@@ -21,9 +21,9 @@ struct AdaptiveStep {
   double smallest = 0.0;    ///< s, > 0
 };
 
-/// A quasi-static step hands what is left of its residual to the next one, which takes it away: one
-/// linearisation a step keeps a robot this near equilibrium while it moves at usual speeds.
-inline constexpr double kQuasiStaticTolerance = 5e-3;
+/// Of quasi-static steps; what is of second order in an iteration's move is left to the next step
+/// at higher residuals.
+inline constexpr double kQuasiStaticTolerance = 1e-4;
 /// In dynamics a residual is an impulse that stays.
 inline constexpr double kDynamicTolerance = 1e-8;
 

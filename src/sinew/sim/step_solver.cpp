@@ -6,6 +6,7 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/sim/driven_law.hpp"
+#include "sinew/sim/load_steps.hpp"
 #include "sinew/sim/simulation.hpp"
 #include "sinew/sim/solve_law.hpp"
 
@@ -17,9 +18,8 @@ constexpr int kMostHalvings = 10;
 // Of the robot's size: a point that is deeper in a surface after one linearisation, and is not
 // pushed out, is not there by rounding.
 constexpr double kDeepest = 1e-6;
-// What quasi-static steps leave for the next one. A move of a hundredth of a slender robot leaves a
-// few ten-thousandths.
-constexpr Lag kLag{0.1, 0.01};
+// What quasi-static steps leave for the next one.
+constexpr Lag kLag{0.1, 1e-3};
 // Relative residuals above this are no equilibrium, whatever the loads: half of the forces of a
 // slender robot are axial, and bend it by nothing when they are this little out of balance.
 constexpr double kBalanced = 0.02;
@@ -31,8 +31,8 @@ constexpr double kMotionTolerance = 1e-5;
 constexpr double kEnergyGain = 0.05;
 // Iterations with the projected tangent, which end wherever a stable equilibrium is downhill.
 constexpr int kMostDescents = 60;
-// The smallest part of a quasi-static step, inverse.
-constexpr double kMostParts = 64.0;
+// The smallest part of a quasi-static step.
+constexpr double kLeastPart = 1.0 / 64.0;
 constexpr int kIterationsOfPart = 25;
 // A controller chooses where to go anew in every iteration, and has to keep up with a clock: a step
 // that it steers takes no parts and this many iterations with either tangent at most.
@@ -78,7 +78,7 @@ void Simulation::step_once(Law& law, const LawProblem& problem) {
   linearise();
   auto status = world_.condense();
   if (status == linalg::FactorStatus::indefinite && request.tangent == mechanics::Tangent::exact &&
-      !DrivenLaw::stabilised(problem, negative_pivots())) {
+      !DrivenLaw::stabilised(problem, world_.negative_pivots())) {
     request.tangent = mechanics::Tangent::projected;
     linearise();
     status = world_.condense();
@@ -119,12 +119,6 @@ void Simulation::require_outside() {
        fmt::format("a point would be {:.3g} m inside a surface, and no contact force can move it",
                    depth),
        "take a smaller time step, or command no motion that ends in the surface");
-}
-
-int Simulation::negative_pivots() const {
-  int count = 0;
-  for (const auto& body : world_.bodies()) count += body->negative_pivots();
-  return count;
 }
 
 // Takes the motion, or the largest halving of it that inverts no element.
@@ -168,10 +162,16 @@ void Simulation::step_newton(Law& law, const LawProblem& problem) {
       solve_newton(world_, law, problem, effort_, newton_settings(problem.time_step), clock_);
   const auto converged = [&] { return result.status == NewtonStatus::converged; };
   if (!converged() && !model_->step().dynamic()) {
-    const int tried = result.iterations;
-    if (law_ == nullptr) result = approach(law, problem);
-    if (!converged()) result = descend(law, problem);
-    result.iterations += tried;
+    int tried = result.iterations;
+    if (law_ == nullptr) {
+      result = approach(law, problem);
+      tried += result.iterations;
+    }
+    if (!converged()) {
+      result = descend(law, problem);
+      tried += result.iterations;
+    }
+    result.iterations = tried;
   }
   take_report(result);
   // Of contacts there is no such thing as nearly: a point would be inside a surface.
@@ -186,6 +186,15 @@ void Simulation::step_newton(Law& law, const LawProblem& problem) {
        "take a smaller time step, or change commands more slowly");
 }
 
+// Of the way from where actuators were to what they are told.
+void Simulation::blend_ranges(std::span<const ActuatorRange> goal,
+                              std::span<const ActuatorState> start, double fraction) {
+  for (std::size_t i = 0; i < start.size(); ++i) {
+    ranges_[i] = goal[i];
+    blend(ranges_[i], start[i], fraction);
+  }
+}
+
 // What the start of the step lacks to equilibrium is taken away bit by bit, as in statics
 // (static_solver.cpp), and commands go in proportion from where the actuators were.
 NewtonReport Simulation::approach(Law& law, const LawProblem& problem) {
@@ -193,37 +202,26 @@ NewtonReport Simulation::approach(Law& law, const LawProblem& problem) {
   const std::vector<ActuatorState> start = actuators_;
   NewtonSettings settings = newton_settings(problem.time_step);
   settings.max_iterations = std::min(settings.max_iterations, kIterationsOfPart);
-  const auto back_to = [&](std::span<const double> state) {
-    load_state(state, steps_);
+  std::vector<double> sound = state_before_;
+  const auto go_back = [&] {
+    load_state(sound, steps_);
     world_.begin_step(now_ - problem.time_step, now_, effort_);
   };
-  back_to(state_before_);
+  go_back();
   world_.linearise(settings.request);
   world_.form_rows(effort_, settings.curved);
   world_.hold_imbalance(effort_);
-  std::vector<double> sound = state_before_;
   NewtonReport result;
-  result.status = NewtonStatus::stalled;
-  double share = 1.0, part = 0.5;
   int iterations = 0;
-  while (share > 0.0 && part * kMostParts >= 1.0) {
-    const double next = std::max(0.0, share - part);
-    for (std::size_t i = 0; i < start.size(); ++i) {
-      ranges_[i] = goal[i];
-      blend(ranges_[i], start[i], 1.0 - next);
-    }
-    world_.set_imbalance_share(next);
+  const auto solve = [&](double share) {
+    blend_ranges(goal, start, 1.0 - share);
+    world_.set_imbalance_share(share);
     result = solve_newton(world_, law, problem, effort_, settings, clock_);
     iterations += result.iterations;
-    if (result.status == NewtonStatus::converged) {
-      share = next;
-      part *= 2.0;
-      save_state(sound);
-    } else {
-      part *= 0.5;
-      back_to(sound);
-    }
-  }
+    return result.status == NewtonStatus::converged;
+  };
+  take_load_steps(
+      {.first = 0.5, .least = kLeastPart}, solve, [&] { save_state(sound); }, go_back);
   world_.set_imbalance_share(0.0);
   ranges_ = goal;
   result.iterations = iterations;
@@ -239,15 +237,21 @@ NewtonReport Simulation::descend(Law& law, const LawProblem& problem) {
   return solve_newton(world_, law, problem, effort_, settings, clock_);
 }
 
+// Newton knows. Where it had few iterations, or was not asked, the residual says.
+bool Simulation::balanced() const {
+  const bool newton = model_->step().method == Method::newton;
+  if (newton && report_.newton == NewtonStatus::converged) return true;
+  const bool searched = newton && law_ == nullptr;
+  return !searched && report_.relative_residual <= kBalanced;
+}
+
 // What users are told of the step.
 void Simulation::watch() {
   const auto raise = [&](StepStatus status) { report_.status = std::max(report_.status, status); };
   if (report_.law == LawStatus::limits_conflict) raise(StepStatus::limits_conflict);
   if (report_.scale < 1.0) raise(StepStatus::cut_back);
   if (report_.violation > kReached * model_->size()) raise(StepStatus::command_not_reached);
-  const bool converged =
-      model_->step().method == Method::newton && report_.newton == NewtonStatus::converged;
-  if (!converged && report_.relative_residual > kBalanced) raise(StepStatus::not_in_equilibrium);
+  if (!balanced()) raise(StepStatus::not_in_equilibrium);
   if (model_->step().dynamic()) watch_energy();
 }
 

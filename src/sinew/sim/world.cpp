@@ -301,6 +301,16 @@ void World::set_imbalance_share(double share) {
   for (auto& body : bodies_) body->set_imbalance_share(share);
 }
 
+int World::negative_pivots() const {
+  int sum = 0;
+  for (const auto& body : bodies_) sum += body->negative_pivots();
+  return sum;
+}
+
+bool World::is_unsymmetric() const {
+  return std::ranges::any_of(bodies_, [](const auto& body) { return body->is_unsymmetric(); });
+}
+
 linalg::FactorStatus World::condense() {
   add_curvatures();
   auto worst = linalg::FactorStatus::positive_definite;

@@ -49,6 +49,9 @@ class World {
   /// For load stepping: see mechanics::Body.
   void hold_imbalance(std::span<const double> effort);
   void set_imbalance_share(double share);
+  /// Of all bodies, at the last condensation and the last linearisation: see mechanics::Body.
+  int negative_pivots() const;
+  bool is_unsymmetric() const;
   /// W and delta_free. The worst status of any body.
   linalg::FactorStatus condense();
   void solve_motion(std::span<const double> effort);
