@@ -106,7 +106,11 @@ class NewtonSolver {
       return false;
     const bool at_rest = full_step_ && report_.motion.largest_move <= kRounding * size &&
                          report_.relative_residual <= kRoundedResidual;
-    return report_.relative_residual <= settings_.tolerance || at_rest ||
+    // A matrix larger than the derivative moves little far from an equilibrium, too.
+    const bool lags = settings_.lag.residual > 0.0 && !derivative_;
+    const double tolerance =
+        lags ? std::min(settings_.tolerance, kRoundedResidual) : settings_.tolerance;
+    return report_.relative_residual <= tolerance || at_rest ||
            (stagnant_ && report_.residual <= world_.rounding_floor()) || lags_little();
   }
 

@@ -23,6 +23,8 @@ constexpr Lag kLag{0.1, 1e-3};
 // Relative residuals above this are no equilibrium, whatever the loads: half of the forces of a
 // slender robot are axial, and bend it by nothing when they are this little out of balance.
 constexpr double kBalanced = 0.02;
+// What a search with all means at hand may end with: friction of cables keeps Newton from settling.
+constexpr double kSearched = 2e-5;
 // A command that is missed by more than this of the robot's size was not reached.
 constexpr double kReached = 1e-3;
 // Commanded motions are made to this part of the robot's size.
@@ -171,6 +173,12 @@ void Simulation::step_newton(Law& law, const LawProblem& problem) {
       result = descend(law, problem);
       tried += result.iterations;
     }
+    if (!converged() && law_ == nullptr) {  // from the valley
+      NewtonSettings settings = newton_settings(problem.time_step);
+      settings.max_iterations = std::min(settings.max_iterations, kIterationsOfPart);
+      result = solve_newton(world_, law, problem, effort_, settings, clock_);
+      tried += result.iterations;
+    }
     result.iterations = tried;
   }
   take_report(result);
@@ -242,7 +250,7 @@ bool Simulation::balanced() const {
   const bool newton = model_->step().method == Method::newton;
   if (newton && report_.newton == NewtonStatus::converged) return true;
   const bool searched = newton && law_ == nullptr;
-  return !searched && report_.relative_residual <= kBalanced;
+  return report_.relative_residual <= (searched ? kSearched : kBalanced);
 }
 
 // What users are told of the step.
