@@ -123,7 +123,7 @@ const StepReport& Simulation::step() {
 // The whole step, or, where Newton finds no end, halves of it and of those: commands that jump and
 // loads that come at once are then approached.
 void Simulation::step_in_parts() {
-  const double whole = model_->step().time_step, begin = time();
+  const double whole = model_->step().time_step;
   try {
     report_.error = substep(static_cast<double>(steps_ + 1) * whole, whole);
     return;
@@ -131,6 +131,7 @@ void Simulation::step_in_parts() {
     const bool parts = model_->step().method == Method::newton && model_->step().dynamic();
     if (!parts || !failure.is_run_failure()) throw;
   }
+  const double begin = time();  // what failed is undone
   state_at_step_.assign(state_before_.begin(), state_before_.end());
   part_ = Part{0.0, actuators_};
   double done = 0.0, length = 0.5;
