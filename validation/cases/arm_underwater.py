@@ -17,12 +17,12 @@ of 1.2 on the width, the added mass of an ideal fluid. What water and damping ch
 gravity, and with a tenth of the damping; and what bare points every 20 mm instead of tubes change, at which the rubber
 dents the more the finer the mesh is. Parts that are within 40 mm at rest do not count as touching. Wall times are of this machine, one thread, and only reported."""
 SOURCES = {"published": "the multi-flexible-body simulation of this arm"}
-COST = 90
+COST = 400
 PULLED = {"one cable": ("east",), "two cables": ("east", "north")}
 RAMP = "{tension: {ramp: {to: 3 N, duration: 1.5 s}}}"
 
 
-def curl(cables, size, *more):
+def curl(cables, size, *more, may_end=False):
     """Times (s), tips (k, 3) mm, whether and when it touches (s), elements, the axis at the end, wall time (s)."""
     told = [f"actuators.{name}.command=" + (RAMP if name in cables else "{tension: 0 N}")
             for name in ("east", "north", "west", "south")]
@@ -32,7 +32,12 @@ def curl(cables, size, *more):
     times, tips, touched = [0.0], [1e3 * np.array(tip.position)], None
     begin = time.perf_counter()
     while sim.time < 1.5 - 1e-9:
-        sim.step()
+        try:
+            sim.step()
+        except sinew.RunError:  # Newton finds no end of this step, nor of a sixteenth of it
+            if not may_end:
+                raise
+            break
         times.append(sim.time)
         tips.append(1e3 * np.array(tip.position))
         if body.self_touch(apart=0.04) is not None:
@@ -70,7 +75,8 @@ def run(case):
         dry = curl(cables, "6.5 mm", "loads.sea.density=0 kg/m^3", "gravity=0 0 0 m/s^2")
         lively = curl(cables, "6.5 mm", "bodies.arm.damping.stiffness=0.001 s")
         bare = curl(cables, "6.5 mm", *(f"actuators.{side}.{key}" for side in ("east", "north", "west", "south")
-                                        for key in ("guide_radius=0 m", "guide_spacing=20 mm")))
+                                        for key in ("guide_radius=0 m", "guide_spacing=20 mm")), may_end=True)
+        case.report(f"{name}, with bare points: steps end at (1.5 s, a touch, or no equilibrium)", bare[0][-1], unit="s", source="published")
         for told, other in (("in air without gravity", dry), ("with a tenth of the damping", lively),
                             ("with bare points", bare)):
             until = min(len(coarse[0]), len(other[0])) - 1
