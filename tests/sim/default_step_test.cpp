@@ -13,11 +13,10 @@ namespace {
 
 using sinew::testing::beam;
 using sinew::testing::BeamOptions;
+using sinew::testing::pull;
+using sinew::testing::tension;
 
 double distance(const Points& a, const Points& b) { return (a - b).rowwise().norm().maxCoeff(); }
-
-Command pull(double metres) { return {CommandKind::motion, Signal::constant(metres)}; }
-Command tension(double newtons) { return {CommandKind::effort, Signal::constant(newtons)}; }
 
 // The last state of `steps` steps against the equilibrium that is found from there.
 double distance_to_rest(Simulation& simulation) {
@@ -153,6 +152,12 @@ TEST(DefaultStep, AStaticSolutionGainsNoEnergy) {
   simulation.solve_static();
   for (int k = 0; k < 10; ++k) EXPECT_EQ(simulation.step().status, StepStatus::solved) << k;
   EXPECT_NEAR(simulation.report().energy_gained, 0.0, 1e-9);
+  for (const double newtons : {0.4, 0.2}) {  // one of them stores more than the equilibrium above
+    simulation.command(0, tension(newtons));
+    simulation.follow_path({});
+    for (int k = 0; k < 10; ++k) EXPECT_EQ(simulation.step().status, StepStatus::solved) << k;
+    EXPECT_LT(simulation.report().energy_gained, 1e-9);
+  }
   simulation.command(0, tension(0.0));
   simulation.solve_static();
   simulation.command(0, tension(0.3));

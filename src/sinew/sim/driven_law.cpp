@@ -10,8 +10,9 @@ namespace sinew::sim {
 
 namespace {
 
-constexpr int kMostRounds = 60;
-constexpr double kTolerance = 1e-13;  // of the effort and of what the robot's compliance allows
+constexpr int kMostDrivenRounds = 60;
+constexpr double kDrivenTolerance =
+    1e-13;  // of the effort and of what the robot's compliance allows
 // Each row that is taken out leaves a rounding of the others' own compliance behind.
 constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
 
@@ -138,7 +139,7 @@ LawStatus DrivenLaw::solve(const LawProblem& problem, std::span<double> effort) 
     range.motion_max = INFINITY;
   }
   LawStatus status = LawStatus::solved;
-  for (int round = 0; round < kMostRounds; ++round) {
+  for (int round = 0; round < kMostDrivenRounds; ++round) {
     linearise(problem);
     compliance_ = problem.compliance;
     delta_free_ = problem.delta_free;
@@ -149,7 +150,7 @@ LawStatus DrivenLaw::solve(const LawProblem& problem, std::span<double> effort) 
     const LawProblem rest = problem.reduced(ranges_, compliance_, delta_free_);
     status = law_->solve(rest, effort);
     if (status == LawStatus::failed) return status;
-    if (close(problem, effort) <= kTolerance) return status;
+    if (close(problem, effort) <= kDrivenTolerance) return status;
   }
   return status;
 }

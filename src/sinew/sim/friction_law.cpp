@@ -10,9 +10,9 @@ namespace sinew::sim {
 
 namespace {
 
-constexpr int kMostRounds = 300;
-constexpr int kPlainRounds = 40;      // before the limits follow more slowly
-constexpr double kTolerance = 1e-12;  // of the largest tension
+constexpr int kMostFrictionRounds = 300;
+constexpr int kPlainRounds = 40;              // before the limits follow more slowly
+constexpr double kFrictionTolerance = 1e-12;  // of the largest tension
 constexpr int kControlRounds = 8;
 constexpr double kControlTolerance = 1e-6;
 
@@ -49,7 +49,7 @@ bool FrictionLaw::follow(std::span<const double> effort, double share) {
     next_[k] = {least, most};
     tension = behind;
   }
-  if (off <= kTolerance * largest) return true;
+  if (off <= kFrictionTolerance * largest) return true;
   for (std::size_t k = 0; k < grip_.size(); ++k) {
     ActuatorRange& range = ranges_[first + k];
     range.effort_min += share * (next_[k][0] - range.effort_min);
@@ -61,7 +61,7 @@ bool FrictionLaw::follow(std::span<const double> effort, double share) {
 // Friction of the tensions in `ranges_`, and those tensions where they are not given.
 LawStatus FrictionLaw::slide(const LawProblem& problem, std::span<double> effort) {
   follow(effort, 1.0);
-  for (int round = 0; round < kMostRounds; ++round) {
+  for (int round = 0; round < kMostFrictionRounds; ++round) {
     if (direct_->solve(problem.with_ranges(ranges_), effort) == LawStatus::failed) {
       return LawStatus::failed;
     }

@@ -107,9 +107,9 @@ class NewtonSolver {
     const bool at_rest = full_step_ && report_.motion.largest_move <= kRounding * size &&
                          report_.relative_residual <= kRoundedResidual;
     // A matrix larger than the derivative moves little far from an equilibrium, too.
-    const bool lags = settings_.lag.residual > 0.0 && !derivative_;
+    const bool strict = settings_.lag.residual > 0.0 && !derivative_;
     const double tolerance =
-        lags ? std::min(settings_.tolerance, kRoundedResidual) : settings_.tolerance;
+        strict ? std::min(settings_.tolerance, kRoundedResidual) : settings_.tolerance;
     return report_.relative_residual <= tolerance || at_rest ||
            (stagnant_ && report_.residual <= world_.rounding_floor()) || lags_little();
   }

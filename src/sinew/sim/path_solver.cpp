@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kMostIterations = 25;
 constexpr double kWantedIterations = 6.0;  // of a step of the right length
-constexpr int kMostHalvings = 14;
+constexpr int kMostPathHalvings = 14;
 constexpr double kFarthest = 5.0;  // of a step's length, that its corrections may go
 
 }  // namespace
@@ -151,7 +151,7 @@ std::vector<PathPoint> Simulation::follow_path(const PathSettings& settings,
   while (share < 1.0 && static_cast<int>(path.size()) < settings.max_points) {
     int iterations = step_path(length, share, direction, settings.tolerance);
     for (int halving = 0; iterations == 0; ++halving) {
-      if (halving == kMostHalvings) {
+      if (halving == kMostPathHalvings) {
         load_state(start, steps_);
         for (std::size_t k = 0; k < applied.size(); ++k) apply_load(k, applied[k]);
         throw Error(
@@ -170,6 +170,7 @@ std::vector<PathPoint> Simulation::follow_path(const PathSettings& settings,
     length = std::min(longest, length * std::clamp(kWantedIterations / iterations, 0.5, 2.0));
   }
   step_before_ = 0.0;
+  ledger_.restart();
   return path;
 }
 

@@ -194,6 +194,7 @@ class Simulation {
   void step_adaptively();
   void step_in_parts();
   NewtonSettings newton_settings(double time_step) const;
+  NewtonSettings settings_of_part(double time_step) const;
   void solve_equation(double time_step);
   void step_once(Law& law, const LawProblem& problem);
   void step_newton(Law& law, const LawProblem& problem);

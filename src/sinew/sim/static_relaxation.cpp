@@ -13,7 +13,7 @@ namespace sinew::sim {
 namespace {
 
 // Steps follow the motion roughly: where it ends, Newton takes over.
-constexpr double kTolerance = 1e-4;
+constexpr double kRelaxationTolerance = 1e-4;
 constexpr int kMostIterations = 12;
 constexpr int kFewIterations = 4;
 constexpr int kManyIterations = 8;
@@ -131,7 +131,7 @@ StaticSolver::Departure StaticSolver::relax(double sigma, double near) {
     ++report_.relaxation_steps;
     sim_.save_state(sound_);
     const std::vector<Points> before = positions();
-    last_ = solve(overdamped(sigma), kTolerance, kMostIterations);
+    last_ = solve(overdamped(sigma), kRelaxationTolerance, kMostIterations);
     if (last_.status != NewtonStatus::converged) {
       sim_.load_state(sound_, sim_.steps_);
       if (++failures == kMostFailures) break;

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/types.hpp"
 #include "sinew/sim/load_steps.hpp"
 
 namespace sinew::sim {
@@ -26,8 +26,6 @@ constexpr int kMostSurfaceRounds = 60;
 constexpr int kMostDepartures = 6;
 constexpr double kDisturbance = 1e-2;
 constexpr double kLargerDisturbance = 2.0;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 

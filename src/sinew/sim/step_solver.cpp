@@ -14,7 +14,7 @@ namespace sinew::sim {
 
 namespace {
 
-constexpr int kMostHalvings = 10;
+constexpr int kMostStepHalvings = 10;
 // Of the robot's size: a point that is deeper in a surface after one linearisation, and is not
 // pushed out, is not there by rounding.
 constexpr double kDeepest = 1e-6;
@@ -52,6 +52,12 @@ NewtonSettings Simulation::newton_settings(double time_step) const {
           steered ? std::min(settings.max_iterations, kSteeredIterations) : settings.max_iterations,
           model_->stiffening_constraints(),
           lags ? kLag : Lag{}};
+}
+
+NewtonSettings Simulation::settings_of_part(double time_step) const {
+  NewtonSettings settings = newton_settings(time_step);
+  settings.max_iterations = std::min(settings.max_iterations, kIterationsOfPart);
+  return settings;
 }
 
 void Simulation::solve_equation(double time_step) {
@@ -128,7 +134,7 @@ void Simulation::move_soundly() {
   const bool was_sound = volume_ratio_ > 0.0;
   report_.scale = 1.0;
   mechanics::MotionReport motion;
-  for (int halving = 0; halving <= kMostHalvings; ++halving, report_.scale *= 0.5) {
+  for (int halving = 0; halving <= kMostStepHalvings; ++halving, report_.scale *= 0.5) {
     motion = world_.apply_motion(report_.scale);
     if (motion.finite) motion.volume = world_.smallest_volume();
     if (motion.finite && (motion.volume.ratio > 0.0 || !was_sound)) {
@@ -173,12 +179,6 @@ void Simulation::step_newton(Law& law, const LawProblem& problem) {
       result = descend(law, problem);
       tried += result.iterations;
     }
-    if (!converged() && law_ == nullptr) {  // from the valley
-      NewtonSettings settings = newton_settings(problem.time_step);
-      settings.max_iterations = std::min(settings.max_iterations, kIterationsOfPart);
-      result = solve_newton(world_, law, problem, effort_, settings, clock_);
-      tried += result.iterations;
-    }
     result.iterations = tried;
   }
   take_report(result);
@@ -208,8 +208,7 @@ void Simulation::blend_ranges(std::span<const ActuatorRange> goal,
 NewtonReport Simulation::approach(Law& law, const LawProblem& problem) {
   const std::vector<ActuatorRange> goal = ranges_;
   const std::vector<ActuatorState> start = actuators_;
-  NewtonSettings settings = newton_settings(problem.time_step);
-  settings.max_iterations = std::min(settings.max_iterations, kIterationsOfPart);
+  const NewtonSettings settings = settings_of_part(problem.time_step);
   std::vector<double> sound = state_before_;
   const auto go_back = [&] {
     load_state(sound, steps_);
@@ -238,11 +237,17 @@ NewtonReport Simulation::approach(Law& law, const LawProblem& problem) {
 
 // From where approach() ended: with a matrix that is never less than the derivative every iteration
 // lowers the energy of conservative loads, through a buckling to wherever the robot then rests.
+// What is slow at the end of that, Newton finishes.
 NewtonReport Simulation::descend(Law& law, const LawProblem& problem) {
   NewtonSettings settings = newton_settings(problem.time_step);
   settings.request.tangent = mechanics::Tangent::projected;
   settings.max_iterations = law_ == nullptr ? kMostDescents : kSteeredIterations;
-  return solve_newton(world_, law, problem, effort_, settings, clock_);
+  NewtonReport result = solve_newton(world_, law, problem, effort_, settings, clock_);
+  if (result.status == NewtonStatus::converged || law_ != nullptr) return result;
+  const int descended = result.iterations;
+  result = solve_newton(world_, law, problem, effort_, settings_of_part(problem.time_step), clock_);
+  result.iterations += descended;
+  return result;
 }
 
 // Newton knows. Where it had few iterations, or was not asked, the residual says.
