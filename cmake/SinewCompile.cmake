@@ -1,4 +1,4 @@
-# How hard a target is optimised, and which system headers it reads precompiled.
+# How hard a target is optimised, which system headers it reads precompiled, how many sources are compiled at once.
 #
 # Element kernels, factorisations and solvers are worth -O3; the rest is compiled to be built quickly. Tests come with
 # -O1: what they time is nothing. All levels share one -march, so that vectors have one size everywhere.
@@ -8,6 +8,16 @@ function(sinew_optimise target level)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O${level}>)
   # Collecting the compiler's garbage is a tenth of the time of a source full of templates: memory instead.
   target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=400000>)
+endfunction()
+
+# sinew_unite(<target> <count>): so many sources are one translation unit, since most of a compiler's time goes into
+# headers: ours, and the templates of the precompiled ones, which each unit instantiates anew.
+function(sinew_unite target count)
+  if(SINEW_UNITY)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${count})
+    # A source within another one counts as a header, where types of an unnamed namespace are suspect.
+    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+  endif()
 endfunction()
 
 # A precompiled header serves targets with the same flags: -fPIC or -fPIE, and one level.
@@ -42,6 +52,7 @@ endif()
 # sinew_build_library(<target> <level>), sinew_build_test(<target>): a level, and the precompiled header for it.
 function(sinew_build_library target level)
   sinew_optimise(${target} ${level})
+  sinew_unite(${target} 4)
   if(SINEW_PCH)
     target_precompile_headers(${target} REUSE_FROM sinew_precompiled_${level})
   endif()
@@ -49,6 +60,7 @@ endfunction()
 
 function(sinew_build_test target)
   sinew_optimise(${target} 1)
+  sinew_unite(${target} 3)
   if(SINEW_PCH)
     target_precompile_headers(${target} REUSE_FROM sinew_precompiled_test)
   endif()
@@ -57,6 +69,7 @@ endfunction()
 # sinew_build_consumer(<target> <header>...): level 2, and a precompiled header of its own.
 function(sinew_build_consumer target)
   sinew_optimise(${target} 2)
+  sinew_unite(${target} 3)
   if(SINEW_PCH)
     target_precompile_headers(${target} PRIVATE ${sinew_standard_headers} <Eigen/Dense> <fmt/format.h> ${ARGN})
   endif()

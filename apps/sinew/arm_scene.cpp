@@ -1,12 +1,12 @@
 #include "arm_scene.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/types.hpp"
 #include "sinew/scene/build.hpp"
 
 #include "command_line.hpp"
@@ -18,8 +18,6 @@ namespace {
 using scene::ActuatorDescription;
 using scene::BodyDescription;
 using scene::SceneDescription;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 const BodyDescription& choose(const SceneDescription& scene, const std::string& name) {
   std::vector<std::string> names, arms;

@@ -15,11 +15,12 @@
 
 namespace sinew::python {
 
-using ActuatorType = py::class_<pcc::BendingActuator, std::shared_ptr<pcc::BendingActuator>>;
+using BendingActuatorClass =
+    py::class_<pcc::BendingActuator, std::shared_ptr<pcc::BendingActuator>>;
 
 void bind_bending_modulus(py::module_& module);
 /// simulate(). @param type the actuator's.
-void bind_bending_history(ActuatorType& type);
+void bind_bending_history(BendingActuatorClass& type);
 void bind_bending_motion(py::module_& module);
 
 /// Throws Error(unknown-choice).

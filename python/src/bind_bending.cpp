@@ -110,7 +110,7 @@ py::dict taylor_error(const BendingActuator& self, double lowest, double highest
   return result;
 }
 
-void bind_model(ActuatorType& type) {
+void bind_model(BendingActuatorClass& type) {
   type.def_property_readonly("parameters", &parameters,
                              "dict: what it was made from; BendingActuator(**parameters) is the "
                              "same again.")
@@ -343,7 +343,7 @@ dict
 }
 
 void bind_actuator_type(py::module_& module) {
-  ActuatorType type(
+  BendingActuatorClass type(
       module, "BendingActuator",
       R"(BendingActuator(length, chamber_radius, wall_thickness, modulus, *, outer_radius=None, silicone_density=1070.0, filling_density=1.2, surroundings_density=1.2, inclination=0.0, gravity=9.81, mass_damping=0.0, stiffness_damping=0.0, order=5, mass_line='layer')
 --

@@ -72,7 +72,7 @@ BendingMotion make_motion(const Shared& actuator, std::optional<double> angle, d
 
 }  // namespace
 
-void bind_bending_history(ActuatorType& type) {
+void bind_bending_history(BendingActuatorClass& type) {
   type.def(
       "simulate", &simulate, py::arg("time"), py::arg("pressure"), py::kw_only(),
       py::arg("angle") = py::none(), py::arg("rate") = 0.0, py::arg("longest_step") = 1e-3,

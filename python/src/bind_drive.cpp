@@ -1,6 +1,7 @@
 // What drives an arm: fluidic actuators, drive cylinders, excitation.
 #include <fmt/format.h>
 
+#include "sinew/core/types.hpp"
 #include "sinew/pcc/drive_cylinder.hpp"
 #include "sinew/pcc/excitation.hpp"
 #include "sinew/pcc/fluidic_actuator.hpp"
@@ -50,8 +51,6 @@ DriveCylinder make_cylinder(const py::object& a, const py::object& b, const py::
   cylinder.check();
   return cylinder;
 }
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 

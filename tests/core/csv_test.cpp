@@ -56,14 +56,14 @@ TEST(Csv, KeepsNamesAndLines) {
   EXPECT_THROW(parse_csv("1,2", "table.csv").column("time"), Error);
 }
 
-struct Bad {
+struct BadTable {
   std::string text;
   ErrorKind kind;
   const char* place;
   int columns = 0;
 };
 
-class BadTables : public ::testing::TestWithParam<Bad> {};
+class BadTables : public ::testing::TestWithParam<BadTable> {};
 
 TEST_P(BadTables, AreRefusedWithTheirPlace) {
   try {
@@ -78,34 +78,34 @@ TEST_P(BadTables, AreRefusedWithTheirPlace) {
 
 INSTANTIATE_TEST_SUITE_P(
     Table, BadTables,
-    ::testing::Values(Bad{"", ErrorKind::malformed_table, "table.csv"},
-                      Bad{"\n\n# nothing\n", ErrorKind::malformed_table, "table.csv"},
-                      Bad{"x,y\n", ErrorKind::malformed_table, "table.csv"},
-                      Bad{"1,2\n3,four\n", ErrorKind::malformed_table, "table.csv:2:3"},
-                      Bad{"1,two\n", ErrorKind::malformed_table, "table.csv:1:3"},
-                      Bad{"x,y\nz,w\n1,2\n", ErrorKind::malformed_table, "table.csv:2:1"},
-                      Bad{"1,,3\n", ErrorKind::malformed_table, "table.csv:1:3"},
-                      Bad{"1,2,\n", ErrorKind::malformed_table, "table.csv:1:5"},
-                      Bad{"1;2,5\n", ErrorKind::malformed_table, "table.csv:1:3"},
-                      Bad{"1,0x10\n", ErrorKind::malformed_table, "table.csv:1:3"},
-                      Bad{"1,1e5x\n", ErrorKind::malformed_table, "table.csv:1:3"},
-                      Bad{"1,+-2\n", ErrorKind::malformed_table, "table.csv:1:3"},
-                      Bad{"1,2\n3\n", ErrorKind::wrong_columns, "table.csv:2:1"},
-                      Bad{"1,2\n3,4,5\n", ErrorKind::wrong_columns, "table.csv:2:5"},
-                      Bad{"x,y,z\n1,2\n", ErrorKind::wrong_columns, "table.csv:2:3"},
-                      Bad{"1,2\n", ErrorKind::wrong_columns, "table.csv:1:3", 3},
-                      Bad{"x,y\n1,2\n", ErrorKind::wrong_columns, "table.csv:1:3", 3},
-                      Bad{"1,nan\n", ErrorKind::not_finite, "table.csv:1:3"},
-                      Bad{"1,-inf\n", ErrorKind::not_finite, "table.csv:1:3"},
-                      Bad{"1,1e999\n", ErrorKind::not_finite, "table.csv:1:3"},
-                      Bad{"\xEF\xBB\xBF"
-                          "1,b\n",
-                          ErrorKind::malformed_table, "table.csv:1:6"},
-                      Bad{"\xFF\xFE"
-                          "1",
-                          ErrorKind::bad_encoding, "table.csv"},
-                      Bad{std::string("1,2\n\0,4\n", 8), ErrorKind::bad_encoding, "table.csv"},
-                      Bad{"\"1,2\n3,4\n", ErrorKind::malformed_table, "table.csv:1:1"}));
+    ::testing::Values(BadTable{"", ErrorKind::malformed_table, "table.csv"},
+                      BadTable{"\n\n# nothing\n", ErrorKind::malformed_table, "table.csv"},
+                      BadTable{"x,y\n", ErrorKind::malformed_table, "table.csv"},
+                      BadTable{"1,2\n3,four\n", ErrorKind::malformed_table, "table.csv:2:3"},
+                      BadTable{"1,two\n", ErrorKind::malformed_table, "table.csv:1:3"},
+                      BadTable{"x,y\nz,w\n1,2\n", ErrorKind::malformed_table, "table.csv:2:1"},
+                      BadTable{"1,,3\n", ErrorKind::malformed_table, "table.csv:1:3"},
+                      BadTable{"1,2,\n", ErrorKind::malformed_table, "table.csv:1:5"},
+                      BadTable{"1;2,5\n", ErrorKind::malformed_table, "table.csv:1:3"},
+                      BadTable{"1,0x10\n", ErrorKind::malformed_table, "table.csv:1:3"},
+                      BadTable{"1,1e5x\n", ErrorKind::malformed_table, "table.csv:1:3"},
+                      BadTable{"1,+-2\n", ErrorKind::malformed_table, "table.csv:1:3"},
+                      BadTable{"1,2\n3\n", ErrorKind::wrong_columns, "table.csv:2:1"},
+                      BadTable{"1,2\n3,4,5\n", ErrorKind::wrong_columns, "table.csv:2:5"},
+                      BadTable{"x,y,z\n1,2\n", ErrorKind::wrong_columns, "table.csv:2:3"},
+                      BadTable{"1,2\n", ErrorKind::wrong_columns, "table.csv:1:3", 3},
+                      BadTable{"x,y\n1,2\n", ErrorKind::wrong_columns, "table.csv:1:3", 3},
+                      BadTable{"1,nan\n", ErrorKind::not_finite, "table.csv:1:3"},
+                      BadTable{"1,-inf\n", ErrorKind::not_finite, "table.csv:1:3"},
+                      BadTable{"1,1e999\n", ErrorKind::not_finite, "table.csv:1:3"},
+                      BadTable{"\xEF\xBB\xBF"
+                               "1,b\n",
+                               ErrorKind::malformed_table, "table.csv:1:6"},
+                      BadTable{"\xFF\xFE"
+                               "1",
+                               ErrorKind::bad_encoding, "table.csv"},
+                      BadTable{std::string("1,2\n\0,4\n", 8), ErrorKind::bad_encoding, "table.csv"},
+                      BadTable{"\"1,2\n3,4\n", ErrorKind::malformed_table, "table.csv:1:1"}));
 
 TEST(Csv, AcceptsNonFiniteNumbersOnRequest) {
   const Table table = parse_csv("nan,inf\n1,2\n", "table.csv", {.allow_non_finite = true});

@@ -62,17 +62,17 @@ TEST(Quantity, PoundPerSquareInchFollowsItsDefinition) {
   EXPECT_NEAR(parse_quantity("1 psi", dimension::kPressure), 6894.757293168361, 1e-11);
 }
 
-struct Bad {
+struct BadQuantity {
   const char* text;
   Dimension dimension;
   ErrorKind kind;
   const char* says;
 };
 
-class BadQuantities : public ::testing::TestWithParam<Bad> {};
+class BadQuantities : public ::testing::TestWithParam<BadQuantity> {};
 
 TEST_P(BadQuantities, NamePlaceValueAndRemedy) {
-  const Bad& each = GetParam();
+  const BadQuantity& each = GetParam();
   const Place place{.file = "trunk.yaml", .line = 3, .column = 7, .item = "bodies.trunk.mass"};
   try {
     parse_quantity(each.text, each.dimension, place);
@@ -87,40 +87,40 @@ TEST_P(BadQuantities, NamePlaceValueAndRemedy) {
 
 INSTANTIATE_TEST_SUITE_P(
     Table, BadQuantities,
-    ::testing::Values(Bad{"", dimension::kMass, ErrorKind::not_a_number, "42 g"},
-                      Bad{"heavy", dimension::kMass, ErrorKind::not_a_number, "heavy"},
-                      Bad{"g", dimension::kMass, ErrorKind::not_a_number, "'g'"},
-                      Bad{"-", dimension::kMass, ErrorKind::not_a_number, "'-'"},
-                      Bad{"1, g", dimension::kMass, ErrorKind::not_a_number, "comma"},
-                      Bad{"42 m", dimension::kMass, ErrorKind::wrong_dimension,
-                          "expected a mass, got '42 m' (a length); write for example '42 g'"},
-                      Bad{"10 %", dimension::kMass, ErrorKind::wrong_dimension, "without unit"},
-                      Bad{"1 kg/m^2", dimension::kMass, ErrorKind::wrong_dimension, "kg m^-2"},
-                      Bad{"42 gramm", dimension::kMass, ErrorKind::unknown_unit, "gramm"},
-                      Bad{"4 kpa", dimension::kPressure, ErrorKind::unknown_unit,
-                          "did you mean 'kPa'?"},
-                      Bad{"4 m3", dimension::kVolume, ErrorKind::unknown_unit, "m^3"},
-                      Bad{"4 m^", dimension::kVolume, ErrorKind::unknown_unit, "power"},
-                      Bad{"4 m^99", dimension::kVolume, ErrorKind::unknown_unit, "power"},
-                      Bad{"4 m^1.5", dimension::kVolume, ErrorKind::unknown_unit, ".5"},
-                      Bad{"4 N/m s", dimension::kDamping, ErrorKind::unknown_unit, "two ways"},
-                      Bad{"4 N/", dimension::kDamping, ErrorKind::unknown_unit, "missing"},
-                      Bad{"4 N//m", dimension::kDamping, ErrorKind::unknown_unit, "missing"},
-                      Bad{"4 (N/m", dimension::kStiffness, ErrorKind::unknown_unit, "')'"},
-                      Bad{"4 N/m)", dimension::kStiffness, ErrorKind::unknown_unit, ")"},
-                      Bad{"4 ((((((((((((((((m))))))))))))))))", dimension::kLength,
-                          ErrorKind::unknown_unit, "parentheses"},
-                      Bad{"42 g 3", dimension::kMass, ErrorKind::unknown_unit, "'3'"},
-                      Bad{"0x10 m", dimension::kLength, ErrorKind::unknown_unit, "x10"},
-                      Bad{"1 2 m", dimension::kLength, ErrorKind::wrong_length, "got 2"},
-                      Bad{"1,5 mm", dimension::kLength, ErrorKind::wrong_length, "1,5"},
-                      Bad{"nan kg", dimension::kMass, ErrorKind::not_finite, "nan"},
-                      Bad{"-inf kg", dimension::kMass, ErrorKind::not_finite, "inf"},
-                      Bad{".inf", dimension::kMass, ErrorKind::not_finite, "inf"},
-                      Bad{"NaN", dimension::kMass, ErrorKind::not_finite, "NaN"},
-                      Bad{"1e999 kg", dimension::kMass, ErrorKind::not_finite, "large"},
-                      Bad{"1e308 km", dimension::kLength, ErrorKind::not_finite, "large"},
-                      Bad{"1e-999 kg", dimension::kMass, ErrorKind::out_of_range, "small"}));
+    ::testing::Values(
+        BadQuantity{"", dimension::kMass, ErrorKind::not_a_number, "42 g"},
+        BadQuantity{"heavy", dimension::kMass, ErrorKind::not_a_number, "heavy"},
+        BadQuantity{"g", dimension::kMass, ErrorKind::not_a_number, "'g'"},
+        BadQuantity{"-", dimension::kMass, ErrorKind::not_a_number, "'-'"},
+        BadQuantity{"1, g", dimension::kMass, ErrorKind::not_a_number, "comma"},
+        BadQuantity{"42 m", dimension::kMass, ErrorKind::wrong_dimension,
+                    "expected a mass, got '42 m' (a length); write for example '42 g'"},
+        BadQuantity{"10 %", dimension::kMass, ErrorKind::wrong_dimension, "without unit"},
+        BadQuantity{"1 kg/m^2", dimension::kMass, ErrorKind::wrong_dimension, "kg m^-2"},
+        BadQuantity{"42 gramm", dimension::kMass, ErrorKind::unknown_unit, "gramm"},
+        BadQuantity{"4 kpa", dimension::kPressure, ErrorKind::unknown_unit, "did you mean 'kPa'?"},
+        BadQuantity{"4 m3", dimension::kVolume, ErrorKind::unknown_unit, "m^3"},
+        BadQuantity{"4 m^", dimension::kVolume, ErrorKind::unknown_unit, "power"},
+        BadQuantity{"4 m^99", dimension::kVolume, ErrorKind::unknown_unit, "power"},
+        BadQuantity{"4 m^1.5", dimension::kVolume, ErrorKind::unknown_unit, ".5"},
+        BadQuantity{"4 N/m s", dimension::kDamping, ErrorKind::unknown_unit, "two ways"},
+        BadQuantity{"4 N/", dimension::kDamping, ErrorKind::unknown_unit, "missing"},
+        BadQuantity{"4 N//m", dimension::kDamping, ErrorKind::unknown_unit, "missing"},
+        BadQuantity{"4 (N/m", dimension::kStiffness, ErrorKind::unknown_unit, "')'"},
+        BadQuantity{"4 N/m)", dimension::kStiffness, ErrorKind::unknown_unit, ")"},
+        BadQuantity{"4 ((((((((((((((((m))))))))))))))))", dimension::kLength,
+                    ErrorKind::unknown_unit, "parentheses"},
+        BadQuantity{"42 g 3", dimension::kMass, ErrorKind::unknown_unit, "'3'"},
+        BadQuantity{"0x10 m", dimension::kLength, ErrorKind::unknown_unit, "x10"},
+        BadQuantity{"1 2 m", dimension::kLength, ErrorKind::wrong_length, "got 2"},
+        BadQuantity{"1,5 mm", dimension::kLength, ErrorKind::wrong_length, "1,5"},
+        BadQuantity{"nan kg", dimension::kMass, ErrorKind::not_finite, "nan"},
+        BadQuantity{"-inf kg", dimension::kMass, ErrorKind::not_finite, "inf"},
+        BadQuantity{".inf", dimension::kMass, ErrorKind::not_finite, "inf"},
+        BadQuantity{"NaN", dimension::kMass, ErrorKind::not_finite, "NaN"},
+        BadQuantity{"1e999 kg", dimension::kMass, ErrorKind::not_finite, "large"},
+        BadQuantity{"1e308 km", dimension::kLength, ErrorKind::not_finite, "large"},
+        BadQuantity{"1e-999 kg", dimension::kMass, ErrorKind::out_of_range, "small"}));
 
 TEST(Quantity, ReadsVectorsAndLists) {
   EXPECT_EQ(parse_vector3("0 0 0 m/s^2", dimension::kAcceleration), Vector3(0, 0, 0));

@@ -18,10 +18,9 @@
 namespace sinew::fem {
 namespace {
 
-constexpr double kEdge = 0.01;
 using material::Law;
 
-FemModelSettings settings_of(const mesh::Mesh& mesh, Law law = Law::corotational) {
+FemModelSettings law_settings(const mesh::Mesh& mesh, Law law = Law::corotational) {
   FemModelSettings settings;
   settings.regions.push_back(
       {.constants = {450e3, 0.45}, .law = law, .density = 1070.0, .elements = {}});
@@ -55,7 +54,7 @@ class AgainstReference : public testing::TestWithParam<std::tuple<Case, Tangent,
 TEST_P(AgainstReference, ForcesMatrixAndEnergyAgree) {
   const auto& [given, tangent, mass] = GetParam();
   const auto mesh = block_mesh(given.cells[0], given.cells[1], given.cells[2], kEdge, 0.15);
-  FemModelSettings settings = given.mixed ? mixed_settings(*mesh) : settings_of(*mesh);
+  FemModelSettings settings = given.mixed ? mixed_settings(*mesh) : law_settings(*mesh);
   settings.mass = mass;
   const auto model = std::make_shared<const FemModel>(mesh, settings);
   ThreadPool pool(1);
@@ -121,7 +120,7 @@ TEST_P(EveryTangent, ThreadsDoNotChangeABit) {
 
 TEST_P(EveryTangent, EvaluationAllocatesNothing) {
   const auto mesh = block_mesh(3, 3, 5, kEdge, 0.1);
-  const auto model = std::make_shared<const FemModel>(mesh, settings_of(*mesh));
+  const auto model = std::make_shared<const FemModel>(mesh, law_settings(*mesh));
   for (const int threads : {1, 4}) {
     ThreadPool pool(threads);
     Assembly assembly(model, pool);
@@ -219,7 +218,7 @@ TEST(Assembly, ForcesAreTheDerivativeOfTheEnergy) {
 
 TEST(Assembly, RigidMotionsGiveNoForce) {
   const auto mesh = block_mesh(3, 3, 6, kEdge, 0.2);
-  const auto model = std::make_shared<const FemModel>(mesh, settings_of(*mesh));
+  const auto model = std::make_shared<const FemModel>(mesh, law_settings(*mesh));
   ThreadPool pool(1);
   Assembly assembly(model, pool);
   assembly.evaluate(moved(*mesh, kEdge, 0.01), {.tangent = Tangent::none});
@@ -240,7 +239,7 @@ TEST(Assembly, RigidMotionsGiveNoForce) {
 /// A body that is turned as a whole has its forces and matrix turned with it.
 TEST(Assembly, ForcesAndMatrixTurnWithTheBody) {
   const auto mesh = block_mesh(2, 2, 3, kEdge, 0.1);
-  const auto model = std::make_shared<const FemModel>(mesh, settings_of(*mesh));
+  const auto model = std::make_shared<const FemModel>(mesh, law_settings(*mesh));
   ThreadPool pool(1);
   Assembly assembly(model, pool);
   const Points positions = moved(*mesh, kEdge, 0.1);
@@ -266,7 +265,7 @@ TEST(Assembly, PassesTheAffinePatchTest) {
   const auto mesh = block_mesh(4, 4, 4, kEdge);
   std::mt19937 random(5);
   std::uniform_real_distribution<double> uniform(-0.2, 0.2);
-  FemModelSettings settings = settings_of(*mesh);
+  FemModelSettings settings = law_settings(*mesh);
   settings.fixed_nodes.clear();
   const auto on_surface = [&](NodeId node) {
     return (mesh->nodes.row(node).array() < 0.5 * kEdge).any() ||
@@ -295,7 +294,7 @@ TEST(Assembly, PassesTheAffinePatchTest) {
 
 TEST(Assembly, MatricesAreSymmetricAndTheRotatedOneIsPositive) {
   const auto mesh = block_mesh(2, 2, 4, kEdge, 0.1);
-  const auto model = std::make_shared<const FemModel>(mesh, settings_of(*mesh));
+  const auto model = std::make_shared<const FemModel>(mesh, law_settings(*mesh));
   ThreadPool pool(1);
   Assembly assembly(model, pool);
   for (const Tangent tangent : {Tangent::rotated, Tangent::exact}) {
@@ -323,7 +322,7 @@ TEST(Assembly, BothTangentsAgreeAtRest) {
 
 TEST(Assembly, BlocksAreAddedWhereTheyBelong) {
   const auto mesh = block_mesh(2, 2, 2, kEdge);
-  FemModelSettings settings = settings_of(*mesh);
+  FemModelSettings settings = law_settings(*mesh);
   const NodeId corner = mesh->node_count() - 1;
   settings.couplings = {{9, 13, corner, 0}};  // node 0 is fixed and skipped
   const auto model = std::make_shared<const FemModel>(mesh, settings);
@@ -374,7 +373,7 @@ TEST(Assembly, FindsTheWorstElement) {
 
 TEST(Assembly, RefusesPositionsOfAnotherMesh) {
   const auto mesh = block_mesh(1, 1, 1, kEdge);
-  const auto model = std::make_shared<const FemModel>(mesh, settings_of(*mesh));
+  const auto model = std::make_shared<const FemModel>(mesh, law_settings(*mesh));
   ThreadPool pool(1);
   Assembly assembly(model, pool);
   try {

@@ -10,6 +10,8 @@
 
 namespace sinew::fem {
 
+inline constexpr double kEdge = 0.01;  ///< m, of a cell in most tests
+
 /// A box of nx x ny x nz cells of edge `size` (m), six tetrahedra each (Kuhn's division), nodes
 /// inside and out moved at random by up to `jitter` edges in each direction.
 inline std::shared_ptr<mesh::Mesh> block_mesh(int nx, int ny, int nz, double size,

@@ -16,7 +16,6 @@
 namespace sinew::fem {
 namespace {
 
-constexpr double kEdge = 0.01;
 constexpr double kDensity = 1070.0;
 
 FemModelSettings settings_of(const mesh::Mesh& mesh) {

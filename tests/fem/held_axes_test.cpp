@@ -13,9 +13,7 @@
 namespace sinew::fem {
 namespace {
 
-constexpr double kEdge = 0.01;
-
-FemModelSettings settings_of(const mesh::Mesh& mesh) {
+FemModelSettings held_settings(const mesh::Mesh& mesh) {
   FemModelSettings settings;
   settings.regions.push_back({.constants = {1e5, 0.3}, .density = 1000.0});
   settings.fixed_nodes = bottom_nodes(mesh, kEdge);
@@ -24,7 +22,7 @@ FemModelSettings settings_of(const mesh::Mesh& mesh) {
 
 TEST(HeldAxes, LeaveTheMatrixWithoutTheirRowsAndColumns) {
   const auto mesh = block_mesh(2, 2, 3, kEdge, 0.1);
-  FemModelSettings settings = settings_of(*mesh);
+  FemModelSettings settings = held_settings(*mesh);
   settings.mass = MassMatrix::consistent;
   const NodeId top = static_cast<NodeId>(mesh->node_count()) - 1;
   settings.held_axes = {{top, 2}, {top - 4, 0}, {top - 4, 1}, {top, 2}, {0, 1}};  // 0 is fixed
@@ -52,7 +50,7 @@ TEST(HeldAxes, LeaveTheMatrixWithoutTheirRowsAndColumns) {
 
 TEST(HeldAxes, AreRefusedWhereThereAreNone) {
   const auto mesh = block_mesh(1, 1, 2, kEdge);
-  FemModelSettings settings = settings_of(*mesh);
+  FemModelSettings settings = held_settings(*mesh);
   for (const HeldAxis bad :
        {HeldAxis{0, 3}, HeldAxis{0, -1}, HeldAxis{100000, 0}, HeldAxis{-1, 0}}) {
     settings.held_axes = {bad};

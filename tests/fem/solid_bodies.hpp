@@ -18,8 +18,6 @@
 
 namespace sinew::fem::solid_bodies {
 
-inline constexpr double kEdge = 0.01;
-
 inline material::Hyperelastic rubber(double poisson_ratio = 0.49) {
   material::Hyperelastic law =
       material::ogden({{24361.0, 1.7138}, {66.703, 7.0679}, {-453.81, -3.3659}},

@@ -22,8 +22,6 @@
 namespace sinew::fem {
 namespace {
 
-constexpr double kEdge = 0.01;
-
 enum class Kind { tetrahedra, patches, quadratic, hexahedra };
 
 std::shared_ptr<const mesh::Mesh> box(Kind kind, int n) {

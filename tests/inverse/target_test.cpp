@@ -120,7 +120,7 @@ struct BadTarget {
   ErrorKind kind;
 };
 
-class BadTargets : public testing::TestWithParam<BadTarget> {};
+class BadTargets : public ::testing::TestWithParam<BadTarget> {};
 
 TEST_P(BadTargets, AreRefused) {
   try {
@@ -134,7 +134,7 @@ TEST_P(BadTargets, AreRefused) {
 
 INSTANTIATE_TEST_SUITE_P(
     Target, BadTargets,
-    testing::Values(
+    ::testing::Values(
         BadTarget{"fixed_nan",
                   [] {
                     return Target::fixed({0.0, kNan, 0.0});

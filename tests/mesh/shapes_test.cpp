@@ -26,8 +26,6 @@ namespace {
 using test::error_text;
 using testing::HasSubstr;
 
-constexpr double kPi = std::numbers::pi;
-
 /// Sound, made in the positive order, closed, and its surface encloses its volume.
 MeshReport require_sound(Mesh mesh) {
   check(mesh);
@@ -59,13 +57,14 @@ TEST(Shapes, HexahedralBlockMatchesTheTetrahedralOne) {
 TEST(Shapes, RoundSolidsHaveTheirVolume) {
   EXPECT_NEAR(
       require_sound(cylinder({.radius = 0.01, .height = 0.1, .rings = 3, .layers = 5})).volume,
-      kPi * 1e-4 * 0.1, 1e-15);
+      std::numbers::pi * 1e-4 * 0.1, 1e-15);
   // A linear taper within straight prisms: V = pi h/3 (r0^2 + r0 r1 + r1^2) is met to second order
   // in the layers, from the twisted faces of its tetrahedra.
-  const double taper = kPi * 0.1 / 3 * (4e-4 + 2e-4 + 1e-4);
+  const double taper = std::numbers::pi * 0.1 / 3 * (4e-4 + 2e-4 + 1e-4);
   EXPECT_NEAR(require_sound(cone({})).volume / taper, 1.0, 2e-3);
   const HollowCylinderShape tube{.around = 30};
-  EXPECT_NEAR(require_sound(hollow_cylinder(tube)).volume, kPi * (1.44e-4 - 0.64e-4) * 0.05, 1e-15);
+  EXPECT_NEAR(require_sound(hollow_cylinder(tube)).volume,
+              std::numbers::pi * (1.44e-4 - 0.64e-4) * 0.05, 1e-15);
 }
 
 TEST(Shapes, QuadraticTetrahedraFollowTheCircle) {
@@ -82,13 +81,13 @@ TEST(Shapes, QuadraticTetrahedraFollowTheCircle) {
   EXPECT_GT(on, 3 * 12 + 2 * 12);
   // A surface of four triangles a face on the arcs lies much nearer to the circle than 12 corners.
   const double volume = enclosed_volume(boundary_surface(mesh));
-  EXPECT_NEAR(volume / (kPi * 1e-4 * 0.02), 1.0, 0.015);
+  EXPECT_NEAR(volume / (std::numbers::pi * 1e-4 * 0.02), 1.0, 0.015);
 }
 
 TEST(Shapes, TheChamberIsAVoidOfItsVolume) {
   const ChamberedCylinderShape shape{.chamber_bottom = 0.005};
-  const double whole = kPi * shape.radius * shape.radius * shape.height;
-  const double chamber = kPi * shape.chamber_radius * shape.chamber_radius * 0.055;
+  const double whole = std::numbers::pi * shape.radius * shape.radius * shape.height;
+  const double chamber = std::numbers::pi * shape.chamber_radius * shape.chamber_radius * 0.055;
   for (const Cells cells : {Cells::tetrahedra, Cells::hexahedra}) {
     const Mesh mesh = chambered_cylinder(shape, cells);
     EXPECT_NEAR(require_sound(mesh).volume, whole - chamber, 1e-13);
@@ -113,7 +112,7 @@ TEST(Shapes, RoundSolidsOfHexahedraHaveTheirVolume) {
     const Mesh mesh =
         cylinder({.radius = 0.01, .height = 0.1, .rings = rings, .layers = 5}, Cells::hexahedra);
     const MeshReport report = require_sound(mesh);
-    EXPECT_NEAR(report.volume, kPi * 1e-4 * 0.1, 1e-15) << rings;
+    EXPECT_NEAR(report.volume, std::numbers::pi * 1e-4 * 0.1, 1e-15) << rings;
     EXPECT_EQ(report.tetrahedra, 0);
     EXPECT_EQ(mesh.node_sets.at("side").size(), static_cast<std::size_t>(6 * around)) << rings;
     // Nothing is flat: each cell's smallest Jacobian is a good part of its mean.
@@ -130,8 +129,8 @@ TEST(Shapes, RoundSolidsOfHexahedraHaveTheirVolume) {
     }
   }
   EXPECT_NEAR(require_sound(hollow_cylinder({.around = 30}, Cells::hexahedra)).volume,
-              kPi * (1.44e-4 - 0.64e-4) * 0.05, 1e-15);
-  const double taper = kPi * 0.1 / 3 * (4e-4 + 2e-4 + 1e-4);
+              std::numbers::pi * (1.44e-4 - 0.64e-4) * 0.05, 1e-15);
+  const double taper = std::numbers::pi * 0.1 / 3 * (4e-4 + 2e-4 + 1e-4);
   EXPECT_NEAR(require_sound(cone({}, Cells::hexahedra)).volume / taper, 1.0, 2e-3);
   EXPECT_EQ(require_sound(trunk({}, Cells::hexahedra)).tetrahedra, 0);
   error_text(ErrorKind::out_of_range, [] { cylinder({.rings = 1}, Cells::hexahedra); });
@@ -159,7 +158,8 @@ TEST(Shapes, TrunkHasBellowsAndRoomForCables) {
   for (int cable = 0; cable < 4; ++cable) {
     for (int k = 0; k <= 40; ++k) {
       const double z = 0.19 * k / 40, radius = 0.010 - 0.008 * z / 0.195;
-      const Vector3 via(radius * std::cos(cable * kPi / 2), radius * std::sin(cable * kPi / 2), z);
+      const Vector3 via(radius * std::cos(cable * std::numbers::pi / 2),
+                        radius * std::sin(cable * std::numbers::pi / 2), z);
       EXPECT_NO_THROW(embedder.locate(via, Outside::error, "via")) << via.transpose();
     }
   }

@@ -14,7 +14,6 @@ namespace sinew::pcc {
 namespace {
 
 using sinew::testing::kind_of;
-constexpr double kPi = std::numbers::pi;
 
 BendingParameters damped() {
   BendingParameters p;
@@ -84,7 +83,7 @@ TEST(BendingActuator, EquationOfMotionIsThatOfTheDifferentiatedLagrangian) {
       const double straight = (brute.strain(step) + brute.strain(-step)) / (step * step);
       const double friction =
           (p.mass_damping * inertia + p.stiffness_damping * shear * straight) * rate;
-      const double moment = pressure * kPi * p.chamber_radius * p.chamber_radius *
+      const double moment = pressure * std::numbers::pi * p.chamber_radius * p.chamber_radius *
                             (p.chamber_radius + p.wall_thickness);
       const double expected = (moment + slope - carried - friction) / inertia;
       const double found = actuator.acceleration(theta, rate, pressure);
@@ -110,9 +109,10 @@ TEST(BendingActuator, SmallAnglesAreThoseOfTheBeam) {
   }
   // The second moment of a ring about its own middle, moved by its radius (Steiner).
   const double outer = p.outer(), r = p.chamber_radius;
-  const double area = kPi * (outer * outer - r * r);
+  const double area = std::numbers::pi * (outer * outer - r * r);
   EXPECT_NEAR(BendingActuator(p).second_moment(),
-              kPi / 4.0 * (std::pow(outer, 4) - std::pow(r, 4)) + area * outer * outer, 1e-20);
+              std::numbers::pi / 4.0 * (std::pow(outer, 4) - std::pow(r, 4)) + area * outer * outer,
+              1e-20);
 }
 
 TEST(BendingActuator, EquilibriumBalancesAndIsStable) {
@@ -128,7 +128,7 @@ TEST(BendingActuator, EquilibriumBalancesAndIsStable) {
 
 TEST(BendingActuator, HeavyStandingActuatorFallsToOneSide) {
   BendingParameters p;
-  p.inclination = kPi;  // stands
+  p.inclination = std::numbers::pi;  // stands
   p.modulus = BendingModulus(2e3);
   p.order.reset();
   const BendingActuator actuator(p);
@@ -142,7 +142,8 @@ TEST(BendingActuator, WeightLessBuoyancy) {
   BendingParameters p;
   p.filling_density = p.surroundings_density = 1000.0;
   const double outer = p.outer(), r = p.chamber_radius;
-  const double wall = kPi * (outer * outer - r * r) * p.length, inside = kPi * r * r * p.length;
+  const double wall = std::numbers::pi * (outer * outer - r * r) * p.length,
+               inside = std::numbers::pi * r * r * p.length;
   EXPECT_NEAR(BendingActuator(p).net_weight(), (1070.0 - 1000.0) * wall * 9.81, 1e-12);
   p.filling_density = 0.0;  // empty in water: it floats
   EXPECT_NEAR(BendingActuator(p).net_weight(), (70.0 * wall - 1000.0 * inside) * 9.81, 1e-12);

@@ -11,7 +11,6 @@
 namespace sinew::pcc {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 const double kAngles[] = {-2.5, -0.7, -0.01, 0.02, 0.4, 1.3, 2.8, 6.2};
 
 BendingParameters under_water(std::optional<int> order) {
@@ -27,7 +26,7 @@ BendingParameters under_water(std::optional<int> order) {
 
 TEST(BendingEnergies, ExactOnesAgreeWithClosedForms) {
   BendingParameters p;
-  p.inclination = 0.5 * kPi;
+  p.inclination = 0.5 * std::numbers::pi;
   p.order.reset();
   const BendingEnergies energies(p);
   const double l = p.length, mass = mass_sum(p).total * l, net = net_mass_sum(p).total * l;
@@ -35,8 +34,9 @@ TEST(BendingEnergies, ExactOnesAgreeWithClosedForms) {
   // (a + b x)^2 it is pi R^2 (a^2 + b^2/4).
   const auto disc = [&](double theta, double radius, double centre) {
     const double a = 1.0 + theta * centre / l, b = theta * radius / l;
-    const double inverse = 2.0 * kPi / (b * b) * (a / std::sqrt(a * a - b * b) - 1.0);
-    return radius * radius * (kPi * (a * a + 0.25 * b * b) + inverse - 2.0 * kPi);
+    const double inverse = 2.0 * std::numbers::pi / (b * b) * (a / std::sqrt(a * a - b * b) - 1.0);
+    return radius * radius *
+           (std::numbers::pi * (a * a + 0.25 * b * b) + inverse - 2.0 * std::numbers::pi);
   };
   for (const double theta : kAngles) {
     if (std::abs(theta) < 0.1) continue;  // the closed forms cancel
@@ -112,7 +112,7 @@ TEST(BendingEnergies, NothingHappensInTheStraightPose) {
 
 TEST(BendingEnergies, FifthOrderIsTheSeriesByHand) {
   BendingParameters p;
-  p.inclination = 0.5 * kPi;
+  p.inclination = 0.5 * std::numbers::pi;
   const BendingEnergies energies(p);
   const double l = p.length, theta = 0.9, kappa = theta / l;
   const double mass = mass_sum(p).total * l, net = net_mass_sum(p).total * l;
@@ -125,7 +125,7 @@ TEST(BendingEnergies, FifthOrderIsTheSeriesByHand) {
   // c^4 + 3/2 c^2 R^2 + R^4/8, c^5 + 5/2 c^3 R^2 + 5/8 c R^4 times its area.
   const auto series = [&](double radius, double c) {
     const double r2 = radius * radius, k = kappa;
-    return kPi * r2 *
+    return std::numbers::pi * r2 *
            (4.0 * k * k * (c * c + 0.25 * r2) - 4.0 * std::pow(k, 3) * (c * c * c + 0.75 * c * r2) +
             5.0 * std::pow(k, 4) * (std::pow(c, 4) + 1.5 * c * c * r2 + r2 * r2 / 8.0) -
             6.0 * std::pow(k, 5) *

@@ -2,20 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/types.hpp"
 #include "sinew/qp/quadratic_program.hpp"
 
 #include "random_problem.hpp"
 
 namespace sinew::qp {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// W = J J^T of `contacts` contacts on `coordinates` coordinates, and an offset.
 struct Contacts {

@@ -5,13 +5,12 @@
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/types.hpp"
 
 #include "random_problem.hpp"
 
 namespace sinew::qp {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// min |x|^2 / 2 over 0 <= x <= 1, x_0 + x_1 >= 3, x_0 <= 0.5: bounds leave at most 2 for row 0.
 QuadraticProgram two_rows() {

@@ -7,13 +7,12 @@
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/types.hpp"
 
 #include "random_problem.hpp"
 
 namespace sinew::qp {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 QuadraticProgram identity_problem(int n, int m) {
   QuadraticProgram problem = QuadraticProgram::sized(n, m);

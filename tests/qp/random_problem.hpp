@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "sinew/core/types.hpp"
 #include "sinew/qp/quadratic_program.hpp"
 
 namespace sinew::qp {
@@ -76,7 +77,6 @@ inline MatrixX random_hessian(int n, double condition, Random& random) {
 /// Limits around a feasible value: some infinite, some tight (slack zero), some equal.
 inline void random_limits(double value, double equal, double tight, Random& random, double* lower,
                           double* upper) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const bool is_equal = random.chance(equal);
   const auto slack = [&] {
     if (is_equal || random.chance(tight)) return 0.0;

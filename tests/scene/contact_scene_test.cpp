@@ -11,6 +11,8 @@
 namespace sinew::scene {
 namespace {
 
+using K = ErrorKind;
+
 const std::string kBlock = R"(sinew: 1
 integrator: backward-euler
 time_step: 1 ms
@@ -69,7 +71,6 @@ TEST(Contacts, ReadEverySurfaceAndItsMotion) {
 }
 
 TEST(Contacts, SayWhatIsWrong) {
-  using K = ErrorKind;
   expect_error("{body: blok, surface: {plane: {}}}", K::unknown_name, "blok");
   expect_error("{body: block, surface: {}}", K::missing_key, "plane");
   expect_error("{body: block, surface: {plane: {}, capsule: {ends: [0 0 0, 0 0 1], radius: 1}}}",

@@ -8,12 +8,12 @@
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/types.hpp"
 
 namespace sinew::sim {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 TEST(Signal, IsZeroUntilToldOtherwise) {
   const Signal signal;
@@ -94,7 +94,7 @@ struct BadSignal {
   const char* message;
 };
 
-class BadSignals : public testing::TestWithParam<BadSignal> {};
+class BadSignals : public ::testing::TestWithParam<BadSignal> {};
 
 TEST_P(BadSignals, AreRefused) {
   try {
@@ -109,75 +109,75 @@ TEST_P(BadSignals, AreRefused) {
 
 INSTANTIATE_TEST_SUITE_P(
     Signal, BadSignals,
-    testing::Values(BadSignal{"constant_nan", [] { return Signal::constant(kNan); },
-                              ErrorKind::not_finite, "nan"},
-                    BadSignal{"ramp_infinite",
-                              [] {
-                                return Signal::ramp({0.0, kInfinity, 0.0, 1.0});
-                              },
-                              ErrorKind::not_finite, "inf"},
-                    BadSignal{"ramp_backwards",
-                              [] {
-                                return Signal::ramp({0.0, 1.0, 0.0, -1.0});
-                              },
-                              ErrorKind::bad_signal, "-1"},
-                    BadSignal{"ramp_instant",
-                              [] {
-                                return Signal::ramp({0.0, 1.0, 0.0, 0.0});
-                              },
-                              ErrorKind::bad_signal, "lasts 0"},
-                    BadSignal{"ramp_early",
-                              [] {
-                                return Signal::ramp({0.0, 1.0, -0.5, 1.0});
-                              },
-                              ErrorKind::bad_signal, "-0.5"},
-                    BadSignal{"sine_period",
-                              [] {
-                                return Signal::sine({0.0, 1.0, 0.0, 0.0});
-                              },
-                              ErrorKind::bad_signal, "period is 0"},
-                    BadSignal{"sine_nan",
-                              [] {
-                                return Signal::sine({0.0, kNan, 1.0, 0.0});
-                              },
-                              ErrorKind::not_finite, "nan"},
-                    BadSignal{"steps_none", [] { return Signal::steps({}); }, ErrorKind::bad_signal,
-                              "no values"},
-                    BadSignal{"steps_late",
-                              [] {
-                                return Signal::steps({{1.0, 2.0}});
-                              },
-                              ErrorKind::bad_signal, "begin at 1 s"},
-                    BadSignal{"steps_equal",
-                              [] {
-                                return Signal::steps({{0.0, 1.0}, {0.0, 2.0}});
-                              },
-                              ErrorKind::non_monotonic_time, "0 s"},
-                    BadSignal{"steps_nan",
-                              [] {
-                                return Signal::steps({{0.0, 1.0}, {1.0, kNan}});
-                              },
-                              ErrorKind::not_finite, "nan"},
-                    BadSignal{"samples_back",
-                              [] {
-                                return Signal::sampled({0.0, 2.0, 1.0}, {0, 0, 0});
-                              },
-                              ErrorKind::non_monotonic_time, "1 s"},
-                    BadSignal{"samples_early",
-                              [] {
-                                return Signal::sampled({-1.0, 0.0}, {0, 0});
-                              },
-                              ErrorKind::bad_signal, "-1 s"},
-                    BadSignal{"samples_nan_time",
-                              [] {
-                                return Signal::sampled({kNan, 0.0}, {0, 0});
-                              },
-                              ErrorKind::not_finite, "nan"},
-                    BadSignal{"samples_length",
-                              [] {
-                                return Signal::sampled({0.0, 1.0}, {0.0});
-                              },
-                              ErrorKind::wrong_length, "2 times but 1"}),
+    ::testing::Values(BadSignal{"constant_nan", [] { return Signal::constant(kNan); },
+                                ErrorKind::not_finite, "nan"},
+                      BadSignal{"ramp_infinite",
+                                [] {
+                                  return Signal::ramp({0.0, kInfinity, 0.0, 1.0});
+                                },
+                                ErrorKind::not_finite, "inf"},
+                      BadSignal{"ramp_backwards",
+                                [] {
+                                  return Signal::ramp({0.0, 1.0, 0.0, -1.0});
+                                },
+                                ErrorKind::bad_signal, "-1"},
+                      BadSignal{"ramp_instant",
+                                [] {
+                                  return Signal::ramp({0.0, 1.0, 0.0, 0.0});
+                                },
+                                ErrorKind::bad_signal, "lasts 0"},
+                      BadSignal{"ramp_early",
+                                [] {
+                                  return Signal::ramp({0.0, 1.0, -0.5, 1.0});
+                                },
+                                ErrorKind::bad_signal, "-0.5"},
+                      BadSignal{"sine_period",
+                                [] {
+                                  return Signal::sine({0.0, 1.0, 0.0, 0.0});
+                                },
+                                ErrorKind::bad_signal, "period is 0"},
+                      BadSignal{"sine_nan",
+                                [] {
+                                  return Signal::sine({0.0, kNan, 1.0, 0.0});
+                                },
+                                ErrorKind::not_finite, "nan"},
+                      BadSignal{"steps_none", [] { return Signal::steps({}); },
+                                ErrorKind::bad_signal, "no values"},
+                      BadSignal{"steps_late",
+                                [] {
+                                  return Signal::steps({{1.0, 2.0}});
+                                },
+                                ErrorKind::bad_signal, "begin at 1 s"},
+                      BadSignal{"steps_equal",
+                                [] {
+                                  return Signal::steps({{0.0, 1.0}, {0.0, 2.0}});
+                                },
+                                ErrorKind::non_monotonic_time, "0 s"},
+                      BadSignal{"steps_nan",
+                                [] {
+                                  return Signal::steps({{0.0, 1.0}, {1.0, kNan}});
+                                },
+                                ErrorKind::not_finite, "nan"},
+                      BadSignal{"samples_back",
+                                [] {
+                                  return Signal::sampled({0.0, 2.0, 1.0}, {0, 0, 0});
+                                },
+                                ErrorKind::non_monotonic_time, "1 s"},
+                      BadSignal{"samples_early",
+                                [] {
+                                  return Signal::sampled({-1.0, 0.0}, {0, 0});
+                                },
+                                ErrorKind::bad_signal, "-1 s"},
+                      BadSignal{"samples_nan_time",
+                                [] {
+                                  return Signal::sampled({kNan, 0.0}, {0, 0});
+                                },
+                                ErrorKind::not_finite, "nan"},
+                      BadSignal{"samples_length",
+                                [] {
+                                  return Signal::sampled({0.0, 1.0}, {0.0});
+                                },
+                                ErrorKind::wrong_length, "2 times but 1"}),
     [](const auto& test) { return test.param.name; });
 
 }  // namespace

@@ -9,19 +9,13 @@
 
 #include <fmt/format.h>
 
+#include "sinew/core/text.hpp"
+
 namespace sinew {
 
 namespace {
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-
-bool is_blank(char c) { return c == ' ' || c == '\t'; }
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  return text;
-}
 
 /// For messages: long or binary cells are cut and made printable.
 std::string shown(std::string_view cell) {

@@ -3,11 +3,12 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <span>
 
 #include <fmt/format.h>
 
+#include "sinew/core/text.hpp"
+#include "sinew/core/types.hpp"
 #include "sinew/core/unit.hpp"
 
 namespace sinew {
@@ -58,15 +59,6 @@ const DimensionWords* find_words(Dimension dimension) {
     if (words.dimension == dimension) return &words;
   }
   return nullptr;
-}
-
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  return text;
 }
 
 /// Numbers, then whatever is left: the unit. One instance reads one text.
@@ -192,7 +184,6 @@ std::string shortest(double value) {
 bool format_in(double value, std::string_view symbol, std::string* text) {
   const Unit unit = parse_unit_expression(symbol, {});
   const double quotient = value / unit.numerator * unit.denominator;
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const std::array candidates = {quotient, std::nextafter(quotient, kInfinity),
                                  std::nextafter(quotient, -kInfinity)};
   std::string best;

@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "sinew/core/text.hpp"
+
 namespace sinew {
 
 namespace {
@@ -96,8 +98,6 @@ std::pair<double, double> reduced(double numerator, double denominator) {
   if (std::fmod(denominator, numerator) == 0.0) return {1.0, denominator / numerator};
   return {numerator, denominator};
 }
-
-bool is_blank(char c) { return c == ' ' || c == '\t'; }
 
 /// Recursive descent over product = factor { ('*' | '/' | blank) factor }.
 class Parser {

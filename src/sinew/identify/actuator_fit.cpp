@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/types.hpp"
 #include "sinew/identify/motion_record.hpp"
 
 namespace sinew::identify {
@@ -103,7 +104,6 @@ ActuatorFit fit_actuator(std::span<const ActuatorRecord> records, bool linear, d
                 "torque does not grow with the volume's cube at any delay",
                 "check the volumes' signs and that they vary");
   }
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const std::vector<Parameter> parameters = {
       {"cubic", cubic, 0.0, kInfinity, "N m/m^9", false, cubic},
       {"delay", delay, 0.0, longest_delay, "s", false, 0.02 * longest_delay},

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/types.hpp"
 
 namespace sinew::identify {
 
@@ -12,7 +13,6 @@ namespace {
 
 using Random = std::mt19937_64;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kSmallestModulus = 1e-6;  // of the scale, where a law needs a positive one
 
 FitParameter modulus(double value, double lower = -kInfinity) {

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
-#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
 #include "sinew/core/random.hpp"
+#include "sinew/core/types.hpp"
 #include "sinew/identify/bounded_least_squares.hpp"
 #include "sinew/identify/statistics.hpp"
 #include "sinew/linalg/dense.hpp"
@@ -18,7 +18,6 @@ namespace sinew::identify {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// A singular value that is rounding, of the largest.
 constexpr double kVanishing = 1e-7;
 

@@ -6,13 +6,12 @@
 #include <cstring>
 #include <numeric>
 
+#include "sinew/linalg/index.hpp"
 #include "sinew/linalg/row_spread.hpp"
 
 namespace sinew::linalg {
 
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// Windows of rows of an update that are multiplied before they are spread: product and operands
 /// stay in the second cache.

@@ -4,12 +4,11 @@
 #include <string>
 
 #include "sinew/core/error.hpp"
+#include "sinew/linalg/index.hpp"
 
 namespace sinew::linalg {
 
 namespace {
-
-using Index = std::int32_t;
 
 void check_cliques(int nodes, std::span<const Index> starts, std::span<const Index> members) {
   const auto fail = [](const std::string& message) {

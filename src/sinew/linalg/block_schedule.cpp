@@ -4,14 +4,11 @@
 #include <thread>
 
 #include "sinew/core/spin_wait.hpp"
+#include "sinew/linalg/index.hpp"
 
 namespace sinew::linalg {
 
 namespace {
-
-using Index = std::int32_t;
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// A task is worth waiting a little for on the thread that has its operands in its cache (s).
 constexpr double kCacheBonus = 2e-6;

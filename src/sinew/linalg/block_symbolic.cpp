@@ -4,13 +4,11 @@
 #include <tuple>
 #include <utility>
 
+#include "sinew/linalg/index.hpp"
+
 namespace sinew::linalg {
 
 namespace {
-
-using Index = std::int32_t;
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// Zero rows behind a panel: one less than the widest vector of any instruction set in use.
 constexpr Index kTail = 7;
@@ -45,9 +43,9 @@ Index leading_dimension(Index height) {
 }
 
 /// Builds the lists panel by panel.
-class Builder {
+class PanelBuilder {
  public:
-  Builder(BlockSymbolic& result, const SupernodePartition& partition)
+  PanelBuilder(BlockSymbolic& result, const SupernodePartition& partition)
       : s_(result),
         partition_(partition),
         place_(at(result.nodes + result.border_nodes), -1),
@@ -283,7 +281,7 @@ BlockSymbolic::BlockSymbolic(const BlockPattern& pattern, const BorderPattern& b
   order = partition.order;
   position.resize(order.size());
   for (std::size_t k = 0; k < order.size(); ++k) position[at(order[k])] = static_cast<Index>(k);
-  Builder builder(*this, partition);
+  PanelBuilder builder(*this, partition);
   builder.lay_out();
   builder.place_blocks(pattern);
   builder.place_border(border_pattern);

@@ -1,14 +1,11 @@
 #include <algorithm>
 
 #include "sinew/linalg/block_schedule.hpp"
+#include "sinew/linalg/index.hpp"
 
 namespace sinew::linalg {
 
 namespace {
-
-using Index = std::int32_t;
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// Rough speeds of one core, only to share out the work: they shift results in time, not in value.
 constexpr double kFlopsPerSecond = 40e9;
@@ -27,9 +24,9 @@ double panel_cost(const Panel& panel) {
          kSecondsPerDouble * 3.0 * panel.width * panel.leading;
 }
 
-class Builder {
+class TaskBuilder {
  public:
-  Builder(const BlockSymbolic& symbolic, int threads)
+  TaskBuilder(const BlockSymbolic& symbolic, int threads)
       : s_(symbolic),
         threads_(threads),
         finished_by_(at(s_.panel_count())),
@@ -160,7 +157,7 @@ class Builder {
 }  // namespace
 
 std::vector<BlockTask> block_tasks(const BlockSymbolic& symbolic, int threads) {
-  return Builder(symbolic, threads).build();
+  return TaskBuilder(symbolic, threads).build();
 }
 
 double estimated_time(const BlockSymbolic& symbolic) {

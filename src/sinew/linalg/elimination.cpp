@@ -9,15 +9,13 @@
 #include <metis.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/linalg/index.hpp"
 
 namespace sinew::linalg {
 
 namespace {
 
-using Index = std::int32_t;
 static_assert(sizeof(idx_t) == sizeof(Index), "METIS must be built with 32-bit indices");
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 [[noreturn]] void fail(const std::string& library, int status) {
   throw Error(ErrorKind::internal, Place{.file = {}, .item = "matrix ordering"},

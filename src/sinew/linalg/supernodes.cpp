@@ -2,13 +2,11 @@
 
 #include <algorithm>
 
+#include "sinew/linalg/index.hpp"
+
 namespace sinew::linalg {
 
 namespace {
-
-using Index = std::int32_t;
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// A set of columns on its way to become a supernode.
 struct Group {

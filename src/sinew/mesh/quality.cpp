@@ -49,11 +49,11 @@ double radius_ratio(const Corners& x) {
 
 std::array<double, 6> dihedral_angles(const Corners& x) {
   // Each edge (i, j) with the two corners (k, l) that its faces end in.
-  constexpr std::array<std::array<std::size_t, 4>, 6> kEdges = {
+  constexpr std::array<std::array<std::size_t, 4>, 6> kHinges = {
       {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 2, 0, 3}, {1, 3, 2, 0}, {2, 3, 0, 1}}};
   std::array<double, 6> angles;
   for (std::size_t e = 0; e < 6; ++e) {
-    const auto [i, j, k, l] = kEdges[e];
+    const auto [i, j, k, l] = kHinges[e];
     const Vector3 edge = x[j] - x[i];
     const Vector3 a = edge.cross(x[k] - x[i]);
     const Vector3 b = edge.cross(x[l] - x[i]);

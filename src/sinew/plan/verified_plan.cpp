@@ -3,10 +3,10 @@
 // asked for.
 #include <algorithm>
 #include <chrono>
-#include <limits>
 #include <utility>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/types.hpp"
 #include "sinew/plan/mesh.hpp"
 #include "sinew/plan/planner.hpp"
 #include "sinew/plan/replay.hpp"
@@ -14,8 +14,6 @@
 namespace sinew::plan {
 
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// The knots' times and so many evenly between two.
 VectorX sample_times(const VectorX& knots, Eigen::Index between) {

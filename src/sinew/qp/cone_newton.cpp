@@ -20,7 +20,7 @@ namespace {
 constexpr int kMostSteps = 30;
 // Of the diagonal, on the change of x. Keeps what redundant contacts leave undetermined from
 // growing out of rounding.
-constexpr double kProximal = 1e-9;
+constexpr double kNewtonProximal = 1e-9;
 
 }  // namespace
 
@@ -94,7 +94,7 @@ void ConeSolver::Workspace::form_system(const ConeProblem& problem, int count) {
     for (int i = 0; i < count; ++i) {
       system(i, j) = column[unknown_row[static_cast<std::size_t>(i)]];
     }
-    system(j, j) *= 1.0 + kProximal;
+    system(j, j) *= 1.0 + kNewtonProximal;
   }
   for (std::size_t k = 0; k < problem.boxes.size(); ++k) {
     const BoxBlock& box = problem.boxes[k];

@@ -13,9 +13,9 @@ namespace sinew::qp {
 
 namespace {
 
-constexpr double kProximal = 1e-12;   // of the diagonal
-constexpr double kNewtonShare = 0.3;  // of the cost of a step of Newton's
-constexpr double kRounding = 1e-14;   // of the largest offset
+constexpr double kConeProximal = 1e-12;  // of the diagonal
+constexpr double kNewtonShare = 0.3;     // of the cost of a step of Newton's
+constexpr double kRounding = 1e-14;      // of the largest offset
 // A block whose diagonal is under this part of the largest cannot move.
 constexpr double kFixed = 1e-14;
 // Efforts that are larger, times what the free motion asks of one block alone, measure nothing:
@@ -155,7 +155,7 @@ ConeStatus ConeSolver::Workspace::prepare(const ConeProblem& problem) {
       continue;
     }
     Matrix3 own = w.block<3, 3>(row, row);
-    own.diagonal().array() += kProximal * scale[k];
+    own.diagonal().array() += kConeProximal * scale[k];
     equations[k].set(own, problem.cones[k].friction);
   }
   return ConeStatus::solved;
@@ -190,7 +190,7 @@ void ConeSolver::Workspace::sweep(const ConeProblem& problem) {
 }
 
 void ConeSolver::Workspace::sweep_box(const ConeProblem& problem, const BoxBlock& box) {
-  const double own = (1.0 + kProximal) * problem.matrix(box.row, box.row);
+  const double own = (1.0 + kConeProximal) * problem.matrix(box.row, box.row);
   if (!(own > 0.0)) return;
   const double wanted = x[box.row] - (motion[box.row] - box.target) / own;
   const double next = std::clamp(wanted, box.lower, box.upper);

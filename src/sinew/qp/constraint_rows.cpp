@@ -2,18 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/types.hpp"
 #include "sinew/qp/dense_kernels.hpp"
 
 namespace sinew::qp {
 
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 bool sized(const VectorX& vector, int size) { return vector.size() == size; }
 

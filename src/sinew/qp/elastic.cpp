@@ -4,21 +4,19 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/types.hpp"
 
 namespace sinew::qp {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// Weight of the proximal term against the violation: steps reach 1/kProximal times the distance in
-/// which the steepest row would lose its violation.
-constexpr double kProximal = 1e-3;
+/// Weight of the proximal term against the violation: steps reach 1/kElasticProximal times the
+/// distance in which the steepest row would lose its violation.
+constexpr double kElasticProximal = 1e-3;
 /// After this many steps, four steps with a term ever weaker stand between two steps with the full
 /// one, for the long way along a nearly level edge; only full steps tell the end, since weak ones
 /// are rounded more.
@@ -273,7 +271,7 @@ void ElasticSolver::Workspace::load_rows() {
 }
 
 void ElasticSolver::Workspace::load_proximal_term(double share) {
-  const double slack_stiffness = share * kProximal / violation_size;
+  const double slack_stiffness = share * kElasticProximal / violation_size;
   const double stiffness = slack_stiffness * steepest * steepest;
   for (int j = 0; j < variables; ++j) {
     program.hessian(j, j) = stiffness * scale[j] * scale[j];

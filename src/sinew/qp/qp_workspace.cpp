@@ -2,16 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "sinew/core/types.hpp"
 #include "sinew/qp/dense_kernels.hpp"
 
 namespace sinew::qp {
 
 namespace {
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// A constraint whose normal has a smaller share than this outside the span of the active ones
 /// depends on them; its square is compared with squares.

@@ -1,12 +1,12 @@
 #include "sinew/qp/quadratic_program.hpp"
 
 #include <array>
-#include <limits>
+
+#include "sinew/core/types.hpp"
 
 namespace sinew::qp {
 
 QuadraticProgram QuadraticProgram::sized(int variables, int constraints) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   QuadraticProgram problem;
   problem.hessian = MatrixX::Zero(variables, variables);
   problem.gradient = VectorX::Zero(variables);

@@ -4,12 +4,11 @@
 #include <cmath>
 #include <limits>
 
+#include "sinew/core/types.hpp"
+
 namespace sinew::qp {
 
 namespace {
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Of the largest eigenvalue. The first is small enough that a few steps suffice, however far the
 /// point is and however limits couple the null space with the rest; it costs half of the digits.

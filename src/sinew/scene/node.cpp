@@ -9,11 +9,11 @@
 
 #include <fmt/format.h>
 
+#include "sinew/core/text.hpp"
+
 namespace sinew::scene {
 
 namespace {
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 std::size_t skip_digits(std::string_view text, std::size_t from) {
   while (from < text.size() && is_digit(text[from])) ++from;
