@@ -6,8 +6,6 @@
 # sinew_optimise(<target> <level>): -O<level> in release builds, in place of -O3.
 function(sinew_optimise target level)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O${level}>)
-  # Collecting the compiler's garbage is a tenth of the time of a source full of templates: memory instead.
-  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=400000>)
 endfunction()
 
 # sinew_unite(<target> <count>): so many sources are one translation unit, since most of a compiler's time goes into
