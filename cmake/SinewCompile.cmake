@@ -19,7 +19,8 @@ function(sinew_unite target count)
 endfunction()
 
 # A precompiled header serves targets with the same flags: -fPIC or -fPIE, and one level.
-set(sinew_standard_headers <algorithm> <array> <cmath> <functional> <map> <memory> <optional> <span> <string> <vector>)
+set(sinew_standard_headers <algorithm> <array> <chrono> <cmath> <filesystem> <functional> <map> <memory> <optional>
+    <span> <string> <variant> <vector>)
 
 function(_sinew_precompiled_options target level)
   target_link_libraries(${target} PRIVATE sinew_options Eigen3::Eigen fmt::fmt Threads::Threads)
@@ -50,7 +51,7 @@ endif()
 # sinew_build_library(<target> <level>), sinew_build_test(<target>): a level, and the precompiled header for it.
 function(sinew_build_library target level)
   sinew_optimise(${target} ${level})
-  sinew_unite(${target} 4)
+  sinew_unite(${target} 5)
   if(SINEW_PCH)
     target_precompile_headers(${target} REUSE_FROM sinew_precompiled_${level})
   endif()

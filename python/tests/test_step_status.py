@@ -85,3 +85,34 @@ def test_one_linearisation_follows_a_swing():
         return sim.time
 
     assert passes("one-linearisation") == pytest.approx(passes("newton"), abs=0.005)
+
+
+@pytest.mark.parametrize("integrator", ["backward-euler", "generalized-alpha"])
+def test_a_cable_whose_points_meet_is_named(integrator):
+    """A pull far beyond Euler's load folds the beam until the cable's end meets its guide."""
+    sim = sinew.load(
+        {
+            "sinew": 1,
+            "integrator": integrator,
+            "bodies": {
+                "beam": {
+                    "type": "fem",
+                    "density": 1000.0,
+                    "mesh": {"shape": "block", "length": 0.1, "width": 0.01, "height": 0.01, "element_size": 0.005},
+                    "material": {"young_modulus": 1e5, "poisson_ratio": 0.4},
+                    "damping": {"stiffness": 0.01},
+                    "fixed": [{"set": "x_min"}],
+                }
+            },
+            "actuators": {
+                "pull": {
+                    "type": "cable",
+                    "body": "beam",
+                    "points": [[0.0, 0.005, 0.006], [0.05, 0.005, 0.006], [0.1, 0.005, 0.006]],
+                    "command": {"tension": {"ramp": {"to": 1.0, "duration": 0.3}}},
+                }
+            },
+        }
+    )
+    with pytest.raises(sinew.RunError, match=r"piece 2 of cable 'pull' is down to .* mm: where its points meet"):
+        sim.step(100)

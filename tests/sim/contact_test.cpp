@@ -9,6 +9,7 @@
 #include "sinew/constraint/cable.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/fem/fem_body_model.hpp"
+#include "sinew/qp/cone_solver.hpp"
 
 #include "contact_robots.hpp"
 #include "support/allocation_guard.hpp"

@@ -12,7 +12,8 @@ mm (tip) from the axis; two opposite or all four of them ramped to 2 N each in 1
 hexahedra of 6.5 mm. Damping is not in the source: stiffness damping of 10 ms is taken. The source reports a nearly
 linear relation of force and contraction, and oscillation under gravity; without tabulated numbers nothing is scored. A
 perfect arm pressed along its axis stays straight in theory and buckles with what breaks its symmetry, here rounding:
-straight means that the tip stands aside by less than 0.1 mm."""
+straight means that the tip stands aside by less than 0.1 mm. The soft tip folds until the last two points of a cable
+meet, where the cable's pull would turn round: there the run ends with an error that says so."""
 SOURCES = {"published": "the multi-flexible-body simulation of this arm"}
 COST = 8
 PAIRS = {"two cables": ("east", "west"), "four cables": ("east", "north", "west", "south")}
@@ -35,12 +36,18 @@ def run(case):
             start = sim.effector("tip").position[2]
             forces, shorter, straight = [0.0], [0.0], 0
             for _ in range(100):
-                sim.step()
+                try:
+                    sim.step()
+                except sinew.RunError as error:
+                    if "its points meet" not in str(error):
+                        raise
+                    break
                 if 1e3 * np.hypot(*np.array(sim.effector("tip").position)[:2]) < 0.1:
                     straight = len(forces)
                 forces.append(len(cables) * sim.actuator(cables[0]).tension)
                 shorter.append(1e3 * (start - sim.effector("tip").position[2]))
-            case.report(f"{name}, {told}: contraction at 2 N each", shorter[-1], unit="mm", source="published")
+            case.report(f"{name}, {told}: ends at a tension of", forces[-1] / len(cables), unit="N", source="published")
+            case.report(f"{name}, {told}: contraction at the end", shorter[-1], unit="mm", source="published")
             part = slice(0, straight + 1)
             line = np.polyval(np.polyfit(forces[part], shorter[part], 1), forces[part])
             share = 1 - np.var(np.array(shorter[part]) - line) / np.var(shorter[part])

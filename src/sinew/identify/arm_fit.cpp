@@ -7,16 +7,12 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/identify/refuse.hpp"
 #include "sinew/identify/statistics.hpp"
 
 namespace sinew::identify {
 
 namespace {
-
-[[noreturn]] void refuse(ErrorKind kind, const std::string& item, std::string message,
-                         std::string remedy) {
-  throw Error(kind, {.item = item}, std::move(message), std::move(remedy));
-}
 
 Parameter spread_about(std::string name, double value, double spread, const char* unit,
                        const char* setting) {

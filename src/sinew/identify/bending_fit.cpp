@@ -92,7 +92,7 @@ PlanePoints simulate_tip(const BendingParameters& parameters, const TipRecord& r
   return tip;
 }
 
-struct Residuals {
+struct BendingResiduals {
   const Form* form;
   std::span<const TipRecord> records;
   const BendingFitSettings* settings;
@@ -206,7 +206,7 @@ BendingFit fit_bending(const BendingParameters& parameters, std::span<const TipR
   std::size_t rows = 0;
   for (const TipRecord& record : records) rows += static_cast<std::size_t>(record.tip.size());
   const BoundedResult solution = solve_bounded_by_differences(
-      Residuals{&form, records, &settings, scales, parameters.length}, rows, values,
+      BendingResiduals{&form, records, &settings, scales, parameters.length}, rows, values,
       {.max_iterations = 200, .function_tolerance = 1e-12});
   if (!solution.usable) {
     throw Error(ErrorKind::not_converged, {.item = "fit_bending"},

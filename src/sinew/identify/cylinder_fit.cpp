@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/identify/refuse.hpp"
 #include "sinew/identify/statistics.hpp"
 #include "sinew/linalg/dense.hpp"
 
@@ -18,11 +19,6 @@ using Eigen::Index;
 using pcc::DriveCylinder;
 
 constexpr Index kOrder = 2;
-
-[[noreturn]] void refuse(ErrorKind kind, const std::string& item, std::string message,
-                         std::string remedy) {
-  throw Error(kind, {.item = item}, std::move(message), std::move(remedy));
-}
 
 void check(std::span<const DriveRecord> records, int least) {
   if (records.empty()) {

@@ -11,6 +11,7 @@
 #include "sinew/core/random.hpp"
 #include "sinew/core/types.hpp"
 #include "sinew/identify/bounded_least_squares.hpp"
+#include "sinew/identify/refuse.hpp"
 #include "sinew/identify/statistics.hpp"
 #include "sinew/linalg/dense.hpp"
 
@@ -20,11 +21,6 @@ namespace {
 
 /// A singular value that is rounding, of the largest.
 constexpr double kVanishing = 1e-7;
-
-[[noreturn]] void refuse(ErrorKind kind, const std::string& item, std::string message,
-                         std::string remedy) {
-  throw Error(kind, {.item = item}, std::move(message), std::move(remedy));
-}
 
 double scale_of(const Parameter& p) {
   if (p.scale > 0.0) return p.scale;
@@ -152,7 +148,7 @@ struct Problem {
   }
 };
 
-struct Attempt {
+struct Descent {
   VectorX values;
   double cost = kInfinity;
   int iterations = 0;
@@ -191,9 +187,9 @@ bool at_bound(const Parameter& p, double value, double scale) {
 /// against which the cost's gradient pushes are held there, the others go on alone, and those held
 /// are let go when the gradient turns (active sets; Nocedal & Wright, Numerical Optimization,
 /// 2006, 16.5).
-Attempt solve(Problem& problem, const VectorX& start, const ParameterFitSettings& settings) {
+Descent solve(Problem& problem, const VectorX& start, const ParameterFitSettings& settings) {
   constexpr int kRound = 20;
-  Attempt attempt;
+  Descent attempt;
   problem.base = start;
   problem.moving = problem.free;
   if (!problem.evaluate(start, false)) return attempt;
@@ -350,10 +346,10 @@ ParameterFit fit_parameters(const Model& model, const VectorX& measured,
   ParameterFit fit;
   fit.start_cost = problem.evaluate(problem.starts(), false) ? problem.cost() : kInfinity;
   Random random(settings.seed);
-  Attempt best;
+  Descent best;
   for (int k = 0; k < settings.starts; ++k) {
     const VectorX start = k == 0 ? problem.starts() : random_start(problem, random);
-    const Attempt found = solve(problem, start, settings);
+    const Descent found = solve(problem, start, settings);
     fit.costs.push_back(found.cost);
     if (found.cost < best.cost) {
       best = found;

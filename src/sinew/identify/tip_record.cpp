@@ -14,14 +14,14 @@ namespace sinew::identify {
 
 namespace {
 
-struct Column {
+struct TipColumn {
   Eigen::Index index = -1;
   double unit = 1.0;
 };
 
 /// The first column whose first word is one of `words`.
-Column find_column(const Table& table, std::initializer_list<std::string_view> words,
-                   Dimension dimension, const char* example, bool needed) {
+TipColumn find_column(const Table& table, std::initializer_list<std::string_view> words,
+                      Dimension dimension, const char* example, bool needed) {
   for (std::size_t i = 0; i < table.names.size(); ++i) {
     const std::string name = plain_name(table.names[i]);
     const std::string_view first = std::string_view(name).substr(0, name.find_first_of(" [("));
@@ -72,10 +72,10 @@ void check(const TipRecord& record) {
 
 TipRecord parse_tip_record(std::string_view bytes, const std::string& name) {
   const Table table = parse_csv(bytes, name);
-  const Column time = find_column(table, {"time", "t"}, dimension::kTime, "time_s", true);
-  const Column x = find_column(table, {"x"}, dimension::kLength, "x_m", true);
-  const Column y = find_column(table, {"y", "z"}, dimension::kLength, "y_m", true);
-  const Column pressure =
+  const TipColumn time = find_column(table, {"time", "t"}, dimension::kTime, "time_s", true);
+  const TipColumn x = find_column(table, {"x"}, dimension::kLength, "x_m", true);
+  const TipColumn y = find_column(table, {"y", "z"}, dimension::kLength, "y_m", true);
+  const TipColumn pressure =
       find_column(table, {"pressure", "p"}, dimension::kPressure, "pressure_kPa", false);
   TipRecord record;
   record.name = std::filesystem::path(name).stem().string();

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "sinew/linalg/index.hpp"
+
 namespace sinew::linalg {
 
 namespace {
@@ -15,8 +17,6 @@ constexpr double kVanishing = 1e-14;
 constexpr int kScalings = 3;
 /// So many neighbours, and so many times the median's, are too many for a level.
 constexpr std::size_t kFull = 64, kFullOverMedian = 8;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 

@@ -2,6 +2,7 @@
 /// Numbers of block rows and columns, and their use as places in arrays.
 #pragma once
 
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 
@@ -9,6 +10,9 @@ namespace sinew::linalg {
 
 using Index = std::int32_t;
 
-constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+template <std::integral T>
+constexpr std::size_t at(T i) {
+  return static_cast<std::size_t>(i);
+}
 
 }  // namespace sinew::linalg

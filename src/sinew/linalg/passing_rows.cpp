@@ -2,14 +2,15 @@
 
 #include <algorithm>
 
+#include "sinew/linalg/index.hpp"
+
 namespace sinew::linalg {
 
 namespace {
 
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
-constexpr int kOverrun = 8;  // that kernels may touch behind the last row
+constexpr int kRowOverrun = 8;  // that kernels may touch behind the last row
 
-std::int32_t leading_of(std::int32_t groups) { return (3 * groups + kOverrun + 7) / 8 * 8; }
+std::int32_t leading_of(std::int32_t groups) { return (3 * groups + kRowOverrun + 7) / 8 * 8; }
 
 }  // namespace
 
@@ -43,9 +44,9 @@ PassingRows::PassingRows(const BlockSymbolic& symbolic, const BorderPattern& row
   }
   const auto most = static_cast<std::int32_t>(groups_);
   const std::int64_t columns = std::max({symbolic.max_width, 3 * most, 3 * symbolic.border_nodes});
-  values_ = AlignedBuffer(at(doubles) + kOverrun);
-  product_ = AlignedBuffer(at(leading_of(most) * columns) + kOverrun);
-  signed_ = AlignedBuffer(at(signs) + kOverrun);
+  values_ = AlignedBuffer(at(doubles) + kRowOverrun);
+  product_ = AlignedBuffer(at(leading_of(most) * columns) + kRowOverrun);
+  signed_ = AlignedBuffer(at(signs) + kRowOverrun);
   compliance_.setZero(3 * most, 3 * most);
   coupling_.setZero(3 * most, 3 * symbolic.border_nodes);
 }

@@ -4,25 +4,14 @@
 #pragma once
 
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "sinew/sim/law.hpp"
+#include "sinew/sim/newton_status.hpp"
 #include "sinew/sim/stages.hpp"
 #include "sinew/sim/world.hpp"
 
 namespace sinew::sim {
-
-enum class NewtonStatus {
-  converged,
-  iteration_limit,  ///< settings.max_iterations reached
-  stalled,          ///< no step length lessens the residual
-  inverted,         ///< even a short step would turn an element inside out
-  singular,         ///< A cannot be factorised
-  law_failed,       ///< no efforts could be found
-};
-/// "converged", "iteration-limit", ...
-std::string_view newton_status_name(NewtonStatus status);
 
 /// What an iteration may leave for the next step although the residual is above its tolerance. A
 /// full iteration with the derivative leaves a move of second order in its own: about this one

@@ -11,6 +11,8 @@
 #include "sinew/core/error.hpp"
 #include "sinew/core/state_hash.hpp"
 #include "sinew/mechanics/body.hpp"
+#include "sinew/sim/newton.hpp"
+#include "sinew/sim/step_laws.hpp"
 
 namespace sinew::sim {
 
@@ -25,10 +27,7 @@ Simulation::Simulation(std::shared_ptr<const Model> model, int threads)
     : model_(std::move(model)),
       pool_(std::make_unique<ThreadPool>(threads)),
       world_(model_, *pool_),
-      direct_(static_cast<int>(model_->range_count())),
-      contact_(*model_),
-      driven_(model_->rows().rows(), static_cast<int>(model_->range_count())),
-      friction_(*model_),
+      laws_(std::make_unique<StepLaws>(*model_)),
       actuators_(model_->actuators().size()),
       ranges_(model_->range_count()),
       effort_(static_cast<std::size_t>(model_->rows().rows()), 0.0),
@@ -71,16 +70,6 @@ std::span<double> Simulation::drive_numbers(std::size_t actuator) {
   return std::span(drive_state_)
       .subspan(static_cast<std::size_t>(model_->actuators()[actuator].first_state),
                drive_state(static_cast<int>(actuator)).size());
-}
-
-Law& Simulation::complete(Law* controller) {
-  const bool driven = std::ranges::any_of(ranges_, DrivenLaw::takes);
-  Law& direct = model_->contacts().empty() ? static_cast<Law&>(direct_) : contact_;
-  Law& chooser = controller != nullptr ? *controller : direct;
-  Law& inner = driven ? driven_.around(chooser) : chooser;
-  if (model_->guides().empty()) return inner;
-  return controller == nullptr ? friction_.around(inner, nullptr)
-                               : friction_.around(direct, &inner);
 }
 
 // After finish_step(): where each drive stands, whoever chose its effort.
@@ -267,8 +256,8 @@ double Simulation::substep(double end, double time_step) {
   world_.begin_step(end - time_step, end, effort_);
   solve_equation(time_step);
   if (!model_->contacts().empty()) {
-    report_.contact_residual = contact_.result().residual;
-    report_.contact_sweeps = contact_.result().sweeps;
+    report_.contact_residual = laws_->contact_result().residual;
+    report_.contact_sweeps = laws_->contact_result().sweeps;
   }
   const double error = world_.end_step(step_weights(time_step));
   // A gap that closes stops its point at once. A multistep formula that reaches back over such a
@@ -356,8 +345,7 @@ void Simulation::attach(Law& law, std::span<const int> actuators) {
 void Simulation::detach(const Law& law) {
   if (law_ != &law) return;
   law_ = nullptr;
-  direct_.reset();
-  contact_.reset();
+  laws_->reset();
   for (ActuatorState& state : actuators_) {
     if (state.owner != &law) continue;
     state.owner = nullptr;
@@ -448,8 +436,7 @@ void Simulation::load_state(std::span<const double> state, std::int64_t steps) {
   substep_ = rest[2];
   ledger_.read(rest.subspan(3, Ledger::kSize));
   steps_ = steps;
-  direct_.reset();
-  contact_.reset();
+  laws_->reset();
   if (law_ != nullptr) law_->reset();
 }
 
@@ -472,8 +459,7 @@ void Simulation::reset() {
   step_before_ = substep_ = 0.0;
   steps_ = 0;
   finish_step();
-  direct_.reset();
-  contact_.reset();
+  laws_->reset();
   if (law_ != nullptr) law_->reset();
   report_ = {};
 }

@@ -6,22 +6,27 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "sinew/fem/fem_body.hpp"
-#include "sinew/sim/contact_law.hpp"
 #include "sinew/sim/contact_state.hpp"
-#include "sinew/sim/direct_law.hpp"
-#include "sinew/sim/driven_law.hpp"
-#include "sinew/sim/friction_law.hpp"
-#include "sinew/sim/newton.hpp"
+#include "sinew/sim/newton_status.hpp"
 #include "sinew/sim/stages.hpp"
 #include "sinew/sim/static_settings.hpp"
 #include "sinew/sim/step_status.hpp"
 #include "sinew/sim/world.hpp"
 
+namespace sinew::qp {
+struct ConeResult;
+}
+
 namespace sinew::sim {
+
+struct NewtonReport;
+struct NewtonSettings;
+class StepLaws;
 
 /// J; gravity's from the height at rest.
 struct Energies {
@@ -144,7 +149,7 @@ class Simulation {
   /// The points and where the surface stands.
   ContactMoment contact_moment(int index) const;
   /// How the contacts' forces were last found.
-  const qp::ConeResult& contact_result() const { return contact_.result(); }
+  const qp::ConeResult& contact_result() const;
 
   /// Gives a law the actuators that it chooses efforts for; it replaces the direct law in every
   /// step until it is detached. One law at a time. Throws Error(actuator-owned), and
@@ -176,9 +181,6 @@ class Simulation {
  private:
   void read_ranges(double time, double time_step);
   std::span<double> drive_numbers(std::size_t actuator);
-  /// The direct law, or a controller's in its place, with what stands between it and the step's
-  /// equation: drives, friction of cables.
-  Law& complete(Law* controller);
   void advance_drives();
   mechanics::StepWeights step_weights(double time_step) const;
   double substep(double end, double time_step);
@@ -219,10 +221,7 @@ class Simulation {
   std::shared_ptr<const Model> model_;
   std::unique_ptr<ThreadPool> pool_;
   World world_;
-  DirectLaw direct_;
-  ContactLaw contact_;
-  DrivenLaw driven_;
-  FrictionLaw friction_;
+  std::unique_ptr<StepLaws> laws_;
   Law* law_ = nullptr;
   std::vector<ActuatorState> actuators_;
   std::vector<ActuatorRange> ranges_;

@@ -6,6 +6,7 @@
 #include "sinew/constraint/contact.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/sim/simulation.hpp"
+#include "sinew/sim/step_laws.hpp"
 
 namespace sinew::sim {
 
@@ -57,7 +58,7 @@ ContactSum Simulation::contact_sum(int index) const {
 }
 
 void Simulation::fail_contacts() {
-  const qp::ConeResult& result = contact_.result();
+  const qp::ConeResult& result = laws_->contact_result();
   const std::size_t points = result.states.size();
   fail(
       ErrorKind::not_converged,
@@ -88,5 +89,7 @@ void Simulation::count_contact_work() {
     }
   }
 }
+
+const qp::ConeResult& Simulation::contact_result() const { return laws_->contact_result(); }
 
 }  // namespace sinew::sim

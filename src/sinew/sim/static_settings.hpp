@@ -2,7 +2,7 @@
 /// What solve_static() takes and says.
 #pragma once
 
-#include "sinew/sim/newton.hpp"
+#include "sinew/sim/newton_status.hpp"
 
 namespace sinew::sim {
 

@@ -8,6 +8,7 @@
 #include "sinew/core/error.hpp"
 #include "sinew/core/types.hpp"
 #include "sinew/sim/load_steps.hpp"
+#include "sinew/sim/step_laws.hpp"
 
 namespace sinew::sim {
 
@@ -73,8 +74,7 @@ void StaticSolver::read_goal() {
     range.motion_max = kInfinity;
   }
   goal_ = sim_.ranges_;
-  sim_.direct_.reset();
-  sim_.contact_.reset();
+  sim_.laws_->reset();
 }
 
 LawProblem StaticSolver::problem() const {
@@ -90,8 +90,8 @@ NewtonReport StaticSolver::solve(const mechanics::StepWeights& weights, double t
   sim_.world_.begin_step(sim_.time(), sim_.time(), sim_.effort_);
   const NewtonSettings newton{request(weights), tolerance, tolerance, max_iterations,
                               sim_.model_->curved_constraints()};
-  const NewtonReport result = solve_newton(sim_.world_, sim_.complete(nullptr), problem(),
-                                           sim_.effort_, newton, sim_.clock_);
+  const NewtonReport result = solve_newton(sim_.world_, sim_.laws_->complete(nullptr, sim_.ranges_),
+                                           problem(), sim_.effort_, newton, sim_.clock_);
   report_.iterations += result.iterations;
   return result;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "sinew/sim/newton.hpp"
 #include "sinew/sim/simulation.hpp"
 #include "sinew/sim/stability.hpp"
 

@@ -6,9 +6,12 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/sim/driven_law.hpp"
+#include "sinew/sim/folded_cable.hpp"
 #include "sinew/sim/load_steps.hpp"
+#include "sinew/sim/newton.hpp"
 #include "sinew/sim/simulation.hpp"
 #include "sinew/sim/solve_law.hpp"
+#include "sinew/sim/step_laws.hpp"
 
 namespace sinew::sim {
 
@@ -61,7 +64,7 @@ NewtonSettings Simulation::settings_of_part(double time_step) const {
 }
 
 void Simulation::solve_equation(double time_step) {
-  Law& law = complete(law_);
+  Law& law = laws_->complete(law_, ranges_);
   const LawProblem problem = world_.law_problem(ranges_, now_, time_step);
   if (model_->step().method == Method::newton) {
     step_newton(law, problem);
@@ -188,10 +191,13 @@ void Simulation::step_newton(Law& law, const LawProblem& problem) {
                       result.law != LawStatus::failed;
   if (converged() || usable) return;
   if (result.status == NewtonStatus::law_failed) fail_law();
+  const std::string folded = describe_folded_cable(*this);
   fail(ErrorKind::not_converged,
-       fmt::format("Newton ended as '{}' after {} iterations, relative residual {:.3g}",
-                   newton_status_name(result.status), result.iterations, result.relative_residual),
-       "take a smaller time step, or change commands more slowly");
+       fmt::format("Newton ended as '{}' after {} iterations, relative residual {:.3g}{}",
+                   newton_status_name(result.status), result.iterations, result.relative_residual,
+                   folded),
+       folded.empty() ? "take a smaller time step, or change commands more slowly"
+                      : "lessen its tension, or place its points so that they stay apart");
 }
 
 // Of the way from where actuators were to what they are told.
