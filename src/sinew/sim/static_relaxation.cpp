@@ -79,7 +79,7 @@ double StaticSolver::mass_along(const VectorX& direction) {
 }
 
 StaticSolver::Departure StaticSolver::leave(const Stability& stability, double disturbance) {
-  const VectorX mode = stability.mode();
+  const VectorX& mode = stability.mode();
   const double curvature = stability.curvature();
   if (mode.size() == 0) return Departure::failed;
   World& world = sim_.world_;

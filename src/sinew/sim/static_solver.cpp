@@ -148,7 +148,7 @@ std::string StaticSolver::describe(double share) {
   if (sim_.world_.condense() == linalg::FactorStatus::singular) {
     return "the exact tangent of the last equilibrium on the way is singular";
   }
-  const std::string limit = describe_limit_point();
+  std::string limit = describe_limit_point();
   if (!limit.empty() || share == 1.0) return limit;
   const int negative = Stability(sim_.world_, problem(), sim_.effort_).negative_pivots();
   const double percent = 100.0 * (1.0 - share);
