@@ -48,21 +48,22 @@ if(SINEW_PCH)
   endif()
 endif()
 
-# sinew_build_library(<target> <level>), sinew_build_test(<target>): a level, and the precompiled header for it.
-function(sinew_build_library target level)
+# Of a target: its level, so many sources at once, and the target whose precompiled header it reads.
+function(_sinew_build target level count precompiled)
   sinew_optimise(${target} ${level})
-  sinew_unite(${target} 5)
+  sinew_unite(${target} ${count})
   if(SINEW_PCH)
-    target_precompile_headers(${target} REUSE_FROM sinew_precompiled_${level})
+    target_precompile_headers(${target} REUSE_FROM ${precompiled})
   endif()
 endfunction()
 
+# sinew_build_library(<target> <level>), sinew_build_test(<target>): a level, and the precompiled header for it.
+function(sinew_build_library target level)
+  _sinew_build(${target} ${level} 5 sinew_precompiled_${level})
+endfunction()
+
 function(sinew_build_test target)
-  sinew_optimise(${target} 1)
-  sinew_unite(${target} 3)
-  if(SINEW_PCH)
-    target_precompile_headers(${target} REUSE_FROM sinew_precompiled_test)
-  endif()
+  _sinew_build(${target} 1 3 sinew_precompiled_test)
 endfunction()
 
 # sinew_build_consumer(<target> <header>...): level 2, and a precompiled header of its own.

@@ -20,9 +20,9 @@ constexpr double kActive = 1e-9;
 // Part of W's diagonal that makes the regularisation definite.
 constexpr double kEvenly = 1e-6;
 // At rest nothing moves by more than this part of the tolerance in a step, so that what still
-// creeps towards an optimum goes less than a hundredth of the tolerance in fifty steps; and forces
-// balance to that part of their size.
+// creeps towards an optimum goes less than a hundredth of the tolerance in fifty steps.
 constexpr double kStill = 2e-4;
+// And forces balance to this part of their size.
 constexpr double kBalanced = 1e-3;
 // A limit holds effectors back where it resists this part of what the gap could pull with.
 constexpr double kHolds = 1e-3;

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <numeric>
 
+#include "sinew/linalg/dense_kernels.hpp"
 #include "sinew/linalg/index.hpp"
 #include "sinew/linalg/row_spread.hpp"
 
@@ -17,7 +18,6 @@ namespace {
 /// stay in the second cache.
 constexpr int kWindows = 12;
 constexpr int kRowBlock = 8 * kWindows;
-constexpr int kOverrun = 8;
 
 void place_straight(const double* block, double* to, long leading) {
   for (int c = 0; c < 3; ++c) std::memcpy(to + c * leading, block + 4 * c, 3 * sizeof(double));

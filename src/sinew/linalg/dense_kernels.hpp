@@ -6,6 +6,9 @@
 
 namespace sinew::linalg {
 
+/// Numbers behind the last row that kernels may touch.
+inline constexpr int kOverrun = 8;
+
 /// Two operands A (rows, depth) and B (columns, depth) of a product A B^T.
 struct Product {
   const double* a;

@@ -2,15 +2,14 @@
 
 #include <algorithm>
 
+#include "sinew/linalg/dense_kernels.hpp"
 #include "sinew/linalg/index.hpp"
 
 namespace sinew::linalg {
 
 namespace {
 
-constexpr int kRowOverrun = 8;  // that kernels may touch behind the last row
-
-std::int32_t leading_of(std::int32_t groups) { return (3 * groups + kRowOverrun + 7) / 8 * 8; }
+std::int32_t leading_of(std::int32_t groups) { return (3 * groups + kOverrun + 7) / 8 * 8; }
 
 }  // namespace
 
@@ -44,9 +43,9 @@ PassingRows::PassingRows(const BlockSymbolic& symbolic, const BorderPattern& row
   }
   const auto most = static_cast<std::int32_t>(groups_);
   const std::int64_t columns = std::max({symbolic.max_width, 3 * most, 3 * symbolic.border_nodes});
-  values_ = AlignedBuffer(at(doubles) + kRowOverrun);
-  product_ = AlignedBuffer(at(leading_of(most) * columns) + kRowOverrun);
-  signed_ = AlignedBuffer(at(signs) + kRowOverrun);
+  values_ = AlignedBuffer(at(doubles) + kOverrun);
+  product_ = AlignedBuffer(at(leading_of(most) * columns) + kOverrun);
+  signed_ = AlignedBuffer(at(signs) + kOverrun);
   compliance_.setZero(3 * most, 3 * most);
   coupling_.setZero(3 * most, 3 * symbolic.border_nodes);
 }

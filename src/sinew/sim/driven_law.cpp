@@ -11,8 +11,8 @@ namespace sinew::sim {
 namespace {
 
 constexpr int kMostDrivenRounds = 60;
-constexpr double kDrivenTolerance =
-    1e-13;  // of the effort and of what the robot's compliance allows
+// Of the effort and of what the robot's compliance allows.
+constexpr double kDrivenTolerance = 1e-13;
 // Each row that is taken out leaves a rounding of the others' own compliance behind.
 constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
 
