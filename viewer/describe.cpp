@@ -303,6 +303,20 @@ std::vector<SignalInfo> list_signals(const sim::Model& model) {
   return list;
 }
 
+namespace {
+
+// (rows,) efforts without those of contacts.
+std::vector<double> actuator_efforts(const sim::Simulation& simulation) {
+  std::vector<double> efforts(simulation.efforts().begin(), simulation.efforts().end());
+  for (std::size_t i = 0; i < simulation.model().contacts().size(); ++i) {
+    const constraint::Contact& contact = simulation.model().contact(static_cast<int>(i));
+    std::fill_n(efforts.begin() + contact.first_row(), contact.row_count(), 0.0);
+  }
+  return efforts;
+}
+
+}  // namespace
+
 const std::vector<FieldInfo>& list_fields() {
   static const std::vector<FieldInfo> list = [] {
     std::vector<FieldInfo> all = {
@@ -329,7 +343,7 @@ const std::vector<FieldInfo>& list_fields() {
     }
     add({"actuator_force", "Actuators' force", "N", "force of the actuators on each node", {}},
         [](const fem::FemBody& body, const sim::Simulation& simulation, const fem::NodalMean&) {
-          return fem::row_force_field(body, simulation.efforts());
+          return fem::row_force_field(body, actuator_efforts(simulation));
         });
     return all;
   }();

@@ -228,12 +228,9 @@ void RobotState::set_target(const SetTarget& target) {
   targets_[target.effector] = *target.position;
 }
 
-// The layout is that of sim::Simulation::save_state(): bodies, whose states begin with where they
-// are, efforts of all rows, drives, and two motions an actuator.
 void RobotState::show(const RecordedState& recorded) {
-  std::vector<double> state(simulation_->state_size(), 0.0);
+  sim::State state = simulation_->state();
   const sim::Model& model = simulation_->model();
-  auto at = state.begin();
   for (std::size_t b = 0; b < recorded.positions.size(); ++b) {
     const mechanics::Body& body = simulation_->world().body(static_cast<int>(b));
     const bool arm = dynamic_cast<const pcc::ArmBody*>(&body) != nullptr;
@@ -248,18 +245,15 @@ void RobotState::show(const RecordedState& recorded) {
                   fmt::format("{} numbers are recorded, its scene has {}", count, wanted),
                   "record the run again with this version");
     }
-    std::copy_n(from, count, at);
-    at += static_cast<std::ptrdiff_t>(body.state_size());
+    std::ranges::fill(state.bodies[b], 0.0);  // only where it is was recorded
+    std::copy_n(from, count, state.bodies[b].begin());
   }
   for (std::size_t i = 0; i < model.actuators().size(); ++i) {
-    at[model.actuators()[i].row] = recorded.efforts[i];
+    state.efforts[static_cast<std::size_t>(model.actuators()[i].row)] = recorded.efforts[i];
   }
-  at += model.rows().rows() + model.drive_states();
-  for (const double motion : recorded.motions) {
-    *at++ = motion;
-    *at++ = motion;
-  }
-  at[0] = 1.0;  // the volumes are not recorded
+  state.motions = state.setpoints = recorded.motions;
+  state.volume_ratio = 1.0;  // not recorded
+  state.steps = recorded.step;
   for (std::size_t c = 0; c < recorded.contacts.size(); ++c) {
     const constraint::Contact& contact = model.contact(static_cast<int>(c));
     if (recorded.contacts[c].points.size() != contact.points().size()) {
@@ -270,7 +264,7 @@ void RobotState::show(const RecordedState& recorded) {
     }
   }
   recorded_contacts_ = recorded.contacts;
-  simulation_->load_state(state, recorded.step);
+  simulation_->restore(state);
   ++shape_;
 }
 

@@ -90,26 +90,26 @@ void bind_static_report(py::module_& module) {
 }
 
 void bind_linearisation(py::module_& module) {
-  py::class_<Linearisation>(
+  py::class_<sim::Linearisation>(
       module, "Linearisation",
       "delta = delta_free + W @ effort: how the rows' motions follow from their efforts near one "
       "state. Rows are actuators, then effectors' directions, as named in `rows`.")
-      .def_readonly("rows", &Linearisation::rows, "list of str: what every row belongs to.")
+      .def_readonly("rows", &sim::Linearisation::rows, "list of str: what every row belongs to.")
       .def_property_readonly(
-          "W", [](const Linearisation& self) { return copy(self.compliance); },
+          "W", [](const sim::Linearisation& self) { return copy(self.compliance); },
           "(rows, rows) ndarray: compliance, m/N (rad/N in rows of orientations). Symmetric.")
       .def_property_readonly(
-          "delta", [](const Linearisation& self) { return copy(self.delta); },
+          "delta", [](const sim::Linearisation& self) { return copy(self.delta); },
           "(rows,) ndarray: the rows' motions now: pull of a cable, coordinate of an effector (m).")
       .def_property_readonly(
-          "delta_free", [](const Linearisation& self) { return copy(self.delta_free); },
+          "delta_free", [](const sim::Linearisation& self) { return copy(self.delta_free); },
           "(rows,) ndarray: the motions without any effort, as the linearisation sees it (m).")
       .def_property_readonly(
-          "effort", [](const Linearisation& self) { return copy(self.effort); },
+          "effort", [](const sim::Linearisation& self) { return copy(self.effort); },
           "(rows,) ndarray: efforts now (N); 0 for effectors.")
-      .def_readonly("residual", &Linearisation::residual,
+      .def_readonly("residual", &sim::Linearisation::residual,
                     "float: norm of the imbalance of forces at this state (N).")
-      .def_readonly("negative_pivots", &Linearisation::negative_pivots,
+      .def_readonly("negative_pivots", &sim::Linearisation::negative_pivots,
                     "int: negative eigenvalues of the matrix; 0 where the equilibrium is stable.");
 }
 

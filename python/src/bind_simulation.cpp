@@ -110,7 +110,7 @@ py::dict all_bodies(const std::shared_ptr<Session>& self) {
   return result;
 }
 
-LinearisationChoice choice(const std::string& tangent, bool geometric_stiffness, bool statics) {
+sim::LinearisationChoice choice(const std::string& tangent, bool geometric_stiffness, bool statics) {
   if (tangent != "exact" && tangent != "real-time") {
     throw Error(ErrorKind::unknown_choice, {.item = "linearise(tangent)"},
                 fmt::format("there is no tangent '{}'", tangent), "use 'exact' or 'real-time'");
@@ -514,9 +514,10 @@ str
 }
 
 void bind_linearisation(Type& type) {
-  type.def_property_readonly("rows", &Session::row_names,
-                             "list of str: the rows of H and W: actuators by name, effectors as "
-                             "'tip.x', in the scene's order.")
+  type.def_property_readonly(
+          "rows", [](const Session& self) { return sim::row_names(self.model()); },
+          "list of str: the rows of H and W in the scene's order: actuators by name, effectors as "
+          "'tip.x', contacts as 'floor point 3 normal'.")
       .def(
           "linearise",
           [](Session& self, const std::string& tangent, bool geometric_stiffness, bool statics) {

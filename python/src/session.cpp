@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 #include <pybind11/pybind11.h>
 
-#include "sinew/constraint/effector.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/sim/state_io.hpp"
 
@@ -28,34 +27,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr auto kSignalInterval = std::chrono::milliseconds(50);
 
-std::string direction_name(const Vector3& direction, int index) {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (direction == Vector3::Unit(axis)) return {'.', "xyz"[axis]};
-  }
-  return fmt::format("[{}]", index);
-}
-
-std::vector<std::string> name_rows(const sim::Model& model) {
-  std::vector<std::string> names(static_cast<std::size_t>(model.rows().rows()));
-  for (const auto& actuator : model.actuators()) {
-    names[static_cast<std::size_t>(actuator.row)] = actuator.name;
-  }
-  for (const auto& guide : model.guides()) {
-    const auto& actuator = model.actuators()[static_cast<std::size_t>(guide.actuator)];
-    names[static_cast<std::size_t>(guide.row)] =
-        fmt::format("{} point {}", actuator.name, guide.via + 1);
-  }
-  for (std::size_t i = 0; i < model.effectors().size(); ++i) {
-    const auto& effector = model.effector(static_cast<int>(i));
-    for (int k = 0; k < effector.row_count(); ++k) {
-      names[static_cast<std::size_t>(effector.first_row() + k)] =
-          model.effectors()[i].name +
-          direction_name(effector.directions()[static_cast<std::size_t>(k)], k);
-    }
-  }
-  return names;
-}
-
 }  // namespace
 
 Session::Use::Use(const Session& session) : session_(session) {
@@ -66,8 +37,7 @@ Session::Use::~Use() { session_.busy_.store(false, std::memory_order_release); }
 
 Session::Session(std::shared_ptr<const LoadedRobot> robot, int threads)
     : robot_(std::move(robot)),
-      simulation_(robot_->robot.model, threads),
-      row_names_(name_rows(*robot_->robot.model)) {
+      simulation_(robot_->robot.model, threads) {
   const auto& controllers = robot_->robot.controllers;
   if (!controllers.empty()) attach(controllers.front().settings, controllers.front().name);
 }
@@ -76,26 +46,10 @@ std::shared_ptr<Session> Session::clone() const {
   const Use use(*this);
   auto other = std::make_shared<Session>(robot_, simulation_.threads());
   if (other->controller_) other->detach(*other->controller_);
-  for (std::size_t i = 0; i < model().actuators().size(); ++i) {
-    const auto index = static_cast<int>(i);
-    other->simulation_.command(index, simulation_.actuator(index).command);
-  }
-  for (std::size_t i = 0; i < model().bodies().size(); ++i) {
-    const auto index = static_cast<int>(i);
-    if (!of_elements(simulation_, index)) continue;
-    const fem::FemBody& body = simulation_.fem_body(index);
-    other->simulation_.fem_body(index).external_forces() = body.external_forces();
-    other->simulation_.fem_body(index).rigid_base().ask(body.rigid_base().asked());
-  }
-  for (std::size_t i = 0; i < model().loads().size(); ++i) {
-    const auto index = static_cast<int>(i);
-    other->simulation_.set_load(index, simulation_.load_factor(index));
-  }
-  std::vector<double> state(simulation_.state_size());
-  simulation_.save_state(state);
-  other->simulation_.load_state(state, simulation_.steps());
-  other->steps_ = simulation_.steps();
+  other->simulation_.set_inputs(simulation_.inputs());
   if (controller_) other->attach(controller_->law->settings(), controller_->name);
+  other->simulation_.restore(simulation_.state());
+  other->steps_ = simulation_.steps();
   return other;
 }
 
@@ -180,34 +134,11 @@ void Session::save_state(const std::filesystem::path& path) const {
   sim::save_state(simulation_, path);
 }
 
-Linearisation Session::linearise(const LinearisationChoice& choice) {
+sim::Linearisation Session::linearise(const sim::LinearisationChoice& choice) {
   const Use use(*this);
   check_loads();
-  const std::vector<int> curved =
-      choice.geometric_stiffness ? model().curved_constraints() : std::vector<int>{};
-  const auto weights = choice.of_statics ? mechanics::StepWeights{}
-                                         : mechanics::step_weights(model().step().integrator,
-                                                                   model().step().time_step);
-  sim::World& world = simulation_.world();
   const pybind11::gil_scoped_release release;
-  world.look_at_all(simulation_.time());
-  world.linearise({weights, choice.tangent, !curved.empty(), false});
-  world.form_rows(simulation_.efforts(), curved);
-  Linearisation result;
-  result.residual = world.residual(simulation_.efforts());
-  if (world.condense() == linalg::FactorStatus::singular) {
-    throw Error(ErrorKind::singular_matrix, {.item = "linearise()"},
-                "the stiffness matrix is singular at this state",
-                "fix a region of every body, or try tangent='real-time'");
-  }
-  result.rows = row_names_;
-  result.compliance = world.compliance();
-  result.delta = world.delta();
-  result.delta_free = world.delta_free();
-  result.effort = Eigen::Map<const VectorX>(simulation_.efforts().data(),
-                                            static_cast<Eigen::Index>(row_names_.size()));
-  result.negative_pivots = world.negative_pivots();
-  return result;
+  return sim::linearise(simulation_, choice);
 }
 
 std::shared_ptr<AttachedController> Session::attach(inverse::InverseSettings settings,

@@ -15,6 +15,7 @@
 
 #include "sinew/inverse/inverse_controller.hpp"
 #include "sinew/scene/build.hpp"
+#include "sinew/sim/linearisation.hpp"
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::python {
@@ -30,24 +31,6 @@ struct AttachedController {
 struct LoadedRobot {
   scene::Robot robot;
   std::filesystem::path folder;
-};
-
-/// W and what belongs to it, at one state.
-struct Linearisation {
-  std::vector<std::string> rows;  ///< names
-  MatrixX compliance;             ///< W (rows, rows), m/N
-  VectorX delta;                  ///< (rows,) m, now
-  VectorX delta_free;       ///< (rows,) m, with all efforts zero, as the linearisation sees it
-  VectorX effort;           ///< (rows,) N, now
-  double residual = 0.0;    ///< N, |p - f + H^T lambda|
-  int negative_pivots = 0;  ///< of A; 0: the equilibrium is stable
-};
-
-/// What linearise() is asked for.
-struct LinearisationChoice {
-  mechanics::Tangent tangent = mechanics::Tangent::exact;
-  bool geometric_stiffness = true;  ///< of all loaded cables
-  bool of_statics = true;           ///< false: of the scene's integrator and time step
 };
 
 /// See the file.
@@ -94,7 +77,7 @@ class Session {
   void load_state(const std::filesystem::path& path);
   void save_state(const std::filesystem::path& path) const;
 
-  Linearisation linearise(const LinearisationChoice& choice);
+  sim::Linearisation linearise(const sim::LinearisationChoice& choice);
 
   /// Null when there is none.
   const std::shared_ptr<AttachedController>& controller() const { return controller_; }
@@ -114,7 +97,6 @@ class Session {
   void count_steps() { steps_ = simulation_.steps(); }
 
   /// "long_0", "tip.x", ...: what every row of H and W belongs to.
-  const std::vector<std::string>& row_names() const { return row_names_; }
 
  private:
   void check_loads() const;
@@ -124,7 +106,6 @@ class Session {
   std::shared_ptr<const LoadedRobot> robot_;
   sim::Simulation simulation_;
   std::shared_ptr<AttachedController> controller_;
-  std::vector<std::string> row_names_;
   struct Flagged {
     std::int64_t steps = 0;
     double first = 0.0;  // s

@@ -39,24 +39,22 @@ class CavityTest : public ::testing::TestWithParam<Kind> {
   }
   /// Moves every node by a smooth field of this size (m).
   void distort(double size) {
-    std::vector<double> state(simulation_.state_size());
-    simulation_.save_state(state);
+    sim::State state = simulation_.state();
     const Points& x = simulation_.fem_body(0).positions();
     for (Eigen::Index i = 0; i < x.rows(); ++i) {
-      state[static_cast<std::size_t>(3 * i)] += size * std::sin(100.0 * x(i, 1) + 40.0 * x(i, 2));
-      state[static_cast<std::size_t>(3 * i + 1)] += size * std::cos(130.0 * x(i, 0));
-      state[static_cast<std::size_t>(3 * i + 2)] += size * std::sin(90.0 * x(i, 0) - x(i, 1));
+      state.bodies[0][static_cast<std::size_t>(3 * i)] += size * std::sin(100.0 * x(i, 1) + 40.0 * x(i, 2));
+      state.bodies[0][static_cast<std::size_t>(3 * i + 1)] += size * std::cos(130.0 * x(i, 0));
+      state.bodies[0][static_cast<std::size_t>(3 * i + 2)] += size * std::sin(90.0 * x(i, 0) - x(i, 1));
     }
-    simulation_.load_state(state, 0);
+    simulation_.restore(state);
   }
   void move(const mechanics::MaterialPoint& point, int axis, double by) {
-    std::vector<double> state(simulation_.state_size());
-    simulation_.save_state(state);
+    sim::State state = simulation_.state();
     const auto& model =
         dynamic_cast<const fem::FemBodyModel&>(*simulation_.model().bodies().front());
     const NodeId node = model.attachment(point.point).nodes.front();
-    state[static_cast<std::size_t>(3 * node + axis)] += by;
-    simulation_.load_state(state, 0);
+    state.bodies[0][static_cast<std::size_t>(3 * node + axis)] += by;
+    simulation_.restore(state);
   }
 
   sim::Simulation simulation_;
@@ -172,12 +170,11 @@ TEST_P(CavityTest, ACapPassesItsForceToTheRim) {
   auto options = options_of(GetParam());
   options.bore = options.cap = true;
   sim::Simulation simulation(chamber(options));
-  std::vector<double> state(simulation.state_size());
-  simulation.save_state(state);
-  for (std::size_t k = 0; k < state.size() / 2; ++k) {
-    state[k] += 2e-4 * std::sin(37.0 * static_cast<double>(k));
+  sim::State state = simulation.state();
+  for (std::size_t k = 0; k < state.bodies[0].size() / 2; ++k) {
+    state.bodies[0][k] += 2e-4 * std::sin(37.0 * static_cast<double>(k));
   }
-  simulation.load_state(state, 0);
+  simulation.restore(state);
   mechanics::RowValues values;
   values.resize(simulation.model().rows());
   simulation.model().cavity(0)->linearise(simulation.world().placement(), values);

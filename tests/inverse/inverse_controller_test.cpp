@@ -121,7 +121,7 @@ TEST(StepDamping, GrowsWhereTheLinearisationMisleadsAndShrinksWhereItHolds) {
   EXPECT_EQ(damping.value(), 8.0);
   damping.review(1.0, 1.0, 1.0, 1e-12);  // at rest: nothing to judge by
   EXPECT_EQ(damping.value(), 8.0);
-  damping.reset();
+  damping.set(1.0);
   EXPECT_EQ(damping.value(), 1.0);
 }
 

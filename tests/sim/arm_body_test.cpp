@@ -208,9 +208,8 @@ TEST(ArmBody, StateGoesOnAsItWas) {
   step.integrator = mechanics::Integrator::generalized_alpha;
   Simulation first(driven(step, MassCentre::arc)), second(first.shared_model());
   for (int i = 0; i < 20; ++i) first.step();
-  std::vector<double> state(first.state_size());
-  first.save_state(state);
-  second.load_state(state, first.steps());
+  State state = first.state();
+  second.restore(state);
   for (int i = 0; i < 20; ++i) {
     first.step();
     second.step();

@@ -141,9 +141,8 @@ TEST(Chamber, SavedStatesHoldTheGas) {
   a.command(0, effort(5e3));
   b.command(0, effort(5e3));
   for (int i = 0; i < 5; ++i) a.step();
-  std::vector<double> state(a.state_size());
-  a.save_state(state);
-  b.load_state(state, a.steps());
+  State state = a.state();
+  b.restore(state);
   for (int i = 0; i < 5; ++i) {
     a.step();
     b.step();

@@ -60,11 +60,10 @@ std::unique_ptr<Simulation> thrown(const Throw& options) {
   wall.nodes = mesh->node_sets.at("z_min");
   builder.add_contact(wall);
   auto simulation = std::make_unique<Simulation>(builder.build());
-  std::vector<double> state(simulation->state_size());
-  simulation->save_state(state);
+  State state = simulation->state();
   const auto size = static_cast<std::size_t>(mesh->nodes.size());
-  for (std::size_t i = 2; i < size; i += 3) state[size + i] = -kSpeed;
-  simulation->load_state(state, 0);
+  for (std::size_t i = 2; i < size; i += 3) state.bodies[0][size + i] = -kSpeed;
+  simulation->restore(state);
   return simulation;
 }
 
@@ -129,15 +128,14 @@ TEST(Impact, SmoothPhasesKeepTheSecondOrder) {
     Throw options{.time_step = time_step, .gap = 0.0};
     const auto bar = thrown(options);
     Simulation& simulation = *bar;
-    std::vector<double> state(simulation.state_size());
-    simulation.save_state(state);
+    State state = simulation.state();
     const auto size = static_cast<std::size_t>(simulation.fem_body(0).positions().size());
     // The lowest vibration of a bar whose end rests: no wave hits the wall.
     const double speed = std::sqrt(kModulus / kDensity);
     for (std::size_t i = 2; i < size; i += 3) {
-      state[size + i] = -kSpeed * std::sin(0.5 * std::numbers::pi * state[i] / kLength);
+      state.bodies[0][size + i] = -kSpeed * std::sin(0.5 * std::numbers::pi * state.bodies[0][i] / kLength);
     }
-    simulation.load_state(state, 0);
+    simulation.restore(state);
     const double eighth = 0.5 * kLength / speed;  // of its period
     const auto steps = std::lround(eighth / time_step);
     for (long k = 0; k < steps; ++k) {

@@ -49,11 +49,10 @@ std::unique_ptr<Simulation> flying(const Flight& flight) {
   }
   builder.add_contact(contact);
   auto simulation = std::make_unique<Simulation>(builder.build());
-  std::vector<double> state(simulation->state_size());
-  simulation->save_state(state);
+  State state = simulation->state();
   const auto size = static_cast<std::size_t>(mesh->nodes.size());
-  for (std::size_t i = 0; i < size; i += 3) state[size + i] = flight.speed;
-  simulation->load_state(state, 0);
+  for (std::size_t i = 0; i < size; i += 3) state.bodies[0][size + i] = flight.speed;
+  simulation->restore(state);
   return simulation;
 }
 
@@ -189,9 +188,8 @@ TEST(Passing, RunsGoOnFromASavedStateBitForBit) {
     const auto whole = flying(own), first = flying(own), second = flying(own);
     for (int k = 0; k < 12; ++k) whole->step();
     for (int k = 0; k < 3; ++k) first->step();
-    std::vector<double> state(first->state_size());
-    first->save_state(state);
-    second->load_state(state, first->steps());
+    State state = first->state();
+    second->restore(state);
     for (int k = 0; k < 9; ++k) second->step();
     EXPECT_EQ(second->state_hash(), whole->state_hash());
     EXPECT_LT(mean_velocity(*whole)[0], 0.99);  // it did touch

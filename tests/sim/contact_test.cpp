@@ -455,9 +455,8 @@ TEST(Contact, RunsGoOnFromASavedStateBitForBit) {
   Simulation whole(model), first(model), second(model);
   for (int k = 0; k < 60; ++k) whole.step();
   for (int k = 0; k < 30; ++k) first.step();
-  std::vector<double> state(first.state_size());
-  first.save_state(state);
-  second.load_state(state, first.steps());
+  State state = first.state();
+  second.restore(state);
   for (int k = 0; k < 30; ++k) second.step();
   EXPECT_EQ(second.state_hash(), whole.state_hash());
   whole.reset();
@@ -556,7 +555,7 @@ TEST(Contact, RefusesWhatItCannotDo) {
   struct Nothing : Law {
     LawStatus solve(const LawProblem&, std::span<double>) override { return LawStatus::solved; }
     double violation(const LawProblem&, std::span<const double>) const override { return 0.0; }
-    void reset() override {}
+    void begin_step() override {}
   } law;
   EXPECT_THROW(simulation.attach(law, {}), Error);
   EXPECT_THROW(simulation.follow_path({}), Error);

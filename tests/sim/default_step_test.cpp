@@ -131,13 +131,12 @@ TEST(DefaultStep, TheWatchOfEnergyGoesWithTheState) {
   const auto model = beam(swinging());
   Simulation run(model), loaded(model);
   for (int k = 0; k < 10; ++k) run.step();
-  std::vector<double> state(run.state_size());
-  run.save_state(state);
+  State state = run.state();
   for (int k = 0; k < 30; ++k) run.step();
   const double gained = run.report().energy_gained;
   EXPECT_LT(gained, 0.0);  // backward Euler damps
   for (Simulation* back : {&loaded, &run}) {
-    back->load_state(state, 10);
+    back->restore(state);
     for (int k = 0; k < 30; ++k) EXPECT_EQ(back->step().status, StepStatus::solved);
     EXPECT_EQ(back->report().energy_gained, gained);
     EXPECT_EQ(back->dissipation(), run.dissipation());
@@ -170,11 +169,9 @@ TEST(DefaultStep, ReusedAssemblyDoesNotChangeABit) {
   Simulation whole(model), halves(model);
   for (Simulation* one : {&whole, &halves}) one->command(0, pull(0.003));
   for (int k = 0; k < 6; ++k) whole.step();
-  std::vector<double> state(halves.state_size());
   for (int k = 0; k < 6; ++k) {
     halves.step();
-    halves.save_state(state);
-    halves.load_state(state, halves.steps());
+    halves.restore(halves.state());
     halves.energies();
   }
   EXPECT_EQ(whole.state_hash(), halves.state_hash());

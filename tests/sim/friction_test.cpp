@@ -169,12 +169,11 @@ TEST(Friction, StateRestoresWithItsFriction) {
   Simulation simulation(model);
   simulation.command(0, tension(3.0));
   simulation.step();
-  std::vector<double> state(simulation.state_size());
-  simulation.save_state(state);
+  State state = simulation.state();
   simulation.command(0, tension(2.0));
   simulation.step();
   Simulation other(model);
-  other.load_state(state, 1);
+  other.restore(state);
   other.command(0, tension(2.0));
   other.step();
   const Points gap = other.fem_body(0).positions() - simulation.fem_body(0).positions();

@@ -95,9 +95,8 @@ TEST(Integrator, SavedStatesGoOnBitForBit) {
   for (const auto integrator : {Integrator::bdf2, Integrator::generalized_alpha}) {
     Simulation a(beam(falling(integrator, 2e-3))), b(beam(falling(integrator, 2e-3)));
     for (int i = 0; i < 20; ++i) a.step();
-    std::vector<double> state(a.state_size());
-    a.save_state(state);
-    b.load_state(state, a.steps());
+    State state = a.state();
+    b.restore(state);
     for (int i = 0; i < 20; ++i) {
       a.step();
       b.step();

@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -18,6 +19,7 @@ namespace sinew::sim {
 namespace {
 
 using sinew::testing::beam;
+using sinew::testing::BeamOptions;
 using sinew::testing::pull;
 
 ErrorKind kind_of(Simulation& simulation, std::string_view bytes) {
@@ -66,7 +68,7 @@ TEST(StateIo, WrongBytesAreRefused) {
   std::string damaged = good;
   damaged[100] = static_cast<char>(damaged[100] ^ 1);
   EXPECT_EQ(kind_of(simulation, damaged), ErrorKind::state_corrupt);
-  sinew::testing::BeamOptions other;
+  BeamOptions other;
   other.cables = 3;
   Simulation smaller(beam(other));
   EXPECT_EQ(kind_of(smaller, good), ErrorKind::state_mismatch);
@@ -75,18 +77,57 @@ TEST(StateIo, WrongBytesAreRefused) {
 TEST(StateIo, NumbersThatAreNotFiniteAreRefused) {
   Simulation simulation(beam());
   std::string bytes = format_state(simulation);
+  const double largest_energy = 0.125;  // a number that stands nowhere else
+  State state = simulation.state();
+  state.ledger.largest = largest_energy;
+  simulation.restore(state);
+  bytes = format_state(simulation);
+  const auto* pattern = reinterpret_cast<const char*>(&largest_energy);
+  const std::size_t at = bytes.find(std::string_view(pattern, 8));
+  ASSERT_NE(at, std::string::npos);
   const double nan = std::nan("");
-  std::memcpy(bytes.data() + 40, &nan, 8);
-  std::vector<double> state(simulation.state_size());
-  std::memcpy(state.data(), bytes.data() + 40, 8 * state.size());
+  std::memcpy(bytes.data() + at, &nan, 8);
   StateHash sum;
-  sum.add(simulation.model().fingerprint());
-  sum.add(std::uint64_t{0});  // steps
-  sum.add(static_cast<std::uint64_t>(state.size()));
-  sum.add(state);
+  for (std::size_t i = 0; i + 8 < bytes.size(); i += 8) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, bytes.data() + i, 8);
+    sum.add(word);
+  }
   const std::uint64_t hash = sum.value();
   std::memcpy(bytes.data() + bytes.size() - 8, &hash, 8);
-  EXPECT_EQ(kind_of(simulation, bytes), ErrorKind::state_corrupt);
+  try {
+    parse_state(simulation, bytes, "test.state");
+    ADD_FAILURE() << "read";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::state_corrupt);
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("not finite"));
+  }
+}
+
+TEST(StateIo, ARefusedStateNamesWhatDiffers) {
+  Simulation simulation(beam());
+  const std::string bytes = format_state(simulation);
+  const auto message = [&](const BeamOptions& options) -> std::string {
+    Simulation other(beam(options));
+    try {
+      parse_state(other, bytes, "test.state");
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::state_mismatch);
+      return error.what();
+    }
+    return "accepted";
+  };
+  BeamOptions same;
+  EXPECT_EQ(message(same), "accepted");
+  BeamOptions stepped;
+  stepped.step.time_step = 0.02;
+  EXPECT_THAT(message(stepped), ::testing::HasSubstr("differs in: time step"));
+  BeamOptions dynamic;
+  dynamic.step.integrator = mechanics::Integrator::bdf2;
+  EXPECT_THAT(message(dynamic), ::testing::HasSubstr("integrator"));
+  BeamOptions fewer;
+  fewer.cables = 1;
+  EXPECT_THAT(message(fewer), ::testing::HasSubstr("(not in this robot)"));
 }
 
 TEST(StateIo, RandomDamageNeverPasses) {
@@ -110,7 +151,7 @@ TEST(StateIo, AHeaderTellsOfAState) {
   EXPECT_EQ(header.version, kStateVersion);
   EXPECT_EQ(header.fingerprint, simulation.model().fingerprint());
   EXPECT_EQ(header.steps, 3);
-  EXPECT_EQ(header.count, simulation.state_size());
+  EXPECT_EQ(header.count, simulation.state().size());
   EXPECT_THROW(read_state_header(bytes.substr(0, 60), "test.state"), Error);
 }
 

@@ -155,7 +155,7 @@ TEST(Statics, StabilityAgreesWithTheDenseTangent) {
     simulation.command(0, held ? sinew::testing::pull(kThrice) : sinew::testing::tension(5e-2));
     const StaticReport report = simulation.solve_static({.stability = StabilityChoice::any});
     World& world = simulation.world();
-    world.look_at_all(0.0);
+    world.begin_query(0.0);
     world.linearise({{}, mechanics::Tangent::exact, true, false});
     world.form_rows(simulation.efforts(), simulation.model().curved_constraints());
     ASSERT_NE(world.condense(), linalg::FactorStatus::singular);

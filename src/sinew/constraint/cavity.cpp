@@ -205,4 +205,8 @@ void Cavity::curve(const Placement& placement, std::span<const double> effort,
   }
 }
 
+void Cavity::add_to(ValueHash& hash) const {
+  for (const CavityFace& face : faces_) hash.add(face.corner, face.middle);
+}
+
 }  // namespace sinew::constraint

@@ -43,6 +43,8 @@ class Cavity : public Constraint {
              std::span<mechanics::RowCurvature> curvatures) const override;
 
   /// V_0, m^3; negative when the surface is a body's outside.
+  void add_to(ValueHash& hash) const override;
+
   double rest_volume() const { return rest_volume_; }
   /// Of the surface at rest, m^2.
   double rest_area() const { return rest_area_; }

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "sinew/core/named_hash.hpp"
 #include "sinew/core/types.hpp"
 #include "sinew/mechanics/rows.hpp"
 
@@ -35,6 +36,9 @@ class Constraint {
   /// Whether its curvature at these efforts can only stiffen: a taut cable's is of one sign.
   /// @param effort (rows,) N or Pa, of all rows of the world.
   virtual bool stiffens(std::span<const double>) const { return false; }
+
+  /// Adds what its rows depend on beside the points that they touch.
+  virtual void add_to(ValueHash& hash) const = 0;
 
   const std::string& name() const { return name_; }
   int first_row() const { return first_row_; }

@@ -102,4 +102,11 @@ SurfaceDistance Contact::distance_now(const Placement& placement, const Eigen::I
   return result;
 }
 
+void Contact::add_to(ValueHash& hash) const {
+  hash.add(friction_, surface_.index());
+  if (const auto* plane = std::get_if<Plane>(&surface_)) hash.add(plane->point, plane->normal);
+  if (const auto* ball = std::get_if<Sphere>(&surface_)) hash.add(ball->centre, ball->radius);
+  if (const auto* rod = std::get_if<Capsule>(&surface_)) hash.add(rod->from, rod->to, rod->radius);
+}
+
 }  // namespace sinew::constraint

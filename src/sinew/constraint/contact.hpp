@@ -56,6 +56,8 @@ class Contact : public Constraint {
   Vector3 position(std::size_t point, const Vector3& row_values,
                    const mechanics::RowValues& values) const;
 
+  void add_to(ValueHash& hash) const override;
+
   const std::vector<mechanics::MaterialPoint>& points() const { return points_; }
   const Surface& surface() const { return surface_; }
   bool curved() const { return !std::holds_alternative<Plane>(surface_); }

@@ -22,6 +22,7 @@ class Effector : public Constraint {
                             Eigen::Ref<VectorX> delta) const = 0;
   /// "m" or "rad".
   virtual const char* unit() const = 0;
+  void add_to(ValueHash& hash) const override { hash.add(directions_); }
 
  protected:
   Effector(std::string name, std::vector<Vector3> directions);
@@ -72,6 +73,7 @@ class OrientationEffector : public Effector {
   void target_delta(const Placement& placement, const Vector3& target,
                     Eigen::Ref<VectorX> delta) const override;
   const char* unit() const override { return "rad"; }
+  void add_to(ValueHash& hash) const override { hash.add(directions_, rest_frame_); }
 
  private:
   Matrix3 rotation(const Placement& placement) const;

@@ -21,6 +21,8 @@ class PointForce : public Constraint {
                std::vector<mechanics::RowCurvature>& curvatures) override;
   void linearise(const Placement& placement, mechanics::RowValues& values) const override;
 
+  void add_to(ValueHash& hash) const override { hash.add(direction_, rest_position_); }
+
   const mechanics::MaterialPoint& point() const { return point_; }
   const Vector3& direction() const { return direction_; }
 

@@ -81,12 +81,17 @@ Vector3 FemBody::position(int point) const { return weighted(positions_, point);
 Vector3 FemBody::velocity(int point) const { return weighted(velocities_, point); }
 
 void FemBody::begin_step() {
+  begin_query();
+  place_base();
+}
+
+void FemBody::begin_query() {
+  carried_ = false;
   start_positions_ = positions_;
   first_linearisation_ = true;
   prepared_step_.reset();
   // What the last step's motion lent the tangent's pressure must not outlive it: a state says all.
   if (active_->assembly.linearise_from(nullptr)) active_->present.reset();
-  place_base();
 }
 
 void FemBody::linearise(const mechanics::LinearisationRequest& request) {

@@ -28,6 +28,7 @@ class FemBody : public mechanics::Body {
   Vector3 velocity(int point) const override;
 
   void begin_step() override;
+  void begin_query() override;
   void linearise(const mechanics::LinearisationRequest& request) override;
   void add_curvature(const mechanics::RowCurvature& curvature) override;
   void take_rows(const mechanics::RowValues& rows) override;

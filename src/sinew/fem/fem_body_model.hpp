@@ -93,6 +93,10 @@ class FemBodyModel : public mechanics::BodyModel {
               std::span<const mechanics::RowCurvature> curvatures,
               const linalg::FactorisationSettings& settings) override;
   bool couples(int first, int second) const override;
+  std::vector<NamedHash> parts() const override;
+  std::uint64_t point_hash(int point) const override;
+  /// Of a load, by its number.
+  std::uint64_t load_hash(int load) const;
   std::unique_ptr<mechanics::Body> create(ThreadPool& pool, bool with_curvature,
                                           int histories) const override;
 

@@ -57,10 +57,16 @@ class InverseController : public sim::Law {
 
   sim::LawStatus solve(const sim::LawProblem& problem, std::span<double> effort) override;
   double violation(const sim::LawProblem& problem, std::span<const double> effort) const override;
-  void reset() override;
+  void begin_step() override;
+  std::size_t memory_size() const override;
+  void save_memory(std::span<double> memory) const override;
+  void load_memory(std::span<const double> memory) override;
+  void forget() override;
 
  private:
-  void begin_step(const sim::LawProblem& problem);
+  void look_back(const sim::LawProblem& problem);
+  template <class Self, class Visitor>
+  static void visit_memory(Self& self, Visitor&& visitor);
   void measure_gap(const sim::LawProblem& problem);
   double objective(const VectorX& gap) const;
   void form_residual(const sim::LawProblem& problem);

@@ -19,7 +19,8 @@ class StepDamping {
   void review(double before, double foreseen, double found, double negligible);
   /// >= 1, no unit.
   double value() const { return value_; }
-  void reset() { value_ = 1.0; }
+  /// @param value >= 1.
+  void set(double value) { value_ = value; }
 
  private:
   double value_ = 1.0;

@@ -17,7 +17,9 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
+#include "sinew/core/named_hash.hpp"
 #include "sinew/core/thread_pool.hpp"
 #include "sinew/core/types.hpp"
 #include "sinew/linalg/factorisation.hpp"
@@ -79,6 +81,11 @@ class BodyModel {
   /// coordinates takes all rows always.
   virtual bool leaves_rows_out() const { return false; }
 
+  /// All that its motion depends on, by names such as "material", but for attached points.
+  virtual std::vector<NamedHash> parts() const = 0;
+  /// Where in the material an attached point is.
+  virtual std::uint64_t point_hash(int point) const = 0;
+
   /// A volume mesh that shows the body at rest, for records and the view.
   virtual const mesh::Mesh& mesh() const = 0;
 
@@ -121,6 +128,8 @@ class Body {
   virtual Vector3 velocity(int point) const = 0;
 
   virtual void begin_step() = 0;
+  /// The same for a look at the present state: its base goes nowhere.
+  virtual void begin_query() { begin_step(); }
   virtual void linearise(const LinearisationRequest& request) = 0;
   /// Adds the curvature of a constraint's loads (geometric stiffness): A -= effort d2(delta)/dq2.
   /// Between linearise (with_curvature) and condense. A linearisation to which nothing was added is

@@ -35,6 +35,8 @@ class ArmBodyModel : public mechanics::BodyModel {
               std::span<const mechanics::RowCurvature> curvatures,
               const linalg::FactorisationSettings& settings) override;
   bool couples(int, int) const override { return true; }
+  std::vector<NamedHash> parts() const override;
+  std::uint64_t point_hash(int point) const override;
   std::unique_ptr<mechanics::Body> create(ThreadPool& pool, bool with_curvature,
                                           int histories) const override;
   /// A cylinder of hexahedra of the arm's radius, for records and the view.

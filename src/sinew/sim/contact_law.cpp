@@ -33,7 +33,7 @@ ContactLaw::ContactLaw(const Model& model)
       solver_(model.rows().rows(), static_cast<int>(boxes_.size()), static_cast<int>(cones_.size()),
               {.tolerance = model.step().contact_tolerance}) {}
 
-void ContactLaw::reset() { ranges_.reset(); }
+void ContactLaw::begin_step() { ranges_.reset(); }
 
 bool ContactLaw::switch_branches(const LawProblem& problem, std::span<const double> effort) {
   const Eigen::Map<const VectorX> lambda(effort.data(), static_cast<Eigen::Index>(effort.size()));

@@ -23,7 +23,7 @@ class ContactLaw : public Law {
 
   LawStatus solve(const LawProblem& problem, std::span<double> effort) override;
   double violation(const LawProblem& problem, std::span<const double> effort) const override;
-  void reset() override;
+  void begin_step() override;
   /// Of the last solve.
   const qp::ConeResult& result() const { return solver_.result(); }
 

@@ -18,7 +18,7 @@ DirectLaw::DirectLaw(int ranges)
       scaled_effort_(VectorX::Zero(ranges)),
       boxes_(ranges) {}
 
-void DirectLaw::reset() {
+void DirectLaw::begin_step() {
   solver_.reset();
   boxes_.reset();
 }

@@ -24,7 +24,7 @@ class DirectLaw : public Law {
 
   LawStatus solve(const LawProblem& problem, std::span<double> effort) override;
   double violation(const LawProblem& problem, std::span<const double> effort) const override;
-  void reset() override;
+  void begin_step() override;
 
  private:
   void form(const LawProblem& problem);

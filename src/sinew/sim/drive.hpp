@@ -7,6 +7,8 @@
 
 #include <span>
 
+#include "sinew/core/named_hash.hpp"
+
 namespace sinew::sim {
 
 enum class CommandKind {
@@ -55,6 +57,8 @@ class Drive {
   /// The state at the end of a step that ended with `motion` and `effort`, whoever chose it.
   virtual void advance(const Step& step, double motion, double effort,
                        std::span<double> state) const = 0;
+  /// Adds all that its curve depends on.
+  virtual void add_to(ValueHash& hash) const = 0;
 };
 
 }  // namespace sinew::sim

@@ -37,7 +37,7 @@ class DrivenLaw : public Law {
   }
   LawStatus solve(const LawProblem& problem, std::span<double> effort) override;
   double violation(const LawProblem& problem, std::span<const double> effort) const override;
-  void reset() override {}
+  void begin_step() override {}
 
  private:
   void linearise(const LawProblem& problem);

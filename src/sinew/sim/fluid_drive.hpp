@@ -17,6 +17,8 @@ struct Supply {
   double conductance = 0.0;     ///< C of the valve, m^3/(s Pa), > 0
   double critical_ratio = 0.5;  ///< b, in [0, 1); gas only
   double leak = 0.0;            ///< C of the way out to ambient, >= 0
+
+  void add_to(ValueHash& hash) const { hash.add(conductance, critical_ratio, leak); }
 };
 
 /// p_abs = p_ambient (v / V)^k with v the chamber's content in volume at ambient pressure and V its
@@ -45,6 +47,9 @@ class GasDrive : public Drive {
   Response respond(const Step& step, double motion) const override;
   void advance(const Step& step, double motion, double effort,
                std::span<double> state) const override;
+  void add_to(ValueHash& hash) const override {
+    hash.add(settings_.ambient_pressure, settings_.exponent, settings_.supply, rest_volume_);
+  }
 
  private:
   double volume(double motion) const;
@@ -77,6 +82,9 @@ class LiquidDrive : public Drive {
   Response respond(const Step& step, double motion) const override;
   void advance(const Step& step, double motion, double effort,
                std::span<double> state) const override;
+  void add_to(ValueHash& hash) const override {
+    hash.add(settings_.density, settings_.supply, stiffness_);
+  }
 
  private:
   LiquidSettings settings_;

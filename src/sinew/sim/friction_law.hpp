@@ -43,7 +43,7 @@ class FrictionLaw : public Law {
   }
   LawStatus solve(const LawProblem& problem, std::span<double> effort) override;
   double violation(const LawProblem& problem, std::span<const double> effort) const override;
-  void reset() override {}
+  void begin_step() override {}
 
  private:
   LawStatus slide(const LawProblem& problem, std::span<double> effort);

@@ -56,8 +56,17 @@ class Law {
   virtual LawStatus solve(const LawProblem& problem, std::span<double> effort) = 0;
   /// How far `effort` and the motion `problem.delta` are from obeying the law together, m.
   virtual double violation(const LawProblem& problem, std::span<const double> effort) const = 0;
-  /// Forgets what earlier steps left for a warm start.
-  virtual void reset() = 0;
+  /// Called before each step: what helped to solve the last one is forgotten, so that a step
+  /// follows from state and inputs alone.
+  virtual void begin_step() = 0;
+
+  /// What it remembers from one step to the next, as numbers: part of the simulation's state.
+  virtual std::size_t memory_size() const { return 0; }
+  /// @param memory (memory_size(),).
+  virtual void save_memory(std::span<double>) const {}
+  virtual void load_memory(std::span<const double>) {}
+  /// Remembers nothing, as at the start.
+  virtual void forget() {}
 };
 
 }  // namespace sinew::sim

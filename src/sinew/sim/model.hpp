@@ -14,6 +14,7 @@
 #include <Eigen/Geometry>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/named_hash.hpp"
 #include "sinew/core/types.hpp"
 #include "sinew/mechanics/rows.hpp"
 #include "sinew/sim/actuator.hpp"
@@ -144,8 +145,9 @@ class Model {
   int drive_states() const { return drive_states_; }
   /// A length of the robot's size, m: the largest diagonal of its bodies at rest.
   double size() const { return size_; }
-  /// Tells models apart: a hash of meshes, materials, rows, contacts and settings. Saved
-  /// states carry it.
+  /// See list_parts(): what saved states tell models apart by.
+  const std::vector<NamedHash>& parts() const { return parts_; }
+  /// A hash of them.
   std::uint64_t fingerprint() const { return fingerprint_; }
 
  private:
@@ -169,7 +171,8 @@ class Model {
   std::vector<BaseMotion> base_motions_;
   std::vector<LoadModel> loads_;
   std::vector<MassModel> masses_;
-  double size_ = 1.0;
+  double size_ = 0.0;
+  std::vector<NamedHash> parts_;
   std::uint64_t fingerprint_ = 0;
 };
 

@@ -12,9 +12,9 @@
 #include "sinew/constraint/effector.hpp"
 #include "sinew/constraint/point_force.hpp"
 #include "sinew/core/error.hpp"
-#include "sinew/core/state_hash.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mesh/surface.hpp"
+#include "sinew/sim/model_parts.hpp"
 
 namespace sinew::sim {
 
@@ -33,27 +33,6 @@ void check_limits(const Limits& limits, const char* what, const ActuatorModel& a
                 fmt::format("{}: rate {:g} is negative", what, limits.rate),
                 "give the largest change per second, zero or more");
   }
-}
-
-void hash_energy(StateHash& hash, const material::Hyperelastic& energy) {
-  for (const material::PowerTerm& term : energy.powers) {
-    hash.add(term.coefficient);
-    hash.add(term.exponent);
-  }
-  hash.add(energy.polynomial);
-  hash.add(energy.bulk_modulus);
-  hash.add(energy.saint_venant_shear);
-  for (const material::PronyTerm& term : energy.prony) {
-    hash.add(term.relative_modulus);
-    hash.add(term.relaxation_time);
-  }
-  if (energy.mullins) {
-    for (const double x : {energy.mullins->r, energy.mullins->m, energy.mullins->beta}) hash.add(x);
-  }
-}
-
-void hash_points(StateHash& hash, const Points& points) {
-  hash.add({points.data(), static_cast<std::size_t>(points.size())});
 }
 
 }  // namespace
@@ -108,7 +87,7 @@ int ModelBuilder::add_fem_body(fem::FemBodySettings settings) {
   add_masses(*body);
   const Points& nodes = body->mesh().nodes;
   const Vector3 extent = nodes.colwise().maxCoeff() - nodes.colwise().minCoeff();
-  model_->size_ = model_->bodies_.empty() ? extent.norm() : std::max(model_->size_, extent.norm());
+  model_->size_ = std::max(model_->size_, extent.norm());
   return add_body(std::move(body));
 }
 
@@ -535,31 +514,8 @@ int ModelBuilder::add_effector(const EffectorSettings& settings) {
 }
 
 std::shared_ptr<const Model> ModelBuilder::build(const linalg::FactorisationSettings& settings) {
-  StateHash hash;
   for (std::size_t i = 0; i < model_->bodies_.size(); ++i) {
-    auto& body = *model_->bodies_[i];
-    body.finish(static_cast<int>(i), model_->rows_, model_->curvatures_, settings);
-    hash_arm(hash, body);
-    if (const auto* fem = dynamic_cast<const fem::FemBodyModel*>(&body)) {
-      hash_points(hash, fem->mesh().nodes);
-      for (const auto& region : fem->settings().elements.regions) {
-        hash.add(region.constants.young_modulus);
-        hash.add(region.constants.poisson_ratio);
-        if (region.hyperelastic) hash_energy(hash, *region.hyperelastic);
-        if (region.patches) hash.add(1.0);
-      }
-      hash.add(static_cast<double>(fem->elements().free_count()));
-      for (const fem::PointMass& mass : fem->settings().elements.point_masses) {
-        hash.add(mass.mass);
-        hash.add(mass.weights);
-        for (const NodeId node : mass.nodes) hash.add(static_cast<double>(node));
-      }
-      for (const std::int32_t held : fem->elements().held()) hash.add(static_cast<double>(held));
-      for (const mechanics::MaterialPoint& point : model_->rows_.point) {
-        if (point.body != static_cast<int>(i)) continue;
-        for (const double weight : fem->attachment(point.point).weights) hash.add(weight);
-      }
-    }
+    model_->bodies_[i]->finish(static_cast<int>(i), model_->rows_, model_->curvatures_, settings);
   }
   for (std::size_t i = 0; i < model_->constraints_.size(); ++i) {
     if (model_->constraints_[i]->curvature_count() > 0) {
@@ -575,10 +531,9 @@ std::shared_ptr<const Model> ModelBuilder::build(const linalg::FactorisationSett
           !body(pair.first.body).couples(pair.first.point, pair.second.point);
     }
   }
-  for (const GuideModel& guide : model_->guides_) hash.add(guide.friction);
-  hash_contacts(hash);
-  hash.add(model_->step_.time_step);
-  for (const auto& point : model_->rows_.point) hash.add(static_cast<double>(point.point));
+  model_->parts_ = list_parts(*model_);
+  ValueHash hash;
+  for (const NamedHash& part : model_->parts_) hash.add(part.name, part.hash);
   model_->fingerprint_ = hash.value();
   std::shared_ptr<const Model> model = std::move(model_);
   model_.reset(new Model);

@@ -21,7 +21,6 @@
 #include "sinew/sim/torque_settings.hpp"
 
 namespace sinew {
-class StateHash;
 }
 
 namespace sinew::sim {
@@ -175,8 +174,6 @@ class ModelBuilder {
   }
 
  private:
-  static void hash_arm(StateHash& hash, const mechanics::BodyModel& body);
-  void hash_contacts(StateHash& hash) const;
   mechanics::BodyModel& body(int index);
   void check_body(int index, const Place& place) const;
   void add_masses(const fem::FemBodyModel& body);

@@ -5,7 +5,6 @@
 
 #include "sinew/constraint/point_force.hpp"
 #include "sinew/core/error.hpp"
-#include "sinew/core/state_hash.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/pcc/arm_body.hpp"
 #include "sinew/sim/model_builder.hpp"
@@ -53,22 +52,6 @@ int ModelBuilder::add_torque(const TorqueSettings& settings) {
                         std::move(torque));
   } catch (const Error& error) {
     throw error.at(settings.place);
-  }
-}
-
-void ModelBuilder::hash_arm(StateHash& hash, const mechanics::BodyModel& body) {
-  const auto* arm = dynamic_cast<const pcc::ArmBodyModel*>(&body);
-  if (arm == nullptr) return;
-  for (const pcc::Segment& segment : arm->arm().settings().segments) {
-    for (const double value : {segment.length, segment.mass, segment.stiffness, segment.damping,
-                               segment.gamma, segment.dead_length, segment.axial_stiffness,
-                               segment.axial_damping, static_cast<double>(segment.coordinates())}) {
-      hash.add(value);
-    }
-  }
-  for (const pcc::Particle& particle : arm->arm().particles()) {
-    hash.add(particle.fraction);
-    hash.add(particle.scale);
   }
 }
 

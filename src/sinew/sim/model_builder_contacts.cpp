@@ -5,7 +5,6 @@
 
 #include "sinew/constraint/contact.hpp"
 #include "sinew/core/error.hpp"
-#include "sinew/core/state_hash.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/sim/model_builder.hpp"
 
@@ -35,48 +34,7 @@ void check_gaps(const constraint::Contact& contact, const mechanics::BodyModel& 
   }
 }
 
-void add(StateHash& hash, const Vector3& v) { hash.add({v.data(), 3}); }
-
-void add(StateHash& hash, const constraint::Surface& surface) {
-  hash.add(static_cast<std::uint64_t>(surface.index()));
-  if (const auto* plane = std::get_if<constraint::Plane>(&surface)) {
-    add(hash, plane->point);
-    add(hash, plane->normal);
-  } else if (const auto* sphere = std::get_if<constraint::Sphere>(&surface)) {
-    add(hash, sphere->centre);
-    hash.add(sphere->radius);
-  } else if (const auto* capsule = std::get_if<constraint::Capsule>(&surface)) {
-    add(hash, capsule->from);
-    add(hash, capsule->to);
-    hash.add(capsule->radius);
-  }
-}
-
-void add(StateHash& hash, const BaseMotion& motion) {
-  for (const Signal& along : motion.translation) along.add_to(hash);
-  motion.angle.add_to(hash);
-  add(hash, motion.axis);
-  add(hash, motion.centre);
-}
-
 }  // namespace
-
-// Whatever changes how a robot with contacts moves: surfaces, where they go, and which points may
-// touch them.
-void ModelBuilder::hash_contacts(StateHash& hash) const {
-  for (std::size_t i = 0; i < model_->contacts_.size(); ++i) {
-    const constraint::Contact& contact = model_->contact(static_cast<int>(i));
-    const std::optional<BaseMotion>& motion = model_->contacts_[i].motion;
-    hash.add(contact.friction());
-    add(hash, contact.surface());
-    hash.add(static_cast<std::uint64_t>(motion.has_value()));
-    if (motion) add(hash, *motion);
-    for (const mechanics::MaterialPoint& point : contact.points()) {
-      add(hash, model_->bodies_[static_cast<std::size_t>(point.body)]->rest_position(point.point));
-    }
-  }
-  if (!model_->contacts_.empty()) hash.add(model_->step_.contact_tolerance);
-}
 
 int ModelBuilder::add_contact(const ContactSettings& settings) {
   check_body(settings.body, settings.place);

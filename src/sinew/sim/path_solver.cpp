@@ -81,10 +81,10 @@ void Simulation::imbalance_at(double share, VectorX& imbalance) {
 
 // One step of the path; the iterations that it took, 0 if it failed and was taken back.
 int Simulation::step_path(double length, double& share, VectorX& direction, double tolerance) {
-  save_state(state_before_);
+  keep(state_before_);
   const double share_before = share;
   const auto give_up = [&] {
-    load_state(state_before_, steps_);
+    restore(state_before_);
     share = share_before;
     return 0;
   };
@@ -131,9 +131,7 @@ int Simulation::step_path(double length, double& share, VectorX& direction, doub
 
 std::vector<PathPoint> Simulation::follow_path(const PathSettings& settings,
                                                const std::function<void()>& visit) {
-  std::vector<double> start(state_size());
-  save_state(start);
-  const std::vector<double> applied = load_applied_;
+  const State start = state();
   now_ = time();
   move_bases(now_);
   plan_path();
@@ -152,8 +150,7 @@ std::vector<PathPoint> Simulation::follow_path(const PathSettings& settings,
     int iterations = step_path(length, share, direction, settings.tolerance);
     for (int halving = 0; iterations == 0; ++halving) {
       if (halving == kMostPathHalvings) {
-        load_state(start, steps_);
-        for (std::size_t k = 0; k < applied.size(); ++k) apply_load(k, applied[k]);
+        restore(start);
         throw Error(
             ErrorKind::not_converged, {.item = "path"},
             fmt::format("after {} points, at {:.4g} of the load, even a step of {:.2g} m "

@@ -119,20 +119,17 @@ double Signal::value(double time) const {
   return std::get<Table>(form_).value(time);
 }
 
-void Signal::add_to(StateHash& hash) const {
-  hash.add(static_cast<std::uint64_t>(form_.index()));
+void Signal::add_to(ValueHash& hash) const {
+  hash.add(form_.index());
   if (const auto* constant = std::get_if<Constant>(&form_)) hash.add(constant->value);
   if (const auto* ramp = std::get_if<Ramp>(&form_)) {
-    for (const double x : {ramp->from, ramp->to, ramp->start, ramp->duration}) hash.add(x);
+    hash.add(ramp->from, ramp->to, ramp->start, ramp->duration);
   }
   if (const auto* sine = std::get_if<Sine>(&form_)) {
-    for (const double x : {sine->mean, sine->amplitude, sine->period, sine->phase}) hash.add(x);
+    hash.add(sine->mean, sine->amplitude, sine->period, sine->phase);
   }
   if (const auto* table = std::get_if<Table>(&form_)) {
-    hash.add(static_cast<std::uint64_t>(table->interpolate));
-    hash.add(static_cast<std::uint64_t>(table->times.size()));
-    hash.add(table->times);
-    hash.add(table->values);
+    hash.add(table->interpolate, table->times, table->values);
   }
 }
 

@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "sinew/core/state_hash.hpp"
+#include "sinew/core/named_hash.hpp"
 
 namespace sinew::sim {
 
@@ -58,7 +58,7 @@ class Signal {
   double end_time() const;
 
   /// Adds its form and numbers: equal signals add the same.
-  void add_to(StateHash& hash) const;
+  void add_to(ValueHash& hash) const;
 
   /// True when the value is the same at all times.
   bool is_constant() const { return std::holds_alternative<Constant>(form_); }

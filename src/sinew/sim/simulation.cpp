@@ -37,10 +37,10 @@ Simulation::Simulation(std::shared_ptr<const Model> model, int threads)
     if (const auto& drive = model_->actuators()[i].drive) drive->rest(drive_numbers(i));
   }
   finish_step();
-  state_before_.resize(state_size());
   motion_before_.resize(ranges_.size());
   for (const LoadModel& load : model_->loads()) load_factors_.push_back(load.factor);
   load_applied_.resize(load_factors_.size());
+  keep(state_before_);
 }
 
 Simulation::~Simulation() = default;
@@ -121,7 +121,7 @@ void Simulation::step_in_parts() {
     if (!parts || !failure.is_run_failure()) throw;
   }
   const double begin = time();  // what failed is undone
-  state_at_step_.assign(state_before_.begin(), state_before_.end());
+  state_at_step_ = state_before_;
   part_ = Part{0.0, actuators_};
   double done = 0.0, length = 0.5;
   report_.substeps = 0;
@@ -136,7 +136,7 @@ void Simulation::step_in_parts() {
       ++report_.retries;
       if (length * kMostParts >= 1.0 && failure.is_run_failure()) continue;
       part_.reset();
-      load_state(state_at_step_, steps_);
+      restore(state_at_step_);
       throw;
     }
   }
@@ -151,8 +151,7 @@ void Simulation::step_adaptively() {
   const double tolerance = settings.adaptive->tolerance * model_->size();
   const double order = mechanics::history_count(settings.integrator) > 0 ? 3.0 : 2.0;
   if (!(substep_ > 0.0)) substep_ = whole;
-  state_at_step_.resize(state_size());
-  save_state(state_at_step_);
+  keep(state_at_step_);
   report_.substeps = 0;
   report_.error = 0.0;
   double done = 0.0;
@@ -164,7 +163,7 @@ void Simulation::step_adaptively() {
       const double aim =
           error > 0.0 ? std::clamp(0.9 * std::pow(tolerance / error, 1.0 / order), 0.2, 2.0) : 2.0;
       if (error > tolerance && 0.5 * h >= settings.adaptive->smallest) {
-        load_state(state_before_, steps_);
+        restore(state_before_);
         substep_ = std::max(settings.adaptive->smallest, std::min(0.5, aim) * h);
         ++report_.retries;
         continue;
@@ -175,7 +174,7 @@ void Simulation::step_adaptively() {
       substep_ = std::min(whole, std::max(settings.adaptive->smallest, aim * h));
     } catch (const Error& failure) {
       if (0.5 * h < settings.adaptive->smallest || !failure.is_run_failure()) {
-        load_state(state_at_step_, steps_);
+        restore(state_at_step_);
         throw;
       }
       substep_ = 0.5 * h;
@@ -250,10 +249,12 @@ void Simulation::count_work() {
 double Simulation::substep(double end, double time_step) {
   now_ = end;
   read_ranges(end, time_step);
-  save_state(state_before_);
+  keep(state_before_);
   move_bases(end);
   set_loads(end);
   world_.begin_step(end - time_step, end, effort_);
+  laws_->begin_step();
+  if (law_ != nullptr) law_->begin_step();
   solve_equation(time_step);
   if (!model_->contacts().empty()) {
     report_.contact_residual = laws_->contact_result().residual;
@@ -274,7 +275,7 @@ double Simulation::substep(double end, double time_step) {
 }
 
 void Simulation::fail(ErrorKind kind, const std::string& message, const std::string& remedy) {
-  load_state(state_before_, steps_);
+  restore(state_before_);
   std::string bodies;
   for (const auto& body : model_->bodies()) bodies += (bodies.empty() ? "" : ", ") + body->name();
   throw Error(kind,
@@ -345,7 +346,6 @@ void Simulation::attach(Law& law, std::span<const int> actuators) {
 void Simulation::detach(const Law& law) {
   if (law_ != &law) return;
   law_ = nullptr;
-  laws_->reset();
   for (ActuatorState& state : actuators_) {
     if (state.owner != &law) continue;
     state.owner = nullptr;
@@ -371,73 +371,10 @@ const fem::FemBody& Simulation::fem_body(int index) const {
   return *body;
 }
 
-std::uint64_t Simulation::state_hash() const {
-  std::vector<double> state(state_size());
-  save_state(state);
-  StateHash hash;
-  hash.add(state);
-  return hash.value();
-}
-
 std::size_t Simulation::bytes() const {
-  return world_.bytes() + sizeof(double) * (effort_.size() + state_before_.size()) +
+  return world_.bytes() +
+         sizeof(double) * (effort_.size() + state_before_.size() + state_at_step_.size()) +
          actuators_.size() * (sizeof(ActuatorState) + sizeof(ActuatorRange));
-}
-
-std::size_t Simulation::state_size() const {
-  return world_.state_size() + effort_.size() + drive_state_.size() + 2 * actuators_.size() + 3 +
-         Ledger::kSize;
-}
-
-void Simulation::save_state(std::span<double> state) const {
-  world_.save_state(state.first(world_.state_size()));
-  auto rest = state.subspan(world_.state_size());
-  std::ranges::copy(effort_, rest.begin());
-  rest = rest.subspan(effort_.size());
-  std::ranges::copy(drive_state_, rest.begin());
-  rest = rest.subspan(drive_state_.size());
-  for (std::size_t i = 0; i < actuators_.size(); ++i) {
-    rest[2 * i] = actuators_[i].motion;
-    rest[2 * i + 1] = actuators_[i].wound;
-  }
-  rest = rest.subspan(2 * actuators_.size());
-  rest[0] = volume_ratio_;
-  rest[1] = step_before_;
-  rest[2] = substep_;
-  std::ranges::copy(ledger_.numbers(), rest.begin() + 3);
-}
-
-void Simulation::Ledger::read(std::span<const double> numbers) {
-  actuators = numbers[0];
-  outside = numbers[1];
-  dissipated = numbers[2];
-  begun = numbers[3];
-  start = numbers[4];
-  largest = numbers[5];
-}
-
-void Simulation::load_state(std::span<const double> state, std::int64_t steps) {
-  world_.load_state(state.first(world_.state_size()));
-  auto rest = state.subspan(world_.state_size());
-  std::copy_n(rest.begin(), effort_.size(), effort_.begin());
-  rest = rest.subspan(effort_.size());
-  std::copy_n(rest.begin(), drive_state_.size(), drive_state_.begin());
-  rest = rest.subspan(drive_state_.size());
-  for (std::size_t i = 0; i < actuators_.size(); ++i) {
-    ActuatorState& actuator = actuators_[i];
-    actuator.motion = rest[2 * i];
-    actuator.wound = rest[2 * i + 1];
-    actuator.effort = effort_[static_cast<std::size_t>(model_->actuators()[i].row)];
-    actuator.slack = model_->actuators()[i].type == ActuatorType::cable && !(actuator.effort > 0.0);
-  }
-  rest = rest.subspan(2 * actuators_.size());
-  volume_ratio_ = rest[0];
-  step_before_ = rest[1];
-  substep_ = rest[2];
-  ledger_.read(rest.subspan(3, Ledger::kSize));
-  steps_ = steps;
-  laws_->reset();
-  if (law_ != nullptr) law_->reset();
 }
 
 void Simulation::reset() {
@@ -459,8 +396,7 @@ void Simulation::reset() {
   step_before_ = substep_ = 0.0;
   steps_ = 0;
   finish_step();
-  laws_->reset();
-  if (law_ != nullptr) law_->reset();
+  if (law_ != nullptr) law_->forget();
   report_ = {};
 }
 

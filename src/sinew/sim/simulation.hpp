@@ -2,7 +2,6 @@
 /// A running robot: model, state, commands, and the step.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -12,8 +11,10 @@
 
 #include "sinew/fem/fem_body.hpp"
 #include "sinew/sim/contact_state.hpp"
+#include "sinew/sim/inputs.hpp"
 #include "sinew/sim/newton_status.hpp"
 #include "sinew/sim/stages.hpp"
+#include "sinew/sim/state.hpp"
 #include "sinew/sim/static_settings.hpp"
 #include "sinew/sim/step_status.hpp"
 #include "sinew/sim/world.hpp"
@@ -168,17 +169,26 @@ class Simulation {
   std::span<const double> drive_state(int actuator) const;
   std::span<const ActuatorRange> ranges() const { return ranges_; }
 
-  /// Over positions, velocities, efforts and drives: equal runs have equal hashes.
-  std::uint64_t state_hash() const;
+  /// Everything that decides, with the inputs, how the run goes on.
+  State state() const;
+  /// Takes up a state, of this simulation or of another one of the same model. A controller takes
+  /// up its memory where the state has it; otherwise it begins anew. Commands stay as they are.
+  /// Throws Error(wrong-length) for a state of another model, and is then unchanged.
+  void restore(const State& state);
+  /// What acts from outside: commands, load factors, forces, tethers, and where bases are asked to
+  /// be.
+  Inputs inputs() const;
+  /// Throws Error(wrong-length) for inputs of another model, and is then unchanged.
+  void set_inputs(const Inputs& inputs);
+  /// A simulation of the same model, with the same inputs, in the same state. A controller is not
+  /// copied: attach one to the copy, and restore() the state again for its memory.
+  std::unique_ptr<Simulation> clone() const;
+  std::uint64_t state_hash() const { return state().hash(); }
   /// Bytes that one more simulation of the same model takes.
   std::size_t bytes() const;
 
-  /// State as numbers: bodies, efforts, drives; see state_io.hpp for files.
-  std::size_t state_size() const;
-  void save_state(std::span<double> state) const;
-  void load_state(std::span<const double> state, std::int64_t steps);
-
  private:
+  void keep(State& state) const;
   void read_ranges(double time, double time_step);
   std::span<double> drive_numbers(std::size_t actuator);
   void advance_drives();
@@ -227,8 +237,8 @@ class Simulation {
   std::vector<ActuatorRange> ranges_;
   std::vector<double> effort_;
   std::vector<double> drive_state_;  // of all drives, at the start of the step
-  std::vector<double> state_before_;
-  std::vector<double> state_at_step_;  // adaptive: before the whole step
+  State state_before_;   // before the substep
+  State state_at_step_;  // before the whole step, where that is made in parts
   double step_before_ = 0.0;           // s, the last substep; 0: the integrator starts afresh
   double substep_ = 0.0;               // s, adaptive: what the next one tries
   double now_ = 0.0;                   // s, end of the substep in hand
@@ -245,20 +255,7 @@ class Simulation {
     double from = 0.0, to = 0.0;
   };
   std::vector<Stretch> path_loads_, path_efforts_;
-  // Part of the state: what was put into the energy, and what it is judged by.
-  struct Ledger {
-    double actuators = 0.0, outside = 0.0, dissipated = 0.0;  // J
-    double begun = 0.0;    // 1 from the first step that is watched; then
-    double start = 0.0;    // J, energy at the start less what had been put in
-    double largest = 0.0;  // J, since then
-    double put_in() const { return actuators + outside - dissipated; }
-    static constexpr std::size_t kSize = 6;
-    std::array<double, kSize> numbers() const {
-      return {actuators, outside, dissipated, begun, start, largest};
-    }
-    void read(std::span<const double> numbers);
-    void restart() { begun = start = largest = 0.0; }
-  } ledger_;
+  EnergyLedger ledger_;
   std::int64_t steps_ = 0;
   double volume_ratio_ = 1.0;
   StepReport report_;

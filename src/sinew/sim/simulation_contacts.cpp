@@ -13,7 +13,7 @@ namespace sinew::sim {
 namespace {
 
 // Friction within this part of its limit is at it.
-constexpr double kAtLimit = 1e-7;
+constexpr double kSlips = 1e-7;
 // More points than this are beyond the solver's Newton method, and slow.
 constexpr std::size_t kManyPoints = static_cast<std::size_t>(qp::ConeSettings{}.newton_limit) / 3;
 
@@ -33,7 +33,7 @@ ContactPoint Simulation::contact_point(int index, std::size_t point) const {
   if (!(result.normal_force > 0.0)) return result;
   const double limit = contact.friction() * result.normal_force;
   const double across = std::hypot(effort_[row + 1], effort_[row + 2]);
-  const bool slips = across >= (1.0 - kAtLimit) * limit;
+  const bool slips = across >= (1.0 - kSlips) * limit;
   result.state = slips ? qp::ContactState::slip : qp::ContactState::stick;
   return result;
 }

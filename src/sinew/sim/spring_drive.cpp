@@ -112,4 +112,11 @@ void SmaDrive::advance(const Step& step, double, double, std::span<double> state
   state[1] = wire.phase;
 }
 
+void SmaDrive::add_to(ValueHash& hash) const {
+  const SmaSettings& s = settings_;
+  hash.add(s.wire, s.mean_diameter, s.coils, s.martensite_modulus, s.austenite_modulus,
+           s.free_length, s.damping, s.heat_capacity, s.heat_loss, s.ambient, s.austenite_start,
+           s.austenite_end, s.martensite_start, s.martensite_end, s.by_phase, rest_length_);
+}
+
 }  // namespace sinew::sim

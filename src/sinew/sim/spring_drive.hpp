@@ -33,6 +33,10 @@ class SpringDrive : public Drive {
   bool controllable() const override { return false; }
   Response respond(const Step& step, double motion) const override;
   void advance(const Step&, double, double, std::span<double>) const override {}
+  void add_to(ValueHash& hash) const override {
+    hash.add(settings_.stiffness, settings_.free_length, settings_.damping, settings_.tension_only,
+             rest_length_);
+  }
 
  private:
   SpringSettings settings_;
@@ -81,6 +85,7 @@ class SmaDrive : public Drive {
   Response respond(const Step& step, double motion) const override;
   void advance(const Step& step, double motion, double effort,
                std::span<double> state) const override;
+  void add_to(ValueHash& hash) const override;
 
  private:
   struct Wire {

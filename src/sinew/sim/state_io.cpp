@@ -3,7 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <span>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -12,6 +12,7 @@
 #include "sinew/core/state_hash.hpp"
 #include "sinew/mesh/read.hpp"
 #include "sinew/mesh/write.hpp"
+#include "sinew/sim/model_parts.hpp"
 
 namespace sinew::sim {
 
@@ -21,98 +22,180 @@ static_assert(std::endian::native == std::endian::little,
               "states are written as they lie in memory");
 
 constexpr std::string_view kMagic = "SINEWST\n";
-
-struct Header {
-  char magic[8];
-  std::uint32_t version;
-  std::uint32_t reserved;
-  std::uint64_t fingerprint;
-  std::int64_t steps;
-  std::uint64_t count;
-};
-static_assert(sizeof(Header) == 40);
+constexpr std::size_t kWord = 8;
+constexpr std::size_t kPreamble = 2 * kWord;  // magic and version
 
 [[noreturn]] void corrupt(const std::string& name, const std::string& what) {
   throw Error(ErrorKind::state_corrupt, {.file = name}, what,
               "save the state again with save_state");
 }
 
-std::uint64_t hash_of(const Header& header, std::span<const double> numbers) {
+std::uint64_t hash_of(std::string_view bytes) {
   StateHash hash;
-  hash.add(header.fingerprint);
-  hash.add(static_cast<std::uint64_t>(header.steps));
-  hash.add(header.count);
-  hash.add(numbers);
+  for (std::size_t at = 0; at + kWord <= bytes.size(); at += kWord) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, bytes.data() + at, kWord);
+    hash.add(word);
+  }
   return hash.value();
 }
 
-// The numbers between header and hash, whose count was checked.
-std::vector<double> numbers_of(std::string_view bytes) {
-  std::vector<double> numbers((bytes.size() - sizeof(Header)) / 8 - 1);
-  std::memcpy(numbers.data(), bytes.data() + sizeof(Header), 8 * numbers.size());
-  return numbers;
+class Writer {
+ public:
+  void word(std::uint64_t value) { append(&value, kWord); }
+  void text(std::string_view text) {
+    word(text.size());
+    append(text.data(), text.size());
+    bytes_.resize((bytes_.size() + kWord - 1) / kWord * kWord, '\0');
+  }
+  void number(double number) { append(&number, kWord); }
+  void number(const std::vector<double>& numbers) {
+    word(numbers.size());
+    append(numbers.data(), kWord * numbers.size());
+  }
+  void append(const void* from, std::size_t size) {
+    bytes_.append(static_cast<const char*>(from), size);
+  }
+  std::string finish() {
+    word(hash_of(bytes_));
+    return std::move(bytes_);
+  }
+
+ private:
+  std::string bytes_;
+};
+
+// Sizes are checked before anything is taken from the bytes.
+class Reader {
+ public:
+  // @param bytes what stands between the preamble and the hash.
+  Reader(std::string_view bytes, std::string name) : rest_(bytes), name_(std::move(name)) {}
+
+  std::uint64_t word() {
+    std::uint64_t value = 0;
+    std::memcpy(&value, take(kWord).data(), kWord);
+    return value;
+  }
+  // How many of something that takes at least a word each.
+  std::size_t count() {
+    const std::uint64_t value = word();
+    if (value > rest_.size() / kWord) corrupt(name_, "a count is larger than the file");
+    return static_cast<std::size_t>(value);
+  }
+  std::string text() {
+    const std::uint64_t size = word();
+    if (size > rest_.size()) corrupt(name_, "a name is longer than the file");
+    const std::size_t filled = (static_cast<std::size_t>(size) + kWord - 1) / kWord * kWord;
+    return std::string(take(filled).substr(0, static_cast<std::size_t>(size)));
+  }
+  void number(double& number) {
+    number = std::bit_cast<double>(word());
+    if (!std::isfinite(number)) corrupt(name_, "a number is not finite");
+  }
+  void number(std::vector<double>& numbers) {
+    numbers.resize(count());
+    for (double& x : numbers) number(x);
+  }
+  bool done() const { return rest_.empty(); }
+
+ private:
+  std::string_view take(std::size_t size) {
+    if (size > rest_.size()) corrupt(name_, "the file ends too early");
+    const std::string_view taken = rest_.substr(0, size);
+    rest_.remove_prefix(size);
+    return taken;
+  }
+
+  std::string_view rest_;
+  std::string name_;
+};
+
+struct SavedState {
+  StateHeader header;
+  State state;
+};
+
+SavedState read(std::string_view bytes, const std::string& name) {
+  if (bytes.size() < kPreamble || !is_state(bytes)) corrupt(name, "this is not a saved state");
+  SavedState saved;
+  std::uint32_t version[2];
+  std::memcpy(version, bytes.data() + kMagic.size(), sizeof version);
+  saved.header.version = version[0];
+  if (version[0] != kStateVersion) {
+    throw Error(ErrorKind::state_version, {.file = name},
+                fmt::format("the state has format version {}, this program reads version {}",
+                            version[0], kStateVersion),
+                "save it again with this version of Sinew");
+  }
+  if (version[1] != 0) corrupt(name, "bytes that must be zero are not");
+  if (bytes.size() % kWord != 0 || bytes.size() < kPreamble + kWord) {
+    corrupt(name, "the file is not of whole words");
+  }
+  const std::string_view body = bytes.substr(0, bytes.size() - kWord);
+  std::uint64_t hash = 0;
+  std::memcpy(&hash, bytes.data() + body.size(), kWord);
+  if (hash != hash_of(body)) corrupt(name, "the content does not fit its hash");
+  Reader reader(body.substr(kPreamble), name);
+  saved.header.fingerprint = reader.word();
+  saved.header.steps = static_cast<std::int64_t>(reader.word());
+  if (saved.header.steps < 0) {
+    corrupt(name, fmt::format("the step count is {}", saved.header.steps));
+  }
+  saved.header.parts.resize(reader.count());
+  for (NamedHash& part : saved.header.parts) {
+    part.hash = reader.word();
+    part.name = reader.text();
+  }
+  State& state = saved.state;
+  state.steps = saved.header.steps;
+  state.bodies.resize(reader.count());
+  State::visit(state, [&](std::string_view, auto& numbers) { reader.number(numbers); });
+  if (!reader.done()) corrupt(name, "something follows the last number");
+  saved.header.count = state.size();
+  return saved;
 }
 
 }  // namespace
 
 std::string format_state(const Simulation& simulation) {
-  std::vector<double> state(simulation.state_size());
-  simulation.save_state(state);
-  Header header{};
-  std::memcpy(header.magic, kMagic.data(), kMagic.size());
-  header.version = kStateVersion;
-  header.fingerprint = simulation.model().fingerprint();
-  header.steps = simulation.steps();
-  header.count = state.size();
-  const std::uint64_t hash = hash_of(header, state);
-  std::string bytes(sizeof header + 8 * state.size() + sizeof hash, '\0');
-  std::memcpy(bytes.data(), &header, sizeof header);
-  std::memcpy(bytes.data() + sizeof header, state.data(), 8 * state.size());
-  std::memcpy(bytes.data() + sizeof header + 8 * state.size(), &hash, sizeof hash);
-  return bytes;
+  const State state = simulation.state();
+  Writer writer;
+  writer.append(kMagic.data(), kMagic.size());
+  const std::uint32_t version[2] = {kStateVersion, 0};
+  writer.append(version, sizeof version);
+  writer.word(simulation.model().fingerprint());
+  writer.word(static_cast<std::uint64_t>(state.steps));
+  writer.word(simulation.model().parts().size());
+  for (const NamedHash& part : simulation.model().parts()) {
+    writer.word(part.hash);
+    writer.text(part.name);
+  }
+  writer.word(state.bodies.size());
+  State::visit(state, [&](std::string_view, const auto& numbers) { writer.number(numbers); });
+  return writer.finish();
 }
 
 bool is_state(std::string_view bytes) { return bytes.starts_with(kMagic); }
 
 StateHeader read_state_header(std::string_view bytes, const std::string& name) {
-  Header header;
-  if (bytes.size() < sizeof header || !is_state(bytes)) corrupt(name, "this is not a saved state");
-  std::memcpy(&header, bytes.data(), sizeof header);
-  if (header.version != kStateVersion) {
-    throw Error(ErrorKind::state_version, {.file = name},
-                fmt::format("the state has format version {}, this program reads version {}",
-                            header.version, kStateVersion),
-                "save it again with this version of Sinew");
-  }
-  if (header.reserved != 0) corrupt(name, "bytes that must be zero are not");
-  const std::size_t rest = bytes.size() - sizeof header;
-  if (rest < 8 || rest % 8 != 0 || header.count != rest / 8 - 1) {
-    corrupt(name, fmt::format("{} bytes follow where {} numbers and their hash belong", rest,
-                              header.count));
-  }
-  if (header.steps < 0) corrupt(name, fmt::format("the step count is {}", header.steps));
-  const std::vector<double> state = numbers_of(bytes);
-  std::uint64_t hash = 0;
-  std::memcpy(&hash, bytes.data() + bytes.size() - sizeof hash, sizeof hash);
-  if (hash != hash_of(header, state)) corrupt(name, "the numbers do not fit their hash");
-  for (const double value : state) {
-    if (!std::isfinite(value)) corrupt(name, "a number is not finite");
-  }
-  return {header.version, header.fingerprint, header.steps, header.count};
+  return read(bytes, name).header;
 }
 
 void parse_state(Simulation& simulation, std::string_view bytes, const std::string& name) {
-  const StateHeader header = read_state_header(bytes, name);
-  if (header.fingerprint != simulation.model().fingerprint() ||
-      header.count != simulation.state_size()) {
+  const SavedState saved = read(bytes, name);
+  const Model& model = simulation.model();
+  if (saved.header.fingerprint != model.fingerprint()) {
     throw Error(ErrorKind::state_mismatch, {.file = name},
-                fmt::format("the state is of another robot (fingerprint {:016x}, {} numbers; this "
-                            "one has {:016x}, {})",
-                            header.fingerprint, header.count, simulation.model().fingerprint(),
-                            simulation.state_size()),
+                "the state is of another robot, which differs in: " +
+                    describe_difference(saved.header.parts, model.parts()),
                 "load it into a simulation of the scene that it was saved from");
   }
-  simulation.load_state(numbers_of(bytes), header.steps);
+  try {
+    simulation.restore(saved.state);
+  } catch (const Error& error) {
+    throw Error(ErrorKind::state_mismatch, {.file = name}, error.what(),
+                "save the state again with save_state");
+  }
 }
 
 void save_state(const Simulation& simulation, const std::filesystem::path& path) {

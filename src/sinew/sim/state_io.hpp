@@ -6,24 +6,27 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::sim {
 
-/// The layout, little-endian: 8 bytes "SINEWST\n", format version (uint32), 4 bytes of zeros, the
-/// model's fingerprint (uint64), step count (int64), count of numbers (uint64), the numbers
-/// (float64: positions, velocities and base of every body, efforts, motions and drives), and a hash
-/// of fingerprint, step count, count and numbers (uint64). Commands are inputs, not state, and are
-/// not part of it.
-inline constexpr std::uint32_t kStateVersion = 4;
+/// The layout, in little-endian words of 8 bytes: "SINEWST\n"; format version (uint32) and 4 bytes
+/// of zeros; the model's fingerprint (uint64); step count (int64); the model's parts, see
+/// Model::parts(): how many (uint64), and of each its hash (uint64), the length of its name (uint64)
+/// and the name, filled up with zeros; the count of bodies (uint64); all that State::visit()
+/// comes to, float64, a list behind its count (uint64); a hash of all words before
+/// it (uint64). Commands are inputs, not state, and are not part of it.
+inline constexpr std::uint32_t kStateVersion = 5;
 
 /// What a saved state says of itself.
 struct StateHeader {
   std::uint32_t version = 0;
   std::uint64_t fingerprint = 0;  ///< of the model
   std::int64_t steps = 0;
-  std::uint64_t count = 0;  ///< numbers
+  std::vector<NamedHash> parts;  ///< of the model
+  std::uint64_t count = 0;       ///< numbers
 };
 
 /// Reads and checks a saved state without a simulation to put it into.
@@ -37,10 +40,11 @@ bool is_state(std::string_view bytes);
 /// The state as bytes.
 std::string format_state(const Simulation& simulation);
 
-/// Puts a state back, after which the run goes on bit for bit as it would have.
+/// Puts a state back, after which the run goes on bit for bit as it would have. How steps are solved
+/// (tolerances, tangent, factorisation) may differ; then it goes on by that.
 /// @param simulation,bytes what is set, and the whole file. @param name its name, for messages.
 /// Throws Error: state-corrupt (no state, truncated, damaged, not finite), state-version,
-/// state-mismatch; the simulation is then unchanged.
+/// state-mismatch, which names what differs; the simulation is then unchanged.
 void parse_state(Simulation& simulation, std::string_view bytes, const std::string& name);
 
 /// Writes the state; the file appears whole or not at all. Throws Error(file-unwritable).

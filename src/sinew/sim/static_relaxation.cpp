@@ -131,11 +131,11 @@ StaticSolver::Departure StaticSolver::relax(double sigma, double near) {
   int failures = 0;
   while (report_.relaxation_steps < settings_.max_relaxation_steps) {
     ++report_.relaxation_steps;
-    sim_.save_state(sound_);
+    sim_.keep(sound_);
     const std::vector<Points> before = positions();
     last_ = solve(overdamped(sigma), kRelaxationTolerance, kMostIterations);
     if (last_.status != NewtonStatus::converged) {
-      sim_.load_state(sound_, sim_.steps_);
+      sim_.restore(sound_);
       if (++failures == kMostFailures) break;
       sigma *= kHeaviest;
       continue;
@@ -148,10 +148,10 @@ StaticSolver::Departure StaticSolver::relax(double sigma, double near) {
     }
     const bool slows = moved < moved_before;
     if (slows && moved < settled) {
-      sim_.save_state(sound_);
+      sim_.keep(sound_);
       const int steps = last_.iterations;
       if (equilibrate(0.0, settings_.max_iterations)) return Departure::arrived;
-      sim_.load_state(sound_, sim_.steps_);
+      sim_.restore(sound_);
       last_.iterations = steps;
       settled = kLater * moved;
     }

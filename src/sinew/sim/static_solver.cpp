@@ -35,14 +35,14 @@ StaticReport Simulation::solve_static(const StaticSettings& settings) {
 }
 
 StaticSolver::StaticSolver(Simulation& simulation, const StaticSettings& settings)
-    : sim_(simulation), settings_(settings), sound_(simulation.state_size()) {}
+    : sim_(simulation), settings_(settings) {}
 
 StaticReport StaticSolver::run() {
   sim_.clock_.start();
   sim_.now_ = sim_.time();
   sim_.move_bases(sim_.now_);
   sim_.set_loads(sim_.now_);
-  sim_.save_state(sim_.state_before_);
+  sim_.keep(sim_.state_before_);
   read_goal();
   if (!equilibrate(0.0, settings_.max_iterations)) approach();
   follow_surfaces();
@@ -74,7 +74,7 @@ void StaticSolver::read_goal() {
     range.motion_max = kInfinity;
   }
   goal_ = sim_.ranges_;
-  sim_.laws_->reset();
+  sim_.laws_->begin_step();
 }
 
 LawProblem StaticSolver::problem() const {
@@ -123,7 +123,7 @@ void StaticSolver::approach() {
 
 // The share of the imbalance that is left at the end.
 double StaticSolver::step_load() {
-  sim_.load_state(sim_.state_before_, sim_.steps_);
+  sim_.restore(sim_.state_before_);
   linearise({});
   sim_.world_.hold_imbalance(sim_.effort_);
   sound_ = sim_.state_before_;
@@ -134,10 +134,10 @@ double StaticSolver::step_load() {
   };
   const auto keep = [&] {
     ++report_.load_steps;
-    sim_.save_state(sound_);
+    sim_.keep(sound_);
   };
   return take_load_steps({.least = 1.0 / settings_.max_load_steps}, solve, keep,
-                         [&] { sim_.load_state(sound_, sim_.steps_); });
+                         [&] { sim_.restore(sound_); });
 }
 
 // What is known of the last equilibrium on the way, where the world is.

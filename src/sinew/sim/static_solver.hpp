@@ -63,7 +63,7 @@ class StaticSolver {
   bool limit_point_ = false;
   std::vector<ActuatorState> start_;
   std::vector<ActuatorRange> goal_;
-  std::vector<double> sound_;  // state of the last equilibrium, or before the last step
+  State sound_;  // of the last equilibrium, or before the last step
   std::vector<Points> left_;   // of each body: positions of the unstable equilibrium that was left
 };
 

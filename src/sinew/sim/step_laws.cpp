@@ -23,9 +23,9 @@ Law& StepLaws::complete(Law* controller, std::span<const ActuatorRange> ranges) 
                                : friction_.around(direct, &inner);
 }
 
-void StepLaws::reset() {
-  direct_.reset();
-  contact_.reset();
+void StepLaws::begin_step() {
+  direct_.begin_step();
+  contact_.begin_step();
 }
 
 }  // namespace sinew::sim

@@ -20,8 +20,8 @@ class StepLaws {
   /// @param controller null where there is none. @param ranges of the actuators in this step.
   Law& complete(Law* controller, std::span<const ActuatorRange> ranges);
 
-  /// Forgets what the last step found.
-  void reset();
+  /// See Law::begin_step().
+  void begin_step();
 
   const qp::ConeResult& contact_result() const { return contact_.result(); }
 

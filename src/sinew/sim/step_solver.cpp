@@ -186,9 +186,11 @@ void Simulation::step_newton(Law& law, const LawProblem& problem) {
   }
   take_report(result);
   // Of contacts there is no such thing as nearly: a point would be inside a surface.
-  const bool usable = !model_->step().dynamic() && model_->contacts().empty() &&
-                      result.motion.finite && result.motion.volume.ratio > 0.0 &&
-                      result.law != LawStatus::failed;
+  const bool obeys = model_->contacts().empty() ||
+                     (result.relative_residual <= kSearched &&
+                      result.violation <= kMotionTolerance * model_->size());
+  const bool usable = !model_->step().dynamic() && obeys && result.motion.finite &&
+                      result.motion.volume.ratio > 0.0 && result.law != LawStatus::failed;
   if (converged() || usable) return;
   if (result.status == NewtonStatus::law_failed) fail_law();
   const std::string folded = describe_folded_cable(*this);
@@ -215,9 +217,9 @@ NewtonReport Simulation::approach(Law& law, const LawProblem& problem) {
   const std::vector<ActuatorRange> goal = ranges_;
   const std::vector<ActuatorState> start = actuators_;
   const NewtonSettings settings = settings_of_part(problem.time_step);
-  std::vector<double> sound = state_before_;
+  State sound = state_before_;
   const auto go_back = [&] {
-    load_state(sound, steps_);
+    restore(sound);
     world_.begin_step(now_ - problem.time_step, now_, effort_);
   };
   go_back();
@@ -234,7 +236,7 @@ NewtonReport Simulation::approach(Law& law, const LawProblem& problem) {
     return result.status == NewtonStatus::converged;
   };
   take_load_steps(
-      {.first = 0.5, .least = kLeastPart}, solve, [&] { save_state(sound); }, go_back);
+      {.first = 0.5, .least = kLeastPart}, solve, [&] { keep(sound); }, go_back);
   world_.set_imbalance_share(0.0);
   ranges_ = goal;
   result.iterations = iterations;

@@ -68,13 +68,13 @@ void World::begin_step(double from, double to, std::span<const double> effort) {
   for (auto& body : bodies_) body->begin_step();
 }
 
-void World::look_at_all(double at) {
+void World::begin_query(double at) {
   if (!model_->contacts().empty()) {
     place_contacts(at, at);
     left_out_ = false;
     std::ranges::fill(rows_.present, static_cast<char>(true));
   }
-  for (auto& body : bodies_) body->begin_step();
+  for (auto& body : bodies_) body->begin_query();
 }
 
 // A guess, and a function of the state alone so that a run goes on from a saved one bit for bit:
@@ -392,30 +392,37 @@ double World::end_step(const mechanics::StepWeights& weights) {
   return worst;
 }
 
-std::size_t World::state_size() const {
-  std::size_t size = 0;
-  for (const auto& body : bodies_) size += body->state_size();
-  return size;
+std::size_t World::frames_size() const {
+  std::size_t points = 0;
+  for (std::size_t i = 0; i < model_->contacts().size(); ++i) {
+    points += model_->contact(static_cast<int>(i)).points().size();
+  }
+  return 9 * points;
 }
 
-void World::save_state(std::span<double> state) const {
-  std::size_t at = 0;
-  for (const auto& body : bodies_) {
-    body->save_state(state.subspan(at, body->state_size()));
-    at += body->state_size();
+void World::save_frames(std::vector<double>& frames) const {
+  frames.resize(frames_size());
+  double* to = frames.data();
+  for (std::size_t i = 0; i < model_->contacts().size(); ++i) {
+    const constraint::Contact& contact = model_->contact(static_cast<int>(i));
+    for (std::size_t k = 0; k < contact.points().size(); ++k) {
+      to = std::copy_n(rows_.direction[contact.entry(k)].data(), 9, to);
+    }
+  }
+}
+
+void World::load_frames(std::span<const double> frames) {
+  const double* from = frames.data();
+  for (std::size_t i = 0; i < model_->contacts().size(); ++i) {
+    const constraint::Contact& contact = model_->contact(static_cast<int>(i));
+    for (std::size_t k = 0; k < contact.points().size(); ++k, from += 9) {
+      std::copy_n(from, 9, rows_.direction[contact.entry(k)].data());
+    }
   }
 }
 
 void World::restart() {
   for (const auto& body : bodies_) body->restart();
-}
-
-void World::load_state(std::span<const double> state) {
-  std::size_t at = 0;
-  for (const auto& body : bodies_) {
-    body->load_state(state.subspan(at, body->state_size()));
-    at += body->state_size();
-  }
 }
 
 std::size_t World::bytes() const {

@@ -27,8 +27,9 @@ class World {
   /// @param from,to s, when the step begins and ends: where surfaces stand then. @param effort
   ///   (rows,) N of the last step: points with a force are near, whatever their gap.
   void begin_step(double from, double to, std::span<const double> effort);
-  /// The same with every point taking part. @param at s, when surfaces are looked at.
-  void look_at_all(double at);
+  /// For a look at the present state: every contact point takes part, and no base moves.
+  /// @param at s, when surfaces are looked at.
+  void begin_query(double at);
   /// m: the farthest that any touching point's gap is from that of its tangent plane, at the pose
   /// that surfaces have at a time. @param effort (rows,) N; who touches. @param time s.
   double contact_drift(std::span<const double> effort, double time) const;
@@ -108,9 +109,11 @@ class World {
 
   /// Every body at rest, as after construction.
   void restart();
-  std::size_t state_size() const;
-  void save_state(std::span<double> state) const;
-  void load_state(std::span<const double> state);
+  /// Normal and tangents of every contact point, as of the last step, 9 numbers each: what the
+  /// efforts of its rows mean.
+  std::size_t frames_size() const;
+  void save_frames(std::vector<double>& frames) const;
+  void load_frames(std::span<const double> frames);
   std::size_t bytes() const;
 
  private:

@@ -1,0 +1,70 @@
+// What the motion of a finite-element body depends on, by name.
+#include "sinew/fem/fem_body_model.hpp"
+
+namespace sinew::fem {
+
+namespace {
+
+void add(ValueHash& hash, const material::Hyperelastic& energy) {
+  for (const auto& term : energy.powers) hash.add(term.coefficient, term.exponent);
+  hash.add(energy.polynomial, energy.bulk_modulus, energy.saint_venant_shear);
+  for (const auto& term : energy.prony) hash.add(term.relative_modulus, term.relaxation_time);
+  if (energy.mullins) hash.add(energy.mullins->r, energy.mullins->m, energy.mullins->beta);
+}
+
+void add(ValueHash& hash, const std::vector<mesh::Face>& faces) {
+  for (const mesh::Face& face : faces) hash.add(face.node, face.middle);
+}
+
+void add(ValueHash& hash, const DeadLoad& load) { hash.add(load.nodes, load.forces); }
+void add(ValueHash& hash, const PressureLoad& load) {
+  add(hash, load.faces);
+  hash.add(load.pressure, load.gradient, load.level, load.only_positive);
+}
+void add(ValueHash& hash, const WaterLoad& load) {
+  add(hash, load.faces);
+  hash.add(load.density, load.normal_drag, load.tangential_drag, load.added_mass, load.velocity);
+}
+
+}  // namespace
+
+std::vector<NamedHash> FemBodyModel::parts() const {
+  const FemModelSettings& elements = settings_.elements;
+  const mesh::Mesh& mesh = *settings_.mesh;
+  ValueHash material, mass, points;
+  mass.add(elements.mass, elements.total_mass, elements.even_mass);
+  for (const Region& region : elements.regions) {
+    mass.add(region.density);
+    material.add(region.constants.young_modulus, region.constants.poisson_ratio, region.law,
+                 region.elements, region.patches, region.hyperelastic.has_value());
+    if (region.hyperelastic) add(material, *region.hyperelastic);
+  }
+  for (const PointMass& point : elements.point_masses) {
+    points.add(point.nodes, point.weights, point.mass);
+  }
+  ValueHash held = ValueHash().add(elements.fixed_nodes);
+  for (const HeldAxis& axis : elements.held_axes) held.add(axis.node, axis.axis);
+  const ValueHash nodes =
+      ValueHash().add(mesh.nodes, mesh.tetrahedra, mesh.quadratic, mesh.hexahedra);
+  const ValueHash damping = ValueHash().add(settings_.damping.mass, settings_.damping.stiffness);
+  return {{"mesh", nodes.value()},
+          {"material", material.value()},
+          {"mass", mass.value()},
+          {"point masses", points.value()},
+          {"fixed nodes", held.value()},
+          {"damping", damping.value()},
+          {"gravity", ValueHash().add(settings_.gravity).value()}};
+}
+
+std::uint64_t FemBodyModel::point_hash(int point) const {
+  return ValueHash().add(attachment(point).nodes, attachment(point).weights).value();
+}
+
+std::uint64_t FemBodyModel::load_hash(int load) const {
+  ValueHash hash;
+  std::visit([&](const auto& kind) { add(hash, kind); },
+             loads_->loads()[static_cast<std::size_t>(load)]);
+  return hash.value();
+}
+
+}  // namespace sinew::fem

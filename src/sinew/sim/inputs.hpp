@@ -1,0 +1,30 @@
+/// @file
+/// What acts on a run from outside, and stays until it is changed.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "sinew/core/types.hpp"
+#include "sinew/fem/rigid_base.hpp"
+#include "sinew/fem/tether.hpp"
+#include "sinew/sim/actuator.hpp"
+#include "sinew/sim/signal.hpp"
+
+namespace sinew::sim {
+
+/// Inputs of one body; of one without nodes they are empty.
+struct BodyInputs {
+  Points external_forces;               ///< (n, 3) N on all mesh nodes
+  std::optional<fem::Tether> tether;    ///< a hand that pulls
+  std::optional<fem::AffineField> base;  ///< where fixed nodes go in the next step; none: they stay
+};
+
+/// A value, see Simulation::inputs().
+struct Inputs {
+  std::vector<Command> commands;  ///< (actuators,)
+  std::vector<Signal> loads;      ///< (loads,) factors
+  std::vector<BodyInputs> bodies;
+};
+
+}  // namespace sinew::sim

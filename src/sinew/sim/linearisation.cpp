@@ -1,0 +1,94 @@
+#include "sinew/sim/linearisation.hpp"
+
+#include <fmt/format.h>
+
+#include "sinew/constraint/contact.hpp"
+#include "sinew/constraint/effector.hpp"
+#include "sinew/core/error.hpp"
+#include "sinew/sim/simulation.hpp"
+
+namespace sinew::sim {
+
+namespace {
+
+std::string direction_name(const Vector3& direction, int index) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (direction == Vector3::Unit(axis)) return {'.', "xyz"[axis]};
+  }
+  return fmt::format("[{}]", index);
+}
+
+// Puts the state back whatever happens.
+class StateGuard {
+ public:
+  explicit StateGuard(Simulation& simulation)
+      : simulation_(simulation), state_(simulation.state()) {}
+  ~StateGuard() { simulation_.restore(state_); }
+  StateGuard(const StateGuard&) = delete;
+  StateGuard& operator=(const StateGuard&) = delete;
+
+ private:
+  Simulation& simulation_;
+  State state_;
+};
+
+}  // namespace
+
+std::vector<std::string> row_names(const Model& model) {
+  std::vector<std::string> names(static_cast<std::size_t>(model.rows().rows()));
+  const auto name = [&](int row) -> std::string& { return names[static_cast<std::size_t>(row)]; };
+  for (const auto& actuator : model.actuators()) name(actuator.row) = actuator.name;
+  for (const auto& guide : model.guides()) {
+    const auto& actuator = model.actuators()[static_cast<std::size_t>(guide.actuator)];
+    name(guide.row) = fmt::format("{} point {}", actuator.name, guide.via + 1);
+  }
+  for (std::size_t i = 0; i < model.effectors().size(); ++i) {
+    const auto& effector = model.effector(static_cast<int>(i));
+    for (int k = 0; k < effector.row_count(); ++k) {
+      name(effector.first_row() + k) =
+          model.effectors()[i].name +
+          direction_name(effector.directions()[static_cast<std::size_t>(k)], k);
+    }
+  }
+  for (std::size_t i = 0; i < model.contacts().size(); ++i) {
+    const constraint::Contact& contact = model.contact(static_cast<int>(i));
+    for (std::size_t k = 0; k < contact.points().size(); ++k) {
+      constexpr const char* kAlong[] = {"normal", "tangent 1", "tangent 2"};
+      for (int c = 0; c < 3; ++c) {
+        name(contact.row(k) + c) =
+            fmt::format("{} point {} {}", model.contacts()[i].name, k, kAlong[c]);
+      }
+    }
+  }
+  return names;
+}
+
+Linearisation linearise(Simulation& simulation, const LinearisationChoice& choice) {
+  const Model& model = simulation.model();
+  const StateGuard guard(simulation);
+  const std::vector<int> curved =
+      choice.geometric_stiffness ? model.curved_constraints() : std::vector<int>{};
+  const auto weights = choice.of_statics ? mechanics::StepWeights{}
+                                         : mechanics::step_weights(model.step().integrator,
+                                                                   model.step().time_step);
+  World& world = simulation.world();
+  world.begin_query(simulation.time());
+  world.linearise({weights, choice.tangent, !curved.empty(), false});
+  world.form_rows(simulation.efforts(), curved);
+  Linearisation result;
+  result.residual = world.residual(simulation.efforts());
+  if (world.condense() == linalg::FactorStatus::singular) {
+    throw Error(ErrorKind::singular_matrix, {.item = "linearise()"},
+                "the stiffness matrix is singular at this state",
+                "fix a region of every body, or try tangent='real-time'");
+  }
+  result.rows = row_names(model);
+  result.compliance = world.compliance();
+  result.delta = world.delta();
+  result.delta_free = world.delta_free();
+  result.effort = Eigen::Map<const VectorX>(simulation.efforts().data(), model.rows().rows());
+  result.negative_pivots = world.negative_pivots();
+  return result;
+}
+
+}  // namespace sinew::sim

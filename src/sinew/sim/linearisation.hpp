@@ -1,0 +1,42 @@
+/// @file
+/// A robot's linear equations at its present state.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sinew/core/types.hpp"
+#include "sinew/mechanics/tangent.hpp"
+
+namespace sinew::sim {
+
+class Model;
+class Simulation;
+
+/// "long_0", "long_0 point 2", "tip.x", "floor point 3 normal": what every row of H belongs to, each
+/// name once.
+std::vector<std::string> row_names(const Model& model);
+
+/// W and what belongs to it, at one state.
+struct Linearisation {
+  std::vector<std::string> rows;  ///< see row_names()
+  MatrixX compliance;             ///< W (rows, rows), m/N
+  VectorX delta;                  ///< (rows,) m, now
+  VectorX delta_free;       ///< (rows,) m, with all efforts zero, as the linearisation sees it
+  VectorX effort;           ///< (rows,) N, now
+  double residual = 0.0;    ///< N, |p - f + H^T lambda|
+  int negative_pivots = 0;  ///< of A; 0: the equilibrium is stable
+};
+
+/// What linearise() is asked for.
+struct LinearisationChoice {
+  mechanics::Tangent tangent = mechanics::Tangent::exact;
+  bool geometric_stiffness = true;  ///< of all loaded cables
+  bool of_statics = true;           ///< false: of the scene's integrator and time step
+};
+
+/// Of the present state, which stays as it is bit for bit; every point of a contact takes part.
+/// Throws Error(singular-matrix).
+Linearisation linearise(Simulation& simulation, const LinearisationChoice& choice = {});
+
+}  // namespace sinew::sim

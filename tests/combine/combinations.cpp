@@ -1,0 +1,80 @@
+// Tries combinations of features by the thousand, each in a process of its own so that a crash is
+// counted as one.
+//   combinations [--from SEED] [--count N]     random selections (300)
+//   combinations --pairs                       every pair of levels
+//   combinations --print SEED                  the scene of a seed
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <iostream>
+#include <map>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "scene_draft.hpp"
+#include "trial.hpp"
+
+namespace {
+
+using namespace sinew::combine;
+
+// In a child process; a crash is an outcome, too.
+std::string try_apart(const Selection& selection, std::uint64_t seed) {
+  int ends[2];
+  if (pipe(ends) != 0) std::abort();
+  const pid_t child = fork();
+  if (child == 0) {
+    close(ends[0]);
+    const Outcome outcome = try_scene(selection, seed);
+    const std::string text = fmt::format("{}|{}|{}", outcome_name(outcome.kind), outcome.cause,
+                                         outcome.condition);
+    if (write(ends[1], text.data(), text.size()) < 0) std::abort();
+    _exit(0);
+  }
+  close(ends[1]);
+  std::string text;
+  char buffer[4096];
+  for (ssize_t got; (got = read(ends[0], buffer, sizeof buffer)) > 0;) {
+    text.append(buffer, static_cast<std::size_t>(got));
+  }
+  close(ends[0]);
+  int status = 0;
+  waitpid(child, &status, 0);
+  if (WIFSIGNALED(status)) return fmt::format("crashed|{}|", strsignal(WTERMSIG(status)));
+  return text;
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+  std::uint64_t from = 0;
+  int number = 300;
+  bool pairs = false;
+  for (int k = 1; k < count; ++k) {
+    const std::string word = words[k];
+    if (word == "--pairs") pairs = true;
+    if (word == "--from" && k + 1 < count) from = std::stoull(words[++k]);
+    if (word == "--count" && k + 1 < count) number = std::stoi(words[++k]);
+    if (word == "--print" && k + 1 < count) {
+      const std::uint64_t seed = std::stoull(words[++k]);
+      std::cout << write_scene(draft_scene(random_selection(seed), seed));
+      return 0;
+    }
+  }
+  const std::vector<Selection> cover = pairs ? pairwise_cover() : std::vector<Selection>{};
+  if (pairs) number = static_cast<int>(cover.size());
+  std::map<std::string, int> sums;
+  for (int k = 0; k < number; ++k) {
+    const std::uint64_t seed = from + static_cast<std::uint64_t>(k);
+    const Selection selection =
+        pairs ? cover[static_cast<std::size_t>(k)] : random_selection(seed);
+    const std::string outcome = try_apart(selection, seed);
+    ++sums[outcome.substr(0, outcome.find('|'))];
+    if (!outcome.starts_with("ran||solved")) std::cout << seed << ' ' << outcome << std::endl;
+  }
+  for (const auto& [kind, sum] : sums) std::cout << fmt::format("{:6} {}\n", sum, kind);
+  return 0;
+}

@@ -1,0 +1,500 @@
+#include "scene_draft.hpp"
+
+#include <algorithm>
+#include <map>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "random.hpp"
+
+namespace sinew::combine {
+
+namespace {
+
+[[noreturn]] void unknown(std::string_view feature, std::string_view level) {
+  throw std::logic_error(fmt::format(
+      "the grammar offers '{}' for {}, and the generator of scenes does not know how to write it",
+      level, feature));
+}
+
+// "key: text" of a level, out of a table of all levels.
+std::string look_up(std::string_view feature, const std::string& level,
+                    const std::map<std::string, std::string>& texts) {
+  const auto found = texts.find(level);
+  if (found == texts.end()) unknown(feature, level);
+  return found->second;
+}
+
+std::string vector_text(const std::array<double, 3>& mm) {
+  return fmt::format("{:.6g} {:.6g} {:.6g} mm", mm[0], mm[1], mm[2]);
+}
+
+// Where things are on a body, mm at rest. All bodies are 60 mm long from their base to their tip.
+struct BodyShape {
+  std::string mesh;  // of finite elements
+  std::string base, tip, side;
+  int along = 0;                         // axis
+  std::array<double, 3> origin{};        // of the axis
+  std::array<double, 3> half{};          // of the cross-section, mm
+  double sense = 1.0;                    // of the axis from base to tip
+
+  // (3,) mm. @param a 0 at the base, 1 at the tip. @param u,v -1 .. 1 across.
+  std::array<double, 3> at(double a, double u, double v) const {
+    std::array<double, 3> result = origin;
+    const auto axis = static_cast<std::size_t>(along);
+    result[axis] += sense * 60.0 * a;
+    result[(axis + 1) % 3] += u * half[(axis + 1) % 3];
+    result[(axis + 2) % 3] += v * half[(axis + 2) % 3];
+    return result;
+  }
+  // The direction in which contacts lie: against the second axis across.
+  int below() const { return (along + 2) % 3; }
+};
+
+BodyShape block_shape() {
+  return {"{shape: block, length: 60 mm, width: 20 mm, height: 10 mm, element_size: 10 mm}",
+          "x_min", "x_max", "z_max", 0, {0.0, 10.0, 5.0}, {30.0, 10.0, 5.0}};
+}
+
+BodyShape round_shape(const std::string& mesh) {
+  return {mesh, "bottom", "top", "side", 2, {}, {10.0, 10.0, 30.0}};
+}
+
+BodyShape fem_shape(const std::string& name) {
+  if (name == "block") return block_shape();
+  BodyShape shape = round_shape(look_up(
+      "mesh", name,
+      {{"cylinder", "{shape: cylinder, radius: 10 mm, height: 60 mm, element_size: 10 mm}"},
+       {"cone",
+        "{shape: cone, base_radius: 12 mm, tip_radius: 9 mm, height: 60 mm, element_size: 10 mm}"},
+       {"hollow-cylinder",
+        "{shape: hollow-cylinder, inner_radius: 4 mm, outer_radius: 11 mm, height: 60 mm, "
+        "element_size: 12 mm}"},
+       {"chambered-cylinder",
+        "{shape: chambered-cylinder, radius: 12 mm, height: 60 mm, chamber_radius: 5 mm, "
+        "chamber_offset: 4 mm, chamber_bottom: 10 mm, chamber_top: 50 mm, element_size: 12 mm}"}}));
+  if (name == "hollow-cylinder") shape.side = "outer";
+  return shape;
+}
+
+BodyShape arm_shape() { return {"", "", "", "", 2, {}, {10.0, 10.0, 30.0}, -1.0}; }
+
+struct Body {
+  std::string id;
+  bool fem = true;
+  BodyShape shape;
+};
+
+class Drafter {
+ public:
+  Drafter(const Selection& selection, std::uint64_t seed) : selection_(selection), random_(seed) {}
+
+  SceneDraft draft() {
+    write_settings();
+    add_bodies();
+    add_cables();
+    add_chamber();
+    add_spring();
+    add_force();
+    add_torque();
+    add_load();
+    add_mass();
+    add_contact();
+    add_effector();
+    add_probe();
+    add_controller();
+    SceneDraft draft{settings_, {}};
+    for (const char* section : {"bodies", "actuators", "loads", "masses", "effectors", "probes",
+                                "contacts", "controllers"}) {
+      if (!sections_[section].empty()) draft.sections.emplace_back(section, sections_[section]);
+    }
+    return draft;
+  }
+
+ private:
+  const std::string& of(std::string_view feature) const { return level(selection_, feature); }
+  bool has(std::string_view feature) const { return of(feature) != "none"; }
+  void add(const char* section, std::string id, std::string text) {
+    sections_[section].push_back({std::move(id), std::move(text)});
+  }
+  double draw(double from, double to) { return random_.uniform(from, to); }
+  bool dynamic() const { return of("integrator") != "quasi-static"; }
+
+  // The first body that is as asked; none: nullptr.
+  const Body* body(bool fem) const {
+    const auto found = std::ranges::find(bodies_, fem, &Body::fem);
+    return found == bodies_.end() ? nullptr : &*found;
+  }
+  // Any body.
+  const Body& some_body() {
+    return bodies_[static_cast<std::size_t>(random_.below(static_cast<int>(bodies_.size())))];
+  }
+
+  void write_settings() {
+    const std::string& integrator = of("integrator");
+    std::string solver = fmt::format("method: {}, tangent: {}, factorisation: {}, ordering: {}",
+                                     of("method"), of("tangent"), of("factorisation"),
+                                     of("ordering"));
+    if (has("adaptive")) solver += ", adaptive: {tolerance: 1e-3, smallest: 0.05 ms}";
+    settings_ = fmt::format("sinew: 1\ntime_step: {} ms\nintegrator: {}\nsolver: {{{}}}\n",
+                            dynamic() ? 5 : 10, integrator, solver);
+    if (has("gravity")) settings_ += "gravity: -3 0 -5 m/s^2\n";
+  }
+
+  std::string material() {
+    std::string text = look_up(
+        "material", of("material"),
+        {{"corotational", "model: corotational, young_modulus: 120 kPa, poisson_ratio: 0.35"},
+         {"linear", "model: linear, young_modulus: 120 kPa, poisson_ratio: 0.35"},
+         {"neo-hookean", "model: neo-hookean, shear_modulus: 40 kPa, poisson_ratio: 0.45"},
+         {"mooney-rivlin", "model: mooney-rivlin, c10: 15 kPa, c01: 5 kPa, poisson_ratio: 0.45"},
+         {"yeoh", "model: yeoh, c10: 20 kPa, c20: 1 kPa, c30: 0.1 kPa, poisson_ratio: 0.45"},
+         {"ogden",
+          "model: ogden, mu: 30 10 kPa, alpha: 2 4, convention: two-mu-over-alpha-squared, "
+          "poisson_ratio: 0.45"},
+         {"arruda-boyce",
+          "model: arruda-boyce, shear_modulus: 40 kPa, locking_stretch: 3.5, poisson_ratio: 0.45"},
+         {"saint-venant-kirchhoff",
+          "model: saint-venant-kirchhoff, young_modulus: 120 kPa, poisson_ratio: 0.35"},
+         {"ecoflex-00-30", "ecoflex-00-30"}});
+    if (text == "ecoflex-00-30") return text;
+    if (hyperelastic()) {
+      text += look_up("history", of("history"),
+                      {{"none", ""},
+                       {"viscosity",
+                        ", viscosity: [{relative_modulus: 0.2, relaxation_time: 20 ms}]"},
+                       {"softening", ", softening: {r: 2, m: 50 Pa, beta: 0.1}"}});
+    }
+    return "{" + text + "}";
+  }
+  bool hyperelastic() const { return of("material") != "corotational" && of("material") != "linear"; }
+
+  void add_bodies() {
+    const std::string& kinds = of("bodies");
+    std::size_t from = 0;
+    while (from < kinds.size()) {
+      const std::size_t end = std::min(kinds.find(' ', from), kinds.size());
+      const std::string kind = kinds.substr(from, end - from);
+      from = end + 1;
+      const std::string id = fmt::format("body_{}", bodies_.size());
+      if (kind == "fem") {
+        const bool first = body(true) == nullptr;
+        const bool chambered = has("chamber") && first;
+        bodies_.push_back({id, true,
+                           !first      ? block_shape()
+                           : chambered ? fem_shape("chambered-cylinder")
+                                       : fem_shape(of("mesh"))});
+        add_fem_body(bodies_.back());
+      } else if (kind == "pcc") {
+        bodies_.push_back({id, false, arm_shape()});
+        add("bodies", id,
+            "{type: pcc, segments: [{length: 30 mm, mass: 10 g, stiffness: 0.02 N m, damping: "
+            "2e-4 N m s, bending: spatial}, {length: 30 mm, mass: 10 g, stiffness: 0.02 N m, "
+            "damping: 2e-4 N m s}]}");
+      } else {
+        unknown("bodies", kind);
+      }
+    }
+  }
+
+  void add_fem_body(const Body& body) {
+    std::string text = fmt::format(
+        "type: fem, mesh: {}, material: {}, density: 1000 kg/m^3, mass_matrix: {}, fixed: {{set: "
+        "{}}}",
+        body.shape.mesh, material(), of("mass_matrix"), body.shape.base);
+    if (has("element") && (hyperelastic() || of("element") == "tet4")) {
+      text += ", element: " + of("element");
+    }
+    if (has("damping")) text += ", damping: {mass: 0.5 1/s, stiffness: 1 ms}";
+    if (has("initial_velocity") && dynamic()) {
+      text += ", initial_velocity: {linear: 0.02 0.05 0 m/s}";
+    }
+    if (has("base")) {
+      text += fmt::format(
+          ", base: {{y: {{sine: {{amplitude: {:.3g} mm, period: 200 ms}}}}, angle: {{ramp: {{to: "
+          "{:.3g} deg, duration: 100 ms}}}}, axis: 0 1 0}}",
+          draw(1.0, 3.0), draw(2.0, 8.0));
+    }
+    add("bodies", body.id, "{" + text + "}");
+  }
+
+  // A value over time that ends at so many units.
+  std::string signal(double value, const char* unit) {
+    return look_up(
+        "cable_signal", of("cable_signal"),
+        {{"value", fmt::format("{:.4g} {}", value, unit)},
+         {"ramp", fmt::format("{{ramp: {{to: {:.4g} {}, duration: 40 ms}}}}", value, unit)},
+         {"sine", fmt::format("{{sine: {{amplitude: {:.4g} {}, period: 100 ms}}}}", value, unit)},
+         {"steps",
+          fmt::format("{{steps: [[0 s, 0 {1}], [20 ms, {0:.4g} {1}]]}}", value, unit)}});
+  }
+
+  void add_cable(const std::string& id, const Body& body, double u, double v,
+                 const std::string& told) {
+    std::string text = fmt::format(
+        "type: cable, body: <{}>, outside: nearest, pull: {}, points: [{}, {}, {}], limits: "
+        "{{tension: {{max: 5 N}}, displacement: {{min: -10 mm, max: 8 mm}}}}",
+        body.id, of("cable_pull"), vector_text(body.shape.at(0.05, u, v)),
+        vector_text(body.shape.at(0.5, u, 0.9 * v)), vector_text(body.shape.at(0.95, 0.8 * u, v)));
+    text += look_up("cable", told,
+                    {{"displacement",
+                      ", command: {displacement: " + signal(draw(0.2, 1.5), "mm") + "}"},
+                     {"tension", ", command: {tension: " + signal(draw(0.1, 0.5), "N") + "}"},
+                     {"untold", ""}});
+    if (has("cable_friction")) text += ", friction: 0.3";
+    if (body.fem) {  // sections of arms are rigid
+      text += look_up("cable_guides", of("cable_guides"),
+                      {{"none", ""},
+                       {"radius", ", guide_radius: 2 mm"},
+                       {"spacing", ", guide_spacing: 20 mm"}});
+    }
+    if (!has("cable_stiffness")) text += ", geometric_stiffness: false";
+    add("actuators", id, "{" + text + "}");
+    steerable_.push_back(id);
+  }
+
+  void add_cables() {
+    if (!has("cable")) return;
+    const Body& body = some_body();
+    add_cable("cable_0", body, 0.6, -0.2, of("cable"));
+    if (of("second_cable") == "twin") add_cable("cable_1", body, 0.6, -0.2, "tension");
+    if (of("second_cable") == "antagonist") add_cable("cable_1", body, -0.6, -0.2, "tension");
+  }
+
+  void add_chamber() {
+    const Body* on = body(true);
+    if (!has("chamber") || on == nullptr) return;
+    const std::string& told = of("chamber");
+    std::string medium = of("medium");
+    if (told == "gas" || told == "liquid") medium = told;
+    std::string text = fmt::format(
+        "type: pressure, body: <{}>, surface: {{inside: 4 0 30 mm}}, limits: {{pressure: {{min: "
+        "-10 kPa, max: 20 kPa}}}}",
+        on->id);
+    text += look_up("medium", medium,
+                    {{"none", ""},
+                     {"gas", ", gas: {dead_volume: 1 ml}"},
+                     {"liquid", ", liquid: {bulk_modulus: 1 MPa, dead_volume: 1 ml}"}});
+    text += look_up("chamber", told,
+                    {{"pressure", ", command: {pressure: " + signal(draw(0.3, 1.5), "kPa") + "}"},
+                     {"volume_growth",
+                      ", command: {volume_growth: " + signal(draw(0.02, 0.1), "ml") + "}"},
+                     {"gas", ", command: {gas: " + signal(draw(0.02, 0.1), "ml") + "}"},
+                     {"liquid", ", command: {liquid: " + signal(draw(0.02, 0.1), "ml") + "}"}});
+    add("actuators", "chamber", "{" + text + "}");
+    steerable_.push_back("chamber");
+  }
+
+  void add_spring() {
+    if (!has("spring")) return;
+    const Body& on = some_body();
+    const std::string coil = "wire_diameter: 0.5 mm, mean_diameter: 4 mm, coils: 10";
+    const std::string kind = look_up(
+        "spring", of("spring"),
+        {{"stiffness", "stiffness: 30 N/m, free_length: 25 mm, damping: 0.1 N s/m"},
+         {"coil", "stiffness: {" + coil + ", shear_modulus: 5 GPa}, free_length: 28 mm"},
+         {"band", "stiffness: 30 N/m, tension_only: true, free_length: 31 mm"},
+         {"shape_memory", "shape_memory: {" + coil + "}, command: {power: 2 W}"}});
+    add("actuators", "spring",
+        fmt::format("{{type: spring, body: <{}>, outside: nearest, points: [{}, {}], {}}}", on.id,
+                    vector_text(on.shape.at(0.3, -0.5, 0.5)),
+                    vector_text(on.shape.at(0.8, -0.5, 0.5)), kind));
+  }
+
+  void add_force() {
+    if (!has("force")) return;
+    const Body& on = some_body();
+    const std::string told =
+        look_up("force", of("force"),
+                {{"force", "force: " + signal(draw(0.02, 0.1), "N")},
+                 {"displacement", "displacement: " + signal(draw(0.2, 1.0), "mm")}});
+    add("actuators", "push",
+        fmt::format("{{type: force, body: <{}>, point: {}, direction: 1 1 0, outside: nearest, "
+                    "command: {{{}}}, limits: {{force: {{min: -2 N, max: 2 N}}}}}}",
+                    on.id, vector_text(on.shape.at(0.9, 0.0, 0.0)), told));
+    steerable_.push_back("push");
+  }
+
+  void add_torque() {
+    const Body* on = body(false);
+    if (!has("torque") || on == nullptr) return;
+    const std::string told = look_up("torque", of("torque"),
+                                     {{"torque", "torque: " + signal(draw(1.0, 4.0), "N mm")},
+                                      {"angle", "angle: " + signal(draw(2.0, 8.0), "deg")}});
+    add("actuators", "twist",
+        fmt::format("{{type: torque, body: <{}>, segment: 1, command: {{{}}}, limits: {{torque: "
+                    "{{min: -0.1 N m, max: 0.1 N m}}}}}}",
+                    on->id, told));
+    steerable_.push_back("twist");
+  }
+
+  void add_load() {
+    const Body* on = body(true);
+    if (!has("load") || on == nullptr) return;
+    const BodyShape& shape = on->shape;
+    const std::string where = fmt::format(", surface: {{set: {}}}", shape.side);
+    const std::string what = look_up(
+        "load", of("load"),
+        {{"force", fmt::format(", point: {}, force: 0.02 0 -0.03 N, outside: nearest, factor: "
+                               "{{ramp: {{to: 1, duration: 30 ms}}}}",
+                               vector_text(shape.at(0.8, 0.0, 0.0)))},
+         {"line", fmt::format(", points: [{}, {}], outside: nearest, force_per_length: 0 0.5 0 N/m",
+                              vector_text(shape.at(0.2, 0.5, 0.5)),
+                              vector_text(shape.at(0.9, 0.5, 0.5)))},
+         {"traction", where + ", traction: 10 0 -20 Pa"},
+         {"acceleration", ", acceleration: 1 0.5 0 m/s^2, factor: {sine: {amplitude: 1, period: "
+                          "100 ms}}"},
+         {"pressure", where + ", pressure: {ramp: {to: 50 Pa, duration: 30 ms}}"},
+         {"water", ", density: 1000 kg/m^3, velocity: 0.1 0 0 m/s"}});
+    add("loads", "load", fmt::format("{{type: {}, body: <{}>{}}}", of("load"), on->id, what));
+  }
+
+  void add_mass() {
+    const Body* on = body(true);
+    if (!has("mass") || on == nullptr) return;
+    add("masses", "hung",
+        fmt::format("{{body: <{}>, point: {}, mass: 2 g, outside: nearest}}", on->id,
+                    vector_text(on->shape.at(0.95, 0.2, 0.2))));
+  }
+
+  // Surfaces lie a little beside the tip.
+  void add_contact() {
+    if (!has("contact")) return;
+    const Body& on = some_body();
+    const auto below = static_cast<std::size_t>(on.shape.below());
+    const double gap = draw(0.05, 1.0);
+    const char* axes[] = {"1 0 0", "0 1 0", "0 0 1"};
+    std::array<double, 3> at = on.shape.at(1.0, 0.0, 0.0);
+    at[below] = on.shape.origin[below] - 1.25 * on.shape.half[below] - gap;
+    std::array<double, 3> centre = at;
+    centre[below] -= 15.0;
+    std::array<double, 3> left = centre, right = centre;
+    left[(below + 2) % 3] -= 40.0;
+    right[(below + 2) % 3] += 40.0;
+    const std::string surface = look_up(
+        "contact", of("contact"),
+        {{"plane", fmt::format("plane: {{point: {}, normal: {}}}", vector_text(at), axes[below])},
+         {"sphere", fmt::format("sphere: {{center: {}, radius: 15 mm}}", vector_text(centre))},
+         {"capsule", fmt::format("capsule: {{ends: [{}, {}], radius: 15 mm}}", vector_text(left),
+                                 vector_text(right))}});
+    std::string text = fmt::format("body: <{}>, surface: {{{}}}", on.id, surface);
+    text += on.fem ? fmt::format(", nodes: {{set: {}}}", on.shape.tip)
+                   : fmt::format(", points: [{}, {}]", vector_text(on.shape.at(1.0, 0.0, 0.0)),
+                                 vector_text(on.shape.at(1.0, 0.0, -1.0)));
+    if (has("contact_friction")) text += ", friction: 0.5";
+    if (has("contact_motion")) {
+      text += fmt::format(", motion: {{{}: {{ramp: {{to: {:.3g} mm, duration: 60 ms}}}}}}",
+                          "xyz"[below], gap + draw(0.5, 2.5));
+    }
+    add("contacts", "floor", "{" + text + "}");
+  }
+
+  void add_effector() {
+    std::string kind = of("effector");
+    if (kind == "none" && has("controller")) kind = "point";
+    if (kind == "none") return;
+    const Body& on = some_body();
+    if (kind == "set" && !on.fem) kind = "point";
+    const BodyShape& shape = on.shape;
+    tip_ = shape.at(1.0, 0.0, 0.0);
+    orientation_ = kind == "orientation";
+    const std::string what = look_up(
+        "effector", kind,
+        {{"point", "point: " + vector_text(tip_)},
+         {"set", "set: " + shape.tip},
+         {"orientation", fmt::format("orientation: [{}, {}, {}]", vector_text(tip_),
+                                     vector_text(shape.at(1.0, 0.5, 0.0)),
+                                     vector_text(shape.at(0.9, 0.0, 0.5)))}});
+    add("effectors", "tip", fmt::format("{{body: <{}>, outside: nearest, {}}}", on.id, what));
+  }
+
+  void add_probe() {
+    if (!has("probe")) return;
+    std::string kind = of("probe");
+    const bool of_nodes = kind == "set" || kind == "bend" || kind == "extent";
+    const Body& any = some_body();
+    const Body* on = of_nodes && !any.fem ? body(true) : &any;
+    if (on == nullptr) {
+      kind = "point";
+      on = &any;
+    }
+    const BodyShape& shape = on->shape;
+    const std::string middle = vector_text(shape.at(0.5, 0.2, 0.0));
+    const std::string end = vector_text(shape.at(0.9, 0.2, 0.0));
+    const std::string what = look_up(
+        "probe", kind,
+        {{"point", "point: " + end},
+         {"set", "set: " + shape.tip},
+         {"line", fmt::format("line: [{}, {}]", middle, end)},
+         {"bend", fmt::format("bend: [{{set: {}}}, {{set: {}}}]", shape.base, shape.tip)},
+         {"distance", fmt::format("distance: [{}, {}]", middle, end)},
+         {"extent", "extent: {along: x}"}});
+    add("probes", "gauge", fmt::format("{{body: <{}>, outside: nearest, {}}}", on->id, what));
+  }
+
+  void add_controller() {
+    if (!has("controller") || steerable_.empty()) return;
+    if (of("controller") != "inverse") unknown("controller", of("controller"));
+    std::array<double, 3> target = tip_;
+    for (double& x : target) x += draw(-1.0, 1.0);
+    const std::string task = orientation_ ? "rotation: 0.02 0.03 0 rad"
+                                          : "target: " + vector_text(target);
+    std::string actuators;
+    for (const std::string& id : steerable_) {
+      actuators += (actuators.empty() ? "" : ", ") + ("<" + id + ">");
+      if (random_.below(3) == 0) break;  // others obey their commands
+    }
+    add("controllers", "follow",
+        fmt::format("{{type: inverse, effectors: {{<tip>: {{{}}}}}, actuators: [{}], "
+                    "regularisation: {{of: {}}}}}",
+                    task, actuators, of("regularisation")));
+  }
+
+  const Selection& selection_;
+  Random random_;
+  std::string settings_;
+  std::map<std::string, std::vector<Item>> sections_;
+  std::vector<Body> bodies_;
+  std::vector<std::string> steerable_;
+  std::array<double, 3> tip_{};
+  bool orientation_ = false;
+};
+
+// Other names that sort the other way round.
+std::string other_name(const std::string& id) {
+  return fmt::format("z{:03}_{}", 999 - static_cast<int>(id.size()) * 7 - id.back(), id);
+}
+
+std::string replace_references(std::string text, const Layout& layout) {
+  for (std::size_t from = text.find('<'); from != std::string::npos; from = text.find('<', from)) {
+    const std::size_t end = text.find('>', from);
+    const std::string id = text.substr(from + 1, end - from - 1);
+    const std::string name = layout.renamed ? other_name(id) : id;
+    text.replace(from, end - from + 1, name);
+    from += name.size();
+  }
+  return text;
+}
+
+}  // namespace
+
+SceneDraft draft_scene(const Selection& selection, std::uint64_t seed) {
+  return Drafter(selection, seed).draft();
+}
+
+std::string write_scene(const SceneDraft& draft, const Layout& layout) {
+  std::string text = draft.settings;
+  for (const auto& [section, items] : draft.sections) {
+    text += section + ":\n";
+    std::vector<Item> ordered = items;
+    if (layout.reversed) std::ranges::reverse(ordered);
+    for (const Item& item : ordered) {
+      const std::string name = layout.renamed ? other_name(item.id) : item.id;
+      text += fmt::format("  {}: {}\n", name, replace_references(item.text, layout));
+    }
+  }
+  return text;
+}
+
+}  // namespace sinew::combine

@@ -1,0 +1,250 @@
+#include "trial.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <regex>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "random.hpp"
+#include "scene_draft.hpp"
+#include "sinew/core/error.hpp"
+#include "sinew/inverse/inverse_controller.hpp"
+#include "sinew/mechanics/body.hpp"
+#include "sinew/scene/build.hpp"
+#include "sinew/scene/scene.hpp"
+#include "sinew/sim/simulation.hpp"
+#include "sinew/sim/state_io.hpp"
+
+namespace sinew::combine {
+
+namespace {
+
+constexpr int kSteps = 6;
+constexpr int kHalf = 3;
+// Of the robot's size: another order of bodies sums forces in another order.
+constexpr double kOrderTolerance = 1e-9;
+
+// A simulation with the controllers of its scene.
+class Run {
+  std::unique_ptr<sim::Simulation> own_;
+
+ public:
+  explicit Run(const scene::Robot& robot, int threads = 1)
+      : Run(robot, std::make_unique<sim::Simulation>(robot.model, threads)) {}
+  Run(const scene::Robot& robot, std::unique_ptr<sim::Simulation> begun)
+      : own_(std::move(begun)), simulation(*own_) {
+    for (const auto& controller : robot.controllers) {
+      controllers_.push_back(
+          std::make_unique<inverse::InverseController>(simulation, controller.settings));
+    }
+  }
+
+  // Appends the state's hash after each step.
+  void advance(int steps) {
+    for (int k = 0; k < steps && error_.empty(); ++k) {
+      try {
+        simulation.step();
+        condition = std::max(condition, simulation.report().status);
+      } catch (const Error& error) {
+        error_ = error.what();
+      }
+      hashes.push_back(simulation.state_hash());
+    }
+  }
+
+  const std::string& error() const { return error_; }
+  void forget() {
+    hashes.clear();
+    error_.clear();
+  }
+
+  sim::Simulation& simulation;
+  std::vector<std::uint64_t> hashes;
+  sim::StepStatus condition = sim::StepStatus::solved;
+
+ private:
+  std::vector<std::unique_ptr<inverse::InverseController>> controllers_;
+  std::string error_;
+};
+
+scene::Robot build(const SceneDraft& draft, const Layout& layout = {}) {
+  return scene::build(scene::parse_scene_text(write_scene(draft, layout), "scene.yaml", {}));
+}
+
+bool is_finite(const sim::State& state) {
+  bool finite = true;
+  const auto check = [&](double x) { finite = finite && std::isfinite(x); };
+  sim::State::visit(state, [&](std::string_view, const auto& numbers) {
+    if constexpr (requires { numbers.begin(); }) {
+      for (const double x : numbers) check(x);
+    } else {
+      check(numbers);
+    }
+  });
+  return finite;
+}
+
+// m, between the nodes of two runs whose bodies stand in opposite orders.
+double largest_distance(const sim::Simulation& one, const sim::Simulation& other) {
+  double largest = 0.0;
+  const auto count = static_cast<int>(one.model().bodies().size());
+  for (int i = 0; i < count; ++i) {
+    const Points difference =
+        one.world().body(i).positions() - other.world().body(count - 1 - i).positions();
+    largest = std::max(largest, difference.rowwise().norm().maxCoeff());
+  }
+  return largest;
+}
+
+class Trial {
+ public:
+  explicit Trial(const SceneDraft& draft) : draft_(draft) {}
+
+  Outcome run() {
+    std::optional<scene::Robot> robot;
+    std::unique_ptr<Run> first;
+    try {
+      robot = build(draft_);
+      first = std::make_unique<Run>(*robot);
+    } catch (const Error& error) {
+      return {Outcome::Kind::refused, error.what(), ""};
+    }
+    first->advance(kHalf);
+    const std::string half = sim::format_state(first->simulation);
+    std::unique_ptr<sim::Simulation> copy = first->simulation.clone();
+    const sim::State state = first->simulation.state();
+    const bool halfway = first->error().empty();
+    first->advance(kSteps - kHalf);
+    reference_ = first->hashes;
+    if (!is_finite(first->simulation.state())) fail("a state is not finite");
+
+    Run threaded(*robot, 2);
+    threaded.advance(kSteps);
+    compare("two threads", threaded.hashes, 0);
+    if (halfway) {
+      Run resumed(*robot);
+      sim::parse_state(resumed.simulation, half, "state");
+      resumed.advance(kSteps - kHalf);
+      compare("a saved state", resumed.hashes, kHalf);
+      Run cloned(*robot, std::move(copy));
+      cloned.simulation.restore(state);  // once more: the controllers' memory
+      cloned.advance(kSteps - kHalf);
+      compare("a clone", cloned.hashes, kHalf);
+    }
+    {
+      Run again(*robot);
+      again.advance(kSteps);
+      again.forget();
+      again.simulation.reset();
+      again.advance(kSteps);
+      compare("reset()", again.hashes, 0);
+    }
+    {
+      Run renamed(build(draft_, {.renamed = true}));
+      renamed.advance(kSteps);
+      compare("other names", renamed.hashes, 0);
+    }
+    // A step that is flagged may have wandered, where rounding decides.
+    if (!sim::is_flagged(first->condition)) {
+      Run reversed(build(draft_, {.reversed = true}));
+      reversed.advance(kSteps);
+      const double distance = largest_distance(first->simulation, reversed.simulation);
+      if (!(distance <= kOrderTolerance * robot->model->size())) {
+        fail(fmt::format("another order moves nodes by {:.1e} m", distance));
+      }
+    }
+    const std::string condition(sim::step_status_name(first->condition));
+    if (!wrong_.empty()) return {Outcome::Kind::wrong, wrong_, condition};
+    if (!first->error().empty()) return {Outcome::Kind::stopped, first->error(), condition};
+    return {Outcome::Kind::ran, "", condition};
+  }
+
+ private:
+  void fail(const std::string& what) { wrong_ += (wrong_.empty() ? "" : "; ") + what; }
+
+  // @param hashes of the steps from `from` on.
+  void compare(const char* way, const std::vector<std::uint64_t>& hashes, std::size_t from) {
+    const std::vector<std::uint64_t> expected(
+        reference_.begin() + static_cast<std::ptrdiff_t>(std::min(from, reference_.size())),
+        reference_.end());
+    if (hashes == expected) return;
+    const auto differs = std::ranges::mismatch(hashes, expected);
+    fail(fmt::format("{}: step {} differs", way,
+                     from + static_cast<std::size_t>(differs.in1 - hashes.begin()) + 1));
+  }
+
+  const SceneDraft& draft_;
+  std::vector<std::uint64_t> reference_;
+  std::string wrong_;
+};
+
+}  // namespace
+
+const char* outcome_name(Outcome::Kind kind) {
+  switch (kind) {
+    case Outcome::Kind::ran:
+      return "ran";
+    case Outcome::Kind::refused:
+      return "refused";
+    case Outcome::Kind::stopped:
+      return "stopped";
+    case Outcome::Kind::wrong:
+      return "wrong";
+  }
+  return "";
+}
+
+Outcome try_scene(const Selection& selection, std::uint64_t seed) {
+  return Trial(draft_scene(selection, seed)).run();
+}
+
+std::string try_changed_number(const Selection& selection, std::uint64_t seed) {
+  const std::string text = write_scene(draft_scene(selection, seed));
+  // A number with its unit, or a coefficient. Brackets: of what the numbers are inputs.
+  static const std::regex number(
+      "(command|factor|pressure|target|rotation): (\\{[^}]*\\}[^}]*\\}|[^,}]*)|"
+      "solver: [^\\n]*|sinew: 1|time_step: [^\\n]*|fixed: [^\\n,]*|"
+      "([ \\[])([0-9]+\\.?[0-9]*)(?=[ ,}\\]])");
+  std::vector<std::smatch> numbers;
+  for (auto at = std::sregex_iterator(text.begin(), text.end(), number);
+       at != std::sregex_iterator(); ++at) {
+    if ((*at)[4].matched) numbers.push_back(*at);
+  }
+  if (numbers.empty()) return {};
+  Random random(seed);
+  const std::smatch& chosen = numbers[static_cast<std::size_t>(
+      random.below(static_cast<int>(numbers.size())))];
+  std::string changed = text;
+  changed.replace(static_cast<std::size_t>(chosen.position(4)),
+                  static_cast<std::size_t>(chosen.length(4)),
+                  fmt::format("{:.8g}", 1.03 * std::stod(chosen[4].str())));
+  const auto line = static_cast<std::size_t>(chosen.position(4));
+  const std::string where =
+      fmt::format("'{}' changed by 3 %", text.substr(line > 60 ? line - 60 : 0, 70));
+  const auto built = [](const std::string& scene) {
+    return scene::build(scene::parse_scene_text(scene, "scene.yaml", {}));
+  };
+  try {
+    const scene::Robot robot = built(text), other = built(changed);
+    Run first(robot), second(other);
+    first.advance(kHalf);
+    if (!first.error().empty()) return {};
+    sim::parse_state(second.simulation, sim::format_state(first.simulation), "state");
+    first.advance(kSteps - kHalf);
+    second.advance(kSteps - kHalf);
+    if (first.hashes.back() != second.hashes.back()) {
+      return where + ": a state was accepted and goes on differently";
+    }
+  } catch (const Error&) {
+    return {};  // refused
+  }
+  return {};
+}
+
+}  // namespace sinew::combine
