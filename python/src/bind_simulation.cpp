@@ -437,6 +437,36 @@ Returns
 -------
 Simulation
 )")
+      .def("state", &Session::state,
+           R"(state($self)
+--
+
+Everything that decides, together with the inputs, how the run goes on.
+
+Returns
+-------
+sinew.State
+    A value: it compares, copies and pickles, and stays what it is while the simulation goes on.
+)")
+      .def("restore", &Session::restore, py::arg("state"),
+           R"(restore($self, state)
+--
+
+Takes up a state; the run then goes on bit for bit as the one that it came from.
+
+An attached controller takes up its memory where the state has it, and begins anew otherwise.
+Commands, factors of loads, external forces and tethers stay as they are.
+
+Parameters
+----------
+state : sinew.State
+    Of this simulation, a clone, or another one of the same robot.
+
+Raises
+------
+Error
+    state-mismatch for a state of another robot, naming what differs; the state is then as before.
+)")
       .def("save_state", &Session::save_state, py::arg("path"),
            R"(save_state($self, path)
 --

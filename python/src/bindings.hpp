@@ -36,6 +36,7 @@ void bind_mass(py::module_& module);
 void bind_probe(py::module_& module);
 void bind_contact(py::module_& module);
 void bind_body(py::module_& module);
+void bind_state(py::module_& module);
 void bind_simulation(py::module_& module);
 void bind_controller(py::module_& module);
 void bind_mesh(py::module_& module);

@@ -7,7 +7,6 @@
 #include <pybind11/pybind11.h>
 
 #include "sinew/mechanics/body.hpp"
-#include "sinew/sim/state_io.hpp"
 
 #include "errors.hpp"
 
@@ -121,6 +120,17 @@ void Session::reset() {
   simulation_.reset();
   flagged_.clear();
   steps_ = 0;
+}
+
+SavedState Session::state() const {
+  const Use use(*this);
+  return {sim::format_state(simulation_)};
+}
+
+void Session::restore(const SavedState& state) {
+  const Use use(*this);
+  sim::parse_state(simulation_, state.bytes, "state");
+  steps_ = simulation_.steps();
 }
 
 void Session::load_state(const std::filesystem::path& path) {

@@ -17,6 +17,7 @@
 #include "sinew/scene/build.hpp"
 #include "sinew/sim/linearisation.hpp"
 #include "sinew/sim/simulation.hpp"
+#include "sinew/sim/state_io.hpp"
 
 namespace sinew::python {
 
@@ -31,6 +32,14 @@ struct AttachedController {
 struct LoadedRobot {
   scene::Robot robot;
   std::filesystem::path folder;
+};
+
+/// A state as bytes, see sim/state_io.hpp.
+struct SavedState {
+  std::string bytes;
+
+  /// Throws Error(state-corrupt), Error(state-version).
+  std::int64_t steps() const { return sim::read_state_header(bytes, "state").steps; }
 };
 
 /// See the file.
@@ -73,6 +82,9 @@ class Session {
   sim::StaticReport solve_static(const sim::StaticSettings& settings);
   /// Simulation::reset(), and external forces set to zero.
   void reset();
+  SavedState state() const;
+  /// Throws as sim::parse_state().
+  void restore(const SavedState& state);
   /// sim::load_state() and sim::save_state().
   void load_state(const std::filesystem::path& path);
   void save_state(const std::filesystem::path& path) const;

@@ -2,7 +2,7 @@
 // counted as one.
 //   combinations [--from SEED] [--count N]     random selections (300)
 //   combinations --pairs                       every pair of levels
-//   combinations --print SEED                  the scene of a seed
+//   combinations [--pairs] --print SEED        the scene of a seed
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -60,7 +60,8 @@ int main(int count, char** words) {
     if (word == "--count" && k + 1 < count) number = std::stoi(words[++k]);
     if (word == "--print" && k + 1 < count) {
       const std::uint64_t seed = std::stoull(words[++k]);
-      std::cout << write_scene(draft_scene(random_selection(seed), seed));
+      std::cout << write_scene(
+          draft_scene(pairs ? pairwise_cover().at(seed) : random_selection(seed), seed));
       return 0;
     }
   }

@@ -157,6 +157,23 @@ int find_feature(std::string_view name) {
   return static_cast<int>(found - all.begin());
 }
 
+// Whether this version refuses two levels beside each other: controllers do not choose efforts of
+// robots with contacts, and generalized-alpha creates energy in impacts.
+bool is_refused(int first, int first_level, int second, int second_level) {
+  const auto is = [&](int feature, int chosen, std::string_view name, std::string_view wanted) {
+    const Feature& of = features()[static_cast<std::size_t>(feature)];
+    const std::string& own = of.levels[static_cast<std::size_t>(chosen)];
+    return of.name == name && (wanted.empty() ? own != "none" : own == wanted);
+  };
+  const auto both = [&](std::string_view a, std::string_view a_level, std::string_view b,
+                        std::string_view b_level) {
+    return (is(first, first_level, a, a_level) && is(second, second_level, b, b_level)) ||
+           (is(first, first_level, b, b_level) && is(second, second_level, a, a_level));
+  };
+  return both("contact", "", "controller", "") ||
+         both("contact", "", "integrator", "generalized-alpha");
+}
+
 // Pairs of levels of two features that no selection has had yet.
 class OpenPairs {
  public:
@@ -170,7 +187,7 @@ class OpenPairs {
     for (int a = 0; a < static_cast<int>(all.size()); ++a) {
       for (int b = 0; b < a; ++b) {
         for (int i = 0; i < size(a); ++i) {
-          for (int j = 0; j < size(b); ++j) mark(a, i, b, j, 1);
+          for (int j = 0; j < size(b); ++j) mark(a, i, b, j, is_refused(a, i, b, j) ? 0 : 1);
         }
       }
     }
@@ -178,12 +195,15 @@ class OpenPairs {
 
   int left() const { return left_; }
 
-  // How many open pairs a level would close beside the levels chosen so far (others are -1).
+  // How many open pairs a level would close beside the levels chosen so far (others are -1); -1
+  // where one of them refuses it.
   int gain(const Selection& selection, int feature, int wanted) const {
     int sum = 0;
     for (int other = 0; other < static_cast<int>(selection.size()); ++other) {
       const int chosen = selection[static_cast<std::size_t>(other)];
-      if (other != feature && chosen >= 0) sum += open_[at(feature, wanted, other, chosen)];
+      if (other == feature || chosen < 0) continue;
+      if (is_refused(feature, wanted, other, chosen)) return -1;
+      sum += open_[at(feature, wanted, other, chosen)];
     }
     return sum;
   }
@@ -276,6 +296,17 @@ std::vector<Selection> pairwise_cover() {
     cover.push_back(std::move(selection));
   }
   return cover;
+}
+
+bool is_refused(const Selection& selection) {
+  for (std::size_t a = 0; a < selection.size(); ++a) {
+    for (std::size_t b = 0; b < a; ++b) {
+      if (is_refused(static_cast<int>(a), selection[a], static_cast<int>(b), selection[b])) {
+        return true;
+      }
+    }
+  }
+  return false;
 }
 
 Selection random_selection(std::uint64_t seed) {

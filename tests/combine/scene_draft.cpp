@@ -65,12 +65,12 @@ BodyShape fem_shape(const std::string& name) {
   if (name == "block") return block_shape();
   BodyShape shape = round_shape(look_up(
       "mesh", name,
-      {{"cylinder", "{shape: cylinder, radius: 10 mm, height: 60 mm, element_size: 10 mm}"},
+      {{"cylinder", "{shape: cylinder, radius: 10 mm, height: 60 mm, element_size: 15 mm}"},
        {"cone",
-        "{shape: cone, base_radius: 12 mm, tip_radius: 9 mm, height: 60 mm, element_size: 10 mm}"},
+        "{shape: cone, base_radius: 12 mm, tip_radius: 9 mm, height: 60 mm, element_size: 15 mm}"},
        {"hollow-cylinder",
-        "{shape: hollow-cylinder, inner_radius: 4 mm, outer_radius: 11 mm, height: 60 mm, "
-        "element_size: 12 mm}"},
+        "{shape: hollow-cylinder, inner_radius: 5 mm, outer_radius: 11 mm, height: 60 mm, "
+        "element_size: 20 mm}"},
        {"chambered-cylinder",
         "{shape: chambered-cylinder, radius: 12 mm, height: 60 mm, chamber_radius: 5 mm, "
         "chamber_offset: 4 mm, chamber_bottom: 10 mm, chamber_top: 50 mm, element_size: 12 mm}"}}));
@@ -136,7 +136,7 @@ class Drafter {
     std::string solver = fmt::format("method: {}, tangent: {}, factorisation: {}, ordering: {}",
                                      of("method"), of("tangent"), of("factorisation"),
                                      of("ordering"));
-    if (has("adaptive")) solver += ", adaptive: {tolerance: 1e-3, smallest: 0.05 ms}";
+    if (has("adaptive")) solver += ", adaptive: {tolerance: 1e-3, smallest: 1 ms}";
     settings_ = fmt::format("sinew: 1\ntime_step: {} ms\nintegrator: {}\nsolver: {{{}}}\n",
                             dynamic() ? 5 : 10, integrator, solver);
     if (has("gravity")) settings_ += "gravity: -3 0 -5 m/s^2\n";
@@ -180,11 +180,11 @@ class Drafter {
       const std::string id = fmt::format("body_{}", bodies_.size());
       if (kind == "fem") {
         const bool first = body(true) == nullptr;
-        const bool chambered = has("chamber") && first;
+        const bool tube = first && has("chamber") && of("mesh") != "chambered-cylinder";
         bodies_.push_back({id, true,
-                           !first      ? block_shape()
-                           : chambered ? fem_shape("chambered-cylinder")
-                                       : fem_shape(of("mesh"))});
+                           !first ? block_shape()
+                           : tube ? fem_shape("hollow-cylinder")
+                                  : fem_shape(of("mesh"))});
         add_fem_body(bodies_.back());
       } else if (kind == "pcc") {
         bodies_.push_back({id, false, arm_shape()});
@@ -203,7 +203,8 @@ class Drafter {
         "type: fem, mesh: {}, material: {}, density: 1000 kg/m^3, mass_matrix: {}, fixed: {{set: "
         "{}}}",
         body.shape.mesh, material(), of("mass_matrix"), body.shape.base);
-    if (has("element") && (hyperelastic() || of("element") == "tet4")) {
+    const bool unfit = of("element") == "tet4-patch" && of("material") == "saint-venant-kirchhoff";
+    if (has("element") && !unfit && (hyperelastic() || of("element") == "tet4")) {
       text += ", element: " + of("element");
     }
     if (has("damping")) text += ", damping: {mass: 0.5 1/s, stiffness: 1 ms}";
@@ -268,10 +269,11 @@ class Drafter {
     const std::string& told = of("chamber");
     std::string medium = of("medium");
     if (told == "gas" || told == "liquid") medium = told;
+    const bool closed = of("mesh") == "chambered-cylinder";
     std::string text = fmt::format(
-        "type: pressure, body: <{}>, surface: {{inside: 4 0 30 mm}}, limits: {{pressure: {{min: "
-        "-10 kPa, max: 20 kPa}}}}",
-        on->id);
+        "type: pressure, body: <{}>, surface: {}, limits: {{pressure: {{min: -10 kPa, max: 20 "
+        "kPa}}}}",
+        on->id, closed ? "{inside: 4 0 30 mm}" : "{set: inner}, cap: true");
     text += look_up("medium", medium,
                     {{"none", ""},
                      {"gas", ", gas: {dead_volume: 1 ml}"},

@@ -57,7 +57,7 @@ InverseController::InverseController(sim::Simulation& simulation, InverseSetting
   gap_.setZero(rows);
   gap_before_.setZero(rows);
   foreseen_.setZero(rows);
-  asked_.resize(settings_.tasks.size());
+  asked_.assign(settings_.tasks.size(), Vector3::Zero());
   bound_multiplier_.setZero(count);
   row_multiplier_.setZero(count);
   scale_.setOnes(count);

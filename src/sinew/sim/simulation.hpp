@@ -213,7 +213,8 @@ class Simulation {
   void blend_ranges(std::span<const ActuatorRange> goal, std::span<const ActuatorState> start,
                     double fraction);
   NewtonReport approach(Law& law, const LawProblem& problem);
-  NewtonReport descend(Law& law, const LawProblem& problem);
+  NewtonReport descend(Law& law, const LawProblem& problem, int iterations);
+  Law& hold_efforts();
   [[noreturn]] void fail_law();
   void take_report(const NewtonReport& result);
   bool balanced() const;

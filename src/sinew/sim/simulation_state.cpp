@@ -46,6 +46,7 @@ void Simulation::keep(State& state) const {
   if (law_ != nullptr) law_->save_memory(state.controller);
   state.ledger = ledger_;
   state.volume_ratio = volume_ratio_;
+  state.residual = report_.relative_residual;
   state.last_step = step_before_;
   state.next_step = substep_;
   state.steps = steps_;
@@ -85,6 +86,7 @@ void Simulation::restore(const State& state) {
   world_.load_frames(state.frames);
   ledger_ = state.ledger;
   volume_ratio_ = state.volume_ratio;
+  report_.relative_residual = state.residual;
   step_before_ = state.last_step;
   substep_ = state.next_step;
   steps_ = state.steps;

@@ -36,6 +36,7 @@ struct State {
   std::vector<double> controller;  ///< memory of the attached controller; empty without one
   EnergyLedger ledger;
   double volume_ratio = 1.0;  ///< min det F
+  double residual = 0.0;      ///< that the last step left, relative: controllers judge rest by it
   double last_step = 0.0;     ///< s, the last substep; 0: the integrator starts afresh
   double next_step = 0.0;     ///< s, with adaptive steps: what the next substep tries
   std::int64_t steps = 0;     ///< since the start
@@ -61,6 +62,7 @@ struct State {
     visitor("energy at the start", state.ledger.start);
     visitor("largest energy", state.ledger.largest);
     visitor("volume ratio", state.volume_ratio);
+    visitor("residual", state.residual);
     visitor("last step", state.last_step);
     visitor("next step", state.next_step);
   }

@@ -158,15 +158,18 @@ SavedState read(std::string_view bytes, const std::string& name) {
 }  // namespace
 
 std::string format_state(const Simulation& simulation) {
-  const State state = simulation.state();
+  return format_state(simulation.state(), simulation.model());
+}
+
+std::string format_state(const State& state, const Model& model) {
   Writer writer;
   writer.append(kMagic.data(), kMagic.size());
   const std::uint32_t version[2] = {kStateVersion, 0};
   writer.append(version, sizeof version);
-  writer.word(simulation.model().fingerprint());
+  writer.word(model.fingerprint());
   writer.word(static_cast<std::uint64_t>(state.steps));
-  writer.word(simulation.model().parts().size());
-  for (const NamedHash& part : simulation.model().parts()) {
+  writer.word(model.parts().size());
+  for (const NamedHash& part : model.parts()) {
     writer.word(part.hash);
     writer.text(part.name);
   }
@@ -181,17 +184,21 @@ StateHeader read_state_header(std::string_view bytes, const std::string& name) {
   return read(bytes, name).header;
 }
 
-void parse_state(Simulation& simulation, std::string_view bytes, const std::string& name) {
-  const SavedState saved = read(bytes, name);
-  const Model& model = simulation.model();
+State read_state(std::string_view bytes, const Model& model, const std::string& name) {
+  SavedState saved = read(bytes, name);
   if (saved.header.fingerprint != model.fingerprint()) {
     throw Error(ErrorKind::state_mismatch, {.file = name},
                 "the state is of another robot, which differs in: " +
                     describe_difference(saved.header.parts, model.parts()),
                 "load it into a simulation of the scene that it was saved from");
   }
+  return std::move(saved.state);
+}
+
+void parse_state(Simulation& simulation, std::string_view bytes, const std::string& name) {
+  const State state = read_state(bytes, simulation.model(), name);
   try {
-    simulation.restore(saved.state);
+    simulation.restore(state);
   } catch (const Error& error) {
     throw Error(ErrorKind::state_mismatch, {.file = name}, error.what(),
                 "save the state again with save_state");

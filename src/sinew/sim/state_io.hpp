@@ -37,8 +37,15 @@ StateHeader read_state_header(std::string_view bytes, const std::string& name);
 /// Whether bytes start as saved states do. @param bytes at least the first eight of a file.
 bool is_state(std::string_view bytes);
 
-/// The state as bytes.
+/// A state of a model as bytes.
+std::string format_state(const State& state, const Model& model);
+/// The present state as bytes.
 std::string format_state(const Simulation& simulation);
+
+/// The state that bytes hold, for simulations of a model.
+/// @param bytes the whole file. @param model must be the one that it was saved from.
+/// @param name of the file, for messages. Throws as parse_state() does.
+State read_state(std::string_view bytes, const Model& model, const std::string& name);
 
 /// Puts a state back, after which the run goes on bit for bit as it would have. How steps are solved
 /// (tolerances, tangent, factorisation) may differ; then it goes on by that.

@@ -39,20 +39,20 @@ constexpr int kMostDescents = 60;
 // The smallest part of a quasi-static step.
 constexpr double kLeastPart = 1.0 / 64.0;
 constexpr int kIterationsOfPart = 25;
-// A controller chooses where to go anew in every iteration, and has to keep up with a clock: a step
-// that it steers takes no parts and this many iterations with either tangent at most.
+// A controller chooses where to go anew in every iteration, which need not settle: after this many
+// its efforts are held. It has to keep up with a clock, too: a quasi-static step that it steers takes
+// no parts, and as many iterations with held efforts, with either tangent.
 constexpr int kSteeredIterations = 8;
 
 }  // namespace
 
 NewtonSettings Simulation::newton_settings(double time_step) const {
   const auto& settings = model_->step();
-  const bool steered = law_ != nullptr && !settings.dynamic();
   const bool lags = !settings.dynamic() && !settings.tolerance;
   return {{step_weights(time_step), settings.tangent, model_->stiffening_widens(), true},
           settings.newton_tolerance(),
           std::min(settings.newton_tolerance(), kMotionTolerance),
-          steered ? std::min(settings.max_iterations, kSteeredIterations) : settings.max_iterations,
+          settings.max_iterations,
           model_->stiffening_constraints(),
           lags ? kLag : Lag{}};
 }
@@ -166,24 +166,54 @@ void Simulation::take_report(const NewtonReport& result) {
   volume_ratio_ = report_.smallest_volume_ratio = result.motion.volume.ratio;
 }
 
+// What a controller chose last is what its actuators do in the rest of the step.
+Law& Simulation::hold_efforts() {
+  for (ActuatorRange& range : ranges_) {
+    if (!range.owned) continue;
+    range.owned = false;
+    range.drive = nullptr;
+    range.kind = CommandKind::effort;
+    range.value = effort_[static_cast<std::size_t>(range.row)];
+    range.effort_min = range.effort_max = range.value;
+    range.motion_min = -kInfinity;
+    range.motion_max = kInfinity;
+  }
+  return laws_->complete(nullptr, ranges_);
+}
+
 // Newton; where that finds nothing and there is no inertia to say where to go, along the loads and
 // commands in parts, and last downhill.
 void Simulation::step_newton(Law& law, const LawProblem& problem) {
-  NewtonReport result =
-      solve_newton(world_, law, problem, effort_, newton_settings(problem.time_step), clock_);
-  const auto converged = [&] { return result.status == NewtonStatus::converged; };
-  if (!converged() && !model_->step().dynamic()) {
-    int tried = result.iterations;
-    if (law_ == nullptr) {
-      result = approach(law, problem);
+  const bool dynamic = model_->step().dynamic(), steered = law_ != nullptr;
+  NewtonSettings settings = newton_settings(problem.time_step);
+  const int whole = settings.max_iterations, few = std::min(whole, kSteeredIterations);
+  settings.max_iterations = steered ? few : whole;
+  NewtonReport result = solve_newton(world_, law, problem, effort_, settings, clock_);
+  const auto goes_on = [&] {
+    return result.status != NewtonStatus::converged && result.law != LawStatus::failed;
+  };
+  int tried = result.iterations;
+  if (steered && goes_on()) {
+    const LawStatus chosen = result.law;
+    Law& held = hold_efforts();
+    settings.max_iterations = dynamic ? whole : few;
+    result = solve_newton(world_, held, problem, effort_, settings, clock_);
+    tried += result.iterations;
+    if (!dynamic && goes_on()) {
+      result = descend(held, problem, few);
       tried += result.iterations;
     }
-    if (!converged()) {
-      result = descend(law, problem);
+    result.law = std::max(result.law, chosen);
+  } else if (!dynamic && result.status != NewtonStatus::converged) {
+    result = approach(law, problem);
+    tried += result.iterations;
+    if (result.status != NewtonStatus::converged) {
+      result = descend(law, problem, kMostDescents);
       tried += result.iterations;
     }
-    result.iterations = tried;
   }
+  const auto converged = [&] { return result.status == NewtonStatus::converged; };
+  result.iterations = tried;
   take_report(result);
   // Of contacts there is no such thing as nearly: a point would be inside a surface.
   const bool obeys = model_->contacts().empty() ||
@@ -246,10 +276,13 @@ NewtonReport Simulation::approach(Law& law, const LawProblem& problem) {
 // From where approach() ended: with a matrix that is never less than the derivative every iteration
 // lowers the energy of conservative loads, through a buckling to wherever the robot then rests.
 // What is slow at the end of that, Newton finishes.
-NewtonReport Simulation::descend(Law& law, const LawProblem& problem) {
+NewtonReport Simulation::descend(Law& law, const LawProblem& problem, int iterations) {
   NewtonSettings settings = newton_settings(problem.time_step);
   settings.request.tangent = mechanics::Tangent::projected;
-  settings.max_iterations = law_ == nullptr ? kMostDescents : kSteeredIterations;
+  // A matrix that is never less has the stiffness of all cables, whatever the scene leaves out.
+  settings.request.with_curvature = true;
+  settings.curved = model_->curved_constraints();
+  settings.max_iterations = iterations;
   NewtonReport result = solve_newton(world_, law, problem, effort_, settings, clock_);
   if (result.status == NewtonStatus::converged || law_ != nullptr) return result;
   const int descended = result.iterations;
