@@ -3,7 +3,7 @@
 PREFIX ?= /usr/local
 
 .DEFAULT_GOAL := help
-.PHONY: help setup build demo test validate bench docs format format-check lint \
+.PHONY: help setup build demo test combinations validate bench docs format format-check lint \
         asan tsan portable install clean view
 
 help:  ## list these targets
@@ -26,6 +26,12 @@ view: build  ## the trunk follows its circle in the browser
 
 test:  ## build, and run all C++ and Python tests
 	@scripts/test.sh release
+
+combinations:  ## 5000 random scenes of features beside each other, each in a process of its own
+	@scripts/setup.sh test
+	@scripts/build.sh release -DSINEW_TESTS=ON combinations
+	@build/release/bin/combinations --pairs
+	@build/release/bin/combinations --count 5000
 
 validate:  ## numbers against their references: docs/scorecard.md
 	@scripts/setup.sh validate

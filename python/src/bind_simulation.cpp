@@ -110,7 +110,8 @@ py::dict all_bodies(const std::shared_ptr<Session>& self) {
   return result;
 }
 
-sim::LinearisationChoice choice(const std::string& tangent, bool geometric_stiffness, bool statics) {
+sim::LinearisationChoice choice(const std::string& tangent, bool geometric_stiffness,
+                                bool statics) {
   if (tangent != "exact" && tangent != "real-time") {
     throw Error(ErrorKind::unknown_choice, {.item = "linearise(tangent)"},
                 fmt::format("there is no tangent '{}'", tangent), "use 'exact' or 'real-time'");

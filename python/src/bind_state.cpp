@@ -12,12 +12,14 @@ namespace py = pybind11;
 namespace sinew::python {
 
 void bind_state(py::module_& module) {
-  py::class_<SavedState>(module, "State",
-                         "Everything that decides, together with the inputs, how a run goes on. From "
-                         "Simulation.state(); states of one robot compare, copy and pickle.")
+  py::class_<SavedState>(
+      module, "State",
+      "Everything that decides, together with the inputs, how a run goes on. From "
+      "Simulation.state(); states of one robot compare, copy and pickle.")
       .def_property_readonly("steps", &SavedState::steps, "int: since the start.")
-      .def_property_readonly("bytes", [](const SavedState& self) { return py::bytes(self.bytes); },
-                             "bytes: as Simulation.save_state() writes them.")
+      .def_property_readonly(
+          "bytes", [](const SavedState& self) { return py::bytes(self.bytes); },
+          "bytes: as Simulation.save_state() writes them.")
       .def("__eq__", [](const SavedState& a, const SavedState& b) { return a.bytes == b.bytes; })
       .def("__eq__", [](const SavedState&, const py::object&) { return false; })
       .def("__hash__", [](const SavedState& self) { return std::hash<std::string>{}(self.bytes); })
@@ -28,13 +30,12 @@ void bind_state(py::module_& module) {
              return fmt::format("<sinew.State after {} steps, {} bytes>", self.steps(),
                                 self.bytes.size());
            })
-      .def(py::pickle(
-          [](const SavedState& self) { return py::make_tuple(py::bytes(self.bytes)); },
-          [](const py::tuple& parts) {
-            SavedState state{parts[0].cast<std::string>()};
-            state.steps();  // refuses what is no state
-            return state;
-          }));
+      .def(py::pickle([](const SavedState& self) { return py::make_tuple(py::bytes(self.bytes)); },
+                      [](const py::tuple& parts) {
+                        SavedState state{parts[0].cast<std::string>()};
+                        state.steps();  // refuses what is no state
+                        return state;
+                      }));
 }
 
 }  // namespace sinew::python

@@ -35,8 +35,7 @@ Session::Use::Use(const Session& session) : session_(session) {
 Session::Use::~Use() { session_.busy_.store(false, std::memory_order_release); }
 
 Session::Session(std::shared_ptr<const LoadedRobot> robot, int threads)
-    : robot_(std::move(robot)),
-      simulation_(robot_->robot.model, threads) {
+    : robot_(std::move(robot)), simulation_(robot_->robot.model, threads) {
   const auto& controllers = robot_->robot.controllers;
   if (!controllers.empty()) attach(controllers.front().settings, controllers.front().name);
 }

@@ -13,15 +13,14 @@
 namespace sinew::combine {
 namespace {
 
-constexpr std::uint64_t kRandomScenes = 100;
-constexpr std::uint64_t kChangedScenes = 150;
+constexpr std::uint64_t kRandomScenes = 300;
+constexpr std::uint64_t kChangedScenes = 100;
 
 // A scene is refused exactly where its features cannot stand together.
 void expect_sound(const Selection& selection, std::uint64_t seed) {
   const Outcome outcome = try_scene(selection, seed);
-  EXPECT_NE(outcome.kind, Outcome::Kind::wrong)
-      << outcome.cause << "\n"
-      << write_scene(draft_scene(selection, seed));
+  EXPECT_NE(outcome.kind, Outcome::Kind::wrong) << outcome.cause << "\n"
+                                                << write_scene(draft_scene(selection, seed));
   if (outcome.kind == Outcome::Kind::refused) {
     EXPECT_TRUE(is_refused(selection)) << seed << ": " << outcome.cause;
     EXPECT_NE(outcome.cause.find("[not-in-this-version]"), std::string::npos) << outcome.cause;

@@ -1,11 +1,9 @@
 // Tries combinations of features by the thousand, each in a process of its own so that a crash is
 // counted as one.
 //   combinations [--from SEED] [--count N]     random selections (300)
-//   combinations --pairs                       every pair of levels
+//   combinations --pairs [--from K] [--count N] the cover of all pairs of levels
 //   combinations [--pairs] --print SEED        the scene of a seed
-#include <sys/wait.h>
-#include <unistd.h>
-
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <iostream>
@@ -13,6 +11,8 @@
 #include <string>
 
 #include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "scene_draft.hpp"
 #include "trial.hpp"
@@ -29,8 +29,8 @@ std::string try_apart(const Selection& selection, std::uint64_t seed) {
   if (child == 0) {
     close(ends[0]);
     const Outcome outcome = try_scene(selection, seed);
-    const std::string text = fmt::format("{}|{}|{}", outcome_name(outcome.kind), outcome.cause,
-                                         outcome.condition);
+    const std::string text =
+        fmt::format("{}|{}|{}", outcome_name(outcome.kind), outcome.cause, outcome.condition);
     if (write(ends[1], text.data(), text.size()) < 0) std::abort();
     _exit(0);
   }
@@ -66,12 +66,13 @@ int main(int count, char** words) {
     }
   }
   const std::vector<Selection> cover = pairs ? pairwise_cover() : std::vector<Selection>{};
-  if (pairs) number = static_cast<int>(cover.size());
+  if (pairs)
+    number = std::min(number, static_cast<int>(cover.size() - std::min(cover.size(), from)));
   std::map<std::string, int> sums;
   for (int k = 0; k < number; ++k) {
     const std::uint64_t seed = from + static_cast<std::uint64_t>(k);
     const Selection selection =
-        pairs ? cover[static_cast<std::size_t>(k)] : random_selection(seed);
+        pairs ? cover[static_cast<std::size_t>(seed)] : random_selection(seed);
     const std::string outcome = try_apart(selection, seed);
     ++sums[outcome.substr(0, outcome.find('|'))];
     if (!outcome.starts_with("ran||solved")) std::cout << seed << ' ' << outcome << std::endl;

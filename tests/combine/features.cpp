@@ -5,8 +5,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "random.hpp"
 #include "sinew/scene/grammar.hpp"
+
+#include "random.hpp"
 
 namespace sinew::combine {
 
@@ -111,8 +112,7 @@ std::vector<Feature> list_features() {
       // A trunk has more nodes than a test of a thousand scenes has time for.
       {"mesh", without(words(variants(fem.find("mesh")->forms, "shape")), "trunk")},
       {"element", or_none(words(fem, "element"))},
-      {"material",
-       with(words(variants(fem.find("material")->forms, "model")), {"ecoflex-00-30"})},
+      {"material", with(words(variants(fem.find("material")->forms, "model")), {"ecoflex-00-30"})},
       {"history", {"none", "viscosity", "softening"}},
       {"mass_matrix", words(fem, "mass_matrix")},
       {"damping", switched},

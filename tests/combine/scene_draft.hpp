@@ -30,8 +30,8 @@ SceneDraft draft_scene(const Selection& selection, std::uint64_t seed);
 
 /// How names and order are chosen.
 struct Layout {
-  bool renamed = false;    ///< other names, in the same order
-  bool reversed = false;   ///< bodies and actuators in the opposite order
+  bool renamed = false;   ///< other names, in the same order
+  bool reversed = false;  ///< bodies and actuators in the opposite order
 };
 
 /// The scene as a YAML file.

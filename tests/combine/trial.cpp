@@ -12,8 +12,6 @@
 
 #include <fmt/format.h>
 
-#include "random.hpp"
-#include "scene_draft.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/inverse/inverse_controller.hpp"
 #include "sinew/mechanics/body.hpp"
@@ -21,6 +19,9 @@
 #include "sinew/scene/scene.hpp"
 #include "sinew/sim/simulation.hpp"
 #include "sinew/sim/state_io.hpp"
+
+#include "random.hpp"
+#include "scene_draft.hpp"
 
 namespace sinew::combine {
 
@@ -249,8 +250,8 @@ std::string try_changed_number(const Selection& selection, std::uint64_t seed) {
   }
   if (numbers.empty()) return {};
   Random random(seed);
-  const std::smatch& chosen = numbers[static_cast<std::size_t>(
-      random.below(static_cast<int>(numbers.size())))];
+  const std::smatch& chosen =
+      numbers[static_cast<std::size_t>(random.below(static_cast<int>(numbers.size())))];
   std::string changed = text;
   changed.replace(static_cast<std::size_t>(chosen.position(4)),
                   static_cast<std::size_t>(chosen.length(4)),

@@ -30,9 +30,9 @@ const char* outcome_name(Outcome::Kind kind);
 /// @param selection,seed see draft_scene().
 Outcome try_scene(const Selection& selection, std::uint64_t seed);
 
-/// Changes a number of the scene by a few per cent, whichever the seed draws: a state of the scene as
-/// it was must be refused then, or go on as it would have. Numbers of inputs (commands, factors of
-/// loads, targets) and of the solver are left out: a state may meet others.
+/// Changes a number of the scene by a few per cent, whichever the seed draws: a state of the scene
+/// as it was must be refused then, or go on as it would have. Numbers of inputs (commands, factors
+/// of loads, targets) and of the solver are left out: a state may meet others.
 /// @return what is wrong; empty: nothing.
 std::string try_changed_number(const Selection& selection, std::uint64_t seed);
 

@@ -42,9 +42,11 @@ class CavityTest : public ::testing::TestWithParam<Kind> {
     sim::State state = simulation_.state();
     const Points& x = simulation_.fem_body(0).positions();
     for (Eigen::Index i = 0; i < x.rows(); ++i) {
-      state.bodies[0][static_cast<std::size_t>(3 * i)] += size * std::sin(100.0 * x(i, 1) + 40.0 * x(i, 2));
+      state.bodies[0][static_cast<std::size_t>(3 * i)] +=
+          size * std::sin(100.0 * x(i, 1) + 40.0 * x(i, 2));
       state.bodies[0][static_cast<std::size_t>(3 * i + 1)] += size * std::cos(130.0 * x(i, 0));
-      state.bodies[0][static_cast<std::size_t>(3 * i + 2)] += size * std::sin(90.0 * x(i, 0) - x(i, 1));
+      state.bodies[0][static_cast<std::size_t>(3 * i + 2)] +=
+          size * std::sin(90.0 * x(i, 0) - x(i, 1));
     }
     simulation_.restore(state);
   }

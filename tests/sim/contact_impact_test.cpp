@@ -133,7 +133,8 @@ TEST(Impact, SmoothPhasesKeepTheSecondOrder) {
     // The lowest vibration of a bar whose end rests: no wave hits the wall.
     const double speed = std::sqrt(kModulus / kDensity);
     for (std::size_t i = 2; i < size; i += 3) {
-      state.bodies[0][size + i] = -kSpeed * std::sin(0.5 * std::numbers::pi * state.bodies[0][i] / kLength);
+      state.bodies[0][size + i] =
+          -kSpeed * std::sin(0.5 * std::numbers::pi * state.bodies[0][i] / kLength);
     }
     simulation.restore(state);
     const double eighth = 0.5 * kLength / speed;  // of its period

@@ -163,6 +163,16 @@ TEST(DefaultStep, AStaticSolutionGainsNoEnergy) {
   for (int k = 0; k < 50; ++k) EXPECT_EQ(simulation.step().status, StepStatus::solved) << k;
 }
 
+TEST(DefaultStep, ARobotAtRestGainsNoEnergy) {
+  for (const auto integrator : {mechanics::Integrator::backward_euler, mechanics::Integrator::bdf2,
+                                mechanics::Integrator::generalized_alpha}) {
+    BeamOptions options;
+    options.step.integrator = integrator;
+    Simulation run(beam(options));
+    for (int k = 0; k < 20; ++k) EXPECT_EQ(run.step().status, StepStatus::solved) << k;
+  }
+}
+
 TEST(DefaultStep, ReusedAssemblyDoesNotChangeABit) {
   BeamOptions options;
   const auto model = beam(options);

@@ -44,9 +44,7 @@ class Cable : public Constraint {
              std::span<mechanics::RowCurvature> curvatures) const override;
 
   /// While every segment is under tension.
-  void add_to(ValueHash& hash) const override {
-    hash.add(pull_point_, rest_length_, friction_);
-  }
+  void add_to(ValueHash& hash) const override { hash.add(pull_point_, rest_length_, friction_); }
 
   bool stiffens(std::span<const double> effort) const override;
 

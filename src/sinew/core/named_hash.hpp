@@ -35,15 +35,11 @@ class ValueHash {
 
  private:
   template <class T>
-    requires std::is_arithmetic_v<T>
-  void add_one(T number) {
-    hash_.add(static_cast<double>(number));
-  }
+  requires std::is_arithmetic_v<T>
+  void add_one(T number) { hash_.add(static_cast<double>(number)); }
   template <class T>
-    requires std::is_enum_v<T>
-  void add_one(T choice) {
-    hash_.add(static_cast<std::uint64_t>(choice));
-  }
+  requires std::is_enum_v<T>
+  void add_one(T choice) { hash_.add(static_cast<std::uint64_t>(choice)); }
   void add_one(std::uint64_t word) { hash_.add(word); }
   void add_one(const std::string& text) {
     hash_.add(static_cast<std::uint64_t>(text.size()));
@@ -63,18 +59,17 @@ class ValueHash {
     if (value) add_one(*value);
   }
   template <class List>
-    requires(requires(const List& list) { list.begin() != list.end(); } &&
-             !requires { typename List::PlainObject; })  // Eigen's vectors are matrices
-  void add_one(const List& list) {
+  requires(
+      requires(const List& list) { list.begin() != list.end(); } &&
+      !requires { typename List::PlainObject; })  // Eigen's vectors are matrices
+      void add_one(const List& list) {
     hash_.add(static_cast<std::uint64_t>(list.size()));
     for (const auto& item : list) add_one(item);
   }
   // What has numbers of its own says which.
   template <class T>
-    requires requires(const T& value, ValueHash& hash) { value.add_to(hash); }
-  void add_one(const T& value) {
-    value.add_to(*this);
-  }
+  requires requires(const T& value, ValueHash& hash) { value.add_to(hash); }
+  void add_one(const T& value) { value.add_to(*this); }
 
   StateHash hash_;
 };

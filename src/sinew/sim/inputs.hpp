@@ -15,8 +15,8 @@ namespace sinew::sim {
 
 /// Inputs of one body; of one without nodes they are empty.
 struct BodyInputs {
-  Points external_forces;               ///< (n, 3) N on all mesh nodes
-  std::optional<fem::Tether> tether;    ///< a hand that pulls
+  Points external_forces;                ///< (n, 3) N on all mesh nodes
+  std::optional<fem::Tether> tether;     ///< a hand that pulls
   std::optional<fem::AffineField> base;  ///< where fixed nodes go in the next step; none: they stay
 };
 

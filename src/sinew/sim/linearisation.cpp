@@ -68,9 +68,9 @@ Linearisation linearise(Simulation& simulation, const LinearisationChoice& choic
   const StateGuard guard(simulation);
   const std::vector<int> curved =
       choice.geometric_stiffness ? model.curved_constraints() : std::vector<int>{};
-  const auto weights = choice.of_statics ? mechanics::StepWeights{}
-                                         : mechanics::step_weights(model.step().integrator,
-                                                                   model.step().time_step);
+  const auto weights =
+      choice.of_statics ? mechanics::StepWeights{}
+                        : mechanics::step_weights(model.step().integrator, model.step().time_step);
   World& world = simulation.world();
   world.begin_query(simulation.time());
   world.linearise({weights, choice.tangent, !curved.empty(), false});

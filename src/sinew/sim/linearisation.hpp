@@ -13,8 +13,8 @@ namespace sinew::sim {
 class Model;
 class Simulation;
 
-/// "long_0", "long_0 point 2", "tip.x", "floor point 3 normal": what every row of H belongs to, each
-/// name once.
+/// "long_0", "long_0 point 2", "tip.x", "floor point 3 normal": what every row of H belongs to,
+/// each name once.
 std::vector<std::string> row_names(const Model& model);
 
 /// W and what belongs to it, at one state.

@@ -20,8 +20,7 @@
 #include "sinew/sim/spring_drive.hpp"
 #include "sinew/sim/torque_settings.hpp"
 
-namespace sinew {
-}
+namespace sinew {}
 
 namespace sinew::sim {
 

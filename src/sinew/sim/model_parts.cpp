@@ -109,10 +109,9 @@ std::string describe_difference(const std::vector<NamedHash>& saved,
   }
   if (differences.empty()) return "the order of bodies, actuators or effectors";
   const std::size_t named = std::min(kNamedDifferences, differences.size());
-  std::string text = fmt::format("{}", fmt::join(differences.begin(),
-                                                 differences.begin() +
-                                                     static_cast<std::ptrdiff_t>(named),
-                                                 ", "));
+  std::string text =
+      fmt::format("{}", fmt::join(differences.begin(),
+                                  differences.begin() + static_cast<std::ptrdiff_t>(named), ", "));
   if (named < differences.size()) text += fmt::format(" and {} more", differences.size() - named);
   return text;
 }

@@ -238,11 +238,11 @@ class Simulation {
   std::vector<ActuatorRange> ranges_;
   std::vector<double> effort_;
   std::vector<double> drive_state_;  // of all drives, at the start of the step
-  State state_before_;   // before the substep
-  State state_at_step_;  // before the whole step, where that is made in parts
-  double step_before_ = 0.0;           // s, the last substep; 0: the integrator starts afresh
-  double substep_ = 0.0;               // s, adaptive: what the next one tries
-  double now_ = 0.0;                   // s, end of the substep in hand
+  State state_before_;               // before the substep
+  State state_at_step_;              // before the whole step, where that is made in parts
+  double step_before_ = 0.0;         // s, the last substep; 0: the integrator starts afresh
+  double substep_ = 0.0;             // s, adaptive: what the next one tries
+  double now_ = 0.0;                 // s, end of the substep in hand
   // Commands of a step that is made in parts go there in proportion.
   struct Part {
     double fraction = 1.0;             // of the step, at the end of the part

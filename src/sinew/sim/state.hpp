@@ -29,10 +29,10 @@ struct State {
   std::vector<std::vector<double>> bodies;  ///< of each, see mechanics::Body::save_state()
   std::vector<double> efforts;              ///< (rows,) N or Pa
   std::vector<double> motions;              ///< (actuators,) m or m^3
-  std::vector<double> setpoints;  ///< (actuators,) m: the last commanded motion, within limits
-  std::vector<double> drives;     ///< of all drives, see Drive::state_size()
-  std::vector<double> loads;      ///< (loads,) factors that acted last
-  std::vector<double> frames;     ///< (contact points, 3, 3) normals and tangents of the last step
+  std::vector<double> setpoints;   ///< (actuators,) m: the last commanded motion, within limits
+  std::vector<double> drives;      ///< of all drives, see Drive::state_size()
+  std::vector<double> loads;       ///< (loads,) factors that acted last
+  std::vector<double> frames;      ///< (contact points, 3, 3) normals and tangents of the last step
   std::vector<double> controller;  ///< memory of the attached controller; empty without one
   EnergyLedger ledger;
   double volume_ratio = 1.0;  ///< min det F

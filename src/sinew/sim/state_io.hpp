@@ -14,9 +14,9 @@ namespace sinew::sim {
 
 /// The layout, in little-endian words of 8 bytes: "SINEWST\n"; format version (uint32) and 4 bytes
 /// of zeros; the model's fingerprint (uint64); step count (int64); the model's parts, see
-/// Model::parts(): how many (uint64), and of each its hash (uint64), the length of its name (uint64)
-/// and the name, filled up with zeros; the count of bodies (uint64); all that State::visit()
-/// comes to, float64, a list behind its count (uint64); a hash of all words before
+/// Model::parts(): how many (uint64), and of each its hash (uint64), the length of its name
+/// (uint64) and the name, filled up with zeros; the count of bodies (uint64); all that
+/// State::visit() comes to, float64, a list behind its count (uint64); a hash of all words before
 /// it (uint64). Commands are inputs, not state, and are not part of it.
 inline constexpr std::uint32_t kStateVersion = 5;
 
@@ -47,8 +47,8 @@ std::string format_state(const Simulation& simulation);
 /// @param name of the file, for messages. Throws as parse_state() does.
 State read_state(std::string_view bytes, const Model& model, const std::string& name);
 
-/// Puts a state back, after which the run goes on bit for bit as it would have. How steps are solved
-/// (tolerances, tangent, factorisation) may differ; then it goes on by that.
+/// Puts a state back, after which the run goes on bit for bit as it would have. How steps are
+/// solved (tolerances, tangent, factorisation) may differ; then it goes on by that.
 /// @param simulation,bytes what is set, and the whole file. @param name its name, for messages.
 /// Throws Error: state-corrupt (no state, truncated, damaged, not finite), state-version,
 /// state-mismatch, which names what differs; the simulation is then unchanged.

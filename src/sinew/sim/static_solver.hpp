@@ -63,8 +63,8 @@ class StaticSolver {
   bool limit_point_ = false;
   std::vector<ActuatorState> start_;
   std::vector<ActuatorRange> goal_;
-  State sound_;  // of the last equilibrium, or before the last step
-  std::vector<Points> left_;   // of each body: positions of the unstable equilibrium that was left
+  State sound_;               // of the last equilibrium, or before the last step
+  std::vector<Points> left_;  // of each body: positions of the unstable equilibrium that was left
 };
 
 }  // namespace sinew::sim

@@ -34,14 +34,16 @@ constexpr double kReached = 1e-3;
 constexpr double kMotionTolerance = 1e-5;
 // Energy that came out of nothing, of the largest energy so far.
 constexpr double kEnergyGain = 0.05;
+// And of the work of all forces over the robot's size: less is rounding, as of a robot at rest.
+constexpr double kNoEnergy = 1e-10;
 // Iterations with the projected tangent, which end wherever a stable equilibrium is downhill.
 constexpr int kMostDescents = 60;
 // The smallest part of a quasi-static step.
 constexpr double kLeastPart = 1.0 / 64.0;
 constexpr int kIterationsOfPart = 25;
 // A controller chooses where to go anew in every iteration, which need not settle: after this many
-// its efforts are held. It has to keep up with a clock, too: a quasi-static step that it steers takes
-// no parts, and as many iterations with held efforts, with either tangent.
+// its efforts are held. It has to keep up with a clock, too: a quasi-static step that it steers
+// takes no parts, and as many iterations with held efforts, with either tangent.
 constexpr int kSteeredIterations = 8;
 
 }  // namespace
@@ -216,9 +218,9 @@ void Simulation::step_newton(Law& law, const LawProblem& problem) {
   result.iterations = tried;
   take_report(result);
   // Of contacts there is no such thing as nearly: a point would be inside a surface.
-  const bool obeys = model_->contacts().empty() ||
-                     (result.relative_residual <= kSearched &&
-                      result.violation <= kMotionTolerance * model_->size());
+  const bool obeys =
+      model_->contacts().empty() || (result.relative_residual <= kSearched &&
+                                     result.violation <= kMotionTolerance * model_->size());
   const bool usable = !model_->step().dynamic() && obeys && result.motion.finite &&
                       result.motion.volume.ratio > 0.0 && result.law != LawStatus::failed;
   if (converged() || usable) return;
@@ -332,7 +334,8 @@ void Simulation::watch_energy() {
   const double put_in = ledger_.put_in();
   report_.energy_gained = stored - put_in - ledger_.start;
   ledger_.largest = std::max({ledger_.largest, now.strain + now.kinetic, std::abs(put_in)});
-  if (report_.energy_gained > kEnergyGain * ledger_.largest) {
+  const double nothing = kNoEnergy * world_.force_scale() * model_->size();
+  if (report_.energy_gained > kEnergyGain * ledger_.largest + nothing) {
     report_.status = std::max(report_.status, StepStatus::gaining_energy);
   }
 }
