@@ -19,5 +19,7 @@
 #include "sinew/mesh/write_mesh.hpp"
 #include "sinew/pcc/bending_motion.hpp"
 #include "sinew/qp/quadratic_program.hpp"
+#include "sinew/sim/linearisation.hpp"
 #include "sinew/sim/model_builder.hpp"
 #include "sinew/sim/simulation.hpp"
+#include "sinew/sim/state_io.hpp"

@@ -13,8 +13,8 @@
 namespace sinew::combine {
 namespace {
 
-constexpr std::uint64_t kRandomScenes = 300;
-constexpr std::uint64_t kChangedScenes = 100;
+constexpr std::uint64_t kRandomScenes = 30;
+constexpr std::uint64_t kChangedScenes = 30;
 
 // A scene is refused exactly where its features cannot stand together.
 void expect_sound(const Selection& selection, std::uint64_t seed) {
