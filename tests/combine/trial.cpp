@@ -77,21 +77,28 @@ class Run {
   std::string error_;
 };
 
-scene::Robot build(const SceneDraft& draft, const Layout& layout = {}) {
-  return scene::build(scene::parse_scene_text(write_scene(draft, layout), "scene.yaml", {}));
+scene::Robot build(const std::string& text) {
+  return scene::build(scene::parse_scene_text(text, "scene.yaml", {}));
+}
+
+// "body at 12", "volume ratio": every number by its name.
+std::vector<std::pair<std::string, double>> numbers_of(const sim::State& state) {
+  std::vector<std::pair<std::string, double>> numbers;
+  sim::State::visit(state, [&](std::string_view name, const auto& part) {
+    if constexpr (requires { part.size(); }) {
+      for (std::size_t k = 0; k < part.size(); ++k) {
+        numbers.emplace_back(fmt::format("{} at {}", name, k), part[k]);
+      }
+    } else {
+      numbers.emplace_back(name, part);
+    }
+  });
+  return numbers;
 }
 
 bool is_finite(const sim::State& state) {
-  bool finite = true;
-  const auto check = [&](double x) { finite = finite && std::isfinite(x); };
-  sim::State::visit(state, [&](std::string_view, const auto& numbers) {
-    if constexpr (requires { numbers.begin(); }) {
-      for (const double x : numbers) check(x);
-    } else {
-      check(numbers);
-    }
-  });
-  return finite;
+  return std::ranges::all_of(numbers_of(state),
+                             [](const auto& number) { return std::isfinite(number.second); });
 }
 
 // m, between the nodes of two runs whose bodies stand in opposite orders.
@@ -106,22 +113,9 @@ double largest_distance(const sim::Simulation& one, const sim::Simulation& other
   return largest;
 }
 
-// "body at 12", "controller at 3": the first number that differs.
+// The first number that differs.
 std::string first_difference(const sim::State& one, const sim::State& other) {
-  const auto list = [](const sim::State& state) {
-    std::vector<std::pair<std::string, double>> numbers;
-    sim::State::visit(state, [&](std::string_view name, const auto& part) {
-      if constexpr (requires { part.size(); }) {
-        for (std::size_t k = 0; k < part.size(); ++k) {
-          numbers.emplace_back(fmt::format("{} at {}", name, k), part[k]);
-        }
-      } else {
-        numbers.emplace_back(name, part);
-      }
-    });
-    return numbers;
-  };
-  const auto mine = list(one), theirs = list(other);
+  const auto mine = numbers_of(one), theirs = numbers_of(other);
   for (std::size_t k = 0; k < std::min(mine.size(), theirs.size()); ++k) {
     if (std::bit_cast<std::uint64_t>(mine[k].second) !=
         std::bit_cast<std::uint64_t>(theirs[k].second)) {
@@ -139,7 +133,7 @@ class Trial {
     std::optional<scene::Robot> robot;
     std::unique_ptr<Run> first;
     try {
-      robot = build(draft_);
+      robot = build(write_scene(draft_));
       first = std::make_unique<Run>(*robot);
     } catch (const Error& error) {
       return {Outcome::Kind::refused, error.what(), ""};
@@ -175,13 +169,13 @@ class Trial {
       compare("reset()", again.states, 0);
     }
     {
-      Run renamed(build(draft_, {.renamed = true}));
+      Run renamed(build(write_scene(draft_, {.renamed = true})));
       renamed.advance(kSteps);
       compare("other names", renamed.states, 0);
     }
     // A step that is flagged may have wandered, where rounding decides.
     if (!sim::is_flagged(first->condition)) {
-      Run reversed(build(draft_, {.reversed = true}));
+      Run reversed(build(write_scene(draft_, {.reversed = true})));
       reversed.advance(kSteps);
       const double distance = largest_distance(first->simulation, reversed.simulation);
       const auto& adaptive = robot->model->step().adaptive;
@@ -238,7 +232,7 @@ Outcome try_scene(const Selection& selection, std::uint64_t seed) {
 
 std::string try_changed_number(const Selection& selection, std::uint64_t seed) {
   const std::string text = write_scene(draft_scene(selection, seed));
-  // A number with its unit, or a coefficient. Brackets: of what the numbers are inputs.
+  // Group 4 is a number of the robot; what stands before it in the pattern are inputs and settings.
   static const std::regex number(
       "(command|factor|pressure|target|rotation): (\\{[^}]*\\}[^}]*\\}|[^,}]*)|"
       "solver: [^\\n]*|sinew: 1|time_step: [^\\n]*|fixed: [^\\n,]*|"
@@ -259,11 +253,8 @@ std::string try_changed_number(const Selection& selection, std::uint64_t seed) {
   const auto line = static_cast<std::size_t>(chosen.position(4));
   const std::string where =
       fmt::format("'{}' changed by 3 %", text.substr(line > 60 ? line - 60 : 0, 70));
-  const auto built = [](const std::string& scene) {
-    return scene::build(scene::parse_scene_text(scene, "scene.yaml", {}));
-  };
   try {
-    const scene::Robot robot = built(text), other = built(changed);
+    const scene::Robot robot = build(text), other = build(changed);
     Run first(robot), second(other);
     first.advance(kHalf);
     if (!first.error().empty()) return {};
