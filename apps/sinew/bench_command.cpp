@@ -63,7 +63,7 @@ void read_active_set(const sim::Simulation& simulation, std::vector<int>& active
   active.clear();
   for (std::size_t a = 0; a < simulation.model().actuators().size(); ++a) {
     const sim::ActuatorState& state = simulation.actuator(static_cast<int>(a));
-    const sim::ActuatorRange& range = simulation.ranges()[a];
+    const step::ActuatorBlock& range = simulation.actuator_blocks()[a];
     const auto at = [](double value, double limit) {
       return std::abs(value - limit) <= 1e-9 * (1.0 + std::abs(limit));
     };

@@ -170,8 +170,7 @@ bool is_refused(int first, int first_level, int second, int second_level) {
     return (is(first, first_level, a, a_level) && is(second, second_level, b, b_level)) ||
            (is(first, first_level, b, b_level) && is(second, second_level, a, a_level));
   };
-  return both("contact", "", "controller", "") ||
-         both("contact", "", "integrator", "generalized-alpha");
+  return both("contact", "", "integrator", "generalized-alpha");
 }
 
 // Pairs of levels of two features that no selection has had yet.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include <gtest/gtest.h>
 
@@ -250,6 +251,69 @@ TEST(InverseController, ReachesItsTargetThroughFriction) {
   }
   EXPECT_GT(largest_drop, 1e-3);
 }
+
+// Pressed on a wall by one cable and bent along it by another.
+Vector3 reachable_on_the_wall(std::shared_ptr<const sim::Model> model) {
+  Simulation simulation(std::move(model));
+  const auto pull = [&](int cable, double most) {
+    simulation.command(cable,
+                       {sim::CommandKind::effort, sim::Signal::sampled({0.0, 0.5}, {0.0, most})});
+  };
+  pull(1, 1.0);
+  pull(2, 2.5);
+  for (int i = 0; i < 100; ++i) simulation.step();
+  EXPECT_GT(simulation.contact_sum(0).normal_force, 0.05);
+  return simulation.effector_value(0);
+}
+
+class OnAWall : public ::testing::TestWithParam<std::tuple<sim::Method, double>> {
+ protected:
+  std::shared_ptr<const sim::Model> model() const {
+    BeamOptions options;
+    options.wall = -0.0101;
+    options.wall_friction = std::get<1>(GetParam());
+    options.step.method = std::get<0>(GetParam());
+    return beam(options);
+  }
+};
+
+// The target is the position of a robot that touches: a controller that knew nothing of the wall
+// would push into it without end.
+TEST_P(OnAWall, ReachesWhatIsReachedByTouching) {
+  const auto model = this->model();
+  const Vector3 goal = reachable_on_the_wall(model);
+  Simulation simulation(model);
+  InverseController controller(simulation, to(goal));
+  for (int i = 0; i < 300; ++i) controller.step();
+  EXPECT_EQ(controller.status(), InverseStatus::on_target);
+  EXPECT_LT(controller.error(), 5e-5);
+  EXPECT_GT(simulation.contact_sum(0).normal_force, 0.01);
+  EXPECT_LT(simulation.report().violation, 1e-7);
+}
+
+TEST_P(OnAWall, RestsWhereTheWallHoldsItBack) {
+  const auto model = this->model();
+  Vector3 goal = reachable_on_the_wall(model);
+  goal.z() -= 0.004;
+  Simulation simulation(model);
+  InverseController controller(simulation, to(goal));
+  for (int i = 0; i < 400; ++i) controller.step();
+  const double error = controller.error();
+  EXPECT_GT(error, 0.002);
+  for (int i = 0; i < 50; ++i) controller.step();
+  EXPECT_NEAR(controller.error(), error, 2e-5);
+  EXPECT_TRUE(controller.status() == InverseStatus::out_of_reach ||
+              controller.status() == InverseStatus::local_optimum)
+      << inverse_status_name(controller.status());
+  for (const sim::ContactPoint& point : simulation.contact_points(0)) {
+    EXPECT_GT(point.gap, -1e-7);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(MethodsAndFriction, OnAWall,
+                         ::testing::Combine(::testing::Values(sim::Method::one_linearisation,
+                                                              sim::Method::newton),
+                                            ::testing::Values(0.0, 0.3)));
 
 }  // namespace
 }  // namespace sinew::inverse

@@ -140,7 +140,7 @@ TEST(ConeSolver, SolvesRandomContacts) {
     for (const int contacts : {1, 2, 5, 20, 60}) {
       for (int trial = 0; trial < 5; ++trial) {
         const Contacts c = random_contacts(contacts, 3 * contacts + 4, mu, random);
-        ConeSolver solver(3 * contacts, 0, contacts);
+        ConeSolver solver;
         VectorX x = VectorX::Zero(3 * contacts);
         const ConeResult& result =
             solver.solve(c.problem(), {x.data(), static_cast<std::size_t>(x.size())});
@@ -160,7 +160,7 @@ TEST(ConeSolver, WithoutFrictionIsTheQuadraticProgram) {
   for (int trial = 0; trial < 20; ++trial) {
     constexpr int kContacts = 12;
     const Contacts c = random_contacts(kContacts, 40, 0.0, random);
-    ConeSolver solver(3 * kContacts, 0, kContacts);
+    ConeSolver solver;
     VectorX x = VectorX::Zero(3 * kContacts);
     ASSERT_EQ(solver.solve(c.problem(), span_of(x)).status, ConeStatus::solved);
     QuadraticProgram program = QuadraticProgram::sized(kContacts, 0);
@@ -196,7 +196,7 @@ TEST(ConeSolver, BoxesAreTheQuadraticProgram) {
       program.lower[i] = lower;
       program.upper[i] = upper;
     }
-    ConeSolver solver(kBoxes, kBoxes, 0);
+    ConeSolver solver;
     VectorX x = VectorX::Zero(kBoxes);
     ASSERT_EQ(solver.solve(c.problem(), span_of(x)).status, ConeStatus::solved);
     QpSolver reference(kBoxes, 0);
@@ -255,7 +255,7 @@ TEST(ConeSolver, RigidBlockSticksBelowTheFrictionAngleAndSlidesAboveIt) {
     for (const double angle : {0.0, 0.5 * critical, 0.999 * critical, 1.001 * critical, 0.6}) {
       const RigidBlock block(along, angle, kFriction);
       const int rows = static_cast<int>(block.contacts.offset.size());
-      ConeSolver solver(rows, 0, rows / 3);
+      ConeSolver solver;
       VectorX x = VectorX::Zero(rows);
       const ConeResult& result = solver.solve(block.contacts.problem(), span_of(x));
       ASSERT_EQ(result.status, ConeStatus::solved)
@@ -300,7 +300,7 @@ TEST(ConeSolver, SolvesStiffBodies) {
         const double size = c.matrix.diagonal().mean();
         c.matrix += softness * size * random_hessian(rows, 100.0, random);
         c.offset += softness * c.offset.norm() * random.vector(rows);
-        ConeSolver solver(rows, 0, rows / 3);
+        ConeSolver solver;
         VectorX x = VectorX::Zero(rows);
         const ConeResult& result = solver.solve(c.problem(), span_of(x));
         EXPECT_EQ(result.status, ConeStatus::solved)
@@ -314,7 +314,7 @@ TEST(ConeSolver, SolvesStiffBodies) {
 TEST(ConeSolver, TakesOffWhereNothingPresses) {
   RigidBlock block(4, 0.0, 0.5);
   block.contacts.offset *= -1.0;
-  ConeSolver solver(48, 0, 16);
+  ConeSolver solver;
   VectorX x = VectorX::Constant(48, 3.0);  // from a start that presses
   const ConeResult& result = solver.solve(block.contacts.problem(), span_of(x));
   EXPECT_EQ(result.status, ConeStatus::solved);
@@ -325,7 +325,7 @@ TEST(ConeSolver, TakesOffWhereNothingPresses) {
 TEST(ConeSolver, StartsFromTheLastSolution) {
   Random random(41);
   const Contacts c = random_contacts(30, 100, 0.5, random);
-  ConeSolver solver(90, 0, 30);
+  ConeSolver solver;
   VectorX x = VectorX::Zero(90);
   solver.solve(c.problem(), span_of(x));
   const VectorX before = x;
@@ -347,7 +347,7 @@ TEST(ConeSolver, SolvesBoxesAndConesTogether) {
     c.offset = jacobian * random.vector(30);
     for (int i = 0; i < kContacts; ++i) c.cones.push_back({kBoxes + 3 * i, 0.4});
     for (int i = 0; i < kBoxes; ++i) c.boxes.push_back({i, 0.0, 0.2, random.uniform(-1.0, 1.0)});
-    ConeSolver solver(kRows, kBoxes, kContacts);
+    ConeSolver solver;
     VectorX x = VectorX::Zero(kRows);
     ASSERT_EQ(solver.solve(c.problem(), span_of(x)).status, ConeStatus::solved);
     expect_laws(c, x, 1e-8);
@@ -368,7 +368,7 @@ TEST(ConeSolver, SolvesBoxesAndConesTogether) {
 TEST(ConeSolver, SaysWhatItCannotSolve) {
   Random random(61);
   Contacts c = random_contacts(3, 10, 0.5, random);
-  ConeSolver solver(9, 0, 3);
+  ConeSolver solver;
   VectorX x = VectorX::Zero(9);
   // Two surfaces squeeze a point that can only move along their common normal.
   Contacts held = c;

@@ -89,7 +89,7 @@ TEST(Contacts, SayWhatIsWrong) {
   expect_error("{body: block, surface: {plane: {point: 0 0 10 mm}}}", K::out_of_range, "inside");
 }
 
-TEST(Contacts, RefuseControllers) {
+TEST(Contacts, StandBesideControllers) {
   const std::string text = kBlock +
                            "  c: {body: block, surface: {plane: {}}}\n"
                            "actuators:\n"
@@ -98,13 +98,9 @@ TEST(Contacts, RefuseControllers) {
                            "  tip: {body: block, point: 0 0 0}\n"
                            "controllers:\n"
                            "  follow: {type: inverse, effectors: {tip: {target: 0 0 0}}}\n";
-  try {
-    build(parse_scene_text(text, "scene.yaml", {}));
-    ADD_FAILURE();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::not_in_this_version);
-    EXPECT_EQ(error.place().line, 17);
-  }
+  const Robot robot = build(parse_scene_text(text, "scene.yaml", {}));
+  EXPECT_EQ(robot.model->contacts().size(), 1);
+  EXPECT_EQ(robot.controllers.size(), 1);
 }
 
 TEST(Contacts, RefuseGeneralizedAlpha) {

@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -272,7 +273,7 @@ TEST(Spring, ShapeMemoryWireStiffensWhenHot) {
 TEST(Spring, PhaseHasHysteresis) {
   SmaSettings wire;
   SmaDrive drive(wire, 0.06);
-  std::vector<double> state(2);
+  std::array<double, Drive::kMaxStates> state{};
   drive.rest(state);
   // A power whose end is between the two ranges of temperature: heating leaves martensite.
   const double power = wire.heat_loss * (333.0 - wire.ambient);

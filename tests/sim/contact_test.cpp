@@ -552,12 +552,6 @@ TEST(Contact, ThreadsGiveTheSameBits) {
 TEST(Contact, RefusesWhatItCannotDo) {
   const auto model = block_on_plane({}).build();
   Simulation simulation(model);
-  struct Nothing : Law {
-    LawStatus solve(const LawProblem&, std::span<double>) override { return LawStatus::solved; }
-    double violation(const LawProblem&, std::span<const double>) const override { return 0.0; }
-    void begin_step() override {}
-  } law;
-  EXPECT_THROW(simulation.attach(law, {}), Error);
   EXPECT_THROW(simulation.follow_path({}), Error);
   BlockOptions sunk{.height = -1e-3};
   EXPECT_THROW(block_on_plane(sunk), Error);

@@ -7,7 +7,6 @@
 #include "sinew/constraint/cable.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/fem/fem_body_model.hpp"
-#include "sinew/sim/friction_law.hpp"
 
 #include "robots.hpp"
 

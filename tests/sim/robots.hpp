@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -32,6 +33,8 @@ struct BeamOptions {
   material::Law law = material::Law::corotational;
   double young_modulus = 200e3;  // Pa
   linalg::FactorisationSettings factorisation;
+  std::optional<double> wall;  ///< m: z of a plane below it, solid underneath
+  double wall_friction = 0.3;
   bool probes = false;  ///< "end" where the tip is, "axis" of six points, "bend" of both ends
 };
 
@@ -71,6 +74,15 @@ inline std::shared_ptr<const sim::Model> beam(const BeamOptions& options = {}) {
   tip.points.resize(1, 3);
   tip.points << 0.1, 0.0, 0.0;
   builder.add_effector(tip);
+  if (options.wall) {
+    sim::ContactSettings wall;
+    wall.name = "wall";
+    wall.body = beam;
+    wall.surface = constraint::Plane{{0.0, 0.0, *options.wall}, Vector3::UnitZ()};
+    wall.nodes = mesh->node_sets.at("z_min");
+    wall.friction = options.wall_friction;
+    builder.add_contact(wall);
+  }
   if (options.probes) {
     builder.add_probe({"end", {}, mesh::Outside::error, sim::ProbeSpot{beam, tip.points, {}}});
     sim::ProbeLine axis{beam, Points(2, 3), 6};

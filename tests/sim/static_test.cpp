@@ -159,8 +159,7 @@ TEST(Statics, StabilityAgreesWithTheDenseTangent) {
     world.linearise({{}, mechanics::Tangent::exact, true, false});
     world.form_rows(simulation.efforts(), simulation.model().curved_constraints());
     ASSERT_NE(world.condense(), linalg::FactorStatus::singular);
-    const LawProblem problem = world.law_problem(simulation.ranges(), 0.0, 0.0);
-    const Stability stability(world, problem, simulation.efforts());
+    const Stability stability(world, simulation.efforts());
     VectorX rest, row;
     world.imbalance(std::vector<double>(simulation.efforts().size(), 0.0), rest);
     std::vector<double> unit(simulation.efforts().size(), 0.0);

@@ -12,8 +12,10 @@ namespace sinew::inverse {
 
 namespace {
 
-using sim::ActuatorRange;
-using sim::CommandKind;
+using step::ActuatorBlock;
+using step::LawStatus;
+using step::Response;
+using step::StepProblem;
 
 // A limit is taken to bind when the solution comes this near, relative to its size.
 constexpr double kActive = 1e-9;
@@ -49,7 +51,7 @@ InverseController::InverseController(sim::Simulation& simulation, InverseSetting
     }
   }
   const auto rows = static_cast<Eigen::Index>(effector_rows_.size());
-  const auto count = static_cast<Eigen::Index>(model.actuators().size());
+  const auto count = static_cast<Eigen::Index>(settings_.actuators.size());
   row_weights_ = Eigen::Map<VectorX>(weights.data(), rows);
   jacobian_.setZero(rows, count);
   weighted_.setZero(rows, count);
@@ -62,11 +64,10 @@ InverseController::InverseController(sim::Simulation& simulation, InverseSetting
   row_multiplier_.setZero(count);
   scale_.setOnes(count);
   scaled_effort_.setZero(count);
-  passive_.assign(static_cast<std::size_t>(count), Passive::held);
   program_ = qp::QuadraticProgram::sized(static_cast<int>(count), static_cast<int>(count));
   solver_ = qp::QpSolver(static_cast<int>(count), static_cast<int>(count));
   elastic_ = qp::ElasticSolver(static_cast<int>(count), static_cast<int>(count));
-  efforts_.setZero(static_cast<Eigen::Index>(settings_.actuators.size()));
+  efforts_.setZero(count);
   simulation_.attach(*this, settings_.actuators);
   attached_ = true;
 }
@@ -90,7 +91,7 @@ void InverseController::set_target(int task, Target target) {
 
 // Once a step, whose law may be solved several times: what became of the step before, and what is
 // asked in this one.
-void InverseController::look_back(const sim::LawProblem& problem) {
+void InverseController::look_back(const StepProblem& problem) {
   if (!(problem.time > time_)) return;
   if (std::isfinite(time_)) {
     measure_gap(problem);
@@ -108,11 +109,12 @@ void InverseController::look_back(const sim::LawProblem& problem) {
   gap_before_ = gap_;
 }
 
-void InverseController::measure_gap(const sim::LawProblem& problem) {
+void InverseController::measure_gap(const StepProblem& problem) {
   Eigen::Index at = 0;
   for (std::size_t t = 0; t < asked_.size(); ++t) {
-    const auto& effector = problem.model.effector(settings_.tasks[t].effector);
-    effector.target_delta(problem.placement, asked_[t], gap_.segment(at, effector.row_count()));
+    const auto& effector = simulation_.model().effector(settings_.tasks[t].effector);
+    effector.target_delta(simulation_.world().placement(), asked_[t],
+                          gap_.segment(at, effector.row_count()));
     at += effector.row_count();
   }
   for (Eigen::Index k = 0; k < gap_.size(); ++k) {
@@ -124,59 +126,62 @@ double InverseController::objective(const VectorX& gap) const {
   return 0.5 * gap.dot(row_weights_.cwiseProduct(gap));
 }
 
-void InverseController::form_residual(const sim::LawProblem& problem) {
+void InverseController::form_residual(const StepProblem& problem, const Response& response) {
   measure_gap(problem);
   double to_go = 0.0;
   for (Eigen::Index k = 0; k < gap_.size(); ++k) {
     if (row_weights_[k] > 0.0) to_go = std::hypot(to_go, gap_[k]);
   }
-  const double most = settings_.largest_step * problem.model.size();
-  const double share = to_go > most ? most / to_go : 1.0;
+  const double most = settings_.largest_step * problem.size;
+  share_ = to_go > most ? most / to_go : 1.0;
   for (Eigen::Index k = 0; k < residual_.size(); ++k) {
     const int row = effector_rows_[static_cast<std::size_t>(k)];
-    residual_[k] = problem.delta_free[row] - problem.delta[row] - share * gap_[k];
+    residual_[k] = response.free()[row] - problem.delta[row] - share_ * gap_[k];
   }
 }
 
-void InverseController::form_scales(const sim::LawProblem& problem) {
-  for (std::size_t k = 0; k < problem.actuators.size(); ++k) {
-    const ActuatorRange& range = problem.actuators[k];
-    const double own = problem.compliance(range.row, range.row);
-    const double limit = std::max(std::abs(range.effort_min), std::abs(range.effort_max));
-    scale_[static_cast<Eigen::Index>(k)] = std::isfinite(limit) && limit > 0.0 ? limit
-                                           : own > 0.0
-                                               ? problem.model.size() / (range.motion_scale * own)
-                                               : 1.0;
+const ActuatorBlock& InverseController::block(const StepProblem& problem, const Response& response,
+                                              Eigen::Index k) {
+  const int index = response.controlled()[static_cast<std::size_t>(k)];
+  return problem.actuators[static_cast<std::size_t>(index)];
+}
+
+void InverseController::form_scales(const StepProblem& problem, const Response& response) {
+  for (Eigen::Index k = 0; k < scale_.size(); ++k) {
+    const ActuatorBlock& own = block(problem, response, k);
+    const double yields = response.compliance()(own.row, k);
+    const double limit = std::max(std::abs(own.effort_min), std::abs(own.effort_max));
+    scale_[k] = std::isfinite(limit) && limit > 0.0 ? limit
+                : yields > 0.0                      ? problem.size / (own.motion_scale * yields)
+                                                    : 1.0;
   }
 }
 
-void InverseController::form_objective(const sim::LawProblem& problem,
-                                       std::span<const double> effort) {
-  const auto& ranges = problem.actuators;
-  const auto count = static_cast<Eigen::Index>(ranges.size());
-  form_scales(problem);
+void InverseController::form_objective(const StepProblem& problem, const Response& response) {
+  form_scales(problem, response);
+  const Eigen::Index count = scale_.size();
   for (Eigen::Index j = 0; j < count; ++j) {
-    const int column = ranges[static_cast<std::size_t>(j)].row;
     for (Eigen::Index i = 0; i < count; ++i) {
-      const int row = ranges[static_cast<std::size_t>(i)].row;
-      program_.rows(i, j) = scale_[j] * problem.compliance(row, column);
+      const int row = block(problem, response, i).row;
+      program_.rows(i, j) = scale_[j] * response.compliance()(row, j);
     }
     for (Eigen::Index k = 0; k < residual_.size(); ++k) {
       const int row = effector_rows_[static_cast<std::size_t>(k)];
-      jacobian_(k, j) = scale_[j] * problem.compliance(row, column);
+      jacobian_(k, j) = scale_[j] * response.compliance()(row, j);
       weighted_(k, j) = row_weights_[k] * jacobian_(k, j);
     }
   }
   program_.hessian.noalias() = jacobian_.transpose() * weighted_;
   program_.gradient.noalias() = weighted_.transpose() * residual_;
-  regularise(problem, effort);
+  regularise(problem, response);
 }
 
 // With p the pull to zero efforts and d the damping, adds
 //   eps/2 (d lambda^T R lambda - 2 (d - p) lambda^T R lambda_0),
 // whose derivative at lambda = lambda_0 is that of p eps/2 lambda^T R lambda: d moves no fixed
 // point.
-void InverseController::regularise(const sim::LawProblem& problem, std::span<const double> effort) {
+// Where friction slides R would be unsymmetric, and keeps its diagonal alone.
+void InverseController::regularise(const StepProblem& problem, const Response& response) {
   const Eigen::Index count = program_.gradient.size();
   double norm = 0.0;
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -189,147 +194,115 @@ void InverseController::regularise(const sim::LawProblem& problem, std::span<con
   const double damping = damping_.value();
   const double keep = damping - (change ? settings_.relaxation : 1.0);
   for (Eigen::Index j = 0; j < count; ++j) {
-    const int row = problem.actuators[static_cast<std::size_t>(j)].row;
-    const double before = effort[static_cast<std::size_t>(row)] / scale_[j];
+    const int row = block(problem, response, j).row;
+    const double before = problem.effort_before[static_cast<std::size_t>(row)] / scale_[j];
     for (Eigen::Index i = 0; i < count; ++i) {
       double weight = eps * scale_[i] * program_.rows(i, j);
       // What moves nothing is held by others: a drive, or the clamp.
       if (i == j) weight = weight > 0.0 ? (1.0 + kEvenly) * weight : eps * norm;
+      if (i != j && response.is_unsymmetric()) weight = 0.0;
       program_.hessian(i, j) += damping * weight;
       program_.gradient[i] -= keep * weight * before;
     }
   }
 }
 
-void InverseController::form_limits(const sim::LawProblem& problem) {
-  for (std::size_t k = 0; k < problem.actuators.size(); ++k) {
-    const ActuatorRange& range = problem.actuators[k];
-    const auto i = static_cast<Eigen::Index>(k);
-    const double free = problem.delta_free[range.row];
-    double low = range.effort_min;
-    double high = range.effort_max;
-    double from = range.motion_min;
-    double to = range.motion_max;
-    if (!range.owned) {
-      const bool held = range.kind == CommandKind::motion && passive_[k] == Passive::held;
-      const double given = range.kind == CommandKind::effort  ? range.value
-                           : passive_[k] == Passive::at_least ? range.effort_min
-                                                              : range.effort_max;
-      low = held ? -INFINITY : given;
-      high = held ? INFINITY : given;
-      from = held ? range.value : -INFINITY;
-      to = held ? range.value : INFINITY;
-    }
-    program_.lower[i] = low / scale_[i];
-    program_.upper[i] = high / scale_[i];
-    program_.row_lower[i] = from - free;
-    program_.row_upper[i] = to - free;
+void InverseController::form_limits(const StepProblem& problem, const Response& response) {
+  for (Eigen::Index k = 0; k < scale_.size(); ++k) {
+    const ActuatorBlock& own = block(problem, response, k);
+    const double free = response.free()[own.row];
+    program_.lower[k] = own.effort_min / scale_[k];
+    program_.upper[k] = own.effort_max / scale_[k];
+    program_.row_lower[k] = own.motion_min - free;
+    program_.row_upper[k] = own.motion_max - free;
   }
 }
 
-sim::LawStatus InverseController::solve_program(const sim::LawProblem& problem) {
-  sim::LawStatus status = sim::LawStatus::solved;
-  for (std::size_t round = 0; round <= 2 * passive_.size(); ++round) {
-    form_limits(problem);
-    const qp::QpResult& result = solver_.solve(program_);
-    if (result.status == qp::QpStatus::infeasible) {
-      const qp::ElasticResult& nearest = elastic_.solve(program_);
-      const bool usable = nearest.status == qp::ElasticStatus::optimal ||
-                          nearest.status == qp::ElasticStatus::relaxed;
-      if (!usable) return sim::LawStatus::failed;
-      scaled_effort_ = nearest.qp.x;
-      conflict_ = describe_conflict(problem, program_, scale_, nearest);
-      status = sim::LawStatus::limits_conflict;
-    } else if (result.status != qp::QpStatus::optimal) {
-      return sim::LawStatus::failed;
-    } else {
-      scaled_effort_ = result.x;
-      bound_multiplier_ = result.bound_multiplier;
-      row_multiplier_ = result.row_multiplier;
-    }
-    if (!settle_passive_rows(problem)) break;
+LawStatus InverseController::solve_program(const StepProblem& problem, const Response& response) {
+  form_limits(problem, response);
+  const qp::QpResult& result = solver_.solve(program_);
+  if (result.status == qp::QpStatus::optimal) {
+    scaled_effort_ = result.x;
+    bound_multiplier_ = result.bound_multiplier;
+    row_multiplier_ = result.row_multiplier;
+    return LawStatus::solved;
   }
-  return status;
+  if (result.status != qp::QpStatus::infeasible) return LawStatus::failed;
+  const qp::ElasticResult& nearest = elastic_.solve(program_);
+  const bool usable =
+      nearest.status == qp::ElasticStatus::optimal || nearest.status == qp::ElasticStatus::relaxed;
+  if (!usable) return LawStatus::failed;
+  scaled_effort_ = nearest.qp.x;
+  conflict_ = describe_conflict(simulation_.model(), response, program_, scale_, nearest);
+  return LawStatus::limits_conflict;
 }
 
-// A row that nobody owns and whose motion is commanded is held there whatever effort that takes;
-// where it takes more than there is, the effort stays at its limit (a slack cable, a stalled drive)
-// and the row moves, until it would move against that limit.
-bool InverseController::settle_passive_rows(const sim::LawProblem& problem) {
-  bool changed = false;
-  for (std::size_t k = 0; k < passive_.size(); ++k) {
-    const ActuatorRange& range = problem.actuators[k];
-    if (range.owned || range.kind != CommandKind::motion) continue;
-    const auto i = static_cast<Eigen::Index>(k);
-    const double effort = scale_[i] * scaled_effort_[i];
-    const double motion =
-        problem.delta_free[range.row] + program_.rows.row(i).dot(scaled_effort_) - range.value;
-    const double nothing = kActive * problem.model.size() / range.motion_scale;
-    const double negligible = kActive * scale_[i];
-    const Passive before = passive_[k];
-    if (before == Passive::held && effort < range.effort_min - negligible) {
-      passive_[k] = Passive::at_least;
-    } else if (before == Passive::held && effort > range.effort_max + negligible) {
-      passive_[k] = Passive::at_most;
-    } else if ((before == Passive::at_least && motion < -nothing) ||
-               (before == Passive::at_most && motion > nothing)) {
-      passive_[k] = Passive::held;
-    }
-    changed = changed || passive_[k] != before;
-  }
-  return changed;
-}
-
-sim::LawStatus InverseController::solve(const sim::LawProblem& problem, std::span<double> effort) {
+LawStatus InverseController::choose(const StepProblem& problem, const Response& response,
+                                    std::span<double> effort) {
   look_back(problem);
-  form_residual(problem);
-  form_objective(problem, effort);
+  form_residual(problem, response);
+  form_objective(problem, response);
   conflict_.clear();
-  std::ranges::fill(passive_, Passive::held);
-  const sim::LawStatus status = solve_program(problem);
-  if (status == sim::LawStatus::failed) return status;
-  for (std::size_t k = 0; k < problem.actuators.size(); ++k) {
+  const LawStatus status = solve_program(problem, response);
+  if (status == LawStatus::failed) return status;
+  for (std::size_t k = 0; k < effort.size(); ++k) {
     const auto i = static_cast<Eigen::Index>(k);
-    effort[static_cast<std::size_t>(problem.actuators[k].row)] = scale_[i] * scaled_effort_[i];
+    effort[k] = scale_[i] * scaled_effort_[i];
   }
-  for (std::size_t k = 0; k < settings_.actuators.size(); ++k) {
-    const auto& range = problem.actuators[static_cast<std::size_t>(settings_.actuators[k])];
-    efforts_[static_cast<Eigen::Index>(k)] = effort[static_cast<std::size_t>(range.row)];
-  }
-  const double moved = foresee(problem);
-  status_ = status == sim::LawStatus::limits_conflict ? InverseStatus::limits_conflict
-                                                      : judge(problem, moved);
   return status;
+}
+
+double InverseController::miss(const StepProblem& problem, const VectorX& motion) const {
+  double sum = 0.0;
+  for (Eigen::Index k = 0; k < gap_.size(); ++k) {
+    const int row = effector_rows_[static_cast<std::size_t>(k)];
+    const double left = motion[row] - problem.delta[row] - share_ * gap_[k];
+    sum += row_weights_[k] * left * left;
+  }
+  return std::sqrt(sum / row_weights_.maxCoeff());
+}
+
+double InverseController::negligible_miss() const { return kStill * settings_.tolerance; }
+
+void InverseController::accept(const StepProblem& problem, const Response& response,
+                               const VectorX& motion, std::span<const double> effort) {
+  for (std::size_t k = 0; k < effort.size(); ++k) {
+    const auto place = std::ranges::find(settings_.actuators, response.controlled()[k]);
+    efforts_[place - settings_.actuators.begin()] = effort[k];
+  }
+  const double moved = foresee(problem, response, motion);
+  status_ = conflict_.empty() ? judge(problem, response, motion, effort, moved)
+                              : InverseStatus::limits_conflict;
 }
 
 // What the linearisation says of the step's end: the gaps that stay, and the farthest that an
 // effector or an actuator moves in the step, m.
-double InverseController::foresee(const sim::LawProblem& problem) {
+double InverseController::foresee(const StepProblem& problem, const Response& response,
+                                  const VectorX& motion) {
   double moved = 0.0;
   predicted_error_ = 0.0;
   for (Eigen::Index k = 0; k < gap_.size(); ++k) {
     const int row = effector_rows_[static_cast<std::size_t>(k)];
-    const double motion =
-        problem.delta_free[row] - problem.delta[row] + jacobian_.row(k).dot(scaled_effort_);
-    foreseen_[k] = gap_[k] - motion;
+    foreseen_[k] = gap_[k] - (motion[row] - problem.delta[row]);
     moved = std::max(moved, std::abs(gap_before_[k] - foreseen_[k]));
     if (row_weights_[k] > 0.0) predicted_error_ = std::hypot(predicted_error_, foreseen_[k]);
   }
-  for (const int index : settings_.actuators) {
-    const ActuatorRange& range = problem.actuators[static_cast<std::size_t>(index)];
-    const double motion = problem.delta_free[range.row] +
-                          program_.rows.row(index).dot(scaled_effort_) -
-                          simulation_.actuator(index).motion;
-    moved = std::max(moved, range.motion_scale * std::abs(motion));
+  for (Eigen::Index k = 0; k < scale_.size(); ++k) {
+    const ActuatorBlock& own = block(problem, response, k);
+    const int index = response.controlled()[static_cast<std::size_t>(k)];
+    const double change = motion[own.row] - simulation_.actuator(index).motion;
+    moved = std::max(moved, own.motion_scale * std::abs(change));
   }
   return moved;
 }
 
-InverseStatus InverseController::judge(const sim::LawProblem& problem, double moved) const {
+InverseStatus InverseController::judge(const StepProblem& problem, const Response& response,
+                                       const VectorX& motion, std::span<const double> effort,
+                                       double moved) const {
   if (predicted_error_ <= settings_.tolerance) {
     return surprise_ <= settings_.tolerance ? InverseStatus::on_target : InverseStatus::moving;
   }
-  if (rate_binds(problem)) return InverseStatus::rate_limited;
+  if (rate_binds(problem, response, motion, effort)) return InverseStatus::rate_limited;
   // A step that was damped would have gone so much farther.
   const bool still = moved * damping_.value() <= kStill * settings_.tolerance;
   const bool rests = still && surprise_ <= settings_.tolerance &&
@@ -338,18 +311,17 @@ InverseStatus InverseController::judge(const sim::LawProblem& problem, double mo
   return limit_holds() ? InverseStatus::out_of_reach : InverseStatus::local_optimum;
 }
 
-bool InverseController::rate_binds(const sim::LawProblem& problem) const {
-  for (const int index : settings_.actuators) {
-    const auto k = static_cast<std::size_t>(index);
-    const ActuatorRange& range = problem.actuators[k];
-    const auto& model = problem.model.actuators()[k];
-    const double lambda = scale_[index] * scaled_effort_[index];
-    const double delta =
-        problem.delta_free[range.row] + program_.rows.row(index).dot(scaled_effort_);
-    const bool binds = (range.effort_max < model.effort.max && near(lambda, range.effort_max)) ||
-                       (range.effort_min > model.effort.min && near(lambda, range.effort_min)) ||
-                       (range.motion_max < model.motion.max && near(delta, range.motion_max)) ||
-                       (range.motion_min > model.motion.min && near(delta, range.motion_min));
+bool InverseController::rate_binds(const StepProblem& problem, const Response& response,
+                                   const VectorX& motion, std::span<const double> effort) const {
+  for (Eigen::Index k = 0; k < scale_.size(); ++k) {
+    const ActuatorBlock& own = block(problem, response, k);
+    const auto index = static_cast<std::size_t>(response.controlled()[static_cast<std::size_t>(k)]);
+    const auto& model = simulation_.model().actuators()[index];
+    const double lambda = effort[static_cast<std::size_t>(k)], delta = motion[own.row];
+    const bool binds = (own.effort_max < model.effort.max && near(lambda, own.effort_max)) ||
+                       (own.effort_min > model.effort.min && near(lambda, own.effort_min)) ||
+                       (own.motion_max < model.motion.max && near(delta, own.motion_max)) ||
+                       (own.motion_min > model.motion.min && near(delta, own.motion_min));
     if (binds) return true;
   }
   return false;
@@ -358,17 +330,13 @@ bool InverseController::rate_binds(const sim::LawProblem& problem) const {
 // By the multipliers of its limits.
 bool InverseController::limit_holds() const {
   const double gap = foreseen_.norm();
-  for (const int i : settings_.actuators) {
-    const double most = kHolds * weighted_.col(i).norm() * gap;
-    const double own = std::abs(program_.rows(i, i));
-    if (std::abs(bound_multiplier_[i]) > most) return true;
-    if (std::abs(row_multiplier_[i]) * own > most) return true;
+  for (Eigen::Index k = 0; k < scale_.size(); ++k) {
+    const double most = kHolds * weighted_.col(k).norm() * gap;
+    const double own = std::abs(program_.rows(k, k));
+    if (std::abs(bound_multiplier_[k]) > most) return true;
+    if (std::abs(row_multiplier_[k]) * own > most) return true;
   }
   return false;
-}
-
-double InverseController::violation(const sim::LawProblem&, std::span<const double>) const {
-  return 0.0;
 }
 
 void InverseController::begin_step() {

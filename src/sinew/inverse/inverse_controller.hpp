@@ -22,9 +22,9 @@ namespace sinew::inverse {
 /// where lambda_0 is the last step's effort (Regularisation::change) or zero, and R is W_aa with a
 /// millionth of its diagonal added: cables on one path, which W_aa cannot tell apart, share their
 /// changes evenly. StepDamping adds a term that keeps lambda near the last step's where the robot
-/// did not do what was foreseen. Actuators that it does not own obey their commands (equality rows,
-/// but for a motion that would take more effort than the limits allow).
-class InverseController : public sim::Law {
+/// did not do what was foreseen. W and delta_free are those of step::Response: actuators that it
+/// does not own obey their commands, springs, gas, contacts and friction their laws.
+class InverseController : public step::Controller {
  public:
   /// @param simulation must outlive the controller. @param settings see there.
   /// Throws Error: no-effectors, no-actuators, actuator-owned, wrong-length (weights),
@@ -55,8 +55,12 @@ class InverseController : public sim::Law {
   /// With limits-conflict: which limits of which actuators contradict each other. Else empty.
   const std::string& conflict() const { return conflict_; }
 
-  sim::LawStatus solve(const sim::LawProblem& problem, std::span<double> effort) override;
-  double violation(const sim::LawProblem& problem, std::span<const double> effort) const override;
+  step::LawStatus choose(const step::StepProblem& problem, const step::Response& response,
+                         std::span<double> effort) override;
+  double miss(const step::StepProblem& problem, const VectorX& motion) const override;
+  double negligible_miss() const override;
+  void accept(const step::StepProblem& problem, const step::Response& response,
+              const VectorX& motion, std::span<const double> effort) override;
   void begin_step() override;
   std::size_t memory_size() const override;
   void save_memory(std::span<double> memory) const override;
@@ -64,22 +68,26 @@ class InverseController : public sim::Law {
   void forget() override;
 
  private:
-  void look_back(const sim::LawProblem& problem);
+  void look_back(const step::StepProblem& problem);
   template <class Self, class Visitor>
   static void visit_memory(Self& self, Visitor&& visitor);
-  void measure_gap(const sim::LawProblem& problem);
+  static const step::ActuatorBlock& block(const step::StepProblem& problem,
+                                          const step::Response& response, Eigen::Index k);
+  void measure_gap(const step::StepProblem& problem);
   double objective(const VectorX& gap) const;
-  void form_residual(const sim::LawProblem& problem);
-  void form_scales(const sim::LawProblem& problem);
-  void form_objective(const sim::LawProblem& problem, std::span<const double> effort);
-  void regularise(const sim::LawProblem& problem, std::span<const double> effort);
-  void form_limits(const sim::LawProblem& problem);
-  sim::LawStatus solve_program(const sim::LawProblem& problem);
-  bool settle_passive_rows(const sim::LawProblem& problem);
-  double foresee(const sim::LawProblem& problem);
-  bool rate_binds(const sim::LawProblem& problem) const;
+  void form_residual(const step::StepProblem& problem, const step::Response& response);
+  void form_scales(const step::StepProblem& problem, const step::Response& response);
+  void form_objective(const step::StepProblem& problem, const step::Response& response);
+  void regularise(const step::StepProblem& problem, const step::Response& response);
+  void form_limits(const step::StepProblem& problem, const step::Response& response);
+  step::LawStatus solve_program(const step::StepProblem& problem, const step::Response& response);
+  double foresee(const step::StepProblem& problem, const step::Response& response,
+                 const VectorX& motion);
+  bool rate_binds(const step::StepProblem& problem, const step::Response& response,
+                  const VectorX& motion, std::span<const double> effort) const;
   bool limit_holds() const;
-  InverseStatus judge(const sim::LawProblem& problem, double moved) const;
+  InverseStatus judge(const step::StepProblem& problem, const step::Response& response,
+                      const VectorX& motion, std::span<const double> effort, double moved) const;
 
   sim::Simulation& simulation_;
   InverseSettings settings_;
@@ -90,11 +98,10 @@ class InverseController : public sim::Law {
   MatrixX jacobian_;                // W_ea, scaled columns
   MatrixX weighted_;                // Q W_ea
   VectorX residual_;                // delta_free_e - target, shortened to largest_step
+  double share_ = 1.0;              // of the gap that one step may close
   VectorX gap_;                     // of the tasks' rows: what delta should be, less delta
-  VectorX scale_;                   // of each actuator's effort
+  VectorX scale_;                   // (controlled,) of each effort
   VectorX scaled_effort_;
-  enum class Passive : char { held, at_least, at_most };  // by its motion, or by a limit
-  std::vector<Passive> passive_;                          // of rows whose motion is commanded
   StepDamping damping_;
   qp::QuadraticProgram program_;
   qp::QpSolver solver_;

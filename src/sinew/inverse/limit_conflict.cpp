@@ -4,8 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "sinew/sim/model.hpp"
-
 namespace sinew::inverse {
 
 namespace {
@@ -17,21 +15,24 @@ void append(std::string& text, const std::string& sentence) {
 
 }  // namespace
 
-std::string describe_conflict(const sim::LawProblem& problem, const qp::QuadraticProgram& program,
-                              const VectorX& scale, const qp::ElasticResult& nearest) {
+std::string describe_conflict(const sim::Model& model, const step::Response& response,
+                              const qp::QuadraticProgram& program, const VectorX& scale,
+                              const qp::ElasticResult& nearest) {
   std::string text;
-  const auto& models = problem.model.actuators();
-  for (std::size_t k = 0; k < problem.actuators.size() && k < models.size(); ++k) {
+  const auto actuator = [&](std::size_t k) -> const sim::ActuatorModel& {
+    return model.actuators()[static_cast<std::size_t>(response.controlled()[k])];
+  };
+  for (std::size_t k = 0; k < response.controlled().size(); ++k) {
     const auto i = static_cast<Eigen::Index>(k);
     if (nearest.violation[i] == 0.0) continue;
-    const double free = problem.delta_free[problem.actuators[k].row];
-    const sim::QuantityName what = models[k].motion_name();
+    const double free = response.free()[actuator(k).row];
+    const sim::QuantityName what = actuator(k).motion_name();
     append(text,
            fmt::format("{} of '{}' leaves {:.4g}..{:.4g} {} by {:.3g} {}", what.name,
-                       models[k].name, program.row_lower[i] + free, program.row_upper[i] + free,
+                       actuator(k).name, program.row_lower[i] + free, program.row_upper[i] + free,
                        what.unit, std::abs(nearest.violation[i]), what.unit));
   }
-  for (std::size_t k = 0; k < problem.actuators.size() && k < models.size(); ++k) {
+  for (std::size_t k = 0; k < response.controlled().size(); ++k) {
     const auto i = static_cast<Eigen::Index>(k);
     const double x = nearest.qp.x[i];
     bool blocks = false;  // whether a relaxed row would be met better beyond this limit
@@ -41,8 +42,8 @@ std::string describe_conflict(const sim::LawProblem& problem, const qp::Quadrati
           blocks || (pull > 0.0 && x == program.lower[i]) || (pull < 0.0 && x == program.upper[i]);
     }
     if (!blocks) continue;
-    const sim::QuantityName what = models[k].effort_name();
-    append(text, fmt::format("{} of '{}' is at its limit, {:.4g} {}", what.name, models[k].name,
+    const sim::QuantityName what = actuator(k).effort_name();
+    append(text, fmt::format("{} of '{}' is at its limit, {:.4g} {}", what.name, actuator(k).name,
                              scale[i] * x, what.unit));
   }
   return text;

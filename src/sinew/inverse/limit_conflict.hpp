@@ -5,15 +5,19 @@
 #include <string>
 
 #include "sinew/qp/elastic.hpp"
-#include "sinew/sim/law.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/step/response.hpp"
 
 namespace sinew::inverse {
 
 /// "displacement of 'east' leaves -0.01..0.01 m by 0.003 m; tension of 'east' is at 3 N".
-/// @param problem whose actuators have the program's variables and rows, one each.
-/// @param program with efforts over `scale` (actuators,) as variables.
+/// @param model of the robot. @param response of the actuators that have the program's variables
+/// and
+///   rows, one each.
+/// @param program with efforts over `scale` (controlled,) as variables.
 /// @param nearest its solution: rows that are relaxed, and the bounds that stand against them.
-std::string describe_conflict(const sim::LawProblem& problem, const qp::QuadraticProgram& program,
-                              const VectorX& scale, const qp::ElasticResult& nearest);
+std::string describe_conflict(const sim::Model& model, const step::Response& response,
+                              const qp::QuadraticProgram& program, const VectorX& scale,
+                              const qp::ElasticResult& nearest);
 
 }  // namespace sinew::inverse

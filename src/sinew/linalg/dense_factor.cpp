@@ -10,6 +10,11 @@ void LuFactor::solve(const Eigen::Ref<const VectorX>& b, Eigen::Ref<VectorX> x) 
 
 void LuFactor::solve(const MatrixX& b, MatrixX& x) const { x = lu_.solve(b); }
 
+bool LuFactor::is_singular() const {
+  constexpr double kRounding = 1e-12;
+  return !(lu_.matrixLU().diagonal().cwiseAbs().minCoeff() > kRounding);
+}
+
 bool CholeskyFactor::compute(const MatrixX& a) {
   llt_.compute(a);
   return llt_.info() == Eigen::Success;

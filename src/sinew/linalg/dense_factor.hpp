@@ -22,6 +22,8 @@ class LuFactor {
   void solve(const Eigen::Ref<const VectorX>& b, Eigen::Ref<VectorX> x) const;
   /// Column by column. @param b (size, k). @param x (size, k), not b.
   void solve(const MatrixX& b, MatrixX& x) const;
+  /// Of a matrix scaled to entries of order 1: whether a pivot is rounding, or not finite.
+  bool is_singular() const;
 
  private:
   Eigen::PartialPivLU<MatrixX> lu_;

@@ -25,7 +25,8 @@ constexpr double kNewtonProximal = 1e-9;
 }  // namespace
 
 bool ConeSolver::Workspace::newton(const ConeProblem& problem) {
-  best = x;
+  const auto keep = [&] { std::copy_n(x.data(), x.size(), best.data()); };
+  keep();
   double least = result.residual;
   for (int step = 0; step < kMostSteps; ++step) {
     const int count = choose_unknowns(problem);
@@ -40,7 +41,7 @@ bool ConeSolver::Workspace::newton(const ConeProblem& problem) {
     const double residual = judge(problem);
     if (residual < least) {
       least = residual;
-      best = x;
+      keep();
     }
     if (residual <= settings.tolerance) {
       settle_into_blocks(problem);
@@ -49,7 +50,7 @@ bool ConeSolver::Workspace::newton(const ConeProblem& problem) {
     }
     if (!std::isfinite(residual)) break;
   }
-  x = best;
+  std::copy_n(best.data(), x.size(), x.data());
   settle_into_blocks(problem);
   measure_motion(problem);
   judge(problem);
@@ -88,6 +89,7 @@ int ConeSolver::Workspace::choose_unknowns(const ConeProblem& problem) {
 
 void ConeSolver::Workspace::form_system(const ConeProblem& problem, int count) {
   unknowns = count;
+  lu.reserve(count);
   auto system = lu.matrix(count);
   for (int j = 0; j < count; ++j) {
     const auto column = problem.matrix.col(unknown_row[static_cast<std::size_t>(j)]);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 #include <utility>
 
 #include <fmt/format.h>
@@ -23,20 +24,19 @@ constexpr double kFixed = 1e-14;
 constexpr double kMostEffort = 1e4;
 constexpr double kAtLimit = 1e-7;  // friction within this part of its limit is at it
 
-void check_shape(const ConeProblem& problem, std::size_t start, Eigen::Index rows,
-                 std::size_t most_boxes, std::size_t most_cones) {
-  const auto size = [](std::size_t n) { return static_cast<Eigen::Index>(n); };
-  if (problem.matrix.rows() != rows || problem.matrix.cols() != rows ||
-      problem.offset.size() != rows || size(start) != rows || problem.boxes.size() > most_boxes ||
-      problem.cones.size() > most_cones) {
-    throw Error(
-        ErrorKind::wrong_shape, {.item = "cone problem"},
-        fmt::format("a matrix ({}, {}), offset ({},), x ({},), {} boxes and {} cones do not "
-                    "fit a solver of {} rows",
-                    problem.matrix.rows(), problem.matrix.cols(), problem.offset.size(), start,
-                    problem.boxes.size(), problem.cones.size(), rows),
-        "size the solver and the problem alike");
-  }
+void check_shape(const ConeProblem& problem, std::size_t start) {
+  const Eigen::Index rows = problem.offset.size();
+  bool fits = problem.matrix.rows() == rows && problem.matrix.cols() == rows &&
+              static_cast<Eigen::Index>(start) == rows;
+  for (const BoxBlock& box : problem.boxes) fits = fits && box.row >= 0 && box.row < rows;
+  for (const ConeBlock& cone : problem.cones) fits = fits && cone.row >= 0 && cone.row + 2 < rows;
+  if (fits) return;
+  throw Error(ErrorKind::wrong_shape, {.item = "cone problem"},
+              fmt::format("a matrix ({}, {}), offset ({},), x ({},), {} boxes and {} cones do not "
+                          "fit each other",
+                          problem.matrix.rows(), problem.matrix.cols(), rows, start,
+                          problem.boxes.size(), problem.cones.size()),
+              "give a square matrix, vectors of its size, and blocks of its rows");
 }
 
 }  // namespace
@@ -61,38 +61,44 @@ double cone_residual(const Vector3& r, const Vector3& u, double friction, double
   return (r - project_on_cone(r - v / scale, friction)).norm();
 }
 
-ConeSolver::ConeSolver(int rows, int boxes, int cones, ConeSettings settings)
-    : work_(std::make_unique<Workspace>(rows, boxes, cones, settings)) {}
+ConeSolver::ConeSolver(ConeSettings settings) : work_(std::make_unique<Workspace>(settings)) {}
 ConeSolver::~ConeSolver() = default;
 ConeSolver::ConeSolver(ConeSolver&&) noexcept = default;
 ConeSolver& ConeSolver::operator=(ConeSolver&&) noexcept = default;
 
 const ConeResult& ConeSolver::solve(const ConeProblem& problem, std::span<double> x) {
-  check_shape(problem, x.size(), work_->x.size(), work_->box_at.size(), work_->cone_at.size());
+  check_shape(problem, x.size());
   work_->solve(problem, x);
   return work_->result;
 }
 
 const ConeResult& ConeSolver::result() const { return work_->result; }
 
-ConeSolver::Workspace::Workspace(int rows, int boxes, int cones, ConeSettings chosen)
-    : settings(chosen),
-      x(VectorX::Zero(rows)),
-      motion(VectorX::Zero(rows)),
-      equations(static_cast<std::size_t>(cones)),
-      scale(static_cast<std::size_t>(cones)),
-      box_scale(static_cast<std::size_t>(boxes)),
-      lu(std::min(boxes + 3 * cones, chosen.newton_limit)),
-      right(VectorX::Zero(boxes + 3 * cones)),
-      best(VectorX::Zero(rows)),
-      row_scale(VectorX::Zero(boxes + 3 * cones)),
-      unknown_row(static_cast<std::size_t>(boxes + 3 * cones)),
-      box_at(static_cast<std::size_t>(boxes)),
-      cone_at(static_cast<std::size_t>(cones)) {
-  result.states.reserve(static_cast<std::size_t>(cones));
+void ConeSolver::Workspace::reserve(const ConeProblem& problem) {
+  const auto rows = static_cast<std::size_t>(problem.offset.size());
+  const std::size_t boxes = problem.boxes.size(), cones = problem.cones.size();
+  const std::size_t most = boxes + 3 * cones;
+  using linalg::grow;
+  grow(x_memory, rows);
+  grow(motion_memory, rows);
+  grow(best, rows);
+  new (&x) Eigen::Map<VectorX>(x_memory.data(), problem.offset.size());
+  new (&motion) Eigen::Map<VectorX>(motion_memory.data(), problem.offset.size());
+  grow(equations, cones);
+  grow(scale, cones);
+  grow(cone_at, cones);
+  grow(box_scale, boxes);
+  grow(box_at, boxes);
+  grow(unknown_row, most);
+  if (right.size() < static_cast<Eigen::Index>(most)) {
+    right.resize(static_cast<Eigen::Index>(2 * most));
+    row_scale.resize(right.size());
+  }
+  result.states.reserve(cones);
 }
 
 void ConeSolver::Workspace::solve(const ConeProblem& problem, std::span<double> start) {
+  reserve(problem);
   result.sweeps = result.newton_steps = 0;
   result.states.assign(problem.cones.size(), ContactState::open);
   x = Eigen::Map<const VectorX>(start.data(), x.size());
@@ -128,7 +134,7 @@ bool ConeSolver::Workspace::newton_pays(const ConeProblem& problem) const {
 }
 
 ConeStatus ConeSolver::Workspace::prepare(const ConeProblem& problem) {
-  const MatrixX& w = problem.matrix;
+  const auto& w = problem.matrix;
   double sum = 0.0, largest = 0.0;
   rounding = 0.0;
   for (std::size_t k = 0; k < problem.cones.size(); ++k) {

@@ -31,8 +31,8 @@ struct ConeBlock {
 /// Find x with y = matrix x + offset such that every block's law holds. Rows in no block keep the x
 /// that they have.
 struct ConeProblem {
-  const MatrixX& matrix;  ///< (n, n), symmetric positive semidefinite on the blocks' rows
-  const VectorX& offset;  ///< (n,)
+  Eigen::Ref<const MatrixX> matrix;  ///< (n, n), symmetric positive semidefinite on blocks' rows
+  Eigen::Ref<const VectorX> offset;  ///< (n,)
   std::span<const BoxBlock> boxes;
   std::span<const ConeBlock> cones;
 };
@@ -79,15 +79,14 @@ struct ConeResult {
 /// in the solution, keep redundant contacts solvable.
 class ConeSolver {
  public:
-  /// @param rows n. @param boxes,cones most of them that problems will have.
-  /// @param settings see there.
-  ConeSolver(int rows, int boxes, int cones, ConeSettings settings = {});
+  explicit ConeSolver(ConeSettings settings = {});
   ~ConeSolver();
   ConeSolver(ConeSolver&&) noexcept;
   ConeSolver& operator=(ConeSolver&&) noexcept;
 
-  /// Allocates nothing. @param problem of the solver's size. @param x (n,) in: where to start from;
-  /// out: the solution, each block inside its cone or box exactly. Throws Error(wrong-shape).
+  /// Allocates only for problems larger than all before. @param problem see there. @param x (n,)
+  /// in: where to start from; out: the solution, each block inside its cone or box exactly. Throws
+  /// Error(wrong-shape).
   const ConeResult& solve(const ConeProblem& problem, std::span<double> x);
   const ConeResult& result() const;
 

@@ -4,13 +4,17 @@
 
 #include <vector>
 
+#include "sinew/linalg/scratch.hpp"
 #include "sinew/qp/cone_solver.hpp"
 #include "sinew/qp/dense_lu.hpp"
 
 namespace sinew::qp {
 
 struct ConeSolver::Workspace {
-  Workspace(int rows, int boxes, int cones, ConeSettings chosen);
+  explicit Workspace(ConeSettings chosen) : settings(chosen) {}
+
+  /// Memory for a problem; what is there already is kept.
+  void reserve(const ConeProblem& problem);
 
   void solve(const ConeProblem& problem, std::span<double> start);
 
@@ -38,16 +42,18 @@ struct ConeSolver::Workspace {
 
   ConeSettings settings;
   ConeResult result;
-  VectorX x, motion;  // (n,)
+  linalg::AlignedNumbers x_memory, motion_memory;
+  Eigen::Map<VectorX> x{nullptr, 0}, motion{nullptr, 0};  // (n,)
   std::vector<ConeEquation> equations;
   std::vector<double> scale;      // (cones,) w; 0: nothing can move here, and x stays 0
   std::vector<double> box_scale;  // (boxes,) diagonal; 0 likewise
   double rounding = 0.0;          // of motions, as u
   double effort_size = 0.0;       // largest effort times its sqrt(w)
 
-  DenseLu lu;
+  DenseLu lu{0};
   int unknowns = 0;
-  VectorX right, best;
+  VectorX right;                     // (unknowns,) and more
+  linalg::AlignedNumbers best;       // (n,)
   VectorX row_scale;                 // (unknowns,) 1/sqrt(w), by which rows and columns are scaled
   std::vector<int> unknown_row;      // (count,) row of every unknown
   std::vector<int> box_at, cone_at;  // position among the unknowns, or -1

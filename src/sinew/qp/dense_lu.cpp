@@ -14,9 +14,12 @@ constexpr int kPanel = 8;
 
 }  // namespace
 
-DenseLu::DenseLu(int most)
-    : storage_(static_cast<std::size_t>(most) * static_cast<std::size_t>(most)),
-      pivot_(static_cast<std::size_t>(most)) {}
+void DenseLu::reserve(int size) {
+  if (pivot_.size() >= static_cast<std::size_t>(size)) return;
+  const std::size_t room = std::max(static_cast<std::size_t>(size), 3 * pivot_.size() / 2);
+  storage_.resize(room * room);
+  pivot_.resize(room);
+}
 
 bool DenseLu::factorise(int size) {
   size_ = size;

@@ -1,5 +1,5 @@
 /// @file
-/// LU factorisation with partial pivoting in storage that is taken once.
+/// LU factorisation with partial pivoting in storage that grows and is kept.
 #pragma once
 
 #include <vector>
@@ -11,8 +11,10 @@ namespace sinew::qp {
 /// P A = L U of a general matrix (Golub & Van Loan 2013, algorithm 3.4.1, by panels of columns).
 class DenseLu {
  public:
-  /// @param most unknowns that systems will have.
-  explicit DenseLu(int most);
+  /// @param size unknowns of the systems to come.
+  explicit DenseLu(int size) { reserve(size); }
+  /// Memory for systems of this size. What matrix() held is lost where it grows.
+  void reserve(int size);
   /// (size, size) to be filled before factorise().
   Eigen::Map<MatrixX> matrix(int size) { return {storage_.data(), size, size}; }
   /// @return false where the matrix is singular to working precision.

@@ -261,19 +261,7 @@ sim::StepSettings step_settings(const SceneDescription& scene) {
 
 }  // namespace
 
-namespace {
-
-void check_contacts(const SceneDescription& scene) {
-  if (scene.contacts.empty() || scene.controllers.empty()) return;
-  throw Error(ErrorKind::not_in_this_version, scene.controllers.front().place,
-              "controllers do not yet choose efforts of robots with contacts",
-              "leave out `contacts`, or command the actuators");
-}
-
-}  // namespace
-
 Robot build(SceneDescription description) {
-  check_contacts(description);
   Robot robot;
   sim::ModelBuilder builder(step_settings(description));
   std::vector<std::shared_ptr<const mesh::Mesh>> meshes;

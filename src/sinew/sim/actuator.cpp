@@ -73,34 +73,36 @@ std::optional<CommandKind> ActuatorModel::kind_of(std::string_view quantity) con
   return known ? std::optional(CommandKind::input) : std::nullopt;
 }
 
-ActuatorRange actuator_range(const ActuatorModel& model, const ActuatorState& state,
-                             std::span<const double> drive_state, double time, double time_step) {
+step::ActuatorBlock actuator_block(const ActuatorModel& model, const ActuatorState& state,
+                                   std::span<const double> drive_state, double time,
+                                   double time_step) {
   const Interval effort = reachable(model.effort, state.effort, time_step);
   const Interval motion = reachable(model.motion, state.wound, time_step);
-  ActuatorRange range;
-  range.row = model.row;
-  range.effort_min = effort.min;
-  range.effort_max = effort.max;
-  range.motion_min = motion.min;
-  range.motion_max = motion.max;
-  range.kind = state.command.kind;
-  range.owned = state.owner != nullptr;
-  range.motion_scale = model.motion_scale;
+  step::ActuatorBlock block;
+  block.row = model.row;
+  block.effort_min = effort.min;
+  block.effort_max = effort.max;
+  block.motion_min = motion.min;
+  block.motion_max = motion.max;
+  block.kind = state.command.kind;
+  block.owned = state.owner != nullptr;
+  block.motion_scale = model.motion_scale;
   const double told = state.command.signal.value(time);
-  const Interval& own = range.kind == CommandKind::motion ? motion : effort;
-  range.value = range.kind == CommandKind::input ? told : std::clamp(told, own.min, own.max);
-  if (model.drive == nullptr || range.owned) return range;
-  if (!model.drive->acts_on(range.kind)) return range;
-  range.drive = model.drive.get();
-  range.drive_step = {range.kind, range.value, time_step, state.motion, drive_state};
-  return range;
+  const Interval& own = block.kind == CommandKind::motion ? motion : effort;
+  block.value = block.kind == CommandKind::input ? told : std::clamp(told, own.min, own.max);
+  if (model.drive == nullptr || block.owned) return block;
+  if (!model.drive->acts_on(block.kind)) return block;
+  block.drive = model.drive.get();
+  block.drive_step = {block.kind, block.value, time_step, state.motion, {}};
+  std::ranges::copy(drive_state, block.drive_step.state.begin());
+  return block;
 }
 
-void blend(ActuatorRange& range, const ActuatorState& start, double fraction) {
-  if (range.owned || range.kind == CommandKind::input) return;
-  const double from = range.kind == CommandKind::effort ? start.effort : start.motion;
-  range.value = (1.0 - fraction) * from + fraction * range.value;
-  range.drive_step.command = range.value;
+void blend(step::ActuatorBlock& block, const ActuatorState& start, double fraction) {
+  if (block.owned || block.kind == CommandKind::input) return;
+  const double from = block.kind == CommandKind::effort ? start.effort : start.motion;
+  block.value = (1.0 - fraction) * from + fraction * block.value;
+  block.drive_step.command = block.value;
 }
 
 }  // namespace sinew::sim

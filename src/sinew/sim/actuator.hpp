@@ -11,10 +11,15 @@
 #include <string_view>
 
 #include "sinew/core/error.hpp"
-#include "sinew/sim/drive.hpp"
 #include "sinew/sim/signal.hpp"
+#include "sinew/step/drive.hpp"
+#include "sinew/step/step_problem.hpp"
 
 namespace sinew::sim {
+
+using step::CommandKind;
+using step::Drive;
+using step::QuantityName;
 
 /// Inclusive limits on an effort (N, Pa) or a motion (m, m^3) and on its change per second.
 struct Limits {
@@ -69,29 +74,17 @@ struct ActuatorState {
   const void* owner = nullptr;  ///< the controller that has it; null: it obeys its command
 };
 
-/// What an actuator may do in the step at hand: its limits, with those on rates folded in.
-struct ActuatorRange {
-  int row = -1;
-  double effort_min = 0.0, effort_max = 0.0;  ///< N
-  double motion_min = 0.0, motion_max = 0.0;  ///< m
-  CommandKind kind = CommandKind::effort;
-  double value = 0.0;            ///< the command, clamped into the range
-  bool owned = false;            ///< a controller chooses; value and kind do not count
-  const Drive* drive = nullptr;  ///< shapes the effort in this step; limits do not count then
-  Drive::Step drive_step{};      ///< what it is asked
-  double motion_scale = 1.0;     ///< see ActuatorModel
-};
-
-/// The range of the step from the state before it.
+/// What an actuator may do in a step, from the state before it.
 /// @param model,state of one actuator, before the step.
-/// @param drive_state of its drive, before the step; must outlive the range.
+/// @param drive_state of its drive, before the step.
 /// @param time the end of the step (s), at which the command is read.
 /// @param time_step s; infinity lifts the limits on rates.
-ActuatorRange actuator_range(const ActuatorModel& model, const ActuatorState& state,
-                             std::span<const double> drive_state, double time, double time_step);
+step::ActuatorBlock actuator_block(const ActuatorModel& model, const ActuatorState& state,
+                                   std::span<const double> drive_state, double time,
+                                   double time_step);
 
-/// Moves a range's command towards it from where the actuator was.
+/// Moves a block's command towards it from where the actuator was.
 /// @param start of the actuator. @param fraction of the way, 1 for the command itself.
-void blend(ActuatorRange& range, const ActuatorState& start, double fraction);
+void blend(step::ActuatorBlock& block, const ActuatorState& start, double fraction);
 
 }  // namespace sinew::sim

@@ -4,9 +4,13 @@
 
 #include <optional>
 
-#include "sinew/sim/drive.hpp"
+#include "sinew/step/drive.hpp"
 
 namespace sinew::sim {
+
+using step::CommandKind;
+using step::Drive;
+using step::QuantityName;
 
 /// A regulator that holds the commanded pressure before a valve, and what leaks out of the chamber.
 /// Gas: flow by ISO 6358-1:2013, in volume at ambient pressure and temperature,

@@ -108,8 +108,6 @@ class Model {
   const std::vector<ActuatorModel>& actuators() const { return actuators_; }
   /// Along each cable from its pull point on.
   const std::vector<GuideModel>& guides() const { return guides_; }
-  /// Actuators and, after them, guides: rows that a law finds efforts for.
-  std::size_t range_count() const { return actuators_.size() + guides_.size(); }
   const std::vector<EffectorModel>& effectors() const { return effectors_; }
   const std::vector<ContactModel>& contacts() const { return contacts_; }
   const std::vector<std::unique_ptr<constraint::Probe>>& probes() const { return probes_; }

@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sinew/sim/driven_law.hpp"
-#include "sinew/sim/solve_law.hpp"
-
 namespace sinew::sim {
 
 namespace {
@@ -23,11 +20,11 @@ constexpr double kLessened = 0.5;
 
 class NewtonSolver {
  public:
-  NewtonSolver(World& world, Law& law, const LawProblem& problem, std::span<double> effort,
-               const NewtonSettings& settings, StageClock& clock)
+  NewtonSolver(World& world, step::StepSolver& solver, step::Controller* controller,
+               std::span<double> effort, const NewtonSettings& settings, StageClock& clock)
       : world_(world),
-        law_(law),
-        problem_(problem),
+        solver_(solver),
+        controller_(controller),
         effort_(effort),
         settings_(settings),
         clock_(clock) {}
@@ -37,9 +34,9 @@ class NewtonSolver {
     for (report_.iterations = 0; report_.iterations < settings_.max_iterations;) {
       if (converged_) return finish(NewtonStatus::converged);
       if (!condense()) return finish(NewtonStatus::singular);
-      report_.law = solve_law(world_, law_, problem_, effort_);
+      report_.law = world_.solve_efforts(solver_, controller_, effort_);
       clock_.mark(Stage::law);
-      if (report_.law == LawStatus::failed) return finish(NewtonStatus::law_failed);
+      if (report_.law == step::LawStatus::failed) return finish(NewtonStatus::law_failed);
       const NewtonStatus moved = move();
       ++report_.iterations;
       if (moved != NewtonStatus::converged) return finish(moved);
@@ -66,7 +63,7 @@ class NewtonSolver {
     const bool stable =
         status == linalg::FactorStatus::positive_definite ||
         (status == linalg::FactorStatus::indefinite &&
-         (world_.is_unsymmetric() || DrivenLaw::stabilised(problem_, world_.negative_pivots())));
+         (world_.is_unsymmetric() || step::stabilised(world_.problem(), world_.negative_pivots())));
     derivative_ = stable && settings_.request.tangent == mechanics::Tangent::exact;
     if (!stable && settings_.request.tangent == mechanics::Tangent::exact) {
       clock_.mark(Stage::factorisation);
@@ -84,8 +81,8 @@ class NewtonSolver {
     report_.residual = world_.residual(effort_);
     const double scale = world_.force_scale() + 1e-300;
     report_.relative_residual = report_.residual / scale;
-    report_.violation = law_.violation(problem_, effort_);
-    return report_.relative_residual + report_.violation / problem_.model.size();
+    report_.violation = step::violation(world_.problem(), effort_);
+    return report_.relative_residual + report_.violation / world_.problem().size;
   }
 
   // A residual says little about distance: a small rotation along its tangent stretches a slender
@@ -94,14 +91,14 @@ class NewtonSolver {
   bool lags_little() const {
     const double left = report_.motion.largest_move * report_.relative_residual;
     return full_step_ && derivative_ && report_.relative_residual <= settings_.lag.residual &&
-           left <= settings_.lag.move * problem_.model.size();
+           left <= settings_.lag.move * world_.problem().size;
   }
 
   // Where rounding keeps the residual above the tolerance, a full step that moves nothing by more
   // than rounding does, or that no longer lessens a residual at its floor, says that there is
   // nothing left to find.
   bool converged() const {
-    const double size = problem_.model.size();
+    const double size = world_.problem().size;
     if (!(report_.violation <= std::max(settings_.motion_tolerance, kRounding) * size))
       return false;
     const bool at_rest = full_step_ && report_.motion.largest_move <= kRounding * size &&
@@ -144,8 +141,8 @@ class NewtonSolver {
   }
 
   World& world_;
-  Law& law_;
-  const LawProblem& problem_;
+  step::StepSolver& solver_;
+  step::Controller* controller_;
   std::span<double> effort_;
   const NewtonSettings& settings_;
   StageClock& clock_;
@@ -176,10 +173,10 @@ std::string_view newton_status_name(NewtonStatus status) {
   return "unknown";
 }
 
-NewtonReport solve_newton(World& world, Law& law, const LawProblem& problem,
+NewtonReport solve_newton(World& world, step::StepSolver& solver, step::Controller* controller,
                           std::span<double> effort, const NewtonSettings& settings,
                           StageClock& clock) {
-  return NewtonSolver(world, law, problem, effort, settings, clock).run();
+  return NewtonSolver(world, solver, controller, effort, settings, clock).run();
 }
 
 }  // namespace sinew::sim

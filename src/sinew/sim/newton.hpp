@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "sinew/sim/law.hpp"
 #include "sinew/sim/newton_status.hpp"
 #include "sinew/sim/stages.hpp"
 #include "sinew/sim/world.hpp"
@@ -38,15 +37,16 @@ struct NewtonReport {
   double violation = 0.0;          ///< m, of the law
   int factorisations = 0;
   int tangent_fallbacks = 0;  ///< iterations in which the exact tangent was indefinite
-  LawStatus law = LawStatus::solved;
+  step::LawStatus law = step::LawStatus::solved;
   mechanics::MotionReport motion;
 };
 
 /// Iterates from the world's current state. On return the bodies are linearised at the last state.
-/// @param world is moved. @param law chooses efforts. @param problem what the law is told; its
-///   references are kept up to date by `world`. @param effort (rows,) N, in and out.
-/// @param settings see there. @param clock gets the stages' times.
-NewtonReport solve_newton(World& world, Law& law, const LawProblem& problem,
+/// @param world is moved; its problem's actuators are told what to do. @param solver finds efforts.
+/// @param controller chooses those of owned actuators; null where there are none.
+/// @param effort (rows,) N, in and out. @param settings see there. @param clock gets the stages'
+/// times.
+NewtonReport solve_newton(World& world, step::StepSolver& solver, step::Controller* controller,
                           std::span<double> effort, const NewtonSettings& settings,
                           StageClock& clock);
 

@@ -48,10 +48,10 @@ void Simulation::plan_path() {
     throw Error(ErrorKind::bad_argument, {.item = "follow_path"},
                 "cables with friction have no path of their own", "step through the load in time");
   }
-  read_ranges(time(), std::numeric_limits<double>::infinity());
+  read_commands(time(), std::numeric_limits<double>::infinity());
   path_efforts_.clear();
   for (std::size_t i = 0; i < actuators_.size(); ++i) {
-    const ActuatorRange& range = ranges_[i];
+    const step::ActuatorBlock& range = world_.problem().actuators[i];
     const bool fixed = range.owned || range.drive != nullptr;
     const double told = range.owned ? actuators_[i].effort : range.value;
     if (!range.owned && (fixed || range.kind != CommandKind::effort)) {

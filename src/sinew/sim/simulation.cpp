@@ -12,7 +12,6 @@
 #include "sinew/core/state_hash.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/sim/newton.hpp"
-#include "sinew/sim/step_laws.hpp"
 
 namespace sinew::sim {
 
@@ -27,9 +26,8 @@ Simulation::Simulation(std::shared_ptr<const Model> model, int threads)
     : model_(std::move(model)),
       pool_(std::make_unique<ThreadPool>(threads)),
       world_(model_, *pool_),
-      laws_(std::make_unique<StepLaws>(*model_)),
+      solver_({.tolerance = model_->step().contact_tolerance}),
       actuators_(model_->actuators().size()),
-      ranges_(model_->range_count()),
       effort_(static_cast<std::size_t>(model_->rows().rows()), 0.0),
       drive_state_(static_cast<std::size_t>(model_->drive_states()), 0.0) {
   for (std::size_t i = 0; i < actuators_.size(); ++i) {
@@ -37,7 +35,7 @@ Simulation::Simulation(std::shared_ptr<const Model> model, int threads)
     if (const auto& drive = model_->actuators()[i].drive) drive->rest(drive_numbers(i));
   }
   finish_step();
-  motion_before_.resize(ranges_.size());
+  motion_before_.resize(actuators_.size());
   for (const LoadModel& load : model_->loads()) load_factors_.push_back(load.factor);
   load_applied_.resize(load_factors_.size());
   keep(state_before_);
@@ -45,17 +43,17 @@ Simulation::Simulation(std::shared_ptr<const Model> model, int threads)
 
 Simulation::~Simulation() = default;
 
-void Simulation::read_ranges(double time, double time_step) {
+void Simulation::read_commands(double time, double time_step) {
+  step::StepProblem& problem = world_.problem();
+  problem.time = time;
+  problem.time_step = time_step;
   for (std::size_t i = 0; i < actuators_.size(); ++i) {
-    ranges_[i] =
-        actuator_range(model_->actuators()[i], actuators_[i], drive_numbers(i), time, time_step);
-    if (part_) blend(ranges_[i], part_->start[i], part_->fraction);
+    step::ActuatorBlock& block = problem.actuators[i];
+    block =
+        actuator_block(model_->actuators()[i], actuators_[i], drive_numbers(i), time, time_step);
+    if (part_) blend(block, part_->start[i], part_->fraction);
   }
-  if (model_->guides().empty()) return;
-  const VectorX& delta = world_.measure_delta();
-  for (std::size_t k = 0; k < model_->guides().size(); ++k) {
-    ranges_[actuators_.size() + k] = guide_range(model_->guides()[k], delta);
-  }
+  if (!model_->guides().empty()) world_.hold_capstans(world_.measure_delta());
 }
 
 std::span<const double> Simulation::drive_state(int actuator) const {
@@ -77,8 +75,8 @@ void Simulation::advance_drives() {
   for (std::size_t i = 0; i < actuators_.size(); ++i) {
     const ActuatorModel& model = model_->actuators()[i];
     if (model.drive == nullptr) continue;
-    Drive::Step step = ranges_[i].drive_step;
-    step.state = drive_numbers(i);
+    Drive::Step step = world_.problem().actuators[i].drive_step;
+    std::ranges::copy(drive_numbers(i), step.state.begin());
     model.drive->advance(step, actuators_[i].motion, actuators_[i].effort, drive_numbers(i));
   }
 }
@@ -237,10 +235,9 @@ void Simulation::count_work() {
     ledger_.outside += work.outside;
     ledger_.dissipated += work.damped;
   }
-  for (std::size_t k = actuators_.size(); k < ranges_.size(); ++k) {
-    const int row = ranges_[k].row;
-    const double slid = world_.delta()[row] - motion_before_[k];
-    ledger_.dissipated -= effort_[static_cast<std::size_t>(row)] * slid;
+  for (const step::CapstanBlock& block : world_.problem().capstans) {
+    const double slid = world_.delta()[block.row] - block.held;
+    ledger_.dissipated -= effort_[static_cast<std::size_t>(block.row)] * slid;
   }
   count_contact_work();
 }
@@ -248,26 +245,23 @@ void Simulation::count_work() {
 // One solution of the step's equation; the error estimate, m.
 double Simulation::substep(double end, double time_step) {
   now_ = end;
-  read_ranges(end, time_step);
+  read_commands(end, time_step);
   keep(state_before_);
   move_bases(end);
   set_loads(end);
   world_.begin_step(end - time_step, end, effort_);
-  laws_->begin_step();
-  if (law_ != nullptr) law_->begin_step();
+  solver_.begin_step();
+  if (controller_ != nullptr) controller_->begin_step();
   solve_equation(time_step);
   if (!model_->contacts().empty()) {
-    report_.contact_residual = laws_->contact_result().residual;
-    report_.contact_sweeps = laws_->contact_result().sweeps;
+    report_.contact_residual = contact_result().residual;
+    report_.contact_sweeps = contact_result().sweeps;
   }
   const double error = world_.end_step(step_weights(time_step));
   // A gap that closes stops its point at once. A multistep formula that reaches back over such a
   // jump would have the point rebound, and gain energy: it starts afresh behind it.
   step_before_ = world_.gap_closed(effort_) ? 0.0 : time_step;
   std::ranges::transform(actuators_, motion_before_.begin(), &ActuatorState::motion);
-  for (std::size_t k = actuators_.size(); k < ranges_.size(); ++k) {
-    motion_before_[k] = ranges_[k].value;
-  }
   finish_step();
   advance_drives();
   count_work();
@@ -288,13 +282,13 @@ void Simulation::finish_step() {
   const VectorX& delta = world_.measure_delta();
   for (std::size_t i = 0; i < actuators_.size(); ++i) {
     ActuatorState& state = actuators_[i];
-    const ActuatorRange& range = ranges_[i];
+    const step::ActuatorBlock& block = world_.problem().actuators[i];
     const int row = model_->actuators()[i].row;
     state.effort = effort_[static_cast<std::size_t>(row)];
     state.motion = delta[row];
     state.slack = model_->actuators()[i].type == ActuatorType::cable && !(state.effort > 0.0);
-    const bool winds = !range.owned && range.kind == CommandKind::motion && range.row >= 0;
-    state.wound = winds ? range.value : state.motion;
+    const bool winds = !block.owned && block.kind == CommandKind::motion && block.row >= 0;
+    state.wound = winds ? block.value : state.motion;
   }
 }
 
@@ -329,25 +323,22 @@ void Simulation::command(int actuator, Command command) {
   state.command = std::move(command);
 }
 
-void Simulation::attach(Law& law, std::span<const int> actuators) {
-  if (!model_->contacts().empty()) {
-    throw Error(ErrorKind::not_in_this_version, {.item = "controller"},
-                "controllers do not yet choose efforts of robots with contacts",
-                "leave out `contacts`, or command the actuators");
-  }
-  if (law_ != nullptr && law_ != &law) {
+void Simulation::attach(step::Controller& controller, std::span<const int> actuators) {
+  if (controller_ != nullptr && controller_ != &controller) {
     throw Error(ErrorKind::actuator_owned, {.item = "controller"},
                 "another controller is attached to this simulation", "detach it first");
   }
-  law_ = &law;
-  for (const int index : actuators) actuators_.at(static_cast<std::size_t>(index)).owner = &law;
+  controller_ = &controller;
+  for (const int index : actuators) {
+    actuators_.at(static_cast<std::size_t>(index)).owner = &controller;
+  }
 }
 
-void Simulation::detach(const Law& law) {
-  if (law_ != &law) return;
-  law_ = nullptr;
+void Simulation::detach(const step::Controller& controller) {
+  if (controller_ != &controller) return;
+  controller_ = nullptr;
   for (ActuatorState& state : actuators_) {
-    if (state.owner != &law) continue;
+    if (state.owner != &controller) continue;
     state.owner = nullptr;
     // The drive stays where it stands until it is told otherwise: a winch by its length, a
     // regulator by its pressure.
@@ -374,7 +365,7 @@ const fem::FemBody& Simulation::fem_body(int index) const {
 std::size_t Simulation::bytes() const {
   return world_.bytes() +
          sizeof(double) * (effort_.size() + state_before_.size() + state_at_step_.size()) +
-         actuators_.size() * (sizeof(ActuatorState) + sizeof(ActuatorRange));
+         actuators_.size() * (sizeof(ActuatorState) + sizeof(step::ActuatorBlock));
 }
 
 void Simulation::reset() {
@@ -387,7 +378,7 @@ void Simulation::reset() {
   }
   world_.restart();
   std::ranges::fill(effort_, 0.0);
-  std::ranges::fill(ranges_, ActuatorRange{});
+  std::ranges::fill(world_.problem().actuators, step::ActuatorBlock{});
   for (std::size_t i = 0; i < actuators_.size(); ++i) {
     if (const auto& drive = model_->actuators()[i].drive) drive->rest(drive_numbers(i));
   }
@@ -396,7 +387,7 @@ void Simulation::reset() {
   step_before_ = substep_ = 0.0;
   steps_ = 0;
   finish_step();
-  if (law_ != nullptr) law_->forget();
+  if (controller_ != nullptr) controller_->forget();
   report_ = {};
 }
 

@@ -19,15 +19,12 @@
 #include "sinew/sim/step_status.hpp"
 #include "sinew/sim/world.hpp"
 
-namespace sinew::qp {
-struct ConeResult;
-}
-
 namespace sinew::sim {
+
+using step::LawStatus;
 
 struct NewtonReport;
 struct NewtonSettings;
-class StepLaws;
 
 /// J; gravity's from the height at rest.
 struct Energies {
@@ -152,12 +149,11 @@ class Simulation {
   /// How the contacts' forces were last found.
   const qp::ConeResult& contact_result() const;
 
-  /// Gives a law the actuators that it chooses efforts for; it replaces the direct law in every
-  /// step until it is detached. One law at a time. Throws Error(actuator-owned), and
-  /// Error(not-in-this-version) where bodies may touch surfaces.
-  void attach(Law& law, std::span<const int> actuators);
-  void detach(const Law& law);
-  const Law* attached_law() const { return law_; }
+  /// Gives a controller the actuators that it chooses efforts for, in every step until it is
+  /// detached. One controller at a time. Throws Error(actuator-owned).
+  void attach(step::Controller& controller, std::span<const int> actuators);
+  void detach(const step::Controller& controller);
+  const step::Controller* attached_controller() const { return controller_; }
 
   World& world() { return world_; }
   const World& world() const { return world_; }
@@ -167,7 +163,10 @@ class Simulation {
   std::span<const double> efforts() const { return effort_; }  ///< (rows,) N or Pa
   /// The numbers of an actuator's drive (see Drive); empty without one.
   std::span<const double> drive_state(int actuator) const;
-  std::span<const ActuatorRange> ranges() const { return ranges_; }
+  /// What actuators were allowed and told in the last step.
+  std::span<const step::ActuatorBlock> actuator_blocks() const {
+    return world_.problem().actuators;
+  }
 
   /// Everything that decides, with the inputs, how the run goes on.
   State state() const;
@@ -189,7 +188,7 @@ class Simulation {
 
  private:
   void keep(State& state) const;
-  void read_ranges(double time, double time_step);
+  void read_commands(double time, double time_step);
   std::span<double> drive_numbers(std::size_t actuator);
   void advance_drives();
   mechanics::StepWeights step_weights(double time_step) const;
@@ -208,13 +207,14 @@ class Simulation {
   NewtonSettings newton_settings(double time_step) const;
   NewtonSettings settings_of_part(double time_step) const;
   void solve_equation(double time_step);
-  void step_once(Law& law, const LawProblem& problem);
-  void step_newton(Law& law, const LawProblem& problem);
-  void blend_ranges(std::span<const ActuatorRange> goal, std::span<const ActuatorState> start,
-                    double fraction);
-  NewtonReport approach(Law& law, const LawProblem& problem);
-  NewtonReport descend(Law& law, const LawProblem& problem, int iterations);
-  Law& hold_efforts();
+  void step_once(double time_step);
+  void step_newton(double time_step);
+  NewtonReport newton(step::Controller* controller, const NewtonSettings& settings);
+  void blend_commands(std::span<const step::ActuatorBlock> goal,
+                      std::span<const ActuatorState> start, double fraction);
+  NewtonReport approach(double time_step);
+  NewtonReport descend(double time_step, int iterations);
+  void hold_efforts();
   [[noreturn]] void fail_law();
   void take_report(const NewtonReport& result);
   bool balanced() const;
@@ -232,10 +232,9 @@ class Simulation {
   std::shared_ptr<const Model> model_;
   std::unique_ptr<ThreadPool> pool_;
   World world_;
-  std::unique_ptr<StepLaws> laws_;
-  Law* law_ = nullptr;
+  step::StepSolver solver_;
+  step::Controller* controller_ = nullptr;
   std::vector<ActuatorState> actuators_;
-  std::vector<ActuatorRange> ranges_;
   std::vector<double> effort_;
   std::vector<double> drive_state_;  // of all drives, at the start of the step
   State state_before_;               // before the substep
@@ -249,7 +248,7 @@ class Simulation {
     std::vector<ActuatorState> start;  // of the step
   };
   std::optional<Part> part_;
-  std::vector<double> motion_before_;  // (actuators, then guides) m
+  std::vector<double> motion_before_;  // (actuators,) m
   std::vector<Signal> load_factors_;
   std::vector<double> load_applied_;  // (loads,) factors that acted last; 0 at the start
   struct Stretch {

@@ -6,7 +6,6 @@
 #include "sinew/constraint/contact.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/step_laws.hpp"
 
 namespace sinew::sim {
 
@@ -58,7 +57,7 @@ ContactSum Simulation::contact_sum(int index) const {
 }
 
 void Simulation::fail_contacts() {
-  const qp::ConeResult& result = laws_->contact_result();
+  const qp::ConeResult& result = contact_result();
   const std::size_t points = result.states.size();
   fail(
       ErrorKind::not_converged,
@@ -90,6 +89,8 @@ void Simulation::count_contact_work() {
   }
 }
 
-const qp::ConeResult& Simulation::contact_result() const { return laws_->contact_result(); }
+const qp::ConeResult& Simulation::contact_result() const {
+  return solver_.direct().contact_result();
+}
 
 }  // namespace sinew::sim

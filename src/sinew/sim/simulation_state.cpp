@@ -6,7 +6,6 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/mechanics/body.hpp"
-#include "sinew/sim/law.hpp"
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::sim {
@@ -42,8 +41,8 @@ void Simulation::keep(State& state) const {
   state.drives = drive_state_;
   state.loads = load_applied_;
   world_.save_frames(state.frames);
-  state.controller.resize(law_ != nullptr ? law_->memory_size() : 0);
-  if (law_ != nullptr) law_->save_memory(state.controller);
+  state.controller.resize(controller_ != nullptr ? controller_->memory_size() : 0);
+  if (controller_ != nullptr) controller_->save_memory(state.controller);
   state.ledger = ledger_;
   state.volume_ratio = volume_ratio_;
   state.residual = report_.relative_residual;
@@ -90,11 +89,11 @@ void Simulation::restore(const State& state) {
   step_before_ = state.last_step;
   substep_ = state.next_step;
   steps_ = state.steps;
-  if (law_ == nullptr) return;
-  if (!state.controller.empty() && state.controller.size() == law_->memory_size()) {
-    law_->load_memory(state.controller);
+  if (controller_ == nullptr) return;
+  if (!state.controller.empty() && state.controller.size() == controller_->memory_size()) {
+    controller_->load_memory(state.controller);
   } else {
-    law_->forget();
+    controller_->forget();
   }
 }
 

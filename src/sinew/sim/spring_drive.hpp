@@ -2,9 +2,13 @@
 /// Springs along cables: a linear one, and one of shape-memory wire.
 #pragma once
 
-#include "sinew/sim/drive.hpp"
+#include "sinew/step/drive.hpp"
 
 namespace sinew::sim {
+
+using step::CommandKind;
+using step::Drive;
+using step::QuantityName;
 
 /// Stiffness (N/m) of a close-coiled helical spring, G d^4 / (8 n D^3) (Wahl, Mechanical Springs,
 /// 2nd ed., 1963, eq. 5-7): twist of the wire alone.

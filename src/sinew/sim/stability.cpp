@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdint>
 
-#include "sinew/constraint/contact.hpp"
 #include "sinew/linalg/dense_factor.hpp"
 
 namespace sinew::sim {
@@ -27,28 +26,24 @@ bool same(double effort, double limit) {
 }
 
 // Whether what an actuator is told, or a limit of its motion, holds the row rigidly.
-bool holds(const ActuatorRange& range, double effort) {
-  if (range.kind == CommandKind::effort) return !same(effort, range.value);
-  if (range.kind != CommandKind::motion) return false;
+bool holds(const step::ActuatorBlock& range, double effort) {
+  if (range.kind == step::CommandKind::effort) return !same(effort, range.value);
+  if (range.kind != step::CommandKind::motion) return false;
   const bool at_lower = effort <= range.effort_min || same(effort, range.effort_min);
   const bool at_upper = effort >= range.effort_max || same(effort, range.effort_max);
   return !at_lower && !at_upper;
 }
 
-void add_touching(const LawProblem& problem, std::span<const double> effort,
+void add_touching(const step::StepProblem& problem, std::span<const double> effort,
                   std::vector<HeldRow>& held) {
-  for (std::size_t i = 0; i < problem.model.contacts().size(); ++i) {
-    const constraint::Contact& contact = problem.model.contact(static_cast<int>(i));
-    for (std::size_t k = 0; k < contact.points().size(); ++k) {
-      const int row = contact.row(k);
-      const double* force = effort.data() + row;
-      if (!(force[0] > 0.0)) continue;
-      held.push_back({row, 0.0});
-      const double across = std::hypot(force[1], force[2]);
-      if (!(across < (1.0 - kAtLimit) * contact.friction() * force[0])) continue;
-      held.push_back({row + 1, 0.0});
-      held.push_back({row + 2, 0.0});
-    }
+  for (const step::ContactBlock& block : problem.contacts) {
+    const double* force = effort.data() + block.row;
+    if (!(force[0] > 0.0)) continue;
+    held.push_back({block.row, 0.0});
+    const double across = std::hypot(force[1], force[2]);
+    if (!(across < (1.0 - kAtLimit) * block.friction * force[0])) continue;
+    held.push_back({block.row + 1, 0.0});
+    held.push_back({block.row + 2, 0.0});
   }
 }
 
@@ -69,9 +64,9 @@ VectorX scattered(Eigen::Index size) {
 
 }  // namespace
 
-std::vector<HeldRow> held_rows(const LawProblem& problem, std::span<const double> effort) {
+std::vector<HeldRow> held_rows(const step::StepProblem& problem, std::span<const double> effort) {
   std::vector<HeldRow> held;
-  for (const ActuatorRange& range : problem.actuators) {
+  for (const step::ActuatorBlock& range : problem.actuators) {
     if (range.row < 0) continue;
     if (range.drive != nullptr) {
       const auto at = range.drive->respond(range.drive_step, problem.delta[range.row]);
@@ -80,12 +75,13 @@ std::vector<HeldRow> held_rows(const LawProblem& problem, std::span<const double
       held.push_back({range.row, 0.0});
     }
   }
+  for (const step::BilateralBlock& block : problem.bilaterals) held.push_back({block.row, 0.0});
   add_touching(problem, effort, held);
   return held;
 }
 
-Stability::Stability(World& world, const LawProblem& problem, std::span<const double> effort)
-    : world_(world), held_(held_rows(problem, effort)), negative_(count()) {
+Stability::Stability(World& world, std::span<const double> effort)
+    : world_(world), held_(held_rows(world.problem(), effort)), negative_(count()) {
   if (negative_ == 0) return;
   move_rows(effort.size());
   const VectorX direction = find_mode();
@@ -93,7 +89,7 @@ Stability::Stability(World& world, const LawProblem& problem, std::span<const do
   apply_inverse(direction, mode_);
   curvature_ = direction.dot(mode_);
   scale_mode();
-  const double force = -curvature_ / mode_.norm() * problem.model.size();
+  const double force = -curvature_ / mode_.norm() * world_.problem().size;
   if (force <= kNeutral * world_.rounding_floor()) negative_ = 0;
 }
 

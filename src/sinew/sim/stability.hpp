@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "sinew/sim/law.hpp"
 #include "sinew/sim/world.hpp"
+#include "sinew/step/step_problem.hpp"
 
 namespace sinew::sim {
 
@@ -19,7 +19,7 @@ struct HeldRow {
 /// motion, drives by the slope of their curve, normal rows of touching contacts, and tangential
 /// rows that stick. Actuators at a limit of their effort and sliding contacts hold nothing.
 /// @param problem,effort of the equilibrium.
-std::vector<HeldRow> held_rows(const LawProblem& problem, std::span<const double> effort);
+std::vector<HeldRow> held_rows(const step::StepProblem& problem, std::span<const double> effort);
 
 /// The exact tangent A of an equilibrium restricted to the motions that held rows H leave, which is
 /// A + H^T C^-1 H, and for C = 0 A on the null space of H. By the inertia of the bordered matrix
@@ -32,8 +32,8 @@ std::vector<HeldRow> held_rows(const LawProblem& problem, std::span<const double
 class Stability {
  public:
   /// @param world linearised with the exact tangent, rows formed, and condensed.
-  /// @param problem,effort of the equilibrium.
-  Stability(World& world, const LawProblem& problem, std::span<const double> effort);
+  /// @param world condensed at the equilibrium. @param effort of it.
+  Stability(World& world, std::span<const double> effort);
 
   /// Negative eigenvalues of the restricted tangent; directions that rounding cannot tell from
   /// neutral ones (a body that slides freely) are not counted.

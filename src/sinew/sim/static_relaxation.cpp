@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sinew/sim/solve_law.hpp"
 #include "sinew/sim/static_solver.hpp"
-#include "sinew/sim/step_laws.hpp"
 
 namespace sinew::sim {
 
@@ -107,8 +105,7 @@ bool StaticSolver::relax_from_here() {
   linearise({});
   if (world.condense() == linalg::FactorStatus::singular) return false;
   const std::vector<double> before = sim_.effort_;
-  if (solve_law(world, sim_.laws_->complete(nullptr, sim_.ranges_), problem(), sim_.effort_) ==
-      LawStatus::failed) {
+  if (world.solve_efforts(sim_.solver_, nullptr, sim_.effort_) == LawStatus::failed) {
     sim_.effort_ = before;
   }
   VectorX imbalance, direction;

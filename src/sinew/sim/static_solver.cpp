@@ -8,7 +8,6 @@
 #include "sinew/core/error.hpp"
 #include "sinew/core/types.hpp"
 #include "sinew/sim/load_steps.hpp"
-#include "sinew/sim/step_laws.hpp"
 
 namespace sinew::sim {
 
@@ -52,7 +51,7 @@ StaticReport StaticSolver::run() {
   report_.relative_residual = last_.relative_residual;
   report_.violation = last_.violation;
   sim_.volume_ratio_ = last_.motion.volume.ratio;
-  sim_.ranges_ = goal_;
+  sim_.world_.problem().actuators = goal_;
   sim_.world_.begin_step(sim_.time(), sim_.time(), sim_.effort_);
   sim_.world_.end_step({});
   sim_.step_before_ = 0.0;
@@ -64,21 +63,10 @@ StaticReport StaticSolver::run() {
 
 void StaticSolver::read_goal() {
   start_ = sim_.actuators_;
-  sim_.read_ranges(sim_.time(), kInfinity);
-  for (std::size_t i = 0; i < sim_.ranges_.size(); ++i) {
-    ActuatorRange& range = sim_.ranges_[i];
-    if (!range.owned) continue;
-    range.kind = CommandKind::effort;
-    range.value = start_[i].effort;
-    range.motion_min = -kInfinity;
-    range.motion_max = kInfinity;
-  }
-  goal_ = sim_.ranges_;
-  sim_.laws_->begin_step();
-}
-
-LawProblem StaticSolver::problem() const {
-  return sim_.world_.law_problem(sim_.ranges_, sim_.time(), kInfinity);
+  sim_.read_commands(sim_.time(), kInfinity);
+  sim_.hold_efforts();
+  goal_ = sim_.world_.problem().actuators;
+  sim_.solver_.begin_step();
 }
 
 mechanics::LinearisationRequest StaticSolver::request(const mechanics::StepWeights& weights) {
@@ -90,8 +78,7 @@ NewtonReport StaticSolver::solve(const mechanics::StepWeights& weights, double t
   sim_.world_.begin_step(sim_.time(), sim_.time(), sim_.effort_);
   const NewtonSettings newton{request(weights), tolerance, tolerance, max_iterations,
                               sim_.model_->curved_constraints()};
-  const NewtonReport result = solve_newton(sim_.world_, sim_.laws_->complete(nullptr, sim_.ranges_),
-                                           problem(), sim_.effort_, newton, sim_.clock_);
+  const NewtonReport result = sim_.newton(nullptr, newton);
   report_.iterations += result.iterations;
   return result;
 }
@@ -108,7 +95,7 @@ void StaticSolver::linearise(const mechanics::StepWeights& weights) {
 }
 
 // Commands on the way from where the actuators stand (share 1) to where they are told to be (0).
-void StaticSolver::blend(double share) { sim_.blend_ranges(goal_, start_, 1.0 - share); }
+void StaticSolver::blend(double share) { sim_.blend_commands(goal_, start_, 1.0 - share); }
 
 // Load steps, then overdamped motion.
 void StaticSolver::approach() {
@@ -150,7 +137,7 @@ std::string StaticSolver::describe(double share) {
   }
   std::string limit = describe_limit_point();
   if (!limit.empty() || share == 1.0) return limit;
-  const int negative = Stability(sim_.world_, problem(), sim_.effort_).negative_pivots();
+  const int negative = Stability(sim_.world_, sim_.effort_).negative_pivots();
   const double percent = 100.0 * (1.0 - share);
   if (negative == 0) {
     return fmt::format("the last equilibrium on the way, at {:.3g} % of the load, is stable",
@@ -167,7 +154,7 @@ std::string StaticSolver::describe(double share) {
 std::string StaticSolver::describe_limit_point() {
   for (std::size_t i = 0; i < start_.size(); ++i) {
     const ActuatorModel& model = sim_.model_->actuators()[i];
-    const ActuatorRange& goal = goal_[i];
+    const step::ActuatorBlock& goal = goal_[i];
     if (model.type != ActuatorType::pressure || goal.kind != CommandKind::effort) continue;
     const double reached = sim_.effort_[static_cast<std::size_t>(model.row)];
     const double grown = sim_.world_.delta()[model.row];
@@ -226,7 +213,7 @@ void StaticSolver::settle() {
     report_.negative_pivots = 0;
     if (sim_.world_.condense() == linalg::FactorStatus::singular) return;  // neutral
     const bool unsymmetric = sim_.world_.is_unsymmetric();
-    const Stability stability(sim_.world_, problem(), sim_.effort_);
+    const Stability stability(sim_.world_, sim_.effort_);
     report_.negative_pivots = stability.negative_pivots();
     report_.stable = report_.negative_pivots == 0;
     if (report_.stable || settings_.stability == StabilityChoice::any) return;

@@ -33,7 +33,6 @@ class StaticSolver {
   enum class Departure { arrived, returned, failed };
 
   void read_goal();
-  LawProblem problem() const;
   static mechanics::LinearisationRequest request(const mechanics::StepWeights& weights);
   NewtonReport solve(const mechanics::StepWeights& weights, double tolerance, int max_iterations);
   bool equilibrate(double share, int max_iterations);
@@ -62,7 +61,7 @@ class StaticSolver {
   NewtonReport last_;  // of the last search
   bool limit_point_ = false;
   std::vector<ActuatorState> start_;
-  std::vector<ActuatorRange> goal_;
+  std::vector<step::ActuatorBlock> goal_;
   State sound_;               // of the last equilibrium, or before the last step
   std::vector<Points> left_;  // of each body: positions of the unstable equilibrium that was left
 };

@@ -5,13 +5,10 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
-#include "sinew/sim/driven_law.hpp"
 #include "sinew/sim/folded_cable.hpp"
 #include "sinew/sim/load_steps.hpp"
 #include "sinew/sim/newton.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/solve_law.hpp"
-#include "sinew/sim/step_laws.hpp"
 
 namespace sinew::sim {
 
@@ -66,21 +63,19 @@ NewtonSettings Simulation::settings_of_part(double time_step) const {
 }
 
 void Simulation::solve_equation(double time_step) {
-  Law& law = laws_->complete(law_, ranges_);
-  const LawProblem problem = world_.law_problem(ranges_, now_, time_step);
   if (model_->step().method == Method::newton) {
-    step_newton(law, problem);
+    step_newton(time_step);
   } else {
-    step_once(law, problem);
+    step_once(time_step);
   }
 }
 
 // One linear solution, and a look at what it left. In dynamics it is about where the velocities
 // lead: a turn by an angle t is then followed to t^2, and not stretched.
-void Simulation::step_once(Law& law, const LawProblem& problem) {
-  if (model_->step().dynamic()) world_.drift(problem.time_step);
+void Simulation::step_once(double time_step) {
+  if (model_->step().dynamic()) world_.drift(time_step);
   const auto stiffening = std::span<const int>(model_->stiffening_constraints());
-  auto request = newton_settings(problem.time_step).request;
+  auto request = newton_settings(time_step).request;
   request.iterating = false;
   const auto linearise = [&] {
     world_.linearise(request);
@@ -91,7 +86,7 @@ void Simulation::step_once(Law& law, const LawProblem& problem) {
   linearise();
   auto status = world_.condense();
   if (status == linalg::FactorStatus::indefinite && request.tangent == mechanics::Tangent::exact &&
-      !DrivenLaw::stabilised(problem, world_.negative_pivots())) {
+      !step::stabilised(world_.problem(), world_.negative_pivots())) {
     request.tangent = mechanics::Tangent::projected;
     linearise();
     status = world_.condense();
@@ -101,7 +96,7 @@ void Simulation::step_once(Law& law, const LawProblem& problem) {
     fail(ErrorKind::singular_matrix, "the stiffness matrix is singular",
          "fix a region of every body, or look for loose or crushed elements");
   }
-  report_.law = solve_law(world_, law, problem, effort_);
+  report_.law = world_.solve_efforts(solver_, controller_, effort_);
   if (report_.law == LawStatus::failed) fail_law();
   report_.iterations = 1;
   clock_.mark(Stage::law);
@@ -114,7 +109,7 @@ void Simulation::step_once(Law& law, const LawProblem& problem) {
   linearise();
   report_.residual = world_.residual(effort_);
   report_.relative_residual = report_.residual / (world_.force_scale() + 1e-300);
-  report_.violation = law.violation(problem, effort_);
+  report_.violation = step::violation(world_.problem(), effort_);
 }
 
 void Simulation::fail_law() {
@@ -169,48 +164,44 @@ void Simulation::take_report(const NewtonReport& result) {
 }
 
 // What a controller chose last is what its actuators do in the rest of the step.
-Law& Simulation::hold_efforts() {
-  for (ActuatorRange& range : ranges_) {
-    if (!range.owned) continue;
-    range.owned = false;
-    range.drive = nullptr;
-    range.kind = CommandKind::effort;
-    range.value = effort_[static_cast<std::size_t>(range.row)];
-    range.effort_min = range.effort_max = range.value;
-    range.motion_min = -kInfinity;
-    range.motion_max = kInfinity;
+void Simulation::hold_efforts() {
+  for (step::ActuatorBlock& block : world_.problem().actuators) {
+    if (block.owned) block.hold_effort(effort_[static_cast<std::size_t>(block.row)]);
   }
-  return laws_->complete(nullptr, ranges_);
+}
+
+NewtonReport Simulation::newton(step::Controller* controller, const NewtonSettings& settings) {
+  return solve_newton(world_, solver_, controller, effort_, settings, clock_);
 }
 
 // Newton; where that finds nothing and there is no inertia to say where to go, along the loads and
 // commands in parts, and last downhill.
-void Simulation::step_newton(Law& law, const LawProblem& problem) {
-  const bool dynamic = model_->step().dynamic(), steered = law_ != nullptr;
-  NewtonSettings settings = newton_settings(problem.time_step);
+void Simulation::step_newton(double time_step) {
+  const bool dynamic = model_->step().dynamic(), steered = controller_ != nullptr;
+  NewtonSettings settings = newton_settings(time_step);
   const int whole = settings.max_iterations, few = std::min(whole, kSteeredIterations);
   settings.max_iterations = steered ? few : whole;
-  NewtonReport result = solve_newton(world_, law, problem, effort_, settings, clock_);
+  NewtonReport result = newton(controller_, settings);
   const auto goes_on = [&] {
     return result.status != NewtonStatus::converged && result.law != LawStatus::failed;
   };
   int tried = result.iterations;
   if (steered && goes_on()) {
     const LawStatus chosen = result.law;
-    Law& held = hold_efforts();
+    hold_efforts();
     settings.max_iterations = dynamic ? whole : few;
-    result = solve_newton(world_, held, problem, effort_, settings, clock_);
+    result = newton(nullptr, settings);
     tried += result.iterations;
     if (!dynamic && goes_on()) {
-      result = descend(held, problem, few);
+      result = descend(time_step, few);
       tried += result.iterations;
     }
     result.law = std::max(result.law, chosen);
   } else if (!dynamic && result.status != NewtonStatus::converged) {
-    result = approach(law, problem);
+    result = approach(time_step);
     tried += result.iterations;
     if (result.status != NewtonStatus::converged) {
-      result = descend(law, problem, kMostDescents);
+      result = descend(time_step, kMostDescents);
       tried += result.iterations;
     }
   }
@@ -235,24 +226,25 @@ void Simulation::step_newton(Law& law, const LawProblem& problem) {
 }
 
 // Of the way from where actuators were to what they are told.
-void Simulation::blend_ranges(std::span<const ActuatorRange> goal,
-                              std::span<const ActuatorState> start, double fraction) {
+void Simulation::blend_commands(std::span<const step::ActuatorBlock> goal,
+                                std::span<const ActuatorState> start, double fraction) {
   for (std::size_t i = 0; i < start.size(); ++i) {
-    ranges_[i] = goal[i];
-    blend(ranges_[i], start[i], fraction);
+    step::ActuatorBlock& block = world_.problem().actuators[i];
+    block = goal[i];
+    blend(block, start[i], fraction);
   }
 }
 
 // What the start of the step lacks to equilibrium is taken away bit by bit, as in statics
 // (static_solver.cpp), and commands go in proportion from where the actuators were.
-NewtonReport Simulation::approach(Law& law, const LawProblem& problem) {
-  const std::vector<ActuatorRange> goal = ranges_;
+NewtonReport Simulation::approach(double time_step) {
+  const std::vector<step::ActuatorBlock> goal = world_.problem().actuators;
   const std::vector<ActuatorState> start = actuators_;
-  const NewtonSettings settings = settings_of_part(problem.time_step);
+  const NewtonSettings settings = settings_of_part(time_step);
   State sound = state_before_;
   const auto go_back = [&] {
     restore(sound);
-    world_.begin_step(now_ - problem.time_step, now_, effort_);
+    world_.begin_step(now_ - time_step, now_, effort_);
   };
   go_back();
   world_.linearise(settings.request);
@@ -261,16 +253,16 @@ NewtonReport Simulation::approach(Law& law, const LawProblem& problem) {
   NewtonReport result;
   int iterations = 0;
   const auto solve = [&](double share) {
-    blend_ranges(goal, start, 1.0 - share);
+    blend_commands(goal, start, 1.0 - share);
     world_.set_imbalance_share(share);
-    result = solve_newton(world_, law, problem, effort_, settings, clock_);
+    result = newton(nullptr, settings);
     iterations += result.iterations;
     return result.status == NewtonStatus::converged;
   };
   take_load_steps(
       {.first = 0.5, .least = kLeastPart}, solve, [&] { keep(sound); }, go_back);
   world_.set_imbalance_share(0.0);
-  ranges_ = goal;
+  world_.problem().actuators = goal;
   result.iterations = iterations;
   return result;
 }
@@ -278,17 +270,17 @@ NewtonReport Simulation::approach(Law& law, const LawProblem& problem) {
 // From where approach() ended: with a matrix that is never less than the derivative every iteration
 // lowers the energy of conservative loads, through a buckling to wherever the robot then rests.
 // What is slow at the end of that, Newton finishes.
-NewtonReport Simulation::descend(Law& law, const LawProblem& problem, int iterations) {
-  NewtonSettings settings = newton_settings(problem.time_step);
+NewtonReport Simulation::descend(double time_step, int iterations) {
+  NewtonSettings settings = newton_settings(time_step);
   settings.request.tangent = mechanics::Tangent::projected;
   // A matrix that is never less has the stiffness of all cables, whatever the scene leaves out.
   settings.request.with_curvature = true;
   settings.curved = model_->curved_constraints();
   settings.max_iterations = iterations;
-  NewtonReport result = solve_newton(world_, law, problem, effort_, settings, clock_);
-  if (result.status == NewtonStatus::converged || law_ != nullptr) return result;
+  NewtonReport result = newton(nullptr, settings);
+  if (result.status == NewtonStatus::converged || controller_ != nullptr) return result;
   const int descended = result.iterations;
-  result = solve_newton(world_, law, problem, effort_, settings_of_part(problem.time_step), clock_);
+  result = newton(nullptr, settings_of_part(time_step));
   result.iterations += descended;
   return result;
 }
@@ -297,7 +289,7 @@ NewtonReport Simulation::descend(Law& law, const LawProblem& problem, int iterat
 bool Simulation::balanced() const {
   const bool newton = model_->step().method == Method::newton;
   if (newton && report_.newton == NewtonStatus::converged) return true;
-  const bool searched = newton && law_ == nullptr;
+  const bool searched = newton && controller_ == nullptr;
   return report_.relative_residual <= (searched ? kSearched : kBalanced);
 }
 

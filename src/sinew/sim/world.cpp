@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "sinew/constraint/cable.hpp"
 #include "sinew/constraint/contact.hpp"
 #include "sinew/linalg/positive_part.hpp"
 
@@ -26,6 +27,19 @@ std::vector<std::unique_ptr<mechanics::Body>> create_bodies(const Model& model, 
   return bodies;
 }
 
+// Rows whose columns of W are written whether they are present or not.
+std::vector<char> rows_of_small_bodies(const Model& model) {
+  const mechanics::RowPattern& rows = model.rows();
+  std::vector<char> result(static_cast<std::size_t>(rows.rows()), 0);
+  for (std::size_t row = 0; row < result.size(); ++row) {
+    for (int e = rows.row_start[row]; e < rows.row_start[row + 1]; ++e) {
+      const int body = rows.point[static_cast<std::size_t>(e)].body;
+      if (!model.bodies()[static_cast<std::size_t>(body)]->leaves_rows_out()) result[row] = 1;
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 World::World(std::shared_ptr<const Model> model, ThreadPool& pool)
@@ -35,12 +49,23 @@ World::World(std::shared_ptr<const Model> model, ThreadPool& pool)
       curvatures_(model_->curvatures()) {
   rows_.resize(model_->rows());
   const int rows = model_->rows().rows();
-  compliance_.setZero(rows, rows);
-  delta_free_.setZero(rows);
+  problem_.compliance.setZero(rows, rows);
+  problem_.delta_free.setZero(rows);
+  problem_.actuators.resize(model_->actuators().size());
+  problem_.size = model_->size();
+  for (const GuideModel& guide : model_->guides()) {
+    problem_.capstans.push_back({guide.row, guide.actuator, 0.0, 0.0});
+  }
+  for (std::size_t i = 0; i < model_->contacts().size(); ++i) {
+    const constraint::Contact& contact = model_->contact(static_cast<int>(i));
+    for (std::size_t k = 0; k < contact.points().size(); ++k) {
+      problem_.contacts.push_back({contact.row(k), contact.friction(), true});
+    }
+  }
   contact_start_.setZero(rows);
   formed_ = rows_.present;
+  always_formed_ = rows_of_small_bodies(*model_);
   touched_.assign(static_cast<std::size_t>(rows), 0);
-  kept_effort_.resize(static_cast<std::size_t>(rows));
   curving_effort_.resize(static_cast<std::size_t>(rows));
   place_contacts(0.0, 0.0);
 }
@@ -151,8 +176,9 @@ bool World::follow_way(const constraint::Contact& contact, std::size_t point,
                        const Eigen::Isometry3d& pose, std::span<const double> effort) {
   const int row = contact.row(point);
   const Eigen::Map<const VectorX> lambda(effort.data(), static_cast<Eigen::Index>(effort.size()));
-  const Vector3 free = delta_free_.segment<3>(row) + compliance_.middleRows<3>(row) * lambda -
-                       compliance_.block<3, 3>(row, row) * lambda.segment<3>(row);
+  const Vector3 free = problem_.delta_free.segment<3>(row) +
+                       problem_.compliance.middleRows<3>(row) * lambda -
+                       problem_.compliance.block<3, 3>(row, row) * lambda.segment<3>(row);
   const Vector3 reference = rows_.reference.segment<3>(row);
   const Vector3 from = contact.position(point, reference, rows_);
   const Vector3 to = contact.position(point, free, rows_);
@@ -227,7 +253,12 @@ const VectorX& World::measure_delta() {
 }
 
 void World::form_rows(std::span<const double> effort, std::span<const int> curved) {
-  measure_delta();
+  problem_.delta = measure_delta();
+  for (std::size_t k = 0; k < problem_.capstans.size(); ++k) {
+    const GuideModel& guide = model_->guides()[k];
+    const double turn = model_->cable(guide.actuator)->turn(placement_, guide.via);
+    problem_.capstans[k].grip = -std::expm1(-guide.friction * turn);
+  }
   for (auto& body : bodies_) body->take_rows(rows_);
   curving_ = curved;
   if (!curved.empty()) std::ranges::copy(effort, curving_effort_.begin());
@@ -246,7 +277,8 @@ void World::add_curvatures() {
     constraint.curve(placement_, effort, pairs);
     const bool exact = tangent_ == mechanics::Tangent::exact || constraint.stiffens(effort);
     for (const auto& pair : pairs) {
-      if (exact) {
+      // No body has room for what couples it to another.
+      if (exact && pair.first.body == pair.second.body) {
         bodies_[static_cast<std::size_t>(pair.first.body)]->add_curvature(pair);
       } else {
         add_majorant(pair);
@@ -267,6 +299,10 @@ void World::add_majorant(const mechanics::RowCurvature& pair) {
   const Matrix3 bound = pair.curvature.norm() * Matrix3::Identity();
   add(pair.first, bound);
   add(pair.second, bound);
+}
+
+void World::hold_capstans(const VectorX& delta) {
+  for (step::CapstanBlock& block : problem_.capstans) block.held = delta[block.row];
 }
 
 double World::residual(std::span<const double> effort) {
@@ -312,6 +348,7 @@ bool World::is_unsymmetric() const {
 }
 
 linalg::FactorStatus World::condense() {
+  motion_is_solved_ = false;
   add_curvatures();
   auto worst = linalg::FactorStatus::positive_definite;
   for (auto& body : bodies_) worst = std::max(worst, body->condense());
@@ -319,16 +356,35 @@ linalg::FactorStatus World::condense() {
   return worst;
 }
 
+step::LawStatus World::solve_efforts(step::StepSolver& solver, step::Controller* controller,
+                                     std::span<double> effort) {
+  problem_.effort_before.assign(effort.begin(), effort.end());
+  step::LawStatus status = step::LawStatus::solved;
+  while (true) {
+    status = solver.solve(problem_, controller, effort);
+    if (status == step::LawStatus::failed || !guesses_contacts()) return status;
+    solve_motion(effort);
+    if (!correct_contacts(effort)) break;
+  }
+  motion_is_solved_ = true;
+  return status;
+}
+
 void World::form_compliance() {
   for (std::size_t row = 0; row < formed_.size(); ++row) {
-    if (formed_[row] != 0) compliance_.col(static_cast<Eigen::Index>(row)).setZero();
+    if ((formed_[row] | always_formed_[row]) != 0)
+      problem_.compliance.col(static_cast<Eigen::Index>(row)).setZero();
   }
   formed_ = rows_.present;
-  delta_free_ = rows_.delta;
-  for (auto& body : bodies_) body->add_compliance(compliance_, delta_free_);
+  for (step::ContactBlock& block : problem_.contacts) {
+    block.active = rows_.present[static_cast<std::size_t>(block.row)] != 0;
+  }
+  problem_.delta_free = rows_.delta;
+  for (auto& body : bodies_) body->add_compliance(problem_.compliance, problem_.delta_free);
 }
 
 void World::solve_motion(std::span<const double> effort) {
+  if (std::exchange(motion_is_solved_, false)) return;
   for (auto& body : bodies_) body->solve_motion(effort);
 }
 
@@ -426,7 +482,7 @@ void World::restart() {
 }
 
 std::size_t World::bytes() const {
-  std::size_t total = sizeof(double) * static_cast<std::size_t>(compliance_.size());
+  std::size_t total = sizeof(double) * static_cast<std::size_t>(problem_.compliance.size());
   total += rows_.direction.size() * sizeof(Vector3) +
            curvatures_.size() * sizeof(mechanics::RowCurvature);
   for (const auto& body : bodies_) total += body->bytes();

@@ -8,8 +8,8 @@
 
 #include "sinew/constraint/placement.hpp"
 #include "sinew/mechanics/body.hpp"
-#include "sinew/sim/law.hpp"
 #include "sinew/sim/model.hpp"
+#include "sinew/step/step_solver.hpp"
 
 namespace sinew::constraint {
 struct SurfaceApproach;
@@ -53,17 +53,24 @@ class World {
   /// Of all bodies, at the last condensation and the last linearisation: see mechanics::Body.
   int negative_pivots() const;
   bool is_unsymmetric() const;
-  /// W and delta_free. The worst status of any body.
+  /// W and delta_free of the step's problem. The worst status of any body.
   linalg::FactorStatus condense();
+  /// Efforts that obey all blocks. As long as the motion that follows from them takes a point that
+  /// was left out into its surface, or a point is pushed by a tangent plane that is not that of its
+  /// way, this is mended and the problem solved again, of the same factorisation: see
+  /// correct_contacts().
+  /// @param solver,controller see step::StepSolver. @param effort (rows,) N, in and out.
+  step::LawStatus solve_efforts(step::StepSolver& solver, step::Controller* controller,
+                                std::span<double> effort);
+  /// dq of all bodies. @param effort (rows,) N, those of solve_efforts() after it.
   void solve_motion(std::span<const double> effort);
   /// After solve_motion(): mends what the step guessed of contacts, of the same factorisation.
   /// - Points that were left out are taken in where the motion leads into their surface.
   /// - A point that is pushed by the tangent plane of a curved surface gets the plane of the way
   ///   that it would go without its own force (constraint::Contact), if that is another one: where
   ///   that way misses the surface it is pushed no more.
-  /// Whether there was anything to mend; W and delta_free are then new, and so is the law's
-  /// problem. Planes change in a bounded number of rounds a step, after which they stay as they
-  /// are.
+  /// Whether there was anything to mend; W and delta_free are then new. Planes change in a bounded
+  /// number of rounds a step, after which they stay as they are.
   /// @param effort (rows,) N, of solve_motion().
   bool correct_contacts(std::span<const double> effort);
   /// Whether correct_contacts() could find anything.
@@ -71,8 +78,6 @@ class World {
   bool leaves_points_out() const { return left_out_; }
   /// Whether a point has a force that had none when the step began. @param effort (rows,) N.
   bool gap_closed(std::span<const double> effort) const;
-  /// (rows,) N, for solve_law() to keep efforts in.
-  std::span<double> kept_effort() { return kept_effort_; }
   /// The same by hand, see mechanics::Body: (all bodies' motion_size(),), one behind the other.
   void imbalance(std::span<const double> effort, VectorX& result);
   void solve(const VectorX& right, VectorX& result);
@@ -86,16 +91,15 @@ class World {
   /// The largest error estimate of any body, m.
   double end_step(const mechanics::StepWeights& weights);
 
-  /// What laws look at in this step. @param ranges of the model's actuators, then guides.
-  /// @param time s, end of the step. @param time_step s.
-  LawProblem law_problem(std::span<const ActuatorRange> ranges, double time,
-                         double time_step) const {
-    return {*model_,     placement_,    ranges, compliance_, delta_free_,
-            rows_.delta, rows_.present, time,   time_step};
-  }
-  const MatrixX& compliance() const { return compliance_; }  ///< W (rows, rows), m/N
-  const VectorX& delta_free() const { return delta_free_; }  ///< (rows,) m
-  const VectorX& delta() const { return rows_.delta; }       ///< (rows,) m, as last formed
+  /// The step's problem. Actuators are the caller's to write; capstans' grip, contacts and all
+  /// numbers of rows are the world's.
+  step::StepProblem& problem() { return problem_; }
+  const step::StepProblem& problem() const { return problem_; }
+  /// From where cables stick to their guides in this step. @param delta (rows,) m.
+  void hold_capstans(const VectorX& delta);
+  const MatrixX& compliance() const { return problem_.compliance; }  ///< W (rows, rows), m/N
+  const VectorX& delta_free() const { return problem_.delta_free; }  ///< (rows,) m
+  const VectorX& delta() const { return rows_.delta; }               ///< (rows,) m, as last formed
   /// delta at the current placement, without forming the rows anew for the bodies.
   const VectorX& measure_delta();
   const mechanics::RowValues& rows() const { return rows_; }
@@ -135,18 +139,19 @@ class World {
   constraint::Placement placement_;
   mechanics::RowValues rows_;
   std::vector<mechanics::RowCurvature> curvatures_;
-  MatrixX compliance_;
-  VectorX delta_free_, contact_start_;
-  std::vector<double> kept_effort_;
+  step::StepProblem problem_;
+  VectorX contact_start_;
   std::vector<double> curving_effort_;  // (rows,) N, at which constraints curve
   std::span<const int> curving_;        // whose curvature the next condensation adds
   mechanics::Tangent tangent_ = mechanics::Tangent::real_time;
-  bool left_out_ = false;      // some point
-  bool curved_ = false;        // some surface
-  double end_ = 0.0;           // s, of the step: where surfaces stand
-  int turns_left_ = 0;         // rounds of this step in which planes may change
-  std::vector<char> touched_;  // (rows,) normal rows with a force when the step began
-  std::vector<char> formed_;   // (rows,) columns of W that are not zero
+  bool left_out_ = false;            // some point
+  bool curved_ = false;              // some surface
+  bool motion_is_solved_ = false;    // of the efforts that solve_efforts() returned
+  double end_ = 0.0;                 // s, of the step: where surfaces stand
+  int turns_left_ = 0;               // rounds of this step in which planes may change
+  std::vector<char> touched_;        // (rows,) normal rows with a force when the step began
+  std::vector<char> formed_;         // (rows,) columns of W that are not zero
+  std::vector<char> always_formed_;  // (rows,) those of bodies that leave no rows out
 };
 
 }  // namespace sinew::sim

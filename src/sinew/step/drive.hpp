@@ -1,15 +1,16 @@
 /// @file
 /// What stands between a command and an effort where that is more than a limit: a volume of gas, a
 /// supply that lets only so much through, a spring. A drive relates effort and motion of its row by
-/// a falling curve that the law solves together with the robot, so that no stiffness of it limits
-/// the time step.
+/// a falling curve that is solved together with the robot, so that its stiffness does not limit the
+/// time step.
 #pragma once
 
+#include <array>
 #include <span>
 
 #include "sinew/core/named_hash.hpp"
 
-namespace sinew::sim {
+namespace sinew::step {
 
 enum class CommandKind {
   effort,  ///< tension or force (N), pressure (Pa)
@@ -28,20 +29,23 @@ class Drive {
  public:
   virtual ~Drive() = default;
 
-  /// What a step asks.
+  /// Numbers of its state that a drive may have.
+  static constexpr std::size_t kMaxStates = 2;
+
+  /// What a step asks; a value, so that a step's problem is one.
   struct Step {
     CommandKind kind = CommandKind::effort;
     double command = 0.0;
-    double time_step = 0.0;           ///< s; infinity asks for what is reached in the long run
-    double motion_before = 0.0;       ///< at the start of the step
-    std::span<const double> state{};  ///< at the start of the step
+    double time_step = 0.0;      ///< s; infinity asks for what is reached in the long run
+    double motion_before = 0.0;  ///< at the start of the step
+    std::array<double, kMaxStates> state{};  ///< at the start of the step, state_size() of them
   };
   struct Response {
     double effort = 0.0;
     double slope = 0.0;  ///< d effort / d motion, <= 0
   };
 
-  /// Numbers that a run keeps.
+  /// Numbers that a run keeps, <= kMaxStates.
   virtual int state_size() const = 0;
   /// Those of a robot at rest.
   virtual void rest(std::span<double> state) const = 0;
@@ -61,4 +65,4 @@ class Drive {
   virtual void add_to(ValueHash& hash) const = 0;
 };
 
-}  // namespace sinew::sim
+}  // namespace sinew::step

@@ -1,0 +1,43 @@
+/// @file
+/// Dense arrays whose sizes change from step to step: memory grows and is kept.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include <Eigen/StdVector>
+
+#include "sinew/core/types.hpp"
+
+namespace sinew::linalg {
+
+/// Numbers for Eigen to sum: it does so in an order that depends on their alignment, so that only a
+/// fixed one gives the same bits in every run.
+using AlignedNumbers = std::vector<double, Eigen::aligned_allocator<double>>;
+
+/// Makes room for `size` entries; never gives any back.
+template <class Vector>
+void grow(Vector& memory, std::size_t size) {
+  if (memory.size() < size) memory.resize(std::max(size, 2 * memory.size()));
+}
+
+/// A matrix of changing shape that allocates only where it becomes larger than ever before.
+class ScratchMatrix {
+ public:
+  /// Its entries are undefined. @param rows,columns the new shape.
+  Eigen::Map<MatrixX> shape(Eigen::Index rows, Eigen::Index columns) {
+    rows_ = rows;
+    columns_ = columns;
+    grow(numbers_, static_cast<std::size_t>(rows * columns));
+    return view();
+  }
+  Eigen::Map<MatrixX> view() { return {numbers_.data(), rows_, columns_}; }
+  Eigen::Map<const MatrixX> view() const { return {numbers_.data(), rows_, columns_}; }
+
+ private:
+  AlignedNumbers numbers_;
+  Eigen::Index rows_ = 0, columns_ = 0;
+};
+
+}  // namespace sinew::linalg

@@ -1,0 +1,265 @@
+#include "sinew/step/direct_solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace sinew::step {
+
+namespace {
+
+// Relative size of the term that shares tension among redundant cables.
+constexpr double kRedundancy = 1e-12;
+// Motions that agree within this (m) agree.
+constexpr double kMotionTolerance = 1e-12;
+// A solution of contacts that misses the tolerance by rounding or slow convergence is one up to
+// here.
+constexpr double kUsable = 1e-6;
+
+constexpr int kMaxDriveRounds = 60;
+// Of the effort and of what the robot's compliance allows.
+constexpr double kDriveTolerance = 1e-13;
+
+constexpr int kMaxFrictionRounds = 300;
+constexpr int kPlainRounds = 40;              // before the limits follow more slowly
+constexpr double kFrictionTolerance = 1e-12;  // of the largest tension
+
+}  // namespace
+
+DirectSolver::DirectSolver(const qp::ConeSettings& settings) : cone_solver_(settings) {}
+
+void DirectSolver::begin_step() {
+  qp_solver_.reset();
+  std::ranges::fill(branch_, Branch::pull);
+}
+
+LawStatus DirectSolver::solve(const StepProblem& problem, std::span<double> effort) {
+  sort(problem, effort);
+  return problem.capstans.empty() ? solve_with_drives(problem, effort)
+                                  : solve_with_friction(problem, effort);
+}
+
+// Which rows are given, which follow, and which are unknown. free_ has the motion that the given
+// ones leave.
+void DirectSolver::sort(const StepProblem& problem, std::span<double> effort) {
+  followers_.clear();
+  boxes_.clear();
+  cones_.clear();
+  unknown_.clear();
+  free_ = problem.delta_free;
+  branch_.resize(problem.actuators.size(), Branch::pull);
+  for (std::size_t i = 0; i < problem.actuators.size(); ++i) {
+    sort_actuator(problem, static_cast<int>(i), effort);
+  }
+  for (std::size_t k = 0; k < problem.capstans.size(); ++k) {
+    const CapstanBlock& block = problem.capstans[k];
+    boxes_.push_back({block.row, -1, static_cast<int>(k), 0.0, 0.0, block.held});
+  }
+  for (const BilateralBlock& block : problem.bilaterals) {
+    if (problem.compliance(block.row, block.row) != 0.0) {
+      followers_.add_held(block.row, block.motion);
+    } else {
+      effort[static_cast<std::size_t>(block.row)] = 0.0;
+    }
+  }
+  for (const Box& box : boxes_) unknown_.push_back(box.row);
+  for (const ContactBlock& block : problem.contacts) {
+    if (!block.active) {
+      std::fill_n(effort.begin() + block.row, 3, 0.0);
+      continue;
+    }
+    cones_.push_back({static_cast<int>(unknown_.size()), block.friction});
+    for (int c = 0; c < 3; ++c) unknown_.push_back(block.row + c);
+  }
+}
+
+void DirectSolver::sort_actuator(const StepProblem& problem, int index, std::span<double> effort) {
+  const ActuatorBlock& block = problem.actuators[static_cast<std::size_t>(index)];
+  if (block.row < 0) return;
+  double& own = effort[static_cast<std::size_t>(block.row)];
+  const bool moves = problem.compliance(block.row, block.row) != 0.0;
+  if (!block.owned && block.drive != nullptr) {
+    if (moves) return followers_.add_curve(block, problem.delta[block.row]);
+    own = block.drive->respond(block.drive_step, problem.delta[block.row]).effort;
+  } else if (!block.owned) {
+    const Box box = box_of(block, index);
+    if (block.holds_motion() && moves) return followers_.add_held(block.row, block.value);
+    const bool stops = block.kind != CommandKind::motion &&
+                       (std::isfinite(block.motion_min) || std::isfinite(block.motion_max));
+    if (moves && (box.lower < box.upper || stops)) return boxes_.push_back(box);
+    own = block.kind == CommandKind::effort ? block.value : 0.0;
+    own = std::clamp(own, box.lower, box.upper);
+  }
+  if (own != 0.0) free_ += own * problem.compliance.col(block.row);
+}
+
+// lambda in [lower, upper]; delta = motion strictly between, >= motion at `lower`, <= motion at
+// `upper`.
+DirectSolver::Box DirectSolver::box_of(const ActuatorBlock& block, int index) const {
+  Box box{block.row, index, -1, block.effort_min, block.effort_max, block.value};
+  if (block.kind != CommandKind::motion) {
+    if (branch_[static_cast<std::size_t>(index)] == Branch::hold) {
+      box.lower = block.value;
+      box.motion = block.motion_min;
+    } else {
+      // Without a limit of its motion nothing but the command itself is possible.
+      const bool stops = !std::isinf(block.motion_max);
+      if (!stops) box.lower = block.value;
+      box.upper = block.value;
+      box.motion = stops ? block.motion_max : 0.0;
+    }
+  }
+  box.upper = std::max(box.lower, box.upper);
+  return box;
+}
+
+LawStatus DirectSolver::solve_with_friction(const StepProblem& problem, std::span<double> effort) {
+  limits_.resize(problem.capstans.size());
+  follow_tensions(problem, effort, 1.0);
+  for (int round = 0; round < kMaxFrictionRounds; ++round) {
+    if (solve_with_drives(problem, effort) == LawStatus::failed) return LawStatus::failed;
+    if (follow_tensions(problem, effort, round < kPlainRounds ? 1.0 : 0.5)) break;
+  }
+  return LawStatus::solved;
+}
+
+// Whether the limits are those of the tensions; if not, they go `share` of the way there.
+bool DirectSolver::follow_tensions(const StepProblem& problem, std::span<const double> effort,
+                                   double share) {
+  double off = 0.0, largest = 0.0, tension = 0.0;
+  int cable = -1;
+  for (Box& box : boxes_) {
+    if (box.capstan < 0) continue;
+    const auto k = static_cast<std::size_t>(box.capstan);
+    const CapstanBlock& block = problem.capstans[k];
+    if (block.cable != cable) {
+      cable = block.cable;
+      const int row = problem.actuators[static_cast<std::size_t>(cable)].row;
+      tension = effort[static_cast<std::size_t>(row)];
+    }
+    const double behind = tension - effort[static_cast<std::size_t>(block.row)];
+    const double lower = -block.grip * std::max(behind, 0.0);
+    const double upper = block.grip * std::max(tension, 0.0);
+    largest = std::max({largest, std::abs(tension), std::abs(behind)});
+    off = std::max({off, std::abs(upper - box.upper), std::abs(lower - box.lower)});
+    limits_[k] = {lower, upper};
+    tension = behind;
+  }
+  if (off <= kFrictionTolerance * largest) return true;
+  for (Box& box : boxes_) {
+    if (box.capstan < 0) continue;
+    const auto& [lower, upper] = limits_[static_cast<std::size_t>(box.capstan)];
+    box.lower += share * (lower - box.lower);
+    box.upper += share * (upper - box.upper);
+  }
+  return false;
+}
+
+LawStatus DirectSolver::solve_with_drives(const StepProblem& problem, std::span<double> effort) {
+  const auto count = static_cast<Eigen::Index>(unknown_.size());
+  auto compliance = compliance_.shape(count, count);
+  auto motion = motion_.shape(count, 1);
+  x_.resize(unknown_.size());
+  for (std::size_t i = 0; i < x_.size(); ++i) {
+    x_[i] = effort[static_cast<std::size_t>(unknown_[i])];
+  }
+  const bool curves = followers_.has_curves();
+  for (int round = 0; round < kMaxDriveRounds; ++round) {
+    followers_.take_out(problem, free_, unknown_, compliance, motion.col(0));
+    const LawStatus status = solve_blocks(problem);
+    if (status == LawStatus::failed) return status;
+    for (std::size_t i = 0; i < x_.size(); ++i) {
+      effort[static_cast<std::size_t>(unknown_[i])] = x_[i];
+    }
+    const double left = followers_.close(problem, free_, unknown_, effort);
+    if (!curves || left <= kDriveTolerance) break;
+  }
+  return LawStatus::solved;
+}
+
+LawStatus DirectSolver::solve_blocks(const StepProblem& problem) {
+  const Eigen::Map<const MatrixX> compliance = std::as_const(compliance_).view();
+  const std::size_t max_rounds = 2 * boxes_.size() + 2;
+  for (std::size_t round = 0; round < max_rounds; ++round) {
+    const LawStatus status = cones_.empty() ? solve_boxes(compliance) : solve_cones(compliance);
+    if (status == LawStatus::failed) return status;
+    if (!switch_branches(problem, compliance)) return LawStatus::solved;
+  }
+  return LawStatus::failed;
+}
+
+LawStatus DirectSolver::solve_boxes(Eigen::Map<const MatrixX> compliance) {
+  const auto count = static_cast<Eigen::Index>(boxes_.size());
+  if (count == 0) return LawStatus::solved;
+  if (program_.gradient.size() != count) {
+    program_ = qp::QuadraticProgram::sized(static_cast<int>(count), 0);
+    qp_solver_ = qp::QpSolver(static_cast<int>(count), 0);
+    scale_.resize(count);
+  }
+  const auto motion = motion_.view();
+  for (Eigen::Index i = 0; i < count; ++i) {
+    scale_[i] = compliance(i, i) > 0.0 ? 1.0 / std::sqrt(compliance(i, i)) : 1.0;
+  }
+  for (Eigen::Index j = 0; j < count; ++j) {
+    for (Eigen::Index i = 0; i < count; ++i) {
+      program_.hessian(i, j) = scale_[i] * scale_[j] * compliance(i, j);
+    }
+    program_.hessian(j, j) += kRedundancy;
+    const Box& box = boxes_[static_cast<std::size_t>(j)];
+    program_.gradient[j] = scale_[j] * (motion(j, 0) - box.motion);
+    program_.lower[j] = box.lower / scale_[j];
+    program_.upper[j] = box.upper / scale_[j];
+  }
+  const qp::QpResult& result = qp_solver_.solve(program_);
+  if (result.status != qp::QpStatus::optimal) return LawStatus::failed;
+  for (std::size_t i = 0; i < boxes_.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    // Scaling must not blur a limit: a slack cable's tension is zero, not nearly so.
+    x_[i] = scale_[k] * result.x[k];
+    if (result.x[k] <= program_.lower[k]) x_[i] = boxes_[i].lower;
+    if (result.x[k] >= program_.upper[k]) x_[i] = boxes_[i].upper;
+  }
+  return LawStatus::solved;
+}
+
+LawStatus DirectSolver::solve_cones(Eigen::Map<const MatrixX> compliance) {
+  cone_boxes_.clear();
+  for (std::size_t i = 0; i < boxes_.size(); ++i) {
+    const Box& box = boxes_[i];
+    cone_boxes_.push_back({static_cast<int>(i), box.lower, box.upper, box.motion});
+  }
+  const auto motion = motion_.view();
+  const qp::ConeResult& result =
+      cone_solver_.solve({compliance, motion.col(0), cone_boxes_, cones_}, x_);
+  const bool usable =
+      result.status == qp::ConeStatus::solved ||
+      (result.status == qp::ConeStatus::iteration_limit && result.residual <= kUsable);
+  return usable ? LawStatus::solved : LawStatus::failed;
+}
+
+// A commanded effort whose motion passed the far limit changes branch.
+bool DirectSolver::switch_branches(const StepProblem& problem,
+                                   Eigen::Map<const MatrixX> compliance) {
+  const auto motion = motion_.view();
+  const Eigen::Map<const VectorX> x(x_.data(), static_cast<Eigen::Index>(x_.size()));
+  bool switched = false;
+  for (std::size_t i = 0; i < boxes_.size(); ++i) {
+    Box& box = boxes_[i];
+    if (box.actuator < 0) continue;
+    const ActuatorBlock& block = problem.actuators[static_cast<std::size_t>(box.actuator)];
+    if (block.kind == CommandKind::motion) continue;
+    const auto k = static_cast<Eigen::Index>(i);
+    const double there = motion(k, 0) + compliance.row(k).dot(x);
+    const double tolerance = kMotionTolerance / block.motion_scale;
+    Branch& branch = branch_[static_cast<std::size_t>(box.actuator)];
+    const Branch before = branch;
+    if (branch == Branch::pull && there < block.motion_min - tolerance) branch = Branch::hold;
+    if (before == Branch::hold && there > block.motion_max + tolerance) branch = Branch::pull;
+    if (branch == before) continue;
+    box = box_of(block, box.actuator);
+    switched = true;
+  }
+  return switched;
+}
+
+}  // namespace sinew::step

@@ -1,0 +1,81 @@
+/// @file
+/// How a robot answers to the efforts of a controller while everything else on it obeys its own
+/// law.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sinew/linalg/dense_factor.hpp"
+#include "sinew/step/step_problem.hpp"
+
+namespace sinew::step {
+
+/// delta = free + compliance lambda_c over the efforts lambda_c that a controller chooses, as long
+/// as every other block keeps the state that it has: a held row stays held, a slack cable slack, a
+/// drive on the tangent of its curve; of contacts the open ones stay open, sticking ones stick, and
+/// sliding ones slide in the same direction; cables keep sticking or sliding at their guides. The
+/// efforts s of these rows obey linear equations
+///   delta_s = m               where a motion is held: held rows, sticking points, every normal,
+///   delta_s + c lambda_s = m  on a drive's curve,
+///   lambda_s = sum k lambda   where friction is at its limit,
+/// which with delta = delta_free + W lambda give them as an affine function of lambda_c. Sliding
+/// makes that unsymmetric: `compliance` of the controlled rows is then no stiffness's inverse.
+class Response {
+ public:
+  /// @param problem of the step. @param effort (rows,) N: efforts and with them the states of all
+  /// blocks, see DirectSolver.
+  void form(const StepProblem& problem, std::span<const double> effort);
+
+  /// Positions in problem.actuators of the controlled ones, ascending.
+  const std::vector<int>& controlled() const { return controlled_; }
+  const MatrixX& compliance() const { return compliance_; }  ///< (rows, controlled) m/N
+  const VectorX& free() const { return free_; }              ///< (rows,) m
+  /// Whether it holds for all efforts: nothing else on the robot answers to them.
+  bool holds_for_all() const { return holds_for_all_; }
+  /// Whether it is a tangent alone: a drive's curve, or the direction in which a point slides,
+  /// bends away from it.
+  bool bends() const { return bends_; }
+  /// Whether there are other efforts that follow.
+  bool has_unknowns() const { return !equations_.empty(); }
+  /// Whether the controlled rows' part of `compliance` may be unsymmetric.
+  bool is_unsymmetric() const { return unsymmetric_; }
+  /// Whether the last two calls of form() found the same states of all blocks.
+  bool same_states() const { return states_ == states_before_; }
+
+ private:
+  struct Term {
+    int row = -1;
+    double factor = 0.0;
+  };
+  // sum of factor lambda_row over the effort terms, and of factor delta_row over the motion terms,
+  // = constant; one for each unknown effort.
+  struct Equation {
+    int unknown = -1;  // row
+    double constant = 0.0;
+    int efforts_end = 0, motions_end = 0;  // in the lists of terms
+  };
+
+  void collect(const StepProblem& problem, std::span<const double> effort);
+  void collect_actuator(const StepProblem& problem, int index, std::span<const double> efforts);
+  void collect_capstans(const StepProblem& problem, std::span<const double> effort);
+  void collect_contact(const StepProblem& problem, const ContactBlock& block,
+                       std::span<const double> effort);
+  void add_held(int row, double motion, double compliance = 0.0);
+  void end_equation(int unknown, double constant);
+  void form_equations(const StepProblem& problem, std::span<const double> effort);
+  void solve(const StepProblem& problem, std::span<const double> effort);
+
+  std::vector<int> controlled_;
+  std::vector<int> controlled_rows_;
+  std::vector<Equation> equations_;
+  std::vector<Term> effort_terms_, motion_terms_, tension_;
+  std::vector<char> states_, states_before_;
+  std::vector<int> unknown_of_, controlled_of_;  // (rows,) position or -1
+  bool holds_for_all_ = true, unsymmetric_ = false, bends_ = false;
+  MatrixX compliance_, system_, right_, solved_;
+  VectorX free_, scale_;
+  linalg::LuFactor factor_;
+};
+
+}  // namespace sinew::step

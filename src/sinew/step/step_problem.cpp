@@ -1,0 +1,134 @@
+#include "sinew/step/step_problem.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/linalg/dense.hpp"
+#include "sinew/qp/cone_solver.hpp"
+
+namespace sinew::step {
+
+namespace {
+
+// Friction of a cable within this part of its tension of the limit is at it: limits and tensions
+// are found together, by iteration.
+constexpr double kAtLimit = 1e-9;
+
+// How far a motion is from `target`, where an effort at its lower limit lets it be more and one at
+// its upper limit less.
+double box_miss(double gap, bool at_lower, bool at_upper) {
+  if (at_lower && at_upper) return 0.0;
+  if (at_lower) return std::max(0.0, -gap);
+  if (at_upper) return std::max(0.0, gap);
+  return std::abs(gap);
+}
+
+double miss(const ActuatorBlock& block, double effort, double motion) {
+  const bool at_lower = effort <= block.effort_min, at_upper = effort >= block.effort_max;
+  if (block.kind == CommandKind::motion) return box_miss(motion - block.value, at_lower, at_upper);
+  if (effort < block.value && std::isfinite(block.motion_max)) {
+    return box_miss(motion - block.motion_max, at_lower, false);
+  }
+  if (effort > block.value && std::isfinite(block.motion_min)) {
+    return box_miss(motion - block.motion_min, false, at_upper);
+  }
+  if (block.effort_min == block.effort_max) return 0.0;
+  return std::max({0.0, motion - block.motion_max, block.motion_min - motion});
+}
+
+// In motion: along the curve, or along the robot's own compliance where the curve is flat.
+double curve_miss(const StepProblem& problem, const ActuatorBlock& block, double effort) {
+  const auto at = block.drive->respond(block.drive_step, problem.delta[block.row]);
+  const double own = problem.compliance(block.row, block.row);
+  const double steepness = std::max(-at.slope, own > 0.0 ? 1.0 / own : 0.0);
+  return steepness > 0.0 ? std::abs(effort - at.effort) / steepness : 0.0;
+}
+
+double contact_miss(const StepProblem& problem, const ContactBlock& block,
+                    std::span<const double> effort) {
+  if (!block.active) return std::max(0.0, -problem.delta[block.row]);
+  const double scale = problem.compliance.diagonal().segment<3>(block.row).sum() / 3.0;
+  if (!(scale > 0.0)) return 0.0;
+  const Eigen::Map<const Vector3> force(effort.data() + block.row);
+  const Vector3 motion = problem.delta.segment<3>(block.row);
+  return scale * qp::cone_residual(force, motion, block.friction, scale);
+}
+
+}  // namespace
+
+void ActuatorBlock::hold_effort(double effort) {
+  owned = false;
+  drive = nullptr;
+  kind = CommandKind::effort;
+  value = effort_min = effort_max = effort;
+  motion_min = -kInfinity;
+  motion_max = kInfinity;
+}
+
+bool ActuatorBlock::holds_motion() const {
+  return !owned && drive == nullptr && kind == CommandKind::motion && std::isinf(effort_min) &&
+         std::isinf(effort_max);
+}
+
+double violation(const StepProblem& problem, std::span<const double> effort) {
+  const auto of = [&](int row) { return effort[static_cast<std::size_t>(row)]; };
+  double worst = 0.0;
+  for (const ActuatorBlock& block : problem.actuators) {
+    if (block.owned || block.row < 0) continue;
+    const double lambda = of(block.row);
+    const double own = block.drive != nullptr ? curve_miss(problem, block, lambda)
+                                              : miss(block, lambda, problem.delta[block.row]);
+    worst = std::max(worst, block.motion_scale * own);
+  }
+  double tension = 0.0;
+  int cable = -1;
+  for (const CapstanBlock& block : problem.capstans) {
+    if (block.cable != cable) {
+      cable = block.cable;
+      tension = of(problem.actuators[static_cast<std::size_t>(cable)].row);
+    }
+    const double lost = of(block.row), behind = tension - lost;
+    const double blur = kAtLimit * std::max(std::abs(tension), std::abs(behind));
+    const bool at_lower = lost <= -block.grip * std::max(behind, 0.0) + blur;
+    const bool at_upper = lost >= block.grip * std::max(tension, 0.0) - blur;
+    worst = std::max(worst, box_miss(problem.delta[block.row] - block.held, at_lower, at_upper));
+    tension = behind;
+  }
+  for (const ContactBlock& block : problem.contacts) {
+    worst = std::max(worst, contact_miss(problem, block, effort));
+  }
+  for (const BilateralBlock& block : problem.bilaterals) {
+    const double gap = problem.delta[block.row] - block.motion;
+    worst = std::max(worst, block.motion_scale * std::abs(gap));
+  }
+  return worst;
+}
+
+bool stabilised(const StepProblem& problem, int negative_pivots) {
+  struct Held {
+    int row;
+    double compliance;
+  };
+  std::vector<Held> held;
+  for (const ActuatorBlock& block : problem.actuators) {
+    if (block.holds_motion()) held.push_back({block.row, 0.0});
+    if (block.owned || block.drive == nullptr) continue;
+    const auto at = block.drive->respond(block.drive_step, problem.delta[block.row]);
+    if (!(at.slope < 0.0)) return false;  // a flat curve holds nothing
+    held.push_back({block.row, -1.0 / at.slope});
+  }
+  for (const BilateralBlock& block : problem.bilaterals) held.push_back({block.row, 0.0});
+  const auto count = static_cast<Eigen::Index>(held.size());
+  if (count < negative_pivots) return false;
+  MatrixX own(count, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    for (Eigen::Index j = 0; j < count; ++j) {
+      own(i, j) = problem.compliance(held[static_cast<std::size_t>(i)].row,
+                                     held[static_cast<std::size_t>(j)].row);
+    }
+    own(i, i) += held[static_cast<std::size_t>(i)].compliance;
+  }
+  return (linalg::symmetric_eigenvalues(own).array() < 0.0).count() == negative_pivots;
+}
+
+}  // namespace sinew::step

@@ -1,0 +1,105 @@
+/// @file
+/// The problem of one step as a value: how the rows' motions follow from their efforts, and the law
+/// that each row obeys. Copy it to keep it: nothing in it refers to a simulation.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "sinew/core/types.hpp"
+#include "sinew/step/drive.hpp"
+
+namespace sinew::step {
+
+/// An actuator obeys its command within its limits, exactly. Effort lambda and motion delta lie on
+/// a monotone graph:
+/// - motion p commanded: delta = p while effort_min < lambda < effort_max; lambda = effort_min with
+///   delta >= p (a slack cable); lambda = effort_max with delta <= p (a stalled drive);
+/// - effort T commanded: lambda = T while motion_min < delta < motion_max; at motion_max it holds
+///   back, lambda <= T; at motion_min it is held, lambda >= T;
+/// - with a drive: the drive's curve, and no limits;
+/// - owned: a controller chooses the effort, within all limits.
+struct ActuatorBlock {
+  int row = -1;
+  double effort_min = 0.0, effort_max = 0.0;  ///< N, those on rates folded in
+  double motion_min = 0.0, motion_max = 0.0;  ///< m
+  CommandKind kind = CommandKind::effort;
+  double value = 0.0;            ///< the command, clamped into the limits
+  bool owned = false;            ///< value and kind do not count
+  const Drive* drive = nullptr;  ///< part of the model; shapes the effort in this step
+  Drive::Step drive_step{};      ///< what it is asked
+  double motion_scale = 1.0;     ///< m per motion: 1, or 1/m^2 of a chamber, one over its area
+
+  /// Becomes a constant effort, whatever the limits. @param effort N or Pa.
+  void hold_effort(double effort);
+  /// Whether a motion is commanded and no limit of effort stands against it.
+  bool holds_motion() const;
+};
+
+/// Coulomb friction of a cable at a point that it slides through. The row's effort is what the
+/// tension loses there: with the tensions before (towards the pull point) and behind it,
+///   -grip tension_behind <= lambda <= grip tension_before,
+/// the cable sticking in between, delta = held, and sliding at either limit (Euler 1762).
+struct CapstanBlock {
+  int row = -1;
+  int cable = -1;  ///< in StepProblem::actuators; blocks of a cable follow from its pull point on
+  double grip = 0.0;  ///< 1 - e^(-mu angle)
+  double held = 0.0;  ///< m, delta when the step began
+};
+
+/// A point and a surface: rows `row` (normal), `row` + 1 and `row` + 2 (tangential) obey
+/// Signorini's and Coulomb's laws. Signorini's is that of the gap at the end of the step, Coulomb's
+/// that of the motion along the surface in the step: with velocities d/h (backward Euler) the
+/// scheme of Moreau, Jean (1999), Stewart & Trinkle (1996) without restitution, and in a
+/// quasi-static step that of incremental friction.
+struct ContactBlock {
+  int row = -1;
+  double friction = 0.0;  ///< Coulomb's coefficient, >= 0
+  bool active = true;     ///< otherwise left out: its efforts are 0
+};
+
+/// A row that holds its motion whatever effort that takes: part of a joint or a tie.
+struct BilateralBlock {
+  int row = -1;
+  double motion = 0.0;        ///< m, that delta is held at
+  double motion_scale = 1.0;  ///< m per motion
+};
+
+/// delta = delta_free + compliance lambda at the end of the step, as the linearisation sees it, and
+/// one block for every row that may have an effort. Rows without a block, those of effectors, have
+/// none.
+struct StepProblem {
+  MatrixX compliance;                    ///< W (rows, rows), m/N
+  VectorX delta_free;                    ///< (rows,) m, or m^3, or rad
+  VectorX delta;                         ///< (rows,) at the linearisation
+  std::vector<double> effort_before;     ///< (rows,) N, of the last step or Newton iteration
+  std::vector<ActuatorBlock> actuators;  ///< in the model's order
+  std::vector<CapstanBlock> capstans;
+  std::vector<ContactBlock> contacts;
+  std::vector<BilateralBlock> bilaterals;
+  double size = 1.0;       ///< m, of the robot: what motions are small beside
+  double time = 0.0;       ///< s, end of the step
+  double time_step = 0.0;  ///< s; infinite in statics
+};
+
+/// How solving went.
+enum class LawStatus {
+  solved,
+  limits_conflict,  ///< limits contradict each other in this step; the least violation was taken
+  failed,           ///< no efforts could be found
+};
+
+/// How far `effort` and the motion problem.delta are from obeying all blocks together, m. Owned
+/// actuators do not count: their controllers know.
+/// @param problem of the step. @param effort (rows,) N.
+double violation(const StepProblem& problem, std::span<const double> effort);
+
+/// Whether the robot is stable together with its drives and held rows although A has negative
+/// pivots: by Sylvester's law of inertia it is when W + C over those rows, C = -1/slope of a drive
+/// and 0 of a held row, has as many negative eigenvalues (Haynsworth 1968).
+/// @param problem of the step. @param negative_pivots of A.
+bool stabilised(const StepProblem& problem, int negative_pivots);
+
+}  // namespace sinew::step

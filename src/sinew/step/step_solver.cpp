@@ -1,0 +1,133 @@
+#include "sinew/step/step_solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sinew::step {
+
+namespace {
+
+constexpr int kMaxRounds = 6;
+// Of the largest effort: changes below it end the rounds.
+constexpr double kSettled = 1e-6;
+// Points that are tried between two choices.
+constexpr int kSearches = 16;
+
+}  // namespace
+
+LawStatus StepSolver::solve(const StepProblem& problem, Controller* controller,
+                            std::span<double> effort) {
+  return controller == nullptr ? direct_.solve(problem, effort)
+                               : steer(problem, *controller, effort);
+}
+
+LawStatus StepSolver::steer(const StepProblem& problem, Controller& controller,
+                            std::span<double> effort) {
+  response_.form(problem, effort);
+  const bool alone = response_.holds_for_all() && !response_.has_unknowns();
+  if (!alone) {
+    if (direct_.solve(problem, effort) == LawStatus::failed) return LawStatus::failed;
+    response_.form(problem, effort);
+  }
+  LawStatus status = LawStatus::solved;
+  bool settled = alone;
+  for (int round = 0; round < kMaxRounds; ++round) {
+    double change = 0.0;
+    status = choose(problem, controller, effort, change);
+    if (status == LawStatus::failed) return status;
+    if (direct_.solve(problem, effort) == LawStatus::failed) return LawStatus::failed;
+    if (alone) break;
+    response_.form(problem, effort);
+    settled = response_.same_states() && (!response_.bends() || change <= kSettled);
+    if (settled) break;
+  }
+  if (!settled) search(problem, controller, effort);
+  measure_motion(problem, effort);
+  controller.accept(problem, response_, motion_, chosen_);
+  return status;
+}
+
+LawStatus StepSolver::choose(const StepProblem& problem, Controller& controller,
+                             std::span<double> effort, double& change) {
+  chosen_before_.swap(chosen_);
+  chosen_.clear();
+  for (const int index : response_.controlled()) {
+    const int row = problem.actuators[static_cast<std::size_t>(index)].row;
+    chosen_.push_back(problem.effort_before[static_cast<std::size_t>(row)]);
+  }
+  const LawStatus status = controller.choose(problem, response_, chosen_);
+  if (status == LawStatus::failed) return status;
+  double largest = 0.0, moved = 0.0;
+  for (std::size_t k = 0; k < chosen_.size(); ++k) {
+    const auto index = static_cast<std::size_t>(response_.controlled()[k]);
+    double& own = effort[static_cast<std::size_t>(problem.actuators[index].row)];
+    largest = std::max(largest, std::abs(chosen_[k]));
+    moved = std::max(moved, std::abs(chosen_[k] - own));
+    own = chosen_[k];
+  }
+  change = largest > 0.0 ? moved / largest : 0.0;
+  return status;
+}
+
+void StepSolver::measure_motion(const StepProblem& problem, std::span<const double> effort) {
+  motion_ = problem.delta_free;
+  for (std::size_t row = 0; row < effort.size(); ++row) {
+    if (effort[row] == 0.0) continue;
+    motion_ += effort[row] * problem.compliance.col(static_cast<Eigen::Index>(row));
+  }
+}
+
+double StepSolver::try_efforts(const StepProblem& problem, const Controller& controller,
+                               std::span<const double> own, std::span<double> effort) {
+  for (std::size_t k = 0; k < own.size(); ++k) {
+    const auto index = static_cast<std::size_t>(response_.controlled()[k]);
+    effort[static_cast<std::size_t>(problem.actuators[index].row)] = own[k];
+  }
+  if (direct_.solve(problem, effort) == LawStatus::failed) return kInfinity;
+  measure_motion(problem, effort);
+  return controller.miss(problem, motion_);
+}
+
+void StepSolver::search(const StepProblem& problem, const Controller& controller,
+                        std::span<double> effort) {
+  const auto at = [&](double share) {
+    trial_.resize(chosen_.size());
+    for (std::size_t k = 0; k < trial_.size(); ++k) {
+      trial_[k] = std::lerp(chosen_before_[k], chosen_[k], share);
+    }
+    return try_efforts(problem, controller, trial_, effort);
+  };
+  const double golden = 0.5 * (std::sqrt(5.0) - 1.0);
+  double from = 0.0, to = 1.0, left = 1.0 - golden, right = golden;
+  double left_miss = at(left), right_miss = at(right);
+  for (int k = 0; k < kSearches; ++k) {
+    if (left_miss <= right_miss) {
+      to = right;
+      right = left;
+      right_miss = left_miss;
+      left = from + (1.0 - golden) * (to - from);
+      left_miss = at(left);
+    } else {
+      from = left;
+      left = right;
+      left_miss = right_miss;
+      right = from + golden * (to - from);
+      right_miss = at(right);
+    }
+  }
+  const double found = at(left_miss <= right_miss ? left : right);
+  chosen_.swap(trial_);
+  trial_.clear();
+  for (const int index : response_.controlled()) {
+    const int row = problem.actuators[static_cast<std::size_t>(index)].row;
+    trial_.push_back(problem.effort_before[static_cast<std::size_t>(row)]);
+  }
+  const double before = try_efforts(problem, controller, trial_, effort);
+  if (before - found <= controller.negligible_miss()) {
+    chosen_.swap(trial_);
+  } else {
+    try_efforts(problem, controller, chosen_, effort);
+  }
+}
+
+}  // namespace sinew::step

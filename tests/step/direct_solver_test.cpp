@@ -1,0 +1,127 @@
+#include "sinew/step/direct_solver.hpp"
+
+#include <gtest/gtest.h>
+
+#include "sinew/step/step_solver.hpp"
+
+#include "problems.hpp"
+
+namespace sinew::step {
+namespace {
+
+using testing::BlockCounts;
+using testing::Random;
+using testing::random_problem;
+using testing::RandomProblem;
+
+BlockCounts random_counts(Random& random) {
+  BlockCounts counts;
+  counts.owned = random.integer(0, 3);
+  counts.commanded_efforts = random.integer(0, 2);
+  counts.stopped_efforts = random.integer(0, 2);
+  counts.motions = random.integer(0, 3);
+  counts.held = random.integer(0, 2);
+  counts.drives = random.integer(0, 2);
+  counts.capstans = counts.motions + counts.owned > 0 ? random.integer(0, 2) : 0;
+  counts.contacts = random.integer(0, 3);
+  counts.bilaterals = random.integer(0, 2);
+  counts.effectors = random.integer(0, 3);
+  return counts;
+}
+
+// Every block obeys its law with the motion that the efforts lead to, whatever stands beside it.
+TEST(DirectSolver, AnyBlocksObeyTheirLawsTogether) {
+  Random random(5);
+  int solved = 0;
+  for (int trial = 0; trial < 1000; ++trial) {
+    RandomProblem robot = random_problem(random_counts(random), random);
+    const auto rows = static_cast<std::size_t>(robot.problem.delta_free.size());
+    std::vector<double> effort(rows, 0.0);
+    for (const ActuatorBlock& block : robot.problem.actuators) {
+      if (block.owned) effort[static_cast<std::size_t>(block.row)] = random.uniform(0.0, 1.0);
+    }
+    const std::vector<double> start = effort;
+    DirectSolver solver;
+    solver.begin_step();
+    ASSERT_EQ(solver.solve(robot.problem, effort), LawStatus::solved) << trial;
+    robot.problem.delta = robot.motion(effort);
+    EXPECT_LT(violation(robot.problem, effort), 1e-8) << trial;
+    for (const ActuatorBlock& block : robot.problem.actuators) {
+      const auto row = static_cast<std::size_t>(block.row);
+      if (block.owned) {
+        EXPECT_EQ(effort[row], start[row]) << trial;
+      }
+    }
+    ++solved;
+  }
+  EXPECT_EQ(solved, 1000);
+}
+
+// The same law met from another start: the solution is unique where friction is not.
+TEST(DirectSolver, DoesNotDependOnItsStartWithoutFriction) {
+  Random random(6);
+  for (int trial = 0; trial < 200; ++trial) {
+    BlockCounts counts = random_counts(random);
+    counts.owned = counts.capstans = 0;
+    RandomProblem robot = random_problem(counts, random);
+    for (ContactBlock& block : robot.problem.contacts) block.friction = 0.0;
+    const auto rows = static_cast<std::size_t>(robot.problem.delta_free.size());
+    std::vector<double> first(rows, 0.0), second(rows, 0.0);
+    DirectSolver solver;
+    solver.begin_step();
+    ASSERT_EQ(solver.solve(robot.problem, first), LawStatus::solved);
+    for (double& effort : second) effort = random.uniform(-1.0, 1.0);
+    for (int row = 0; row < static_cast<int>(rows); ++row) {
+      const bool has_block = first[static_cast<std::size_t>(row)] != 0.0;
+      if (!has_block) second[static_cast<std::size_t>(row)] = 0.0;
+    }
+    DirectSolver other;
+    other.begin_step();
+    ASSERT_EQ(other.solve(robot.problem, second), LawStatus::solved);
+    for (std::size_t row = 0; row < rows; ++row) {
+      EXPECT_NEAR(first[row], second[row], 1e-6 * (1.0 + std::abs(first[row]))) << trial;
+    }
+  }
+}
+
+// Rows that repeat each other: held at one motion they share the effort evenly.
+TEST(DirectSolver, TwinHeldRowsShareTheEffort) {
+  StepProblem problem;
+  problem.compliance = MatrixX::Constant(2, 2, 0.5);
+  problem.delta_free = VectorX::Constant(2, -1.0);
+  problem.delta = problem.delta_free;
+  problem.bilaterals = {{0, 0.0, 1.0}, {1, 0.0, 1.0}};
+  std::vector<double> effort(2, 0.0);
+  DirectSolver solver;
+  ASSERT_EQ(solver.solve(problem, effort), LawStatus::solved);
+  EXPECT_NEAR(effort[0], 1.0, 1e-12);
+  EXPECT_NEAR(effort[1], 1.0, 1e-12);
+}
+
+// What moves nothing takes the least effort that its limits allow, or the one commanded.
+TEST(DirectSolver, WhatMovesNothingTakesLeastEffort) {
+  StepProblem problem;
+  problem.compliance = MatrixX::Zero(3, 3);
+  problem.delta_free = VectorX::Constant(3, -1.0);
+  problem.delta = problem.delta_free;
+  for (int row = 0; row < 3; ++row) {
+    ActuatorBlock block;
+    block.row = row;
+    block.effort_max = kInfinity;
+    block.motion_min = -kInfinity;
+    block.motion_max = kInfinity;
+    block.kind = row == 0 ? CommandKind::effort : CommandKind::motion;
+    block.value = 2.0;
+    if (row == 2) block.effort_min = 0.5;
+    problem.actuators.push_back(block);
+  }
+  std::vector<double> effort(3, 7.0);
+  DirectSolver solver;
+  ASSERT_EQ(solver.solve(problem, effort), LawStatus::solved);
+  EXPECT_EQ(effort[0], 2.0);
+  EXPECT_EQ(effort[1], 0.0);
+  EXPECT_EQ(effort[2], 0.5);
+}
+
+}  // namespace
+}  // namespace sinew::step

@@ -1,0 +1,151 @@
+#include "sinew/step/response.hpp"
+
+#include <gtest/gtest.h>
+
+#include "sinew/step/direct_solver.hpp"
+#include "sinew/step/step_solver.hpp"
+
+#include "problems.hpp"
+
+namespace sinew::step {
+namespace {
+
+using testing::BlockCounts;
+using testing::Random;
+using testing::random_problem;
+using testing::RandomProblem;
+
+constexpr int kOwned = 2;
+
+BlockCounts counts_beside_a_controller(Random& random) {
+  BlockCounts counts;
+  counts.owned = kOwned;
+  counts.commanded_efforts = random.integer(0, 1);
+  counts.stopped_efforts = random.integer(0, 1);
+  counts.motions = random.integer(0, 2);
+  counts.held = random.integer(0, 1);
+  counts.drives = random.integer(0, 1);
+  counts.capstans = random.integer(0, 2);
+  counts.contacts = random.integer(0, 2);
+  counts.bilaterals = random.integer(0, 1);
+  counts.effectors = 2;
+  return counts;
+}
+
+std::vector<double> solve_direct(const StepProblem& problem, std::vector<double> effort) {
+  DirectSolver solver({.tolerance = 1e-12});
+  solver.begin_step();
+  EXPECT_EQ(solver.solve(problem, effort), LawStatus::solved);
+  return effort;
+}
+
+// The response is the derivative of what the direct solver finds, but where a block changes its
+// state within the difference.
+TEST(Response, IsTheDerivativeOfTheDirectSolution) {
+  Random random(11);
+  constexpr double kStep = 1e-6;
+  int compared = 0, skipped = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    const RandomProblem robot = random_problem(counts_beside_a_controller(random), random);
+    std::vector<double> start(static_cast<std::size_t>(robot.problem.delta_free.size()), 0.0);
+    for (int k = 0; k < kOwned; ++k) start[static_cast<std::size_t>(k)] = random.uniform(0.2, 1.0);
+    const std::vector<double> here = solve_direct(robot.problem, start);
+    Response response;
+    response.form(robot.problem, here);
+    ASSERT_EQ(response.controlled(), (std::vector<int>{0, 1}));
+    const VectorX owned = Eigen::Map<const VectorX>(here.data(), kOwned);
+    // At the efforts themselves it is exact.
+    const VectorX at = response.free() + response.compliance() * owned;
+    EXPECT_LT((at - robot.motion(here)).cwiseAbs().maxCoeff(), 1e-7) << trial;
+    for (int k = 0; k < kOwned; ++k) {
+      std::vector<double> moved = here;
+      moved[static_cast<std::size_t>(k)] += kStep;
+      moved = solve_direct(robot.problem, moved);
+      Response there;
+      there.form(robot.problem, here);
+      there.form(robot.problem, moved);
+      if (!there.same_states()) {
+        ++skipped;
+        continue;
+      }
+      const VectorX difference = (robot.motion(moved) - robot.motion(here)) / kStep;
+      EXPECT_LT((difference - response.compliance().col(k)).cwiseAbs().maxCoeff(), 2e-4) << trial;
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 700);
+  EXPECT_LT(skipped, 20);
+}
+
+/// Chooses what brings the last two rows nearest to a goal, without limits: least squares.
+class Nearest : public Controller {
+ public:
+  explicit Nearest(VectorX goal) : goal_(std::move(goal)) {}
+  LawStatus choose(const StepProblem&, const Response& response,
+                   std::span<double> effort) override {
+    const MatrixX rows = response.compliance().bottomRows(goal_.size());
+    const VectorX gap = goal_ - response.free().tail(goal_.size());
+    Eigen::Map<VectorX>(effort.data(), kOwned) =
+        (rows.transpose() * rows).ldlt().solve(rows.transpose() * gap);
+    ++calls;
+    return LawStatus::solved;
+  }
+  double miss(const StepProblem&, const VectorX& motion) const override {
+    return (motion.tail(goal_.size()) - goal_).norm();
+  }
+  void accept(const StepProblem&, const Response&, const VectorX& motion,
+              std::span<const double>) override {
+    accepted = motion;
+  }
+  void begin_step() override {}
+  VectorX accepted;
+  int calls = 0;
+
+ private:
+  VectorX goal_;
+};
+
+// Through contacts, drives, passive actuators and friction the controller reaches its goal in the
+// problem of the step, and everything else obeys its law there.
+TEST(StepSolver, AControllerReachesItsGoalThroughAnyBlocks) {
+  Random random(12);
+  int reached = 0, trials = 300;
+  for (int trial = 0; trial < trials; ++trial) {
+    RandomProblem robot = random_problem(counts_beside_a_controller(random), random);
+    const auto rows = static_cast<std::size_t>(robot.problem.delta_free.size());
+    // A goal that some efforts reach.
+    std::vector<double> wanted(rows, 0.0);
+    for (int k = 0; k < kOwned; ++k) wanted[static_cast<std::size_t>(k)] = random.uniform(0.0, 1.0);
+    wanted = solve_direct(robot.problem, wanted);
+    const VectorX goal = robot.motion(wanted).tail(2);
+    Nearest controller(goal);
+    StepSolver solver({.tolerance = 1e-12});
+    solver.begin_step();
+    std::vector<double> effort(rows, 0.0);
+    ASSERT_EQ(solver.solve(robot.problem, &controller, effort), LawStatus::solved);
+    EXPECT_LE(controller.calls, 8);
+    robot.problem.delta = robot.motion(effort);
+    EXPECT_LT((controller.accepted - robot.problem.delta).norm(), 1e-12);
+    EXPECT_LT(violation(robot.problem, effort), 1e-8) << trial;
+    if ((robot.problem.delta.tail(2) - goal).norm() < 1e-6) ++reached;
+  }
+  // The others went round among states of contacts and cables: no choice was consistent in time.
+  EXPECT_GE(reached, trials * 97 / 100);
+}
+
+TEST(StepSolver, AControllerAloneChoosesOnce) {
+  Random random(13);
+  BlockCounts counts;
+  counts.owned = kOwned;
+  counts.commanded_efforts = 1;
+  counts.effectors = 2;
+  const RandomProblem robot = random_problem(counts, random);
+  Nearest controller(VectorX::Zero(2));
+  StepSolver solver;
+  std::vector<double> effort(static_cast<std::size_t>(robot.problem.delta_free.size()), 0.0);
+  ASSERT_EQ(solver.solve(robot.problem, &controller, effort), LawStatus::solved);
+  EXPECT_EQ(controller.calls, 1);
+}
+
+}  // namespace
+}  // namespace sinew::step
