@@ -1,15 +1,12 @@
 #include "sinew/sim/observables.hpp"
 
 #include <algorithm>
-#include <array>
 #include <functional>
 #include <limits>
 #include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
-
-#include "sinew/core/error.hpp"
 
 namespace sinew::sim {
 
@@ -51,19 +48,14 @@ void Observables::add_view(std::vector<Observable> parts, Read read) {
   }
 }
 
-std::optional<std::size_t> Observables::place(std::string_view name) const {
+std::size_t Observables::find(std::string_view name, const Place& asked) const {
   const auto found = std::ranges::find(list_, name, &Observable::name);
-  if (found == list_.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - list_.begin());
-}
-
-std::size_t Observables::find(std::string_view name) const {
-  if (const auto found = place(name)) return *found;
+  if (found != list_.end()) return static_cast<std::size_t>(found - list_.begin());
   std::vector<std::string> known;
   known.reserve(list_.size());
   for (const Observable& one : list_) known.push_back(one.name);
   const std::string nearest = nearest_word(name, known);
-  throw Error(ErrorKind::unknown_name, {}, fmt::format("there is no '{}' to observe", name),
+  throw Error(ErrorKind::unknown_name, asked, fmt::format("there is no '{}' to observe", name),
               nearest.empty() ? fmt::format("one of {}", fmt::join(known, ", "))
                               : fmt::format("did you mean '{}'?", nearest));
 }

@@ -5,12 +5,12 @@
 
 #include <cstddef>
 #include <functional>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "sinew/core/error.hpp"
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::sim {
@@ -104,8 +104,8 @@ class Observables {
 
   /// Where an observable is in list(): the first of that name, where an actuator and a contact have
   /// one name. Throws Error(unknown-name) with a suggestion.
-  std::size_t find(std::string_view name) const;
-  bool contains(std::string_view name) const { return place(name).has_value(); }
+  /// @param name of an observable. @param asked by whom, for the error.
+  std::size_t find(std::string_view name, const Place& asked = {}) const;
 
   /// Begins a new moment: what was read before is no longer true.
   void refresh();
@@ -132,8 +132,6 @@ class Observables {
     std::size_t source = 0, offset = 0;
     std::vector<double> held;  // empty: as the simulation says
   };
-
-  std::optional<std::size_t> place(std::string_view name) const;
 
   Simulation* simulation_;
   std::vector<Observable> list_;

@@ -1,7 +1,7 @@
 // What every simulation lets one observe: see the constructor of Observables.
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
