@@ -49,6 +49,8 @@ struct RunFile::Content {
     if (file.has("/probes")) probes = file.names("/probes");
     if (file.has("/contacts")) contacts = file.names("/contacts");
     states = file.has("/positions");
+    datasets = file.datasets("/");
+    std::erase_if(datasets, [](const std::string& one) { return one.starts_with("/mesh/"); });
     frames = complete_frames();
     times = file.rows("/time", 0, frames);
   }
@@ -62,9 +64,7 @@ struct RunFile::Content {
       least = std::min(least, shape[0]);
     };
     count("/time");
-    for (const std::string& series : file.datasets("/")) {
-      if (!series.starts_with("/mesh/")) count(series);
-    }
+    for (const std::string& series : datasets) count(series);
     return least;
   }
 
@@ -75,7 +75,7 @@ struct RunFile::Content {
   std::uint64_t frames = 0;
   bool states = false;
   std::vector<double> times;
-  std::vector<std::string> bodies, actuators, effectors, probes, contacts;
+  std::vector<std::string> bodies, actuators, effectors, probes, contacts, datasets;
 };
 
 RunFile::RunFile(const std::filesystem::path& path) : content_(std::make_unique<Content>(path)) {}
@@ -186,6 +186,8 @@ std::vector<double> RunFile::actuator(std::string_view actuator, std::string_vie
   if (file.shape(name).size() != 1) file.fail(name + " is no series of numbers");
   return series(name);
 }
+
+const std::vector<std::string>& RunFile::datasets() const { return content_->datasets; }
 
 bool RunFile::has(const std::string& dataset) const { return content_->file.has(dataset); }
 

@@ -67,6 +67,8 @@ class RunFile {
   /// (frames,) m or rad, (frames 3,) m of a point, of a line its length; throws as positions().
   /// @param probe its name.
   std::vector<double> probe(std::string_view probe) const;
+  /// Paths of all series, in the order of their names: "/actuators/long_0/effort".
+  const std::vector<std::string>& datasets() const;
   /// Whether a dataset was recorded. @param dataset its path, see record::dataset_of().
   bool has(const std::string& dataset) const;
   /// (frames, shape...) numbers of a dataset, one frame after the other. Throws Error:
