@@ -136,8 +136,7 @@ std::string group_of(const sim::Observable& observable) {
       if (quantity == "input_command") return plain(named);
       const char* after = quantity.ends_with("_command") ? " command" : "";
       if (quantity.starts_with("effort")) {
-        return (unit == "N" ? "effort" : unit == "Pa" ? "pressure" : "torque") +
-               std::string(after);
+        return (unit == "N" ? "effort" : unit == "Pa" ? "pressure" : "torque") + std::string(after);
       }
       return (unit == "m" ? "motion" : unit == "rad" ? "angle" : "volume") + std::string(after);
     }
@@ -291,7 +290,8 @@ Json controllers_json(const scene::Robot& robot) {
 
 }  // namespace
 
-// Vectors of contacts and targets are drawn in the picture. A replay cannot tell what work was done.
+// Vectors of contacts and targets are drawn in the picture. A replay cannot tell what work was
+// done.
 bool is_signal(const sim::Observable& observable) {
   switch (observable.kind) {
     case sim::ObservableKind::time:

@@ -14,7 +14,8 @@
 namespace sinew::viewer {
 
 /// Shows the states of run.h5 on the robot of the scene that is recorded in it, with the numbers
-/// that were recorded. Fields, and what an older recording lacks, are computed anew from the states.
+/// that were recorded. Fields, and what an older recording lacks, are computed anew from the
+/// states.
 class ReplaySource final : public SourceThread {
  public:
   /// @param path of a run's folder or of its run.h5. @param playing,speed at the start.

@@ -113,9 +113,16 @@ sim::Observables RobotState::list_observables() {
   sim::Observables list(*simulation_);
   std::vector<int> effectors(simulation_->model().effectors().size());
   std::iota(effectors.begin(), effectors.end(), 0);  // any may get a target
-  inverse::add_controller(list, [this] { return controller_; }, effectors);
-  list.add({{"real_time_factor", "", {}, sim::ObservableKind::timing, {}, "real_time_factor",
-             {"real_time_factor"}, {}}},
+  inverse::add_controller(
+      list, [this] { return controller_; }, effectors);
+  list.add({{"real_time_factor",
+             "",
+             {},
+             sim::ObservableKind::timing,
+             {},
+             "real_time_factor",
+             {"real_time_factor"},
+             {}}},
            [this](std::span<double> to) { to[0] = real_time_factor_; });
   return list;
 }

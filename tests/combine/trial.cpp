@@ -210,7 +210,8 @@ class Trial {
   }
 
  private:
-  // What is recorded reads back bit for bit, and a copy of the simulation lets one observe the same.
+  // What is recorded reads back bit for bit, and a copy of the simulation lets one observe the
+  // same.
   void check_records(const scene::Robot& robot) {
     const std::filesystem::path folder =
         std::filesystem::temp_directory_path() / fmt::format("sinew_trial_{}", ::getpid());

@@ -15,9 +15,7 @@ namespace {
 
 using sinew::testing::beam;
 
-double value(sim::Observables& list, std::string_view name) {
-  return list.number(list.find(name));
-}
+double value(sim::Observables& list, std::string_view name) { return list.number(list.find(name)); }
 
 InverseSettings towards(const Vector3& place, std::vector<int> actuators = {}) {
   InverseSettings settings;
@@ -50,8 +48,8 @@ TEST(ControllerObservables, AreItsTargetsAndErrors) {
 TEST(ControllerObservables, ItCommandsTheEffortsThatItChooses) {
   sim::Simulation simulation(beam());
   simulation.command(1, sinew::testing::pull(0.001));
-  auto controller = std::make_unique<InverseController>(
-      simulation, towards({0.099, 0.0, 0.004}, {0, 2, 3}));
+  auto controller =
+      std::make_unique<InverseController>(simulation, towards({0.099, 0.0, 0.004}, {0, 2, 3}));
   sim::Observables list(simulation);
   for (int k = 0; k < 5; ++k) simulation.step();
   list.refresh();

@@ -155,7 +155,8 @@ TEST_F(RunRecorderTest, TheTableHasUnitsAndWords) {
   EXPECT_EQ(last[last.size() - 2], "solved");
   const auto number = [&](const std::string& heading) {
     const auto found = std::ranges::find(names, '"' + heading + '"');
-    return found == names.end() ? NAN : std::stod(last[static_cast<std::size_t>(found - names.begin())]);
+    return found == names.end() ? NAN
+                                : std::stod(last[static_cast<std::size_t>(found - names.begin())]);
   };
   EXPECT_EQ(number("tip.error [m]"), controller.error());
   EXPECT_EQ(number("tip.target_x [m]"), 0.099);
@@ -271,7 +272,8 @@ TEST_F(RunRecorderTest, TablesAndDatasetsAreThoseOfTheList) {
   std::vector<std::string> run_headings, probe_headings, datasets;
   for (const sim::Observable& one : list.list()) {
     for (const std::string& heading : headings_of(one)) {
-      const std::string quoted = heading.find(' ') == std::string::npos ? heading : '"' + heading + '"';
+      const std::string quoted =
+          heading.find(' ') == std::string::npos ? heading : '"' + heading + '"';
       if (is_in_table(one, TableKind::run)) run_headings.push_back(quoted);
       if (is_in_table(one, TableKind::probes)) probe_headings.push_back(quoted);
     }
@@ -411,7 +413,8 @@ TEST_F(RunRecorderTest, EveryOtherStepAndNoStates) {
   EXPECT_FALSE(run.has_states());
   EXPECT_EQ(kind_of([&] { run.positions("beam", 0); }), ErrorKind::missing_key);
   sparse.every = 0;
-  EXPECT_EQ(kind_of([&] { RunRecorder(sim::Observables(simulation), sparse); }), ErrorKind::out_of_range);
+  EXPECT_EQ(kind_of([&] { RunRecorder(sim::Observables(simulation), sparse); }),
+            ErrorKind::out_of_range);
 }
 
 TEST_F(RunRecorderTest, DynamicsRecordVelocities) {
@@ -456,7 +459,8 @@ TEST_F(RunRecorderTest, WhatCannotBeWrittenReplacesNothing) {
   std::ofstream(folder_ / "file") << "x";
   RecordSettings wrong = settings();
   wrong.folder = folder_ / "file";
-  EXPECT_EQ(kind_of([&] { RunRecorder(sim::Observables(simulation), wrong); }), ErrorKind::file_unwritable);
+  EXPECT_EQ(kind_of([&] { RunRecorder(sim::Observables(simulation), wrong); }),
+            ErrorKind::file_unwritable);
 }
 
 TEST_F(RunRecorderTest, AKilledRunIsReadable) {

@@ -81,38 +81,37 @@ TEST(Observables, HaveTheNamesUnitsAndShapesOfTheRobot) {
     for (const std::size_t length : one.shape) shape += " " + std::to_string(length);
     told.push_back(one.name + " [" + one.unit + "]" + shape);
   }
-  EXPECT_EQ(told,
-            (std::vector<std::string>{"time [s]",
-                                      "beam.positions [m] 99 3",
-                                      "cable_0.tension [N]",
-                                      "cable_0.displacement [m]",
-                                      "cable_0.tension_command [N]",
-                                      "cable_0.displacement_command [m]",
-                                      "tip.position [m] 3",
-                                      "end.value [m] 3",
-                                      "axis.value [m]",
-                                      "axis.positions [m] 6 3",
-                                      "bend.value [rad]",
-                                      "strain_energy [J]",
-                                      "kinetic_energy [J]",
-                                      "gravity_energy [J]",
-                                      "actuator_work [J]",
-                                      "outside_work [J]",
-                                      "dissipation [J]",
-                                      "numerical_loss [J]",
-                                      "residual [N]",
-                                      "relative_residual []",
-                                      "iterations []",
-                                      "substeps []",
-                                      "scale []",
-                                      "smallest_volume_ratio []",
-                                      "status []",
-                                      "time.step [s]",
-                                      "time.assembly [s]",
-                                      "time.compliance [s]",
-                                      "time.factorisation [s]",
-                                      "time.law [s]",
-                                      "time.correction [s]"}));
+  EXPECT_EQ(told, (std::vector<std::string>{"time [s]",
+                                            "beam.positions [m] 99 3",
+                                            "cable_0.tension [N]",
+                                            "cable_0.displacement [m]",
+                                            "cable_0.tension_command [N]",
+                                            "cable_0.displacement_command [m]",
+                                            "tip.position [m] 3",
+                                            "end.value [m] 3",
+                                            "axis.value [m]",
+                                            "axis.positions [m] 6 3",
+                                            "bend.value [rad]",
+                                            "strain_energy [J]",
+                                            "kinetic_energy [J]",
+                                            "gravity_energy [J]",
+                                            "actuator_work [J]",
+                                            "outside_work [J]",
+                                            "dissipation [J]",
+                                            "numerical_loss [J]",
+                                            "residual [N]",
+                                            "relative_residual []",
+                                            "iterations []",
+                                            "substeps []",
+                                            "scale []",
+                                            "smallest_volume_ratio []",
+                                            "status []",
+                                            "time.step [s]",
+                                            "time.assembly [s]",
+                                            "time.compliance [s]",
+                                            "time.factorisation [s]",
+                                            "time.law [s]",
+                                            "time.correction [s]"}));
   EXPECT_EQ(list.list()[list.find("axis.positions")].components.back(), "axis.5.z");
   EXPECT_THROW(static_cast<void>(list.find("tip.positon")), Error);
 }
@@ -141,8 +140,10 @@ TEST(Observables, HaveTheValuesOfTheSimulation) {
   EXPECT_EQ(values(list, "axis.positions"), axis);
   EXPECT_EQ(values(list, "bend.value"), simulation.probe_values(2));
   const mechanics::Body& body = simulation.world().body(0);
-  EXPECT_TRUE(std::ranges::equal(values(list, "beam.positions"), body.positions().reshaped<Eigen::RowMajor>()));
-  EXPECT_TRUE(std::ranges::equal(values(list, "beam.velocities"), body.velocities().reshaped<Eigen::RowMajor>()));
+  EXPECT_TRUE(std::ranges::equal(values(list, "beam.positions"),
+                                 body.positions().reshaped<Eigen::RowMajor>()));
+  EXPECT_TRUE(std::ranges::equal(values(list, "beam.velocities"),
+                                 body.velocities().reshaped<Eigen::RowMajor>()));
   const Energies energies = simulation.energies();
   EXPECT_EQ(value(list, "strain_energy"), energies.strain);
   EXPECT_EQ(value(list, "kinetic_energy"), energies.kinetic);
@@ -372,7 +373,8 @@ TEST(RowEfforts, AreThoseOfContactsOrOfActuators) {
     pressed += std::abs(efforts.contact[k]);
   }
   EXPECT_GT(pressed, 0.0);
-  EXPECT_NE(efforts.actuation[static_cast<std::size_t>(simulation.model().actuators()[1].row)], 0.0);
+  EXPECT_NE(efforts.actuation[static_cast<std::size_t>(simulation.model().actuators()[1].row)],
+            0.0);
 }
 
 }  // namespace

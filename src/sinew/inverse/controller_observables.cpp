@@ -17,8 +17,14 @@ constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 constexpr int kNone = -2, kStart = -1;  // the status without a controller, and before any step
 
 sim::Observable of_effector(const std::string& name, const char* quantity, const char* unit) {
-  return {fmt::format("{}.{}", name, quantity), unit, {}, sim::ObservableKind::controller,
-          name, quantity, {}, {}};
+  return {fmt::format("{}.{}", name, quantity),
+          unit,
+          {},
+          sim::ObservableKind::controller,
+          name,
+          quantity,
+          {},
+          {}};
 }
 
 void add_effector(sim::Observables& list, const AttachedController& controller, int effector) {
@@ -40,8 +46,7 @@ void add_effector(sim::Observables& list, const AttachedController& controller, 
              const int task = task_of(present, effector);
              std::ranges::fill(to, kNothing);
              if (task < 0) return;
-             const Target& asked =
-                 present->settings().tasks[static_cast<std::size_t>(task)].target;
+             const Target& asked = present->settings().tasks[static_cast<std::size_t>(task)].target;
              const Vector3 place = asked.at(simulation.time());
              std::copy_n(place.data(), 3, to.begin());
              to[3] = present->error(task);
@@ -54,8 +59,14 @@ void add_largest_error(sim::Observables& list, const AttachedController& control
   const bool turns = std::ranges::all_of(effectors, [&](int effector) {
     return std::string_view(model.effector(effector).unit()) == "rad";
   });
-  list.add({{"error", turns ? "rad" : "m", {}, sim::ObservableKind::controller, {}, "error",
-             {"error"}, {}}},
+  list.add({{"error",
+             turns ? "rad" : "m",
+             {},
+             sim::ObservableKind::controller,
+             {},
+             "error",
+             {"error"},
+             {}}},
            [controller](std::span<double> to) {
              const InverseController* present = controller();
              to[0] = present == nullptr ? kNothing : present->error();
@@ -63,8 +74,14 @@ void add_largest_error(sim::Observables& list, const AttachedController& control
 }
 
 void add_status(sim::Observables& list, AttachedController controller) {
-  sim::Observable status{"controller", "", {}, sim::ObservableKind::status, {}, "controller",
-                         {"controller"}, {{kNone, "none"}, {kStart, "start"}}};
+  sim::Observable status{"controller",
+                         "",
+                         {},
+                         sim::ObservableKind::status,
+                         {},
+                         "controller",
+                         {"controller"},
+                         {{kNone, "none"}, {kStart, "start"}}};
   for (int code = 0; code <= static_cast<int>(InverseStatus::limits_conflict); ++code) {
     status.words.push_back({code, inverse_status_name(static_cast<InverseStatus>(code))});
   }
@@ -106,7 +123,8 @@ void add_controller(sim::Observables& list, AttachedController controller,
 }
 
 void add_controller(sim::Observables& list, const InverseController* controller) {
-  add_controller(list, [controller] { return controller; }, steered_effectors(controller));
+  add_controller(
+      list, [controller] { return controller; }, steered_effectors(controller));
 }
 
 }  // namespace sinew::inverse

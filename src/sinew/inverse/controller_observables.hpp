@@ -24,8 +24,8 @@ int task_of(const InverseController* controller, int effector);
 std::vector<int> steered_effectors(const InverseController* controller);
 
 /// Adds to the list, of every effector `NAME.target` (3,) and `NAME.error` in m or rad, NaN while
-/// nothing steers it; `error`, the largest of all tasks in m, in rad where all of them turn; and the
-/// status `controller` in words, "none" without a controller, "start" before the first step.
+/// nothing steers it; `error`, the largest of all tasks in m, in rad where all of them turn; and
+/// the status `controller` in words, "none" without a controller, "start" before the first step.
 /// @param list of the controller's simulation. @param controller is asked at every reading.
 /// @param effectors that it may steer.
 void add_controller(sim::Observables& list, AttachedController controller,

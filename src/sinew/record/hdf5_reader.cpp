@@ -72,7 +72,7 @@ std::vector<std::string> Hdf5Reader::datasets(const std::string& group) const {
   constexpr int kDeepest = 8;  // a damaged file may hold a group that is within itself
   std::vector<std::string> found;
   const std::function<void(const std::string&, int)> look = [&](const std::string& folder,
-                                                                 int depth) {
+                                                                int depth) {
     if (depth > kDeepest) fail(fmt::format("{} is too deep", folder));
     for (const std::string& name : names(folder)) {
       const std::string path = (folder == "/" ? "" : folder) + "/" + name;

@@ -129,8 +129,8 @@ struct Hdf5Writer::File {
     target.extent[0] += frames;
     expect(H5Dset_extent(target.dataset.id(), target.extent.data()) >= 0, "series");
     const Hdf5Handle space(H5Dget_space(target.dataset.id()), H5Sclose);
-    const Hdf5Handle memory(
-        H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr), H5Sclose);
+    const Hdf5Handle memory(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr),
+                            H5Sclose);
     const bool written = H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, begin.data(), nullptr,
                                              count.data(), nullptr) >= 0 &&
                          H5Dwrite(target.dataset.id(), H5T_NATIVE_DOUBLE, memory.id(), space.id(),

@@ -21,7 +21,8 @@ std::string dataset_of(const sim::Observable& observable);
 /// Whether its dataset is part of a state, which `record: {states: false}` leaves out.
 /// @param observable any.
 bool is_state(const sim::Observable& observable);
-/// Whether a table has columns of it: one for each of its components. @param observable,table which.
+/// Whether a table has columns of it: one for each of its components. @param observable,table
+/// which.
 bool is_in_table(const sim::Observable& observable, TableKind table);
 /// Headings of its columns: "tip.x [m]". @param observable any.
 std::vector<std::string> headings_of(const sim::Observable& observable);

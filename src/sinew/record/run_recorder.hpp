@@ -42,12 +42,13 @@ struct RecordSettings {
 /// efforts), or `air.gas_command [m^3]` of a drive's input; per effector `tip.x [m]` and so on
 /// (`rx [rad]` for orientations); per contact its resultants; per effector that a controller steers
 /// `tip.target_x [m]` ... and `tip.error [m]`; then the ledger `strain_energy`, `kinetic_energy`,
-/// `gravity_energy` (from the height at rest), `actuator_work`, `outside_work` (loads and forces set
-/// from Python), `dissipation` (damping, drag, friction of cables) and `numerical_loss` (work less
-/// dissipation less what the energies gained: the integrator's, and what moved a base), all `[J]`;
-/// `residual [N]`, `relative_residual`, `iterations`, `substeps`, `scale` (of the motion, < 1 when a
-/// step was cut back), `smallest_volume_ratio`, and in words `status` and, where the list has one,
-/// `controller`. The row at t = 0 is the start, before any step, whose statuses are `start`.
+/// `gravity_energy` (from the height at rest), `actuator_work`, `outside_work` (loads and forces
+/// set from Python), `dissipation` (damping, drag, friction of cables) and `numerical_loss` (work
+/// less dissipation less what the energies gained: the integrator's, and what moved a base), all
+/// `[J]`; `residual [N]`, `relative_residual`, `iterations`, `substeps`, `scale` (of the motion, <
+/// 1 when a step was cut back), `smallest_volume_ratio`, and in words `status` and, where the list
+/// has one, `controller`. The row at t = 0 is the start, before any step, whose statuses are
+/// `start`.
 ///
 /// probes.csv, where the scene has probes, one row a frame: `time [s]`, then per probe `bend [rad]`
 /// (a bend, a distance, an extent), `tip.x [m]` ... (a point), or `axis.length [m]` and

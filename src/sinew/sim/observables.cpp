@@ -29,10 +29,11 @@ Observables::Observables(Simulation& simulation) : simulation_(&simulation) {
 void Observables::add(std::vector<Observable> parts, Fill fill) {
   std::size_t size = 0;
   for (const Observable& part : parts) size += part.size();
-  add_view(std::move(parts), [numbers = std::vector<double>(size), fill = std::move(fill)]() mutable {
-    fill(numbers);
-    return std::span<const double>(numbers);
-  });
+  add_view(std::move(parts),
+           [numbers = std::vector<double>(size), fill = std::move(fill)]() mutable {
+             fill(numbers);
+             return std::span<const double>(numbers);
+           });
 }
 
 void Observables::add_view(std::vector<Observable> parts, Read read) {
@@ -77,9 +78,10 @@ std::span<const double> Observables::read(std::size_t index) {
 
 void Observables::hold(std::size_t index, std::span<const double> numbers) {
   if (numbers.size() != list_.at(index).size()) {
-    throw Error(ErrorKind::wrong_length, {.item = list_[index].name},
-                fmt::format("{} numbers were given, it has {}", numbers.size(), list_[index].size()),
-                "give numbers of the same robot");
+    throw Error(
+        ErrorKind::wrong_length, {.item = list_[index].name},
+        fmt::format("{} numbers were given, it has {}", numbers.size(), list_[index].size()),
+        "give numbers of the same robot");
   }
   entries_[index].held.assign(numbers.begin(), numbers.end());
 }

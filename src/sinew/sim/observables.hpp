@@ -1,6 +1,6 @@
 /// @file
-/// Everything that can be observed of a run, as one list. Tables, recordings, Python's arrays, plots
-/// and the view take their numbers from here, and none has a list of its own.
+/// Everything that can be observed of a run, as one list. Tables, recordings, Python's arrays,
+/// plots and the view take their numbers from here, and none has a list of its own.
 #pragma once
 
 #include <cstddef>

@@ -32,8 +32,8 @@ class Numbers {
 // An observable whose name is that of its owner and its quantity.
 Observable of(ObservableKind kind, const std::string& owner, const std::string& quantity,
               const char* unit, std::vector<std::size_t> shape = {}) {
-  Observable one{fmt::format("{}.{}", owner, quantity), unit, std::move(shape), kind, owner,
-                 quantity, {}, {}};
+  Observable one{
+      fmt::format("{}.{}", owner, quantity), unit, std::move(shape), kind, owner, quantity, {}, {}};
   if (one.shape.empty()) one.components = {one.name};
   return one;
 }
@@ -57,10 +57,12 @@ void add_bodies(Observables& list) {
         return std::span<const double>(array.data(), static_cast<std::size_t>(array.size()));
       });
     };
-    add("positions", "m", [](const mechanics::Body& b) -> const Points& { return b.positions(); },
+    add(
+        "positions", "m", [](const mechanics::Body& b) -> const Points& { return b.positions(); },
         shape);
     if (moving) {
-      add("velocities", "m/s",
+      add(
+          "velocities", "m/s",
           [](const mechanics::Body& b) -> const Points& { return b.velocities(); }, shape);
     }
     if (const auto* arm = dynamic_cast<const pcc::ArmBody*>(&body)) {
@@ -83,7 +85,9 @@ void add_actuators(Observables& list) {
       parts.back().quantity = fmt::format("{}{}", role, suffix);
     };
     const auto role = [](CommandKind kind) {
-      return kind == CommandKind::effort ? "effort" : kind == CommandKind::motion ? "motion" : "input";
+      return kind == CommandKind::effort   ? "effort"
+             : kind == CommandKind::motion ? "motion"
+                                           : "input";
     };
     add(actuator.effort_name(), "", role(CommandKind::effort));
     add(actuator.motion_name(), "", role(CommandKind::motion));
@@ -107,8 +111,7 @@ void add_effectors(Observables& list) {
     const std::string& name = model.effectors()[i].name;
     const char* unit = model.effector(index).unit();
     const bool turns = std::string_view(unit) == "rad";
-    Observable one =
-        of(ObservableKind::effector, name, turns ? "rotation" : "position", unit, {3});
+    Observable one = of(ObservableKind::effector, name, turns ? "rotation" : "position", unit, {3});
     one.quantity = "position";
     for (const char* axis : kAxes) {
       one.components.push_back(fmt::format("{}.{}{}", name, turns ? "r" : "", axis));
@@ -191,8 +194,7 @@ void add_contacts(Observables& list) {
     std::vector<Observable> parts;
     const auto add_point = [&](const char* quantity, const char* unit,
                                std::vector<std::size_t> shape) {
-      parts.push_back(
-          of(ObservableKind::contact_point, name, quantity, unit, std::move(shape)));
+      parts.push_back(of(ObservableKind::contact_point, name, quantity, unit, std::move(shape)));
       parts.back().name = fmt::format("{}.points.{}", name, quantity);
     };
     const auto add_sum = [&](const char* quantity, const char* unit) {
@@ -221,14 +223,13 @@ void add_contacts(Observables& list) {
     add_sum("gap", "m");
     add_sum("sticking", "");
     add_sum("slipping", "");
-    list.add(std::move(parts), [&simulation, index](std::span<double> to) {
-      put_contact(simulation, index, to);
-    });
+    list.add(std::move(parts),
+             [&simulation, index](std::span<double> to) { put_contact(simulation, index, to); });
   }
 }
 
-// Energies, work and losses since the first reading. What actuators and loads have put in since then
-// is in the bodies, dissipated, or lost by the integrator.
+// Energies, work and losses since the first reading. What actuators and loads have put in since
+// then is in the bodies, dissipated, or lost by the integrator.
 class Ledger {
  public:
   explicit Ledger(Simulation& simulation) : simulation_(simulation) {}
