@@ -111,9 +111,9 @@ class Observables {
   void refresh();
   /// (size(),) row by row; valid until refresh(). @param index in list().
   std::span<const double> read(std::size_t index);
-  /// The only number of an observable, or its first.
+  /// The only number of an observable, or its first. @param index in list().
   double number(std::size_t index) { return read(index).front(); }
-  /// The word of a status now.
+  /// The word that a status has now. @param index in list().
   std::string_view word(std::size_t index) { return list_[index].word(number(index)); }
 
   /// Sets numbers in place of what the simulation says, until release(): those of a recorded
