@@ -40,6 +40,7 @@ constexpr int kHalf = 3;
 // rounding may decide whether a substep is accepted; the runs then differ by a part of its error.
 constexpr double kOrderTolerance = 1e-9;
 constexpr double kPartOfError = 0.1;
+constexpr double kEnergyTolerance = 1e-10;  // of an energy
 
 // A simulation with the controllers of its scene.
 class Run {
@@ -251,11 +252,19 @@ class Trial {
     sim::Observables theirs = copy.observables();
     for (std::size_t k = 0; k < seen.size(); ++k) {
       const sim::Observable& one = list.list()[k];
-      // Work since the first reading and the last step's report are no part of a state.
-      if (one.kind >= sim::ObservableKind::ledger || same_bits(list.read(k), theirs.read(k))) {
+      // Work since the first reading and the last step's report are no part of a state, and a
+      // controller measures its errors by rows that a copy forms in its first step.
+      if (one.kind >= sim::ObservableKind::ledger || one.kind == sim::ObservableKind::controller) {
         continue;
       }
-      fail(fmt::format("a copy shows another {}", one.name));
+      // A step sums energies in another order than a look at the elements does.
+      const bool same = one.kind == sim::ObservableKind::energy
+                            ? std::abs(list.number(k) - theirs.number(k)) <=
+                                  kEnergyTolerance * std::abs(list.number(k))
+                            : same_bits(list.read(k), theirs.read(k));
+      if (same) continue;
+      fail(fmt::format("a copy shows another {} ({} for {})", one.name, theirs.number(k),
+                       list.number(k)));
     }
   }
 
