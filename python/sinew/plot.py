@@ -117,14 +117,15 @@ def run(folder, out) -> pathlib.Path:
     count = max(1, len(panels))
     figure, axes = plt.subplots(count, 1, figsize=(9, 2.3 * count + 0.3), sharex=True, squeeze=False)
     for axis, (group, series) in zip(axes[:, 0], panels.items()):
-        owners = list(dict.fromkeys(name.removesuffix(" command") for name, _, _ in series if ".target_" not in name))
+        names = [name for name, _, _ in series]
+        owners = list(dict.fromkeys(name.removesuffix(" command") for name in names if ".target_" not in name))
         for name, unit, values in series:
             shown, scale = SHOWN.get(unit, (unit, 1.0))
             owner = name.removesuffix(" command")
-            goal = ".target_" in name or owner != name
-            colour = QUIET if ".target_" in name else COLOURS[owners.index(owner) % len(COLOURS)]
-            axis.plot(time, [scale * v for v in values], "--" if goal else "-", lw=1.0 if goal else 1.5, color=colour,
-                      label=None if goal else name.replace("_", " "))
+            target, asked = ".target_" in name, ".target_" in name or name != owner
+            axis.plot(time, [scale * v for v in values], "--" if asked else "-", lw=1.0 if asked else 1.5,
+                      color=QUIET if target else COLOURS[owners.index(owner) % len(COLOURS)],
+                      label=None if target or (asked and owner in names) else name.replace("_", " "))
             axis.set_ylabel(f"{group.split(' (')[0]} ({shown})" if shown else group)
         axis.legend(loc="upper left", bbox_to_anchor=(1.0, 1.02))
     axes[-1, 0].set_xlabel("time (s)")

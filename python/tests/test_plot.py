@@ -33,8 +33,8 @@ def test_a_run_with_contacts_is_drawn(tmp_path):
     (tmp_path / "run.csv").write_text("\n".join(",".join(row) for row in [columns, *rows]) + "\n")
     with pytest.warns(UserWarning, match="recorded without commands"):
         assert sinew.plot.run(tmp_path, tmp_path / "run.png").stat().st_size > 1000
-    told = ["push.force_command [N]", "push.displacement_command [m]", "substeps"]
-    rows = [[*row, "1", "nan", "1"] for row in rows]
+    told = ["push.force_command [N]", "push.displacement_command [m]", "wire.power_command [W]", "substeps"]
+    rows = [[*row, "1", "nan", "2", "1"] for row in rows]
     (tmp_path / "run.csv").write_text("\n".join(",".join(row) for row in [[*columns, *told], *rows]) + "\n")
     with warnings.catch_warnings():
         warnings.simplefilter("error")
