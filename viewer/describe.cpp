@@ -1,6 +1,6 @@
 #include "describe.hpp"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -14,6 +14,7 @@
 #include "sinew/constraint/probe.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mesh/topology.hpp"
+#include "sinew/sim/row_efforts.hpp"
 
 namespace sinew::viewer {
 
@@ -120,44 +121,89 @@ Json effector_json(const sim::Model& model, int index) {
           {"directions", directions}};
 }
 
-// The signals of a probe: of a line its length alone, its points are seen.
-struct ProbeSignal {
-  std::string key, label;
-  const char* unit;
-};
-
-std::vector<ProbeSignal> probe_signals(const constraint::Probe& probe) {
-  const bool line = dynamic_cast<const constraint::LineProbe*>(&probe) != nullptr;
-  std::vector<ProbeSignal> list;
-  for (const constraint::ProbeComponent& part : probe.components()) {
-    const bool sole = line || part.name.empty();
-    const std::string label = sole ? probe.name() : fmt::format("{}.{}", probe.name(), part.name);
-    list.push_back({"probe." + label, label, part.unit});
-    if (sole) break;
-  }
-  return list;
+std::string plain(std::string name) {
+  std::ranges::replace(name, '_', ' ');
+  return name;
 }
 
-Json probe_json(const constraint::Probe& probe) {
-  Json signals = Json::array();
-  for (const ProbeSignal& signal : probe_signals(probe)) signals.push_back(signal.key);
+// Signals of one unit that are plotted together.
+std::string group_of(const sim::Observable& observable) {
+  const std::string& unit = observable.unit;
+  const std::string_view quantity = observable.quantity;
+  switch (observable.kind) {
+    case sim::ObservableKind::actuator: {
+      const std::string named = observable.name.substr(observable.owner.size() + 1);
+      if (quantity == "input_command") return plain(named);
+      const char* after = quantity.ends_with("_command") ? " command" : "";
+      if (quantity.starts_with("effort")) {
+        return (unit == "N" ? "effort" : unit == "Pa" ? "pressure" : "torque") + std::string(after);
+      }
+      return (unit == "m" ? "motion" : unit == "rad" ? "angle" : "volume") + std::string(after);
+    }
+    case sim::ObservableKind::effector:
+      return unit == "m" ? "effector" : "rotation";
+    case sim::ObservableKind::controller:
+      return unit == "m" ? "error" : "rotation error";
+    case sim::ObservableKind::probe:
+      return unit == "rad" ? "angle" : "probe";
+    case sim::ObservableKind::contact:
+      return unit == "N" ? "contact" : unit == "m" ? "gap" : "touching";
+    case sim::ObservableKind::energy:
+      return "energy";
+    case sim::ObservableKind::timing:
+      return unit == "s" ? "time" : "solver";
+    default:
+      return "solver";
+  }
+}
+
+void add_signals(const sim::Observable& observable, std::vector<SignalInfo>& list) {
+  if (!is_signal(observable)) return;
+  const std::string group = group_of(observable);
+  for (const std::string& component : observable.components) {
+    SignalInfo signal{component, plain(component), observable.unit, group};
+    switch (observable.kind) {
+      case sim::ObservableKind::actuator:
+      case sim::ObservableKind::controller:
+        signal.label = observable.owner;
+        break;
+      case sim::ObservableKind::probe:  // an effector may have the same name
+        if (observable.size() == 1) signal.key = observable.owner;
+        signal.label = signal.key;
+        signal.key = "probe." + signal.key;
+        break;
+      case sim::ObservableKind::effector:
+      case sim::ObservableKind::contact:
+        signal.label = component;
+        break;
+      case sim::ObservableKind::timing:
+        if (!observable.owner.empty()) signal.label = observable.quantity;
+        break;
+      default:
+        break;
+    }
+    list.push_back(std::move(signal));
+  }
+}
+
+// Keys of the signals of one probe or contact.
+Json keys_of(const sim::Observables& observables, sim::ObservableKind kind,
+             const std::string& owner) {
+  std::vector<SignalInfo> signals;
+  for (const sim::Observable& one : observables.list()) {
+    if (one.kind == kind && one.owner == owner) add_signals(one, signals);
+  }
+  Json keys = Json::array();
+  for (const SignalInfo& signal : signals) keys.push_back(signal.key);
+  return keys;
+}
+
+Json probe_json(const sim::Observables& observables, const constraint::Probe& probe) {
   return {{"name", probe.name()},
           {"kind", probe.kind()},
           {"marks", probe.mark_count()},
-          {"signals", signals}};
+          {"signals", keys_of(observables, sim::ObservableKind::probe, probe.name())}};
 }
-
-// What of a contact is plotted and told; quantities of run.csv.
-struct ContactSignal {
-  const char* name;
-  const char* unit;
-  const char* group;
-};
-constexpr std::array<ContactSignal, 5> kContactSignals = {{{"normal_force", "N", "contact"},
-                                                           {"friction_force", "N", "contact"},
-                                                           {"gap", "m", "gap"},
-                                                           {"sticking", "", "touching"},
-                                                           {"slipping", "", "touching"}}};
 
 Json surface_json(const constraint::Surface& surface) {
   if (const auto* plane = std::get_if<constraint::Plane>(&surface)) {
@@ -175,19 +221,16 @@ Json surface_json(const constraint::Surface& surface) {
           {"radius", capsule.radius}};
 }
 
-Json contact_json(const sim::Model& model, int index) {
+Json contact_json(const sim::Observables& observables, int index) {
+  const sim::Model& model = observables.simulation().model();
   const constraint::Contact& contact = model.contact(index);
-  Json signals = Json::array();
-  for (const ContactSignal& signal : kContactSignals) {
-    signals.push_back(fmt::format("{}.{}", contact.name(), signal.name));
-  }
   const int body = contact.points().front().body;
   return {{"name", contact.name()},
           {"body", model.bodies()[static_cast<std::size_t>(body)]->name()},
           {"surface", surface_json(contact.surface())},
           {"friction", contact.friction()},
           {"points", contact.points().size()},
-          {"signals", signals}};
+          {"signals", keys_of(observables, sim::ObservableKind::contact, contact.name())}};
 }
 
 Json body_json(const mechanics::BodyModel& model, const Surface& surface) {
@@ -247,75 +290,26 @@ Json controllers_json(const scene::Robot& robot) {
 
 }  // namespace
 
-std::vector<SignalInfo> list_signals(const sim::Model& model) {
-  std::vector<SignalInfo> list;
-  for (const sim::ActuatorModel& actuator : model.actuators()) {
-    const auto [name, unit] = actuator.effort_name();
-    const std::string_view of = unit;
-    list.push_back({fmt::format("{}.{}", actuator.name, name), actuator.name, unit,
-                    of == "N"    ? "effort"
-                    : of == "Pa" ? "pressure"
-                                 : "torque"});
+// Vectors of contacts and targets are drawn in the picture. A replay cannot tell what work was
+// done.
+bool is_signal(const sim::Observable& observable) {
+  switch (observable.kind) {
+    case sim::ObservableKind::time:
+    case sim::ObservableKind::body:
+    case sim::ObservableKind::contact_point:
+    case sim::ObservableKind::ledger:
+    case sim::ObservableKind::status:
+      return false;
+    case sim::ObservableKind::controller:
+      return !observable.owner.empty() && observable.size() == 1;
+    case sim::ObservableKind::contact:
+      return observable.size() == 1;
+    case sim::ObservableKind::probe:  // the points of a line are seen
+      return observable.quantity == "value";
+    default:
+      return true;
   }
-  for (const sim::ActuatorModel& actuator : model.actuators()) {
-    const auto [name, unit] = actuator.motion_name();
-    const std::string_view of = unit;
-    list.push_back({fmt::format("{}.{}", actuator.name, name), actuator.name, unit,
-                    of == "m"     ? "motion"
-                    : of == "rad" ? "angle"
-                                  : "volume"});
-  }
-  for (std::size_t i = 0; i < model.effectors().size(); ++i) {
-    const std::string& name = model.effectors()[i].name;
-    const std::string unit = model.effector(static_cast<int>(i)).unit();
-    for (const char* axis : {"x", "y", "z"}) {
-      const std::string key = fmt::format("{}.{}{}", name, unit == "m" ? "" : "r", axis);
-      list.push_back({key, key, unit, unit == "m" ? "effector" : "rotation"});
-    }
-  }
-  for (std::size_t i = 0; i < model.effectors().size(); ++i) {
-    const std::string& name = model.effectors()[i].name;
-    const std::string unit = model.effector(static_cast<int>(i)).unit();
-    list.push_back({name + ".error", name, unit, unit == "m" ? "error" : "rotation error"});
-  }
-  for (const auto& probe : model.probes()) {
-    for (const ProbeSignal& signal : probe_signals(*probe)) {
-      const bool angle = std::string_view(signal.unit) == "rad";
-      list.push_back({signal.key, signal.label, signal.unit, angle ? "angle" : "probe"});
-    }
-  }
-  for (const sim::ContactModel& contact : model.contacts()) {
-    for (const ContactSignal& signal : kContactSignals) {
-      const std::string key = fmt::format("{}.{}", contact.name, signal.name);
-      list.push_back({key, key, signal.unit, signal.group});
-    }
-  }
-  for (const char* kind : {"strain", "kinetic", "gravity"}) {
-    list.push_back({fmt::format("energy.{}", kind), kind, "J", "energy"});
-  }
-  list.push_back({"time.step", "step", "s", "time"});
-  for (const char* stage : sim::kStageNames) {
-    list.push_back({fmt::format("time.{}", stage), stage, "s", "time"});
-  }
-  list.push_back({"real_time_factor", "real-time factor", "", "solver"});
-  list.push_back({"residual", "residual", "N", "solver"});
-  list.push_back({"smallest_volume_ratio", "smallest volume ratio", "", "solver"});
-  return list;
 }
-
-namespace {
-
-// (rows,) efforts without those of contacts.
-std::vector<double> actuator_efforts(const sim::Simulation& simulation) {
-  std::vector<double> efforts(simulation.efforts().begin(), simulation.efforts().end());
-  for (std::size_t i = 0; i < simulation.model().contacts().size(); ++i) {
-    const constraint::Contact& contact = simulation.model().contact(static_cast<int>(i));
-    std::fill_n(efforts.begin() + contact.first_row(), contact.row_count(), 0.0);
-  }
-  return efforts;
-}
-
-}  // namespace
 
 const std::vector<FieldInfo>& list_fields() {
   static const std::vector<FieldInfo> list = [] {
@@ -343,7 +337,7 @@ const std::vector<FieldInfo>& list_fields() {
     }
     add({"actuator_force", "Actuators' force", "N", "force of the actuators on each node", {}},
         [](const fem::FemBody& body, const sim::Simulation& simulation, const fem::NodalMean&) {
-          return fem::row_force_field(body, actuator_efforts(simulation));
+          return fem::row_force_field(body, sim::split_efforts(simulation).actuation);
         });
     return all;
   }();
@@ -369,7 +363,7 @@ Surface surface_of(const mesh::Mesh& mesh) {
   return result;
 }
 
-Description describe(const scene::Robot& robot) {
+Description describe(const scene::Robot& robot, const sim::Observables& observables) {
   const sim::Model& model = *robot.model;
   Description result;
   Json bodies = Json::array();
@@ -388,12 +382,12 @@ Description describe(const scene::Robot& robot) {
     effectors.push_back(effector_json(model, static_cast<int>(i)));
     result.effectors.push_back(model.effectors()[i].name);
   }
-  for (const auto& probe : model.probes()) probes.push_back(probe_json(*probe));
+  for (const auto& probe : model.probes()) probes.push_back(probe_json(observables, *probe));
   Json contacts = Json::array();
   for (std::size_t c = 0; c < model.contacts().size(); ++c) {
-    contacts.push_back(contact_json(model, static_cast<int>(c)));
+    contacts.push_back(contact_json(observables, static_cast<int>(c)));
   }
-  result.signals = list_signals(model);
+  for (const sim::Observable& one : observables.list()) add_signals(one, result.signals);
   Json fields = Json::array();
   for (const FieldInfo& field : list_fields()) {
     result.fields.push_back(field.name);

@@ -10,6 +10,7 @@
 #include "sinew/fem/element_fields.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/scene/build.hpp"
+#include "sinew/sim/observables.hpp"
 
 #include "frame.hpp"
 
@@ -29,13 +30,14 @@ const std::vector<FieldInfo>& list_fields();
 /// Which of list_fields() are wanted.
 using FieldChoice = std::vector<bool>;
 
-/// In the order in which sources fill Frame::signals.
-std::vector<SignalInfo> list_signals(const sim::Model& model);
+/// Whether the numbers of an observable are among Frame::signals. Signals have the order of the
+/// list.
+bool is_signal(const sim::Observable& observable);
 
 /// The outside of a body's mesh, its vertices numbered anew.
 Surface surface_of(const mesh::Mesh& mesh);
 
-/// Everything at once. @param robot whose bodies are of finite elements.
-Description describe(const scene::Robot& robot);
+/// Everything at once. @param robot what is shown. @param observables of its simulation.
+Description describe(const scene::Robot& robot, const sim::Observables& observables);
 
 }  // namespace sinew::viewer

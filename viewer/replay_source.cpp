@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "sinew/mechanics/body.hpp"
+#include "sinew/record/run_layout.hpp"
 #include "sinew/scene/scene.hpp"
 
 #include "limits.hpp"
@@ -22,6 +22,21 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 fs::path file_of(const fs::path& path) { return fs::is_directory(path) ? path / "run.h5" : path; }
+
+// What a moment cannot be shown without; all formats have it.
+bool is_needed(const sim::Observable& observable) {
+  switch (observable.kind) {
+    case sim::ObservableKind::body:
+    case sim::ObservableKind::effector:
+    case sim::ObservableKind::probe:
+    case sim::ObservableKind::contact_point:
+      return true;
+    case sim::ObservableKind::actuator:
+      return observable.quantity == "effort" || observable.quantity == "motion";
+    default:
+      return false;
+  }
+}
 
 scene::Robot recorded_robot(const record::RunFile& file) {
   if (!file.has_states()) {
@@ -49,15 +64,36 @@ ReplaySource::ReplaySource(const fs::path& path, bool playing, double speed)
       file_(file_of(path)),
       state_(recorded_robot(file_)),
       description_(state_.description()) {
-  for (const sim::ActuatorModel& actuator : state_.simulation().model().actuators()) {
-    efforts_.push_back(file_.actuator(actuator.name, "effort"));
-    motions_.push_back(file_.actuator(actuator.name, "motion"));
-  }
+  open_series();
   Json scene = Json::parse(description_.scene);
   scene["frames"] = file_.frames();
   scene["duration"] = file_.times().back();
+  if (!file_.lacks().empty()) {
+    scene["notices"].push_back({{"level", "remark"},
+                                {"kind", "older-recording"},
+                                {"subject", "run.h5"},
+                                {"text", "this run was " + file_.lacks()},
+                                {"remedy", "run its scene again to have them"}});
+  }
   description_.scene = scene.dump();
   show();
+}
+
+void ReplaySource::open_series() {
+  constexpr std::size_t kSmall = 16;
+  const std::vector<sim::Observable>& list = state_.observables().list();
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    std::string dataset = record::dataset_of(list[k]);
+    if (dataset.empty()) continue;
+    if (!file_.has(dataset)) {
+      if (!is_needed(list[k])) continue;
+      throw Error(ErrorKind::malformed_file, {.item = "run.h5"},
+                  fmt::format("{} is missing", dataset), "record the run again");
+    }
+    std::vector<double> small;
+    if (list[k].size() <= kSmall) small = file_.series(dataset);
+    series_.push_back({k, std::move(dataset), std::move(small)});
+  }
 }
 
 double ReplaySource::time_step() const {
@@ -95,18 +131,16 @@ void ReplaySource::handle(const Request& request) {
 
 void ReplaySource::show() {
   RecordedState recorded;
-  for (const auto& body : state_.simulation().model().bodies()) {
-    recorded.positions.push_back(file_.positions(body->name(), at_));
-    recorded.coordinates.push_back(file_.coordinates(body->name(), at_));
-  }
-  for (std::size_t i = 0; i < efforts_.size(); ++i) {
-    recorded.efforts.push_back(efforts_[i][static_cast<std::size_t>(at_)]);
-    recorded.motions.push_back(motions_[i][static_cast<std::size_t>(at_)]);
-  }
-  if (!file_.contacts().empty()) {
-    for (const sim::ContactModel& contact : state_.simulation().model().contacts()) {
-      recorded.contacts.push_back(file_.contact(contact.name, at_));
+  for (const Series& one : series_) {
+    RecordedState::Value value{one.observable, {}};
+    if (one.small.empty()) {
+      value.numbers = file_.numbers(one.dataset, at_);
+    } else {
+      const auto size = one.small.size() / static_cast<std::size_t>(file_.frames());
+      const auto first = one.small.begin() + static_cast<std::ptrdiff_t>(size) * at_;
+      value.numbers.assign(first, first + static_cast<std::ptrdiff_t>(size));
     }
+    recorded.values.push_back(std::move(value));
   }
   recorded.step = std::llround(time() / state_.time_step());
   state_.show(recorded);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "sinew/record/run_file.hpp"
@@ -12,8 +13,9 @@
 
 namespace sinew::viewer {
 
-/// Shows the states of run.h5 on the robot of the scene that is recorded in it. Fields and energies
-/// are computed anew from the states.
+/// Shows the states of run.h5 on the robot of the scene that is recorded in it, with the numbers
+/// that were recorded. Fields, and what an older recording lacks, are computed anew from the
+/// states.
 class ReplaySource final : public SourceThread {
  public:
   /// @param path of a run's folder or of its run.h5. @param playing,speed at the start.
@@ -24,6 +26,8 @@ class ReplaySource final : public SourceThread {
 
   std::string_view mode() const override { return "replay"; }
   const Description& description() const override { return description_; }
+  /// See record::RunFile::lacks().
+  std::string lacks() const { return file_.lacks(); }
 
  protected:
   double time() const override { return file_.times()[static_cast<std::size_t>(at_)]; }
@@ -36,6 +40,7 @@ class ReplaySource final : public SourceThread {
   std::optional<Download> download(std::string_view name) override;
 
  private:
+  void open_series();
   void show();
   std::string motion();
 
@@ -43,8 +48,13 @@ class ReplaySource final : public SourceThread {
   record::RunFile file_;
   RobotState state_;
   Description description_;
-  std::vector<std::vector<double>> efforts_, motions_;  ///< (actuators, frames) N and m
-  std::int64_t at_ = 0;                                 ///< the frame that is shown
+  struct Series {
+    std::size_t observable;     ///< of state_.observables()
+    std::string dataset;        ///< where it was recorded
+    std::vector<double> small;  ///< (frames, size) all numbers of it where a frame has few
+  };
+  std::vector<Series> series_;
+  std::int64_t at_ = 0;  ///< the frame that is shown
 };
 
 /// Whether a path is a recorded run: a folder that holds run.h5, or an HDF5 file.

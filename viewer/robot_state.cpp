@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "sinew/constraint/cable.hpp"
-#include "sinew/constraint/contact.hpp"
-#include "sinew/constraint/effector.hpp"
 #include "sinew/constraint/probe.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/pcc/arm_body.hpp"
@@ -98,8 +97,9 @@ Steering scene_controller(const scene::Robot& robot, const std::string& name) {
 RobotState::RobotState(scene::Robot robot, std::shared_ptr<sim::Simulation> simulation,
                        std::optional<Steering> first)
     : robot_(std::move(robot)),
-      description_(describe(robot_)),
       simulation_(std::move(simulation)),
+      observables_(list_observables()),
+      description_(describe(robot_, observables_)),
       first_(std::move(first)) {
   for (const auto& body : robot_.model->bodies()) {
     means_.push_back(fem::nodal_mean(*body));
@@ -108,6 +108,24 @@ RobotState::RobotState(scene::Robot robot, std::shared_ptr<sim::Simulation> simu
 }
 
 RobotState::~RobotState() { release(); }
+
+sim::Observables RobotState::list_observables() {
+  sim::Observables list(*simulation_);
+  std::vector<int> effectors(simulation_->model().effectors().size());
+  std::iota(effectors.begin(), effectors.end(), 0);  // any may get a target
+  inverse::add_controller(
+      list, [this] { return controller_; }, effectors);
+  list.add({{"real_time_factor",
+             "",
+             {},
+             sim::ObservableKind::timing,
+             {},
+             "real_time_factor",
+             {"real_time_factor"},
+             {}}},
+           [this](std::span<double> to) { to[0] = real_time_factor_; });
+  return list;
+}
 
 void RobotState::observe(const std::string& name, inverse::InverseController* controller) {
   observing_ = true;
@@ -192,13 +210,6 @@ void RobotState::choose_controller(const std::optional<std::string>& name) {
   attach(*name, scene_controller(robot_, *name).settings);
 }
 
-int RobotState::task_of(int effector) const {
-  if (!controller_) return -1;
-  const auto& tasks = controller_->settings().tasks;
-  const auto found = std::ranges::find(tasks, effector, &inverse::Task::effector);
-  return found == tasks.end() ? -1 : static_cast<int>(found - tasks.begin());
-}
-
 void RobotState::set_target(const SetTarget& target) {
   const int effector = simulation_->model().effector_index(target.effector);
   if (!target.position) {
@@ -228,51 +239,63 @@ void RobotState::set_target(const SetTarget& target) {
   targets_[target.effector] = *target.position;
 }
 
-void RobotState::show(const RecordedState& recorded) {
-  sim::State state = simulation_->state();
-  const sim::Model& model = simulation_->model();
-  for (std::size_t b = 0; b < recorded.positions.size(); ++b) {
-    const mechanics::Body& body = simulation_->world().body(static_cast<int>(b));
-    const bool arm = dynamic_cast<const pcc::ArmBody*>(&body) != nullptr;
-    const VectorX& angles = recorded.coordinates[b];
-    const Points& nodes = recorded.positions[b];
-    const double* from = arm ? angles.data() : nodes.data();
-    const auto count = static_cast<std::size_t>(arm ? angles.size() : nodes.size());
-    const auto wanted =
-        arm ? static_cast<const pcc::ArmBody&>(body).coordinates().size() : body.positions().size();
-    if (count != static_cast<std::size_t>(wanted)) {
-      throw Error(ErrorKind::malformed_file, {.item = "body '" + body.model().name() + "'"},
-                  fmt::format("{} numbers are recorded, its scene has {}", count, wanted),
+void RobotState::check(const RecordedState& recorded) const {
+  for (const auto& [index, numbers] : recorded.values) {
+    const sim::Observable& one = observables_.list().at(index);
+    const auto refuse = [&](const std::string& what) {
+      throw Error(ErrorKind::malformed_file, {.item = one.name}, what,
                   "record the run again with this version");
+    };
+    if (numbers.size() != one.size()) {
+      refuse(fmt::format("{} numbers are recorded, its scene has {}", numbers.size(), one.size()));
     }
-    std::ranges::fill(state.bodies[b], 0.0);  // only where it is was recorded
-    std::copy_n(from, count, state.bodies[b].begin());
-  }
-  for (std::size_t i = 0; i < model.actuators().size(); ++i) {
-    state.efforts[static_cast<std::size_t>(model.actuators()[i].row)] = recorded.efforts[i];
-  }
-  state.motions = state.setpoints = recorded.motions;
-  state.volume_ratio = 1.0;  // not recorded
-  state.steps = recorded.step;
-  for (std::size_t c = 0; c < recorded.contacts.size(); ++c) {
-    const constraint::Contact& contact = model.contact(static_cast<int>(c));
-    if (recorded.contacts[c].points.size() != contact.points().size()) {
-      throw Error(ErrorKind::malformed_file, {.item = "contact '" + contact.name() + "'"},
-                  fmt::format("{} points are recorded, its scene has {}",
-                              recorded.contacts[c].points.size(), contact.points().size()),
-                  "record the run again with this version");
+    if (one.words.empty()) continue;
+    for (const double number : numbers) {
+      if (one.word(number).empty()) refuse(fmt::format("{} is recorded, which is no word", number));
     }
   }
-  recorded_contacts_ = recorded.contacts;
-  simulation_->restore(state);
-  ++shape_;
 }
 
-// Forces and frames of contacts are those of the step that led here, which a recorded moment has
-// not made.
-sim::ContactMoment RobotState::contact(std::size_t index) const {
-  if (!recorded_contacts_.empty()) return recorded_contacts_[index];
-  return simulation_->contact_moment(static_cast<int>(index));
+void RobotState::put_body(const sim::Observable& what, const std::vector<double>& numbers,
+                          sim::State& state) const {
+  const int body = simulation_->model().body_index(what.owner);
+  const bool arm = dynamic_cast<const pcc::ArmBody*>(&simulation_->world().body(body)) != nullptr;
+  if (what.quantity != (arm ? "coordinates" : "positions")) return;
+  std::vector<double>& own = state.bodies[static_cast<std::size_t>(body)];
+  std::ranges::fill(own, 0.0);  // a moment at rest
+  std::ranges::copy(numbers, own.begin());
+}
+
+// An actuator of a replay has the command that it had, whether a controller or the scene gave it.
+void RobotState::put_actuator(const sim::Observable& what, double number, sim::State& state) {
+  const int index = simulation_->model().actuator_index(what.owner);
+  const auto place = static_cast<std::size_t>(index);
+  const sim::ActuatorModel& actuator = simulation_->model().actuators()[place];
+  if (what.quantity == "effort") state.efforts[static_cast<std::size_t>(actuator.row)] = number;
+  if (what.quantity == "motion") state.motions[place] = state.setpoints[place] = number;
+  for (const sim::CommandKind kind : sim::command_kinds(actuator)) {
+    if (what.name != sim::command_name(actuator, kind) || !std::isfinite(number)) continue;
+    simulation_->command(index, {kind, sim::Signal::constant(number)});
+  }
+}
+
+void RobotState::show(const RecordedState& recorded) {
+  check(recorded);
+  observables_.release();
+  sim::State state = simulation_->state();
+  for (const auto& [index, numbers] : recorded.values) {
+    const sim::Observable& one = observables_.list()[index];
+    if (one.kind == sim::ObservableKind::body) {
+      put_body(one, numbers, state);
+      continue;
+    }
+    observables_.hold(index, numbers);
+    if (one.kind == sim::ObservableKind::actuator) put_actuator(one, numbers.front(), state);
+  }
+  state.volume_ratio = 1.0;  // not recorded
+  state.steps = recorded.step;
+  simulation_->restore(state);
+  ++shape_;
 }
 
 void RobotState::pull(const Pull& pull) {
@@ -301,42 +324,13 @@ void RobotState::release() {
   pulled_.reset();
 }
 
-void RobotState::fill_signals(Frame& frame, double real_time_factor) {
-  const sim::Model& model = simulation_->model();
-  std::vector<double>& values = frame.signals;
-  for (std::size_t i = 0; i < model.actuators().size(); ++i) {
-    values.push_back(simulation_->actuator(static_cast<int>(i)).effort);
+void RobotState::fill_signals(Frame& frame) {
+  frame.signals.reserve(description_.signals.size());
+  for (std::size_t k = 0; k < observables_.list().size(); ++k) {
+    if (!is_signal(observables_.list()[k])) continue;
+    const std::span<const double> numbers = observables_.read(k);
+    frame.signals.insert(frame.signals.end(), numbers.begin(), numbers.end());
   }
-  for (std::size_t i = 0; i < model.actuators().size(); ++i) {
-    values.push_back(simulation_->actuator(static_cast<int>(i)).motion);
-  }
-  for (std::size_t i = 0; i < model.effectors().size(); ++i) {
-    const Vector3 value = simulation_->effector_value(static_cast<int>(i));
-    values.insert(values.end(), {value.x(), value.y(), value.z()});
-  }
-  for (std::size_t i = 0; i < model.effectors().size(); ++i) {
-    const int task = task_of(static_cast<int>(i));
-    values.push_back(task < 0 ? kNone : controller_->error(task));
-  }
-  for (std::size_t p = 0; p < model.probes().size(); ++p) {
-    const std::vector<double> measured = simulation_->probe_values(static_cast<int>(p));
-    const bool line =
-        dynamic_cast<const constraint::LineProbe*>(model.probes()[p].get()) != nullptr;
-    values.insert(values.end(), measured.begin(), line ? measured.begin() + 1 : measured.end());
-  }
-  for (std::size_t c = 0; c < model.contacts().size(); ++c) {
-    sim::ContactSum sum;
-    for (const sim::ContactPoint& point : contact(c).points) sum.add(point);
-    values.insert(values.end(),
-                  {sum.normal_force, sum.friction_force, sum.smallest_gap,
-                   static_cast<double>(sum.sticking), static_cast<double>(sum.slipping)});
-  }
-  const sim::Energies energies = simulation_->energies();
-  values.insert(values.end(), {energies.strain, energies.kinetic, energies.gravity});
-  const sim::StepReport& report = simulation_->report();
-  values.push_back(report.times.total);
-  for (const double seconds : report.times.seconds) values.push_back(seconds);
-  values.insert(values.end(), {real_time_factor, report.residual, report.smallest_volume_ratio});
 }
 
 void RobotState::fill_body(std::size_t index, const FieldChoice& wanted, BodyFrame& frame) {
@@ -359,7 +353,7 @@ void RobotState::fill_body(std::size_t index, const FieldChoice& wanted, BodyFra
   }
 }
 
-void RobotState::fill_points(Frame& frame) const {
+void RobotState::fill_points(Frame& frame) {
   const sim::Model& model = simulation_->model();
   const auto put = [](std::vector<float>& list, const Vector3& point) {
     for (int c = 0; c < 3; ++c) list.push_back(static_cast<float>(point[c]));
@@ -374,46 +368,57 @@ void RobotState::fill_points(Frame& frame) const {
     const Points marks = probe->marks(simulation_->world().placement());
     for (Eigen::Index k = 0; k < marks.rows(); ++k) put(frame.probes, marks.row(k).transpose());
   }
-  for (std::size_t i = 0; i < model.effectors().size(); ++i) {
-    const auto index = static_cast<int>(i);
-    const bool point = std::string_view(model.effector(index).unit()) == "m";
-    put(frame.effectors, point ? simulation_->effector_value(index) : Vector3::Constant(kNone));
-    const int task = task_of(index);
-    const bool aimed = point && task >= 0;
-    put(frame.targets,
-        aimed ? controller_->settings().tasks[static_cast<std::size_t>(task)].target.at(
-                    simulation_->time())
-              : Vector3::Constant(kNone));
+  // Rotations are no points.
+  const auto put_numbers = [&](std::vector<float>& list, std::size_t observable) {
+    const bool point = observables_.list()[observable].unit == "m";
+    const std::span<const double> numbers = observables_.read(observable);
+    put(list, point ? Vector3(numbers[0], numbers[1], numbers[2]) : Vector3::Constant(kNone));
+  };
+  for (std::size_t k = 0; k < observables_.list().size(); ++k) {
+    const sim::Observable& one = observables_.list()[k];
+    if (one.kind == sim::ObservableKind::effector) put_numbers(frame.effectors, k);
+    const bool target = one.kind == sim::ObservableKind::controller && one.quantity == "target";
+    if (target) put_numbers(frame.targets, k);
   }
 }
 
-void RobotState::fill_contacts(Frame& frame) const {
-  for (std::size_t c = 0; c < simulation_->model().contacts().size(); ++c) {
-    const sim::ContactMoment moment = contact(c);
+void RobotState::fill_contacts(Frame& frame) {
+  for (const sim::ContactModel& contact : simulation_->model().contacts()) {
     std::vector<float>& values = frame.contacts.emplace_back();
-    values.reserve(7 * (1 + moment.points.size()));
     const auto put = [&](const auto& numbers) {
       for (Eigen::Index k = 0; k < numbers.size(); ++k) {
         values.push_back(static_cast<float>(numbers[k]));
       }
     };
-    put(moment.pose.translation());
-    put(Eigen::Quaterniond(moment.pose.linear()).coeffs());  // x, y, z, w
-    for (const sim::ContactPoint& point : moment.points) {
-      put(point.position);
-      put(Vector3(point.normal_force * point.normal + point.friction_force));
-      values.push_back(static_cast<float>(point.state));
+    const auto numbers = [&](const char* name) {
+      return observables_.read(observables_.find(contact.name + name));
+    };
+    using Pose = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
+    const Eigen::Map<const Pose> pose(numbers(".pose").data());
+    put(pose.col(3));
+    put(Eigen::Quaterniond(Matrix3(pose.leftCols<3>())).coeffs());  // x, y, z, w
+    const auto position = numbers(".points.position"), normal = numbers(".points.normal"),
+               normal_force = numbers(".points.normal_force"),
+               friction_force = numbers(".points.friction_force"), state = numbers(".points.state");
+    values.reserve(7 * (1 + state.size()));
+    for (std::size_t k = 0; k < state.size(); ++k) {
+      using Vector = Eigen::Map<const Vector3>;
+      put(Vector(&position[3 * k]));
+      put(Vector3(normal_force[k] * Vector(&normal[3 * k]) + Vector(&friction_force[3 * k])));
+      values.push_back(static_cast<float>(state[k]));
     }
   }
 }
 
 std::shared_ptr<const Frame> RobotState::frame(const FieldChoice& wanted, double real_time_factor) {
+  real_time_factor_ = real_time_factor;
+  observables_.refresh();
   auto frame = std::make_shared<Frame>();
   frame->step = static_cast<std::uint64_t>(simulation_->steps());
   frame->time = simulation_->time();
   frame->hash = simulation_->state_hash();
   frame->shape = shape_;
-  fill_signals(*frame, real_time_factor);
+  fill_signals(*frame);
   frame->bodies.resize(description_.surfaces.size());
   for (std::size_t b = 0; b < frame->bodies.size(); ++b) fill_body(b, wanted, frame->bodies[b]);
   fill_points(*frame);

@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "sinew/fem/element_fields.hpp"
+#include "sinew/inverse/controller_observables.hpp"
 #include "sinew/scene/build.hpp"
+#include "sinew/sim/observables.hpp"
 #include "sinew/sim/simulation.hpp"
 
 #include "describe.hpp"
@@ -37,10 +39,12 @@ Steering scene_controller(const scene::Robot& robot, const std::string& name);
 
 /// A moment of a recorded run.
 struct RecordedState {
-  std::vector<Points> positions;             ///< (n, 3) m a body, in the model's order
-  std::vector<VectorX> coordinates;          ///< of arms, (n,) rad a body; empty of others
-  std::vector<double> efforts, motions;      ///< (actuators,) N and m
-  std::vector<sim::ContactMoment> contacts;  ///< in the model's order; empty: not recorded
+  /// What was recorded of an observable.
+  struct Value {
+    std::size_t observable;       ///< of RobotState::observables()
+    std::vector<double> numbers;  ///< as many as it has
+  };
+  std::vector<Value> values;  ///< at least positions, or an arm's coordinates, efforts and motions
   std::int64_t step = 0;
 };
 
@@ -62,6 +66,9 @@ class RobotState {
   const sim::Simulation& simulation() const { return *simulation_; }
   double time_step() const { return simulation_->model().step().time_step; }
   const std::optional<StoppedRun>& stopped() const { return stopped_; }
+  /// What is shown in numbers: of the simulation, of its controller and the real-time factor. In a
+  /// replay, what was recorded.
+  sim::Observables& observables() { return observables_; }
 
   /// One step; what it throws is kept as stopped().
   void step();
@@ -77,7 +84,8 @@ class RobotState {
   void command(const SetCommand& command);
   void choose_controller(const std::optional<std::string>& name);
   void set_target(const SetTarget& target);
-  /// Puts a recorded moment in place of the present one; velocities are zero.
+  /// Puts a recorded moment in place of the present one. What was not recorded is computed anew,
+  /// with velocities of zero. Throws Error(malformed-file) for numbers of another robot.
   void show(const RecordedState& recorded);
   void pull(const Pull& pull);
   void release();
@@ -92,16 +100,22 @@ class RobotState {
  private:
   void attach(const std::string& name, const inverse::InverseSettings& settings);
   void detach();
-  int task_of(int effector) const;
-  void fill_signals(Frame& frame, double real_time_factor);
+  int task_of(int effector) const { return inverse::task_of(controller_, effector); }
+  sim::Observables list_observables();
+  void check(const RecordedState& recorded) const;
+  void put_body(const sim::Observable& what, const std::vector<double>& numbers,
+                sim::State& state) const;
+  void put_actuator(const sim::Observable& what, double number, sim::State& state);
+  void fill_signals(Frame& frame);
   void fill_body(std::size_t index, const FieldChoice& wanted, BodyFrame& frame);
-  void fill_points(Frame& frame) const;
-  void fill_contacts(Frame& frame) const;
-  sim::ContactMoment contact(std::size_t index) const;
+  void fill_points(Frame& frame);
+  void fill_contacts(Frame& frame);
 
   scene::Robot robot_;
-  Description description_;
   std::shared_ptr<sim::Simulation> simulation_;
+  sim::Observables observables_;
+  Description description_;
+  double real_time_factor_ = 0.0;
   std::unique_ptr<inverse::InverseController> own_;
   inverse::InverseController* controller_ = nullptr;  ///< own_, or one that others look after
   std::string controller_name_;
@@ -109,8 +123,7 @@ class RobotState {
   bool observing_ = false;
   std::vector<std::unique_ptr<fem::NodalMean>> means_;  ///< one a body; none of an arm
   std::map<std::string, Vector3> targets_;
-  std::vector<sim::ContactMoment> recorded_contacts_;  ///< of the moment that is shown; or empty
-  std::optional<int> pulled_;                          ///< body
+  std::optional<int> pulled_;  ///< body
   std::optional<StoppedRun> stopped_;
   std::uint64_t shape_ = 0;
 };

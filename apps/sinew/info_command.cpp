@@ -274,7 +274,9 @@ Facts run_facts(const InfoOptions& options) {
                 {"actuators", run.actuators()},
                 {"effectors", run.effectors()},
                 {"probes", run.probes()},
-                {"contacts", run.contacts()}};
+                {"contacts", run.contacts()},
+                {"format_version", run.format_version()},
+                {"lacks", run.lacks()}};
   facts.text = fmt::format(
       "{}: run of {} by Sinew {}\n  {} frames from {:g} s to {:g} s, {}\n  bodies: {}\n"
       "  actuators: {}\n  effectors: {}\n  probes: {}\n  contacts: {}\n",
@@ -283,6 +285,7 @@ Facts run_facts(const InfoOptions& options) {
       fmt::join(run.bodies(), ", "), fmt::join(run.actuators(), ", "),
       fmt::join(run.effectors(), ", "), fmt::join(run.probes(), ", "),
       fmt::join(run.contacts(), ", "));
+  if (!run.lacks().empty()) facts.text += fmt::format("  {}\n", run.lacks());
   return facts;
 }
 

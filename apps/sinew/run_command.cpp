@@ -10,8 +10,8 @@
 
 #include "sinew/constraint/effector.hpp"
 #include "sinew/fem/element_count.hpp"
+#include "sinew/inverse/controller_observables.hpp"
 #include "sinew/record/run_recorder.hpp"
-#include "sinew/record/run_table.hpp"
 
 #include "arguments.hpp"
 #include "commands.hpp"
@@ -171,7 +171,9 @@ int run(const RunOptions& options) {
   settings.every = description.record.every;
   settings.states = description.record.states;
   settings.vtk = options.vtk;
-  record::RunRecorder recorder(session.simulation(), session.controller(), settings);
+  sim::Observables observables(session.simulation());
+  inverse::add_controller(observables, session.controller());
+  record::RunRecorder recorder(std::move(observables), settings);
 
   const auto begin = std::chrono::steady_clock::now();
   const auto finish = [&] {

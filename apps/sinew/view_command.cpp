@@ -55,8 +55,13 @@ std::unique_ptr<viewer::Source> source_of(const ViewOptions& options) {
     return std::make_unique<viewer::GallerySource>(viewer::find_examples(examples_folder()));
   }
   if (viewer::is_recorded_run(options.scene.file)) {
-    return std::make_unique<viewer::ReplaySource>(options.scene.file, !options.paused,
-                                                  options.speed);
+    auto replay =
+        std::make_unique<viewer::ReplaySource>(options.scene.file, !options.paused, options.speed);
+    if (!replay->lacks().empty()) {
+      fmt::print(stderr, "sinew: remark: {}: this run was {}\n", options.scene.file.string(),
+                 replay->lacks());
+    }
+    return replay;
   }
   const LoadedScene scene = load_scene(options.scene);
   return std::make_unique<viewer::LiveSource>(

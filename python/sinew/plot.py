@@ -8,6 +8,7 @@ import math
 import pathlib
 import re
 import sys
+import warnings
 
 OURS, DATA, SECOND, QUIET = "#1f5fa8", "#222222", "#c8501e", "#999999"
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7a5195", "#5c5c5c")
@@ -32,6 +33,8 @@ SHOWN = {"m": ("mm", 1e3), "Pa": ("kPa", 1e-3), "m^3": ("ml", 1e6), "J": ("mJ", 
 def read_run(folder, table="run.csv") -> dict[str, list[float]]:
     """The numeric columns of a run's table, by their headings.
 
+    Warns where a run.csv of an older version lacks commands.
+
     Parameters
     ----------
     folder : path-like
@@ -46,7 +49,10 @@ def read_run(folder, table="run.csv") -> dict[str, list[float]]:
         try:
             columns[name] = [float(row[k]) for row in rows[1:]]
         except ValueError:
-            continue  # words, such as the law's status
+            continue  # words, such as the step's status
+    # Every run.csv that has commands has the number of substeps; a passive robot has no commands.
+    if table == "run.csv" and "substeps" not in columns:
+        warnings.warn(f"{pathlib.Path(folder) / table}: this run was recorded without commands", stacklevel=2)
     return columns
 
 
@@ -73,15 +79,20 @@ def _panel(heading: str) -> tuple[str, str] | None:
         return "Contact points", f"{of} {last}"
     if last == "gap":
         return "Contact gap (m)", of
-    if last in ("displacement", "volume_growth"):
-        return f"Motion ({unit})", of
-    return f"Effort ({unit})", of
+    done = last.removesuffix("_command")
+    told = " command" if done != last else ""
+    if done in ("displacement", "volume_growth", "angle"):
+        return f"Motion ({unit})", of + told
+    if done in ("tension", "force", "pressure", "torque"):
+        return f"Effort ({unit})", of + told
+    return f"Input ({unit})", of + told
 
 
 def run(folder, out) -> pathlib.Path:
     """Draws efforts, motions, effectors, contacts, probes, errors and energies of a recorded run over time.
 
-    Of a line that is probed its length is drawn.
+    What is commanded is drawn as a thin dashed line of its actuator's colour, and targets so in grey; of a line that
+    is probed, its length.
 
     Parameters
     ----------
@@ -95,7 +106,8 @@ def run(folder, out) -> pathlib.Path:
     time = columns.pop("time [s]")
     panels: dict[str, list[tuple[str, str, list[float]]]] = {}
     for heading, values in columns.items():
-        if (panel := _panel(heading)) is not None:
+        commanded = not _split(heading)[0].endswith("_command") or any(map(math.isfinite, values))
+        if commanded and (panel := _panel(heading)) is not None:
             panels.setdefault(panel[0], []).append((panel[1], _split(heading)[1], values))
     probes = read_run(folder, "probes.csv") if (pathlib.Path(folder) / "probes.csv").exists() else {}
     for heading, values in probes.items():
@@ -105,12 +117,15 @@ def run(folder, out) -> pathlib.Path:
     count = max(1, len(panels))
     figure, axes = plt.subplots(count, 1, figsize=(9, 2.3 * count + 0.3), sharex=True, squeeze=False)
     for axis, (group, series) in zip(axes[:, 0], panels.items()):
-        for k, (name, unit, values) in enumerate(series):
+        names = [name for name, _, _ in series]
+        owners = list(dict.fromkeys(name.removesuffix(" command") for name in names if ".target_" not in name))
+        for name, unit, values in series:
             shown, scale = SHOWN.get(unit, (unit, 1.0))
-            goal = ".target_" in name
-            axis.plot(time, [scale * v for v in values], "--" if goal else "-", lw=1.0 if goal else 1.5,
-                      color=QUIET if goal else COLOURS[k % len(COLOURS)],
-                      label=None if goal else name.replace("_", " "))
+            owner = name.removesuffix(" command")
+            target, asked = ".target_" in name, ".target_" in name or name != owner
+            axis.plot(time, [scale * v for v in values], "--" if asked else "-", lw=1.0 if asked else 1.5,
+                      color=QUIET if target else COLOURS[owners.index(owner) % len(COLOURS)],
+                      label=None if target or (asked and owner in names) else name.replace("_", " "))
             axis.set_ylabel(f"{group.split(' (')[0]} ({shown})" if shown else group)
         axis.legend(loc="upper left", bbox_to_anchor=(1.0, 1.02))
     axes[-1, 0].set_xlabel("time (s)")
@@ -319,6 +334,7 @@ def main(words: list[str]) -> int:
     if len(words) != 3 or words[0] not in kinds:
         print(f"usage: python3 -m sinew.plot {'|'.join(kinds)} SOURCE OUT.png", file=sys.stderr)
         return 2
+    warnings.showwarning = lambda message, *_, **__: print(f"sinew: remark: {message}", file=sys.stderr)
     try:
         path = kinds[words[0]](words[1], words[2])
     except ImportError as missing:

@@ -393,7 +393,7 @@ Parameters
 duration : float, optional
     s; by default the scene's, or the length of its signals and targets.
 record : list of str, optional
-    Which keys to return beside 'time'; by default all but the bodies' positions.
+    Which keys to return beside 'time'; by default all but those named "on request" below.
 every : int
     Steps between records; the last step is always recorded.
 progress : callable, optional
@@ -403,10 +403,16 @@ progress : callable, optional
 Returns
 -------
 dict of ndarray
-    'time' (k,) s; for every actuator 'NAME.tension' or 'NAME.force' (k,) N and
-    'NAME.displacement' (k,) m; for every effector 'NAME.position' (k, 3) m or 'NAME.rotation'
-    (k, 3) rad; 'residual' (k,) N; with a controller 'error' (k,) m; on request for every body
-    'NAME.positions' (k, n, 3) m.
+    'time' (k,) s; for every actuator effort and motion, 'NAME.tension' (k,) N and
+    'NAME.displacement' (k,) m, and what is commanded of them, 'NAME.tension_command' and
+    'NAME.displacement_command', NaN while another quantity is (a controller commands efforts); for
+    every effector 'NAME.position' (k, 3) m or 'NAME.rotation' (k, 3) rad; for every probe
+    'NAME.value'; for every contact 'NAME.force' (k, 3) N, 'NAME.normal_force', 'NAME.gap' and so
+    on; 'residual' (k,) N and other numbers of the step's report; 'status' (k,) of str; with a
+    controller 'NAME.target' (k, 3), 'NAME.error' (k,), 'error' (k,) m and 'controller' (k,) of str.
+    On request for every body 'NAME.positions' (k, n, 3) m and 'NAME.velocities'; for the n points
+    of a contact 'NAME.points.gap' (k, n) m, 'NAME.points.normal_force' N and so on; 'strain_energy',
+    'actuator_work' and so on (k,) J, work from the first record on; 'time.step' (k,) s.
 
 Raises
 ------

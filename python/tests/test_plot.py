@@ -1,5 +1,7 @@
 """Pictures of runs: which column is drawn where, under which name."""
 
+import warnings
+
 import pytest
 
 import sinew.plot
@@ -15,6 +17,9 @@ def test_columns_of_a_run_with_contacts_have_panels_and_names_of_their_own():
     assert sinew.plot._panel("rope.tension [N]") == ("Effort (N)", "rope")
     assert sinew.plot._panel("rope.displacement [m]") == ("Motion (m)", "rope")
     assert sinew.plot._panel("air.pressure [Pa]") == ("Effort (Pa)", "air")
+    assert sinew.plot._panel("rope.tension_command [N]") == ("Effort (N)", "rope command")
+    assert sinew.plot._panel("bend.angle [rad]") == ("Motion (rad)", "bend")
+    assert sinew.plot._panel("wire.power_command [W]") == ("Input (W)", "wire command")
     assert sinew.plot._panel("tip.x [m]") == ("Effectors (m)", "tip.x")
     assert sinew.plot._panel("strain_energy [J]") == ("Energy", "strain_energy")
     assert sinew.plot._panel("iterations") is None
@@ -23,7 +28,14 @@ def test_columns_of_a_run_with_contacts_have_panels_and_names_of_their_own():
 def test_a_run_with_contacts_is_drawn(tmp_path):
     pytest.importorskip("matplotlib")
     columns = ["time [s]", "press.force [N]", "press.displacement [m]", "floor.force_x [N]", "floor.normal_force [N]",
-               "floor.gap [m]", "floor.sticking", "strain_energy [J]", "law"]
+               "floor.gap [m]", "floor.sticking", "strain_energy [J]", "status"]
     rows = [["0", "1", "0", "0", "2", "0", "3", "0", "solved"], ["0.1", "1", "0", "0", "2", "0", "3", "0", "solved"]]
     (tmp_path / "run.csv").write_text("\n".join(",".join(row) for row in [columns, *rows]) + "\n")
-    assert sinew.plot.run(tmp_path, tmp_path / "run.png").stat().st_size > 1000
+    with pytest.warns(UserWarning, match="recorded without commands"):
+        assert sinew.plot.run(tmp_path, tmp_path / "run.png").stat().st_size > 1000
+    told = ["push.force_command [N]", "push.displacement_command [m]", "wire.power_command [W]", "substeps"]
+    rows = [[*row, "1", "nan", "2", "1"] for row in rows]
+    (tmp_path / "run.csv").write_text("\n".join(",".join(row) for row in [[*columns, *told], *rows]) + "\n")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert sinew.plot.run(tmp_path, tmp_path / "run.png").stat().st_size > 1000

@@ -327,15 +327,43 @@ def test_run_records(scene):
     assert result["tip.position"].shape == (21, 3)
     assert np.array_equal(result["tip.position"][-1], sim.effector("tip").position)
     assert set(result) == {
-        "time", "residual", "tip.position", "push.force", "push.displacement",
-        *(f"{side}.{what}" for side in ("east", "north", "west", "south")
-          for what in ("tension", "displacement")),
+        "time", "tip.position", "push.force", "push.displacement", "push.force_command", "push.displacement_command",
+        *(f"{side}.{what}{told}" for side in ("east", "north", "west", "south")
+          for what in ("tension", "displacement") for told in ("", "_command")),
+        "residual", "relative_residual", "iterations", "substeps", "scale", "smallest_volume_ratio", "status",
     }
+    assert list(result["status"]) == ["start"] + 20 * ["solved"]
+    assert (result["east.tension_command"] == 4.0).all() and np.isnan(result["east.displacement_command"]).all()
     assert ticks[-1] == (20, 20)
     part = sim.run(0.07, record=["finger.positions"], every=3)
     assert list(part) == ["time", "finger.positions"]
     assert part["time"] == pytest.approx([0.2, 0.23, 0.26, 0.27])
     assert np.array_equal(part["finger.positions"][-1], sim.body("finger").positions)
+
+
+def test_commands_and_energies_are_recorded(scene):
+    sim = sinew.load(scene)
+    sim.actuator("east").displacement = sinew.Ramp(0.0, 0.002, duration=0.1)
+    first = sim.run(0.1, record=["east.displacement_command", "east.tension_command", "strain_energy", "actuator_work"])
+    assert first["east.displacement_command"] == pytest.approx(np.linspace(0, 0.002, 11))
+    assert np.isnan(first["east.tension_command"]).all()
+    assert first["strain_energy"][-1] > 0 and first["actuator_work"][0] == 0
+    sim.actuator("east").tension = 1.0
+    second = sim.run(0.02)
+    assert np.array_equal(second["east.tension_command"], [1.0, 1.0, 1.0])
+    assert np.isnan(second["east.displacement_command"]).all()
+
+
+def test_a_controller_commands_efforts(follow):
+    sim = sinew.load(follow)
+    result = sim.run(0.2)
+    owned = [name for name in sim.actuators if np.array_equal(result[f"{name}.tension_command"], result[f"{name}.tension"])]
+    assert owned and result["error"].shape == (21,)
+    tip = next(name for name in result if name.endswith(".target")).removesuffix(".target")
+    off = np.linalg.norm(result[f"{tip}.target"] - result[f"{tip}.position"], axis=1)
+    assert result[f"{tip}.error"] == pytest.approx(off)
+    assert np.array_equal(result[f"{tip}.error"], result["error"])
+    assert result["controller"][0] == "start" and result["controller"][-1] == sim.controller.status
 
 
 def test_a_failed_run_hands_over_what_it_recorded(sim):

@@ -7,6 +7,7 @@ import csv
 import json
 import os
 import pathlib
+import re
 import shutil
 import signal
 import subprocess
@@ -383,6 +384,76 @@ def test_bench_writes_its_figures(scene, tmp_path):
     assert figures["bytes_per_simulation"] > 1000
     assert "Eigen SimplicialLDLT" in result.stdout
     assert not (tmp_path / "out").exists(), "nothing is recorded"
+
+
+def test_commands_are_recorded(scene, tmp_path):
+    path, out = scene(), tmp_path / "out"
+    assert sinew("run", path, "--out", out, "--quiet").returncode == DONE
+    rows = rows_of(out / "run.csv")
+    told = [float(row["up.displacement_command [m]"]) for row in rows]
+    assert told == pytest.approx(np.linspace(0, 0.004, 11))
+    assert {row["up.tension_command [N]"] for row in rows} == {"nan"}
+    with h5py.File(out / "run.h5") as file:
+        assert file.attrs["format_version"] == 3
+        assert np.array_equal(file["actuators/up/motion_command"], told)
+        assert file["actuators/up/motion_command"].attrs["name"] == "up.displacement_command"
+        assert file["actuators/up/motion_command"].attrs["unit"] == "m"
+        assert np.isnan(file["actuators/up/effort_command"]).all()
+        assert file["report/status"].attrs["meaning"].startswith("-1 start, 0 solved")
+        assert file["energy/strain_energy"][-1] == float(rows[-1]["strain_energy [J]"])
+
+
+def test_a_controller_commands_efforts(scene, tmp_path):
+    path, out = scene(), tmp_path / "out"
+    path.write_text(path.read_text() + CONTROL)
+    assert sinew("run", path, "--out", out, "--quiet").returncode == DONE
+    rows = rows_of(out / "run.csv")
+    assert all(row["up.tension_command [N]"] == row["up.tension [N]"] for row in rows)
+    assert max(float(row["up.tension_command [N]"]) for row in rows) > 0
+    assert {row["up.displacement_command [m]"] for row in rows} == {"nan"}
+    with h5py.File(out / "run.h5") as file:
+        assert np.array_equal(file["report/error"], [float(row["error [m]"]) for row in rows])
+        assert file["controller/tip/target"].shape == (len(rows), 3)
+
+
+def make_older(folder):
+    """Turns a recording into one of format 2."""
+    with h5py.File(folder / "run.h5", "r+") as file:
+        file.attrs["format_version"] = np.int64(2)
+        for actuator in file["actuators"].values():
+            for name in [name for name in actuator if name.endswith("_command")]:
+                del actuator[name]
+        for name in ("energy", "contact_resultants", "report/substeps", "report/controller"):
+            if name in file:
+                del file[name]
+    rows = rows_of(folder / "run.csv")
+    kept = [name for name in rows[0] if "_command [" not in name and name != "substeps"]
+    with open(folder / "run.csv", "w", newline="", encoding="utf-8") as table:
+        writer = csv.DictWriter(table, kept, extrasaction="ignore")
+        writer.writeheader()
+        writer.writerows(rows)
+
+
+def test_an_older_recording_says_what_it_lacks(scene, tmp_path):
+    out = tmp_path / "out"
+    assert sinew("run", scene(), "--out", out, "--quiet").returncode == DONE
+    make_older(out)
+    told = sinew("info", out / "run.h5")
+    assert told.returncode == DONE and "recorded without commands" in told.stdout, told.stderr
+    assert "commands" in json.loads(sinew("info", out / "run.h5", "--json").stdout)["lacks"]
+    done = sinew("plot", out)
+    assert done.returncode == DONE and (out / "run.png").exists()
+    assert re.fullmatch(r"sinew: remark: .*run\.csv: this run was recorded without commands\n", done.stderr)
+    with subprocess.Popen([os.path.abspath(PROGRAM), "view", out, "--no-open", "--port", "0"], text=True,
+                          stdout=subprocess.PIPE, stderr=subprocess.PIPE) as view:
+        assert "the view is at" in view.stdout.readline()
+        view.send_signal(signal.SIGINT)
+        errors = view.communicate(timeout=60)[1]
+    assert "recorded without commands" in errors
+    with h5py.File(out / "run.h5", "r+") as file:
+        file.attrs["format_version"] = np.int64(1)
+    refused = sinew("info", out / "run.h5")
+    assert refused.returncode == WRONG and "unsupported-version" in refused.stderr
 
 
 def test_plot_draws_a_run(scene, tmp_path):

@@ -25,8 +25,9 @@ struct Outcome {
 /// "ran", "refused", "stopped", "wrong".
 const char* outcome_name(Outcome::Kind kind);
 
-/// Takes the scene of a selection a few steps, and again: with two threads, from a state saved
-/// half-way, from a copy made half-way, after reset(), under other names, in another order.
+/// Takes the scene of a selection a few steps, records it and reads the record back, and again:
+/// with two threads, from a state saved half-way, from a copy made half-way, after reset(), under
+/// other names, in another order.
 /// @param selection,seed see draft_scene().
 Outcome try_scene(const Selection& selection, std::uint64_t seed);
 

@@ -1,11 +1,14 @@
 #include "sinew/record/run_recorder.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <random>
+#include <set>
 #include <sstream>
 #include <string>
 
@@ -18,9 +21,13 @@
 #include "sinew/constraint/probe.hpp"
 #include "sinew/core/csv.hpp"
 #include "sinew/fem/element_fields.hpp"
+#include "sinew/inverse/controller_observables.hpp"
 #include "sinew/mesh/read.hpp"
+#include "sinew/record/hdf5_writer.hpp"
 #include "sinew/record/run_file.hpp"
+#include "sinew/record/run_layout.hpp"
 
+#include "record/older_run.hpp"
 #include "sim/contact_robots.hpp"
 #include "sim/robots.hpp"
 
@@ -86,7 +93,7 @@ ErrorKind kind_of(const Action& action) {
 std::vector<Points> record_pull(sim::Simulation& simulation, const RecordSettings& settings,
                                 int steps) {
   simulation.command(0, pull(0.004));
-  RunRecorder recorder(simulation, nullptr, settings);
+  RunRecorder recorder(sim::Observables(simulation), settings);
   std::vector<Points> seen = {simulation.fem_body(0).positions()};
   for (int i = 0; i < steps; ++i) {
     simulation.step();
@@ -126,7 +133,9 @@ TEST_F(RunRecorderTest, TheTableHasUnitsAndWords) {
   inverse::InverseSettings steering;
   steering.tasks = {{0, inverse::Target::fixed({0.099, 0.0, 0.004}), {1.0}}};
   inverse::InverseController controller(simulation, steering);
-  RunRecorder recorder(simulation, &controller, settings());
+  sim::Observables list(simulation);
+  inverse::add_controller(list, &controller);
+  RunRecorder recorder(std::move(list), settings());
   for (int i = 0; i < 5; ++i) {
     simulation.step();
     recorder.after_step();
@@ -137,9 +146,6 @@ TEST_F(RunRecorderTest, TheTableHasUnitsAndWords) {
   EXPECT_EQ(names.front(), "\"time [s]\"");
   EXPECT_EQ(names[1], "\"cable_0.tension [N]\"");
   EXPECT_EQ(names[2], "\"cable_0.displacement [m]\"");
-  EXPECT_EQ(names[9], "\"tip.x [m]\"");
-  EXPECT_EQ(names[12], "\"tip.target_x [m]\"");
-  EXPECT_EQ(names[15], "\"tip.error [m]\"");
   EXPECT_EQ(names.back(), "controller");
   const auto first = cells(rows[1]), last = cells(rows.back());
   ASSERT_EQ(first.size(), names.size());
@@ -147,9 +153,15 @@ TEST_F(RunRecorderTest, TheTableHasUnitsAndWords) {
   EXPECT_EQ(first.back(), "start");
   EXPECT_EQ(last.back(), inverse::inverse_status_name(controller.status()));
   EXPECT_EQ(last[last.size() - 2], "solved");
-  EXPECT_EQ(std::stod(last[15]), controller.error());
-  EXPECT_EQ(std::stod(last[12]), 0.099);
-  EXPECT_EQ(std::stod(last[9]), simulation.effector_value(0).x());
+  const auto number = [&](const std::string& heading) {
+    const auto found = std::ranges::find(names, '"' + heading + '"');
+    return found == names.end() ? NAN
+                                : std::stod(last[static_cast<std::size_t>(found - names.begin())]);
+  };
+  EXPECT_EQ(number("tip.error [m]"), controller.error());
+  EXPECT_EQ(number("tip.target_x [m]"), 0.099);
+  EXPECT_EQ(number("tip.x [m]"), simulation.effector_value(0).x());
+  EXPECT_EQ(number("cable_0.tension_command [N]"), simulation.actuator(0).effort);
 }
 
 TEST_F(RunRecorderTest, ProbesHaveATableAndSeries) {
@@ -200,9 +212,9 @@ TEST_F(RunRecorderTest, ContactsReadBackBitForBit) {
   wall.motion = motion;
   builder.add_contact(wall);
   sim::Simulation simulation(builder.build());
-  RecordSettings what = settings();
-  what.vtk = true;
-  RunRecorder recorder(simulation, nullptr, what);
+  RecordSettings with_series = settings();
+  with_series.vtk = true;
+  RunRecorder recorder(sim::Observables(simulation), with_series);
   std::vector<std::array<sim::ContactMoment, 2>> seen;
   for (int k = 0; k <= 40; ++k) {
     seen.push_back({simulation.contact_moment(0), simulation.contact_moment(1)});
@@ -214,29 +226,179 @@ TEST_F(RunRecorderTest, ContactsReadBackBitForBit) {
   EXPECT_EQ(run.contacts(), (std::vector<std::string>{"floor", "wall"}));
   int touching = 0;
   for (std::size_t frame = 0; frame < seen.size(); ++frame) {
-    for (const int contact : {0, 1}) {
-      const sim::ContactMoment read =
-          run.contact(contact == 0 ? "floor" : "wall", static_cast<std::int64_t>(frame));
-      const sim::ContactMoment& was = seen[frame][static_cast<std::size_t>(contact)];
-      EXPECT_EQ(read.pose.affine(), was.pose.affine());
-      ASSERT_EQ(read.points.size(), was.points.size());
+    for (const std::size_t contact : {0u, 1u}) {
+      const std::string name = contact == 0 ? "floor" : "wall";
+      const auto numbers = [&](const std::string& dataset) {
+        return run.numbers(dataset, static_cast<std::int64_t>(frame));
+      };
+      const auto read = [&](const char* what) { return numbers("/contacts/" + name + "/" + what); };
+      const sim::ContactMoment& was = seen[frame][contact];
+      const Eigen::Matrix<double, 3, 4> pose = was.pose.affine();
+      EXPECT_TRUE(std::ranges::equal(read("pose"), pose.reshaped<Eigen::RowMajor>()));
+      ASSERT_EQ(read("gap").size(), was.points.size());
+      sim::ContactSum sum;
       for (std::size_t k = 0; k < was.points.size(); ++k) {
-        const sim::ContactPoint &a = read.points[k], &b = was.points[k];
-        EXPECT_EQ(a.position, b.position);
-        EXPECT_EQ(a.gap, b.gap);
-        EXPECT_EQ(a.normal, b.normal);
-        EXPECT_EQ(a.normal_force, b.normal_force);
-        EXPECT_EQ(a.friction_force, b.friction_force);
-        EXPECT_EQ(a.state, b.state);
-        touching += a.state == qp::ContactState::open ? 0 : 1;
+        const sim::ContactPoint& point = was.points[k];
+        const auto vector = [&](const char* what) {
+          const std::vector<double> all = read(what);
+          return Vector3(all[3 * k], all[3 * k + 1], all[3 * k + 2]);
+        };
+        EXPECT_EQ(vector("position"), point.position);
+        EXPECT_EQ(read("gap")[k], point.gap);
+        EXPECT_EQ(vector("normal"), point.normal);
+        EXPECT_EQ(read("normal_force")[k], point.normal_force);
+        EXPECT_EQ(vector("friction_force"), point.friction_force);
+        EXPECT_EQ(read("state")[k], static_cast<double>(point.state));
+        touching += point.state == qp::ContactState::open ? 0 : 1;
+        sum.add(point);
       }
+      EXPECT_EQ(numbers("/contact_resultants/" + name + "/normal_force").front(), sum.normal_force);
     }
   }
   EXPECT_GT(touching, 100);
-  EXPECT_EQ(kind_of([&] { run.contact("flor", 0); }), ErrorKind::unknown_name);
-  EXPECT_EQ(kind_of([&] { run.contact("floor", 42); }), ErrorKind::out_of_range);
+  EXPECT_EQ(kind_of([&] { run.numbers("/contacts/flor/gap", 0); }), ErrorKind::malformed_file);
+  EXPECT_EQ(kind_of([&] { run.numbers("/contacts/floor/gap", 42); }), ErrorKind::out_of_range);
   EXPECT_NE(text(folder_ / "run" / "run" / "run_000041.vtu").find("contact_force"),
             std::string::npos);
+}
+
+TEST_F(RunRecorderTest, TablesAndDatasetsAreThoseOfTheList) {
+  sinew::testing::BeamOptions options;
+  options.probes = true;
+  options.step.integrator = mechanics::Integrator::backward_euler;
+  sim::Simulation simulation(beam(options));
+  const sim::Observables list(simulation);
+  record_pull(simulation, settings(), 3);
+  std::vector<std::string> run_headings, probe_headings, datasets;
+  for (const sim::Observable& one : list.list()) {
+    for (const std::string& heading : headings_of(one)) {
+      const std::string quoted =
+          heading.find(' ') == std::string::npos ? heading : '"' + heading + '"';
+      if (is_in_table(one, TableKind::run)) run_headings.push_back(quoted);
+      if (is_in_table(one, TableKind::probes)) probe_headings.push_back(quoted);
+    }
+    if (!dataset_of(one).empty()) datasets.push_back(dataset_of(one));
+  }
+  EXPECT_EQ(cells(lines(folder_ / "run" / "run.csv")[0]), run_headings);
+  EXPECT_EQ(cells(lines(folder_ / "run" / "probes.csv")[0]), probe_headings);
+  std::vector<std::string> stored = RunFile(folder_ / "run" / "run.h5").datasets();
+  std::ranges::sort(datasets);
+  std::ranges::sort(stored);
+  EXPECT_EQ(stored, datasets);
+  EXPECT_EQ(std::set<std::string>(datasets.begin(), datasets.end()).size(), datasets.size());
+}
+
+TEST_F(RunRecorderTest, EveryObservableReadsBackBitForBit) {
+  sinew::testing::BeamOptions options;
+  options.probes = true;
+  options.gravity = {0.0, 0.0, -9.81};
+  options.step.integrator = mechanics::Integrator::bdf2;
+  sim::Simulation simulation(beam(options));
+  simulation.command(0, pull(0.004));
+  RunRecorder recorder(sim::Observables(simulation), settings());
+  sim::Observables list(simulation);
+  std::vector<std::vector<std::vector<double>>> seen;  // of each frame, of each observable
+  const auto look = [&] {
+    list.refresh();
+    seen.emplace_back();
+    for (std::size_t k = 0; k < list.list().size(); ++k) {
+      const auto numbers = list.read(k);
+      seen.back().emplace_back(numbers.begin(), numbers.end());
+    }
+  };
+  look();
+  // More frames than fit into one chunk of a small series.
+  for (int i = 0; i < 700; ++i) {
+    simulation.step();
+    recorder.after_step();
+    look();
+    if (i == 300) recorder.finish();
+  }
+  recorder.finish();
+  const RunFile run(folder_ / "run" / "run.h5");
+  ASSERT_EQ(run.frames(), 701);
+  for (std::size_t k = 0; k < list.list().size(); ++k) {
+    const std::string dataset = dataset_of(list.list()[k]);
+    if (dataset.empty()) continue;
+    const std::vector<double> all = run.series(dataset);
+    auto at = all.begin();
+    for (std::size_t frame = 0; frame < seen.size(); ++frame) {
+      for (const double number : seen[frame][k]) {
+        ASSERT_NE(at, all.end());
+        EXPECT_TRUE(*at == number || (std::isnan(*at) && std::isnan(number)))
+            << dataset << " at " << frame;
+        ++at;
+      }
+    }
+    EXPECT_EQ(at, all.end()) << dataset;
+  }
+}
+
+TEST_F(RunRecorderTest, CommandsAreRecordedAsTheyWereGiven) {
+  sim::Simulation simulation(beam());
+  simulation.command(0, {sim::CommandKind::motion, sim::Signal::ramp({0.0, 0.004, 0.01, 0.03})});
+  simulation.command(1, sinew::testing::tension(0.3));
+  RunRecorder recorder(sim::Observables(simulation), settings());
+  for (int i = 0; i < 6; ++i) {
+    if (i == 3) simulation.command(1, pull(0.001));
+    simulation.step();
+    recorder.after_step();
+  }
+  recorder.finish();
+  const RunFile run(folder_ / "run" / "run.h5");
+  EXPECT_EQ(run.format_version(), 3);
+  EXPECT_EQ(run.lacks(), "");
+  const std::vector<double> ramp = run.actuator("cable_0", "motion_command");
+  for (std::size_t i = 0; i < ramp.size(); ++i) {
+    const double part = std::clamp((0.01 * static_cast<double>(i) - 0.01) / 0.03, 0.0, 1.0);
+    EXPECT_DOUBLE_EQ(ramp[i], 0.004 * part) << i;
+  }
+  const std::vector<double> tension = run.actuator("cable_1", "effort_command"),
+                            motion = run.actuator("cable_1", "motion_command");
+  for (std::size_t i = 0; i < tension.size(); ++i) {
+    EXPECT_EQ(std::isnan(tension[i]), i > 3) << i;
+    EXPECT_EQ(std::isnan(motion[i]), i <= 3) << i;
+  }
+  EXPECT_EQ(tension[2], 0.3);
+  EXPECT_EQ(motion[5], 0.001);
+}
+
+TEST_F(RunRecorderTest, OlderRecordingsAreReadAndSayWhatTheyLack) {
+  sim::Simulation simulation(beam());
+  testing::OlderRun older(folder_ / "old.h5", simulation, "sinew: 1\n");
+  older.write();
+  simulation.command(0, pull(0.004));
+  for (int i = 0; i < 3; ++i) {
+    simulation.step();
+    older.write();
+  }
+  older.finish();
+  const RunFile run(folder_ / "old.h5");
+  EXPECT_EQ(run.format_version(), 2);
+  EXPECT_EQ(run.lacks(),
+            "recorded without commands, energies and resultants of contacts (format 2)");
+  ASSERT_EQ(run.frames(), 4);
+  EXPECT_EQ(run.actuator("cable_0", "effort").back(), simulation.actuator(0).effort);
+  EXPECT_EQ(run.positions("beam", 3), simulation.fem_body(0).positions());
+  EXPECT_EQ(Vector3(run.effector("tip").row(3)), simulation.effector_value(0));
+  EXPECT_FALSE(run.has("/actuators/cable_0/motion_command"));
+  try {
+    run.actuator("cable_0", "motion_command");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::missing_key);
+    EXPECT_NE(std::string(error.what()).find("recorded without commands"), std::string::npos);
+  }
+}
+
+TEST_F(RunRecorderTest, FormatsThatAreNotKnownAreRefused) {
+  for (const std::int64_t version : {kOldestRunFormatVersion - 1, kRunFormatVersion + 1}) {
+    Hdf5Writer file(folder_ / "other.h5");
+    file.attribute("/", "format", std::string_view("sinew-run"));
+    file.attribute("/", "format_version", version);
+    file.flush();
+    EXPECT_EQ(kind_of([&] { RunFile(folder_ / "other.h5"); }), ErrorKind::unsupported_version);
+  }
 }
 
 TEST_F(RunRecorderTest, EveryOtherStepAndNoStates) {
@@ -251,7 +413,8 @@ TEST_F(RunRecorderTest, EveryOtherStepAndNoStates) {
   EXPECT_FALSE(run.has_states());
   EXPECT_EQ(kind_of([&] { run.positions("beam", 0); }), ErrorKind::missing_key);
   sparse.every = 0;
-  EXPECT_EQ(kind_of([&] { RunRecorder(simulation, nullptr, sparse); }), ErrorKind::out_of_range);
+  EXPECT_EQ(kind_of([&] { RunRecorder(sim::Observables(simulation), sparse); }),
+            ErrorKind::out_of_range);
 }
 
 TEST_F(RunRecorderTest, DynamicsRecordVelocities) {
@@ -289,21 +452,22 @@ TEST_F(RunRecorderTest, WhatCannotBeWrittenReplacesNothing) {
   const std::string table = text(run / "run.csv");
   fs::remove(run / "scene.yaml");
   fs::create_directory(run / "scene.yaml");  // in the way
-  EXPECT_EQ(kind_of([&] { RunRecorder(simulation, nullptr, settings()); }),
+  EXPECT_EQ(kind_of([&] { RunRecorder(sim::Observables(simulation), settings()); }),
             ErrorKind::file_unwritable);
   EXPECT_EQ(text(run / "run.csv"), table);
   EXPECT_EQ(RunFile(run / "run.h5").frames(), 3);
   std::ofstream(folder_ / "file") << "x";
   RecordSettings wrong = settings();
   wrong.folder = folder_ / "file";
-  EXPECT_EQ(kind_of([&] { RunRecorder(simulation, nullptr, wrong); }), ErrorKind::file_unwritable);
+  EXPECT_EQ(kind_of([&] { RunRecorder(sim::Observables(simulation), wrong); }),
+            ErrorKind::file_unwritable);
 }
 
 TEST_F(RunRecorderTest, AKilledRunIsReadable) {
   const pid_t child = fork();
   if (child == 0) {
     sim::Simulation simulation(beam());
-    RunRecorder recorder(simulation, nullptr, settings());
+    RunRecorder recorder(sim::Observables(simulation), settings());
     for (int i = 0; i < 40; ++i) {
       simulation.step();
       recorder.after_step();

@@ -70,8 +70,8 @@ TEST(LiveSource, ShowsAnewWhenAFieldIsChosen) {
 
 TEST(LiveSource, ShowsFieldsAndProbesAsTheyAreMeasured) {
   const scene::Robot same = robot();
-  const Description description = describe(same);
   RobotState state(same);
+  const Description& description = state.description();
   for (int k = 0; k < 3; ++k) {
     state.command({"up", "tension", 1.0 + k});
     state.step();

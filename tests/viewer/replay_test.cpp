@@ -1,11 +1,23 @@
 // A moment of a recorded run is shown as it was: angles of arms, drives, integrators that keep
 // more.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <future>
+#include <string>
+#include <thread>
+
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
-#include "sinew/pcc/arm_body.hpp"
+#include "sinew/record/run_layout.hpp"
+#include "sinew/record/run_recorder.hpp"
 
+#include "record/older_run.hpp"
 #include "robot_fixture.hpp"
+#include "viewer/replay_source.hpp"
 #include "viewer/robot_state.hpp"
 
 namespace sinew::viewer {
@@ -27,20 +39,42 @@ effectors:
   tip: {body: arm, point: 0 0 -280 mm}
 )";
 
+// All that run.h5 keeps of the present moment.
 RecordedState moment(RobotState& state) {
-  const sim::Simulation& simulation = state.simulation();
   RecordedState recorded;
-  for (const auto& body : simulation.world().bodies()) {
-    recorded.positions.push_back(body->positions());
-    const auto* arm = dynamic_cast<const pcc::ArmBody*>(body.get());
-    recorded.coordinates.push_back(arm == nullptr ? VectorX() : arm->coordinates());
+  sim::Observables& list = state.observables();
+  list.refresh();
+  for (std::size_t k = 0; k < list.list().size(); ++k) {
+    if (record::dataset_of(list.list()[k]).empty()) continue;
+    const std::span<const double> numbers = list.read(k);
+    recorded.values.push_back({k, {numbers.begin(), numbers.end()}});
   }
-  for (std::size_t i = 0; i < simulation.model().actuators().size(); ++i) {
-    recorded.efforts.push_back(simulation.actuator(static_cast<int>(i)).effort);
-    recorded.motions.push_back(simulation.actuator(static_cast<int>(i)).motion);
-  }
-  recorded.step = simulation.steps();
+  recorded.step = state.simulation().steps();
   return recorded;
+}
+
+// A recorded observable.
+std::vector<double>& numbers_of(RecordedState& recorded, RobotState& state, const char* name) {
+  const std::size_t index = state.observables().find(name);
+  return std::ranges::find(recorded.values, index, &RecordedState::Value::observable)->numbers;
+}
+
+double signal(const RobotState& state, const Frame& frame, std::string_view key) {
+  const auto& list = state.description().signals;
+  const auto found = std::ranges::find(list, key, &SignalInfo::key);
+  return frame.signals.at(static_cast<std::size_t>(found - list.begin()));
+}
+
+// Of everything but the computation's times.
+void expect_same_signals(const RobotState& state, const Frame& was, const Frame& seen) {
+  const auto& list = state.description().signals;
+  ASSERT_EQ(was.signals.size(), list.size());
+  ASSERT_EQ(seen.signals.size(), list.size());
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    if (list[k].group == "time") continue;
+    const double a = was.signals[k], b = seen.signals[k];
+    EXPECT_TRUE(a == b || (std::isnan(a) && std::isnan(b))) << list[k].key << " " << a << " " << b;
+  }
 }
 
 RobotState state_of(const char* text) {
@@ -58,9 +92,9 @@ TEST(Replay, ShowsAnArmAsItWas) {
   EXPECT_EQ(was->effectors, seen->effectors);
   EXPECT_EQ(was->cables, seen->cables);
   EXPECT_EQ(was->step, seen->step);
-  // Efforts, then motions, of both actuators.
-  for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(was->signals[k], seen->signals[k]) << k;
-  EXPECT_EQ(was->signals[1], 1.0);
+  expect_same_signals(run, *was, *seen);
+  EXPECT_EQ(signal(replay, *seen, "pull.tension"), 1.0);
+  EXPECT_EQ(signal(replay, *seen, "bend.torque_command"), 0.05);
 }
 
 constexpr const char* kFall = R"(sinew: 1
@@ -87,38 +121,120 @@ contacts:
     friction: 0
 )";
 
-RecordedState moment_with_contacts(RobotState& state) {
-  RecordedState recorded = moment(state);
-  for (int c = 0; c < 2; ++c) recorded.contacts.push_back(state.simulation().contact_moment(c));
-  return recorded;
-}
-
 TEST(Replay, ShowsContactsAsTheyWere) {
   RobotState run = state_of(kFall), replay = state_of(kFall);
   for (int i = 0; i < 30; ++i) run.step();
-  replay.show(moment_with_contacts(run));
+  replay.show(moment(run));
   const auto was = run.frame({}, 1.0), seen = replay.frame({}, 1.0);
   ASSERT_EQ(was->contacts.size(), 2U);
   ASSERT_EQ(was->contacts[0].size(), 7U * (1U + 9U));
   EXPECT_EQ(was->contacts, seen->contacts);
-  const auto& list = run.description().signals;
-  bool touches = false;
-  for (std::size_t k = 0; k < list.size(); ++k) {
-    if (!list[k].key.starts_with("floor.") && !list[k].key.starts_with("roof.")) continue;
-    EXPECT_EQ(was->signals[k], seen->signals[k]) << list[k].key;
-    touches |= list[k].key == "floor.normal_force" && was->signals[k] > 0.0;
-  }
-  EXPECT_TRUE(touches);
+  expect_same_signals(run, *was, *seen);
+  EXPECT_GT(signal(replay, *seen, "floor.normal_force"), 0.0);
   EXPECT_NEAR(was->contacts[0][2], 0.002 * 30 * 0.002 / 0.1, 1e-9);  // the floor has risen
-  RecordedState short_of = moment_with_contacts(run);
-  short_of.contacts[0].points.pop_back();
+  RecordedState short_of = moment(run);
+  numbers_of(short_of, run, "floor.points.gap").pop_back();
   EXPECT_THROW(replay.show(short_of), Error);
+  RecordedState unknown = moment(run);
+  numbers_of(unknown, run, "floor.points.state")[0] = 3.0;
+  EXPECT_THROW(replay.show(unknown), Error);
+}
+
+TEST(Replay, ShowsWhatAControllerDid) {
+  const scene::Robot same = robot();
+  RobotState run(same, std::make_shared<sim::Simulation>(same.model),
+                 scene_controller(same, "hold"));
+  RobotState replay(same);
+  for (int i = 0; i < 20; ++i) run.step();
+  replay.show(moment(run));
+  const auto was = run.frame({}, 1.0), seen = replay.frame({}, 1.0);
+  expect_same_signals(run, *was, *seen);
+  EXPECT_EQ(was->targets, seen->targets);
+  EXPECT_GT(signal(replay, *seen, "up.tension_command"), 0.0);
+  const Json command = Json::parse(replay.status_members())["commands"]["up"];
+  EXPECT_EQ(command["quantity"], "tension");
+  EXPECT_EQ(command["value"], run.simulation().actuator(0).effort);
+}
+
+class Recorded : public ::testing::Test {
+ protected:
+  Recorded() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "sinew_replay_XXXXXX").string();
+    folder_ = mkdtemp(pattern.data());
+  }
+  ~Recorded() override { std::filesystem::remove_all(folder_); }
+  std::filesystem::path folder_;
+};
+
+TEST_F(Recorded, RunsAreShownWithWhatWasRecorded) {
+  const scene::Robot same = robot();
+  sim::Simulation simulation(same.model);
+  simulation.command(0, {sim::CommandKind::motion, sim::Signal::ramp({0.0, 0.002, 0.0, 0.05})});
+  record::RecordSettings settings;
+  settings.folder = folder_;
+  settings.scene = kScene;
+  sim::Observables list(simulation);
+  std::vector<double> energy;
+  {
+    record::RunRecorder recorder(sim::Observables(simulation), settings);
+    for (int k = 0; k < 10; ++k) {
+      simulation.step();
+      recorder.after_step();
+      list.refresh();
+      energy.push_back(list.number(list.find("strain_energy")));
+    }
+  }
+  ReplaySource source(folder_, false, 1.0);
+  EXPECT_EQ(source.lacks(), "");
+  EXPECT_TRUE(Json::parse(source.description().scene)["notices"].empty());
+  Watcher watcher;
+  source.start(watcher);
+  std::promise<void> done;
+  source.submit(Seek{3}, [&](const Outcome&) { done.set_value(); });
+  done.get_future().wait();
+  while (watcher.frame()->step != 3) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  const auto frame = watcher.frame();
+  const auto& signals = source.description().signals;
+  const auto number = [&](std::string_view key) {
+    const auto found = std::ranges::find(signals, key, &SignalInfo::key);
+    return frame->signals.at(static_cast<std::size_t>(found - signals.begin()));
+  };
+  EXPECT_DOUBLE_EQ(number("up.displacement_command"), 0.002 * 0.03 / 0.05);
+  EXPECT_EQ(number("strain_energy"), energy[2]);
+  source.stop();
+}
+
+TEST_F(Recorded, OlderRunsAreShownAndSayWhatTheyLack) {
+  std::string text = kScene;
+  text.erase(text.find("probes:"), text.find("controllers:") - text.find("probes:"));
+  const scene::Robot same = scene::build(scene::parse_scene_text(text, "test", {}));
+  sim::Simulation simulation(same.model);
+  {
+    record::testing::OlderRun older(folder_ / "run.h5", simulation, text);
+    simulation.command(0, {sim::CommandKind::effort, sim::Signal::constant(0.5)});
+    for (int k = 0; k < 5; ++k) {
+      simulation.step();
+      older.write();
+    }
+    older.finish();
+  }
+  ReplaySource source(folder_ / "run.h5", false, 1.0);
+  EXPECT_NE(source.lacks().find("recorded without commands"), std::string::npos);
+  const Json notices = Json::parse(source.description().scene)["notices"];
+  ASSERT_EQ(notices.size(), 1U);
+  EXPECT_NE(notices[0]["text"].get<std::string>().find("without commands"), std::string::npos);
+  Watcher watcher;
+  source.start(watcher);
+  while (!watcher.frame()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  const auto frame = watcher.frame();
+  EXPECT_GT(frame->signals[0], 0.0) << "the tension of the first frame";
+  source.stop();
 }
 
 TEST(Replay, AnotherArmsAnglesAreRefused) {
   RobotState run = state_of(kArm), replay = state_of(kArm);
   RecordedState recorded = moment(run);
-  recorded.coordinates[0] = VectorX::Zero(3);
+  numbers_of(recorded, run, "arm.coordinates").push_back(0.0);
   EXPECT_THROW(replay.show(recorded), Error);
 }
 

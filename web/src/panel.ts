@@ -253,17 +253,15 @@ export class Panel {
   /** Shows what the actuators do where a controller drives them, or what they are told. */
   follow(scene: Scene, signals: Float64Array): void {
     this.show(signals);
-    scene.actuators.forEach((actuator, k) => {
+    scene.actuators.forEach((actuator) => {
       const row = this.rows.get(actuator.name);
       const command = this.status?.source.commands?.[actuator.name];
       if (!row || !command || document.activeElement === row.slider || document.activeElement === row.number) return;
-      const motion = row.quantity.name === 'displacement' || row.quantity.name === 'volume_growth';
-      const input = ['gas', 'liquid', 'power', 'phase'].includes(row.quantity.name);
-      const offset = motion ? scene.actuators.length : 0;
+      const done = scene.signals.findIndex((s) => s.key === `${actuator.name}.${row.quantity.name}`);
       const told = command.quantity === row.quantity.name && !command.owned;
-      if (input && !told) return;  // no signal tells what it is
+      if (done < 0 && !told) return;  // no signal tells what a drive was fed
       const [scale] = SHOWN[row.quantity.unit] ?? [1];
-      const text = String(Number((scale * (told ? command.value : signals[offset + k])).toPrecision(4)));
+      const text = String(Number((scale * (told ? command.value : signals[done])).toPrecision(4)));
       if (row.number.value !== text) row.number.value = row.slider.value = text;
     });
   }

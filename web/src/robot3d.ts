@@ -148,7 +148,7 @@ export class Robot3d {
     this.cables = [];
     this.cableCounts = [];
     this.cableSignals = [];
-    scene.actuators.forEach((actuator, index) => {
+    scene.actuators.forEach((actuator) => {
       if (actuator.points === 0) return;
       // Drawn after the body and through it.
       const material = new LineMaterial({color: TAUT, linewidth: 3, depthTest: false, transparent: true, opacity: 0.85,
@@ -158,7 +158,7 @@ export class Robot3d {
       line.renderOrder = 1;
       this.cables.push(line);
       this.cableCounts.push(actuator.points);
-      this.cableSignals.push(index);
+      this.cableSignals.push(scene.signals.findIndex((s) => s.key === `${actuator.name}.tension`));
       this.robot.add(line);
     });
     const ball = new SphereGeometry(0.014 * this.size, 20, 14);

@@ -402,18 +402,15 @@ void InverseController::load_memory(std::span<const double> memory) {
   visit_memory(*this, [&](double& number) { number = *from++; });
 }
 
+// Of the present placement, which may be a restored one whose rows no step has formed yet.
 double InverseController::error(int task) const {
   const Task& asked = settings_.tasks.at(static_cast<std::size_t>(task));
   const auto& effector = simulation_.model().effector(asked.effector);
   const auto& placement = simulation_.world().placement();
-  VectorX goal(effector.row_count());
+  VectorX goal(effector.row_count()), now(effector.row_count());
   effector.target_delta(placement, asked.target.at(simulation_.time()), goal);
-  double sum = 0.0;
-  for (int k = 0; k < effector.row_count(); ++k) {
-    const double gap = goal[k] - simulation_.world().delta()[effector.first_row() + k];
-    sum += gap * gap;
-  }
-  return std::sqrt(sum);
+  effector.target_delta(placement, effector.value(placement), now);
+  return (goal - now).norm();
 }
 
 double InverseController::error() const {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstring>
+#include <functional>
 
 #include <fmt/format.h>
 
@@ -12,6 +13,12 @@ namespace {
 constexpr std::uint64_t kMostNumbers = std::uint64_t{1} << 31;  // in one read
 constexpr std::size_t kMostText = std::size_t{16} << 20;
 constexpr hsize_t kMostNames = 1u << 20;
+
+// The dataset must be stored as it is read: a damaged type must not grow on conversion.
+bool is_stored_as(hid_t dataset, H5T_class_t kind) {
+  const Hdf5Handle type(H5Dget_type(dataset), H5Tclose);
+  return H5Tget_class(type.id()) == kind && H5Tget_size(type.id()) <= 8;
+}
 
 }  // namespace
 
@@ -58,6 +65,31 @@ std::vector<std::string> Hdf5Reader::names(const std::string& group) const {
       found.emplace_back(name.data());
     }
   }
+  return found;
+}
+
+std::vector<std::string> Hdf5Reader::datasets(const std::string& group) const {
+  constexpr int kDeepest = 8;  // a damaged file may hold a group that is within itself
+  std::vector<std::string> found;
+  const std::function<void(const std::string&, int)> look = [&](const std::string& folder,
+                                                                int depth) {
+    if (depth > kDeepest) fail(fmt::format("{} is too deep", folder));
+    for (const std::string& name : names(folder)) {
+      const std::string path = (folder == "/" ? "" : folder) + "/" + name;
+      const QuietHdf5 quiet;
+      const Hdf5Handle object(H5Oopen(file_.id(), path.c_str(), H5P_DEFAULT), H5Oclose);
+      const H5I_type_t kind = object.valid() ? H5Iget_type(object.id()) : H5I_BADID;
+      if (kind == H5I_GROUP) {
+        look(path, depth + 1);
+      } else if (kind != H5I_DATASET) {
+        fail(fmt::format("{} cannot be opened", path));
+      } else if (is_stored_as(object.id(), H5T_FLOAT) || is_stored_as(object.id(), H5T_INTEGER)) {
+        found.push_back(path);
+      }
+      if (found.size() > kMostNames) fail("it has too many datasets");
+    }
+  };
+  look(group, 0);
   return found;
 }
 
@@ -145,16 +177,6 @@ std::string Hdf5Reader::text(const std::string& dataset) const {
   }
   return text.substr(0, text.find('\0'));
 }
-
-namespace {
-
-// The dataset must be stored as it is read: a damaged type must not grow on conversion.
-bool is_stored_as(hid_t dataset, H5T_class_t kind) {
-  const Hdf5Handle type(H5Dget_type(dataset), H5Tclose);
-  return H5Tget_class(type.id()) == kind && H5Tget_size(type.id()) <= 8;
-}
-
-}  // namespace
 
 std::vector<double> Hdf5Reader::numbers(const std::string& dataset, const Shape& expected) const {
   if (shape(dataset) != expected) fail(fmt::format("{} has another size than it must", dataset));

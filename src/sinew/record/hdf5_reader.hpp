@@ -25,6 +25,10 @@ class Hdf5Reader {
   /// Names in a group; none when there is no such group. @param group its path.
   std::vector<std::string> names(const std::string& group) const;
 
+  /// Paths of all datasets below a group that are no text, in the order of their names.
+  /// @param group its path; "/" is the file.
+  std::vector<std::string> datasets(const std::string& group) const;
+
   /// Attributes of the file. @param name of the attribute. Text is empty when there is none.
   std::string text_attribute(const std::string& name) const;
   std::int64_t integer_attribute(const std::string& name) const;

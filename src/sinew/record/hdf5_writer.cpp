@@ -53,10 +53,11 @@ Hdf5Handle text_type(std::string_view text) {
 struct Hdf5Writer::File {
   struct Series {
     Hdf5Handle dataset;
-    Hdf5Handle frame;                // the memory space of one frame
-    Extent extent;                   // (frames, shape...)
+    Extent extent;                   // (frames, shape...) that HDF5 has
+    std::uint64_t frames = 0;        // with those that wait
     std::uint64_t size = 0;          // numbers in a frame
     std::uint64_t chunk_frames = 1;  // frames in a chunk
+    std::vector<double> waiting;     // frames that HDF5 has not yet, less than a chunk
     std::uint64_t chunk_bytes() const { return chunk_frames * size * sizeof(double); }
   };
 
@@ -112,6 +113,34 @@ struct Hdf5Writer::File {
     pending = 0;
     reserved = end();
     if (::ftruncate(descriptor(), static_cast<off_t>(reserved)) != 0) reserved = 0;
+  }
+  // Room for everything that was appended so far was taken when it was.
+  void require_room() {
+    const int problem = reserve();
+    if (problem == 0) return;
+    for (Series& one : series) write_waiting(one);
+    H5Fflush(file.id(), H5F_SCOPE_LOCAL);
+    fail("series", std::strerror(problem));
+  }
+  void write_frames(Series& target, std::uint64_t frames, std::span<const double> values) {
+    Extent begin(target.extent.size(), 0), count = target.extent;
+    begin[0] = target.extent[0];
+    count[0] = frames;
+    target.extent[0] += frames;
+    expect(H5Dset_extent(target.dataset.id(), target.extent.data()) >= 0, "series");
+    const Hdf5Handle space(H5Dget_space(target.dataset.id()), H5Sclose);
+    const Hdf5Handle memory(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr),
+                            H5Sclose);
+    const bool written = H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, begin.data(), nullptr,
+                                             count.data(), nullptr) >= 0 &&
+                         H5Dwrite(target.dataset.id(), H5T_NATIVE_DOUBLE, memory.id(), space.id(),
+                                  H5P_DEFAULT, values.data()) >= 0;
+    expect(written, "series");
+  }
+  void write_waiting(Series& target) {
+    if (target.waiting.empty()) return;
+    write_frames(target, target.frames - target.extent[0], target.waiting);
+    target.waiting.clear();
   }
   void write(const std::string& name, const Extent& shape, hid_t stored, hid_t type,
              const void* values) {
@@ -235,10 +264,9 @@ int Hdf5Writer::series(const std::string& path, const std::vector<std::uint64_t>
   made.dataset = Hdf5Handle(H5Dcreate2(file_->file.id(), path.c_str(), H5T_IEEE_F64LE, space.id(),
                                        file_->links.id(), creation.id(), H5P_DEFAULT),
                             H5Dclose);
-  Extent one = made.extent;
-  one[0] = 1;
-  made.frame = Hdf5Handle(H5Screate_simple(rank, one.data(), nullptr), H5Sclose);
-  file_->expect(made.dataset.valid() && made.frame.valid(), path);
+  file_->expect(made.dataset.valid(), path);
+  // Most of what a small frame costs is HDF5's call: a chunk of them is handed over at once.
+  if (made.chunk_frames > 1 && made.size > 0) made.waiting.reserve(made.chunk_frames * made.size);
   file_->series.push_back(std::move(made));
   return static_cast<int>(file_->series.size()) - 1;
 }
@@ -248,29 +276,21 @@ void Hdf5Writer::append(int series, std::span<const double> values) {
   File::Series& target = file_->series.at(static_cast<std::size_t>(series));
   if (file_->abandoned) file_->fail("series", "an earlier frame could not be written");
   file_->expect(values.size() == target.size, "series");
-  if (target.extent[0] % target.chunk_frames == 0) file_->pending += target.chunk_bytes();
-  if (const int problem = file_->reserve(); problem != 0) {
-    // The frames so far still fit: room for them was taken when they were written.
-    H5Fflush(file_->file.id(), H5F_SCOPE_LOCAL);
-    file_->fail("series", std::strerror(problem));
+  if (target.frames % target.chunk_frames == 0) {
+    file_->pending += target.chunk_bytes();
+    file_->require_room();
   }
-  Extent begin(target.extent.size(), 0), count = target.extent;
-  begin[0] = target.extent[0]++;
-  count[0] = 1;
-  file_->expect(H5Dset_extent(target.dataset.id(), target.extent.data()) >= 0, "series");
-  const Hdf5Handle space(H5Dget_space(target.dataset.id()), H5Sclose);
-  const bool written = H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, begin.data(), nullptr,
-                                           count.data(), nullptr) >= 0 &&
-                       H5Dwrite(target.dataset.id(), H5T_NATIVE_DOUBLE, target.frame.id(),
-                                space.id(), H5P_DEFAULT, values.data()) >= 0;
-  file_->expect(written, "series");
+  ++target.frames;
+  if (target.waiting.capacity() == 0) return file_->write_frames(target, 1, values);
+  target.waiting.insert(target.waiting.end(), values.begin(), values.end());
+  if (target.frames - target.extent[0] == target.chunk_frames) file_->write_waiting(target);
 }
 
 void Hdf5Writer::flush() {
   if (file_->abandoned) return;
   const QuietHdf5 quiet;
-  const int problem = file_->reserve();
-  if (problem != 0) file_->fail("flush", std::strerror(problem));
+  file_->require_room();
+  for (File::Series& one : file_->series) file_->write_waiting(one);
   file_->expect(H5Fflush(file_->file.id(), H5F_SCOPE_LOCAL) >= 0, "flush");
   file_->release();
   file_->flushed = std::chrono::steady_clock::now();

@@ -51,7 +51,7 @@ class Hdf5Writer {
   /// @param path from the root. @param shape of one frame; empty for a number.
   /// @return its number.
   int series(const std::string& path, const std::vector<std::uint64_t>& shape);
-  /// Adds a frame to a series.
+  /// Adds a frame to a series. Small ones wait in memory for others, at most until flush().
   /// @param series its number. @param values row by row.
   void append(int series, std::span<const double> values);
 

@@ -14,8 +14,6 @@ namespace sinew::record {
 namespace {
 
 constexpr std::uint64_t kMostFrames = std::uint64_t{1} << 28;
-constexpr std::array kContactSeries = {"pose",         "position",       "gap",  "normal",
-                                       "normal_force", "friction_force", "state"};
 
 void require_known(const std::string& file, const std::vector<std::string>& known,
                    std::string_view name) {
@@ -34,12 +32,12 @@ struct RunFile::Content {
       throw Error(ErrorKind::unknown_format, {.file = file.path()},
                   "this HDF5 file does not hold a run", "give a run.h5 that 'sinew run' wrote");
     }
-    const std::int64_t format = file.integer_attribute("format_version");
-    if (format != kRunFormatVersion) {
-      throw Error(
-          ErrorKind::unsupported_version, {.file = file.path()},
-          fmt::format("the record has format {}, this program reads {}", format, kRunFormatVersion),
-          "use the version of Sinew that wrote it, or record the run again");
+    format = file.integer_attribute("format_version");
+    if (format < kOldestRunFormatVersion || format > kRunFormatVersion) {
+      throw Error(ErrorKind::unsupported_version, {.file = file.path()},
+                  fmt::format("the record has format {}, this program reads {} to {}", format,
+                              kOldestRunFormatVersion, kRunFormatVersion),
+                  "use the version of Sinew that wrote it, or record the run again");
     }
     version = file.text_attribute("sinew_version");
     name = file.text_attribute("scene_name");
@@ -51,45 +49,33 @@ struct RunFile::Content {
     if (file.has("/probes")) probes = file.names("/probes");
     if (file.has("/contacts")) contacts = file.names("/contacts");
     states = file.has("/positions");
+    datasets = file.datasets("/");
+    std::erase_if(datasets, [](const std::string& one) { return one.starts_with("/mesh/"); });
     frames = complete_frames();
     times = file.rows("/time", 0, frames);
   }
 
   // A run that was cut off may have ended between two series of a frame.
   std::uint64_t complete_frames() const {
-    std::vector<std::string> series = {"/time"};
-    for (const std::string& body : bodies) {
-      if (states) series.push_back("/positions/" + body);
-    }
-    for (const std::string& actuator : actuators) {
-      series.push_back("/actuators/" + actuator + "/effort");
-      series.push_back("/actuators/" + actuator + "/motion");
-    }
-    for (const std::string& effector : effectors) {
-      series.push_back("/effectors/" + effector + "/position");
-    }
-    for (const std::string& probe : probes) series.push_back("/probes/" + probe + "/value");
-    for (const std::string& contact : contacts) {
-      for (const char* what : kContactSeries) {
-        series.push_back("/contacts/" + contact + "/" + what);
-      }
-    }
     std::uint64_t least = kMostFrames;
-    for (const std::string& one : series) {
-      const Hdf5Reader::Shape shape = file.shape(one);
-      if (shape.empty()) file.fail(fmt::format("{} is no series", one));
+    const auto count = [&](const std::string& series) {
+      const Hdf5Reader::Shape shape = file.shape(series);
+      if (shape.empty()) file.fail(fmt::format("{} is no series", series));
       least = std::min(least, shape[0]);
-    }
+    };
+    count("/time");
+    for (const std::string& series : datasets) count(series);
     return least;
   }
 
   Hdf5Reader file;
   std::string version, name, scene;
+  std::int64_t format = 0;
   double time_step = 0.0;
   std::uint64_t frames = 0;
   bool states = false;
   std::vector<double> times;
-  std::vector<std::string> bodies, actuators, effectors, probes, contacts;
+  std::vector<std::string> bodies, actuators, effectors, probes, contacts, datasets;
 };
 
 RunFile::RunFile(const std::filesystem::path& path) : content_(std::make_unique<Content>(path)) {}
@@ -103,6 +89,14 @@ bool RunFile::is_hdf5(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   file.read(start.data(), start.size());
   return file.good() && std::string_view(start.data(), start.size()) == signature;
+}
+
+std::int64_t RunFile::format_version() const { return content_->format; }
+
+std::string RunFile::lacks() const {
+  if (content_->format == kRunFormatVersion) return {};
+  return fmt::format("recorded without commands, energies and resultants of contacts (format {})",
+                     content_->format);
 }
 
 const std::string& RunFile::sinew_version() const { return content_->version; }
@@ -171,19 +165,6 @@ void RunFile::require_frame(std::int64_t frame) const {
   }
 }
 
-VectorX RunFile::coordinates(std::string_view body, std::int64_t frame) const {
-  require_state(body, frame);
-  const Hdf5Reader& file = content_->file;
-  const std::string name = "/coordinates/" + std::string(body);
-  if (!file.has("/coordinates") || !file.has(name)) return {};
-  const auto shape = file.shape(name);
-  if (shape.size() != 2 || shape[0] < static_cast<std::uint64_t>(frames())) {
-    file.fail(name + " holds no coordinates");
-  }
-  const std::vector<double> numbers = file.rows(name, static_cast<std::uint64_t>(frame), 1);
-  return Eigen::Map<const VectorX>(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
-}
-
 Points RunFile::positions(std::string_view body, std::int64_t frame) const {
   require_state(body, frame);
   const Hdf5Reader& file = content_->file;
@@ -198,8 +179,25 @@ std::vector<double> RunFile::actuator(std::string_view actuator, std::string_vie
   const Hdf5Reader& file = content_->file;
   require_known(file.path(), content_->actuators, actuator);
   const std::string name = fmt::format("/actuators/{}/{}", actuator, what);
+  if (what.ends_with("_command") && content_->format < kRunFormatVersion) {
+    throw Error(ErrorKind::missing_key, {.file = file.path()}, "the run was " + lacks(),
+                "run its scene again: sinew run");
+  }
   if (file.shape(name).size() != 1) file.fail(name + " is no series of numbers");
-  return file.rows(name, 0, content_->frames);
+  return series(name);
+}
+
+const std::vector<std::string>& RunFile::datasets() const { return content_->datasets; }
+
+bool RunFile::has(const std::string& dataset) const { return content_->file.has(dataset); }
+
+std::vector<double> RunFile::series(const std::string& dataset) const {
+  return content_->file.rows(dataset, 0, content_->frames);
+}
+
+std::vector<double> RunFile::numbers(const std::string& dataset, std::int64_t frame) const {
+  require_frame(frame);
+  return content_->file.rows(dataset, static_cast<std::uint64_t>(frame), 1);
 }
 
 Points RunFile::effector(std::string_view effector) const {
@@ -216,40 +214,6 @@ std::vector<double> RunFile::probe(std::string_view probe) const {
   const Hdf5Reader& file = content_->file;
   require_known(file.path(), content_->probes, probe);
   return file.rows(fmt::format("/probes/{}/value", probe), 0, content_->frames);
-}
-
-sim::ContactMoment RunFile::contact(std::string_view contact, std::int64_t frame) const {
-  const Hdf5Reader& file = content_->file;
-  require_known(file.path(), content_->contacts, contact);
-  require_frame(frame);
-  const auto count = file.shape(fmt::format("/contacts/{}/gap", contact)).back();
-  const auto read = [&](const char* what, std::uint64_t size) {
-    const std::string name = fmt::format("/contacts/{}/{}", contact, what);
-    std::vector<double> numbers = file.rows(name, static_cast<std::uint64_t>(frame), 1);
-    if (numbers.size() != size) file.fail(name + " has another number of points than its gaps");
-    return numbers;
-  };
-  using Pose = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
-  sim::ContactMoment moment;
-  moment.pose.affine() = Eigen::Map<const Pose>(read("pose", 12).data());
-  const std::vector<double> position = read("position", 3 * count), gap = read("gap", count),
-                            normal = read("normal", 3 * count), force = read("normal_force", count),
-                            friction = read("friction_force", 3 * count),
-                            state = read("state", count);
-  moment.points.resize(count);
-  for (std::size_t k = 0; k < count; ++k) {
-    sim::ContactPoint& point = moment.points[k];
-    point.position = Eigen::Map<const Vector3>(&position[3 * k]);
-    point.normal = Eigen::Map<const Vector3>(&normal[3 * k]);
-    point.friction_force = Eigen::Map<const Vector3>(&friction[3 * k]);
-    point.gap = gap[k];
-    point.normal_force = force[k];
-    if (state[k] != 0.0 && state[k] != 1.0 && state[k] != 2.0) {
-      file.fail(fmt::format("a point of contact {} has the state {}", contact, state[k]));
-    }
-    point.state = static_cast<qp::ContactState>(static_cast<int>(state[k]));
-  }
-  return moment;
 }
 
 }  // namespace sinew::record

@@ -11,7 +11,6 @@
 
 #include "sinew/core/types.hpp"
 #include "sinew/mesh/mesh.hpp"
-#include "sinew/sim/contact_state.hpp"
 
 namespace sinew::record {
 
@@ -31,6 +30,10 @@ class RunFile {
   /// @param path any file.
   static bool is_hdf5(const std::filesystem::path& path);
 
+  std::int64_t format_version() const;  ///< kOldestRunFormatVersion to kRunFormatVersion
+  /// What a recording of an older format has not: "recorded without commands, ... (format 2)";
+  /// empty for the present format.
+  std::string lacks() const;
   const std::string& sinew_version() const;
   const std::string& scene_name() const;
   const std::string& scene() const;          ///< YAML, as resolved
@@ -53,12 +56,10 @@ class RunFile {
   /// missing-key when states were not recorded, malformed-file.
   /// @param body its name. @param frame from 0.
   Points positions(std::string_view body, std::int64_t frame) const;
-  /// Coordinates (n,) rad, extensions in m, of a constant-curvature arm; empty of other bodies.
-  /// Throws as positions().
-  /// @param body its name. @param frame from 0.
-  VectorX coordinates(std::string_view body, std::int64_t frame) const;
-  /// (frames,) of "long_0/effort" or "long_0/motion"; throws as positions().
-  /// @param actuator its name. @param what "effort" (N) or "motion" (m).
+  /// (frames,) of "long_0/effort" and its like. Throws as positions(), and Error(missing-key) for
+  /// commands of a recording that lacks them.
+  /// @param actuator its name. @param what "effort" (N), "motion" (m), "effort_command",
+  ///   "motion_command" or "input_command".
   std::vector<double> actuator(std::string_view actuator, std::string_view what) const;
   /// (frames, 3) m, or rad for orientations; throws as positions().
   /// @param effector its name.
@@ -66,9 +67,17 @@ class RunFile {
   /// (frames,) m or rad, (frames 3,) m of a point, of a line its length; throws as positions().
   /// @param probe its name.
   std::vector<double> probe(std::string_view probe) const;
-  /// The points of a contact and the pose of its surface in a frame; throws as positions().
-  /// @param contact its name. @param frame from 0.
-  sim::ContactMoment contact(std::string_view contact, std::int64_t frame) const;
+  /// Paths of all series, in the order of their names: "/actuators/long_0/effort".
+  const std::vector<std::string>& datasets() const;
+  /// Whether a dataset was recorded. @param dataset its path, see record::dataset_of().
+  bool has(const std::string& dataset) const;
+  /// (frames, shape...) numbers of a dataset, one frame after the other. Throws Error:
+  /// malformed-file, also when there is none.
+  /// @param dataset its path.
+  std::vector<double> series(const std::string& dataset) const;
+  /// (shape...) numbers of one frame; throws as series(), and Error(out-of-range).
+  /// @param dataset its path. @param frame from 0.
+  std::vector<double> numbers(const std::string& dataset, std::int64_t frame) const;
 
  private:
   void require_frame(std::int64_t frame) const;

@@ -9,8 +9,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "sinew/constraint/contact.hpp"
-#include "sinew/constraint/probe.hpp"
 #include "sinew/core/build_info.hpp"
 #include "sinew/fem/element_fields.hpp"
 #include "sinew/fem/element_states.hpp"
@@ -18,6 +16,7 @@
 #include "sinew/mesh/write.hpp"
 #include "sinew/record/run_states.hpp"
 #include "sinew/record/run_table.hpp"
+#include "sinew/sim/row_efforts.hpp"
 
 namespace sinew::record {
 
@@ -121,15 +120,8 @@ class ParaviewSeries {
   }
 
   void add_contact_force(const fem::FemBody& body, mesh::VtuFields& fields) {
-    const sim::Model& model = simulation_.model();
-    std::vector<double> efforts(simulation_.efforts().size(), 0.0);
-    for (std::size_t c = 0; c < model.contacts().size(); ++c) {
-      const constraint::Contact& contact = model.contact(static_cast<int>(c));
-      std::copy_n(simulation_.efforts().begin() + contact.first_row(), contact.row_count(),
-                  efforts.begin() + contact.first_row());
-    }
     Points forces = Points::Zero(body.positions().rows(), 3);
-    body.add_row_forces(efforts, forces);
+    body.add_row_forces(sim::split_efforts(simulation_).contact, forces);
     fields.points.push_back({"contact_force", 3, {forces.data(), forces.data() + forces.size()}});
   }
 
@@ -161,19 +153,23 @@ RecordSettings checked(RecordSettings settings) {
 }  // namespace
 
 struct RunRecorder::Files {
-  Files(sim::Simulation& run, const inverse::InverseController* controller, RecordSettings what)
-      : simulation(run),
+  Files(sim::Observables list, RecordSettings what)
+      : observables(std::move(list)),
         settings(checked(std::move(what))),
-        states(settings.folder / "run.h5", run, controller, settings),
-        table(settings.folder / "run.csv", run, controller) {
+        states(settings.folder / "run.h5", observables, settings),
+        table(settings.folder / "run.csv", observables, TableKind::run) {
     mesh::write_file(settings.folder / "scene.yaml", settings.scene);
     remove_series(settings.folder);
     const fs::path probes_file = settings.folder / "probes.csv";
     fs::remove(probes_file);  // an older run's would be taken for this one's
-    if (!run.model().probes().empty()) probes.emplace(probes_file, run);
-    if (settings.vtk) series.emplace(settings.folder, run);
+    const sim::Simulation& simulation = observables.simulation();
+    if (!simulation.model().probes().empty()) {
+      probes.emplace(probes_file, observables, TableKind::probes);
+    }
+    if (settings.vtk) series.emplace(settings.folder, simulation);
   }
   void write() {
+    observables.refresh();
     table.write();
     if (probes) probes->write();
     states.write();
@@ -181,18 +177,17 @@ struct RunRecorder::Files {
     ++frames;
   }
 
-  sim::Simulation& simulation;
+  sim::Observables observables;
   RecordSettings settings;
   RunStates states;  // first: a file that another program holds open stops everything
   RunTable table;
-  std::optional<ProbeTable> probes;
+  std::optional<RunTable> probes;
   std::optional<ParaviewSeries> series;
   std::int64_t frames = 0;
 };
 
-RunRecorder::RunRecorder(sim::Simulation& simulation, const inverse::InverseController* controller,
-                         RecordSettings settings)
-    : files_(std::make_unique<Files>(simulation, controller, std::move(settings))) {
+RunRecorder::RunRecorder(sim::Observables observables, RecordSettings settings)
+    : files_(std::make_unique<Files>(std::move(observables), std::move(settings))) {
   files_->write();
   files_->states.flush();
 }
@@ -200,7 +195,7 @@ RunRecorder::RunRecorder(sim::Simulation& simulation, const inverse::InverseCont
 RunRecorder::~RunRecorder() = default;
 
 void RunRecorder::after_step() {
-  if (files_->simulation.steps() % files_->settings.every == 0) files_->write();
+  if (files_->observables.simulation().steps() % files_->settings.every == 0) files_->write();
 }
 
 void RunRecorder::finish() { files_->states.flush(); }

@@ -8,13 +8,14 @@
 #include <memory>
 #include <string>
 
-#include "sinew/inverse/inverse_controller.hpp"
-#include "sinew/sim/simulation.hpp"
+#include "sinew/sim/observables.hpp"
 
 namespace sinew::record {
 
-/// Version of the layout of run.h5; readers refuse others.
-inline constexpr std::int64_t kRunFormatVersion = 2;
+/// Version of the layout of run.h5.
+inline constexpr std::int64_t kRunFormatVersion = 3;
+/// The oldest version that is still read: it has no commands, energies and resultants of contacts.
+inline constexpr std::int64_t kOldestRunFormatVersion = 2;
 
 /// What to record and where.
 struct RecordSettings {
@@ -31,40 +32,48 @@ struct RecordSettings {
 /// can be written. After every frame run.csv is whole; run.h5 is at least twice a second, so that
 /// what was recorded outlives a crash.
 ///
-/// run.csv, one row a frame, units in the headings: `time [s]`; per actuator `long_0.tension [N]`
-/// and `long_0.displacement [m]`; per effector `tip.x [m]` and so on (`rx [rad]` for orientations);
-/// per task of the controller `tip.target_x [m]` ... and `tip.error [m]`; then the ledger
-/// `strain_energy`, `kinetic_energy`, `gravity_energy` (from the height at rest), `actuator_work`,
-/// `outside_work` (loads and forces set from Python), `dissipation` (damping, drag, friction of
-/// cables) and `numerical_loss` (work less dissipation less what the energies gained: the
-/// integrator's, and what moved a base), all `[J]`; `residual [N]`,
-/// `relative_residual`, `iterations`, `scale` (of the motion, < 1 when a step was cut back),
-/// `smallest_volume_ratio`, and the statuses `law` and `controller` in words. The row at t = 0 is
-/// the start, before any step, whose statuses are `start`.
+/// What is recorded is what sim::Observables lists, timing aside: numbers in run.csv and run.h5,
+/// probes' in probes.csv and run.h5, arrays of bodies and contact points in run.h5 alone; see
+/// record/run_layout.hpp for names and paths.
+///
+/// run.csv, one row a frame, units in the headings: `time [s]`; per actuator `long_0.tension [N]`,
+/// `long_0.displacement [m]` and what is commanded of either, `long_0.tension_command [N]` and
+/// `long_0.displacement_command [m]` (nan where the other is commanded; a controller commands
+/// efforts), or `air.gas_command [m^3]` of a drive's input; per effector `tip.x [m]` and so on
+/// (`rx [rad]` for orientations); per contact its resultants; per effector that a controller steers
+/// `tip.target_x [m]` ... and `tip.error [m]`; then the ledger `strain_energy`, `kinetic_energy`,
+/// `gravity_energy` (from the height at rest), `actuator_work`, `outside_work` (loads and forces
+/// set from Python), `dissipation` (damping, drag, friction of cables) and `numerical_loss` (work
+/// less dissipation less what the energies gained: the integrator's, and what moved a base), all
+/// `[J]`; `residual [N]`, `relative_residual`, `iterations`, `substeps`, `scale` (of the motion, <
+/// 1 when a step was cut back), `smallest_volume_ratio`, and in words `status` and, where the list
+/// has one, `controller`. The row at t = 0 is the start, before any step, whose statuses are
+/// `start`.
 ///
 /// probes.csv, where the scene has probes, one row a frame: `time [s]`, then per probe `bend [rad]`
 /// (a bend, a distance, an extent), `tip.x [m]` ... (a point), or `axis.length [m]` and
 /// `axis.0.x [m]`, `axis.0.y [m]` ... of every point of a line.
 ///
 /// run.h5: /time (frames,) s; /positions/BODY (frames, n, 3) m; /velocities/BODY in dynamics, m/s;
-/// /actuators/NAME/{effort,motion} (frames,); /effectors/NAME/position (frames, 3);
-/// /probes/NAME/value (frames,), of a point (frames, 3), of a line its length, with
+/// /coordinates/BODY (frames, c) of an arm; /actuators/NAME/{effort,motion} (frames,) and
+/// /actuators/NAME/{effort_command,motion_command,input_command}; /effectors/NAME/position (frames,
+/// 3); /probes/NAME/value (frames,), of a point (frames, 3), of a line its length, with
 /// /probes/NAME/positions (frames, k, 3); with states, of n points that may touch a surface,
 /// /contacts/NAME/{gap,normal_force,state} (frames, n) (state: 0 open, 1 stick, 2 slip),
 /// /contacts/NAME/{position,normal,friction_force} (frames, n, 3) and the surface's
 /// /contacts/NAME/pose (frames, 3, 4), rotation and translation from where the scene puts it;
-/// /controller/EFFECTOR/{target,error}; /report/{residual,...} (frames,);
+/// /contact_resultants/NAME/{force,normal_force,...}; /controller/EFFECTOR/{target,error};
+/// /energy/{strain_energy,...}; /report/{residual,...,status} (frames,);
 /// /mesh/BODY/{nodes,tetrahedra,hexahedra}; /scene, YAML text. Attributes of the file: format,
 /// format_version, sinew_version, scene_name, time_step, record_every, fingerprint; every series
-/// has its `unit`.
+/// has its `unit`, the `name` of its observable and, where it stands for words, their `meaning`.
 class RunRecorder {
  public:
   /// Creates the files and records the present state as the first frame.
-  /// @param simulation must outlive the recorder. @param controller attached to it, or null; its
-  /// targets and errors are recorded. @param settings see there.
+  /// @param observables of a simulation that outlives the recorder; with those of a controller, see
+  /// inverse::add_controller(). @param settings see there.
   /// Throws Error(out-of-range) for `every` < 1, Error(file-unwritable), Error(recording-failed).
-  RunRecorder(sim::Simulation& simulation, const inverse::InverseController* controller,
-              RecordSettings settings);
+  RunRecorder(sim::Observables observables, RecordSettings settings);
   /// Closes all files; call finish() first to hear of a full disk.
   ~RunRecorder();
   RunRecorder(const RunRecorder&) = delete;

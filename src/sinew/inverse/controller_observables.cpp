@@ -1,0 +1,130 @@
+#include "sinew/inverse/controller_observables.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "sinew/constraint/effector.hpp"
+
+namespace sinew::inverse {
+
+namespace {
+
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+constexpr int kNone = -2, kStart = -1;  // the status without a controller, and before any step
+
+sim::Observable of_effector(const std::string& name, const char* quantity, const char* unit) {
+  return {fmt::format("{}.{}", name, quantity),
+          unit,
+          {},
+          sim::ObservableKind::controller,
+          name,
+          quantity,
+          {},
+          {}};
+}
+
+void add_effector(sim::Observables& list, const AttachedController& controller, int effector) {
+  const sim::Simulation& simulation = list.simulation();
+  const sim::Model& model = simulation.model();
+  const std::string& name = model.effectors()[static_cast<std::size_t>(effector)].name;
+  const char* unit = model.effector(effector).unit();
+  const char* turn = std::string_view(unit) == "rad" ? "r" : "";
+  sim::Observable target = of_effector(name, "target", unit),
+                  error = of_effector(name, "error", unit);
+  target.shape = {3};
+  for (const char* axis : {"x", "y", "z"}) {
+    target.components.push_back(fmt::format("{}.target_{}{}", name, turn, axis));
+  }
+  error.components = {error.name};
+  list.add({std::move(target), std::move(error)},
+           [&simulation, controller, effector](std::span<double> to) {
+             const InverseController* present = controller();
+             const int task = task_of(present, effector);
+             std::ranges::fill(to, kNothing);
+             if (task < 0) return;
+             const Target& asked = present->settings().tasks[static_cast<std::size_t>(task)].target;
+             const Vector3 place = asked.at(simulation.time());
+             std::copy_n(place.data(), 3, to.begin());
+             to[3] = present->error(task);
+           });
+}
+
+void add_largest_error(sim::Observables& list, const AttachedController& controller,
+                       std::span<const int> effectors) {
+  const sim::Model& model = list.simulation().model();
+  const bool turns = std::ranges::all_of(effectors, [&](int effector) {
+    return std::string_view(model.effector(effector).unit()) == "rad";
+  });
+  list.add({{"error",
+             turns ? "rad" : "m",
+             {},
+             sim::ObservableKind::controller,
+             {},
+             "error",
+             {"error"},
+             {}}},
+           [controller](std::span<double> to) {
+             const InverseController* present = controller();
+             to[0] = present == nullptr ? kNothing : present->error();
+           });
+}
+
+void add_status(sim::Observables& list, AttachedController controller) {
+  sim::Observable status{"controller",
+                         "",
+                         {},
+                         sim::ObservableKind::status,
+                         {},
+                         "controller",
+                         {"controller"},
+                         {{kNone, "none"}, {kStart, "start"}}};
+  for (int code = 0; code <= static_cast<int>(InverseStatus::limits_conflict); ++code) {
+    status.words.push_back({code, inverse_status_name(static_cast<InverseStatus>(code))});
+  }
+  const sim::Simulation& simulation = list.simulation();
+  list.add({std::move(status)},
+           [&simulation, controller = std::move(controller)](std::span<double> to) {
+             const InverseController* present = controller();
+             to[0] = present == nullptr       ? kNone
+                     : simulation.steps() > 0 ? static_cast<int>(present->status())
+                                              : kStart;
+           });
+}
+
+}  // namespace
+
+int task_of(const InverseController* controller, int effector) {
+  if (controller == nullptr) return -1;
+  const auto& tasks = controller->settings().tasks;
+  const auto found = std::ranges::find(tasks, effector, &Task::effector);
+  return found == tasks.end() ? -1 : static_cast<int>(found - tasks.begin());
+}
+
+std::vector<int> steered_effectors(const InverseController* controller) {
+  std::vector<int> effectors;
+  if (controller == nullptr) return effectors;
+  for (const Task& task : controller->settings().tasks) {
+    if (std::ranges::find(effectors, task.effector) == effectors.end()) {
+      effectors.push_back(task.effector);
+    }
+  }
+  return effectors;
+}
+
+void add_controller(sim::Observables& list, AttachedController controller,
+                    std::span<const int> effectors) {
+  for (const int effector : effectors) add_effector(list, controller, effector);
+  if (!effectors.empty()) add_largest_error(list, controller, effectors);
+  add_status(list, std::move(controller));
+}
+
+void add_controller(sim::Observables& list, const InverseController* controller) {
+  add_controller(
+      list, [controller] { return controller; }, steered_effectors(controller));
+}
+
+}  // namespace sinew::inverse

@@ -1,0 +1,37 @@
+/// @file
+/// What can be observed of an inverse controller: where effectors are asked to be, and how far off
+/// they are.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "sinew/inverse/inverse_controller.hpp"
+#include "sinew/sim/observables.hpp"
+
+namespace sinew::inverse {
+
+/// The controller that is attached now; null while none is.
+using AttachedController = std::function<const InverseController*()>;
+
+/// The task of an effector, as a position in settings().tasks; -1: it has none.
+/// @param controller may be null. @param effector of Model::effectors().
+int task_of(const InverseController* controller, int effector);
+
+/// Effectors that a controller steers, in the order of its tasks.
+/// @param controller may be null.
+std::vector<int> steered_effectors(const InverseController* controller);
+
+/// Adds to the list, of every effector `NAME.target` (3,) and `NAME.error` in m or rad, NaN while
+/// nothing steers it; `error`, the largest of all tasks in m, in rad where all of them turn; and
+/// the status `controller` in words, "none" without a controller, "start" before the first step.
+/// @param list of the controller's simulation. @param controller is asked at every reading.
+/// @param effectors that it may steer.
+void add_controller(sim::Observables& list, AttachedController controller,
+                    std::span<const int> effectors);
+/// The same of a controller that stays as it is, and of the effectors that it steers.
+/// @param controller outlives the list; null: the status alone is added.
+void add_controller(sim::Observables& list, const InverseController* controller);
+
+}  // namespace sinew::inverse

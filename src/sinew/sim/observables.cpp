@@ -1,0 +1,114 @@
+#include "sinew/sim/observables.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace sinew::sim {
+
+void list_standard_observables(Observables& list);  // standard_observables.cpp
+
+std::size_t Observable::size() const {
+  return std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies<>());
+}
+
+std::string_view Observable::word(double number) const {
+  const auto found = std::ranges::find_if(
+      words, [&](const StatusWord& one) { return static_cast<double>(one.code) == number; });
+  return found == words.end() ? std::string_view() : found->word;
+}
+
+Observables::Observables(Simulation& simulation) : simulation_(&simulation) {
+  list_standard_observables(*this);
+}
+
+void Observables::add(std::vector<Observable> parts, Fill fill) {
+  std::size_t size = 0;
+  for (const Observable& part : parts) size += part.size();
+  add_view(std::move(parts),
+           [numbers = std::vector<double>(size), fill = std::move(fill)]() mutable {
+             fill(numbers);
+             return std::span<const double>(numbers);
+           });
+}
+
+void Observables::add_view(std::vector<Observable> parts, Read read) {
+  sources_.push_back({std::move(read), {}, false});
+  Entry entry{sources_.size() - 1, 0, {}};
+  for (Observable& part : parts) {
+    const auto behind = std::ranges::upper_bound(list_, part.kind, {}, &Observable::kind);
+    const auto at = behind - list_.begin();
+    const std::size_t size = part.size();
+    list_.insert(behind, std::move(part));
+    entries_.insert(entries_.begin() + at, entry);
+    entry.offset += size;
+  }
+}
+
+std::size_t Observables::find(std::string_view name, const Place& asked) const {
+  const auto found = std::ranges::find(list_, name, &Observable::name);
+  if (found != list_.end()) return static_cast<std::size_t>(found - list_.begin());
+  std::vector<std::string> known;
+  known.reserve(list_.size());
+  for (const Observable& one : list_) known.push_back(one.name);
+  const std::string nearest = nearest_word(name, known);
+  throw Error(ErrorKind::unknown_name, asked, fmt::format("there is no '{}' to observe", name),
+              nearest.empty() ? fmt::format("one of {}", fmt::join(known, ", "))
+                              : fmt::format("did you mean '{}'?", nearest));
+}
+
+void Observables::refresh() {
+  for (Source& source : sources_) source.fresh = false;
+}
+
+std::span<const double> Observables::read(std::size_t index) {
+  const Entry& entry = entries_[index];
+  if (!entry.held.empty()) return entry.held;
+  Source& source = sources_[entry.source];
+  if (!source.fresh) {
+    source.numbers = source.read();
+    source.fresh = true;
+  }
+  return source.numbers.subspan(entry.offset, list_[index].size());
+}
+
+void Observables::hold(std::size_t index, std::span<const double> numbers) {
+  if (numbers.size() != list_.at(index).size()) {
+    throw Error(
+        ErrorKind::wrong_length, {.item = list_[index].name},
+        fmt::format("{} numbers were given, it has {}", numbers.size(), list_[index].size()),
+        "give numbers of the same robot");
+  }
+  entries_[index].held.assign(numbers.begin(), numbers.end());
+}
+
+void Observables::release() {
+  for (Entry& entry : entries_) entry.held.clear();
+}
+
+double commanded(const Simulation& simulation, int actuator, CommandKind kind) {
+  const ActuatorState& state = simulation.actuator(actuator);
+  const bool owned = state.owner != nullptr;
+  if (kind != (owned ? CommandKind::effort : state.command.kind)) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  return owned ? state.effort : state.command.signal.value(simulation.time());
+}
+
+std::vector<CommandKind> command_kinds(const ActuatorModel& actuator) {
+  std::vector<CommandKind> kinds;
+  for (const CommandKind kind : {CommandKind::effort, CommandKind::motion, CommandKind::input}) {
+    if (actuator.kind_of(actuator.quantity(kind).name) == kind) kinds.push_back(kind);
+  }
+  return kinds;
+}
+
+std::string command_name(const ActuatorModel& actuator, CommandKind kind) {
+  return fmt::format("{}.{}_command", actuator.name, actuator.quantity(kind).name);
+}
+
+}  // namespace sinew::sim

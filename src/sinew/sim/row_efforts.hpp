@@ -1,0 +1,21 @@
+/// @file
+/// Which of the rows' efforts are the robot's own, and which are those of contacts.
+#pragma once
+
+#include <vector>
+
+#include "sinew/sim/simulation.hpp"
+
+namespace sinew::sim {
+
+/// Efforts of all rows of H, N, N m or Pa, each zero in the rows of the other kind.
+struct RowEfforts {
+  std::vector<double> actuation;  ///< (rows,) actuators, and the friction of cables at their guides
+  std::vector<double> contact;    ///< (rows,) forces of contacts
+};
+
+/// Splits the present efforts.
+/// @param simulation whose efforts.
+RowEfforts split_efforts(const Simulation& simulation);
+
+}  // namespace sinew::sim

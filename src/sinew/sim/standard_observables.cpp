@@ -1,0 +1,328 @@
+// What every simulation lets one observe: see the constructor of Observables.
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "sinew/constraint/contact.hpp"
+#include "sinew/constraint/effector.hpp"
+#include "sinew/constraint/probe.hpp"
+#include "sinew/mechanics/body.hpp"
+#include "sinew/pcc/arm_body.hpp"
+#include "sinew/sim/observables.hpp"
+
+namespace sinew::sim {
+
+namespace {
+
+constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
+
+// Takes numbers in the order in which observables list them.
+class Numbers {
+ public:
+  explicit Numbers(std::span<double> numbers) : next_(numbers.begin()) {}
+  void put(double number) { *next_++ = number; }
+  void put(const Vector3& vector) { next_ = std::copy_n(vector.data(), 3, next_); }
+
+ private:
+  std::span<double>::iterator next_;
+};
+
+// An observable whose name is that of its owner and its quantity.
+Observable of(ObservableKind kind, const std::string& owner, const std::string& quantity,
+              const char* unit, std::vector<std::size_t> shape = {}) {
+  Observable one{
+      fmt::format("{}.{}", owner, quantity), unit, std::move(shape), kind, owner, quantity, {}, {}};
+  if (one.shape.empty()) one.components = {one.name};
+  return one;
+}
+
+// One of the whole robot.
+Observable number(ObservableKind kind, const char* name, const char* unit = "") {
+  return {name, unit, {}, kind, {}, name, {name}, {}};
+}
+
+void add_bodies(Observables& list) {
+  const Simulation& simulation = list.simulation();
+  const bool moving = simulation.model().step().integrator != mechanics::Integrator::quasi_static;
+  for (const auto& owned : simulation.world().bodies()) {
+    const mechanics::Body& body = *owned;
+    const std::string& name = body.model().name();
+    const std::vector<std::size_t> shape = {static_cast<std::size_t>(body.positions().rows()), 3};
+    const auto add = [&](const char* quantity, const char* unit, auto numbers,
+                         const std::vector<std::size_t>& extent) {
+      list.add_view({of(ObservableKind::body, name, quantity, unit, extent)}, [&body, numbers] {
+        const auto& array = numbers(body);
+        return std::span<const double>(array.data(), static_cast<std::size_t>(array.size()));
+      });
+    };
+    add(
+        "positions", "m", [](const mechanics::Body& b) -> const Points& { return b.positions(); },
+        shape);
+    if (moving) {
+      add(
+          "velocities", "m/s",
+          [](const mechanics::Body& b) -> const Points& { return b.velocities(); }, shape);
+    }
+    if (const auto* arm = dynamic_cast<const pcc::ArmBody*>(&body)) {
+      add("coordinates", "rad",
+          [arm](const mechanics::Body&) -> const VectorX& { return arm->coordinates(); },
+          {static_cast<std::size_t>(arm->coordinates().size())});
+    }
+  }
+}
+
+void add_actuators(Observables& list) {
+  const Simulation& simulation = list.simulation();
+  const auto& actuators = simulation.model().actuators();
+  for (std::size_t i = 0; i < actuators.size(); ++i) {
+    const ActuatorModel& actuator = actuators[i];
+    std::vector<Observable> parts;
+    const auto add = [&](const QuantityName& quantity, const char* suffix, const char* role) {
+      parts.push_back(of(ObservableKind::actuator, actuator.name,
+                         fmt::format("{}{}", quantity.name, suffix), quantity.unit));
+      parts.back().quantity = fmt::format("{}{}", role, suffix);
+    };
+    const auto role = [](CommandKind kind) {
+      return kind == CommandKind::effort   ? "effort"
+             : kind == CommandKind::motion ? "motion"
+                                           : "input";
+    };
+    add(actuator.effort_name(), "", role(CommandKind::effort));
+    add(actuator.motion_name(), "", role(CommandKind::motion));
+    const std::vector<CommandKind> kinds = command_kinds(actuator);
+    for (const CommandKind kind : kinds) add(actuator.quantity(kind), "_command", role(kind));
+    list.add(std::move(parts), [&simulation, kinds, i](std::span<double> all) {
+      Numbers to(all);
+      const auto index = static_cast<int>(i);
+      to.put(simulation.actuator(index).effort);
+      to.put(simulation.actuator(index).motion);
+      for (const CommandKind kind : kinds) to.put(commanded(simulation, index, kind));
+    });
+  }
+}
+
+void add_effectors(Observables& list) {
+  const Simulation& simulation = list.simulation();
+  const Model& model = simulation.model();
+  for (std::size_t i = 0; i < model.effectors().size(); ++i) {
+    const auto index = static_cast<int>(i);
+    const std::string& name = model.effectors()[i].name;
+    const char* unit = model.effector(index).unit();
+    const bool turns = std::string_view(unit) == "rad";
+    Observable one = of(ObservableKind::effector, name, turns ? "rotation" : "position", unit, {3});
+    one.quantity = "position";
+    for (const char* axis : kAxes) {
+      one.components.push_back(fmt::format("{}.{}{}", name, turns ? "r" : "", axis));
+    }
+    list.add({std::move(one)}, [&simulation, index](std::span<double> to) {
+      Numbers(to).put(simulation.effector_value(index));
+    });
+  }
+}
+
+void add_probes(Observables& list) {
+  const Simulation& simulation = list.simulation();
+  for (const auto& owned : simulation.model().probes()) {
+    const constraint::Probe& probe = *owned;
+    const bool line = dynamic_cast<const constraint::LineProbe*>(&probe) != nullptr;
+    const auto& numbers = probe.components();
+    const std::size_t first = line ? 1 : numbers.size();
+    const auto part = [&](const char* quantity, std::vector<std::size_t> shape, std::size_t from,
+                          std::size_t to) {
+      Observable one =
+          of(ObservableKind::probe, probe.name(), quantity, numbers[from].unit, std::move(shape));
+      one.components.clear();
+      for (std::size_t k = from; k < to; ++k) {
+        const std::string& own = numbers[k].name;
+        one.components.push_back(own.empty() ? probe.name()
+                                             : fmt::format("{}.{}", probe.name(), own));
+      }
+      return one;
+    };
+    std::vector<Observable> parts;
+    parts.push_back(part("value",
+                         first == 1 ? std::vector<std::size_t>{} : std::vector<std::size_t>{first},
+                         0, first));
+    if (line) parts.push_back(part("positions", {probe.mark_count(), 3}, 1, numbers.size()));
+    list.add(std::move(parts), [&simulation, &probe](std::span<double> to) {
+      probe.measure(simulation.world().placement(), to);
+    });
+  }
+}
+
+void put_contact(const Simulation& simulation, int index, std::span<double> all) {
+  const std::size_t n = simulation.model().contact(index).points().size();
+  using Pose = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
+  const auto part = [&all](std::size_t size) {
+    Numbers numbers(all.first(size));
+    all = all.subspan(size);
+    return numbers;
+  };
+  const ContactModel& contact = simulation.model().contacts()[static_cast<std::size_t>(index)];
+  Eigen::Map<Pose>(all.data()) = contact.pose(simulation.time()).affine();
+  part(12);
+  Numbers position = part(3 * n), gap = part(n), normal = part(3 * n), normal_force = part(n),
+          friction_force = part(3 * n), state = part(n), sums = part(8);
+  ContactSum sum;
+  for (std::size_t k = 0; k < n; ++k) {
+    const ContactPoint point = simulation.contact_point(index, k);
+    position.put(point.position);
+    gap.put(point.gap);
+    normal.put(point.normal);
+    normal_force.put(point.normal_force);
+    friction_force.put(point.friction_force);
+    state.put(static_cast<double>(point.state));
+    sum.add(point);
+  }
+  sums.put(sum.force);
+  sums.put(sum.normal_force);
+  sums.put(sum.friction_force);
+  sums.put(sum.smallest_gap);
+  sums.put(sum.sticking);
+  sums.put(sum.slipping);
+}
+
+void add_contacts(Observables& list) {
+  const Simulation& simulation = list.simulation();
+  const Model& model = simulation.model();
+  for (std::size_t c = 0; c < model.contacts().size(); ++c) {
+    const auto index = static_cast<int>(c);
+    const std::string& name = model.contacts()[c].name;
+    const std::size_t n = model.contact(index).points().size();
+    std::vector<Observable> parts;
+    const auto add_point = [&](const char* quantity, const char* unit,
+                               std::vector<std::size_t> shape) {
+      parts.push_back(of(ObservableKind::contact_point, name, quantity, unit, std::move(shape)));
+      parts.back().name = fmt::format("{}.points.{}", name, quantity);
+    };
+    const auto add_sum = [&](const char* quantity, const char* unit) {
+      parts.push_back(of(ObservableKind::contact, name, quantity, unit));
+    };
+    add_point("pose", "1, m", {3, 4});
+    parts.back().name = name + ".pose";
+    add_point("position", "m", {n, 3});
+    add_point("gap", "m", {n});
+    add_point("normal", "", {n, 3});
+    add_point("normal_force", "N", {n});
+    add_point("friction_force", "N", {n, 3});
+    add_point("state", "", {n});
+    for (const auto state :
+         {qp::ContactState::open, qp::ContactState::stick, qp::ContactState::slip}) {
+      parts.back().words.push_back({static_cast<int>(state), qp::contact_state_name(state)});
+    }
+    add_sum("force", "N");
+    parts.back().shape = {3};
+    parts.back().components.clear();
+    for (const char* axis : kAxes) {
+      parts.back().components.push_back(fmt::format("{}.force_{}", name, axis));
+    }
+    add_sum("normal_force", "N");
+    add_sum("friction_force", "N");
+    add_sum("gap", "m");
+    add_sum("sticking", "");
+    add_sum("slipping", "");
+    list.add(std::move(parts),
+             [&simulation, index](std::span<double> to) { put_contact(simulation, index, to); });
+  }
+}
+
+// Energies, work and losses since the first reading. What actuators and loads have put in since
+// then is in the bodies, dissipated, or lost by the integrator.
+class Ledger {
+ public:
+  explicit Ledger(Simulation& simulation) : simulation_(simulation) {}
+
+  void operator()(std::span<double> all) {
+    Numbers to(all);
+    const auto [strain, kinetic, gravity] = simulation_.energies();
+    const Balance now{strain + kinetic + gravity, simulation_.actuator_work(),
+                      simulation_.outside_work(), simulation_.dissipation()};
+    if (!first_) first_ = now;
+    const double work = now.work - first_->work, outside = now.outside - first_->outside,
+                 dissipation = now.dissipation - first_->dissipation;
+    for (const double energy : {strain, kinetic, gravity}) to.put(energy);
+    to.put(work);
+    to.put(outside);
+    to.put(dissipation);
+    to.put(work + outside - dissipation - (now.energy - first_->energy));
+  }
+
+ private:
+  struct Balance {
+    double energy, work, outside, dissipation;  // J
+  };
+  Simulation& simulation_;
+  std::optional<Balance> first_;
+};
+
+void add_energies(Observables& list) {
+  std::vector<Observable> parts;
+  for (const char* name : {"strain_energy", "kinetic_energy", "gravity_energy"}) {
+    parts.push_back(number(ObservableKind::energy, name, "J"));
+  }
+  for (const char* name : {"actuator_work", "outside_work", "dissipation", "numerical_loss"}) {
+    parts.push_back(number(ObservableKind::ledger, name, "J"));
+  }
+  list.add(std::move(parts), Ledger(list.simulation()));
+}
+
+constexpr int kStart = -1;  // the status before any step
+
+void add_report(Observables& list) {
+  const Simulation& simulation = list.simulation();
+  std::vector<Observable> parts = {number(ObservableKind::report, "residual", "N")};
+  for (const char* name :
+       {"relative_residual", "iterations", "substeps", "scale", "smallest_volume_ratio"}) {
+    parts.push_back(number(ObservableKind::report, name));
+  }
+  parts.push_back(number(ObservableKind::status, "status"));
+  parts.back().words = {{kStart, "start"}};
+  for (int code = 0; code <= static_cast<int>(StepStatus::gaining_energy); ++code) {
+    parts.back().words.push_back({code, step_status_name(static_cast<StepStatus>(code))});
+  }
+  list.add(std::move(parts), [&simulation](std::span<double> all) {
+    const StepReport& report = simulation.report();
+    Numbers to(all);
+    to.put(report.residual);
+    to.put(report.relative_residual);
+    to.put(report.iterations);
+    to.put(report.substeps);
+    to.put(report.scale);
+    to.put(report.smallest_volume_ratio);
+    to.put(simulation.steps() > 0 ? static_cast<int>(report.status) : kStart);
+  });
+}
+
+void add_timing(Observables& list) {
+  const Simulation& simulation = list.simulation();
+  std::vector<Observable> parts = {of(ObservableKind::timing, "time", "step", "s")};
+  for (const char* stage : kStageNames) {
+    parts.push_back(of(ObservableKind::timing, "time", stage, "s"));
+  }
+  list.add(std::move(parts), [&simulation](std::span<double> all) {
+    const StageTimes& times = simulation.report().times;
+    Numbers to(all);
+    to.put(times.total);
+    for (const double seconds : times.seconds) to.put(seconds);
+  });
+}
+
+}  // namespace
+
+void list_standard_observables(Observables& list) {
+  const Simulation& simulation = list.simulation();
+  list.add({number(ObservableKind::time, "time", "s")},
+           [&simulation](std::span<double> to) { to[0] = simulation.time(); });
+  add_bodies(list);
+  add_actuators(list);
+  add_effectors(list);
+  add_probes(list);
+  add_contacts(list);
+  add_energies(list);
+  add_report(list);
+  add_timing(list);
+}
+
+}  // namespace sinew::sim
