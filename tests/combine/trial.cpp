@@ -252,8 +252,7 @@ class Trial {
     sim::Observables theirs = copy.observables();
     for (std::size_t k = 0; k < seen.size(); ++k) {
       const sim::Observable& one = list.list()[k];
-      // Work since the first reading and the last step's report are no part of a state, and a
-      // controller measures its errors by rows that a copy forms in its first step.
+      // Work since the first reading and the last step's report are no part of a state.
       if (one.kind >= sim::ObservableKind::ledger) {
         continue;
       }

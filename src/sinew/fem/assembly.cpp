@@ -133,7 +133,7 @@ void Assembly::evaluate(const Points& positions, const AssemblyWeights& weights)
                 "give one row for every node of the mesh");
   }
   reserve(weights.tangent);
-  evaluate_elements(positions, weights.tangent);
+  evaluate_elements(positions, weights.tangent, weights.softened);
   gather(weights);
 }
 
@@ -161,7 +161,7 @@ void Assembly::pad(const Points& positions, double* to) {
   });
 }
 
-void Assembly::evaluate_elements(const Points& positions, Tangent tangent) {
+void Assembly::evaluate_elements(const Points& positions, Tangent tangent, bool softened) {
   Workspace& work = *work_;
   load_positions(positions);
   const SmallestRatio none{std::numeric_limits<double>::infinity(), -1};
@@ -181,7 +181,7 @@ void Assembly::evaluate_elements(const Points& positions, Tangent tangent) {
   if (work.started) solids.start = work.start_points.data();
   for (std::size_t g = 0; g < model_->solids().size(); ++g) {
     const SolidGroup& group = model_->solids()[g];
-    if (history_ != nullptr) solids.history = history_->of_step(g);
+    if (history_ != nullptr) solids.history = history_->of_step(g, softened);
     ratios += pool_->size();
     average_patches(group);
     pool_->for_range(group.batches(), 1, [&](int begin, int end, int thread) {

@@ -33,6 +33,8 @@ struct AssemblyWeights {
   Tangent tangent = Tangent::rotated;
   double stiffness = 1.0;
   double mass = 0.0;
+  /// Whether rubber that was stretched before is softer.
+  bool softened = true;
 
   bool operator==(const AssemblyWeights&) const = default;
 };
@@ -111,7 +113,7 @@ class Assembly {
   void load_positions(const Points& positions);
   void pad(const Points& positions, double* to);
   void find_smallest();
-  void evaluate_elements(const Points& positions, Tangent tangent);
+  void evaluate_elements(const Points& positions, Tangent tangent, bool softened);
   void average_patches(const SolidGroup& group);
   void spread_patches(const SolidGroup& group);
   void gather(const AssemblyWeights& weights);

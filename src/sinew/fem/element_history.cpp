@@ -80,10 +80,11 @@ const LaneRow* ElementHistory::peak(std::size_t group) const {
   return parts_[group].softens ? &state_[parts_[group].first_peak] : nullptr;
 }
 
-PointHistory ElementHistory::of_step(std::size_t group) const {
+PointHistory ElementHistory::of_step(std::size_t group, bool softened) const {
   const Part& part = parts_[group];
   const bool carries = part.relaxes && !relaxed_;
-  return {carries ? &carried_[part.first_carried] : nullptr, part.factor, peak(group)};
+  return {carries ? &carried_[part.first_carried] : nullptr, part.factor,
+          softened ? peak(group) : nullptr};
 }
 
 void ElementHistory::end_step(std::size_t group, int begin, int end, const double* points) {

@@ -45,7 +45,8 @@ class ElementHistory {
   void begin_step(double time_step);
   /// For forces of the step that begin_step() began: H, 1 + sum beta_k a_k, and W_m.
   /// @param group position among the body's.
-  PointHistory of_step(std::size_t group) const;
+  /// @param softened false: as if it had never been strained farther than now.
+  PointHistory of_step(std::size_t group, bool softened) const;
   /// For stresses outside of steps, as they stand. @param group position among the body's.
   /// @param overstress memory for sum beta_k h_k; must outlive the result.
   PointHistory present(std::size_t group, std::vector<LaneRow>& overstress) const;

@@ -124,7 +124,8 @@ Tangent element_tangent(mechanics::Tangent tangent) {
 }  // namespace
 
 // C = alpha M + beta K with the rotated K at the start of the step: positive semi-definite, so that
-// damping damps, and constant, so that Newton's derivative is exact.
+// damping damps, and constant, so that Newton's derivative is exact. Softening has no part in it:
+// where a step ends at the largest strain so far its slope jumps, and rounding would decide.
 void FemBody::evaluate_elements(const mechanics::LinearisationRequest& request) {
   const auto& weights = request.weights;
   const auto& damping = model_.settings().damping;
@@ -133,7 +134,7 @@ void FemBody::evaluate_elements(const mechanics::LinearisationRequest& request) 
   const AssemblyWeights wanted{element_tangent(request.tangent), 1.0, mass};
   active_->damped = rate > 0.0;
   if (active_->damped && first_linearisation_) {
-    active_->assembly.evaluate(positions_, {Tangent::rotated, 1.0, 0.0});
+    active_->assembly.evaluate(positions_, {Tangent::rotated, 1.0, 0.0, false});
     const auto matrix = active_->assembly.matrix();
     active_->start_stiffness.assign(matrix.begin(), matrix.end());
     active_->present.reset();

@@ -27,7 +27,7 @@ constexpr double kLater = 0.25;
 constexpr double kBack = 0.1;
 constexpr double kSmall = 1e-6;  // of the robot's size: a motion to measure with
 // Inertia at the start over that at which the softest direction would be neutral.
-constexpr double kStart = 2.0;
+constexpr double kFirstInertia = 2.0;
 
 mechanics::StepWeights overdamped(double sigma) {
   mechanics::StepWeights weights;
@@ -95,7 +95,7 @@ StaticSolver::Departure StaticSolver::leave(const Stability& stability, double d
     scale *= 0.5;
     disturbance *= 0.5;
   }
-  return relax(kStart * std::abs(curvature) / mass, kBack * disturbance);
+  return relax(kFirstInertia * std::abs(curvature) / mass, kBack * disturbance);
 }
 
 // From the last equilibrium on the way, along the motion that Newton would begin with.
@@ -117,7 +117,7 @@ bool StaticSolver::relax_from_here() {
   const double mass = mass_along(direction);
   if (!(mass > 0.0)) return false;
   left_.clear();
-  return relax(kStart * curvature / mass, 0.0) == Departure::arrived;
+  return relax(kFirstInertia * curvature / mass, 0.0) == Departure::arrived;
 }
 
 // @param sigma of the first step, 1/s^2. @param near m: nearer than this to what was left is back.

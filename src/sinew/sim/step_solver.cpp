@@ -17,7 +17,7 @@ namespace {
 constexpr int kMostStepHalvings = 10;
 // Of the robot's size: a point that is deeper in a surface after one linearisation, and is not
 // pushed out, is not there by rounding.
-constexpr double kDeepest = 1e-6;
+constexpr double kMaxDepth = 1e-6;
 // What quasi-static steps leave for the next one.
 constexpr Lag kLag{0.1, 1e-3};
 // Relative residuals above this are no equilibrium, whatever the loads: half of the forces of a
@@ -122,7 +122,7 @@ void Simulation::fail_law() {
 void Simulation::require_outside() {
   if (model_->contacts().empty()) return;
   const double depth = world_.deepest_free_point(effort_);
-  if (depth <= kDeepest * model_->size()) return;
+  if (depth <= kMaxDepth * model_->size()) return;
   fail(ErrorKind::not_converged,
        fmt::format("a point would be {:.3g} m inside a surface, and no contact force can move it",
                    depth),
