@@ -10,21 +10,23 @@ from suite.robots import own_trunk
 
 TITLE = "Inverse control beside a wall: targets reached by touching, and behind it"
 SETUP = """The trunk of examples/trunk with its eight cables, tensions of 0 to 20 N, at most 100 mm/s, and a
-plane 25 mm from its axis, which its tip touches when the trunk bends by about 10 mm. (i) 60 targets that are
+plane 25 mm from its axis, which its tip touches when the trunk bends by about 10 mm. (i) 40 targets that are
 reached by touching: tips of the trunk pulled by random tensions, ramped in 0.5 s and held for 0.5 s, of those
 that press on the wall with more than 50 mN. Each run starts from the rest shape, with the controller's own
 settings, and ends when the status says that the robot is on target or rests, or after 10 s. Without friction
 the target is an equilibrium of the robot and the wall; with mu = 0.3 it depends on the way there, and other
-efforts may hold the tip at the same place. (ii) 20 targets 3 to 10 mm behind what the wall lets the tip reach:
+efforts may hold the tip at the same place. (ii) 10 targets 3 to 10 mm behind what the wall lets the tip reach:
 the tip must rest. (iii) The circle of examples/trunk, whose far side lies behind the wall. In every run the deepest point in the
 wall is kept."""
 SOURCES = {"aim": "what the project asks of itself: 0.05 mm at rest, at most 5 % of the targets held by a local "
                   "optimum, no point in the wall"}
-COST = 30
+COST = 100
 LIMITS = {"tension": {"min": "0 N", "max": "20 N"}, "displacement": {"rate": "100 mm/s"}}
-TARGETS, BEHIND, MOST_STEPS, BLOCK = 60, 20, 1000, 20
+TARGETS, BEHIND, MOST_STEPS, BLOCK = 40, 10, 1000, 20
 RESTING = ("out-of-reach", "local-optimum")
 WALL = 0.025
+BEHIND_A_WALL = ("the controller takes contacts as they are, and some runs go back and forth between sticking, sliding "
+                 "and open ones; complementarity as a constraint of its program is still missing")
 
 
 def trunk(friction):
@@ -63,22 +65,25 @@ def approach(scene, target):
     ik = sinew.InverseController(sim, targets={"tip": target})
     deepest = 0.0
     for _ in range(MOST_STEPS // BLOCK):
-        ik.step(BLOCK)
+        try:
+            ik.step(BLOCK)
+        except sinew.Error:
+            return sim, ik, deepest, "stopped"
         deepest = min(deepest, float(np.min(sim.contact("wall").gaps)))
         if ik.status in RESTING or (ik.status == "on-target" and ik.error < 2e-5):
             break
-    return sim, ik, deepest
+    return sim, ik, deepest, ik.status
 
 
 def reached(case, friction, targets):
     scene = trunk(friction)
     runs = [approach(scene, target) for target in targets]
-    errors = np.array([ik.error for _, ik, _ in runs])
-    statuses = [ik.status for _, ik, _ in runs]
+    errors = np.array([ik.error for _, ik, _, _ in runs])
+    statuses = [status for _, _, _, status in runs]
     with_friction = f"mu = {friction}: "
     case.bound(with_friction + "targets reached by touching: not reached to 0.05 mm",
                100 * np.mean(errors > 5e-5), 5.0, unit="%", source="aim")
-    case.bound(with_friction + "deepest point in the wall", -1e6 * min(d for _, _, d in runs), 0.1, unit="um",
+    case.bound(with_friction + "deepest point in the wall", -1e6 * min(deepest for _, _, deepest, _ in runs), 0.1, unit="um",
                source="aim")
     counts = collections.Counter(statuses)
     case.report(with_friction + "targets reached by touching: statuses",
@@ -91,15 +96,23 @@ def behind(case, friction, targets):
     drift, statuses = [], []
     for k, target in enumerate(targets):
         goal = target + [0.003 + 0.007 * k / len(targets), 0.0, 0.0]
-        sim, ik, _ = approach(scene, goal)
+        sim, ik, _, status = approach(scene, goal)
+        statuses.append(status)
+        if status == "stopped":
+            continue
         before = np.array(sim.effector("tip").position)
-        statuses.append(ik.status)
-        ik.step(50)
+        try:
+            ik.step(50)
+        except sinew.Error:
+            statuses[-1] = "stopped"
+            continue
         drift.append(np.linalg.norm(np.array(sim.effector("tip").position) - before))
     case.report(f"mu = {friction}: targets behind the wall: statuses",
                 ", ".join(f"{k} {n}" for k, n in collections.Counter(statuses).most_common()), source="aim")
+    case.agree(f"mu = {friction}: targets behind the wall: runs stopped by an error", statuses.count("stopped"), 0,
+               source="aim", known_miss=BEHIND_A_WALL)
     case.bound(f"mu = {friction}: targets behind the wall: motion of the tip in 50 steps", 1e6 * max(drift), 50.0,
-               unit="um", source="aim")
+               unit="um", source="aim", known_miss=BEHIND_A_WALL)
 
 
 def circle(case, friction):

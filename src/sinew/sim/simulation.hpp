@@ -210,6 +210,8 @@ class Simulation {
   void step_once(double time_step);
   void step_newton(double time_step);
   NewtonReport newton(step::Controller* controller, const NewtonSettings& settings);
+  bool is_usable(const NewtonReport& result) const;
+  NewtonReport stay(double time_step);
   void blend_commands(std::span<const step::ActuatorBlock> goal,
                       std::span<const ActuatorState> start, double fraction);
   NewtonReport approach(double time_step);

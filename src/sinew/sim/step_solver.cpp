@@ -170,6 +170,35 @@ void Simulation::hold_efforts() {
   }
 }
 
+// Whether a quasi-static step may end so, and be flagged. Of contacts there is no such thing as
+// nearly: a point would be inside a surface. Forces may be as much out of balance as those of any
+// step that a controller steers.
+bool Simulation::is_usable(const NewtonReport& result) const {
+  if (!result.motion.finite || !(result.motion.volume.ratio > 0.0)) return false;
+  if (result.law == LawStatus::failed) return false;
+  if (model_->contacts().empty()) return true;
+  return result.relative_residual <= (controller_ == nullptr ? kSearched : kBalanced) &&
+         result.violation <= kMotionTolerance * model_->size();
+}
+
+// Where a controller's choice leads nowhere its actuators keep the efforts of the last step. It
+// remembers what it foresaw, and trusts its next choice less (see inverse::StepDamping).
+NewtonReport Simulation::stay(double time_step) {
+  std::vector<double> memory(controller_->memory_size());
+  controller_->save_memory(memory);
+  restore(state_before_);
+  for (std::size_t i = 0; i < actuators_.size(); ++i) {
+    if (actuators_[i].owner == nullptr) continue;
+    world_.problem().actuators[i].hold_effort(actuators_[i].effort);
+  }
+  world_.begin_step(now_ - time_step, now_, effort_);
+  NewtonReport result = newton(nullptr, newton_settings(time_step));
+  if (result.status != NewtonStatus::converged) result = approach(time_step);
+  if (result.status != NewtonStatus::converged) result = descend(time_step, kMostDescents);
+  controller_->load_memory(memory);
+  return result;
+}
+
 NewtonReport Simulation::newton(step::Controller* controller, const NewtonSettings& settings) {
   return solve_newton(world_, solver_, controller, effort_, settings, clock_);
 }
@@ -196,6 +225,10 @@ void Simulation::step_newton(double time_step) {
       result = descend(time_step, few);
       tried += result.iterations;
     }
+    if (!dynamic && goes_on() && !is_usable(result)) {
+      result = stay(time_step);
+      tried += result.iterations;
+    }
     result.law = std::max(result.law, chosen);
   } else if (!dynamic && result.status != NewtonStatus::converged) {
     result = approach(time_step);
@@ -208,13 +241,7 @@ void Simulation::step_newton(double time_step) {
   const auto converged = [&] { return result.status == NewtonStatus::converged; };
   result.iterations = tried;
   take_report(result);
-  // Of contacts there is no such thing as nearly: a point would be inside a surface.
-  const bool obeys =
-      model_->contacts().empty() || (result.relative_residual <= kSearched &&
-                                     result.violation <= kMotionTolerance * model_->size());
-  const bool usable = !model_->step().dynamic() && obeys && result.motion.finite &&
-                      result.motion.volume.ratio > 0.0 && result.law != LawStatus::failed;
-  if (converged() || usable) return;
+  if (converged() || (!dynamic && is_usable(result))) return;
   if (result.status == NewtonStatus::law_failed) fail_law();
   const std::string folded = describe_folded_cable(*this);
   fail(ErrorKind::not_converged,
