@@ -13,7 +13,7 @@ namespace {
 
 // Steps follow the motion roughly: where it ends, Newton takes over.
 constexpr double kRelaxationTolerance = 1e-4;
-constexpr int kMostIterations = 12;
+constexpr int kMostOfStep = 12;
 constexpr int kFewIterations = 4;
 constexpr int kManyIterations = 8;
 constexpr double kLighter = 0.25;  // sigma of the next step after an easy one
@@ -130,7 +130,7 @@ StaticSolver::Departure StaticSolver::relax(double sigma, double near) {
     ++report_.relaxation_steps;
     sim_.keep(sound_);
     const std::vector<Points> before = positions();
-    last_ = solve(overdamped(sigma), kRelaxationTolerance, kMostIterations);
+    last_ = solve(overdamped(sigma), kRelaxationTolerance, kMostOfStep);
     if (last_.status != NewtonStatus::converged) {
       sim_.restore(sound_);
       if (++failures == kMostFailures) break;

@@ -61,7 +61,7 @@ void Response::collect_actuator(const StepProblem& problem, int index,
     states_.push_back(state);
     if (effort != 0.0) free_ += effort * problem.compliance.col(block.row);
   };
-  if (!(problem.compliance(block.row, block.row) > 0.0)) return give('-');
+  if (problem.compliance(block.row, block.row) == 0.0) return give('-');
   if (block.drive != nullptr) {
     // The tangent where the efforts have taken it.
     const double motion =
