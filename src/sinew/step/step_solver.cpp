@@ -13,6 +13,16 @@ constexpr double kSettled = 1e-6;
 // Points that are tried between two choices.
 constexpr int kSearches = 16;
 
+// (controlled,) N: what the controlled actuators did before.
+void efforts_before(const StepProblem& problem, const Response& response,
+                    std::vector<double>& efforts) {
+  efforts.clear();
+  for (const int index : response.controlled()) {
+    const int row = problem.actuators[static_cast<std::size_t>(index)].row;
+    efforts.push_back(problem.effort_before[static_cast<std::size_t>(row)]);
+  }
+}
+
 }  // namespace
 
 LawStatus StepSolver::solve(const StepProblem& problem, Controller* controller,
@@ -50,11 +60,7 @@ LawStatus StepSolver::steer(const StepProblem& problem, Controller& controller,
 LawStatus StepSolver::choose(const StepProblem& problem, Controller& controller,
                              std::span<double> effort, double& change) {
   chosen_before_.swap(chosen_);
-  chosen_.clear();
-  for (const int index : response_.controlled()) {
-    const int row = problem.actuators[static_cast<std::size_t>(index)].row;
-    chosen_.push_back(problem.effort_before[static_cast<std::size_t>(row)]);
-  }
+  efforts_before(problem, response_, chosen_);
   const LawStatus status = controller.choose(problem, response_, chosen_);
   if (status == LawStatus::failed) return status;
   double largest = 0.0, moved = 0.0;
@@ -117,11 +123,7 @@ void StepSolver::search(const StepProblem& problem, const Controller& controller
   }
   const double found = at(left_miss <= right_miss ? left : right);
   chosen_.swap(trial_);
-  trial_.clear();
-  for (const int index : response_.controlled()) {
-    const int row = problem.actuators[static_cast<std::size_t>(index)].row;
-    trial_.push_back(problem.effort_before[static_cast<std::size_t>(row)]);
-  }
+  efforts_before(problem, response_, trial_);
   const double before = try_efforts(problem, controller, trial_, effort);
   if (before - found <= controller.negligible_miss()) {
     chosen_.swap(trial_);
