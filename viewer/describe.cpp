@@ -12,6 +12,7 @@
 #include "sinew/constraint/contact.hpp"
 #include "sinew/constraint/effector.hpp"
 #include "sinew/constraint/probe.hpp"
+#include "sinew/fem/fem_body.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mesh/topology.hpp"
 #include "sinew/sim/row_efforts.hpp"

@@ -10,6 +10,7 @@
 
 #include "sinew/constraint/cable.hpp"
 #include "sinew/constraint/probe.hpp"
+#include "sinew/fem/fem_body.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/pcc/arm_body.hpp"
 

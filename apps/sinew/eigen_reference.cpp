@@ -10,6 +10,7 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/fem/assembly.hpp"
+#include "sinew/fem/fem_body.hpp"
 #include "sinew/mechanics/body.hpp"
 
 namespace sinew::cli {

@@ -12,6 +12,7 @@
 #include "sinew/constraint/cavity.hpp"
 #include "sinew/constraint/contact.hpp"
 #include "sinew/constraint/probe.hpp"
+#include "sinew/constraint/tie.hpp"
 #include "sinew/core/quantity.hpp"
 #include "sinew/fem/element_count.hpp"
 #include "sinew/fem/fem_body_model.hpp"
@@ -249,6 +250,19 @@ Facts scene_facts(const InfoOptions& options) {
     const auto points = model.contact(static_cast<int>(i)).points().size();
     facts.json["contacts"].push_back({{"name", name}, {"points", points}});
     facts.text += fmt::format("  contact {}: {} points\n", name, points);
+  }
+  for (std::size_t i = 0; i < model.welds().size(); ++i) {
+    const sim::WeldModel& weld = model.welds()[i];
+    const auto name = [&](int body) {
+      return model.bodies()[static_cast<std::size_t>(body)]->name();
+    };
+    const auto points = model.weld(static_cast<int>(i)).pairs().size();
+    facts.json["joints"].push_back({{"name", weld.name},
+                                    {"type", "weld"},
+                                    {"bodies", {name(weld.first), name(weld.second)}},
+                                    {"points", points}});
+    facts.text += fmt::format("  joint {}: {} points of {} welded to {}\n", weld.name, points,
+                              name(weld.first), name(weld.second));
   }
   for (const auto& controller : robot.controllers) {
     facts.json["controllers"].push_back(controller.name);

@@ -10,6 +10,7 @@
 
 #include "sinew/constraint/effector.hpp"
 #include "sinew/fem/element_count.hpp"
+#include "sinew/fem/fem_body_model.hpp"
 #include "sinew/inverse/controller_observables.hpp"
 #include "sinew/record/run_recorder.hpp"
 

@@ -2,6 +2,7 @@
 
 #include "sinew/fem/assembly.hpp"
 #include "sinew/fem/element_count.hpp"
+#include "sinew/fem/fem_body.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mesh/self_touch.hpp"
 #include "sinew/pcc/arm_body.hpp"

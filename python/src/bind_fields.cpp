@@ -3,6 +3,7 @@
 
 #include "sinew/fem/element_fields.hpp"
 #include "sinew/fem/element_states.hpp"
+#include "sinew/fem/fem_body.hpp"
 #include "sinew/fem/solid_elements.hpp"
 
 #include "arrays.hpp"

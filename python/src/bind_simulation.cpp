@@ -101,6 +101,15 @@ py::dict all_contacts(const std::shared_ptr<Session>& self) {
   return result;
 }
 
+py::dict all_joints(const std::shared_ptr<Session>& self) {
+  py::dict result;
+  int index = 0;
+  for (const auto& weld : self->model().welds()) {
+    result[weld.name.c_str()] = Joint{{self, index++}};
+  }
+  return result;
+}
+
 py::dict all_bodies(const std::shared_ptr<Session>& self) {
   py::dict result;
   int index = 0;
@@ -300,6 +309,17 @@ A probe by its name. Raises Error (unknown-name) with a suggestion.
 A contact by its name. Raises Error (unknown-name) with a suggestion.
 )")
       .def(
+          "joint",
+          [](const std::shared_ptr<Session>& self, const std::string& name) {
+            return Joint{{self, self->model().weld_index(name)}};
+          },
+          py::arg("name"),
+          R"(joint($self, name)
+--
+
+A joint by its name. Raises Error (unknown-name) with a suggestion.
+)")
+      .def(
           "body",
           [](const std::shared_ptr<Session>& self, const std::string& name) {
             return Body{{self, self->model().body_index(name)}};
@@ -320,6 +340,8 @@ A body by its name. Raises Error (unknown-name) with a suggestion.
                              "dict: all masses that hang on bodies by name, body by body.")
       .def_property_readonly("contacts", &all_contacts,
                              "dict: all contacts by name, in the scene's order.")
+      .def_property_readonly("joints", &all_joints,
+                             "dict: all joints by name, in the scene's order.")
       .def_property_readonly("bodies", &all_bodies,
                              "dict: all bodies by name, in the scene's order.");
 }
@@ -554,7 +576,7 @@ void bind_linearisation(Type& type) {
   type.def_property_readonly(
           "rows", [](const Session& self) { return sim::row_names(self.model()); },
           "list of str: the rows of H and W in the scene's order: actuators by name, effectors as "
-          "'tip.x', contacts as 'floor point 3 normal'.")
+          "'tip.x', contacts as 'floor point 3 normal'. Joints have none: they are taken out.")
       .def(
           "linearise",
           [](Session& self, const std::string& tangent, bool geometric_stiffness, bool statics) {

@@ -35,6 +35,7 @@ void bind_load(py::module_& module);
 void bind_mass(py::module_& module);
 void bind_probe(py::module_& module);
 void bind_contact(py::module_& module);
+void bind_joint(py::module_& module);
 void bind_body(py::module_& module);
 void bind_state(py::module_& module);
 void bind_simulation(py::module_& module);
@@ -65,6 +66,7 @@ struct Load : Part {};
 struct PointMass : Part {};
 struct Probe : Part {};
 struct Contact : Part {};
+struct Joint : Part {};
 struct Body : Part {};
 
 /// The part of bind_body() about stress and strain.

@@ -29,6 +29,7 @@ PYBIND11_MODULE(_core, module) {
   python::bind_probe(module);
   python::bind_state(module);
   python::bind_contact(module);
+  python::bind_joint(module);
   python::bind_body(module);
   python::bind_simulation(module);
   python::bind_controller(module);

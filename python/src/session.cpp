@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <pybind11/pybind11.h>
 
+#include "sinew/fem/fem_body.hpp"
 #include "sinew/mechanics/body.hpp"
 
 #include "errors.hpp"

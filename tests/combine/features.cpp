@@ -106,6 +106,7 @@ std::vector<Feature> list_features() {
   const KeyTable& contact = *items("contacts").front().table;
   const KeyTable& signal = map_of(map_of(cable, "command"), "tension");
   const KeyTable& controller = variant_table("controllers", "inverse");
+  const KeyTable& weld = variant_table("joints", "weld");
   const std::vector<std::string> switched{"none", "yes"};
   return {
       {"bodies", {"fem", "pcc", "fem fem", "fem pcc", "pcc fem"}},
@@ -142,6 +143,10 @@ std::vector<Feature> list_features() {
       {"contact", or_none(alternatives(map_of(contact, "surface"), "plane"))},
       {"contact_friction", switched},
       {"contact_motion", switched},
+      // A link that only its joint holds, on any body; by what it is welded.
+      {"link", or_none(words(variants(items("joints"), "type")))},
+      {"weld", with(alternatives(weld, "region"), {"touching"})},
+      {"cable_end", {"own", "link"}},
       {"effector", or_none(without(alternatives(effector, "point"), "points"))},
       {"probe", or_none(without(alternatives(probe, "point"), "points"))},
       {"controller", or_none(words(variants(items("controllers"), "type")))},

@@ -98,6 +98,7 @@ class Drafter {
   SceneDraft draft() {
     write_settings();
     add_bodies();
+    add_link();
     add_cables();
     add_chamber();
     add_spring();
@@ -111,7 +112,7 @@ class Drafter {
     add_controller();
     SceneDraft draft{settings_, {}};
     for (const char* section : {"bodies", "actuators", "loads", "masses", "effectors", "probes",
-                                "contacts", "controllers"}) {
+                                "contacts", "joints", "controllers"}) {
       if (!sections_[section].empty()) draft.sections.emplace_back(section, sections_[section]);
     }
     return draft;
@@ -210,11 +211,13 @@ class Drafter {
     }
   }
 
-  void add_fem_body(const Body& body) {
-    std::string text = fmt::format(
-        "type: fem, mesh: {}, material: {}, density: 1000 kg/m^3, mass_matrix: {}, fixed: {{set: "
-        "{}}}",
-        body.shape.mesh, material(), of("mass_matrix"), body.shape.base);
+  // @param held how: fixed where it is, or placed and left to a joint.
+  void add_fem_body(const Body& body, std::string held = {}) {
+    const bool loose = !held.empty();
+    if (!loose) held = fmt::format("fixed: {{set: {}}}", body.shape.base);
+    std::string text =
+        fmt::format("type: fem, mesh: {}, material: {}, density: 1000 kg/m^3, mass_matrix: {}, {}",
+                    body.shape.mesh, material(), of("mass_matrix"), held);
     const bool unfit = of("element") == "tet4-patch" && of("material") == "saint-venant-kirchhoff";
     if (has("element") && !unfit && (hyperelastic() || of("element") == "tet4")) {
       text += ", element: " + of("element");
@@ -223,13 +226,39 @@ class Drafter {
     if (has("initial_velocity") && dynamic()) {
       text += ", initial_velocity: {linear: 0.02 0.05 0 m/s}";
     }
-    if (has("base")) {
+    if (has("base") && !loose) {
       text += fmt::format(
           ", base: {{y: {{sine: {{amplitude: {:.3g} mm, period: 200 ms}}}}, angle: {{ramp: {{to: "
           "{:.3g} deg, duration: 100 ms}}}}, axis: 0 1 0}}",
           draw(1.0, 3.0), draw(2.0, 8.0));
     }
     add("bodies", body.id, "{" + text + "}");
+  }
+
+  // A block of 20 mm on the side of a body, near its tip: where it hangs it bends the body. Things
+  // that act on any body act on it, too.
+  void add_link() {
+    if (!has("link")) return;
+    const Body on = some_body();
+    BodyShape shape = block_shape();
+    shape.mesh = "{shape: block, length: 60 mm, width: 20 mm, height: 10 mm, element_size: 10 mm}";
+    std::array<double, 3> at = on.shape.at(0.8, 0.0, 0.0);
+    for (std::size_t k = 0; k < 3; ++k) shape.origin[k] += at[k];
+    const std::string region = fmt::format("{{set: {}}}", shape.base);
+    std::string text = look_up(
+        "weld", of("weld"),
+        {{"region", "region: " + region},
+         {"points",
+          fmt::format("points: [{}, {}, {}]", vector_text(shape.at(0.0, 0.0, 0.0)),
+                      vector_text(shape.at(0.0, 0.6, 0.0)), vector_text(shape.at(0.1, 0.0, 0.6)))},
+         {"touching", ""}});
+    // Sections of an arm are rigid, and its mesh is a picture.
+    if (text.empty() && !on.fem) text = "region: " + region;
+    if (!text.empty()) text = ", " + text + ", outside: nearest";
+    add("joints", "seam",
+        fmt::format("{{type: {}, bodies: [<link>, <{}>]{}}}", of("link"), on.id, text));
+    bodies_.push_back({"link", true, shape});
+    add_fem_body(bodies_.back(), fmt::format("position: {}", vector_text(at)));
   }
 
   // A value over time that ends at so many units.
@@ -244,11 +273,16 @@ class Drafter {
 
   void add_cable(const std::string& id, const Body& body, double u, double v,
                  const std::string& told) {
+    const auto link = std::ranges::find(bodies_, "link", &Body::id);
+    const bool far = of("cable_end") == "link" && link != bodies_.end() && body.id != "link";
+    const std::string end =
+        far ? fmt::format("{{body: <link>, point: {}}}", vector_text(link->shape.at(0.4, u, v)))
+            : vector_text(body.shape.at(0.95, 0.8 * u, v));
     std::string text = fmt::format(
         "type: cable, body: <{}>, outside: nearest, pull: {}, points: [{}, {}, {}], limits: "
         "{{tension: {{max: 5 N}}, displacement: {{min: -10 mm, max: 8 mm}}}}",
         body.id, of("cable_pull"), vector_text(body.shape.at(0.05, u, v)),
-        vector_text(body.shape.at(0.5, u, 0.9 * v)), vector_text(body.shape.at(0.95, 0.8 * u, v)));
+        vector_text(body.shape.at(0.5, u, 0.9 * v)), end);
     text += look_up(
         "cable", told,
         {{"displacement", ", command: {displacement: " + signal(draw(0.2, 1.5), "mm") + "}"},
@@ -276,7 +310,7 @@ class Drafter {
 
   void add_chamber() {
     const Body* on = body(true);
-    if (!has("chamber") || on == nullptr) return;
+    if (!has("chamber") || on == nullptr || on->id == "link") return;
     const std::string& told = of("chamber");
     std::string medium = of("medium");
     if (told == "gas" || told == "liquid") medium = told;

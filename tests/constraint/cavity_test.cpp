@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/fem/fem_body.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/mechanics/body.hpp"
 

@@ -7,6 +7,7 @@
 #include "sinew/constraint/effector.hpp"
 #include "sinew/constraint/placement.hpp"
 #include "sinew/core/error.hpp"
+#include "sinew/fem/fem_body.hpp"
 
 #include "../sim/robots.hpp"
 

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/fem/fem_body.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 
 #include "../sim/robots.hpp"

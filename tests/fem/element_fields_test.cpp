@@ -14,6 +14,7 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/fem/element_states.hpp"
+#include "sinew/fem/fem_body.hpp"
 #include "sinew/fem/solid_elements.hpp"
 #include "sinew/mesh/quadratic.hpp"
 #include "sinew/mesh/shapes.hpp"

@@ -21,6 +21,7 @@
 #include "sinew/constraint/probe.hpp"
 #include "sinew/core/csv.hpp"
 #include "sinew/fem/element_fields.hpp"
+#include "sinew/fem/fem_body.hpp"
 #include "sinew/inverse/controller_observables.hpp"
 #include "sinew/mesh/read.hpp"
 #include "sinew/record/hdf5_writer.hpp"

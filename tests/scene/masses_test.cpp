@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/fem/fem_body.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/scene/scene.hpp"
 #include "sinew/sim/simulation.hpp"

@@ -6,6 +6,7 @@
 
 #include "sinew/constraint/cavity.hpp"
 #include "sinew/core/error.hpp"
+#include "sinew/fem/fem_body.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/sim/spring_drive.hpp"
 

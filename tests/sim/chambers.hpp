@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 
+#include "sinew/fem/fem_body.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/mesh/patch.hpp"
 #include "sinew/mesh/quadratic.hpp"

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/fem/fem_body.hpp"
 #include "sinew/mesh/shapes.hpp"
 #include "sinew/sim/model_builder.hpp"
 #include "sinew/sim/simulation.hpp"

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/fem/fem_body.hpp"
+
 #include "contact_robots.hpp"
 
 namespace sinew::sim {

@@ -8,6 +8,7 @@
 
 #include "sinew/constraint/cable.hpp"
 #include "sinew/core/error.hpp"
+#include "sinew/fem/fem_body.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/qp/cone_solver.hpp"
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/fem/fem_body.hpp"
 #include "sinew/sim/simulation.hpp"
 
 #include "sim/robots.hpp"

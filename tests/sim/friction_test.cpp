@@ -6,6 +6,7 @@
 
 #include "sinew/constraint/cable.hpp"
 #include "sinew/core/error.hpp"
+#include "sinew/fem/fem_body.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 
 #include "robots.hpp"

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/fem/fem_body.hpp"
 
 #include "robots.hpp"
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "sinew/fem/fem_body.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/mesh/shapes.hpp"
 #include "sinew/sim/model_builder.hpp"

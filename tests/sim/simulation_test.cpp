@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/fem/fem_body.hpp"
+
 #include "robots.hpp"
 #include "support/error_kind.hpp"
 

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "sinew/fem/element_fields.hpp"
+#include "sinew/fem/fem_body.hpp"
 
 #include "robots.hpp"
 

@@ -1,7 +1,9 @@
 #include "sinew/step/direct_solver.hpp"
 
+#include <Eigen/LU>
 #include <gtest/gtest.h>
 
+#include "sinew/step/response.hpp"
 #include "sinew/step/step_solver.hpp"
 
 #include "problems.hpp"
@@ -96,6 +98,85 @@ TEST(DirectSolver, TwinHeldRowsShareTheEffort) {
   ASSERT_EQ(solver.solve(problem, effort), LawStatus::solved);
   EXPECT_NEAR(effort[0], 1.0, 1e-12);
   EXPECT_NEAR(effort[1], 1.0, 1e-12);
+}
+
+// The problem as A with springs at `rows` makes it (Sherman, Morrison & Woodbury).
+StepProblem anchored(const StepProblem& problem, const std::vector<int>& rows, double stiffness) {
+  StepProblem result = problem;
+  const auto count = static_cast<Eigen::Index>(rows.size());
+  MatrixX columns(problem.compliance.rows(), count), own(count, count);
+  VectorX stretch(count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const int row = rows[static_cast<std::size_t>(k)];
+    columns.col(k) = problem.compliance.col(row);
+    stretch[k] = problem.delta_free[row] - problem.delta[row];
+    result.stiffness.push_back({row, -stiffness});
+  }
+  for (Eigen::Index k = 0; k < count; ++k)
+    own.row(k) = columns.row(rows[static_cast<std::size_t>(k)]);
+  own.diagonal().array() += 1.0 / stiffness;
+  const MatrixX inverse = own.inverse();
+  result.compliance -= columns * inverse * columns.transpose();
+  result.delta_free -= columns * inverse * stretch;
+  return result;
+}
+
+TEST(DirectSolver, AnchorsChangeNothing) {
+  Random random(8);
+  for (int trial = 0; trial < 200; ++trial) {
+    BlockCounts counts = random_counts(random);
+    counts.effectors = 3;
+    RandomProblem robot = random_problem(counts, random);
+    const auto rows = static_cast<std::size_t>(robot.problem.delta_free.size());
+    const int last = static_cast<int>(rows);
+    robot.problem.delta += 0.1 * random.vector(last);
+    const StepProblem with =
+        anchored(robot.problem, {last - 3, last - 2, last - 1}, random.uniform(0.1, 100.0));
+    std::vector<double> plain(rows, 0.0), held(rows, 0.0);
+    for (const ActuatorBlock& block : robot.problem.actuators) {
+      if (!block.owned) continue;
+      const auto row = static_cast<std::size_t>(block.row);
+      plain[row] = held[row] = random.uniform(0.0, 1.0);
+    }
+    DirectSolver solver;
+    solver.begin_step();
+    ASSERT_EQ(solver.solve(robot.problem, plain), LawStatus::solved) << trial;
+    solver.begin_step();
+    ASSERT_EQ(solver.solve(with, held), LawStatus::solved) << trial;
+    for (std::size_t row = 0; row + 3 < rows; ++row) {
+      EXPECT_NEAR(held[row], plain[row], 1e-6 * (1.0 + std::abs(plain[row]))) << trial;
+    }
+    const Eigen::Map<const VectorX> all(held.data(), last);
+    const VectorX motion = with.delta_free + with.compliance * all;
+    EXPECT_LT((motion - robot.motion(plain)).norm(), 1e-6 * (1.0 + motion.norm())) << trial;
+    Response response, with_anchors;
+    response.form(robot.problem, plain);
+    with_anchors.form(with, held);
+    if (response.compliance().cols() == 0) continue;
+    const double off = (response.compliance() - with_anchors.compliance()).norm();
+    EXPECT_LT(off, 1e-5 * (1.0 + response.compliance().norm())) << trial;
+  }
+}
+
+// A robot that is anchored is stable where it is without the anchors.
+TEST(Stabilised, CountsWithoutAnchors) {
+  Random random(9);
+  for (int trial = 0; trial < 100; ++trial) {
+    const MatrixX root = random.matrix(6, 8);
+    MatrixX stiffness = root * root.transpose();
+    const bool stable = trial % 2 == 0;
+    if (!stable) stiffness(2, 2) -= 1.1 / stiffness.inverse()(2, 2);
+    StepProblem problem;
+    const double spring = 10.0 * stiffness.norm();
+    MatrixX with = stiffness;
+    for (int row = 0; row < 3; ++row) {
+      with(row, row) += spring;
+      problem.stiffness.push_back({row, -spring});
+    }
+    problem.compliance = with.inverse();
+    problem.delta_free = problem.delta = VectorX::Zero(6);
+    EXPECT_EQ(stabilised(problem, 0), stable) << trial;
+  }
 }
 
 // What moves nothing takes the least effort that its limits allow, or the one commanded.

@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/fem/fem_body.hpp"
+
 #include "robot_fixture.hpp"
 #include "viewer/robot_state.hpp"
 

@@ -12,6 +12,8 @@
 #include "sinew/qp/elastic.hpp"
 #include "sinew/qp/quadratic_program.hpp"
 #include "sinew/sim/simulation.hpp"
+#include "sinew/step/controller.hpp"
+#include "sinew/step/response.hpp"
 
 namespace sinew::inverse {
 

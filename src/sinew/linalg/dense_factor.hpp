@@ -75,4 +75,13 @@ class SymmetricSpectrum {
   Eigen::SelfAdjointEigenSolver<MatrixX> solver_;
 };
 
+/// Inverse of a symmetric matrix on the directions in which it has one.
+struct SpectralInverse {
+  MatrixX inverse;   ///< Moore-Penrose, (n, n)
+  int negative = 0;  ///< eigenvalues below zero
+};
+/// Eigenvalues within 1e-11 of the largest are taken for zero: rows that repeat each other give
+/// them. @param a (n, n), n > 0, scaled to entries of order 1; its lower triangle is read.
+SpectralInverse spectral_inverse(const MatrixX& a);
+
 }  // namespace sinew::linalg

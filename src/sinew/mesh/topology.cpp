@@ -133,6 +133,17 @@ std::vector<Face> boundary_faces(const Mesh& mesh) {
   return result;
 }
 
+std::vector<NodeId> outer_nodes(const Mesh& mesh) {
+  std::vector<NodeId> nodes;
+  for (const Face& face : boundary_faces(mesh)) {
+    nodes.insert(nodes.end(), face.nodes().begin(), face.nodes().end());
+    if (face.is_quadratic()) nodes.insert(nodes.end(), face.middle.begin(), face.middle.end());
+  }
+  std::ranges::sort(nodes);
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return nodes;
+}
+
 Surface boundary_surface(const Mesh& mesh) {
   Surface surface{.name = mesh.name, .nodes = mesh.nodes, .triangles = {}};
   for (Face face : boundary_faces(mesh)) {

@@ -43,6 +43,9 @@ struct Face {
 /// hexahedra.
 std::vector<Face> boundary_faces(const Mesh& mesh);
 
+/// The nodes of boundary_faces(), ascending; middles of quadratic faces included.
+std::vector<NodeId> outer_nodes(const Mesh& mesh);
+
 /// The surface of the volume elements: boundary_faces() with quadrilaterals split in two. Nodes are
 /// those of the mesh, in its numbering, unused ones included.
 Surface boundary_surface(const Mesh& mesh);

@@ -22,7 +22,6 @@ constexpr double kFixed = 1e-14;
 // Efforts that are larger, times what the free motion asks of one block alone, measure nothing:
 // they grow without limit where no motion can obey all blocks.
 constexpr double kMostEffort = 1e4;
-constexpr double kAtLimit = 1e-7;  // friction within this part of its limit is at it
 
 void check_shape(const ConeProblem& problem, std::size_t start) {
   const Eigen::Index rows = problem.offset.size();
@@ -259,13 +258,12 @@ void ConeSolver::Workspace::classify(const ConeProblem& problem) {
   const double resolved = 10.0 * std::max(settings.tolerance, result.residual) * effort_size;
   for (std::size_t k = 0; k < problem.cones.size(); ++k) {
     const Vector3 r = x.segment<3>(problem.cones[k].row);
-    const double limit = problem.cones[k].friction * r[0];
     if (!(r[0] > 0.0)) {
       result.states[k] = ContactState::open;
       continue;
     }
     const double travel = motion.segment<2>(problem.cones[k].row + 1).norm();
-    const bool slides = r.tail<2>().norm() >= (1.0 - kAtLimit) * limit &&
+    const bool slides = qp::slides(r, problem.cones[k].friction) &&
                         travel > std::max(rounding, resolved * std::sqrt(scale[k]));
     result.states[k] = slides ? ContactState::slip : ContactState::stick;
   }

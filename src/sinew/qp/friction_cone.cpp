@@ -12,6 +12,7 @@ namespace sinew::qp {
 namespace {
 
 constexpr int kMostIterations = 200;
+constexpr double kAtLimit = 1e-7;  // of the limit
 constexpr double kRounding = std::numeric_limits<double>::epsilon();
 
 }  // namespace
@@ -26,6 +27,10 @@ const char* contact_state_name(ContactState state) {
       return "slip";
   }
   return "unknown";
+}
+
+bool slides(const Vector3& effort, double friction) {
+  return effort.tail<2>().norm() >= (1.0 - kAtLimit) * friction * effort[0];
 }
 
 Vector3 project_on_cone(const Vector3& r, double friction) {

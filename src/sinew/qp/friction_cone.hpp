@@ -16,6 +16,10 @@ enum class ContactState : char {
 /// "open", "stick", "slip".
 const char* contact_state_name(ContactState state);
 
+/// Whether friction is at its limit, to within 1e-7 of it: solutions are found by iteration.
+/// @param effort (3,), normal first. @param friction >= 0.
+bool slides(const Vector3& effort, double friction);
+
 /// The nearest point of K = {r : |r_t| <= friction r_n} (Euclidean).
 /// @param r (3,). @param friction >= 0.
 Vector3 project_on_cone(const Vector3& r, double friction);

@@ -23,6 +23,8 @@ std::string dataset_of(const sim::Observable& observable) {
       return in("contacts");
     case sim::ObservableKind::contact:
       return in("contact_resultants");
+    case sim::ObservableKind::joint:
+      return in("joints");
     case sim::ObservableKind::controller:
       if (!observable.owner.empty()) return in("controller");
       break;

@@ -12,6 +12,7 @@
 #include "sinew/core/build_info.hpp"
 #include "sinew/fem/element_fields.hpp"
 #include "sinew/fem/element_states.hpp"
+#include "sinew/fem/fem_body.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mesh/write.hpp"
 #include "sinew/record/run_states.hpp"

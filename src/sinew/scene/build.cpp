@@ -85,13 +85,15 @@ fem::FemBodySettings fem_settings(const SceneDescription& scene, const BodyDescr
   return settings;
 }
 
-void add_cable(sim::ModelBuilder& builder, const ActuatorDescription& actuator, int body) {
+void add_cable(sim::ModelBuilder& builder, const ActuatorDescription& actuator, int body,
+               std::vector<int> point_bodies) {
   sim::CableSettings cable;
   cable.name = actuator.name;
   cable.place = actuator.place;
   cable.body = body;
   cable.points = actuator.points.points;
   cable.point_places = actuator.points.places;
+  cable.point_bodies = std::move(point_bodies);
   cable.pull_from_world = actuator.pull == PullPoint::world;
   cable.outside = actuator.outside;
   cable.tension = limits(actuator.effort);
@@ -178,11 +180,12 @@ void add_torque(sim::ModelBuilder& builder, const ActuatorDescription& actuator,
   builder.add_torque(torque);
 }
 
+// @param point_bodies of the points of a cable; empty: all in its body.
 void add_actuator(sim::ModelBuilder& builder, const ActuatorDescription& actuator, int body,
-                  const mesh::Mesh& mesh) {
+                  const mesh::Mesh& mesh, std::vector<int> point_bodies) {
   switch (actuator.type) {
     case ActuatorDescription::Type::cable:
-      return add_cable(builder, actuator, body);
+      return add_cable(builder, actuator, body, std::move(point_bodies));
     case ActuatorDescription::Type::force:
       return add_force(builder, actuator, body);
     case ActuatorDescription::Type::pressure:
@@ -283,7 +286,7 @@ Robot build(SceneDescription description) {
       if (auto notice = locking_notice(body, *settings.mesh)) {
         robot.notices.push_back(std::move(*notice));
       }
-      const int number = builder.add_fem_body(std::move(settings));
+      const int number = builder.add_fem_body(std::move(settings), body.place);
       if (body.base) {
         builder.add_base_motion(
             {number, body.base->translation, body.base->angle, body.base->axis, body.base->center},
@@ -295,7 +298,12 @@ Robot build(SceneDescription description) {
   }
   for (const ActuatorDescription& actuator : description.actuators) {
     const int body = body_index(actuator.body);
-    add_actuator(builder, actuator, body, *meshes[static_cast<std::size_t>(body)]);
+    std::vector<int> point_bodies;
+    for (const std::string& name : actuator.points.bodies) {
+      point_bodies.push_back(name.empty() ? body : body_index(name));
+    }
+    add_actuator(builder, actuator, body, *meshes[static_cast<std::size_t>(body)],
+                 std::move(point_bodies));
   }
   for (const EffectorDescription& effector : description.effectors) {
     const int body = body_index(effector.body);
@@ -310,6 +318,7 @@ Robot build(SceneDescription description) {
   for (const ContactDescription& contact : description.contacts) {
     add_contact(builder, contact, built);
   }
+  for (const JointDescription& joint : description.joints) add_joint(builder, joint, built);
   linalg::FactorisationSettings factorisation;
   factorisation.backend = description.solver.backend;
   factorisation.ordering = description.solver.ordering;

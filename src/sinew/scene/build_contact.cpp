@@ -8,20 +8,8 @@ namespace sinew::scene {
 
 namespace {
 
-// Ascending, the middles of quadratic faces included.
-std::vector<NodeId> outer_nodes(const mesh::Mesh& mesh) {
-  std::vector<NodeId> nodes;
-  for (const mesh::Face& face : mesh::boundary_faces(mesh)) {
-    nodes.insert(nodes.end(), face.nodes().begin(), face.nodes().end());
-    if (face.is_quadratic()) nodes.insert(nodes.end(), face.middle.begin(), face.middle.end());
-  }
-  std::ranges::sort(nodes);
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  return nodes;
-}
-
 std::vector<NodeId> nodes_of(const ContactDescription& contact, const mesh::Mesh& mesh) {
-  std::vector<NodeId> outer = outer_nodes(mesh);
+  std::vector<NodeId> outer = mesh::outer_nodes(mesh);
   if (!contact.nodes) return outer;
   const std::vector<NodeId> picked = at_place(contact.nodes->place, [&] {
     return mesh::select_nodes(mesh, region_of(*contact.nodes), contact.nodes->place.item);

@@ -1,4 +1,5 @@
 // Which finite element a body is made of, and what there is to say about it.
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "sinew/fem/bending_stiffness.hpp"
@@ -66,9 +67,8 @@ std::string remedy(const BodyDescription& body, bool only_tetrahedra) {
          "same moduli; element: tet4 keeps it as it is";
 }
 
-}  // namespace
-
-mesh::Mesh make_body_mesh(const BodyDescription& body) {
+// Where it is made, in the element that the body names.
+mesh::Mesh make_own_mesh(const BodyDescription& body) {
   const bool chosen = body.element != Element::any;
   if (chosen || !is_hyperelastic(body) || !locks(body.material)) {
     return make_mesh(body.mesh, body.element);
@@ -77,6 +77,18 @@ mesh::Mesh make_body_mesh(const BodyDescription& body) {
   mesh::Mesh mesh = make_mesh(body.mesh);
   const bool linear = mesh.hexahedra.empty() && mesh.quadratic.empty();
   return linear ? mesh::with_middle_nodes(mesh) : mesh;
+}
+
+}  // namespace
+
+mesh::Mesh make_body_mesh(const BodyDescription& body) {
+  mesh::Mesh mesh = make_own_mesh(body);
+  if (const double angle = body.rotation.norm(); angle > 0.0) {
+    const Matrix3 turn = Eigen::AngleAxisd(angle, body.rotation / angle).toRotationMatrix();
+    mesh.nodes = mesh.nodes * turn.transpose();
+  }
+  if (!body.position.isZero(0.0)) mesh.nodes.rowwise() += body.position.transpose();
+  return mesh;
 }
 
 void check_element(const BodyDescription& body, const mesh::Mesh& mesh) {

@@ -51,6 +51,9 @@ void add_load(sim::ModelBuilder& builder, const LoadDescription& load, const Bod
 void add_contact(sim::ModelBuilder& builder, const ContactDescription& contact,
                  const BodyOf& body_of);
 
+/// @param builder that has the bodies. @param joint to be added. @param body_of finds bodies.
+void add_joint(sim::ModelBuilder& builder, const JointDescription& joint, const BodyOf& body_of);
+
 /// @param builder that has the bodies. @param probe to be added. @param body_of finds bodies.
 void add_probe(sim::ModelBuilder& builder, const ProbeDescription& probe, const BodyOf& body_of);
 

@@ -116,6 +116,8 @@ struct BodyDescription {
   Place place;
   std::optional<pcc::ArmSettings> arm;  ///< of type pcc; nothing below is then used
   MeshDescription mesh;
+  Vector3 position = Vector3::Zero();  ///< m, of the mesh's origin
+  Vector3 rotation = Vector3::Zero();  ///< rad, a rotation vector about it
   Element element = Element::any;
   Place element_place;
   MaterialDescription material;
@@ -136,6 +138,7 @@ struct PointList {
   Place place;
   Points points = Points(0, 3);
   std::vector<Place> places;
+  std::vector<std::string> bodies;  ///< (n,) empty: that of the whole; or none at all
 };
 
 /// Limits of an effort (N) or a motion (m).
@@ -281,6 +284,17 @@ struct ContactDescription {
   std::optional<BaseDescription> motion;
 };
 
+/// What holds two bodies together: a weld.
+struct JointDescription {
+  std::string name;
+  Place place;
+  std::string first, second;  ///< bodies
+  Place bodies_place;
+  std::optional<FixedRegion> region;  ///< of the first; none, and no points: where they touch
+  PointList points;                   ///< of the first
+  mesh::Outside outside = mesh::Outside::error;
+};
+
 /// What a controller asks of one effector.
 struct TaskDescription {
   std::string effector;
@@ -331,6 +345,7 @@ struct SceneDescription {
   std::vector<EffectorDescription> effectors;
   std::vector<ProbeDescription> probes;
   std::vector<ContactDescription> contacts;
+  std::vector<JointDescription> joints;
   std::vector<ControllerDescription> controllers;
   RecordDescription record;
   Node tree;  ///< what this was read from, for to_yaml() and overrides

@@ -216,6 +216,10 @@ KeyTable scene_table() {
                         .forms = {names(contact_form())},
                         .example = "{floor: {body: block, surface: {plane: {}}, friction: 0.5}}",
                         .description = "Surfaces that bodies may touch, with friction."});
+  scene.keys.push_back({.name = "joints",
+                        .forms = {names(joint_form())},
+                        .example = "{seam: {type: weld, bodies: [upper, lower]}}",
+                        .description = "What holds bodies together."});
   scene.keys.push_back({.name = "controllers",
                         .forms = {names(controller_form())},
                         .example = "{follow: {type: inverse, effectors: {tip: ...}}}",
@@ -227,7 +231,6 @@ KeyTable scene_table() {
                         .description = "What a run writes."});
   scene.keys.push_back(later_key("materials", "Materials by name."));
   scene.keys.push_back(later_key("obstacles", "What surrounds the robot."));
-  scene.keys.push_back(later_key("joints", "Joints between bodies."));
   scene.keys.push_back(later_key("sensors", "What the robot feels."));
   scene.keys.push_back(later_key("estimators", "What is concluded from sensors."));
   return scene;

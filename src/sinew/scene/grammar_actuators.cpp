@@ -126,10 +126,12 @@ std::shared_ptr<const KeyTable> cable_table() {
       .keys = {
           body_key(),
           {.name = "points",
-           .forms = {table(point_file_table()), list({vector(length())}, 2)},
+           .forms = {table(point_file_table()),
+                     list({vector(length()), table(body_point_table())}, 2)},
            .example = "[0 10 0 mm, 0 10 60 mm, 0 10 120 mm]",
            .description = "The points it runs through, in the mesh at rest. The first "
-                          "is the pull point, the last the end that is tied.",
+                          "is the pull point, the last the end that is tied. A point in "
+                          "another body: {body: upper, point: 0 10 80 mm}.",
            .required = true},
           {.name = "pull",
            .forms = {choice({{"world", "Does not move."}, {"body", "Moves with the body."}})},

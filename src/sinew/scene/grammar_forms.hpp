@@ -112,6 +112,7 @@ std::shared_ptr<const KeyTable> pcc_table();
 std::shared_ptr<const KeyTable> torque_table();
 std::shared_ptr<const KeyTable> signal_table(const Measure& measure, const char* value_example);
 std::shared_ptr<const KeyTable> point_file_table();
+std::shared_ptr<const KeyTable> body_point_table();
 /// What may stand under `material`: a law, a file, or a name of the library.
 std::vector<Form> material_forms();
 Form body_form();
@@ -120,6 +121,7 @@ Form load_form();
 Form mass_form();
 Form effector_form();
 Form contact_form();
+Form joint_form();
 Form probe_form();
 Form controller_form();
 

@@ -285,6 +285,18 @@ std::shared_ptr<const KeyTable> fem_table() {
        .example = "{file: trunk.vtk, unit: mm}",
        .description = "The shape at rest.",
        .required = true},
+      {.name = "position",
+       .forms = {vector(length())},
+       .example = "0 0 60 mm",
+       .default_text = "0 0 0 m",
+       .description = "Where the mesh's origin stands. Points, boxes and planes of the scene are "
+                      "in the world, where the body is at rest."},
+      {.name = "rotation",
+       .forms = {vector(angle())},
+       .example = "0 0 90 deg",
+       .default_text = "0 0 0 rad",
+       .description = "How the mesh is turned about its origin: a rotation vector (axis times "
+                      "angle)."},
       {.name = "element",
        .forms = {choice(
            {{"tet4", "Linear tetrahedra; above nu = 0.4 they lock, and much more near 0.5."},

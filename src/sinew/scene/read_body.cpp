@@ -298,6 +298,8 @@ BodyDescription read_body(const Node::Entry& entry, const ReadContext& context) 
     return body;
   }
   body.mesh = read_mesh(fields, context);
+  fields.read("position", body.position);
+  fields.read("rotation", body.rotation);
   fields.read_choice("element", body.element,
                      {{"tet4", Element::tet4},
                       {"tet4-patch", Element::tet4_patch},

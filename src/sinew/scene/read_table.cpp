@@ -112,9 +112,17 @@ PointList read_points(const Fields& fields, std::string_view key, const ReadCont
   if (form.shape == Shape::list) {
     list.points.resize(static_cast<Eigen::Index>(node.items().size()), 3);
     for (const Node& item : node.items()) {
-      const std::vector<double> point = read_numbers(item, form.items.front());
-      list.points.row(static_cast<Eigen::Index>(list.places.size())) << point[0], point[1],
-          point[2];
+      const Form& written = select_form(item, form.items, {});
+      Vector3 point;
+      if (written.shape == Shape::table) {
+        const Fields other(item, written);
+        list.bodies.resize(static_cast<std::size_t>(list.points.rows()));
+        other.read("body", list.bodies[list.places.size()]);
+        other.read("point", point);
+      } else {
+        point = Vector3(read_numbers(item, written).data());
+      }
+      list.points.row(static_cast<Eigen::Index>(list.places.size())) = point.transpose();
       list.places.push_back(item.place());
     }
     return list;

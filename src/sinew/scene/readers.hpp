@@ -35,6 +35,7 @@ LoadDescription read_load(const Node::Entry& entry, const ReadContext& context);
 void read_surface(const Fields& fields, SurfaceDescription& surface, const ReadContext& context);
 EffectorDescription read_effector(const Node::Entry& entry, const ReadContext& context);
 ContactDescription read_contact(const Node::Entry& entry, const ReadContext& context);
+JointDescription read_joint(const Node::Entry& entry, const ReadContext& context);
 /// A motion over time. @param fields of its map. @param place of it. @param context of the scene.
 BaseDescription read_motion(const Fields& fields, const Place& place, const ReadContext& context);
 ProbeDescription read_probe(const Node::Entry& entry, const ReadContext& context);

@@ -161,6 +161,8 @@ SceneDescription read_scene(const Node& tree, const ReadContext& context) {
               [&](const auto& entry) { scene.probes.push_back(read_probe(entry, context)); });
   for_entries(fields, "contacts",
               [&](const auto& entry) { scene.contacts.push_back(read_contact(entry, context)); });
+  for_entries(fields, "joints",
+              [&](const auto& entry) { scene.joints.push_back(read_joint(entry, context)); });
   for_entries(fields, "controllers", [&](const auto& entry) {
     scene.controllers.push_back(read_controller(entry, context, scene));
   });

@@ -5,7 +5,9 @@
 #include "sinew/constraint/contact.hpp"
 #include "sinew/constraint/effector.hpp"
 #include "sinew/core/error.hpp"
+#include "sinew/linalg/dense_factor.hpp"
 #include "sinew/sim/simulation.hpp"
+#include "sinew/step/followers.hpp"
 
 namespace sinew::sim {
 
@@ -16,6 +18,40 @@ std::string direction_name(const Vector3& direction, int index) {
     if (direction == Vector3::Unit(axis)) return {'.', "xyz"[axis]};
   }
   return fmt::format("[{}]", index);
+}
+
+// Leaves the rows of the robot as its joints hold it together.
+void take_joints_out(const step::StepProblem& problem, Linearisation& result) {
+  std::vector<step::HeldRow> held;
+  for (const auto& block : problem.bilaterals) held.push_back({block.row, 0.0});
+  step::append_stiffness(problem, held);
+  const int negative =
+      linalg::spectral_inverse(step::held_compliance(problem, held).matrix).negative;
+  result.negative_pivots = step::negative_directions(result.negative_pivots, negative, held);
+  step::Followers joints;
+  std::vector<char> is_joint(static_cast<std::size_t>(problem.delta.size()), 0);
+  for (const step::HeldRow& row : held) {
+    const double motion = row.compliance == 0.0 ? 0.0 : problem.delta[row.row];
+    joints.add_held(row.row, motion, row.compliance);
+    is_joint[static_cast<std::size_t>(row.row)] = 1;
+  }
+  std::vector<int> others;
+  for (std::size_t row = 0; row < is_joint.size(); ++row) {
+    if (is_joint[row] == 0) others.push_back(static_cast<int>(row));
+  }
+  const auto count = static_cast<Eigen::Index>(others.size());
+  MatrixX compliance(count, count);
+  VectorX free(count), delta(count), effort(count);
+  joints.take_out(problem, problem.delta_free, others, compliance, free);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const int row = others[static_cast<std::size_t>(k)];
+    delta[k] = result.delta[row];
+    effort[k] = result.effort[row];
+  }
+  result.compliance = std::move(compliance);
+  result.delta = std::move(delta);
+  result.delta_free = std::move(free);
+  result.effort = std::move(effort);
 }
 
 // Puts the state back whatever happens.
@@ -60,6 +96,7 @@ std::vector<std::string> row_names(const Model& model) {
       }
     }
   }
+  std::erase(names, "");  // rows of joints
   return names;
 }
 
@@ -88,6 +125,7 @@ Linearisation linearise(Simulation& simulation, const LinearisationChoice& choic
   result.delta_free = world.delta_free();
   result.effort = Eigen::Map<const VectorX>(simulation.efforts().data(), model.rows().rows());
   result.negative_pivots = world.negative_pivots();
+  if (!model.welds().empty()) take_joints_out(world.problem(), result);
   return result;
 }
 

@@ -14,10 +14,11 @@ class Model;
 class Simulation;
 
 /// "long_0", "long_0 point 2", "tip.x", "floor point 3 normal": what every row of H belongs to,
-/// each name once.
+/// each name once; of joints none.
 std::vector<std::string> row_names(const Model& model);
 
-/// W and what belongs to it, at one state.
+/// W and what belongs to it, at one state, of the robot as its joints hold it together: their rows
+/// are taken out.
 struct Linearisation {
   std::vector<std::string> rows;  ///< see row_names()
   MatrixX compliance;             ///< W (rows, rows), m/N
@@ -25,7 +26,7 @@ struct Linearisation {
   VectorX delta_free;       ///< (rows,) m, with all efforts zero, as the linearisation sees it
   VectorX effort;           ///< (rows,) N, now
   double residual = 0.0;    ///< N, |p - f + H^T lambda|
-  int negative_pivots = 0;  ///< of A; 0: the equilibrium is stable
+  int negative_pivots = 0;  ///< of A, with joints held; 0: the equilibrium is stable
 };
 
 /// What linearise() is asked for.

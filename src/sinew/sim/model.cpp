@@ -7,6 +7,7 @@
 #include "sinew/constraint/contact.hpp"
 #include "sinew/constraint/effector.hpp"
 #include "sinew/constraint/probe.hpp"
+#include "sinew/constraint/tie.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/mechanics/body.hpp"
 
@@ -62,6 +63,10 @@ int Model::contact_index(std::string_view name) const {
   return find_by_name(contacts_, name, "contact", [](const auto& c) { return c.name; });
 }
 
+int Model::weld_index(std::string_view name) const {
+  return find_by_name(welds_, name, "joint", [](const auto& w) { return w.name; });
+}
+
 int Model::load_index(std::string_view name) const {
   return find_by_name(loads_, name, "load", [](const auto& l) { return l.name; });
 }
@@ -83,6 +88,12 @@ const constraint::Effector& Model::effector(int index) const {
 const constraint::Contact& Model::contact(int index) const {
   const auto& model = contacts_.at(static_cast<std::size_t>(index));
   return dynamic_cast<const constraint::Contact&>(
+      *constraints_[static_cast<std::size_t>(model.constraint)]);
+}
+
+const constraint::Tie& Model::weld(int index) const {
+  const auto& model = welds_.at(static_cast<std::size_t>(index));
+  return dynamic_cast<const constraint::Tie&>(
       *constraints_[static_cast<std::size_t>(model.constraint)]);
 }
 

@@ -28,6 +28,7 @@ class Constraint;
 class Contact;
 class Effector;
 class Probe;
+class Tie;
 }  // namespace sinew::constraint
 
 namespace sinew::mechanics {
@@ -77,6 +78,28 @@ struct ContactModel {
   Eigen::Isometry3d pose(double time) const;
 };
 
+/// What welds two bodies.
+struct WeldModel {
+  std::string name;
+  Place place;
+  int first = 0, second = 1;  ///< bodies
+  int constraint = -1;        ///< a constraint::Tie
+};
+
+/// Springs that A has in statics so that it can be factorised, and that the robot has not: see
+/// step::StiffnessBlock.
+struct AnchorModel {
+  int body = 0;
+  int constraint = -1;     ///< three rows, along x, y and z of one point
+  double stiffness = 0.0;  ///< N/m
+};
+
+/// Rows for the curvature of a cable between two bodies.
+struct CouplingModel {
+  int curvature = -1;   ///< in curvatures()
+  int constraint = -1;  ///< a constraint::Coupling
+};
+
 /// A mass that hangs on a point of a body.
 struct MassModel {
   std::string name;
@@ -110,6 +133,9 @@ class Model {
   const std::vector<GuideModel>& guides() const { return guides_; }
   const std::vector<EffectorModel>& effectors() const { return effectors_; }
   const std::vector<ContactModel>& contacts() const { return contacts_; }
+  const std::vector<WeldModel>& welds() const { return welds_; }
+  const std::vector<AnchorModel>& anchors() const { return anchors_; }
+  const std::vector<CouplingModel>& couplings() const { return couplings_; }
   const std::vector<std::unique_ptr<constraint::Probe>>& probes() const { return probes_; }
   const mechanics::RowPattern& rows() const { return rows_; }
   const std::vector<mechanics::RowCurvature>& curvatures() const { return curvatures_; }
@@ -129,12 +155,14 @@ class Model {
   int actuator_index(std::string_view name) const;
   int effector_index(std::string_view name) const;
   int contact_index(std::string_view name) const;
+  int weld_index(std::string_view name) const;
   int load_index(std::string_view name) const;
   int mass_index(std::string_view name) const;
   int probe_index(std::string_view name) const;
 
   const constraint::Effector& effector(int index) const;
   const constraint::Contact& contact(int index) const;
+  const constraint::Tie& weld(int index) const;
   /// The line of a cable or spring; null when an actuator has none.
   const constraint::Cable* cable(int actuator) const;
   /// The chamber of an actuator; null when it has none.
@@ -159,6 +187,9 @@ class Model {
   std::vector<GuideModel> guides_;
   std::vector<EffectorModel> effectors_;
   std::vector<ContactModel> contacts_;
+  std::vector<WeldModel> welds_;
+  std::vector<AnchorModel> anchors_;
+  std::vector<CouplingModel> couplings_;
   std::vector<std::unique_ptr<constraint::Probe>> probes_;
   mechanics::RowPattern rows_;
   std::vector<mechanics::RowCurvature> curvatures_;

@@ -65,10 +65,12 @@ int ModelBuilder::add_body(std::unique_ptr<mechanics::BodyModel> body) {
     }
   }
   model_->bodies_.push_back(std::move(body));
+  held_.push_back(1);
+  places_.emplace_back();
   return static_cast<int>(model_->bodies_.size()) - 1;
 }
 
-int ModelBuilder::add_fem_body(fem::FemBodySettings settings) {
+int ModelBuilder::add_fem_body(fem::FemBodySettings settings, const Place& place) {
   auto body = std::make_unique<fem::FemBodyModel>(std::move(settings));
   const auto& elements = body->elements();
   const bool dynamic = model_->step_.integrator != mechanics::Integrator::quasi_static;
@@ -79,16 +81,14 @@ int ModelBuilder::add_fem_body(fem::FemBodySettings settings) {
   }
   const bool loose =
       body->settings().elements.fixed_nodes.empty() && body->settings().elements.held_axes.empty();
-  if (!dynamic && loose) {
-    throw Error(ErrorKind::nothing_fixed, {.item = "body '" + body->name() + "'"},
-                "nothing holds this body, so it has no static equilibrium",
-                "fix a region of it, or choose a dynamic integrator");
-  }
   add_masses(*body);
   const Points& nodes = body->mesh().nodes;
   const Vector3 extent = nodes.colwise().maxCoeff() - nodes.colwise().minCoeff();
   model_->size_ = std::max(model_->size_, extent.norm());
-  return add_body(std::move(body));
+  const int index = add_body(std::move(body));
+  held_.back() = loose ? 0 : 1;
+  places_.back() = place;
+  return index;
 }
 
 void ModelBuilder::add_masses(const fem::FemBodyModel& body) {
@@ -127,29 +127,27 @@ int ModelBuilder::add_actuator(ActuatorModel actuator,
 }
 
 std::unique_ptr<constraint::Cable> ModelBuilder::make_line(const std::string& name,
-                                                           const char* kind, int body, Points rest,
-                                                           bool from_world, mesh::Outside outside,
-                                                           const std::vector<Place>& places,
-                                                           const Place& place, bool friction,
-                                                           double guide_radius) {
+                                                           const Place& place, Line line) {
   std::vector<mechanics::MaterialPoint> points;
   std::optional<Vector3> pull_point;
-  for (Eigen::Index i = 0; i < rest.rows(); ++i) {
-    if (i == 0 && from_world) {
-      pull_point = Vector3(rest.row(0));
+  for (Eigen::Index i = 0; i < line.points.rows(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    if (i == 0 && line.from_world) {
+      pull_point = Vector3(line.points.row(0));
       continue;
     }
-    const std::string what = fmt::format("point {} of {} '{}'", i, kind, name);
+    const std::string what = fmt::format("point {} of {} '{}'", i, line.kind, name);
+    mechanics::BodyModel& on = body(line.bodies[k]);
     try {
-      points.push_back(
-          {body, this->body(body).attach_ball(rest.row(i), guide_radius, outside, what)});
+      points.push_back({line.bodies[k],
+                        on.attach_ball(line.points.row(i), line.guide_radius, line.outside, what)});
     } catch (const Error& error) {
-      const auto k = static_cast<std::size_t>(i);
-      throw error.at(k < places.size() ? places[k] : place);
+      throw error.at(k < line.places.size() ? line.places[k] : place);
     }
-    rest.row(i) = this->body(body).rest_position(points.back().point);
+    line.points.row(i) = on.rest_position(points.back().point);
   }
-  return std::make_unique<constraint::Cable>(name, std::move(points), pull_point, rest, friction);
+  return std::make_unique<constraint::Cable>(name, std::move(points), pull_point, line.points,
+                                             line.friction);
 }
 
 namespace {
@@ -158,13 +156,16 @@ namespace {
 struct Conduit {
   Points points;              ///< (n, 3) m
   std::vector<Place> places;  ///< (n,) or empty
+  std::vector<int> bodies;    ///< (n,)
 };
 
-Conduit set_guides(const Points& written, const std::vector<Place>& places, double spacing) {
-  if (spacing <= 0.0 || written.rows() < 2) return {written, places};
+Conduit set_guides(const Points& written, const std::vector<Place>& places,
+                   const std::vector<int>& bodies, double spacing) {
+  if (spacing <= 0.0 || written.rows() < 2) return {written, places, bodies};
   constexpr double kMost = 1e4;
   std::vector<Vector3> all{written.row(0)};
   Conduit result;
+  result.bodies.push_back(bodies.front());
   if (!places.empty()) result.places.push_back(places.front());
   for (Eigen::Index i = 1; i < written.rows(); ++i) {
     const Vector3 from = written.row(i - 1), to = written.row(i);
@@ -176,12 +177,13 @@ Conduit set_guides(const Points& written, const std::vector<Place>& places, doub
           fmt::format("guides {:g} m apart would be {:g} between two points", spacing, parts),
           "give a greater spacing, or check its unit");
     }
-    const int pieces = std::max(static_cast<int>(parts), 1);
+    // From one body to another it runs freely.
+    const auto end = static_cast<std::size_t>(i);
+    const int pieces = bodies[end] == bodies[end - 1] ? std::max(static_cast<int>(parts), 1) : 1;
     for (int k = 1; k <= pieces; ++k) {
       all.push_back(from + static_cast<double>(k) / pieces * (to - from));
-      if (static_cast<std::size_t>(i) < places.size()) {
-        result.places.push_back(places[static_cast<std::size_t>(i)]);
-      }
+      result.bodies.push_back(bodies[end]);
+      if (end < places.size()) result.places.push_back(places[end]);
     }
   }
   result.points.resize(static_cast<Eigen::Index>(all.size()), 3);
@@ -192,6 +194,18 @@ Conduit set_guides(const Points& written, const std::vector<Place>& places, doub
 }
 
 }  // namespace
+
+std::vector<int> ModelBuilder::bodies_of(const CableSettings& settings) const {
+  const auto count = static_cast<std::size_t>(settings.points.rows());
+  if (settings.point_bodies.empty()) return std::vector<int>(count, settings.body);
+  if (settings.point_bodies.size() != count) {
+    throw Error(ErrorKind::wrong_length, settings.place,
+                fmt::format("{} points have {} bodies", count, settings.point_bodies.size()),
+                "name one body for each point");
+  }
+  for (const int body : settings.point_bodies) check_body(body, settings.place);
+  return settings.point_bodies;
+}
 
 int ModelBuilder::add_cable(const CableSettings& settings) {
   check_body(settings.body, settings.place);
@@ -218,11 +232,17 @@ int ModelBuilder::add_cable(const CableSettings& settings) {
   }
   try {
     const bool friction = settings.friction > 0.0;
-    const Conduit conduit =
-        set_guides(settings.points, settings.point_places, settings.guide_spacing);
-    auto cable = make_line(settings.name, "cable", settings.body, conduit.points,
-                           settings.pull_from_world, settings.outside, conduit.places,
-                           settings.place, friction, settings.guide_radius);
+    Conduit conduit = set_guides(settings.points, settings.point_places, bodies_of(settings),
+                                 settings.guide_spacing);
+    auto cable = make_line(settings.name, settings.place,
+                           {.kind = "cable",
+                            .points = std::move(conduit.points),
+                            .places = std::move(conduit.places),
+                            .bodies = std::move(conduit.bodies),
+                            .from_world = settings.pull_from_world,
+                            .outside = settings.outside,
+                            .friction = friction,
+                            .guide_radius = settings.guide_radius});
     const int vias = friction ? cable->via_count() : 0;
     const int index = add_actuator({settings.name, settings.place, ActuatorType::cable, -1, -1,
                                     settings.tension, settings.displacement, settings.command},
@@ -243,9 +263,14 @@ int ModelBuilder::add_cable(const CableSettings& settings) {
 int ModelBuilder::add_spring(const SpringLineSettings& settings) {
   check_body(settings.body, settings.place);
   try {
-    auto line =
-        make_line(settings.name, "spring", settings.body, settings.points, settings.pull_from_world,
-                  settings.outside, settings.point_places, settings.place);
+    const auto count = static_cast<std::size_t>(settings.points.rows());
+    auto line = make_line(settings.name, settings.place,
+                          {.kind = "spring",
+                           .points = settings.points,
+                           .places = settings.point_places,
+                           .bodies = std::vector<int>(count, settings.body),
+                           .from_world = settings.pull_from_world,
+                           .outside = settings.outside});
     ActuatorModel actuator{settings.name,   settings.place, ActuatorType::spring, -1, -1, {}, {},
                            settings.command};
     const double length = line->rest_length();
@@ -514,6 +539,8 @@ int ModelBuilder::add_effector(const EffectorSettings& settings) {
 }
 
 std::shared_ptr<const Model> ModelBuilder::build(const linalg::FactorisationSettings& settings) {
+  hold_bodies();
+  add_couplings();
   for (std::size_t i = 0; i < model_->bodies_.size(); ++i) {
     model_->bodies_[i]->finish(static_cast<int>(i), model_->rows_, model_->curvatures_, settings);
   }
@@ -527,6 +554,7 @@ std::shared_ptr<const Model> ModelBuilder::build(const linalg::FactorisationSett
     for (int k = 0; k < constraint.curvature_count(); ++k) {
       const auto& pair =
           model_->curvatures_[static_cast<std::size_t>(constraint.first_curvature() + k)];
+      if (pair.first.body != pair.second.body) continue;  // see add_couplings()
       model_->stiffening_widens_ |=
           !body(pair.first.body).couples(pair.first.point, pair.second.point);
     }
@@ -537,6 +565,8 @@ std::shared_ptr<const Model> ModelBuilder::build(const linalg::FactorisationSett
   model_->fingerprint_ = hash.value();
   std::shared_ptr<const Model> model = std::move(model_);
   model_.reset(new Model);
+  held_.clear();
+  places_.clear();
   return model;
 }
 

@@ -14,6 +14,7 @@
 #include "sinew/mesh/patch.hpp"
 #include "sinew/pcc/arm.hpp"
 #include "sinew/sim/fluid_drive.hpp"
+#include "sinew/sim/joint_settings.hpp"
 #include "sinew/sim/load_settings.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/probe_settings.hpp"
@@ -31,6 +32,7 @@ struct CableSettings {
   int body = 0;
   Points points;                    ///< (n, 3) m, n >= 2; the first is the pull point
   std::vector<Place> point_places;  ///< (n,) where each was written; may be empty
+  std::vector<int> point_bodies;    ///< (n,) whose material each is in; empty: all in `body`
   bool pull_from_world = true;      ///< the pull point is fixed to the world, else to the body
   mesh::Outside outside = mesh::Outside::error;
   Limits tension{.min = 0.0};  ///< N, min >= 0
@@ -133,8 +135,9 @@ class ModelBuilder {
 
   /// All return the new part's position. Names are unique among their kind: Error(duplicate-key).
   int add_body(std::unique_ptr<mechanics::BodyModel> body);
-  /// Throws what fem::FemBodyModel does, and Error: missing-mass, nothing-fixed.
-  int add_fem_body(fem::FemBodySettings settings);
+  /// Throws what fem::FemBodyModel does, and Error(missing-mass).
+  /// @param place where it is written.
+  int add_fem_body(fem::FemBodySettings settings, const Place& place = {});
   /// A constant-curvature arm. Throws what pcc::Arm does.
   int add_arm(pcc::ArmSettings settings);
   /// Throws Error: too-few-points, degenerate-cable, point-outside-mesh, contradictory-limits,
@@ -157,12 +160,16 @@ class ModelBuilder {
   /// point inside the surface at the start), wrong-type (nodes of a body without),
   /// not-in-this-version (generalized-alpha).
   int add_contact(const ContactSettings& settings);
+  /// Throws Error: too-few-points, point-outside-mesh, bad-argument (a body and itself), wrong-type
+  /// (nodes of a body without).
+  int add_weld(const WeldSettings& settings);
   /// Throws Error: too-few-points, empty-region, point-outside-mesh, degenerate-orientation.
   int add_probe(const ProbeSettings& settings);
 
   /// Plans and hands the model over; the builder is empty afterwards.
   /// @param settings of the factorisation.
-  /// Throws Error(nothing-fixed) when a body has no fixed node and the integrator is quasi-static,
+  /// Throws Error(nothing-fixed) when the integrator is quasi-static and a body has no fixed node
+  /// nor hangs, by welds that leave it no rigid motion, on bodies that have,
   /// Error(out-of-range) for a time step that is not positive, Error(missing-mass) for dynamics
   /// without mass.
   std::shared_ptr<const Model> build(const linalg::FactorisationSettings& settings = {});
@@ -176,15 +183,30 @@ class ModelBuilder {
   mechanics::BodyModel& body(int index);
   void check_body(int index, const Place& place) const;
   void add_masses(const fem::FemBodyModel& body);
+  void hold_bodies();
+  [[noreturn]] void throw_loose(std::size_t body, bool welded) const;
+  void add_anchors(int body);
+  void add_couplings();
   fem::FemBodyModel& fem_body(int index, const Place& place, const char* what);
   void add_liquid_weight(const CavitySettings& settings);
   int add_actuator(ActuatorModel actuator, std::unique_ptr<constraint::Constraint> constraint);
-  std::unique_ptr<constraint::Cable> make_line(const std::string& name, const char* kind, int body,
-                                               Points rest, bool from_world, mesh::Outside outside,
-                                               const std::vector<Place>& places, const Place& place,
-                                               bool friction = false, double guide_radius = 0.0);
+  struct Line {
+    const char* kind;           // "cable"
+    Points points;              // (n, 3) m
+    std::vector<Place> places;  // (n,) where each was written, or empty
+    std::vector<int> bodies;    // (n,)
+    bool from_world = false;
+    mesh::Outside outside = mesh::Outside::error;
+    bool friction = false;
+    double guide_radius = 0.0;  // m
+  };
+  std::unique_ptr<constraint::Cable> make_line(const std::string& name, const Place& place,
+                                               Line line);
+  std::vector<int> bodies_of(const CableSettings& settings) const;
 
   std::unique_ptr<Model> model_;
+  std::vector<char> held_;     // (bodies,) by itself
+  std::vector<Place> places_;  // (bodies,)
 };
 
 }  // namespace sinew::sim

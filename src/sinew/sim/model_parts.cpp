@@ -77,6 +77,11 @@ std::vector<NamedHash> list_parts(const Model& model) {
     if (contact.motion) add_motion(hash, *contact.motion);
     parts.push_back({fmt::format("contact '{}'", contact.name), hash.value()});
   }
+  for (const WeldModel& weld : model.welds()) {
+    ValueHash hash;
+    add_constraint(hash, model, weld.constraint);
+    parts.push_back({fmt::format("joint '{}'", weld.name), hash.value()});
+  }
   for (const BaseMotion& motion : model.base_motions()) {
     ValueHash hash;
     add_motion(hash, motion);

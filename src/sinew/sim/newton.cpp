@@ -34,8 +34,7 @@ class NewtonSolver {
     for (report_.iterations = 0; report_.iterations < settings_.max_iterations;) {
       if (converged_) return finish(NewtonStatus::converged);
       if (!condense()) return finish(NewtonStatus::singular);
-      report_.law = world_.solve_efforts(solver_, controller_, effort_);
-      clock_.mark(Stage::law);
+      report_.law = world_.solve_step(solver_, controller_, effort_, clock_);
       if (report_.law == step::LawStatus::failed) return finish(NewtonStatus::law_failed);
       const NewtonStatus moved = move();
       ++report_.iterations;
@@ -60,11 +59,10 @@ class NewtonSolver {
   bool condense() {
     auto status = world_.condense();
     ++report_.factorisations;
-    const bool stable =
-        status == linalg::FactorStatus::positive_definite ||
-        (status == linalg::FactorStatus::indefinite &&
-         (world_.is_unsymmetric() || step::stabilised(world_.problem(), world_.negative_pivots())));
-    derivative_ = stable && settings_.request.tangent == mechanics::Tangent::exact;
+    const bool stable = world_.is_stable(status) ||
+                        (status == linalg::FactorStatus::indefinite && world_.is_unsymmetric());
+    derivative_ =
+        stable && settings_.request.tangent == mechanics::Tangent::exact && !world_.has_majorant();
     if (!stable && settings_.request.tangent == mechanics::Tangent::exact) {
       clock_.mark(Stage::factorisation);
       linearise(mechanics::Tangent::projected);
@@ -114,7 +112,6 @@ class NewtonSolver {
   NewtonStatus move() {
     const double before = merit();
     const double residual_before = report_.residual;
-    world_.solve_motion(effort_);
     bool inverted = false;
     double scale = 1.0;
     for (int halving = 0; halving <= kMostHalvings; ++halving, scale *= 0.5) {

@@ -24,6 +24,7 @@ enum class ObservableKind {
   probe,          ///< what it measures
   contact_point,  ///< of every point of a contact, and the pose of its surface
   contact,        ///< of all points of a contact together
+  joint,          ///< force, moment and gap of a weld
   controller,     ///< targets and errors
   energy,         ///< of all bodies; evaluates their elements
   ledger,         ///< work and losses since the first reading; evaluates the elements, too
@@ -81,7 +82,8 @@ class Observables {
   /// `NAME.pose` (3, 4) and `NAME.points.position` (n, 3), `.gap` (n,), `.normal` (n, 3),
   /// `.normal_force` (n,), `.friction_force` (n, 3), `.state` (n,), and, of the points together,
   /// `NAME.force` (3,) N, `NAME.normal_force` and `NAME.friction_force` N, `NAME.gap` m,
-  /// `NAME.sticking`, `NAME.slipping`; `strain_energy`, `kinetic_energy`, `gravity_energy`,
+  /// `NAME.sticking`, `NAME.slipping`; of every joint `NAME.force` (3,) N and `NAME.moment` (3,) N
+  /// m (see WeldLoad), `NAME.gap` m; `strain_energy`, `kinetic_energy`, `gravity_energy`,
   /// `actuator_work`, `outside_work`, `dissipation`, `numerical_loss` J; the report's `residual` N,
   /// `relative_residual`, `iterations`, `substeps`, `scale`, `smallest_volume_ratio`; `status`;
   /// `time.step` and the stages' times, s.

@@ -44,6 +44,11 @@ void Simulation::plan_path() {
                 "paths of robots with contacts are not followed yet",
                 "step through the load in time");
   }
+  if (!model_->welds().empty()) {
+    throw Error(ErrorKind::not_in_this_version, {.item = "follow_path"},
+                "paths of robots with joints are not followed yet",
+                "step through the load in time");
+  }
   if (!model_->guides().empty()) {
     throw Error(ErrorKind::bad_argument, {.item = "follow_path"},
                 "cables with friction have no path of their own", "step through the load in time");

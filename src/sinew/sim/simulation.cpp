@@ -10,8 +10,10 @@
 #include "sinew/constraint/probe.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/core/state_hash.hpp"
+#include "sinew/fem/fem_body.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/sim/newton.hpp"
+#include "sinew/step/step_solver.hpp"
 
 namespace sinew::sim {
 
@@ -26,7 +28,8 @@ Simulation::Simulation(std::shared_ptr<const Model> model, int threads)
     : model_(std::move(model)),
       pool_(std::make_unique<ThreadPool>(threads)),
       world_(model_, *pool_),
-      solver_({.tolerance = model_->step().contact_tolerance}),
+      solver_(std::make_unique<step::StepSolver>(
+          qp::ConeSettings{.tolerance = model_->step().contact_tolerance})),
       actuators_(model_->actuators().size()),
       effort_(static_cast<std::size_t>(model_->rows().rows()), 0.0),
       drive_state_(static_cast<std::size_t>(model_->drive_states()), 0.0) {
@@ -250,7 +253,7 @@ double Simulation::substep(double end, double time_step) {
   move_bases(end);
   set_loads(end);
   world_.begin_step(end - time_step, end, effort_);
-  solver_.begin_step();
+  solver_->begin_step();
   if (controller_ != nullptr) controller_->begin_step();
   solve_equation(time_step);
   if (!model_->contacts().empty()) {

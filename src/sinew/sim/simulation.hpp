@@ -9,7 +9,6 @@
 #include <span>
 #include <vector>
 
-#include "sinew/fem/fem_body.hpp"
 #include "sinew/sim/contact_state.hpp"
 #include "sinew/sim/inputs.hpp"
 #include "sinew/sim/newton_status.hpp"
@@ -18,6 +17,13 @@
 #include "sinew/sim/static_settings.hpp"
 #include "sinew/sim/step_status.hpp"
 #include "sinew/sim/world.hpp"
+
+namespace sinew::fem {
+class FemBody;
+}
+namespace sinew::qp {
+struct ConeResult;
+}
 
 namespace sinew::sim {
 
@@ -234,7 +240,7 @@ class Simulation {
   std::shared_ptr<const Model> model_;
   std::unique_ptr<ThreadPool> pool_;
   World world_;
-  step::StepSolver solver_;
+  std::unique_ptr<step::StepSolver> solver_;
   step::Controller* controller_ = nullptr;
   std::vector<ActuatorState> actuators_;
   std::vector<double> effort_;

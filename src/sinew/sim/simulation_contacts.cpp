@@ -5,14 +5,14 @@
 
 #include "sinew/constraint/contact.hpp"
 #include "sinew/core/error.hpp"
+#include "sinew/qp/cone_solver.hpp"
 #include "sinew/sim/simulation.hpp"
+#include "sinew/step/step_solver.hpp"
 
 namespace sinew::sim {
 
 namespace {
 
-// Friction within this part of its limit is at it.
-constexpr double kSlips = 1e-7;
 // More points than this are beyond the solver's Newton method, and slow.
 constexpr std::size_t kManyPoints = static_cast<std::size_t>(qp::ConeSettings{}.newton_limit) / 3;
 
@@ -30,9 +30,8 @@ ContactPoint Simulation::contact_point(int index, std::size_t point) const {
   result.normal_force = effort_[row];
   result.friction_force = effort_[row + 1] * frame[1] + effort_[row + 2] * frame[2];
   if (!(result.normal_force > 0.0)) return result;
-  const double limit = contact.friction() * result.normal_force;
-  const double across = std::hypot(effort_[row + 1], effort_[row + 2]);
-  const bool slips = across >= (1.0 - kSlips) * limit;
+  const Eigen::Map<const Vector3> force(&effort_[row]);
+  const bool slips = qp::slides(force, contact.friction());
   result.state = slips ? qp::ContactState::slip : qp::ContactState::stick;
   return result;
 }
@@ -90,7 +89,7 @@ void Simulation::count_contact_work() {
 }
 
 const qp::ConeResult& Simulation::contact_result() const {
-  return solver_.direct().contact_result();
+  return solver_->direct().contact_result();
 }
 
 }  // namespace sinew::sim

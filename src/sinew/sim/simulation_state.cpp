@@ -5,8 +5,10 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/fem/fem_body.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/sim/simulation.hpp"
+#include "sinew/step/controller.hpp"
 
 namespace sinew::sim {
 

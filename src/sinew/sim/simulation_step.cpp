@@ -9,6 +9,7 @@
 #include "sinew/sim/load_steps.hpp"
 #include "sinew/sim/newton.hpp"
 #include "sinew/sim/simulation.hpp"
+#include "sinew/step/controller.hpp"
 
 namespace sinew::sim {
 
@@ -85,8 +86,8 @@ void Simulation::step_once(double time_step) {
   };
   linearise();
   auto status = world_.condense();
-  if (status == linalg::FactorStatus::indefinite && request.tangent == mechanics::Tangent::exact &&
-      !step::stabilised(world_.problem(), world_.negative_pivots())) {
+  if (status != linalg::FactorStatus::singular && request.tangent == mechanics::Tangent::exact &&
+      !world_.is_stable(status)) {
     request.tangent = mechanics::Tangent::projected;
     linearise();
     status = world_.condense();
@@ -96,11 +97,9 @@ void Simulation::step_once(double time_step) {
     fail(ErrorKind::singular_matrix, "the stiffness matrix is singular",
          "fix a region of every body, or look for loose or crushed elements");
   }
-  report_.law = world_.solve_efforts(solver_, controller_, effort_);
+  report_.law = world_.solve_step(*solver_, controller_, effort_, clock_);
   if (report_.law == LawStatus::failed) fail_law();
   report_.iterations = 1;
-  clock_.mark(Stage::law);
-  world_.solve_motion(effort_);
   move_soundly();
   clock_.mark(Stage::correction);
   require_outside();
@@ -200,7 +199,7 @@ NewtonReport Simulation::stay(double time_step) {
 }
 
 NewtonReport Simulation::newton(step::Controller* controller, const NewtonSettings& settings) {
-  return solve_newton(world_, solver_, controller, effort_, settings, clock_);
+  return solve_newton(world_, *solver_, controller, effort_, settings, clock_);
 }
 
 // Newton; where that finds nothing and there is no inertia to say where to go, along the loads and

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "sinew/linalg/dense_factor.hpp"
+#include "sinew/qp/friction_cone.hpp"
 
 namespace sinew::sim {
 
@@ -12,8 +13,6 @@ namespace {
 
 // Efforts nearer to a limit than this, of their size, are at it.
 constexpr double kAtLimit = 1e-9;
-// Eigenvalues of the scaled S below this, of the largest, come from rows that repeat each other.
-constexpr double kRedundant = 1e-11;
 constexpr int kMostDirections = 80;  // of Lanczos' method
 constexpr double kRitzTolerance = 1e-2;
 // A direction is neutral where moving the robot by its size along it changes forces by no more
@@ -35,13 +34,12 @@ bool holds(const step::ActuatorBlock& range, double effort) {
 }
 
 void add_touching(const step::StepProblem& problem, std::span<const double> effort,
-                  std::vector<HeldRow>& held) {
+                  std::vector<step::HeldRow>& held) {
   for (const step::ContactBlock& block : problem.contacts) {
     const double* force = effort.data() + block.row;
     if (!(force[0] > 0.0)) continue;
     held.push_back({block.row, 0.0});
-    const double across = std::hypot(force[1], force[2]);
-    if (!(across < (1.0 - kAtLimit) * block.friction * force[0])) continue;
+    if (qp::slides(Eigen::Map<const Vector3>(force), block.friction)) continue;
     held.push_back({block.row + 1, 0.0});
     held.push_back({block.row + 2, 0.0});
   }
@@ -64,8 +62,9 @@ VectorX scattered(Eigen::Index size) {
 
 }  // namespace
 
-std::vector<HeldRow> held_rows(const step::StepProblem& problem, std::span<const double> effort) {
-  std::vector<HeldRow> held;
+std::vector<step::HeldRow> held_rows(const step::StepProblem& problem,
+                                     std::span<const double> effort) {
+  std::vector<step::HeldRow> held;
   for (const step::ActuatorBlock& range : problem.actuators) {
     if (range.row < 0) continue;
     if (range.drive != nullptr) {
@@ -77,6 +76,7 @@ std::vector<HeldRow> held_rows(const step::StepProblem& problem, std::span<const
   }
   for (const step::BilateralBlock& block : problem.bilaterals) held.push_back({block.row, 0.0});
   add_touching(problem, effort, held);
+  step::append_stiffness(problem, held);
   return held;
 }
 
@@ -93,35 +93,15 @@ Stability::Stability(World& world, std::span<const double> effort)
   if (force <= kNeutral * world_.rounding_floor()) negative_ = 0;
 }
 
-// Rows are scaled to a diagonal of 1: a cavity's is m^3/Pa, a cable's m/N.
 int Stability::count() {
   const int pivots = world_.negative_pivots();
   const auto rows = static_cast<Eigen::Index>(held_.size());
   inverse_.setZero(rows, rows);
-  if (pivots == 0 || rows == 0) return pivots;
-  MatrixX& s = inverse_;
-  VectorX scale(rows);
-  for (Eigen::Index i = 0; i < rows; ++i) {
-    const HeldRow& own = held_[static_cast<std::size_t>(i)];
-    for (Eigen::Index j = 0; j < rows; ++j) {
-      s(i, j) = world_.compliance()(own.row, held_[static_cast<std::size_t>(j)].row);
-    }
-    s(i, i) += own.compliance;
-    scale[i] = s(i, i) != 0.0 ? 1.0 / std::sqrt(std::abs(s(i, i))) : 1.0;
-  }
-  s = scale.asDiagonal() * s * scale.asDiagonal();
-  const linalg::SymmetricSpectrum spectrum(s);
-  const double least = kRedundant * spectrum.values().cwiseAbs().maxCoeff();
-  VectorX inverted = VectorX::Zero(rows);
-  int negative = 0;
-  for (Eigen::Index i = 0; i < rows; ++i) {
-    const double value = spectrum.values()[i];
-    if (std::abs(value) > least) inverted[i] = 1.0 / value;
-    negative += value < -least ? 1 : 0;
-  }
-  const MatrixX vectors = scale.asDiagonal() * spectrum.vectors();
-  inverse_ = vectors * inverted.asDiagonal() * vectors.transpose();
-  return std::max(0, pivots - negative);
+  if (rows == 0 || (pivots == 0 && world_.problem().stiffness.empty())) return pivots;
+  const auto [matrix, scale] = step::held_compliance(world_.problem(), held_);
+  const auto scaled = linalg::spectral_inverse(matrix);
+  inverse_ = scale.asDiagonal() * scaled.inverse * scale.asDiagonal();
+  return std::max(0, step::negative_directions(pivots, scaled.negative, held_));
 }
 
 void Stability::apply_inverse(const VectorX& right, VectorX& result) {

@@ -9,23 +9,18 @@
 
 namespace sinew::sim {
 
-/// A row whose motion something holds at an equilibrium.
-struct HeldRow {
-  int row = -1;
-  double compliance = 0.0;  ///< C, m/N or m^3/Pa: 0 held at a motion, -1/slope behind a drive
-};
-
 /// The rows that are held at an equilibrium: actuators at a commanded motion or at a limit of their
 /// motion, drives by the slope of their curve, normal rows of touching contacts, and tangential
-/// rows that stick. Actuators at a limit of their effort and sliding contacts hold nothing.
+/// rows that stick. Actuators at a limit of their effort and sliding contacts hold nothing. Anchors
+/// hold less than nothing.
 /// @param problem,effort of the equilibrium.
-std::vector<HeldRow> held_rows(const step::StepProblem& problem, std::span<const double> effort);
+std::vector<step::HeldRow> held_rows(const step::StepProblem& problem,
+                                     std::span<const double> effort);
 
 /// The exact tangent A of an equilibrium restricted to the motions that held rows H leave, which is
-/// A + H^T C^-1 H, and for C = 0 A on the null space of H. By the inertia of the bordered matrix
-/// (Haynsworth, Linear Algebra Appl. 1 (1968) 73) it has
-///   n_-(A) - n_-(S),  S = H A^-1 H^T + C,
-/// negative eigenvalues. Its inverse on those motions is T = A^-1 - Y S^-1 Y^T, Y = A^-1 H^T.
+/// A + H^T C^-1 H, and for C = 0 A on the null space of H; its negative eigenvalues are counted by
+/// step::negative_directions(), with S = W + C. Its inverse on those motions is T = A^-1 - Y S^-1
+/// Y^T, Y = A^-1 H^T.
 ///
 /// Loads without a potential (pressure on an open surface) are counted by the symmetric part of
 /// their tangent.
@@ -52,7 +47,7 @@ class Stability {
   void apply_inverse(const VectorX& right, VectorX& result);
 
   World& world_;
-  std::vector<HeldRow> held_;
+  std::vector<step::HeldRow> held_;
   MatrixX moved_;    // Y, (motion_size, held)
   MatrixX inverse_;  // pseudo-inverse of S, (held, held)
   VectorX mode_;

@@ -11,6 +11,7 @@
 #include "sinew/mechanics/body.hpp"
 #include "sinew/pcc/arm_body.hpp"
 #include "sinew/sim/observables.hpp"
+#include "sinew/sim/weld_load.hpp"
 
 namespace sinew::sim {
 
@@ -228,6 +229,31 @@ void add_contacts(Observables& list) {
   }
 }
 
+void add_welds(Observables& list) {
+  const Simulation& simulation = list.simulation();
+  const Model& model = simulation.model();
+  for (std::size_t w = 0; w < model.welds().size(); ++w) {
+    const std::string& name = model.welds()[w].name;
+    std::vector<Observable> parts;
+    const auto add_vector = [&](const char* quantity, const char* unit) {
+      parts.push_back(of(ObservableKind::joint, name, quantity, unit, {3}));
+      for (const char* axis : kAxes) {
+        parts.back().components.push_back(fmt::format("{}.{}_{}", name, quantity, axis));
+      }
+    };
+    add_vector("force", "N");
+    add_vector("moment", "N m");
+    parts.push_back(of(ObservableKind::joint, name, "gap", "m"));
+    list.add(std::move(parts), [&simulation, w](std::span<double> all) {
+      const WeldLoad load = weld_load(simulation, static_cast<int>(w));
+      Numbers to(all);
+      to.put(load.force);
+      to.put(load.moment);
+      to.put(load.gap);
+    });
+  }
+}
+
 // Energies, work and losses since the first reading. What actuators and loads have put in since
 // then is in the bodies, dissipated, or lost by the integrator.
 class Ledger {
@@ -320,6 +346,7 @@ void list_standard_observables(Observables& list) {
   add_effectors(list);
   add_probes(list);
   add_contacts(list);
+  add_welds(list);
   add_energies(list);
   add_report(list);
   add_timing(list);

@@ -105,7 +105,7 @@ bool StaticSolver::relax_from_here() {
   linearise({});
   if (world.condense() == linalg::FactorStatus::singular) return false;
   const std::vector<double> before = sim_.effort_;
-  if (world.solve_efforts(sim_.solver_, nullptr, sim_.effort_) == LawStatus::failed) {
+  if (world.solve_step(*sim_.solver_, nullptr, sim_.effort_, sim_.clock_) == LawStatus::failed) {
     sim_.effort_ = before;
   }
   VectorX imbalance, direction;

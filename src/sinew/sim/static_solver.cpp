@@ -8,6 +8,7 @@
 #include "sinew/core/error.hpp"
 #include "sinew/core/types.hpp"
 #include "sinew/sim/load_steps.hpp"
+#include "sinew/step/step_solver.hpp"
 
 namespace sinew::sim {
 
@@ -66,7 +67,7 @@ void StaticSolver::read_goal() {
   sim_.read_commands(sim_.time(), kInfinity);
   sim_.hold_efforts();
   goal_ = sim_.world_.problem().actuators;
-  sim_.solver_.begin_step();
+  sim_.solver_->begin_step();
 }
 
 mechanics::LinearisationRequest StaticSolver::request(const mechanics::StepWeights& weights) {

@@ -6,7 +6,10 @@
 
 #include "sinew/constraint/cable.hpp"
 #include "sinew/constraint/contact.hpp"
+#include "sinew/constraint/tie.hpp"
 #include "sinew/linalg/positive_part.hpp"
+#include "sinew/sim/stages.hpp"
+#include "sinew/step/step_solver.hpp"
 
 namespace sinew::sim {
 
@@ -61,6 +64,22 @@ World::World(std::shared_ptr<const Model> model, ThreadPool& pool)
     for (std::size_t k = 0; k < contact.points().size(); ++k) {
       problem_.contacts.push_back({contact.row(k), contact.friction(), true});
     }
+  }
+  for (std::size_t w = 0; w < model_->welds().size(); ++w) {
+    const constraint::Tie& tie = model_->weld(static_cast<int>(w));
+    for (int row = tie.first_row(); row < tie.first_row() + tie.row_count(); ++row) {
+      problem_.bilaterals.push_back({row});
+    }
+  }
+  for (const AnchorModel& anchor : model_->anchors()) {
+    const int row = model_->constraints()[static_cast<std::size_t>(anchor.constraint)]->first_row();
+    for (int axis = 0; axis < 3; ++axis) problem_.stiffness.push_back({row + axis});
+  }
+  anchor_rows_ = problem_.stiffness.size();
+  for (const CouplingModel& coupling : model_->couplings()) {
+    const int row =
+        model_->constraints()[static_cast<std::size_t>(coupling.constraint)]->first_row();
+    for (int k = 0; k < 2; ++k) problem_.stiffness.push_back({row + k});
   }
   contact_start_.setZero(rows);
   formed_ = rows_.present;
@@ -244,6 +263,11 @@ double World::deepest_free_point(std::span<const double> effort) const {
 
 void World::linearise(const mechanics::LinearisationRequest& request) {
   tangent_ = request.tangent;
+  // Inertia holds a body by itself.
+  for (std::size_t k = 0; k < anchor_rows_; ++k) {
+    problem_.stiffness[k].stiffness =
+        request.weights.dynamic() ? 0.0 : -model_->anchors()[k / 3].stiffness;
+  }
   for (auto& body : bodies_) body->linearise(request);
 }
 
@@ -265,6 +289,10 @@ void World::form_rows(std::span<const double> effort, std::span<const int> curve
 }
 
 void World::add_curvatures() {
+  majorant_ = false;
+  for (std::size_t k = anchor_rows_; k < problem_.stiffness.size(); ++k) {
+    problem_.stiffness[k].stiffness = 0.0;
+  }
   const std::span<const double> effort(curving_effort_);
   for (const int index : curving_) {
     const auto& constraint = *model_->constraints()[static_cast<std::size_t>(index)];
@@ -277,15 +305,32 @@ void World::add_curvatures() {
     constraint.curve(placement_, effort, pairs);
     const bool exact = tangent_ == mechanics::Tangent::exact || constraint.stiffens(effort);
     for (const auto& pair : pairs) {
-      // No body has room for what couples it to another.
       if (exact && pair.first.body == pair.second.body) {
         bodies_[static_cast<std::size_t>(pair.first.body)]->add_curvature(pair);
+      } else if (exact) {
+        couple(pair);
       } else {
+        majorant_ = true;
         add_majorant(pair);
       }
     }
   }
   curving_ = {};
+}
+
+// A piece of a cable between two bodies: its C = T/l (I - n n^T), which the pairs of either point
+// with itself have added to the bodies, becomes a spring T/l along the rows of its coupling.
+void World::couple(const mechanics::RowCurvature& pair) {
+  for (const mechanics::MaterialPoint& point : {pair.first, pair.second}) {
+    bodies_[static_cast<std::size_t>(point.body)]->add_curvature({point, point, pair.curvature});
+  }
+  const auto index = static_cast<int>(&pair - curvatures_.data());
+  const auto& couplings = model_->couplings();
+  const auto found = std::ranges::find(couplings, index, &CouplingModel::curvature);
+  const auto first = anchor_rows_ + 2 * static_cast<std::size_t>(found - couplings.begin());
+  for (std::size_t k = first; k < first + 2; ++k) {
+    problem_.stiffness[k].stiffness = 0.5 * pair.curvature.trace();
+  }
 }
 
 // A pair (x_i, x_j) with block C puts -C at (i, j) and -C^T at (j, i) into A. What is never less:
@@ -299,6 +344,17 @@ void World::add_majorant(const mechanics::RowCurvature& pair) {
   const Matrix3 bound = pair.curvature.norm() * Matrix3::Identity();
   add(pair.first, bound);
   add(pair.second, bound);
+}
+
+void World::add_anchors() {
+  for (std::size_t k = 0; k < anchor_rows_; k += 3) {
+    const auto& [row, stiffness] = problem_.stiffness[k];
+    if (stiffness == 0.0) continue;
+    const auto entry = model_->rows().row_start[static_cast<std::size_t>(row)];
+    const mechanics::MaterialPoint point = model_->rows().point[static_cast<std::size_t>(entry)];
+    bodies_[static_cast<std::size_t>(point.body)]->add_curvature(
+        {point, point, stiffness * Matrix3::Identity()});
+  }
 }
 
 void World::hold_capstans(const VectorX& delta) {
@@ -347,26 +403,39 @@ bool World::is_unsymmetric() const {
   return std::ranges::any_of(bodies_, [](const auto& body) { return body->is_unsymmetric(); });
 }
 
+bool World::is_stable(linalg::FactorStatus status) const {
+  if (status == linalg::FactorStatus::singular) return false;
+  const bool has_less = std::ranges::any_of(
+      problem_.stiffness, [](const step::StiffnessBlock& block) { return block.stiffness < 0.0; });
+  if (status == linalg::FactorStatus::positive_definite && !has_less) return true;
+  return step::stabilised(problem_, negative_pivots());
+}
+
 linalg::FactorStatus World::condense() {
-  motion_is_solved_ = false;
   add_curvatures();
+  add_anchors();
   auto worst = linalg::FactorStatus::positive_definite;
   for (auto& body : bodies_) worst = std::max(worst, body->condense());
   if (worst != linalg::FactorStatus::singular) form_compliance();
   return worst;
 }
 
-step::LawStatus World::solve_efforts(step::StepSolver& solver, step::Controller* controller,
-                                     std::span<double> effort) {
+step::LawStatus World::solve_step(step::StepSolver& solver, step::Controller* controller,
+                                  std::span<double> effort, StageClock& clock) {
   problem_.effort_before.assign(effort.begin(), effort.end());
   step::LawStatus status = step::LawStatus::solved;
-  while (true) {
+  bool mended = true;
+  while (mended) {
     status = solver.solve(problem_, controller, effort);
-    if (status == step::LawStatus::failed || !guesses_contacts()) return status;
-    solve_motion(effort);
-    if (!correct_contacts(effort)) break;
+    clock.mark(Stage::law);
+    if (status == step::LawStatus::failed) return status;
+    for (auto& body : bodies_) body->solve_motion(effort);
+    mended = guesses_contacts() && correct_contacts(effort);
+    clock.mark(Stage::correction);
   }
-  motion_is_solved_ = true;
+  for (const step::StiffnessBlock& block : problem_.stiffness) {
+    effort[static_cast<std::size_t>(block.row)] = 0.0;  // the robot has no such force
+  }
   return status;
 }
 
@@ -381,11 +450,6 @@ void World::form_compliance() {
   }
   problem_.delta_free = rows_.delta;
   for (auto& body : bodies_) body->add_compliance(problem_.compliance, problem_.delta_free);
-}
-
-void World::solve_motion(std::span<const double> effort) {
-  if (std::exchange(motion_is_solved_, false)) return;
-  for (auto& body : bodies_) body->solve_motion(effort);
 }
 
 void World::imbalance(std::span<const double> effort, VectorX& result) {

@@ -9,13 +9,19 @@
 #include "sinew/constraint/placement.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/sim/model.hpp"
-#include "sinew/step/step_solver.hpp"
+#include "sinew/step/step_problem.hpp"
 
 namespace sinew::constraint {
 struct SurfaceApproach;
 }
+namespace sinew::step {
+class Controller;
+class StepSolver;
+}  // namespace sinew::step
 
 namespace sinew::sim {
+
+class StageClock;
 
 /// Data of one simulation below the level of commands and laws. Nothing allocates after
 /// construction, but for the first use of curvature.
@@ -53,25 +59,29 @@ class World {
   /// Of all bodies, at the last condensation and the last linearisation: see mechanics::Body.
   int negative_pivots() const;
   bool is_unsymmetric() const;
+  /// Whether the robot is stable with its drives and held rows, as far as its linearisation tells.
+  /// @param status of condense().
+  bool is_stable(linalg::FactorStatus status) const;
+  /// Whether a majorant of curvature stands in A, which is then no derivative.
+  bool has_majorant() const { return majorant_; }
   /// W and delta_free of the step's problem. The worst status of any body.
   linalg::FactorStatus condense();
-  /// Efforts that obey all blocks. As long as the motion that follows from them takes a point that
-  /// was left out into its surface, or a point is pushed by a tangent plane that is not that of its
-  /// way, this is mended and the problem solved again, of the same factorisation: see
-  /// correct_contacts().
-  /// @param solver,controller see step::StepSolver. @param effort (rows,) N, in and out.
-  step::LawStatus solve_efforts(step::StepSolver& solver, step::Controller* controller,
-                                std::span<double> effort);
-  /// dq of all bodies. @param effort (rows,) N, those of solve_efforts() after it.
-  void solve_motion(std::span<const double> effort);
-  /// After solve_motion(): mends what the step guessed of contacts, of the same factorisation.
+  /// Efforts that obey all blocks, and dq of all bodies, which apply_motion() takes. As long as
+  /// that motion leads a point that was left out into its surface, or a point is pushed by a
+  /// tangent plane that is not that of its way, this is mended and the problem solved again, of the
+  /// same factorisation: see correct_contacts().
+  /// @param solver,controller see step::StepSolver. @param effort (rows,) N, in and out. @param
+  /// clock gets the times of the law and of the motion.
+  step::LawStatus solve_step(step::StepSolver& solver, step::Controller* controller,
+                             std::span<double> effort, StageClock& clock);
+  /// After a motion was solved: mends what the step guessed of contacts, of the same factorisation.
   /// - Points that were left out are taken in where the motion leads into their surface.
   /// - A point that is pushed by the tangent plane of a curved surface gets the plane of the way
   ///   that it would go without its own force (constraint::Contact), if that is another one: where
   ///   that way misses the surface it is pushed no more.
   /// Whether there was anything to mend; W and delta_free are then new. Planes change in a bounded
   /// number of rounds a step, after which they stay as they are.
-  /// @param effort (rows,) N, of solve_motion().
+  /// @param effort (rows,) N, of that motion.
   bool correct_contacts(std::span<const double> effort);
   /// Whether correct_contacts() could find anything.
   bool guesses_contacts() const { return left_out_ || curved_; }
@@ -132,6 +142,8 @@ class World {
             const constraint::SurfaceApproach& plane);
   void form_compliance();
   void add_curvatures();
+  void add_anchors();
+  void couple(const mechanics::RowCurvature& pair);
   void add_majorant(const mechanics::RowCurvature& pair);
 
   std::shared_ptr<const Model> model_;
@@ -144,9 +156,10 @@ class World {
   std::vector<double> curving_effort_;  // (rows,) N, at which constraints curve
   std::span<const int> curving_;        // whose curvature the next condensation adds
   mechanics::Tangent tangent_ = mechanics::Tangent::real_time;
+  bool majorant_ = false;            // of curvature, in A
+  std::size_t anchor_rows_ = 0;      // of problem_.stiffness; behind them those of couplings
   bool left_out_ = false;            // some point
   bool curved_ = false;              // some surface
-  bool motion_is_solved_ = false;    // of the efforts that solve_efforts() returned
   double end_ = 0.0;                 // s, of the step: where surfaces stand
   int turns_left_ = 0;               // rounds of this step in which planes may change
   std::vector<char> touched_;        // (rows,) normal rows with a force when the step began

@@ -51,9 +51,9 @@ void DirectSolver::sort(const StepProblem& problem, std::span<double> effort) {
   for (std::size_t i = 0; i < problem.actuators.size(); ++i) {
     sort_actuator(problem, static_cast<int>(i), effort);
   }
-  for (std::size_t k = 0; k < problem.capstans.size(); ++k) {
-    const CapstanBlock& block = problem.capstans[k];
-    boxes_.push_back({block.row, -1, static_cast<int>(k), 0.0, 0.0, block.held});
+  first_capstan_ = boxes_.size();
+  for (const CapstanBlock& block : problem.capstans) {
+    boxes_.push_back({block.row, -1, 0.0, 0.0, block.held});
   }
   for (const BilateralBlock& block : problem.bilaterals) {
     if (problem.compliance(block.row, block.row) != 0.0) {
@@ -61,6 +61,11 @@ void DirectSolver::sort(const StepProblem& problem, std::span<double> effort) {
     } else {
       effort[static_cast<std::size_t>(block.row)] = 0.0;
     }
+  }
+  for (const StiffnessBlock& block : problem.stiffness) {
+    effort[static_cast<std::size_t>(block.row)] = 0.0;
+    if (block.stiffness == 0.0) continue;
+    followers_.add_held(block.row, problem.delta[block.row], 1.0 / block.stiffness);
   }
   for (const Box& box : boxes_) unknown_.push_back(box.row);
   for (const ContactBlock& block : problem.contacts) {
@@ -96,7 +101,7 @@ void DirectSolver::sort_actuator(const StepProblem& problem, int index, std::spa
 // lambda in [lower, upper]; delta = motion strictly between, >= motion at `lower`, <= motion at
 // `upper`.
 DirectSolver::Box DirectSolver::box_of(const ActuatorBlock& block, int index) const {
-  Box box{block.row, index, -1, block.effort_min, block.effort_max, block.value};
+  Box box{block.row, index, block.effort_min, block.effort_max, block.value};
   if (block.kind != CommandKind::motion) {
     if (branch_[static_cast<std::size_t>(index)] == Branch::hold) {
       box.lower = block.value;
@@ -126,31 +131,20 @@ LawStatus DirectSolver::solve_with_friction(const StepProblem& problem, std::spa
 // Whether the limits are those of the tensions; if not, they go `share` of the way there.
 bool DirectSolver::follow_tensions(const StepProblem& problem, std::span<const double> effort,
                                    double share) {
-  double off = 0.0, largest = 0.0, tension = 0.0;
-  int cable = -1;
-  for (Box& box : boxes_) {
-    if (box.capstan < 0) continue;
-    const auto k = static_cast<std::size_t>(box.capstan);
-    const CapstanBlock& block = problem.capstans[k];
-    if (block.cable != cable) {
-      cable = block.cable;
-      const int row = problem.actuators[static_cast<std::size_t>(cable)].row;
-      tension = effort[static_cast<std::size_t>(row)];
-    }
-    const double behind = tension - effort[static_cast<std::size_t>(block.row)];
-    const double lower = -block.grip * std::max(behind, 0.0);
-    const double upper = block.grip * std::max(tension, 0.0);
-    largest = std::max({largest, std::abs(tension), std::abs(behind)});
-    off = std::max({off, std::abs(upper - box.upper), std::abs(lower - box.lower)});
-    limits_[k] = {lower, upper};
-    tension = behind;
-  }
+  const std::span<Box> capstans = std::span(boxes_).subspan(first_capstan_, limits_.size());
+  double off = 0.0, largest = 0.0;
+  std::size_t k = 0;
+  for_each_guide(problem, effort, [&](const CapstanBlock& block, const GuideTension& tension) {
+    const double lower = tension.lower(block), upper = tension.upper(block);
+    largest = std::max(largest, tension.largest());
+    off = std::max({off, std::abs(upper - capstans[k].upper), std::abs(lower - capstans[k].lower)});
+    limits_[k++] = {lower, upper};
+  });
   if (off <= kFrictionTolerance * largest) return true;
-  for (Box& box : boxes_) {
-    if (box.capstan < 0) continue;
-    const auto& [lower, upper] = limits_[static_cast<std::size_t>(box.capstan)];
-    box.lower += share * (lower - box.lower);
-    box.upper += share * (upper - box.upper);
+  for (k = 0; k < limits_.size(); ++k) {
+    const auto& [lower, upper] = limits_[k];
+    capstans[k].lower += share * (lower - capstans[k].lower);
+    capstans[k].upper += share * (upper - capstans[k].upper);
   }
   return false;
 }

@@ -33,6 +33,7 @@ namespace sinew::step {
 ///    switched until the motions agree.
 ///
 /// Owned actuators keep the efforts that they have. What moves nothing gets the least effort.
+/// Blocks of stiffness are followers.
 class DirectSolver {
  public:
   explicit DirectSolver(const qp::ConeSettings& settings = {});
@@ -49,8 +50,7 @@ class DirectSolver {
  private:
   struct Box {
     int row;
-    int actuator;  // or -1
-    int capstan;   // or -1
+    int actuator;  // -1: a capstan
     double lower, upper, motion;
   };
   enum class Branch : char { pull, hold };  // an effort at or below its command, or above it
@@ -67,7 +67,8 @@ class DirectSolver {
   bool switch_branches(const StepProblem& problem, Eigen::Map<const MatrixX> compliance);
 
   Followers followers_;
-  std::vector<Box> boxes_;
+  std::vector<Box> boxes_;            // of actuators, then of capstans
+  std::size_t first_capstan_ = 0;     // of boxes_
   std::vector<qp::ConeBlock> cones_;  // rows among the unknowns
   std::vector<int> unknown_;          // rows of boxes, then of cones
   std::vector<Branch> branch_;        // (actuators,)

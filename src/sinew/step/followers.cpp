@@ -7,8 +7,6 @@ namespace sinew::step {
 
 namespace {
 
-// Eigenvalues below this, of the largest, come from rows that repeat each other.
-constexpr double kRedundant = 1e-11;
 // A curve that is flat beside the robot's compliance: its effort does not change.
 constexpr double kFlat = 1e-14;
 // Where held rows leave nothing to move, what is left of W is rounding, of either sign.
@@ -29,23 +27,16 @@ void Followers::factorise(const StepProblem& problem) {
     for (Eigen::Index i = 0; i < count; ++i) {
       own_(i, j) = problem.compliance(rows_[static_cast<std::size_t>(i)].row, row.row);
     }
+    const double alone = std::abs(own_(j, j));  // an anchor's own W + C may vanish
     own_(j, j) += row.compliance;
-    const double diagonal = std::abs(own_(j, j));
-    scale_[j] = diagonal > 0.0 ? 1.0 / std::sqrt(diagonal) : 0.0;
+    const double size = std::max(alone, std::abs(own_(j, j)));
+    scale_[j] = size > 0.0 ? 1.0 / std::sqrt(size) : 0.0;
   }
   own_.array().colwise() *= scale_.array();
   own_.array().rowwise() *= scale_.transpose().array();
   factor_.compute(own_);
   singular_ = factor_.is_singular();
-  if (!singular_) return;
-  const linalg::SymmetricSpectrum spectrum(own_);
-  const double least = kRedundant * spectrum.values().cwiseAbs().maxCoeff();
-  VectorX inverted = VectorX::Zero(count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const double value = spectrum.values()[i];
-    if (std::abs(value) > least) inverted[i] = 1.0 / value;
-  }
-  inverse_ = spectrum.vectors() * inverted.asDiagonal() * spectrum.vectors().transpose();
+  if (singular_) inverse_ = linalg::spectral_inverse(own_).inverse;
 }
 
 void Followers::take_out(const StepProblem& problem, const VectorX& free,

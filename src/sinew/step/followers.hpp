@@ -1,6 +1,7 @@
 /// @file
-/// Rows whose efforts follow from those of all others, by linear equations: held rows and drives'
-/// curves.
+/// Rows whose efforts follow from those of all others, by linear equations: held rows, drives'
+/// curves and blocks of
+/// stiffness.
 #pragma once
 
 #include <span>
@@ -13,8 +14,9 @@ namespace sinew::step {
 
 /// A row d whose linearised law is
 ///   delta_d + c lambda_d = m,
-/// held at a motion m (c = 0) or on a drive's curve lambda = e + s (delta - m_0), s < 0, where
-/// c = -1/s and m = m_0 + c e. Over all such rows D, with those of the other unknown efforts O,
+/// held at a motion m (c = 0), on a drive's curve lambda = e + s (delta - m_0), s < 0, where
+/// c = -1/s and m = m_0 + c e, or of a block of stiffness (c = 1/stiffness, m where the row is).
+/// Over all such rows D, with those of the other unknown efforts O,
 ///   (W_DD + C) lambda_D = m - delta_free_D - W_DO lambda_O,
 /// and taken out of delta = delta_free + W lambda they leave the others with
 ///   W_OO - W_OD (W_DD + C)^-1 W_DO.
@@ -26,14 +28,13 @@ namespace sinew::step {
 class Followers {
  public:
   void clear() { rows_.clear(); }
-  void reserve(std::size_t rows) { rows_.reserve(rows); }
-  void add_held(int row, double motion) { rows_.push_back({row, nullptr, 0.0, motion, 0.0}); }
+  void add_held(int row, double motion, double compliance = 0.0) {
+    rows_.push_back({row, nullptr, 0.0, motion, compliance});
+  }
   /// @param block with a drive. @param motion where its curve is linearised first.
   void add_curve(const ActuatorBlock& block, double motion) {
     rows_.push_back({block.row, &block, motion, 0.0, 0.0});
   }
-  bool empty() const { return rows_.empty(); }
-  std::size_t size() const { return rows_.size(); }
   bool has_curves() const;
 
   /// Linearises the curves and takes the rows out.

@@ -4,12 +4,13 @@
 #include <cmath>
 
 #include "sinew/linalg/dense.hpp"
+#include "sinew/qp/friction_cone.hpp"
 
 namespace sinew::step {
 
 namespace {
 
-// Friction within this part of its limit is at it.
+// Friction of a cable within this part of the tension of its limit is at it.
 constexpr double kSlides = 1e-7;
 
 }  // namespace
@@ -43,6 +44,10 @@ void Response::collect(const StepProblem& problem, std::span<const double> effor
   collect_capstans(problem, effort);
   for (const BilateralBlock& block : problem.bilaterals) {
     if (problem.compliance(block.row, block.row) != 0.0) add_held(block.row, block.motion);
+  }
+  for (const StiffnessBlock& block : problem.stiffness) {
+    if (block.stiffness == 0.0) continue;
+    add_held(block.row, problem.delta[block.row], 1.0 / block.stiffness);
   }
   for (const ContactBlock& block : problem.contacts) collect_contact(problem, block, effort);
 }
@@ -85,22 +90,16 @@ void Response::collect_actuator(const StepProblem& problem, int index,
 }
 
 void Response::collect_capstans(const StepProblem& problem, std::span<const double> effort) {
-  double tension = 0.0;
-  int cable = -1;
-  for (const CapstanBlock& block : problem.capstans) {
-    if (block.cable != cable) {
-      cable = block.cable;
-      const int row = problem.actuators[static_cast<std::size_t>(cable)].row;
-      tension = effort[static_cast<std::size_t>(row)];
-      tension_.assign(1, {row, 1.0});  // before the guide: the cable's effort less what was lost
+  for_each_guide(problem, effort, [&](const CapstanBlock& block, const GuideTension& tension) {
+    // Before the guide: the cable's effort less what was lost so far.
+    if (tension.first) {
+      tension_.assign(1, {problem.actuators[static_cast<std::size_t>(block.cable)].row, 1.0});
     }
     holds_for_all_ = false;
-    const double lost = effort[static_cast<std::size_t>(block.row)], behind = tension - lost;
-    const double upper = block.grip * std::max(tension, 0.0);
-    const double lower = -block.grip * std::max(behind, 0.0);
-    const double blur = kSlides * std::max(std::abs(tension), std::abs(behind));
-    const bool at_upper = lost >= upper - blur;
-    if (at_upper || lost <= lower + blur) {
+    const double lost = effort[static_cast<std::size_t>(block.row)];
+    const double blur = kSlides * tension.largest();
+    const bool at_upper = lost >= tension.upper(block) - blur;
+    if (at_upper || lost <= tension.lower(block) + blur) {
       // lost = grip tension, or -grip behind = -grip/(1 - grip) tension.
       const double factor = at_upper ? block.grip : -block.grip / (1.0 - block.grip);
       for (const Term& term : tension_) {
@@ -114,8 +113,7 @@ void Response::collect_capstans(const StepProblem& problem, std::span<const doub
       add_held(block.row, block.held);
     }
     tension_.push_back({block.row, -1.0});
-    tension = behind;
-  }
+  });
 }
 
 void Response::collect_contact(const StepProblem& problem, const ContactBlock& block,
@@ -128,7 +126,7 @@ void Response::collect_contact(const StepProblem& problem, const ContactBlock& b
   add_held(row, 0.0);
   const double across = std::hypot(force[1], force[2]), limit = block.friction * force[0];
   double travel = 0.0;
-  if (across >= (1.0 - kSlides) * limit) {
+  if (qp::slides(Eigen::Map<const Vector3>(force), block.friction)) {
     const Eigen::Map<const VectorX> all(effort.data(), static_cast<Eigen::Index>(effort.size()));
     for (int c = 1; c < 3; ++c) {
       travel = std::hypot(travel,
@@ -156,7 +154,7 @@ void Response::collect_contact(const StepProblem& problem, const ContactBlock& b
 
 void Response::add_held(int row, double motion, double compliance) {
   motion_terms_.push_back({row, 1.0});
-  if (compliance > 0.0) effort_terms_.push_back({row, compliance});
+  if (compliance != 0.0) effort_terms_.push_back({row, compliance});
   end_equation(row, motion);
   states_.push_back('h');
 }

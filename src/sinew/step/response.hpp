@@ -17,7 +17,7 @@ namespace sinew::step {
 /// sliding ones slide in the same direction; cables keep sticking or sliding at their guides. The
 /// efforts s of these rows obey linear equations
 ///   delta_s = m               where a motion is held: held rows, sticking points, every normal,
-///   delta_s + c lambda_s = m  on a drive's curve,
+///   delta_s + c lambda_s = m  on a drive's curve, and of a block of stiffness,
 ///   lambda_s = sum k lambda   where friction is at its limit,
 /// which with delta = delta_free + W lambda give them as an affine function of lambda_c. Sliding
 /// makes that unsymmetric: `compliance` of the controlled rows is then no stiffness's inverse.

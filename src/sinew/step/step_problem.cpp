@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sinew/linalg/dense.hpp"
+#include "sinew/linalg/dense_factor.hpp"
 #include "sinew/qp/cone_solver.hpp"
 
 namespace sinew::step {
@@ -80,20 +80,12 @@ double violation(const StepProblem& problem, std::span<const double> effort) {
                                               : miss(block, lambda, problem.delta[block.row]);
     worst = std::max(worst, block.motion_scale * own);
   }
-  double tension = 0.0;
-  int cable = -1;
-  for (const CapstanBlock& block : problem.capstans) {
-    if (block.cable != cable) {
-      cable = block.cable;
-      tension = of(problem.actuators[static_cast<std::size_t>(cable)].row);
-    }
-    const double lost = of(block.row), behind = tension - lost;
-    const double blur = kAtLimit * std::max(std::abs(tension), std::abs(behind));
-    const bool at_lower = lost <= -block.grip * std::max(behind, 0.0) + blur;
-    const bool at_upper = lost >= block.grip * std::max(tension, 0.0) - blur;
+  for_each_guide(problem, effort, [&](const CapstanBlock& block, const GuideTension& tension) {
+    const double lost = of(block.row), blur = kAtLimit * tension.largest();
+    const bool at_lower = lost <= tension.lower(block) + blur;
+    const bool at_upper = lost >= tension.upper(block) - blur;
     worst = std::max(worst, box_miss(problem.delta[block.row] - block.held, at_lower, at_upper));
-    tension = behind;
-  }
+  });
   for (const ContactBlock& block : problem.contacts) {
     worst = std::max(worst, contact_miss(problem, block, effort));
   }
@@ -104,31 +96,50 @@ double violation(const StepProblem& problem, std::span<const double> effort) {
   return worst;
 }
 
+void append_stiffness(const StepProblem& problem, std::vector<HeldRow>& held) {
+  for (const StiffnessBlock& block : problem.stiffness) {
+    if (block.stiffness != 0.0) held.push_back({block.row, 1.0 / block.stiffness});
+  }
+}
+
+// An anchor's own W + C may vanish: W says how large its entries are.
+HeldCompliance held_compliance(const StepProblem& problem, std::span<const HeldRow> held) {
+  const auto rows = static_cast<Eigen::Index>(held.size());
+  HeldCompliance result{MatrixX(rows, rows), VectorX(rows)};
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    const HeldRow& own = held[static_cast<std::size_t>(i)];
+    for (Eigen::Index j = 0; j < rows; ++j) {
+      result.matrix(i, j) = problem.compliance(own.row, held[static_cast<std::size_t>(j)].row);
+    }
+    const double alone = std::abs(result.matrix(i, i));
+    result.matrix(i, i) += own.compliance;
+    const double size = std::max(alone, std::abs(result.matrix(i, i)));
+    result.scale[i] = size > 0.0 ? 1.0 / std::sqrt(size) : 1.0;
+  }
+  result.matrix.array().colwise() *= result.scale.array();
+  result.matrix.array().rowwise() *= result.scale.transpose().array();
+  return result;
+}
+
+int negative_directions(int negative_pivots, int negative, std::span<const HeldRow> held) {
+  const auto own = std::ranges::count_if(held, [](auto& row) { return row.compliance < 0.0; });
+  return negative_pivots - negative + static_cast<int>(own);
+}
+
 bool stabilised(const StepProblem& problem, int negative_pivots) {
-  struct Held {
-    int row;
-    double compliance;
-  };
-  std::vector<Held> held;
+  std::vector<HeldRow> held;
   for (const ActuatorBlock& block : problem.actuators) {
     if (block.holds_motion()) held.push_back({block.row, 0.0});
     if (block.owned || block.drive == nullptr) continue;
     const auto at = block.drive->respond(block.drive_step, problem.delta[block.row]);
-    if (!(at.slope < 0.0)) return false;  // a flat curve holds nothing
-    held.push_back({block.row, -1.0 / at.slope});
+    if (at.slope < 0.0) held.push_back({block.row, -1.0 / at.slope});  // a flat one holds nothing
   }
   for (const BilateralBlock& block : problem.bilaterals) held.push_back({block.row, 0.0});
-  const auto count = static_cast<Eigen::Index>(held.size());
-  if (count < negative_pivots) return false;
-  MatrixX own(count, count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    for (Eigen::Index j = 0; j < count; ++j) {
-      own(i, j) = problem.compliance(held[static_cast<std::size_t>(i)].row,
-                                     held[static_cast<std::size_t>(j)].row);
-    }
-    own(i, i) += held[static_cast<std::size_t>(i)].compliance;
-  }
-  return (linalg::symmetric_eigenvalues(own).array() < 0.0).count() == negative_pivots;
+  append_stiffness(problem, held);
+  if (held.empty()) return negative_pivots == 0;
+  const auto own = held_compliance(problem, held);
+  const int negative = linalg::spectral_inverse(own.matrix).negative;
+  return negative_directions(negative_pivots, negative, held) <= 0;
 }
 
 }  // namespace sinew::step

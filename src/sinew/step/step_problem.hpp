@@ -3,9 +3,12 @@
 /// that each row obeys. Copy it to keep it: nothing in it refers to a simulation.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "sinew/core/types.hpp"
@@ -49,6 +52,17 @@ struct CapstanBlock {
   double held = 0.0;  ///< m, delta when the step began
 };
 
+/// Tensions of a cable on either side of a point that it slides through, and the limits of the
+/// row's effort that follow.
+struct GuideTension {
+  double before = 0.0, behind = 0.0;  ///< N, towards the pull point and away from it
+  bool first = false;                 ///< of its cable, at the pull point
+
+  double lower(const CapstanBlock& block) const { return -block.grip * std::max(behind, 0.0); }
+  double upper(const CapstanBlock& block) const { return block.grip * std::max(before, 0.0); }
+  double largest() const { return std::max(std::abs(before), std::abs(behind)); }  ///< N
+};
+
 /// A point and a surface: rows `row` (normal), `row` + 1 and `row` + 2 (tangential) obey
 /// Signorini's and Coulomb's laws. Signorini's is that of the gap at the end of the step, Coulomb's
 /// that of the motion along the surface in the step: with velocities d/h (backward Euler) the
@@ -67,6 +81,17 @@ struct BilateralBlock {
   double motion_scale = 1.0;  ///< m per motion
 };
 
+/// Stiffness of the robot's tangent that has no place in A, as a spring about where its row is,
+///   lambda = -stiffness (delta - delta_now):
+/// what couples two bodies (stiffness > 0 of a taut cable between them), and what A has so that it
+/// can be factorised and the robot has not (< 0, an anchor: a body that only joints hold has no
+/// stiffness against rigid motions of its own). The motion is exactly that of the whole tangent;
+/// the force is part of no equilibrium.
+struct StiffnessBlock {
+  int row = -1;
+  double stiffness = 0.0;  ///< N/m; 0: none now, and the effort is 0
+};
+
 /// delta = delta_free + compliance lambda at the end of the step, as the linearisation sees it, and
 /// one block for every row that may have an effort. Rows without a block, those of effectors, have
 /// none.
@@ -79,10 +104,27 @@ struct StepProblem {
   std::vector<CapstanBlock> capstans;
   std::vector<ContactBlock> contacts;
   std::vector<BilateralBlock> bilaterals;
+  std::vector<StiffnessBlock> stiffness;
   double size = 1.0;       ///< m, of the robot: what motions are small beside
   double time = 0.0;       ///< s, end of the step
   double time_step = 0.0;  ///< s; infinite in statics
 };
+
+/// Calls visit(block, tension) for all capstans, cable after cable from its pull point on.
+/// @param effort (rows,) N.
+template <class Visit>
+void for_each_guide(const StepProblem& problem, std::span<const double> effort, Visit&& visit) {
+  int cable = -1;
+  GuideTension tension;
+  for (const CapstanBlock& block : problem.capstans) {
+    tension.first = block.cable != cable;
+    cable = block.cable;
+    const int row = problem.actuators[static_cast<std::size_t>(cable)].row;
+    tension.before = tension.first ? effort[static_cast<std::size_t>(row)] : tension.behind;
+    tension.behind = tension.before - effort[static_cast<std::size_t>(block.row)];
+    visit(block, std::as_const(tension));
+  }
+}
 
 /// How solving went.
 enum class LawStatus {
@@ -96,9 +138,32 @@ enum class LawStatus {
 /// @param problem of the step. @param effort (rows,) N.
 double violation(const StepProblem& problem, std::span<const double> effort);
 
-/// Whether the robot is stable together with its drives and held rows although A has negative
-/// pivots: by Sylvester's law of inertia it is when W + C over those rows, C = -1/slope of a drive
-/// and 0 of a held row, has as many negative eigenvalues (Haynsworth 1968).
+/// A row whose motion follows from its effort by delta + c lambda = constant.
+struct HeldRow {
+  int row = -1;
+  /// c, m/N or m^3/Pa: 0 held at a motion, -1/slope on a drive's curve, 1/stiffness of a block of
+  /// stiffness
+  double compliance = 0.0;
+};
+
+/// The rows of all blocks of stiffness that are not zero.
+void append_stiffness(const StepProblem& problem, std::vector<HeldRow>& held);
+
+/// W + C over held rows, both sides scaled so that efforts of different units compare.
+struct HeldCompliance {
+  MatrixX matrix;  ///< (held, held) of entries of order 1
+  VectorX scale;   ///< (held,)
+};
+HeldCompliance held_compliance(const StepProblem& problem, std::span<const HeldRow> held);
+
+/// Negative eigenvalues of the robot's tangent on the motions that held rows leave,
+/// K = A + H^T C^-1 H, C = 0 as the limit of C -> +0. By the inertia of A
+/// bordered by H (Sylvester; Haynsworth, Linear Algebra Appl. 1 (1968) 73)
+///   n_-(K) = n_-(A) - n_-(W + C) + n_-(C).
+/// @param negative_pivots n_-(A). @param negative n_-(W + C). @param held all of C.
+int negative_directions(int negative_pivots, int negative, std::span<const HeldRow> held);
+
+/// Whether the robot is stable together with its drives and held rows, whatever A says.
 /// @param problem of the step. @param negative_pivots of A.
 bool stabilised(const StepProblem& problem, int negative_pivots);
 

@@ -1,0 +1,92 @@
+"""Welded bodies, placed bodies, and cables that run through two."""
+
+import pathlib
+
+import numpy as np
+import pytest
+import sinew
+
+EXAMPLE = pathlib.Path(__file__).parents[2] / "examples" / "joints" / "two_segments.yaml"
+
+
+def block(**keys):
+    return {"type": "fem", "density": 1000.0,
+            "mesh": {"shape": "block", "length": 0.04, "width": 0.02, "height": 0.02,
+                     "element_size": 0.01},
+            "material": {"model": "corotational", "young_modulus": 2e5, "poisson_ratio": 0.3}, **keys}
+
+
+def scene(**keys):
+    return {"sinew": 1, "gravity": [0, 0, -9.81],
+            "bodies": {"a": block(fixed={"set": "x_min"}), "b": block(position=[0.04, 0, 0])},
+            "joints": {"seam": {"type": "weld", "bodies": ["b", "a"]}}, **keys}
+
+
+def test_a_weld_carries_what_hangs_on_it():
+    sim = sinew.load(scene())
+    sim.solve_static()
+    seam = sim.joint("seam")
+    weight = 0.04 * 0.02 * 0.02 * 1000.0 * 9.81
+    assert seam.bodies == ("b", "a")
+    assert seam.force == pytest.approx([0, 0, -weight], abs=1e-9)
+    assert seam.gap < 1e-12
+    assert seam.center == pytest.approx([0.04, 0.01, 0.01], abs=2e-3)
+    assert seam.moment[1] == pytest.approx(weight * 0.02, rel=0.05)
+    assert repr(seam) == "<sinew.Joint 'seam', 9 points of 'b' welded to 'a'>"
+    assert list(sim.joints) == ["seam"]
+    with pytest.raises(sinew.Error, match="did you mean 'seam'"):
+        sim.joint("seem")
+
+
+def test_rows_of_joints_are_taken_out_of_the_compliance():
+    sim = sinew.load(scene(effectors={"tip": {"body": "b", "point": [0.08, 0.01, 0.01]}}))
+    sim.solve_static()
+    assert sim.rows == ["tip.x", "tip.y", "tip.z"]
+    assert sim.linearise().W.shape == (3, 3)
+    assert sim.linearise().negative_pivots == 0
+
+
+def test_a_body_is_turned_about_its_origin_and_placed():
+    turned = block(position=[0, 0, 0.1], rotation=[0, 0, np.pi / 2], fixed={"set": "x_min"})
+    sim = sinew.load({"sinew": 1, "bodies": {"a": turned}})
+    nodes = np.array(sim.body("a").rest_positions)
+    assert nodes.min(axis=0) == pytest.approx([-0.02, 0.0, 0.1], abs=1e-12)
+    assert nodes.max(axis=0) == pytest.approx([0.0, 0.04, 0.12], abs=1e-12)
+
+
+def test_states_go_on_bit_for_bit():
+    sim = sinew.load(str(EXAMPLE))
+    for _ in range(20):
+        sim.step()
+    state = sim.state()
+    for _ in range(5):
+        sim.step()
+    after = np.array(sim.body("upper").positions)
+    sim.restore(state)
+    for _ in range(5):
+        sim.step()
+    assert np.array_equal(after, sim.body("upper").positions)
+
+
+def test_the_example_stays_on_its_circle():
+    sim = sinew.load(str(EXAMPLE))
+    recorded = sim.run(2.0, record=["tip.position", "seam.gap", "status"])
+    tip = np.array(recorded["tip.position"])[50:]
+    radius = np.hypot(tip[:, 0], tip[:, 1])
+    assert np.abs(radius - 0.02).max() < 5e-5
+    assert np.max(recorded["seam.gap"]) < 1e-12
+    assert set(recorded["status"][1:]) == {"solved"}
+
+
+def test_what_is_not_held_is_named():
+    with pytest.raises(sinew.Error, match="nothing holds this body.*weld it to a body"):
+        sinew.load(scene(joints={}))
+    with pytest.raises(sinew.Error, match="leave it free to move"):
+        sinew.load(scene(joints={"seam": {"type": "weld", "bodies": ["b", "a"],
+                                          "points": [[0.04, 0.01, 0.01]]}}))
+    with pytest.raises(sinew.Error, match="cannot be welded to itself"):
+        sinew.load(scene(joints={"seam": {"type": "weld", "bodies": ["b", "b"]}}))
+    apart = scene()
+    apart["bodies"]["b"]["position"] = [0.05, 0, 0]
+    with pytest.raises(sinew.Error, match="no node of 'b' lies in or on 'a'"):
+        sinew.load(apart)

@@ -1,0 +1,27 @@
+/// @file
+/// Rows for stiffness that couples two bodies.
+#pragma once
+
+#include "sinew/constraint/constraint.hpp"
+
+namespace sinew::constraint {
+
+/// The relative motion of two points across the line between them: two rows with directions e_1,
+/// e_2 that make an orthonormal frame with it, delta = e . (x_2 - x_1) = 0. The geometric stiffness
+/// T/l (I - n n^T) of a cable's piece between two bodies is a spring T/l along each (see
+/// step::StiffnessBlock).
+class Coupling : public Constraint {
+ public:
+  Coupling(mechanics::MaterialPoint first, mechanics::MaterialPoint second);
+
+  void declare(mechanics::RowPattern& rows,
+               std::vector<mechanics::RowCurvature>& curvatures) override;
+  void linearise(const Placement& placement, mechanics::RowValues& values) const override;
+  void add_to(ValueHash&) const override {}
+
+ private:
+  mechanics::MaterialPoint first_, second_;
+  int first_entry_ = -1;
+};
+
+}  // namespace sinew::constraint

@@ -1,0 +1,57 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "sinew/core/error.hpp"
+#include "sinew/mesh/embedding.hpp"
+#include "sinew/mesh/topology.hpp"
+#include "sinew/scene/build_parts.hpp"
+#include "sinew/scene/readers.hpp"
+
+namespace sinew::scene {
+
+namespace {
+
+// Nodes nearer to the other body than this, of its size, lie on it.
+constexpr double kOnSurface = 1e-6;
+
+std::vector<NodeId> nodes_on(const mesh::Mesh& first, const mesh::Mesh& second,
+                             const JointDescription& joint) {
+  const Vector3 extent = second.nodes.colwise().maxCoeff() - second.nodes.colwise().minCoeff();
+  const mesh::Embedder embedder(second);
+  std::vector<NodeId> nodes = mesh::outer_nodes(first);
+  std::erase_if(nodes, [&](NodeId node) {
+    const Vector3 at = first.nodes.row(node).transpose();
+    const auto point = embedder.locate(at, mesh::Outside::nearest, joint.name);
+    return point.distance > kOnSurface * extent.norm();
+  });
+  if (!nodes.empty()) return nodes;
+  throw Error(ErrorKind::empty_region, joint.place,
+              fmt::format("no node of '{}' lies in or on '{}'", joint.first, joint.second),
+              "name a region and `outside: nearest`, or put the bodies together");
+}
+
+}  // namespace
+
+void add_joint(sim::ModelBuilder& builder, const JointDescription& joint, const BodyOf& body_of) {
+  const auto [first, first_mesh] = body_of(joint.first);
+  const auto [second, second_mesh] = body_of(joint.second);
+  sim::WeldSettings weld;
+  weld.name = joint.name;
+  weld.place = joint.place;
+  weld.first = first;
+  weld.second = second;
+  weld.points = joint.points.points;
+  weld.outside = joint.outside;
+  if (joint.region) {
+    weld.nodes = at_place(joint.region->place, [&] {
+      return mesh::select_nodes(*first_mesh, region_of(*joint.region), joint.region->place.item);
+    });
+  } else if (weld.points.rows() == 0 && first != second) {
+    weld.nodes = nodes_on(*first_mesh, *second_mesh, joint);
+    weld.outside = mesh::Outside::nearest;
+  }
+  builder.add_weld(weld);
+}
+
+}  // namespace sinew::scene
