@@ -139,9 +139,11 @@ class Drafter {
 
   void write_settings() {
     const std::string& integrator = of("integrator");
-    // Quasi-static Newton steps of rubber with a matrix that is too large take hundreds of
-    // iterations each: such levels stand together with others.
-    const bool slow = !dynamic() && of("method") == "newton" && hyperelastic();
+    // Newton's steps of rubber with a matrix that is too large take hundreds of iterations each,
+    // and quadratic elements (the default) tenths of a second an iteration: such levels stand
+    // together with others.
+    const bool quadratic = !has("element") || of("element") == "tet10";
+    const bool slow = of("method") == "newton" && hyperelastic() && (!dynamic() || quadratic);
     const std::string tangent = slow ? "exact" : of("tangent");
     std::string solver = fmt::format("method: {}, tangent: {}, factorisation: {}, ordering: {}",
                                      of("method"), tangent, of("factorisation"), of("ordering"));
