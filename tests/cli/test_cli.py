@@ -11,7 +11,6 @@ import re
 import shutil
 import signal
 import subprocess
-import sys
 import time
 
 import h5py
@@ -527,10 +526,6 @@ def test_validate_passes_cases_on(tmp_path):
     nowhere = subprocess.run([os.path.abspath(PROGRAM), "validate"], capture_output=True, text=True,
                              env={**os.environ, "SINEW_VALIDATION_DIR": "/nowhere"}, check=False)
     assert nowhere.returncode == WRONG and "[tool-missing]" in nowhere.stderr
-
-
-if __name__ == "__main__":
-    sys.exit(pytest.main([__file__, "-q", "-p", "no:cacheprovider", *sys.argv[1:]]))
 
 
 def test_elements_are_named_and_warned_of(scene, tmp_path):

@@ -25,9 +25,11 @@ void take_joints_out(const step::StepProblem& problem, Linearisation& result) {
   std::vector<step::HeldRow> held;
   for (const auto& block : problem.bilaterals) held.push_back({block.row, 0.0});
   step::append_stiffness(problem, held);
-  const int negative =
-      linalg::spectral_inverse(step::held_compliance(problem, held).matrix).negative;
-  result.negative_pivots = step::negative_directions(result.negative_pivots, negative, held);
+  if (!held.empty()) {
+    const auto own = step::held_compliance(problem, held);
+    const int negative = linalg::spectral_inverse(own.matrix).negative;
+    result.negative_pivots = step::negative_directions(result.negative_pivots, negative, held);
+  }
   step::Followers joints;
   std::vector<char> is_joint(static_cast<std::size_t>(problem.delta.size()), 0);
   for (const step::HeldRow& row : held) {
@@ -35,6 +37,7 @@ void take_joints_out(const step::StepProblem& problem, Linearisation& result) {
     joints.add_held(row.row, motion, row.compliance);
     is_joint[static_cast<std::size_t>(row.row)] = 1;
   }
+  for (const auto& block : problem.stiffness) is_joint[static_cast<std::size_t>(block.row)] = 1;
   std::vector<int> others;
   for (std::size_t row = 0; row < is_joint.size(); ++row) {
     if (is_joint[row] == 0) others.push_back(static_cast<int>(row));
@@ -125,7 +128,8 @@ Linearisation linearise(Simulation& simulation, const LinearisationChoice& choic
   result.delta_free = world.delta_free();
   result.effort = Eigen::Map<const VectorX>(simulation.efforts().data(), model.rows().rows());
   result.negative_pivots = world.negative_pivots();
-  if (!model.welds().empty()) take_joints_out(world.problem(), result);
+  const step::StepProblem& problem = world.problem();
+  if (!problem.bilaterals.empty() || !problem.stiffness.empty()) take_joints_out(problem, result);
   return result;
 }
 

@@ -1,0 +1,84 @@
+"""Scenes that combine features, through the program and the Python package: a sample of those that
+the combination tests step, save and load in C++.
+
+    SINEW_PROGRAM=... SINEW_COMBINATIONS=build/release/bin/combinations /usr/bin/python3 -m pytest tests/cli
+"""
+
+import csv
+import json
+import os
+import pickle
+import subprocess
+import warnings
+
+import numpy as np
+import pytest
+
+PROGRAM = os.environ.get("SINEW_PROGRAM", "build/release/bin/sinew")
+COMBINATIONS = os.environ.get("SINEW_COMBINATIONS", "build/release/bin/combinations")
+DONE, FLAGGED = 0, 1
+SAMPLE = range(1, 73, 8)  # of the cover of all pairs
+
+
+def sinew(*args, codes=(DONE,)):
+    done = subprocess.run([PROGRAM, *map(str, args)], capture_output=True, text=True, timeout=120)
+    assert done.returncode in codes, done.stderr
+    return done
+
+
+@pytest.fixture(params=SAMPLE)
+def scene(request, tmp_path):
+    if not os.path.exists(COMBINATIONS):
+        pytest.skip("the generator of scenes is not built")
+    path = tmp_path / "scene.yaml"
+    printed = subprocess.run([COMBINATIONS, "--pairs", "--print", str(request.param)],
+                             capture_output=True, text=True, check=True)
+    path.write_text(printed.stdout)
+    return path
+
+
+def test_the_program_tells_runs_records_and_plots_it(scene, tmp_path):
+    facts = json.loads(sinew("info", scene, "--json").stdout)
+    assert facts["bodies"]
+    out = tmp_path / "out"
+    done = sinew("run", scene, "--duration", "30ms", "--out", out, "--vtk", "--quiet", codes=(DONE, FLAGGED))
+    flagged = "sinew: warning:" in done.stderr
+    stopped = "sinew: error:" in done.stderr
+    assert (done.returncode == DONE) != (flagged or stopped), done.stderr
+    with open(out / "run.csv") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) >= 2
+    for row in rows:
+        for heading, cell in row.items():
+            if heading in ("status", "controller") or heading.split(" ")[0].endswith("_command"):
+                continue
+            assert np.isfinite(float(cell)), heading
+    sinew("info", out / "run.h5")
+    sinew("plot", out, "--out", tmp_path / "run.png")
+    assert (tmp_path / "run.png").stat().st_size > 5000
+    assert list(out.glob("run*.pvd"))
+
+
+def test_python_runs_copies_and_linearises_it(scene):
+    package = pytest.importorskip("sinew")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        sim = package.load(str(scene))
+        try:
+            recorded = sim.run(0.02)
+        except package.RunError as error:
+            assert error.remedy
+            return
+        assert len(recorded["time"]) >= 2
+        state = pickle.loads(pickle.dumps(sim.state()))
+        sim.step()
+        after = {name: np.array(body.positions) for name, body in sim.bodies.items()}
+        sim.restore(state)
+        assert sim.state() == state
+        linear = sim.linearise()
+        assert linear.W.shape == (len(sim.rows), len(sim.rows))
+        assert np.isfinite(linear.W).all()
+        assert sim.state() == state
+        sim.step()
+        for name, body in sim.bodies.items():
+            assert np.array_equal(after[name], body.positions), name
