@@ -104,7 +104,7 @@ inline RandomProblem random_problem(const BlockCounts& counts, Random& random) {
     ++row;
   }
   for (int i = 0; i < counts.contacts; ++i, row += 3) {
-    problem.contacts.push_back({row, random.uniform(0.0, 0.8), true});
+    problem.contacts.push_back({row, random.uniform(0.0, 0.8)});
     problem.delta_free[row] -= 0.5;  // most of them press
   }
   for (int i = 0; i < counts.bilaterals; ++i, ++row) {

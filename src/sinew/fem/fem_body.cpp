@@ -332,22 +332,26 @@ linalg::FactorStatus FemBody::condense() {
       active_->assembly.matrix(), border.first(3 * active_->system.fixed_entries), span_of(right_));
 }
 
-void FemBody::add_compliance(MatrixX& compliance, VectorX& free_motion) const {
+void FemBody::add_compliance(std::span<const int> place, MatrixX& compliance,
+                             VectorX& free_motion) const {
   const MatrixX& own = active_->factorisation->compliance();
   const VectorX& motion = active_->factorisation->free_motion();
   const std::span<const std::int32_t> rows(model_.rows());
   const std::size_t fixed = model_.fixed_rows();
+  const auto place_of = [&](std::size_t i) { return place[static_cast<std::size_t>(rows[i])]; };
   for (std::size_t j = 0; j < fixed; ++j) {
     const auto column = static_cast<Eigen::Index>(j);
-    free_motion[rows[j]] += motion[column];
+    const int to = place_of(j);
+    free_motion[to] += motion[column];
     for (std::size_t i = 0; i < fixed; ++i) {
-      compliance(rows[i], rows[j]) += own(static_cast<Eigen::Index>(i), column);
+      compliance(place_of(i), to) += own(static_cast<Eigen::Index>(i), column);
     }
   }
-  if (!passing_.empty()) add_passing_compliance(compliance, free_motion);
+  if (!passing_.empty()) add_passing_compliance(place, compliance, free_motion);
 }
 
-void FemBody::add_passing_compliance(MatrixX& compliance, VectorX& free_motion) const {
+void FemBody::add_passing_compliance(std::span<const int> place, MatrixX& compliance,
+                                     VectorX& free_motion) const {
   const std::span<const double> border(active_->border);
   active_->factorisation->pass(border.subspan(3 * active_->system.fixed_entries), passing_);
   const MatrixX& own = active_->factorisation->passing_compliance();
@@ -356,20 +360,22 @@ void FemBody::add_passing_compliance(MatrixX& compliance, VectorX& free_motion) 
   const std::size_t fixed = model_.fixed_rows();
   const auto row_of = [&](Eigen::Index k) {
     const auto group = static_cast<std::size_t>(passing_[static_cast<std::size_t>(k / 3)]);
-    return rows[fixed + 3 * group + static_cast<std::size_t>(k % 3)];
+    const std::int32_t row = rows[fixed + 3 * group + static_cast<std::size_t>(k % 3)];
+    return place[static_cast<std::size_t>(row)];
   };
   const auto count = 3 * static_cast<Eigen::Index>(passing_.size());
   for (Eigen::Index j = 0; j < count; ++j) {
-    const std::int32_t column = row_of(j);
+    const int column = row_of(j);
     free_motion[column] += coupling(j, static_cast<Eigen::Index>(fixed));
     for (std::size_t i = 0; i < fixed; ++i) {
       const double value = coupling(j, static_cast<Eigen::Index>(i));
-      compliance(rows[i], column) += value;
-      compliance(column, rows[i]) += value;
+      const int to = place[static_cast<std::size_t>(rows[i])];
+      compliance(to, column) += value;
+      compliance(column, to) += value;
     }
     compliance(column, column) += own(j, j);
     for (Eigen::Index i = j + 1; i < count; ++i) {
-      const std::int32_t row = row_of(i);
+      const int row = row_of(i);
       compliance(row, column) += own(i, j);
       compliance(column, row) += own(i, j);
     }

@@ -38,7 +38,8 @@ class FemBody : public mechanics::Body {
   linalg::FactorStatus condense() override;
   void hold_imbalance(std::span<const double> effort) override;
   void set_imbalance_share(double share) override { imbalance_share_ = share; }
-  void add_compliance(MatrixX& compliance, VectorX& free_motion) const override;
+  void add_compliance(std::span<const int> place, MatrixX& compliance,
+                      VectorX& free_motion) const override;
   void solve_motion(std::span<const double> effort) override;
   std::size_t motion_size() const override { return static_cast<std::size_t>(motion_.size()); }
   void imbalance(std::span<const double> effort, std::span<double> result) override;
@@ -131,7 +132,8 @@ class FemBody : public mechanics::Body {
   void keep_positions();
   void prepare_history(double time_step);
   void take_presence(const mechanics::RowValues& rows);
-  void add_passing_compliance(MatrixX& compliance, VectorX& free_motion) const;
+  void add_passing_compliance(std::span<const int> place, MatrixX& compliance,
+                              VectorX& free_motion) const;
   /// (3,) N on a mesh node.
   Vector3 weight(NodeId node) const {
     return model_.elements().load_mass()[node] * model_.settings().gravity;

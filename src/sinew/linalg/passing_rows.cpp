@@ -20,34 +20,12 @@ PassingRows::PassingRows(const BlockSymbolic& symbolic, const BorderPattern& row
       panel_of_(at(symbolic.nodes)),
       stamp_(symbolic.panels.size(), -1),
       stores_(symbolic.panels.size()),
-      members_(symbolic.panels.size() * groups_),
-      place_(groups_),
       column_place_(at(symbolic.max_width)) {
   if (groups_ == 0) return;  // most bodies: no memory is taken
   for (std::size_t p = 0; p + 1 < symbolic.panels.size(); ++p) {
     const Panel& panel = symbolic.panels[p];
     std::fill_n(panel_of_.begin() + panel.first, panel.width, static_cast<std::int32_t>(p));
   }
-  // As much as all rows together ask for.
-  for (std::size_t g = 0; g < groups_; ++g) {
-    for_panels(static_cast<std::int32_t>(g), [&](int p) { ++stores_[at(p)].count; });
-  }
-  std::int64_t doubles = 0, signs = 0;
-  for (std::size_t p = 0; p + 1 < stores_.size(); ++p) {
-    const Panel& panel = symbolic.panels[p];
-    stores_[p].offset = doubles;
-    doubles += std::int64_t{leading_of(stores_[p].count)} * 3 * panel.width;
-    const std::int64_t rows_here =
-        std::max(panel.leading, leading_of(static_cast<std::int32_t>(groups_)));
-    signs = std::max(signs, rows_here * 3 * panel.width);
-  }
-  const auto most = static_cast<std::int32_t>(groups_);
-  const std::int64_t columns = std::max({symbolic.max_width, 3 * most, 3 * symbolic.border_nodes});
-  values_ = AlignedBuffer(at(doubles) + kOverrun);
-  product_ = AlignedBuffer(at(leading_of(most) * columns) + kOverrun);
-  signed_ = AlignedBuffer(at(signs) + kOverrun);
-  compliance_.setZero(3 * most, 3 * most);
-  coupling_.setZero(3 * most, 3 * symbolic.border_nodes);
 }
 
 // The panels on the ways from a group's nodes to the root, each once.
@@ -68,12 +46,52 @@ void PassingRows::for_panels(std::int32_t group, Visit&& visit) {
 void PassingRows::list(std::span<const std::int32_t> groups) {
   for (Store& store : stores_) store.count = 0;
   std::ranges::fill(stamp_, -1);
+  for (const std::int32_t group : groups) {
+    for_panels(group, [&](int p) { ++stores_[at(p)].count; });
+  }
+  std::int64_t doubles = 0;
+  std::size_t entries = 0;
+  for (std::size_t p = 0; p < stores_.size(); ++p) {
+    Store& store = stores_[p];
+    store.leading = leading_of(store.count);
+    store.offset = doubles;
+    store.first_member = entries;
+    if (store.count > 0) doubles += std::int64_t{store.leading} * 3 * symbolic_->panels[p].width;
+    entries += at(store.count);
+    store.count = 0;
+  }
+  make_room(static_cast<std::int32_t>(groups.size()), at(doubles), entries);
+  std::ranges::fill(stamp_, -1);
   for (std::size_t k = 0; k < groups.size(); ++k) {
     for_panels(groups[k], [&](int p) {
-      members_[at(p) * groups_ + at(stores_[at(p)].count++)] = static_cast<std::int32_t>(k);
+      Store& store = stores_[at(p)];
+      members_[store.first_member + at(store.count++)] = static_cast<std::int32_t>(k);
     });
   }
-  for (Store& store : stores_) store.leading = leading_of(store.count);
+}
+
+// Memory grows with the rows that are there; it is never given back.
+void PassingRows::make_room(std::int32_t groups, std::size_t doubles, std::size_t entries) {
+  const auto grow = [](AlignedBuffer& buffer, std::size_t count) {
+    if (buffer.size() < count + kOverrun) buffer = AlignedBuffer(count + kOverrun);
+  };
+  grow(values_, doubles);
+  if (members_.size() < entries) members_.resize(entries);
+  if (groups <= room_) return;
+  room_ = std::min(static_cast<std::int32_t>(groups_), std::max(groups, room_ + room_ / 2));
+  const std::int64_t columns =
+      std::max({symbolic_->max_width, 3 * room_, 3 * symbolic_->border_nodes});
+  std::int64_t signs = 0;
+  for (std::size_t p = 0; p + 1 < symbolic_->panels.size(); ++p) {
+    const Panel& panel = symbolic_->panels[p];
+    const std::int64_t rows_here = std::max(panel.leading, leading_of(room_));
+    signs = std::max(signs, rows_here * 3 * panel.width);
+  }
+  grow(product_, at(leading_of(room_) * columns));
+  grow(signed_, at(signs));
+  place_.resize(at(room_));
+  compliance_.resize(3 * room_, 3 * room_);
+  coupling_.resize(3 * room_, 3 * symbolic_->border_nodes);
 }
 
 void PassingRows::fill(int p, std::span<const double> values,

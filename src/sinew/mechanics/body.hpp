@@ -146,8 +146,11 @@ class Body {
   virtual Vector3 proposed_motion(int) const { return Vector3::Zero(); }
   /// Factorises A bordered by the rows taken.
   virtual linalg::FactorStatus condense() = 0;
-  /// Adds this body's W (rows, rows) and H A^-1 b (rows,) to those of the world.
-  virtual void add_compliance(MatrixX& compliance, VectorX& free_motion) const = 0;
+  /// Adds this body's W and H A^-1 b to those of a step's problem. @param place (all rows,) of each
+  /// row in the problem; its rows that are not present have none. @param compliance (rows of the
+  /// problem, rows of the problem). @param free_motion (rows of the problem,).
+  virtual void add_compliance(std::span<const int> place, MatrixX& compliance,
+                              VectorX& free_motion) const = 0;
   /// Remembers b + H^T effort of the current linearisation, so that load stepping can take it away.
   virtual void hold_imbalance(std::span<const double> effort) = 0;
   /// From the next linearisation on, b is lessened by `share` of what was held; 0 ends it.

@@ -248,16 +248,19 @@ void ArmBody::make_definite() {
 // averaged out of it here but not of the motion. Newton's iterations would then end where the law
 // holds of the averaged W alone, off by (W - W_sym) lambda of what it holds; the free motion takes
 // that difference at the efforts known last, and in the limit the law holds of the motion.
-void ArmBody::add_compliance(MatrixX& compliance, VectorX& free_motion) const {
+void ArmBody::add_compliance(std::span<const int> place, MatrixX& compliance,
+                             VectorX& free_motion) const {
   const auto& rows = model_.rows_;
   for (std::size_t j = 0; j < rows.size(); ++j) {
     const auto column = static_cast<Eigen::Index>(j);
-    free_motion[rows[j]] += free_motion_[column];
+    const int across = place[static_cast<std::size_t>(rows[j])];
+    free_motion[across] += free_motion_[column];
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const auto row = static_cast<Eigen::Index>(i);
+      const int down = place[static_cast<std::size_t>(rows[i])];
       const double mean = 0.5 * (compliance_(row, column) + compliance_(column, row));
-      compliance(rows[i], rows[j]) += mean;
-      if (iterating_) free_motion[rows[i]] += (compliance_(row, column) - mean) * effort_[column];
+      compliance(down, across) += mean;
+      if (iterating_) free_motion[down] += (compliance_(row, column) - mean) * effort_[column];
     }
   }
 }

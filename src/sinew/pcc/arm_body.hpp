@@ -86,7 +86,8 @@ class ArmBody : public mechanics::Body {
   void retake_rows(const mechanics::RowValues& rows) override;
   double residual(std::span<const double> effort) override;
   linalg::FactorStatus condense() override;
-  void add_compliance(MatrixX& compliance, VectorX& free_motion) const override;
+  void add_compliance(std::span<const int> place, MatrixX& compliance,
+                      VectorX& free_motion) const override;
   void hold_imbalance(std::span<const double> effort) override;
   void set_imbalance_share(double share) override { imbalance_share_ = share; }
   void solve_motion(std::span<const double> effort) override;

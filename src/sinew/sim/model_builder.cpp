@@ -541,6 +541,11 @@ int ModelBuilder::add_effector(const EffectorSettings& settings) {
 std::shared_ptr<const Model> ModelBuilder::build(const linalg::FactorisationSettings& settings) {
   hold_bodies();
   add_couplings();
+  // Rows that come and go stand behind all others, which keep their numbers in a step's problem.
+  for (const ContactModel& contact : model_->contacts_) {
+    model_->constraints_[static_cast<std::size_t>(contact.constraint)]->declare(
+        model_->rows_, model_->curvatures_);
+  }
   for (std::size_t i = 0; i < model_->bodies_.size(); ++i) {
     model_->bodies_[i]->finish(static_cast<int>(i), model_->rows_, model_->curvatures_, settings);
   }

@@ -74,7 +74,6 @@ int ModelBuilder::add_contact(const ContactSettings& settings) {
                        settings.motion};
     if (entry.motion) entry.motion->axis = checked_axis(entry.motion->axis, settings.place);
     check_gaps(*contact, on, entry.pose(0.0), model_->size_);
-    contact->declare(model_->rows_, model_->curvatures_);
     model_->constraints_.push_back(std::move(contact));
     model_->contacts_.push_back(std::move(entry));
     return static_cast<int>(model_->contacts_.size()) - 1;

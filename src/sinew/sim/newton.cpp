@@ -79,7 +79,7 @@ class NewtonSolver {
     report_.residual = world_.residual(effort_);
     const double scale = world_.force_scale() + 1e-300;
     report_.relative_residual = report_.residual / scale;
-    report_.violation = step::violation(world_.problem(), effort_);
+    report_.violation = world_.violation(effort_);
     return report_.relative_residual + report_.violation / world_.problem().size;
   }
 

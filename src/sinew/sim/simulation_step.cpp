@@ -108,7 +108,7 @@ void Simulation::step_once(double time_step) {
   linearise();
   report_.residual = world_.residual(effort_);
   report_.relative_residual = report_.residual / (world_.force_scale() + 1e-300);
-  report_.violation = step::violation(world_.problem(), effort_);
+  report_.violation = world_.violation(effort_);
 }
 
 void Simulation::fail_law() {

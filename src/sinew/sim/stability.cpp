@@ -81,7 +81,7 @@ std::vector<step::HeldRow> held_rows(const step::StepProblem& problem,
 }
 
 Stability::Stability(World& world, std::span<const double> effort)
-    : world_(world), held_(held_rows(world.problem(), effort)), negative_(count()) {
+    : world_(world), held_(held_rows(world.problem(), world.gather(effort))), negative_(count()) {
   if (negative_ == 0) return;
   move_rows(effort.size());
   const VectorX direction = find_mode();
@@ -117,7 +117,7 @@ void Stability::move_rows(std::size_t rows) {
   world_.imbalance(unit, rest);
   moved_.resize(rest.size(), static_cast<Eigen::Index>(held_.size()));
   for (std::size_t k = 0; k < held_.size(); ++k) {
-    double& own = unit[static_cast<std::size_t>(held_[k].row)];
+    double& own = unit[static_cast<std::size_t>(world_.row_of(held_[k].row))];
     own = 1.0;
     world_.imbalance(unit, row);
     own = 0.0;

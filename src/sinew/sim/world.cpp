@@ -30,19 +30,6 @@ std::vector<std::unique_ptr<mechanics::Body>> create_bodies(const Model& model, 
   return bodies;
 }
 
-// Rows whose columns of W are written whether they are present or not.
-std::vector<char> rows_of_small_bodies(const Model& model) {
-  const mechanics::RowPattern& rows = model.rows();
-  std::vector<char> result(static_cast<std::size_t>(rows.rows()), 0);
-  for (std::size_t row = 0; row < result.size(); ++row) {
-    for (int e = rows.row_start[row]; e < rows.row_start[row + 1]; ++e) {
-      const int body = rows.point[static_cast<std::size_t>(e)].body;
-      if (!model.bodies()[static_cast<std::size_t>(body)]->leaves_rows_out()) result[row] = 1;
-    }
-  }
-  return result;
-}
-
 }  // namespace
 
 World::World(std::shared_ptr<const Model> model, ThreadPool& pool)
@@ -52,18 +39,10 @@ World::World(std::shared_ptr<const Model> model, ThreadPool& pool)
       curvatures_(model_->curvatures()) {
   rows_.resize(model_->rows());
   const int rows = model_->rows().rows();
-  problem_.compliance.setZero(rows, rows);
-  problem_.delta_free.setZero(rows);
   problem_.actuators.resize(model_->actuators().size());
   problem_.size = model_->size();
   for (const GuideModel& guide : model_->guides()) {
     problem_.capstans.push_back({guide.row, guide.actuator, 0.0, 0.0});
-  }
-  for (std::size_t i = 0; i < model_->contacts().size(); ++i) {
-    const constraint::Contact& contact = model_->contact(static_cast<int>(i));
-    for (std::size_t k = 0; k < contact.points().size(); ++k) {
-      problem_.contacts.push_back({contact.row(k), contact.friction(), true});
-    }
   }
   for (std::size_t w = 0; w < model_->welds().size(); ++w) {
     const constraint::Tie& tie = model_->weld(static_cast<int>(w));
@@ -82,8 +61,7 @@ World::World(std::shared_ptr<const Model> model, ThreadPool& pool)
     for (int k = 0; k < 2; ++k) problem_.stiffness.push_back({row + k});
   }
   contact_start_.setZero(rows);
-  formed_ = rows_.present;
-  always_formed_ = rows_of_small_bodies(*model_);
+  number_rows();
   touched_.assign(static_cast<std::size_t>(rows), 0);
   curving_effort_.resize(static_cast<std::size_t>(rows));
   place_contacts(0.0, 0.0);
@@ -108,6 +86,7 @@ void World::begin_step(double from, double to, std::span<const double> effort) {
     place_contacts(from, to);
     choose_present(effort, to - from);
     std::ranges::transform(effort, touched_.begin(), [](double r) { return r > 0.0 ? 1 : 0; });
+    number_rows();
   }
   for (auto& body : bodies_) body->begin_step();
 }
@@ -117,6 +96,7 @@ void World::begin_query(double at) {
     place_contacts(at, at);
     left_out_ = false;
     std::ranges::fill(rows_.present, static_cast<char>(true));
+    number_rows();
   }
   for (auto& body : bodies_) body->begin_query();
 }
@@ -160,12 +140,13 @@ bool World::correct_contacts(std::span<const double> effort) {
       if (rows_.present[row] == 0) {
         found = take_in(contact, k, pose) || found;
       } else if (may_turn && contact.curved() && effort[row] > 0.0) {
-        found = follow_way(contact, k, pose, effort) || found;
+        found = follow_way(contact, k, pose) || found;
       }
     }
   }
   if (!found) return false;
   --turns_left_;
+  number_rows();
   for (auto& body : bodies_) body->retake_rows(rows_);
   form_compliance();
   return true;
@@ -192,12 +173,13 @@ bool World::take_in(const constraint::Contact& contact, std::size_t point,
 // Whether a pushed point's plane is another than that of its way, which it then gets. Where the way
 // meets the surface, planes that find it equally deep in the end are one.
 bool World::follow_way(const constraint::Contact& contact, std::size_t point,
-                       const Eigen::Isometry3d& pose, std::span<const double> effort) {
-  const int row = contact.row(point);
-  const Eigen::Map<const VectorX> lambda(effort.data(), static_cast<Eigen::Index>(effort.size()));
-  const Vector3 free = problem_.delta_free.segment<3>(row) +
-                       problem_.compliance.middleRows<3>(row) * lambda -
-                       problem_.compliance.block<3, 3>(row, row) * lambda.segment<3>(row);
+                       const Eigen::Isometry3d& pose) {
+  const int row = contact.row(point), place = place_[static_cast<std::size_t>(row)];
+  const Eigen::Map<const VectorX, Eigen::AlignedMax> lambda(
+      problem_effort_.data(), static_cast<Eigen::Index>(problem_effort_.size()));
+  const Vector3 free = problem_.delta_free.segment<3>(place) +
+                       problem_.compliance.middleRows<3>(place) * lambda -
+                       problem_.compliance.block<3, 3>(place, place) * lambda.segment<3>(place);
   const Vector3 reference = rows_.reference.segment<3>(row);
   const Vector3 from = contact.position(point, reference, rows_);
   const Vector3 to = contact.position(point, free, rows_);
@@ -277,7 +259,10 @@ const VectorX& World::measure_delta() {
 }
 
 void World::form_rows(std::span<const double> effort, std::span<const int> curved) {
-  problem_.delta = measure_delta();
+  const VectorX& delta = measure_delta();
+  for (std::size_t k = 0; k < row_of_.size(); ++k) {
+    problem_.delta[static_cast<Eigen::Index>(k)] = delta[row_of_[k]];
+  }
   for (std::size_t k = 0; k < problem_.capstans.size(); ++k) {
     const GuideModel& guide = model_->guides()[k];
     const double turn = model_->cable(guide.actuator)->turn(placement_, guide.via);
@@ -422,34 +407,85 @@ linalg::FactorStatus World::condense() {
 
 step::LawStatus World::solve_step(step::StepSolver& solver, step::Controller* controller,
                                   std::span<double> effort, StageClock& clock) {
-  problem_.effort_before.assign(effort.begin(), effort.end());
+  effort_before_.assign(effort.begin(), effort.end());
   step::LawStatus status = step::LawStatus::solved;
   bool mended = true;
   while (mended) {
-    status = solver.solve(problem_, controller, effort);
+    gather(effort_before_, problem_.effort_before);
+    gather(effort, problem_effort_);
+    status = solver.solve(problem_, controller, problem_effort_);
     clock.mark(Stage::law);
     if (status == step::LawStatus::failed) return status;
+    std::ranges::fill(effort, 0.0);
+    for (std::size_t k = 0; k < row_of_.size(); ++k) {
+      effort[static_cast<std::size_t>(row_of_[k])] = problem_effort_[k];
+    }
     for (auto& body : bodies_) body->solve_motion(effort);
     mended = guesses_contacts() && correct_contacts(effort);
     clock.mark(Stage::correction);
   }
   for (const step::StiffnessBlock& block : problem_.stiffness) {
-    effort[static_cast<std::size_t>(block.row)] = 0.0;  // the robot has no such force
+    effort[static_cast<std::size_t>(block.row)] = 0.0;  // part of no equilibrium
   }
   return status;
 }
 
+linalg::AlignedNumbers World::gather(std::span<const double> effort) const {
+  linalg::AlignedNumbers result;
+  gather(effort, result);
+  return result;
+}
+
+void World::gather(std::span<const double> effort, linalg::AlignedNumbers& result) const {
+  result.clear();
+  for (const int row : row_of_) result.push_back(effort[static_cast<std::size_t>(row)]);
+}
+
+double World::violation(std::span<const double> effort) {
+  gather(effort, scratch_);
+  double worst = step::violation(problem_, scratch_);
+  for (std::size_t row = 0; left_out_ && row < place_.size(); row += 1) {
+    if (place_[row] >= 0) continue;
+    worst = std::max(worst, -rows_.delta[static_cast<Eigen::Index>(row)]);
+    row += 2;  // the tangential rows of the point
+  }
+  return worst;
+}
+
+// The problem's rows and its contacts: points that are left out have none.
+void World::number_rows() {
+  row_of_.clear();
+  place_.assign(rows_.present.size(), -1);
+  for (std::size_t row = 0; row < place_.size(); ++row) {
+    if (rows_.present[row] == 0) continue;
+    place_[row] = static_cast<int>(row_of_.size());
+    row_of_.push_back(static_cast<int>(row));
+  }
+  problem_.contacts.clear();
+  for (std::size_t i = 0; i < model_->contacts().size(); ++i) {
+    const constraint::Contact& contact = model_->contact(static_cast<int>(i));
+    for (std::size_t k = 0; k < contact.points().size(); ++k) {
+      const int place = place_[static_cast<std::size_t>(contact.row(k))];
+      if (place >= 0) problem_.contacts.push_back({place, contact.friction()});
+    }
+  }
+  const auto rows = static_cast<Eigen::Index>(row_of_.size());
+  problem_.delta.resize(rows);
+  problem_.delta_free.resize(rows);
+  problem_.compliance.resize(rows, rows);
+  for (Eigen::Index k = 0; k < rows; ++k) {
+    problem_.delta[k] = rows_.delta[row_of_[static_cast<std::size_t>(k)]];
+  }
+}
+
 void World::form_compliance() {
-  for (std::size_t row = 0; row < formed_.size(); ++row) {
-    if ((formed_[row] | always_formed_[row]) != 0)
-      problem_.compliance.col(static_cast<Eigen::Index>(row)).setZero();
+  problem_.compliance.setZero();
+  for (std::size_t k = 0; k < row_of_.size(); ++k) {
+    problem_.delta_free[static_cast<Eigen::Index>(k)] = rows_.delta[row_of_[k]];
   }
-  formed_ = rows_.present;
-  for (step::ContactBlock& block : problem_.contacts) {
-    block.active = rows_.present[static_cast<std::size_t>(block.row)] != 0;
+  for (auto& body : bodies_) {
+    body->add_compliance(place_, problem_.compliance, problem_.delta_free);
   }
-  problem_.delta_free = rows_.delta;
-  for (auto& body : bodies_) body->add_compliance(problem_.compliance, problem_.delta_free);
 }
 
 void World::imbalance(std::span<const double> effort, VectorX& result) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sinew/constraint/placement.hpp"
+#include "sinew/linalg/scratch.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/step/step_problem.hpp"
@@ -101,14 +102,23 @@ class World {
   /// The largest error estimate of any body, m.
   double end_step(const mechanics::StepWeights& weights);
 
+  /// m: how far `effort` and the present placement are from obeying all laws, points that are left
+  /// out included; see step::violation(). @param effort (rows,) N.
+  double violation(std::span<const double> effort);
+
   /// The step's problem. Actuators are the caller's to write; capstans' grip, contacts and all
-  /// numbers of rows are the world's.
+  /// numbers of rows are the world's. It has the rows of the model in their order, but for those of
+  /// points that are left out of the step, which stand behind all others.
   step::StepProblem& problem() { return problem_; }
   const step::StepProblem& problem() const { return problem_; }
+  /// Of the problem's rows, of those of the model. @param effort (rows,) N.
+  linalg::AlignedNumbers gather(std::span<const double> effort) const;
+  /// The model's row that a row of the problem is.
+  int row_of(int row) const { return row_of_[static_cast<std::size_t>(row)]; }
   /// From where cables stick to their guides in this step. @param delta (rows,) m.
   void hold_capstans(const VectorX& delta);
-  const MatrixX& compliance() const { return problem_.compliance; }  ///< W (rows, rows), m/N
-  const VectorX& delta_free() const { return problem_.delta_free; }  ///< (rows,) m
+  const MatrixX& compliance() const { return problem_.compliance; }  ///< W of the problem, m/N
+  const VectorX& delta_free() const { return problem_.delta_free; }  ///< of the problem, m
   const VectorX& delta() const { return rows_.delta; }               ///< (rows,) m, as last formed
   /// delta at the current placement, without forming the rows anew for the bodies.
   const VectorX& measure_delta();
@@ -137,9 +147,11 @@ class World {
   bool take_in(const constraint::Contact& contact, std::size_t point,
                const Eigen::Isometry3d& pose);
   bool follow_way(const constraint::Contact& contact, std::size_t point,
-                  const Eigen::Isometry3d& pose, std::span<const double> effort);
+                  const Eigen::Isometry3d& pose);
   void turn(const constraint::Contact& contact, std::size_t point,
             const constraint::SurfaceApproach& plane);
+  void gather(std::span<const double> effort, linalg::AlignedNumbers& result) const;
+  void number_rows();
   void form_compliance();
   void add_curvatures();
   void add_anchors();
@@ -156,15 +168,18 @@ class World {
   std::vector<double> curving_effort_;  // (rows,) N, at which constraints curve
   std::span<const int> curving_;        // whose curvature the next condensation adds
   mechanics::Tangent tangent_ = mechanics::Tangent::real_time;
-  bool majorant_ = false;            // of curvature, in A
-  std::size_t anchor_rows_ = 0;      // of problem_.stiffness; behind them those of couplings
-  bool left_out_ = false;            // some point
-  bool curved_ = false;              // some surface
-  double end_ = 0.0;                 // s, of the step: where surfaces stand
-  int turns_left_ = 0;               // rounds of this step in which planes may change
-  std::vector<char> touched_;        // (rows,) normal rows with a force when the step began
-  std::vector<char> formed_;         // (rows,) columns of W that are not zero
-  std::vector<char> always_formed_;  // (rows,) those of bodies that leave no rows out
+  bool majorant_ = false;                  // of curvature, in A
+  std::size_t anchor_rows_ = 0;            // of problem_.stiffness; behind them those of couplings
+  bool left_out_ = false;                  // some point
+  bool curved_ = false;                    // some surface
+  double end_ = 0.0;                       // s, of the step: where surfaces stand
+  int turns_left_ = 0;                     // rounds of this step in which planes may change
+  std::vector<char> touched_;              // (rows,) normal rows with a force when the step began
+  std::vector<double> effort_before_;      // (rows,) N, of the last step or iteration
+  std::vector<int> place_;                 // (rows,) in the problem, -1: left out
+  std::vector<int> row_of_;                // (rows of the problem,) of the model
+  linalg::AlignedNumbers problem_effort_;  // (rows of the problem,) N, of the last solution
+  linalg::AlignedNumbers scratch_;         // (rows of the problem,)
 };
 
 }  // namespace sinew::sim

@@ -69,10 +69,6 @@ void DirectSolver::sort(const StepProblem& problem, std::span<double> effort) {
   }
   for (const Box& box : boxes_) unknown_.push_back(box.row);
   for (const ContactBlock& block : problem.contacts) {
-    if (!block.active) {
-      std::fill_n(effort.begin() + block.row, 3, 0.0);
-      continue;
-    }
     cones_.push_back({static_cast<int>(unknown_.size()), block.friction});
     for (int c = 0; c < 3; ++c) unknown_.push_back(block.row + c);
   }

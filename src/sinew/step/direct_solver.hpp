@@ -42,7 +42,7 @@ class DirectSolver {
   /// follows from state and inputs alone.
   void begin_step();
   /// @param problem of the step. @param effort (rows,) N: where to start from, on return the
-  /// solution. Rows without a block keep theirs, contacts that are left out get 0.
+  /// solution. Rows without a block keep theirs.
   LawStatus solve(const StepProblem& problem, std::span<double> effort);
   /// Of the last problem with contacts.
   const qp::ConeResult& contact_result() const { return cone_solver_.result(); }

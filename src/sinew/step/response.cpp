@@ -118,7 +118,6 @@ void Response::collect_capstans(const StepProblem& problem, std::span<const doub
 
 void Response::collect_contact(const StepProblem& problem, const ContactBlock& block,
                                std::span<const double> effort) {
-  if (!block.active) return;
   holds_for_all_ = false;
   const int row = block.row;
   const double* force = effort.data() + row;

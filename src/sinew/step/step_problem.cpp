@@ -46,7 +46,6 @@ double curve_miss(const StepProblem& problem, const ActuatorBlock& block, double
 
 double contact_miss(const StepProblem& problem, const ContactBlock& block,
                     std::span<const double> effort) {
-  if (!block.active) return std::max(0.0, -problem.delta[block.row]);
   const double scale = problem.compliance.diagonal().segment<3>(block.row).sum() / 3.0;
   if (!(scale > 0.0)) return 0.0;
   const Eigen::Map<const Vector3> force(effort.data() + block.row);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "sinew/core/types.hpp"
+#include "sinew/linalg/scratch.hpp"
 #include "sinew/step/drive.hpp"
 
 namespace sinew::step {
@@ -71,7 +72,6 @@ struct GuideTension {
 struct ContactBlock {
   int row = -1;
   double friction = 0.0;  ///< Coulomb's coefficient, >= 0
-  bool active = true;     ///< otherwise left out: its efforts are 0
 };
 
 /// A row that holds its motion whatever effort that takes: part of a joint or a tie.
@@ -99,7 +99,7 @@ struct StepProblem {
   MatrixX compliance;                    ///< W (rows, rows), m/N
   VectorX delta_free;                    ///< (rows,) m, or m^3, or rad
   VectorX delta;                         ///< (rows,) at the linearisation
-  std::vector<double> effort_before;     ///< (rows,) N, of the last step or Newton iteration
+  linalg::AlignedNumbers effort_before;  ///< (rows,) N, of the last step or Newton iteration
   std::vector<ActuatorBlock> actuators;  ///< in the model's order
   std::vector<CapstanBlock> capstans;
   std::vector<ContactBlock> contacts;
