@@ -38,6 +38,25 @@ def test_a_weld_carries_what_hangs_on_it():
         sim.joint("seem")
 
 
+@pytest.mark.parametrize("keys", [{}, {"integrator": "backward-euler", "time_step": 0.005}])
+def test_a_chain_of_welds_is_one_body(keys):
+    whole = scene(joints={}, **keys)
+    whole["bodies"] = {"a": block(fixed={"set": "x_min"})}
+    whole["bodies"]["a"]["mesh"]["length"] = 0.16
+    chain = scene(**keys)
+    chain["bodies"] |= {"c": block(position=[0.08, 0, 0]), "d": block(position=[0.12, 0, 0])}
+    chain["joints"] |= {"two": {"type": "weld", "bodies": ["c", "b"]},
+                        "three": {"type": "weld", "bodies": ["d", "c"]},
+                        "again": {"type": "weld", "bodies": ["c", "b"]}}  # shares the load
+    tips = []
+    for given, last in ((whole, "a"), (chain, "d")):
+        sim = sinew.load({**given, "effectors": {"tip": {"body": last, "point": [0.16, 0.01, 0.01]}}})
+        sim.solve_static()
+        tips.append(np.array(sim.effector("tip").position))
+    assert tips[1] == pytest.approx(tips[0], abs=1e-10)
+    assert sim.joint("again").force == pytest.approx(sim.joint("two").force, rel=1e-6, abs=1e-9)
+
+
 def test_rows_of_joints_are_taken_out_of_the_compliance():
     sim = sinew.load(scene(effectors={"tip": {"body": "b", "point": [0.08, 0.01, 0.01]}}))
     sim.solve_static()

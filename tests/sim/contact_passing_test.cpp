@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include "sinew/fem/fem_body.hpp"
 
@@ -196,6 +197,45 @@ TEST(Passing, RunsGoOnFromASavedStateBitForBit) {
     EXPECT_EQ(second->state_hash(), whole->state_hash());
     EXPECT_LT(mean_velocity(*whole)[0], 0.99);  // it did touch
   }
+}
+
+std::size_t allocated() {
+  const auto info = mallinfo2();
+  return info.uordblks + info.hblkhd;
+}
+
+// Of a plate whose whole outside may touch a plane far below: what one more simulation takes.
+std::size_t memory_of_a_simulation(bool contact) {
+  sim::ModelBuilder builder({.time_step = 0.01, .integrator = Integrator::backward_euler});
+  fem::FemBodySettings body;
+  body.name = "plate";
+  const auto mesh = std::make_shared<const mesh::Mesh>(
+      mesh::block({.size = {0.2, 0.2, 0.01}, .cells = {26, 26, 1}}));
+  body.mesh = mesh;
+  body.elements.regions = {{{1e6, 0.3}, material::Law::corotational, 1000.0, {}}};
+  builder.add_fem_body(std::move(body));
+  if (contact) {
+    ContactSettings floor;
+    floor.name = "floor";
+    floor.surface = constraint::Plane{{0.0, 0.0, -1.0}, Vector3::UnitZ()};
+    for (Eigen::Index n = 0; n < mesh->nodes.rows(); ++n) {
+      floor.nodes.push_back(static_cast<NodeId>(n));
+    }
+    builder.add_contact(floor);
+  }
+  const auto model = builder.build();
+  const std::size_t before = allocated();
+  Simulation simulation(model);
+  for (int k = 0; k < 3; ++k) simulation.step();
+  return allocated() - before;
+}
+
+TEST(ContactPassing, PointsThatNeverTouchTakeLittleMemory) {
+  const std::size_t without = memory_of_a_simulation(false);
+  if (without == 0) GTEST_SKIP() << "this build counts no allocations";
+  const std::size_t with = memory_of_a_simulation(true);  // 1458 points
+  EXPECT_GT(without, std::size_t{1} << 20U);
+  EXPECT_LT(with, without + 5000000);
 }
 
 }  // namespace

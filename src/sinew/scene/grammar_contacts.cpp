@@ -84,9 +84,9 @@ Form contact_form() {
   KeyTable contact{
       .name = "contact",
       .description =
-          "A surface that points of a body may touch and not pass, with Coulomb friction. Every "
-          "point costs three rows in each step, touching or not: name the part of the body that "
-          "may touch. `sinew run` records the resultant force in run.csv.",
+          "A surface that points of a body may touch and not pass, with Coulomb friction. Points "
+          "that touch or are near cost three rows in each step. `sinew run` records the resultant "
+          "force in run.csv.",
       .keys = {body_key()},
       .alternatives = {{{"nodes", "points"}, false}}};
   contact.keys.push_back(
