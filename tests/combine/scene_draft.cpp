@@ -1,6 +1,7 @@
 #include "scene_draft.hpp"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <stdexcept>
 

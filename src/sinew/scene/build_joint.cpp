@@ -34,21 +34,20 @@ std::vector<NodeId> nodes_on(const mesh::Mesh& first, const mesh::Mesh& second,
 }  // namespace
 
 void add_joint(sim::ModelBuilder& builder, const JointDescription& joint, const BodyOf& body_of) {
-  const auto [first, first_mesh] = body_of(joint.first);
-  const auto [second, second_mesh] = body_of(joint.second);
+  const BuiltBody first = body_of(joint.first), second = body_of(joint.second);
   sim::WeldSettings weld;
   weld.name = joint.name;
   weld.place = joint.place;
-  weld.first = first;
-  weld.second = second;
+  weld.first = first.number;
+  weld.second = second.number;
   weld.points = joint.points.points;
   weld.outside = joint.outside;
   if (joint.region) {
     weld.nodes = at_place(joint.region->place, [&] {
-      return mesh::select_nodes(*first_mesh, region_of(*joint.region), joint.region->place.item);
+      return mesh::select_nodes(*first.mesh, region_of(*joint.region), joint.region->place.item);
     });
-  } else if (weld.points.rows() == 0 && first != second) {
-    weld.nodes = nodes_on(*first_mesh, *second_mesh, joint);
+  } else if (weld.points.rows() == 0 && first.number != second.number) {
+    weld.nodes = nodes_on(*first.mesh, *second.mesh, joint);
     weld.outside = mesh::Outside::nearest;
   }
   builder.add_weld(weld);

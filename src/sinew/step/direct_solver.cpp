@@ -178,7 +178,7 @@ LawStatus DirectSolver::solve_blocks(const StepProblem& problem) {
   return LawStatus::failed;
 }
 
-LawStatus DirectSolver::solve_boxes(Eigen::Map<const MatrixX> compliance) {
+LawStatus DirectSolver::solve_boxes(const Eigen::Map<const MatrixX>& compliance) {
   const auto count = static_cast<Eigen::Index>(boxes_.size());
   if (count == 0) return LawStatus::solved;
   if (program_.gradient.size() != count) {
@@ -212,7 +212,7 @@ LawStatus DirectSolver::solve_boxes(Eigen::Map<const MatrixX> compliance) {
   return LawStatus::solved;
 }
 
-LawStatus DirectSolver::solve_cones(Eigen::Map<const MatrixX> compliance) {
+LawStatus DirectSolver::solve_cones(const Eigen::Map<const MatrixX>& compliance) {
   cone_boxes_.clear();
   for (std::size_t i = 0; i < boxes_.size(); ++i) {
     const Box& box = boxes_[i];
@@ -229,7 +229,7 @@ LawStatus DirectSolver::solve_cones(Eigen::Map<const MatrixX> compliance) {
 
 // A commanded effort whose motion passed the far limit changes branch.
 bool DirectSolver::switch_branches(const StepProblem& problem,
-                                   Eigen::Map<const MatrixX> compliance) {
+                                   const Eigen::Map<const MatrixX>& compliance) {
   const auto motion = motion_.view();
   const Eigen::Map<const VectorX> x(x_.data(), static_cast<Eigen::Index>(x_.size()));
   bool switched = false;

@@ -62,9 +62,9 @@ class DirectSolver {
   bool follow_tensions(const StepProblem& problem, std::span<const double> effort, double share);
   LawStatus solve_with_drives(const StepProblem& problem, std::span<double> effort);
   LawStatus solve_blocks(const StepProblem& problem);
-  LawStatus solve_boxes(Eigen::Map<const MatrixX> compliance);
-  LawStatus solve_cones(Eigen::Map<const MatrixX> compliance);
-  bool switch_branches(const StepProblem& problem, Eigen::Map<const MatrixX> compliance);
+  LawStatus solve_boxes(const Eigen::Map<const MatrixX>& compliance);
+  LawStatus solve_cones(const Eigen::Map<const MatrixX>& compliance);
+  bool switch_branches(const StepProblem& problem, const Eigen::Map<const MatrixX>& compliance);
 
   Followers followers_;
   std::vector<Box> boxes_;            // of actuators, then of capstans
