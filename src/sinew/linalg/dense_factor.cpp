@@ -8,7 +8,14 @@ void LuFactor::solve(const Eigen::Ref<const VectorX>& b, Eigen::Ref<VectorX> x) 
   x = lu_.solve(b);
 }
 
-void LuFactor::solve(const MatrixX& b, MatrixX& x) const { x = lu_.solve(b); }
+void LuFactor::solve(const MatrixX& b, MatrixX& x) const {
+  // Eigen takes the address of the first entry, which there must be.
+  if (b.size() == 0) {
+    x = b;
+  } else {
+    x = lu_.solve(b);
+  }
+}
 
 bool LuFactor::is_singular() const {
   constexpr double kRounding = 1e-12;
@@ -27,7 +34,7 @@ void CholeskyFactor::solve(const Eigen::Ref<const VectorX>& b, Eigen::Ref<Vector
 
 void CholeskyFactor::solve(const MatrixX& b, MatrixX& x) const {
   x = b;
-  llt_.solveInPlace(x);
+  if (x.size() > 0) llt_.solveInPlace(x);
 }
 
 void SymmetricPivots::compute(const MatrixX& a) { ldlt_.compute(a); }
