@@ -240,13 +240,14 @@ SINEW_INLINE void scale(LanesLogResponse& response, double factor) {
 ///   phi = W + w/r (x erf x + (exp(-x^2) - 1)/sqrt(pi)),
 ///   eta = dphi/dW = 1 - erf(x)/r,   deta/dW = 2/(sqrt(pi) r w) exp(-x^2),
 /// and phi = W on first loading, W >= W_m. The slope of eta jumps there: a step that begins at the
-/// largest strain so far begins with first loading, whatever rounding makes of W. @param effect,peak its numbers, and W_m.
+/// largest strain so far begins with first loading, whatever rounding makes of W. @param
+/// effect,peak its numbers, and W_m.
 /// @param response changed.
 SINEW_INLINE void soften(const MullinsEffect& effect, const Lanes& peak,
                          LanesLogResponse& response) {
   constexpr double kRootPi = 1.7724538509055160273;
   constexpr double kLeastWidth = 1e-9;  // Pa: where nothing was strained yet
-  constexpr double kAtPeak = 1e-9;       // x below which eta is 1
+  constexpr double kAtPeak = 1e-9;      // x below which eta is 1
   for (int lane = 0; lane < kLanes; ++lane) {
     const double w = response.energy[lane], most = peak[lane];
     const double width = std::fmax(effect.m + effect.beta * most, kLeastWidth);

@@ -30,6 +30,12 @@ std::vector<std::unique_ptr<mechanics::Body>> create_bodies(const Model& model, 
   return bodies;
 }
 
+// Of all rows, those of the problem. @param rows of it.
+void pick(const VectorX& all, const std::vector<int>& rows, VectorX& result) {
+  result.resize(static_cast<Eigen::Index>(rows.size()));
+  for (std::size_t k = 0; k < rows.size(); ++k) result[static_cast<Eigen::Index>(k)] = all[rows[k]];
+}
+
 }  // namespace
 
 World::World(std::shared_ptr<const Model> model, ThreadPool& pool)
@@ -259,10 +265,7 @@ const VectorX& World::measure_delta() {
 }
 
 void World::form_rows(std::span<const double> effort, std::span<const int> curved) {
-  const VectorX& delta = measure_delta();
-  for (std::size_t k = 0; k < row_of_.size(); ++k) {
-    problem_.delta[static_cast<Eigen::Index>(k)] = delta[row_of_[k]];
-  }
+  pick(measure_delta(), row_of_, problem_.delta);
   for (std::size_t k = 0; k < problem_.capstans.size(); ++k) {
     const GuideModel& guide = model_->guides()[k];
     const double turn = model_->cable(guide.actuator)->turn(placement_, guide.via);
@@ -444,10 +447,13 @@ void World::gather(std::span<const double> effort, linalg::AlignedNumbers& resul
 double World::violation(std::span<const double> effort) {
   gather(effort, scratch_);
   double worst = step::violation(problem_, scratch_);
-  for (std::size_t row = 0; left_out_ && row < place_.size(); row += 1) {
-    if (place_[row] >= 0) continue;
-    worst = std::max(worst, -rows_.delta[static_cast<Eigen::Index>(row)]);
-    row += 2;  // the tangential rows of the point
+  if (!left_out_) return worst;
+  for (std::size_t i = 0; i < model_->contacts().size(); ++i) {
+    const constraint::Contact& contact = model_->contact(static_cast<int>(i));
+    for (std::size_t k = 0; k < contact.points().size(); ++k) {
+      const int row = contact.row(k);
+      if (place_[static_cast<std::size_t>(row)] < 0) worst = std::max(worst, -rows_.delta[row]);
+    }
   }
   return worst;
 }
@@ -469,20 +475,12 @@ void World::number_rows() {
       if (place >= 0) problem_.contacts.push_back({place, contact.friction()});
     }
   }
-  const auto rows = static_cast<Eigen::Index>(row_of_.size());
-  problem_.delta.resize(rows);
-  problem_.delta_free.resize(rows);
-  problem_.compliance.resize(rows, rows);
-  for (Eigen::Index k = 0; k < rows; ++k) {
-    problem_.delta[k] = rows_.delta[row_of_[static_cast<std::size_t>(k)]];
-  }
+  pick(rows_.delta, row_of_, problem_.delta);
 }
 
 void World::form_compliance() {
-  problem_.compliance.setZero();
-  for (std::size_t k = 0; k < row_of_.size(); ++k) {
-    problem_.delta_free[static_cast<Eigen::Index>(k)] = rows_.delta[row_of_[k]];
-  }
+  pick(rows_.delta, row_of_, problem_.delta_free);
+  problem_.compliance.setZero(problem_.delta_free.size(), problem_.delta_free.size());
   for (auto& body : bodies_) {
     body->add_compliance(place_, problem_.compliance, problem_.delta_free);
   }
