@@ -107,8 +107,9 @@ class World {
   double violation(std::span<const double> effort);
 
   /// The step's problem. Actuators are the caller's to write; capstans' grip, contacts and all
-  /// numbers of rows are the world's. It has the rows of the model in their order, but for those of
-  /// points that are left out of the step, which stand behind all others.
+  /// numbers of rows are the world's. Its rows are those of the model, in their order, without
+  /// those of points that are left out of the step. Contacts stand behind all others, whose numbers
+  /// are therefore the same in both.
   step::StepProblem& problem() { return problem_; }
   const step::StepProblem& problem() const { return problem_; }
   /// Of the problem's rows, of those of the model. @param effort (rows,) N.
