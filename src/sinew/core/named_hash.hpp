@@ -3,6 +3,9 @@
 /// what.
 #pragma once
 
+#include <bit>
+#include <cmath>
+#include <concepts>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -23,7 +26,8 @@ struct NamedHash {
 };
 
 /// Hashes values of all kinds in order: numbers, enumerations, text, matrices and lists of them by
-/// their size and entries, what may be absent.
+/// their size and entries, what may be absent. Of real numbers seven digits count: what a compiler
+/// for another processor rounds differently is the same.
 class ValueHash {
  public:
   template <class... Values>
@@ -34,9 +38,19 @@ class ValueHash {
   std::uint64_t value() const { return hash_.value(); }
 
  private:
-  template <class T>
-  requires std::is_arithmetic_v<T>
-  void add_one(T number) { hash_.add(static_cast<double>(number)); }
+  // Numbers that people write lie where rounding to single precision jumps, such as powers of two;
+  // turned by an irrational factor they do not.
+  static std::uint64_t leading_digits(double number) {
+    constexpr double kTurn = 1.2785764, kNothing = 1e-15;
+    if (std::abs(number) < kNothing) return 0;
+    return std::bit_cast<std::uint32_t>(static_cast<float>(kTurn * number));
+  }
+
+  void add_one(double number) { hash_.add(leading_digits(number)); }
+  template <std::integral T>
+  void add_one(T number) {
+    hash_.add(static_cast<double>(number));
+  }
   template <class T>
   requires std::is_enum_v<T>
   void add_one(T choice) { hash_.add(static_cast<std::uint64_t>(choice)); }

@@ -121,11 +121,12 @@ SavedState read(std::string_view bytes, const std::string& name) {
   std::uint32_t version[2];
   std::memcpy(version, bytes.data() + kMagic.size(), sizeof version);
   saved.header.version = version[0];
-  if (version[0] != kStateVersion) {
+  if (version[0] < kOldestStateVersion || version[0] > kStateVersion) {
     throw Error(ErrorKind::state_version, {.file = name},
-                fmt::format("the state has format version {}, this program reads version {}",
-                            version[0], kStateVersion),
-                "save it again with this version of Sinew");
+                fmt::format("the state has format version {}, this program reads versions {} to {}",
+                            version[0], kOldestStateVersion, kStateVersion),
+                version[0] > kStateVersion ? "load it with the version of Sinew that saved it"
+                                           : "save it again with this version of Sinew");
   }
   if (version[1] != 0) corrupt(name, "bytes that must be zero are not");
   if (bytes.size() % kWord != 0 || bytes.size() < kPreamble + kWord) {

@@ -18,7 +18,11 @@ namespace sinew::sim {
 /// (uint64) and the name, filled up with zeros; the count of bodies (uint64); all that
 /// State::visit() comes to, float64, a list behind its count (uint64); a hash of all words before
 /// it (uint64). Commands are inputs, not state, and are not part of it.
-inline constexpr std::uint32_t kStateVersion = 5;
+///
+/// Whoever changes the layout, what the fingerprint hashes or what State::visit() comes to raises
+/// kStateVersion and reads states of all versions from kOldestStateVersion on, of which files are
+/// kept (python/tests/states).
+inline constexpr std::uint32_t kStateVersion = 6, kOldestStateVersion = 6;
 
 /// What a saved state says of itself.
 struct StateHeader {
