@@ -3,87 +3,15 @@ import assert from 'node:assert/strict';
 import {execFileSync, spawn} from 'node:child_process';
 import {mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
 import {tmpdir} from 'node:os';
-import {dirname, join} from 'node:path';
-import {after, before, test} from 'node:test';
-import {fileURLToPath} from 'node:url';
+import {join} from 'node:path';
+import {test} from 'node:test';
 import validator from 'gltf-validator';
-import {chromium} from 'playwright-core';
+import {ask, drawn, newPage, open, PACKAGE, PROGRAM, ROOT, serve, state, stop, until, watched} from '../testing/page.mjs';
 
-const ROOT = join(dirname(fileURLToPath(import.meta.url)), '../..');
-const PROGRAM = process.env.SINEW_PROGRAM ?? join(ROOT, 'build/release/bin/sinew');
-const PACKAGE = process.env.SINEW_PYTHON_PATH ?? join(ROOT, 'build/release/python');
-const CHROMIUM = process.env.SINEW_CHROMIUM ?? '/usr/bin/chromium';
 const DIRECT = join(ROOT, 'examples/trunk/trunk.yaml');
 const MODULE = join(ROOT, 'examples/finger/module.yaml');
 const SQUEEZE = join(ROOT, 'examples/contact/squeeze.yaml');
 const STEERED = join(ROOT, 'examples/trunk/circle.yaml');
-
-let browser;
-const programs = new Set();
-
-before(async () => {
-  browser = await chromium.launch({executablePath: CHROMIUM, args: [
-    '--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
-    '--disable-background-networking', '--disable-component-update', '--disable-sync', '--no-first-run']});
-});
-after(async () => {
-  for (const program of programs) program.kill('SIGKILL');
-  await browser?.close();
-});
-
-/** Starts the program; resolves with it and its URL. */
-async function serve(scene, port = 0, ...more) {
-  const program = spawn(PROGRAM, ['view', scene, '--no-open', '--port', String(port), ...more]);
-  programs.add(program);
-  const url = await new Promise((resolve, reject) => {
-    let text = '', errors = '';
-    program.stderr.on('data', (data) => { errors += data; });
-    program.stdout.on('data', (data) => {
-      text += data;
-      const found = /http:\S+/.exec(text);
-      if (found) resolve(found[0]);
-    });
-    program.on('exit', (code) => reject(new Error(`sinew view ended with ${code}: ${errors}`)));
-  });
-  return {program, url, port: Number(new URL(url).port)};
-}
-
-async function stop({program}) {
-  const ended = new Promise((resolve) => program.on('exit', resolve));
-  program.kill('SIGINT');
-  const code = await ended;
-  programs.delete(program);
-  return code;
-}
-
-/** A page of the view that has had a frame; what its console says is kept. */
-async function open(url, errors = []) {
-  const page = await browser.newPage({viewport: {width: 1280, height: 800}});
-  page.on('console', (message) => { if (message.type() === 'error') errors.push(message.text()); });
-  page.on('pageerror', (error) => errors.push(error.message));
-  await page.goto(url);
-  await until(page, (s) => s.connected && s.sequence > 0 && s.status?.commands);
-  return page;
-}
-
-const state = (page) => page.evaluate(() => window.sinewView.state());
-const ask = (page, message) => page.evaluate((m) => window.sinewView.request(m), message);
-
-/** What a function says of the picture once the last frame is in it, which may take a while without a GPU. */
-async function drawn(page, what) {
-  await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
-  return page.evaluate(what);
-}
-
-/** Waits until a page's state is as it should be. */
-async function until(page, holds, seconds = 20) {
-  for (let tries = 0; tries < 20 * seconds; ++tries) {
-    const now = await state(page).catch(() => null);
-    if (now && holds(now)) return now;
-    await new Promise((resolve) => setTimeout(resolve, 50));
-  }
-  assert.fail(`waited in vain; the page says ${JSON.stringify(await state(page))}`);
-}
 
 async function download(page, name) {
   return Buffer.from(await page.evaluate(async (file) => {
@@ -451,13 +379,12 @@ test('a recorded run is played again, and sought', async () => {
 });
 
 test('the gallery shows the examples and opens one', async () => {
-  const program = spawn(PROGRAM, ['view', '--no-open', '--port', '0']);
-  programs.add(program);
+  const program = watched(spawn(PROGRAM, ['view', '--no-open', '--port', '0']));
   const url = await new Promise((resolve) => program.stdout.on('data', (data) => {
     const found = /http:\S+/.exec(String(data));
     if (found) resolve(found[0]);
   }));
-  const page = await browser.newPage({viewport: {width: 1280, height: 800}});
+  const page = await newPage();
   await page.goto(url);
   await page.getByRole('button', {name: 'Open arm/square'}).waitFor();
   const pictures = await page.evaluate(() => [...document.querySelectorAll('.example img')]
@@ -536,15 +463,14 @@ effectors:
 });
 
 test('a script of Python is watched, paused and helped', async () => {
-  const program = spawn('/usr/bin/python3', ['-u', '-c', `
+  const program = watched(spawn('/usr/bin/python3', ['-u', '-c', `
 import sinew
 sim = sinew.load(${JSON.stringify(DIRECT)})
 with sinew.view(sim, block=False, port=0, open_browser=False, paused=True) as view:
     while view.update() and sim.steps < 100000:
         sim.step()
         print(sim.steps, f"{sim.state_hash:016x}", sim.actuator("long_2").tension)
-`], {env: {...process.env, PYTHONPATH: PACKAGE}});
-  programs.add(program);
+`], {env: {...process.env, PYTHONPATH: PACKAGE}}));
   const lines = [];
   const url = await new Promise((resolve, reject) => {
     let text = '';
@@ -570,5 +496,4 @@ with sinew.view(sim, block=False, port=0, open_browser=False, paused=True) as vi
   await until(page, (s) => s.step > 40);
   await page.close();
   program.kill('SIGKILL');
-  programs.delete(program);
 });

@@ -1,0 +1,55 @@
+// Scenes that combine features in the view: a sample of those that the combination tests step, save and load in C++.
+// SINEW_PROGRAM=... SINEW_COMBINATIONS=build/release/bin/combinations node --test web/test
+import assert from 'node:assert/strict';
+import {execFileSync} from 'node:child_process';
+import {existsSync, mkdtempSync, rmSync, writeFileSync} from 'node:fs';
+import {tmpdir} from 'node:os';
+import {join} from 'node:path';
+import {test} from 'node:test';
+import {ask, drawn, open, ROOT, serve, state, stop, until} from '../testing/page.mjs';
+
+const COMBINATIONS = process.env.SINEW_COMBINATIONS ?? join(ROOT, 'build/release/bin/combinations');
+const SAMPLE = [2, 20, 38, 56]; // of the cover of all pairs
+const STEPS = 6;
+
+/** Plays some steps. Resolves with what the page shows then, or with what stopped the scene. */
+async function play(page) {
+  const {step} = await state(page);
+  await ask(page, {type: 'step', count: STEPS});
+  return until(page, (s) => s.step === step + STEPS || s.status.stopped);
+}
+
+for (const number of SAMPLE) {
+  test(`scene ${number} opens, plays, is coloured, recorded and played again`, {skip: !existsSync(COMBINATIONS)}, async (t) => {
+    const folder = mkdtempSync(join(tmpdir(), 'sinew-view-'));
+    t.after(() => rmSync(folder, {recursive: true}));
+    const scene = join(folder, 'scene.yaml');
+    writeFileSync(scene, execFileSync(COMBINATIONS, ['--pairs', '--print', String(number)]));
+    const served = await serve(scene, 0, '--paused');
+    t.after(() => stop(served));
+    const errors = [];
+    const page = await open(served.url, errors);
+    t.after(() => page.close());
+    const start = await state(page);
+    await ask(page, {type: 'record', on: true});
+    await until(page, (s) => s.status.recording?.on);
+    await play(page);
+    for (const {name} of await page.evaluate(() => window.sinewView.scene().fields)) {
+      await page.selectOption('[aria-label="Colour by"]', name);
+      await until(page, (s) => s.field === name && s.range.every(Number.isFinite));
+    }
+    await ask(page, {type: 'record', on: false});
+    await until(page, (s) => s.status.recording?.on === false);
+    const after = await drawn(page, () => window.sinewView.state());
+    for (const [name, value] of Object.entries(after.signals)) {
+      if (/_command$|\.error$/.test(name)) continue; // NaN: not commanded, not steered
+      assert.ok(Number.isFinite(value), `${name}: ${value}`);
+    }
+    await ask(page, {type: 'reset'});
+    const again = await until(page, (s) => s.step === 0);
+    assert.equal(again.hash, start.hash);
+    await play(page);
+    assert.equal((await state(page)).hash, after.hash, 'the second time is the first');
+    assert.deepEqual(errors, []);
+  });
+}
