@@ -16,14 +16,9 @@
 #include "sinew/core/thread_pool.hpp"
 #include "sinew/core/types.hpp"
 #include "sinew/linalg/block_pattern.hpp"
+#include "sinew/linalg/factor_status.hpp"
 
 namespace sinew::linalg {
-
-enum class FactorStatus {
-  positive_definite,  ///< all pivots positive
-  indefinite,         ///< finished, with some negative pivots (see negative_pivots())
-  singular,           ///< a pivot vanished relative to its column; results are not usable
-};
 
 /// `fastest` tries both when the plan is made and keeps the one whose factorisation is estimated to
 /// be faster, nested dissection (metis) if they are close, because it leaves more for threads to

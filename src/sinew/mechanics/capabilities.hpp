@@ -1,0 +1,82 @@
+/// @file
+/// What only some bodies can do, as interfaces that are asked for: as<HasBase>(body) is null where
+/// a body has none.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "sinew/core/types.hpp"
+
+namespace sinew::mechanics {
+
+/// A capability of a Body or BodyModel; null where it has not got it.
+template <class Capability, class Owner>
+Capability* as(Owner& owner) {
+  return dynamic_cast<Capability*>(&owner);
+}
+
+/// A spring from a point of a body to a place in the world, a hand that pulls at the robot: the
+/// force stiffness (anchor - x) on x = sum weights x_node, taken implicitly. Every step's matrix
+/// holds the spring, so that no stiffness is too large for it.
+struct Tether {
+  std::array<NodeId, 3> nodes{};                 ///< mesh nodes of one face of an element, distinct
+  std::array<double, 3> weights{1.0, 0.0, 0.0};  ///< sum 1; 0 at nodes that do not count
+  Vector3 anchor = Vector3::Zero();              ///< m
+  double stiffness = 0.0;                        ///< N/m, >= 0
+};
+
+/// A field over rest positions X (m): linear X + constant, stored as (3, 4) = [linear, constant].
+/// Displacements (m) of a rigid motion are such fields, and so are all combinations of them over
+/// time: velocities (m/s) and accelerations (m/s^2).
+using AffineField = Eigen::Matrix<double, 3, 4>;
+
+/// A body whose nodes can be pulled at. All of it are inputs, not state.
+class TakesForces {
+ public:
+  virtual ~TakesForces() = default;
+  /// (n, 3) N, dead loads added to gravity; zero unless set. Forces on fixed nodes do nothing.
+  virtual Points& external_forces() = 0;
+  virtual const Points& external_forces() const = 0;
+  /// From the next step on; none lets go.
+  /// @param tether see there. Throws Error: index-out-of-range (node), out-of-range (weights,
+  /// stiffness), not-finite, bad-argument when the nodes are no face of an element.
+  virtual void set_tether(const std::optional<Tether>& tether) = 0;
+  virtual const std::optional<Tether>& tether() const = 0;
+  /// Where the tether holds the body now, (3,) m. Only while there is one.
+  virtual Vector3 tether_point() const = 0;
+};
+
+/// A body that stands on a base: nodes whose motion is given.
+class HasBase {
+ public:
+  virtual ~HasBase() = default;
+  /// Whether there is a fixed node to move.
+  virtual bool base_can_move() const = 0;
+  /// Where the base goes when the next step begins: a displacement from rest. None: it stays. An
+  /// input.
+  virtual void move_base(const std::optional<AffineField>& displacement) = 0;
+  virtual const std::optional<AffineField>& base_input() const = 0;
+};
+
+/// A body that carries loads declared with it.
+class TakesLoads {
+ public:
+  virtual ~TakesLoads() = default;
+  /// 1 unless set. An input. @param load number of the body's own.
+  virtual void set_load_factor(int load, double factor) = 0;
+  /// (n, 3) N: what the loads put on all nodes, as of the last linearisation.
+  virtual Points load_forces() const = 0;
+};
+
+/// A body of few coordinates, which users know.
+class HasCoordinates {
+ public:
+  virtual ~HasCoordinates() = default;
+  virtual const VectorX& coordinates() const = 0;  ///< (coordinates,) rad; extensions: m
+  virtual const VectorX& rates() const = 0;        ///< (coordinates,) rad/s; m/s
+  /// A new state. @param q,rate (coordinates,). Throws Error(wrong-shape).
+  virtual void set_coordinates(const VectorX& q, const VectorX& rate) = 0;
+};
+
+}  // namespace sinew::mechanics

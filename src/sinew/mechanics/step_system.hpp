@@ -1,0 +1,134 @@
+/// @file
+/// A body in a step: it linearises its equation of motion, condenses it onto constraint rows, and
+/// moves.
+///
+/// One step, in the order of the calls:
+///   begin_step   remembers q_start and v_start
+///   linearise    A and b = p - f(q) - inertia - damping at the current q       (assembly)
+///   take_rows    its part of H                                                 (compliance)
+///   condense     factorises A bordered by H: W and H A^-1 b                    (factorisation)
+///   solve_motion dq = A^-1 (b + H^T lambda)                                    (correction)
+///   apply_motion q <- q_before (+) scale dq, and says how well that went
+///   end_step     velocities follow
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "sinew/core/types.hpp"
+#include "sinew/linalg/factor_status.hpp"
+#include "sinew/mechanics/integrator.hpp"
+#include "sinew/mechanics/rows.hpp"
+#include "sinew/mechanics/tangent.hpp"
+
+namespace sinew::mechanics {
+
+/// What a body looks at when it linearises.
+struct LinearisationRequest {
+  StepWeights weights;
+  Tangent tangent = Tangent::real_time;
+  /// Rows' curvature will be added (see add_curvature); costs a wider pattern.
+  bool with_curvature = false;
+  /// Further linearisations of the same step may follow (Newton's iterations).
+  bool iterating = false;
+};
+
+/// What residuals of the last linearisation are judged by, N.
+struct ForceScale {
+  /// Sum of the norms of internal and outside forces, and the force of a negligible strain, so that
+  /// it is not zero at rest.
+  double forces = 0.0;
+  /// A bound on what rounding leaves of the residual. Coordinates are known to eps |q|, so that no
+  /// state obeys its equation better than |A| eps |q| (Higham, Accuracy and Stability of Numerical
+  /// Algorithms, 2002, sec. 12.1 and 25.2: the limiting residual).
+  double rounding = 0.0;
+};
+
+/// What a condensation found.
+struct Inertia {
+  linalg::FactorStatus status = linalg::FactorStatus::positive_definite;
+  int negative_pivots = 0;
+  /// The linearisation has an unsymmetric part, which condense() leaves out and solve_motion()
+  /// takes into account: the inertia of what was factorised then says nothing.
+  bool unsymmetric = false;
+};
+
+/// The least deformed volume of any element over its own.
+struct SmallestVolume {
+  double ratio = 1.0;  ///< min det F; <= 0 means inverted
+  int element = -1;    ///< where
+};
+
+/// How a proposed motion turned out.
+struct MotionReport {
+  bool finite = true;         ///< no NaN or infinity in the new state
+  double largest_move = 0.0;  ///< m, of any coordinate
+  SmallestVolume volume;
+};
+
+/// What a body's step came to. Work is that of forces with the values they had when the step was
+/// linearised last, J.
+struct StepEnd {
+  double error = 0.0;    ///< m, an estimate of the largest error made in any coordinate
+  double outside = 0.0;  ///< work of loads and outside forces, but not of gravity
+  double damped = 0.0;   ///< taken out by damping and drag
+  /// Something that no ledger counts moved it: its base, a hand in the view.
+  bool moved_from_outside = false;
+};
+
+/// Nothing allocates after construction.
+class StepSystem {
+ public:
+  virtual ~StepSystem() = default;
+
+  virtual void begin_step() = 0;
+  /// The same for a look at the present state: its base goes nowhere.
+  virtual void begin_query() { begin_step(); }
+  virtual void linearise(const LinearisationRequest& request) = 0;
+  /// Adds the curvature of a constraint's loads (geometric stiffness): A -= effort d2(delta)/dq2.
+  /// Between linearise (with_curvature) and condense. A linearisation to which nothing was added is
+  /// taken up by the next one at the same state.
+  virtual void add_curvature(const RowCurvature& curvature) = 0;
+  /// Takes this body's part of H for what follows.
+  virtual void take_rows(const RowValues& rows) = 0;
+  /// Takes which passing rows are present, and their directions, anew after condense(): what
+  /// follows is as if take_rows() had done so before it.
+  virtual void retake_rows(const RowValues& rows) = 0;
+  /// Factorises A bordered by the rows taken.
+  virtual Inertia condense() = 0;
+  /// Adds this body's W and H A^-1 b to those of a step's problem. @param place (all rows,) of each
+  /// row in the problem; its rows that are not present have none. @param compliance (rows of the
+  /// problem, rows of the problem). @param free_motion (rows of the problem,).
+  virtual void add_compliance(std::span<const int> place, MatrixX& compliance,
+                              VectorX& free_motion) const = 0;
+
+  /// How many numbers dq has.
+  virtual std::size_t size() const = 0;
+  /// |b + H^T effort|, N: how far the current state is from satisfying the step's equation.
+  /// @param effort (all rows,) N. @param imbalance (size(),) N, b + H^T effort; or empty.
+  virtual double residual(std::span<const double> effort, std::span<double> imbalance) = 0;
+  virtual ForceScale force_scale() const = 0;
+  /// From the next linearisation on, b is lessened by a force: load stepping takes an imbalance
+  /// away. @param force (size(),) N, copied; empty: nothing is taken away any more.
+  virtual void lessen(std::span<const double> force) = 0;
+
+  /// dq = A^-1 (b + H^T effort).
+  virtual void solve_motion(std::span<const double> effort) = 0;
+  /// A^-1 of any right side, of the last condensation. @param right,result (size(),).
+  virtual void solve(std::span<const double> right, std::span<double> result) = 0;
+  /// What the next apply_motion() takes in place of solve_motion()'s. @param motion (size(),).
+  virtual void propose_motion(std::span<const double> motion) = 0;
+  /// The same, `time_step` times the velocity of the step's start.
+  virtual void propose_drift(double time_step) = 0;
+  /// (3,) m: how far the proposed motion would move an attached point; of bodies that leave rows
+  /// out.
+  virtual Vector3 proposed_motion(int) const { return Vector3::Zero(); }
+  /// State of the last linearisation moved by scale dq; may be called again with another scale.
+  /// Leaves the report's volume to smallest_volume().
+  virtual MotionReport apply_motion(double scale) = 0;
+  /// Of the current state, which is finite; costs nothing where it is linearised.
+  virtual SmallestVolume smallest_volume() { return {}; }
+  virtual StepEnd end_step(const StepWeights& weights) = 0;
+};
+
+}  // namespace sinew::mechanics
