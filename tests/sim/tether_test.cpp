@@ -1,5 +1,5 @@
 // A hand's spring on a robot, and what is seen on a deformed one.
-#include "sinew/fem/tether.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@ namespace sinew {
 namespace {
 
 // The three nodes of the first tetrahedron's face that lies at the beam's free end.
-fem::Tether end_tether(const mesh::Mesh& mesh, double stiffness, const Vector3& anchor) {
+mechanics::Tether end_tether(const mesh::Mesh& mesh, double stiffness, const Vector3& anchor) {
   const double end = mesh.nodes.col(0).maxCoeff();
   for (const auto& tetrahedron : mesh.tetrahedra) {
     std::vector<NodeId> face;
@@ -83,7 +83,7 @@ TEST(Tether, RefusesWhatIsNoFace) {
   fem::FemBody& body = simulation.fem_body(0);
   const auto good = end_tether(body.fem_model().mesh(), 1.0, Vector3::Zero());
   const auto expect = [&](auto&& change, ErrorKind kind) {
-    fem::Tether tether = good;
+    mechanics::Tether tether = good;
     change(tether);
     try {
       body.set_tether(tether);
@@ -93,12 +93,12 @@ TEST(Tether, RefusesWhatIsNoFace) {
     }
     EXPECT_FALSE(body.tether().has_value());
   };
-  expect([](fem::Tether& t) { t.nodes[1] = -1; }, ErrorKind::index_out_of_range);
-  expect([](fem::Tether& t) { t.nodes[1] = 1 << 20; }, ErrorKind::index_out_of_range);
-  expect([](fem::Tether& t) { t.nodes[1] = t.nodes[0]; }, ErrorKind::bad_argument);
-  expect([](fem::Tether& t) { t.weights[0] = 0.7; }, ErrorKind::out_of_range);
-  expect([](fem::Tether& t) { t.stiffness = -1.0; }, ErrorKind::out_of_range);
-  expect([](fem::Tether& t) { t.anchor[2] = std::numeric_limits<double>::quiet_NaN(); },
+  expect([](mechanics::Tether& t) { t.nodes[1] = -1; }, ErrorKind::index_out_of_range);
+  expect([](mechanics::Tether& t) { t.nodes[1] = 1 << 20; }, ErrorKind::index_out_of_range);
+  expect([](mechanics::Tether& t) { t.nodes[1] = t.nodes[0]; }, ErrorKind::bad_argument);
+  expect([](mechanics::Tether& t) { t.weights[0] = 0.7; }, ErrorKind::out_of_range);
+  expect([](mechanics::Tether& t) { t.stiffness = -1.0; }, ErrorKind::out_of_range);
+  expect([](mechanics::Tether& t) { t.anchor[2] = std::numeric_limits<double>::quiet_NaN(); },
          ErrorKind::not_finite);
 }
 

@@ -10,7 +10,7 @@
 #include "sinew/fem/element_history.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/rigid_base.hpp"
-#include "sinew/fem/tether.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 
 namespace sinew::fem {
 

@@ -8,24 +8,12 @@
 #include <vector>
 
 #include "sinew/core/types.hpp"
+#include "sinew/mechanics/affine_field.hpp"
 #include "sinew/mechanics/integrator.hpp"
 
 namespace sinew::fem {
 
-/// A field over rest positions X (m): linear X + constant, stored as (3, 4) = [linear, constant].
-/// Displacements (m) of a rigid motion are such fields, and so are all combinations of them over
-/// time: velocities (m/s) and accelerations (m/s^2).
-using AffineField = Eigen::Matrix<double, 3, 4>;
-
-inline Vector3 value_at(const AffineField& field, const Vector3& rest) {
-  return field.leftCols<3>() * rest + field.col(3);
-}
-
-/// The displacement of a rigid motion: turned about `centre` by a rotation vector, then moved.
-/// @param translation (3,) m. @param rotation (3,) rad. @param centre (3,) m, at rest.
-/// Throws Error(not-finite).
-AffineField rigid_displacement(const Vector3& translation, const Vector3& rotation,
-                               const Vector3& centre);
+using mechanics::AffineField;
 
 /// Where the base is, and what the integrator keeps of its motion: the same combinations as those
 /// of free nodes, so that inertia and damping forces between base and body have the integrator's

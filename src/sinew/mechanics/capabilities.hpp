@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "sinew/core/types.hpp"
+#include "sinew/mechanics/affine_field.hpp"
 
 namespace sinew::mechanics {
 
@@ -25,11 +26,6 @@ struct Tether {
   Vector3 anchor = Vector3::Zero();              ///< m
   double stiffness = 0.0;                        ///< N/m, >= 0
 };
-
-/// A field over rest positions X (m): linear X + constant, stored as (3, 4) = [linear, constant].
-/// Displacements (m) of a rigid motion are such fields, and so are all combinations of them over
-/// time: velocities (m/s) and accelerations (m/s^2).
-using AffineField = Eigen::Matrix<double, 3, 4>;
 
 /// A body whose nodes can be pulled at. All of it are inputs, not state.
 class TakesForces {

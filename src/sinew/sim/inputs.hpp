@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "sinew/core/types.hpp"
-#include "sinew/fem/rigid_base.hpp"
-#include "sinew/fem/tether.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 #include "sinew/sim/actuator.hpp"
 #include "sinew/sim/signal.hpp"
 
@@ -15,9 +14,10 @@ namespace sinew::sim {
 
 /// Inputs of one body; of one without nodes they are empty.
 struct BodyInputs {
-  Points external_forces;                ///< (n, 3) N on all mesh nodes
-  std::optional<fem::Tether> tether;     ///< a hand that pulls
-  std::optional<fem::AffineField> base;  ///< where fixed nodes go in the next step; none: they stay
+  Points external_forces;                   ///< (n, 3) N on all mesh nodes
+  std::optional<mechanics::Tether> tether;  ///< a hand that pulls
+  std::optional<mechanics::AffineField>
+      base;  ///< where fixed nodes go in the next step; none: they stay
 };
 
 /// A value, see Simulation::inputs().
