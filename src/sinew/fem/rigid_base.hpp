@@ -14,6 +14,7 @@
 namespace sinew::fem {
 
 using mechanics::AffineField;
+using mechanics::value_at;
 
 /// Where the base is, and what the integrator keeps of its motion: the same combinations as those
 /// of free nodes, so that inertia and damping forces between base and body have the integrator's
