@@ -9,44 +9,13 @@
 #include <string>
 #include <vector>
 
-#include "sinew/core/error.hpp"
-#include "sinew/fem/fem_model.hpp"
+#include "sinew/fem/fem_body_settings.hpp"
+#include "sinew/fem/has_elements.hpp"
 #include "sinew/fem/loads.hpp"
-#include "sinew/mechanics/body.hpp"
+#include "sinew/linalg/factorisation.hpp"
+#include "sinew/mechanics/body_model.hpp"
 
 namespace sinew::fem {
-
-/// C = mass M + stiffness K.
-struct RayleighDamping {
-  double mass = 0.0;       ///< 1/s, >= 0
-  double stiffness = 0.0;  ///< s, >= 0
-};
-
-/// A mass that hangs on a point of the body, such as a weight or a camera: it has weight and
-/// inertia, and no size.
-struct PointMassSettings {
-  std::string name;
-  Place place;                      ///< for errors
-  Vector3 point = Vector3::Zero();  ///< m, at rest
-  double mass = 0.0;                ///< kg, > 0
-  mesh::Outside outside = mesh::Outside::error;
-};
-
-/// Of a rigid body.
-struct InitialVelocity {
-  Vector3 linear = Vector3::Zero();   ///< m/s, of the centre of mass
-  Vector3 angular = Vector3::Zero();  ///< rad/s, about it
-};
-
-struct FemBodySettings {
-  std::string name;
-  std::shared_ptr<const mesh::Mesh> mesh;
-  FemModelSettings elements;          ///< couplings are filled in by finish()
-  Vector3 gravity = Vector3::Zero();  ///< m/s^2
-  RayleighDamping damping;
-  std::vector<PointMassSettings> masses;
-  InitialVelocity initial_velocity;  ///< of the free nodes; in dynamics
-};
 
 /// What a body factorises: its elements on one pattern, bordered by its rows. A body has two, since
 /// the curvature of constraints (geometric stiffness) needs a wider pattern than most steps use.
@@ -65,14 +34,8 @@ struct FemSystem {
   std::shared_ptr<const linalg::FactorisationPlan> plan;
 };
 
-class FemBodyModel : public mechanics::BodyModel {
+class FemBodyModel : public mechanics::BodyModel, public HasElements {
  public:
-  /// Nodes and weights of an attached point: x = sum weights x_node.
-  struct Attachment {
-    std::vector<NodeId> nodes;
-    std::vector<double> weights;
-  };
-
   /// Throws what FemModel does, and Error: out-of-range for negative damping or a mass that is not
   /// positive, point-outside-mesh for a mass outside.
   explicit FemBodyModel(FemBodySettings settings);
@@ -84,32 +47,27 @@ class FemBodyModel : public mechanics::BodyModel {
                   const std::string& what) override;
   int attach_nodes(std::span<const NodeId> nodes, std::span<const double> weights) override;
   Vector3 rest_position(int point) const override;
-  /// The nodes and weights of a point, which is not attached. Throws as attach() does.
   mesh::EmbeddedPoint locate(const Vector3& rest_position, mesh::Outside outside,
-                             const std::string& what) const;
-  /// Adds a load, whose number in loads() is returned. Building only.
-  int add_load(Load load);
+                             const std::string& what) const override;
+  int add_load(Load load) override;
   void finish(int body, const mechanics::RowPattern& rows,
               std::span<const mechanics::RowCurvature> curvatures,
               const linalg::FactorisationSettings& settings) override;
   bool couples(int first, int second) const override;
   std::vector<NamedHash> parts() const override;
   std::uint64_t point_hash(int point) const override;
-  /// Of a load, by its number.
-  std::uint64_t load_hash(int load) const;
+  std::uint64_t load_hash(int load) const override;
   std::unique_ptr<mechanics::Body> create(ThreadPool& pool, bool with_curvature,
                                           int histories) const override;
 
   const mesh::Mesh& mesh() const override { return *settings_.mesh; }
-  const FemModel& elements() const { return *plain_.elements; }
-  const FemBodySettings& settings() const { return settings_; }
+  const FemModel& elements() const override { return *plain_.elements; }
+  const FemBodySettings& settings() const override { return settings_; }
   /// (n, 3) m/s: of all nodes at the start; zero at fixed nodes and along held axes.
   Points start_velocities() const;
-  /// The attached point of a mass of the settings.
-  int mass_point(std::size_t mass) const { return mass_points_[mass]; }
-  /// After finish().
-  const LoadSet& loads() const { return *loads_; }
-  const Attachment& attachment(int point) const {
+  int mass_point(std::size_t mass) const override { return mass_points_[mass]; }
+  const LoadSet& loads() const override { return *loads_; }
+  const Attachment& attachment(int point) const override {
     return attachments_[static_cast<std::size_t>(point)];
   }
   /// World rows that touch this body: those that are always there ascending, then those that come

@@ -10,6 +10,7 @@
 
 #include "sinew/core/named_hash.hpp"
 #include "sinew/core/types.hpp"
+#include "sinew/mechanics/rows.hpp"
 
 namespace sinew {
 class ThreadPool;
@@ -25,8 +26,6 @@ struct Mesh;
 namespace sinew::mechanics {
 
 class Body;
-struct RowCurvature;
-struct RowPattern;
 
 /// Immutable once finished; shared by all simulations of the same robot.
 class BodyModel {

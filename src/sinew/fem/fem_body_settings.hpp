@@ -1,0 +1,47 @@
+/// @file
+/// What a finite-element robot is made of.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sinew/core/error.hpp"
+#include "sinew/fem/fem_model.hpp"
+#include "sinew/mesh/embedding.hpp"
+
+namespace sinew::fem {
+
+/// C = mass M + stiffness K.
+struct RayleighDamping {
+  double mass = 0.0;       ///< 1/s, >= 0
+  double stiffness = 0.0;  ///< s, >= 0
+};
+
+/// A mass that hangs on a point of the body, such as a weight or a camera: it has weight and
+/// inertia, and no size.
+struct PointMassSettings {
+  std::string name;
+  Place place;                      ///< for errors
+  Vector3 point = Vector3::Zero();  ///< m, at rest
+  double mass = 0.0;                ///< kg, > 0
+  mesh::Outside outside = mesh::Outside::error;
+};
+
+/// Of a rigid body.
+struct InitialVelocity {
+  Vector3 linear = Vector3::Zero();   ///< m/s, of the centre of mass
+  Vector3 angular = Vector3::Zero();  ///< rad/s, about it
+};
+
+struct FemBodySettings {
+  std::string name;
+  std::shared_ptr<const mesh::Mesh> mesh;
+  FemModelSettings elements;          ///< couplings are filled in by finish()
+  Vector3 gravity = Vector3::Zero();  ///< m/s^2
+  RayleighDamping damping;
+  std::vector<PointMassSettings> masses;
+  InitialVelocity initial_velocity;  ///< of the free nodes; in dynamics
+};
+
+}  // namespace sinew::fem

@@ -1,0 +1,47 @@
+/// @file
+/// What models of finite elements offer beside mechanics::BodyModel.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sinew/core/types.hpp"
+#include "sinew/fem/loads.hpp"
+#include "sinew/mesh/embedding.hpp"
+
+namespace sinew::fem {
+
+class FemModel;
+struct FemBodySettings;
+class LoadSet;
+
+/// Nodes and weights of an attached point: x = sum weights x_node.
+struct Attachment {
+  std::vector<NodeId> nodes;
+  std::vector<double> weights;
+};
+
+/// A body model whose material is finite elements: mechanics::as<HasElements>(model).
+class HasElements {
+ public:
+  virtual ~HasElements() = default;
+  virtual const FemModel& elements() const = 0;
+  virtual const FemBodySettings& settings() const = 0;
+  /// Of an attached point.
+  virtual const Attachment& attachment(int point) const = 0;
+  /// The nodes and weights of a point, which is not attached. Throws as attach() does.
+  virtual mesh::EmbeddedPoint locate(const Vector3& rest_position, mesh::Outside outside,
+                                     const std::string& what) const = 0;
+  /// Adds a load, whose number in loads() is returned. Building only.
+  virtual int add_load(Load load) = 0;
+  /// After finish().
+  virtual const LoadSet& loads() const = 0;
+  /// Of a load, by its number.
+  virtual std::uint64_t load_hash(int load) const = 0;
+  /// The attached point of a mass of the settings.
+  virtual int mass_point(std::size_t mass) const = 0;
+};
+
+}  // namespace sinew::fem
