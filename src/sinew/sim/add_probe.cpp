@@ -1,13 +1,23 @@
-// ModelBuilder::add_probe(): attaches what a probe measures.
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "sinew/constraint/probe.hpp"
-#include "sinew/mechanics/body.hpp"
-#include "sinew/sim/model_builder.hpp"
+#include "sinew/core/error.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/sim/add_parts.hpp"
+#include "sinew/sim/attach.hpp"
+#include "sinew/sim/find_body.hpp"
+#include "sinew/sim/model_data.hpp"
+#include "sinew/sim/new_name.hpp"
+#include "sinew/sim/probe_settings.hpp"
 
 namespace sinew::sim {
 
@@ -18,13 +28,11 @@ using mechanics::MaterialPoint;
 /// Attaches points of one probe to the bodies.
 class Attacher {
  public:
-  /// @param model the body of a number, checked. @param settings for messages.
-  Attacher(std::function<mechanics::BodyModel&(int)> model, const ProbeSettings& settings)
-      : model_(std::move(model)), settings_(settings) {}
+  Attacher(ModelData& data, const ProbeSettings& settings) : data_(data), settings_(settings) {}
 
   MaterialPoint point(int body, const Vector3& rest) {
     const std::string what = fmt::format("point {} of probe '{}'", count_++, settings_.name);
-    return {body, model_(body).attach(rest, settings_.outside, what)};
+    return {body, on(body).attach(rest, settings_.outside, what)};
   }
   std::vector<MaterialPoint> nodes(int body, const std::vector<NodeId>& list) {
     if (list.empty()) {
@@ -33,32 +41,22 @@ class Attacher {
     }
     std::vector<MaterialPoint> result;
     result.reserve(list.size());
-    const double one = 1.0;
-    for (const NodeId node : list) {
-      result.push_back({body, model_(body).attach_nodes({&node, 1}, {&one, 1})});
-    }
+    for (const NodeId node : list) result.push_back({body, attach_node(on(body), node)});
     return result;
   }
   MaterialPoint mean(const ProbeSpot& spot) {
-    if (spot.nodes.empty()) {
-      return {spot.body, attach_mean(model_(spot.body), spot.points, settings_.outside,
-                                     "probe '" + settings_.name + "'", settings_.place)};
-    }
-    const std::vector<double> weights(spot.nodes.size(),
-                                      1.0 / static_cast<double>(spot.nodes.size()));
-    return {spot.body, model_(spot.body).attach_nodes(spot.nodes, weights)};
+    if (!spot.nodes.empty()) return {spot.body, attach_mean(on(spot.body), spot.nodes)};
+    return {spot.body, attach_mean(on(spot.body), spot.points, settings_.outside,
+                                   "probe '" + settings_.name + "'", settings_.place)};
   }
-  Points rest(const std::vector<MaterialPoint>& points) {
-    Points result(static_cast<Eigen::Index>(points.size()), 3);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      result.row(static_cast<Eigen::Index>(i)) =
-          model_(points[i].body).rest_position(points[i].point).transpose();
-    }
-    return result;
+  Points rest(const std::vector<MaterialPoint>& points) const {
+    return rest_positions(data_, points);
   }
 
  private:
-  std::function<mechanics::BodyModel&(int)> model_;
+  mechanics::BodyModel& on(int body) { return find_body(data_, body, settings_.place); }
+
+  ModelData& data_;
   const ProbeSettings& settings_;
   int count_ = 0;
 };
@@ -120,22 +118,15 @@ struct Make {
 
 }  // namespace
 
-int ModelBuilder::add_probe(const ProbeSettings& settings) {
-  const auto same = [&](const auto& other) { return other->name() == settings.name; };
-  if (std::ranges::any_of(model_->probes_, same)) {
-    throw Error(ErrorKind::duplicate_key, settings.place,
-                fmt::format("two probes are called '{}'", settings.name), "rename one");
-  }
-  const auto model = [&](int index) -> mechanics::BodyModel& {
-    check_body(index, settings.place);
-    return body(index);
-  };
+int add_probe(ModelData& data, const ProbeSettings& settings) {
+  const auto name_of = [](const auto& other) { return other->name(); };
+  check_new_name(data.probes, name_of, "probes", settings.name, settings.place);
   try {
-    model_->probes_.push_back(std::visit(Make{{model, settings}, settings}, settings.what));
+    data.probes.push_back(std::visit(Make{{data, settings}, settings}, settings.what));
   } catch (const Error& error) {
     throw error.at(settings.place);
   }
-  return static_cast<int>(model_->probes_.size()) - 1;
+  return static_cast<int>(data.probes.size()) - 1;
 }
 
 }  // namespace sinew::sim

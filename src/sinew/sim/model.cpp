@@ -1,5 +1,8 @@
 #include "sinew/sim/model.hpp"
 
+#include <string>
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "sinew/constraint/cable.hpp"
@@ -9,7 +12,8 @@
 #include "sinew/constraint/probe.hpp"
 #include "sinew/constraint/tie.hpp"
 #include "sinew/core/error.hpp"
-#include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/sim/model_parts.hpp"
 
 namespace sinew::sim {
 
@@ -30,83 +34,72 @@ int find_by_name(const List& list, std::string_view name, const char* what, Name
               fmt::format("no {} is called '{}'", what, name), remedy);
 }
 
-}  // namespace
-
-Eigen::Isometry3d ContactModel::pose(double time) const {
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  if (!motion) return pose;
-  const Vector3 turn = motion->rotation_at(time);
-  if (const double angle = turn.norm(); angle > 0.0) {
-    pose.rotate(Eigen::AngleAxisd(angle, turn / angle));
-  }
-  pose.pretranslate(
-      Vector3(motion->translation_at(time) + motion->centre - pose.linear() * motion->centre));
-  return pose;
+std::uint64_t fingerprint_of(const std::vector<NamedHash>& parts) {
+  ValueHash hash;
+  for (const NamedHash& part : parts) hash.add(part.name, part.hash);
+  return hash.value();
 }
 
-Model::Model() = default;
-Model::~Model() = default;
+}  // namespace
+
+Model::Model(ModelData data)
+    : data_(std::move(data)), parts_(list_parts(data_)), fingerprint_(fingerprint_of(parts_)) {}
 
 int Model::body_index(std::string_view name) const {
-  return find_by_name(bodies_, name, "body", [](const auto& b) { return b->name(); });
+  return find_by_name(data_.bodies, name, "body", [](const auto& b) { return b->name(); });
 }
 
 int Model::actuator_index(std::string_view name) const {
-  return find_by_name(actuators_, name, "actuator", [](const auto& a) { return a.name; });
+  return find_by_name(data_.actuators, name, "actuator", [](const auto& a) { return a.name; });
 }
 
 int Model::effector_index(std::string_view name) const {
-  return find_by_name(effectors_, name, "effector", [](const auto& e) { return e.name; });
+  return find_by_name(data_.effectors, name, "effector", [](const auto& e) { return e.name; });
 }
 
 int Model::contact_index(std::string_view name) const {
-  return find_by_name(contacts_, name, "contact", [](const auto& c) { return c.name; });
+  return find_by_name(data_.contacts, name, "contact", [](const auto& c) { return c.name; });
 }
 
 int Model::weld_index(std::string_view name) const {
-  return find_by_name(welds_, name, "joint", [](const auto& w) { return w.name; });
+  return find_by_name(data_.welds, name, "joint", [](const auto& w) { return w.name; });
 }
 
 int Model::load_index(std::string_view name) const {
-  return find_by_name(loads_, name, "load", [](const auto& l) { return l.name; });
+  return find_by_name(data_.loads, name, "load", [](const auto& l) { return l.name; });
 }
 
 int Model::mass_index(std::string_view name) const {
-  return find_by_name(masses_, name, "mass", [](const auto& m) { return m.name; });
+  return find_by_name(data_.masses, name, "mass", [](const auto& m) { return m.name; });
 }
 
 int Model::probe_index(std::string_view name) const {
-  return find_by_name(probes_, name, "probe", [](const auto& p) { return p->name(); });
+  return find_by_name(data_.probes, name, "probe", [](const auto& p) { return p->name(); });
 }
 
 const constraint::Effector& Model::effector(int index) const {
-  const auto& model = effectors_.at(static_cast<std::size_t>(index));
-  return dynamic_cast<const constraint::Effector&>(
-      *constraints_[static_cast<std::size_t>(model.constraint)]);
+  const int number = data_.effectors.at(static_cast<std::size_t>(index)).constraint;
+  return dynamic_cast<const constraint::Effector&>(data_.constraint(number));
 }
 
 const constraint::Contact& Model::contact(int index) const {
-  const auto& model = contacts_.at(static_cast<std::size_t>(index));
-  return dynamic_cast<const constraint::Contact&>(
-      *constraints_[static_cast<std::size_t>(model.constraint)]);
+  const int number = data_.contacts.at(static_cast<std::size_t>(index)).constraint;
+  return dynamic_cast<const constraint::Contact&>(data_.constraint(number));
 }
 
 const constraint::Tie& Model::weld(int index) const {
-  const auto& model = welds_.at(static_cast<std::size_t>(index));
-  return dynamic_cast<const constraint::Tie&>(
-      *constraints_[static_cast<std::size_t>(model.constraint)]);
+  const int number = data_.welds.at(static_cast<std::size_t>(index)).constraint;
+  return dynamic_cast<const constraint::Tie&>(data_.constraint(number));
 }
 
 const constraint::Cable* Model::cable(int actuator) const {
-  const auto& model = actuators_.at(static_cast<std::size_t>(actuator));
-  return dynamic_cast<const constraint::Cable*>(
-      constraints_[static_cast<std::size_t>(model.constraint)].get());
+  const int number = data_.actuators.at(static_cast<std::size_t>(actuator)).constraint;
+  return dynamic_cast<const constraint::Cable*>(&data_.constraint(number));
 }
 
 const constraint::Cavity* Model::cavity(int actuator) const {
-  const auto& model = actuators_.at(static_cast<std::size_t>(actuator));
-  return dynamic_cast<const constraint::Cavity*>(
-      constraints_[static_cast<std::size_t>(model.constraint)].get());
+  const int number = data_.actuators.at(static_cast<std::size_t>(actuator)).constraint;
+  return dynamic_cast<const constraint::Cavity*>(&data_.constraint(number));
 }
 
 }  // namespace sinew::sim

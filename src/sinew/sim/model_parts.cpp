@@ -1,14 +1,16 @@
 #include "sinew/sim/model_parts.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 
 #include <fmt/format.h>
 
-#include "sinew/constraint/contact.hpp"
-#include "sinew/constraint/effector.hpp"
-#include "sinew/fem/fem_body_model.hpp"
-#include "sinew/mechanics/body.hpp"
-#include "sinew/sim/model.hpp"
+#include "sinew/constraint/constraint.hpp"
+#include "sinew/fem/has_elements.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
+#include "sinew/sim/model_data.hpp"
 
 namespace sinew::sim {
 
@@ -17,16 +19,15 @@ namespace {
 constexpr std::size_t kNamedDifferences = 4;
 
 // What a constraint is, and which points of which bodies its rows touch.
-void add_constraint(ValueHash& hash, const Model& model, int index) {
-  const auto& constraint = *model.constraints()[static_cast<std::size_t>(index)];
+void add_constraint(ValueHash& hash, const ModelData& data, int index) {
+  const constraint::Constraint& constraint = data.constraint(index);
   constraint.add_to(hash);
-  const mechanics::RowPattern& rows = model.rows();
+  const mechanics::RowPattern& rows = data.rows;
   const auto first = static_cast<std::size_t>(constraint.first_row());
   const auto last = first + static_cast<std::size_t>(constraint.row_count());
   for (auto e = rows.row_start[first]; e < rows.row_start[last]; ++e) {
     const mechanics::MaterialPoint& point = rows.point[static_cast<std::size_t>(e)];
-    hash.add(point.body,
-             model.bodies()[static_cast<std::size_t>(point.body)]->point_hash(point.point));
+    hash.add(point.body, data.body(point.body).point_hash(point.point));
   }
 }
 
@@ -38,60 +39,78 @@ void add_motion(ValueHash& hash, const BaseMotion& motion) {
   hash.add(motion.translation, motion.angle, motion.axis, motion.centre);
 }
 
+std::uint64_t actuator_hash(const ModelData& data, std::size_t index) {
+  const ActuatorModel& actuator = data.actuators[index];
+  ValueHash hash;
+  hash.add(actuator.type, actuator.motion_scale, actuator.drive != nullptr);
+  add_limits(hash, actuator.effort);
+  add_limits(hash, actuator.motion);
+  if (actuator.drive != nullptr) actuator.drive->add_to(hash);
+  add_constraint(hash, data, actuator.constraint);
+  for (const GuideModel& guide : data.guides) {
+    if (guide.actuator == static_cast<int>(index)) hash.add(guide.via, guide.friction);
+  }
+  return hash.value();
+}
+
+std::uint64_t load_hash(const ModelData& data, const LoadModel& load) {
+  ValueHash hash;
+  const auto* elements = mechanics::as<const fem::HasElements>(data.body(load.body));
+  for (const int number : load.numbers) hash.add(load.body, elements->load_hash(number));
+  return hash.value();
+}
+
+std::uint64_t contact_hash(const ModelData& data, const ContactModel& contact) {
+  ValueHash hash;
+  add_constraint(hash, data, contact.constraint);
+  if (contact.motion) add_motion(hash, *contact.motion);
+  return hash.value();
+}
+
+std::uint64_t constraint_hash(const ModelData& data, int index) {
+  ValueHash hash;
+  add_constraint(hash, data, index);
+  return hash.value();
+}
+
+std::uint64_t motion_hash(const BaseMotion& motion) {
+  ValueHash hash;
+  add_motion(hash, motion);
+  return hash.value();
+}
+
 }  // namespace
 
-std::vector<NamedHash> list_parts(const Model& model) {
-  const StepSettings& step = model.step();
+std::vector<NamedHash> list_parts(const ModelData& data) {
+  const StepSettings& step = data.step;
   const bool alpha = step.integrator == mechanics::Integrator::generalized_alpha;
   std::vector<NamedHash> parts{
       {"time step", ValueHash().add(step.time_step).value()},
       {"integrator", ValueHash().add(step.integrator, alpha ? step.spectral_radius : 0.0).value()}};
-  for (const auto& body : model.bodies()) {
-    for (NamedHash& part : body->parts()) {
+  const auto add = [&](const char* kind, const std::string& name, std::uint64_t hash) {
+    parts.push_back({fmt::format("{} '{}'", kind, name), hash});
+  };
+  for (const auto& body : data.bodies) {
+    for (const NamedHash& part : body->parts()) {
       parts.push_back({fmt::format("body '{}': {}", body->name(), part.name), part.hash});
     }
   }
-  for (std::size_t i = 0; i < model.actuators().size(); ++i) {
-    const ActuatorModel& actuator = model.actuators()[i];
-    ValueHash hash;
-    hash.add(actuator.type, actuator.motion_scale, actuator.drive != nullptr);
-    add_limits(hash, actuator.effort);
-    add_limits(hash, actuator.motion);
-    if (actuator.drive != nullptr) actuator.drive->add_to(hash);
-    add_constraint(hash, model, actuator.constraint);
-    for (const GuideModel& guide : model.guides()) {
-      if (guide.actuator == static_cast<int>(i)) hash.add(guide.via, guide.friction);
-    }
-    parts.push_back({fmt::format("actuator '{}'", actuator.name), hash.value()});
+  for (std::size_t i = 0; i < data.actuators.size(); ++i) {
+    add("actuator", data.actuators[i].name, actuator_hash(data, i));
   }
-  for (const LoadModel& load : model.loads()) {
-    ValueHash hash;
-    const auto& body = *model.bodies()[static_cast<std::size_t>(load.body)];
-    const auto* fem = dynamic_cast<const fem::FemBodyModel*>(&body);
-    for (const int number : load.numbers) hash.add(load.body, fem->load_hash(number));
-    parts.push_back({fmt::format("load '{}'", load.name), hash.value()});
+  for (const LoadModel& load : data.loads) add("load", load.name, load_hash(data, load));
+  for (const ContactModel& contact : data.contacts) {
+    add("contact", contact.name, contact_hash(data, contact));
   }
-  for (const ContactModel& contact : model.contacts()) {
-    ValueHash hash;
-    add_constraint(hash, model, contact.constraint);
-    if (contact.motion) add_motion(hash, *contact.motion);
-    parts.push_back({fmt::format("contact '{}'", contact.name), hash.value()});
+  for (const WeldModel& weld : data.welds) {
+    add("joint", weld.name, constraint_hash(data, weld.constraint));
   }
-  for (const WeldModel& weld : model.welds()) {
-    ValueHash hash;
-    add_constraint(hash, model, weld.constraint);
-    parts.push_back({fmt::format("joint '{}'", weld.name), hash.value()});
+  for (const BaseMotion& motion : data.base_motions) {
+    parts.push_back({fmt::format("body '{}': motion of the base", data.body(motion.body).name()),
+                     motion_hash(motion)});
   }
-  for (const BaseMotion& motion : model.base_motions()) {
-    ValueHash hash;
-    add_motion(hash, motion);
-    const auto& body = *model.bodies()[static_cast<std::size_t>(motion.body)];
-    parts.push_back({fmt::format("body '{}': motion of the base", body.name()), hash.value()});
-  }
-  for (const EffectorModel& effector : model.effectors()) {
-    ValueHash hash;
-    add_constraint(hash, model, effector.constraint);
-    parts.push_back({fmt::format("effector '{}'", effector.name), hash.value()});
+  for (const EffectorModel& effector : data.effectors) {
+    add("effector", effector.name, constraint_hash(data, effector.constraint));
   }
   return parts;
 }

@@ -1,16 +1,25 @@
-// The part of ModelBuilder that turns loads into forces on nodes.
+// Turns loads into forces on nodes.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <utility>
+#include <variant>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
-#include "sinew/fem/fem_body_model.hpp"
+#include "sinew/fem/fem_body_settings.hpp"
+#include "sinew/fem/fem_model.hpp"
+#include "sinew/fem/has_elements.hpp"
 #include "sinew/mesh/line_cuts.hpp"
-#include "sinew/sim/model_builder.hpp"
+#include "sinew/sim/add_parts.hpp"
+#include "sinew/sim/find_body.hpp"
+#include "sinew/sim/hydrostatic.hpp"
+#include "sinew/sim/load_settings.hpp"
+#include "sinew/sim/model_data.hpp"
+#include "sinew/sim/new_name.hpp"
 
 namespace sinew::sim {
 
@@ -24,7 +33,7 @@ constexpr std::array<std::array<double, 2>, 3> kGauss = {
 /// Makes the loads of one entry; there are two where pressure and motion both matter.
 class LoadMaker {
  public:
-  LoadMaker(fem::FemBodyModel& body, const LoadSettings& settings)
+  LoadMaker(const fem::HasElements& body, const LoadSettings& settings)
       : body_(body), settings_(settings) {}
 
   std::vector<fem::Load> operator()(const PointLoadSettings& load) {
@@ -42,7 +51,7 @@ class LoadMaker {
     }
     for (Eigen::Index i = 0; i + 1 < load.points.rows(); ++i) {
       const Vector3 from = load.points.row(i).transpose(), to = load.points.row(i + 1).transpose();
-      const std::vector<double> cuts = mesh::line_cuts(body_.mesh(), from, to);
+      const std::vector<double> cuts = mesh::line_cuts(mesh(), from, to);
       for (std::size_t k = 0; k + 1 < cuts.size(); ++k) {
         spread_evenly(from + cuts[k] * (to - from), from + cuts[k + 1] * (to - from),
                       load.force_per_length);
@@ -52,7 +61,7 @@ class LoadMaker {
   }
 
   std::vector<fem::Load> operator()(const SurfaceLoadSettings& load) {
-    const Points forces = fem::traction_forces(body_.mesh().nodes, load.faces, load.traction);
+    const Points forces = fem::traction_forces(mesh().nodes, load.faces, load.traction);
     for (NodeId node = 0; node < static_cast<NodeId>(forces.rows()); ++node) {
       if (!forces.row(node).isZero(0.0)) forces_[node] = forces.row(node).transpose();
     }
@@ -82,7 +91,7 @@ class LoadMaker {
       throw Error(ErrorKind::out_of_range, settings_.place, fmt::format("{} is {:g}", name, value),
                   "give zero or more");
     }
-    return {hydrostatic(water.faces, water.density, water.level),
+    return {hydrostatic(body_, water.faces, water.density, water.level),
             fem::WaterLoad{.faces = water.faces,
                            .density = water.density,
                            .normal_drag = water.normal_drag,
@@ -91,29 +100,9 @@ class LoadMaker {
                            .velocity = water.velocity}};
   }
 
-  /// The pressure of a liquid at rest. Without a level it is zero at the middle of the faces: what
-  /// a depth adds alike everywhere only compresses.
-  fem::PressureLoad hydrostatic(const std::vector<mesh::Face>& faces, double density,
-                                std::optional<double> level) const {
-    const Vector3& gravity = body_.settings().gravity;
-    fem::PressureLoad load{.faces = faces, .gradient = density * gravity};
-    if (level && !gravity.isZero(0.0)) {
-      load.level = -*level * gravity.normalized();
-      load.only_positive = true;
-      return load;
-    }
-    double count = 0.0;
-    for (const mesh::Face& face : faces) {
-      for (const NodeId node : face.nodes()) {
-        load.level += body_.mesh().nodes.row(node).transpose();
-        count += 1.0;
-      }
-    }
-    if (count > 0.0) load.level /= count;
-    return load;
-  }
-
  private:
+  const mesh::Mesh& mesh() const { return *body_.settings().mesh; }
+
   // A piece in one element. Outside of all, the nearest element holds it, which changes along it.
   void spread_evenly(const Vector3& from, const Vector3& to, const Vector3& force_per_length) {
     const bool inside = locate(0.5 * (from + to), kOfLine).distance == 0.0;
@@ -150,52 +139,26 @@ class LoadMaker {
     return load;
   }
 
-  fem::FemBodyModel& body_;
+  const fem::HasElements& body_;
   const LoadSettings& settings_;
   std::map<NodeId, Vector3> forces_;
 };
 
 }  // namespace
 
-fem::FemBodyModel& ModelBuilder::fem_body(int index, const Place& place, const char* what) {
-  check_body(index, place);
-  auto* fem = dynamic_cast<fem::FemBodyModel*>(&body(index));
-  if (fem != nullptr) return *fem;
-  throw Error(ErrorKind::wrong_type, place, fmt::format("this body takes no {}", what),
-              "name a finite-element body");
-}
-
-int ModelBuilder::add_load(const LoadSettings& settings) {
-  for (const LoadModel& other : model_->loads_) {
-    if (other.name != settings.name) continue;
-    throw Error(ErrorKind::duplicate_key, settings.place,
-                fmt::format("two loads are called '{}'", settings.name), "rename one");
-  }
-  fem::FemBodyModel& body = fem_body(settings.body, settings.place, "loads");
+int add_load(ModelData& data, const LoadSettings& settings) {
+  check_new_name(data.loads, &LoadModel::name, "loads", settings.name, settings.place);
+  fem::HasElements& body = find_elements(data, settings.body, settings.place, "loads");
   try {
     LoadModel load{settings.name, settings.place, settings.body, {}, settings.factor};
     for (fem::Load& part : std::visit(LoadMaker(body, settings), settings.load)) {
       load.numbers.push_back(body.add_load(std::move(part)));
     }
-    model_->loads_.push_back(std::move(load));
-    return static_cast<int>(model_->loads_.size()) - 1;
+    data.loads.push_back(std::move(load));
+    return static_cast<int>(data.loads.size()) - 1;
   } catch (const Error& error) {
     throw error.at(settings.place);
   }
-}
-
-// What a chamber's liquid weighs, as the pressure that it has more of below than above.
-void ModelBuilder::add_liquid_weight(const CavitySettings& settings) {
-  const auto* faces = std::get_if<std::vector<mesh::Face>>(&settings.surface);
-  if (faces == nullptr) {
-    throw Error(ErrorKind::conflicting_keys, settings.place,
-                "the weight of a liquid needs faces of the body's mesh, and the chamber is a "
-                "surface of its own",
-                "name the chamber by a point inside, a patch or a region, or leave `density` out");
-  }
-  fem::FemBodyModel& body = fem_body(settings.body, settings.place, "liquid");
-  const LoadSettings named{.name = settings.name, .place = settings.place, .body = settings.body};
-  body.add_load(LoadMaker(body, named).hydrostatic(*faces, settings.liquid->density, std::nullopt));
 }
 
 }  // namespace sinew::sim

@@ -1,0 +1,21 @@
+#include "sinew/core/error.hpp"
+#include "sinew/fem/fem_body_settings.hpp"
+#include "sinew/fem/has_elements.hpp"
+#include "sinew/sim/add_parts.hpp"
+#include "sinew/sim/base_motion.hpp"
+#include "sinew/sim/find_body.hpp"
+#include "sinew/sim/model_data.hpp"
+
+namespace sinew::sim {
+
+void add_base_motion(ModelData& data, const BaseMotion& motion, const Place& place) {
+  const fem::HasElements& moved = find_elements(data, motion.body, place, "motion of its base");
+  if (moved.settings().elements.fixed_nodes.empty()) {
+    throw Error(ErrorKind::nothing_fixed, place, "the body has a base motion but no fixed node",
+                "fix the region that moves");
+  }
+  data.base_motions.push_back(motion);
+  data.base_motions.back().axis = checked_axis(motion.axis, place);
+}
+
+}  // namespace sinew::sim

@@ -1,0 +1,56 @@
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "sinew/core/error.hpp"
+#include "sinew/fem/fem_body_model.hpp"
+#include "sinew/fem/fem_model.hpp"
+#include "sinew/pcc/arm_body.hpp"
+#include "sinew/sim/add_parts.hpp"
+#include "sinew/sim/model_data.hpp"
+#include "sinew/sim/new_name.hpp"
+
+namespace sinew::sim {
+
+namespace {
+
+void add_masses(ModelData& data, const fem::FemBodyModel& body) {
+  const int number = static_cast<int>(data.bodies.size());
+  const auto& masses = body.settings().masses;
+  for (std::size_t k = 0; k < masses.size(); ++k) {
+    check_new_name(data.masses, &MassModel::name, "masses", masses[k].name, masses[k].place);
+    data.masses.push_back({masses[k].name, number, body.mass_point(k), masses[k].mass});
+  }
+}
+
+}  // namespace
+
+int add_body(ModelData& data, std::unique_ptr<mechanics::BodyModel> body) {
+  const auto name_of = [](const auto& other) { return other->name(); };
+  check_new_name(data.bodies, name_of, "bodies", body->name(), {.item = body->name()});
+  data.bodies.push_back(std::move(body));
+  return static_cast<int>(data.bodies.size()) - 1;
+}
+
+int add_fem_body(ModelData& data, fem::FemBodySettings settings) {
+  auto body = std::make_unique<fem::FemBodyModel>(std::move(settings));
+  if (data.step.dynamic() && !(body->elements().total_mass() > 0.0)) {
+    throw Error(ErrorKind::missing_mass, {.item = "body '" + body->name() + "'"},
+                "a dynamic integrator needs mass, and this body has none",
+                "give `mass` or `density`");
+  }
+  add_masses(data, *body);
+  const Points& nodes = body->mesh().nodes;
+  const Vector3 extent = nodes.colwise().maxCoeff() - nodes.colwise().minCoeff();
+  data.size = std::max(data.size, extent.norm());
+  return add_body(data, std::move(body));
+}
+
+int add_arm(ModelData& data, pcc::ArmSettings settings) {
+  auto body =
+      std::make_unique<pcc::ArmBodyModel>(std::make_shared<const pcc::Arm>(std::move(settings)));
+  data.size = std::max(data.size, body->arm().length());
+  return add_body(data, std::move(body));
+}
+
+}  // namespace sinew::sim

@@ -1,0 +1,79 @@
+#include <memory>
+#include <optional>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "sinew/constraint/cavity.hpp"
+#include "sinew/core/error.hpp"
+#include "sinew/fem/has_elements.hpp"
+#include "sinew/sim/add_parts.hpp"
+#include "sinew/sim/attach.hpp"
+#include "sinew/sim/cavity_settings.hpp"
+#include "sinew/sim/cavity_surface.hpp"
+#include "sinew/sim/find_body.hpp"
+#include "sinew/sim/fluid_drive.hpp"
+#include "sinew/sim/hydrostatic.hpp"
+#include "sinew/sim/model_data.hpp"
+
+namespace sinew::sim {
+
+namespace {
+
+std::unique_ptr<constraint::Cavity> attach_surface(ModelData& data,
+                                                   const CavitySettings& settings) {
+  CavitySurface surface(data.body(settings.body), settings.body);
+  if (const auto* faces = std::get_if<std::vector<mesh::Face>>(&settings.surface)) {
+    surface.take(*faces);
+    if (settings.cap) surface.close(*faces);
+  } else {
+    surface.take(std::get<mesh::Surface>(settings.surface), settings.outside, settings.name);
+  }
+  return std::make_unique<constraint::Cavity>(settings.name, surface.points(), surface.faces(),
+                                              rest_positions(data, surface.points()));
+}
+
+std::shared_ptr<const Drive> drive_of(const CavitySettings& settings, double rest_volume) {
+  if (settings.gas) return std::make_shared<const GasDrive>(*settings.gas, rest_volume);
+  if (settings.liquid) return std::make_shared<const LiquidDrive>(*settings.liquid, rest_volume);
+  return nullptr;
+}
+
+// What a chamber's liquid weighs, as the pressure that it has more of below than above.
+void add_liquid_weight(ModelData& data, const CavitySettings& settings) {
+  const auto* faces = std::get_if<std::vector<mesh::Face>>(&settings.surface);
+  if (faces == nullptr) {
+    throw Error(ErrorKind::conflicting_keys, settings.place,
+                "the weight of a liquid needs faces of the body's mesh, and the chamber is a "
+                "surface of its own",
+                "name the chamber by a point inside, a patch or a region, or leave `density` out");
+  }
+  fem::HasElements& body = find_elements(data, settings.body, settings.place, "liquid");
+  body.add_load(hydrostatic(body, *faces, settings.liquid->density, std::nullopt));
+}
+
+}  // namespace
+
+int add_cavity(ModelData& data, const CavitySettings& settings) {
+  find_body(data, settings.body, settings.place);
+  try {
+    if (settings.gas && settings.liquid) {
+      throw Error(ErrorKind::conflicting_keys, settings.place, "a chamber holds gas or liquid",
+                  "give one of them");
+    }
+    auto cavity = attach_surface(data, settings);
+    ActuatorModel actuator{
+        settings.name,     settings.place,         ActuatorType::pressure, -1, -1,
+        settings.pressure, settings.volume_growth, settings.command};
+    actuator.motion_scale = 1.0 / cavity->rest_area();
+    actuator.drive = drive_of(settings, cavity->rest_volume());
+    const int index = add_actuator(data, std::move(actuator), std::move(cavity));
+    if (settings.liquid && settings.liquid->density > 0.0) add_liquid_weight(data, settings);
+    if (settings.load_stiffness) data.stiffening.push_back(data.actuators.back().constraint);
+    return index;
+  } catch (const Error& error) {
+    throw error.at(settings.place);
+  }
+}
+
+}  // namespace sinew::sim

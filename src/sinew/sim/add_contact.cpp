@@ -1,0 +1,92 @@
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "sinew/constraint/contact.hpp"
+#include "sinew/core/error.hpp"
+#include "sinew/fem/fem_model.hpp"
+#include "sinew/fem/has_elements.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/sim/add_parts.hpp"
+#include "sinew/sim/attach.hpp"
+#include "sinew/sim/contact_settings.hpp"
+#include "sinew/sim/find_body.hpp"
+#include "sinew/sim/model_data.hpp"
+#include "sinew/sim/new_name.hpp"
+
+namespace sinew::sim {
+
+namespace {
+
+// Points deeper inside a surface than this part of the robot's size are an error of the scene.
+constexpr double kDeepest = 1e-6;
+
+void check_gaps(const constraint::Contact& contact, const mechanics::BodyModel& body,
+                const Eigen::Isometry3d& pose, double size) {
+  double deepest = 0.0;
+  Vector3 where = Vector3::Zero();
+  for (const mechanics::MaterialPoint& point : contact.points()) {
+    const Vector3 at = body.rest_position(point.point);
+    const double gap = constraint::distance(contact.surface(), pose.inverse() * at).gap;
+    if (gap >= deepest) continue;
+    deepest = gap;
+    where = at;
+  }
+  if (deepest < -kDeepest * size) {
+    throw Error(ErrorKind::out_of_range, {},
+                fmt::format("the point {:g} {:g} {:g} m starts {:g} m inside the surface", where[0],
+                            where[1], where[2], -deepest),
+                "move the surface away; it may then approach by a motion");
+  }
+}
+
+std::vector<mechanics::MaterialPoint> attach_points(ModelData& data, mechanics::BodyModel& on,
+                                                    const ContactSettings& settings) {
+  std::vector<mechanics::MaterialPoint> points;
+  if (!settings.nodes.empty()) {
+    const auto free = find_elements(data, settings.body, settings.place, "contact of nodes")
+                          .elements()
+                          .free_index();
+    for (const NodeId node : settings.nodes) {
+      if (free[static_cast<std::size_t>(node)] < 0) continue;
+      points.push_back({settings.body, attach_node(on, node)});
+    }
+  }
+  for (Eigen::Index i = 0; i < settings.points.rows(); ++i) {
+    points.push_back(
+        {settings.body, on.attach(settings.points.row(i), settings.outside,
+                                  fmt::format("point {} of contact '{}'", i, settings.name))});
+  }
+  return points;
+}
+
+}  // namespace
+
+int add_contact(ModelData& data, const ContactSettings& settings) {
+  mechanics::BodyModel& on = find_body(data, settings.body, settings.place);
+  // Its velocity after an impact is about the opposite of that before, node by node, on top of what
+  // the body's elasticity gives back: measured, twice the energy.
+  if (data.step.integrator == mechanics::Integrator::generalized_alpha) {
+    throw Error(ErrorKind::not_in_this_version, settings.place,
+                "generalized-alpha creates energy in impacts",
+                "use backward-euler (impacts without rebound) or bdf2");
+  }
+  check_new_name(data.contacts, &ContactModel::name, "contacts", settings.name, settings.place);
+  try {
+    auto contact = std::make_unique<constraint::Contact>(
+        settings.name, attach_points(data, on, settings), settings.surface, settings.friction);
+    ContactModel entry{settings.name, settings.place, static_cast<int>(data.constraints.size()),
+                       settings.motion};
+    if (entry.motion) entry.motion->axis = checked_axis(entry.motion->axis, settings.place);
+    check_gaps(*contact, on, entry.pose(0.0), data.size);
+    data.constraints.push_back(std::move(contact));  // declared by ModelBuilder::build()
+    data.contacts.push_back(std::move(entry));
+    return static_cast<int>(data.contacts.size()) - 1;
+  } catch (const Error& error) {
+    throw error.at(settings.place);
+  }
+}
+
+}  // namespace sinew::sim

@@ -1,0 +1,63 @@
+/// @file
+/// Adds bodies and what acts on them to the data of a model, one function and file for each kind.
+/// ModelBuilder, whose functions these are, says what they throw.
+#pragma once
+
+#include <memory>
+
+namespace sinew {
+struct Place;
+}
+namespace sinew::constraint {
+class Constraint;
+}
+namespace sinew::fem {
+struct FemBodySettings;
+}
+namespace sinew::mechanics {
+class BodyModel;
+}
+namespace sinew::pcc {
+struct ArmSettings;
+}
+
+namespace sinew::sim {
+
+struct ActuatorModel;
+struct BaseMotion;
+struct CableSettings;
+struct CavitySettings;
+struct ContactSettings;
+struct EffectorSettings;
+struct ForceSettings;
+struct LoadSettings;
+struct ModelData;
+struct ProbeSettings;
+struct SpringLineSettings;
+struct TorqueSettings;
+struct WeldSettings;
+
+int add_body(ModelData& data, std::unique_ptr<mechanics::BodyModel> body);
+int add_fem_body(ModelData& data, fem::FemBodySettings settings);
+int add_arm(ModelData& data, pcc::ArmSettings settings);
+
+/// @param actuator without the numbers of its constraint, row and state, which it gets here.
+/// @param constraint whose first row is the actuator's. Throws Error: duplicate-key,
+/// contradictory-limits, out-of-range (rate).
+int add_actuator(ModelData& data, ActuatorModel actuator,
+                 std::unique_ptr<constraint::Constraint> constraint);
+int add_cable(ModelData& data, const CableSettings& settings);
+int add_spring(ModelData& data, const SpringLineSettings& settings);
+int add_force(ModelData& data, const ForceSettings& settings);
+int add_torque(ModelData& data, const TorqueSettings& settings);
+int add_cavity(ModelData& data, const CavitySettings& settings);
+
+void add_base_motion(ModelData& data, const BaseMotion& motion, const Place& place);
+int add_load(ModelData& data, const LoadSettings& settings);
+int add_contact(ModelData& data, const ContactSettings& settings);
+int add_weld(ModelData& data, const WeldSettings& settings);
+
+int add_effector(ModelData& data, const EffectorSettings& settings);
+int add_probe(ModelData& data, const ProbeSettings& settings);
+
+}  // namespace sinew::sim

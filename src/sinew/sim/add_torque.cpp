@@ -1,0 +1,66 @@
+#include <memory>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "sinew/constraint/point_force.hpp"
+#include "sinew/core/error.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
+#include "sinew/pcc/arm.hpp"
+#include "sinew/pcc/has_arm.hpp"
+#include "sinew/sim/add_parts.hpp"
+#include "sinew/sim/find_body.hpp"
+#include "sinew/sim/model_data.hpp"
+#include "sinew/sim/torque_settings.hpp"
+
+namespace sinew::sim {
+
+namespace {
+
+/// The arm's coordinate that the torque acts on. @param name of the body.
+int coordinate_of(const TorqueSettings& settings, const pcc::Arm& arm, const std::string& name) {
+  if (settings.segment < 0 || settings.segment >= arm.segments()) {
+    throw Error(ErrorKind::index_out_of_range, settings.place,
+                fmt::format("arm '{}' has no segment {}", name, settings.segment),
+                fmt::format("name 0 to {}", arm.segments() - 1));
+  }
+  const auto& segment = arm.settings().segments[static_cast<std::size_t>(settings.segment)];
+  const int along = static_cast<int>(settings.towards);
+  if (along >= segment.coordinates()) {
+    throw Error(ErrorKind::unknown_choice, settings.place,
+                fmt::format("segment {} of arm '{}' does not bend so", settings.segment, name),
+                settings.towards == TorqueSettings::Towards::across
+                    ? "a planar segment bends towards x alone: write bending: spatial"
+                    : "it is not extensible: give it an axial_stiffness");
+  }
+  return arm.first(settings.segment) + along;
+}
+
+}  // namespace
+
+int add_torque(ModelData& data, const TorqueSettings& settings) {
+  mechanics::BodyModel& on = find_body(data, settings.body, settings.place);
+  try {
+    auto* bends = mechanics::as<pcc::HasArm>(on);
+    if (bends == nullptr) {
+      throw Error(ErrorKind::wrong_type, settings.place,
+                  fmt::format("body '{}' has no bends", on.name()),
+                  "a torque acts on a segment of a body of type pcc");
+    }
+    const int point = bends->attach_coordinate(coordinate_of(settings, bends->arm(), on.name()));
+    auto torque = std::make_unique<constraint::PointForce>(
+        settings.name, mechanics::MaterialPoint{settings.body, point}, Vector3::UnitX(),
+        Vector3::Zero());
+    const auto type = settings.towards == TorqueSettings::Towards::along ? ActuatorType::force
+                                                                         : ActuatorType::torque;
+    return add_actuator(data,
+                        {settings.name, settings.place, type, -1, -1, settings.torque,
+                         settings.angle, settings.command},
+                        std::move(torque));
+  } catch (const Error& error) {
+    throw error.at(settings.place);
+  }
+}
+
+}  // namespace sinew::sim

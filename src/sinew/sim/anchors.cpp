@@ -1,0 +1,66 @@
+#include "sinew/sim/anchors.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+
+#include <Eigen/Geometry>
+
+#include "sinew/constraint/effector.hpp"
+#include "sinew/core/error.hpp"
+#include "sinew/fem/fem_body_settings.hpp"
+#include "sinew/fem/fem_model.hpp"
+#include "sinew/fem/has_elements.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/sim/attach.hpp"
+#include "sinew/sim/find_body.hpp"
+#include "sinew/sim/model_data.hpp"
+
+namespace sinew::sim {
+
+namespace {
+
+// Three nodes as far from one another as they come: farthest from the middle, from that one, and
+// from the line through both.
+std::array<NodeId, 3> spread_nodes(const Points& nodes) {
+  const Eigen::RowVector3d middle = nodes.colwise().mean();
+  std::array<Eigen::Index, 3> found{};
+  (nodes.rowwise() - middle).rowwise().squaredNorm().maxCoeff(&found[0]);
+  const Eigen::RowVector3d a = nodes.row(found[0]);
+  (nodes.rowwise() - a).rowwise().squaredNorm().maxCoeff(&found[1]);
+  const Vector3 along = (nodes.row(found[1]) - a).normalized();
+  double farthest = -1.0;
+  for (Eigen::Index i = 0; i < nodes.rows(); ++i) {
+    const double distance = along.cross(Vector3(nodes.row(i) - a)).norm();
+    if (distance <= farthest) continue;
+    farthest = distance;
+    found[2] = i;
+  }
+  return {static_cast<NodeId>(found[0]), static_cast<NodeId>(found[1]),
+          static_cast<NodeId>(found[2])};
+}
+
+double stiffest_modulus(const fem::FemModelSettings& settings) {
+  double modulus = 0.0;
+  for (const fem::Region& region : settings.regions) {
+    modulus = std::max(modulus, region.young_modulus());
+  }
+  return modulus;
+}
+
+}  // namespace
+
+void add_anchors(ModelData& data, int body) {
+  const fem::HasElements& anchored = find_elements(data, body, {}, "anchor");
+  const double modulus = stiffest_modulus(anchored.settings().elements);
+  const double stiffness = modulus * std::cbrt(anchored.elements().volume());
+  mechanics::BodyModel& on = data.body(body);
+  for (const NodeId node : spread_nodes(on.mesh().nodes)) {
+    const int constraint = data.declare(std::make_unique<constraint::PointEffector>(
+        "anchor", mechanics::MaterialPoint{body, attach_node(on, node)}));
+    data.anchors.push_back({body, constraint, stiffness});
+  }
+}
+
+}  // namespace sinew::sim

@@ -1,0 +1,37 @@
+/// @file
+/// A chamber as an actuator.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "sinew/core/error.hpp"
+#include "sinew/mesh/embedding.hpp"
+#include "sinew/mesh/topology.hpp"
+#include "sinew/sim/actuator.hpp"
+#include "sinew/sim/fluid_drive.hpp"
+
+namespace sinew::sim {
+
+/// A chamber of a body under pressure.
+struct CavitySettings {
+  std::string name;
+  Place place;
+  int body = 0;
+  /// Faces of the body's mesh as seen from the material, or a surface that the body carries along
+  /// (its vertices are attached to the elements; either orientation).
+  std::variant<std::vector<mesh::Face>, mesh::Surface> surface;
+  mesh::Outside outside = mesh::Outside::error;  ///< for a surface's vertices
+  bool cap = false;  ///< close openings by a lid without stiffness that passes its force to the rim
+  bool load_stiffness = true;
+  Limits pressure;       ///< Pa, above ambient
+  Limits volume_growth;  ///< m^3
+  Command command;
+  /// What fills it; neither: the commanded pressure or growth of volume acts as it is.
+  std::optional<GasSettings> gas;
+  std::optional<LiquidSettings> liquid;
+};
+
+}  // namespace sinew::sim

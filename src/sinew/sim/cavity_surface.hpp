@@ -1,0 +1,53 @@
+/// @file
+/// The surface of a chamber on attached points of a body.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "sinew/constraint/cavity.hpp"
+#include "sinew/core/types.hpp"
+#include "sinew/mechanics/rows.hpp"
+#include "sinew/mesh/topology.hpp"
+
+namespace sinew::mechanics {
+class BodyModel;
+}
+namespace sinew::mesh {
+enum class Outside;
+}
+
+namespace sinew::sim {
+
+/// Points and faces of a chamber, as they are taken in.
+class CavitySurface {
+ public:
+  /// @param body,number that carries the points, and its number.
+  CavitySurface(mechanics::BodyModel& body, int number) : body_(body), number_(number) {}
+
+  /// Faces of the body's mesh as seen from the material.
+  void take(const std::vector<mesh::Face>& patch);
+  /// Closes the openings of a patch that was taken in: each by a fan about the mean of its rim.
+  void close(const std::vector<mesh::Face>& patch);
+  /// A surface of its own, whose vertices are attached; either orientation. @param outside for
+  /// vertices in no element. @param name of the chamber, for messages.
+  void take(const mesh::Surface& surface, mesh::Outside outside, const std::string& name);
+
+  const std::vector<mechanics::MaterialPoint>& points() const { return points_; }
+  const std::vector<constraint::CavityFace>& faces() const { return faces_; }
+
+ private:
+  /// All return the position of a point.
+  int add(int attached);
+  int corner(NodeId node);
+  int add_spoke(const std::vector<NodeId>& loop, NodeId node);
+
+  mechanics::BodyModel& body_;
+  int number_;
+  std::vector<mechanics::MaterialPoint> points_;
+  std::vector<constraint::CavityFace> faces_;
+  std::map<NodeId, int> corners_;  // position of the point of each node
+};
+
+}  // namespace sinew::sim

@@ -1,0 +1,30 @@
+/// @file
+/// What a robot may touch.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sinew/constraint/surface.hpp"
+#include "sinew/core/error.hpp"
+#include "sinew/core/types.hpp"
+#include "sinew/mesh/embedding.hpp"
+#include "sinew/sim/base_motion.hpp"
+
+namespace sinew::sim {
+
+/// Points of a body that may touch a surface.
+struct ContactSettings {
+  std::string name;
+  Place place;
+  int body = 0;
+  constraint::Surface surface;
+  std::vector<NodeId> nodes;  ///< of the body's mesh; fixed ones are left out
+  Points points;              ///< (n, 3) m, at rest; beside the nodes
+  mesh::Outside outside = mesh::Outside::error;
+  double friction = 0.0;             ///< Coulomb's coefficient, >= 0
+  std::optional<BaseMotion> motion;  ///< of the surface
+};
+
+}  // namespace sinew::sim

@@ -1,0 +1,37 @@
+#include "sinew/sim/curvatures.hpp"
+
+#include <cstddef>
+#include <memory>
+
+#include "sinew/constraint/coupling.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/sim/model_data.hpp"
+
+namespace sinew::sim {
+
+void add_couplings(ModelData& data) {
+  for (std::size_t k = 0; k < data.curvatures.size(); ++k) {
+    const auto& [first, second, curvature] = data.curvatures[k];
+    if (first.body == second.body) continue;
+    const int rows = data.declare(std::make_unique<constraint::Coupling>(first, second));
+    data.couplings.push_back({static_cast<int>(k), rows});
+  }
+}
+
+void list_curved(ModelData& data) {
+  for (std::size_t i = 0; i < data.constraints.size(); ++i) {
+    if (data.constraints[i]->curvature_count() > 0) data.curved.push_back(static_cast<int>(i));
+  }
+  for (const int index : data.stiffening) {
+    const constraint::Constraint& constraint = data.constraint(index);
+    for (int k = 0; k < constraint.curvature_count(); ++k) {
+      const mechanics::RowCurvature& pair =
+          data.curvatures[static_cast<std::size_t>(constraint.first_curvature() + k)];
+      if (pair.first.body != pair.second.body) continue;  // see add_couplings()
+      data.stiffening_widens |=
+          !data.body(pair.first.body).couples(pair.first.point, pair.second.point);
+    }
+  }
+}
+
+}  // namespace sinew::sim

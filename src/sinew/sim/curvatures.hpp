@@ -1,0 +1,16 @@
+/// @file
+/// What a model under construction makes of its constraints' second derivatives.
+#pragma once
+
+namespace sinew::sim {
+
+struct ModelData;
+
+/// Rows for the curvatures between two bodies: no body has room for what couples it to another.
+void add_couplings(ModelData& data);
+
+/// Which constraints have curvature, and whether that which joins A in every step widens the
+/// pattern of a body. After BodyModel::finish().
+void list_curved(ModelData& data);
+
+}  // namespace sinew::sim

@@ -1,0 +1,139 @@
+/// @file
+/// What a model consists of, as plain lists: ModelBuilder fills them, and a Model owns them.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "sinew/core/error.hpp"
+#include "sinew/mechanics/rows.hpp"
+#include "sinew/sim/actuator.hpp"
+#include "sinew/sim/base_motion.hpp"
+#include "sinew/sim/signal.hpp"
+#include "sinew/sim/step_settings.hpp"
+
+namespace sinew::constraint {
+class Constraint;
+class Probe;
+}  // namespace sinew::constraint
+
+namespace sinew::mechanics {
+class BodyModel;
+}  // namespace sinew::mechanics
+
+namespace sinew::sim {
+
+/// A point that a cable slides through with friction.
+struct GuideModel {
+  int actuator = -1;    ///< whose cable
+  int via = 0;          ///< point between the cable's ends, from the pull point on
+  int row = -1;         ///< of H
+  double friction = 0;  ///< Coulomb's coefficient, > 0
+};
+
+/// An effector and where it is declared.
+struct EffectorModel {
+  std::string name;
+  Place place;
+  int constraint = -1;
+};
+
+/// Points that may touch a surface, and how the surface moves.
+struct ContactModel {
+  std::string name;
+  Place place;
+  int constraint = -1;               ///< a constraint::Contact
+  std::optional<BaseMotion> motion;  ///< of the surface; none: it stands still
+
+  /// Of the surface at a time.
+  Eigen::Isometry3d pose(double time) const;
+};
+
+/// What welds two bodies.
+struct WeldModel {
+  std::string name;
+  Place place;
+  int first = 0, second = 1;  ///< bodies
+  int constraint = -1;        ///< a constraint::Tie
+};
+
+/// Springs that A has in statics so that it can be factorised, and that the robot has not: see
+/// step::StiffnessBlock.
+struct AnchorModel {
+  int body = 0;
+  int constraint = -1;     ///< three rows, along x, y and z of one point
+  double stiffness = 0.0;  ///< N/m
+};
+
+/// Rows for the curvature of a cable between two bodies.
+struct CouplingModel {
+  int curvature = -1;   ///< in Model::curvatures()
+  int constraint = -1;  ///< a constraint::Coupling
+};
+
+/// A mass that hangs on a point of a body.
+struct MassModel {
+  std::string name;
+  int body = 0;
+  int point = -1;     ///< attached, of the body
+  double mass = 0.0;  ///< kg
+};
+
+/// A load on a body, and its factor over time.
+struct LoadModel {
+  std::string name;
+  Place place;
+  int body = 0;
+  std::vector<int> numbers;  ///< in fem::HasElements::loads()
+  Signal factor;
+};
+
+/// The lists that Model's functions of the same names give.
+struct ModelData {
+  ModelData();
+  ~ModelData();
+  ModelData(ModelData&&) noexcept;
+  ModelData& operator=(ModelData&&) noexcept;
+
+  /// Declares a constraint's rows and takes it in. @return its position.
+  int declare(std::unique_ptr<constraint::Constraint> constraint);
+
+  mechanics::BodyModel& body(int index) { return *bodies[static_cast<std::size_t>(index)]; }
+  const mechanics::BodyModel& body(int index) const {
+    return *bodies[static_cast<std::size_t>(index)];
+  }
+  constraint::Constraint& constraint(int index) {
+    return *constraints[static_cast<std::size_t>(index)];
+  }
+  const constraint::Constraint& constraint(int index) const {
+    return *constraints[static_cast<std::size_t>(index)];
+  }
+
+  std::vector<std::unique_ptr<mechanics::BodyModel>> bodies;
+  std::vector<std::unique_ptr<constraint::Constraint>> constraints;
+  std::vector<ActuatorModel> actuators;
+  std::vector<GuideModel> guides;
+  std::vector<EffectorModel> effectors;
+  std::vector<ContactModel> contacts;
+  std::vector<WeldModel> welds;
+  std::vector<AnchorModel> anchors;
+  std::vector<CouplingModel> couplings;
+  std::vector<std::unique_ptr<constraint::Probe>> probes;
+  std::vector<BaseMotion> base_motions;
+  std::vector<LoadModel> loads;
+  std::vector<MassModel> masses;
+  mechanics::RowPattern rows;
+  std::vector<mechanics::RowCurvature> curvatures;
+  std::vector<int> stiffening, curved;  ///< constraints
+  bool stiffening_widens = false;
+  int drive_states = 0;
+  double size = 0.0;  ///< m
+  StepSettings step;
+};
+
+}  // namespace sinew::sim

@@ -1,0 +1,14 @@
+#include "sinew/sim/new_name.hpp"
+
+#include <fmt/format.h>
+
+#include "sinew/core/error.hpp"
+
+namespace sinew::sim {
+
+void throw_same_name(const char* kind, const std::string& name, const Place& place) {
+  throw Error(ErrorKind::duplicate_key, place, fmt::format("two {} are called '{}'", kind, name),
+              "rename one");
+}
+
+}  // namespace sinew::sim

@@ -1,0 +1,31 @@
+/// @file
+/// A spring along a line of points.
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "sinew/core/error.hpp"
+#include "sinew/core/types.hpp"
+#include "sinew/mesh/embedding.hpp"
+#include "sinew/sim/actuator.hpp"
+#include "sinew/sim/spring_drive.hpp"
+
+namespace sinew::sim {
+
+/// A spring, a tendon, or a shape-memory spring.
+struct SpringLineSettings {
+  std::string name;
+  Place place;
+  int body = 0;
+  Points points;  ///< (n, 3) m; via points without friction between its ends
+  std::vector<Place> point_places;
+  bool pull_from_world = false;  ///< the first point is fixed to the world, else to the body
+  mesh::Outside outside = mesh::Outside::error;
+  std::variant<SpringSettings, SmaSettings> spring;
+  bool free_at_rest = false;  ///< its free length is that at rest, whatever `spring` says
+  Command command{CommandKind::effort, {}};
+};
+
+}  // namespace sinew::sim
