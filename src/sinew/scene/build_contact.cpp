@@ -3,6 +3,8 @@
 #include "sinew/core/error.hpp"
 #include "sinew/scene/build_parts.hpp"
 #include "sinew/scene/readers.hpp"
+#include "sinew/sim/contact_settings.hpp"
+#include "sinew/sim/model_builder.hpp"
 
 namespace sinew::scene {
 

@@ -7,6 +7,8 @@
 #include "sinew/mesh/topology.hpp"
 #include "sinew/scene/build_parts.hpp"
 #include "sinew/scene/readers.hpp"
+#include "sinew/sim/joint_settings.hpp"
+#include "sinew/sim/model_builder.hpp"
 
 namespace sinew::scene {
 

@@ -3,6 +3,8 @@
 #include "sinew/core/error.hpp"
 #include "sinew/mesh/patch.hpp"
 #include "sinew/scene/build_parts.hpp"
+#include "sinew/sim/load_settings.hpp"
+#include "sinew/sim/model_builder.hpp"
 
 namespace sinew::scene {
 

@@ -11,7 +11,10 @@
 #include "sinew/mesh/selection.hpp"
 #include "sinew/mesh/topology.hpp"
 #include "sinew/scene/description.hpp"
-#include "sinew/sim/model_builder.hpp"
+
+namespace sinew::sim {
+class ModelBuilder;
+}
 
 namespace sinew::scene {
 
@@ -43,6 +46,18 @@ mesh::Region region_of(const FixedRegion& region);
 
 /// The faces of the mesh that a surface names, whatever but a file. Throws Error at its place.
 std::vector<mesh::Face> faces_of(const SurfaceDescription& surface, const mesh::Mesh& mesh);
+
+/// Adds a body that its scene describes. @return what a user should know of it.
+std::optional<Notice> add_body(sim::ModelBuilder& builder, const SceneDescription& scene,
+                               const BodyDescription& body);
+
+/// @param builder that has the bodies. @param actuator to be added. @param body_of finds bodies.
+void add_actuator(sim::ModelBuilder& builder, const ActuatorDescription& actuator,
+                  const BodyOf& body_of);
+
+/// @param builder that has the bodies. @param effector to be added. @param body_of finds bodies.
+void add_effector(sim::ModelBuilder& builder, const EffectorDescription& effector,
+                  const BodyOf& body_of);
 
 /// @param builder that has the bodies. @param load to be added. @param body_of finds bodies.
 void add_load(sim::ModelBuilder& builder, const LoadDescription& load, const BodyOf& body_of);

@@ -4,6 +4,8 @@
 #include "sinew/mesh/topology.hpp"
 #include "sinew/scene/build_parts.hpp"
 #include "sinew/scene/readers.hpp"
+#include "sinew/sim/model_builder.hpp"
+#include "sinew/sim/probe_settings.hpp"
 
 namespace sinew::scene {
 

@@ -1,0 +1,150 @@
+#include <algorithm>
+
+#include "sinew/core/error.hpp"
+#include "sinew/mesh/surface.hpp"
+#include "sinew/scene/build_parts.hpp"
+#include "sinew/sim/cable_settings.hpp"
+#include "sinew/sim/cavity_settings.hpp"
+#include "sinew/sim/force_settings.hpp"
+#include "sinew/sim/model_builder.hpp"
+#include "sinew/sim/spring_line_settings.hpp"
+#include "sinew/sim/torque_settings.hpp"
+
+namespace sinew::scene {
+
+namespace {
+
+sim::Limits limits(const LimitDescription& description) {
+  return {description.min, description.max, description.rate};
+}
+
+sim::Command command(const ActuatorDescription& actuator) {
+  if (!actuator.command) return {};
+  switch (actuator.command->kind) {
+    case CommandDescription::Kind::motion:
+      return {sim::CommandKind::motion, actuator.command->signal};
+    case CommandDescription::Kind::effort:
+      return {sim::CommandKind::effort, actuator.command->signal};
+    case CommandDescription::Kind::input:
+      return {sim::CommandKind::input, actuator.command->signal};
+  }
+  return {};
+}
+
+void add_cable(sim::ModelBuilder& builder, const ActuatorDescription& actuator, int body,
+               const BodyOf& body_of) {
+  sim::CableSettings cable;
+  cable.name = actuator.name;
+  cable.place = actuator.place;
+  cable.body = body;
+  cable.points = actuator.points.points;
+  cable.point_places = actuator.points.places;
+  for (const std::string& name : actuator.points.bodies) {
+    cable.point_bodies.push_back(name.empty() ? body : body_of(name).number);
+  }
+  cable.pull_from_world = actuator.pull == PullPoint::world;
+  cable.outside = actuator.outside;
+  cable.tension = limits(actuator.effort);
+  cable.tension.min = std::max(cable.tension.min, 0.0);
+  cable.displacement = limits(actuator.motion);
+  cable.command = command(actuator);
+  cable.geometric_stiffness = actuator.geometric_stiffness;
+  cable.friction = actuator.friction;
+  cable.guide_radius = actuator.guide_radius;
+  cable.guide_spacing = actuator.guide_spacing;
+  builder.add_cable(cable);
+}
+
+void add_force(sim::ModelBuilder& builder, const ActuatorDescription& actuator, int body) {
+  sim::ForceSettings force;
+  force.name = actuator.name;
+  force.place = actuator.place;
+  force.body = body;
+  force.point = actuator.point;
+  force.direction = actuator.direction;
+  force.outside = actuator.outside;
+  force.force = limits(actuator.effort);
+  force.displacement = limits(actuator.motion);
+  force.command = command(actuator);
+  builder.add_force(force);
+}
+
+void add_spring(sim::ModelBuilder& builder, const ActuatorDescription& actuator, int body) {
+  sim::SpringLineSettings line;
+  line.name = actuator.name;
+  line.place = actuator.place;
+  line.body = body;
+  line.points = actuator.points.points;
+  line.point_places = actuator.points.places;
+  line.pull_from_world = actuator.pull == PullPoint::world;
+  line.outside = actuator.outside;
+  line.spring = actuator.spring;
+  line.free_at_rest = actuator.free_at_rest;
+  line.command = command(actuator);
+  builder.add_spring(line);
+}
+
+void add_chamber(sim::ModelBuilder& builder, const ActuatorDescription& actuator, int body,
+                 const mesh::Mesh& mesh) {
+  sim::CavitySettings cavity;
+  cavity.name = actuator.name;
+  cavity.place = actuator.place;
+  cavity.body = body;
+  const SurfaceDescription& surface = actuator.surface;
+  if (surface.kind == SurfaceDescription::Kind::file) {
+    try {
+      mesh::SurfaceOptions options;
+      options.unit = surface.unit;
+      const mesh::Surface read = mesh::read_surface(surface.file, options);
+      mesh::require_closed(read);
+      cavity.surface = read;
+    } catch (const Error& error) {
+      throw error.at(surface.place);
+    }
+  } else {
+    cavity.surface = faces_of(surface, mesh);
+  }
+  cavity.outside = actuator.outside;
+  cavity.cap = actuator.cap;
+  cavity.load_stiffness = actuator.load_stiffness;
+  cavity.pressure = limits(actuator.effort);
+  cavity.volume_growth = limits(actuator.motion);
+  cavity.command = command(actuator);
+  cavity.gas = actuator.gas;
+  cavity.liquid = actuator.liquid;
+  builder.add_cavity(cavity);
+}
+
+void add_torque(sim::ModelBuilder& builder, const ActuatorDescription& actuator, int body) {
+  sim::TorqueSettings torque;
+  torque.name = actuator.name;
+  torque.place = actuator.place;
+  torque.body = body;
+  torque.segment = actuator.segment;
+  torque.towards = actuator.towards;
+  torque.torque = limits(actuator.effort);
+  torque.angle = limits(actuator.motion);
+  torque.command = command(actuator);
+  builder.add_torque(torque);
+}
+
+}  // namespace
+
+void add_actuator(sim::ModelBuilder& builder, const ActuatorDescription& actuator,
+                  const BodyOf& body_of) {
+  const auto [body, mesh] = body_of(actuator.body);
+  switch (actuator.type) {
+    case ActuatorDescription::Type::cable:
+      return add_cable(builder, actuator, body, body_of);
+    case ActuatorDescription::Type::force:
+      return add_force(builder, actuator, body);
+    case ActuatorDescription::Type::pressure:
+      return add_chamber(builder, actuator, body, *mesh);
+    case ActuatorDescription::Type::spring:
+      return add_spring(builder, actuator, body);
+    case ActuatorDescription::Type::torque:
+      return add_torque(builder, actuator, body);
+  }
+}
+
+}  // namespace sinew::scene

@@ -1,0 +1,33 @@
+#include "sinew/core/error.hpp"
+#include "sinew/scene/build_parts.hpp"
+#include "sinew/sim/effector_settings.hpp"
+#include "sinew/sim/model_builder.hpp"
+
+namespace sinew::scene {
+
+void add_effector(sim::ModelBuilder& builder, const EffectorDescription& effector,
+                  const BodyOf& body_of) {
+  const auto [body, mesh] = body_of(effector.body);
+  sim::EffectorSettings settings;
+  settings.name = effector.name;
+  settings.place = effector.place;
+  settings.body = body;
+  settings.points = effector.points.points;
+  settings.outside = effector.outside;
+  if (effector.kind == EffectorDescription::Kind::set) {
+    settings.kind = sim::EffectorSettings::Kind::nodes;
+    try {
+      settings.nodes = mesh::select_nodes(*mesh, mesh::NamedRegion{effector.set}, effector.name);
+    } catch (const Error& error) {
+      throw error.at(effector.set_place);
+    }
+  } else if (effector.kind == EffectorDescription::Kind::orientation) {
+    settings.kind = sim::EffectorSettings::Kind::orientation;
+  }
+  for (Eigen::Index i = 0; i < effector.directions.rows(); ++i) {
+    settings.directions.emplace_back(effector.directions.row(i).transpose());
+  }
+  builder.add_effector(settings);
+}
+
+}  // namespace sinew::scene
