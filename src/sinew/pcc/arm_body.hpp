@@ -11,10 +11,11 @@
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mesh/mesh.hpp"
 #include "sinew/pcc/arm_equations.hpp"
+#include "sinew/pcc/has_arm.hpp"
 
 namespace sinew::pcc {
 
-class ArmBodyModel : public mechanics::BodyModel {
+class ArmBodyModel : public mechanics::BodyModel, public HasArm {
  public:
   explicit ArmBodyModel(std::shared_ptr<const Arm> arm);
 
@@ -27,9 +28,7 @@ class ArmBodyModel : public mechanics::BodyModel {
                   const std::string& what) override;
   /// Throws Error(wrong-type): it has no nodes.
   int attach_nodes(std::span<const NodeId> nodes, std::span<const double> weights) override;
-  /// A coordinate in the place of a point's x, 1 rad (extension: 1 m) being 1 m: a force along x on
-  /// it is the generalised force of that coordinate, N m (N). Building only.
-  int attach_coordinate(int coordinate);
+  int attach_coordinate(int coordinate) override;
   Vector3 rest_position(int point) const override;
   void finish(int body, const mechanics::RowPattern& rows,
               std::span<const mechanics::RowCurvature> curvatures,
@@ -42,8 +41,8 @@ class ArmBodyModel : public mechanics::BodyModel {
   /// A cylinder of hexahedra of the arm's radius, for records and the view.
   const mesh::Mesh& mesh() const override { return skin_; }
 
-  const Arm& arm() const { return *arm_; }
-  std::shared_ptr<const Arm> shared_arm() const { return arm_; }
+  const Arm& arm() const override { return *arm_; }
+  std::shared_ptr<const Arm> shared_arm() const override { return arm_; }
 
  private:
   friend class ArmBody;
