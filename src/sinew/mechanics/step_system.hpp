@@ -33,17 +33,6 @@ struct LinearisationRequest {
   bool iterating = false;
 };
 
-/// What residuals of the last linearisation are judged by, N.
-struct ForceScale {
-  /// Sum of the norms of internal and outside forces, and the force of a negligible strain, so that
-  /// it is not zero at rest.
-  double forces = 0.0;
-  /// A bound on what rounding leaves of the residual. Coordinates are known to eps |q|, so that no
-  /// state obeys its equation better than |A| eps |q| (Higham, Accuracy and Stability of Numerical
-  /// Algorithms, 2002, sec. 12.1 and 25.2: the limiting residual).
-  double rounding = 0.0;
-};
-
 /// What a condensation found.
 struct Inertia {
   linalg::FactorStatus status = linalg::FactorStatus::positive_definite;
@@ -107,7 +96,14 @@ class StepSystem {
   /// |b + H^T effort|, N: how far the current state is from satisfying the step's equation.
   /// @param effort (all rows,) N. @param imbalance (size(),) N, b + H^T effort; or empty.
   virtual double residual(std::span<const double> effort, std::span<double> imbalance) = 0;
-  virtual ForceScale force_scale() const = 0;
+  /// What residuals of the last linearisation are judged by, N: the sum of the norms of internal
+  /// and outside forces, and the force of a negligible strain, so that it is not zero at rest.
+  virtual double force_scale() const = 0;
+  /// A bound on what rounding leaves of such a residual, N; takes a look at all of A. Coordinates
+  /// are known to eps |q|, so that no state obeys its equation better than |A| eps |q| (Higham,
+  /// Accuracy and Stability of Numerical Algorithms, 2002, sec. 12.1 and 25.2: the limiting
+  /// residual).
+  virtual double rounding_floor() const = 0;
   /// From the next linearisation on, b is lessened by a force: load stepping takes an imbalance
   /// away. @param force (size(),) N, copied; empty: nothing is taken away any more.
   virtual void lessen(std::span<const double> force) = 0;
