@@ -7,9 +7,17 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/fem/element_batches.hpp"
 #include "sinew/fem/element_points.hpp"
+#include "sinew/fem/fem_model.hpp"
+#include "sinew/fem/has_elements.hpp"
+#include "sinew/fem/has_material.hpp"
 #include "sinew/fem/solid_elements.hpp"
 #include "sinew/material/principal.hpp"
+#include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
+#include "sinew/mesh/mesh.hpp"
 
 namespace sinew::fem {
 
@@ -130,8 +138,9 @@ ElementField element_field_of(std::string_view name) {
                            : fmt::format("did you mean '{}'?", near));
 }
 
-std::vector<double> element_field(const FemBody& body, ElementField field) {
-  const auto count = static_cast<std::size_t>(ElementList(body.fem_model().mesh()).count());
+std::vector<double> element_field(const HasMaterial& body, ElementField field) {
+  const auto count =
+      static_cast<std::size_t>(ElementList(body.material().elements().mesh()).count());
   std::vector<double> sum(count, 0.0), volume(count, 0.0);
   visit_points(body, [&](const PointBatch& point) {
     const Lanes value = value_at(field, point);
@@ -146,17 +155,17 @@ std::vector<double> element_field(const FemBody& body, ElementField field) {
   return sum;
 }
 
-NodalMean::NodalMean(const FemBodyModel& model)
-    : model_(model), around_(static_cast<std::size_t>(model.mesh().nodes.rows()), 0.0) {
-  const ElementList list(model.mesh());
+NodalMean::NodalMean(const FemModel& elements)
+    : elements_(elements), around_(static_cast<std::size_t>(elements.mesh().nodes.rows()), 0.0) {
+  const ElementList list(elements.mesh());
   volume_.assign(static_cast<std::size_t>(list.count()), 0.0);
-  const ElementBatches& elements = model.elements().elements();
-  for (std::size_t slot = 0; slot < elements.tetrahedron.size(); ++slot) {
-    if (elements.tetrahedron[slot] < 0) continue;
-    volume_[static_cast<std::size_t>(elements.tetrahedron[slot])] =
-        elements.constants[slot / kLanes].volume.value[slot % kLanes];
+  const ElementBatches& tetrahedra = elements.elements();
+  for (std::size_t slot = 0; slot < tetrahedra.tetrahedron.size(); ++slot) {
+    if (tetrahedra.tetrahedron[slot] < 0) continue;
+    volume_[static_cast<std::size_t>(tetrahedra.tetrahedron[slot])] =
+        tetrahedra.constants[slot / kLanes].volume.value[slot % kLanes];
   }
-  for (const SolidGroup& group : model.elements().solids()) {
+  for (const SolidGroup& group : elements.solids()) {
     for (std::size_t slot = 0; slot < group.element.size(); ++slot) {
       if (group.element[slot] < 0) continue;
       for (int q = 0; q < group.points; ++q) {
@@ -172,12 +181,12 @@ NodalMean::NodalMean(const FemBodyModel& model)
 }
 
 std::unique_ptr<NodalMean> nodal_mean(const mechanics::BodyModel& model) {
-  const auto* fem = dynamic_cast<const FemBodyModel*>(&model);
-  return fem == nullptr ? nullptr : std::make_unique<NodalMean>(*fem);
+  const auto* fem = mechanics::as<const HasElements>(model);
+  return fem == nullptr ? nullptr : std::make_unique<NodalMean>(fem->elements());
 }
 
 std::vector<double> NodalMean::operator()(std::span<const double> values, std::size_t width) const {
-  const ElementList list(model_.mesh());
+  const ElementList list(elements_.mesh());
   std::vector<double> means(width * around_.size(), 0.0);
   for (int e = 0; e < list.count(); ++e) {
     const auto element = static_cast<std::size_t>(e);
@@ -201,7 +210,7 @@ std::vector<double> displacement_field(const mechanics::Body& body) {
   return {sizes.data(), sizes.data() + sizes.size()};
 }
 
-std::vector<double> row_force_field(const FemBody& body, std::span<const double> effort) {
+std::vector<double> row_force_field(const HasMaterial& body, std::span<const double> effort) {
   Points forces = Points::Zero(body.positions().rows(), 3);
   body.add_row_forces(effort, forces);
   const VectorX sizes = forces.rowwise().norm();

@@ -8,9 +8,15 @@
 #include <string_view>
 #include <vector>
 
-#include "sinew/fem/fem_body.hpp"
+namespace sinew::mechanics {
+class Body;
+class BodyModel;
+}  // namespace sinew::mechanics
 
 namespace sinew::fem {
+
+class FemModel;
+class HasMaterial;
 
 /// Scalars of the deformation gradient F = R U, of the Cauchy stress sigma and of the strain
 /// energy.
@@ -55,21 +61,21 @@ ElementField element_field_of(std::string_view name);
 /// (m,) of every element, as ElementList numbers them: the mean over its points of integration by
 /// their volume at rest. Not finite where an element has no volume.
 /// @param body at its present state. @param field which.
-std::vector<double> element_field(const FemBody& body, ElementField field);
+std::vector<double> element_field(const HasMaterial& body, ElementField field);
 
 /// Means at the nodes of what elements have, weighted by their volumes at rest; the smoothing of
 /// Hinton and Campbell, Int. J. Numer. Meth. Engng 8, 1974, in its simplest form.
 class NodalMean {
  public:
-  /// @param model must outlive this object.
-  explicit NodalMean(const FemBodyModel& model);
+  /// @param elements must outlive this object.
+  explicit NodalMean(const FemModel& elements);
 
   /// (n width,), all mesh nodes in file order; NaN at nodes of no element.
   /// @param values (m width,), one row an element. @param width numbers of an element, >= 1.
   std::vector<double> operator()(std::span<const double> values, std::size_t width = 1) const;
 
  private:
-  const FemBodyModel& model_;
+  const FemModel& elements_;
   std::vector<double> volume_;  // (m,) m^3 of elements
   std::vector<double> around_;  // (n,) m^3 of the elements round a node
 };
@@ -82,6 +88,6 @@ std::vector<double> displacement_field(const mechanics::Body& body);
 
 /// (n,) size of the force that the rows (cables, chambers) put on each free node, N, as of the last
 /// linearisation. @param body which. @param effort (rows,) of the world's rows.
-std::vector<double> row_force_field(const FemBody& body, std::span<const double> effort);
+std::vector<double> row_force_field(const HasMaterial& body, std::span<const double> effort);
 
 }  // namespace sinew::fem

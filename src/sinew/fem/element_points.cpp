@@ -5,6 +5,10 @@
 
 #include "sinew/fem/element_batches.hpp"
 #include "sinew/fem/element_gradient.hpp"
+#include "sinew/fem/element_history.hpp"
+#include "sinew/fem/fem_model.hpp"
+#include "sinew/fem/has_elements.hpp"
+#include "sinew/fem/has_material.hpp"
 #include "sinew/fem/solid_kernel.hpp"
 #include "sinew/material/response.hpp"
 
@@ -46,8 +50,9 @@ void respond(const BatchConstants& batch, PointBatch& point) {
   point.energy = response.energy;
 }
 
-void visit_tetrahedra(const FemBody& body, const std::function<void(const PointBatch&)>& visit) {
-  const ElementBatches& elements = body.fem_model().elements().elements();
+void visit_tetrahedra(const HasMaterial& body,
+                      const std::function<void(const PointBatch&)>& visit) {
+  const ElementBatches& elements = body.material().elements().elements();
   const std::span<const std::int32_t> numbers(elements.tetrahedron), nodes(elements.nodes);
   PointBatch point;
   for (int b = 0; b < elements.batches(); ++b) {
@@ -57,7 +62,7 @@ void visit_tetrahedra(const FemBody& body, const std::function<void(const PointB
     point.node = nodes.subspan(4 * slot, 4 * std::size_t{kLanes});
     point.weight = load(batch.volume.value);
     point.deformation = deformation_gradient(batch, point.node.data(), body.positions(),
-                                             body.fem_model().mesh().nodes);
+                                             body.material().elements().mesh().nodes);
     for (int c = 0; c < 3; ++c) {
       point.gradient[0][c] = material::lanes(0.0);
       for (int a = 1; a < 4; ++a) {
@@ -106,9 +111,9 @@ void visit_solids(const SolidGroup& group, const std::vector<double>& positions,
 
 }  // namespace
 
-void visit_points(const FemBody& body, const std::function<void(const PointBatch&)>& visit) {
+void visit_points(const HasMaterial& body, const std::function<void(const PointBatch&)>& visit) {
   visit_tetrahedra(body, visit);
-  const auto& solids = body.fem_model().elements().solids();
+  const auto& solids = body.material().elements().solids();
   if (solids.empty()) return;
   std::vector<double> padded(4 * static_cast<std::size_t>(body.positions().rows()), 0.0);
   for (Eigen::Index i = 0; i < body.positions().rows(); ++i) {

@@ -7,10 +7,11 @@
 #include <functional>
 #include <span>
 
-#include "sinew/fem/fem_body.hpp"
 #include "sinew/material/lanes.hpp"
 
 namespace sinew::fem {
+
+class HasMaterial;
 
 /// Eight elements at one point of integration each. Lanes that fill up a batch have element -1.
 struct PointBatch {
@@ -28,6 +29,6 @@ struct PointBatch {
 /// Every point of integration of a body at its present state, batch by batch.
 /// @param body whose elements. @param visit called for each; what it is given lives until it
 ///   returns.
-void visit_points(const FemBody& body, const std::function<void(const PointBatch&)>& visit);
+void visit_points(const HasMaterial& body, const std::function<void(const PointBatch&)>& visit);
 
 }  // namespace sinew::fem

@@ -1,6 +1,9 @@
 #include "sinew/fem/element_states.hpp"
 
 #include "sinew/fem/element_points.hpp"
+#include "sinew/fem/fem_body_settings.hpp"
+#include "sinew/fem/has_elements.hpp"
+#include "sinew/fem/has_material.hpp"
 #include "sinew/fem/solid_elements.hpp"
 
 namespace sinew::fem {
@@ -35,8 +38,9 @@ void add_point(const PointBatch& point, std::size_t lane, ElementStates& states)
 
 }  // namespace
 
-ElementStates element_states(const FemBody& body) {
-  const auto count = static_cast<std::size_t>(ElementList(body.fem_model().mesh()).count());
+ElementStates element_states(const HasMaterial& body) {
+  const auto count =
+      static_cast<std::size_t>(ElementList(body.material().elements().mesh()).count());
   ElementStates states;
   states.volume.assign(count, 0.0);
   for (auto* tensors : {&states.deformation, &states.piola, &states.cauchy}) {
@@ -54,10 +58,10 @@ ElementStates element_states(const FemBody& body) {
   return states;
 }
 
-Points reactions(const FemBody& body, const ElementStates& states, std::span<const double> effort,
-                 std::span<const Vector3> directions, const mechanics::RowPattern& rows,
-                 int index) {
-  const FemBodyModel& model = body.fem_model();
+Points reactions(const HasMaterial& body, const ElementStates& states,
+                 std::span<const double> effort, std::span<const Vector3> directions,
+                 const mechanics::RowPattern& rows, int index) {
+  const HasElements& model = body.material();
   const FemModel& elements = model.elements();
   Points sum = states.forces + body.external_forces() + body.load_forces();
   for (NodeId node = 0; node < static_cast<NodeId>(sum.rows()); ++node) {

@@ -3,11 +3,15 @@
 /// and files, not for steps.
 #pragma once
 
+#include <span>
 #include <vector>
 
-#include "sinew/fem/fem_body.hpp"
+#include "sinew/core/types.hpp"
+#include "sinew/mechanics/rows.hpp"
 
 namespace sinew::fem {
+
+class HasMaterial;
 
 /// Elements in the order of ElementList: tetrahedra, then hexahedra. Means over an element's points
 /// of integration, by their volume at rest.
@@ -20,7 +24,7 @@ struct ElementStates {
 };
 
 /// At the body's present state.
-ElementStates element_states(const FemBody& body);
+ElementStates element_states(const HasMaterial& body);
 
 /// (n, 3) N: what the supports put on fixed and held nodes, so that these stay in equilibrium with
 /// the elements, gravity, external forces and rows; zero elsewhere. Inertia of motion is not in it:
@@ -29,7 +33,8 @@ ElementStates element_states(const FemBody& body);
 /// @param effort (rows,) of the world's rows, as of the last step.
 /// @param directions of the world's rows (mechanics::RowValues::direction).
 /// @param rows of the world. @param index the body's position in it.
-Points reactions(const FemBody& body, const ElementStates& states, std::span<const double> effort,
-                 std::span<const Vector3> directions, const mechanics::RowPattern& rows, int index);
+Points reactions(const HasMaterial& body, const ElementStates& states,
+                 std::span<const double> effort, std::span<const Vector3> directions,
+                 const mechanics::RowPattern& rows, int index);
 
 }  // namespace sinew::fem

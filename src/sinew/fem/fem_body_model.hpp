@@ -34,7 +34,7 @@ struct FemSystem {
   std::shared_ptr<const linalg::FactorisationPlan> plan;
 };
 
-class FemBodyModel : public mechanics::BodyModel, public HasElements {
+class FemBodyModel final : public mechanics::BodyModel, public HasElements {
  public:
   /// Throws what FemModel does, and Error: out-of-range for negative damping or a mass that is not
   /// positive, point-outside-mesh for a mass outside.
@@ -65,6 +65,8 @@ class FemBodyModel : public mechanics::BodyModel, public HasElements {
   const FemBodySettings& settings() const override { return settings_; }
   /// (n, 3) m/s: of all nodes at the start; zero at fixed nodes and along held axes.
   Points start_velocities() const;
+  /// (3,) N of a mesh node.
+  Vector3 weight(NodeId node) const { return elements().load_mass()[node] * settings_.gravity; }
   int mass_point(std::size_t mass) const override { return mass_points_[mass]; }
   const LoadSet& loads() const override { return *loads_; }
   const Attachment& attachment(int point) const override {

@@ -1,9 +1,9 @@
-// What rounding leaves of a FemBody's residual.
+#include "sinew/fem/rounding_floor.hpp"
+
 #include <cmath>
 #include <limits>
 
-#include "sinew/fem/fem_body.hpp"
-#include "sinew/fem/fem_body_numbers.hpp"
+#include "sinew/core/types.hpp"
 
 namespace sinew::fem {
 
@@ -11,10 +11,9 @@ namespace sinew::fem {
 // a rounding of the positions changes it by. Elements evaluate their forces with errors of a few
 // eps |K_e| |x_e|, and inertia M (x - x_start)/h^2 with eps M/h^2 |x|: both are within it, since A
 // holds K and M/h^2.
-double FemBody::rounding_floor() const {
-  const linalg::BlockPattern& pattern = active_->system.elements->pattern();
-  const std::span<const double> matrix = active_->assembly.matrix();
-  VectorX sum = VectorX::Zero(right_.size());
+double rounding_floor(const linalg::BlockPattern& pattern, std::span<const double> matrix,
+                      std::span<const std::int32_t> held, double largest) {
+  VectorX sum = VectorX::Zero(3 * static_cast<Eigen::Index>(pattern.nodes));
   for (std::int32_t j = 0; j < pattern.nodes; ++j) {
     const auto column = static_cast<std::size_t>(j);
     for (auto b = pattern.column_start[column]; b < pattern.column_start[column + 1]; ++b) {
@@ -29,8 +28,8 @@ double FemBody::rounding_floor() const {
       }
     }
   }
-  for (const std::int32_t held : model_.elements().held()) sum[held] = 0.0;
-  return std::numeric_limits<double>::epsilon() * positions_.cwiseAbs().maxCoeff() * sum.norm();
+  for (const std::int32_t coordinate : held) sum[coordinate] = 0.0;
+  return std::numeric_limits<double>::epsilon() * largest * sum.norm();
 }
 
 }  // namespace sinew::fem

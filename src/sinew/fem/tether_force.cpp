@@ -1,19 +1,22 @@
-// What FemBody does with forces that are neither its own nor a law's.
+#include "sinew/fem/tether_force.hpp"
+
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
-#include "sinew/fem/fem_body.hpp"
+#include "sinew/fem/assembly.hpp"
+#include "sinew/fem/fem_model.hpp"
 
 namespace sinew::fem {
 
 namespace {
 
+using mechanics::Tether;
+
 constexpr double kSumTolerance = 1e-6;
 
-void check(const Tether& tether, const FemBodyModel& model) {
-  const auto nodes = static_cast<NodeId>(model.mesh().nodes.rows());
+void check_numbers(const Tether& tether, NodeId nodes) {
   double sum = 0.0;
   for (std::size_t k = 0; k < 3; ++k) {
     if (tether.nodes[k] < 0 || tether.nodes[k] >= nodes) {
@@ -57,29 +60,40 @@ void check_face(const Tether& tether, const FemModel& elements) {
 
 }  // namespace
 
-void FemBody::set_tether(const std::optional<Tether>& tether) {
-  if (tether) {
-    check(*tether, model_);
-    check_face(*tether, model_.elements());
-  }
-  tether_ = tether;
+void check_tether(const Tether& tether, const FemModel& elements) {
+  check_numbers(tether, static_cast<NodeId>(elements.mesh().nodes.rows()));
+  check_face(tether, elements);
 }
 
-Vector3 FemBody::tether_point() const {
+Vector3 tether_point(const Tether& tether, const Points& positions) {
   Vector3 point = Vector3::Zero();
   for (std::size_t k = 0; k < 3; ++k) {
-    point += tether_->weights[k] * positions_.row(tether_->nodes[k]).transpose();
+    point += tether.weights[k] * positions.row(tether.nodes[k]).transpose();
   }
   return point;
 }
 
-void FemBody::pull_by_tether() {
-  const Vector3 force = tether_->stiffness * (tether_->anchor - tether_point());
+double pull(const Tether& tether, const Points& positions, const FemModel& elements,
+            VectorX& right) {
+  const Vector3 force = tether.stiffness * (tether.anchor - tether_point(tether, positions));
   for (std::size_t k = 0; k < 3; ++k) {
-    const auto i = model_.elements().free_index()[static_cast<std::size_t>(tether_->nodes[k])];
-    if (i >= 0) right_.segment<3>(3 * static_cast<Eigen::Index>(i)) += tether_->weights[k] * force;
+    const auto i = elements.free_index()[static_cast<std::size_t>(tether.nodes[k])];
+    if (i >= 0) right.segment<3>(3 * static_cast<Eigen::Index>(i)) += tether.weights[k] * force;
   }
-  force_scale_ += force.norm();
+  return force.norm();
+}
+
+void stiffen(const Tether& tether, const FemModel& elements, Assembly& assembly) {
+  const auto free = elements.free_index();
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (std::size_t b = 0; b <= a; ++b) {
+      const double weight = tether.weights[a] * tether.weights[b];
+      const auto i = free[static_cast<std::size_t>(tether.nodes[a])];
+      const auto j = free[static_cast<std::size_t>(tether.nodes[b])];
+      if (weight == 0.0 || i < 0 || j < 0) continue;
+      assembly.add_block(i, j, tether.stiffness * weight * Matrix3::Identity());
+    }
+  }
 }
 
 }  // namespace sinew::fem

@@ -1,0 +1,119 @@
+#include "sinew/fem/body_elements.hpp"
+
+namespace sinew::fem {
+
+namespace {
+
+Tangent element_tangent(mechanics::Tangent tangent) {
+  switch (tangent) {
+    case mechanics::Tangent::real_time:
+      return Tangent::rotated;
+    case mechanics::Tangent::projected:
+      return Tangent::projected;
+    case mechanics::Tangent::exact:
+      return Tangent::exact;
+  }
+  return Tangent::exact;
+}
+
+}  // namespace
+
+BodyElements::BodyElements(FemState& state, ThreadPool& pool, bool with_curvature)
+    : state_(state), pool_(pool), active_(&numbers(with_curvature)) {}
+
+SystemNumbers& BodyElements::numbers(bool with_curvature) {
+  const FemBodyModel& model = state_.model;
+  const FemSystem& system = model.system(with_curvature);
+  auto& own = &system == &model.system(false) ? plain_ : curved_;
+  if (!own) {
+    own = std::make_unique<SystemNumbers>(system, pool_);
+    if (!state_.element_history.empty()) own->assembly.set_history(&state_.element_history);
+  }
+  return *own;
+}
+
+void BodyElements::prepare_history(double time_step) {
+  if (state_.element_history.empty() || prepared_step_ == time_step) return;
+  state_.element_history.begin_step(time_step);
+  prepared_step_ = time_step;
+}
+
+void BodyElements::begin_step() {
+  prepared_step_.reset();
+  // What the last step's motion lent the tangent's pressure must not outlive it: a state says all.
+  if (active_->assembly.linearise_from(nullptr)) active_->present.reset();
+}
+
+// C = alpha M + beta K with the rotated K at the start of the step: positive semi-definite, so that
+// damping damps, and constant, so that Newton's derivative is exact. Softening has no part in it:
+// where a step ends at the largest strain so far its slope jumps, and rounding would decide.
+void BodyElements::linearise(const mechanics::LinearisationRequest& request, bool first) {
+  SystemNumbers* const before = active_;
+  active_ = &numbers(request.with_curvature);
+  if (active_ != before) before->present.reset();
+  active_->iterating = request.iterating;
+  prepare_history(request.weights.time_step);
+  const auto& weights = request.weights;
+  const RayleighDamping& damping = state_.model.settings().damping;
+  const double mass = weights.acceleration.motion + damping.mass * weights.velocity.motion;
+  const double rate = damping.stiffness * weights.velocity.motion;
+  const AssemblyWeights wanted{element_tangent(request.tangent), 1.0, mass};
+  active_->damped = rate > 0.0;
+  if (active_->damped && first) keep_start_stiffness();
+  const bool historic = !state_.element_history.empty();
+  if (active_->present == wanted && !historic && !active_->damped) return;
+  active_->assembly.evaluate(state_.positions, wanted);
+  active_->present = wanted;
+  if (!active_->damped) return;
+  const auto matrix = active_->assembly.matrix();
+  for (std::size_t i = 0; i < matrix.size(); ++i) matrix[i] += rate * active_->start_stiffness[i];
+}
+
+void BodyElements::keep_start_stiffness() {
+  active_->assembly.evaluate(state_.positions, {Tangent::rotated, 1.0, 0.0, false});
+  const auto matrix = active_->assembly.matrix();
+  active_->start_stiffness.assign(matrix.begin(), matrix.end());
+  active_->present.reset();
+}
+
+void BodyElements::leave_from_here() {
+  if (active_->iterating) active_->assembly.linearise_from(&state_.positions);
+}
+
+void BodyElements::forget() {
+  active_->present.reset();
+  active_->assembly.linearise_from(nullptr);
+  prepared_step_.reset();
+}
+
+void BodyElements::end_step(double time_step) {
+  if (state_.element_history.empty()) return;
+  prepare_history(time_step);
+  active_->assembly.advance(state_.positions, state_.element_history);
+  prepared_step_.reset();
+}
+
+double BodyElements::strain_energy() {
+  // What relaxing parts store beside the law's energy is not in it.
+  prepare_history(0.0);
+  const bool present = active_->present.has_value() && state_.element_history.empty();
+  if (!present) active_->assembly.evaluate(state_.positions, {Tangent::none, 1.0, 0.0});
+  return active_->assembly.strain_energy();
+}
+
+mechanics::SmallestVolume BodyElements::smallest_volume() {
+  Assembly& assembly = active_->assembly;
+  if (active_->present) return {assembly.minimum_volume_ratio(), assembly.worst_element()};
+  const auto volume = assembly.measure_volume(state_.positions);
+  return {volume.smallest_ratio, volume.element};
+}
+
+std::size_t BodyElements::bytes() const {
+  std::size_t total = 0;
+  for (const SystemNumbers* n : {plain_.get(), curved_.get()}) {
+    if (n != nullptr) total += n->bytes();
+  }
+  return total;
+}
+
+}  // namespace sinew::fem

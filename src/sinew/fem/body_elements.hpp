@@ -1,0 +1,54 @@
+/// @file
+/// The elements of a body in steps: their forces, matrix and factor.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+
+#include "sinew/core/thread_pool.hpp"
+#include "sinew/fem/fem_state.hpp"
+#include "sinew/fem/system_numbers.hpp"
+#include "sinew/mechanics/step_system.hpp"
+
+namespace sinew::fem {
+
+/// Over the plain pattern or the wider one, as each linearisation asks for it.
+class BodyElements {
+ public:
+  /// @param state,pool must outlive this. @param with_curvature the system to take memory for now.
+  BodyElements(FemState& state, ThreadPool& pool, bool with_curvature);
+
+  /// What the last linearisation was over.
+  SystemNumbers& active() { return *active_; }
+  const SystemNumbers& active() const { return *active_; }
+
+  void begin_step();
+  /// Forces and matrix at the present positions. @param first whether none of this step was before.
+  void linearise(const mechanics::LinearisationRequest& request, bool first);
+  /// A motion is about to be taken from here: what follows in the same step begins with it.
+  void leave_from_here();
+  /// The positions are others from now on.
+  void moved() { active_->present.reset(); }
+  /// Another state is taken up.
+  void forget();
+  /// What elements keep follows. @param time_step s, 0 in statics.
+  void end_step(double time_step);
+
+  double strain_energy();  ///< J, at the present positions
+  mechanics::SmallestVolume smallest_volume();
+  std::size_t bytes() const;
+
+ private:
+  SystemNumbers& numbers(bool with_curvature);
+  void prepare_history(double time_step);
+  void keep_start_stiffness();
+
+  FemState& state_;
+  ThreadPool& pool_;
+  std::unique_ptr<SystemNumbers> plain_, curved_;
+  SystemNumbers* active_ = nullptr;
+  std::optional<double> prepared_step_;  // that the elements' history was last prepared for
+};
+
+}  // namespace sinew::fem

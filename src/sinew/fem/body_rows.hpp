@@ -1,0 +1,49 @@
+/// @file
+/// Constraint rows on the free nodes of a body: its part of H, and of W.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sinew/core/types.hpp"
+#include "sinew/fem/system_numbers.hpp"
+#include "sinew/mechanics/rows.hpp"
+
+namespace sinew::fem {
+
+/// Numbers are those of the last linearisation's system; efforts are (rows,) N of the world's rows.
+class BodyRows {
+ public:
+  /// @param model must outlive this.
+  explicit BodyRows(const FemBodyModel& model);
+
+  /// Takes directions, and which of the rows that come and go are present.
+  void take(const mechanics::RowValues& rows, SystemNumbers& numbers);
+  /// Adds H^T effort. @param sum (3 free,) N.
+  void add_forces(std::span<const double> effort, const SystemNumbers& numbers, VectorX& sum) const;
+  /// The same on mesh nodes. @param forces (n, 3) N.
+  void add_forces(std::span<const double> effort, const SystemNumbers& numbers,
+                  Points& forces) const;
+  /// See mechanics::StepSystem.
+  void add_compliance(std::span<const int> place, const SystemNumbers& numbers, MatrixX& compliance,
+                      VectorX& free_motion) const;
+  /// Of the rows that are always there, as the factorisation counts them.
+  std::span<const double> fixed_effort(std::span<const double> effort);
+
+ private:
+  template <typename Add>
+  void each_entry(std::span<const double> effort, const SystemNumbers& numbers, Add add) const;
+  void add_passing_compliance(std::span<const int> place, const SystemNumbers& numbers,
+                              MatrixX& compliance, VectorX& free_motion) const;
+  void take_presence(const mechanics::RowValues& rows);
+  void hold(SystemNumbers& numbers) const;
+
+  const FemBodyModel& model_;
+  std::vector<double> fixed_effort_;
+  std::vector<std::int32_t>
+      passing_;  // groups of three of the rows that come and go: those present
+};
+
+}  // namespace sinew::fem

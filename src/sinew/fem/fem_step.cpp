@@ -1,0 +1,264 @@
+#include "sinew/fem/fem_step.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/fem/rounding_floor.hpp"
+#include "sinew/fem/tether_force.hpp"
+
+namespace sinew::fem {
+
+namespace {
+
+// A body whose nodes are this many of its sizes away has blown up.
+constexpr double kLargestSize = 1e3;
+
+// Residuals are judged relative to loads, but not to loads that strain a body less than this: at
+// rest there is nothing but rounding to compare with.
+constexpr double kLeastStrain = 1e-5;
+
+std::span<double> span_of(VectorX& v) { return {v.data(), static_cast<std::size_t>(v.size())}; }
+
+}  // namespace
+
+FemStep::FemStep(FemState& state, ThreadPool& pool, bool with_curvature)
+    : state_(state),
+      elements_(state, pool, with_curvature),
+      loads_(state),
+      rows_(state.model),
+      inertia_(state) {
+  const FemBodyModel& model = state.model;
+  const auto nodes = model.elements().free_nodes();
+  const auto size = 3 * static_cast<Eigen::Index>(nodes.size());
+  for (VectorX* v : {&right_, &motion_, &from_, &imbalance_}) v->setZero(size);
+  double modulus = 0.0;
+  for (const Region& region : model.settings().elements.regions) {
+    modulus = std::max(modulus, region.young_modulus());
+  }
+  least_force_ = kLeastStrain * modulus * std::pow(model.elements().volume(), 2.0 / 3.0);
+  const Points& positions = state.positions;
+  const Vector3 extent = positions.colwise().maxCoeff() - positions.colwise().minCoeff();
+  const auto count = static_cast<double>(nodes.size());
+  blow_up_ =
+      kLargestSize * kLargestSize * count * extent.squaredNorm() + 4.0 * positions.squaredNorm();
+}
+
+void FemStep::begin_step() {
+  begin_query();
+  if (inertia_.base().begin_step()) elements_.moved();
+}
+
+void FemStep::begin_query() {
+  inertia_.base().begin_query();
+  state_.start_positions = state_.positions;
+  first_linearisation_ = true;
+  elements_.begin_step();
+}
+
+void FemStep::linearise(const mechanics::LinearisationRequest& request) {
+  tangent_ = request.tangent;
+  elements_.linearise(request, first_linearisation_);
+  loads_.linearise(request);
+  form_right_side(request.weights);
+  first_linearisation_ = false;
+}
+
+// b = p - f - M a - C v, a and v combinations of the motion since the step began and of what was
+// before it (mechanics::StepWeights).
+void FemStep::form_right_side(const mechanics::StepWeights& weights) {
+  const FemModel& elements = state_.model.elements();
+  const auto nodes = elements.free_nodes();
+  const auto forces = elements_.active().assembly.forces();
+  double internal = 0.0;
+  double outside = 0.0;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const auto k = 3 * static_cast<Eigen::Index>(i);
+    const NodeId node = nodes[i];
+    const Eigen::Map<const Vector3> f(forces.data() + k);
+    const Vector3 p =
+        state_.model.weight(node) +
+        (state_.external_forces.row(node) + loads_.forces().row(node) + loads_.drag().row(node))
+            .transpose();
+    right_.segment<3>(k) = p - f;
+    internal += f.squaredNorm();
+    outside += p.squaredNorm();
+  }
+  force_scale_ = least_force_ + std::sqrt(internal) + std::sqrt(outside);
+  if (state_.tether) force_scale_ += pull(*state_.tether, state_.positions, elements, right_);
+  if (lessens_) right_ -= lessening_;
+  if (weights.dynamic()) {
+    force_scale_ += inertia_.add(weights, elements_.active(), first_linearisation_, right_);
+  }
+  for (const std::int32_t held : elements.held()) right_[held] = 0.0;
+}
+
+void FemStep::add_curvature(const mechanics::RowCurvature& curvature) {
+  const FemBodyModel& model = state_.model;
+  const Attachment& first = model.attachment(curvature.first.point);
+  const Attachment& second = model.attachment(curvature.second.point);
+  const bool same = curvature.first.point == curvature.second.point;
+  const auto free = model.elements().free_index();
+  for (std::size_t a = 0; a < first.nodes.size(); ++a) {
+    const auto i = free[static_cast<std::size_t>(first.nodes[a])];
+    if (i < 0) continue;
+    for (std::size_t b = 0; b < second.nodes.size(); ++b) {
+      const auto j = free[static_cast<std::size_t>(second.nodes[b])];
+      if (j < 0 || (same && i < j)) continue;
+      Matrix3 block = -first.weights[a] * second.weights[b] * curvature.curvature;
+      // Off-diagonal pairs stand for themselves and their transpose.
+      if (!same && i == j) block = (block + block.transpose()).eval();
+      elements_.active().assembly.add_block(i, j, block);
+    }
+  }
+  elements_.moved();
+}
+
+void FemStep::take_rows(const mechanics::RowValues& rows) { rows_.take(rows, elements_.active()); }
+
+mechanics::Inertia FemStep::condense() {
+  SystemNumbers& numbers = elements_.active();
+  if (state_.tether) stiffen(*state_.tether, state_.model.elements(), numbers.assembly);
+  loads_.stiffen(tangent_, numbers.assembly);
+  numbers.assembly.hold();
+  numbers.present.reset();
+  const std::span<const double> border(numbers.border);
+  mechanics::Inertia inertia;
+  inertia.status = numbers.factorisation->factorise(
+      numbers.assembly.matrix(), border.first(3 * numbers.system.fixed_entries), span_of(right_));
+  inertia.negative_pivots = numbers.factorisation->negative_pivots();
+  inertia.unsymmetric = !loads_.unsymmetric().empty();
+  return inertia;
+}
+
+void FemStep::add_compliance(std::span<const int> place, MatrixX& compliance,
+                             VectorX& free_motion) const {
+  rows_.add_compliance(place, elements_.active(), compliance, free_motion);
+}
+
+void FemStep::find_imbalance(std::span<const double> effort) {
+  imbalance_ = right_;
+  rows_.add_forces(effort, elements_.active(), imbalance_);
+}
+
+double FemStep::residual(std::span<const double> effort, std::span<double> imbalance) {
+  find_imbalance(effort);
+  if (!imbalance.empty()) std::copy_n(imbalance_.data(), imbalance_.size(), imbalance.data());
+  return imbalance_.norm();
+}
+
+double FemStep::rounding_floor() const {
+  const SystemNumbers& numbers = elements_.active();
+  return fem::rounding_floor(numbers.system.elements->pattern(), numbers.assembly.matrix(),
+                             state_.model.elements().held(),
+                             state_.positions.cwiseAbs().maxCoeff());
+}
+
+void FemStep::lessen(std::span<const double> force) {
+  lessens_ = !force.empty();
+  if (lessens_) lessening_ = Eigen::Map<const VectorX>(force.data(), right_.size());
+}
+
+void FemStep::solve_motion(std::span<const double> effort) {
+  linalg::Factorisation& factor = *elements_.active().factorisation;
+  const FemBodyModel& model = state_.model;
+  if (model.rows().size() > model.fixed_rows()) {
+    find_imbalance(effort);
+    factor.solve(span_of(imbalance_), span_of(motion_));
+  } else {
+    factor.solve_with_effort(rows_.fixed_effort(effort), span_of(motion_));
+  }
+  if (!loads_.unsymmetric().empty()) {
+    correct_for_open_pressure(loads_.unsymmetric(), model.elements().held(), factor, motion_);
+  }
+  leave_from_here();
+}
+
+void FemStep::solve(std::span<const double> right, std::span<double> result) {
+  elements_.active().factorisation->solve(right, result);
+}
+
+void FemStep::propose_motion(std::span<const double> motion) {
+  std::ranges::copy(motion, motion_.data());
+  leave_from_here();
+}
+
+void FemStep::propose_drift(double time_step) {
+  const FemModel& elements = state_.model.elements();
+  const auto nodes = elements.free_nodes();
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    motion_.segment<3>(3 * static_cast<Eigen::Index>(i)) =
+        time_step * state_.velocities.row(nodes[i]).transpose();
+  }
+  for (const std::int32_t held : elements.held()) motion_[held] = 0.0;
+  keep_positions();
+}
+
+void FemStep::leave_from_here() {
+  keep_positions();
+  elements_.leave_from_here();
+}
+
+void FemStep::keep_positions() {
+  const auto nodes = state_.model.elements().free_nodes();
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    from_.segment<3>(3 * static_cast<Eigen::Index>(i)) = state_.positions.row(nodes[i]).transpose();
+  }
+}
+
+Vector3 FemStep::proposed_motion(int point) const {
+  const Attachment& a = state_.model.attachment(point);
+  const auto free = state_.model.elements().free_index();
+  Vector3 sum = Vector3::Zero();
+  for (std::size_t k = 0; k < a.nodes.size(); ++k) {
+    const auto node = free[static_cast<std::size_t>(a.nodes[k])];
+    if (node >= 0) sum += a.weights[k] * motion_.segment<3>(3 * node);
+  }
+  return sum;
+}
+
+mechanics::MotionReport FemStep::apply_motion(double scale) {
+  const auto nodes = state_.model.elements().free_nodes();
+  double sum = 0.0;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const auto k = 3 * static_cast<Eigen::Index>(i);
+    const Vector3 moved = from_.segment<3>(k) + scale * motion_.segment<3>(k);
+    state_.positions.row(nodes[i]) = moved;
+    sum += moved.squaredNorm();
+  }
+  mechanics::MotionReport report;
+  report.largest_move = scale * motion_.cwiseAbs().maxCoeff();
+  report.finite = std::isfinite(sum) && sum < blow_up_;
+  elements_.moved();
+  return report;
+}
+
+mechanics::StepEnd FemStep::end_step(const mechanics::StepWeights& weights) {
+  mechanics::StepEnd end;
+  count_work(weights, end);
+  elements_.end_step(weights.time_step);
+  end.error = state_.end_step(weights);
+  end.moved_from_outside = state_.tether.has_value() || state_.base.moves();
+  return end;
+}
+
+void FemStep::count_work(const mechanics::StepWeights& weights, mechanics::StepEnd& end) {
+  const RayleighDamping& damping = state_.model.settings().damping;
+  if (weights.dynamic() && (damping.mass > 0.0 || damping.stiffness > 0.0)) {
+    end.damped = inertia_.damped_work(weights, elements_.active());
+  }
+  loads_.end_step(weights);
+  for (const NodeId node : state_.model.elements().free_nodes()) {
+    const Vector3 d = (state_.positions.row(node) - state_.start_positions.row(node)).transpose();
+    end.outside +=
+        (state_.external_forces.row(node) + loads_.forces().row(node)).dot(d.transpose());
+    end.damped -= loads_.drag().row(node).dot(d.transpose());
+  }
+}
+
+std::size_t FemStep::bytes() const {
+  const Eigen::Index numbers =
+      right_.size() + motion_.size() + from_.size() + imbalance_.size() + lessening_.size();
+  return sizeof(double) * static_cast<std::size_t>(numbers) + inertia_.bytes() + elements_.bytes();
+}
+
+}  // namespace sinew::fem

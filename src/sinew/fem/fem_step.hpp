@@ -1,0 +1,82 @@
+/// @file
+/// A finite-element body in a step.
+#pragma once
+
+#include "sinew/fem/body_elements.hpp"
+#include "sinew/fem/body_loads.hpp"
+#include "sinew/fem/body_rows.hpp"
+#include "sinew/fem/fem_state.hpp"
+#include "sinew/fem/inertia_forces.hpp"
+#include "sinew/mechanics/step_system.hpp"
+
+namespace sinew::fem {
+
+/// M a + C v + f(q) = p + H^T lambda over the free nodes, C = alpha M + beta K(q_start).
+class FemStep : public mechanics::StepSystem {
+ public:
+  /// @param state,pool must outlive this. @param with_curvature see mechanics::BodyModel::create().
+  FemStep(FemState& state, ThreadPool& pool, bool with_curvature);
+
+  void begin_step() override;
+  void begin_query() override;
+  void linearise(const mechanics::LinearisationRequest& request) override;
+  void add_curvature(const mechanics::RowCurvature& curvature) override;
+  void take_rows(const mechanics::RowValues& rows) override;
+  void retake_rows(const mechanics::RowValues& rows) override { take_rows(rows); }
+  mechanics::Inertia condense() override;
+  void add_compliance(std::span<const int> place, MatrixX& compliance,
+                      VectorX& free_motion) const override;
+
+  std::size_t size() const override { return static_cast<std::size_t>(motion_.size()); }
+  double residual(std::span<const double> effort, std::span<double> imbalance) override;
+  double force_scale() const override { return force_scale_; }
+  double rounding_floor() const override;
+  void lessen(std::span<const double> force) override;
+
+  void solve_motion(std::span<const double> effort) override;
+  void solve(std::span<const double> right, std::span<double> result) override;
+  void propose_motion(std::span<const double> motion) override;
+  void propose_drift(double time_step) override;
+  Vector3 proposed_motion(int point) const override;
+  mechanics::MotionReport apply_motion(double scale) override;
+  mechanics::SmallestVolume smallest_volume() override { return elements_.smallest_volume(); }
+  mechanics::StepEnd end_step(const mechanics::StepWeights& weights) override;
+
+  /// Another state was taken up.
+  void forget() { elements_.forget(); }
+  double strain_energy() { return elements_.strain_energy(); }   ///< J, now
+  double kinetic_energy() { return inertia_.kinetic_energy(); }  ///< J, now
+  /// (n, 3) N on all nodes, as of the last linearisation.
+  Points load_forces() const { return loads_.forces() + loads_.drag(); }
+  void add_row_forces(std::span<const double> effort, Points& forces) const {
+    rows_.add_forces(effort, elements_.active(), forces);
+  }
+  std::size_t bytes() const;
+
+ private:
+  void form_right_side(const mechanics::StepWeights& weights);
+  void find_imbalance(std::span<const double> effort);
+  void keep_positions();
+  void leave_from_here();
+  void count_work(const mechanics::StepWeights& weights, mechanics::StepEnd& end);
+
+  FemState& state_;
+  BodyElements elements_;
+  BodyLoads loads_;
+  BodyRows rows_;
+  InertiaForces inertia_;
+  mechanics::Tangent tangent_ = mechanics::Tangent::real_time;  // of the last linearisation
+  bool first_linearisation_ = true;
+
+  // Over free nodes, (3 free,); lessening_ from the first time that it is given.
+  VectorX right_, motion_;
+  VectorX imbalance_;  // b + H^T effort, N
+  VectorX from_;       // positions that motion_ starts from
+  VectorX lessening_;  // N
+  bool lessens_ = false;
+  double force_scale_ = 0.0;  // N
+  double least_force_ = 0.0;  // N
+  double blow_up_ = 0.0;  // sum of squared positions, m^2, beyond which the state is taken as lost
+};
+
+}  // namespace sinew::fem

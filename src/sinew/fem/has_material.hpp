@@ -1,0 +1,31 @@
+/// @file
+/// What bodies of finite elements show of their material beside mechanics::Body.
+#pragma once
+
+#include <span>
+
+#include "sinew/core/types.hpp"
+
+namespace sinew::fem {
+
+class ElementHistory;
+class HasElements;
+
+/// A body whose material is finite elements: mechanics::as<const HasMaterial>(body). Positions and
+/// forces are those of mechanics::Body, TakesForces and TakesLoads.
+class HasMaterial {
+ public:
+  virtual ~HasMaterial() = default;
+  /// Its model.
+  virtual const HasElements& material() const = 0;
+  virtual const Points& positions() const = 0;
+  virtual const Points& external_forces() const = 0;
+  virtual Points load_forces() const = 0;
+  /// What its elements have behind them.
+  virtual const ElementHistory& history() const = 0;
+  /// Adds the force that rows put on each free node, as of the last linearisation.
+  /// @param effort (rows,) N of the world's rows. @param forces (n, 3) N, added to.
+  virtual void add_row_forces(std::span<const double> effort, Points& forces) const = 0;
+};
+
+}  // namespace sinew::fem
