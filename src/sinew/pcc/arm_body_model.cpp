@@ -1,3 +1,5 @@
+#include "sinew/pcc/arm_body_model.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -5,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/mesh/embedding.hpp"
 #include "sinew/mesh/shapes.hpp"
 #include "sinew/pcc/arm_body.hpp"
 
@@ -83,13 +86,12 @@ int ArmBodyModel::attach_coordinate(int coordinate) {
 }
 
 Vector3 ArmBodyModel::rest_position(int point) const {
-  const Attachment& attachment = attachments_[static_cast<std::size_t>(point)];
-  if (attachment.coordinate >= 0) return Vector3::Zero();
+  const Attachment& at = attachment(point);
+  if (at.coordinate >= 0) return Vector3::Zero();
   ArmDynamics<double> dynamics(arm_);
   const std::vector<double> still(static_cast<std::size_t>(arm_->coordinates()));
   dynamics.place(still);
-  const Vec3<double> x = dynamics.position(attachment.point);
-  return {x.x, x.y, x.z};
+  return plain(dynamics.position(at.point));
 }
 
 void ArmBodyModel::finish(int body, const mechanics::RowPattern& rows,

@@ -1,5 +1,5 @@
 // What the motion of an arm depends on, by name.
-#include "sinew/pcc/arm_body.hpp"
+#include "sinew/pcc/arm_body_model.hpp"
 
 namespace sinew::pcc {
 
@@ -22,7 +22,7 @@ std::vector<NamedHash> ArmBodyModel::parts() const {
 }
 
 std::uint64_t ArmBodyModel::point_hash(int point) const {
-  const Attachment& at = attachments_[static_cast<std::size_t>(point)];
+  const Attachment& at = attachment(point);
   return ValueHash()
       .add(at.coordinate, at.point.segment, at.point.fraction, at.point.x, at.point.y, at.point.z)
       .value();

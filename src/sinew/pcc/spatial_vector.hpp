@@ -42,6 +42,8 @@ Vec3<T> cross(const Vec3<T>& a, const Vec3<T>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
+inline Vector3 plain(const Vec3<double>& v) { return {v.x, v.y, v.z}; }
+
 /// A rotation by its columns: the images of the axes.
 template <typename T>
 struct Rotation {

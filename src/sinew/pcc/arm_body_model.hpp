@@ -1,0 +1,80 @@
+/// @file
+/// A constant-curvature arm as a BodyModel: cables, effectors and controllers work on it as on
+/// finite elements. Its coordinates are those of pcc::Arm, at rest straight.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/mesh/mesh.hpp"
+#include "sinew/pcc/arm_dynamics.hpp"
+#include "sinew/pcc/has_arm.hpp"
+
+namespace sinew::pcc {
+
+class ArmBodyModel final : public mechanics::BodyModel, public HasArm {
+ public:
+  /// A material point, or a coordinate in a point's place.
+  struct Attachment {
+    ArmPoint point;
+    int coordinate = -1;  ///< >= 0: this coordinate
+  };
+  /// An attachment that a row touches.
+  struct Entry {
+    int row = 0;    ///< of rows()
+    int entry = 0;  ///< of the world's
+    int attachment = 0;
+  };
+
+  explicit ArmBodyModel(std::shared_ptr<const Arm> arm);
+
+  const std::string& name() const override { return arm_->settings().name; }
+  /// The section of the straight arm that a point lies in carries it. Throws
+  /// Error(point-outside-mesh) before the base, behind the tip, or farther from the axis than the
+  /// arm's radius, unless `outside` says nearest: the first or last section then carries it.
+  int attach(const Vector3& rest_position, mesh::Outside outside, const std::string& what) override;
+  int attach_ball(const Vector3& centre, double radius, mesh::Outside outside,
+                  const std::string& what) override;
+  /// Throws Error(wrong-type): it has no nodes.
+  int attach_nodes(std::span<const NodeId> nodes, std::span<const double> weights) override;
+  int attach_coordinate(int coordinate) override;
+  Vector3 rest_position(int point) const override;
+  void finish(int body, const mechanics::RowPattern& rows,
+              std::span<const mechanics::RowCurvature> curvatures,
+              const linalg::FactorisationSettings& settings) override;
+  bool couples(int, int) const override { return true; }
+  std::vector<NamedHash> parts() const override;
+  std::uint64_t point_hash(int point) const override;
+  std::unique_ptr<mechanics::Body> create(ThreadPool& pool, bool with_curvature,
+                                          int histories) const override;
+  /// A cylinder of hexahedra of the arm's radius, for records and the view.
+  const mesh::Mesh& mesh() const override { return skin_; }
+
+  const Arm& arm() const override { return *arm_; }
+  std::shared_ptr<const Arm> shared_arm() const override { return arm_; }
+
+  const Attachment& attachment(int point) const {
+    return attachments_[static_cast<std::size_t>(point)];
+  }
+  /// World rows that touch it, ascending.
+  const std::vector<std::int32_t>& rows() const { return rows_; }
+  const std::vector<Entry>& entries() const { return entries_; }
+  /// The points that the nodes of mesh() are.
+  const std::vector<ArmPoint>& skin_points() const { return skin_points_; }
+
+ private:
+  ArmPoint locate(const Vector3& rest_position, mesh::Outside outside,
+                  const std::string& what) const;
+  void make_skin();
+
+  std::shared_ptr<const Arm> arm_;
+  std::vector<Attachment> attachments_;
+  std::vector<std::int32_t> rows_;
+  std::vector<Entry> entries_;
+  mesh::Mesh skin_;
+  std::vector<ArmPoint> skin_points_;
+};
+
+}  // namespace sinew::pcc

@@ -1,0 +1,48 @@
+/// @file
+/// Where the material of an arm's body is, and how it moves.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "sinew/core/types.hpp"
+#include "sinew/pcc/arm_body_model.hpp"
+#include "sinew/pcc/arm_dynamics.hpp"
+#include "sinew/pcc/arm_state.hpp"
+
+namespace sinew::pcc {
+
+/// Looks at the state when somebody asks.
+class ArmPose {
+ public:
+  /// @param model,state must outlive this.
+  ArmPose(const ArmBodyModel& model, const ArmState& state);
+
+  /// The state is another from now on.
+  void moved() { looking_ = showing_ = false; }
+
+  /// At the state; see ArmDynamics::set().
+  const ArmDynamics<double>& dynamics() const;
+  Vector3 position(int point) const;  ///< (3,) m, of an attached point
+  Vector3 velocity(int point) const;  ///< (3,) m/s
+  /// (coordinates,) columns of a point's Jacobian; valid until the next call.
+  const std::vector<Vec3<double>>& jacobian(const ArmPoint& point);
+  const Points& skin() const;             ///< (n, 3) m, of the nodes of the model's mesh
+  const Points& skin_velocities() const;  ///< (n, 3) m/s
+
+  std::size_t bytes() const;
+
+ private:
+  void look() const;
+  void show() const;
+
+  const ArmBodyModel& model_;
+  const ArmState& state_;
+  mutable ArmDynamics<double> dynamics_;
+  mutable bool looking_ = false;  // dynamics_ is at the state
+  mutable Points skin_, skin_velocities_;
+  mutable bool showing_ = false;  // so are these
+  std::vector<Vec3<double>> columns_;
+};
+
+}  // namespace sinew::pcc
