@@ -12,8 +12,10 @@
 #include "sinew/constraint/contact.hpp"
 #include "sinew/constraint/effector.hpp"
 #include "sinew/constraint/probe.hpp"
-#include "sinew/fem/fem_body.hpp"
+#include "sinew/fem/has_material.hpp"
 #include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/topology.hpp"
 #include "sinew/sim/row_efforts.hpp"
 
@@ -322,7 +324,7 @@ const std::vector<FieldInfo>& list_fields() {
     const auto add = [&](FieldInfo info, const auto& values) {
       info.values = [values](const mechanics::Body& body, const sim::Simulation& simulation,
                              const fem::NodalMean* mean) {
-        const auto* own = dynamic_cast<const fem::FemBody*>(&body);
+        const auto* own = mechanics::as<const fem::HasMaterial>(body);
         return own == nullptr
                    ? std::vector<double>(static_cast<std::size_t>(body.positions().rows()), 0.0)
                    : values(*own, simulation, *mean);
@@ -331,13 +333,13 @@ const std::vector<FieldInfo>& list_fields() {
     };
     for (const fem::ElementFieldInfo& info : fem::element_fields()) {
       add({info.name, info.label, info.unit, info.description, {}},
-          [field = info.field](const fem::FemBody& body, const sim::Simulation&,
+          [field = info.field](const fem::HasMaterial& body, const sim::Simulation&,
                                const fem::NodalMean& mean) {
             return mean(fem::element_field(body, field));
           });
     }
     add({"actuator_force", "Actuators' force", "N", "force of the actuators on each node", {}},
-        [](const fem::FemBody& body, const sim::Simulation& simulation, const fem::NodalMean&) {
+        [](const fem::HasMaterial& body, const sim::Simulation& simulation, const fem::NodalMean&) {
           return fem::row_force_field(body, sim::split_efforts(simulation).actuation);
         });
     return all;

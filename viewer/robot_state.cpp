@@ -10,9 +10,10 @@
 
 #include "sinew/constraint/cable.hpp"
 #include "sinew/constraint/probe.hpp"
-#include "sinew/fem/fem_body.hpp"
+#include "sinew/fem/of_elements.hpp"
 #include "sinew/mechanics/body.hpp"
-#include "sinew/pcc/arm_body.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 
 namespace sinew::viewer {
 
@@ -260,8 +261,9 @@ void RobotState::check(const RecordedState& recorded) const {
 void RobotState::put_body(const sim::Observable& what, const std::vector<double>& numbers,
                           sim::State& state) const {
   const int body = simulation_->model().body_index(what.owner);
-  const bool arm = dynamic_cast<const pcc::ArmBody*>(&simulation_->world().body(body)) != nullptr;
-  if (what.quantity != (arm ? "coordinates" : "positions")) return;
+  const bool of_coordinates =
+      mechanics::as<const mechanics::HasCoordinates>(simulation_->body(body)) != nullptr;
+  if (what.quantity != (of_coordinates ? "coordinates" : "positions")) return;
   std::vector<double>& own = state.bodies[static_cast<std::size_t>(body)];
   std::ranges::fill(own, 0.0);  // a moment at rest
   std::ranges::copy(numbers, own.begin());
@@ -302,7 +304,7 @@ void RobotState::show(const RecordedState& recorded) {
 void RobotState::pull(const Pull& pull) {
   const int body = simulation_->model().body_index(pull.body);
   const Surface& surface = description_.surfaces[static_cast<std::size_t>(body)];
-  fem::Tether tether;
+  mechanics::Tether tether;
   for (std::size_t k = 0; k < 3; ++k) {
     const int vertex = pull.vertices[k];
     if (static_cast<std::size_t>(vertex) >= surface.nodes.size()) {
@@ -316,12 +318,14 @@ void RobotState::pull(const Pull& pull) {
   tether.anchor = pull.anchor;
   tether.stiffness = pull.stiffness;
   if (pulled_ && *pulled_ != body) release();
-  simulation_->fem_body(body).set_tether(tether);
+  fem::of_elements<mechanics::TakesForces>(simulation_->body(body)).set_tether(tether);
   pulled_ = body;
 }
 
 void RobotState::release() {
-  if (pulled_) simulation_->fem_body(*pulled_).set_tether(std::nullopt);
+  if (pulled_) {
+    mechanics::as<mechanics::TakesForces>(simulation_->body(*pulled_))->set_tether(std::nullopt);
+  }
   pulled_.reset();
 }
 
@@ -335,7 +339,7 @@ void RobotState::fill_signals(Frame& frame) {
 }
 
 void RobotState::fill_body(std::size_t index, const FieldChoice& wanted, BodyFrame& frame) {
-  const mechanics::Body& body = simulation_->world().body(static_cast<int>(index));
+  const mechanics::Body& body = simulation_->body(static_cast<int>(index));
   const Surface& surface = description_.surfaces[index];
   frame.positions.reserve(3 * surface.nodes.size());
   for (const NodeId node : surface.nodes) {
@@ -362,11 +366,11 @@ void RobotState::fill_points(Frame& frame) {
   for (std::size_t i = 0; i < model.actuators().size(); ++i) {
     const constraint::Cable* cable = model.cable(static_cast<int>(i));
     if (cable == nullptr) continue;
-    const Points points = cable->points(simulation_->world().placement());
+    const Points points = cable->points(simulation_->placement());
     for (Eigen::Index k = 0; k < points.rows(); ++k) put(frame.cables, points.row(k).transpose());
   }
   for (const auto& probe : model.probes()) {
-    const Points marks = probe->marks(simulation_->world().placement());
+    const Points marks = probe->marks(simulation_->placement());
     for (Eigen::Index k = 0; k < marks.rows(); ++k) put(frame.probes, marks.row(k).transpose());
   }
   // Rotations are no points.
@@ -425,10 +429,10 @@ std::shared_ptr<const Frame> RobotState::frame(const FieldChoice& wanted, double
   fill_points(*frame);
   fill_contacts(*frame);
   if (pulled_) {
-    const fem::FemBody& body = simulation_->fem_body(*pulled_);
+    const auto& body = *mechanics::as<mechanics::TakesForces>(simulation_->body(*pulled_));
     const Vector3 point = body.tether_point();
-    frame->pull = {point, body.tether()->anchor,
-                   body.tether()->stiffness * (body.tether()->anchor - point).norm()};
+    const mechanics::Tether& tether = *body.tether();
+    frame->pull = {point, tether.anchor, tether.stiffness * (tether.anchor - point).norm()};
   }
   return frame;
 }

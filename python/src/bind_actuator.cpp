@@ -137,7 +137,7 @@ auto of_cable(const char* what, Measure measure) {
   return [what, measure](const Actuator& self) {
     const constraint::Cable& found = cable(self, what);
     const Session::Use use(*self.session);
-    return measure(found, self.session->simulation().world().placement());
+    return measure(found, self.session->simulation().placement());
   };
 }
 

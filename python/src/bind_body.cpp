@@ -2,10 +2,15 @@
 
 #include "sinew/fem/assembly.hpp"
 #include "sinew/fem/element_count.hpp"
-#include "sinew/fem/fem_body.hpp"
+#include "sinew/fem/fem_model.hpp"
+#include "sinew/fem/has_elements.hpp"
+#include "sinew/fem/has_material.hpp"
+#include "sinew/fem/of_elements.hpp"
 #include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/self_touch.hpp"
-#include "sinew/pcc/arm_body.hpp"
+#include "sinew/pcc/has_arm.hpp"
 
 #include "arrays.hpp"
 #include "bindings.hpp"
@@ -16,14 +21,17 @@ namespace sinew::python {
 
 namespace {
 
-fem::FemBody& body(const Body& self) { return self.session->simulation().fem_body(self.index); }
-const fem::FemModel& elements(const Body& self) { return body(self).fem_model().elements(); }
-const mechanics::Body& any(const Body& self) {
-  return self.session->simulation().world().body(self.index);
+mechanics::Body& body(const Body& self) { return self.session->simulation().body(self.index); }
+const std::string& name(const Body& self) { return body(self).model().name(); }
+const fem::HasElements& model(const Body& self) {
+  return fem::of_elements<const fem::HasMaterial>(body(self)).material();
 }
-const std::string& name(const Body& self) { return any(self).model().name(); }
-const pcc::ArmBody& arm(const Body& self) {
-  const auto* found = dynamic_cast<const pcc::ArmBody*>(&any(self));
+const fem::FemModel& elements(const Body& self) { return model(self).elements(); }
+Points& external_forces(const Body& self) {
+  return fem::of_elements<mechanics::TakesForces>(body(self)).external_forces();
+}
+const mechanics::HasCoordinates& arm(const Body& self) {
+  const auto* found = mechanics::as<const mechanics::HasCoordinates>(body(self));
   if (found == nullptr) {
     throw Error(ErrorKind::wrong_type, {.item = fmt::format("body('{}')", name(self))},
                 "this body is not of constant curvatures", "ask for its positions");
@@ -33,21 +41,22 @@ const pcc::ArmBody& arm(const Body& self) {
 
 py::array points_view(const Body& self, const Points& points, bool writable = false) {
   // An arm works its points out when asked; there is nothing to look at live.
-  if (dynamic_cast<const pcc::ArmBody*>(&any(self)) != nullptr) return copy(points);
+  if (mechanics::as<const mechanics::HasCoordinates>(body(self)) != nullptr) return copy(points);
   return view(points.data(), points.rows(), 3, py::cast(self.session), writable);
 }
 
 void set_external_forces(const Body& self, const py::object& value) {
   const Points forces = to_points(value, fmt::format("body('{}').external_forces", name(self)), "N",
-                                  body(self).positions().rows());
+                                  external_forces(self).rows());
   const Session::Use use(*self.session);
-  body(self).external_forces() = forces;
+  external_forces(self) = forces;
 }
 
 Points positions_from(const Body& self, const py::object& positions, const char* what) {
-  if (positions.is_none()) return body(self).positions();
+  const Points& now = fem::of_elements<const fem::HasMaterial>(body(self)).positions();
+  if (positions.is_none()) return now;
   return to_points(positions, fmt::format("body('{}').{}(positions)", name(self), what), "m",
-                   body(self).positions().rows());
+                   now.rows());
 }
 
 // Internal forces on free nodes as a row for every node.
@@ -55,7 +64,7 @@ Array internal_forces(const Body& self, const py::object& positions) {
   const Session::Use use(*self.session);
   const Points at = positions_from(self, positions, "internal_forces");
   ThreadPool pool;
-  fem::Assembly assembly(body(self).fem_model().system(false).elements, pool);
+  fem::Assembly assembly(model(self).shared_elements(), pool);
   assembly.evaluate(at, {fem::Tangent::none, 1.0, 0.0});
   Points forces = Points::Zero(at.rows(), 3);
   const auto nodes = elements(self).free_nodes();
@@ -76,7 +85,7 @@ py::object stiffness(const Body& self, const py::object& positions, const std::s
   const Session::Use use(*self.session);
   const Points at = positions_from(self, positions, "stiffness");
   ThreadPool pool;
-  fem::Assembly assembly(body(self).fem_model().system(false).elements, pool);
+  fem::Assembly assembly(model(self).shared_elements(), pool);
   assembly.evaluate(at,
                     {tangent == "exact" ? fem::Tangent::exact : fem::Tangent::rotated, 1.0, 0.0});
   const auto& pattern = elements(self).pattern();
@@ -112,9 +121,10 @@ py::object stiffness(const Body& self, const py::object& positions, const std::s
 // H: row k's work on node i is H[k, i] . dx_i.
 Array jacobian(const Body& self) {
   const Session::Use use(*self.session);
-  const sim::World& world = self.session->simulation().world();
+  const auto& directions = self.session->simulation().world().rows().direction;
   const auto& pattern = self.session->model().rows();
-  const auto nodes = body(self).positions().rows();
+  const fem::HasElements& own = model(self);
+  const auto nodes = own.elements().mesh().nodes.rows();
   Array result({static_cast<Eigen::Index>(pattern.rows()), nodes, Eigen::Index{3}});
   auto h = result.mutable_unchecked<3>();
   std::fill_n(result.mutable_data(), result.size(), 0.0);
@@ -124,10 +134,10 @@ Array jacobian(const Body& self) {
       const auto entry = static_cast<std::size_t>(e);
       const auto& point = pattern.point[entry];
       if (point.body != self.index) continue;
-      const auto& attachment = body(self).fem_model().attachment(point.point);
+      const auto& attachment = own.attachment(point.point);
       for (std::size_t a = 0; a < attachment.nodes.size(); ++a) {
         for (int c = 0; c < 3; ++c) {
-          h(k, attachment.nodes[a], c) += attachment.weights[a] * world.rows().direction[entry][c];
+          h(k, attachment.nodes[a], c) += attachment.weights[a] * directions[entry][c];
         }
       }
     }
@@ -187,7 +197,7 @@ Error
     bad-argument where the scene moves this base by `base`; nothing-fixed; not-finite.
 )");
   type.def_property_readonly(
-          "positions", [](const Body& self) { return points_view(self, any(self).positions()); },
+          "positions", [](const Body& self) { return points_view(self, body(self).positions()); },
           R"((n, 3) ndarray: positions of all nodes now, in the mesh's order (m). Where a mesh of linear
 tetrahedra is made quadratic, its own nodes come first and the middle nodes after them.
 
@@ -210,17 +220,18 @@ while another thread steps. Copy it to keep a moment: `body.positions.copy()`.)"
       .def_property_readonly(
           "arm",
           [](const Body& self) {
-            const auto& model = dynamic_cast<const pcc::ArmBodyModel&>(arm(self).model());
-            return std::make_unique<PccArm>(model.shared_arm());
+            arm(self);  // or an error
+            const auto& own = *mechanics::as<const pcc::HasArm>(body(self).model());
+            return std::make_unique<PccArm>(own.shared_arm());
           },
           "sinew.pcc.Arm: what a constant-curvature body is made of.")
       .def_property_readonly(
-          "velocities", [](const Body& self) { return points_view(self, any(self).velocities()); },
+          "velocities", [](const Body& self) { return points_view(self, body(self).velocities()); },
           "(n, 3) ndarray: velocities of all nodes (m/s); zero in quasi-static runs. A live, "
           "read-only view.")
       .def_property(
           "external_forces",
-          [](const Body& self) { return points_view(self, body(self).external_forces(), true); },
+          [](const Body& self) { return points_view(self, external_forces(self), true); },
           &set_external_forces,
           R"((n, 3) ndarray: dead loads on the nodes beside gravity (N).
 
@@ -233,8 +244,8 @@ void bind_loads_of(py::class_<Body>& type) {
           "self_touch",
           [](const Body& self, double apart) -> py::object {
             const Session::Use use(*self.session);
-            const fem::FemBody& own = body(self);
-            const auto found = mesh::SelfTouch(own.fem_model().mesh()).find(own.positions(), apart);
+            const mesh::Mesh& own = elements(self).mesh();
+            const auto found = mesh::SelfTouch(own).find(body(self).positions(), apart);
             if (!found) return py::none();
             return py::make_tuple(found->node, found->element);
           },
@@ -249,7 +260,7 @@ lies in an element it does not belong to. Nothing keeps it from doing so. What i
           "load_forces",
           [](const Body& self) {
             const Session::Use use(*self.session);
-            return copy(body(self).load_forces());
+            return copy(fem::of_elements<mechanics::TakesLoads>(body(self)).load_forces());
           },
           "(n, 3) ndarray: what the scene's loads put on all nodes (N), as the last step had "
           "them.");
@@ -258,12 +269,12 @@ lies in an element it does not belong to. Nothing keeps it from doing so. What i
 void bind_mesh_of(py::class_<Body>& type) {
   type.def_property_readonly(
           "rest_positions",
-          [](const Body& self) { return points_view(self, any(self).model().mesh().nodes); },
+          [](const Body& self) { return points_view(self, body(self).model().mesh().nodes); },
           "(n, 3) ndarray: positions of all nodes at rest (m). Read-only.")
       .def_property_readonly(
           "tetrahedra",
           [](const Body& self) {
-            const auto& list = any(self).model().mesh().tetrahedra;
+            const auto& list = body(self).model().mesh().tetrahedra;
             return view<NodeId>(list.empty() ? nullptr : list.front().data(),
                                 static_cast<py::ssize_t>(list.size()), 4, py::cast(self.session));
           },
@@ -272,7 +283,7 @@ void bind_mesh_of(py::class_<Body>& type) {
       .def_property_readonly(
           "quadratic_tetrahedra",
           [](const Body& self) {
-            const auto& list = any(self).model().mesh().quadratic;
+            const auto& list = body(self).model().mesh().quadratic;
             return view<NodeId>(list.empty() ? nullptr : list.front().data(),
                                 static_cast<py::ssize_t>(list.size()), 10, py::cast(self.session));
           },
@@ -281,7 +292,7 @@ void bind_mesh_of(py::class_<Body>& type) {
       .def_property_readonly(
           "hexahedra",
           [](const Body& self) {
-            const auto& list = any(self).model().mesh().hexahedra;
+            const auto& list = body(self).model().mesh().hexahedra;
             return view<NodeId>(list.empty() ? nullptr : list.front().data(),
                                 static_cast<py::ssize_t>(list.size()), 8, py::cast(self.session));
           },
@@ -300,7 +311,7 @@ void bind_mesh_of(py::class_<Body>& type) {
                              "(n,) ndarray of bool: nodes that never move: fixed ones and those "
                              "that belong to no element.")
       .def_property_readonly(
-          "node_sets", [](const Body& self) { return any(self).model().mesh().node_sets; },
+          "node_sets", [](const Body& self) { return body(self).model().mesh().node_sets; },
           "dict: named sets of nodes of the mesh.")
       .def_property_readonly(
           "mass", [](const Body& self) { return elements(self).total_mass(); },
@@ -313,24 +324,22 @@ void bind_mesh_of(py::class_<Body>& type) {
           "float: volume at rest (m^3).");
 }
 
-template <typename Get>
-auto energy(Get get) {
-  return [get](const Body& self) {
+auto energy(double mechanics::Energies::*part) {
+  return [part](const Body& self) {
     const Session::Use use(*self.session);
-    return get(body(self));
+    model(self);  // or an error
+    return body(self).energies().*part;
   };
 }
 
 void bind_mechanics(py::class_<Body>& type) {
   type.def_property_readonly(
-          "strain_energy", energy([](fem::FemBody& b) { return b.strain_energy(); }),
+          "strain_energy", energy(&mechanics::Energies::strain),
           "float: elastic energy now (J), that of the law of slow motion in viscoelastic "
           "materials; with what softening has dissipated.")
-      .def_property_readonly("kinetic_energy",
-                             energy([](fem::FemBody& b) { return b.kinetic_energy(); }),
+      .def_property_readonly("kinetic_energy", energy(&mechanics::Energies::kinetic),
                              "float: energy of motion now (J).")
-      .def_property_readonly("gravity_energy",
-                             energy([](fem::FemBody& b) { return b.gravity_energy(); }),
+      .def_property_readonly("gravity_energy", energy(&mechanics::Energies::gravity),
                              "float: gravity's potential with respect to rest (J).")
       .def("internal_forces", &internal_forces, py::arg("positions") = py::none(),
            R"(internal_forces($self, positions=None)
@@ -388,7 +397,7 @@ void bind_body(py::module_& module) {
   type.def_property_readonly(
           "name", [](const Body& self) { return name(self); }, "str: as in the scene.")
       .def("__repr__", [](const Body& self) {
-        const mesh::Mesh& mesh = any(self).model().mesh();
+        const mesh::Mesh& mesh = body(self).model().mesh();
         return fmt::format("<sinew.Body '{}', {} nodes, {} elements>", name(self),
                            mesh.nodes.rows(), mesh.tetrahedra.size() + mesh.hexahedra.size());
       });

@@ -37,9 +37,9 @@ Array value_of(const Effector& self, bool orientation) {
 // For positions the point's velocity; for orientations its rows, which are the angular velocity.
 Array velocity(const Effector& self) {
   const Session::Use use(*self.session);
-  const sim::World& world = self.session->simulation().world();
+  const sim::Simulation& simulation = self.session->simulation();
   if (const auto* point = dynamic_cast<const constraint::PointEffector*>(&model(self))) {
-    return copy(world.placement().velocity(point->point()));
+    return copy(simulation.placement().velocity(point->point()));
   }
   const auto& pattern = self.session->model().rows();
   Vector3 turn = Vector3::Zero();
@@ -47,8 +47,8 @@ Array velocity(const Effector& self) {
     const auto row = static_cast<std::size_t>(model(self).first_row() + k);
     for (auto e = pattern.row_start[row]; e < pattern.row_start[row + 1]; ++e) {
       const auto entry = static_cast<std::size_t>(e);
-      turn[k] +=
-          world.rows().direction[entry].dot(world.placement().velocity(pattern.point[entry]));
+      turn[k] += simulation.world().rows().direction[entry].dot(
+          simulation.placement().velocity(pattern.point[entry]));
     }
   }
   return copy(turn);

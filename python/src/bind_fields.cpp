@@ -3,7 +3,9 @@
 
 #include "sinew/fem/element_fields.hpp"
 #include "sinew/fem/element_states.hpp"
-#include "sinew/fem/fem_body.hpp"
+#include "sinew/fem/has_elements.hpp"
+#include "sinew/fem/has_material.hpp"
+#include "sinew/fem/of_elements.hpp"
 #include "sinew/fem/solid_elements.hpp"
 
 #include "arrays.hpp"
@@ -14,7 +16,10 @@ namespace sinew::python {
 
 namespace {
 
-fem::FemBody& body(const Body& self) { return self.session->simulation().fem_body(self.index); }
+const fem::HasMaterial& body(const Body& self) {
+  return fem::of_elements<const fem::HasMaterial>(self.session->simulation().body(self.index));
+}
+const fem::FemModel& elements(const Body& self) { return body(self).material().elements(); }
 
 // (m, 3, 3) of tensors.
 Array tensors(const std::vector<Matrix3>& list) {
@@ -48,19 +53,19 @@ Array element_field(const Body& self, const std::string& field) {
 
 Array nodal_field(const Body& self, const std::string& field) {
   const Session::Use use(*self.session);
-  const fem::NodalMean mean(body(self).fem_model());
+  const fem::NodalMean mean(elements(self));
   return numbers(mean(fem::element_field(body(self), fem::element_field_of(field))));
 }
 
 // (m, ...) of elements to (n, ...) of nodes.
 py::array nodal_means(const Body& self, const py::array_t<double, py::array::c_style>& values) {
-  const auto count = fem::ElementList(body(self).fem_model().mesh()).count();
+  const auto count = fem::ElementList(elements(self).mesh()).count();
   if (values.ndim() == 0 || values.shape(0) != count) {
     throw Error(ErrorKind::wrong_shape, {.item = "nodal_means(values)"},
                 fmt::format("there are {} elements", count), "give one row for every element");
   }
   const auto width = static_cast<std::size_t>(values.size()) / static_cast<std::size_t>(count);
-  const fem::NodalMean mean(body(self).fem_model());
+  const fem::NodalMean mean(elements(self));
   const std::vector<double> result =
       mean({values.data(), static_cast<std::size_t>(values.size())}, width);
   std::vector<py::ssize_t> shape(values.shape(), values.shape() + values.ndim());

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "sinew/constraint/tie.hpp"
-#include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/body_model.hpp"
 #include "sinew/sim/weld_load.hpp"
 
 #include "arrays.hpp"

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/body_model.hpp"
 
 #include "arrays.hpp"
 #include "bindings.hpp"
@@ -15,7 +16,7 @@ const sim::MassModel& model(const PointMass& self) {
 }
 
 const mechanics::Body& carrier(const PointMass& self) {
-  return self.session->simulation().world().body(model(self).body);
+  return self.session->simulation().body(model(self).body);
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ py::object value(const Probe& self) {
 
 Array positions(const Probe& self) {
   const Session::Use use(*self.session);
-  return copy(model(self).marks(self.session->simulation().world().placement()));
+  return copy(model(self).marks(self.session->simulation().placement()));
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "sinew/constraint/probe.hpp"
-#include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/body_model.hpp"
 #include "sinew/scene/scene.hpp"
 
 #include "arrays.hpp"

@@ -6,21 +6,13 @@
 #include <fmt/format.h>
 #include <pybind11/pybind11.h>
 
-#include "sinew/fem/fem_body.hpp"
 #include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 
 #include "errors.hpp"
 
 namespace sinew::python {
-
-namespace {
-
-// Whether a body is of finite elements, whose nodes take forces.
-bool of_elements(const sim::Simulation& simulation, int body) {
-  return dynamic_cast<const fem::FemBody*>(&simulation.world().body(body)) != nullptr;
-}
-
-}  // namespace
 
 namespace {
 
@@ -54,9 +46,9 @@ std::shared_ptr<Session> Session::clone() const {
 
 void Session::check_loads() const {
   for (std::size_t i = 0; i < model().bodies().size(); ++i) {
-    if (!of_elements(simulation_, static_cast<int>(i))) continue;
-    const auto& body = simulation_.fem_body(static_cast<int>(i));
-    if (body.external_forces().allFinite()) continue;
+    const auto* body =
+        mechanics::as<const mechanics::TakesForces>(simulation_.body(static_cast<int>(i)));
+    if (body == nullptr || body->external_forces().allFinite()) continue;
     throw Error(ErrorKind::not_finite,
                 {.item = fmt::format("body('{}').external_forces", model().bodies()[i]->name())},
                 "a force is not a finite number", "write finite forces in N");
@@ -114,8 +106,8 @@ sim::StaticReport Session::solve_static(const sim::StaticSettings& settings) {
 void Session::reset() {
   const Use use(*this);
   for (std::size_t i = 0; i < model().bodies().size(); ++i) {
-    if (!of_elements(simulation_, static_cast<int>(i))) continue;
-    simulation_.fem_body(static_cast<int>(i)).external_forces().setZero();
+    auto* body = mechanics::as<mechanics::TakesForces>(simulation_.body(static_cast<int>(i)));
+    if (body != nullptr) body->external_forces().setZero();
   }
   simulation_.reset();
   flagged_.clear();

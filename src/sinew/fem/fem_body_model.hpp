@@ -62,6 +62,7 @@ class FemBodyModel final : public mechanics::BodyModel, public HasElements {
 
   const mesh::Mesh& mesh() const override { return *settings_.mesh; }
   const FemModel& elements() const override { return *plain_.elements; }
+  std::shared_ptr<const FemModel> shared_elements() const override { return plain_.elements; }
   const FemBodySettings& settings() const override { return settings_; }
   /// (n, 3) m/s: of all nodes at the start; zero at fixed nodes and along held axes.
   Points start_velocities() const;

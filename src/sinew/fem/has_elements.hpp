@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,8 @@ class HasElements {
  public:
   virtual ~HasElements() = default;
   virtual const FemModel& elements() const = 0;
+  /// For an Assembly of the same elements.
+  virtual std::shared_ptr<const FemModel> shared_elements() const = 0;
   virtual const FemBodySettings& settings() const = 0;
   /// Of an attached point.
   virtual const Attachment& attachment(int point) const = 0;

@@ -9,7 +9,8 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
-#include "sinew/pcc/arm_body.hpp"
+#include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 #include "sinew/plan/reach.hpp"
 #include "sinew/plan/uniform.hpp"
 #include "sinew/sim/model_builder.hpp"
@@ -200,8 +201,8 @@ class Bench {
   }
 
  private:
-  const pcc::ArmBody& body() const {
-    return dynamic_cast<const pcc::ArmBody&>(simulation_->world().body(0));
+  const mechanics::HasCoordinates& body() const {
+    return *mechanics::as<const mechanics::HasCoordinates>(simulation_->body(0));
   }
   void tell(int actuator, double value) {
     simulation_->command(actuator, {sim::CommandKind::effort, sim::Signal::constant(value)});

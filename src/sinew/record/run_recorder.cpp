@@ -12,8 +12,10 @@
 #include "sinew/core/build_info.hpp"
 #include "sinew/fem/element_fields.hpp"
 #include "sinew/fem/element_states.hpp"
-#include "sinew/fem/fem_body.hpp"
+#include "sinew/fem/has_material.hpp"
 #include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/write.hpp"
 #include "sinew/record/run_states.hpp"
 #include "sinew/record/run_table.hpp"
@@ -85,7 +87,7 @@ class ParaviewSeries {
 
   void write() {
     for (std::size_t b = 0; b < lists_.size(); ++b) {
-      const mechanics::Body& body = simulation_.world().body(static_cast<int>(b));
+      const mechanics::Body& body = simulation_.body(static_cast<int>(b));
       const mesh::Mesh& mesh = body.model().mesh();
       mesh::VtuFields fields;
       fields.positions = &body.positions();
@@ -101,7 +103,7 @@ class ParaviewSeries {
  private:
   // Of finite elements: stress, strain, what holds the body.
   void add_fields(int index, mesh::VtuFields& fields) {
-    const fem::FemBody& body = simulation_.fem_body(index);
+    const auto& body = *mechanics::as<const fem::HasMaterial>(simulation_.body(index));
     const fem::NodalMean& mean = *means_[static_cast<std::size_t>(index)];
     const fem::ElementStates states = fem::element_states(body);
     fields.cells.push_back({"deformation_gradient", 9, rows_of(states.deformation)});
@@ -120,7 +122,7 @@ class ParaviewSeries {
     if (!simulation_.model().contacts().empty()) add_contact_force(body, fields);
   }
 
-  void add_contact_force(const fem::FemBody& body, mesh::VtuFields& fields) {
+  void add_contact_force(const fem::HasMaterial& body, mesh::VtuFields& fields) {
     Points forces = Points::Zero(body.positions().rows(), 3);
     body.add_row_forces(sim::split_efforts(simulation_).contact, forces);
     fields.points.push_back({"contact_force", 3, {forces.data(), forces.data() + forces.size()}});

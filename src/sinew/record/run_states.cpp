@@ -7,7 +7,8 @@
 
 #include "sinew/constraint/probe.hpp"
 #include "sinew/core/build_info.hpp"
-#include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/mesh/mesh.hpp"
 #include "sinew/record/run_layout.hpp"
 
 namespace sinew::record {
