@@ -8,24 +8,12 @@
 #include <span>
 
 #include "sinew/core/types.hpp"
+#include "sinew/mechanics/energies.hpp"
 
 namespace sinew::mechanics {
 
 class BodyModel;
 class StepSystem;
-
-/// J; gravity's from the height at rest.
-struct Energies {
-  double strain = 0.0, kinetic = 0.0, gravity = 0.0;
-
-  double total() const { return strain + kinetic + gravity; }
-  Energies& operator+=(const Energies& other) {
-    strain += other.strain;
-    kinetic += other.kinetic;
-    gravity += other.gravity;
-    return *this;
-  }
-};
 
 /// The state of one body in one simulation.
 class Body {

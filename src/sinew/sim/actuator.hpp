@@ -6,14 +6,12 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 
 #include "sinew/core/error.hpp"
 #include "sinew/sim/signal.hpp"
 #include "sinew/step/drive.hpp"
-#include "sinew/step/step_problem.hpp"
 
 namespace sinew::sim {
 
@@ -73,18 +71,5 @@ struct ActuatorState {
   bool slack = true;            ///< a cable without tension
   const void* owner = nullptr;  ///< the controller that has it; null: it obeys its command
 };
-
-/// What an actuator may do in a step, from the state before it.
-/// @param model,state of one actuator, before the step.
-/// @param drive_state of its drive, before the step.
-/// @param time the end of the step (s), at which the command is read.
-/// @param time_step s; infinity lifts the limits on rates.
-step::ActuatorBlock actuator_block(const ActuatorModel& model, const ActuatorState& state,
-                                   std::span<const double> drive_state, double time,
-                                   double time_step);
-
-/// Moves a block's command towards it from where the actuator was.
-/// @param start of the actuator. @param fraction of the way, 1 for the command itself.
-void blend(step::ActuatorBlock& block, const ActuatorState& start, double fraction);
 
 }  // namespace sinew::sim

@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include "sinew/constraint/cable.hpp"
+#include "sinew/constraint/placement.hpp"
 #include "sinew/core/types.hpp"
-#include "sinew/sim/simulation.hpp"
+#include "sinew/sim/model.hpp"
 
 namespace sinew::sim {
 
@@ -14,15 +15,15 @@ constexpr double kFolded = 0.1;  // of the mean piece at rest
 
 }  // namespace
 
-std::string describe_folded_cable(const Simulation& simulation) {
-  const Model& model = simulation.model();
+std::string describe_folded_cable(const Model& model, const constraint::Placement& placement,
+                                  std::span<const double> effort) {
   std::string text;
   double least = kFolded;
   for (int i = 0; i < static_cast<int>(model.actuators().size()); ++i) {
     const constraint::Cable* cable = model.cable(i);
     const int row = model.actuators()[static_cast<std::size_t>(i)].row;
-    if (cable == nullptr || !(simulation.efforts()[static_cast<std::size_t>(row)] > 0.0)) continue;
-    const Points points = cable->points(simulation.world().placement());
+    if (cable == nullptr || !(effort[static_cast<std::size_t>(row)] > 0.0)) continue;
+    const Points points = cable->points(placement);
     const double mean = cable->rest_length() / static_cast<double>(points.rows() - 1);
     for (Eigen::Index k = 0; k + 1 < points.rows(); ++k) {
       const double length = (points.row(k + 1) - points.row(k)).norm();

@@ -6,7 +6,10 @@
 #include "sinew/constraint/effector.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/linalg/dense_factor.hpp"
+#include "sinew/sim/model.hpp"
 #include "sinew/sim/simulation.hpp"
+#include "sinew/sim/state.hpp"
+#include "sinew/sim/world.hpp"
 #include "sinew/step/followers.hpp"
 
 namespace sinew::sim {
@@ -116,7 +119,7 @@ Linearisation linearise(Simulation& simulation, const LinearisationChoice& choic
   world.linearise({weights, choice.tangent, !curved.empty(), false});
   world.form_rows(simulation.efforts(), curved);
   Linearisation result;
-  result.residual = world.residual(simulation.efforts());
+  result.residual = world.bodies().residual(simulation.efforts());
   if (world.condense() == linalg::FactorStatus::singular) {
     throw Error(ErrorKind::singular_matrix, {.item = "linearise()"},
                 "the stiffness matrix is singular at this state",
@@ -127,7 +130,7 @@ Linearisation linearise(Simulation& simulation, const LinearisationChoice& choic
   result.delta = world.delta();
   result.delta_free = world.delta_free();
   result.effort = Eigen::Map<const VectorX>(simulation.efforts().data(), model.rows().rows());
-  result.negative_pivots = world.negative_pivots();
+  result.negative_pivots = world.inertia().negative_pivots;
   const step::StepProblem& problem = world.problem();
   if (!problem.bilaterals.empty() || !problem.stiffness.empty()) take_joints_out(problem, result);
   return result;

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sinew/sim/stage_clock.hpp"
+#include "sinew/sim/world.hpp"
+
 namespace sinew::sim {
 
 namespace {
@@ -59,8 +62,8 @@ class NewtonSolver {
   bool condense() {
     auto status = world_.condense();
     ++report_.factorisations;
-    const bool stable = world_.is_stable(status) ||
-                        (status == linalg::FactorStatus::indefinite && world_.is_unsymmetric());
+    const bool stable = world_.is_stable() || (status == linalg::FactorStatus::indefinite &&
+                                               world_.inertia().unsymmetric);
     derivative_ =
         stable && settings_.request.tangent == mechanics::Tangent::exact && !world_.has_majorant();
     if (!stable && settings_.request.tangent == mechanics::Tangent::exact) {
@@ -76,8 +79,8 @@ class NewtonSolver {
 
   // Both terms shrink in proportion to (1 - step length) along the Newton direction.
   double merit() {
-    report_.residual = world_.residual(effort_);
-    const double scale = world_.force_scale() + 1e-300;
+    report_.residual = world_.bodies().residual(effort_);
+    const double scale = world_.bodies().force_scale() + 1e-300;
     report_.relative_residual = report_.residual / scale;
     report_.violation = world_.violation(effort_);
     return report_.relative_residual + report_.violation / world_.problem().size;
@@ -106,7 +109,7 @@ class NewtonSolver {
     const double tolerance =
         strict ? std::min(settings_.tolerance, kRoundedResidual) : settings_.tolerance;
     return report_.relative_residual <= tolerance || at_rest ||
-           (stagnant_ && report_.residual <= world_.rounding_floor()) || lags_little();
+           (stagnant_ && report_.residual <= world_.bodies().rounding_floor()) || lags_little();
   }
 
   NewtonStatus move() {
@@ -115,12 +118,12 @@ class NewtonSolver {
     bool inverted = false;
     double scale = 1.0;
     for (int halving = 0; halving <= kMostHalvings; ++halving, scale *= 0.5) {
-      report_.motion = world_.apply_motion(scale);
+      report_.motion = world_.bodies().apply_motion(scale);
       clock_.mark(Stage::correction);
       inverted = true;
       if (!report_.motion.finite) continue;
       linearise(settings_.request.tangent);
-      report_.motion.volume = world_.smallest_volume();
+      report_.motion.volume = world_.bodies().smallest_volume();
       inverted = !(report_.motion.volume.ratio > 0.0);
       if (inverted) continue;
       const double after = merit();

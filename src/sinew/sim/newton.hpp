@@ -4,13 +4,20 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
+#include "sinew/mechanics/step_system.hpp"
 #include "sinew/sim/newton_status.hpp"
-#include "sinew/sim/stages.hpp"
-#include "sinew/sim/world.hpp"
+#include "sinew/step/law_status.hpp"
+
+namespace sinew::step {
+class Controller;
+class StepSolver;
+}  // namespace sinew::step
 
 namespace sinew::sim {
+
+class StageClock;
+class World;
 
 /// What an iteration may leave for the next step although the residual is above its tolerance. A
 /// full iteration with the derivative leaves a move of second order in its own: about this one

@@ -8,6 +8,9 @@
 
 #include <fmt/format.h>
 
+#include "sinew/sim/actuator.hpp"
+#include "sinew/sim/simulation.hpp"
+
 namespace sinew::sim {
 
 void list_standard_observables(Observables& list);  // standard_observables.cpp

@@ -11,9 +11,13 @@
 #include <vector>
 
 #include "sinew/core/error.hpp"
-#include "sinew/sim/simulation.hpp"
+#include "sinew/step/drive.hpp"
 
 namespace sinew::sim {
+
+struct ActuatorModel;
+class Simulation;
+using step::CommandKind;
 
 /// What an observable belongs to. The list is sorted by it, in this order.
 enum class ObservableKind {

@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "sinew/constraint/contact.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/simulation.hpp"
 
 namespace sinew::sim {
 

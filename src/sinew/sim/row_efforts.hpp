@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "sinew/sim/simulation.hpp"
-
 namespace sinew::sim {
+
+class Simulation;
 
 /// Efforts of all rows of H, N, N m or Pa, each zero in the rows of the other kind.
 struct RowEfforts {

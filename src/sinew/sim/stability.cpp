@@ -6,6 +6,7 @@
 
 #include "sinew/linalg/dense_factor.hpp"
 #include "sinew/qp/friction_cone.hpp"
+#include "sinew/sim/world.hpp"
 
 namespace sinew::sim {
 
@@ -45,6 +46,12 @@ void add_touching(const step::StepProblem& problem, std::span<const double> effo
   }
 }
 
+linalg::AlignedNumbers gathered(const RowNumbering& numbering, std::span<const double> effort) {
+  linalg::AlignedNumbers result;
+  numbering.gather(effort, result);
+  return result;
+}
+
 // Numbers in [-1, 1) that have no symmetry (Steele, Lea, Flood, OOPSLA 2014: SplitMix64): a start
 // that lacks no mode.
 VectorX scattered(Eigen::Index size) {
@@ -81,7 +88,9 @@ std::vector<step::HeldRow> held_rows(const step::StepProblem& problem,
 }
 
 Stability::Stability(World& world, std::span<const double> effort)
-    : world_(world), held_(held_rows(world.problem(), world.gather(effort))), negative_(count()) {
+    : world_(world),
+      held_(held_rows(world.problem(), gathered(world.numbering(), effort))),
+      negative_(count()) {
   if (negative_ == 0) return;
   move_rows(effort.size());
   const VectorX direction = find_mode();
@@ -90,11 +99,11 @@ Stability::Stability(World& world, std::span<const double> effort)
   curvature_ = direction.dot(mode_);
   scale_mode();
   const double force = -curvature_ / mode_.norm() * world_.problem().size;
-  if (force <= kNeutral * world_.rounding_floor()) negative_ = 0;
+  if (force <= kNeutral * world_.bodies().rounding_floor()) negative_ = 0;
 }
 
 int Stability::count() {
-  const int pivots = world_.negative_pivots();
+  const int pivots = world_.inertia().negative_pivots;
   const auto rows = static_cast<Eigen::Index>(held_.size());
   inverse_.setZero(rows, rows);
   if (rows == 0 || (pivots == 0 && world_.problem().stiffness.empty())) return pivots;
@@ -105,7 +114,7 @@ int Stability::count() {
 }
 
 void Stability::apply_inverse(const VectorX& right, VectorX& result) {
-  world_.solve(right, result);
+  world_.bodies().solve(right, result);
   if (held_.empty()) return;
   const VectorX efforts = inverse_ * (moved_.transpose() * right);
   result.noalias() -= moved_ * efforts;
@@ -114,14 +123,14 @@ void Stability::apply_inverse(const VectorX& right, VectorX& result) {
 void Stability::move_rows(std::size_t rows) {
   std::vector<double> unit(rows, 0.0);
   VectorX rest, row, solved;
-  world_.imbalance(unit, rest);
+  world_.bodies().imbalance(unit, rest);
   moved_.resize(rest.size(), static_cast<Eigen::Index>(held_.size()));
   for (std::size_t k = 0; k < held_.size(); ++k) {
-    double& own = unit[static_cast<std::size_t>(world_.row_of(held_[k].row))];
+    double& own = unit[static_cast<std::size_t>(world_.numbering().row_of(held_[k].row))];
     own = 1.0;
-    world_.imbalance(unit, row);
+    world_.bodies().imbalance(unit, row);
     own = 0.0;
-    world_.solve(row - rest, solved);
+    world_.bodies().solve(row - rest, solved);
     moved_.col(static_cast<Eigen::Index>(k)) = solved;
   }
 }

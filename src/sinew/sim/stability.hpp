@@ -2,12 +2,15 @@
 /// Stability of an equilibrium on the motions that commands, drives and contacts leave free.
 #pragma once
 
+#include <span>
 #include <vector>
 
-#include "sinew/sim/world.hpp"
+#include "sinew/core/types.hpp"
 #include "sinew/step/step_problem.hpp"
 
 namespace sinew::sim {
+
+class World;
 
 /// The rows that are held at an equilibrium: actuators at a commanded motion or at a limit of their
 /// motion, drives by the slope of their curve, normal rows of touching contacts, and tangential
@@ -26,14 +29,14 @@ std::vector<step::HeldRow> held_rows(const step::StepProblem& problem,
 /// their tangent.
 class Stability {
  public:
-  /// @param world linearised with the exact tangent, rows formed, and condensed.
-  /// @param world condensed at the equilibrium. @param effort of it.
+  /// @param world linearised with the exact tangent, rows formed, and condensed, at the
+  /// equilibrium. @param effort of it.
   Stability(World& world, std::span<const double> effort);
 
   /// Negative eigenvalues of the restricted tangent; directions that rounding cannot tell from
   /// neutral ones (a body that slides freely) are not counted.
   int negative_pivots() const { return negative_; }
-  /// The direction of the lowest curvature, largest entry 1, (all bodies' motion_size(),); empty
+  /// The direction of the lowest curvature, largest entry 1, (all bodies' size(),); empty
   /// where negative_pivots() == 0 or the search found none.
   const VectorX& mode() const { return mode_; }
   /// v^T A v of mode(), N/m; negative.
@@ -48,7 +51,7 @@ class Stability {
 
   World& world_;
   std::vector<step::HeldRow> held_;
-  MatrixX moved_;    // Y, (motion_size, held)
+  MatrixX moved_;    // Y, (size, held)
   MatrixX inverse_;  // pseudo-inverse of S, (held, held)
   VectorX mode_;
   double curvature_ = 0.0;

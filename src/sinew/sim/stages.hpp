@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <chrono>
 #include <cstddef>
 
 namespace sinew::sim {
@@ -26,28 +25,6 @@ struct StageTimes {
   double total = 0.0;
 
   double operator[](Stage stage) const { return seconds[static_cast<std::size_t>(stage)]; }
-};
-
-/// Adds the time since the last mark to a stage.
-class StageClock {
- public:
-  explicit StageClock(StageTimes& times) : times_(times) {}
-  void start() {
-    times_ = {};
-    begin_ = last_ = Clock::now();
-  }
-  void mark(Stage stage) {
-    const auto now = Clock::now();
-    times_.seconds[static_cast<std::size_t>(stage)] +=
-        std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-  }
-  void stop() { times_.total = std::chrono::duration<double>(Clock::now() - begin_).count(); }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  StageTimes& times_;
-  Clock::time_point begin_, last_;
 };
 
 }  // namespace sinew::sim

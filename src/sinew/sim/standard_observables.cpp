@@ -9,8 +9,12 @@
 #include "sinew/constraint/effector.hpp"
 #include "sinew/constraint/probe.hpp"
 #include "sinew/mechanics/body.hpp"
-#include "sinew/pcc/arm_body.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
+#include "sinew/sim/contact_state.hpp"
+#include "sinew/sim/model.hpp"
 #include "sinew/sim/observables.hpp"
+#include "sinew/sim/simulation.hpp"
 #include "sinew/sim/weld_load.hpp"
 
 namespace sinew::sim {
@@ -47,8 +51,8 @@ Observable number(ObservableKind kind, const char* name, const char* unit = "") 
 void add_bodies(Observables& list) {
   const Simulation& simulation = list.simulation();
   const bool moving = simulation.model().step().integrator != mechanics::Integrator::quasi_static;
-  for (const auto& owned : simulation.world().bodies()) {
-    const mechanics::Body& body = *owned;
+  for (int i = 0; i < simulation.bodies(); ++i) {
+    const mechanics::Body& body = simulation.body(i);
     const std::string& name = body.model().name();
     const std::vector<std::size_t> shape = {static_cast<std::size_t>(body.positions().rows()), 3};
     const auto add = [&](const char* quantity, const char* unit, auto numbers,
@@ -66,7 +70,7 @@ void add_bodies(Observables& list) {
           "velocities", "m/s",
           [](const mechanics::Body& b) -> const Points& { return b.velocities(); }, shape);
     }
-    if (const auto* arm = dynamic_cast<const pcc::ArmBody*>(&body)) {
+    if (const auto* arm = mechanics::as<const mechanics::HasCoordinates>(body)) {
       add("coordinates", "rad",
           [arm](const mechanics::Body&) -> const VectorX& { return arm->coordinates(); },
           {static_cast<std::size_t>(arm->coordinates().size())});
@@ -148,7 +152,7 @@ void add_probes(Observables& list) {
                          0, first));
     if (line) parts.push_back(part("positions", {probe.mark_count(), 3}, 1, numbers.size()));
     list.add(std::move(parts), [&simulation, &probe](std::span<double> to) {
-      probe.measure(simulation.world().placement(), to);
+      probe.measure(simulation.placement(), to);
     });
   }
 }
@@ -262,13 +266,13 @@ class Ledger {
 
   void operator()(std::span<double> all) {
     Numbers to(all);
-    const auto [strain, kinetic, gravity] = simulation_.energies();
-    const Balance now{strain + kinetic + gravity, simulation_.actuator_work(),
-                      simulation_.outside_work(), simulation_.dissipation()};
+    const mechanics::Energies energies = simulation_.energies();
+    const Balance now{energies.total(), simulation_.actuator_work(), simulation_.outside_work(),
+                      simulation_.dissipation()};
     if (!first_) first_ = now;
     const double work = now.work - first_->work, outside = now.outside - first_->outside,
                  dissipation = now.dissipation - first_->dissipation;
-    for (const double energy : {strain, kinetic, gravity}) to.put(energy);
+    for (const double part : {energies.strain, energies.kinetic, energies.gravity}) to.put(part);
     to.put(work);
     to.put(outside);
     to.put(dissipation);

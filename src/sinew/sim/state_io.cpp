@@ -12,7 +12,10 @@
 #include "sinew/core/state_hash.hpp"
 #include "sinew/mesh/read.hpp"
 #include "sinew/mesh/write.hpp"
+#include "sinew/sim/model.hpp"
 #include "sinew/sim/model_parts.hpp"
+#include "sinew/sim/simulation.hpp"
+#include "sinew/sim/state.hpp"
 
 namespace sinew::sim {
 

@@ -8,9 +8,13 @@
 #include <string_view>
 #include <vector>
 
-#include "sinew/sim/simulation.hpp"
+#include "sinew/core/named_hash.hpp"
 
 namespace sinew::sim {
+
+class Model;
+class Simulation;
+struct State;
 
 /// The layout, in little-endian words of 8 bytes: "SINEWST\n"; format version (uint32) and 4 bytes
 /// of zeros; the model's fingerprint (uint64); step count (int64); the model's parts, see

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sinew/sim/run.hpp"
+#include "sinew/sim/stability.hpp"
 #include "sinew/sim/static_solver.hpp"
 
 namespace sinew::sim {
@@ -39,14 +41,14 @@ mechanics::StepWeights overdamped(double sigma) {
 
 std::vector<Points> StaticSolver::positions() const {
   std::vector<Points> result;
-  for (const auto& body : sim_.world_.bodies()) result.push_back(body->positions());
+  for (const auto& body : run_.world.bodies().all()) result.push_back(body->positions());
   return result;
 }
 
 double StaticSolver::moved_since(const std::vector<Points>& before) const {
   double worst = 0.0;
   for (std::size_t i = 0; i < before.size(); ++i) {
-    const Points& now = sim_.world_.body(static_cast<int>(i)).positions();
+    const Points& now = run_.world.bodies().all()[i]->positions();
     if (now.rows() > 0) worst = std::max(worst, (now - before[i]).cwiseAbs().maxCoeff());
   }
   return worst;
@@ -54,25 +56,26 @@ double StaticSolver::moved_since(const std::vector<Points>& before) const {
 
 // d^T M d, by what inertia adds to the imbalance of a small motion along d; kg m^2 or alike.
 double StaticSolver::mass_along(const VectorX& direction) {
-  World& world = sim_.world_;
-  world.begin_step(sim_.time(), sim_.time(), sim_.effort_);
-  const double scale = kSmall * sim_.model_->size() / direction.cwiseAbs().maxCoeff();
-  world.propose_motion(direction);
-  world.apply_motion(scale);
+  World& world = run_.world;
+  Bodies& bodies = world.bodies();
+  world.begin_step(run_.time(), run_.time(), run_.effort);
+  const double scale = kSmall * run_.model->size() / direction.cwiseAbs().maxCoeff();
+  bodies.propose_motion(direction);
+  bodies.apply_motion(scale);
   VectorX still, moving;
   linearise({});
-  world.imbalance(sim_.effort_, still);
+  bodies.imbalance(run_.effort, still);
   double sigma = 1.0;
   double mass = 0.0;
   for (int round = 0; round < 2; ++round) {  // the second with inertia that is not lost in rounding
     linearise(overdamped(sigma));
-    world.imbalance(sim_.effort_, moving);
+    bodies.imbalance(run_.effort, moving);
     mass = direction.dot(still - moving) / (sigma * scale);
     const double inertia = (still - moving).norm();
     if (!(inertia > 0.0)) sigma *= 1e12;
     if (inertia > 0.0) sigma *= std::max(1.0, still.norm() / inertia);
   }
-  world.apply_motion(0.0);
+  bodies.apply_motion(0.0);
   return mass;
 }
 
@@ -80,16 +83,16 @@ StaticSolver::Departure StaticSolver::leave(const Stability& stability, double d
   const VectorX& mode = stability.mode();
   const double curvature = stability.curvature();
   if (mode.size() == 0) return Departure::failed;
-  World& world = sim_.world_;
+  Bodies& bodies = run_.world.bodies();
   const double mass = mass_along(mode);
   if (!(mass > 0.0)) return Departure::failed;
   left_ = positions();
-  world.propose_motion(mode);
-  disturbance *= sim_.model_->size();
-  world.apply_motion(kSmall * sim_.model_->size());
-  double scale = kSmall * sim_.model_->size() * disturbance / moved_since(left_);
+  bodies.propose_motion(mode);
+  disturbance *= run_.model->size();
+  bodies.apply_motion(kSmall * run_.model->size());
+  double scale = kSmall * run_.model->size() * disturbance / moved_since(left_);
   const auto is_sound = [&] {
-    return world.apply_motion(scale).finite && world.smallest_volume().ratio > 0.0;
+    return bodies.apply_motion(scale).finite && bodies.smallest_volume().ratio > 0.0;
   };
   while (!is_sound()) {
     scale *= 0.5;
@@ -100,20 +103,21 @@ StaticSolver::Departure StaticSolver::leave(const Stability& stability, double d
 
 // From the last equilibrium on the way, along the motion that Newton would begin with.
 bool StaticSolver::relax_from_here() {
-  World& world = sim_.world_;
-  world.begin_step(sim_.time(), sim_.time(), sim_.effort_);
+  World& world = run_.world;
+  Bodies& bodies = world.bodies();
+  world.begin_step(run_.time(), run_.time(), run_.effort);
   linearise({});
   if (world.condense() == linalg::FactorStatus::singular) return false;
-  const std::vector<double> before = sim_.effort_;
-  if (world.solve_step(*sim_.solver_, nullptr, sim_.effort_, sim_.clock_) == LawStatus::failed) {
-    sim_.effort_ = before;
+  const std::vector<double> before = run_.effort;
+  if (world.solve_step(run_.solver, nullptr, run_.effort, run_.clock) == LawStatus::failed) {
+    run_.effort = before;
   }
   VectorX imbalance, direction;
-  world.imbalance(sim_.effort_, imbalance);
-  world.solve(imbalance, direction);
+  bodies.imbalance(run_.effort, imbalance);
+  bodies.solve(imbalance, direction);
   if (!(direction.norm() > 0.0)) return false;
   const double curvature = std::abs(direction.dot(imbalance));
-  sim_.effort_ = before;
+  run_.effort = before;
   const double mass = mass_along(direction);
   if (!(mass > 0.0)) return false;
   left_.clear();
@@ -122,17 +126,17 @@ bool StaticSolver::relax_from_here() {
 
 // @param sigma of the first step, 1/s^2. @param near m: nearer than this to what was left is back.
 StaticSolver::Departure StaticSolver::relax(double sigma, double near) {
-  sim_.world_.set_imbalance_share(0.0);
-  double settled = kSettling * sim_.model_->size();
+  run_.world.set_imbalance_share(0.0);
+  double settled = kSettling * run_.model->size();
   double moved_before = 0.0;
   int failures = 0;
   while (report_.relaxation_steps < settings_.max_relaxation_steps) {
     ++report_.relaxation_steps;
-    sim_.keep(sound_);
+    run_.keep(sound_);
     const std::vector<Points> before = positions();
     last_ = solve(overdamped(sigma), kRelaxationTolerance, kMostOfStep);
     if (last_.status != NewtonStatus::converged) {
-      sim_.restore(sound_);
+      run_.restore(sound_);
       if (++failures == kMostFailures) break;
       sigma *= kHeaviest;
       continue;
@@ -145,10 +149,10 @@ StaticSolver::Departure StaticSolver::relax(double sigma, double near) {
     }
     const bool slows = moved < moved_before;
     if (slows && moved < settled) {
-      sim_.keep(sound_);
+      run_.keep(sound_);
       const int steps = last_.iterations;
       if (equilibrate(0.0, settings_.max_iterations)) return Departure::arrived;
-      sim_.restore(sound_);
+      run_.restore(sound_);
       last_.iterations = steps;
       settled = kLater * moved;
     }

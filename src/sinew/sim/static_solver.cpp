@@ -8,7 +8,9 @@
 #include "sinew/core/error.hpp"
 #include "sinew/core/types.hpp"
 #include "sinew/sim/load_steps.hpp"
-#include "sinew/step/step_solver.hpp"
+#include "sinew/sim/run.hpp"
+#include "sinew/sim/stability.hpp"
+#include "sinew/sim/step_failure.hpp"
 
 namespace sinew::sim {
 
@@ -30,19 +32,15 @@ constexpr double kLargerDisturbance = 2.0;
 
 }  // namespace
 
-StaticReport Simulation::solve_static(const StaticSettings& settings) {
-  return StaticSolver(*this, settings).run();
-}
-
-StaticSolver::StaticSolver(Simulation& simulation, const StaticSettings& settings)
-    : sim_(simulation), settings_(settings) {}
+StaticSolver::StaticSolver(Run& run, const StaticSettings& settings)
+    : run_(run), settings_(settings) {}
 
 StaticReport StaticSolver::run() {
-  sim_.clock_.start();
-  sim_.now_ = sim_.time();
-  sim_.move_bases(sim_.now_);
-  sim_.set_loads(sim_.now_);
-  sim_.keep(sim_.state_before_);
+  run_.clock.start();
+  run_.now = run_.time();
+  run_.surroundings.move_bases(run_.now);
+  run_.surroundings.apply(run_.now);
+  run_.keep(run_.before);
   read_goal();
   if (!equilibrate(0.0, settings_.max_iterations)) approach();
   follow_surfaces();
@@ -51,23 +49,23 @@ StaticReport StaticSolver::run() {
   report_.residual = last_.residual;
   report_.relative_residual = last_.relative_residual;
   report_.violation = last_.violation;
-  sim_.volume_ratio_ = last_.motion.volume.ratio;
-  sim_.world_.problem().actuators = goal_;
-  sim_.world_.begin_step(sim_.time(), sim_.time(), sim_.effort_);
-  sim_.world_.end_step({});
-  sim_.step_before_ = 0.0;
-  sim_.ledger_.restart();
-  sim_.finish_step();
-  sim_.advance_drives();
+  run_.volume_ratio = last_.motion.volume.ratio;
+  run_.world.problem().actuators = goal_;
+  run_.world.begin_step(run_.time(), run_.time(), run_.effort);
+  run_.world.bodies().end_step({});
+  run_.last_step = 0.0;
+  run_.ledger.restart();
+  run_.finish_step();
+  run_.actuation.advance_drives(run_.world.problem().actuators);
   return report_;
 }
 
 void StaticSolver::read_goal() {
-  start_ = sim_.actuators_;
-  sim_.read_commands(sim_.time(), kInfinity);
-  sim_.hold_efforts();
-  goal_ = sim_.world_.problem().actuators;
-  sim_.solver_->begin_step();
+  start_ = run_.actuation.states();
+  run_.read_commands(run_.time(), kInfinity);
+  hold_efforts(run_.world.problem().actuators, run_.effort);
+  goal_ = run_.world.problem().actuators;
+  run_.solver.begin_step();
 }
 
 mechanics::LinearisationRequest StaticSolver::request(const mechanics::StepWeights& weights) {
@@ -76,27 +74,30 @@ mechanics::LinearisationRequest StaticSolver::request(const mechanics::StepWeigh
 
 NewtonReport StaticSolver::solve(const mechanics::StepWeights& weights, double tolerance,
                                  int max_iterations) {
-  sim_.world_.begin_step(sim_.time(), sim_.time(), sim_.effort_);
+  run_.world.begin_step(run_.time(), run_.time(), run_.effort);
   const NewtonSettings newton{request(weights), tolerance, tolerance, max_iterations,
-                              sim_.model_->curved_constraints()};
-  const NewtonReport result = sim_.newton(nullptr, newton);
+                              run_.model->curved_constraints()};
+  const NewtonReport result = run_.newton(nullptr, newton);
   report_.iterations += result.iterations;
   return result;
 }
 
 bool StaticSolver::equilibrate(double share, int max_iterations) {
-  sim_.world_.set_imbalance_share(share);
+  run_.world.set_imbalance_share(share);
   last_ = solve({}, settings_.tolerance, max_iterations);
   return last_.status == NewtonStatus::converged;
 }
 
 void StaticSolver::linearise(const mechanics::StepWeights& weights) {
-  sim_.world_.linearise(request(weights));
-  sim_.world_.form_rows(sim_.effort_, sim_.model_->curved_constraints());
+  run_.world.linearise(request(weights));
+  run_.world.form_rows(run_.effort, run_.model->curved_constraints());
 }
 
 // Commands on the way from where the actuators stand (share 1) to where they are told to be (0).
-void StaticSolver::blend(double share) { sim_.blend_commands(goal_, start_, 1.0 - share); }
+void StaticSolver::blend(double share) {
+  run_.world.problem().actuators = goal_;
+  sim::blend(run_.world.problem().actuators, start_, 1.0 - share);
+}
 
 // Load steps, then overdamped motion.
 void StaticSolver::approach() {
@@ -104,17 +105,17 @@ void StaticSolver::approach() {
   if (share == 0.0) return;
   const std::string known = describe(share);
   blend(0.0);
-  sim_.world_.set_imbalance_share(0.0);
+  run_.world.set_imbalance_share(0.0);
   if (!limit_point_ && relax_from_here()) return;
   fail_to_find(known);
 }
 
 // The share of the imbalance that is left at the end.
 double StaticSolver::step_load() {
-  sim_.restore(sim_.state_before_);
+  run_.restore(run_.before);
   linearise({});
-  sim_.world_.hold_imbalance(sim_.effort_);
-  sound_ = sim_.state_before_;
+  run_.world.hold_imbalance(run_.effort);
+  sound_ = run_.before;
   report_.load_steps = 0;
   const auto solve = [&](double share) {
     blend(share);
@@ -122,23 +123,23 @@ double StaticSolver::step_load() {
   };
   const auto keep = [&] {
     ++report_.load_steps;
-    sim_.keep(sound_);
+    run_.keep(sound_);
   };
   return take_load_steps({.least = 1.0 / settings_.max_load_steps}, solve, keep,
-                         [&] { sim_.restore(sound_); });
+                         [&] { run_.restore(sound_); });
 }
 
 // What is known of the last equilibrium on the way, where the world is.
 std::string StaticSolver::describe(double share) {
-  sim_.world_.begin_step(sim_.time(), sim_.time(), sim_.effort_);
-  sim_.world_.set_imbalance_share(share);
+  run_.world.begin_step(run_.time(), run_.time(), run_.effort);
+  run_.world.set_imbalance_share(share);
   linearise({});
-  if (sim_.world_.condense() == linalg::FactorStatus::singular) {
+  if (run_.world.condense() == linalg::FactorStatus::singular) {
     return "the exact tangent of the last equilibrium on the way is singular";
   }
   std::string limit = describe_limit_point();
   if (!limit.empty() || share == 1.0) return limit;
-  const int negative = Stability(sim_.world_, sim_.effort_).negative_pivots();
+  const int negative = Stability(run_.world, run_.effort).negative_pivots();
   const double percent = 100.0 * (1.0 - share);
   if (negative == 0) {
     return fmt::format("the last equilibrium on the way, at {:.3g} % of the load, is stable",
@@ -154,12 +155,12 @@ std::string StaticSolver::describe(double share) {
 // on the average so far. Of the condensed equilibrium.
 std::string StaticSolver::describe_limit_point() {
   for (std::size_t i = 0; i < start_.size(); ++i) {
-    const ActuatorModel& model = sim_.model_->actuators()[i];
+    const ActuatorModel& model = run_.model->actuators()[i];
     const step::ActuatorBlock& goal = goal_[i];
     if (model.type != ActuatorType::pressure || goal.kind != CommandKind::effort) continue;
-    const double reached = sim_.effort_[static_cast<std::size_t>(model.row)];
-    const double grown = sim_.world_.delta()[model.row];
-    const double compliance = sim_.world_.compliance()(model.row, model.row);
+    const double reached = run_.effort[static_cast<std::size_t>(model.row)];
+    const double grown = run_.world.delta()[model.row];
+    const double compliance = run_.world.compliance()(model.row, model.row);
     const bool flat = compliance < 0.0 || compliance * reached > kFlat * grown;
     const bool short_of = std::abs(reached) < std::abs(goal.value);
     if (!(reached * grown > 0.0) || !flat || !short_of) continue;
@@ -174,32 +175,32 @@ std::string StaticSolver::describe_limit_point() {
 
 void StaticSolver::fail_to_find(const std::string& known) {
   if (limit_point_) {
-    sim_.fail(ErrorKind::not_converged, known,
-              "command its volume_growth, which passes the peak, or follow_path()");
+    fail(run_, ErrorKind::not_converged, known,
+         "command its volume_growth, which passes the peak, or follow_path()");
   }
-  sim_.fail(
-      ErrorKind::not_converged,
-      fmt::format("no static equilibrium was found in load steps down to 1/{} and {} steps of "
-                  "overdamped motion: Newton ended as '{}' with a relative residual of "
-                  "{:.3g}{}{}",
-                  settings_.max_load_steps, report_.relaxation_steps,
-                  newton_status_name(last_.status), last_.relative_residual,
-                  known.empty() ? "" : "; ", known),
-      "approach the load through time steps, which show where the robot goes");
+  fail(run_, ErrorKind::not_converged,
+       fmt::format("no static equilibrium was found in load steps down to 1/{} and {} steps of "
+                   "overdamped motion: Newton ended as '{}' with a relative residual of "
+                   "{:.3g}{}{}",
+                   settings_.max_load_steps, report_.relaxation_steps,
+                   newton_status_name(last_.status), last_.relative_residual,
+                   known.empty() ? "" : "; ", known),
+       "approach the load through time steps, which show where the robot goes");
 }
 
 // A step takes surfaces for their tangent planes: further ones until no touching point finds its
 // own another.
 void StaticSolver::follow_surfaces() {
-  const double tolerance = std::max(settings_.tolerance, kSurfaceTolerance) * sim_.model_->size();
-  const auto off = [&] { return sim_.world_.contact_drift(sim_.effort_, sim_.time()) > tolerance; };
+  const double tolerance = std::max(settings_.tolerance, kSurfaceTolerance) * run_.model->size();
+  const ContactPlanes& planes = run_.world.contacts().planes();
+  const auto off = [&] { return planes.drift(run_.effort, run_.time()) > tolerance; };
   for (int round = 0; round < kMostSurfaceRounds; ++round) {
     if (!off()) return;
     if (!equilibrate(0.0, settings_.max_iterations)) break;
   }
   if (off() || last_.status != NewtonStatus::converged) {
-    sim_.fail(ErrorKind::not_converged, "points keep moving along a curved surface",
-              "approach the load through time steps");
+    fail(run_, ErrorKind::not_converged, "points keep moving along a curved surface",
+         "approach the load through time steps");
   }
 }
 
@@ -207,27 +208,27 @@ void StaticSolver::follow_surfaces() {
 void StaticSolver::settle() {
   double disturbance = kDisturbance;
   for (int departures = 0;; ++departures) {
-    sim_.world_.begin_step(sim_.time(), sim_.time(),
-                           sim_.effort_);  // the tangent here, not on the way
+    // The tangent here, not on the way.
+    run_.world.begin_step(run_.time(), run_.time(), run_.effort);
     linearise({});
     report_.stable = true;
     report_.negative_pivots = 0;
-    if (sim_.world_.condense() == linalg::FactorStatus::singular) return;  // neutral
-    const bool unsymmetric = sim_.world_.is_unsymmetric();
-    const Stability stability(sim_.world_, sim_.effort_);
+    if (run_.world.condense() == linalg::FactorStatus::singular) return;  // neutral
+    const bool unsymmetric = run_.world.inertia().unsymmetric;
+    const Stability stability(run_.world, run_.effort);
     report_.negative_pivots = stability.negative_pivots();
     report_.stable = report_.negative_pivots == 0;
     if (report_.stable || settings_.stability == StabilityChoice::any) return;
     const Departure ended =
         departures < kMostDepartures ? leave(stability, disturbance) : Departure::failed;
     if (ended == Departure::failed) {
-      sim_.fail(ErrorKind::not_converged,
-                fmt::format("the equilibrium is unstable in {} direction{} (negative pivots of the "
-                            "exact tangent), and none that is stable was found from it in {} steps "
-                            "of overdamped motion",
-                            report_.negative_pivots, report_.negative_pivots == 1 ? "" : "s",
-                            report_.relaxation_steps),
-                "approach the load through time steps, or ask for any equilibrium, stable or not");
+      fail(run_, ErrorKind::not_converged,
+           fmt::format("the equilibrium is unstable in {} direction{} (negative pivots of the "
+                       "exact tangent), and none that is stable was found from it in {} steps "
+                       "of overdamped motion",
+                       report_.negative_pivots, report_.negative_pivots == 1 ? "" : "s",
+                       report_.relaxation_steps),
+           "approach the load through time steps, or ask for any equilibrium, stable or not");
     }
     // With a potential nothing comes back of itself: a step was too long.
     if (ended == Departure::returned && unsymmetric) {

@@ -5,11 +5,17 @@
 #include <string>
 #include <vector>
 
+#include "sinew/core/types.hpp"
+#include "sinew/sim/actuator.hpp"
 #include "sinew/sim/newton.hpp"
-#include "sinew/sim/simulation.hpp"
-#include "sinew/sim/stability.hpp"
+#include "sinew/sim/state.hpp"
+#include "sinew/sim/static_settings.hpp"
+#include "sinew/step/step_problem.hpp"
 
 namespace sinew::sim {
+
+struct Run;
+class Stability;
 
 /// Finds an equilibrium, first by Newton with the exact tangent and the cables' geometric stiffness
 /// in one go; where that fails, along the path on which the imbalance of the start is taken away
@@ -24,9 +30,9 @@ namespace sinew::sim {
 /// potential alone.
 class StaticSolver {
  public:
-  /// @param simulation is moved. @param settings see there.
-  StaticSolver(Simulation& simulation, const StaticSettings& settings);
-  /// Throws Error(not-converged), the simulation then being as it was.
+  /// @param run is moved. @param settings see there.
+  StaticSolver(Run& run, const StaticSettings& settings);
+  /// Throws Error(not-converged), the run then being as it was.
   StaticReport run();
 
  private:
@@ -55,7 +61,7 @@ class StaticSolver {
   std::vector<Points> positions() const;
   double moved_since(const std::vector<Points>& before) const;
 
-  Simulation& sim_;
+  Run& run_;
   const StaticSettings& settings_;
   StaticReport report_;
   NewtonReport last_;  // of the last search

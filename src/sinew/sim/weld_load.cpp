@@ -2,14 +2,16 @@
 
 #include <Eigen/Geometry>
 
+#include "sinew/constraint/placement.hpp"
 #include "sinew/constraint/tie.hpp"
+#include "sinew/sim/model.hpp"
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::sim {
 
 WeldLoad weld_load(const Simulation& simulation, int weld) {
   const constraint::Tie& tie = simulation.model().weld(weld);
-  const constraint::Placement& placement = simulation.world().placement();
+  const constraint::Placement& placement = simulation.placement();
   WeldLoad load;
   load.gap = tie.largest_gap(placement);
   for (const auto& pair : tie.pairs()) load.centre += placement.position(pair.first);

@@ -5,18 +5,20 @@
 #include <cstddef>
 #include <span>
 
-#include "sinew/step/response.hpp"
-#include "sinew/step/step_problem.hpp"
+#include "sinew/core/types.hpp"
+#include "sinew/step/law_status.hpp"
 
 namespace sinew::step {
+
+class Response;
+struct StepProblem;
 
 class Controller {
  public:
   virtual ~Controller() = default;
   /// @param problem of the step. @param response of the robot to the efforts to choose.
   /// @param effort (controlled,) N, in the order of response.controlled(): problem.effort_before's
-  /// on
-  ///   entry, the chosen ones on return.
+  ///   on entry, the chosen ones on return.
   virtual LawStatus choose(const StepProblem& problem, const Response& response,
                            std::span<double> effort) = 0;
   /// How far the motions at the end of the step are from what the controller wants, m.

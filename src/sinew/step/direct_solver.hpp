@@ -11,6 +11,7 @@
 #include "sinew/qp/cone_solver.hpp"
 #include "sinew/qp/quadratic_program.hpp"
 #include "sinew/step/followers.hpp"
+#include "sinew/step/law_status.hpp"
 #include "sinew/step/step_problem.hpp"
 
 namespace sinew::step {

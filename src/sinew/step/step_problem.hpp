@@ -126,13 +126,6 @@ void for_each_guide(const StepProblem& problem, std::span<const double> effort, 
   }
 }
 
-/// How solving went.
-enum class LawStatus {
-  solved,
-  limits_conflict,  ///< limits contradict each other in this step; the least violation was taken
-  failed,           ///< no efforts could be found
-};
-
 /// How far `effort` and the motion problem.delta are from obeying all blocks together, m. Owned
 /// actuators do not count: their controllers know.
 /// @param problem of the step. @param effort (rows,) N.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sinew/step/controller.hpp"
+
 namespace sinew::step {
 
 namespace {

@@ -5,11 +5,13 @@
 #include <span>
 #include <vector>
 
-#include "sinew/step/controller.hpp"
 #include "sinew/step/direct_solver.hpp"
+#include "sinew/step/law_status.hpp"
 #include "sinew/step/response.hpp"
 
 namespace sinew::step {
+
+class Controller;
 
 /// Without a controller, the direct solver. With one, in rounds: the controller chooses its efforts
 /// for the robot as it answers while every other block keeps its state (Response); the direct

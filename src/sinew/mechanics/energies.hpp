@@ -1,0 +1,20 @@
+/// @file
+/// Energy as it is summed over bodies.
+#pragma once
+
+namespace sinew::mechanics {
+
+/// J; gravity's from the height at rest.
+struct Energies {
+  double strain = 0.0, kinetic = 0.0, gravity = 0.0;
+
+  double total() const { return strain + kinetic + gravity; }
+  Energies& operator+=(const Energies& other) {
+    strain += other.strain;
+    kinetic += other.kinetic;
+    gravity += other.gravity;
+    return *this;
+  }
+};
+
+}  // namespace sinew::mechanics

@@ -1,0 +1,190 @@
+#include "sinew/sim/actuation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "sinew/core/error.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/state.hpp"
+#include "sinew/step/step_problem.hpp"
+
+namespace sinew::sim {
+
+namespace {
+
+struct Interval {
+  double min, max;
+};
+
+// [limits.min, limits.max] cut to what `rate` allows from `now`. A value that stands outside its
+// limits moves towards them as fast as it may.
+Interval reachable(const Limits& limits, double now, double time_step) {
+  const double reach = std::isinf(limits.rate) ? limits.rate : limits.rate * time_step;
+  Interval interval{std::max(limits.min, now - reach), std::min(limits.max, now + reach)};
+  if (interval.min <= interval.max) return interval;
+  const double nearest = now > limits.max ? interval.min : interval.max;
+  return {nearest, nearest};
+}
+
+// What an actuator may do in a step, from its state and that of its drive before it.
+step::ActuatorBlock actuator_block(const ActuatorModel& model, const ActuatorState& state,
+                                   std::span<const double> drive_state, double time,
+                                   double time_step) {
+  const Interval effort = reachable(model.effort, state.effort, time_step);
+  const Interval motion = reachable(model.motion, state.wound, time_step);
+  step::ActuatorBlock block;
+  block.row = model.row;
+  block.effort_min = effort.min;
+  block.effort_max = effort.max;
+  block.motion_min = motion.min;
+  block.motion_max = motion.max;
+  block.kind = state.command.kind;
+  block.owned = state.owner != nullptr;
+  block.motion_scale = model.motion_scale;
+  const double told = state.command.signal.value(time);
+  const Interval& own = block.kind == CommandKind::motion ? motion : effort;
+  block.value = block.kind == CommandKind::input ? told : std::clamp(told, own.min, own.max);
+  if (model.drive == nullptr || block.owned) return block;
+  if (!model.drive->acts_on(block.kind)) return block;
+  block.drive = model.drive.get();
+  block.drive_step = {block.kind, block.value, time_step, state.motion, {}};
+  std::ranges::copy(drive_state, block.drive_step.state.begin());
+  return block;
+}
+
+bool is_slack(const ActuatorModel& model, double effort) {
+  return model.type == ActuatorType::cable && !(effort > 0.0);
+}
+
+}  // namespace
+
+Actuation::Actuation(const Model& model)
+    : model_(model),
+      states_(model.actuators().size()),
+      motions_before_(states_.size()),
+      drives_(static_cast<std::size_t>(model.drive_states()), 0.0) {
+  restart();
+}
+
+std::span<const double> Actuation::drive_state(int actuator) const {
+  const ActuatorModel& model = model_.actuators()[static_cast<std::size_t>(actuator)];
+  if (model.drive == nullptr) return {};
+  return std::span(drives_).subspan(static_cast<std::size_t>(model.first_state),
+                                    static_cast<std::size_t>(model.drive->state_size()));
+}
+
+std::span<double> Actuation::numbers_of(std::size_t actuator) {
+  return std::span(drives_).subspan(
+      static_cast<std::size_t>(model_.actuators()[actuator].first_state),
+      drive_state(static_cast<int>(actuator)).size());
+}
+
+void Actuation::command(int actuator, Command command) {
+  ActuatorState& state = states_.at(static_cast<std::size_t>(actuator));
+  if (state.owner != nullptr) {
+    throw Error(ErrorKind::actuator_owned,
+                {.item = model_.actuators()[static_cast<std::size_t>(actuator)].name},
+                "a controller owns this actuator", "detach the controller first");
+  }
+  state.command = std::move(command);
+}
+
+void Actuation::set_commands(const std::vector<Command>& commands) {
+  for (std::size_t i = 0; i < states_.size(); ++i) states_[i].command = commands[i];
+}
+
+void Actuation::own(const void* owner, std::span<const int> actuators) {
+  for (const int index : actuators) states_.at(static_cast<std::size_t>(index)).owner = owner;
+}
+
+// A winch stays by its length, a regulator by its pressure.
+void Actuation::release(const void* owner) {
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    ActuatorState& state = states_[i];
+    if (state.owner != owner) continue;
+    state.owner = nullptr;
+    const bool regulator = model_.actuators()[i].type == ActuatorType::pressure;
+    state.command = regulator ? Command{CommandKind::effort, Signal::constant(state.effort)}
+                              : Command{CommandKind::motion, Signal::constant(state.motion)};
+  }
+}
+
+void Actuation::form_blocks(double time, double time_step,
+                            std::span<step::ActuatorBlock> blocks) const {
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    blocks[i] = actuator_block(model_.actuators()[i], states_[i], drive_state(static_cast<int>(i)),
+                               time, time_step);
+  }
+}
+
+void Actuation::read(const VectorX& delta, std::span<const double> effort,
+                     std::span<const step::ActuatorBlock> blocks) {
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    ActuatorState& state = states_[i];
+    const step::ActuatorBlock& block = blocks[i];
+    const ActuatorModel& model = model_.actuators()[i];
+    motions_before_[i] = state.motion;
+    state.effort = effort[static_cast<std::size_t>(model.row)];
+    state.motion = delta[model.row];
+    state.slack = is_slack(model, state.effort);
+    const bool winds = !block.owned && block.kind == CommandKind::motion && block.row >= 0;
+    state.wound = winds ? block.value : state.motion;
+  }
+}
+
+void Actuation::advance_drives(std::span<const step::ActuatorBlock> blocks) {
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    const ActuatorModel& model = model_.actuators()[i];
+    if (model.drive == nullptr) continue;
+    Drive::Step step = blocks[i].drive_step;
+    std::ranges::copy(numbers_of(i), step.state.begin());
+    model.drive->advance(step, states_[i].motion, states_[i].effort, numbers_of(i));
+  }
+}
+
+void Actuation::restart() {
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    const ActuatorModel& model = model_.actuators()[i];
+    if (states_[i].owner == nullptr) states_[i].command = model.command;
+    if (model.drive != nullptr) model.drive->rest(numbers_of(i));
+  }
+}
+
+void Actuation::save(State& state) const {
+  state.motions.resize(states_.size());
+  state.setpoints.resize(states_.size());
+  std::ranges::transform(states_, state.motions.begin(), &ActuatorState::motion);
+  std::ranges::transform(states_, state.setpoints.begin(), &ActuatorState::wound);
+  state.drives = drives_;
+}
+
+void Actuation::load(const State& state) {
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    const ActuatorModel& model = model_.actuators()[i];
+    states_[i].motion = state.motions[i];
+    states_[i].wound = state.setpoints[i];
+    states_[i].effort = state.efforts[static_cast<std::size_t>(model.row)];
+    states_[i].slack = is_slack(model, states_[i].effort);
+  }
+  drives_ = state.drives;
+}
+
+void blend(std::span<step::ActuatorBlock> blocks, std::span<const ActuatorState> start,
+           double fraction) {
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    step::ActuatorBlock& block = blocks[i];
+    if (block.owned || block.kind == CommandKind::input) continue;
+    const double from = block.kind == CommandKind::effort ? start[i].effort : start[i].motion;
+    block.value = (1.0 - fraction) * from + fraction * block.value;
+    block.drive_step.command = block.value;
+  }
+}
+
+void hold_efforts(std::span<step::ActuatorBlock> blocks, std::span<const double> effort) {
+  for (step::ActuatorBlock& block : blocks) {
+    if (block.owned) block.hold_effort(effort[static_cast<std::size_t>(block.row)]);
+  }
+}
+
+}  // namespace sinew::sim

@@ -1,0 +1,184 @@
+#include "sinew/sim/bodies.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/sim/model.hpp"
+
+namespace sinew::sim {
+
+namespace {
+
+// Calls visit(system, part) for every system and its part of numbers that lie one behind the other.
+template <class Number, class Visit>
+void for_each_part(std::span<mechanics::StepSystem* const> systems, std::span<Number> all,
+                   Visit&& visit) {
+  for (mechanics::StepSystem* system : systems) {
+    const std::size_t size = system->size();
+    visit(*system, all.first(size));
+    all = all.subspan(size);
+  }
+}
+
+std::span<const double> numbers(const VectorX& all) {
+  return {all.data(), static_cast<std::size_t>(all.size())};
+}
+
+}  // namespace
+
+Bodies::Bodies(const Model& model, ThreadPool& pool) {
+  const bool curved = model.stiffening_widens();
+  const int histories = mechanics::history_count(model.step().integrator);
+  for (const auto& body : model.bodies()) {
+    bodies_.push_back(body->create(pool, curved, histories));
+    systems_.push_back(&bodies_.back()->system());
+  }
+  ends_.resize(bodies_.size());
+}
+
+void Bodies::begin_step() {
+  for (auto* system : systems_) system->begin_step();
+}
+
+void Bodies::begin_query() {
+  for (auto* system : systems_) system->begin_query();
+}
+
+void Bodies::linearise(const mechanics::LinearisationRequest& request) {
+  for (auto* system : systems_) system->linearise(request);
+}
+
+void Bodies::take_rows(const mechanics::RowValues& rows) {
+  for (auto* system : systems_) system->take_rows(rows);
+}
+
+void Bodies::retake_rows(const mechanics::RowValues& rows) {
+  for (auto* system : systems_) system->retake_rows(rows);
+}
+
+mechanics::Inertia Bodies::condense() {
+  mechanics::Inertia whole;
+  for (auto* system : systems_) {
+    const mechanics::Inertia part = system->condense();
+    whole.status = std::max(whole.status, part.status);
+    whole.negative_pivots += part.negative_pivots;
+    whole.unsymmetric = whole.unsymmetric || part.unsymmetric;
+  }
+  return whole;
+}
+
+void Bodies::add_compliance(std::span<const int> place, MatrixX& compliance,
+                            VectorX& free_motion) const {
+  for (const auto* system : systems_) system->add_compliance(place, compliance, free_motion);
+}
+
+double Bodies::residual(std::span<const double> effort) {
+  double sum = 0.0;
+  for (auto* system : systems_) {
+    const double part = system->residual(effort, {});
+    sum += part * part;
+  }
+  return std::sqrt(sum);
+}
+
+double Bodies::force_scale() const {
+  double scale = 0.0;
+  for (const auto* system : systems_) scale += system->force_scale().forces;
+  return scale;
+}
+
+double Bodies::rounding_floor() const {
+  double sum = 0.0;
+  for (const auto* system : systems_) {
+    const double part = system->force_scale().rounding;
+    sum += part * part;
+  }
+  return std::sqrt(sum);
+}
+
+void Bodies::imbalance(std::span<const double> effort, VectorX& result) {
+  std::size_t size = 0;
+  for (const auto* system : systems_) size += system->size();
+  result.resize(static_cast<Eigen::Index>(size));
+  for_each_part(systems_, std::span<double>(result.data(), size),
+                [&](auto& system, std::span<double> part) { system.residual(effort, part); });
+}
+
+void Bodies::lessen(std::span<const double> force) {
+  if (force.empty()) {
+    for (auto* system : systems_) system->lessen({});
+    return;
+  }
+  for_each_part(systems_, force,
+                [](auto& system, std::span<const double> part) { system.lessen(part); });
+}
+
+void Bodies::solve_motion(std::span<const double> effort) {
+  for (auto* system : systems_) system->solve_motion(effort);
+}
+
+void Bodies::solve(const VectorX& right, VectorX& result) {
+  result.resize(right.size());
+  std::span<double> to(result.data(), static_cast<std::size_t>(result.size()));
+  for_each_part(systems_, numbers(right), [&](auto& system, std::span<const double> part) {
+    system.solve(part, to.first(part.size()));
+    to = to.subspan(part.size());
+  });
+}
+
+void Bodies::propose_motion(const VectorX& motion) {
+  for_each_part(systems_, numbers(motion),
+                [](auto& system, std::span<const double> part) { system.propose_motion(part); });
+}
+
+void Bodies::drift(double time_step) {
+  for (auto* system : systems_) system->propose_drift(time_step);
+  if (!apply_motion(1.0).finite || !(smallest_volume().ratio > 0.0)) apply_motion(0.0);
+}
+
+mechanics::MotionReport Bodies::apply_motion(double scale) {
+  mechanics::MotionReport worst;
+  for (auto* system : systems_) {
+    const auto report = system->apply_motion(scale);
+    worst.finite = worst.finite && report.finite;
+    worst.largest_move = std::max(worst.largest_move, report.largest_move);
+  }
+  return worst;
+}
+
+mechanics::SmallestVolume Bodies::smallest_volume() {
+  mechanics::SmallestVolume smallest{INFINITY, -1};
+  for (auto* system : systems_) {
+    const auto volume = system->smallest_volume();
+    if (volume.ratio < smallest.ratio) smallest = volume;
+  }
+  return smallest;
+}
+
+double Bodies::end_step(const mechanics::StepWeights& weights) {
+  double worst = 0.0;
+  for (std::size_t i = 0; i < systems_.size(); ++i) {
+    ends_[i] = systems_[i]->end_step(weights);
+    worst = std::max(worst, ends_[i].error);
+  }
+  return worst;
+}
+
+mechanics::Energies Bodies::energies() {
+  mechanics::Energies sum;
+  for (const auto& body : bodies_) sum += body->energies();
+  return sum;
+}
+
+void Bodies::restart() {
+  for (const auto& body : bodies_) body->restart();
+}
+
+std::size_t Bodies::bytes() const {
+  std::size_t total = 0;
+  for (const auto& body : bodies_) total += body->bytes();
+  return total;
+}
+
+}  // namespace sinew::sim

@@ -1,0 +1,122 @@
+#include "sinew/sim/contact_planes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/constraint/contact.hpp"
+#include "sinew/constraint/placement.hpp"
+#include "sinew/sim/model.hpp"
+
+namespace sinew::sim {
+
+namespace {
+
+// Tangent planes this near each other, of the robot's size, are the same.
+constexpr double kSamePlane = 1e-6;
+// Rounds of a step in which tangent planes follow the ways of their points.
+constexpr int kMostTurns = 20;
+
+}  // namespace
+
+ContactPlanes::ContactPlanes(const Model& model, const constraint::Placement& placement,
+                             mechanics::RowValues& rows)
+    : model_(model),
+      placement_(placement),
+      rows_(rows),
+      start_(VectorX::Zero(model.rows().rows())) {
+  for (std::size_t i = 0; i < model.contacts().size(); ++i) {
+    contacts_.push_back(&model.contact(static_cast<int>(i)));
+  }
+}
+
+void ContactPlanes::place(double from, double to) {
+  end_ = to;
+  turns_left_ = kMostTurns;
+  curved_ = false;
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    const ContactModel& model = model_.contacts()[i];
+    curved_ |= contacts_[i]->curved();
+    contacts_[i]->begin_step(placement_, model.pose(from), model.pose(to), to - from, rows_);
+  }
+}
+
+void ContactPlanes::begin() { start_ = rows_.delta; }
+
+Eigen::Isometry3d ContactPlanes::pose(std::size_t contact) const {
+  return model_.contacts()[contact].pose(end_);
+}
+
+bool ContactPlanes::turn_to(const constraint::Contact& contact, std::size_t point,
+                            const Vector3& end, const Eigen::Isometry3d& pose) {
+  const Vector3 reference = rows_.reference.segment<3>(contact.row(point));
+  const auto plane = contact.approach(contact.position(point, reference, rows_), end, pose);
+  turn(contact, point, plane);
+  return plane.meets;
+}
+
+// Where the way meets the surface, planes that find it equally deep in the end are one.
+bool ContactPlanes::follow_way(const constraint::Contact& contact, std::size_t point,
+                               const Vector3& free, const Eigen::Isometry3d& pose) {
+  const Vector3 reference = rows_.reference.segment<3>(contact.row(point));
+  const Vector3 from = contact.position(point, reference, rows_);
+  const Vector3 to = contact.position(point, free, rows_);
+  const auto plane = contact.approach(from, to, pose);
+  const double gap = plane.distance.gap + plane.distance.normal.dot(to - plane.at);
+  if (plane.meets && std::abs(gap - free[0]) <= kSamePlane * model_.size()) return false;
+  turn(contact, point, plane);
+  return true;
+}
+
+void ContactPlanes::turn(const constraint::Contact& contact, std::size_t point,
+                         const constraint::SurfaceApproach& plane) {
+  const int row = contact.row(point);
+  const auto position = [&](const VectorX& rows) {
+    return contact.position(point, rows.segment<3>(row), rows_);
+  };
+  const Vector3 start = position(start_), carried = position(rows_.reference);
+  const Vector3 now = placement_.position(contact.points()[point]);
+  contact.place(point, carried, plane, rows_);
+  start_.segment<3>(row) = contact.row_values(point, start, rows_);
+  rows_.delta.segment<3>(row) = contact.row_values(point, now, rows_);
+}
+
+double ContactPlanes::drift(std::span<const double> effort, double time) const {
+  double worst = 0.0;
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    const constraint::Contact& contact = *contacts_[i];
+    const Eigen::Isometry3d pose = model_.contacts()[i].pose(time);
+    for (std::size_t k = 0; k < contact.points().size(); ++k) {
+      if (effort[static_cast<std::size_t>(contact.row(k))] == 0.0) continue;
+      const double gap = contact.distance_now(placement_, pose, k).gap;
+      worst = std::max(worst, std::abs(gap - rows_.delta[contact.row(k)]));
+    }
+  }
+  return worst;
+}
+
+std::size_t ContactPlanes::frames_size() const {
+  std::size_t points = 0;
+  for (const constraint::Contact* contact : contacts_) points += contact->points().size();
+  return 9 * points;
+}
+
+void ContactPlanes::save_frames(std::vector<double>& frames) const {
+  frames.resize(frames_size());
+  double* to = frames.data();
+  for (const constraint::Contact* contact : contacts_) {
+    for (std::size_t k = 0; k < contact->points().size(); ++k) {
+      to = std::copy_n(rows_.direction[contact->entry(k)].data(), 9, to);
+    }
+  }
+}
+
+void ContactPlanes::load_frames(std::span<const double> frames) {
+  const double* from = frames.data();
+  for (const constraint::Contact* contact : contacts_) {
+    for (std::size_t k = 0; k < contact->points().size(); ++k, from += 9) {
+      std::copy_n(from, 9, rows_.direction[contact->entry(k)].data());
+    }
+  }
+}
+
+}  // namespace sinew::sim

@@ -1,0 +1,84 @@
+/// @file
+/// The tangent planes that surfaces count as in a step.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "sinew/core/types.hpp"
+
+namespace sinew::constraint {
+class Contact;
+class Placement;
+struct SurfaceApproach;
+}  // namespace sinew::constraint
+namespace sinew::mechanics {
+struct RowValues;
+}
+
+namespace sinew::sim {
+
+class Model;
+
+/// One plane for every point that may touch. It begins as that which the way at the point's
+/// velocity leads to, and may follow the way that a solution finds (constraint::Contact).
+class ContactPlanes {
+ public:
+  /// All must outlive it. @param rows gets the frames of contacts.
+  ContactPlanes(const Model& model, const constraint::Placement& placement,
+                mechanics::RowValues& rows);
+
+  /// In the model's order.
+  std::span<const constraint::Contact* const> contacts() const { return contacts_; }
+  /// Before bodies follow their bases: what they are carried by counts as motion along the surface.
+  /// @param from,to s, when the step begins and ends: where surfaces stand then.
+  void place(double from, double to);
+  /// After a measurement of delta there: where contacts begin.
+  void begin();
+  /// Whether any surface is curved.
+  bool curved() const { return curved_; }
+  /// Of a surface at the end of the step. @param contact of contacts().
+  Eigen::Isometry3d pose(std::size_t contact) const;
+
+  /// Planes turn in a bounded number of rounds a step, after which they stay as they are.
+  bool may_turn() const { return turns_left_ > 0; }
+  void end_round() { --turns_left_; }
+  /// Turns a point's plane to that of the way to where the point will be. Whether that way meets
+  /// the surface. @param end (3,) m. @param pose of the surface.
+  bool turn_to(const constraint::Contact& contact, std::size_t point, const Vector3& end,
+               const Eigen::Isometry3d& pose);
+  /// Turns a pushed point's plane to that of the way that it would go without its own force, where
+  /// that is another one. Whether it is. @param free (3,) m, the point's rows without its force.
+  bool follow_way(const constraint::Contact& contact, std::size_t point, const Vector3& free,
+                  const Eigen::Isometry3d& pose);
+
+  /// m: the farthest that any touching point's gap is from that of its plane, at the pose that
+  /// surfaces have at a time. @param effort (rows,) N; who touches. @param time s.
+  double drift(std::span<const double> effort, double time) const;
+  /// (rows,) m: delta of contacts when the step began.
+  const VectorX& start() const { return start_; }
+
+  /// Normal and tangents of every point, as of the last step, 9 numbers each: what the efforts of
+  /// its rows mean.
+  std::size_t frames_size() const;
+  void save_frames(std::vector<double>& frames) const;
+  void load_frames(std::span<const double> frames);
+
+ private:
+  void turn(const constraint::Contact& contact, std::size_t point,
+            const constraint::SurfaceApproach& plane);
+
+  const Model& model_;
+  const constraint::Placement& placement_;
+  mechanics::RowValues& rows_;
+  std::vector<const constraint::Contact*> contacts_;
+  VectorX start_;
+  bool curved_ = false;
+  double end_ = 0.0;  // s, of the step: where surfaces stand
+  int turns_left_ = 0;
+};
+
+}  // namespace sinew::sim

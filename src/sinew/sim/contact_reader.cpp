@@ -1,0 +1,46 @@
+#include "sinew/sim/contact_reader.hpp"
+
+#include "sinew/constraint/contact.hpp"
+#include "sinew/sim/run.hpp"
+
+namespace sinew::sim {
+
+ContactPoint ContactReader::point(int contact, std::size_t point) const {
+  const constraint::Contact& touching = run_.model->contact(contact);
+  const Eigen::Isometry3d pose =
+      run_.model->contacts()[static_cast<std::size_t>(contact)].pose(run_.time());
+  const auto row = static_cast<std::size_t>(touching.row(point));
+  const auto* frame = &run_.world.rows().direction[touching.entry(point)];
+  ContactPoint result;
+  result.position = run_.world.placement().position(touching.points()[point]);
+  result.gap = touching.distance_now(run_.world.placement(), pose, point).gap;
+  result.normal = frame[0];
+  result.normal_force = run_.effort[row];
+  result.friction_force = run_.effort[row + 1] * frame[1] + run_.effort[row + 2] * frame[2];
+  if (!(result.normal_force > 0.0)) return result;
+  const Eigen::Map<const Vector3> force(&run_.effort[row]);
+  const bool slips = qp::slides(force, touching.friction());
+  result.state = slips ? qp::ContactState::slip : qp::ContactState::stick;
+  return result;
+}
+
+std::vector<ContactPoint> ContactReader::points(int contact) const {
+  std::vector<ContactPoint> result(run_.model->contact(contact).points().size());
+  for (std::size_t k = 0; k < result.size(); ++k) result[k] = point(contact, k);
+  return result;
+}
+
+ContactSum ContactReader::sum(int contact) const {
+  ContactSum sum;
+  for (std::size_t k = 0; k < run_.model->contact(contact).points().size(); ++k) {
+    sum.add(point(contact, k));
+  }
+  return sum;
+}
+
+ContactMoment ContactReader::moment(int contact) const {
+  return {run_.model->contacts().at(static_cast<std::size_t>(contact)).pose(run_.time()),
+          points(contact)};
+}
+
+}  // namespace sinew::sim

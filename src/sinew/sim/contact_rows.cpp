@@ -1,0 +1,151 @@
+#include "sinew/sim/contact_rows.hpp"
+
+#include <algorithm>
+
+#include "sinew/constraint/contact.hpp"
+#include "sinew/constraint/placement.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/step_system.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/row_numbering.hpp"
+#include "sinew/step/step_problem.hpp"
+
+namespace sinew::sim {
+
+namespace {
+
+// Points whose gap is under this part of the robot's size take part in a step at once.
+constexpr double kNear = 0.01;
+
+// The rows of a point without its own force.
+Vector3 free_motion(const step::StepProblem& problem, const linalg::AlignedNumbers& effort,
+                    int place) {
+  const Eigen::Map<const VectorX, Eigen::AlignedMax> lambda(
+      effort.data(), static_cast<Eigen::Index>(effort.size()));
+  return problem.delta_free.segment<3>(place) + problem.compliance.middleRows<3>(place) * lambda -
+         problem.compliance.block<3, 3>(place, place) * lambda.segment<3>(place);
+}
+
+}  // namespace
+
+ContactRows::ContactRows(const Model& model, const constraint::Placement& placement,
+                         std::span<mechanics::StepSystem* const> systems,
+                         mechanics::RowValues& rows)
+    : model_(model),
+      placement_(placement),
+      systems_(systems),
+      rows_(rows),
+      planes_(model, placement, rows),
+      touched_(static_cast<std::size_t>(model.rows().rows()), 0) {}
+
+// Calls visit(contact, point) for every point of every contact.
+template <class Visit>
+void ContactRows::for_each_point(Visit&& visit) const {
+  for (const constraint::Contact* contact : planes_.contacts()) {
+    for (std::size_t k = 0; k < contact->points().size(); ++k) visit(*contact, k);
+  }
+}
+
+// A function of the state alone, so that a run goes on from a saved one bit for bit.
+void ContactRows::choose_present(std::span<const double> effort, double time_step) {
+  left_out_ = false;
+  const double near = kNear * model_.size();
+  for_each_point([&](const constraint::Contact& contact, std::size_t k) {
+    const mechanics::MaterialPoint& point = contact.points()[k];
+    const mechanics::BodyModel& body = *model_.bodies()[static_cast<std::size_t>(point.body)];
+    const int row = contact.row(k);
+    const double arrives = planes_.start()[row] + time_step * rows_.direction[contact.entry(k)].dot(
+                                                                  placement_.velocity(point));
+    const bool present = !body.leaves_rows_out() || effort[static_cast<std::size_t>(row)] > 0.0 ||
+                         std::min(rows_.reference[row], arrives) <= near;
+    set_present(row, present);
+    left_out_ |= !present;
+  });
+  std::ranges::transform(effort, touched_.begin(), [](double r) { return r > 0.0 ? 1 : 0; });
+}
+
+void ContactRows::take_all() {
+  left_out_ = false;
+  std::ranges::fill(rows_.present, static_cast<char>(true));
+}
+
+void ContactRows::set_present(int row, bool present) {
+  std::fill_n(rows_.present.begin() + row, 3, static_cast<char>(present));
+}
+
+void ContactRows::list(const RowNumbering& numbering,
+                       std::vector<step::ContactBlock>& blocks) const {
+  for_each_point([&](const constraint::Contact& contact, std::size_t k) {
+    const int place = numbering.place_of(contact.row(k));
+    if (place >= 0) blocks.push_back({place, contact.friction()});
+  });
+}
+
+bool ContactRows::correct(const step::StepProblem& problem, const RowNumbering& numbering,
+                          const linalg::AlignedNumbers& effort) {
+  bool found = false;
+  for (std::size_t i = 0; i < planes_.contacts().size(); ++i) {
+    const constraint::Contact& contact = *planes_.contacts()[i];
+    const Eigen::Isometry3d pose = planes_.pose(i);
+    const bool may_turn = contact.curved() && planes_.may_turn();
+    for (std::size_t k = 0; k < contact.points().size(); ++k) {
+      const int row = contact.row(k), place = numbering.place_of(row);
+      if (rows_.present[static_cast<std::size_t>(row)] == 0) {
+        found = take_in(contact, k, pose) || found;
+      } else if (may_turn && effort[static_cast<std::size_t>(place)] > 0.0) {
+        found = planes_.follow_way(contact, k, free_motion(problem, effort, place), pose) || found;
+      }
+    }
+  }
+  if (found) planes_.end_round();
+  return found;
+}
+
+// Whether a point that was left out moves into its surface. A plane that it merely crosses beside
+// the surface is replaced by one that it does not.
+bool ContactRows::take_in(const constraint::Contact& contact, std::size_t point,
+                          const Eigen::Isometry3d& pose) {
+  const mechanics::MaterialPoint& of = contact.points()[point];
+  const mechanics::StepSystem& system = *systems_[static_cast<std::size_t>(of.body)];
+  const Vector3 end = placement_.position(of) + system.proposed_motion(of.point);
+  if (contact.row_values(point, end, rows_)[0] >= 0.0) return false;
+  if (contact.curved() && planes_.may_turn() && !planes_.turn_to(contact, point, end, pose)) {
+    return false;
+  }
+  set_present(contact.row(point), true);
+  return true;
+}
+
+bool ContactRows::gap_closed(std::span<const double> effort) const {
+  bool closed = false;
+  for_each_point([&](const constraint::Contact& contact, std::size_t k) {
+    const auto row = static_cast<std::size_t>(contact.row(k));
+    closed = closed || (effort[row] > 0.0 && touched_[row] == 0);
+  });
+  return closed;
+}
+
+double ContactRows::deepest_free_point(std::span<const double> effort) const {
+  double deepest = 0.0;
+  for_each_point([&](const constraint::Contact& contact, std::size_t k) {
+    const int row = contact.row(k);
+    if (effort[static_cast<std::size_t>(row)] > 0.0) return;
+    const double gap = rows_.offset[row] + rows_.direction[contact.entry(k)].dot(
+                                               placement_.position(contact.points()[k]));
+    deepest = std::max(deepest, -gap);
+  });
+  return deepest;
+}
+
+double ContactRows::deepest_left_out() const {
+  double deepest = 0.0;
+  if (!left_out_) return deepest;
+  for_each_point([&](const constraint::Contact& contact, std::size_t k) {
+    const int row = contact.row(k);
+    if (rows_.present[static_cast<std::size_t>(row)] != 0) return;
+    deepest = std::max(deepest, -rows_.delta[row]);
+  });
+  return deepest;
+}
+
+}  // namespace sinew::sim

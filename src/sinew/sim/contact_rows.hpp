@@ -1,0 +1,83 @@
+/// @file
+/// The rows of contacts in a step: which take part.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "sinew/core/types.hpp"
+#include "sinew/linalg/scratch.hpp"
+#include "sinew/sim/contact_planes.hpp"
+
+namespace sinew::mechanics {
+class StepSystem;
+}
+namespace sinew::step {
+struct ContactBlock;
+struct StepProblem;
+}  // namespace sinew::step
+
+namespace sinew::sim {
+
+class RowNumbering;
+
+/// A step begins with a guess: points that touched, are near, or would arrive at their speed take
+/// part. After a motion was solved, correct() mends what was guessed wrong.
+class ContactRows {
+ public:
+  /// All must outlive it. @param systems of the bodies. @param rows whose contacts it looks after.
+  ContactRows(const Model& model, const constraint::Placement& placement,
+              std::span<mechanics::StepSystem* const> systems, mechanics::RowValues& rows);
+
+  bool empty() const { return planes_.contacts().empty(); }
+  const ContactPlanes& planes() const { return planes_; }
+  ContactPlanes& planes() { return planes_; }
+
+  /// After planes were placed and begun: which points take part in the step.
+  /// @param effort (rows,) N of the last step: points with a force are near, whatever their gap.
+  /// @param time_step s.
+  void choose_present(std::span<const double> effort, double time_step);
+  /// For a look at the present state: every point takes part.
+  void take_all();
+  /// Appends the blocks of the points that take part.
+  void list(const RowNumbering& numbering, std::vector<step::ContactBlock>& blocks) const;
+
+  /// After a motion was solved and proposed:
+  /// - Points that were left out are taken in where the motion leads into their surface.
+  /// - A point that is pushed by the tangent plane of a curved surface gets the plane of the way
+  ///   that it would go without its own force (constraint::Contact), if that is another one: where
+  ///   that way misses the surface it is pushed no more.
+  /// Whether there was anything to mend; rows, and who takes part, are then new.
+  /// @param problem,numbering of the step. @param effort (rows of the problem,) N, its solution.
+  bool correct(const step::StepProblem& problem, const RowNumbering& numbering,
+               const linalg::AlignedNumbers& effort);
+  /// Whether correct() could find anything.
+  bool are_guessed() const { return left_out_ || planes_.curved(); }
+  bool leave_points_out() const { return left_out_; }
+
+  /// Whether a point has a force that had none when the step began. @param effort (rows,) N.
+  bool gap_closed(std::span<const double> effort) const;
+  /// m, >= 0: how deep the deepest point without a normal force is in its surface's tangent plane.
+  /// @param effort (rows,) N.
+  double deepest_free_point(std::span<const double> effort) const;
+  /// The same of points that were left out, by delta.
+  double deepest_left_out() const;
+
+ private:
+  template <class Visit>
+  void for_each_point(Visit&& visit) const;
+  void set_present(int row, bool present);
+  bool take_in(const constraint::Contact& contact, std::size_t point,
+               const Eigen::Isometry3d& pose);
+
+  const Model& model_;
+  const constraint::Placement& placement_;
+  std::span<mechanics::StepSystem* const> systems_;
+  mechanics::RowValues& rows_;
+  ContactPlanes planes_;
+  bool left_out_ = false;      // some point
+  std::vector<char> touched_;  // (rows,) normal rows with a force when the step began
+};
+
+}  // namespace sinew::sim

@@ -1,0 +1,119 @@
+#include "sinew/sim/geometric_stiffness.hpp"
+
+#include <algorithm>
+
+#include "sinew/constraint/constraint.hpp"
+#include "sinew/linalg/positive_part.hpp"
+#include "sinew/mechanics/step_system.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/step/step_problem.hpp"
+
+namespace sinew::sim {
+
+GeometricStiffness::GeometricStiffness(const Model& model, const constraint::Placement& placement,
+                                       std::span<mechanics::StepSystem* const> systems,
+                                       step::StepProblem& problem)
+    : model_(model),
+      placement_(placement),
+      systems_(systems),
+      problem_(problem),
+      curvatures_(model.curvatures()),
+      effort_(static_cast<std::size_t>(model.rows().rows())) {
+  const auto add_rows = [&](int constraint, int count) {
+    const int row = model.constraints()[static_cast<std::size_t>(constraint)]->first_row();
+    for (int k = 0; k < count; ++k) problem_.stiffness.push_back({row + k});
+  };
+  for (const AnchorModel& anchor : model.anchors()) add_rows(anchor.constraint, 3);
+  anchor_rows_ = problem_.stiffness.size();
+  for (const CouplingModel& coupling : model.couplings()) add_rows(coupling.constraint, 2);
+}
+
+void GeometricStiffness::begin(const mechanics::LinearisationRequest& request) {
+  tangent_ = request.tangent;
+  // Inertia holds a body by itself.
+  for (std::size_t k = 0; k < anchor_rows_; ++k) {
+    problem_.stiffness[k].stiffness =
+        request.weights.dynamic() ? 0.0 : -model_.anchors()[k / 3].stiffness;
+  }
+}
+
+void GeometricStiffness::choose(std::span<const double> effort, std::span<const int> curved) {
+  curving_ = curved;
+  if (!curved.empty()) std::ranges::copy(effort, effort_.begin());
+}
+
+void GeometricStiffness::add() {
+  majorant_ = false;
+  for (std::size_t k = anchor_rows_; k < problem_.stiffness.size(); ++k) {
+    problem_.stiffness[k].stiffness = 0.0;
+  }
+  for (const int index : curving_) {
+    add_curvature(*model_.constraints()[static_cast<std::size_t>(index)]);
+  }
+  curving_ = {};
+  add_anchors();
+}
+
+void GeometricStiffness::add_curvature(const constraint::Constraint& constraint) {
+  const std::span<const double> effort(effort_);
+  const std::span<mechanics::RowCurvature> pairs(
+      curvatures_.data() + constraint.first_curvature(),
+      static_cast<std::size_t>(constraint.curvature_count()));
+  const auto own = effort.subspan(static_cast<std::size_t>(constraint.first_row()),
+                                  static_cast<std::size_t>(constraint.row_count()));
+  if (std::ranges::all_of(own, [](double lambda) { return lambda == 0.0; })) return;
+  constraint.curve(placement_, effort, pairs);
+  const bool exact = tangent_ == mechanics::Tangent::exact || constraint.stiffens(effort);
+  for (const auto& pair : pairs) {
+    if (exact && pair.first.body == pair.second.body) {
+      systems_[static_cast<std::size_t>(pair.first.body)]->add_curvature(pair);
+    } else if (exact) {
+      couple(pair);
+    } else {
+      majorant_ = true;
+      add_majorant(pair);
+    }
+  }
+}
+
+void GeometricStiffness::add_to(const mechanics::MaterialPoint& point, const Matrix3& curvature) {
+  systems_[static_cast<std::size_t>(point.body)]->add_curvature({point, point, curvature});
+}
+
+// A piece of a cable between two bodies: its C = T/l (I - n n^T), which the pairs of either point
+// with itself have added to the bodies, becomes a spring T/l along the rows of its coupling.
+void GeometricStiffness::couple(const mechanics::RowCurvature& pair) {
+  for (const mechanics::MaterialPoint& point : {pair.first, pair.second}) {
+    add_to(point, pair.curvature);
+  }
+  const auto index = static_cast<int>(&pair - curvatures_.data());
+  const auto& couplings = model_.couplings();
+  const auto found = std::ranges::find(couplings, index, &CouplingModel::curvature);
+  const auto first = anchor_rows_ + 2 * static_cast<std::size_t>(found - couplings.begin());
+  for (std::size_t k = first; k < first + 2; ++k) {
+    problem_.stiffness[k].stiffness = 0.5 * pair.curvature.trace();
+  }
+}
+
+// A pair (x_i, x_j) with block C puts -C at (i, j) and -C^T at (j, i) into A. What is never less:
+// |C| I at (i, i) and (j, j), see FemBody::add_majorant; a pair of one point gives its positive
+// part. All stays on points' own blocks.
+void GeometricStiffness::add_majorant(const mechanics::RowCurvature& pair) {
+  if (pair.first == pair.second) {
+    return add_to(pair.first, -linalg::positive_part(-pair.curvature));
+  }
+  const Matrix3 bound = pair.curvature.norm() * Matrix3::Identity();
+  add_to(pair.first, -bound);
+  add_to(pair.second, -bound);
+}
+
+void GeometricStiffness::add_anchors() {
+  for (std::size_t k = 0; k < anchor_rows_; k += 3) {
+    const auto& [row, stiffness] = problem_.stiffness[k];
+    if (stiffness == 0.0) continue;
+    const auto entry = model_.rows().row_start[static_cast<std::size_t>(row)];
+    add_to(model_.rows().point[static_cast<std::size_t>(entry)], stiffness * Matrix3::Identity());
+  }
+}
+
+}  // namespace sinew::sim

@@ -1,0 +1,68 @@
+/// @file
+/// What the robot's tangent has beside that of its bodies.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "sinew/mechanics/rows.hpp"
+#include "sinew/mechanics/tangent.hpp"
+
+namespace sinew::constraint {
+class Constraint;
+class Placement;
+}  // namespace sinew::constraint
+namespace sinew::mechanics {
+struct LinearisationRequest;
+class StepSystem;
+}  // namespace sinew::mechanics
+namespace sinew::step {
+struct StepProblem;
+}
+
+namespace sinew::sim {
+
+class Model;
+
+/// The curvature of constraints under load (geometric stiffness), and the anchors of bodies that
+/// only joints hold. What stands on the points of one body is added to its A; what couples two, and
+/// what anchors must not add to the robot, goes into the step's problem as blocks of stiffness.
+class GeometricStiffness {
+ public:
+  /// All must outlive it. @param systems of the bodies. @param problem gets the blocks of stiffness
+  /// of anchors and couplings.
+  GeometricStiffness(const Model& model, const constraint::Placement& placement,
+                     std::span<mechanics::StepSystem* const> systems, step::StepProblem& problem);
+
+  /// Before the bodies linearise: anchors stand in statics alone.
+  void begin(const mechanics::LinearisationRequest& request);
+  /// Which constraints curve in the next add(). @param effort (rows,) N, at which they do.
+  void choose(std::span<const double> effort, std::span<const int> curved);
+  /// Adds the curvature to the bodies: as it is, or, where the linearisation's tangent is not
+  /// exact, what is never less and positive semi-definite; and the anchors.
+  void add();
+  /// Whether a majorant of curvature stands in A, which is then no derivative.
+  bool has_majorant() const { return majorant_; }
+  std::size_t bytes() const { return curvatures_.size() * sizeof(mechanics::RowCurvature); }
+
+ private:
+  void add_curvature(const constraint::Constraint& constraint);
+  void add_to(const mechanics::MaterialPoint& point, const Matrix3& curvature);
+  void couple(const mechanics::RowCurvature& pair);
+  void add_majorant(const mechanics::RowCurvature& pair);
+  void add_anchors();
+
+  const Model& model_;
+  const constraint::Placement& placement_;
+  std::span<mechanics::StepSystem* const> systems_;
+  step::StepProblem& problem_;
+  std::vector<mechanics::RowCurvature> curvatures_;
+  std::vector<double> effort_;    // (rows,) N, at which constraints curve
+  std::span<const int> curving_;  // whose curvature add() adds
+  mechanics::Tangent tangent_ = mechanics::Tangent::real_time;
+  bool majorant_ = false;
+  std::size_t anchor_rows_ = 0;  // of problem_.stiffness; behind them those of couplings
+};
+
+}  // namespace sinew::sim

@@ -1,0 +1,104 @@
+#include "sinew/sim/linear_step.hpp"
+
+#include <fmt/format.h>
+
+#include "sinew/sim/run.hpp"
+#include "sinew/sim/step_failure.hpp"
+
+namespace sinew::sim {
+
+namespace {
+
+constexpr int kMostStepHalvings = 10;
+// Of the robot's size: a point that is deeper in a surface after one linearisation, and is not
+// pushed out, is not there by rounding.
+constexpr double kMaxDepth = 1e-6;
+
+}  // namespace
+
+void LinearStep::solve(double time_step) {
+  if (run_.model->step().dynamic()) run_.world.bodies().drift(time_step);
+  mechanics::LinearisationRequest request = run_.request(time_step);
+  request.iterating = false;
+  linearise(request);
+  condense(request);
+  StepReport& report = run_.report;
+  report.law = run_.world.solve_step(run_.solver, run_.controller, run_.effort, run_.clock);
+  if (report.law == LawStatus::failed) fail_law(run_);
+  report.iterations = 1;
+  move_soundly();
+  run_.clock.mark(Stage::correction);
+  require_outside();
+  look_back(request);
+}
+
+void LinearStep::linearise(const mechanics::LinearisationRequest& request) {
+  run_.world.linearise(request);
+  run_.clock.mark(Stage::assembly);
+  run_.world.form_rows(run_.effort, run_.model->stiffening_constraints());
+  run_.clock.mark(Stage::compliance);
+}
+
+// With the projected tangent where the exact one is indefinite.
+void LinearStep::condense(mechanics::LinearisationRequest& request) {
+  auto status = run_.world.condense();
+  if (status != linalg::FactorStatus::singular && request.tangent == mechanics::Tangent::exact &&
+      !run_.world.is_stable()) {
+    request.tangent = mechanics::Tangent::projected;
+    linearise(request);
+    status = run_.world.condense();
+  }
+  run_.clock.mark(Stage::factorisation);
+  if (status == linalg::FactorStatus::singular) {
+    fail(run_, ErrorKind::singular_matrix, "the stiffness matrix is singular",
+         "fix a region of every body, or look for loose or crushed elements");
+  }
+}
+
+// Takes the motion, or the largest halving of it that inverts no element.
+void LinearStep::move_soundly() {
+  const bool was_sound = run_.volume_ratio > 0.0;
+  StepReport& report = run_.report;
+  report.scale = 1.0;
+  mechanics::MotionReport motion;
+  for (int halving = 0; halving <= kMostStepHalvings; ++halving, report.scale *= 0.5) {
+    motion = run_.world.bodies().apply_motion(report.scale);
+    if (motion.finite) motion.volume = run_.world.bodies().smallest_volume();
+    if (motion.finite && (motion.volume.ratio > 0.0 || !was_sound)) {
+      run_.volume_ratio = report.smallest_volume_ratio = motion.volume.ratio;
+      return;
+    }
+  }
+  if (!motion.finite) {
+    fail(run_, ErrorKind::diverged,
+         "the motion of this step is not finite or out of all proportion",
+         "take a smaller time step, or check loads and material");
+  }
+  fail(run_, ErrorKind::inverted_in_run,
+       fmt::format("element {} would turn inside out (det F = {:.3g}) even at {:.2g} of the motion",
+                   motion.volume.element, motion.volume.ratio, 2.0 * report.scale),
+       "take a smaller time step, change commands more slowly, or refine the mesh there");
+}
+
+// Points that commanded motions leave nothing to give way are beyond any contact force.
+void LinearStep::require_outside() {
+  if (run_.model->contacts().empty()) return;
+  const double depth = run_.world.contacts().deepest_free_point(run_.effort);
+  if (depth <= kMaxDepth * run_.model->size()) return;
+  fail(run_, ErrorKind::not_converged,
+       fmt::format("a point would be {:.3g} m inside a surface, and no contact force can move it",
+                   depth),
+       "take a smaller time step, or command no motion that ends in the surface");
+}
+
+void LinearStep::look_back(mechanics::LinearisationRequest request) {
+  request.tangent = run_.model->step().tangent;
+  request.iterating = true;
+  linearise(request);
+  StepReport& report = run_.report;
+  report.residual = run_.world.bodies().residual(run_.effort);
+  report.relative_residual = report.residual / (run_.world.bodies().force_scale() + 1e-300);
+  report.violation = run_.world.violation(run_.effort);
+}
+
+}  // namespace sinew::sim

@@ -1,0 +1,210 @@
+#include "sinew/sim/newton_step.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "sinew/sim/folded_cable.hpp"
+#include "sinew/sim/load_steps.hpp"
+#include "sinew/sim/run.hpp"
+#include "sinew/sim/step_failure.hpp"
+#include "sinew/sim/step_tolerances.hpp"
+#include "sinew/step/controller.hpp"
+
+namespace sinew::sim {
+
+namespace {
+
+// What quasi-static steps leave for the next one.
+constexpr Lag kLag{0.1, 1e-3};
+// Iterations with the projected tangent, which end wherever a stable equilibrium is downhill.
+constexpr int kMostDescents = 60;
+// The smallest part of a quasi-static step.
+constexpr double kLeastPart = 1.0 / 64.0;
+constexpr int kIterationsOfPart = 25;
+// A controller chooses where to go anew in every iteration, which need not settle: after this many
+// its efforts are held. It has to keep up with a clock, too: a quasi-static step that it steers
+// takes no parts, and as many iterations with held efforts, with either tangent.
+constexpr int kSteeredIterations = 8;
+
+bool converged(const NewtonReport& result) { return result.status == NewtonStatus::converged; }
+
+bool goes_on(const NewtonReport& result) {
+  return !converged(result) && result.law != LawStatus::failed;
+}
+
+}  // namespace
+
+NewtonSettings NewtonStep::settings(double time_step) const {
+  const StepSettings& step = run_.model->step();
+  const bool lags = !step.dynamic() && !step.tolerance;
+  return {run_.request(time_step),
+          step.newton_tolerance(),
+          std::min(step.newton_tolerance(), kMotionTolerance),
+          step.max_iterations,
+          run_.model->stiffening_constraints(),
+          lags ? kLag : Lag{}};
+}
+
+NewtonSettings NewtonStep::settings_of_part(double time_step) const {
+  NewtonSettings part = settings(time_step);
+  part.max_iterations = std::min(part.max_iterations, kIterationsOfPart);
+  return part;
+}
+
+void NewtonStep::solve(double time_step) {
+  const NewtonReport result = search(time_step);
+  take_report(result);
+  if (converged(result) || (!run_.model->step().dynamic() && is_usable(result))) return;
+  if (result.status == NewtonStatus::law_failed) fail_law(run_);
+  const std::string folded =
+      describe_folded_cable(*run_.model, run_.world.placement(), run_.effort);
+  fail(run_, ErrorKind::not_converged,
+       fmt::format("Newton ended as '{}' after {} iterations, relative residual {:.3g}{}",
+                   newton_status_name(result.status), result.iterations, result.relative_residual,
+                   folded),
+       folded.empty() ? "take a smaller time step, or change commands more slowly"
+                      : "lessen its tension, or place its points so that they stay apart");
+}
+
+NewtonReport NewtonStep::search(double time_step) {
+  NewtonSettings whole = settings(time_step);
+  const bool steered = run_.controller != nullptr;
+  if (steered) whole.max_iterations = std::min(whole.max_iterations, kSteeredIterations);
+  NewtonReport result = run_.newton(run_.controller, whole);
+  if (steered && goes_on(result)) return hold_choice(result, time_step);
+  if (run_.model->step().dynamic() || converged(result)) return result;
+  int tried = result.iterations;
+  result = approach(time_step);
+  tried += result.iterations;
+  if (!converged(result)) {
+    result = descend(time_step, kMostDescents);
+    tried += result.iterations;
+  }
+  result.iterations = tried;
+  return result;
+}
+
+// A controller's choice need not settle: what it chose last is what its actuators do in the rest of
+// the step.
+NewtonReport NewtonStep::hold_choice(const NewtonReport& chosen, double time_step) {
+  const bool dynamic = run_.model->step().dynamic();
+  NewtonSettings held = settings(time_step);
+  const int few = std::min(held.max_iterations, kSteeredIterations);
+  if (!dynamic) held.max_iterations = few;
+  hold_efforts(run_.world.problem().actuators, run_.effort);
+  NewtonReport result = run_.newton(nullptr, held);
+  int tried = chosen.iterations + result.iterations;
+  if (!dynamic && goes_on(result)) {
+    result = descend(time_step, few);
+    tried += result.iterations;
+  }
+  if (!dynamic && goes_on(result) && !is_usable(result)) {
+    result = stay(time_step);
+    tried += result.iterations;
+  }
+  result.law = std::max(result.law, chosen.law);
+  result.iterations = tried;
+  return result;
+}
+
+void NewtonStep::begin_again(double time_step) {
+  run_.world.begin_step(run_.now - time_step, run_.now, run_.effort);
+}
+
+// Where a controller's choice leads nowhere its actuators keep the efforts of the last step. It
+// remembers what it foresaw, and trusts its next choice less (see inverse::StepDamping).
+NewtonReport NewtonStep::stay(double time_step) {
+  std::vector<double> memory(run_.controller->memory_size());
+  run_.controller->save_memory(memory);
+  run_.restore(run_.before);
+  const std::vector<ActuatorState>& actuators = run_.actuation.states();
+  for (std::size_t i = 0; i < actuators.size(); ++i) {
+    if (actuators[i].owner == nullptr) continue;
+    run_.world.problem().actuators[i].hold_effort(actuators[i].effort);
+  }
+  begin_again(time_step);
+  NewtonReport result = run_.newton(nullptr, settings(time_step));
+  if (!converged(result)) result = approach(time_step);
+  if (!converged(result)) result = descend(time_step, kMostDescents);
+  run_.controller->load_memory(memory);
+  return result;
+}
+
+// What the start of the step lacks to equilibrium is taken away bit by bit, as in statics
+// (static_solver.cpp), and commands go in proportion from where the actuators were.
+NewtonReport NewtonStep::approach(double time_step) {
+  World& world = run_.world;
+  std::vector<step::ActuatorBlock>& commands = world.problem().actuators;
+  const std::vector<step::ActuatorBlock> goal = commands;
+  const std::vector<ActuatorState> start = run_.actuation.states();
+  const NewtonSettings part = settings_of_part(time_step);
+  State sound = run_.before;
+  const auto go_back = [&] {
+    run_.restore(sound);
+    begin_again(time_step);
+  };
+  go_back();
+  world.linearise(part.request);
+  world.form_rows(run_.effort, part.curved);
+  world.hold_imbalance(run_.effort);
+  NewtonReport result;
+  int iterations = 0;
+  const auto solve = [&](double share) {
+    commands = goal;
+    blend(commands, start, 1.0 - share);
+    world.set_imbalance_share(share);
+    result = run_.newton(nullptr, part);
+    iterations += result.iterations;
+    return converged(result);
+  };
+  take_load_steps(
+      {.first = 0.5, .least = kLeastPart}, solve, [&] { run_.keep(sound); }, go_back);
+  world.set_imbalance_share(0.0);
+  commands = goal;
+  result.iterations = iterations;
+  return result;
+}
+
+// From where approach() ended: with a matrix that is never less than the derivative every iteration
+// lowers the energy of conservative loads, through a buckling to wherever the robot then rests.
+// What is slow at the end of that, Newton finishes.
+NewtonReport NewtonStep::descend(double time_step, int iterations) {
+  NewtonSettings downhill = settings(time_step);
+  downhill.request.tangent = mechanics::Tangent::projected;
+  // A matrix that is never less has the stiffness of all cables, whatever the scene leaves out.
+  downhill.request.with_curvature = true;
+  downhill.curved = run_.model->curved_constraints();
+  downhill.max_iterations = iterations;
+  NewtonReport result = run_.newton(nullptr, downhill);
+  if (converged(result) || run_.controller != nullptr) return result;
+  const int descended = result.iterations;
+  result = run_.newton(nullptr, settings_of_part(time_step));
+  result.iterations += descended;
+  return result;
+}
+
+// Whether a quasi-static step may end so, and be flagged. Of contacts there is no such thing as
+// nearly: a point would be inside a surface. Forces may be as much out of balance as those of any
+// step that a controller steers.
+bool NewtonStep::is_usable(const NewtonReport& result) const {
+  if (!result.motion.finite || !(result.motion.volume.ratio > 0.0)) return false;
+  if (result.law == LawStatus::failed) return false;
+  if (run_.model->contacts().empty()) return true;
+  return result.relative_residual <= (run_.controller == nullptr ? kSearched : kBalanced) &&
+         result.violation <= kMotionTolerance * run_.model->size();
+}
+
+void NewtonStep::take_report(const NewtonReport& result) {
+  StepReport& report = run_.report;
+  report.law = result.law;
+  report.residual = result.residual;
+  report.relative_residual = result.relative_residual;
+  report.violation = result.violation;
+  report.iterations = result.iterations;
+  report.newton = result.status;
+  report.scale = 1.0;
+  run_.volume_ratio = report.smallest_volume_ratio = result.motion.volume.ratio;
+}
+
+}  // namespace sinew::sim

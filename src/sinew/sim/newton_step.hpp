@@ -1,0 +1,36 @@
+/// @file
+/// A step's equation solved by Newton's method, and by longer ways where that finds nothing.
+#pragma once
+
+#include "sinew/sim/newton.hpp"
+
+namespace sinew::sim {
+
+struct Run;
+
+/// Newton; where that finds nothing and there is no inertia to say where to go, along the loads and
+/// commands in parts, and last downhill.
+class NewtonStep {
+ public:
+  /// @param run outlives it; its step has begun when solve() is called.
+  explicit NewtonStep(Run& run) : run_(run) {}
+  /// Moves the bodies and reports. Throws Error(not-converged), the run then being as before the
+  /// step. @param time_step s.
+  void solve(double time_step);
+
+ private:
+  NewtonSettings settings(double time_step) const;
+  NewtonSettings settings_of_part(double time_step) const;
+  NewtonReport search(double time_step);
+  NewtonReport hold_choice(const NewtonReport& chosen, double time_step);
+  NewtonReport stay(double time_step);
+  NewtonReport approach(double time_step);
+  NewtonReport descend(double time_step, int iterations);
+  bool is_usable(const NewtonReport& result) const;
+  void take_report(const NewtonReport& result);
+  void begin_again(double time_step);
+
+  Run& run_;
+};
+
+}  // namespace sinew::sim

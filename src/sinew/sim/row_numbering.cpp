@@ -1,0 +1,36 @@
+#include "sinew/sim/row_numbering.hpp"
+
+#include <algorithm>
+
+namespace sinew::sim {
+
+void RowNumbering::number(std::span<const char> present) {
+  rows_.clear();
+  places_.assign(present.size(), -1);
+  for (std::size_t row = 0; row < places_.size(); ++row) {
+    if (present[row] == 0) continue;
+    places_[row] = static_cast<int>(rows_.size());
+    rows_.push_back(static_cast<int>(row));
+  }
+}
+
+void RowNumbering::gather(const VectorX& all, VectorX& result) const {
+  result.resize(static_cast<Eigen::Index>(rows_.size()));
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    result[static_cast<Eigen::Index>(k)] = all[rows_[k]];
+  }
+}
+
+void RowNumbering::gather(std::span<const double> all, linalg::AlignedNumbers& result) const {
+  result.clear();
+  for (const int row : rows_) result.push_back(all[static_cast<std::size_t>(row)]);
+}
+
+void RowNumbering::scatter(const linalg::AlignedNumbers& numbers, std::span<double> all) const {
+  std::ranges::fill(all, 0.0);
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    all[static_cast<std::size_t>(rows_[k])] = numbers[k];
+  }
+}
+
+}  // namespace sinew::sim

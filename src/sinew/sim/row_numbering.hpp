@@ -1,0 +1,38 @@
+/// @file
+/// Which rows of the model the problem of a step has.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sinew/core/types.hpp"
+#include "sinew/linalg/scratch.hpp"
+
+namespace sinew::sim {
+
+/// The problem's rows are those of the model, in their order, without those of points that are left
+/// out of the step. Contacts stand behind all others, whose numbers are therefore the same in both.
+class RowNumbering {
+ public:
+  /// @param present (rows,) see mechanics::RowValues.
+  void number(std::span<const char> present);
+
+  /// The model's row that a row of the problem is.
+  int row_of(int row) const { return rows_[static_cast<std::size_t>(row)]; }
+  /// Where a row of the model is in the problem; -1: nowhere.
+  int place_of(int row) const { return places_[static_cast<std::size_t>(row)]; }
+  /// (rows,) of each.
+  std::span<const int> places() const { return places_; }
+
+  /// Of numbers of all rows, those of the problem.
+  void gather(const VectorX& all, VectorX& result) const;
+  void gather(std::span<const double> all, linalg::AlignedNumbers& result) const;
+  /// And back; rows that are left out get zero.
+  void scatter(const linalg::AlignedNumbers& numbers, std::span<double> all) const;
+
+ private:
+  std::vector<int> places_;  // (rows,) in the problem, -1: left out
+  std::vector<int> rows_;    // (rows of the problem,) of the model
+};
+
+}  // namespace sinew::sim

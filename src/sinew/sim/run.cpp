@@ -1,0 +1,69 @@
+#include "sinew/sim/run.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "sinew/sim/newton.hpp"
+#include "sinew/step/controller.hpp"
+
+namespace sinew::sim {
+
+Run::Run(std::shared_ptr<const Model> shared_model, int threads)
+    : model(std::move(shared_model)),
+      pool(threads),
+      world(model, pool),
+      solver(qp::ConeSettings{.tolerance = model->step().contact_tolerance}),
+      actuation(*model),
+      surroundings(*model, world.bodies()),
+      effort(static_cast<std::size_t>(model->rows().rows()), 0.0) {
+  finish_step();
+  keep(before);
+}
+
+mechanics::StepWeights Run::step_weights(double time_step) const {
+  const StepSettings& settings = model->step();
+  return mechanics::step_weights(settings.integrator, time_step, last_step,
+                                 settings.spectral_radius);
+}
+
+mechanics::LinearisationRequest Run::request(double time_step) const {
+  return {step_weights(time_step), model->step().tangent, model->stiffening_widens(), true};
+}
+
+void Run::read_commands(double time, double time_step) {
+  step::StepProblem& problem = world.problem();
+  problem.time = time;
+  problem.time_step = time_step;
+  actuation.form_blocks(time, time_step, problem.actuators);
+  if (!model->guides().empty()) world.hold_capstans(world.measure_delta());
+}
+
+NewtonReport Run::newton(step::Controller* chooser, const NewtonSettings& settings) {
+  return solve_newton(world, solver, chooser, effort, settings, clock);
+}
+
+void Run::finish_step() {
+  actuation.read(world.measure_delta(), effort, world.problem().actuators);
+}
+
+void Run::restart() {
+  actuation.restart();
+  surroundings.restart();
+  world.bodies().restart();
+  std::ranges::fill(effort, 0.0);
+  std::ranges::fill(world.problem().actuators, step::ActuatorBlock{});
+  volume_ratio = 1.0;
+  ledger = {};
+  last_step = next_step = 0.0;
+  steps = 0;
+  finish_step();
+  if (controller != nullptr) controller->forget();
+  report = {};
+}
+
+std::size_t Run::bytes() const {
+  return world.bytes() + sizeof(double) * (effort.size() + before.size()) +
+         actuation.states().size() * (sizeof(ActuatorState) + sizeof(step::ActuatorBlock));
+}
+
+}  // namespace sinew::sim

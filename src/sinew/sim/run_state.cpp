@@ -1,0 +1,129 @@
+// State and inputs of a Run as values.
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "sinew/core/error.hpp"
+#include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/capabilities.hpp"
+#include "sinew/sim/inputs.hpp"
+#include "sinew/sim/run.hpp"
+#include "sinew/step/controller.hpp"
+
+namespace sinew::sim {
+
+namespace {
+
+void check_count(const char* what, std::size_t expected, std::size_t got) {
+  if (expected == got) return;
+  throw Error(ErrorKind::wrong_length, {.item = what},
+              fmt::format("{} are given, this robot has {}", got, expected),
+              "take them from a simulation of the same model");
+}
+
+void check_state(const Run& run, const State& state) {
+  const auto bodies = run.world.bodies().all();
+  check_count("bodies of the state", bodies.size(), state.bodies.size());
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    check_count("numbers of a body's state", bodies[i]->state_size(), state.bodies[i].size());
+  }
+  const Actuation& actuation = run.actuation;
+  check_count("efforts of the state", run.effort.size(), state.efforts.size());
+  check_count("motions of the state", actuation.states().size(), state.motions.size());
+  check_count("setpoints of the state", actuation.states().size(), state.setpoints.size());
+  check_count("numbers of the state's drives", actuation.drive_numbers(), state.drives.size());
+  check_count("load factors of the state", run.surroundings.applied().size(), state.loads.size());
+  check_count("frames of the state", run.world.contacts().planes().frames_size(),
+              state.frames.size());
+}
+
+}  // namespace
+
+void Run::keep(State& state) const {
+  const auto bodies = world.bodies().all();
+  state.bodies.resize(bodies.size());
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    state.bodies[i].resize(bodies[i]->state_size());
+    bodies[i]->save_state(state.bodies[i]);
+  }
+  state.efforts = effort;
+  actuation.save(state);
+  state.loads = surroundings.applied();
+  world.contacts().planes().save_frames(state.frames);
+  state.controller.resize(controller != nullptr ? controller->memory_size() : 0);
+  if (controller != nullptr) controller->save_memory(state.controller);
+  state.ledger = ledger.sums();
+  state.volume_ratio = volume_ratio;
+  state.residual = report.relative_residual;
+  state.last_step = last_step;
+  state.next_step = next_step;
+  state.steps = steps;
+}
+
+void Run::restore(const State& state) {
+  check_state(*this, state);
+  for (std::size_t i = 0; i < state.bodies.size(); ++i) {
+    world.bodies().all()[i]->load_state(state.bodies[i]);
+  }
+  effort = state.efforts;
+  actuation.load(state);
+  for (std::size_t k = 0; k < state.loads.size(); ++k) surroundings.apply(k, state.loads[k]);
+  world.contacts().planes().load_frames(state.frames);
+  ledger.set(state.ledger);
+  volume_ratio = state.volume_ratio;
+  report.relative_residual = state.residual;
+  last_step = state.last_step;
+  next_step = state.next_step;
+  steps = state.steps;
+  if (controller == nullptr) return;
+  if (!state.controller.empty() && state.controller.size() == controller->memory_size()) {
+    controller->load_memory(state.controller);
+  } else {
+    controller->forget();
+  }
+}
+
+Inputs Run::inputs() const {
+  Inputs inputs;
+  for (const ActuatorState& actuator : actuation.states()) {
+    inputs.commands.push_back(actuator.command);
+  }
+  inputs.loads = surroundings.factors();
+  for (const auto& body : world.bodies().all()) {
+    BodyInputs& own = inputs.bodies.emplace_back();
+    if (const auto* pulled = mechanics::as<mechanics::TakesForces>(*body)) {
+      own.external_forces = pulled->external_forces();
+      own.tether = pulled->tether();
+    }
+    if (const auto* standing = mechanics::as<mechanics::HasBase>(*body)) {
+      own.base = standing->base_input();
+    }
+  }
+  return inputs;
+}
+
+void Run::set_inputs(const Inputs& inputs) {
+  const auto bodies = world.bodies().all();
+  check_count("commands", actuation.states().size(), inputs.commands.size());
+  check_count("load factors", surroundings.factors().size(), inputs.loads.size());
+  check_count("bodies of the inputs", bodies.size(), inputs.bodies.size());
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (mechanics::as<mechanics::TakesForces>(*bodies[i]) == nullptr) continue;
+    check_count("nodes of external forces", static_cast<std::size_t>(bodies[i]->positions().rows()),
+                static_cast<std::size_t>(inputs.bodies[i].external_forces.rows()));
+  }
+  actuation.set_commands(inputs.commands);
+  surroundings.set_factors(inputs.loads);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const BodyInputs& own = inputs.bodies[i];
+    if (auto* pulled = mechanics::as<mechanics::TakesForces>(*bodies[i])) {
+      pulled->external_forces() = own.external_forces;
+      pulled->set_tether(own.tether);
+    }
+    if (auto* standing = mechanics::as<mechanics::HasBase>(*bodies[i])) {
+      standing->move_base(own.base);
+    }
+  }
+}
+
+}  // namespace sinew::sim

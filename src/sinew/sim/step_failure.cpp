@@ -1,0 +1,46 @@
+#include "sinew/sim/step_failure.hpp"
+
+#include <fmt/format.h>
+
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/sim/run.hpp"
+
+namespace sinew::sim {
+
+namespace {
+
+// More points than this are beyond the solver's Newton method, and slow.
+constexpr std::size_t kManyPoints = static_cast<std::size_t>(qp::ConeSettings{}.newton_limit) / 3;
+
+}  // namespace
+
+void fail(Run& run, ErrorKind kind, const std::string& message, const std::string& remedy) {
+  run.restore(run.before);
+  std::string names;
+  for (const auto& body : run.model->bodies()) names += (names.empty() ? "" : ", ") + body->name();
+  throw Error(kind,
+              {.item = fmt::format("step {} (t = {:g} s), body {}", run.steps + 1, run.now, names)},
+              message, remedy);
+}
+
+void fail_law(Run& run) {
+  if (run.model->contacts().empty()) {
+    fail(run, ErrorKind::not_converged, "no efforts obey the law of this step",
+         "loosen the limits of the actuators");
+  }
+  const qp::ConeResult& result = run.solver.direct().contact_result();
+  const std::size_t points = result.states.size();
+  fail(
+      run, ErrorKind::not_converged,
+      fmt::format("no contact forces obey this step: residual {:.3g} after {} sweeps, with {} "
+                  "points near their surfaces",
+                  result.residual, result.sweeps, points),
+      points > kManyPoints
+          ? fmt::format("let fewer points touch (`nodes` or `points` of the contact): up to {} are "
+                        "solved best; or take a smaller time step",
+                        kManyPoints)
+          : "take a smaller time step, or look for a body that is squeezed where it cannot give "
+            "way");
+}
+
+}  // namespace sinew::sim

@@ -1,0 +1,197 @@
+#include "sinew/sim/stepper.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/core/error.hpp"
+#include "sinew/sim/linear_step.hpp"
+#include "sinew/sim/newton_step.hpp"
+#include "sinew/sim/run.hpp"
+#include "sinew/sim/step_tolerances.hpp"
+#include "sinew/step/controller.hpp"
+
+namespace sinew::sim {
+
+namespace {
+
+// A step that fails is made in parts, the smallest of which is the inverse of this.
+constexpr double kMostParts = 16.0;
+// A command that is missed by more than this of the robot's size was not reached.
+constexpr double kReached = 1e-3;
+// Energy that came out of nothing, of the work of all forces over the robot's size: less is
+// rounding, as of a robot at rest.
+constexpr double kNoEnergy = 1e-10;
+
+}  // namespace
+
+void Stepper::step() {
+  StepReport& report = run_.report;
+  run_.clock.start();
+  report.substeps = 1;
+  report.retries = 0;
+  report.status = StepStatus::solved;
+  report.energy_gained = 0.0;
+  if (run_.model->step().dynamic() && !run_.ledger.is_open()) {
+    run_.ledger.open(run_.world.bodies().energies());
+  }
+  if (run_.model->step().adaptive) {
+    step_adaptively();
+  } else {
+    step_in_parts();
+  }
+  ++run_.steps;
+  judge();
+  run_.clock.mark(Stage::correction);
+  run_.clock.stop();
+  report.times = run_.clock.times();
+}
+
+// The whole step, or, where Newton finds no end, halves of it and of those: commands that jump and
+// loads that come at once are then approached.
+void Stepper::step_in_parts() {
+  StepReport& report = run_.report;
+  const double whole = run_.model->step().time_step;
+  try {
+    report.error = substep(static_cast<double>(run_.steps + 1) * whole, whole);
+    return;
+  } catch (const Error& failure) {
+    const bool parts = run_.model->step().method == Method::newton && run_.model->step().dynamic();
+    if (!parts || !failure.is_run_failure()) throw;
+  }
+  const double begin = run_.time();  // what failed is undone
+  start_ = run_.before;
+  part_ = Part{0.0, run_.actuation.states()};
+  double done = 0.0, length = 0.5;
+  report.substeps = 0;
+  while (done < 1.0) {
+    try {
+      part_->fraction = done + length;
+      report.error = substep(begin + (done + length) * whole, length * whole);
+      done += length;
+      ++report.substeps;
+    } catch (const Error& failure) {
+      length *= 0.5;
+      ++report.retries;
+      if (length * kMostParts >= 1.0 && failure.is_run_failure()) continue;
+      part_.reset();
+      run_.restore(start_);
+      throw;
+    }
+  }
+  part_.reset();
+}
+
+// Halves where a substep fails; else aims at nine tenths of the step that the tolerance allows, by
+// the order of the error, at most twice the last one.
+void Stepper::step_adaptively() {
+  StepReport& report = run_.report;
+  const StepSettings& settings = run_.model->step();
+  const double begin = run_.time(), whole = settings.time_step;
+  const double tolerance = settings.adaptive->tolerance * run_.model->size();
+  const double smallest = settings.adaptive->smallest;
+  const double order = mechanics::history_count(settings.integrator) > 0 ? 3.0 : 2.0;
+  if (!(run_.next_step > 0.0)) run_.next_step = whole;
+  run_.keep(start_);
+  report.substeps = 0;
+  report.error = 0.0;
+  double done = 0.0;
+  while (done < whole * (1.0 - 1e-9)) {
+    const double left = whole - done;
+    const double h = run_.next_step < 0.999 * left ? std::min(run_.next_step, 0.5 * left) : left;
+    try {
+      const double error = substep(begin + done + h, h);
+      const double aim =
+          error > 0.0 ? std::clamp(0.9 * std::pow(tolerance / error, 1.0 / order), 0.2, 2.0) : 2.0;
+      if (error > tolerance && 0.5 * h >= smallest) {
+        run_.restore(run_.before);
+        run_.next_step = std::max(smallest, std::min(0.5, aim) * h);
+        ++report.retries;
+        continue;
+      }
+      done += h;
+      ++report.substeps;
+      report.error = std::max(report.error, error);
+      run_.next_step = std::min(whole, std::max(smallest, aim * h));
+    } catch (const Error& failure) {
+      if (0.5 * h < smallest || !failure.is_run_failure()) {
+        run_.restore(start_);
+        throw;
+      }
+      run_.next_step = 0.5 * h;
+      ++report.retries;
+    }
+  }
+}
+
+void Stepper::begin_substep(double end, double time_step) {
+  run_.now = end;
+  run_.read_commands(end, time_step);
+  if (part_) blend(run_.world.problem().actuators, part_->start, part_->fraction);
+  run_.keep(run_.before);
+  run_.surroundings.move_bases(end);
+  run_.surroundings.apply(end);
+  run_.world.begin_step(end - time_step, end, run_.effort);
+  run_.solver.begin_step();
+  if (run_.controller != nullptr) run_.controller->begin_step();
+}
+
+void Stepper::solve(double time_step) {
+  if (run_.model->step().method == Method::newton) {
+    NewtonStep(run_).solve(time_step);
+  } else {
+    LinearStep(run_).solve(time_step);
+  }
+  if (run_.model->contacts().empty()) return;
+  const qp::ConeResult& contacts = run_.solver.direct().contact_result();
+  run_.report.contact_residual = contacts.residual;
+  run_.report.contact_sweeps = contacts.sweeps;
+}
+
+// One solution of the step's equation; the error estimate, m.
+double Stepper::substep(double end, double time_step) {
+  begin_substep(end, time_step);
+  solve(time_step);
+  const double error = run_.world.bodies().end_step(run_.step_weights(time_step));
+  // A gap that closes stops its point at once. A multistep formula that reaches back over such a
+  // jump would have the point rebound, and gain energy: it starts afresh behind it.
+  run_.last_step = run_.world.contacts().gap_closed(run_.effort) ? 0.0 : time_step;
+  run_.finish_step();
+  run_.actuation.advance_drives(run_.world.problem().actuators);
+  run_.ledger.count(*run_.model, run_.world, run_.actuation, run_.effort);
+  return error;
+}
+
+// Newton knows. Where it had few iterations, or was not asked, the residual says.
+bool Stepper::is_balanced() const {
+  const bool newton = run_.model->step().method == Method::newton;
+  if (newton && run_.report.newton == NewtonStatus::converged) return true;
+  const bool searched = newton && run_.controller == nullptr;
+  return run_.report.relative_residual <= (searched ? kSearched : kBalanced);
+}
+
+// What users are told of the step.
+void Stepper::judge() {
+  StepReport& report = run_.report;
+  const auto raise = [&](StepStatus status) { report.status = std::max(report.status, status); };
+  if (report.law == LawStatus::limits_conflict) raise(StepStatus::limits_conflict);
+  if (report.scale < 1.0) raise(StepStatus::cut_back);
+  if (report.violation > kReached * run_.model->size()) raise(StepStatus::command_not_reached);
+  if (!is_balanced()) raise(StepStatus::not_in_equilibrium);
+  if (run_.model->step().dynamic()) watch_energy();
+}
+
+// A base that moves and forces from outside the ledger put in what is not counted.
+void Stepper::watch_energy() {
+  const Bodies& bodies = run_.world.bodies();
+  if (std::ranges::any_of(bodies.ends(), &mechanics::StepEnd::moved_from_outside)) {
+    run_.ledger.restart();
+    return;
+  }
+  run_.report.energy_gained = run_.ledger.gained(run_.world.bodies().energies());
+  const double nothing = kNoEnergy * bodies.force_scale() * run_.model->size();
+  if (run_.ledger.is_excessive(run_.report.energy_gained, nothing)) {
+    run_.report.status = std::max(run_.report.status, StepStatus::gaining_energy);
+  }
+}
+
+}  // namespace sinew::sim

@@ -1,0 +1,46 @@
+/// @file
+/// Time steps of a run.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "sinew/sim/actuator.hpp"
+#include "sinew/sim/state.hpp"
+
+namespace sinew::sim {
+
+struct Run;
+
+/// Makes a step whole, or in smaller ones where it fails or the integrator's error asks for them.
+class Stepper {
+ public:
+  /// @param run outlives it.
+  explicit Stepper(Run& run) : run_(run) {}
+  /// Advances the run by one time step, and reports. See Simulation::step().
+  void step();
+  std::size_t bytes() const { return sizeof(double) * start_.size(); }
+
+ private:
+  void step_in_parts();
+  void step_adaptively();
+  double substep(double end, double time_step);
+  void begin_substep(double end, double time_step);
+  void solve(double time_step);
+  bool is_balanced() const;
+  void judge();
+  void watch_energy();
+
+  // Commands of a step that is made in parts go there in proportion.
+  struct Part {
+    double fraction = 1.0;             // of the step, at the end of the part
+    std::vector<ActuatorState> start;  // of the step
+  };
+
+  Run& run_;
+  State start_;  // of the whole step, where that is made in parts
+  std::optional<Part> part_;
+};
+
+}  // namespace sinew::sim

@@ -1,0 +1,82 @@
+#include "sinew/sim/surroundings.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "sinew/core/error.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
+#include "sinew/sim/bodies.hpp"
+#include "sinew/sim/model.hpp"
+
+namespace sinew::sim {
+
+namespace {
+
+template <class Capability>
+Capability& demand(const Bodies& bodies, int index) {
+  mechanics::Body& body = *bodies.all()[static_cast<std::size_t>(index)];
+  if (auto* capability = mechanics::as<Capability>(body)) return *capability;
+  throw Error(ErrorKind::wrong_type, {.item = body.model().name()},
+              "this body is not of finite elements", "ask for its own coordinates");
+}
+
+}  // namespace
+
+Surroundings::Surroundings(const Model& model, Bodies& bodies) : model_(model), bodies_(bodies) {
+  for (const LoadModel& load : model_.loads()) factors_.push_back(load.factor);
+  applied_.resize(factors_.size());
+}
+
+void Surroundings::set_factor(int load, Signal factor) {
+  factors_.at(static_cast<std::size_t>(load)) = std::move(factor);
+}
+
+void Surroundings::move_bases(double time) {
+  for (const BaseMotion& motion : model_.base_motions()) {
+    demand<mechanics::HasBase>(bodies_, motion.body)
+        .move_base(mechanics::rigid_displacement(motion.translation_at(time),
+                                                 motion.rotation_at(time), motion.centre));
+  }
+}
+
+void Surroundings::move_base(int body, const Vector3& translation, const Vector3& rotation,
+                             const Vector3& centre) {
+  auto& base = demand<mechanics::HasBase>(bodies_, body);
+  const std::string& name = model_.bodies()[static_cast<std::size_t>(body)]->name();
+  const Place place{.item = fmt::format("base of body '{}'", name)};
+  if (std::ranges::any_of(model_.base_motions(),
+                          [&](const BaseMotion& motion) { return motion.body == body; })) {
+    throw Error(ErrorKind::bad_argument, place, "the scene moves this base",
+                "leave `base` out of the scene to move it from a script, or write the motion there "
+                "as signals");
+  }
+  if (!base.base_can_move()) {
+    throw Error(ErrorKind::nothing_fixed, place, "the body has no fixed node to move",
+                "fix the region that moves");
+  }
+  base.move_base(mechanics::rigid_displacement(translation, rotation, centre));
+}
+
+void Surroundings::apply(double time) {
+  for (std::size_t k = 0; k < factors_.size(); ++k) apply(k, factors_[k].value(time));
+}
+
+void Surroundings::apply(std::size_t load, double factor) {
+  applied_[load] = factor;
+  const LoadModel& model = model_.loads()[load];
+  for (const int number : model.numbers) {
+    demand<mechanics::TakesLoads>(bodies_, model.body).set_load_factor(number, factor);
+  }
+}
+
+void Surroundings::restart() {
+  for (std::size_t k = 0; k < factors_.size(); ++k) {
+    factors_[k] = model_.loads()[k].factor;
+    applied_[k] = 0.0;
+  }
+}
+
+}  // namespace sinew::sim
