@@ -37,6 +37,12 @@ Bodies::Bodies(const Model& model, ThreadPool& pool) {
   ends_.resize(bodies_.size());
 }
 
+std::size_t Bodies::size() const {
+  std::size_t size = 0;
+  for (const auto* system : systems_) size += system->size();
+  return size;
+}
+
 void Bodies::begin_step() {
   for (auto* system : systems_) system->begin_step();
 }
@@ -84,24 +90,22 @@ double Bodies::residual(std::span<const double> effort) {
 
 double Bodies::force_scale() const {
   double scale = 0.0;
-  for (const auto* system : systems_) scale += system->force_scale().forces;
+  for (const auto* system : systems_) scale += system->force_scale();
   return scale;
 }
 
 double Bodies::rounding_floor() const {
   double sum = 0.0;
   for (const auto* system : systems_) {
-    const double part = system->force_scale().rounding;
+    const double part = system->rounding_floor();
     sum += part * part;
   }
   return std::sqrt(sum);
 }
 
 void Bodies::imbalance(std::span<const double> effort, VectorX& result) {
-  std::size_t size = 0;
-  for (const auto* system : systems_) size += system->size();
-  result.resize(static_cast<Eigen::Index>(size));
-  for_each_part(systems_, std::span<double>(result.data(), size),
+  result.resize(static_cast<Eigen::Index>(size()));
+  for_each_part(systems_, std::span<double>(result.data(), size()),
                 [&](auto& system, std::span<double> part) { system.residual(effort, part); });
 }
 

@@ -31,6 +31,9 @@ class Bodies {
   /// Of each, in the same order.
   std::span<mechanics::StepSystem* const> systems() const { return systems_; }
 
+  /// How many numbers a motion of all has.
+  std::size_t size() const;
+
   void begin_step();
   void begin_query();
   void linearise(const mechanics::LinearisationRequest& request);

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/sim/held_motions.hpp"
 #include "sinew/sim/run.hpp"
 
 namespace sinew::sim {
@@ -24,11 +25,6 @@ void PathFollower::check() const {
   if (!run_.model->contacts().empty()) {
     throw Error(ErrorKind::not_in_this_version, {.item = "follow_path"},
                 "paths of robots with contacts are not followed yet",
-                "step through the load in time");
-  }
-  if (!run_.model->welds().empty()) {
-    throw Error(ErrorKind::not_in_this_version, {.item = "follow_path"},
-                "paths of robots with joints are not followed yet",
                 "step through the load in time");
   }
   if (!run_.model->guides().empty()) {
@@ -83,26 +79,58 @@ void PathFollower::imbalance_at(double share, VectorX& imbalance) {
   run_.world.bodies().imbalance(run_.effort, imbalance);
 }
 
-// Along the tangent first, then in the plane normal to it; false where there is no such motion.
-bool PathFollower::advance(bool first, double length, const VectorX& by_rest,
-                           const VectorX& by_load) {
-  if (first) {
-    const double largest = by_load.cwiseAbs().maxCoeff();
-    if (!(largest > 0.0)) return false;
-    const bool back = direction_.size() > 0 && direction_.dot(by_load) < 0.0;
-    const double by = (back ? -length : length) / largest;
-    share_ += by;
-    moved_ = by * by_load + by_rest;
-    run_.world.bodies().propose_motion(moved_);
-    return true;
+// m: the largest of any joint.
+double PathFollower::gap() const {
+  double largest = 0.0;
+  for (const step::BilateralBlock& block : run_.world.problem().bilaterals) {
+    largest = std::max(largest, std::abs(run_.world.problem().delta[block.row]));
   }
-  const double along = moved_.dot(by_load);
-  if (along == 0.0) return false;
-  const double by = -moved_.dot(by_rest) / along;
+  return largest;
+}
+
+// The answers of the robot as its joints hold it together; false where there is none.
+bool PathFollower::solve(const VectorX& here, const VectorX& ahead) {
+  if (run_.world.condense() == linalg::FactorStatus::singular) return false;
+  const step::StepProblem& problem = run_.world.problem();
+  held_.clear();
+  for (const step::BilateralBlock& block : problem.bilaterals) held_.push_back({block.row, 0.0});
+  step::append_stiffness(problem, held_);
+  HeldMotions motions(run_.world, held_);
+  VectorX gap(static_cast<Eigen::Index>(held_.size()));
+  for (Eigen::Index k = 0; k < gap.size(); ++k) {
+    const step::HeldRow& row = held_[static_cast<std::size_t>(k)];
+    gap[k] = row.compliance == 0.0 ? problem.delta[row.row] : 0.0;
+  }
+  motions.solve(here, gap, by_rest_.motion, by_rest_.efforts);
+  motions.solve(ahead - here, VectorX::Zero(gap.size()), by_load_.motion, by_load_.efforts);
+  negative_pivots_ = motions.negative_pivots();
+  return true;
+}
+
+// Along the tangent first, then in the plane normal to it; false where there is no such motion.
+bool PathFollower::advance(bool first, double length) {
+  double by = 0.0;
+  if (first) {
+    const double largest = by_load_.motion.cwiseAbs().maxCoeff();
+    if (!(largest > 0.0)) return false;
+    const bool back = direction_.size() > 0 && direction_.dot(by_load_.motion) < 0.0;
+    by = (back ? -length : length) / largest;
+    moved_.setZero(by_load_.motion.size());
+  } else {
+    const double along = moved_.dot(by_load_.motion);
+    if (along == 0.0) return false;
+    by = -moved_.dot(by_rest_.motion) / along;
+  }
   share_ += by;
-  const VectorX correction = by_rest + by * by_load;
-  moved_ += correction;
-  run_.world.bodies().propose_motion(correction);
+  const VectorX motion = by_rest_.motion + by * by_load_.motion;
+  moved_ += motion;
+  run_.world.bodies().propose_motion(motion);
+  // Efforts of stiffness are part of no equilibrium.
+  for (std::size_t k = 0; k < run_.world.problem().bilaterals.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    const int row = run_.world.numbering().row_of(held_[k].row);
+    run_.effort[static_cast<std::size_t>(row)] += by_rest_.efforts[i] + by * by_load_.efforts[i];
+  }
   return true;
 }
 
@@ -121,17 +149,15 @@ bool PathFollower::is_sound(double length) {
 
 // The iterations that a step took; 0: it failed.
 int PathFollower::step(double length) {
-  VectorX here, ahead, by_rest, by_load;
+  VectorX here, ahead;
   for (int iteration = 0; iteration <= kMostIterations; ++iteration) {
     imbalance_at(share_ + 1.0, ahead);
     imbalance_at(share_, here);
     run_.report.relative_residual = here.norm() / (run_.world.bodies().force_scale() + 1e-300);
-    if (iteration > 0 && run_.report.relative_residual <= settings_.tolerance) return iteration;
-    if (run_.world.condense() == linalg::FactorStatus::singular) return 0;
-    ahead -= here;
-    run_.world.bodies().solve(here, by_rest);
-    run_.world.bodies().solve(ahead, by_load);
-    if (!advance(iteration == 0, length, by_rest, by_load) || !is_sound(length)) return 0;
+    const bool arrived = run_.report.relative_residual <= settings_.tolerance &&
+                         gap() <= settings_.tolerance * run_.model->size();
+    if (iteration > 0 && arrived) return iteration;
+    if (!solve(here, ahead) || !advance(iteration == 0, length) || !is_sound(length)) return 0;
   }
   return 0;
 }
@@ -181,7 +207,7 @@ std::vector<PathPoint> PathFollower::follow(const std::function<void()>& visit) 
       length *= 0.5;
       iterations = step_or_give_up(length);
     }
-    path.push_back({share_, run_.world.inertia().negative_pivots});
+    path.push_back({share_, negative_pivots_});
     rest();
     if (visit) visit();
     length = std::min(longest, length * std::clamp(kWantedIterations / iterations, 0.5, 2.0));

@@ -8,6 +8,7 @@
 
 #include "sinew/core/types.hpp"
 #include "sinew/sim/path_settings.hpp"
+#include "sinew/step/step_problem.hpp"
 
 namespace sinew::sim {
 
@@ -17,7 +18,8 @@ struct Run;
 /// path, (A^-1 dr/ds, 1), and corrects in the plane normal to it (Riks, Int. J. Solids Struct. 15
 /// (1979) 529; Ramm 1981; Crisfield 1991, sec. 9.3): with m_r = A^-1 r and m_p = A^-1 dr/ds,
 ///   dq = m_r + ds m_p,   ds = -(D . m_r)/(D . m_p),
-/// D the motion since the step began. A, the exact tangent, may be indefinite on the way.
+/// D the motion since the step began. A, the exact tangent, may be indefinite on the way. Joints
+/// hold rows: m_r and m_p are then motions that they leave, and bring their efforts (HeldMotions).
 class PathFollower {
  public:
   /// @param run is moved. @param settings see there.
@@ -31,7 +33,9 @@ class PathFollower {
   void plan();
   void set_share(double share);
   void imbalance_at(double share, VectorX& imbalance);
-  bool advance(bool first, double length, const VectorX& by_rest, const VectorX& by_load);
+  double gap() const;
+  bool solve(const VectorX& here, const VectorX& ahead);
+  bool advance(bool first, double length);
   bool is_sound(double length);
   int step(double length);
   int step_or_give_up(double length);
@@ -45,8 +49,15 @@ class PathFollower {
   const PathSettings& settings_;
   std::vector<Stretch> loads_, efforts_;  // of the model's loads and actuators
   double share_ = 0.0;                    // of the way
-  VectorX moved_;                         // since the step began
-  VectorX direction_;                     // of the last step
+  std::vector<step::HeldRow> held_;       // by joints
+  // Motions and efforts of held rows: of r, and of dr/ds.
+  struct Answer {
+    VectorX motion, efforts;
+  };
+  Answer by_rest_, by_load_;
+  VectorX moved_;            // since the step began
+  VectorX direction_;        // of the last step
+  int negative_pivots_ = 0;  // at the last linearisation that was solved
 };
 
 }  // namespace sinew::sim

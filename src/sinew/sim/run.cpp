@@ -49,7 +49,7 @@ void Run::finish_step() {
 void Run::restart() {
   actuation.restart();
   surroundings.restart();
-  world.bodies().restart();
+  world.restart();
   std::ranges::fill(effort, 0.0);
   std::ranges::fill(world.problem().actuators, step::ActuatorBlock{});
   volume_ratio = 1.0;

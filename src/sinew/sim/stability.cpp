@@ -89,50 +89,16 @@ std::vector<step::HeldRow> held_rows(const step::StepProblem& problem,
 
 Stability::Stability(World& world, std::span<const double> effort)
     : world_(world),
-      held_(held_rows(world.problem(), gathered(world.numbering(), effort))),
-      negative_(count()) {
+      motions_(world, held_rows(world.problem(), gathered(world.numbering(), effort))),
+      negative_(motions_.negative_pivots()) {
   if (negative_ == 0) return;
-  move_rows(effort.size());
   const VectorX direction = find_mode();
   if (direction.size() == 0) return;
-  apply_inverse(direction, mode_);
+  motions_.solve(direction, mode_);
   curvature_ = direction.dot(mode_);
   scale_mode();
   const double force = -curvature_ / mode_.norm() * world_.problem().size;
   if (force <= kNeutral * world_.bodies().rounding_floor()) negative_ = 0;
-}
-
-int Stability::count() {
-  const int pivots = world_.inertia().negative_pivots;
-  const auto rows = static_cast<Eigen::Index>(held_.size());
-  inverse_.setZero(rows, rows);
-  if (rows == 0 || (pivots == 0 && world_.problem().stiffness.empty())) return pivots;
-  const auto [matrix, scale] = step::held_compliance(world_.problem(), held_);
-  const auto scaled = linalg::spectral_inverse(matrix);
-  inverse_ = scale.asDiagonal() * scaled.inverse * scale.asDiagonal();
-  return std::max(0, step::negative_directions(pivots, scaled.negative, held_));
-}
-
-void Stability::apply_inverse(const VectorX& right, VectorX& result) {
-  world_.bodies().solve(right, result);
-  if (held_.empty()) return;
-  const VectorX efforts = inverse_ * (moved_.transpose() * right);
-  result.noalias() -= moved_ * efforts;
-}
-
-void Stability::move_rows(std::size_t rows) {
-  std::vector<double> unit(rows, 0.0);
-  VectorX rest, row, solved;
-  world_.bodies().imbalance(unit, rest);
-  moved_.resize(rest.size(), static_cast<Eigen::Index>(held_.size()));
-  for (std::size_t k = 0; k < held_.size(); ++k) {
-    double& own = unit[static_cast<std::size_t>(world_.numbering().row_of(held_[k].row))];
-    own = 1.0;
-    world_.bodies().imbalance(unit, row);
-    own = 0.0;
-    world_.bodies().solve(row - rest, solved);
-    moved_.col(static_cast<Eigen::Index>(k)) = solved;
-  }
 }
 
 // Lanczos' method on T (Parlett, The Symmetric Eigenvalue Problem, 1998, ch. 13), made orthogonal
@@ -141,16 +107,16 @@ void Stability::move_rows(std::size_t rows) {
 // Of a Ritz vector y with theta < 0, v = T y has v^T A v = y^T T y = theta: the curvature along v
 // is negative however sharp y is.
 VectorX Stability::find_mode() {
-  const Eigen::Index all = moved_.rows();
+  const Eigen::Index all = static_cast<Eigen::Index>(world_.bodies().size());
   const Eigen::Index most = std::min<Eigen::Index>(kMostDirections, all);
   VectorX next, ritz;
-  apply_inverse(scattered(all), next);  // into the motions that are free
+  motions_.solve(scattered(all), next);  // into the motions that are free
   MatrixX basis(all, 0);
   MatrixX projected = MatrixX::Zero(most, most);
   for (Eigen::Index size = 1; size <= most && next.norm() > 0.0; ++size) {
     basis.conservativeResize(Eigen::NoChange, size);
     basis.col(size - 1) = next.normalized();
-    apply_inverse(basis.col(size - 1), next);
+    motions_.solve(basis.col(size - 1), next);
     for (int pass = 0; pass < 2; ++pass) {  // the second removes what rounding left
       const VectorX along = basis.transpose() * next;
       next.noalias() -= basis * along;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sinew/core/types.hpp"
+#include "sinew/sim/held_motions.hpp"
 #include "sinew/step/step_problem.hpp"
 
 namespace sinew::sim {
@@ -20,13 +21,8 @@ class World;
 std::vector<step::HeldRow> held_rows(const step::StepProblem& problem,
                                      std::span<const double> effort);
 
-/// The exact tangent A of an equilibrium restricted to the motions that held rows H leave, which is
-/// A + H^T C^-1 H, and for C = 0 A on the null space of H; its negative eigenvalues are counted by
-/// step::negative_directions(), with S = W + C. Its inverse on those motions is T = A^-1 - Y S^-1
-/// Y^T, Y = A^-1 H^T.
-///
-/// Loads without a potential (pressure on an open surface) are counted by the symmetric part of
-/// their tangent.
+/// Whether an equilibrium is stable, and where it would go: the lowest eigenvalue of its tangent on
+/// the motions that held rows leave.
 class Stability {
  public:
   /// @param world linearised with the exact tangent, rows formed, and condensed, at the
@@ -43,16 +39,11 @@ class Stability {
   double curvature() const { return curvature_; }
 
  private:
-  int count();
-  void move_rows(std::size_t rows);
   VectorX find_mode();
   void scale_mode();
-  void apply_inverse(const VectorX& right, VectorX& result);
 
   World& world_;
-  std::vector<step::HeldRow> held_;
-  MatrixX moved_;    // Y, (size, held)
-  MatrixX inverse_;  // pseudo-inverse of S, (held, held)
+  HeldMotions motions_;
   VectorX mode_;
   double curvature_ = 0.0;
   int negative_ = 0;

@@ -174,6 +174,11 @@ double World::violation(std::span<const double> effort) {
   return std::max(step::violation(problem_, scratch_), contacts_.deepest_left_out());
 }
 
+void World::restart() {
+  bodies_.restart();
+  place_contacts(0.0, 0.0);
+}
+
 std::size_t World::bytes() const {
   return sizeof(double) * static_cast<std::size_t>(problem_.compliance.size()) +
          rows_.direction.size() * sizeof(Vector3) + stiffness_.bytes() + bodies_.bytes();

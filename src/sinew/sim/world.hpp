@@ -90,6 +90,8 @@ class World {
   Bodies& bodies() { return bodies_; }
   const Bodies& bodies() const { return bodies_; }
 
+  /// All bodies at rest and surfaces where they are at the start, as after construction.
+  void restart();
   std::size_t bytes() const;
 
  private:
