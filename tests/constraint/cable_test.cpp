@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
-#include "sinew/fem/fem_body.hpp"
-#include "sinew/fem/fem_body_model.hpp"
+#include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 
 #include "../sim/robots.hpp"
 
@@ -21,11 +21,11 @@ class BentCable : public ::testing::Test {
   BentCable() : model_(sinew::testing::beam()), simulation_(model_) {
     std::mt19937 random(7);
     std::normal_distribution<double> noise(0.0, 1e-3);
-    Points& forces = simulation_.fem_body(0).external_forces();
+    Points& forces = mechanics::as<mechanics::TakesForces>(simulation_.body(0))->external_forces();
     for (Eigen::Index i = 0; i < forces.size(); ++i) forces.data()[i] = 5.0 * noise(random);
     simulation_.solve_static();
   }
-  fem::FemBody& body() { return simulation_.fem_body(0); }
+  mechanics::Body& body() { return simulation_.body(0); }
   const Cable& cable() { return *model_->cable(0); }
   // Moves all nodes by t times a fixed random direction.
   void shift(double t) {
@@ -54,12 +54,12 @@ class BentCable : public ::testing::Test {
 TEST_F(BentCable, DirectionsAreTheDerivativeOfTheMotion) {
   const double t = 1e-6;
   auto& world = simulation_.world();
-  const Points middle = cable().points(world.placement());
+  const Points middle = cable().points(simulation_.placement());
   world.measure_delta();
   const mechanics::RowValues rows = world.rows();
   shift(t);
   const double ahead = world.measure_delta()[0];
-  const Points after = cable().points(world.placement());
+  const Points after = cable().points(simulation_.placement());
   shift(-2 * t);
   const double behind = world.measure_delta()[0];
   const double difference = (ahead - behind) / (2 * t);
@@ -72,10 +72,10 @@ TEST_F(BentCable, CurvatureIsTheDerivativeOfTheDirections) {
   std::vector<mechanics::RowCurvature> pairs(
       model_->curvatures().begin(), model_->curvatures().begin() + cable().curvature_count());
   const std::vector<double> effort{1.0};
-  cable().curve(world.placement(), effort, pairs);
-  const Points middle = cable().points(world.placement());
+  cable().curve(simulation_.placement(), effort, pairs);
+  const Points middle = cable().points(simulation_.placement());
   shift(t);
-  const Points after = cable().points(world.placement());
+  const Points after = cable().points(simulation_.placement());
   world.measure_delta();
   const auto ahead = world.rows().direction;
   shift(-2 * t);
@@ -102,7 +102,7 @@ TEST_F(BentCable, CurvatureIsTheDerivativeOfTheDirections) {
 TEST(CableFriction, RowsAndCurvatureAgreeWithDifferences) {
   const auto model = sinew::testing::beam({.cables = 1, .pull_from_world = false, .friction = 0.2});
   sim::Simulation simulation(model);
-  auto& body = simulation.fem_body(0);
+  auto& body = simulation.body(0);
   auto& world = simulation.world();
   const Cable& cable = *model->cable(0);
   ASSERT_EQ(cable.row_count(), 1 + cable.via_count());
@@ -119,7 +119,7 @@ TEST(CableFriction, RowsAndCurvatureAgreeWithDifferences) {
     for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += t * velocity[i];
     body.load_state(moved);
     world.measure_delta();
-    return std::pair(world.rows(), cable.points(world.placement()));
+    return std::pair(world.rows(), cable.points(simulation.placement()));
   };
   const double t = 1e-6;
   const auto [ahead, after] = at(t);
@@ -146,7 +146,7 @@ TEST(CableFriction, RowsAndCurvatureAgreeWithDifferences) {
   }
   std::vector<mechanics::RowCurvature> pairs(model->curvatures().begin(),
                                              model->curvatures().begin() + cable.curvature_count());
-  cable.curve(world.placement(), effort, pairs);
+  cable.curve(simulation.placement(), effort, pairs);
   for (const auto& pair : pairs) {
     const int a = pair.first.point - first_point, b = pair.second.point - first_point;
     expected.row(a) += (pair.curvature * rates.row(b).transpose()).transpose();
@@ -157,7 +157,7 @@ TEST(CableFriction, RowsAndCurvatureAgreeWithDifferences) {
 }
 
 TEST_F(BentCable, MotionIsTheLengthPulledOut) {
-  const auto& placement = simulation_.world().placement();
+  const auto& placement = simulation_.placement();
   EXPECT_NEAR(simulation_.world().measure_delta()[0],
               cable().rest_length() - cable().length(placement), 1e-15);
 }
@@ -165,7 +165,7 @@ TEST_F(BentCable, MotionIsTheLengthPulledOut) {
 TEST(Cable, StraightCableHasNoWrapAndARightAngleHasOne) {
   const auto model = sinew::testing::beam();
   sim::Simulation simulation(model);
-  EXPECT_NEAR(model->cable(0)->wrap(simulation.world().placement()), 0.0, 1e-12);
+  EXPECT_NEAR(model->cable(0)->wrap(simulation.placement()), 0.0, 1e-12);
 
   sim::ModelBuilder builder;
   fem::FemBodySettings body;
@@ -183,7 +183,7 @@ TEST(Cable, StraightCableHasNoWrapAndARightAngleHasOne) {
   builder.add_cable(cable);
   const auto corner = builder.build();
   sim::Simulation bent(corner);
-  EXPECT_NEAR(corner->cable(0)->wrap(bent.world().placement()), sinew::testing::kRightAngle, 1e-12);
+  EXPECT_NEAR(corner->cable(0)->wrap(bent.placement()), sinew::testing::kRightAngle, 1e-12);
   EXPECT_NEAR(corner->cable(0)->rest_length(), 0.08, 1e-15);
 }
 

@@ -4,9 +4,10 @@
 
 #include <gtest/gtest.h>
 
-#include "sinew/fem/fem_body.hpp"
-#include "sinew/fem/fem_body_model.hpp"
+#include "sinew/fem/has_elements.hpp"
 #include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 
 #include "../sim/chambers.hpp"
 #include "support/error_kind.hpp"
@@ -35,13 +36,13 @@ class CavityTest : public ::testing::TestWithParam<Kind> {
   mechanics::RowValues rows() {
     mechanics::RowValues values;
     values.resize(simulation_.model().rows());
-    cavity().linearise(simulation_.world().placement(), values);
+    cavity().linearise(simulation_.placement(), values);
     return values;
   }
   /// Moves every node by a smooth field of this size (m).
   void distort(double size) {
     sim::State state = simulation_.state();
-    const Points& x = simulation_.fem_body(0).positions();
+    const Points& x = simulation_.body(0).positions();
     for (Eigen::Index i = 0; i < x.rows(); ++i) {
       state.bodies[0][static_cast<std::size_t>(3 * i)] +=
           size * std::sin(100.0 * x(i, 1) + 40.0 * x(i, 2));
@@ -53,9 +54,9 @@ class CavityTest : public ::testing::TestWithParam<Kind> {
   }
   void move(const mechanics::MaterialPoint& point, int axis, double by) {
     sim::State state = simulation_.state();
-    const auto& model =
-        dynamic_cast<const fem::FemBodyModel&>(*simulation_.model().bodies().front());
-    const NodeId node = model.attachment(point.point).nodes.front();
+    const auto* model =
+        mechanics::as<const fem::HasElements>(*simulation_.model().bodies().front());
+    const NodeId node = model->attachment(point.point).nodes.front();
     state.bodies[0][static_cast<std::size_t>(3 * node + axis)] += by;
     simulation_.restore(state);
   }
@@ -75,7 +76,7 @@ TEST_P(CavityTest, PressurePutsNoForceAndNoMomentOnTheWhole) {
   Vector3 force = Vector3::Zero(), moment = Vector3::Zero();
   double size = 0.0;
   for (std::size_t k = 0; k < cavity().material_points().size(); ++k) {
-    const Vector3 x = simulation_.world().placement().position(cavity().material_points()[k]);
+    const Vector3 x = simulation_.placement().position(cavity().material_points()[k]);
     force += values.direction[k];
     moment += x.cross(values.direction[k]);
     size += values.direction[k].norm();
@@ -106,7 +107,7 @@ TEST_P(CavityTest, CurvatureIsTheDerivativeOfTheDirections) {
   distort(1e-3);
   auto pairs = simulation_.model().curvatures();
   const std::vector<double> effort{1.0};
-  cavity().curve(simulation_.world().placement(), effort, pairs);
+  cavity().curve(simulation_.placement(), effort, pairs);
   const auto& points = cavity().material_points();
   const auto index = [&](const mechanics::MaterialPoint& wanted) {
     std::size_t k = 0;
@@ -148,7 +149,7 @@ TEST(Cavity, PressureOnFlatQuadraticFacesIsConsistent) {
   const Cavity& cavity = *simulation.model().cavity(0);
   mechanics::RowValues values;
   values.resize(simulation.model().rows());
-  cavity.linearise(simulation.world().placement(), values);
+  cavity.linearise(simulation.placement(), values);
   std::vector<double> share(cavity.material_points().size(), 0.0);
   double area = 0.0;
   for (const CavityFace& face : cavity.faces()) {
@@ -180,7 +181,7 @@ TEST_P(CavityTest, ACapPassesItsForceToTheRim) {
   simulation.restore(state);
   mechanics::RowValues values;
   values.resize(simulation.model().rows());
-  simulation.model().cavity(0)->linearise(simulation.world().placement(), values);
+  simulation.model().cavity(0)->linearise(simulation.placement(), values);
   Vector3 force = Vector3::Zero();
   double size = 0.0;
   for (const Vector3& direction : values.direction) {  // the effector's are not formed

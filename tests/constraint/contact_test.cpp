@@ -7,7 +7,7 @@
 #include "sinew/constraint/effector.hpp"
 #include "sinew/constraint/placement.hpp"
 #include "sinew/core/error.hpp"
-#include "sinew/fem/fem_body.hpp"
+#include "sinew/mechanics/body.hpp"
 
 #include "../sim/robots.hpp"
 
@@ -154,7 +154,7 @@ class ContactRows : public ::testing::Test {
     return pose;
   }
   void shift(double t) {
-    auto& body = simulation_.fem_body(0);
+    auto& body = simulation_.body(0);
     std::mt19937 random(11);
     std::normal_distribution<double> noise;
     std::vector<double> state(body.state_size());
@@ -176,7 +176,7 @@ TEST_F(ContactRows, AreTheDerivativeOfGapAndSlip) {
     contact.declare(pattern, curvatures);
     mechanics::RowValues values;
     values.resize(pattern);
-    const Placement& placement = simulation_.world().placement();
+    const Placement& placement = simulation_.placement();
     contact.begin_step(placement, pose(1.0), pose(1.5), 0.0, values);
     contact.linearise(placement, values);
     const VectorX before = values.delta;
@@ -201,8 +201,8 @@ TEST_F(ContactRows, AreTheDerivativeOfGapAndSlip) {
 // The frame of a step is that of the way at the point's velocity; rows and positions agree in it.
 TEST_F(ContactRows, FrameIsThatOfTheWay) {
   const auto& effector = dynamic_cast<const PointEffector&>(model_->effector(0));
-  const Placement& placement = simulation_.world().placement();
-  auto& body = simulation_.fem_body(0);
+  const Placement& placement = simulation_.placement();
+  auto& body = simulation_.body(0);
   std::vector<double> state(body.state_size());
   body.save_state(state);
   for (std::size_t i = state.size() / 2; i < state.size(); i += 3) state[i] = 1.0;  // along x
@@ -235,8 +235,8 @@ TEST_F(ContactRows, PointThatTheSurfaceCarriesDoesNotSlip) {
   contact.declare(pattern, curvatures);
   mechanics::RowValues values;
   values.resize(pattern);
-  auto& body = simulation_.fem_body(0);
-  const Placement& placement = simulation_.world().placement();
+  auto& body = simulation_.body(0);
+  const Placement& placement = simulation_.placement();
   contact.begin_step(placement, pose(0.0), pose(2.0), 0.0, values);
   std::vector<double> state(body.state_size());
   body.save_state(state);

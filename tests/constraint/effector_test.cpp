@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
-#include "sinew/fem/fem_body.hpp"
-#include "sinew/fem/fem_body_model.hpp"
+#include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/body_model.hpp"
 
 #include "../sim/robots.hpp"
 
@@ -35,12 +35,12 @@ class Effectors : public ::testing::Test {
     simulation_ = std::make_unique<sim::Simulation>(builder_.build());
   }
   void place(const Points& positions) {
-    std::vector<double> state(simulation_->fem_body(0).state_size());
-    simulation_->fem_body(0).save_state(state);
+    std::vector<double> state(simulation_->body(0).state_size());
+    simulation_->body(0).save_state(state);
     std::copy_n(positions.data(), positions.size(), state.data());
-    simulation_->fem_body(0).load_state(state);
+    simulation_->body(0).load_state(state);
   }
-  Points rest() { return simulation_->fem_body(0).fem_model().mesh().nodes; }
+  Points rest() { return simulation_->body(0).model().mesh().nodes; }
   const Effector& effector() { return simulation_->model().effector(0); }
 
   sim::ModelBuilder builder_;
@@ -54,7 +54,7 @@ TEST_F(Effectors, OrientationIsTheRotationVectorOfARigidTurn) {
   const Vector3 turn(0.3, -0.7, 0.5);
   const Matrix3 rotation = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
   place(rest() * rotation.transpose());
-  EXPECT_LT((effector().value(simulation_->world().placement()) - turn).norm(), 1e-12);
+  EXPECT_LT((effector().value(simulation_->placement()) - turn).norm(), 1e-12);
 }
 
 TEST_F(Effectors, OrientationRowsAreTheSpin) {
@@ -69,7 +69,7 @@ TEST_F(Effectors, OrientationRowsAreTheSpin) {
   const double t = 1e-6;
   const auto rotation = [&](double s) {
     place(bent + s * direction);
-    const Vector3 v = effector().value(simulation_->world().placement());
+    const Vector3 v = effector().value(simulation_->placement());
     return Matrix3(Eigen::AngleAxisd(v.norm(), v.normalized()));
   };
   const Eigen::AngleAxisd spin(rotation(t) * rotation(-t).transpose());
@@ -85,9 +85,9 @@ TEST_F(Effectors, OrientationRowsAreTheSpin) {
       const auto i = static_cast<std::size_t>(e);
       const int point = pattern.point[i].point;
       place(bent + t * direction);
-      const Vector3 ahead = simulation_->fem_body(0).position(point);
+      const Vector3 ahead = simulation_->body(0).position(point);
       place(bent - t * direction);
-      const Vector3 behind = simulation_->fem_body(0).position(point);
+      const Vector3 behind = simulation_->body(0).position(point);
       row += rows.direction[i].dot((ahead - behind) / (2 * t));
     }
     EXPECT_NEAR(row, expected[k], 1e-6 * expected.norm()) << k;
@@ -101,7 +101,7 @@ TEST_F(Effectors, OrientationTargetIsReachedByTheRemainingTurn) {
   place(rest() * Matrix3(Eigen::AngleAxisd(0.4, Vector3::UnitZ())).transpose());
   simulation_->world().measure_delta();
   VectorX goal(3);
-  effector().target_delta(simulation_->world().placement(), Vector3(0.0, 0.0, 1.0), goal);
+  effector().target_delta(simulation_->placement(), Vector3(0.0, 0.0, 1.0), goal);
   EXPECT_LT((goal - simulation_->world().delta() - Vector3(0.0, 0.0, 0.6)).norm(), 1e-12);
 }
 
@@ -119,7 +119,7 @@ TEST_F(Effectors, CollinearPointsHaveNoOrientation) {
 TEST_F(Effectors, SeveralPointsMeanTheirMean) {
   finish();
   const Vector3 mean = settings_.points.colwise().mean().transpose();
-  EXPECT_LT((effector().value(simulation_->world().placement()) - mean).norm(), 1e-15);
+  EXPECT_LT((effector().value(simulation_->placement()) - mean).norm(), 1e-15);
 }
 
 TEST_F(Effectors, ChosenDirectionsGiveOneRowEach) {

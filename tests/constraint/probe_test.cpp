@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
-#include "sinew/fem/fem_body.hpp"
-#include "sinew/fem/fem_body_model.hpp"
+#include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 
 #include "../sim/robots.hpp"
 
@@ -38,7 +38,7 @@ struct Block {
   /// x = move(X) at every node.
   template <typename Move>
   void deform(Move&& move) {
-    auto& body = simulation_->fem_body(0);
+    auto& body = simulation_->body(0);
     std::vector<double> state(body.state_size());
     body.save_state(state);
     for (Eigen::Index i = 0; i < mesh_->nodes.rows(); ++i) {
@@ -181,7 +181,7 @@ TEST_F(Probes, ExtentsAreThoseOfEveryDirection) {
   Matrix3 f;
   f << 1.1, 0.2, 0.0, 0.1, 0.8, 0.35, -0.1, 0.1, 1.3;
   deform([&](const Vector3& x) -> Vector3 { return f * x; });
-  const Points& now = simulation_->fem_body(0).positions();
+  const Points& now = simulation_->body(0).positions();
   const auto reach = [&](const Vector3& d) { return (now * d).maxCoeff() - (now * d).minCoeff(); };
   EXPECT_NEAR(values("along")[0], reach({0.6, 0.0, 0.8}), 1e-15);
   double least = 1.0, most = 0.0;
@@ -231,7 +231,10 @@ TEST_F(Probes, OnlyLook) {
   Block bare;
   bare.finish();
   for (Block* one : {static_cast<Block*>(this), &bare}) {
-    one->simulation_->fem_body(0).external_forces().col(2).setConstant(1e-3);
+    mechanics::as<mechanics::TakesForces>(one->simulation_->body(0))
+        ->external_forces()
+        .col(2)
+        .setConstant(1e-3);
     for (int k = 0; k < 3; ++k) one->simulation_->step();
   }
   EXPECT_GT(values("bend")[0], 1e-3);

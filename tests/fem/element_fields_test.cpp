@@ -14,8 +14,11 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/fem/element_states.hpp"
-#include "sinew/fem/fem_body.hpp"
+#include "sinew/fem/fem_body_model.hpp"
+#include "sinew/fem/has_material.hpp"
 #include "sinew/fem/solid_elements.hpp"
+#include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/quadratic.hpp"
 #include "sinew/mesh/shapes.hpp"
 
@@ -57,18 +60,18 @@ struct Shown {
     model->finish(0, {}, {}, {});
     owned = model->create(pool, false, 0);
   }
-  FemBody& body() { return dynamic_cast<FemBody&>(*owned); }
+  const HasMaterial& material() { return *mechanics::as<const HasMaterial>(*owned); }
   /// x = move(X) at every node.
   template <typename Move>
   void deform(Move&& move) {
-    std::vector<double> state(body().state_size());
-    body().save_state(state);
+    std::vector<double> state(owned->state_size());
+    owned->save_state(state);
     const Points& rest = model->mesh().nodes;
     for (Eigen::Index i = 0; i < rest.rows(); ++i) {
       const Vector3 x = move(Vector3(rest.row(i).transpose()));
       for (Eigen::Index c = 0; c < 3; ++c) state[static_cast<std::size_t>(3 * i + c)] = x[c];
     }
-    body().load_state(state);
+    owned->load_state(state);
   }
 
   ThreadPool pool;
@@ -148,11 +151,11 @@ TEST_P(EveryElement, FieldsAreWhatTheirDefinitionsSay) {
   Matrix3 f = strong_deformation();
   if (GetParam() == Kind::linear) f = Matrix3::Identity() + 0.02 * (f - Matrix3::Identity());
   shown.deform([&](const Vector3& x) -> Vector3 { return f * x + Vector3(0.1, -0.2, 0.3); });
-  const NodalMean mean(*shown.model);
+  const NodalMean mean(shown.model->elements());
   for (const ElementFieldInfo& info : element_fields()) {
     const double right = expected(info.field, f, GetParam());
     ASSERT_GT(std::abs(right), 1e-4) << info.name << " would not be seen to be wrong";
-    const auto elements = element_field(shown.body(), info.field);
+    const auto elements = element_field(shown.material(), info.field);
     for (const auto& values : {elements, mean(elements)}) {
       for (const double value : values) {
         ASSERT_NEAR(value, right, 1e-8 * std::max(1.0, std::abs(right))) << info.name;
@@ -166,10 +169,10 @@ TEST_P(EveryElement, EnergyDensityAddsUpToTheEnergy) {
   shown.deform([](const Vector3& x) -> Vector3 {
     return {x.x() + 4.0 * x.x() * x.y(), x.y() - 6.0 * x.x() * x.x(), x.z() * (1.0 + 5.0 * x.y())};
   });
-  const auto density = element_field(shown.body(), ElementField::energy_density);
-  const ElementStates states = element_states(shown.body());
+  const auto density = element_field(shown.material(), ElementField::energy_density);
+  const ElementStates states = element_states(shown.material());
   const double sum = std::inner_product(density.begin(), density.end(), states.volume.begin(), 0.0);
-  EXPECT_NEAR(sum, shown.body().strain_energy(), 1e-10 * sum);
+  EXPECT_NEAR(sum, shown.owned->energies().strain, 1e-10 * sum);
   EXPECT_GT(sum, 1e-6);
 }
 
@@ -181,8 +184,8 @@ TEST_P(EveryElement, NodalMeansWeighByVolume) {
   std::uniform_real_distribution<double> any(-1.0, 1.0);
   std::vector<double> values(2 * static_cast<std::size_t>(list.count()));
   for (double& value : values) value = any(random);
-  const auto volume = element_states(shown.body()).volume;
-  const auto means = NodalMean(*shown.model)(values, 2);
+  const auto volume = element_states(shown.material()).volume;
+  const auto means = NodalMean(shown.model->elements())(values, 2);
   for (NodeId node = 0; node < mesh.node_count(); ++node) {
     double sum = 0.0, around = 0.0;
     for (int e = 0; e < list.count(); ++e) {
@@ -200,8 +203,8 @@ TEST(ElementFields, ANodeWithoutElementsHasNone) {
   mesh->nodes.conservativeResize(mesh->nodes.rows() + 1, 3);
   mesh->nodes.bottomRows(1).setConstant(1.0);
   Shown shown(Kind::corotational, mesh);
-  const auto means =
-      NodalMean(*shown.model)(element_field(shown.body(), ElementField::volume_ratio));
+  const auto means = NodalMean(shown.model->elements())(
+      element_field(shown.material(), ElementField::volume_ratio));
   EXPECT_TRUE(std::isnan(means.back()));
   EXPECT_NEAR(means.front(), 1.0, 1e-12);
 }

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/mesh/mesh.hpp"
 #include "sinew/record/hdf5_writer.hpp"
 #include "sinew/sim/simulation.hpp"
 
@@ -59,7 +61,7 @@ class OlderRun {
     const auto append = [this](int series, double value) { file_.append(series, {&value, 1}); };
     append(time_, simulation_.time());
     for (std::size_t b = 0; b < positions_.size(); ++b) {
-      const Points& points = simulation_.world().body(static_cast<int>(b)).positions();
+      const Points& points = simulation_.body(static_cast<int>(b)).positions();
       file_.append(positions_[b], {points.data(), static_cast<std::size_t>(points.size())});
     }
     for (std::size_t a = 0; a < actuators_.size(); ++a) {

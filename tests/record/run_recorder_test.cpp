@@ -21,8 +21,9 @@
 #include "sinew/constraint/probe.hpp"
 #include "sinew/core/csv.hpp"
 #include "sinew/fem/element_fields.hpp"
-#include "sinew/fem/fem_body.hpp"
 #include "sinew/inverse/controller_observables.hpp"
+#include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/body_model.hpp"
 #include "sinew/mesh/read.hpp"
 #include "sinew/record/hdf5_writer.hpp"
 #include "sinew/record/run_file.hpp"
@@ -95,12 +96,12 @@ std::vector<Points> record_pull(sim::Simulation& simulation, const RecordSetting
                                 int steps) {
   simulation.command(0, pull(0.004));
   RunRecorder recorder(sim::Observables(simulation), settings);
-  std::vector<Points> seen = {simulation.fem_body(0).positions()};
+  std::vector<Points> seen = {simulation.body(0).positions()};
   for (int i = 0; i < steps; ++i) {
     simulation.step();
     recorder.after_step();
     if (simulation.steps() % settings.every == 0) {
-      seen.push_back(simulation.fem_body(0).positions());
+      seen.push_back(simulation.body(0).positions());
     }
   }
   recorder.finish();
@@ -124,7 +125,7 @@ TEST_F(RunRecorderTest, StatesReadBackBitForBit) {
   EXPECT_GT(run.actuator("cable_0", "effort").back(), 0.0);
   EXPECT_EQ(Vector3(run.effector("tip").row(6)), simulation.effector_value(0));
   const mesh::Mesh mesh = run.rest_mesh("beam");
-  const mesh::Mesh& original = simulation.fem_body(0).fem_model().mesh();
+  const mesh::Mesh& original = simulation.body(0).model().mesh();
   EXPECT_EQ(mesh.nodes, original.nodes);
   EXPECT_EQ(mesh.tetrahedra, original.tetrahedra);
 }
@@ -380,7 +381,7 @@ TEST_F(RunRecorderTest, OlderRecordingsAreReadAndSayWhatTheyLack) {
             "recorded without commands, energies and resultants of contacts (format 2)");
   ASSERT_EQ(run.frames(), 4);
   EXPECT_EQ(run.actuator("cable_0", "effort").back(), simulation.actuator(0).effort);
-  EXPECT_EQ(run.positions("beam", 3), simulation.fem_body(0).positions());
+  EXPECT_EQ(run.positions("beam", 3), simulation.body(0).positions());
   EXPECT_EQ(Vector3(run.effector("tip").row(3)), simulation.effector_value(0));
   EXPECT_FALSE(run.has("/actuators/cable_0/motion_command"));
   try {

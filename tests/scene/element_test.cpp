@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "sinew/fem/element_count.hpp"
-#include "sinew/fem/fem_body_model.hpp"
+#include "sinew/fem/has_elements.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/quadratic.hpp"
 #include "sinew/mesh/shapes.hpp"
 #include "sinew/mesh/write.hpp"
@@ -24,12 +26,12 @@ Robot robot(const std::string& mesh, const std::string& material, const std::str
                                 "scene.yaml", {}));
 }
 
-const fem::FemBodyModel& body(const Robot& robot) {
-  return dynamic_cast<const fem::FemBodyModel&>(*robot.model->bodies().front());
+const fem::FemModel& elements(const Robot& robot) {
+  return mechanics::as<const fem::HasElements>(*robot.model->bodies().front())->elements();
 }
 
 std::string element(const Robot& robot) {
-  const auto kinds = fem::count_elements(body(robot).elements());
+  const auto kinds = fem::count_elements(elements(robot));
   EXPECT_EQ(kinds.size(), 1U);
   return std::string(kinds.front().element);
 }
@@ -46,7 +48,7 @@ TEST(DefaultElement, RubbersGetQuadraticTetrahedra) {
     EXPECT_EQ(element(made), "tet10") << material;
     EXPECT_TRUE(made.notices.empty()) << material;
   }
-  EXPECT_EQ(fem::describe_elements(body(robot(kShape, kRubber)).elements()), "144 tet10 elements");
+  EXPECT_EQ(fem::describe_elements(elements(robot(kShape, kRubber))), "144 tet10 elements");
 }
 
 TEST(DefaultElement, UpToFourTenthsTetrahedraStayLinear) {
@@ -70,7 +72,7 @@ TEST(DefaultElement, MiddleNodesFollowThoseOfTheFile) {
   const SceneFolder folder;
   const mesh::Mesh linear = mesh::block({.cells = {3, 2, 2}});
   const Robot made = robot(written(folder, linear), kRubber);
-  const mesh::Mesh& quadratic = body(made).mesh();
+  const mesh::Mesh& quadratic = elements(made).mesh();
   ASSERT_EQ(element(made), "tet10");
   ASSERT_GT(quadratic.node_count(), linear.node_count());
   EXPECT_EQ(Points(quadratic.nodes.topRows(linear.node_count())), linear.nodes);
@@ -84,7 +86,7 @@ TEST(DefaultElement, HexahedraAndQuadraticFilesStay) {
   const mesh::Mesh quadratic = mesh::with_middle_nodes(mesh::block({.cells = {3, 2, 2}}));
   const Robot made = robot(written(folder, quadratic), kRubber);
   EXPECT_EQ(element(made), "tet10");
-  EXPECT_EQ(body(made).mesh().node_count(), quadratic.node_count());
+  EXPECT_EQ(elements(made).mesh().node_count(), quadratic.node_count());
 }
 
 TEST(LockingNotice, ADefaultWarnsAndAChoiceIsRemarkedOn) {

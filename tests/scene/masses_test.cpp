@@ -3,7 +3,11 @@
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
-#include "sinew/fem/fem_body.hpp"
+#include "sinew/fem/fem_model.hpp"
+#include "sinew/fem/has_elements.hpp"
+#include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/scene/scene.hpp"
 #include "sinew/sim/simulation.hpp"
@@ -53,10 +57,11 @@ TEST(Masses, AreReadAndHung) {
   ASSERT_EQ(masses.size(), 2u);
   EXPECT_EQ(masses[0].name, "hung");
   EXPECT_DOUBLE_EQ(masses[0].mass, 0.052);
-  const auto& body = dynamic_cast<const fem::FemBodyModel&>(*robot.model->bodies()[0]);
+  const mechanics::BodyModel& body = *robot.model->bodies()[0];
   EXPECT_LT((body.rest_position(masses[0].point) - Vector3(0.038, 0.010, 0.012)).norm(), 1e-15);
   EXPECT_LT((body.rest_position(masses[1].point) - Vector3(0.050, 0.010, 0.010)).norm(), 1e-15);
-  EXPECT_NEAR(body.elements().load_mass().sum(), 1000.0 * 1.6e-5 + 0.053, 1e-15);
+  const fem::FemModel& elements = mechanics::as<const fem::HasElements>(body)->elements();
+  EXPECT_NEAR(elements.load_mass().sum(), 1000.0 * 1.6e-5 + 0.053, 1e-15);
 }
 
 TEST(Masses, WrongOnesAreErrors) {
@@ -78,8 +83,8 @@ TEST(InitialVelocity, IsThatOfARigidBody) {
   const std::string text =
       scene("", "bdf2", "    initial_velocity: {linear: 1 2 3 mm/s, angular: 0 0 2 rad/s}\n");
   sim::Simulation simulation(build(parsed(text)).model);
-  const fem::FemBody& body = simulation.fem_body(0);
-  const Points& rest = body.fem_model().mesh().nodes;
+  const mechanics::Body& body = simulation.body(0);
+  const Points& rest = body.model().mesh().nodes;
   for (Eigen::Index i = 0; i < rest.rows(); ++i) {
     const Vector3 arm = rest.row(i).transpose() - Vector3(0.02, 0.01, 0.01);
     Vector3 expected = Vector3(1e-3, 2e-3, 3e-3) + Vector3(0.0, 0.0, 2.0).cross(arm);

@@ -7,7 +7,10 @@
 
 #include <gtest/gtest.h>
 
-#include "sinew/fem/fem_body.hpp"
+#include "sinew/fem/has_elements.hpp"
+#include "sinew/fem/has_material.hpp"
+#include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 
 #include "robot_fixture.hpp"
 #include "viewer/robot_state.hpp"
@@ -79,8 +82,9 @@ TEST(LiveSource, ShowsFieldsAndProbesAsTheyAreMeasured) {
     state.step();
   }
   const auto frame = state.frame(FieldChoice(list_fields().size(), true), 1.0);
-  const fem::FemBody& body = state.simulation().fem_body(0);
-  const fem::NodalMean mean(body.fem_model());
+  const mechanics::Body& body = state.simulation().body(0);
+  const auto& own = *mechanics::as<const fem::HasMaterial>(body);
+  const fem::NodalMean mean(own.material().elements());
   ASSERT_EQ(frame->bodies[0].fields.size(), description.fields.size());
   for (std::size_t f = 0; f < description.fields.size(); ++f) {
     const std::string& name = description.fields[f];
@@ -88,9 +92,9 @@ TEST(LiveSource, ShowsFieldsAndProbesAsTheyAreMeasured) {
     if (name == "displacement") {
       expected = fem::displacement_field(body);
     } else if (name == "actuator_force") {
-      expected = fem::row_force_field(body, state.simulation().efforts());
+      expected = fem::row_force_field(own, state.simulation().efforts());
     } else {
-      expected = mean(fem::element_field(body, fem::element_field_of(name)));
+      expected = mean(fem::element_field(own, fem::element_field_of(name)));
     }
     const auto& nodes = description.surfaces[0].nodes;
     ASSERT_EQ(frame->bodies[0].fields[f].size(), nodes.size());
