@@ -24,7 +24,9 @@
 #include "sinew/record/run_recorder.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/scene/scene.hpp"
+#include "sinew/sim/model.hpp"
 #include "sinew/sim/simulation.hpp"
+#include "sinew/sim/state.hpp"
 #include "sinew/sim/state_io.hpp"
 
 #include "random.hpp"
@@ -119,8 +121,7 @@ double largest_distance(const sim::Simulation& one, const sim::Simulation& other
   double largest = 0.0;
   const auto count = static_cast<int>(one.model().bodies().size());
   for (int i = 0; i < count; ++i) {
-    const Points difference =
-        one.world().body(i).positions() - other.world().body(count - 1 - i).positions();
+    const Points difference = one.body(i).positions() - other.body(count - 1 - i).positions();
     largest = std::max(largest, difference.rowwise().norm().maxCoeff());
   }
   return largest;

@@ -7,6 +7,8 @@
 
 #include "sinew/inverse/inverse_controller.hpp"
 #include "sinew/pcc/published.hpp"
+#include "sinew/sim/contact_state.hpp"
+#include "sinew/sim/torque_settings.hpp"
 
 #include "../sim/contact_robots.hpp"
 #include "../sim/robots.hpp"

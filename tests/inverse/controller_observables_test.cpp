@@ -8,6 +8,9 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/inverse/inverse_controller.hpp"
+#include "sinew/sim/observables.hpp"
+
 #include "../sim/robots.hpp"
 
 namespace sinew::inverse {

@@ -1,16 +1,29 @@
 // Constant-curvature arms as bodies: the same motion as the arm by itself, cables, control, states.
-#include "sinew/pcc/arm_body.hpp"
-
 #include <cmath>
 #include <memory>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "sinew/constraint/surface.hpp"
 #include "sinew/core/error.hpp"
+#include "sinew/core/thread_pool.hpp"
+#include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
+#include "sinew/mesh/embedding.hpp"
+#include "sinew/pcc/arm.hpp"
+#include "sinew/pcc/arm_body_model.hpp"
 #include "sinew/pcc/arm_simulation.hpp"
+#include "sinew/pcc/has_arm.hpp"
+#include "sinew/sim/actuator.hpp"
+#include "sinew/sim/contact_state.hpp"
+#include "sinew/sim/model.hpp"
 #include "sinew/sim/model_builder.hpp"
+#include "sinew/sim/signal.hpp"
 #include "sinew/sim/simulation.hpp"
+#include "sinew/sim/state.hpp"
+#include "sinew/sim/torque_settings.hpp"
 
 #include "pcc/arms.hpp"
 
@@ -32,8 +45,8 @@ TorqueSettings torque(int segment, double value) {
   return settings;
 }
 
-const pcc::ArmBody& arm_of(const Simulation& simulation) {
-  return dynamic_cast<const pcc::ArmBody&>(simulation.world().body(0));
+const VectorX& coordinates(const Simulation& simulation) {
+  return mechanics::as<const mechanics::HasCoordinates>(simulation.body(0))->coordinates();
 }
 
 /// The fluidic arm under torques on its last three segments.
@@ -64,7 +77,7 @@ TEST(ArmBody, MovesAsTheArmByItself) {
       alone.step(kTorque);
     }
     EXPECT_GT(alone.position().norm(), 0.1);
-    EXPECT_LT((arm_of(simulation).coordinates() - alone.position()).norm(), 1e-8)
+    EXPECT_LT((coordinates(simulation) - alone.position()).norm(), 1e-8)
         << integrator_name(integrator);
   }
 }
@@ -147,7 +160,7 @@ TEST(ArmBody, SettlesInTheArmsEquilibrium) {
   simulation.solve_static();
   pcc::ArmEquations equations(pcc::testing::make(fluidic(MassCentre::distributed)));
   const auto rest = pcc::find_equilibrium(equations, kTorque, VectorX::Zero(4));
-  EXPECT_LT((arm_of(simulation).coordinates() - rest.position).norm(), 1e-8);
+  EXPECT_LT((coordinates(simulation) - rest.position).norm(), 1e-8);
   EXPECT_NEAR(simulation.actuator(2).motion, rest.position[3], 1e-8);
 }
 
@@ -172,19 +185,19 @@ TEST(ArmBody, CableDoesTheWorkOfItsLength) {
   Simulation simulation(builder.build());
   simulation.solve_static();
 
-  const pcc::ArmBody& body = arm_of(simulation);
-  const auto& model = dynamic_cast<const pcc::ArmBodyModel&>(body.model());
+  const auto& model = *mechanics::as<const pcc::HasArm>(simulation.body(0).model());
   pcc::ArmEquations equations(model.shared_arm());
-  const VectorX q = body.coordinates(), still = VectorX::Zero(q.size());
+  const VectorX q = coordinates(simulation), still = VectorX::Zero(q.size());
   EXPECT_GT(q.norm(), 0.05);
   pcc::ArmBodyModel places(model.shared_arm());
+  ThreadPool pool;
   const auto length = [&](const VectorX& at_q) {
-    pcc::ArmBody probe(places, 0);
-    probe.set_coordinates(at_q, still);
+    const auto probe = places.create(pool, false, 0);
+    mechanics::as<mechanics::HasCoordinates>(*probe)->set_coordinates(at_q, still);
     double sum = 0.0;
     Vector3 before = cable.points.row(0);
     for (int i = 0; i < 4; ++i) {
-      const Vector3 next = probe.position(i);
+      const Vector3 next = probe->position(i);
       sum += (next - before).norm();
       before = next;
     }
@@ -226,7 +239,7 @@ TEST(ArmBody, LedgerBalancesOverASwing) {
   step.tolerance = 1e-12;
   Simulation simulation(driven(step, MassCentre::distributed));
   for (int i = 0; i < 1000; ++i) simulation.step();
-  const Energies energies = simulation.energies();
+  const mechanics::Energies energies = simulation.energies();
   const double gained = energies.strain + energies.kinetic + energies.gravity;
   EXPECT_GT(simulation.actuator_work(), 1e-3);
   EXPECT_NEAR(simulation.actuator_work() - simulation.dissipation() - gained, 0.0,
@@ -237,10 +250,10 @@ TEST(ArmBody, SkinFollowsTheAxis) {
   StepSettings step;
   step.integrator = mechanics::Integrator::quasi_static;
   Simulation simulation(driven(step, MassCentre::arc));
-  const mesh::Mesh& skin = arm_of(simulation).model().mesh();
-  EXPECT_LT((arm_of(simulation).positions() - skin.nodes).norm(), 1e-12);
+  const mesh::Mesh& skin = simulation.body(0).model().mesh();
+  EXPECT_LT((simulation.body(0).positions() - skin.nodes).norm(), 1e-12);
   simulation.solve_static();
-  const Points& moved = arm_of(simulation).positions();
+  const Points& moved = simulation.body(0).positions();
   EXPECT_GT((moved - skin.nodes).norm(), 0.1);
   EXPECT_TRUE(moved.allFinite());
 }

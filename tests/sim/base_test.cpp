@@ -9,9 +9,16 @@
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
-#include "sinew/fem/fem_body.hpp"
+#include "sinew/fem/fem_body_settings.hpp"
+#include "sinew/fem/fem_model.hpp"
+#include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/mesh/embedding.hpp"
 #include "sinew/mesh/shapes.hpp"
+#include "sinew/sim/load_settings.hpp"
+#include "sinew/sim/model.hpp"
 #include "sinew/sim/model_builder.hpp"
+#include "sinew/sim/signal.hpp"
 #include "sinew/sim/simulation.hpp"
 #include "sinew/sim/state_io.hpp"
 
@@ -275,7 +282,7 @@ TEST_P(BaseStates, KeepWhatAScriptMoved) {
   first.reset();
   EXPECT_EQ(first.state_hash(), Simulation(model).state_hash());
   first.step();
-  const Points moved = first.fem_body(0).positions() - model->bodies()[0]->mesh().nodes;
+  const Points moved = first.body(0).positions() - model->bodies()[0]->mesh().nodes;
   EXPECT_LT(moved.cwiseAbs().maxCoeff(), 1e-12);
 }
 

@@ -6,9 +6,12 @@
 
 #include "sinew/constraint/cavity.hpp"
 #include "sinew/core/error.hpp"
-#include "sinew/fem/fem_body.hpp"
 #include "sinew/fem/fem_body_model.hpp"
+#include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 #include "sinew/sim/spring_drive.hpp"
+#include "sinew/sim/state.hpp"
 
 #include "chambers.hpp"
 #include "robots.hpp"
@@ -222,9 +225,10 @@ TEST(Spring, PullsByItsStretch) {
 TEST(Spring, ABandGoesSlackWhereASpringPushes) {
   for (const bool band : {false, true}) {
     Simulation simulation(sprung(0.0, band));
-    const auto& end = simulation.fem_body(0).fem_model().mesh().node_sets.at("x_max");
+    const auto& end = simulation.body(0).model().mesh().node_sets.at("x_max");
     for (const NodeId node : end) {
-      simulation.fem_body(0).external_forces()(node, 2) = (band ? 0.5 : 1.0) / 9.0;
+      mechanics::as<mechanics::TakesForces>(simulation.body(0))->external_forces()(node, 2) =
+          (band ? 0.5 : 1.0) / 9.0;
     }
     for (int i = 0; i < 60; ++i) simulation.step();
     const double length = (Vector3(0.1, 0.0, 0.06) - simulation.effector_value(0)).norm();

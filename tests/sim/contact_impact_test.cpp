@@ -7,10 +7,15 @@
 
 #include <gtest/gtest.h>
 
-#include "sinew/fem/fem_body.hpp"
+#include "sinew/constraint/surface.hpp"
+#include "sinew/fem/fem_body_settings.hpp"
+#include "sinew/fem/fem_model.hpp"
+#include "sinew/mechanics/body.hpp"
 #include "sinew/mesh/shapes.hpp"
+#include "sinew/sim/contact_state.hpp"
 #include "sinew/sim/model_builder.hpp"
 #include "sinew/sim/simulation.hpp"
+#include "sinew/sim/state.hpp"
 
 namespace sinew::sim {
 namespace {
@@ -77,7 +82,7 @@ Outcome impact(const Throw& options) {
   double first = -1.0, last = 0.0, energy = 0.0;
   while (simulation.time() < 0.025) {
     simulation.step();
-    const Energies now = simulation.energies();
+    const mechanics::Energies now = simulation.energies();
     energy = now.kinetic + now.strain;
     outcome.growth = std::max(outcome.growth, energy / start - 1.0);
     const double force = simulation.contact_sum(0).normal_force;
@@ -130,7 +135,7 @@ TEST(Impact, SmoothPhasesKeepTheSecondOrder) {
     const auto bar = thrown(options);
     Simulation& simulation = *bar;
     State state = simulation.state();
-    const auto size = static_cast<std::size_t>(simulation.fem_body(0).positions().size());
+    const auto size = static_cast<std::size_t>(simulation.body(0).positions().size());
     // The lowest vibration of a bar whose end rests: no wave hits the wall.
     const double speed = std::sqrt(kModulus / kDensity);
     for (std::size_t i = 2; i < size; i += 3) {
@@ -144,7 +149,7 @@ TEST(Impact, SmoothPhasesKeepTheSecondOrder) {
       simulation.step();
       EXPECT_GT(simulation.contact_sum(0).normal_force, 0.0);
     }
-    return simulation.fem_body(0).positions().col(2).maxCoeff();  // of the free end
+    return simulation.body(0).positions().col(2).maxCoeff();  // of the free end
   };
   const double exact = pressed(3.125e-5);
   const double coarse = pressed(5e-4) - exact, fine = pressed(2.5e-4) - exact;

@@ -7,7 +7,10 @@
 #include <gtest/gtest.h>
 #include <malloc.h>
 
-#include "sinew/fem/fem_body.hpp"
+#include "sinew/sim/contact_state.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/signal.hpp"
+#include "sinew/sim/state.hpp"
 
 #include "contact_robots.hpp"
 
@@ -110,7 +113,7 @@ TEST(Passing, SurfacesThatMissAreNotFelt) {
 
 /// x of the middle of the block's front, m.
 double front(const Simulation& simulation) {
-  const fem::FemBody& body = simulation.fem_body(0);
+  const mechanics::Body& body = simulation.body(0);
   const Points& rest = body.model().mesh().nodes;
   for (Eigen::Index n = 0; n < rest.rows(); ++n) {
     if ((rest.row(n).transpose() - Vector3(0.02, 0.0, 0.01)).norm() < 1e-9) {
@@ -146,7 +149,7 @@ TEST(Passing, NothingGoesThroughASurface) {
             touched |= sum.normal_force > 0.0;
           }
           EXPECT_TRUE(touched);
-          const Energies energies = simulation.energies();
+          const mechanics::Energies energies = simulation.energies();
           EXPECT_LT(energies.kinetic + energies.strain, start);
           EXPECT_LT(mean_velocity(simulation)[0], 0.5 * speed);
         }

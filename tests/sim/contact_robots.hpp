@@ -5,8 +5,10 @@
 #include <memory>
 #include <utility>
 
-#include "sinew/fem/fem_body.hpp"
+#include "sinew/constraint/surface.hpp"
 #include "sinew/fem/fem_body_model.hpp"
+#include "sinew/fem/fem_body_settings.hpp"
+#include "sinew/mechanics/body.hpp"
 #include "sinew/mesh/shapes.hpp"
 #include "sinew/sim/model_builder.hpp"
 #include "sinew/sim/simulation.hpp"
@@ -61,7 +63,7 @@ inline sim::ModelBuilder block_on_plane(const BlockOptions& options) {
 
 /// Mean velocity of the block's nodes (lumped: equal cells, so near the centre of mass's), m/s.
 inline Vector3 mean_velocity(const sim::Simulation& simulation) {
-  return simulation.fem_body(0).velocities().colwise().mean().transpose();
+  return simulation.body(0).velocities().colwise().mean().transpose();
 }
 
 }  // namespace sinew::testing

@@ -7,10 +7,16 @@
 #include <gtest/gtest.h>
 
 #include "sinew/constraint/cable.hpp"
+#include "sinew/constraint/placement.hpp"
 #include "sinew/core/error.hpp"
-#include "sinew/fem/fem_body.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/qp/cone_solver.hpp"
+#include "sinew/sim/actuator.hpp"
+#include "sinew/sim/contact_state.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/signal.hpp"
+#include "sinew/sim/state.hpp"
+#include "sinew/sim/world.hpp"
 
 #include "contact_robots.hpp"
 #include "support/allocation_guard.hpp"
@@ -29,9 +35,9 @@ TEST(Contact, BlockSticksBelowTheFrictionAngle) {
   for (const double share : {0.5, 0.95}) {
     Simulation simulation(block_on_plane({.angle = share * critical}).build());
     for (int k = 0; k < 500; ++k) simulation.step();
-    const Vector3 before = simulation.fem_body(0).positions().colwise().mean();
+    const Vector3 before = simulation.body(0).positions().colwise().mean();
     for (int k = 0; k < 500; ++k) simulation.step();
-    const Vector3 after = simulation.fem_body(0).positions().colwise().mean();
+    const Vector3 after = simulation.body(0).positions().colwise().mean();
     EXPECT_LT((after - before).norm(), 1e-9) << share;
     const ContactSum sum = simulation.contact_sum(0);
     EXPECT_NEAR(sum.normal_force, kBlockWeight * std::cos(share * critical), 1e-6 * kBlockWeight);
@@ -57,7 +63,7 @@ TEST(Contact, BlockSlidesAsCoulombSaysAboveIt) {
 }
 
 double total(Simulation& simulation) {
-  const Energies energies = simulation.energies();
+  const mechanics::Energies energies = simulation.energies();
   return energies.strain + energies.kinetic + energies.gravity;
 }
 
@@ -340,9 +346,8 @@ TEST(Contact, CablesWithFrictionAndContactsShareOneProblem) {
       near.step();
       EXPECT_LT(near.report().violation, 1e-9);
     }
-    EXPECT_LT((far.fem_body(0).positions() - free.fem_body(0).positions()).cwiseAbs().maxCoeff(),
-              1e-9);
-    EXPECT_LT(far.fem_body(0).positions().col(2).minCoeff(), -0.004);
+    EXPECT_LT((far.body(0).positions() - free.body(0).positions()).cwiseAbs().maxCoeff(), 1e-9);
+    EXPECT_LT(far.body(0).positions().col(2).minCoeff(), -0.004);
     EXPECT_EQ(far.contact_sum(0).normal_force, 0.0);
     const ContactSum sum = near.contact_sum(0);
     EXPECT_GE(sum.smallest_gap, -1e-9);
@@ -351,8 +356,7 @@ TEST(Contact, CablesWithFrictionAndContactsShareOneProblem) {
     const auto tensions = near.model().cable(0)->tensions(near.efforts());
     for (int via = 0; via + 1 < static_cast<int>(tensions.size()); ++via) {
       const auto i = static_cast<std::size_t>(via);
-      const double most =
-          std::exp(0.3 * near.model().cable(0)->turn(near.world().placement(), via));
+      const double most = std::exp(0.3 * near.model().cable(0)->turn(near.placement(), via));
       EXPECT_LE(tensions[i], most * tensions[i + 1] * (1.0 + 1e-6)) << via;
       EXPECT_LE(tensions[i + 1], most * tensions[i] * (1.0 + 1e-6)) << via;
     }
@@ -389,13 +393,12 @@ TEST(Contact, PointsThatStayAwayChangeNothing) {
     for (int k = 0; k < 150; ++k) {
       whole.step();
       bottom.step();
-      left_out += whole.world().leaves_points_out() ? 1 : 0;
+      left_out += whole.world().contacts().leave_points_out() ? 1 : 0;
     }
     EXPECT_EQ(left_out, 150);
     EXPECT_GT(bottom.contact_sum(0).normal_force, 0.0);
-    EXPECT_LT(
-        (whole.fem_body(0).positions() - bottom.fem_body(0).positions()).cwiseAbs().maxCoeff(),
-        1e-9 * 0.06);
+    EXPECT_LT((whole.body(0).positions() - bottom.body(0).positions()).cwiseAbs().maxCoeff(),
+              1e-9 * 0.06);
     EXPECT_NEAR(whole.contact_sum(0).normal_force, bottom.contact_sum(0).normal_force,
                 1e-6 * kBlockWeight);
   }
@@ -447,7 +450,7 @@ TEST(Contact, StepsDoNotAllocate) {
   const long before = sinew::testing::allocations();
   for (int k = 0; k < 60; ++k) simulation.step();
   EXPECT_EQ(sinew::testing::allocations(), before);
-  EXPECT_TRUE(simulation.world().leaves_points_out());
+  EXPECT_TRUE(simulation.world().contacts().leave_points_out());
 }
 
 TEST(Contact, RunsGoOnFromASavedStateBitForBit) {

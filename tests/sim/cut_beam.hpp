@@ -6,8 +6,11 @@
 #include <optional>
 #include <string>
 
-#include "sinew/fem/fem_body.hpp"
+#include "sinew/constraint/surface.hpp"
+#include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/mesh/shapes.hpp"
+#include "sinew/sim/joint_settings.hpp"
+#include "sinew/sim/model.hpp"
 #include "sinew/sim/model_builder.hpp"
 #include "sinew/sim/simulation.hpp"
 

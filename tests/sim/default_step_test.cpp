@@ -4,8 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
-#include "sinew/fem/fem_body.hpp"
+#include "sinew/mechanics/body.hpp"
 #include "sinew/sim/simulation.hpp"
+#include "sinew/sim/state.hpp"
 
 #include "sim/robots.hpp"
 
@@ -21,9 +22,9 @@ double distance(const Points& a, const Points& b) { return (a - b).rowwise().nor
 
 // The last state of `steps` steps against the equilibrium that is found from there.
 double distance_to_rest(Simulation& simulation) {
-  const Points stepped = simulation.fem_body(0).positions();
+  const Points stepped = simulation.body(0).positions();
   simulation.solve_static();
-  return distance(stepped, simulation.fem_body(0).positions());
+  return distance(stepped, simulation.body(0).positions());
 }
 
 TEST(DefaultStep, APulledCableBendsTheBeamToItsEquilibrium) {

@@ -5,9 +5,13 @@
 #include <gtest/gtest.h>
 
 #include "sinew/constraint/cable.hpp"
+#include "sinew/constraint/placement.hpp"
 #include "sinew/core/error.hpp"
-#include "sinew/fem/fem_body.hpp"
 #include "sinew/fem/fem_body_model.hpp"
+#include "sinew/fem/has_material.hpp"
+#include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/capabilities.hpp"
+#include "sinew/sim/state.hpp"
 
 #include "robots.hpp"
 
@@ -56,7 +60,7 @@ std::vector<double> tensions(const Simulation& simulation, int actuator = 0) {
 // Every ratio of neighbouring tensions within Coulomb's limits; whether all are at one of them.
 void expect_friction(const Simulation& simulation, double sign) {
   const auto& model = simulation.model();
-  const auto& placement = simulation.world().placement();
+  const auto& placement = simulation.placement();
   const auto own = tensions(simulation);
   for (int via = 0; via < model.cable(0)->via_count(); ++via) {
     const auto k = static_cast<std::size_t>(via);
@@ -77,7 +81,7 @@ TEST(Friction, RopeOverABollardFollowsEuler) {
     simulation.command(0, tension(3.0));
     simulation.step();
     const auto own = tensions(simulation);
-    const double wrap = model->cable(0)->wrap(simulation.world().placement());
+    const double wrap = model->cable(0)->wrap(simulation.placement());
     EXPECT_GT(wrap, 1.0);
     EXPECT_NEAR(own.front() / own.back(), std::exp(kFriction * wrap), 1e-7);
     expect_friction(simulation, 1.0);
@@ -107,12 +111,12 @@ TEST(Friction, ForcesOfRowsAreThoseOfTheSegments) {
   Simulation simulation(model);
   simulation.command(0, tension(3.0));
   simulation.step();
-  auto& body = simulation.fem_body(0);
+  const auto& body = *mechanics::as<const fem::HasMaterial>(simulation.body(0));
   Points forces = Points::Zero(body.positions().rows(), 3);
   body.add_row_forces(simulation.efforts(), forces);
   // What the straight ends pull at the block, but for the world's pull point.
   const auto own = tensions(simulation);
-  const Points points = model->cable(0)->points(simulation.world().placement());
+  const Points points = model->cable(0)->points(simulation.placement());
   const Vector3 first = (points.row(1) - points.row(0)).transpose().normalized();
   // Forces on fixed nodes are not listed: the cable stays away from them but for the sum along y.
   const Vector3 sum = forces.colwise().sum().transpose();
@@ -176,7 +180,7 @@ TEST(Friction, StateRestoresWithItsFriction) {
   other.restore(state);
   other.command(0, tension(2.0));
   other.step();
-  const Points gap = other.fem_body(0).positions() - simulation.fem_body(0).positions();
+  const Points gap = other.body(0).positions() - simulation.body(0).positions();
   EXPECT_LT(gap.cwiseAbs().maxCoeff(), 1e-13);
   for (std::size_t k = 0; k < 9; ++k) {
     EXPECT_NEAR(tensions(other)[k], tensions(simulation)[k], 1e-9) << k;

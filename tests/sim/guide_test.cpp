@@ -5,10 +5,12 @@
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
-#include "sinew/fem/fem_body.hpp"
 #include "sinew/fem/fem_body_model.hpp"
+#include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/mesh/shapes.hpp"
+#include "sinew/sim/actuator.hpp"
 #include "sinew/sim/model_builder.hpp"
+#include "sinew/sim/signal.hpp"
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::sim {

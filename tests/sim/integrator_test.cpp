@@ -5,7 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
-#include "sinew/fem/fem_body.hpp"
+#include "sinew/mechanics/body.hpp"
+#include "sinew/sim/state.hpp"
 
 #include "robots.hpp"
 
@@ -68,7 +69,7 @@ TEST(Integrator, OrdersAreAsPublished) {
 }
 
 double energy(Simulation& simulation) {
-  const Energies now = simulation.energies();
+  const mechanics::Energies now = simulation.energies();
   return now.strain + now.kinetic + now.gravity;
 }
 
@@ -183,7 +184,7 @@ TEST(Adaptive, StopsAtTheSmallestStepAndRestoresTheState) {
   EXPECT_NE(simulation.state_hash(), 0U);
   Simulation fresh(beam(options));
   EXPECT_EQ(fresh.state_hash(), before);
-  EXPECT_EQ(simulation.fem_body(0).positions(), fresh.fem_body(0).positions());
+  EXPECT_EQ(simulation.body(0).positions(), fresh.body(0).positions());
 }
 
 }  // namespace

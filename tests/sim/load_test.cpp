@@ -9,12 +9,18 @@
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
-#include "sinew/fem/fem_body.hpp"
 #include "sinew/fem/fem_body_model.hpp"
+#include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/fem/loads.hpp"
+#include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/capabilities.hpp"
+#include "sinew/mechanics/step_system.hpp"
+#include "sinew/mesh/embedding.hpp"
 #include "sinew/mesh/patch.hpp"
 #include "sinew/mesh/shapes.hpp"
+#include "sinew/sim/load_settings.hpp"
 #include "sinew/sim/model_builder.hpp"
+#include "sinew/sim/signal.hpp"
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::sim {
@@ -178,16 +184,16 @@ TEST(Water, BodyAsHeavyAsWaterFloatsWhereItIs) {
     builder.add_load({.name = "sea", .load = WaterSettings{.faces = mesh::boundary_faces(*mesh)}});
     Simulation simulation(builder.build());
     for (int k = 0; k < 100; ++k) simulation.step();
-    const Points moved = simulation.fem_body(0).positions() - mesh->nodes;
+    const Points moved = simulation.body(0).positions() - mesh->nodes;
     const double fall = moved.col(2).mean();
     if (density == 1000.0) {
       EXPECT_LT(std::abs(fall), 1e-6);
     } else {
       // Sinks towards sqrt(2 (rho - rho_w) g L / (rho_w c_n)) of a face ahead and one behind.
       EXPECT_LT(fall, -5e-3);
-      EXPECT_LT(simulation.fem_body(0).velocities().col(2).mean(), -0.05);
+      EXPECT_LT(simulation.body(0).velocities().col(2).mean(), -0.05);
       const double terminal = std::sqrt(100.0 * 9.81 * 0.02 / (1000.0 * 0.9));
-      EXPECT_GT(simulation.fem_body(0).velocities().col(2).mean(), -1.05 * terminal);
+      EXPECT_GT(simulation.body(0).velocities().col(2).mean(), -1.05 * terminal);
       EXPECT_GT(simulation.dissipation(), 0.0);
     }
   }
@@ -218,10 +224,14 @@ TEST(Pressure, OpenSurfaceConvergesQuadraticallyInStatics) {
   const StaticReport report = simulation.solve_static();
   EXPECT_EQ(report.status, NewtonStatus::converged);
   EXPECT_LE(report.iterations, 5);
-  const double tip = (simulation.fem_body(0).positions() - mesh->nodes).col(2).minCoeff();
+  const double tip = (simulation.body(0).positions() - mesh->nodes).col(2).minCoeff();
   EXPECT_LT(tip, -0.02);  // large: the load turns with the beam
   // The top has turned towards +x, and what presses on it points the other way.
-  const Vector3 load = simulation.fem_body(0).load_forces().colwise().sum().transpose();
+  const Vector3 load = mechanics::as<mechanics::TakesLoads>(simulation.body(0))
+                           ->load_forces()
+                           .colwise()
+                           .sum()
+                           .transpose();
   EXPECT_LT(load.x(), -0.01);
 }
 
@@ -239,6 +249,14 @@ std::array<double, 2> clip(const Eigen::Matrix<double, 3, 4>& x, const Vector3& 
     if (last < 0.0) leave = std::min(leave, first / (first - last));
   }
   return {enter, leave};
+}
+
+// As of a linearisation at rest.
+Points forces_of_the_load(Simulation& simulation) {
+  auto& body = *mechanics::as<mechanics::TakesLoads>(simulation.body(0));
+  body.set_load_factor(0, 1.0);
+  simulation.body(0).system().linearise({});
+  return body.load_forces();
 }
 
 // A line through 200 cells: in every tetrahedron that it crosses, the integral of linear shape
@@ -259,9 +277,7 @@ TEST(LineLoad, IsExactInEveryElement) {
   builder.add_load({.name = "line", .body = bar, .load = line});
   const auto model = builder.build();
   Simulation simulation(model);
-  simulation.fem_body(0).load_factors()[0] = 1.0;
-  simulation.fem_body(0).linearise({});
-  const Points found = simulation.fem_body(0).load_forces();
+  const Points found = forces_of_the_load(simulation);
   Points expected = Points::Zero(found.rows(), 3);
   int crossed = 0;
   for (const mesh::Tetrahedron& tetrahedron : mesh->tetrahedra) {
@@ -310,9 +326,7 @@ TEST(LineLoad, MayLeaveTheBody) {
     line.points << 0.01, 0.005, 0.005, 0.08, 0.012, 0.011, 0.13, 0.01, 0.01;
     builder.add_load({.name = "line", .outside = mesh::Outside::nearest, .load = line});
     Simulation simulation(builder.build());
-    simulation.fem_body(0).load_factors()[0] = 1.0;
-    simulation.fem_body(0).linearise({});
-    const Points forces = simulation.fem_body(0).load_forces();
+    const Points forces = forces_of_the_load(simulation);
     const double length = (line.points.row(1) - line.points.row(0)).norm() +
                           (line.points.row(2) - line.points.row(1)).norm();
     EXPECT_NEAR(forces.col(2).sum(), -length, 1e-14);

@@ -10,8 +10,14 @@
 
 #include "sinew/constraint/contact.hpp"
 #include "sinew/constraint/probe.hpp"
-#include "sinew/pcc/arm_body.hpp"
+#include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/capabilities.hpp"
+#include "sinew/pcc/arm.hpp"
+#include "sinew/sim/contact_state.hpp"
+#include "sinew/sim/inputs.hpp"
 #include "sinew/sim/row_efforts.hpp"
+#include "sinew/sim/state.hpp"
+#include "sinew/sim/torque_settings.hpp"
 
 #include "pcc/arms.hpp"
 #include "sim/chambers.hpp"
@@ -139,12 +145,12 @@ TEST(Observables, HaveTheValuesOfTheSimulation) {
   axis.erase(axis.begin());
   EXPECT_EQ(values(list, "axis.positions"), axis);
   EXPECT_EQ(values(list, "bend.value"), simulation.probe_values(2));
-  const mechanics::Body& body = simulation.world().body(0);
+  const mechanics::Body& body = simulation.body(0);
   EXPECT_TRUE(std::ranges::equal(values(list, "beam.positions"),
                                  body.positions().reshaped<Eigen::RowMajor>()));
   EXPECT_TRUE(std::ranges::equal(values(list, "beam.velocities"),
                                  body.velocities().reshaped<Eigen::RowMajor>()));
-  const Energies energies = simulation.energies();
+  const mechanics::Energies energies = simulation.energies();
   EXPECT_EQ(value(list, "strain_energy"), energies.strain);
   EXPECT_EQ(value(list, "kinetic_energy"), energies.kinetic);
   EXPECT_EQ(value(list, "gravity_energy"), energies.gravity);
@@ -174,7 +180,7 @@ TEST(Observables, TheLedgerBeginsWithTheFirstReading) {
     EXPECT_EQ(value(list, name), 0.0) << name;
   }
   const auto energy = [&] {
-    const Energies now = simulation.energies();
+    const mechanics::Energies now = simulation.energies();
     return now.strain + now.kinetic + now.gravity;
   };
   const double start = energy();
@@ -219,7 +225,7 @@ TEST(Observables, ContactsArmsAndTwoBodies) {
     }
   }
   EXPECT_GT(friction, 0.0);
-  const auto& arm = dynamic_cast<const pcc::ArmBody&>(simulation.world().body(1));
+  const auto& arm = *mechanics::as<const mechanics::HasCoordinates>(simulation.body(1));
   EXPECT_TRUE(std::ranges::equal(values(list, "arm.coordinates"), arm.coordinates()));
   EXPECT_EQ(value(list, "bend.torque"), simulation.actuator(0).effort);
   EXPECT_EQ(value(list, "bend.angle"), simulation.actuator(0).motion);

@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
-#include "sinew/fem/fem_body.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/mesh/shapes.hpp"
+#include "sinew/sim/load_settings.hpp"
 #include "sinew/sim/model_builder.hpp"
 #include "sinew/sim/simulation.hpp"
 

@@ -8,9 +8,19 @@
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
-#include "sinew/fem/fem_body.hpp"
+#include "sinew/fem/fem_body_model.hpp"
+#include "sinew/fem/fem_body_settings.hpp"
+#include "sinew/fem/fem_model.hpp"
+#include "sinew/fem/has_elements.hpp"
+#include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
+#include "sinew/mesh/embedding.hpp"
 #include "sinew/mesh/shapes.hpp"
+#include "sinew/sim/load_settings.hpp"
+#include "sinew/sim/model.hpp"
 #include "sinew/sim/model_builder.hpp"
+#include "sinew/sim/signal.hpp"
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::sim {
@@ -60,12 +70,12 @@ TEST_P(HungMass, SagsTheBeamAsItsWeightDoes) {
   Simulation a(weighed.build()), b(pulled.build());
   a.solve_static();
   b.solve_static();
-  const Points moved = a.fem_body(0).positions() - a.fem_body(0).model().mesh().nodes;
+  const Points moved = a.body(0).positions() - a.body(0).model().mesh().nodes;
   EXPECT_LT(moved.col(2).minCoeff(), -2e-3);
-  EXPECT_LT((a.fem_body(0).positions() - b.fem_body(0).positions()).cwiseAbs().maxCoeff(), 1e-10);
+  EXPECT_LT((a.body(0).positions() - b.body(0).positions()).cwiseAbs().maxCoeff(), 1e-10);
   // Its potential is that of the height it lost.
   const MassModel& mass = a.model().masses()[0];
-  const double lost = kPoint.z() - a.fem_body(0).position(mass.point).z();
+  const double lost = kPoint.z() - a.body(0).position(mass.point).z();
   EXPECT_NEAR(b.energies().gravity - a.energies().gravity, 0.02 * kGravity * lost,
               1e-8 * kGravity * lost);
 }
@@ -145,7 +155,7 @@ TEST(PointMass, SwingsALightBeamAtItsFrequency) {
   simulation.solve_static();
   simulation.set_load(0, Signal::constant(0.0));
   const int point = simulation.model().masses()[0].point;
-  const auto height = [&] { return simulation.fem_body(0).position(point).z() - 0.5 * side; };
+  const auto height = [&] { return simulation.body(0).position(point).z() - 0.5 * side; };
   double before = height();
   EXPECT_NEAR(before, 1e-3 * length, 0.02e-3 * length);
   std::vector<double> crossings;
@@ -181,8 +191,8 @@ TEST(PointMass, KeepsEnergyAndMomentum) {
   ASSERT_EQ(simulation.model().masses().size(), 2u);
   EXPECT_EQ(simulation.model().mass_index("ballast"), 1);
   EXPECT_EQ(simulation.model().masses()[1].body, 1);
-  const fem::FemBody& body = simulation.fem_body(1);
-  const VectorX& mass = body.fem_model().elements().load_mass();
+  const mechanics::Body& body = simulation.body(1);
+  const VectorX& mass = mechanics::as<const fem::HasElements>(body.model())->elements().load_mass();
   EXPECT_NEAR(mass.sum(), 1000.0 * 2.4e-5 + 0.03, 1e-15);
   const auto centre = [&] { return Vector3(body.positions().transpose() * mass / mass.sum()); };
   const Vector3 start = centre();
@@ -191,7 +201,7 @@ TEST(PointMass, KeepsEnergyAndMomentum) {
   double swing = 0.0, drift = 0.0;
   for (int k = 0; k < 200; ++k) {
     simulation.step();
-    const Energies now = simulation.energies();
+    const mechanics::Energies now = simulation.energies();
     swing = std::max(swing, std::abs(now.kinetic - begin));
     drift = std::max(drift, std::abs(now.kinetic + now.strain + now.gravity - begin));
   }

@@ -7,10 +7,17 @@
 #include <string>
 #include <utility>
 
-#include "sinew/fem/fem_body.hpp"
+#include "sinew/constraint/surface.hpp"
 #include "sinew/fem/fem_body_model.hpp"
+#include "sinew/fem/fem_body_settings.hpp"
+#include "sinew/fem/fem_model.hpp"
+#include "sinew/mesh/embedding.hpp"
 #include "sinew/mesh/shapes.hpp"
+#include "sinew/sim/actuator.hpp"
+#include "sinew/sim/model.hpp"
 #include "sinew/sim/model_builder.hpp"
+#include "sinew/sim/probe_settings.hpp"
+#include "sinew/sim/signal.hpp"
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::testing {

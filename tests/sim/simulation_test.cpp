@@ -5,7 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include "sinew/fem/fem_body.hpp"
+#include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/capabilities.hpp"
+#include "sinew/sim/world.hpp"
 
 #include "robots.hpp"
 #include "support/error_kind.hpp"
@@ -26,9 +28,9 @@ using sinew::testing::kind_of;
 
 TEST(Simulation, StaysAtRestWithoutInputs) {
   Simulation simulation(beam());
-  const Points before = simulation.fem_body(0).positions();
+  const Points before = simulation.body(0).positions();
   run(simulation, 10);
-  EXPECT_LT((simulation.fem_body(0).positions() - before).cwiseAbs().maxCoeff(), 1e-15);
+  EXPECT_LT((simulation.body(0).positions() - before).cwiseAbs().maxCoeff(), 1e-15);
   EXPECT_DOUBLE_EQ(simulation.time(), 0.1);
 }
 
@@ -106,9 +108,7 @@ TEST(Simulation, StepsConvergeToTheStaticSolution) {
   const StaticReport report = solved.solve_static();
   EXPECT_EQ(report.status, NewtonStatus::converged);
   EXPECT_LE(report.relative_residual, 1e-10);
-  EXPECT_LT(
-      (stepped.fem_body(0).positions() - solved.fem_body(0).positions()).cwiseAbs().maxCoeff(),
-      1e-9);
+  EXPECT_LT((stepped.body(0).positions() - solved.body(0).positions()).cwiseAbs().maxCoeff(), 1e-9);
 }
 
 TEST(Simulation, StaticSolutionIsInEquilibriumWithItsTensions) {
@@ -160,8 +160,7 @@ TEST(Simulation, RealTimeAndExactTangentLeadToTheSameStep) {
     simulation->command(0, {CommandKind::motion, Signal::ramp({0.0, 0.005, 0.0, 0.05})});
     run(*simulation, 5);
   }
-  EXPECT_LT((rough.fem_body(0).positions() - exact.fem_body(0).positions()).cwiseAbs().maxCoeff(),
-            1e-10);
+  EXPECT_LT((rough.body(0).positions() - exact.body(0).positions()).cwiseAbs().maxCoeff(), 1e-10);
 }
 
 TEST(Simulation, FreeFallIsExactForBackwardEuler) {
@@ -171,13 +170,13 @@ TEST(Simulation, FreeFallIsExactForBackwardEuler) {
   options.gravity = {0.0, 0.0, -9.81};
   options.step.integrator = mechanics::Integrator::backward_euler;
   Simulation simulation(beam(options));
-  const Points start = simulation.fem_body(0).positions();
+  const Points start = simulation.body(0).positions();
   const int n = 50;
   run(simulation, n);
   // v_k = -g h k, z_n = -g h^2 n (n + 1) / 2
   const double h = options.step.time_step;
   const double fall = -9.81 * h * h * n * (n + 1) / 2;
-  const Points moved = simulation.fem_body(0).positions() - start;
+  const Points moved = simulation.body(0).positions() - start;
   // Exact but for the rounding of 50 solves, which depends on how the library was compiled.
   EXPECT_NEAR(moved.col(2).maxCoeff() / fall, 1.0, 1e-11);
   EXPECT_NEAR(moved.col(2).minCoeff() / fall, 1.0, 1e-11);
@@ -193,7 +192,7 @@ TEST(Simulation, MassDampingStopsAFreeBody) {
   options.step.integrator = mechanics::Integrator::backward_euler;
   Simulation simulation(beam(options));
   run(simulation, 2000);  // terminal velocity g / alpha
-  EXPECT_NEAR(simulation.fem_body(0).velocities().col(2).mean(), -9.81 / 2.0, 1e-6);
+  EXPECT_NEAR(simulation.body(0).velocities().col(2).mean(), -9.81 / 2.0, 1e-6);
 }
 
 TEST(Simulation, QuasiStaticStateDoesNotDependOnTheTimeStep) {
@@ -270,7 +269,7 @@ TEST(Simulation, AHugePullIsCutBackAndNothingInverts) {
     cut = true;
   }
   EXPECT_TRUE(cut);
-  EXPECT_TRUE(simulation.fem_body(0).positions().allFinite());
+  EXPECT_TRUE(simulation.body(0).positions().allFinite());
 }
 
 TEST(Simulation, NotANumberInAForceStopsTheRunAndKeepsTheState) {
@@ -278,7 +277,8 @@ TEST(Simulation, NotANumberInAForceStopsTheRunAndKeepsTheState) {
   simulation.command(0, pull(0.001));
   run(simulation, 5);
   const auto before = simulation.state_hash();
-  simulation.fem_body(0).external_forces()(simulation.fem_body(0).positions().rows() - 1, 0) = NAN;
+  mechanics::as<mechanics::TakesForces>(simulation.body(0))
+      ->external_forces()(simulation.body(0).positions().rows() - 1, 0) = NAN;
   const auto kind = kind_of([&] { simulation.step(); });
   EXPECT_TRUE(kind == ErrorKind::diverged || kind == ErrorKind::not_converged ||
               kind == ErrorKind::singular_matrix)

@@ -12,6 +12,7 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/core/state_hash.hpp"
+#include "sinew/sim/state.hpp"
 
 #include "robots.hpp"
 

@@ -7,13 +7,18 @@
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
-#include "sinew/fem/fem_body.hpp"
+#include "sinew/fem/has_elements.hpp"
 #include "sinew/linalg/dense.hpp"
+#include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/shapes.hpp"
 #include "sinew/mesh/topology.hpp"
+#include "sinew/sim/load_settings.hpp"
 #include "sinew/sim/model_builder.hpp"
 #include "sinew/sim/simulation.hpp"
 #include "sinew/sim/stability.hpp"
+#include "sinew/sim/world.hpp"
 
 #include "robots.hpp"
 
@@ -162,15 +167,15 @@ TEST(Statics, StabilityAgreesWithTheDenseTangent) {
     ASSERT_NE(world.condense(), linalg::FactorStatus::singular);
     const Stability stability(world, simulation.efforts());
     VectorX rest, row;
-    world.imbalance(std::vector<double>(simulation.efforts().size(), 0.0), rest);
+    world.bodies().imbalance(std::vector<double>(simulation.efforts().size(), 0.0), rest);
     std::vector<double> unit(simulation.efforts().size(), 0.0);
     unit[static_cast<std::size_t>(simulation.model().actuators()[0].row)] = 1.0;
-    world.imbalance(unit, row);
+    world.bodies().imbalance(unit, row);
     row -= rest;
     MatrixX inverse(rest.size(), rest.size());
     VectorX column;
     for (Eigen::Index j = 0; j < rest.size(); ++j) {
-      world.solve(VectorX::Unit(rest.size(), j), column);
+      world.bodies().solve(VectorX::Unit(rest.size(), j), column);
       inverse.col(j) = column;
     }
     MatrixX tangent = linalg::solve(inverse, MatrixX::Identity(rest.size(), rest.size()));
@@ -239,8 +244,7 @@ TEST(Statics, IterationsDoNotGrowTowardsIncompressibility) {
       EXPECT_EQ(report.load_steps, 1);
       EXPECT_LE(report.iterations, 12) << poisson;
       EXPECT_TRUE(report.stable);
-      const Points moved =
-          simulation.fem_body(0).positions() - simulation.fem_body(0).fem_model().mesh().nodes;
+      const Points moved = simulation.body(0).positions() - simulation.body(0).model().mesh().nodes;
       const double sag = -moved.col(2).minCoeff();
       if (first == 0.0) first = sag;
       EXPECT_GT(sag, 0.02);
@@ -259,9 +263,10 @@ TEST(Newton, EndsWhereRoundingDoesInSmallSteps) {
       step.integrator = integrator;
       step.method = Method::newton;
       Simulation simulation(sinew::testing::beam({.step = step, .cables = 0, .clamped = false}));
-      auto& body = simulation.fem_body(0);
+      auto& body = *mechanics::as<mechanics::TakesForces>(simulation.body(0));
       const double push = 0.1 / (20.0 * time_step);  // m/s^2: 0.1 m/s after 20 steps
-      const VectorX& masses = body.fem_model().elements().load_mass();
+      const VectorX& masses =
+          mechanics::as<const fem::HasElements>(simulation.body(0).model())->elements().load_mass();
       simulation.step();
       body.external_forces().col(2) = push * masses;
       for (int i = 0; i < 20; ++i) simulation.step();
@@ -269,7 +274,7 @@ TEST(Newton, EndsWhereRoundingDoesInSmallSteps) {
       ASSERT_NO_THROW({
         for (int i = 0; i < 100; ++i) simulation.step();
       }) << time_step;
-      EXPECT_NEAR(body.velocities().col(2).mean(), 0.1, 1e-3);
+      EXPECT_NEAR(simulation.body(0).velocities().col(2).mean(), 0.1, 1e-3);
     }
   }
 }

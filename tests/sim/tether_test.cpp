@@ -1,6 +1,4 @@
 // A hand's spring on a robot, and what is seen on a deformed one.
-#include "sinew/mechanics/capabilities.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,12 +8,20 @@
 #include <gtest/gtest.h>
 
 #include "sinew/fem/element_fields.hpp"
-#include "sinew/fem/fem_body.hpp"
+#include "sinew/fem/has_material.hpp"
+#include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
+#include "sinew/mesh/mesh.hpp"
 
 #include "robots.hpp"
 
 namespace sinew {
 namespace {
+
+mechanics::TakesForces& pulled(sim::Simulation& simulation) {
+  return *mechanics::as<mechanics::TakesForces>(simulation.body(0));
+}
 
 // The three nodes of the first tetrahedron's face that lies at the beam's free end.
 mechanics::Tether end_tether(const mesh::Mesh& mesh, double stiffness, const Vector3& anchor) {
@@ -36,27 +42,26 @@ mechanics::Tether end_tether(const mesh::Mesh& mesh, double stiffness, const Vec
 TEST(Tether, HoldsTheBodyAsTheSameForceWould) {
   const auto model = testing::beam();
   sim::Simulation held(model), pushed(model);
-  const auto tether = end_tether(held.fem_body(0).fem_model().mesh(), 30.0, {0.09, 0.01, 0.05});
-  held.fem_body(0).set_tether(tether);
+  const auto tether = end_tether(held.body(0).model().mesh(), 30.0, {0.09, 0.01, 0.05});
+  pulled(held).set_tether(tether);
   held.solve_static();
-  const Vector3 force = tether.stiffness * (tether.anchor - held.fem_body(0).tether_point());
+  const Vector3 force = tether.stiffness * (tether.anchor - pulled(held).tether_point());
   EXPECT_GT(force.norm(), 0.05);
   for (std::size_t k = 0; k < 3; ++k) {
-    pushed.fem_body(0).external_forces().row(tether.nodes[k]) =
-        tether.weights[k] * force.transpose();
+    pulled(pushed).external_forces().row(tether.nodes[k]) = tether.weights[k] * force.transpose();
   }
   pushed.solve_static();
   const double difference =
-      (held.fem_body(0).positions() - pushed.fem_body(0).positions()).cwiseAbs().maxCoeff();
+      (held.body(0).positions() - pushed.body(0).positions()).cwiseAbs().maxCoeff();
   EXPECT_LT(difference, 1e-9);
 }
 
 // Explicitly applied, a spring stiffer than the robot would throw it about ever farther.
 TEST(Tether, MayBeFarStifferThanTheRobot) {
   sim::Simulation simulation(testing::beam());
-  fem::FemBody& body = simulation.fem_body(0);
+  mechanics::TakesForces& body = pulled(simulation);
   const Vector3 anchor(0.095, 0.0, 0.03);
-  body.set_tether(end_tether(body.fem_model().mesh(), 1e6, anchor));
+  body.set_tether(end_tether(simulation.body(0).model().mesh(), 1e6, anchor));
   simulation.step();
   EXPECT_LT((body.tether_point() - anchor).norm(), 1e-5);
   for (int k = 0; k < 100; ++k) simulation.step();
@@ -66,22 +71,22 @@ TEST(Tether, MayBeFarStifferThanTheRobot) {
 
 TEST(Tether, LetsGoWithoutATrace) {
   sim::Simulation simulation(testing::beam());
-  fem::FemBody& body = simulation.fem_body(0);
+  const mechanics::Body& body = simulation.body(0);
   const auto at_rest = simulation.state_hash();
-  body.set_tether(end_tether(body.fem_model().mesh(), 100.0, {0.1, 0.0, 0.05}));
+  pulled(simulation).set_tether(end_tether(body.model().mesh(), 100.0, {0.1, 0.0, 0.05}));
   for (int k = 0; k < 20; ++k) simulation.step();
-  EXPECT_GT((body.positions() - body.fem_model().mesh().nodes).cwiseAbs().maxCoeff(), 1e-3);
-  body.set_tether(std::nullopt);
+  EXPECT_GT((body.positions() - body.model().mesh().nodes).cwiseAbs().maxCoeff(), 1e-3);
+  pulled(simulation).set_tether(std::nullopt);
   for (int k = 0; k < 60; ++k) simulation.step();
-  EXPECT_LT((body.positions() - body.fem_model().mesh().nodes).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_LT((body.positions() - body.model().mesh().nodes).cwiseAbs().maxCoeff(), 1e-12);
   simulation.reset();
   EXPECT_EQ(simulation.state_hash(), at_rest);
 }
 
 TEST(Tether, RefusesWhatIsNoFace) {
   sim::Simulation simulation(testing::beam());
-  fem::FemBody& body = simulation.fem_body(0);
-  const auto good = end_tether(body.fem_model().mesh(), 1.0, Vector3::Zero());
+  mechanics::TakesForces& body = pulled(simulation);
+  const auto good = end_tether(simulation.body(0).model().mesh(), 1.0, Vector3::Zero());
   const auto expect = [&](auto&& change, ErrorKind kind) {
     mechanics::Tether tether = good;
     change(tether);
@@ -106,10 +111,11 @@ TEST(ElementFields, CableForceIsWhatTheCablePutsOnTheBody) {
   sim::Simulation simulation(testing::beam());
   simulation.command(0, testing::tension(2.0));
   simulation.step();
-  const fem::FemBody& body = simulation.fem_body(0);
-  const auto force = fem::row_force_field(body, simulation.efforts());
+  const mechanics::Body& body = simulation.body(0);
+  const auto& material = *mechanics::as<const fem::HasMaterial>(body);
+  const auto force = fem::row_force_field(material, simulation.efforts());
   Points sum = Points::Zero(body.positions().rows(), 3);
-  body.add_row_forces(simulation.efforts(), sum);
+  material.add_row_forces(simulation.efforts(), sum);
   // A straight cable along x, from the clamp to its anchor near the tip, pulls towards the clamp.
   const Vector3 total = sum.colwise().sum();
   EXPECT_NEAR(total.x(), -2.0, 0.05);

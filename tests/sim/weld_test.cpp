@@ -8,7 +8,11 @@
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/mechanics/body.hpp"
+#include "sinew/sim/actuator.hpp"
+#include "sinew/sim/contact_state.hpp"
 #include "sinew/sim/linearisation.hpp"
+#include "sinew/sim/signal.hpp"
 #include "sinew/sim/weld_load.hpp"
 
 #include "cut_beam.hpp"
@@ -79,7 +83,7 @@ TEST(Weld, CarriesTheWeightOfWhatHangsOnIt) {
   const double weight = 0.5 * kBeamLength * 0.02 * 0.02 * 1070.0 * kBeamGravity;
   // The force on the second body, which carries the first.
   EXPECT_LT((load.force - Vector3(0.0, 0.0, -weight)).norm(), 1e-8 * weight);
-  const Vector3 middle = simulation.fem_body(1).positions().colwise().mean();
+  const Vector3 middle = simulation.body(1).positions().colwise().mean();
   const Vector3 expected = (middle - load.centre).cross(Vector3(0.0, 0.0, -weight));
   EXPECT_LT((load.moment - expected).norm(), 0.02 * expected.norm());  // mean of nodes, not of mass
   EXPECT_GT(load.moment[1], 0.9 * expected[1]);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/step/controller.hpp"
 #include "sinew/step/direct_solver.hpp"
 #include "sinew/step/step_solver.hpp"
 

@@ -8,6 +8,10 @@
 #include <fmt/format.h>
 
 #include "sinew/constraint/effector.hpp"
+#include "sinew/inverse/inverse_controller.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/observables.hpp"
+#include "sinew/sim/simulation.hpp"
 
 namespace sinew::inverse {
 

@@ -7,10 +7,13 @@
 #include <span>
 #include <vector>
 
-#include "sinew/inverse/inverse_controller.hpp"
-#include "sinew/sim/observables.hpp"
+namespace sinew::sim {
+class Observables;
+}
 
 namespace sinew::inverse {
+
+class InverseController;
 
 /// The controller that is attached now; null while none is.
 using AttachedController = std::function<const InverseController*()>;

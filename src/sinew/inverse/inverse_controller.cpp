@@ -7,6 +7,11 @@
 #include "sinew/constraint/effector.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/inverse/limit_conflict.hpp"
+#include "sinew/sim/actuator.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/simulation.hpp"
+#include "sinew/step/response.hpp"
+#include "sinew/step/step_problem.hpp"
 
 namespace sinew::inverse {
 
@@ -113,7 +118,7 @@ void InverseController::measure_gap(const StepProblem& problem) {
   Eigen::Index at = 0;
   for (std::size_t t = 0; t < asked_.size(); ++t) {
     const auto& effector = simulation_.model().effector(settings_.tasks[t].effector);
-    effector.target_delta(simulation_.world().placement(), asked_[t],
+    effector.target_delta(simulation_.placement(), asked_[t],
                           gap_.segment(at, effector.row_count()));
     at += effector.row_count();
   }
@@ -406,7 +411,7 @@ void InverseController::load_memory(std::span<const double> memory) {
 double InverseController::error(int task) const {
   const Task& asked = settings_.tasks.at(static_cast<std::size_t>(task));
   const auto& effector = simulation_.model().effector(asked.effector);
-  const auto& placement = simulation_.world().placement();
+  const auto& placement = simulation_.placement();
   VectorX goal(effector.row_count()), now(effector.row_count());
   effector.target_delta(placement, asked.target.at(simulation_.time()), goal);
   effector.target_delta(placement, effector.value(placement), now);

@@ -2,18 +2,23 @@
 /// Inverse control by quadratic programming: which efforts take the effectors to their targets?
 #pragma once
 
+#include <cstddef>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "sinew/core/types.hpp"
 #include "sinew/inverse/inverse_settings.hpp"
 #include "sinew/inverse/inverse_status.hpp"
 #include "sinew/inverse/step_damping.hpp"
 #include "sinew/qp/elastic.hpp"
 #include "sinew/qp/quadratic_program.hpp"
-#include "sinew/sim/simulation.hpp"
 #include "sinew/step/controller.hpp"
-#include "sinew/step/response.hpp"
+
+namespace sinew::step {
+struct ActuatorBlock;
+}
 
 namespace sinew::inverse {
 

@@ -7,6 +7,8 @@
 
 #include "sinew/constraint/effector.hpp"
 #include "sinew/core/error.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/simulation.hpp"
 
 namespace sinew::inverse {
 

@@ -5,7 +5,10 @@
 #include <vector>
 
 #include "sinew/inverse/target.hpp"
-#include "sinew/sim/simulation.hpp"
+
+namespace sinew::sim {
+class Simulation;
+}
 
 namespace sinew::inverse {
 

@@ -4,6 +4,10 @@
 
 #include <fmt/format.h>
 
+#include "sinew/qp/elastic.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/step/response.hpp"
+
 namespace sinew::inverse {
 
 namespace {

@@ -4,9 +4,18 @@
 
 #include <string>
 
-#include "sinew/qp/elastic.hpp"
-#include "sinew/sim/model.hpp"
-#include "sinew/step/response.hpp"
+#include "sinew/core/types.hpp"
+
+namespace sinew::qp {
+struct ElasticResult;
+struct QuadraticProgram;
+}  // namespace sinew::qp
+namespace sinew::sim {
+class Model;
+}
+namespace sinew::step {
+class Response;
+}
 
 namespace sinew::inverse {
 
