@@ -12,6 +12,8 @@
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
+#include "sinew/mesh/patch.hpp"
+#include "sinew/mesh/selection.hpp"
 #include "sinew/mesh/shapes.hpp"
 #include "sinew/mesh/topology.hpp"
 #include "sinew/sim/load_settings.hpp"

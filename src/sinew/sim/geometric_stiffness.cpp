@@ -96,8 +96,8 @@ void GeometricStiffness::couple(const mechanics::RowCurvature& pair) {
 }
 
 // A pair (x_i, x_j) with block C puts -C at (i, j) and -C^T at (j, i) into A. What is never less:
-// |C| I at (i, i) and (j, j), as bodies bound what they hold; a pair of one point gives its positive
-// part. All stays on points' own blocks.
+// |C| I at (i, i) and (j, j), as bodies bound what they hold; a pair of one point gives its
+// positive part. All stays on points' own blocks.
 void GeometricStiffness::add_majorant(const mechanics::RowCurvature& pair) {
   if (pair.first == pair.second) {
     return add_to(pair.first, -linalg::positive_part(-pair.curvature));
