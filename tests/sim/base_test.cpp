@@ -15,6 +15,8 @@
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mesh/embedding.hpp"
 #include "sinew/mesh/shapes.hpp"
+#include "sinew/sim/base_motion.hpp"
+#include "sinew/sim/effector_settings.hpp"
 #include "sinew/sim/load_settings.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/model_builder.hpp"

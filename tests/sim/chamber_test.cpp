@@ -11,6 +11,7 @@
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/sim/spring_drive.hpp"
+#include "sinew/sim/spring_line_settings.hpp"
 #include "sinew/sim/state.hpp"
 
 #include "chambers.hpp"

@@ -11,6 +11,8 @@
 #include "sinew/mesh/quadratic.hpp"
 #include "sinew/mesh/shapes.hpp"
 #include "sinew/mesh/topology.hpp"
+#include "sinew/sim/cavity_settings.hpp"
+#include "sinew/sim/effector_settings.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/model_builder.hpp"
 #include "sinew/sim/simulation.hpp"

@@ -12,6 +12,7 @@
 #include "sinew/fem/fem_model.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mesh/shapes.hpp"
+#include "sinew/sim/contact_settings.hpp"
 #include "sinew/sim/contact_state.hpp"
 #include "sinew/sim/model_builder.hpp"
 #include "sinew/sim/simulation.hpp"

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <malloc.h>
 
+#include "sinew/sim/base_motion.hpp"
 #include "sinew/sim/contact_state.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/signal.hpp"

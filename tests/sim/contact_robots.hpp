@@ -10,6 +10,7 @@
 #include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mesh/shapes.hpp"
+#include "sinew/sim/contact_settings.hpp"
 #include "sinew/sim/model_builder.hpp"
 #include "sinew/sim/simulation.hpp"
 

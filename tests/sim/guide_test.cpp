@@ -9,6 +9,7 @@
 #include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/mesh/shapes.hpp"
 #include "sinew/sim/actuator.hpp"
+#include "sinew/sim/cable_settings.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/model_builder.hpp"
 #include "sinew/sim/signal.hpp"

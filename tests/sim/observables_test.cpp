@@ -14,8 +14,10 @@
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/pcc/arm.hpp"
 #include "sinew/sim/contact_state.hpp"
+#include "sinew/sim/force_settings.hpp"
 #include "sinew/sim/inputs.hpp"
 #include "sinew/sim/row_efforts.hpp"
+#include "sinew/sim/spring_line_settings.hpp"
 #include "sinew/sim/state.hpp"
 #include "sinew/sim/torque_settings.hpp"
 

@@ -6,6 +6,7 @@
 #include "sinew/core/error.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/mesh/shapes.hpp"
+#include "sinew/sim/force_settings.hpp"
 #include "sinew/sim/load_settings.hpp"
 #include "sinew/sim/model_builder.hpp"
 #include "sinew/sim/simulation.hpp"

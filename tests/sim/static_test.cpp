@@ -16,6 +16,7 @@
 #include "sinew/mesh/selection.hpp"
 #include "sinew/mesh/shapes.hpp"
 #include "sinew/mesh/topology.hpp"
+#include "sinew/sim/force_settings.hpp"
 #include "sinew/sim/load_settings.hpp"
 #include "sinew/sim/model_builder.hpp"
 #include "sinew/sim/simulation.hpp"
