@@ -33,7 +33,11 @@ constexpr double kLargerDisturbance = 2.0;
 }  // namespace
 
 StaticSolver::StaticSolver(Run& run, const StaticSettings& settings)
-    : run_(run), settings_(settings) {}
+    : run_(run),
+      settings_(settings),
+      search_(run, settings),
+      motion_(search_),
+      report_(search_.report()) {}
 
 StaticReport StaticSolver::run() {
   run_.clock.start();
@@ -42,16 +46,17 @@ StaticReport StaticSolver::run() {
   run_.surroundings.apply(run_.now);
   run_.keep(run_.before);
   read_goal();
-  if (!equilibrate(0.0, settings_.max_iterations)) approach();
+  if (!search_.equilibrate(0.0)) approach();
   follow_surfaces();
   settle();
-  report_.status = last_.status;
-  report_.residual = last_.residual;
-  report_.relative_residual = last_.relative_residual;
-  report_.violation = last_.violation;
-  run_.volume_ratio = last_.motion.volume.ratio;
+  const NewtonReport& last = search_.last();
+  report_.status = last.status;
+  report_.residual = last.residual;
+  report_.relative_residual = last.relative_residual;
+  report_.violation = last.violation;
+  run_.volume_ratio = last.motion.volume.ratio;
   run_.world.problem().actuators = goal_;
-  run_.world.begin_step(run_.time(), run_.time(), run_.effort);
+  search_.begin();
   run_.world.bodies().end_step({});
   run_.last_step = 0.0;
   run_.ledger.restart();
@@ -68,31 +73,6 @@ void StaticSolver::read_goal() {
   run_.solver.begin_step();
 }
 
-mechanics::LinearisationRequest StaticSolver::request(const mechanics::StepWeights& weights) {
-  return {weights, mechanics::Tangent::exact, true, true};
-}
-
-NewtonReport StaticSolver::solve(const mechanics::StepWeights& weights, double tolerance,
-                                 int max_iterations) {
-  run_.world.begin_step(run_.time(), run_.time(), run_.effort);
-  const NewtonSettings newton{request(weights), tolerance, tolerance, max_iterations,
-                              run_.model->curved_constraints()};
-  const NewtonReport result = run_.newton(nullptr, newton);
-  report_.iterations += result.iterations;
-  return result;
-}
-
-bool StaticSolver::equilibrate(double share, int max_iterations) {
-  run_.world.set_imbalance_share(share);
-  last_ = solve({}, settings_.tolerance, max_iterations);
-  return last_.status == NewtonStatus::converged;
-}
-
-void StaticSolver::linearise(const mechanics::StepWeights& weights) {
-  run_.world.linearise(request(weights));
-  run_.world.form_rows(run_.effort, run_.model->curved_constraints());
-}
-
 // Commands on the way from where the actuators stand (share 1) to where they are told to be (0).
 void StaticSolver::blend(double share) {
   run_.world.problem().actuators = goal_;
@@ -106,34 +86,34 @@ void StaticSolver::approach() {
   const std::string known = describe(share);
   blend(0.0);
   run_.world.set_imbalance_share(0.0);
-  if (!limit_point_ && relax_from_here()) return;
+  if (!limit_point_ && motion_.relax_from_here()) return;
   fail_to_find(known);
 }
 
 // The share of the imbalance that is left at the end.
 double StaticSolver::step_load() {
   run_.restore(run_.before);
-  linearise({});
+  search_.linearise({});
   run_.world.hold_imbalance(run_.effort);
-  sound_ = run_.before;
+  State sound = run_.before;  // of the last equilibrium
   report_.load_steps = 0;
   const auto solve = [&](double share) {
     blend(share);
-    return equilibrate(share, settings_.max_iterations);
+    return search_.equilibrate(share);
   };
   const auto keep = [&] {
     ++report_.load_steps;
-    run_.keep(sound_);
+    run_.keep(sound);
   };
   return take_load_steps({.least = 1.0 / settings_.max_load_steps}, solve, keep,
-                         [&] { run_.restore(sound_); });
+                         [&] { run_.restore(sound); });
 }
 
 // What is known of the last equilibrium on the way, where the world is.
 std::string StaticSolver::describe(double share) {
-  run_.world.begin_step(run_.time(), run_.time(), run_.effort);
+  search_.begin();
   run_.world.set_imbalance_share(share);
-  linearise({});
+  search_.linearise({});
   if (run_.world.condense() == linalg::FactorStatus::singular) {
     return "the exact tangent of the last equilibrium on the way is singular";
   }
@@ -183,7 +163,7 @@ void StaticSolver::fail_to_find(const std::string& known) {
                    "overdamped motion: Newton ended as '{}' with a relative residual of "
                    "{:.3g}{}{}",
                    settings_.max_load_steps, report_.relaxation_steps,
-                   newton_status_name(last_.status), last_.relative_residual,
+                   newton_status_name(search_.last().status), search_.last().relative_residual,
                    known.empty() ? "" : "; ", known),
        "approach the load through time steps, which show where the robot goes");
 }
@@ -196,9 +176,9 @@ void StaticSolver::follow_surfaces() {
   const auto off = [&] { return planes.drift(run_.effort, run_.time()) > tolerance; };
   for (int round = 0; round < kMostSurfaceRounds; ++round) {
     if (!off()) return;
-    if (!equilibrate(0.0, settings_.max_iterations)) break;
+    if (!search_.equilibrate(0.0)) break;
   }
-  if (off() || last_.status != NewtonStatus::converged) {
+  if (off() || search_.last().status != NewtonStatus::converged) {
     fail(run_, ErrorKind::not_converged, "points keep moving along a curved surface",
          "approach the load through time steps");
   }
@@ -209,8 +189,8 @@ void StaticSolver::settle() {
   double disturbance = kDisturbance;
   for (int departures = 0;; ++departures) {
     // The tangent here, not on the way.
-    run_.world.begin_step(run_.time(), run_.time(), run_.effort);
-    linearise({});
+    search_.begin();
+    search_.linearise({});
     report_.stable = true;
     report_.negative_pivots = 0;
     if (run_.world.condense() == linalg::FactorStatus::singular) return;  // neutral
@@ -219,9 +199,9 @@ void StaticSolver::settle() {
     report_.negative_pivots = stability.negative_pivots();
     report_.stable = report_.negative_pivots == 0;
     if (report_.stable || settings_.stability == StabilityChoice::any) return;
-    const Departure ended =
-        departures < kMostDepartures ? leave(stability, disturbance) : Departure::failed;
-    if (ended == Departure::failed) {
+    const auto ended = departures < kMostDepartures ? motion_.leave(stability, disturbance)
+                                                    : OverdampedMotion::End::failed;
+    if (ended == OverdampedMotion::End::failed) {
       fail(run_, ErrorKind::not_converged,
            fmt::format("the equilibrium is unstable in {} direction{} (negative pivots of the "
                        "exact tangent), and none that is stable was found from it in {} steps "
@@ -231,11 +211,11 @@ void StaticSolver::settle() {
            "approach the load through time steps, or ask for any equilibrium, stable or not");
     }
     // With a potential nothing comes back of itself: a step was too long.
-    if (ended == Departure::returned && unsymmetric) {
+    if (ended == OverdampedMotion::End::returned && unsymmetric) {
       report_.stable = true;
       return;
     }
-    if (ended == Departure::arrived) follow_surfaces();
+    if (ended == OverdampedMotion::End::arrived) follow_surfaces();
     disturbance *= kLargerDisturbance;
   }
 }

@@ -1,13 +1,11 @@
-// StaticSolver's overdamped motion: implicit Euler steps of M dq/dt = r(q), of length tau, each
-// solved by Newton:
-//   sigma M (q - q_start) = r(q),   sigma (1/s^2) the inverse of tau times a unit of time;
-// sigma falls while the steps are easily solved, so that they end as Newton's own.
+#include "sinew/sim/overdamped_motion.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/stability.hpp"
-#include "sinew/sim/static_solver.hpp"
+#include "sinew/sim/static_search.hpp"
 
 namespace sinew::sim {
 
@@ -39,13 +37,15 @@ mechanics::StepWeights overdamped(double sigma) {
 
 }  // namespace
 
-std::vector<Points> StaticSolver::positions() const {
+OverdampedMotion::OverdampedMotion(StaticSearch& search) : search_(search), run_(search.run()) {}
+
+std::vector<Points> OverdampedMotion::positions() const {
   std::vector<Points> result;
   for (const auto& body : run_.world.bodies().all()) result.push_back(body->positions());
   return result;
 }
 
-double StaticSolver::moved_since(const std::vector<Points>& before) const {
+double OverdampedMotion::moved_since(const std::vector<Points>& before) const {
   double worst = 0.0;
   for (std::size_t i = 0; i < before.size(); ++i) {
     const Points& now = run_.world.bodies().all()[i]->positions();
@@ -55,20 +55,19 @@ double StaticSolver::moved_since(const std::vector<Points>& before) const {
 }
 
 // d^T M d, by what inertia adds to the imbalance of a small motion along d; kg m^2 or alike.
-double StaticSolver::mass_along(const VectorX& direction) {
-  World& world = run_.world;
-  Bodies& bodies = world.bodies();
-  world.begin_step(run_.time(), run_.time(), run_.effort);
+double OverdampedMotion::mass_along(const VectorX& direction) {
+  Bodies& bodies = run_.world.bodies();
+  search_.begin();
   const double scale = kSmall * run_.model->size() / direction.cwiseAbs().maxCoeff();
   bodies.propose_motion(direction);
   bodies.apply_motion(scale);
   VectorX still, moving;
-  linearise({});
+  search_.linearise({});
   bodies.imbalance(run_.effort, still);
   double sigma = 1.0;
   double mass = 0.0;
   for (int round = 0; round < 2; ++round) {  // the second with inertia that is not lost in rounding
-    linearise(overdamped(sigma));
+    search_.linearise(overdamped(sigma));
     bodies.imbalance(run_.effort, moving);
     mass = direction.dot(still - moving) / (sigma * scale);
     const double inertia = (still - moving).norm();
@@ -79,13 +78,13 @@ double StaticSolver::mass_along(const VectorX& direction) {
   return mass;
 }
 
-StaticSolver::Departure StaticSolver::leave(const Stability& stability, double disturbance) {
+OverdampedMotion::End OverdampedMotion::leave(const Stability& stability, double disturbance) {
   const VectorX& mode = stability.mode();
   const double curvature = stability.curvature();
-  if (mode.size() == 0) return Departure::failed;
+  if (mode.size() == 0) return End::failed;
   Bodies& bodies = run_.world.bodies();
   const double mass = mass_along(mode);
-  if (!(mass > 0.0)) return Departure::failed;
+  if (!(mass > 0.0)) return End::failed;
   left_ = positions();
   bodies.propose_motion(mode);
   disturbance *= run_.model->size();
@@ -102,11 +101,11 @@ StaticSolver::Departure StaticSolver::leave(const Stability& stability, double d
 }
 
 // From the last equilibrium on the way, along the motion that Newton would begin with.
-bool StaticSolver::relax_from_here() {
+bool OverdampedMotion::relax_from_here() {
   World& world = run_.world;
   Bodies& bodies = world.bodies();
-  world.begin_step(run_.time(), run_.time(), run_.effort);
-  linearise({});
+  search_.begin();
+  search_.linearise({});
   if (world.condense() == linalg::FactorStatus::singular) return false;
   const std::vector<double> before = run_.effort;
   if (world.solve_step(run_.solver, nullptr, run_.effort, run_.clock) == LawStatus::failed) {
@@ -121,47 +120,51 @@ bool StaticSolver::relax_from_here() {
   const double mass = mass_along(direction);
   if (!(mass > 0.0)) return false;
   left_.clear();
-  return relax(kFirstInertia * curvature / mass, 0.0) == Departure::arrived;
+  return relax(kFirstInertia * curvature / mass, 0.0) == End::arrived;
 }
 
 // @param sigma of the first step, 1/s^2. @param near m: nearer than this to what was left is back.
-StaticSolver::Departure StaticSolver::relax(double sigma, double near) {
+OverdampedMotion::End OverdampedMotion::relax(double sigma, double near) {
   run_.world.set_imbalance_share(0.0);
+  int& steps = search_.report().relaxation_steps;
   double settled = kSettling * run_.model->size();
   double moved_before = 0.0;
   int failures = 0;
-  while (report_.relaxation_steps < settings_.max_relaxation_steps) {
-    ++report_.relaxation_steps;
+  while (steps < search_.settings().max_relaxation_steps) {
+    ++steps;
     run_.keep(sound_);
     const std::vector<Points> before = positions();
-    last_ = solve(overdamped(sigma), kRelaxationTolerance, kMostOfStep);
-    if (last_.status != NewtonStatus::converged) {
+    if (!search_.step(overdamped(sigma), kRelaxationTolerance, kMostOfStep)) {
       run_.restore(sound_);
       if (++failures == kMostFailures) break;
       sigma *= kHeaviest;
       continue;
     }
     failures = 0;
+    const int iterations = search_.last().iterations;
     const double moved = moved_since(before);
     if (!left_.empty() && moved_since(left_) < near) {
-      const bool back = equilibrate(0.0, settings_.max_iterations);
-      return back ? Departure::returned : Departure::failed;
+      return search_.equilibrate(0.0) ? End::returned : End::failed;
     }
     const bool slows = moved < moved_before;
     if (slows && moved < settled) {
-      run_.keep(sound_);
-      const int steps = last_.iterations;
-      if (equilibrate(0.0, settings_.max_iterations)) return Departure::arrived;
-      run_.restore(sound_);
-      last_.iterations = steps;
+      if (arrives()) return End::arrived;
       settled = kLater * moved;
     }
     moved_before = moved;
     // While it falls away from what it left, less inertia would let a step end on the other side.
-    if (slows && last_.iterations <= kFewIterations) sigma *= kLighter;
-    if (last_.iterations > kManyIterations) sigma *= kHeavier;
+    if (slows && iterations <= kFewIterations) sigma *= kLighter;
+    if (iterations > kManyIterations) sigma *= kHeavier;
   }
-  return Departure::failed;
+  return End::failed;
+}
+
+// Whether Newton finds an equilibrium from here; if not, nothing has moved.
+bool OverdampedMotion::arrives() {
+  run_.keep(sound_);
+  if (search_.equilibrate(0.0)) return true;
+  run_.restore(sound_);
+  return false;
 }
 
 }  // namespace sinew::sim

@@ -1,0 +1,36 @@
+#include "sinew/sim/static_search.hpp"
+
+#include "sinew/sim/run.hpp"
+
+namespace sinew::sim {
+
+namespace {
+
+mechanics::LinearisationRequest request(const mechanics::StepWeights& weights) {
+  return {weights, mechanics::Tangent::exact, true, true};
+}
+
+}  // namespace
+
+void StaticSearch::begin() { run_.world.begin_step(run_.time(), run_.time(), run_.effort); }
+
+void StaticSearch::linearise(const mechanics::StepWeights& weights) {
+  run_.world.linearise(request(weights));
+  run_.world.form_rows(run_.effort, run_.model->curved_constraints());
+}
+
+bool StaticSearch::equilibrate(double share) {
+  run_.world.set_imbalance_share(share);
+  return step({}, settings_.tolerance, settings_.max_iterations);
+}
+
+bool StaticSearch::step(const mechanics::StepWeights& weights, double tolerance,
+                        int max_iterations) {
+  begin();
+  last_ = run_.newton(nullptr, {request(weights), tolerance, tolerance, max_iterations,
+                                run_.model->curved_constraints()});
+  report_.iterations += last_.iterations;
+  return last_.status == NewtonStatus::converged;
+}
+
+}  // namespace sinew::sim
