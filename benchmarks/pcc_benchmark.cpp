@@ -3,6 +3,7 @@
 #include <benchmark/benchmark.h>
 
 #include "sinew/pcc/arm_simulation.hpp"
+#include "sinew/sim/simulation.hpp"
 
 #include "arms.hpp"
 

@@ -17,7 +17,10 @@
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/topology.hpp"
+#include "sinew/sim/actuator.hpp"
+#include "sinew/sim/model.hpp"
 #include "sinew/sim/row_efforts.hpp"
+#include "sinew/sim/simulation.hpp"
 
 namespace sinew::viewer {
 

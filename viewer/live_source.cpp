@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "sinew/sim/model.hpp"
+
 namespace sinew::viewer {
 
 LiveSource::LiveSource(const scene::Robot& robot, const LiveSettings& settings)

@@ -14,6 +14,11 @@
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
+#include "sinew/sim/actuator.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/signal.hpp"
+#include "sinew/sim/simulation.hpp"
+#include "sinew/sim/state.hpp"
 
 namespace sinew::viewer {
 

@@ -7,6 +7,7 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/core/types.hpp"
+#include "sinew/pcc/arm.hpp"
 #include "sinew/scene/build.hpp"
 
 #include "command_line.hpp"

@@ -13,8 +13,12 @@
 #include <nlohmann/json.hpp>
 
 #include "sinew/core/build_info.hpp"
-#include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/body_model.hpp"
 #include "sinew/mesh/write.hpp"
+#include "sinew/sim/actuator.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/simulation.hpp"
+#include "sinew/step/step_problem.hpp"
 
 #include "arguments.hpp"
 #include "commands.hpp"

@@ -10,8 +10,14 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/fem/assembly.hpp"
-#include "sinew/fem/fem_body.hpp"
+#include "sinew/fem/fem_body_settings.hpp"
+#include "sinew/fem/has_elements.hpp"
+#include "sinew/fem/has_material.hpp"
+#include "sinew/fem/of_elements.hpp"
 #include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/integrator.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/simulation.hpp"
 
 namespace sinew::cli {
 
@@ -41,11 +47,13 @@ SparseMatrix expand(const linalg::BlockPattern& pattern, std::span<const double>
 }
 
 SparseMatrix step_matrix(const sim::Simulation& simulation, int index) {
-  const fem::FemBody& body = simulation.fem_body(index);
+  const mechanics::Body& body = simulation.body(index);
+  const fem::HasElements& material = fem::of_elements<const fem::HasMaterial>(body).material();
   const auto& settings = simulation.model().step();
   const auto weights = mechanics::step_weights(settings.integrator, settings.time_step);
-  const fem::RayleighDamping& damping = body.fem_model().settings().damping;
-  const auto& elements = body.fem_model().system(false).elements;
+  const fem::RayleighDamping& damping = material.settings().damping;
+  const std::shared_ptr<const fem::FemModel> elements(std::shared_ptr<void>(),
+                                                      &material.elements());
   ThreadPool pool(1);
   fem::Assembly assembly(elements, pool);
   assembly.evaluate(body.positions(),

@@ -17,6 +17,7 @@
 #include "sinew/core/error.hpp"
 #include "sinew/identify/arm_fit.hpp"
 #include "sinew/mesh/write.hpp"
+#include "sinew/pcc/arm.hpp"
 #include "sinew/scene/scene.hpp"
 
 #include "arguments.hpp"

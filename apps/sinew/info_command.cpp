@@ -15,14 +15,19 @@
 #include "sinew/constraint/tie.hpp"
 #include "sinew/core/quantity.hpp"
 #include "sinew/fem/element_count.hpp"
-#include "sinew/fem/fem_body_model.hpp"
-#include "sinew/mechanics/body.hpp"
+#include "sinew/fem/fem_model.hpp"
+#include "sinew/fem/has_elements.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/read.hpp"
 #include "sinew/mesh/report.hpp"
 #include "sinew/mesh/surface.hpp"
-#include "sinew/pcc/arm_body.hpp"
+#include "sinew/pcc/arm.hpp"
+#include "sinew/pcc/has_arm.hpp"
 #include "sinew/record/run_file.hpp"
 #include "sinew/scene/build.hpp"
+#include "sinew/sim/actuator.hpp"
+#include "sinew/sim/model.hpp"
 #include "sinew/sim/state_io.hpp"
 
 #include "arguments.hpp"
@@ -148,11 +153,10 @@ Facts surface_facts(const InfoOptions& options) {
   return facts;
 }
 
-void add_arm(Facts& facts, const pcc::ArmBodyModel& body) {
-  const pcc::Arm& arm = body.arm();
+void add_arm(Facts& facts, const pcc::Arm& arm) {
   double mass = 0.0;
   for (const pcc::Segment& segment : arm.settings().segments) mass += segment.mass;
-  facts.json["bodies"].push_back({{"name", body.name()},
+  facts.json["bodies"].push_back({{"name", arm.settings().name},
                                   {"segments", arm.segments()},
                                   {"coordinates", arm.coordinates()},
                                   {"length_m", arm.length()},
@@ -160,29 +164,30 @@ void add_arm(Facts& facts, const pcc::ArmBodyModel& body) {
   facts.text += fmt::format(
       "  body {}: {} segments of constant curvature, {} coordinates, "
       "{:.4g} mm, {:.4g} g\n",
-      body.name(), arm.segments(), arm.coordinates(), 1e3 * arm.length(), 1e3 * mass);
+      arm.settings().name, arm.segments(), arm.coordinates(), 1e3 * arm.length(), 1e3 * mass);
 }
 
-void add_body(Facts& facts, const mechanics::BodyModel& model) {
-  if (const auto* arm = dynamic_cast<const pcc::ArmBodyModel*>(&model)) return add_arm(facts, *arm);
-  const auto* body = dynamic_cast<const fem::FemBodyModel*>(&model);
-  if (body == nullptr) return;
+void add_body(Facts& facts, const mechanics::BodyModel& body) {
+  if (const auto* arm = mechanics::as<const pcc::HasArm>(body)) return add_arm(facts, arm->arm());
+  const auto* material = mechanics::as<const fem::HasElements>(body);
+  if (material == nullptr) return;
+  const fem::FemModel& model = material->elements();
   ordered_json elements = ordered_json::object();
-  for (const auto& [element, count] : fem::count_elements(body->elements())) {
+  for (const auto& [element, count] : fem::count_elements(model)) {
     elements[std::string(element)] = count;
   }
-  facts.json["bodies"].push_back({{"name", body->name()},
+  facts.json["bodies"].push_back({{"name", body.name()},
                                   {"elements", elements},
-                                  {"nodes", body->mesh().node_count()},
-                                  {"free_nodes", body->elements().free_count()},
-                                  {"tetrahedra", body->mesh().tetrahedra.size()},
-                                  {"hexahedra", body->mesh().hexahedra.size()},
-                                  {"mass_kg", body->elements().total_mass()},
-                                  {"volume_m3", body->elements().volume()}});
-  facts.text += fmt::format("  body {}: {} nodes ({} free), {}, {:.4g} g, {:.4g} cm^3\n",
-                            body->name(), body->mesh().node_count(), body->elements().free_count(),
-                            fem::describe_elements(body->elements()),
-                            1e3 * body->elements().total_mass(), 1e6 * body->elements().volume());
+                                  {"nodes", body.mesh().node_count()},
+                                  {"free_nodes", model.free_count()},
+                                  {"tetrahedra", body.mesh().tetrahedra.size()},
+                                  {"hexahedra", body.mesh().hexahedra.size()},
+                                  {"mass_kg", model.total_mass()},
+                                  {"volume_m3", model.volume()}});
+  facts.text +=
+      fmt::format("  body {}: {} nodes ({} free), {}, {:.4g} g, {:.4g} cm^3\n", body.name(),
+                  body.mesh().node_count(), model.free_count(), fem::describe_elements(model),
+                  1e3 * model.total_mass(), 1e6 * model.volume());
 }
 
 void add_notice(Facts& facts, const Notice& notice) {

@@ -10,9 +10,14 @@
 
 #include "sinew/constraint/effector.hpp"
 #include "sinew/fem/element_count.hpp"
-#include "sinew/fem/fem_body_model.hpp"
+#include "sinew/fem/fem_model.hpp"
+#include "sinew/fem/has_elements.hpp"
 #include "sinew/inverse/controller_observables.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 #include "sinew/record/run_recorder.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/simulation.hpp"
 
 #include "arguments.hpp"
 #include "commands.hpp"
@@ -101,9 +106,9 @@ std::vector<std::vector<std::string>> summary(const Tally& tally, Session& sessi
       static_cast<double>(tally.steps) * session.robot().model->step().time_step;
   std::vector<std::vector<std::string>> rows;
   for (const auto& model : session.robot().model->bodies()) {
-    const auto* body = dynamic_cast<const fem::FemBodyModel*>(model.get());
-    if (body == nullptr) continue;
-    rows.push_back({"body " + body->name(), fem::describe_elements(body->elements())});
+    const auto* material = mechanics::as<const fem::HasElements>(*model);
+    if (material == nullptr) continue;
+    rows.push_back({"body " + model->name(), fem::describe_elements(material->elements())});
   }
   rows.push_back({"steps", fmt::format("{}", tally.steps)});
   rows.push_back({"simulated time", fmt::format("{:.3f} s", simulated)});

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "sinew/scene/scene.hpp"
+#include "sinew/sim/simulation.hpp"
 
 #include "arguments.hpp"
 #include "command_line.hpp"

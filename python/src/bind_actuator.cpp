@@ -7,6 +7,10 @@
 #include "sinew/constraint/cable.hpp"
 #include "sinew/constraint/cavity.hpp"
 #include "sinew/constraint/placement.hpp"
+#include "sinew/sim/actuator.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/signal.hpp"
+#include "sinew/sim/simulation.hpp"
 
 #include "arrays.hpp"
 #include "bindings.hpp"

@@ -5,6 +5,9 @@
 
 #include <fmt/format.h>
 
+#include "sinew/sim/actuator.hpp"
+#include "sinew/sim/state.hpp"
+
 #include "arrays.hpp"
 #include "bending.hpp"
 #include "bindings.hpp"

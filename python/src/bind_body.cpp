@@ -11,6 +11,9 @@
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/self_touch.hpp"
 #include "sinew/pcc/has_arm.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/simulation.hpp"
+#include "sinew/sim/world.hpp"
 
 #include "arrays.hpp"
 #include "bindings.hpp"

@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
 #include "sinew/constraint/contact.hpp"
+#include "sinew/sim/contact_state.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/simulation.hpp"
 
 #include "arrays.hpp"
 #include "bindings.hpp"

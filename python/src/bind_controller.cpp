@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "sinew/sim/model.hpp"
+
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "session.hpp"

@@ -3,6 +3,10 @@
 #include <fmt/format.h>
 
 #include "sinew/constraint/effector.hpp"
+#include "sinew/constraint/placement.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/simulation.hpp"
+#include "sinew/sim/world.hpp"
 
 #include "arrays.hpp"
 #include "bindings.hpp"

@@ -7,6 +7,9 @@
 #include "sinew/fem/has_material.hpp"
 #include "sinew/fem/of_elements.hpp"
 #include "sinew/fem/solid_elements.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/simulation.hpp"
+#include "sinew/sim/world.hpp"
 
 #include "arrays.hpp"
 #include "bindings.hpp"

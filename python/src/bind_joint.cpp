@@ -2,6 +2,7 @@
 
 #include "sinew/constraint/tie.hpp"
 #include "sinew/mechanics/body_model.hpp"
+#include "sinew/sim/model.hpp"
 #include "sinew/sim/weld_load.hpp"
 
 #include "arrays.hpp"

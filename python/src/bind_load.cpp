@@ -1,5 +1,9 @@
 #include <fmt/format.h>
 
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/signal.hpp"
+#include "sinew/sim/simulation.hpp"
+
 #include "bindings.hpp"
 #include "session.hpp"
 

@@ -2,6 +2,8 @@
 
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/body_model.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/simulation.hpp"
 
 #include "arrays.hpp"
 #include "bindings.hpp"

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "sinew/plan/tracking.hpp"
+#include "sinew/sim/inputs.hpp"
 
 #include "arrays.hpp"
 #include "bindings.hpp"

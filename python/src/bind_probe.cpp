@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
+#include "sinew/constraint/placement.hpp"
 #include "sinew/constraint/probe.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/simulation.hpp"
 
 #include "arrays.hpp"
 #include "bindings.hpp"

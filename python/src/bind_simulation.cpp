@@ -3,6 +3,8 @@
 #include "sinew/constraint/probe.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/scene/scene.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/simulation.hpp"
 
 #include "arrays.hpp"
 #include "bindings.hpp"
@@ -271,7 +273,7 @@ RunError
           [](Session& self) {
             const Session::Use use(self);
             sim::Simulation& simulation = self.simulation();
-            const sim::Energies energies = simulation.energies();
+            const mechanics::Energies energies = simulation.energies();
             py::dict result;
             result["strain"] = energies.strain;
             result["kinetic"] = energies.kinetic;

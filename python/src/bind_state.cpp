@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <pybind11/pybind11.h>
 
+#include "sinew/sim/state.hpp"
+
 #include "bindings.hpp"
 #include "session.hpp"
 

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "sinew/sim/actuator.hpp"
+
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "errors.hpp"

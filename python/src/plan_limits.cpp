@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "sinew/sim/inputs.hpp"
+
 #include "arrays.hpp"
 #include "errors.hpp"
 

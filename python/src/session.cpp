@@ -9,6 +9,10 @@
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
+#include "sinew/sim/inputs.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/simulation.hpp"
+#include "sinew/sim/state.hpp"
 
 #include "errors.hpp"
 

@@ -182,9 +182,13 @@ class Trial {
     }
     {
       Run again(*robot);
+      const sim::State start = again.simulation.state();
       again.advance(kSteps);
       again.forget();
       again.simulation.reset();
+      if (again.simulation.state() != start) {
+        fail("reset() leaves another " + first_difference(again.simulation.state(), start));
+      }
       again.advance(kSteps);
       compare("reset()", again.states, 0);
     }

@@ -6,9 +6,14 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "sinew/constraint/placement.hpp"
 #include "sinew/core/error.hpp"
+#include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
+#include "sinew/sim/cable_settings.hpp"
+#include "sinew/sim/simulation.hpp"
+#include "sinew/sim/world.hpp"
 
 #include "../sim/robots.hpp"
 

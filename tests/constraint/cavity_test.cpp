@@ -4,10 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/constraint/placement.hpp"
 #include "sinew/fem/has_elements.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/simulation.hpp"
+#include "sinew/sim/state.hpp"
 
 #include "../sim/chambers.hpp"
 #include "support/error_kind.hpp"

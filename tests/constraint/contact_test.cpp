@@ -8,6 +8,7 @@
 #include "sinew/constraint/placement.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/mechanics/body.hpp"
+#include "sinew/sim/simulation.hpp"
 
 #include "../sim/robots.hpp"
 

@@ -6,8 +6,13 @@
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/body_model.hpp"
+#include "sinew/sim/effector_settings.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/simulation.hpp"
+#include "sinew/sim/world.hpp"
 
 #include "../sim/robots.hpp"
 

@@ -9,8 +9,12 @@
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
+#include "sinew/mesh/embedding.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/simulation.hpp"
 
 #include "../sim/robots.hpp"
 

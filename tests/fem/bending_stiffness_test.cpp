@@ -7,6 +7,8 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "sinew/sim/model.hpp"
+
 #include "solid_bodies.hpp"
 
 namespace sinew::fem {

@@ -15,12 +15,14 @@
 #include "sinew/core/error.hpp"
 #include "sinew/fem/element_states.hpp"
 #include "sinew/fem/fem_body_model.hpp"
+#include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/fem/has_material.hpp"
 #include "sinew/fem/solid_elements.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/quadratic.hpp"
 #include "sinew/mesh/shapes.hpp"
+#include "sinew/sim/model.hpp"
 
 #include "block_mesh.hpp"
 

@@ -4,6 +4,8 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "sinew/sim/model.hpp"
+
 #include "block_mesh.hpp"
 #include "reference.hpp"
 #include "solid_bodies.hpp"

@@ -7,7 +7,12 @@
 
 #include "sinew/inverse/inverse_controller.hpp"
 #include "sinew/pcc/published.hpp"
+#include "sinew/sim/actuator.hpp"
+#include "sinew/sim/cable_settings.hpp"
 #include "sinew/sim/contact_state.hpp"
+#include "sinew/sim/effector_settings.hpp"
+#include "sinew/sim/signal.hpp"
+#include "sinew/sim/simulation.hpp"
 #include "sinew/sim/torque_settings.hpp"
 
 #include "../sim/contact_robots.hpp"

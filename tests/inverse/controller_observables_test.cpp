@@ -9,7 +9,9 @@
 #include <gtest/gtest.h>
 
 #include "sinew/inverse/inverse_controller.hpp"
+#include "sinew/sim/actuator.hpp"
 #include "sinew/sim/observables.hpp"
+#include "sinew/sim/simulation.hpp"
 
 #include "../sim/robots.hpp"
 

@@ -9,7 +9,10 @@
 #include "sinew/constraint/cable.hpp"
 #include "sinew/constraint/placement.hpp"
 #include "sinew/core/error.hpp"
+#include "sinew/sim/actuator.hpp"
 #include "sinew/sim/contact_state.hpp"
+#include "sinew/sim/signal.hpp"
+#include "sinew/sim/simulation.hpp"
 
 #include "../sim/robots.hpp"
 #include "support/error_kind.hpp"

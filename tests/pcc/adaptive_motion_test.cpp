@@ -8,6 +8,7 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/pcc/arm_simulation.hpp"
+#include "sinew/sim/simulation.hpp"
 
 #include "arms.hpp"
 

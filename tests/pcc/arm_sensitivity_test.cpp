@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/sim/simulation.hpp"
+
 #include "arms.hpp"
 
 namespace sinew::pcc {

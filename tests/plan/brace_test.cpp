@@ -10,10 +10,12 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/linalg/dense.hpp"
+#include "sinew/pcc/arm.hpp"
 #include "sinew/plan/brace_program.hpp"
 #include "sinew/plan/brace_response.hpp"
 #include "sinew/plan/brace_run.hpp"
 #include "sinew/plan/reach.hpp"
+#include "sinew/sim/inputs.hpp"
 
 #include "tasks.hpp"
 

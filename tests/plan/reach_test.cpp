@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/pcc/arm.hpp"
 
 #include "tasks.hpp"
 

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/pcc/arm.hpp"
 #include "sinew/pcc/arm_simulation.hpp"
+#include "sinew/sim/simulation.hpp"
 
 #include "tasks.hpp"
 

@@ -12,6 +12,8 @@
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mesh/mesh.hpp"
 #include "sinew/record/hdf5_writer.hpp"
+#include "sinew/sim/actuator.hpp"
+#include "sinew/sim/model.hpp"
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::record::testing {

@@ -6,6 +6,7 @@
 #include "sinew/core/error.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/scene/scene.hpp"
+#include "sinew/sim/model.hpp"
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::scene {

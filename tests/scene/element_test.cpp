@@ -9,6 +9,7 @@
 #include "sinew/mesh/shapes.hpp"
 #include "sinew/mesh/write.hpp"
 #include "sinew/scene/build.hpp"
+#include "sinew/sim/model.hpp"
 
 #include "scene_fixture.hpp"
 

@@ -10,6 +10,7 @@
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/scene/scene.hpp"
+#include "sinew/sim/model.hpp"
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::scene {

@@ -6,6 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "sinew/mesh/embedding.hpp"
+
 #include "scene_fixture.hpp"
 
 namespace sinew::scene {

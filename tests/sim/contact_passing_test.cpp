@@ -7,10 +7,13 @@
 #include <gtest/gtest.h>
 #include <malloc.h>
 
+#include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/sim/base_motion.hpp"
+#include "sinew/sim/contact_settings.hpp"
 #include "sinew/sim/contact_state.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/signal.hpp"
+#include "sinew/sim/simulation.hpp"
 #include "sinew/sim/state.hpp"
 
 #include "contact_robots.hpp"

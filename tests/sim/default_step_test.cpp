@@ -5,6 +5,7 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/mechanics/body.hpp"
+#include "sinew/sim/actuator.hpp"
 #include "sinew/sim/simulation.hpp"
 #include "sinew/sim/state.hpp"
 

@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "sinew/inverse/inverse_controller.hpp"
+#include "sinew/sim/actuator.hpp"
+#include "sinew/sim/simulation.hpp"
 
 #include "robots.hpp"
 

@@ -6,6 +6,9 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/mechanics/body.hpp"
+#include "sinew/sim/actuator.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/simulation.hpp"
 #include "sinew/sim/state.hpp"
 
 #include "robots.hpp"

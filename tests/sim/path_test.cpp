@@ -5,7 +5,10 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/fem/fem_body_model.hpp"
+#include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/mesh/shapes.hpp"
+#include "sinew/sim/actuator.hpp"
+#include "sinew/sim/effector_settings.hpp"
 #include "sinew/sim/force_settings.hpp"
 #include "sinew/sim/load_settings.hpp"
 #include "sinew/sim/model_builder.hpp"

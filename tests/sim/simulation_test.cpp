@@ -7,6 +7,7 @@
 
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
+#include "sinew/sim/actuator.hpp"
 #include "sinew/sim/world.hpp"
 
 #include "robots.hpp"

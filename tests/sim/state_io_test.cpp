@@ -12,6 +12,8 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/core/state_hash.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/simulation.hpp"
 #include "sinew/sim/state.hpp"
 
 #include "robots.hpp"

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/fem/has_elements.hpp"
 #include "sinew/linalg/dense.hpp"
 #include "sinew/mechanics/body.hpp"
@@ -16,8 +17,11 @@
 #include "sinew/mesh/selection.hpp"
 #include "sinew/mesh/shapes.hpp"
 #include "sinew/mesh/topology.hpp"
+#include "sinew/sim/actuator.hpp"
+#include "sinew/sim/effector_settings.hpp"
 #include "sinew/sim/force_settings.hpp"
 #include "sinew/sim/load_settings.hpp"
+#include "sinew/sim/model.hpp"
 #include "sinew/sim/model_builder.hpp"
 #include "sinew/sim/simulation.hpp"
 #include "sinew/sim/stability.hpp"

@@ -13,6 +13,7 @@
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/mesh.hpp"
+#include "sinew/sim/simulation.hpp"
 
 #include "robots.hpp"
 

@@ -11,8 +11,11 @@
 #include "sinew/mechanics/body.hpp"
 #include "sinew/sim/actuator.hpp"
 #include "sinew/sim/contact_state.hpp"
+#include "sinew/sim/joint_settings.hpp"
 #include "sinew/sim/linearisation.hpp"
+#include "sinew/sim/model.hpp"
 #include "sinew/sim/signal.hpp"
+#include "sinew/sim/simulation.hpp"
 #include "sinew/sim/weld_load.hpp"
 
 #include "cut_beam.hpp"

@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
+#include "sinew/sim/actuator.hpp"
 #include "sinew/step/response.hpp"
 #include "sinew/step/step_solver.hpp"
 

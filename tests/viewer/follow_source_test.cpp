@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/sim/simulation.hpp"
+
 #include "robot_fixture.hpp"
 
 namespace sinew::viewer {

@@ -11,6 +11,9 @@
 #include "sinew/fem/has_material.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
+#include "sinew/sim/actuator.hpp"
+#include "sinew/sim/signal.hpp"
+#include "sinew/sim/simulation.hpp"
 
 #include "robot_fixture.hpp"
 #include "viewer/robot_state.hpp"

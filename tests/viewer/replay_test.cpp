@@ -14,6 +14,9 @@
 #include "sinew/core/error.hpp"
 #include "sinew/record/run_layout.hpp"
 #include "sinew/record/run_recorder.hpp"
+#include "sinew/sim/actuator.hpp"
+#include "sinew/sim/signal.hpp"
+#include "sinew/sim/simulation.hpp"
 
 #include "record/older_run.hpp"
 #include "robot_fixture.hpp"

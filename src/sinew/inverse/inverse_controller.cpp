@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "sinew/constraint/effector.hpp"
+#include "sinew/constraint/placement.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/inverse/limit_conflict.hpp"
 #include "sinew/sim/actuator.hpp"

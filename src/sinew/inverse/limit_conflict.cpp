@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "sinew/qp/elastic.hpp"
+#include "sinew/sim/actuator.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/step/response.hpp"
 

@@ -11,10 +11,18 @@
 #include "sinew/core/error.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
+#include "sinew/mesh/embedding.hpp"
+#include "sinew/pcc/arm.hpp"
 #include "sinew/plan/reach.hpp"
 #include "sinew/plan/uniform.hpp"
+#include "sinew/sim/actuator.hpp"
+#include "sinew/sim/contact_settings.hpp"
+#include "sinew/sim/contact_state.hpp"
+#include "sinew/sim/force_settings.hpp"
 #include "sinew/sim/model_builder.hpp"
+#include "sinew/sim/signal.hpp"
 #include "sinew/sim/simulation.hpp"
+#include "sinew/sim/torque_settings.hpp"
 
 namespace sinew::plan {
 

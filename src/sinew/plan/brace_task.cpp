@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/pcc/arm.hpp"
 #include "sinew/plan/brace.hpp"
 #include "sinew/plan/reach.hpp"
 

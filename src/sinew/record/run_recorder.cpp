@@ -19,7 +19,10 @@
 #include "sinew/mesh/write.hpp"
 #include "sinew/record/run_states.hpp"
 #include "sinew/record/run_table.hpp"
+#include "sinew/sim/model.hpp"
 #include "sinew/sim/row_efforts.hpp"
+#include "sinew/sim/simulation.hpp"
+#include "sinew/sim/world.hpp"
 
 namespace sinew::record {
 

@@ -10,6 +10,9 @@
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mesh/mesh.hpp"
 #include "sinew/record/run_layout.hpp"
+#include "sinew/sim/actuator.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/simulation.hpp"
 
 namespace sinew::record {
 

@@ -6,6 +6,7 @@
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/scene/build_parts.hpp"
 #include "sinew/scene/scene.hpp"
+#include "sinew/sim/model.hpp"
 #include "sinew/sim/model_builder.hpp"
 
 namespace sinew::scene {

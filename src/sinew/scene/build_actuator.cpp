@@ -3,6 +3,7 @@
 #include "sinew/core/error.hpp"
 #include "sinew/mesh/surface.hpp"
 #include "sinew/scene/build_parts.hpp"
+#include "sinew/sim/actuator.hpp"
 #include "sinew/sim/cable_settings.hpp"
 #include "sinew/sim/cavity_settings.hpp"
 #include "sinew/sim/force_settings.hpp"

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include "sinew/mesh/embedding.hpp"
 #include "sinew/scene/readers.hpp"
+#include "sinew/sim/torque_settings.hpp"
 
 namespace sinew::scene {
 

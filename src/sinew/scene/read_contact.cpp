@@ -1,3 +1,4 @@
+#include "sinew/mesh/embedding.hpp"
 #include "sinew/scene/readers.hpp"
 
 namespace sinew::scene {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "sinew/scene/readers.hpp"
+#include "sinew/sim/signal.hpp"
 
 namespace sinew::scene {
 

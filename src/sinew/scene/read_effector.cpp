@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "sinew/mesh/embedding.hpp"
 #include "sinew/scene/readers.hpp"
 
 namespace sinew::scene {

@@ -2,6 +2,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "sinew/pcc/arm.hpp"
 #include "sinew/scene/check.hpp"
 #include "sinew/scene/readers.hpp"
 

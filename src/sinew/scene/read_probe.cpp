@@ -1,6 +1,7 @@
 #include <utility>
 
 #include "sinew/constraint/probe.hpp"
+#include "sinew/mesh/embedding.hpp"
 #include "sinew/scene/readers.hpp"
 
 namespace sinew::scene {

@@ -4,8 +4,10 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/fem/fem_body_model.hpp"
+#include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/fem/fem_model.hpp"
-#include "sinew/pcc/arm_body.hpp"
+#include "sinew/pcc/arm.hpp"
+#include "sinew/pcc/arm_body_model.hpp"
 #include "sinew/sim/add_parts.hpp"
 #include "sinew/sim/model_data.hpp"
 #include "sinew/sim/new_name.hpp"

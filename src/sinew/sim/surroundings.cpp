@@ -6,7 +6,8 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
-#include "sinew/mechanics/body_model.hpp"
+#include "sinew/fem/of_elements.hpp"
+#include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/sim/bodies.hpp"
 #include "sinew/sim/model.hpp"
@@ -15,12 +16,8 @@ namespace sinew::sim {
 
 namespace {
 
-template <class Capability>
-Capability& demand(const Bodies& bodies, int index) {
-  mechanics::Body& body = *bodies.all()[static_cast<std::size_t>(index)];
-  if (auto* capability = mechanics::as<Capability>(body)) return *capability;
-  throw Error(ErrorKind::wrong_type, {.item = body.model().name()},
-              "this body is not of finite elements", "ask for its own coordinates");
+mechanics::Body& body_of(const Bodies& bodies, int index) {
+  return *bodies.all()[static_cast<std::size_t>(index)];
 }
 
 }  // namespace
@@ -36,7 +33,7 @@ void Surroundings::set_factor(int load, Signal factor) {
 
 void Surroundings::move_bases(double time) {
   for (const BaseMotion& motion : model_.base_motions()) {
-    demand<mechanics::HasBase>(bodies_, motion.body)
+    fem::of_elements<mechanics::HasBase>(body_of(bodies_, motion.body))
         .move_base(mechanics::rigid_displacement(motion.translation_at(time),
                                                  motion.rotation_at(time), motion.centre));
   }
@@ -44,7 +41,7 @@ void Surroundings::move_bases(double time) {
 
 void Surroundings::move_base(int body, const Vector3& translation, const Vector3& rotation,
                              const Vector3& centre) {
-  auto& base = demand<mechanics::HasBase>(bodies_, body);
+  auto& base = fem::of_elements<mechanics::HasBase>(body_of(bodies_, body));
   const std::string& name = model_.bodies()[static_cast<std::size_t>(body)]->name();
   const Place place{.item = fmt::format("base of body '{}'", name)};
   if (std::ranges::any_of(model_.base_motions(),
@@ -68,7 +65,8 @@ void Surroundings::apply(std::size_t load, double factor) {
   applied_[load] = factor;
   const LoadModel& model = model_.loads()[load];
   for (const int number : model.numbers) {
-    demand<mechanics::TakesLoads>(bodies_, model.body).set_load_factor(number, factor);
+    fem::of_elements<mechanics::TakesLoads>(body_of(bodies_, model.body))
+        .set_load_factor(number, factor);
   }
 }
 
