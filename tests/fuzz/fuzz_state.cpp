@@ -13,6 +13,7 @@
 #include "sinew/core/state_hash.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/scene/scene.hpp"
+#include "sinew/sim/simulation.hpp"
 #include "sinew/sim/state_io.hpp"
 
 namespace {

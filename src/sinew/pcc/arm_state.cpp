@@ -16,6 +16,7 @@ void ArmState::restart() {
   q.setZero();
   rate.setZero();
   effort.setZero();
+  std::ranges::fill(directions, Vector3::Zero());
   for (VectorX& kept : history) kept.setZero();
 }
 
