@@ -3,7 +3,6 @@
 #include <benchmark/benchmark.h>
 
 #include "sinew/pcc/arm_simulation.hpp"
-#include "sinew/sim/simulation.hpp"
 
 #include "arms.hpp"
 

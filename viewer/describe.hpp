@@ -8,11 +8,14 @@
 #include <vector>
 
 #include "sinew/fem/element_fields.hpp"
-#include "sinew/mechanics/body.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/sim/observables.hpp"
 
 #include "frame.hpp"
+
+namespace sinew::mechanics {
+class Body;
+}
 
 namespace sinew::viewer {
 

@@ -11,6 +11,7 @@
 #include "sinew/constraint/cable.hpp"
 #include "sinew/constraint/probe.hpp"
 #include "sinew/fem/of_elements.hpp"
+#include "sinew/inverse/inverse_controller.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"

@@ -12,6 +12,7 @@
 
 #include "sinew/fem/element_fields.hpp"
 #include "sinew/inverse/controller_observables.hpp"
+#include "sinew/inverse/inverse_controller.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/sim/observables.hpp"
 #include "sinew/sim/simulation.hpp"

@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "sinew/sim/actuator.hpp"
-#include "sinew/sim/state.hpp"
 
 #include "arrays.hpp"
 #include "bending.hpp"

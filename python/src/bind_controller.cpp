@@ -298,10 +298,11 @@ void bind_results(py::class_<Controller>& type) {
           "efforts", guarded([](const InverseController& law) { return copy(law.efforts()); }),
           "(k,) ndarray: efforts chosen last (N), in the order of `actuators`. A copy.")
       .def_property_readonly("actuators", &actuator_names, "list of str: what it owns.")
-      .def_property_readonly("error",
-                             guarded([](const InverseController& law) { return law.error(); }),
-                             "float: distance of the effectors from their targets now, the "
-                             "largest one (m or rad); measured, before the first step too.")
+      .def_property_readonly(
+          "error", guarded([](const InverseController& law) { return law.error(); }),
+          "float: distance of the effectors from their targets now, along the directions "
+          "whose weight is not zero, the "
+          "largest one (m or rad); measured, before the first step too.")
       .def_property_readonly("errors", &errors, "dict: `error` of every effector.")
       .def_property_readonly("predicted_error", guarded([](const InverseController& law) {
                                return law.predicted_error();

@@ -8,7 +8,6 @@
 #include "sinew/pcc/arm.hpp"
 #include "sinew/pcc/arm_simulation.hpp"
 #include "sinew/pcc/published.hpp"
-#include "sinew/sim/simulation.hpp"
 
 #include "arrays.hpp"
 #include "bindings.hpp"

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "sinew/plan/tracking.hpp"
-#include "sinew/sim/inputs.hpp"
 
 #include "arrays.hpp"
 #include "bindings.hpp"

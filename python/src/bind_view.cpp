@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "sinew/sim/actuator.hpp"
 
 #include "arrays.hpp"
 #include "bindings.hpp"

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "sinew/sim/inputs.hpp"
-
 #include "arrays.hpp"
 #include "errors.hpp"
 

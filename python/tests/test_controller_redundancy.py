@@ -140,6 +140,7 @@ def test_nothing_asked_lets_go():
     ik = sinew.InverseController(sim, targets={"tip": TARGET}, weights={"tip": [1.0, 0.0, 0.0]})
     ik.step(100)
     assert sim.effector("tip").position[0] == pytest.approx(TARGET[0], abs=5e-5)
+    assert ik.status == "on-target" and ik.error < 5e-5  # what is not asked for is no error
 
 
 def test_conflicts_name_actuators_and_limits():

@@ -7,8 +7,6 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include "sinew/sim/model.hpp"
-
 #include "solid_bodies.hpp"
 
 namespace sinew::fem {

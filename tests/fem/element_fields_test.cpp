@@ -22,7 +22,6 @@
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/quadratic.hpp"
 #include "sinew/mesh/shapes.hpp"
-#include "sinew/sim/model.hpp"
 
 #include "block_mesh.hpp"
 

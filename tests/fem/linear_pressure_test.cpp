@@ -4,7 +4,6 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include "sinew/sim/model.hpp"
 
 #include "block_mesh.hpp"
 #include "reference.hpp"

@@ -7,7 +7,6 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/linalg/dense.hpp"
-#include "sinew/sim/model.hpp"
 
 #include "solid_bodies.hpp"
 

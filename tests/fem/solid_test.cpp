@@ -17,7 +17,6 @@
 #include "sinew/mesh/quadratic.hpp"
 #include "sinew/mesh/shapes.hpp"
 #include "sinew/mesh/topology.hpp"
-#include "sinew/sim/model.hpp"
 
 #include "allocation_counter.hpp"
 #include "block_mesh.hpp"

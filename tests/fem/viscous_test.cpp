@@ -14,7 +14,6 @@
 #include "sinew/fem/element_history.hpp"
 #include "sinew/mesh/quadratic.hpp"
 #include "sinew/mesh/shapes.hpp"
-#include "sinew/sim/model.hpp"
 
 #include "allocation_counter.hpp"
 #include "block_mesh.hpp"

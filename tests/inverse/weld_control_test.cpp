@@ -2,9 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "sinew/inverse/inverse_controller.hpp"
-#include "sinew/sim/actuator.hpp"
 #include "sinew/sim/signal.hpp"
-#include "sinew/sim/simulation.hpp"
 #include "sinew/sim/weld_load.hpp"
 
 #include "../sim/cut_beam.hpp"

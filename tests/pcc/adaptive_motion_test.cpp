@@ -8,7 +8,6 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/pcc/arm_simulation.hpp"
-#include "sinew/sim/simulation.hpp"
 
 #include "arms.hpp"
 

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "sinew/sim/simulation.hpp"
-
 #include "arms.hpp"
 
 namespace sinew::pcc {

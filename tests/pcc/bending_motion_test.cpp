@@ -6,8 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include "sinew/sim/state.hpp"
-
 #include "support/allocation_guard.hpp"
 #include "support/error_kind.hpp"
 

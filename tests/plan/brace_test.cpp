@@ -15,7 +15,6 @@
 #include "sinew/plan/brace_response.hpp"
 #include "sinew/plan/brace_run.hpp"
 #include "sinew/plan/reach.hpp"
-#include "sinew/sim/inputs.hpp"
 
 #include "tasks.hpp"
 

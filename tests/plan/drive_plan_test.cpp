@@ -7,7 +7,6 @@
 #include "sinew/pcc/arm_simulation.hpp"
 #include "sinew/plan/drive_inversion.hpp"
 #include "sinew/plan/replay.hpp"
-#include "sinew/sim/simulation.hpp"
 
 #include "reintegration.hpp"
 #include "support/error_kind.hpp"

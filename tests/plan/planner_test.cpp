@@ -5,7 +5,6 @@
 #include "sinew/core/error.hpp"
 #include "sinew/pcc/arm_simulation.hpp"
 #include "sinew/plan/replay.hpp"
-#include "sinew/sim/simulation.hpp"
 
 #include "reintegration.hpp"
 #include "tasks.hpp"

@@ -6,7 +6,6 @@
 #include "sinew/core/error.hpp"
 #include "sinew/pcc/arm.hpp"
 #include "sinew/pcc/arm_simulation.hpp"
-#include "sinew/sim/simulation.hpp"
 
 #include "tasks.hpp"
 

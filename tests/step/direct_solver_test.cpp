@@ -3,7 +3,6 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
-#include "sinew/sim/actuator.hpp"
 #include "sinew/step/response.hpp"
 #include "sinew/step/step_solver.hpp"
 

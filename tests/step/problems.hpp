@@ -7,7 +7,6 @@
 #include <memory>
 #include <vector>
 
-#include "sinew/sim/actuator.hpp"
 #include "sinew/step/step_problem.hpp"
 
 #include "../qp/random_problem.hpp"

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/inverse/inverse_controller.hpp"
 #include "sinew/sim/simulation.hpp"
 
 #include "robot_fixture.hpp"

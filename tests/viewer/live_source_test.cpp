@@ -9,6 +9,7 @@
 
 #include "sinew/fem/has_elements.hpp"
 #include "sinew/fem/has_material.hpp"
+#include "sinew/inverse/inverse_controller.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/sim/actuator.hpp"

@@ -42,9 +42,9 @@ class Cavity : public Constraint {
   void curve(const Placement& placement, std::span<const double> effort,
              std::span<mechanics::RowCurvature> curvatures) const override;
 
-  /// V_0, m^3; negative when the surface is a body's outside.
   void add_to(ValueHash& hash) const override;
 
+  /// V_0, m^3; negative when the surface is a body's outside.
   double rest_volume() const { return rest_volume_; }
   /// Of the surface at rest, m^2.
   double rest_area() const { return rest_area_; }

@@ -23,7 +23,7 @@ namespace sinew::constraint {
 ///   gap = g(x_c) + n.(x - x_c),   slid = (t_1, t_2).(x - x_s),   g the signed distance at P_end.
 /// The surfaces are convex, and so are the half spaces that their planes bound: what keeps to the
 /// plane's outer side is outside the surface, and a point on the way of a miss is not pushed.
-/// begin_step() takes the way at the point's velocity; World::correct_contacts() replaces it by
+/// begin_step() takes the way at the point's velocity; sim::ContactRows::correct() replaces it by
 /// that which the point would go without its own force.
 class Contact : public Constraint {
  public:

@@ -15,6 +15,14 @@
 
 namespace sinew::fem {
 
+double stiffest_modulus(const FemModelSettings& settings) {
+  double modulus = 0.0;
+  for (const Region& region : settings.regions) {
+    modulus = std::max(modulus, region.young_modulus());
+  }
+  return modulus;
+}
+
 void check_mesh(const mesh::Mesh& mesh) {
   const Place place{.file = mesh.name, .item = {}};
   const ElementList list(mesh);

@@ -77,6 +77,9 @@ struct FemModelSettings {
   std::vector<std::vector<NodeId>> couplings;
 };
 
+/// E of small strains of the stiffest region, Pa.
+double stiffest_modulus(const FemModelSettings& settings);
+
 /// Throws Error: no-volume-elements, non-finite-node, index-out-of-range (an element names a node
 /// that the mesh has not).
 void check_mesh(const mesh::Mesh& mesh);

@@ -31,10 +31,7 @@ FemStep::FemStep(FemState& state, ThreadPool& pool, bool with_curvature)
   const auto nodes = model.elements().free_nodes();
   const auto size = 3 * static_cast<Eigen::Index>(nodes.size());
   for (VectorX* v : {&right_, &motion_, &from_, &imbalance_}) v->setZero(size);
-  double modulus = 0.0;
-  for (const Region& region : model.settings().elements.regions) {
-    modulus = std::max(modulus, region.young_modulus());
-  }
+  const double modulus = stiffest_modulus(model.settings().elements);
   least_force_ = kLeastStrain * modulus * std::pow(model.elements().volume(), 2.0 / 3.0);
   const Points& positions = state.positions;
   const Vector3 extent = positions.colwise().maxCoeff() - positions.colwise().minCoeff();

@@ -52,8 +52,7 @@ InverseController::InverseController(sim::Simulation& simulation, InverseSetting
     const auto& effector = model.effector(task.effector);
     for (int k = 0; k < effector.row_count(); ++k) {
       effector_rows_.push_back(effector.first_row() + k);
-      const auto which = task.weights.size() == 1 ? 0 : static_cast<std::size_t>(k);
-      weights.push_back(task.weights[which]);
+      weights.push_back(task.weight(k));
     }
   }
   const auto rows = static_cast<Eigen::Index>(effector_rows_.size());
@@ -416,6 +415,9 @@ double InverseController::error(int task) const {
   VectorX goal(effector.row_count()), now(effector.row_count());
   effector.target_delta(placement, asked.target.at(simulation_.time()), goal);
   effector.target_delta(placement, effector.value(placement), now);
+  for (Eigen::Index k = 0; k < goal.size(); ++k) {
+    if (!(asked.weight(k) > 0.0)) goal[k] = now[k];
+  }
   return (goal - now).norm();
 }
 

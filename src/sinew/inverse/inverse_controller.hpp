@@ -53,7 +53,8 @@ class InverseController : public step::Controller {
   InverseStatus status() const { return status_; }
   /// Efforts (actuators,) N that the controller chose last, in the order of settings().actuators.
   const VectorX& efforts() const { return efforts_; }
-  /// Distance of a task's effector from its target now, along the effector's directions; m or rad.
+  /// Distance of a task's effector from its target now, along the effector's directions whose
+  /// weight is not zero; m or rad.
   double error(int task) const;
   /// The largest error() of all tasks.
   double error() const;

@@ -24,6 +24,11 @@ struct Task {
   Target target;
   /// One for all rows of the effector, or one each; >= 0. Squared distances are multiplied by it.
   std::vector<double> weights = {1.0};
+
+  /// Of a row of the effector.
+  double weight(Eigen::Index row) const {
+    return weights[weights.size() == 1 ? 0 : static_cast<std::size_t>(row)];
+  }
 };
 
 struct InverseSettings {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "sinew/core/notice.hpp"
-#include "sinew/inverse/inverse_controller.hpp"
+#include "sinew/inverse/inverse_settings.hpp"
 #include "sinew/mesh/mesh.hpp"
 #include "sinew/scene/description.hpp"
 #include "sinew/sim/model.hpp"

@@ -7,7 +7,6 @@
 
 #include "sinew/scene/check.hpp"
 #include "sinew/scene/readers.hpp"
-#include "sinew/sim/signal.hpp"
 
 namespace sinew::scene {
 

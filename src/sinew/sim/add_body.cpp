@@ -25,14 +25,14 @@ void add_masses(ModelData& data, const fem::FemBodyModel& body) {
   }
 }
 
-}  // namespace
-
 int add_body(ModelData& data, std::unique_ptr<mechanics::BodyModel> body) {
   const auto name_of = [](const auto& other) { return other->name(); };
   check_new_name(data.bodies, name_of, "bodies", body->name(), {.item = body->name()});
   data.bodies.push_back(std::move(body));
   return static_cast<int>(data.bodies.size()) - 1;
 }
+
+}  // namespace
 
 int add_fem_body(ModelData& data, fem::FemBodySettings settings) {
   auto body = std::make_unique<fem::FemBodyModel>(std::move(settings));

@@ -14,9 +14,6 @@ class Constraint;
 namespace sinew::fem {
 struct FemBodySettings;
 }
-namespace sinew::mechanics {
-class BodyModel;
-}
 namespace sinew::pcc {
 struct ArmSettings;
 }
@@ -37,7 +34,6 @@ struct SpringLineSettings;
 struct TorqueSettings;
 struct WeldSettings;
 
-int add_body(ModelData& data, std::unique_ptr<mechanics::BodyModel> body);
 int add_fem_body(ModelData& data, fem::FemBodySettings settings);
 int add_arm(ModelData& data, pcc::ArmSettings settings);
 

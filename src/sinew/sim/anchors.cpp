@@ -41,19 +41,11 @@ std::array<NodeId, 3> spread_nodes(const Points& nodes) {
           static_cast<NodeId>(found[2])};
 }
 
-double stiffest_modulus(const fem::FemModelSettings& settings) {
-  double modulus = 0.0;
-  for (const fem::Region& region : settings.regions) {
-    modulus = std::max(modulus, region.young_modulus());
-  }
-  return modulus;
-}
-
 }  // namespace
 
 void add_anchors(ModelData& data, int body) {
   const fem::HasElements& anchored = find_elements(data, body, {}, "anchor");
-  const double modulus = stiffest_modulus(anchored.settings().elements);
+  const double modulus = fem::stiffest_modulus(anchored.settings().elements);
   const double stiffness = modulus * std::cbrt(anchored.elements().volume());
   mechanics::BodyModel& on = data.body(body);
   for (const NodeId node : spread_nodes(on.mesh().nodes)) {

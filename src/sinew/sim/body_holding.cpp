@@ -6,8 +6,11 @@
 #include <Eigen/Geometry>
 
 #include "sinew/constraint/tie.hpp"
+#include "sinew/fem/fem_body_settings.hpp"
+#include "sinew/fem/has_elements.hpp"
 #include "sinew/linalg/dense.hpp"
 #include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 #include "sinew/sim/anchors.hpp"
 #include "sinew/sim/model_data.hpp"
 
@@ -30,72 +33,131 @@ std::vector<int> groups_of(const ModelData& data) {
   return group;
 }
 
-// Whether welds hold every rigid motion of loose bodies: the columns of d(delta)/d(shift, turn) are
-// independent. @param bodies one group. @param held (all bodies,).
-bool welds_hold(const ModelData& data, const std::vector<int>& bodies,
-                const std::vector<char>& held) {
-  std::vector<int> column(held.size(), -1);
-  int columns = 0;
-  for (const int body : bodies) {
-    if (held[static_cast<std::size_t>(body)] != 0) continue;
-    column[static_cast<std::size_t>(body)] = columns;
-    columns += 6;
+// Rows of d(delta)/d(shift, turn) over some bodies, as their normal matrix.
+class RigidMotions {
+ public:
+  RigidMotions(const ModelData& data, const std::vector<int>& bodies)
+      : data_(data), column_(data.bodies.size(), -1) {
+    for (const int body : bodies) {
+      column_[static_cast<std::size_t>(body)] = columns_;
+      columns_ += 6;
+    }
+    normal_.setZero(columns_, columns_);
   }
-  if (columns == 0) return true;
-  MatrixX normal = MatrixX::Zero(columns, columns);
-  for (const WeldModel& weld : data.welds) {
-    const auto& tie = dynamic_cast<const constraint::Tie&>(data.constraint(weld.constraint));
-    for (const constraint::Tie::Pair& pair : tie.pairs()) {
-      MatrixX rows = MatrixX::Zero(3, columns);
-      const auto add = [&](const mechanics::MaterialPoint& point, double sign) {
-        const auto body = static_cast<std::size_t>(point.body);
-        if (column[body] < 0) return;
-        const Vector3 at = data.bodies[body]->rest_position(point.point) / data.size;
-        for (int axis = 0; axis < 3; ++axis) {
-          rows(axis, column[body] + axis) = sign;
-          rows.col(column[body] + 3 + axis) = sign * Vector3(Vector3::Unit(axis).cross(at));
-        }
-      };
-      add(pair.first, -1.0);
-      add(pair.second, 1.0);
-      normal.noalias() += rows.transpose() * rows;
+
+  // What fixed nodes and held axes hold; bodies without elements are held altogether.
+  void hold_own(int body) {
+    const auto* material = mechanics::as<const fem::HasElements>(data_.body(body));
+    if (material == nullptr) {
+      normal_.diagonal().segment<6>(column_[static_cast<std::size_t>(body)]).array() += 1.0;
+      return;
+    }
+    const fem::FemModelSettings& own = material->settings().elements;
+    const Points& nodes = data_.body(body).mesh().nodes;
+    const auto add = [&](NodeId node, int axis) {
+      begin_row();
+      fill(body, nodes.row(node).transpose(), axis, 1.0);
+      end_row();
+    };
+    for (const NodeId node : own.fixed_nodes) {
+      for (int axis = 0; axis < 3; ++axis) add(node, axis);
+    }
+    for (const fem::HeldAxis& held : own.held_axes) add(held.node, held.axis);
+  }
+  void hold(const constraint::Tie::Pair& pair) {
+    for (int axis = 0; axis < 3; ++axis) {
+      begin_row();
+      fill(pair.first.body, rest_of(pair.first), axis, -1.0);
+      fill(pair.second.body, rest_of(pair.second), axis, 1.0);
+      end_row();
     }
   }
-  const VectorX values = linalg::symmetric_eigenvalues(normal);
-  return values[0] > kFree * kFree * values[columns - 1];
+  // Whether no rigid motion is left.
+  bool all_held() const {
+    const VectorX values = linalg::symmetric_eigenvalues(normal_);
+    return values[0] > kFree * kFree * values[columns_ - 1];
+  }
+
+ private:
+  Vector3 rest_of(const mechanics::MaterialPoint& point) const {
+    return data_.body(point.body).rest_position(point.point);
+  }
+  void begin_row() { row_.setZero(columns_); }
+  // The motion along an axis of a point at x: e + (e_k x x/size) of the body's turn.
+  void fill(int body, const Vector3& at, int axis, double sign) {
+    const int column = column_[static_cast<std::size_t>(body)];
+    if (column < 0) return;
+    row_[column + axis] = sign;
+    for (int turn = 0; turn < 3; ++turn) {
+      row_[column + 3 + turn] = sign * Vector3::Unit(turn).cross(at / data_.size)[axis];
+    }
+  }
+  void end_row() { normal_.noalias() += row_ * row_.transpose(); }
+
+  const ModelData& data_;
+  std::vector<int> column_;  // of each body; -1: it does not move
+  int columns_ = 0;
+  VectorX row_;
+  MatrixX normal_;
+};
+
+bool is_held_alone(const ModelData& data, int body) {
+  RigidMotions motions(data, {body});
+  motions.hold_own(body);
+  return motions.all_held();
 }
 
-[[noreturn]] void throw_loose(Place place, const std::string& name, bool welded) {
-  if (place.item.empty()) place.item = "body '" + name + "'";
+// Whether welds hold every rigid motion of loose bodies. @param bodies one group.
+bool welds_hold(const ModelData& data, const std::vector<int>& bodies,
+                const std::vector<char>& held) {
+  std::vector<int> loose;
+  for (const int body : bodies) {
+    if (held[static_cast<std::size_t>(body)] == 0) loose.push_back(body);
+  }
+  RigidMotions motions(data, loose);
+  for (const int body : loose) motions.hold_own(body);
+  for (const WeldModel& weld : data.welds) {
+    const auto& tie = dynamic_cast<const constraint::Tie&>(data.constraint(weld.constraint));
+    for (const constraint::Tie::Pair& pair : tie.pairs()) motions.hold(pair);
+  }
+  return motions.all_held();
+}
+
+[[noreturn]] void throw_loose(const ModelData& data, std::size_t body, Place place, bool welded) {
+  if (place.item.empty()) place.item = "body '" + data.bodies[body]->name() + "'";
+  const auto* material = mechanics::as<const fem::HasElements>(*data.bodies[body]);
+  const fem::FemModelSettings& own = material->settings().elements;
+  const bool bare = own.fixed_nodes.empty() && own.held_axes.empty();
+  if (welded) {
+    throw Error(ErrorKind::nothing_fixed, place,
+                "its welds leave it free to move, so it has no static equilibrium",
+                "fix a region of one of the welded bodies, weld three points that are not on one "
+                "line, or choose a dynamic integrator");
+  }
   throw Error(ErrorKind::nothing_fixed, place,
-              welded ? "its welds leave it free to move, so it has no static equilibrium"
-                     : "nothing holds this body, so it has no static equilibrium",
-              welded
-                  ? "fix a region of one of the welded bodies, weld three points that are not on "
-                    "one line, or choose a dynamic integrator"
-                  : "fix a region of it, weld it to a body that is held, or choose a dynamic "
-                    "integrator");
+              bare ? "nothing holds this body, so it has no static equilibrium"
+                   : "what is fixed leaves it free to move, so it has no static equilibrium",
+              "fix a region of it, weld it to a body that is held, or choose a dynamic integrator");
 }
 
 }  // namespace
 
-void BodyHolding::add(bool held, const Place& place) {
-  held_.push_back(held ? 1 : 0);
-  places_.push_back(place);
-}
-
-void BodyHolding::hold(ModelData& data) const {
+void hold_bodies(ModelData& data, const std::vector<Place>& places) {
   const std::vector<int> group = groups_of(data);
-  for (std::size_t b = 0; b < held_.size(); ++b) {
-    if (held_[b] != 0) continue;
+  std::vector<char> held;
+  for (std::size_t b = 0; b < data.bodies.size(); ++b) {
+    held.push_back(is_held_alone(data, static_cast<int>(b)) ? 1 : 0);
+  }
+  for (std::size_t b = 0; b < held.size(); ++b) {
+    if (held[b] != 0) continue;
     std::vector<int> connected;
     for (std::size_t other = 0; other < group.size(); ++other) {
       if (group[other] == group[b]) connected.push_back(static_cast<int>(other));
     }
-    if (welds_hold(data, connected, held_)) {
+    if (welds_hold(data, connected, held)) {
       add_anchors(data, static_cast<int>(b));
     } else if (!data.step.dynamic()) {
-      throw_loose(places_[b], data.bodies[b]->name(), connected.size() > 1);
+      throw_loose(data, b, places[b], connected.size() > 1);
     }
   }
 }

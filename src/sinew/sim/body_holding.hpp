@@ -1,6 +1,6 @@
 /// @file
-/// In statics something has to hold every body: fixed nodes of its own, or welds to bodies that
-/// are held.
+/// In statics something has to hold every body: what is fixed of it, or welds to bodies that are
+/// held.
 #pragma once
 
 #include <vector>
@@ -11,19 +11,9 @@ namespace sinew::sim {
 
 struct ModelData;
 
-/// Which bodies of a model under construction are held by themselves.
-class BodyHolding {
- public:
-  /// The next body. @param held by itself. @param place where it is written.
-  void add(bool held, const Place& place);
-
-  /// Anchors the bodies that welds alone hold. Throws Error(nothing-fixed) in statics for one that
-  /// nothing holds.
-  void hold(ModelData& data) const;
-
- private:
-  std::vector<char> held_;     // (bodies,)
-  std::vector<Place> places_;  // (bodies,)
-};
+/// Anchors the bodies of a finished list that need welds to be held.
+/// @param places (bodies,) where each is written. Throws Error(nothing-fixed) in statics for a body
+/// that keeps a rigid motion.
+void hold_bodies(ModelData& data, const std::vector<Place>& places);
 
 }  // namespace sinew::sim

@@ -9,6 +9,7 @@
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/pcc/arm.hpp"
 #include "sinew/sim/add_parts.hpp"
+#include "sinew/sim/body_holding.hpp"
 #include "sinew/sim/curvatures.hpp"
 #include "sinew/sim/model.hpp"
 
@@ -23,23 +24,15 @@ ModelBuilder::ModelBuilder(StepSettings settings) {
   data_.step = settings;
 }
 
-int ModelBuilder::add_body(std::unique_ptr<mechanics::BodyModel> body) {
-  const int index = sim::add_body(data_, std::move(body));
-  holding_.add(true, {});
-  return index;
-}
-
 int ModelBuilder::add_fem_body(fem::FemBodySettings settings, const Place& place) {
-  const fem::FemModelSettings& elements = settings.elements;
-  const bool held = !elements.fixed_nodes.empty() || !elements.held_axes.empty();
   const int index = sim::add_fem_body(data_, std::move(settings));
-  holding_.add(held, place);
+  places_.push_back(place);
   return index;
 }
 
 int ModelBuilder::add_arm(pcc::ArmSettings settings) {
   const int index = sim::add_arm(data_, std::move(settings));
-  holding_.add(true, {});
+  places_.emplace_back();
   return index;
 }
 
@@ -84,7 +77,7 @@ int ModelBuilder::add_probe(const ProbeSettings& settings) {
 }
 
 std::shared_ptr<const Model> ModelBuilder::build(const linalg::FactorisationSettings& settings) {
-  holding_.hold(data_);
+  hold_bodies(data_, places_);
   add_couplings(data_);
   // Rows that come and go stand behind all others, which keep their numbers in a step's problem.
   for (const ContactModel& contact : data_.contacts) {
@@ -96,7 +89,7 @@ std::shared_ptr<const Model> ModelBuilder::build(const linalg::FactorisationSett
   list_curved(data_);
   auto model = std::make_shared<const Model>(std::move(data_));
   data_ = {};
-  holding_ = {};
+  places_.clear();
   return model;
 }
 

@@ -3,10 +3,10 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "sinew/core/error.hpp"
 #include "sinew/linalg/factorisation.hpp"
-#include "sinew/sim/body_holding.hpp"
 #include "sinew/sim/model_data.hpp"
 #include "sinew/sim/step_settings.hpp"
 
@@ -37,7 +37,6 @@ class ModelBuilder {
   explicit ModelBuilder(StepSettings settings = {});
 
   /// All return the new part's position. Names are unique among their kind: Error(duplicate-key).
-  int add_body(std::unique_ptr<mechanics::BodyModel> body);
   /// Throws what fem::FemBodyModel does, and Error(missing-mass).
   /// @param place where it is written.
   int add_fem_body(fem::FemBodySettings settings, const Place& place = {});
@@ -82,7 +81,7 @@ class ModelBuilder {
 
  private:
   ModelData data_;
-  BodyHolding holding_;
+  std::vector<Place> places_;  // (bodies,) where each is written
 };
 
 }  // namespace sinew::sim
