@@ -210,7 +210,7 @@ TEST(RoundProbes, HaveOneDiameterInEveryDirection) {
       mesh::cylinder({.radius = 0.02, .height = 0.02, .rings = 6, .layers = 4}));
   body.mesh = mesh;
   body.elements.regions = {{{1e5, 0.3}, material::Law::corotational, 1000.0, {}}};
-  body.elements.fixed_nodes = {0};
+  body.elements.fixed_nodes = {0, 1, 2};
   builder.add_fem_body(std::move(body));
   std::vector<NodeId> all(static_cast<std::size_t>(mesh->nodes.rows()));
   std::iota(all.begin(), all.end(), 0);
