@@ -76,3 +76,12 @@ def test_cables_see_what_is_held():
     body = sim.body("cube")
     assert np.abs(np.array(body.positions) - body.rest_positions).max() < 1e-12
     assert np.abs(sim.compliance()).max() < 1e-12
+
+
+def test_what_leaves_a_body_free_to_move_holds_it_not():
+    scene = cube("hex8", {"model": "neo-hookean", "young_modulus": 2e5, "poisson_ratio": 0.3})
+    scene["bodies"]["cube"]["fixed"].pop()
+    with pytest.raises(sinew.Error, match="what is fixed leaves it free to move") as caught:
+        sinew.load(scene)
+    assert caught.value.kind == "nothing-fixed" and caught.value.place.item.startswith("bodies.cube")
+    sinew.load({**scene, "integrator": "backward-euler"}).step()  # inertia holds it
