@@ -41,7 +41,7 @@ class ValueHash {
   // Numbers that people write lie where rounding to single precision jumps, such as powers of two;
   // turned by an irrational factor they do not.
   static std::uint64_t leading_digits(double number) {
-    constexpr double kTurn = 1.2785764, kNothing = 1e-15;
+    constexpr double kTurn = 1.2785764, kNothing = 1e-12;
     if (std::abs(number) < kNothing) return 0;
     return std::bit_cast<std::uint32_t>(static_cast<float>(kTurn * number));
   }

@@ -56,8 +56,17 @@ std::vector<NamedHash> FemBodyModel::parts() const {
           {"gravity", ValueHash().add(settings_.gravity).value()}};
 }
 
+// Where it is, and how far the nodes that it is the mean of stand from there: a ball is told from
+// its centre. Which element a point on a face was found in, and what is left of a weight of zero,
+// are matters of rounding.
 std::uint64_t FemBodyModel::point_hash(int point) const {
-  return ValueHash().add(attachment(point).nodes, attachment(point).weights).value();
+  const Attachment& of = attachment(point);
+  const Vector3 at = rest_position(point);
+  double spread = 0.0;
+  for (std::size_t k = 0; k < of.nodes.size(); ++k) {
+    spread += of.weights[k] * (mesh().nodes.row(of.nodes[k]).transpose() - at).squaredNorm();
+  }
+  return ValueHash().add(at, spread).value();
 }
 
 std::uint64_t FemBodyModel::load_hash(int load) const {
