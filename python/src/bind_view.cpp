@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "errors.hpp"

@@ -4,7 +4,6 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-
 #include "block_mesh.hpp"
 #include "reference.hpp"
 #include "solid_bodies.hpp"
