@@ -2,7 +2,7 @@
 
 Each robot is a small block with more actuators than its effectors need: twins on one line, antagonists, chambers that
 share a wall, cables that move nothing, springs and commanded cables beside them, effectors that cannot all be met,
-weights of zero. Its program (docs/solver.md, "Inverse control") is put together here from the linearisation and solved
+weights of zero. Its program (see Program) is put together here from the linearisation and solved
 as least squares with bounds, by the active sets of SciPy's BVLS. Half of the robots are cold; the others have moved.
 """
 

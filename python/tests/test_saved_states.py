@@ -29,7 +29,7 @@ def step(sim, count):
 
 
 def measure(sim):
-    """Where every effector and mean of a body is (m), and what every actuator does."""
+    """Where every effector and the middle of every body is, m."""
     found = {f"effector {name}": list(e.position) for name, e in sim.effectors.items()}
     found |= {f"body {name}": list(np.mean(body.positions, axis=0)) for name, body in sim.bodies.items()}
     return found

@@ -26,8 +26,7 @@ std::string direction_name(const Vector3& direction, int index) {
 // Leaves the rows of the robot as its joints hold it together.
 void take_joints_out(const step::StepProblem& problem, Linearisation& result) {
   std::vector<step::HeldRow> held;
-  for (const auto& block : problem.bilaterals) held.push_back({block.row, 0.0});
-  step::append_stiffness(problem, held);
+  step::append_joints(problem, held);
   if (!held.empty()) {
     const auto own = step::held_compliance(problem, held);
     const int negative = linalg::spectral_inverse(own.matrix).negative;

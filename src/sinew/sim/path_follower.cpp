@@ -93,8 +93,7 @@ bool PathFollower::solve(const VectorX& here, const VectorX& ahead) {
   if (run_.world.condense() == linalg::FactorStatus::singular) return false;
   const step::StepProblem& problem = run_.world.problem();
   held_.clear();
-  for (const step::BilateralBlock& block : problem.bilaterals) held_.push_back({block.row, 0.0});
-  step::append_stiffness(problem, held_);
+  step::append_joints(problem, held_);
   HeldMotions motions(run_.world, held_);
   VectorX gap(static_cast<Eigen::Index>(held_.size()));
   for (Eigen::Index k = 0; k < gap.size(); ++k) {

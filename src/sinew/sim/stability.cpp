@@ -81,9 +81,8 @@ std::vector<step::HeldRow> held_rows(const step::StepProblem& problem,
       held.push_back({range.row, 0.0});
     }
   }
-  for (const step::BilateralBlock& block : problem.bilaterals) held.push_back({block.row, 0.0});
   add_touching(problem, effort, held);
-  step::append_stiffness(problem, held);
+  step::append_joints(problem, held);
   return held;
 }
 

@@ -95,7 +95,8 @@ double violation(const StepProblem& problem, std::span<const double> effort) {
   return worst;
 }
 
-void append_stiffness(const StepProblem& problem, std::vector<HeldRow>& held) {
+void append_joints(const StepProblem& problem, std::vector<HeldRow>& held) {
+  for (const BilateralBlock& block : problem.bilaterals) held.push_back({block.row, 0.0});
   for (const StiffnessBlock& block : problem.stiffness) {
     if (block.stiffness != 0.0) held.push_back({block.row, 1.0 / block.stiffness});
   }
@@ -133,8 +134,7 @@ bool stabilised(const StepProblem& problem, int negative_pivots) {
     const auto at = block.drive->respond(block.drive_step, problem.delta[block.row]);
     if (at.slope < 0.0) held.push_back({block.row, -1.0 / at.slope});  // a flat one holds nothing
   }
-  for (const BilateralBlock& block : problem.bilaterals) held.push_back({block.row, 0.0});
-  append_stiffness(problem, held);
+  append_joints(problem, held);
   if (held.empty()) return negative_pivots == 0;
   const auto own = held_compliance(problem, held);
   const int negative = linalg::spectral_inverse(own.matrix).negative;

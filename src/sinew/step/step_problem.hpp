@@ -139,8 +139,9 @@ struct HeldRow {
   double compliance = 0.0;
 };
 
-/// The rows of all blocks of stiffness that are not zero.
-void append_stiffness(const StepProblem& problem, std::vector<HeldRow>& held);
+/// The rows that joints hold: of all bilateral blocks, then of blocks of stiffness that are not
+/// zero.
+void append_joints(const StepProblem& problem, std::vector<HeldRow>& held);
 
 /// W + C over held rows, both sides scaled so that efforts of different units compare.
 struct HeldCompliance {
