@@ -427,7 +427,7 @@ std::shared_ptr<const Frame> RobotState::frame(const FieldChoice& wanted, double
   auto frame = std::make_shared<Frame>();
   frame->step = static_cast<std::uint64_t>(simulation_->steps());
   frame->time = simulation_->time();
-  frame->hash = simulation_->state_hash();
+  frame->hash = simulation_->state().hash();
   frame->shape = shape_;
   fill_signals(*frame);
   frame->bodies.resize(description_.surfaces.size());

@@ -135,9 +135,9 @@ Array jacobian(const Body& self) {
     const auto row = static_cast<std::size_t>(k);
     for (auto e = pattern.row_start[row]; e < pattern.row_start[row + 1]; ++e) {
       const auto entry = static_cast<std::size_t>(e);
-      const auto& point = pattern.point[entry];
-      if (point.body != self.index) continue;
-      const auto& attachment = own.attachment(point.point);
+      const auto& site = pattern.site[entry];
+      if (site.body != self.index) continue;
+      const auto& attachment = own.attachment(site.number);
       for (std::size_t a = 0; a < attachment.nodes.size(); ++a) {
         for (int c = 0; c < 3; ++c) {
           h(k, attachment.nodes[a], c) += attachment.weights[a] * directions[entry][c];

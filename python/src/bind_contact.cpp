@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "sinew/constraint/contact.hpp"
+#include "sinew/sim/contact_reader.hpp"
 #include "sinew/sim/contact_state.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/simulation.hpp"
@@ -19,12 +20,12 @@ const sim::ContactModel& model(const Contact& self) {
 
 std::vector<sim::ContactPoint> points(const Contact& self) {
   const Session::Use use(*self.session);
-  return self.session->simulation().contact_points(self.index);
+  return self.session->simulation().contacts().points(self.index);
 }
 
 sim::ContactSum sum(const Contact& self) {
   const Session::Use use(*self.session);
-  return self.session->simulation().contact_sum(self.index);
+  return self.session->simulation().contacts().sum(self.index);
 }
 
 /// (n, 3) of one vector of every point.

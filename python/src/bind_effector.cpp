@@ -52,7 +52,7 @@ Array velocity(const Effector& self) {
     for (auto e = pattern.row_start[row]; e < pattern.row_start[row + 1]; ++e) {
       const auto entry = static_cast<std::size_t>(e);
       turn[k] += simulation.world().rows().direction[entry].dot(
-          simulation.placement().velocity(pattern.point[entry]));
+          simulation.placement().velocity(pattern.site[entry]));
     }
   }
   return copy(turn);

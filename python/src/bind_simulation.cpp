@@ -5,6 +5,7 @@
 #include "sinew/scene/scene.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/simulation.hpp"
+#include "sinew/sim/state.hpp"
 
 #include "arrays.hpp"
 #include "bindings.hpp"
@@ -278,9 +279,9 @@ RunError
             result["strain"] = energies.strain;
             result["kinetic"] = energies.kinetic;
             result["gravity"] = energies.gravity;
-            result["actuator_work"] = simulation.actuator_work();
-            result["outside_work"] = simulation.outside_work();
-            result["dissipation"] = simulation.dissipation();
+            result["actuator_work"] = simulation.ledger().actuators;
+            result["outside_work"] = simulation.ledger().outside;
+            result["dissipation"] = simulation.ledger().dissipated;
             return result;
           },
           "dict: energies of all bodies now (J; gravity's from the height at rest), and since the "
@@ -532,7 +533,7 @@ Error
     the state is then as before.
 )")
       .def_property_readonly(
-          "state_hash", guarded([](const sim::Simulation& s) { return s.state_hash(); }),
+          "state_hash", guarded([](const sim::Simulation& s) { return s.state().hash(); }),
           "int: of positions, velocities, efforts and drives; equal runs have equal hashes, bit "
           "for bit.")
       .def_property_readonly("time", &Session::time, "float: s.")

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import sinew
+from scipy.spatial.transform import Rotation
 
 LENGTHS = [0.14] * 4
 MASSES = [0.190, 0.146, 0.090, 0.090]
@@ -176,3 +177,68 @@ def test_bad_scenes(change, kind, text):
         sinew.load(scene)
     assert caught.value.kind == kind
     assert text in str(caught.value)
+
+
+ORIENTED = """
+sinew: 1
+time_step: 10 ms
+integrator: backward-euler
+bodies:
+  arm:
+    type: pcc
+    radius: 10 mm
+    segments:
+      - {length: 60 mm, mass: 20 g, stiffness: 0.02 N m, damping: 1e-3 N m s, bending: spatial}
+      - {length: 60 mm, mass: 20 g, stiffness: 0.02 N m, damping: 1e-3 N m s, bending: spatial}
+actuators:
+  pull_x: {type: cable, body: arm, points: [8 0 0 mm, 8 0 -60 mm, 8 0 -120 mm], limits: {tension: {max: 5 N}}, command: {tension: 0 N}}
+  pull_y: {type: cable, body: arm, points: [0 8 0 mm, 0 8 -60 mm, 0 8 -120 mm], limits: {tension: {max: 5 N}}, command: {tension: 0 N}}
+  short: {type: cable, body: arm, points: [-8 0 0 mm, -8 0 -60 mm], limits: {tension: {max: 5 N}}, command: {tension: 0 N}}
+effectors:
+  section: {body: arm, orientation: 0 0 -120 mm}
+  triangle: {body: arm, orientation: [0 0 -120 mm, 5 0 -120 mm, 0 5 -120 mm]}
+"""
+
+
+def oriented(folder, controller=""):
+    path = folder / "scene.yaml"
+    path.write_text(ORIENTED + controller)
+    return sinew.load(path)
+
+
+def test_a_sections_orientation_is_that_of_any_triangle_in_it(tmp_path):
+    sim = oriented(tmp_path)
+    sim.actuators["pull_x"].tension, sim.actuators["pull_y"].tension = 1.5, 0.8
+    for _ in range(20):
+        sim.step()
+    section, triangle = sim.effectors["section"], sim.effectors["triangle"]
+    assert np.linalg.norm(section.rotation) > 0.3
+    np.testing.assert_allclose(section.rotation, triangle.rotation, atol=1e-12)
+    np.testing.assert_allclose(section.velocity, triangle.velocity, atol=1e-12)
+    rows = {row: k for k, row in enumerate(sim.rows)}
+    one, three = ([rows[f"{name}.{axis}"] for axis in "xyz"] for name in ("section", "triangle"))
+    compliance = sim.linearise().W
+    np.testing.assert_allclose(compliance[one], compliance[three], atol=1e-11 * np.abs(compliance).max())
+
+
+def test_cables_turn_an_arms_tip_to_a_rotation(tmp_path):
+    sim = oriented(tmp_path, """
+controllers:
+  turn:
+    type: inverse
+    effectors: {section: {rotation: 0.3 0.25 0 rad, weight: [1, 1, 0]}}
+    actuators: [pull_x, pull_y, short]
+""")
+    for _ in range(400):
+        sim.step()
+    # What is left to turn is about z alone, whose error has no weight.
+    to_go = Rotation.from_rotvec([0.3, 0.25, 0]) * Rotation.from_rotvec(sim.effectors["section"].rotation).inv()
+    np.testing.assert_allclose(to_go.as_rotvec()[:2], 0, atol=1e-4)
+
+
+def test_a_body_of_finite_elements_has_no_rigid_section():
+    with pytest.raises(sinew.Error, match="deforms everywhere.*three points"):
+        sinew.load({"sinew": 1, "bodies": {"beam": {
+            "type": "fem", "mesh": {"shape": "block", "length": 0.1, "width": 0.02, "height": 0.02, "element_size": 0.01},
+            "material": {"young_modulus": 1e5, "poisson_ratio": 0.3}, "fixed": {"set": "x_min"}}},
+            "effectors": {"tip": {"body": "beam", "orientation": [0.1, 0.01, 0.01]}}})

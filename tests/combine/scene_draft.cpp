@@ -79,7 +79,7 @@ BodyShape fem_shape(const std::string& name) {
         "element_size: 20 mm}"},
        {"chambered-cylinder",
         "{shape: chambered-cylinder, radius: 12 mm, height: 60 mm, chamber_radius: 5 mm, "
-        "chamber_offset: 4 mm, chamber_bottom: 10 mm, chamber_top: 50 mm, element_size: 12 mm}"}}));
+        "chamber_offset: 4 mm, chamber_bottom: 10 mm, chamber_top: 50 mm, element_size: 30 mm}"}}));
   if (name == "hollow-cylinder") shape.side = "outer";
   return shape;
 }
@@ -450,10 +450,12 @@ class Drafter {
     const BodyShape& shape = on.shape;
     tip_ = shape.at(1.0, 0.0, 0.0);
     orientation_ = kind == "orientation";
+    if (orientation_ && !on.fem) kind = "section";
     const std::string what =
         look_up("effector", kind,
                 {{"point", "point: " + vector_text(tip_)},
                  {"set", "set: " + shape.tip},
+                 {"section", "orientation: " + vector_text(tip_)},
                  {"orientation", fmt::format("orientation: [{}, {}, {}]", vector_text(tip_),
                                              vector_text(shape.at(1.0, 0.5, 0.0)),
                                              vector_text(shape.at(0.9, 0.0, 0.5)))}});

@@ -90,8 +90,8 @@ TEST_F(BentCable, CurvatureIsTheDerivativeOfTheDirections) {
   for (int point = 0; point < 5; ++point) {
     Vector3 expected = Vector3::Zero();
     for (const auto& pair : pairs) {
-      const int first = pair.first.point - pairs[0].first.point;
-      const int second = pair.second.point - pairs[0].first.point;
+      const int first = pair.first.number - pairs[0].first.number;
+      const int second = pair.second.number - pairs[0].first.number;
       if (first == point) expected += pair.curvature * velocity.row(second + 1).transpose();
       if (second == point && first != second) {
         expected += pair.curvature.transpose() * velocity.row(first + 1).transpose();
@@ -133,14 +133,14 @@ TEST(CableFriction, RowsAndCurvatureAgreeWithDifferences) {
   const Points rates = (after - before) / (2.0 * t);
   std::vector<double> effort(static_cast<std::size_t>(model->rows().rows()), 0.0);
   for (int k = 0; k < cable.row_count(); ++k) effort[static_cast<std::size_t>(k)] = 3.0 - 0.4 * k;
-  const int first_point = model->rows().point[0].point;
+  const int first_point = model->rows().site[0].number;
   Points slope = Points::Zero(here.rows(), 3), expected = slope;
   for (int k = 0; k < cable.row_count(); ++k) {
     double rate = 0.0;
     for (auto e = model->rows().row_start[static_cast<std::size_t>(k)];
          e < model->rows().row_start[static_cast<std::size_t>(k) + 1]; ++e) {
       const auto entry = static_cast<std::size_t>(e);
-      const auto point = model->rows().point[entry].point - first_point;
+      const auto point = model->rows().site[entry].number - first_point;
       rate += rows.direction[entry].dot(rates.row(point));
       slope.row(point) += effort[static_cast<std::size_t>(k)] *
                           (ahead.direction[entry] - behind.direction[entry]).transpose() /
@@ -153,7 +153,7 @@ TEST(CableFriction, RowsAndCurvatureAgreeWithDifferences) {
                                              model->curvatures().begin() + cable.curvature_count());
   cable.curve(simulation.placement(), effort, pairs);
   for (const auto& pair : pairs) {
-    const int a = pair.first.point - first_point, b = pair.second.point - first_point;
+    const int a = pair.first.number - first_point, b = pair.second.number - first_point;
     expected.row(a) += (pair.curvature * rates.row(b).transpose()).transpose();
     if (a != b)
       expected.row(b) += (pair.curvature.transpose() * rates.row(a).transpose()).transpose();

@@ -60,7 +60,7 @@ class CavityTest : public ::testing::TestWithParam<Kind> {
     sim::State state = simulation_.state();
     const auto* model =
         mechanics::as<const fem::HasElements>(*simulation_.model().bodies().front());
-    const NodeId node = model->attachment(point.point).nodes.front();
+    const NodeId node = model->attachment(point.number).nodes.front();
     state.bodies[0][static_cast<std::size_t>(3 * node + axis)] += by;
     simulation_.restore(state);
   }
@@ -115,7 +115,7 @@ TEST_P(CavityTest, CurvatureIsTheDerivativeOfTheDirections) {
   const auto& points = cavity().material_points();
   const auto index = [&](const mechanics::MaterialPoint& wanted) {
     std::size_t k = 0;
-    while (points[k].point != wanted.point) ++k;
+    while (points[k].number != wanted.number) ++k;
     return k;
   };
   ASSERT_EQ(static_cast<int>(pairs.size()), cavity().curvature_count());

@@ -88,7 +88,7 @@ TEST_F(Effectors, OrientationRowsAreTheSpin) {
     for (int e = pattern.row_start[static_cast<std::size_t>(k)];
          e < pattern.row_start[static_cast<std::size_t>(k) + 1]; ++e) {
       const auto i = static_cast<std::size_t>(e);
-      const int point = pattern.point[i].point;
+      const int point = pattern.site[i].number;
       place(bent + t * direction);
       const Vector3 ahead = simulation_->body(0).position(point);
       place(bent - t * direction);

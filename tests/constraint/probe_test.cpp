@@ -15,6 +15,7 @@
 #include "sinew/mesh/embedding.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/simulation.hpp"
+#include "sinew/sim/state.hpp"
 
 #include "../sim/robots.hpp"
 
@@ -242,7 +243,7 @@ TEST_F(Probes, OnlyLook) {
     for (int k = 0; k < 3; ++k) one->simulation_->step();
   }
   EXPECT_GT(values("bend")[0], 1e-3);
-  EXPECT_EQ(simulation_->state_hash(), bare.simulation_->state_hash());
+  EXPECT_EQ(simulation_->state().hash(), bare.simulation_->state().hash());
   EXPECT_EQ(simulation_->model().fingerprint(), bare.simulation_->model().fingerprint())
       << "states may be exchanged";
 }

@@ -9,6 +9,7 @@
 #include "sinew/pcc/published.hpp"
 #include "sinew/sim/actuator.hpp"
 #include "sinew/sim/cable_settings.hpp"
+#include "sinew/sim/contact_reader.hpp"
 #include "sinew/sim/contact_state.hpp"
 #include "sinew/sim/effector_settings.hpp"
 #include "sinew/sim/signal.hpp"
@@ -100,7 +101,7 @@ TEST_P(SteadyStep, OfContacts) {
     const long before = allocations();
     land();
     EXPECT_EQ(allocations(), before);
-    EXPECT_GT(simulation.contact_sum(0).normal_force, 0.0);
+    EXPECT_GT(simulation.contacts().sum(0).normal_force, 0.0);
   }
 }
 

@@ -10,6 +10,7 @@
 #include "sinew/constraint/placement.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/sim/actuator.hpp"
+#include "sinew/sim/contact_reader.hpp"
 #include "sinew/sim/contact_state.hpp"
 #include "sinew/sim/signal.hpp"
 #include "sinew/sim/simulation.hpp"
@@ -267,7 +268,7 @@ Vector3 reachable_on_the_wall(std::shared_ptr<const sim::Model> model) {
   pull(1, 1.0);
   pull(2, 2.5);
   for (int i = 0; i < 100; ++i) simulation.step();
-  EXPECT_GT(simulation.contact_sum(0).normal_force, 0.05);
+  EXPECT_GT(simulation.contacts().sum(0).normal_force, 0.05);
   return simulation.effector_value(0);
 }
 
@@ -292,7 +293,7 @@ TEST_P(OnAWall, ReachesWhatIsReachedByTouching) {
   for (int i = 0; i < 300; ++i) controller.step();
   EXPECT_EQ(controller.status(), InverseStatus::on_target);
   EXPECT_LT(controller.error(), 5e-5);
-  EXPECT_GT(simulation.contact_sum(0).normal_force, 0.01);
+  EXPECT_GT(simulation.contacts().sum(0).normal_force, 0.01);
   EXPECT_LT(simulation.report().violation, 1e-7);
 }
 
@@ -310,7 +311,7 @@ TEST_P(OnAWall, RestsWhereTheWallHoldsItBack) {
   EXPECT_TRUE(controller.status() == InverseStatus::out_of_reach ||
               controller.status() == InverseStatus::local_optimum)
       << inverse_status_name(controller.status());
-  for (const sim::ContactPoint& point : simulation.contact_points(0)) {
+  for (const sim::ContactPoint& point : simulation.contacts().points(0)) {
     EXPECT_GT(point.gap, -1e-7);
   }
 }

@@ -4,12 +4,14 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <span>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
 #include "sinew/linalg/dense.hpp"
+#include "sinew/pcc/arm_dynamics.hpp"
 #include "sinew/pcc/arm_equations.hpp"
 #include "sinew/pcc/stumpff.hpp"
 
@@ -296,6 +298,27 @@ TEST_P(ArmKinds, PointsMoveByTheirJacobian) {
   const auto before = equations.point(place, q - h * rate, rate);
   EXPECT_LT(((after.position - before.position) / (2.0 * h) - here.jacobian * rate).norm(), 1e-8);
   EXPECT_LT(((after.jacobian - before.jacobian) / (2.0 * h) - here.jacobian_rate).norm(), 1e-7);
+}
+
+TEST_P(ArmKinds, SectionsTurnByTheirAngularJacobian) {
+  const VectorX q = random_vector(random, n, 1.0), rate = random_vector(random, n, 2.0);
+  ArmDynamics<double> dynamics(arm);
+  const auto numbers = [](const VectorX& v) {
+    return std::span<const double>(v.data(), static_cast<std::size_t>(v.size()));
+  };
+  for (int segment = 0; segment < arm->segments(); ++segment) {
+    const ArmPoint place{segment, 0.6, 0.01, -0.02, 0.005};
+    const double h = 1e-6;
+    const auto rotation = [&](double time) {
+      const VectorX moved = q + time * rate;
+      dynamics.place(numbers(moved));
+      return plain(dynamics.rotation(place));
+    };
+    const Matrix3 spin = (rotation(h) - rotation(-h)) / (2.0 * h) * rotation(0.0).transpose();
+    dynamics.set(numbers(q), numbers(rate), numbers(rate));
+    const Vector3 omega = plain(dynamics.angular_velocity(place));
+    EXPECT_LT((omega - Vector3(spin(2, 1), spin(0, 2), spin(1, 0))).norm(), 1e-8);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, ArmKinds,

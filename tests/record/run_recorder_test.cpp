@@ -30,6 +30,7 @@
 #include "sinew/record/run_file.hpp"
 #include "sinew/record/run_layout.hpp"
 #include "sinew/sim/actuator.hpp"
+#include "sinew/sim/contact_reader.hpp"
 #include "sinew/sim/contact_settings.hpp"
 #include "sinew/sim/contact_state.hpp"
 #include "sinew/sim/model.hpp"
@@ -226,7 +227,7 @@ TEST_F(RunRecorderTest, ContactsReadBackBitForBit) {
   RunRecorder recorder(sim::Observables(simulation), with_series);
   std::vector<std::array<sim::ContactMoment, 2>> seen;
   for (int k = 0; k <= 40; ++k) {
-    seen.push_back({simulation.contact_moment(0), simulation.contact_moment(1)});
+    seen.push_back({simulation.contacts().moment(0), simulation.contacts().moment(1)});
     simulation.step();
     recorder.after_step();
   }

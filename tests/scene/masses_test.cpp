@@ -12,6 +12,7 @@
 #include "sinew/scene/scene.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/simulation.hpp"
+#include "sinew/sim/state.hpp"
 
 namespace sinew::scene {
 namespace {
@@ -92,10 +93,10 @@ TEST(InitialVelocity, IsThatOfARigidBody) {
     if (rest(i, 0) == 0.0) expected.setZero();  // it is held there
     EXPECT_LT((body.velocities().row(i).transpose() - expected).norm(), 1e-15);
   }
-  const std::uint64_t start = simulation.state_hash();
+  const std::uint64_t start = simulation.state().hash();
   simulation.step();
   simulation.reset();
-  EXPECT_EQ(simulation.state_hash(), start);
+  EXPECT_EQ(simulation.state().hash(), start);
 }
 
 TEST(InitialVelocity, NeedsInertia) {

@@ -18,6 +18,7 @@
 #include "sinew/pcc/has_arm.hpp"
 #include "sinew/sim/actuator.hpp"
 #include "sinew/sim/cable_settings.hpp"
+#include "sinew/sim/contact_reader.hpp"
 #include "sinew/sim/contact_settings.hpp"
 #include "sinew/sim/contact_state.hpp"
 #include "sinew/sim/force_settings.hpp"
@@ -138,7 +139,7 @@ TEST(ArmBody, HeldBendsAreNoHindranceToOpenContacts) {
       Simulation simulation(commanded(step, 0.1, 1.0, friction));
       for (int k = 0; k < 5; ++k) simulation.step();
       EXPECT_NEAR(simulation.actuator(0).motion, 0.1, 1e-9);
-      EXPECT_EQ(simulation.contact_sum(0).normal_force, 0.0);
+      EXPECT_EQ(simulation.contacts().sum(0).normal_force, 0.0);
       // Where they lead into the wall, no force can help.
       Simulation blocked(commanded(step, 0.5, 0.05, friction));
       Simulation mirrored(commanded(step, -0.5, 0.05, friction));
@@ -230,7 +231,7 @@ TEST(ArmBody, StateGoesOnAsItWas) {
     first.step();
     second.step();
   }
-  EXPECT_EQ(first.state_hash(), second.state_hash());
+  EXPECT_EQ(first.state().hash(), second.state().hash());
 }
 
 TEST(ArmBody, LedgerBalancesOverASwing) {
@@ -244,9 +245,9 @@ TEST(ArmBody, LedgerBalancesOverASwing) {
   for (int i = 0; i < 1000; ++i) simulation.step();
   const mechanics::Energies energies = simulation.energies();
   const double gained = energies.strain + energies.kinetic + energies.gravity;
-  EXPECT_GT(simulation.actuator_work(), 1e-3);
-  EXPECT_NEAR(simulation.actuator_work() - simulation.dissipation() - gained, 0.0,
-              1e-3 * simulation.actuator_work());
+  EXPECT_GT(simulation.ledger().actuators, 1e-3);
+  EXPECT_NEAR(simulation.ledger().actuators - simulation.ledger().dissipated - gained, 0.0,
+              1e-3 * simulation.ledger().actuators);
 }
 
 TEST(ArmBody, SkinFollowsTheAxis) {

@@ -158,7 +158,7 @@ TEST(Chamber, SavedStatesHoldTheGas) {
     a.step();
     b.step();
   }
-  EXPECT_EQ(a.state_hash(), b.state_hash());
+  EXPECT_EQ(a.state().hash(), b.state().hash());
   a.reset();
   EXPECT_DOUBLE_EQ(a.drive_state(0)[0], kVoid);
 }

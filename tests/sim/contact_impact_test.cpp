@@ -12,6 +12,7 @@
 #include "sinew/fem/fem_model.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mesh/shapes.hpp"
+#include "sinew/sim/contact_reader.hpp"
 #include "sinew/sim/contact_settings.hpp"
 #include "sinew/sim/contact_state.hpp"
 #include "sinew/sim/model_builder.hpp"
@@ -86,7 +87,7 @@ Outcome impact(const Throw& options) {
     const mechanics::Energies now = simulation.energies();
     energy = now.kinetic + now.strain;
     outcome.growth = std::max(outcome.growth, energy / start - 1.0);
-    const double force = simulation.contact_sum(0).normal_force;
+    const double force = simulation.contacts().sum(0).normal_force;
     outcome.impulse += force * options.time_step / momentum;
     if (!(force > 0.0)) continue;
     if (first < 0.0) first = simulation.time() - options.time_step;
@@ -148,7 +149,7 @@ TEST(Impact, SmoothPhasesKeepTheSecondOrder) {
     const auto steps = std::lround(eighth / time_step);
     for (long k = 0; k < steps; ++k) {
       simulation.step();
-      EXPECT_GT(simulation.contact_sum(0).normal_force, 0.0);
+      EXPECT_GT(simulation.contacts().sum(0).normal_force, 0.0);
     }
     return simulation.body(0).positions().col(2).maxCoeff();  // of the free end
   };

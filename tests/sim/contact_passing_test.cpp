@@ -9,6 +9,7 @@
 
 #include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/sim/base_motion.hpp"
+#include "sinew/sim/contact_reader.hpp"
 #include "sinew/sim/contact_settings.hpp"
 #include "sinew/sim/contact_state.hpp"
 #include "sinew/sim/model.hpp"
@@ -89,7 +90,7 @@ TEST(Passing, BodiesThatMissFeelNothing) {
           const auto steps = std::lround(0.16 / c.speed / c.time_step) + 1;
           for (long k = 0; k < steps; ++k) {
             simulation.step();
-            ASSERT_EQ(simulation.contact_sum(0).normal_force, 0.0)
+            ASSERT_EQ(simulation.contacts().sum(0).normal_force, 0.0)
                 << c.speed << " m/s, " << c.time_step << " s, surface " << surface.index();
           }
           EXPECT_LT((mean_velocity(simulation) - c.speed * Vector3::UnitX()).norm(),
@@ -109,7 +110,7 @@ TEST(Passing, SurfacesThatMissAreNotFelt) {
     Simulation& simulation = *flown;
     for (int k = 0; k < 13; ++k) {
       simulation.step();
-      EXPECT_EQ(simulation.contact_sum(0).normal_force, 0.0);
+      EXPECT_EQ(simulation.contacts().sum(0).normal_force, 0.0);
     }
     EXPECT_LT(mean_velocity(simulation).norm(), 1e-15);
   }
@@ -143,7 +144,7 @@ TEST(Passing, NothingGoesThroughASurface) {
           bool touched = false;
           for (int k = 0; k < 4; ++k) {
             simulation.step();
-            const ContactSum sum = simulation.contact_sum(0);
+            const ContactSum sum = simulation.contacts().sum(0);
             EXPECT_GE(sum.smallest_gap, -1e-9);
             // A fraction of a millimetre is slip. Later on, or in Newton's later iterates, the
             // front may slip off sideways: a ball before its middle is no rest.
@@ -171,13 +172,13 @@ TEST(Passing, ImpactsAreThoseOfThePlaceWhereTheyHappen) {
       const auto flown =
           flying({.surface = ball, .speed = 1.0, .time_step = time_step, .method = method});
       Simulation& simulation = *flown;
-      while (!(simulation.contact_sum(0).normal_force > 0.0)) {
+      while (!(simulation.contacts().sum(0).normal_force > 0.0)) {
         ASSERT_LT(simulation.time(), 0.05);
         simulation.step();
       }
       double most = 0.0;
       Vector3 normal = Vector3::Zero();
-      for (const ContactPoint& point : simulation.contact_points(0)) {
+      for (const ContactPoint& point : simulation.contacts().points(0)) {
         if (point.normal_force <= most) continue;
         most = point.normal_force;
         normal = point.normal;
@@ -201,7 +202,7 @@ TEST(Passing, RunsGoOnFromASavedStateBitForBit) {
     State state = first->state();
     second->restore(state);
     for (int k = 0; k < 9; ++k) second->step();
-    EXPECT_EQ(second->state_hash(), whole->state_hash());
+    EXPECT_EQ(second->state().hash(), whole->state().hash());
     EXPECT_LT(mean_velocity(*whole)[0], 0.99);  // it did touch
   }
 }

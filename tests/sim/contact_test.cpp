@@ -16,6 +16,7 @@
 #include "sinew/sim/actuator.hpp"
 #include "sinew/sim/base_motion.hpp"
 #include "sinew/sim/cable_settings.hpp"
+#include "sinew/sim/contact_reader.hpp"
 #include "sinew/sim/contact_settings.hpp"
 #include "sinew/sim/contact_state.hpp"
 #include "sinew/sim/force_settings.hpp"
@@ -46,7 +47,7 @@ TEST(Contact, BlockSticksBelowTheFrictionAngle) {
     for (int k = 0; k < 500; ++k) simulation.step();
     const Vector3 after = simulation.body(0).positions().colwise().mean();
     EXPECT_LT((after - before).norm(), 1e-9) << share;
-    const ContactSum sum = simulation.contact_sum(0);
+    const ContactSum sum = simulation.contacts().sum(0);
     EXPECT_NEAR(sum.normal_force, kBlockWeight * std::cos(share * critical), 1e-6 * kBlockWeight);
     EXPECT_NEAR(sum.force[0], -kBlockWeight * std::sin(share * critical), 1e-6 * kBlockWeight);
     EXPECT_LT(simulation.report().contact_residual, 1e-9);
@@ -63,7 +64,7 @@ TEST(Contact, BlockSlidesAsCoulombSaysAboveIt) {
     const double acceleration = (mean_velocity(simulation)[0] - before) / 0.4;
     const double expected = kGravity * (std::sin(angle) - 0.5 * std::cos(angle));
     EXPECT_NEAR(acceleration, expected, 1e-3 * expected) << angle;
-    const ContactSum sum = simulation.contact_sum(0);
+    const ContactSum sum = simulation.contacts().sum(0);
     EXPECT_EQ(sum.sticking, 0);
     EXPECT_NEAR(sum.friction_force, 0.5 * sum.normal_force, 1e-9 * kBlockWeight);
   }
@@ -83,7 +84,7 @@ TEST(Contact, RestingForcesDoNotDependOnTheTimeStep) {
     Simulation simulation(block_on_plane(options).build());
     for (int k = 0; k < 400; ++k) simulation.step();
     double sum = 0.0;
-    const auto points = simulation.contact_points(0);
+    const auto points = simulation.contacts().points(0);
     for (std::size_t k = 0; k < points.size(); ++k) {
       sum += points[k].normal_force;
       EXPECT_GE(points[k].gap, -1e-12);
@@ -113,7 +114,7 @@ TEST(Contact, ImpactTakesEnergyAndNeverGivesAny) {
         const double after = total(simulation);
         EXPECT_LE(after, before + 1e-9 * fall) << k;
         before = after;
-        touched |= simulation.contact_sum(0).normal_force > 0.0;
+        touched |= simulation.contacts().sum(0).normal_force > 0.0;
       }
       EXPECT_TRUE(touched);
       EXPECT_LT(before, -0.9 * fall);  // it no longer bounces
@@ -159,15 +160,16 @@ TEST(Contact, LedgerOfACarriedBlock) {
   for (int k = 0; k < 500; ++k) {
     simulation.step();
     const double now =
-        start + simulation.outside_work() - simulation.dissipation() - total(simulation);
+        start + simulation.ledger().outside - simulation.ledger().dissipated - total(simulation);
     EXPECT_GE(now, lost - 1e-12);
     lost = now;
   }
   // The belt runs at 0.2 m/s; the block slips until it has its speed, then it sticks.
   EXPECT_NEAR(mean_velocity(simulation)[0], 0.2, 1e-6);
-  EXPECT_GT(simulation.contact_sum(0).sticking, 20);
+  EXPECT_GT(simulation.contacts().sum(0).sticking, 20);
   const double kinetic = simulation.energies().kinetic;
-  EXPECT_NEAR(simulation.outside_work(), 2.0 * kinetic, 0.05 * kinetic);  // half of it became heat
+  EXPECT_NEAR(simulation.ledger().outside, 2.0 * kinetic,
+              0.05 * kinetic);  // half of it became heat
 }
 
 mesh::Mesh block_mesh(int cells) {
@@ -207,7 +209,7 @@ TEST(Contact, BallPressedIntoABlockIsNotPenetrated) {
       for (int k = 0; k < 10; ++k) simulation.step();
       simulation.solve_static();
       int closed = 0;
-      for (const ContactPoint& point : simulation.contact_points(0)) {
+      for (const ContactPoint& point : simulation.contacts().points(0)) {
         EXPECT_GE(point.gap, -1e-9 * 0.06);
         if (point.normal_force > 0.0) {
           ++closed;
@@ -215,7 +217,7 @@ TEST(Contact, BallPressedIntoABlockIsNotPenetrated) {
         }
       }
       EXPECT_GT(closed, 8);
-      EXPECT_LT(simulation.contact_sum(0).force[2], -0.1);
+      EXPECT_LT(simulation.contacts().sum(0).force[2], -0.1);
     }
   }
 }
@@ -228,8 +230,8 @@ TEST(Contact, FrictionlessStaticsDoNotDependOnTheWay) {
   Simulation fast(pressed_by_a_ball(Method::one_linearisation, 0.0, 0.004));
   for (int k = 0; k < 10; ++k) fast.step();
   fast.solve_static();
-  const Vector3 expected = slow.contact_sum(0).force;
-  EXPECT_LT((fast.contact_sum(0).force - expected).norm(), 1e-6 * expected.norm());
+  const Vector3 expected = slow.contacts().sum(0).force;
+  EXPECT_LT((fast.contacts().sum(0).force - expected).norm(), 1e-6 * expected.norm());
 }
 
 /// Two capsules along y that close on a block from both sides and hold it by friction.
@@ -257,7 +259,7 @@ TEST(Contact, TwoCapsulesHoldABlockByFriction) {
     Simulation simulation(builder.build());
     for (int k = 0; k < 300; ++k) simulation.step();
     const double fallen = -mean_velocity(simulation)[2];
-    const ContactSum left = simulation.contact_sum(0), right = simulation.contact_sum(1);
+    const ContactSum left = simulation.contacts().sum(0), right = simulation.contacts().sum(1);
     if (friction > 0.5) {
       EXPECT_NEAR(left.force[2] + right.force[2], kBlockWeight, 1e-3 * kBlockWeight);
       EXPECT_NEAR(left.force[0], -right.force[0], 1e-3 * left.normal_force);
@@ -298,7 +300,7 @@ TEST(Contact, ActuatorsAndContactsShareOneProblem) {
     Simulation simulation(builder.build());
     for (int k = 0; k < 5; ++k) simulation.step();
     EXPECT_LT(simulation.report().violation, 1e-9);
-    const ContactSum sum = simulation.contact_sum(0);
+    const ContactSum sum = simulation.contacts().sum(0);
     const ActuatorState& state = simulation.actuator(0);
     EXPECT_GE(sum.smallest_gap, -1e-12);
     EXPECT_GT(sum.normal_force, 0.0);
@@ -355,8 +357,8 @@ TEST(Contact, CablesWithFrictionAndContactsShareOneProblem) {
     }
     EXPECT_LT((far.body(0).positions() - free.body(0).positions()).cwiseAbs().maxCoeff(), 1e-9);
     EXPECT_LT(far.body(0).positions().col(2).minCoeff(), -0.004);
-    EXPECT_EQ(far.contact_sum(0).normal_force, 0.0);
-    const ContactSum sum = near.contact_sum(0);
+    EXPECT_EQ(far.contacts().sum(0).normal_force, 0.0);
+    const ContactSum sum = near.contacts().sum(0);
     EXPECT_GE(sum.smallest_gap, -1e-9);
     EXPECT_GT(sum.normal_force, 0.01);
     // Along the cable the tension falls by no more than friction takes.
@@ -403,10 +405,10 @@ TEST(Contact, PointsThatStayAwayChangeNothing) {
       left_out += whole.world().contacts().leave_points_out() ? 1 : 0;
     }
     EXPECT_EQ(left_out, 150);
-    EXPECT_GT(bottom.contact_sum(0).normal_force, 0.0);
+    EXPECT_GT(bottom.contacts().sum(0).normal_force, 0.0);
     EXPECT_LT((whole.body(0).positions() - bottom.body(0).positions()).cwiseAbs().maxCoeff(),
               1e-9 * 0.06);
-    EXPECT_NEAR(whole.contact_sum(0).normal_force, bottom.contact_sum(0).normal_force,
+    EXPECT_NEAR(whole.contacts().sum(0).normal_force, bottom.contacts().sum(0).normal_force,
                 1e-6 * kBlockWeight);
   }
 }
@@ -437,7 +439,7 @@ TEST(Contact, PointsThatArriveUnexpectedlyAreTakenIn) {
       builder.add_force(push);
       Simulation simulation(builder.build());
       simulation.step();
-      const ContactSum sum = simulation.contact_sum(0);
+      const ContactSum sum = simulation.contacts().sum(0);
       EXPECT_GE(sum.smallest_gap, -1e-9 * 0.06);
       if (pushed < 1.0) {
         EXPECT_EQ(sum.normal_force, 0.0);
@@ -469,10 +471,10 @@ TEST(Contact, RunsGoOnFromASavedStateBitForBit) {
   State state = first.state();
   second.restore(state);
   for (int k = 0; k < 30; ++k) second.step();
-  EXPECT_EQ(second.state_hash(), whole.state_hash());
+  EXPECT_EQ(second.state().hash(), whole.state().hash());
   whole.reset();
   for (int k = 0; k < 60; ++k) whole.step();
-  EXPECT_EQ(second.state_hash(), whole.state_hash());
+  EXPECT_EQ(second.state().hash(), whole.state().hash());
 }
 
 /// The fingerprint of a block with one contact, changed.
@@ -555,7 +557,7 @@ TEST(Contact, ThreadsGiveTheSameBits) {
     Simulation simulation(block_on_plane({.angle = 0.3, .height = 1e-4}).build(factorisation),
                           threads);
     for (int k = 0; k < 60; ++k) simulation.step();
-    hashes.push_back(simulation.state_hash());
+    hashes.push_back(simulation.state().hash());
   }
   EXPECT_EQ(hashes[0], hashes[1]);
 }
@@ -582,7 +584,7 @@ TEST(Contact, StiffBodiesLandInLongSteps) {
         Simulation simulation(block_on_plane(options).build());
         for (int k = 0; k < 60; ++k) {
           simulation.step();
-          ASSERT_EQ(simulation.contact_result().status, qp::ConeStatus::solved)
+          ASSERT_EQ(simulation.contacts().result().status, qp::ConeStatus::solved)
               << modulus << " Pa, " << time_step << " s, mu " << friction << ", step " << k;
         }
       }

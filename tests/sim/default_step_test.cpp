@@ -142,7 +142,7 @@ TEST(DefaultStep, TheWatchOfEnergyGoesWithTheState) {
     back->restore(state);
     for (int k = 0; k < 30; ++k) EXPECT_EQ(back->step().status, StepStatus::solved);
     EXPECT_EQ(back->report().energy_gained, gained);
-    EXPECT_EQ(back->dissipation(), run.dissipation());
+    EXPECT_EQ(back->ledger().dissipated, run.ledger().dissipated);
   }
 }
 
@@ -187,7 +187,7 @@ TEST(DefaultStep, ReusedAssemblyDoesNotChangeABit) {
     halves.restore(halves.state());
     halves.energies();
   }
-  EXPECT_EQ(whole.state_hash(), halves.state_hash());
+  EXPECT_EQ(whole.state().hash(), halves.state().hash());
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "sinew/inverse/inverse_controller.hpp"
 #include "sinew/sim/actuator.hpp"
 #include "sinew/sim/simulation.hpp"
+#include "sinew/sim/state.hpp"
 
 #include "robots.hpp"
 
@@ -30,7 +31,7 @@ std::uint64_t hash_after_200_steps(int threads) {
   for (int thread = 0; thread < threads; ++thread) {
     EXPECT_GE(simulation.work_done(thread), 200) << "thread " << thread << " of " << threads;
   }
-  return simulation.state_hash();
+  return simulation.state().hash();
 }
 
 TEST(Determinism, OneTwoAndFourThreadsGiveTheSameBits) {
@@ -49,7 +50,7 @@ TEST(Determinism, SimulationsSideBySideAgreeWithOneAlone) {
       Simulation simulation(model);
       simulation.command(0, sinew::testing::pull(0.003));
       for (int i = 0; i < 50; ++i) simulation.step();
-      hash = simulation.state_hash();
+      hash = simulation.state().hash();
     });
   }
   for (auto& thread : threads) thread.join();

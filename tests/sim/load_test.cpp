@@ -22,6 +22,7 @@
 #include "sinew/sim/model_builder.hpp"
 #include "sinew/sim/signal.hpp"
 #include "sinew/sim/simulation.hpp"
+#include "sinew/sim/state.hpp"
 
 namespace sinew::sim {
 namespace {
@@ -194,7 +195,7 @@ TEST(Water, BodyAsHeavyAsWaterFloatsWhereItIs) {
       EXPECT_LT(simulation.body(0).velocities().col(2).mean(), -0.05);
       const double terminal = std::sqrt(100.0 * 9.81 * 0.02 / (1000.0 * 0.9));
       EXPECT_GT(simulation.body(0).velocities().col(2).mean(), -1.05 * terminal);
-      EXPECT_GT(simulation.dissipation(), 0.0);
+      EXPECT_GT(simulation.ledger().dissipated, 0.0);
     }
   }
 }

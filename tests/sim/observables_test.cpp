@@ -14,6 +14,7 @@
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/pcc/arm.hpp"
 #include "sinew/sim/actuator.hpp"
+#include "sinew/sim/contact_reader.hpp"
 #include "sinew/sim/contact_state.hpp"
 #include "sinew/sim/effector_settings.hpp"
 #include "sinew/sim/force_settings.hpp"
@@ -180,7 +181,7 @@ TEST(Observables, TheLedgerBeginsWithTheFirstReading) {
   simulation.command(0, ramp(CommandKind::motion, 0.005));
   for (int k = 0; k < 5; ++k) simulation.step();
   Observables list(simulation);
-  const double before = simulation.actuator_work();
+  const double before = simulation.ledger().actuators;
   EXPECT_GT(before, 0.0);
   for (const char* name : {"actuator_work", "outside_work", "dissipation", "numerical_loss"}) {
     EXPECT_EQ(value(list, name), 0.0) << name;
@@ -192,7 +193,7 @@ TEST(Observables, TheLedgerBeginsWithTheFirstReading) {
   const double start = energy();
   for (int k = 0; k < 5; ++k) simulation.step();
   list.refresh();
-  EXPECT_EQ(value(list, "actuator_work"), simulation.actuator_work() - before);
+  EXPECT_EQ(value(list, "actuator_work"), simulation.ledger().actuators - before);
   EXPECT_DOUBLE_EQ(value(list, "numerical_loss"),
                    value(list, "actuator_work") + value(list, "outside_work") -
                        value(list, "dissipation") - (energy() - start));
@@ -205,7 +206,7 @@ TEST(Observables, ContactsArmsAndTwoBodies) {
   for (int k = 0; k < 40; ++k) {
     simulation.step();
     list.refresh();
-    const ContactSum sum = simulation.contact_sum(0);
+    const ContactSum sum = simulation.contacts().sum(0);
     EXPECT_EQ(values(list, "floor.force"), numbers(sum.force));
     EXPECT_EQ(value(list, "floor.normal_force"), sum.normal_force);
     EXPECT_EQ(value(list, "floor.friction_force"), sum.friction_force);
@@ -213,7 +214,7 @@ TEST(Observables, ContactsArmsAndTwoBodies) {
     EXPECT_EQ(value(list, "floor.sticking"), sum.sticking);
     EXPECT_EQ(value(list, "floor.slipping"), sum.slipping);
     friction = std::max(friction, sum.friction_force);
-    const ContactMoment moment = simulation.contact_moment(0);
+    const ContactMoment moment = simulation.contacts().moment(0);
     const Eigen::Matrix<double, 3, 4> pose = moment.pose.affine();
     EXPECT_TRUE(std::ranges::equal(values(list, "floor.pose"), pose.reshaped<Eigen::RowMajor>()));
     for (std::size_t p = 0; p < moment.points.size(); ++p) {

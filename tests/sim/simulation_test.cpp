@@ -8,6 +8,7 @@
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/sim/actuator.hpp"
+#include "sinew/sim/state.hpp"
 #include "sinew/sim/world.hpp"
 
 #include "robots.hpp"
@@ -230,17 +231,17 @@ TEST(Simulation, DynamicTensionIsInNewtons) {
 
 TEST(Simulation, ResetRestoresTheStartBitForBit) {
   Simulation simulation(beam());
-  const auto start = simulation.state_hash();
+  const auto start = simulation.state().hash();
   simulation.command(0, pull(0.004));
   run(simulation, 20);
-  const auto first = simulation.state_hash();
+  const auto first = simulation.state().hash();
   EXPECT_NE(first, start);
   simulation.reset();
-  EXPECT_EQ(simulation.state_hash(), start);
+  EXPECT_EQ(simulation.state().hash(), start);
   EXPECT_EQ(simulation.steps(), 0);
   simulation.command(0, pull(0.004));
   run(simulation, 20);
-  EXPECT_EQ(simulation.state_hash(), first);
+  EXPECT_EQ(simulation.state().hash(), first);
 }
 
 TEST(Simulation, SimulationsOfOneModelDoNotTouchEachOther) {
@@ -277,14 +278,14 @@ TEST(Simulation, NotANumberInAForceStopsTheRunAndKeepsTheState) {
   Simulation simulation(beam());
   simulation.command(0, pull(0.001));
   run(simulation, 5);
-  const auto before = simulation.state_hash();
+  const auto before = simulation.state().hash();
   mechanics::as<mechanics::TakesForces>(simulation.body(0))
       ->external_forces()(simulation.body(0).positions().rows() - 1, 0) = NAN;
   const auto kind = kind_of([&] { simulation.step(); });
   EXPECT_TRUE(kind == ErrorKind::diverged || kind == ErrorKind::not_converged ||
               kind == ErrorKind::singular_matrix)
       << error_kind_name(kind);
-  EXPECT_EQ(simulation.state_hash(), before);
+  EXPECT_EQ(simulation.state().hash(), before);
 }
 
 TEST(Simulation, BadModelsAreErrors) {

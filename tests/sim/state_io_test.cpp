@@ -26,11 +26,11 @@ using sinew::testing::BeamOptions;
 using sinew::testing::pull;
 
 ErrorKind kind_of(Simulation& simulation, std::string_view bytes) {
-  const auto before = simulation.state_hash();
+  const auto before = simulation.state().hash();
   try {
     parse_state(simulation, bytes, "test.state");
   } catch (const Error& error) {
-    EXPECT_EQ(simulation.state_hash(), before) << "a refused state changes nothing";
+    EXPECT_EQ(simulation.state().hash(), before) << "a refused state changes nothing";
     EXPECT_EQ(error.place().file, "test.state");
     return error.kind();
   }
@@ -49,12 +49,12 @@ TEST(StateIo, ARunGoesOnBitForBit) {
   load_state(second, path);
   std::filesystem::remove(path);
   EXPECT_EQ(second.steps(), 7);
-  EXPECT_EQ(second.state_hash(), first.state_hash());
+  EXPECT_EQ(second.state().hash(), first.state().hash());
   for (int i = 0; i < 5; ++i) {
     first.step();
     second.step();
   }
-  EXPECT_EQ(second.state_hash(), first.state_hash());
+  EXPECT_EQ(second.state().hash(), first.state().hash());
 }
 
 TEST(StateIo, WrongBytesAreRefused) {

@@ -14,6 +14,7 @@
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/mesh.hpp"
 #include "sinew/sim/simulation.hpp"
+#include "sinew/sim/state.hpp"
 
 #include "robots.hpp"
 
@@ -73,7 +74,7 @@ TEST(Tether, MayBeFarStifferThanTheRobot) {
 TEST(Tether, LetsGoWithoutATrace) {
   sim::Simulation simulation(testing::beam());
   const mechanics::Body& body = simulation.body(0);
-  const auto at_rest = simulation.state_hash();
+  const auto at_rest = simulation.state().hash();
   pulled(simulation).set_tether(end_tether(body.model().mesh(), 100.0, {0.1, 0.0, 0.05}));
   for (int k = 0; k < 20; ++k) simulation.step();
   EXPECT_GT((body.positions() - body.model().mesh().nodes).cwiseAbs().maxCoeff(), 1e-3);
@@ -81,7 +82,7 @@ TEST(Tether, LetsGoWithoutATrace) {
   for (int k = 0; k < 60; ++k) simulation.step();
   EXPECT_LT((body.positions() - body.model().mesh().nodes).cwiseAbs().maxCoeff(), 1e-12);
   simulation.reset();
-  EXPECT_EQ(simulation.state_hash(), at_rest);
+  EXPECT_EQ(simulation.state().hash(), at_rest);
 }
 
 TEST(Tether, RefusesWhatIsNoFace) {

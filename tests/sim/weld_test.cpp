@@ -10,6 +10,7 @@
 #include "sinew/core/error.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/sim/actuator.hpp"
+#include "sinew/sim/contact_reader.hpp"
 #include "sinew/sim/contact_state.hpp"
 #include "sinew/sim/joint_settings.hpp"
 #include "sinew/sim/linearisation.hpp"
@@ -151,9 +152,9 @@ TEST(Weld, StandsBesideContactAndFrictionOfCables) {
     }
     EXPECT_LT((tip_of(cut) - tip_of(whole)).norm(), 1e-6 * kBeamLength) << k;
   }
-  EXPECT_GT(whole.contact_sum(0).normal_force, 0.0);
-  EXPECT_NEAR(cut.contact_sum(0).normal_force, whole.contact_sum(0).normal_force,
-              1e-4 * whole.contact_sum(0).normal_force);
+  EXPECT_GT(whole.contacts().sum(0).normal_force, 0.0);
+  EXPECT_NEAR(cut.contacts().sum(0).normal_force, whole.contacts().sum(0).normal_force,
+              1e-4 * whole.contacts().sum(0).normal_force);
 }
 
 TEST(Weld, HoldsBetweenTwoBodiesThatAreFixed) {

@@ -9,6 +9,7 @@
 
 #include "sinew/inverse/inverse_controller.hpp"
 #include "sinew/sim/simulation.hpp"
+#include "sinew/sim/state.hpp"
 
 #include "robot_fixture.hpp"
 
@@ -63,7 +64,7 @@ TEST(FollowSource, ShowsWhatTheScriptDid) {
   ASSERT_TRUE(script.update());
   ASSERT_TRUE(script.update());
   EXPECT_EQ(script.watcher.frame()->step, 21U);
-  EXPECT_EQ(script.watcher.frame()->hash, script.simulation->state_hash());
+  EXPECT_EQ(script.watcher.frame()->hash, script.simulation->state().hash());
 }
 
 TEST(FollowSource, CarriesOutRequestsInTurnsOnly) {

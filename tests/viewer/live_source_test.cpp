@@ -15,6 +15,7 @@
 #include "sinew/sim/actuator.hpp"
 #include "sinew/sim/signal.hpp"
 #include "sinew/sim/simulation.hpp"
+#include "sinew/sim/state.hpp"
 
 #include "robot_fixture.hpp"
 #include "viewer/robot_state.hpp"
@@ -64,7 +65,7 @@ TEST(LiveSource, StepsExactlyAndAsASimulationDoes) {
   sim::Simulation simulation(same.model);
   simulation.command(0, {sim::CommandKind::effort, sim::Signal::constant(1.5)});
   for (int k = 0; k < 25; ++k) simulation.step();
-  EXPECT_EQ(frame->hash, simulation.state_hash());
+  EXPECT_EQ(frame->hash, simulation.state().hash());
   EXPECT_EQ(frame->signals[0], simulation.actuator(0).effort);
   EXPECT_FALSE(frame->bodies[0].fields[2].empty()) << "a field that was asked for";
   EXPECT_TRUE(frame->bodies[0].fields[0].empty()) << "a field that nobody asked for";

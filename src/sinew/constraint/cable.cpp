@@ -72,7 +72,7 @@ void Cable::declare(mechanics::RowPattern& rows, std::vector<mechanics::RowCurva
   row_count_ = 1;
   const int skip = pull_point_ ? 1 : 0;
   for (int via = 0; friction_ && via < via_count(); ++via, ++row_count_) {
-    rows.add_row({points_.begin() + (via + 1 - skip), points_.end()});
+    rows.add_row(std::span(points_).subspan(static_cast<std::size_t>(via + 1 - skip)));
   }
   first_curvature_ = static_cast<int>(curvatures.size());
   for (std::size_t i = 0; i < points_.size(); ++i) {

@@ -83,10 +83,44 @@ void PointEffector::target_delta(const Placement&, const Vector3& target,
   }
 }
 
-OrientationEffector::OrientationEffector(std::string name,
+Vector3 OrientationEffector::value(const Placement& placement) const {
+  return rotation_vector(rotation(placement));
+}
+
+void OrientationEffector::target_delta(const Placement& placement, const Vector3& target,
+                                       Eigen::Ref<VectorX> delta) const {
+  // The rows measure the spin from here on, so the target is "now plus the rotation still to go".
+  const Matrix3 now = rotation(placement);
+  delta = value(placement) + rotation_vector(rotation_matrix(target) * now.transpose());
+}
+
+SectionOrientation::SectionOrientation(std::string name, mechanics::Orientation section)
+    : OrientationEffector(std::move(name)), section_(section) {}
+
+void SectionOrientation::declare(mechanics::RowPattern& rows,
+                                 std::vector<mechanics::RowCurvature>&) {
+  first_row_ = rows.rows();
+  first_entry_ = rows.entries();
+  row_count_ = 3;
+  for (int k = 0; k < 3; ++k) rows.add_row({section_});
+}
+
+void SectionOrientation::linearise(const Placement& placement, mechanics::RowValues& values) const {
+  const Vector3 now = value(placement);
+  for (int k = 0; k < 3; ++k) {
+    values.direction[static_cast<std::size_t>(first_entry_ + k)] = Vector3::Unit(k);
+    values.delta[first_row_ + k] = now[k];
+  }
+}
+
+Matrix3 SectionOrientation::rotation(const Placement& placement) const {
+  return placement.rotation(section_);
+}
+
+TriangleOrientation::TriangleOrientation(std::string name,
                                          std::array<mechanics::MaterialPoint, 3> points,
                                          const std::array<Vector3, 3>& rest)
-    : Effector(std::move(name), {}), points_(points) {
+    : OrientationEffector(std::move(name)), points_(points) {
   const Vector3 base = rest[1] - rest[0];
   const double height = base.cross(rest[2] - rest[0]).norm() / base.norm();
   if (!(height > kFlattest * base.norm())) {
@@ -97,7 +131,7 @@ OrientationEffector::OrientationEffector(std::string name,
   rest_frame_ = triangle_frame(rest[0], rest[1], rest[2]);
 }
 
-void OrientationEffector::declare(mechanics::RowPattern& rows,
+void TriangleOrientation::declare(mechanics::RowPattern& rows,
                                   std::vector<mechanics::RowCurvature>&) {
   first_row_ = rows.rows();
   first_entry_ = rows.entries();
@@ -105,7 +139,7 @@ void OrientationEffector::declare(mechanics::RowPattern& rows,
   for (int k = 0; k < 3; ++k) rows.add_row({points_[0], points_[1], points_[2]});
 }
 
-void OrientationEffector::linearise(const Placement& placement,
+void TriangleOrientation::linearise(const Placement& placement,
                                     mechanics::RowValues& values) const {
   const Vector3 a = placement.position(points_[0]);
   const Vector3 b = placement.position(points_[1]);
@@ -133,21 +167,10 @@ void OrientationEffector::linearise(const Placement& placement,
   }
 }
 
-Matrix3 OrientationEffector::rotation(const Placement& placement) const {
+Matrix3 TriangleOrientation::rotation(const Placement& placement) const {
   return triangle_frame(placement.position(points_[0]), placement.position(points_[1]),
                         placement.position(points_[2])) *
          rest_frame_.transpose();
-}
-
-Vector3 OrientationEffector::value(const Placement& placement) const {
-  return rotation_vector(rotation(placement));
-}
-
-void OrientationEffector::target_delta(const Placement& placement, const Vector3& target,
-                                       Eigen::Ref<VectorX> delta) const {
-  // The rows measure the spin from here on, so the target is "now plus the rotation still to go".
-  const Matrix3 now = rotation(placement);
-  delta = value(placement) + rotation_vector(rotation_matrix(target) * now.transpose());
 }
 
 }  // namespace sinew::constraint

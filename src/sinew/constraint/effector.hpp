@@ -4,6 +4,7 @@
 
 #include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sinew/constraint/constraint.hpp"
@@ -52,31 +53,58 @@ class PointEffector : public Effector {
   mechanics::MaterialPoint point_;
 };
 
-/// Orientation of the frame through three points a, b, c: e1 along b - a, e3 normal to the
-/// triangle, e2 = e3 x e1. Rows are the rotation's components about the world's axes; value() is
-/// the rotation vector of R = E(now) E(rest)^T. The Jacobian follows from de1 = omega x e1 and the
+/// How something on the robot has turned. Rows are the rotation's components about the world's
+/// axes; value() is the rotation vector of R, the rotation since rest.
+class OrientationEffector : public Effector {
+ public:
+  Vector3 value(const Placement& placement) const override;
+  void target_delta(const Placement& placement, const Vector3& target,
+                    Eigen::Ref<VectorX> delta) const override;
+  const char* unit() const override { return "rad"; }
+
+ protected:
+  explicit OrientationEffector(std::string name) : Effector(std::move(name), {}) {}
+
+ private:
+  virtual Matrix3 rotation(const Placement& placement) const = 0;
+};
+
+/// A part that stays rigid, such as a section of an arm.
+class SectionOrientation : public OrientationEffector {
+ public:
+  /// @param name for messages. @param section its rotation.
+  SectionOrientation(std::string name, mechanics::Orientation section);
+
+  void declare(mechanics::RowPattern& rows,
+               std::vector<mechanics::RowCurvature>& curvatures) override;
+  void linearise(const Placement& placement, mechanics::RowValues& values) const override;
+
+ private:
+  Matrix3 rotation(const Placement& placement) const override;
+
+  mechanics::Orientation section_;
+};
+
+/// The frame through three points a, b, c: e1 along b - a, e3 normal to the triangle,
+/// e2 = e3 x e1; R = E(now) E(rest)^T. The Jacobian follows from de1 = omega x e1 and the
 /// motion of c along e3: omega = omega_1 e1 + omega_2 e2 + omega_3 e3 with
 ///   omega_3 = e2.(b'-a')/|b-a|,  omega_2 = -e3.(b'-a')/|b-a|,
 ///   omega_1 = (e3.(c'-a') + alpha omega_2)/beta,   c - a = alpha e1 + beta e2.
-class OrientationEffector : public Effector {
+class TriangleOrientation : public OrientationEffector {
  public:
   /// @param name for messages.
   /// @param points a, b, c.
   /// @param rest_positions of a, b, c, m. Throws Error(degenerate-orientation) when collinear.
-  OrientationEffector(std::string name, std::array<mechanics::MaterialPoint, 3> points,
+  TriangleOrientation(std::string name, std::array<mechanics::MaterialPoint, 3> points,
                       const std::array<Vector3, 3>& rest_positions);
 
   void declare(mechanics::RowPattern& rows,
                std::vector<mechanics::RowCurvature>& curvatures) override;
   void linearise(const Placement& placement, mechanics::RowValues& values) const override;
-  Vector3 value(const Placement& placement) const override;
-  void target_delta(const Placement& placement, const Vector3& target,
-                    Eigen::Ref<VectorX> delta) const override;
-  const char* unit() const override { return "rad"; }
   void add_to(ValueHash& hash) const override { hash.add(directions_, rest_frame_); }
 
  private:
-  Matrix3 rotation(const Placement& placement) const;
+  Matrix3 rotation(const Placement& placement) const override;
 
   std::array<mechanics::MaterialPoint, 3> points_;
   Matrix3 rest_frame_;

@@ -3,15 +3,35 @@
 #include <cstddef>
 
 #include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 
 namespace sinew::constraint {
 
-Vector3 Placement::position(const mechanics::MaterialPoint& point) const {
-  return bodies_[static_cast<std::size_t>(point.body)]->position(point.point);
+namespace {
+
+const mechanics::Body& body_of(std::span<const std::unique_ptr<mechanics::Body>> bodies,
+                               const mechanics::Site& site) {
+  return *bodies[static_cast<std::size_t>(site.body)];
 }
 
-Vector3 Placement::velocity(const mechanics::MaterialPoint& point) const {
-  return bodies_[static_cast<std::size_t>(point.body)]->velocity(point.point);
+}  // namespace
+
+Vector3 Placement::position(const mechanics::MaterialPoint& point) const {
+  return body_of(bodies_, point).position(point.number);
+}
+
+Matrix3 Placement::rotation(const mechanics::Orientation& section) const {
+  return mechanics::as<const mechanics::HasOrientations>(body_of(bodies_, section))
+      ->rotation(section.number);
+}
+
+double Placement::coordinate(const mechanics::Coordinate& coordinate) const {
+  return mechanics::as<const mechanics::HasCoordinates>(body_of(bodies_, coordinate))
+      ->coordinate(coordinate.number);
+}
+
+Vector3 Placement::velocity(const mechanics::Site& site) const {
+  return body_of(bodies_, site).velocity(site.number);
 }
 
 }  // namespace sinew::constraint

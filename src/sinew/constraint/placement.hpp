@@ -6,7 +6,7 @@
 #include <span>
 
 #include "sinew/core/types.hpp"
-#include "sinew/mechanics/rows.hpp"
+#include "sinew/mechanics/site.hpp"
 
 namespace sinew::mechanics {
 class Body;
@@ -14,14 +14,19 @@ class Body;
 
 namespace sinew::constraint {
 
-/// Where the material points of all bodies are now.
+/// Where the sites of all bodies are now.
 class Placement {
  public:
   explicit Placement(std::span<const std::unique_ptr<mechanics::Body>> bodies) : bodies_(bodies) {}
   /// (3,) m.
   Vector3 position(const mechanics::MaterialPoint& point) const;
-  /// (3,) m/s.
-  Vector3 velocity(const mechanics::MaterialPoint& point) const;
+  /// Rotation since rest.
+  Matrix3 rotation(const mechanics::Orientation& section) const;
+  /// rad or m.
+  double coordinate(const mechanics::Coordinate& coordinate) const;
+  /// (3,) rate of a site's motion: m/s; of an orientation, its angular velocity, rad/s; of a
+  /// coordinate, (rate, 0, 0).
+  Vector3 velocity(const mechanics::Site& site) const;
 
  private:
   std::span<const std::unique_ptr<mechanics::Body>> bodies_;

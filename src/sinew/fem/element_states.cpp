@@ -70,9 +70,9 @@ Points reactions(const HasMaterial& body, const ElementStates& states,
   for (int k = 0; k < rows.rows(); ++k) {
     const auto row = static_cast<std::size_t>(k);
     for (auto e = rows.row_start[row]; e < rows.row_start[row + 1]; ++e) {
-      const auto& point = rows.point[static_cast<std::size_t>(e)];
-      if (point.body != index) continue;
-      const auto& attached = model.attachment(point.point);
+      const auto& site = rows.site[static_cast<std::size_t>(e)];
+      if (site.body != index) continue;
+      const auto& attached = model.attachment(site.number);
       for (std::size_t a = 0; a < attached.nodes.size(); ++a) {
         sum.row(attached.nodes[a]) +=
             effort[row] * attached.weights[a] * directions[static_cast<std::size_t>(e)].transpose();

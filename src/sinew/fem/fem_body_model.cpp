@@ -108,7 +108,7 @@ void FemBodyModel::finish(int body, const mechanics::RowPattern& rows,
   for (int row = 0; row < rows.rows(); ++row) {
     const auto begin = rows.row_start[static_cast<std::size_t>(row)];
     const auto end = rows.row_start[static_cast<std::size_t>(row) + 1];
-    const bool mine = std::any_of(rows.point.begin() + begin, rows.point.begin() + end,
+    const bool mine = std::any_of(rows.site.begin() + begin, rows.site.begin() + end,
                                   [&](const auto& point) { return point.body == body; });
     if (mine) rows_.push_back(row);
   }
@@ -119,8 +119,8 @@ void FemBodyModel::finish(int body, const mechanics::RowPattern& rows,
   plain_ = make_system(settings_.elements);
   for (const auto& curvature : curvatures) {
     const bool mine = curvature.first.body == body && curvature.second.body == body;
-    if (mine && !couples(curvature.first.point, curvature.second.point)) {
-      coupled_points_.push_back({curvature.first.point, curvature.second.point});
+    if (mine && !couples(curvature.first.number, curvature.second.number)) {
+      coupled_points_.push_back({curvature.first.number, curvature.second.number});
     }
   }
 }
@@ -167,9 +167,9 @@ FemSystem FemBodyModel::make_system(const FemModelSettings& elements) const {
     // Position of every free node that the row touches, ascending by node.
     std::map<std::int32_t, std::int32_t> position;
     for (auto entry = begin; entry < end; ++entry) {
-      const auto& point = world_rows_.point[static_cast<std::size_t>(entry)];
-      if (point.body != body_) continue;
-      for (const NodeId node : attachment(point.point).nodes) {
+      const auto& site = world_rows_.site[static_cast<std::size_t>(entry)];
+      if (site.body != body_) continue;
+      for (const NodeId node : attachment(site.number).nodes) {
         if (free[static_cast<std::size_t>(node)] >= 0) {
           position[free[static_cast<std::size_t>(node)]] = 0;
         }
@@ -181,9 +181,9 @@ FemSystem FemBodyModel::make_system(const FemModelSettings& elements) const {
     }
     system.border.row_start.push_back(system.border.entries());
     for (auto entry = begin; entry < end; ++entry) {
-      const auto& point = world_rows_.point[static_cast<std::size_t>(entry)];
-      if (point.body != body_) continue;
-      const Attachment& a = attachment(point.point);
+      const auto& site = world_rows_.site[static_cast<std::size_t>(entry)];
+      if (site.body != body_) continue;
+      const Attachment& a = attachment(site.number);
       for (std::size_t k = 0; k < a.nodes.size(); ++k) {
         const auto node = free[static_cast<std::size_t>(a.nodes[k])];
         if (node >= 0) system.scatter.push_back({entry, position.at(node), a.weights[k]});

@@ -55,7 +55,7 @@ class FemBodyModel final : public mechanics::BodyModel, public HasElements {
               const linalg::FactorisationSettings& settings) override;
   bool couples(int first, int second) const override;
   std::vector<NamedHash> parts() const override;
-  std::uint64_t point_hash(int point) const override;
+  std::uint64_t site_hash(int site) const override;
   std::uint64_t load_hash(int load) const override;
   std::unique_ptr<mechanics::Body> create(ThreadPool& pool, bool with_curvature,
                                           int histories) const override;

@@ -59,9 +59,9 @@ std::vector<NamedHash> FemBodyModel::parts() const {
 // Where it is, and how far the nodes that it is the mean of stand from there: a ball is told from
 // its centre. Which element a point on a face was found in, and what is left of a weight of zero,
 // are matters of rounding.
-std::uint64_t FemBodyModel::point_hash(int point) const {
-  const Attachment& of = attachment(point);
-  const Vector3 at = rest_position(point);
+std::uint64_t FemBodyModel::site_hash(int site) const {
+  const Attachment& of = attachment(site);
+  const Vector3 at = rest_position(site);
   double spread = 0.0;
   for (std::size_t k = 0; k < of.nodes.size(); ++k) {
     spread += of.weights[k] * (mesh().nodes.row(of.nodes[k]).transpose() - at).squaredNorm();

@@ -91,9 +91,9 @@ void FemStep::form_right_side(const mechanics::StepWeights& weights) {
 
 void FemStep::add_curvature(const mechanics::RowCurvature& curvature) {
   const FemBodyModel& model = state_.model;
-  const Attachment& first = model.attachment(curvature.first.point);
-  const Attachment& second = model.attachment(curvature.second.point);
-  const bool same = curvature.first.point == curvature.second.point;
+  const Attachment& first = model.attachment(curvature.first.number);
+  const Attachment& second = model.attachment(curvature.second.number);
+  const bool same = curvature.first.number == curvature.second.number;
   const auto free = model.elements().free_index();
   for (std::size_t a = 0; a < first.nodes.size(); ++a) {
     const auto i = free[static_cast<std::size_t>(first.nodes[a])];

@@ -21,9 +21,11 @@ class Body {
   virtual ~Body() = default;
   virtual const BodyModel& model() const = 0;
 
-  /// Position (3,) m and velocity (3,) m/s of an attached point.
+  /// Position (3,) m of an attached point.
   virtual Vector3 position(int point) const = 0;
-  virtual Vector3 velocity(int point) const = 0;
+  /// Rate (3,) of a site's motion: m/s; of an orientation, its angular velocity, rad/s; of a
+  /// coordinate, (rate, 0, 0).
+  virtual Vector3 velocity(int site) const = 0;
   /// Of the nodes of the model's mesh, (n, 3) m and m/s.
   virtual const Points& positions() const = 0;
   virtual const Points& velocities() const = 0;

@@ -65,10 +65,10 @@ class BodyModel {
   /// coordinates takes all rows always.
   virtual bool leaves_rows_out() const { return false; }
 
-  /// All that its motion depends on, by names such as "material", but for attached points.
+  /// All that its motion depends on, by names such as "material", but for its sites.
   virtual std::vector<NamedHash> parts() const = 0;
-  /// Where in the material an attached point is.
-  virtual std::uint64_t point_hash(int point) const = 0;
+  /// Where in the body a site is.
+  virtual std::uint64_t site_hash(int site) const = 0;
 
   /// A volume mesh that shows the body at rest, for records and the view.
   virtual const mesh::Mesh& mesh() const = 0;

@@ -5,9 +5,14 @@
 
 #include <array>
 #include <optional>
+#include <string>
 
 #include "sinew/core/types.hpp"
 #include "sinew/mechanics/affine_field.hpp"
+
+namespace sinew::mesh {
+enum class Outside;
+}
 
 namespace sinew::mechanics {
 
@@ -65,10 +70,31 @@ class TakesLoads {
   virtual Points load_forces() const = 0;
 };
 
+/// A body model with parts that stay rigid, such as the sections of an arm.
+class AttachesOrientations {
+ public:
+  virtual ~AttachesOrientations() = default;
+  /// Attaches the rotation of the part that a point lies in. Building only.
+  /// @param rest_position,outside,what as BodyModel::attach()'s.
+  /// @return the site's number. Throws Error(point-outside-mesh).
+  virtual int attach_orientation(const Vector3& rest_position, mesh::Outside outside,
+                                 const std::string& what) = 0;
+};
+
+/// A body of such a model.
+class HasOrientations {
+ public:
+  virtual ~HasOrientations() = default;
+  /// Rotation of an attached orientation since rest.
+  virtual Matrix3 rotation(int orientation) const = 0;
+};
+
 /// A body of few coordinates, which users know.
 class HasCoordinates {
  public:
   virtual ~HasCoordinates() = default;
+  /// An attached coordinate, rad or m. @param site its number as a site.
+  virtual double coordinate(int site) const = 0;
   virtual const VectorX& coordinates() const = 0;  ///< (coordinates,) rad; extensions: m
   virtual const VectorX& rates() const = 0;        ///< (coordinates,) rad/s; m/s
   /// A new state. @param q,rate (coordinates,). Throws Error(wrong-shape).

@@ -1,38 +1,32 @@
 /// @file
-/// Rows of the constraint Jacobian H in terms of material points: what constraints write and bodies
-/// read. Row k of H is sum over its entries of direction . (motion of the entry's point), so that
-/// the motion conjugate to the row's effort changes by d(delta_k) = sum direction_e . dx_e.
+/// Rows of the constraint Jacobian H in terms of sites: what constraints write and bodies read.
+/// Row k of H is the sum over its entries of direction . (motion of the entry's site), so that the
+/// motion conjugate to the row's effort changes by d(delta_k) = sum direction_e . dx_e.
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
 #include <vector>
 
 #include "sinew/core/types.hpp"
+#include "sinew/mechanics/site.hpp"
 
 namespace sinew::mechanics {
 
-/// A point fixed in a body's material: which body of the world, and the number that the body gave
-/// it when it was attached.
-struct MaterialPoint {
-  std::int32_t body = -1;   ///< position in the world's list of bodies
-  std::int32_t point = -1;  ///< number returned by BodyModel::attach
-
-  bool operator==(const MaterialPoint&) const = default;
-};
-
-/// Which points each row touches; fixed when the model is built. Entry e of row k stands at
+/// Which sites each row touches; fixed when the model is built. Entry e of row k stands at
 /// row_start[k] <= e < row_start[k + 1].
 struct RowPattern {
   std::vector<std::int32_t> row_start{0};
-  std::vector<MaterialPoint> point;
+  std::vector<Site> site;
   std::vector<char> passing;  ///< (rows,) 1: rows that come and go, three by three, on one point
 
   int rows() const { return static_cast<int>(row_start.size()) - 1; }
-  int entries() const { return static_cast<int>(point.size()); }
-  /// Closes a row that consists of `points`; returns its number.
-  int add_row(const std::vector<MaterialPoint>& points, bool passes = false) {
+  int entries() const { return static_cast<int>(site.size()); }
+  /// Closes a row that touches `sites`, a range of any kind of them; returns its number.
+  template <class Sites = std::initializer_list<Site>>
+  int add_row(const Sites& sites, bool passes = false) {
     passing.push_back(passes ? 1 : 0);
-    point.insert(point.end(), points.begin(), points.end());
+    site.insert(site.end(), sites.begin(), sites.end());
     row_start.push_back(entries());
     return rows() - 1;
   }
@@ -49,7 +43,7 @@ struct RowCurvature {
 
 /// The numbers of one linearisation, in the layout of RowPattern. Allocated once.
 struct RowValues {
-  std::vector<Vector3> direction;  ///< one per entry; dimensionless for motions in m
+  std::vector<Vector3> direction;  ///< one per entry; see site.hpp
   VectorX delta;                   ///< (rows,) value of the row's motion at the current state, m
   /// (rows,) m, of contacts alone, whose rows are delta = direction . x + offset through a step,
   /// and `reference` where the point would be carried by the surface (see constraint::Contact).

@@ -22,7 +22,7 @@ ArmBody::~ArmBody() = default;
 
 const mechanics::BodyModel& ArmBody::model() const { return model_; }
 Vector3 ArmBody::position(int point) const { return pose_->position(point); }
-Vector3 ArmBody::velocity(int point) const { return pose_->velocity(point); }
+Vector3 ArmBody::velocity(int site) const { return pose_->velocity(site); }
 const Points& ArmBody::positions() const { return pose_->skin(); }
 const Points& ArmBody::velocities() const { return pose_->skin_velocities(); }
 
@@ -48,6 +48,10 @@ mechanics::StepSystem& ArmBody::system() { return *step_; }
 const mechanics::StepSystem& ArmBody::system() const { return *step_; }
 
 std::size_t ArmBody::bytes() const { return step_->bytes() + pose_->bytes(); }
+
+Matrix3 ArmBody::rotation(int orientation) const { return pose_->rotation(orientation); }
+
+double ArmBody::coordinate(int site) const { return state_->q[model_.attachment(site).coordinate]; }
 
 const VectorX& ArmBody::coordinates() const { return state_->q; }
 const VectorX& ArmBody::rates() const { return state_->rate; }

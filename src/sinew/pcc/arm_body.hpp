@@ -15,7 +15,9 @@ struct ArmState;
 class ArmStep;
 
 /// Its state, and ArmStep for its steps.
-class ArmBody : public mechanics::Body, public mechanics::HasCoordinates {
+class ArmBody : public mechanics::Body,
+                public mechanics::HasOrientations,
+                public mechanics::HasCoordinates {
  public:
   /// @param model must outlive the body. @param histories see mechanics::BodyModel::create().
   ArmBody(const ArmBodyModel& model, int histories);
@@ -23,7 +25,7 @@ class ArmBody : public mechanics::Body, public mechanics::HasCoordinates {
 
   const mechanics::BodyModel& model() const override;
   Vector3 position(int point) const override;
-  Vector3 velocity(int point) const override;
+  Vector3 velocity(int site) const override;
   const Points& positions() const override;
   const Points& velocities() const override;
   mechanics::Energies energies() override;
@@ -35,6 +37,8 @@ class ArmBody : public mechanics::Body, public mechanics::HasCoordinates {
   const mechanics::StepSystem& system() const override;
   std::size_t bytes() const override;
 
+  Matrix3 rotation(int orientation) const override;
+  double coordinate(int site) const override;
   const VectorX& coordinates() const override;
   const VectorX& rates() const override;
   void set_coordinates(const VectorX& q, const VectorX& rate) override;

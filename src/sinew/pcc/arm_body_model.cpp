@@ -60,8 +60,7 @@ ArmPoint ArmBodyModel::locate(const Vector3& rest_position, mesh::Outside outsid
 
 int ArmBodyModel::attach(const Vector3& rest_position, mesh::Outside outside,
                          const std::string& what) {
-  attachments_.push_back({locate(rest_position, outside, what), -1});
-  return static_cast<int>(attachments_.size()) - 1;
+  return add({.point = locate(rest_position, outside, what)});
 }
 
 // Sections are rigid: the mean of a ball is its centre but for the bend within the ball.
@@ -81,17 +80,31 @@ int ArmBodyModel::attach_coordinate(int coordinate) {
                 fmt::format("it has no coordinate {}", coordinate),
                 fmt::format("name 0 to {}", arm_->coordinates() - 1));
   }
-  attachments_.push_back({{}, coordinate});
+  return add({.kind = Attachment::Kind::coordinate, .coordinate = coordinate});
+}
+
+int ArmBodyModel::attach_orientation(const Vector3& rest_position, mesh::Outside outside,
+                                     const std::string& what) {
+  const ArmPoint point = locate(rest_position, outside, what);
+  return add({.kind = Attachment::Kind::orientation,
+              .point = point,
+              .rest_rotation = plain(at_rest().rotation(point))});
+}
+
+int ArmBodyModel::add(const Attachment& attachment) {
+  attachments_.push_back(attachment);
   return static_cast<int>(attachments_.size()) - 1;
 }
 
-Vector3 ArmBodyModel::rest_position(int point) const {
-  const Attachment& at = attachment(point);
-  if (at.coordinate >= 0) return Vector3::Zero();
+ArmDynamics<double> ArmBodyModel::at_rest() const {
   ArmDynamics<double> dynamics(arm_);
   const std::vector<double> still(static_cast<std::size_t>(arm_->coordinates()));
   dynamics.place(still);
-  return plain(dynamics.position(at.point));
+  return dynamics;
+}
+
+Vector3 ArmBodyModel::rest_position(int point) const {
+  return plain(at_rest().position(attachment(point).point));
 }
 
 void ArmBodyModel::finish(int body, const mechanics::RowPattern& rows,
@@ -103,10 +116,10 @@ void ArmBodyModel::finish(int body, const mechanics::RowPattern& rows,
     const auto end = rows.row_start[static_cast<std::size_t>(row) + 1];
     bool mine = false;
     for (auto e = rows.row_start[static_cast<std::size_t>(row)]; e < end; ++e) {
-      const mechanics::MaterialPoint& point = rows.point[static_cast<std::size_t>(e)];
-      if (point.body != body) continue;
+      const mechanics::Site& site = rows.site[static_cast<std::size_t>(e)];
+      if (site.body != body) continue;
       mine = true;
-      entries_.push_back({static_cast<int>(rows_.size()), e, point.point});
+      entries_.push_back({static_cast<int>(rows_.size()), e, site.number});
     }
     if (mine) rows_.push_back(row);
   }

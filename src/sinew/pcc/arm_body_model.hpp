@@ -8,18 +8,24 @@
 #include <vector>
 
 #include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/mesh.hpp"
 #include "sinew/pcc/arm_dynamics.hpp"
 #include "sinew/pcc/has_arm.hpp"
 
 namespace sinew::pcc {
 
-class ArmBodyModel final : public mechanics::BodyModel, public HasArm {
+class ArmBodyModel final : public mechanics::BodyModel,
+                           public mechanics::AttachesOrientations,
+                           public HasArm {
  public:
-  /// A material point, or a coordinate in a point's place.
+  /// A site.
   struct Attachment {
-    ArmPoint point;
-    int coordinate = -1;  ///< >= 0: this coordinate
+    enum class Kind { point, orientation, coordinate };
+    Kind kind = Kind::point;
+    ArmPoint point;                               ///< or any of the section whose orientation it is
+    int coordinate = -1;                          ///< of kind coordinate
+    Matrix3 rest_rotation = Matrix3::Identity();  ///< of kind orientation
   };
   /// An attachment that a row touches.
   struct Entry {
@@ -39,6 +45,8 @@ class ArmBodyModel final : public mechanics::BodyModel, public HasArm {
                   const std::string& what) override;
   /// Throws Error(wrong-type): it has no nodes.
   int attach_nodes(std::span<const NodeId> nodes, std::span<const double> weights) override;
+  int attach_orientation(const Vector3& rest_position, mesh::Outside outside,
+                         const std::string& what) override;
   int attach_coordinate(int coordinate) override;
   Vector3 rest_position(int point) const override;
   void finish(int body, const mechanics::RowPattern& rows,
@@ -46,7 +54,7 @@ class ArmBodyModel final : public mechanics::BodyModel, public HasArm {
               const linalg::FactorisationSettings& settings) override;
   bool couples(int, int) const override { return true; }
   std::vector<NamedHash> parts() const override;
-  std::uint64_t point_hash(int point) const override;
+  std::uint64_t site_hash(int site) const override;
   std::unique_ptr<mechanics::Body> create(ThreadPool& pool, bool with_curvature,
                                           int histories) const override;
   /// A cylinder of hexahedra of the arm's radius, for records and the view.
@@ -55,8 +63,8 @@ class ArmBodyModel final : public mechanics::BodyModel, public HasArm {
   const Arm& arm() const override { return *arm_; }
   std::shared_ptr<const Arm> shared_arm() const override { return arm_; }
 
-  const Attachment& attachment(int point) const {
-    return attachments_[static_cast<std::size_t>(point)];
+  const Attachment& attachment(int site) const {
+    return attachments_[static_cast<std::size_t>(site)];
   }
   /// World rows that touch it, ascending.
   const std::vector<std::int32_t>& rows() const { return rows_; }
@@ -67,6 +75,8 @@ class ArmBodyModel final : public mechanics::BodyModel, public HasArm {
  private:
   ArmPoint locate(const Vector3& rest_position, mesh::Outside outside,
                   const std::string& what) const;
+  ArmDynamics<double> at_rest() const;
+  int add(const Attachment& attachment);
   void make_skin();
 
   std::shared_ptr<const Arm> arm_;

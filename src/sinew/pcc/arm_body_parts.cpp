@@ -21,11 +21,12 @@ std::vector<NamedHash> ArmBodyModel::parts() const {
           {"loads", loads.value()}};
 }
 
-std::uint64_t ArmBodyModel::point_hash(int point) const {
-  const Attachment& at = attachment(point);
-  return ValueHash()
-      .add(at.coordinate, at.point.segment, at.point.fraction, at.point.x, at.point.y, at.point.z)
-      .value();
+std::uint64_t ArmBodyModel::site_hash(int site) const {
+  const Attachment& at = attachment(site);
+  ValueHash hash;
+  hash.add(at.coordinate, at.point.segment, at.point.fraction, at.point.x, at.point.y, at.point.z);
+  if (at.kind == Attachment::Kind::orientation) hash.add(at.kind);
+  return hash.value();
 }
 
 }  // namespace sinew::pcc

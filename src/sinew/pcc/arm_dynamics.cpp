@@ -254,9 +254,35 @@ void ArmDynamics<T>::jacobian(const ArmPoint& point, std::span<Vec3<T>> columns)
   }
 }
 
+// Angular velocities of segments in a chain add up (Featherstone, 2008, sec. 4.4).
+template <typename T>
+void ArmDynamics<T>::angular_jacobian(const ArmPoint& point, std::span<Vec3<T>> columns) const {
+  const Spot here = spot(point);
+  std::fill(columns.begin(), columns.end(), Vec3<T>());
+  for (int k = 0; k <= point.segment; ++k) {
+    const std::size_t first = at(arm_->first(k));
+    const Frame& frame = frames_[at(k)];
+    for (int i = 0; i < arm_->settings().segments[at(k)].coordinates(); ++i) {
+      columns[first + at(i)] =
+          k < point.segment ? frame.turn[at(i)] : frame.rotation * here.section.spin[at(i)];
+    }
+  }
+}
+
 template <typename T>
 Vec3<T> ArmDynamics<T>::velocity(const ArmPoint& point) {
   jacobian(point, columns_);
+  return of_rates();
+}
+
+template <typename T>
+Vec3<T> ArmDynamics<T>::angular_velocity(const ArmPoint& point) {
+  angular_jacobian(point, columns_);
+  return of_rates();
+}
+
+template <typename T>
+Vec3<T> ArmDynamics<T>::of_rates() const {
   Vec3<T> sum;
   for (std::size_t i = 0; i < q_.size(); ++i) sum += rate_[i] * columns_[i];
   return sum;

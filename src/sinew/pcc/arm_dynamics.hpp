@@ -61,6 +61,9 @@ class ArmDynamics {
   Vec3<T> velocity(const ArmPoint& point);  ///< m/s
   void jacobian(const ArmPoint& point, std::span<Vec3<T>> columns) const;
   Rotation<T> rotation(const ArmPoint& point) const;  ///< of the section there
+  /// (coordinates,) columns: the section's turn about the world's axes per change of a coordinate.
+  void angular_jacobian(const ArmPoint& point, std::span<Vec3<T>> columns) const;
+  Vec3<T> angular_velocity(const ArmPoint& point);  ///< rad/s
 
   T strain_energy() const;   ///< J
   T kinetic_energy() const;  ///< J
@@ -91,6 +94,7 @@ class ArmDynamics {
   template <bool kMoves>
   void sweep();
   Spot spot(const ArmPoint& point) const;
+  Vec3<T> of_rates() const;  // columns_ q'
 
   std::shared_ptr<const Arm> arm_;
   std::vector<double> cosine_, sine_;  // of gamma

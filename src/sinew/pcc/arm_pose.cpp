@@ -1,8 +1,12 @@
 #include "sinew/pcc/arm_pose.hpp"
 
+#include <algorithm>
+
 namespace sinew::pcc {
 
 namespace {
+
+using Kind = ArmBodyModel::Attachment::Kind;
 
 std::span<const double> numbers(const VectorX& v) {
   return {v.data(), static_cast<std::size_t>(v.size())};
@@ -30,20 +34,41 @@ const ArmDynamics<double>& ArmPose::dynamics() const {
 }
 
 Vector3 ArmPose::position(int point) const {
-  const auto& attachment = model_.attachment(point);
-  if (attachment.coordinate >= 0) return {state_.q[attachment.coordinate], 0.0, 0.0};
-  return plain(dynamics().position(attachment.point));
+  return plain(dynamics().position(model_.attachment(point).point));
 }
 
-Vector3 ArmPose::velocity(int point) const {
-  const auto& attachment = model_.attachment(point);
-  if (attachment.coordinate >= 0) return {state_.rate[attachment.coordinate], 0.0, 0.0};
+Matrix3 ArmPose::rotation(int orientation) const {
+  const auto& attachment = model_.attachment(orientation);
+  return plain(dynamics().rotation(attachment.point)) * attachment.rest_rotation.transpose();
+}
+
+Vector3 ArmPose::velocity(int site) const {
+  const auto& attachment = model_.attachment(site);
   look();
-  return plain(dynamics_.velocity(attachment.point));
+  switch (attachment.kind) {
+    case Kind::point:
+      return plain(dynamics_.velocity(attachment.point));
+    case Kind::orientation:
+      return plain(dynamics_.angular_velocity(attachment.point));
+    case Kind::coordinate:
+      return {state_.rate[attachment.coordinate], 0.0, 0.0};
+  }
+  return {};
 }
 
-const std::vector<Vec3<double>>& ArmPose::jacobian(const ArmPoint& point) {
-  dynamics().jacobian(point, columns_);
+const std::vector<Vec3<double>>& ArmPose::jacobian(const ArmBodyModel::Attachment& site) {
+  switch (site.kind) {
+    case Kind::point:
+      dynamics().jacobian(site.point, columns_);
+      break;
+    case Kind::orientation:
+      dynamics().angular_jacobian(site.point, columns_);
+      break;
+    case Kind::coordinate:
+      std::ranges::fill(columns_, Vec3<double>());
+      columns_[static_cast<std::size_t>(site.coordinate)].x = 1.0;
+      break;
+  }
   return columns_;
 }
 

@@ -23,10 +23,11 @@ class ArmPose {
 
   /// At the state; see ArmDynamics::set().
   const ArmDynamics<double>& dynamics() const;
-  Vector3 position(int point) const;  ///< (3,) m, of an attached point
-  Vector3 velocity(int point) const;  ///< (3,) m/s
-  /// (coordinates,) columns of a point's Jacobian; valid until the next call.
-  const std::vector<Vec3<double>>& jacobian(const ArmPoint& point);
+  Vector3 position(int point) const;        ///< (3,) m, of an attached point
+  Matrix3 rotation(int orientation) const;  ///< since rest, of an attached orientation
+  Vector3 velocity(int site) const;         ///< see mechanics::Body
+  /// (3,) columns for the coordinates: a site's motion; valid until the next call.
+  const std::vector<Vec3<double>>& jacobian(const ArmBodyModel::Attachment& site);
   const Points& skin() const;             ///< (n, 3) m, of the nodes of the model's mesh
   const Points& skin_velocities() const;  ///< (n, 3) m/s
 

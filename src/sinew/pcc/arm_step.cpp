@@ -72,40 +72,29 @@ void ArmStep::linearise(const mechanics::LinearisationRequest& request) {
   row_stiffness_.add(state_, matrix_);
 }
 
-void ArmStep::point_jacobian(int point, MatrixX& result) {
-  const auto& attachment = model_.attachment(point);
-  result.setZero();
-  if (attachment.coordinate >= 0) {
-    result(0, attachment.coordinate) = 1.0;
-    return;
-  }
-  const auto& columns = pose_.jacobian(attachment.point);
+void ArmStep::site_jacobian(int site, MatrixX& result) {
+  const auto& columns = pose_.jacobian(model_.attachment(site));
   for (std::size_t i = 0; i < columns.size(); ++i) {
     result.col(static_cast<Eigen::Index>(i)) = plain(columns[i]);
   }
 }
 
 void ArmStep::add_curvature(const mechanics::RowCurvature& curvature) {
-  point_jacobian(curvature.first.point, first_jacobian_);
-  point_jacobian(curvature.second.point, second_jacobian_);
+  site_jacobian(curvature.first.number, first_jacobian_);
+  site_jacobian(curvature.second.number, second_jacobian_);
   pulled_.noalias() = curvature.curvature * second_jacobian_;
   symmetric_.noalias() = first_jacobian_.transpose() * pulled_;
   matrix_ -= symmetric_;
-  if (curvature.first.point != curvature.second.point) matrix_ -= symmetric_.transpose();
+  if (curvature.first.number != curvature.second.number) matrix_ -= symmetric_.transpose();
 }
 
 void ArmStep::take_rows(const mechanics::RowValues& rows) {
   rows_.setZero();
   for (std::size_t e = 0; e < model_.entries().size(); ++e) {
     const auto& entry = model_.entries()[e];
-    const auto& attachment = model_.attachment(entry.attachment);
     const Vector3& direction = rows.direction[static_cast<std::size_t>(entry.entry)];
     state_.directions[e] = direction;
-    if (attachment.coordinate >= 0) {
-      rows_(attachment.coordinate, entry.row) += direction.x();
-      continue;
-    }
-    const auto& columns = pose_.jacobian(attachment.point);
+    const auto& columns = pose_.jacobian(model_.attachment(entry.attachment));
     for (std::size_t i = 0; i < columns.size(); ++i) {
       rows_(static_cast<Eigen::Index>(i), entry.row) += direction.dot(plain(columns[i]));
     }

@@ -41,7 +41,7 @@ class ArmStep : public mechanics::StepSystem {
   std::size_t bytes() const;
 
  private:
-  void point_jacobian(int point, MatrixX& result);
+  void site_jacobian(int site, MatrixX& result);
   void find_imbalance(std::span<const double> effort);
   void make_definite();
   void respond();

@@ -15,9 +15,8 @@ class HasArm {
   virtual const Arm& arm() const = 0;
   /// For equations and dynamics of the same arm.
   virtual std::shared_ptr<const Arm> shared_arm() const = 0;
-  /// A coordinate in the place of a point's x, 1 rad (extension: 1 m) being 1 m: a force along x on
-  /// it is the generalised force of that coordinate, N m (N). Building only.
-  /// @return the point's number. Throws Error(index-out-of-range).
+  /// Attaches one of its coordinates as a site (mechanics::Coordinate). Building only.
+  /// @return the site's number. Throws Error(index-out-of-range).
   virtual int attach_coordinate(int coordinate) = 0;
 };
 

@@ -11,6 +11,7 @@ RowStiffness::RowStiffness(const ArmBodyModel& model)
 void RowStiffness::add(const ArmState& state, MatrixX& matrix) {
   if (state.effort.size() == 0 || state.effort.isZero(0.0)) return;
   const std::size_t n = q_.size();
+  using Kind = ArmBodyModel::Attachment::Kind;
   for (std::size_t k = 0; k < n; ++k) q_[k] = state.q[static_cast<Eigen::Index>(k)];
   const auto direction = [&](std::size_t k) -> Dual<8>::Lanes& { return q_[k].grad; };
   in_passes<8>(n, direction, [&](std::size_t from, std::size_t used) {
@@ -19,9 +20,13 @@ void RowStiffness::add(const ArmState& state, MatrixX& matrix) {
       const auto& entry = model_.entries()[e];
       const auto& attachment = model_.attachment(entry.attachment);
       const double effort = state.effort[entry.row];
-      if (effort == 0.0 || attachment.coordinate >= 0) continue;
+      if (effort == 0.0 || attachment.kind == Kind::coordinate) continue;
       const Vector3 pull = effort * state.directions[e];
-      slopes_.jacobian(attachment.point, columns_);
+      if (attachment.kind == Kind::point) {
+        slopes_.jacobian(attachment.point, columns_);
+      } else {
+        slopes_.angular_jacobian(attachment.point, columns_);
+      }
       for (std::size_t i = 0; i < n; ++i) {
         const auto& column = columns_[i];
         for (std::size_t d = 0; d < used; ++d) {

@@ -53,4 +53,10 @@ struct Rotation {
   Rotation operator*(const Rotation& b) const { return {*this * b.x, *this * b.y, *this * b.z}; }
 };
 
+inline Matrix3 plain(const Rotation<double>& r) {
+  Matrix3 result;
+  result << plain(r.x), plain(r.y), plain(r.z);
+  return result;
+}
+
 }  // namespace sinew::pcc

@@ -16,6 +16,7 @@
 #include "sinew/plan/reach.hpp"
 #include "sinew/plan/uniform.hpp"
 #include "sinew/sim/actuator.hpp"
+#include "sinew/sim/contact_reader.hpp"
 #include "sinew/sim/contact_settings.hpp"
 #include "sinew/sim/contact_state.hpp"
 #include "sinew/sim/force_settings.hpp"
@@ -176,11 +177,11 @@ class Bench {
   }
 
   bool touches() const {
-    return object_ >= 0 && simulation_->contact_point(object_, point_).normal_force > 0.0;
+    return object_ >= 0 && simulation_->contacts().point(object_, point_).normal_force > 0.0;
   }
   bool sticks() const {
     return object_ >= 0 &&
-           simulation_->contact_point(object_, point_).state == qp::ContactState::stick;
+           simulation_->contacts().point(object_, point_).state == qp::ContactState::stick;
   }
 
   void finish(BraceRun& run, double disturbed_from) const {
@@ -222,13 +223,13 @@ class Bench {
     const Points ends = equations_->endpoints(angles());
     tips_.push_back(ends.row(ends.rows() - 1));
     sim::ContactPoint touch;
-    if (object_ >= 0) touch = simulation_->contact_point(object_, point_);
+    if (object_ >= 0) touch = simulation_->contacts().point(object_, point_);
     normal_.push_back(touch.normal_force);
     friction_.push_back(touch.friction_force.norm());
     const auto contacts = object_ >= 0 ? task_.objects.size() : 0;
     for (std::size_t k = 0; k < contacts; ++k) {
       const double friction = settings_.friction.value_or(task_.objects[k].friction.least);
-      for (const auto& point : simulation_->contact_points(static_cast<int>(k))) {
+      for (const auto& point : simulation_->contacts().points(static_cast<int>(k))) {
         cone_ = std::max(cone_, point.friction_force.norm() - friction * point.normal_force);
       }
     }

@@ -241,7 +241,7 @@ struct EffectorDescription {
   Kind kind = Kind::point;
   std::string body;
   Place body_place;
-  PointList points;  ///< point: 1; points: their mean is meant; orientation: 3
+  PointList points;  ///< point: 1; points: their mean is meant; orientation: 3, or 1 of an arm
   std::string set;   ///< set: mean of the nodes of this set of the mesh
   Place set_place;
   mesh::Outside outside = mesh::Outside::error;

@@ -246,10 +246,11 @@ Form effector_form() {
                  .example = "tip",
                  .description = "The mean of the nodes of a named set of the mesh."},
                 {.name = "orientation",
-                 .forms = {list({vector(length())}, 3, 3)},
+                 .forms = {list({vector(length())}, 3, 3), vector(length())},
                  .example = "[0 0 190 mm, 10 0 190 mm, 0 10 190 mm]",
-                 .description = "The rotation of the frame through three points, as a rotation "
-                                "vector from rest."},
+                 .description = "The rotation of the frame through three points, or of the section "
+                                "of an arm that one point lies in, as a rotation vector from "
+                                "rest."},
                 {.name = "directions",
                  .forms = {axis, list(axis_forms(), 1, 3)},
                  .example = "[x, y]",

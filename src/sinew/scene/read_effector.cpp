@@ -20,6 +20,7 @@ void read_orientation(const Fields& fields, EffectorDescription& effector) {
                 "'directions' with 'orientation': a rotation has x, y and z components",
                 "remove directions; weights of the controller choose among components");
   }
+  if (effector.points.points.rows() == 1) return;  // of a rigid section
   const Vector3 origin = effector.points.points.row(0);
   const Vector3 first = effector.points.points.row(1).transpose() - origin;
   const Vector3 second = effector.points.points.row(2).transpose() - origin;
@@ -27,6 +28,13 @@ void read_orientation(const Fields& fields, EffectorDescription& effector) {
   if (first.cross(second).norm() > kDegenerate * size && size > 0.0) return;
   throw Error(ErrorKind::degenerate_orientation, fields.place("orientation"),
               "the three points lie on one line", "give three points that span a triangle");
+}
+
+PointList read_point(const Fields& fields, std::string_view key) {
+  Vector3 point;
+  fields.read(key, point);
+  const Place place = fields.place(key);
+  return {.place = place, .points = point.transpose(), .places = {place}};
 }
 
 void read_measured(const Fields& fields, EffectorDescription& effector,
@@ -37,18 +45,18 @@ void read_measured(const Fields& fields, EffectorDescription& effector,
     effector.set_place = fields.place("set");
     return;
   }
-  Vector3 point;
-  if (fields.read("point", point)) {
+  if (fields.find("point") != nullptr) {
     effector.kind = Kind::point;
-    effector.points.place = fields.place("point");
-    effector.points.points = point.transpose();
-    effector.points.places = {effector.points.place};
-    return;
+    effector.points = read_point(fields, "point");
+  } else if (fields.find("points") != nullptr) {
+    effector.kind = Kind::points;
+    effector.points = read_points(fields, "points", context);
+  } else {
+    effector.points = fields.form("orientation").shape == Shape::quantity
+                          ? read_point(fields, "orientation")
+                          : read_points(fields, "orientation", context);
+    read_orientation(fields, effector);
   }
-  const char* key = fields.find("points") != nullptr ? "points" : "orientation";
-  effector.kind = Kind::points;
-  effector.points = read_points(fields, key, context);
-  if (fields.find("orientation") != nullptr) read_orientation(fields, effector);
 }
 
 void read_directions(const Fields& fields, EffectorDescription& effector) {

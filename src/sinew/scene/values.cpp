@@ -49,6 +49,12 @@ bool has_word(const Node& node, const Form& form) {
               fmt::format("write for example {}", example));
 }
 
+// A list of plain numbers is one vector where a list of vectors could stand, too.
+bool is_vector(const Node& node) {
+  return node.is_list() && !node.items().empty() &&
+         node.items().front().kind() == Node::Kind::number;
+}
+
 // A map that several map forms could take is told by the key that one of them must have.
 const Form& select_map_form(const Node& node, const std::vector<const Form*>& fitting) {
   std::vector<std::string> telltales;
@@ -114,6 +120,8 @@ const Form& select_form(const Node& node, const std::vector<Form>& forms,
   if (fitting.size() > 1 && node.is_map()) {
     chosen = &select_map_form(node, fitting);
   } else if (fitting.size() > 1 && chosen->shape == Shape::choice && !has_word(node, *chosen)) {
+    chosen = fitting[1];
+  } else if (fitting.size() > 1 && chosen->shape == Shape::list && is_vector(node)) {
     chosen = fitting[1];
   }
   if (chosen->later) {

@@ -28,7 +28,7 @@ void check_gaps(const constraint::Contact& contact, const mechanics::BodyModel& 
   double deepest = 0.0;
   Vector3 where = Vector3::Zero();
   for (const mechanics::MaterialPoint& point : contact.points()) {
-    const Vector3 at = body.rest_position(point.point);
+    const Vector3 at = body.rest_position(point.number);
     const double gap = constraint::distance(contact.surface(), pose.inverse() * at).gap;
     if (gap >= deepest) continue;
     deepest = gap;

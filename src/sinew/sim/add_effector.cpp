@@ -7,6 +7,7 @@
 #include "sinew/constraint/effector.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 #include "sinew/sim/add_parts.hpp"
 #include "sinew/sim/attach.hpp"
 #include "sinew/sim/effector_settings.hpp"
@@ -18,11 +19,28 @@ namespace sinew::sim {
 
 namespace {
 
+std::unique_ptr<constraint::Effector> make_section(mechanics::BodyModel& on,
+                                                   const EffectorSettings& settings) {
+  auto* rigid = mechanics::as<mechanics::AttachesOrientations>(on);
+  if (rigid == nullptr) {
+    throw Error(ErrorKind::wrong_length, settings.place,
+                fmt::format("one point for the orientation of body '{}', which deforms everywhere",
+                            on.name()),
+                "give three points that span a triangle");
+  }
+  const int site = rigid->attach_orientation(settings.points.row(0), settings.outside,
+                                             fmt::format("effector '{}'", settings.name));
+  return std::make_unique<constraint::SectionOrientation>(
+      settings.name, mechanics::Orientation{{settings.body, site}});
+}
+
 std::unique_ptr<constraint::Effector> make_orientation(mechanics::BodyModel& on,
                                                        const EffectorSettings& settings) {
+  if (settings.points.rows() == 1) return make_section(on, settings);
   if (settings.points.rows() != 3) {
     throw Error(ErrorKind::wrong_length, settings.place,
-                fmt::format("an orientation needs three points, got {}", settings.points.rows()),
+                fmt::format("an orientation needs three points or, of an arm, one; got {}",
+                            settings.points.rows()),
                 "give three points that span a triangle");
   }
   std::array<mechanics::MaterialPoint, 3> points;
@@ -30,10 +48,10 @@ std::unique_ptr<constraint::Effector> make_orientation(mechanics::BodyModel& on,
   for (std::size_t k = 0; k < 3; ++k) {
     const int point = on.attach(settings.points.row(static_cast<Eigen::Index>(k)), settings.outside,
                                 fmt::format("point {} of effector '{}'", k, settings.name));
-    points[k] = {settings.body, point};
+    points[k] = {{settings.body, point}};
     rest[k] = on.rest_position(point);
   }
-  return std::make_unique<constraint::OrientationEffector>(settings.name, points, rest);
+  return std::make_unique<constraint::TriangleOrientation>(settings.name, points, rest);
 }
 
 int attach_set(mechanics::BodyModel& on, const EffectorSettings& settings) {

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "sinew/constraint/point_force.hpp"
+#include "sinew/constraint/coordinate_force.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
@@ -48,10 +48,9 @@ int add_torque(ModelData& data, const TorqueSettings& settings) {
                   fmt::format("body '{}' has no bends", on.name()),
                   "a torque acts on a segment of a body of type pcc");
     }
-    const int point = bends->attach_coordinate(coordinate_of(settings, bends->arm(), on.name()));
-    auto torque = std::make_unique<constraint::PointForce>(
-        settings.name, mechanics::MaterialPoint{settings.body, point}, Vector3::UnitX(),
-        Vector3::Zero());
+    const int site = bends->attach_coordinate(coordinate_of(settings, bends->arm(), on.name()));
+    auto torque = std::make_unique<constraint::CoordinateForce>(
+        settings.name, mechanics::Coordinate{{settings.body, site}});
     const auto type = settings.towards == TorqueSettings::Towards::along ? ActuatorType::force
                                                                          : ActuatorType::torque;
     return add_actuator(data,

@@ -46,7 +46,7 @@ Points rest_positions(const ModelData& data, const std::vector<mechanics::Materi
   Points result(static_cast<Eigen::Index>(points.size()), 3);
   for (std::size_t i = 0; i < points.size(); ++i) {
     result.row(static_cast<Eigen::Index>(i)) =
-        data.body(points[i].body).rest_position(points[i].point).transpose();
+        data.body(points[i].body).rest_position(points[i].number).transpose();
   }
   return result;
 }

@@ -80,7 +80,7 @@ class RigidMotions {
 
  private:
   Vector3 rest_of(const mechanics::MaterialPoint& point) const {
-    return data_.body(point.body).rest_position(point.point);
+    return data_.body(point.body).rest_position(point.number);
   }
   void begin_row() { row_.setZero(columns_); }
   // The motion along an axis of a point at x: e + (e_k x x/size) of the body's turn.

@@ -43,4 +43,8 @@ ContactMoment ContactReader::moment(int contact) const {
           points(contact)};
 }
 
+const qp::ConeResult& ContactReader::result() const {
+  return run_.solver.direct().contact_result();
+}
+
 }  // namespace sinew::sim

@@ -7,11 +7,15 @@
 
 #include "sinew/sim/contact_state.hpp"
 
+namespace sinew::qp {
+struct ConeResult;
+}
+
 namespace sinew::sim {
 
 struct Run;
 
-/// What the points of contacts do, after the last step. See Simulation.
+/// What the points of contacts do, after the last step.
 class ContactReader {
  public:
   /// @param run outlives it.
@@ -20,7 +24,10 @@ class ContactReader {
   ContactPoint point(int contact, std::size_t point) const;
   std::vector<ContactPoint> points(int contact) const;
   ContactSum sum(int contact) const;
+  /// The points and where the surface stands.
   ContactMoment moment(int contact) const;
+  /// How the forces were last found.
+  const qp::ConeResult& result() const;
 
  private:
   const Run& run_;

@@ -107,7 +107,7 @@ bool ContactRows::take_in(const constraint::Contact& contact, std::size_t point,
                           const Eigen::Isometry3d& pose) {
   const mechanics::MaterialPoint& of = contact.points()[point];
   const mechanics::StepSystem& system = *systems_[static_cast<std::size_t>(of.body)];
-  const Vector3 end = placement_.position(of) + system.proposed_motion(of.point);
+  const Vector3 end = placement_.position(of) + system.proposed_motion(of.number);
   if (contact.row_values(point, end, rows_)[0] >= 0.0) return false;
   if (contact.curved() && planes_.may_turn() && !planes_.turn_to(contact, point, end, pose)) {
     return false;

@@ -29,7 +29,7 @@ void list_curved(ModelData& data) {
           data.curvatures[static_cast<std::size_t>(constraint.first_curvature() + k)];
       if (pair.first.body != pair.second.body) continue;  // see add_couplings()
       data.stiffening_widens |=
-          !data.body(pair.first.body).couples(pair.first.point, pair.second.point);
+          !data.body(pair.first.body).couples(pair.first.number, pair.second.number);
     }
   }
 }

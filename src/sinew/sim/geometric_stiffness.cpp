@@ -112,7 +112,7 @@ void GeometricStiffness::add_anchors() {
     const auto& [row, stiffness] = problem_.stiffness[k];
     if (stiffness == 0.0) continue;
     const auto entry = model_.rows().row_start[static_cast<std::size_t>(row)];
-    add_to(model_.rows().point[static_cast<std::size_t>(entry)], stiffness * Matrix3::Identity());
+    add_to({model_.rows().site[static_cast<std::size_t>(entry)]}, stiffness * Matrix3::Identity());
   }
 }
 

@@ -71,7 +71,7 @@ std::unique_ptr<constraint::Cable> attach_line(ModelData& data, Line line) {
     } catch (const Error& error) {
       throw error.at(k < places.size() ? places[k] : line.place);
     }
-    rest.row(i) = on.rest_position(points.back().point);
+    rest.row(i) = on.rest_position(points.back().number);
   }
   return std::make_unique<constraint::Cable>(line.name, std::move(points), pull_point, rest,
                                              line.friction);

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kNamedDifferences = 4;
 
-// What a constraint is, and which points of which bodies its rows touch.
+// What a constraint is, and which sites of which bodies its rows touch.
 void add_constraint(ValueHash& hash, const ModelData& data, int index) {
   const constraint::Constraint& constraint = data.constraint(index);
   constraint.add_to(hash);
@@ -26,8 +26,8 @@ void add_constraint(ValueHash& hash, const ModelData& data, int index) {
   const auto first = static_cast<std::size_t>(constraint.first_row());
   const auto last = first + static_cast<std::size_t>(constraint.row_count());
   for (auto e = rows.row_start[first]; e < rows.row_start[last]; ++e) {
-    const mechanics::MaterialPoint& point = rows.point[static_cast<std::size_t>(e)];
-    hash.add(point.body, data.body(point.body).point_hash(point.point));
+    const mechanics::Site& site = rows.site[static_cast<std::size_t>(e)];
+    hash.add(site.body, data.body(site.body).site_hash(site.number));
   }
 }
 

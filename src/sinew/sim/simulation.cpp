@@ -34,9 +34,7 @@ const StepReport& Simulation::step() {
 
 const StepReport& Simulation::report() const { return run_->report; }
 mechanics::Energies Simulation::energies() { return run_->world.bodies().energies(); }
-double Simulation::actuator_work() const { return run_->ledger.sums().actuators; }
-double Simulation::outside_work() const { return run_->ledger.sums().outside; }
-double Simulation::dissipation() const { return run_->ledger.sums().dissipated; }
+const EnergyLedger& Simulation::ledger() const { return run_->ledger.sums(); }
 
 StaticReport Simulation::solve_static(const StaticSettings& settings) {
   return StaticSolver(*run_, settings).run();
@@ -81,23 +79,7 @@ std::vector<double> Simulation::probe_values(int index) const {
   return values;
 }
 
-ContactPoint Simulation::contact_point(int index, std::size_t point) const {
-  return ContactReader(*run_).point(index, point);
-}
-
-std::vector<ContactPoint> Simulation::contact_points(int index) const {
-  return ContactReader(*run_).points(index);
-}
-
-ContactSum Simulation::contact_sum(int index) const { return ContactReader(*run_).sum(index); }
-
-ContactMoment Simulation::contact_moment(int index) const {
-  return ContactReader(*run_).moment(index);
-}
-
-const qp::ConeResult& Simulation::contact_result() const {
-  return run_->solver.direct().contact_result();
-}
+ContactReader Simulation::contacts() const { return ContactReader(*run_); }
 
 void Simulation::attach(step::Controller& controller, std::span<const int> actuators) {
   if (run_->controller != nullptr && run_->controller != &controller) {
@@ -156,7 +138,6 @@ std::unique_ptr<Simulation> Simulation::clone() const {
   return copy;
 }
 
-std::uint64_t Simulation::state_hash() const { return state().hash(); }
 std::size_t Simulation::bytes() const { return run_->bytes() + stepper_->bytes(); }
 
 }  // namespace sinew::sim

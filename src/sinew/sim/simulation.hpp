@@ -21,9 +21,6 @@ class Placement;
 namespace sinew::mechanics {
 class Body;
 }
-namespace sinew::qp {
-struct ConeResult;
-}
 namespace sinew::step {
 struct ActuatorBlock;
 class Controller;
@@ -33,9 +30,8 @@ namespace sinew::sim {
 
 struct ActuatorState;
 struct Command;
-struct ContactMoment;
-struct ContactPoint;
-struct ContactSum;
+class ContactReader;
+struct EnergyLedger;
 struct Inputs;
 class Model;
 struct Run;
@@ -68,13 +64,8 @@ class Simulation {
   const StepReport& report() const;
   /// Of all bodies now. Evaluates their elements.
   mechanics::Energies energies();
-  /// J: what all actuators have done on the bodies in steps since the start or reset(), the sum of
-  /// effort times change of motion, with the effort that acted through each step.
-  double actuator_work() const;
-  /// The same of loads and outside forces (gravity has its own energy), and what damping, drag and
-  /// the friction of cables, and friction and impacts of contacts took.
-  double outside_work() const;
-  double dissipation() const;
+  /// What has been put into the energy and taken out since the start or reset().
+  const EnergyLedger& ledger() const;
 
   /// A stable static equilibrium at the present inputs: commands at the present time, limits on
   /// rates lifted, actuators of a controller held at their efforts; see StaticSolver. Velocities
@@ -116,15 +107,8 @@ class Simulation {
   /// (components,) what a probe measures now, m and rad. @param index of Model::probes().
   std::vector<double> probe_values(int index) const;
 
-  /// What the points of a contact do, see Model::contact().
-  /// @param index of Model::contacts(). @param point of constraint::Contact::points().
-  ContactPoint contact_point(int index, std::size_t point) const;
-  std::vector<ContactPoint> contact_points(int index) const;
-  ContactSum contact_sum(int index) const;
-  /// The points and where the surface stands.
-  ContactMoment contact_moment(int index) const;
-  /// How the contacts' forces were last found.
-  const qp::ConeResult& contact_result() const;
+  /// Forces, gaps and states of contacts; valid as long as the simulation.
+  ContactReader contacts() const;
 
   /// Gives a controller the actuators that it chooses efforts for, in every step until it is
   /// detached. One controller at a time. Throws Error(actuator-owned).
@@ -160,7 +144,6 @@ class Simulation {
   /// A simulation of the same model, with the same inputs, in the same state. A controller is not
   /// copied: attach one to the copy, and restore() the state again for its memory.
   std::unique_ptr<Simulation> clone() const;
-  std::uint64_t state_hash() const;
   /// Bytes that one more simulation of the same model takes.
   std::size_t bytes() const;
 

@@ -11,10 +11,12 @@
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
+#include "sinew/sim/contact_reader.hpp"
 #include "sinew/sim/contact_state.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/observables.hpp"
 #include "sinew/sim/simulation.hpp"
+#include "sinew/sim/state.hpp"
 #include "sinew/sim/weld_load.hpp"
 
 namespace sinew::sim {
@@ -172,7 +174,7 @@ void put_contact(const Simulation& simulation, int index, std::span<double> all)
           friction_force = part(3 * n), state = part(n), sums = part(8);
   ContactSum sum;
   for (std::size_t k = 0; k < n; ++k) {
-    const ContactPoint point = simulation.contact_point(index, k);
+    const ContactPoint point = simulation.contacts().point(index, k);
     position.put(point.position);
     gap.put(point.gap);
     normal.put(point.normal);
@@ -267,8 +269,8 @@ class Ledger {
   void operator()(std::span<double> all) {
     Numbers to(all);
     const mechanics::Energies energies = simulation_.energies();
-    const Balance now{energies.total(), simulation_.actuator_work(), simulation_.outside_work(),
-                      simulation_.dissipation()};
+    const Balance now{energies.total(), simulation_.ledger().actuators,
+                      simulation_.ledger().outside, simulation_.ledger().dissipated};
     if (!first_) first_ = now;
     const double work = now.work - first_->work, outside = now.outside - first_->outside,
                  dissipation = now.dissipation - first_->dissipation;

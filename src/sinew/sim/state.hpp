@@ -12,6 +12,9 @@ namespace sinew::sim {
 
 /// What was put into the energy of a run and taken out of it, J, and what its gain is judged by.
 struct EnergyLedger {
+  /// J: the sum of effort times change of motion of all actuators, with the effort that acted
+  /// through each step; the same of loads and outside forces (gravity has its own energy); what
+  /// damping, drag, the friction of cables, and friction and impacts of contacts took.
   double actuators = 0.0, outside = 0.0, dissipated = 0.0;
   double begun = 0.0;    ///< 1 from the first step that is watched; then
   double start = 0.0;    ///< energy at the start less what had been put in

@@ -1,0 +1,23 @@
+#include "sinew/constraint/coordinate_force.hpp"
+
+#include <utility>
+
+#include "sinew/constraint/placement.hpp"
+
+namespace sinew::constraint {
+
+CoordinateForce::CoordinateForce(std::string name, mechanics::Coordinate coordinate)
+    : Constraint(std::move(name)), coordinate_(coordinate) {}
+
+void CoordinateForce::declare(mechanics::RowPattern& rows, std::vector<mechanics::RowCurvature>&) {
+  first_entry_ = rows.entries();
+  first_row_ = rows.add_row({coordinate_});
+  row_count_ = 1;
+}
+
+void CoordinateForce::linearise(const Placement& placement, mechanics::RowValues& values) const {
+  values.direction[static_cast<std::size_t>(first_entry_)] = Vector3::UnitX();
+  values.delta[first_row_] = placement.coordinate(coordinate_);
+}
+
+}  // namespace sinew::constraint

@@ -1,0 +1,26 @@
+/// @file
+/// A generalised force on one of a body's coordinates, as an actuator.
+#pragma once
+
+#include "sinew/constraint/constraint.hpp"
+
+namespace sinew::constraint {
+
+/// One row: effort = generalised force (N m; of an extension N), delta = the coordinate (rad; m).
+class CoordinateForce : public Constraint {
+ public:
+  /// @param name for messages. @param coordinate where the force acts.
+  CoordinateForce(std::string name, mechanics::Coordinate coordinate);
+
+  void declare(mechanics::RowPattern& rows,
+               std::vector<mechanics::RowCurvature>& curvatures) override;
+  void linearise(const Placement& placement, mechanics::RowValues& values) const override;
+  /// As a force along the first axis: fingerprints of saved states stay as they were.
+  void add_to(ValueHash& hash) const override { hash.add(Vector3(1, 0, 0), Vector3(0, 0, 0)); }
+
+ private:
+  mechanics::Coordinate coordinate_;
+  int first_entry_ = -1;
+};
+
+}  // namespace sinew::constraint
