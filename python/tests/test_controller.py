@@ -144,3 +144,48 @@ def test_reset_keeps_the_controller(sim):
     assert ik.attached
     ik.step(30)
     assert sim.state_hash == first
+
+
+def finger(limits, solver=None):
+    cables = {"east": (17, 10), "north": (10, 17), "west": (3, 10), "south": (10, 3)}
+    scene = {
+        "sinew": 1, "time_step": 0.01,
+        "bodies": {"finger": {
+            "type": "fem", "mesh": {"shape": "block", "length": 0.02, "width": 0.02, "height": 0.1, "element_size": 0.01},
+            "material": {"young_modulus": 3e5, "poisson_ratio": 0.4}, "fixed": {"set": "z_min"}}},
+        "actuators": {name: {
+            "type": "cable", "body": "finger", "limits": limits,
+            "points": [[1e-3 * x, 1e-3 * y, z] for z in np.linspace(0, 0.1, 6)]} for name, (x, y) in cables.items()},
+        "effectors": {"tip": {"body": "finger", "point": [0.01, 0.01, 0.1]}}}
+    return sinew.load(scene if solver is None else {**scene, "solver": solver})
+
+
+FAR = [0.03, 0.01, 0.09]
+SIZE = np.linalg.norm([0.02, 0.02, 0.1])
+
+
+@pytest.mark.parametrize("limits", [{"max": 0.006}, {"max": 0.02, "rate": 0.01}], ids=["range", "rate"])
+def test_limits_of_displacement_hold_while_targets_jump(limits):
+    sim = finger({"tension": {"min": 0, "max": 8}, "displacement": limits})
+    ik = sinew.InverseController(sim, targets={"tip": FAR})
+    pulled = []
+    for step in range(300):
+        if step == 150:
+            ik.targets["tip"] = [-0.01, 0.02, 0.09]
+        ik.step()
+        assert sim.report.status == "solved"
+        pulled.append([cable.displacement for cable in sim.actuators.values()])
+    assert np.max(pulled) > 0.99 * min(limits["max"], 0.011)
+    assert np.max(pulled) <= limits["max"] + 1e-6 * SIZE
+    if "rate" in limits:
+        assert np.abs(np.diff(pulled, axis=0)).max() <= limits["rate"] * 0.01 + 2e-6 * SIZE
+
+
+@pytest.mark.parametrize("solver", [None, "one-linearisation"])
+def test_a_step_closes_its_part_of_the_gap_and_no_more(solver):
+    sim = finger({"tension": {"min": 0}}, solver)
+    start = sim.effector("tip").position
+    ik = sinew.InverseController(sim, targets={"tip": FAR})
+    ik.step()
+    moved = np.linalg.norm(sim.effector("tip").position - start)
+    assert moved == pytest.approx(0.02 * SIZE, rel=0.05)

@@ -157,3 +157,31 @@ def test_dynamics_of_a_free_fall_of_the_tip(scene):
     momentum = 0.5 * np.sum(body.node_masses[:, None] * body.velocities**2)
     assert body.kinetic_energy == pytest.approx(momentum, rel=1e-12)
     assert body.gravity_energy < 0 < body.strain_energy
+
+
+def column(load, **body):
+    side, height, young = 0.01, 0.1, 1e6
+    euler = np.pi**2 * young * side**4 / 12 / (4 * height**2)
+    return sinew.load({
+        "sinew": 1,
+        "bodies": {"column": {
+            "type": "fem", "element": "hex8",
+            "mesh": {"shape": "block", "length": side, "width": side, "height": height, "element_size": 0.005},
+            "material": {"model": "neo-hookean", "young_modulus": young, "poisson_ratio": 0.4},
+            "fixed": {"set": "z_min"}, **body}},
+        "loads": {"weight": {"type": "traction", "body": "column", "surface": {"set": "z_max"},
+                             "traction": [0, 0, -load * euler / side**2]}},
+        "effectors": {"top": {"body": "column", "point": [side / 2, side / 2, height]}}})
+
+
+@pytest.mark.parametrize("mass_matrix", ["lumped", "consistent"])
+def test_a_column_buckles_without_a_mass_as_with_one(mass_matrix):
+    tops = []
+    for body in ({}, {"density": 1000.0}):
+        sim = column(1.5, mass_matrix=mass_matrix, **body)
+        report = sim.solve_static()
+        assert report.stable and report.relaxation_steps > 0
+        tops.append(sim.effector("top").position)
+    # Which way it falls is open.
+    aside = [np.linalg.norm(top[:2] - 0.005) for top in tops]
+    assert aside[0] > 0.05 and aside[0] == pytest.approx(aside[1], rel=1e-6)

@@ -49,6 +49,8 @@ void check_mesh(const mesh::Mesh& mesh) {
 
 namespace {
 
+constexpr double kPseudoDensity = 1e3;  // kg/m^3
+
 void check_region(const Region& region) {
   if (region.patches && (!region.hyperelastic || region.hyperelastic->saint_venant_shear != 0.0)) {
     throw Error(ErrorKind::unsupported_element, {.item = "material"},
@@ -202,6 +204,7 @@ FemModel::FemModel(std::shared_ptr<const mesh::Mesh> mesh, const FemModelSetting
   const std::vector<double> volumes = element_volumes(*mesh_, *elements_, solids_);
   volume_ = std::accumulate(volumes.begin(), volumes.end(), 0.0);
   make_masses(settings, element_masses(settings, region_of, volumes));
+  if (total_mass_ == 0.0) make_pseudo_masses(settings, volumes);
 }
 
 FemModel::~FemModel() = default;
@@ -232,6 +235,19 @@ void FemModel::make_masses(const FemModelSettings& settings, std::span<const dou
       load_mass_[point.nodes[k]] += point.mass * point.weights[k];
     }
   }
+}
+
+void FemModel::make_pseudo_masses(const FemModelSettings& settings,
+                                  std::span<const double> volumes) {
+  if (!settings.point_masses.empty()) return;
+  std::vector<double> masses(volumes.begin(), volumes.end());
+  for (double& mass : masses) mass *= kPseudoDensity;
+  if (has_mass_blocks()) {
+    mass_blocks_ = consistent_mass_blocks(*mesh_, free_index_, pattern_, masses);
+    return;
+  }
+  const VectorX lumped = lumped_masses(*mesh_, settings, masses);
+  for (std::size_t k = 0; k < free_nodes_.size(); ++k) free_mass_[k] = lumped[free_nodes_[k]];
 }
 
 void FemModel::list_held(const std::vector<HeldAxis>& axes) {

@@ -144,6 +144,8 @@ class FemModel {
  private:
   void list_held(const std::vector<HeldAxis>& axes);
   void make_masses(const FemModelSettings& settings, std::span<const double> masses);
+  // Without a mass, which statics alone allow, M serves overdamped motion: any density will do.
+  void make_pseudo_masses(const FemModelSettings& settings, std::span<const double> volumes);
 
   std::shared_ptr<const mesh::Mesh> mesh_;
   std::vector<NodeId> free_nodes_, free_index_;

@@ -63,6 +63,7 @@ InverseController::InverseController(sim::Simulation& simulation, InverseSetting
   residual_.setZero(rows);
   gap_.setZero(rows);
   gap_before_.setZero(rows);
+  for_later_.setZero(rows);
   foreseen_.setZero(rows);
   asked_.assign(settings_.tasks.size(), Vector3::Zero());
   bound_multiplier_.setZero(count);
@@ -131,17 +132,19 @@ double InverseController::objective(const VectorX& gap) const {
   return 0.5 * gap.dot(row_weights_.cwiseProduct(gap));
 }
 
+// However often the step is linearised, its goal stays: the part of the gap at its start that one
+// step may close.
 void InverseController::form_residual(const StepProblem& problem, const Response& response) {
   measure_gap(problem);
   double to_go = 0.0;
   for (Eigen::Index k = 0; k < gap_.size(); ++k) {
-    if (row_weights_[k] > 0.0) to_go = std::hypot(to_go, gap_[k]);
+    if (row_weights_[k] > 0.0) to_go = std::hypot(to_go, gap_before_[k]);
   }
   const double most = settings_.largest_step * problem.size;
-  share_ = to_go > most ? most / to_go : 1.0;
+  for_later_ = (1.0 - (to_go > most ? most / to_go : 1.0)) * gap_before_;
   for (Eigen::Index k = 0; k < residual_.size(); ++k) {
     const int row = effector_rows_[static_cast<std::size_t>(k)];
-    residual_[k] = response.free()[row] - problem.delta[row] - share_ * gap_[k];
+    residual_[k] = response.free()[row] - problem.delta[row] - (gap_[k] - for_later_[k]);
   }
 }
 
@@ -261,7 +264,7 @@ double InverseController::miss(const StepProblem& problem, const VectorX& motion
   double sum = 0.0;
   for (Eigen::Index k = 0; k < gap_.size(); ++k) {
     const int row = effector_rows_[static_cast<std::size_t>(k)];
-    const double left = motion[row] - problem.delta[row] - share_ * gap_[k];
+    const double left = motion[row] - problem.delta[row] - (gap_[k] - for_later_[k]);
     sum += row_weights_[k] * left * left;
   }
   return std::sqrt(sum / row_weights_.maxCoeff());

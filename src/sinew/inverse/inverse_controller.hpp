@@ -106,7 +106,6 @@ class InverseController : public step::Controller {
   MatrixX jacobian_;                // W_ea, scaled columns
   MatrixX weighted_;                // Q W_ea
   VectorX residual_;                // delta_free_e - target, shortened to largest_step
-  double share_ = 1.0;              // of the gap that one step may close
   VectorX gap_;                     // of the tasks' rows: what delta should be, less delta
   VectorX scale_;                   // (controlled,) of each effort
   VectorX scaled_effort_;
@@ -121,7 +120,8 @@ class InverseController : public step::Controller {
   double time_ = -std::numeric_limits<double>::infinity();  // the end of the step at hand, s
   std::vector<Vector3> asked_;                              // the targets then
   VectorX gap_before_;                                      // when the step began
-  VectorX foreseen_;  // the gap after the step, by the linearisation
+  VectorX for_later_;  // of that, what the step leaves to the next ones
+  VectorX foreseen_;   // the gap after the step, by the linearisation
   double surprise_ = std::numeric_limits<double>::infinity();  // how far it was off last time, m
   VectorX bound_multiplier_, row_multiplier_;                  // of the program
   std::string conflict_;

@@ -98,7 +98,7 @@ void LinearStep::look_back(mechanics::LinearisationRequest request) {
   StepReport& report = run_.report;
   report.residual = run_.world.bodies().residual(run_.effort);
   report.relative_residual = report.residual / (run_.world.bodies().force_scale() + 1e-300);
-  report.violation = run_.world.violation(run_.effort);
+  report.violation = run_.world.violation(run_.effort, report.law);
 }
 
 }  // namespace sinew::sim

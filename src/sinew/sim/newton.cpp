@@ -82,7 +82,7 @@ class NewtonSolver {
     report_.residual = world_.bodies().residual(effort_);
     const double scale = world_.bodies().force_scale() + 1e-300;
     report_.relative_residual = report_.residual / scale;
-    report_.violation = world_.violation(effort_);
+    report_.violation = world_.violation(effort_, report_.law);
     return report_.relative_residual + report_.violation / world_.problem().size;
   }
 

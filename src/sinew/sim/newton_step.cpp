@@ -85,14 +85,16 @@ NewtonReport NewtonStep::search(double time_step) {
   return result;
 }
 
-// A controller's choice need not settle: what it chose last is what its actuators do in the rest of
-// the step.
+// A controller's choice need not settle: what it chose last is what its actuators are told in the
+// rest of the step, within their limits.
 NewtonReport NewtonStep::hold_choice(const NewtonReport& chosen, double time_step) {
   const bool dynamic = run_.model->step().dynamic();
   NewtonSettings held = settings(time_step);
   const int few = std::min(held.max_iterations, kSteeredIterations);
   if (!dynamic) held.max_iterations = few;
-  hold_efforts(run_.world.problem().actuators, run_.effort);
+  for (step::ActuatorBlock& block : run_.world.problem().actuators) {
+    if (block.owned) block.command_effort(run_.effort[static_cast<std::size_t>(block.row)]);
+  }
   NewtonReport result = run_.newton(nullptr, held);
   int tried = chosen.iterations + result.iterations;
   if (!dynamic && goes_on(result)) {

@@ -169,9 +169,9 @@ void World::form_compliance() {
   bodies_.add_compliance(numbering_.places(), problem_.compliance, problem_.delta_free);
 }
 
-double World::violation(std::span<const double> effort) {
+double World::violation(std::span<const double> effort, step::LawStatus law) {
   numbering_.gather(effort, scratch_);
-  return std::max(step::violation(problem_, scratch_), contacts_.deepest_left_out());
+  return std::max(step::violation(problem_, scratch_, law), contacts_.deepest_left_out());
 }
 
 void World::restart() {

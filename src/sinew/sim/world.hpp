@@ -67,8 +67,8 @@ class World {
   bool has_majorant() const { return stiffness_.has_majorant(); }
 
   /// m: how far `effort` and the present placement are from obeying all laws, points that are left
-  /// out included; see step::violation(). @param effort (rows,) N.
-  double violation(std::span<const double> effort);
+  /// out included; see step::violation(). @param effort (rows,) N. @param law how it was found.
+  double violation(std::span<const double> effort, step::LawStatus law);
 
   /// The step's problem, see RowNumbering for its rows. Actuators are the caller's to write;
   /// capstans' grip, contacts and all numbers of rows are the world's.

@@ -36,6 +36,13 @@ double miss(const ActuatorBlock& block, double effort, double motion) {
   return std::max({0.0, motion - block.motion_max, block.motion_min - motion});
 }
 
+// How far a motion that somebody chose the effort of is beyond its limits.
+double limit_miss(const ActuatorBlock& block, double effort, double motion) {
+  if (motion > block.motion_max && effort > block.effort_min) return motion - block.motion_max;
+  if (motion < block.motion_min && effort < block.effort_max) return block.motion_min - motion;
+  return 0.0;
+}
+
 // In motion: along the curve, or along the robot's own compliance where the curve is flat.
 double curve_miss(const StepProblem& problem, const ActuatorBlock& block, double effort) {
   const auto at = block.drive->respond(block.drive_step, problem.delta[block.row]);
@@ -64,19 +71,27 @@ void ActuatorBlock::hold_effort(double effort) {
   motion_max = kInfinity;
 }
 
+void ActuatorBlock::command_effort(double effort) {
+  owned = false;
+  drive = nullptr;
+  kind = CommandKind::effort;
+  value = effort;
+}
+
 bool ActuatorBlock::holds_motion() const {
   return !owned && drive == nullptr && kind == CommandKind::motion && std::isinf(effort_min) &&
          std::isinf(effort_max);
 }
 
-double violation(const StepProblem& problem, std::span<const double> effort) {
+double violation(const StepProblem& problem, std::span<const double> effort, LawStatus law) {
   const auto of = [&](int row) { return effort[static_cast<std::size_t>(row)]; };
   double worst = 0.0;
   for (const ActuatorBlock& block : problem.actuators) {
-    if (block.owned || block.row < 0) continue;
-    const double lambda = of(block.row);
-    const double own = block.drive != nullptr ? curve_miss(problem, block, lambda)
-                                              : miss(block, lambda, problem.delta[block.row]);
+    if (block.row < 0 || (block.owned && law == LawStatus::limits_conflict)) continue;
+    const double lambda = of(block.row), motion = problem.delta[block.row];
+    const double own = block.owned              ? limit_miss(block, lambda, motion)
+                       : block.drive != nullptr ? curve_miss(problem, block, lambda)
+                                                : miss(block, lambda, motion);
     worst = std::max(worst, block.motion_scale * own);
   }
   for_each_guide(problem, effort, [&](const CapstanBlock& block, const GuideTension& tension) {

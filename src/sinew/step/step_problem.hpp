@@ -14,6 +14,7 @@
 #include "sinew/core/types.hpp"
 #include "sinew/linalg/scratch.hpp"
 #include "sinew/step/drive.hpp"
+#include "sinew/step/law_status.hpp"
 
 namespace sinew::step {
 
@@ -38,6 +39,8 @@ struct ActuatorBlock {
 
   /// Becomes a constant effort, whatever the limits. @param effort N or Pa.
   void hold_effort(double effort);
+  /// Becomes a commanded effort within the limits that it has. @param effort N or Pa.
+  void command_effort(double effort);
   /// Whether a motion is commanded and no limit of effort stands against it.
   bool holds_motion() const;
 };
@@ -126,10 +129,11 @@ void for_each_guide(const StepProblem& problem, std::span<const double> effort, 
   }
 }
 
-/// How far `effort` and the motion problem.delta are from obeying all blocks together, m. Owned
-/// actuators do not count: their controllers know.
-/// @param problem of the step. @param effort (rows,) N.
-double violation(const StepProblem& problem, std::span<const double> effort);
+/// How far `effort` and the motion problem.delta are from obeying all blocks together, m. Of owned
+/// actuators the limits of their motions count.
+/// @param problem of the step. @param effort (rows,) N. @param law how it was found: limits that
+/// contradict each other do not count.
+double violation(const StepProblem& problem, std::span<const double> effort, LawStatus law);
 
 /// A row whose motion follows from its effort by delta + c lambda = constant.
 struct HeldRow {
