@@ -47,9 +47,9 @@ void ContactRows::for_each_point(Visit&& visit) const {
 }
 
 // A function of the state alone, so that a run goes on from a saved one bit for bit.
-void ContactRows::choose_present(std::span<const double> effort, double time_step) {
+void ContactRows::choose_present(std::span<const double> effort, double time_step, double reach) {
   left_out_ = false;
-  const double near = kNear * model_.size();
+  const double near = std::max(kNear * model_.size(), reach);
   for_each_point([&](const constraint::Contact& contact, std::size_t k) {
     const mechanics::MaterialPoint& point = contact.points()[k];
     const mechanics::BodyModel& body = *model_.bodies()[static_cast<std::size_t>(point.body)];

@@ -36,8 +36,8 @@ class ContactRows {
 
   /// After planes were placed and begun: which points take part in the step.
   /// @param effort (rows,) N of the last step: points with a force are near, whatever their gap.
-  /// @param time_step s.
-  void choose_present(std::span<const double> effort, double time_step);
+  /// @param time_step s. @param reach m: points that are nearer than this are near, too.
+  void choose_present(std::span<const double> effort, double time_step, double reach);
   /// For a look at the present state: every point takes part.
   void take_all();
   /// Appends the blocks of the points that take part.

@@ -27,35 +27,52 @@ int HeldMotions::invert() {
 }
 
 void HeldMotions::move_rows() {
-  const std::size_t rows = world_.numbering().places().size();
-  std::vector<double> unit(rows, 0.0);
-  VectorX rest, row, solved;
-  world_.bodies().imbalance(unit, rest);
-  moved_.resize(rest.size(), static_cast<Eigen::Index>(held_.size()));
-  for (std::size_t k = 0; k < held_.size(); ++k) {
-    double& own = unit[static_cast<std::size_t>(world_.numbering().row_of(held_[k].row))];
-    own = 1.0;
-    world_.bodies().imbalance(unit, row);
-    own = 0.0;
-    world_.bodies().solve(row - rest, solved);
-    moved_.col(static_cast<Eigen::Index>(k)) = solved;
+  std::vector<int> rows;
+  for (const step::HeldRow& row : held_) rows.push_back(row.row);
+  const MatrixX forces = world_.row_forces(rows);
+  moved_.resize(forces.rows(), forces.cols());
+  VectorX solved;
+  for (Eigen::Index k = 0; k < forces.cols(); ++k) {
+    world_.bodies().solve(forces.col(k), solved);
+    moved_.col(k) = solved;
   }
 }
 
-void HeldMotions::solve(const VectorX& right, VectorX& motion) {
-  VectorX efforts;
-  solve(right, VectorX::Zero(static_cast<Eigen::Index>(held_.size())), motion, efforts);
+VectorX HeldMotions::gaps() const {
+  VectorX result = VectorX::Zero(static_cast<Eigen::Index>(held_.size()));
+  for (std::size_t k = 0; k < held_.size(); ++k) {
+    if (held_[k].compliance != 0.0) continue;
+    result[static_cast<Eigen::Index>(k)] = world_.problem().delta[held_[k].row];
+  }
+  return result;
 }
 
-void HeldMotions::solve(const VectorX& right, const VectorX& gap, VectorX& motion,
-                        VectorX& efforts) {
-  world_.bodies().solve(right, motion);
-  efforts.resize(gap.size());
+MatrixX HeldMotions::compliance(const std::vector<int>& rows) {
+  const MatrixX& whole = world_.compliance();
+  MatrixX result = whole(rows, rows);
+  if (held_.empty()) return result;
+  if (inverse_.size() == 0) invert();
+  std::vector<int> own;
+  for (const step::HeldRow& row : held_) own.push_back(row.row);
+  const MatrixX across = whole(own, rows);
+  result.noalias() -= across.transpose() * inverse_ * across;
+  return result;
+}
+
+void HeldMotions::solve(const VectorX& right, VectorX& motion) {
+  HeldAnswer answer;
+  solve(right, VectorX::Zero(static_cast<Eigen::Index>(held_.size())), answer);
+  motion = std::move(answer.motion);
+}
+
+void HeldMotions::solve(const VectorX& right, const VectorX& gap, HeldAnswer& answer) {
+  world_.bodies().solve(right, answer.motion);
+  answer.efforts.resize(gap.size());
   if (held_.empty()) return;
   if (inverse_.size() == 0) invert();
   if (moved_.size() == 0) move_rows();
-  efforts.noalias() = -inverse_ * (moved_.transpose() * right + gap);
-  motion.noalias() += moved_ * efforts;
+  answer.efforts.noalias() = -inverse_ * (moved_.transpose() * right + gap);
+  answer.motion.noalias() += moved_ * answer.efforts;
 }
 
 }  // namespace sinew::sim

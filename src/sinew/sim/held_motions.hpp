@@ -12,6 +12,12 @@ namespace sinew::sim {
 
 class World;
 
+/// A motion, and the efforts of the held rows that it takes.
+struct HeldAnswer {
+  VectorX motion;   ///< (all bodies' size(),) m
+  VectorX efforts;  ///< (held,) N
+};
+
 /// A restricted to the motions that held rows H leave is A + H^T C^-1 H, and for C = 0 A on the
 /// null space of H. Its inverse there is T = A^-1 - Y S^-1 Y^T, Y = A^-1 H^T, S = W + C; its
 /// negative eigenvalues are counted by step::negative_directions().
@@ -27,11 +33,14 @@ class HeldMotions {
   /// Negative eigenvalues of the restricted tangent.
   int negative_pivots() const { return negative_; }
 
+  /// (held,) m: how far held rows without compliance are from zero.
+  VectorX gaps() const;
+  /// (k, k) m/N: W = H T H^T of other rows. @param rows (k,) of the problem.
+  MatrixX compliance(const std::vector<int>& rows);
   /// The motion T right. @param right,motion (all bodies' size(),) N and m.
   void solve(const VectorX& right, VectorX& motion);
-  /// The motion that also closes gaps, H motion + C efforts = -gap, and the efforts of held rows
-  /// that it takes. @param gap (held,) m. @param efforts (held,) N.
-  void solve(const VectorX& right, const VectorX& gap, VectorX& motion, VectorX& efforts);
+  /// The motion that also closes gaps, H motion + C efforts = -gap. @param gap (held,) m.
+  void solve(const VectorX& right, const VectorX& gap, HeldAnswer& answer);
 
  private:
   int count();

@@ -6,9 +6,12 @@
 
 #include <fmt/format.h>
 
+#include "sinew/constraint/contact.hpp"
 #include "sinew/core/error.hpp"
-#include "sinew/sim/held_motions.hpp"
+#include "sinew/sim/path_predictor.hpp"
 #include "sinew/sim/run.hpp"
+#include "sinew/sim/static_search.hpp"
+#include "sinew/sim/step_failure.hpp"
 
 namespace sinew::sim {
 
@@ -17,14 +20,17 @@ namespace {
 constexpr int kMostIterations = 25;
 constexpr double kWantedIterations = 6.0;  // of a step of the right length
 constexpr int kMostPathHalvings = 14;
-constexpr double kFarthest = 5.0;  // of a step's length, that its corrections may go
+constexpr double kFarthest = 5.0;   // of a step's length, that its corrections may go
+constexpr double kDiagonal = 1.75;  // more than the largest coordinate's part of a motion in space
 
 }  // namespace
 
 void PathFollower::check() const {
-  if (!run_.model->contacts().empty()) {
-    throw Error(ErrorKind::not_in_this_version, {.item = "follow_path"},
-                "paths of robots with contacts are not followed yet",
+  for (const auto& contact : run_.world.contacts().planes().contacts()) {
+    if (contact->friction() == 0.0 && !contact->curved()) continue;
+    throw Error(ErrorKind::not_in_this_version,
+                {.item = fmt::format("contact '{}'", contact->name())},
+                "paths beside contacts with friction or curved surfaces are not followed yet",
                 "step through the load in time");
   }
   if (!run_.model->guides().empty()) {
@@ -58,6 +64,26 @@ void PathFollower::plan() {
   }
 }
 
+// A path beside contacts begins at an equilibrium: it needs to know what touches there.
+void PathFollower::settle() {
+  if (run_.world.contacts().empty()) return;
+  std::vector<step::ActuatorBlock>& blocks = run_.world.problem().actuators;
+  const std::vector<step::ActuatorBlock> goal = blocks;
+  for (std::size_t i = 0; i < blocks.size(); ++i) blocks[i].hold_effort(efforts_[i].from);
+  const StaticSettings settings{.tolerance = settings_.tolerance};
+  StaticSearch search(run_, settings);
+  run_.solver.begin_step();
+  set_share(0.0);
+  const bool found = search.equilibrate(0.0);
+  blocks = goal;
+  run_.world.bodies().end_step({});
+  if (found) return;
+  fail(run_, ErrorKind::not_converged,
+       "from where the robot is, Newton's method finds no equilibrium under the loads that acted "
+       "last",
+       "let solve_static() find one before the load grows");
+}
+
 // Where loads and efforts stand at a share of the way.
 void PathFollower::set_share(double share) {
   for (std::size_t k = 0; k < loads_.size(); ++k) {
@@ -79,58 +105,72 @@ void PathFollower::imbalance_at(double share, VectorX& imbalance) {
   run_.world.bodies().imbalance(run_.effort, imbalance);
 }
 
-// m: the largest of any joint.
+// m: the largest of any joint and of the points that touch.
 double PathFollower::gap() const {
+  const step::StepProblem& problem = run_.world.problem();
   double largest = 0.0;
-  for (const step::BilateralBlock& block : run_.world.problem().bilaterals) {
-    largest = std::max(largest, std::abs(run_.world.problem().delta[block.row]));
+  for (const step::BilateralBlock& block : problem.bilaterals) {
+    largest = std::max(largest, std::abs(problem.delta[block.row]));
   }
+  for (const int row : touching_) largest = std::max(largest, std::abs(problem.delta[row]));
   return largest;
 }
 
-// The answers of the robot as its joints hold it together; false where there is none.
-bool PathFollower::solve(const VectorX& here, const VectorX& ahead) {
-  if (run_.world.condense() == linalg::FactorStatus::singular) return false;
-  const step::StepProblem& problem = run_.world.problem();
-  held_.clear();
-  step::append_joints(problem, held_);
-  HeldMotions motions(run_.world, held_);
-  VectorX gap(static_cast<Eigen::Index>(held_.size()));
-  for (Eigen::Index k = 0; k < gap.size(); ++k) {
-    const step::HeldRow& row = held_[static_cast<std::size_t>(k)];
-    gap[k] = row.compliance == 0.0 ? problem.delta[row.row] : 0.0;
-  }
-  motions.solve(here, gap, by_rest_.motion, by_rest_.efforts);
-  motions.solve(ahead - here, VectorX::Zero(gap.size()), by_load_.motion, by_load_.efforts);
+// The robot, condensed, as its joints and the points that touch hold it.
+HeldMotions PathFollower::hold() {
+  std::vector<step::HeldRow> held;
+  step::append_joints(run_.world.problem(), held);
+  for (const int row : touching_) held.push_back({row, 0.0});
+  HeldMotions motions(run_.world, std::move(held));
   negative_pivots_ = motions.negative_pivots();
+  return motions;
+}
+
+bool PathFollower::predict(const VectorX& here, const VectorX& ahead, double length) {
+  if (run_.world.condense() == linalg::FactorStatus::singular) return false;
+  HeldMotions joints = hold();
+  HeldAnswer by_rest, by_load;
+  joints.solve(here, joints.gaps(), by_rest);
+  joints.solve(ahead - here, VectorX::Zero(joints.gaps().size()), by_load);
+  PathPrediction prediction;
+  PathPredictor predictor(run_.world, joints);
+  if (!predictor.predict(by_rest, by_load, direction_, length, run_.effort, prediction)) {
+    return false;
+  }
+  moved_.setZero(by_load.motion.size());
+  origin_ = prediction.origin;
+  move(joints.rows(), prediction.answer, prediction.share);
+  touching_ = std::move(prediction.touching);
   return true;
 }
 
-// Along the tangent first, then in the plane normal to it; false where there is no such motion.
-bool PathFollower::advance(bool first, double length) {
-  double by = 0.0;
-  if (first) {
-    const double largest = by_load_.motion.cwiseAbs().maxCoeff();
-    if (!(largest > 0.0)) return false;
-    const bool back = direction_.size() > 0 && direction_.dot(by_load_.motion) < 0.0;
-    by = (back ? -length : length) / largest;
-    moved_.setZero(by_load_.motion.size());
-  } else {
-    const double along = moved_.dot(by_load_.motion);
-    if (along == 0.0) return false;
-    by = -moved_.dot(by_rest_.motion) / along;
-  }
-  share_ += by;
-  const VectorX motion = by_rest_.motion + by * by_load_.motion;
-  moved_ += motion;
-  run_.world.bodies().propose_motion(motion);
-  // Efforts of stiffness are part of no equilibrium.
-  for (std::size_t k = 0; k < run_.world.problem().bilaterals.size(); ++k) {
-    const auto i = static_cast<Eigen::Index>(k);
-    const int row = run_.world.numbering().row_of(held_[k].row);
-    run_.effort[static_cast<std::size_t>(row)] += by_rest_.efforts[i] + by * by_load_.efforts[i];
-  }
+bool PathFollower::correct(const VectorX& here, const VectorX& ahead) {
+  if (run_.world.condense() == linalg::FactorStatus::singular) return false;
+  HeldMotions motions = hold();
+  HeldAnswer answer, by_load;
+  motions.solve(here, motions.gaps(), answer);
+  motions.solve(ahead - here, VectorX::Zero(answer.efforts.size()), by_load);
+  const VectorX normal = moved_ - origin_;
+  const double along = normal.dot(by_load.motion);
+  if (along == 0.0) return false;
+  const double by = -normal.dot(answer.motion) / along;
+  answer.motion += by * by_load.motion;
+  answer.efforts += by * by_load.efforts;
+  move(motions.rows(), answer, by);
   return true;
+}
+
+// Proposes a motion. Efforts of stiffness are part of no equilibrium.
+void PathFollower::move(std::span<const step::HeldRow> held, const HeldAnswer& answer,
+                        double share) {
+  share_ += share;
+  moved_ += answer.motion;
+  run_.world.bodies().propose_motion(answer.motion);
+  for (std::size_t k = 0; k < held.size(); ++k) {
+    if (held[k].compliance != 0.0) continue;
+    const int row = run_.world.numbering().row_of(held[k].row);
+    run_.effort[static_cast<std::size_t>(row)] += answer.efforts[static_cast<Eigen::Index>(k)];
+  }
 }
 
 // Takes the motion; whether it may be taken.
@@ -146,8 +186,30 @@ bool PathFollower::is_sound(double length) {
   return true;
 }
 
+// Whether points that touch are pressed, and all others outside. What is pulled by rounding is not.
+bool PathFollower::obeys_contacts() {
+  const step::StepProblem& problem = run_.world.problem();
+  const double nothing = settings_.tolerance * run_.model->size();
+  const double slack = settings_.tolerance * run_.world.bodies().force_scale();
+  bool obeyed = run_.world.contacts().deepest_left_out() <= nothing;
+  for (const step::ContactBlock& block : problem.contacts) {
+    double& force = run_.effort[static_cast<std::size_t>(run_.world.numbering().row_of(block.row))];
+    obeyed = obeyed && force >= -slack && problem.delta[block.row] >= -nothing;
+    force = std::max(force, 0.0);
+  }
+  return obeyed;
+}
+
+// Contacts change what is unstable from one iteration to the next: here, not before the last.
+void PathFollower::count() {
+  if (run_.world.contacts().empty()) return;
+  if (run_.world.condense() != linalg::FactorStatus::singular) hold();
+}
+
 // The iterations that a step took; 0: it failed.
 int PathFollower::step(double length) {
+  run_.world.begin_step(run_.time(), run_.time(), run_.effort, kFarthest * kDiagonal * length);
+  touching_.clear();
   VectorX here, ahead;
   for (int iteration = 0; iteration <= kMostIterations; ++iteration) {
     imbalance_at(share_ + 1.0, ahead);
@@ -155,8 +217,13 @@ int PathFollower::step(double length) {
     run_.report.relative_residual = here.norm() / (run_.world.bodies().force_scale() + 1e-300);
     const bool arrived = run_.report.relative_residual <= settings_.tolerance &&
                          gap() <= settings_.tolerance * run_.model->size();
-    if (iteration > 0 && arrived) return iteration;
-    if (!solve(here, ahead) || !advance(iteration == 0, length) || !is_sound(length)) return 0;
+    if (iteration > 0 && arrived) {
+      if (!obeys_contacts()) return 0;
+      count();
+      return iteration;
+    }
+    const bool found = iteration == 0 ? predict(here, ahead, length) : correct(here, ahead);
+    if (!found || !is_sound(length)) return 0;
   }
   return 0;
 }
@@ -167,7 +234,7 @@ int PathFollower::step_or_give_up(double length) {
   const double share_before = share_;
   const int iterations = step(length);
   if (iterations > 0) {
-    direction_ = moved_;
+    direction_ = moved_ - origin_;
   } else {
     run_.restore(run_.before);
     share_ = share_before;
@@ -177,7 +244,6 @@ int PathFollower::step_or_give_up(double length) {
 
 void PathFollower::rest() {
   run_.world.bodies().end_step({});
-  run_.world.begin_step(run_.time(), run_.time(), run_.effort);
   run_.finish_step();
 }
 
@@ -187,7 +253,8 @@ std::vector<PathPoint> PathFollower::follow(const std::function<void()>& visit) 
   run_.now = run_.time();
   run_.surroundings.move_bases(run_.now);
   plan();
-  run_.world.begin_step(run_.time(), run_.time(), run_.effort);
+  run_.keep(run_.before);
+  settle();
   std::vector<PathPoint> path;
   double length = settings_.first_step * run_.model->size();
   const double longest = settings_.largest_step * run_.model->size();

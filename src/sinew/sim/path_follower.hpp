@@ -4,22 +4,29 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "sinew/core/types.hpp"
+#include "sinew/sim/held_motions.hpp"
 #include "sinew/sim/path_settings.hpp"
-#include "sinew/step/step_problem.hpp"
 
 namespace sinew::sim {
 
 struct Run;
 
 /// The equation is r(q, s) = b(q, s) + H^T lambda(s) = 0. A step predicts along the tangent of the
-/// path, (A^-1 dr/ds, 1), and corrects in the plane normal to it (Riks, Int. J. Solids Struct. 15
+/// path (PathPredictor), and corrects in a plane normal to it (Riks, Int. J. Solids Struct. 15
 /// (1979) 529; Ramm 1981; Crisfield 1991, sec. 9.3): with m_r = A^-1 r and m_p = A^-1 dr/ds,
 ///   dq = m_r + ds m_p,   ds = -(D . m_r)/(D . m_p),
 /// D the motion since the step began. A, the exact tangent, may be indefinite on the way. Joints
 /// hold rows: m_r and m_p are then motions that they leave, and bring their efforts (HeldMotions).
+///
+/// Contacts without friction: the path is smooth as long as the same points touch, and these hold
+/// their normal rows as joints do. A prediction that goes past corners says which points touch
+/// behind the last one, and D is the motion along the edge that it ends on. A step ends where these
+/// points are pressed and all others are outside; where they are not, the prediction was too long,
+/// and a shorter one, which errs by the square of its length, is tried.
 class PathFollower {
  public:
   /// @param run is moved. @param settings see there.
@@ -31,12 +38,17 @@ class PathFollower {
  private:
   void check() const;
   void plan();
+  void settle();
   void set_share(double share);
   void imbalance_at(double share, VectorX& imbalance);
   double gap() const;
-  bool solve(const VectorX& here, const VectorX& ahead);
-  bool advance(bool first, double length);
+  HeldMotions hold();
+  bool predict(const VectorX& here, const VectorX& ahead, double length);
+  bool correct(const VectorX& here, const VectorX& ahead);
+  void move(std::span<const step::HeldRow> held, const HeldAnswer& answer, double share);
   bool is_sound(double length);
+  bool obeys_contacts();
+  void count();
   int step(double length);
   int step_or_give_up(double length);
   void rest();
@@ -49,15 +61,11 @@ class PathFollower {
   const PathSettings& settings_;
   std::vector<Stretch> loads_, efforts_;  // of the model's loads and actuators
   double share_ = 0.0;                    // of the way
-  std::vector<step::HeldRow> held_;       // by joints
-  // Motions and efforts of held rows: of r, and of dr/ds.
-  struct Answer {
-    VectorX motion, efforts;
-  };
-  Answer by_rest_, by_load_;
-  VectorX moved_;            // since the step began
-  VectorX direction_;        // of the last step
-  int negative_pivots_ = 0;  // at the last linearisation that was solved
+  std::vector<int> touching_;             // normal rows of the problem
+  VectorX moved_;                         // since the step began
+  VectorX origin_;                        // of D, likewise
+  VectorX direction_;                     // of the last step
+  int negative_pivots_ = 0;               // at the last linearisation that was solved
 };
 
 }  // namespace sinew::sim

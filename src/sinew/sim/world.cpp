@@ -57,10 +57,10 @@ void World::place_contacts(double from, double to) {
   contacts_.planes().begin();
 }
 
-void World::begin_step(double from, double to, std::span<const double> effort) {
+void World::begin_step(double from, double to, std::span<const double> effort, double reach) {
   if (!contacts_.empty()) {
     place_contacts(from, to);
-    contacts_.choose_present(effort, to - from);
+    contacts_.choose_present(effort, to - from, reach);
     number_rows();
   }
   bodies_.begin_step();
@@ -94,6 +94,21 @@ void World::form_rows(std::span<const double> effort, std::span<const int> curve
   }
   bodies_.take_rows(rows_);
   stiffness_.choose(effort, curved);
+}
+
+MatrixX World::row_forces(std::span<const int> rows) {
+  std::vector<double> unit(numbering_.places().size(), 0.0);
+  VectorX rest, row;
+  bodies_.imbalance(unit, rest);
+  MatrixX result(rest.size(), static_cast<Eigen::Index>(rows.size()));
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    double& own = unit[static_cast<std::size_t>(numbering_.row_of(rows[k]))];
+    own = 1.0;
+    bodies_.imbalance(unit, row);
+    own = 0.0;
+    result.col(static_cast<Eigen::Index>(k)) = row - rest;
+  }
+  return result;
 }
 
 void World::hold_capstans(const VectorX& delta) {

@@ -36,7 +36,8 @@ class World {
 
   /// @param from,to s, when the step begins and ends: where surfaces stand then. @param effort
   ///   (rows,) N of the last step: points with a force are near, whatever their gap.
-  void begin_step(double from, double to, std::span<const double> effort);
+  /// @param reach m: points that are nearer than this to their surface are near, too.
+  void begin_step(double from, double to, std::span<const double> effort, double reach = 0.0);
   /// For a look at the present state: every contact point takes part, and no base moves.
   /// @param at s, when surfaces are looked at.
   void begin_query(double at);
@@ -83,6 +84,8 @@ class World {
   /// delta at the current placement, without forming the rows anew for the bodies.
   const VectorX& measure_delta();
   const mechanics::RowValues& rows() const { return rows_; }
+  /// (all bodies' size(), k) columns of H^T. @param rows (k,) of the problem; formed.
+  MatrixX row_forces(std::span<const int> rows);
 
   const ContactRows& contacts() const { return contacts_; }
   ContactRows& contacts() { return contacts_; }
