@@ -2,14 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 
 #include "sinew/constraint/contact.hpp"
 #include "sinew/core/error.hpp"
+#include "sinew/qp/friction_cone.hpp"
+#include "sinew/sim/path_contacts.hpp"
 #include "sinew/sim/path_predictor.hpp"
 #include "sinew/sim/run.hpp"
+#include "sinew/sim/stability.hpp"
 #include "sinew/sim/static_search.hpp"
 #include "sinew/sim/step_failure.hpp"
 
@@ -20,18 +22,21 @@ namespace {
 constexpr int kMostIterations = 25;
 constexpr double kWantedIterations = 6.0;  // of a step of the right length
 constexpr int kMostPathHalvings = 14;
-constexpr double kFarthest = 5.0;   // of a step's length, that its corrections may go
+constexpr double kFarthest = 5.0;  // of a step's length, that its corrections may go
+// Where points touch, loads grow fast: beside contacts no prediction goes beyond the full load by
+// more than the first, and no step by more than the second.
+constexpr double kBeyond = 1e-2;
+constexpr double kFarBeyond = 0.1;
 constexpr double kDiagonal = 1.75;  // more than the largest coordinate's part of a motion in space
 
 }  // namespace
 
 void PathFollower::check() const {
   for (const auto& contact : run_.world.contacts().planes().contacts()) {
-    if (contact->friction() == 0.0 && !contact->curved()) continue;
-    throw Error(ErrorKind::not_in_this_version,
-                {.item = fmt::format("contact '{}'", contact->name())},
-                "paths beside contacts with friction or curved surfaces are not followed yet",
-                "step through the load in time");
+    if (!contact->curved()) continue;
+    throw Error(
+        ErrorKind::not_in_this_version, {.item = fmt::format("contact '{}'", contact->name())},
+        "paths beside curved surfaces are not followed yet", "step through the load in time");
   }
   if (!run_.model->guides().empty()) {
     throw Error(ErrorKind::bad_argument, {.item = "follow_path"},
@@ -39,41 +44,18 @@ void PathFollower::check() const {
   }
 }
 
-void PathFollower::plan() {
-  check();
-  run_.read_commands(run_.time(), std::numeric_limits<double>::infinity());
-  const std::vector<ActuatorState>& actuators = run_.actuation.states();
-  for (std::size_t i = 0; i < actuators.size(); ++i) {
-    const step::ActuatorBlock& range = run_.world.problem().actuators[i];
-    const bool fixed = range.owned || range.drive != nullptr;
-    const double told = range.owned ? actuators[i].effort : range.value;
-    if (!range.owned && (fixed || range.kind != CommandKind::effort)) {
-      throw Error(
-          ErrorKind::bad_argument,
-          {.item = fmt::format("actuator '{}'", run_.model->actuators()[i].name)},
-          "a path grows loads and commanded efforts; this actuator has a drive or is told a "
-          "motion",
-          "command its effort; what is held at a motion needs no path: solve_static() "
-          "passes limit points by itself");
-    }
-    efforts_.push_back({actuators[i].effort, told});
-  }
-  const Surroundings& loads = run_.surroundings;
-  for (std::size_t k = 0; k < loads.applied().size(); ++k) {
-    loads_.push_back({loads.applied()[k], loads.factors()[k].value(run_.time())});
-  }
-}
-
 // A path beside contacts begins at an equilibrium: it needs to know what touches there.
 void PathFollower::settle() {
   if (run_.world.contacts().empty()) return;
+  loads_->set_share(0.0);
   std::vector<step::ActuatorBlock>& blocks = run_.world.problem().actuators;
   const std::vector<step::ActuatorBlock> goal = blocks;
-  for (std::size_t i = 0; i < blocks.size(); ++i) blocks[i].hold_effort(efforts_[i].from);
+  for (step::ActuatorBlock& block : blocks) {
+    block.hold_effort(run_.effort[static_cast<std::size_t>(block.row)]);
+  }
   const StaticSettings settings{.tolerance = settings_.tolerance};
   StaticSearch search(run_, settings);
   run_.solver.begin_step();
-  set_share(0.0);
   const bool found = search.equilibrate(0.0);
   blocks = goal;
   run_.world.bodies().end_step({});
@@ -84,92 +66,97 @@ void PathFollower::settle() {
        "let solve_static() find one before the load grows");
 }
 
-// Where loads and efforts stand at a share of the way.
-void PathFollower::set_share(double share) {
-  for (std::size_t k = 0; k < loads_.size(); ++k) {
-    const auto [from, to] = loads_[k];
-    run_.surroundings.apply(k, from + share * (to - from));
-  }
-  for (std::size_t i = 0; i < efforts_.size(); ++i) {
-    const auto [from, to] = efforts_[i];
-    const int row = run_.model->actuators()[i].row;
-    run_.effort[static_cast<std::size_t>(row)] = from + share * (to - from);
-  }
-}
-
 // r at a share of the way; the bodies stay linearised there.
 void PathFollower::imbalance_at(double share, VectorX& imbalance) {
-  set_share(share);
+  loads_->set_share(share);
   run_.world.linearise({{}, mechanics::Tangent::exact, true, true});
   run_.world.form_rows(run_.effort, run_.model->curved_constraints());
   run_.world.bodies().imbalance(run_.effort, imbalance);
 }
 
-// m: the largest of any joint and of the points that touch.
+// m: the largest of any joint, and what points that touch miss.
 double PathFollower::gap() const {
   const step::StepProblem& problem = run_.world.problem();
-  double largest = 0.0;
+  double largest = path_miss(run_.world, touching_, run_.effort);
   for (const step::BilateralBlock& block : problem.bilaterals) {
     largest = std::max(largest, std::abs(problem.delta[block.row]));
   }
-  for (const int row : touching_) largest = std::max(largest, std::abs(problem.delta[row]));
   return largest;
 }
 
-// The robot, condensed, as its joints and the points that touch hold it.
-HeldMotions PathFollower::hold() {
+std::vector<step::HeldRow> PathFollower::joints() const {
   std::vector<step::HeldRow> held;
   step::append_joints(run_.world.problem(), held);
-  for (const int row : touching_) held.push_back({row, 0.0});
-  HeldMotions motions(run_.world, std::move(held));
-  negative_pivots_ = motions.negative_pivots();
-  return motions;
+  return held;
+}
+
+// And the tangential rows of points that stick.
+std::vector<step::HeldRow> PathFollower::joints_and_sticking() const {
+  std::vector<step::HeldRow> held = joints();
+  for (const step::ContactBlock& block : run_.world.problem().contacts) {
+    const int row = run_.world.numbering().row_of(block.row);
+    const Eigen::Map<const Vector3> force(&run_.effort[static_cast<std::size_t>(row)]);
+    if (!(force[0] > 0.0) || qp::slides(force, block.friction)) continue;
+    held.push_back({block.row + 1, 0.0});
+    held.push_back({block.row + 2, 0.0});
+  }
+  return held;
 }
 
 bool PathFollower::predict(const VectorX& here, const VectorX& ahead, double length) {
   if (run_.world.condense() == linalg::FactorStatus::singular) return false;
-  HeldMotions joints = hold();
+  HeldMotions motions(run_.world, joints_and_sticking());
+  negative_pivots_ = motions.negative_pivots();
+  const VectorX still = VectorX::Zero(static_cast<Eigen::Index>(motions.rows().size()));
   HeldAnswer by_rest, by_load;
-  joints.solve(here, joints.gaps(), by_rest);
-  joints.solve(ahead - here, VectorX::Zero(joints.gaps().size()), by_load);
+  motions.solve(here, motions.gaps(), by_rest);
+  motions.solve(ahead - here, still, by_load);
   PathPrediction prediction;
-  PathPredictor predictor(run_.world, joints);
-  if (!predictor.predict(by_rest, by_load, direction_, length, run_.effort, prediction)) {
+  PathPredictor predictor(run_.world, motions);
+  const double most = run_.world.contacts().empty() ? kInfinity : 1.0 + kBeyond - share_;
+  if (!predictor.predict(by_rest, by_load, direction_, length, most, run_.effort, prediction)) {
     return false;
   }
   moved_.setZero(by_load.motion.size());
   origin_ = prediction.origin;
-  move(joints.rows(), prediction.answer, prediction.share);
-  touching_ = std::move(prediction.touching);
+  move(prediction.answer.motion, prediction.share);
+  push(motions.rows(), prediction.answer.efforts);
+  touching_ = predictor.touch(run_.effort);
   return true;
 }
 
 bool PathFollower::correct(const VectorX& here, const VectorX& ahead) {
   if (run_.world.condense() == linalg::FactorStatus::singular) return false;
-  HeldMotions motions = hold();
+  HeldMotions motions(run_.world, joints());
+  negative_pivots_ = motions.negative_pivots();
+  PathContacts contacts(run_.world, motions, touching_, run_.effort);
+  if (contacts.is_singular()) return false;
   HeldAnswer answer, by_load;
-  motions.solve(here, motions.gaps(), answer);
-  motions.solve(ahead - here, VectorX::Zero(answer.efforts.size()), by_load);
+  VectorX forces, forces_by_load;
+  contacts.solve(here, true, answer, forces);
+  contacts.solve(ahead - here, false, by_load, forces_by_load);
   const VectorX normal = moved_ - origin_;
   const double along = normal.dot(by_load.motion);
   if (along == 0.0) return false;
   const double by = -normal.dot(answer.motion) / along;
-  answer.motion += by * by_load.motion;
-  answer.efforts += by * by_load.efforts;
-  move(motions.rows(), answer, by);
+  move(answer.motion + by * by_load.motion, by);
+  push(motions.rows(), answer.efforts + by * by_load.efforts);
+  push(contacts.rows(), forces + by * forces_by_load);
   return true;
 }
 
-// Proposes a motion. Efforts of stiffness are part of no equilibrium.
-void PathFollower::move(std::span<const step::HeldRow> held, const HeldAnswer& answer,
-                        double share) {
+void PathFollower::move(const VectorX& motion, double share) {
   share_ += share;
-  moved_ += answer.motion;
-  run_.world.bodies().propose_motion(answer.motion);
+  moved_ += motion;
+  run_.world.bodies().propose_motion(motion);
+}
+
+// Efforts of stiffness are part of no equilibrium.
+void PathFollower::push(std::span<const step::HeldRow> held, const VectorX& efforts) {
   for (std::size_t k = 0; k < held.size(); ++k) {
     if (held[k].compliance != 0.0) continue;
     const int row = run_.world.numbering().row_of(held[k].row);
-    run_.effort[static_cast<std::size_t>(row)] += answer.efforts[static_cast<Eigen::Index>(k)];
+    run_.effort[static_cast<std::size_t>(row)] += efforts[static_cast<Eigen::Index>(k)];
   }
 }
 
@@ -186,16 +173,19 @@ bool PathFollower::is_sound(double length) {
   return true;
 }
 
-// Whether points that touch are pressed, and all others outside. What is pulled by rounding is not.
-bool PathFollower::obeys_contacts() {
+// Whether points that touch are pressed, all others outside, and the load not far beyond its end.
+// What rounding pulls is let go.
+bool PathFollower::is_path_point() {
   const step::StepProblem& problem = run_.world.problem();
   const double nothing = settings_.tolerance * run_.model->size();
+  if (!run_.world.contacts().empty() && share_ > 1.0 + kFarBeyond) return false;
   const double slack = settings_.tolerance * run_.world.bodies().force_scale();
   bool obeyed = run_.world.contacts().deepest_left_out() <= nothing;
   for (const step::ContactBlock& block : problem.contacts) {
-    double& force = run_.effort[static_cast<std::size_t>(run_.world.numbering().row_of(block.row))];
-    obeyed = obeyed && force >= -slack && problem.delta[block.row] >= -nothing;
-    force = std::max(force, 0.0);
+    const int row = run_.world.numbering().row_of(block.row);
+    Eigen::Map<Vector3> force(&run_.effort[static_cast<std::size_t>(row)]);
+    obeyed = obeyed && force[0] >= -slack && problem.delta[block.row] >= -nothing;
+    if (force[0] < 0.0) force.setZero();
   }
   return obeyed;
 }
@@ -203,7 +193,12 @@ bool PathFollower::obeys_contacts() {
 // Contacts change what is unstable from one iteration to the next: here, not before the last.
 void PathFollower::count() {
   if (run_.world.contacts().empty()) return;
-  if (run_.world.condense() != linalg::FactorStatus::singular) hold();
+  if (run_.world.condense() == linalg::FactorStatus::singular) return;
+  linalg::AlignedNumbers effort;
+  run_.world.numbering().gather(run_.effort, effort);
+  std::vector<step::HeldRow> held = joints();
+  append_touching(run_.world.problem(), effort, held);
+  negative_pivots_ = HeldMotions(run_.world, std::move(held)).negative_pivots();
 }
 
 // The iterations that a step took; 0: it failed.
@@ -218,7 +213,7 @@ int PathFollower::step(double length) {
     const bool arrived = run_.report.relative_residual <= settings_.tolerance &&
                          gap() <= settings_.tolerance * run_.model->size();
     if (iteration > 0 && arrived) {
-      if (!obeys_contacts()) return 0;
+      if (!is_path_point()) return 0;
       count();
       return iteration;
     }
@@ -252,7 +247,8 @@ std::vector<PathPoint> PathFollower::follow(const std::function<void()>& visit) 
   run_.keep(start);
   run_.now = run_.time();
   run_.surroundings.move_bases(run_.now);
-  plan();
+  check();
+  loads_.emplace(run_);
   run_.keep(run_.before);
   settle();
   std::vector<PathPoint> path;

@@ -4,12 +4,14 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "sinew/core/types.hpp"
-#include "sinew/sim/held_motions.hpp"
+#include "sinew/sim/path_loads.hpp"
 #include "sinew/sim/path_settings.hpp"
+#include "sinew/step/step_problem.hpp"
 
 namespace sinew::sim {
 
@@ -37,35 +39,31 @@ class PathFollower {
 
  private:
   void check() const;
-  void plan();
   void settle();
-  void set_share(double share);
   void imbalance_at(double share, VectorX& imbalance);
   double gap() const;
-  HeldMotions hold();
+  std::vector<step::HeldRow> joints() const;
+  std::vector<step::HeldRow> joints_and_sticking() const;
   bool predict(const VectorX& here, const VectorX& ahead, double length);
   bool correct(const VectorX& here, const VectorX& ahead);
-  void move(std::span<const step::HeldRow> held, const HeldAnswer& answer, double share);
+  void move(const VectorX& motion, double share);
+  void push(std::span<const step::HeldRow> held, const VectorX& efforts);
   bool is_sound(double length);
-  bool obeys_contacts();
+  bool is_path_point();
   void count();
   int step(double length);
   int step_or_give_up(double length);
   void rest();
 
-  struct Stretch {
-    double from = 0.0, to = 0.0;
-  };
-
   Run& run_;
   const PathSettings& settings_;
-  std::vector<Stretch> loads_, efforts_;  // of the model's loads and actuators
-  double share_ = 0.0;                    // of the way
-  std::vector<int> touching_;             // normal rows of the problem
-  VectorX moved_;                         // since the step began
-  VectorX origin_;                        // of D, likewise
-  VectorX direction_;                     // of the last step
-  int negative_pivots_ = 0;               // at the last linearisation that was solved
+  std::optional<PathLoads> loads_;
+  double share_ = 0.0;                        // of the way
+  std::vector<step::ContactBlock> touching_;  // of the problem
+  VectorX moved_;                             // since the step began
+  VectorX origin_;                            // of D, likewise
+  VectorX direction_;                         // of the last step
+  int negative_pivots_ = 0;                   // at the last linearisation that was solved
 };
 
 }  // namespace sinew::sim

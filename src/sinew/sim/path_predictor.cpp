@@ -1,8 +1,8 @@
 #include "sinew/sim/path_predictor.hpp"
 
 #include <algorithm>
-#include <limits>
 
+#include "sinew/qp/friction_cone.hpp"
 #include "sinew/sim/world.hpp"
 
 namespace sinew::sim {
@@ -16,7 +16,7 @@ constexpr std::size_t kMostCorners = 10;
 
 // How far the motion `from` + t `along` goes until its largest coordinate is `length`.
 double reach(const VectorX& from, const VectorX& along, double length) {
-  double least = std::numeric_limits<double>::infinity();
+  double least = kInfinity;
   for (Eigen::Index i = 0; i < along.size(); ++i) {
     if (along[i] == 0.0) continue;
     const double end = along[i] > 0.0 ? length : -length;
@@ -29,21 +29,37 @@ double reach(const VectorX& from, const VectorX& along, double length) {
 
 void PathPredictor::list(std::span<const double> effort) {
   const step::StepProblem& problem = world_.problem();
-  const auto points = static_cast<Eigen::Index>(problem.contacts.size());
-  value_.resize(points);
-  for (Eigen::Index k = 0; k < points; ++k) {
-    const int row = problem.contacts[static_cast<std::size_t>(k)].row;
-    const double force = effort[static_cast<std::size_t>(world_.numbering().row_of(row))];
-    rows_.push_back(row);
-    held_.push_back(force > 0.0 ? 1 : 0);
-    value_[k] = force > 0.0 ? force : problem.delta[row];
+  value_.resize(static_cast<Eigen::Index>(problem.contacts.size()));
+  for (const step::ContactBlock& block : problem.contacts) {
+    const int row = world_.numbering().row_of(block.row);
+    const Eigen::Map<const Vector3> force(&effort[static_cast<std::size_t>(row)]);
+    const bool touches = force[0] > 0.0;
+    const bool slips = touches && block.friction > 0.0 && qp::slides(force, block.friction);
+    value_[static_cast<Eigen::Index>(held_.size())] = touches ? force[0] : problem.delta[block.row];
+    held_.push_back(touches ? 1 : 0);
+    push_.push_back(slips ? Vector3(force / force[0]) : Vector3::UnitX());
   }
 }
 
+// Normal rows, then the tangential ones of points that slip.
 qp::ComplementaryPath PathPredictor::begin(const HeldAnswer& by_load) {
-  if (rows_.empty()) return {{}, {}, {}, {}, 0.0};
-  forces_ = world_.row_forces(rows_);
-  return {joints_.compliance(rows_), forces_.transpose() * by_load.motion, held_, value_,
+  if (held_.empty()) return {{}, {}, {}, {}, 0.0};
+  const auto points = static_cast<Eigen::Index>(held_.size());
+  std::vector<int> rows;
+  for (const step::ContactBlock& block : world_.problem().contacts) rows.push_back(block.row);
+  MatrixX pushes = MatrixX::Identity(points, points);
+  for (Eigen::Index k = 0; k < points; ++k) {
+    const Vector3& push = push_[static_cast<std::size_t>(k)];
+    if (push == Vector3::UnitX()) continue;
+    const int row = rows[static_cast<std::size_t>(k)];
+    rows.insert(rows.end(), {row + 1, row + 2});
+    pushes.conservativeResizeLike(MatrixX::Zero(pushes.rows() + 2, points));
+    pushes.bottomRows<2>().col(k) = push.tail<2>();
+  }
+  const MatrixX forces = world_.row_forces(rows);
+  forces_.noalias() = forces * pushes;
+  return {joints_.compliance(rows).topRows(points) * pushes,
+          forces.leftCols(points).transpose() * by_load.motion, held_, value_,
           kTie * world_.problem().size};
 }
 
@@ -60,8 +76,8 @@ HeldAnswer PathPredictor::answer_along(const qp::ComplementaryPath& path,
 }
 
 bool PathPredictor::predict(const HeldAnswer& by_rest, const HeldAnswer& by_load,
-                            const VectorX& before, double length, std::span<double> effort,
-                            PathPrediction& result) {
+                            const VectorX& before, double length, double most_share,
+                            std::span<const double> effort, PathPrediction& result) {
   list(effort);
   qp::ComplementaryPath path = begin(by_load);
   HeldAnswer edge = answer_along(path, by_load);
@@ -71,19 +87,20 @@ bool PathPredictor::predict(const HeldAnswer& by_rest, const HeldAnswer& by_load
   }
   VectorX moved = VectorX::Zero(edge.motion.size());
   result = {.answer = by_rest};
-  for (std::size_t corners = 0; corners <= kMostCorners * rows_.size(); ++corners) {
+  for (std::size_t corners = 0; corners <= kMostCorners * held_.size(); ++corners) {
     const double left = path.look_ahead();
-    const double by = std::min(left, reach(moved, edge.motion, length));
-    if (!(by < std::numeric_limits<double>::infinity())) return false;
-    path.advance(by);
+    const double full = path.direction() > 0.0 ? most_share - result.share : kInfinity;
+    const double by = std::min({left, full, reach(moved, edge.motion, length)});
+    if (!(by < kInfinity)) return false;
     const double whole = length / edge.motion.cwiseAbs().maxCoeff();
     result.origin = moved - (whole - by) * edge.motion;
+    path.advance(by);
     moved += by * edge.motion;
     result.share += by * path.direction();
     result.answer.motion += by * edge.motion;
     result.answer.efforts += by * edge.efforts;
     if (by < left) {
-      take(path, effort, result);
+      end(path);
       return true;
     }
     if (!path.turn()) return false;
@@ -92,15 +109,29 @@ bool PathPredictor::predict(const HeldAnswer& by_rest, const HeldAnswer& by_load
   return false;
 }
 
-void PathPredictor::take(const qp::ComplementaryPath& path, std::span<double> effort,
-                         PathPrediction& result) {
-  for (std::size_t k = 0; k < rows_.size(); ++k) {
-    const auto i = static_cast<Eigen::Index>(k);
-    const bool touches = path.is_held(i);
-    effort[static_cast<std::size_t>(world_.numbering().row_of(rows_[k]))] =
-        touches ? path.value(i) : 0.0;
-    if (touches) result.touching.push_back(rows_[k]);
+void PathPredictor::end(const qp::ComplementaryPath& path) {
+  for (std::size_t k = 0; k < held_.size(); ++k) {
+    held_[k] = path.is_held(static_cast<Eigen::Index>(k)) ? 1 : 0;
+    value_[static_cast<Eigen::Index>(k)] = path.value(static_cast<Eigen::Index>(k));
   }
+}
+
+std::vector<step::ContactBlock> PathPredictor::touch(std::span<double> effort) const {
+  std::vector<step::ContactBlock> touching;
+  for (std::size_t k = 0; k < held_.size(); ++k) {
+    const step::ContactBlock& block = world_.problem().contacts[k];
+    const int row = world_.numbering().row_of(block.row);
+    Eigen::Map<Vector3> force(&effort[static_cast<std::size_t>(row)]);
+    const double normal = value_[static_cast<Eigen::Index>(k)];
+    if (held_[k] == 0) {
+      force.setZero();
+      continue;
+    }
+    force[0] = normal;
+    if (push_[k] != Vector3::UnitX()) force = normal * push_[k];
+    touching.push_back(block);
+  }
+  return touching;
 }
 
 }  // namespace sinew::sim

@@ -34,18 +34,6 @@ bool holds(const step::ActuatorBlock& range, double effort) {
   return !at_lower && !at_upper;
 }
 
-void add_touching(const step::StepProblem& problem, std::span<const double> effort,
-                  std::vector<step::HeldRow>& held) {
-  for (const step::ContactBlock& block : problem.contacts) {
-    const double* force = effort.data() + block.row;
-    if (!(force[0] > 0.0)) continue;
-    held.push_back({block.row, 0.0});
-    if (qp::slides(Eigen::Map<const Vector3>(force), block.friction)) continue;
-    held.push_back({block.row + 1, 0.0});
-    held.push_back({block.row + 2, 0.0});
-  }
-}
-
 linalg::AlignedNumbers gathered(const RowNumbering& numbering, std::span<const double> effort) {
   linalg::AlignedNumbers result;
   numbering.gather(effort, result);
@@ -69,6 +57,18 @@ VectorX scattered(Eigen::Index size) {
 
 }  // namespace
 
+void append_touching(const step::StepProblem& problem, std::span<const double> effort,
+                     std::vector<step::HeldRow>& held) {
+  for (const step::ContactBlock& block : problem.contacts) {
+    const double* force = effort.data() + block.row;
+    if (!(force[0] > 0.0)) continue;
+    held.push_back({block.row, 0.0});
+    if (qp::slides(Eigen::Map<const Vector3>(force), block.friction)) continue;
+    held.push_back({block.row + 1, 0.0});
+    held.push_back({block.row + 2, 0.0});
+  }
+}
+
 std::vector<step::HeldRow> held_rows(const step::StepProblem& problem,
                                      std::span<const double> effort) {
   std::vector<step::HeldRow> held;
@@ -81,7 +81,7 @@ std::vector<step::HeldRow> held_rows(const step::StepProblem& problem,
       held.push_back({range.row, 0.0});
     }
   }
-  add_touching(problem, effort, held);
+  append_touching(problem, effort, held);
   step::append_joints(problem, held);
   return held;
 }

@@ -21,6 +21,10 @@ class World;
 std::vector<step::HeldRow> held_rows(const step::StepProblem& problem,
                                      std::span<const double> effort);
 
+/// Of these, the rows of contacts.
+void append_touching(const step::StepProblem& problem, std::span<const double> effort,
+                     std::vector<step::HeldRow>& held);
+
 /// Whether an equilibrium is stable, and where it would go: the lowest eigenvalue of its tangent on
 /// the motions that held rows leave.
 class Stability {

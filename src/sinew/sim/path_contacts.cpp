@@ -1,0 +1,130 @@
+#include "sinew/sim/path_contacts.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/sim/world.hpp"
+
+namespace sinew::sim {
+
+namespace {
+
+using Vector2 = Eigen::Vector2d;
+using Matrix2 = Eigen::Matrix2d;
+
+// Of a point's compliance, that its forces give way by: what a roller keeps from moving has a force
+// then, too. It acts on changes alone, which vanish.
+constexpr double kGives = 1e-9;
+
+// Of a point's rows, the tangential ones times its compliance along the surface.
+struct PointLaw {
+  Matrix3 by_effort = Matrix3::Zero();  // m/N
+  Matrix3 by_motion = Matrix3::Identity();
+  Vector3 miss = Vector3::Zero();  // m
+};
+
+// Of a point in its tangential rows, m/N.
+double compliance_along(const step::StepProblem& problem, const step::ContactBlock& block) {
+  return 0.5 * problem.compliance.diagonal().segment<2>(block.row + 1).sum();
+}
+
+bool rubs(const step::StepProblem& problem, const step::ContactBlock& block) {
+  return block.friction > 0.0 && compliance_along(problem, block) > 0.0;
+}
+
+PointLaw law_of(const World& world, const step::ContactBlock& block,
+                std::span<const double> effort) {
+  PointLaw law;
+  const step::StepProblem& problem = world.problem();
+  law.miss = problem.delta.segment<3>(block.row);
+  if (!rubs(problem, block)) return law;
+  const int row = world.numbering().row_of(block.row);
+  const Eigen::Map<const Vector3> force(&effort[static_cast<std::size_t>(row)]);
+  const double along = compliance_along(problem, block);
+  const double limit = block.friction * std::max(force[0], 0.0);
+  const Vector2 aim = force.tail<2>() - law.miss.tail<2>() / along;
+  const double size = aim.norm();
+  if (size <= limit) return law;
+  const Vector2 direction = aim / size;
+  const Matrix2 part = limit / size * (Matrix2::Identity() - direction * direction.transpose());
+  law.by_motion.bottomRightCorner<2, 2>() = part;
+  law.by_effort.bottomRightCorner<2, 2>() = along * (Matrix2::Identity() - part);
+  law.by_effort.bottomLeftCorner<2, 1>() = -along * block.friction * direction;
+  law.miss.tail<2>() = along * (force.tail<2>() - limit * direction);
+  return law;
+}
+
+}  // namespace
+
+PathContacts::PathContacts(World& world, HeldMotions& joints,
+                           std::span<const step::ContactBlock> touching,
+                           std::span<const double> effort)
+    : world_(world), joints_(joints) {
+  std::vector<int> rows;
+  for (const step::ContactBlock& block : touching) {
+    const int count = rubs(world.problem(), block) ? 3 : 1;
+    for (int k = 0; k < count; ++k) rows.push_back(block.row + k);
+  }
+  if (rows.empty()) return;
+  for (const int row : rows) held_.push_back({row, 0.0});
+  forces_ = world.row_forces(rows);
+  compliance_ = joints.compliance(rows);
+  ask(touching, effort);
+  factorise();
+}
+
+// E, F and miss of all points.
+void PathContacts::ask(std::span<const step::ContactBlock> touching,
+                       std::span<const double> effort) {
+  const auto size = static_cast<Eigen::Index>(held_.size());
+  by_effort_.setZero(size, size);
+  by_motion_.setZero(size, size);
+  miss_.resize(size);
+  Eigen::Index row = 0;
+  for (const step::ContactBlock& block : touching) {
+    const PointLaw law = law_of(world_, block, effort);
+    const Eigen::Index count = rubs(world_.problem(), block) ? 3 : 1;
+    by_effort_.block(row, row, count, count) = law.by_effort.topLeftCorner(count, count);
+    by_motion_.block(row, row, count, count) = law.by_motion.topLeftCorner(count, count);
+    miss_.segment(row, count) = law.miss.head(count);
+    row += count;
+  }
+}
+
+void PathContacts::factorise() {
+  MatrixX system = by_effort_ + by_motion_ * compliance_;
+  scale_ = compliance_.diagonal().cwiseAbs();
+  const double least = kGives * scale_.maxCoeff();
+  for (double& scale : scale_) scale = 1.0 / std::sqrt(std::max(scale, least));
+  system = scale_.asDiagonal() * system * scale_.asDiagonal();
+  system.diagonal().array() += kGives;
+  factor_.compute(system);
+}
+
+void PathContacts::solve(const VectorX& right, bool closes, HeldAnswer& answer, VectorX& efforts) {
+  const VectorX still = VectorX::Zero(static_cast<Eigen::Index>(joints_.rows().size()));
+  joints_.solve(right, closes ? joints_.gaps() : still, answer);
+  efforts.resize(static_cast<Eigen::Index>(held_.size()));
+  if (held_.empty()) return;
+  VectorX lacks = by_motion_ * (forces_.transpose() * answer.motion);
+  if (closes) lacks += miss_;
+  factor_.solve(scale_.cwiseProduct(lacks), efforts);
+  efforts = -scale_.cwiseProduct(efforts);
+  HeldAnswer pushed;
+  joints_.solve(forces_ * efforts, still, pushed);
+  answer.motion += pushed.motion;
+  answer.efforts += pushed.efforts;
+}
+
+double path_miss(const World& world, std::span<const step::ContactBlock> touching,
+                 std::span<const double> effort) {
+  double worst = 0.0;
+  for (const step::ContactBlock& block : touching) {
+    const Vector3 miss = law_of(world, block, effort).miss;
+    const bool along = rubs(world.problem(), block);
+    worst = std::max(worst, along ? miss.cwiseAbs().maxCoeff() : std::abs(miss[0]));
+  }
+  return worst;
+}
+
+}  // namespace sinew::sim
