@@ -12,10 +12,10 @@ namespace sinew::qp {
 
 /// The (t, z) that solve
 ///   y = matrix z + y_0 + t slope,   0 <= y _|_ z >= 0
-/// form paths without branches as long as no two entries become zero at once (Eaves, SIAM Rev. 18
-/// (1976) 1; Cottle, Pang & Stone, The Linear Complementarity Problem, 1992, sec. 4.5). On an edge
-/// z_i of the entries that are held, and y_i of the others, are functions of t, and the rest is
-/// zero. The edge ends where one of them, entry i, becomes zero, and its partner enters.
+/// form paths and loops without branches as long as no two entries become zero at once (Eaves, SIAM
+/// Rev. 18 (1976) 1; Cottle, Pang & Stone, The Linear Complementarity Problem, 1992, sec. 4.5). On
+/// an edge z_i of the entries that are held, and y_i of the others, are functions of t, and the
+/// rest is zero. The edge ends where one of them, entry i, becomes zero, and its partner enters.
 ///
 /// Where t goes on from there: let m be the Schur complement of (i, i) by the held entries without
 /// i, and a their dy_i/dt where i is free; then dz_i/dt = -a/m where it is held. With s = +1 or -1

@@ -185,7 +185,7 @@ bool PathFollower::is_path_point() {
     const int row = run_.world.numbering().row_of(block.row);
     Eigen::Map<Vector3> force(&run_.effort[static_cast<std::size_t>(row)]);
     obeyed = obeyed && force[0] >= -slack && problem.delta[block.row] >= -nothing;
-    if (force[0] < 0.0) force.setZero();
+    force = qp::project_on_cone(force, block.friction);
   }
   return obeyed;
 }

@@ -1,0 +1,286 @@
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "sinew/core/error.hpp"
+#include "sinew/mechanics/body.hpp"
+#include "sinew/sim/actuator.hpp"
+#include "sinew/sim/contact_state.hpp"
+#include "sinew/sim/load_settings.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/simulation.hpp"
+#include "sinew/sim/state.hpp"
+
+#include "arches.hpp"
+#include "contact_robots.hpp"
+#include "robots.hpp"
+
+namespace sinew::sim {
+namespace {
+
+using sinew::testing::arch;
+using sinew::testing::beam;
+using sinew::testing::BeamOptions;
+using sinew::testing::block_on_plane;
+using sinew::testing::pull;
+using sinew::testing::tension;
+
+constexpr double kAgrees = 1e-6;  // of sizes and forces
+
+struct Visit {
+  double depth = 0.0, normal = 0.0;
+  Points positions;
+  std::vector<ContactPoint> points;
+  State state;
+};
+
+struct Followed {
+  std::vector<PathPoint> path;
+  std::vector<Visit> visits;
+
+  int turns() const {
+    int count = 0;
+    for (std::size_t k = 2; k < path.size(); ++k) {
+      const double now = path[k].share - path[k - 1].share;
+      const double before = path[k - 1].share - path[k - 2].share;
+      count += now * before < 0.0 ? 1 : 0;
+    }
+    return count;
+  }
+  static int touching(const Visit& visit) {
+    return static_cast<int>(std::ranges::count_if(
+        visit.points, [](const ContactPoint& point) { return point.normal_force > 0.0; }));
+  }
+};
+
+Followed follow(Simulation& simulation, const PathSettings& settings) {
+  Followed result;
+  const double top = simulation.effector_value(0).z();
+  result.path = simulation.follow_path(settings, [&] {
+    result.visits.push_back({top - simulation.effector_value(0).z(),
+                             simulation.contact_sum(0).normal_force, simulation.body(0).positions(),
+                             simulation.contact_points(0), simulation.state()});
+  });
+  return result;
+}
+
+// Falling on the unstable branch, the crown meets the floor: the load turns in that corner and
+// rises. A commanded motion passes the same points one by one.
+TEST(PathContact, ASnapThatAFloorEndsAgreesWithControlByMotion) {
+  Simulation loaded(arch({.floor = 0.003})), moved(arch({.by_load = false, .floor = 0.003}));
+  loaded.set_load(0, Signal::constant(20.0));
+  const Followed all = follow(loaded, {.first_step = 2e-3, .largest_step = 5e-3});
+  const double size = loaded.model().size();
+  int falling = 0, touched = 0;
+  for (std::size_t k = 0; k < all.path.size(); ++k) {
+    const Visit& visit = all.visits[k];
+    moved.command(0, pull(visit.depth));
+    moved.solve_static();
+    const double load = 0.4 * all.path[k].share;
+    EXPECT_NEAR(moved.actuator(0).effort, load, kAgrees * std::max(load, 0.02)) << k;
+    EXPECT_NEAR(moved.contact_sum(0).normal_force, visit.normal, kAgrees * std::max(load, 0.02));
+    EXPECT_LT((moved.body(0).positions() - visit.positions).cwiseAbs().maxCoeff(), kAgrees * size);
+    const bool touches = Followed::touching(visit) > 0;
+    falling += all.path[k].negative_pivots;
+    touched += touches ? 1 : 0;
+    EXPECT_TRUE(!touches || all.path[k].negative_pivots == 0) << k;
+  }
+  EXPECT_GE(falling, 3);
+  EXPECT_GE(touched, 3);
+  EXPECT_EQ(all.turns(), 2);  // at the peak, and at the floor
+  EXPECT_GE(all.path.back().share, 1.0);
+  EXPECT_LE(all.path.back().share, 1.1);
+}
+
+TEST(PathContact, WeldsHoldBesideAFloor) {
+  Simulation cut(arch({.cut = true, .floor = 0.003}));
+  Simulation whole(arch({.by_load = false, .floor = 0.003}));
+  cut.set_load(0, Signal::constant(20.0));
+  const Followed all = follow(cut, {.first_step = 5e-3, .largest_step = 1e-2});
+  for (std::size_t k = 0; k < all.path.size(); ++k) {
+    whole.command(0, pull(all.visits[k].depth));
+    whole.solve_static();
+    const double load = 0.4 * all.path[k].share;
+    EXPECT_NEAR(whole.actuator(0).effort, load, kAgrees * std::max(load, 0.02)) << k;
+    EXPECT_NEAR(whole.contact_sum(0).normal_force, all.visits[k].normal,
+                kAgrees * std::max(load, 0.02));
+  }
+  EXPECT_GT(all.visits.back().normal, 0.1);
+  EXPECT_EQ(all.turns(), 2);
+}
+
+// A beam is drawn onto a plane by one cable and off it by another: point after point closes, and
+// opens. Every point of the path is what a static solution from rest finds.
+TEST(PathContact, ABeamIsLaidDownAndLifted) {
+  const auto model = beam({.wall = -0.0102, .wall_friction = 0.0});
+  Simulation path(model);
+  const double size = model->size();
+  double down = 0.0, up = 0.0;  // N, at the start
+  std::vector<int> touching;
+  for (const auto& [next_down, next_up] : {std::pair{12.0, 0.0}, std::pair{0.0, 4.0}}) {
+    path.command(2, tension(next_down));
+    path.command(0, tension(next_up));
+    const Followed all = follow(path, {});
+    for (std::size_t k = 0; k < all.path.size(); ++k) {
+      Simulation fresh(model);
+      const double share = all.path[k].share;
+      if (share > 1.0) continue;  // the cable that loosens would push
+      fresh.command(2, tension(down + share * (next_down - down)));
+      fresh.command(0, tension(up + share * (next_up - up)));
+      fresh.solve_static();
+      EXPECT_LT((fresh.body(0).positions() - all.visits[k].positions).cwiseAbs().maxCoeff(),
+                kAgrees * size)
+          << k;
+      EXPECT_NEAR(fresh.contact_sum(0).normal_force, all.visits[k].normal, kAgrees) << k;
+    }
+    for (const Visit& visit : all.visits) touching.push_back(Followed::touching(visit));
+    down += all.path.back().share * (next_down - down);
+    up += all.path.back().share * (next_up - up);
+  }
+  EXPECT_GE(*std::ranges::max_element(touching), 6);
+  EXPECT_EQ(touching.back(), 0);
+}
+
+// Bottoms that bulge close in groups of four and eight points at once.
+TEST(PathContact, SymmetricPointsCloseTogether) {
+  ModelBuilder builder = block_on_plane({.friction = 0.0, .height = 2e-4, .top_fixed = true});
+  builder.add_load({.name = "draw", .body = 0, .load = BodyLoadSettings{{0.0, 0.0, -4000.0}}});
+  EffectorSettings centre;
+  centre.name = "centre";
+  centre.points = Vector3(0.0, 0.0, 2e-4).transpose();
+  builder.add_effector(centre);
+  const auto model = builder.build();
+  Simulation path(model);
+  const Followed all = follow(path, {.first_step = 1e-3, .largest_step = 2e-3});
+  std::vector<int> touching;
+  for (std::size_t k = 0; k < all.path.size(); ++k) {
+    Simulation fresh(model);
+    fresh.set_load(0, Signal::constant(all.path[k].share));
+    fresh.solve_static();
+    EXPECT_LT((fresh.body(0).positions() - all.visits[k].positions).cwiseAbs().maxCoeff(),
+              kAgrees * model->size());
+    EXPECT_NEAR(fresh.contact_sum(0).normal_force, all.visits[k].normal, 100.0 * kAgrees) << k;
+    touching.push_back(Followed::touching(all.visits[k]));
+  }
+  EXPECT_GE(touching.back(), 5);
+}
+
+// Coulomb's law of what a path really does, from one point to the next.
+void check_friction(const Followed& all, double friction, double size, int& stuck, int& slid) {
+  for (std::size_t k = 1; k < all.visits.size(); ++k) {
+    for (std::size_t i = 0; i < all.visits[k].points.size(); ++i) {
+      const ContactPoint& point = all.visits[k].points[i];
+      const double limit = friction * point.normal_force;
+      EXPECT_LE(point.friction_force.norm(), limit * (1.0 + 1e-7));
+      if (!(point.normal_force > 0.0)) continue;
+      Vector3 slip = point.position - all.visits[k - 1].points[i].position;
+      slip -= slip.dot(point.normal) * point.normal;
+      if (slip.norm() > 1e-7 * size) {
+        const Vector3 expected = -limit * slip.normalized();
+        EXPECT_LT((point.friction_force - expected).norm(), 1e-5 * limit) << k << " " << i;
+        ++slid;
+      } else {
+        ++stuck;
+      }
+      EXPECT_TRUE(point.friction_force.norm() > 0.99 * limit || slip.norm() < 1e-8 * size);
+    }
+  }
+}
+
+TEST(PathContact, FrictionObeysCoulombsLawThroughASnap) {
+  const double friction = 0.2;
+  Simulation path(arch({.floor = 0.003, .friction = friction}));
+  path.set_load(0, Signal::constant(20.0));
+  const Followed all = follow(path, {.first_step = 2e-3, .largest_step = 5e-3});
+  int stuck = 0, slid = 0;
+  check_friction(all, friction, path.model().size(), stuck, slid);
+  EXPECT_GE(stuck, 4);
+  EXPECT_GE(slid, 4);
+  EXPECT_EQ(all.turns(), 2);
+}
+
+/// A strip of rubber, one end clamped, that its weight holds on a plane and a load pulls along it.
+std::shared_ptr<const Model> pulled_strip(double friction) {
+  ModelBuilder builder;
+  fem::FemBodySettings body;
+  body.name = "strip";
+  const auto mesh = std::make_shared<const mesh::Mesh>(
+      mesh::block({.size = {0.06, 0.02, 0.02}, .cells = {12, 4, 4}}));
+  body.mesh = mesh;
+  body.gravity = {0.0, 0.0, -9.81};
+  body.elements.regions = {{{1e5, 0.3}, material::Law::corotational, 1000.0, {}}};
+  body.elements.fixed_nodes = mesh->node_sets.at("x_min");
+  builder.add_fem_body(std::move(body));
+  ContactSettings floor;
+  floor.name = "floor";
+  floor.surface = constraint::Plane{};
+  floor.nodes = mesh->node_sets.at("z_min");
+  floor.friction = friction;
+  builder.add_contact(floor);
+  builder.add_load(
+      {.name = "pull", .body = 0, .load = PointLoadSettings{{0.06, 0.01, 0.01}, {0.3, 0.0, 0.0}}});
+  EffectorSettings tip;
+  tip.name = "tip";
+  tip.points = Vector3(0.06, 0.01, 0.01).transpose();
+  builder.add_effector(tip);
+  return builder.build();
+}
+
+// Pulled and pushed back, friction turns round only as far as the motion does.
+TEST(PathContact, FrictionTurnsWithTheMotion) {
+  const double friction = 0.5;
+  Simulation path(pulled_strip(friction));
+  std::vector<double> held;
+  int stuck = 0, slid = 0;
+  for (const double factor : {1.0, -1.0}) {
+    path.set_load(0, Signal::constant(factor));
+    const Followed all =
+        follow(path, {.first_step = 1e-3, .largest_step = 5e-3, .tolerance = 1e-11});
+    check_friction(all, friction, path.model().size(), stuck, slid);
+    const ContactSum sum = path.contact_sum(0);
+    held.push_back(sum.force.x() / (friction * sum.normal_force));
+  }
+  EXPECT_NEAR(held[0], -1.0, 0.05);
+  EXPECT_NEAR(held[1], 1.0, 0.05);
+  EXPECT_GT(stuck, 20);
+  EXPECT_GT(slid, 200);
+}
+
+// What a static solution makes of the same load, as one slow motion from the point before.
+TEST(PathContact, FrictionIsThatOfSlowMotionsFromPointToPoint) {
+  const auto model = pulled_strip(0.5);
+  Simulation path(model), still(model);
+  const Followed all = follow(path, {.first_step = 1e-3, .largest_step = 5e-3, .tolerance = 1e-11});
+  for (std::size_t k = 1; k < all.path.size(); ++k) {
+    still.restore(all.visits[k - 1].state);
+    still.set_load(0, Signal::constant(all.path[k].share));
+    still.solve_static();
+    EXPECT_LT((still.body(0).positions() - all.visits[k].positions).cwiseAbs().maxCoeff(),
+              kAgrees * model->size())
+        << k;
+    for (std::size_t i = 0; i < all.visits[k].points.size(); ++i) {
+      const Vector3 off =
+          still.contact_point(0, i).friction_force - all.visits[k].points[i].friction_force;
+      EXPECT_LT(off.norm(), kAgrees) << k << " " << i;
+    }
+  }
+  EXPECT_GE(all.path.size(), 5u);
+}
+
+// What touches at the start is found, though nothing was solved before.
+TEST(PathContact, BeginsWithTheWeightOnTheFloor) {
+  BeamOptions options{.gravity = {0.0, 0.0, -9.81}, .wall = -0.0105, .wall_friction = 0.0};
+  const auto model = beam(options);
+  Simulation path(model), fresh(model);
+  path.command(0, tension(2.0));
+  const auto points = path.follow_path({});
+  fresh.command(0, tension(2.0 * points.back().share));
+  fresh.solve_static();
+  EXPECT_LT((fresh.body(0).positions() - path.body(0).positions()).cwiseAbs().maxCoeff(),
+            kAgrees * model->size());
+}
+
+}  // namespace
+}  // namespace sinew::sim
