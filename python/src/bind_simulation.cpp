@@ -246,7 +246,8 @@ A mass that hangs on a body, by its name. Raises Error (unknown-name) with a sug
 
 Equilibria while loads and commanded efforts grow in proportion, from what acted last (nothing, at
 the start) to what they are told to be now: by arc length, so through limit points and back, where
-solve_static() would jump or fail. The last one lies at the full load or just beyond it.
+solve_static() would jump or fail. The last one lies at the full load or just beyond it. Friction of
+contacts is that of one slow motion from each point to the next.
 
 Parameters
 ----------
@@ -265,7 +266,8 @@ dict
 Raises
 ------
 Error
-    bad-argument where an actuator is told a motion or has a drive, or a cable has friction.
+    bad-argument where an actuator is told a motion or has a drive, or a cable has friction;
+    not-in-this-version beside curved surfaces with friction, and where contacts alone hold a body.
 RunError
     not-converged; the state is then that of the start.
 )")

@@ -8,14 +8,14 @@ import sinew
 WEIGHT = 1000.0 * 0.04 * 0.04 * 0.02 * 9.81
 
 
-def block(friction=0.5, angle=0.0, floor=0.0, **more):
+def block(friction=0.5, angle=0.0, floor=0.0, held={}, **more):
     return sinew.load({
         "sinew": 1, "integrator": "backward-euler", "time_step": "1 ms",
         "gravity": [9.81 * np.sin(angle), 0.0, -9.81 * np.cos(angle)],
         "bodies": {"block": {
             "type": "fem", "density": 1000.0, "damping": {"stiffness": "2 ms"},
             "material": {"young_modulus": "1 MPa", "poisson_ratio": 0.3},
-            "mesh": {"shape": "block", "length": 0.04, "width": 0.04, "height": 0.02, "element_size": 0.01}}},
+            "mesh": {"shape": "block", "length": 0.04, "width": 0.04, "height": 0.02, "element_size": 0.01}, **held}},
         "contacts": {"floor": {"body": "block", "nodes": {"set": "z_min"}, "friction": friction,
                                "surface": {"plane": {"point": [0.0, 0.0, floor]}}}}, **more})
 
@@ -58,6 +58,24 @@ def test_errors():
     with pytest.raises(sinew.Error) as error:
         sim.follow_path()
     assert error.value.kind == "not-in-this-version"
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+def test_path_onto_a_floor(friction):
+    """A block hangs on its top; a growing body force draws it onto the floor."""
+    sim = block(friction=friction, floor=-2e-5, held={"fixed": {"set": "z_max"}}, loads={
+        "draw": {"type": "acceleration", "body": "block", "acceleration": [0.0, 0.0, -2000.0]}})
+    path = sim.follow_path(first_step=1e-4, largest_step=1e-3)
+    assert 1.0 <= path["share"][-1] <= 1.1
+    assert not path["negative_pivots"].any()
+    floor = sim.contact("floor")
+    pressed, states = floor.normal_forces, floor.states
+    assert floor.gaps.min() > -1e-9 and floor.normal_force > 1.0
+    assert np.all(np.linalg.norm(floor.friction_forces, axis=1) <= friction * pressed * (1.0 + 1e-9))
+    assert all((state == "open") == (force == 0.0) for state, force in zip(states, pressed))
+    sim.load("draw").factor = float(path["share"][-1])
+    sim.solve_static()
+    assert sim.contact("floor").normal_forces == pytest.approx(pressed, abs=1e-6 * pressed.sum())
 
 
 @pytest.mark.parametrize("floor", [0.0, -0.05])

@@ -60,6 +60,11 @@ void PathFollower::settle() {
   blocks = goal;
   run_.world.bodies().end_step({});
   if (found) return;
+  if (search.last().status == NewtonStatus::singular) {
+    fail(run_, ErrorKind::not_in_this_version,
+         "contacts alone hold a body: its own tangent is singular, and paths need one that is not",
+         "fix a region of it, or weld it to a body that is held");
+  }
   fail(run_, ErrorKind::not_converged,
        "from where the robot is, Newton's method finds no equilibrium under the loads that acted "
        "last",

@@ -78,11 +78,11 @@ class Simulation {
   /// all growing in proportion from what acted last (nothing, at the start): through limit points
   /// and back, stable or not; see PathFollower. Velocities become zero; time stands still. The last
   /// point lies at the full load or just beyond; solve_static() finds that of the load itself from
-  /// there.
+  /// there. Friction of contacts is that of one slow motion from each point to the next.
   /// @param settings see there. @param visit called at every point.
   /// Throws Error(bad-argument) where an actuator is told a motion, has a drive or friction;
-  /// Error(not-in-this-version) with contacts; Error(not-converged), the state then being that of
-  /// the start.
+  /// Error(not-in-this-version) beside curved surfaces with friction, and where contacts alone hold
+  /// a body; Error(not-converged), the state then being that of the start.
   std::vector<PathPoint> follow_path(const PathSettings& settings,
                                      const std::function<void()>& visit = {});
 
