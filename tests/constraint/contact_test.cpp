@@ -42,6 +42,29 @@ TEST(Surface, NormalIsTheGradientOfTheGap) {
   }
 }
 
+TEST(Surface, PrincipalFrameIsThatOfTheSecondDerivative) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> coordinate(-0.1, 0.1);
+  constexpr double kStep = 1e-7;
+  for (const Surface& surface : surfaces()) {
+    for (int trial = 0; trial < 100; ++trial) {
+      const Vector3 at(coordinate(random), coordinate(random), coordinate(random));
+      const PrincipalFrame principal = principal_frame(surface, at);
+      const Matrix3& frame = principal.frame;
+      EXPECT_LT((frame.transpose() * frame - Matrix3::Identity()).norm(), 1e-12);
+      EXPECT_LT((frame.col(0) - distance(surface, at).normal).norm(), 1e-12);
+      const Matrix3 second = frame * principal.curvature.asDiagonal() * frame.transpose();
+      for (int k = 0; k < 3; ++k) {
+        const Vector3 step = kStep * Vector3::Unit(k);
+        const Vector3 turn =
+            (distance(surface, at + step).normal - distance(surface, at - step).normal) /
+            (2.0 * kStep);
+        EXPECT_LT((turn - second.col(k)).norm(), 1e-5 * (1.0 + turn.norm()));
+      }
+    }
+  }
+}
+
 TEST(Surface, EveryRegionOfACapsule) {
   const Capsule capsule{{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, 0.25};
   EXPECT_DOUBLE_EQ(distance(capsule, {0.5, 1.0, 0.0}).gap, 0.75);     // beside the segment

@@ -27,8 +27,9 @@ struct ArchOptions {
   bool by_load = true;  ///< of 0.02 N; else by a force actuator of the same place
   /// Into three bodies that are welded together again: welds alone hold the one in the middle.
   bool cut = false;
-  std::optional<double> floor;  ///< m: z of a plane under the crown
-  double friction = 0.0;        ///< of that
+  std::optional<double> floor;               ///< m: z of a plane under the crown
+  double friction = 0.0;                     ///< of that
+  std::optional<constraint::Surface> below;  ///< in place of the plane
 };
 
 // A part of the arch along x.
@@ -66,7 +67,8 @@ inline void add_floor(sim::ModelBuilder& builder, int body, const ArchOptions& o
   sim::ContactSettings floor;
   floor.name = "floor";
   floor.body = body;
-  floor.surface = constraint::Plane{{0.0, 0.0, *options.floor}, Vector3::UnitZ()};
+  floor.surface = options.below ? *options.below
+                                : constraint::Plane{{0.0, 0.0, *options.floor}, Vector3::UnitZ()};
   floor.friction = options.friction;
   const mesh::Mesh& mesh = builder.added_body(body).mesh();
   for (const NodeId node : mesh.node_sets.at("z_min")) {
@@ -104,7 +106,7 @@ inline std::shared_ptr<const sim::Model> arch(const ArchOptions& options) {
     force.direction = {0.0, 0.0, -1.0};
     builder.add_force(force);
   }
-  if (options.floor) add_floor(builder, middle, options);
+  if (options.floor || options.below) add_floor(builder, middle, options);
   sim::EffectorSettings top;
   top.name = "crown";
   top.body = middle;

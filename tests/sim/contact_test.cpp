@@ -564,8 +564,6 @@ TEST(Contact, ThreadsGiveTheSameBits) {
 
 TEST(Contact, RefusesWhatItCannotDo) {
   const auto model = block_on_plane({}).build();
-  Simulation simulation(model);
-  EXPECT_THROW(simulation.follow_path({}), Error);
   BlockOptions sunk{.height = -1e-3};
   EXPECT_THROW(block_on_plane(sunk), Error);
   BlockOptions negative{.friction = -0.1};

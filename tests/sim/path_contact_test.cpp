@@ -269,6 +269,107 @@ TEST(PathContact, FrictionIsThatOfSlowMotionsFromPointToPoint) {
   EXPECT_GE(all.path.size(), 5u);
 }
 
+// Balls and rods: their tangent planes turn with the points.
+TEST(PathContact, CurvedSurfacesEndASnap) {
+  const constraint::Sphere ball{{0.002, 0.002, -0.004}, 0.007};
+  const constraint::Capsule across{{0.002, -0.02, -0.001}, {0.002, 0.02, -0.001}, 0.004};
+  const constraint::Capsule askew{{-0.02, -0.01, -0.001}, {0.02, 0.02, -0.002}, 0.004};
+  for (const constraint::Surface& surface :
+       {constraint::Surface(ball), constraint::Surface(across), constraint::Surface(askew)}) {
+    Simulation loaded(arch({.below = surface})), moved(arch({.by_load = false, .below = surface}));
+    loaded.set_load(0, Signal::constant(10.0));
+    const Followed all = follow(loaded, {.first_step = 2e-3, .largest_step = 5e-3});
+    for (std::size_t k = 0; k < all.path.size(); ++k) {
+      moved.command(0, pull(all.visits[k].depth));
+      // It ends where gaps are right to 1e-9, and normals to the root of that: again, then.
+      for (int again = 0; again < 6; ++again) moved.solve_static();
+      const double load = 0.2 * all.path[k].share;
+      EXPECT_NEAR(moved.actuator(0).effort, load, kAgrees * std::max(load, 0.02)) << k;
+      EXPECT_NEAR(moved.contact_sum(0).normal_force, all.visits[k].normal,
+                  kAgrees * std::max(load, 0.02));
+    }
+    EXPECT_GT(all.visits.back().normal, 0.1);
+    EXPECT_GE(all.turns(), 2);
+  }
+}
+
+/// A beam along x whose end is pressed onto the top of a ball, and pushed aside.
+std::shared_ptr<const Model> beam_on_a_ball() {
+  ModelBuilder builder;
+  fem::FemBodySettings body;
+  body.name = "beam";
+  const auto mesh = std::make_shared<const mesh::Mesh>(
+      mesh::block({.corner = {0.0, -0.01, -0.01}, .size = {0.1, 0.02, 0.02}, .cells = {10, 2, 2}},
+                  mesh::Cells::hexahedra));
+  body.mesh = mesh;
+  fem::Region region;
+  region.hyperelastic = material::neo_hookean(4e4);
+  region.hyperelastic->bulk_modulus = 1e5;
+  region.density = 1000.0;
+  body.elements.regions = {region};
+  body.elements.fixed_nodes = mesh->node_sets.at("x_min");
+  builder.add_fem_body(std::move(body));
+  ContactSettings ball;
+  ball.name = "ball";
+  ball.surface = constraint::Sphere{{0.1, 0.0, -0.015}, 0.005};
+  ball.points = Vector3(0.1, 0.0, -0.01).transpose();
+  builder.add_contact(ball);
+  const Vector3 end(0.1, 0.0, -0.01);
+  builder.add_load({.name = "press", .body = 0, .load = PointLoadSettings{end, {0.0, 0.0, -0.1}}});
+  builder.add_load({.name = "aside", .body = 0, .load = PointLoadSettings{end, {0.0, 1e-9, 0.0}}});
+  EffectorSettings tip;
+  tip.name = "tip";
+  tip.points = end.transpose();
+  builder.add_effector(tip);
+  return builder.build();
+}
+
+// The force of a ball turns away with the point: from some load on it would slide off, and the beam
+// answers a push aside with the opposite motion, as any equilibrium that is unstable in it.
+TEST(PathContact, ABallLetsGoOfWhatIsPressedOnIt) {
+  const auto model = beam_on_a_ball();
+  Simulation path(model), pushed(model);
+  path.set_load(1, Signal::constant(0.0));
+  const Followed all = follow(path, {.first_step = 1e-4, .largest_step = 2e-3});
+  int unstable = 0;
+  for (std::size_t k = 0; k < all.path.size(); ++k) {
+    pushed.restore(all.visits[k].state);
+    pushed.set_load(0, Signal::constant(all.path[k].share));
+    pushed.set_load(1, Signal::constant(1.0));
+    pushed.solve_static({.stability = StabilityChoice::any});
+    const double aside = pushed.effector_value(0).y();
+    EXPECT_EQ(all.path[k].negative_pivots, aside < 0.0 ? 1 : 0) << k << " " << aside;
+    std::printf("%zu share %g aside %g normal %g neg %d z %g\n", k, all.path[k].share, aside, all.visits[k].normal, all.path[k].negative_pivots, all.visits[k].depth);
+    unstable += all.path[k].negative_pivots;
+  }
+  EXPECT_GT(unstable, 0);
+  EXPECT_EQ(all.path.front().negative_pivots, 0);
+}
+
+TEST(PathContact, RefusesFrictionOnCurvedSurfaces) {
+  const constraint::Sphere ball{{0.0, 0.0, -0.01}, 0.01};
+  Simulation rough(arch({.friction = 0.1, .below = ball}));
+  try {
+    rough.follow_path({});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::not_in_this_version);
+    EXPECT_NE(std::string(error.what()).find("floor"), std::string::npos);
+  }
+}
+
+TEST(PathContact, RefusesBodiesThatContactsAloneHold) {
+  Simulation loose(block_on_plane({}).build());
+  const std::uint64_t before = loose.state_hash();
+  try {
+    loose.follow_path({});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::not_in_this_version);
+  }
+  EXPECT_EQ(loose.state_hash(), before);
+}
+
 // What touches at the start is found, though nothing was solved before.
 TEST(PathContact, BeginsWithTheWeightOnTheFloor) {
   BeamOptions options{.gravity = {0.0, 0.0, -9.81}, .wall = -0.0105, .wall_friction = 0.0};

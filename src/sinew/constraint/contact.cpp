@@ -62,6 +62,19 @@ void Contact::place(std::size_t point, const Vector3& carried, const SurfaceAppr
                     mechanics::RowValues& values) const {
   const Matrix3 frame = tangent_frame(plane.distance.normal);
   const double gap = plane.distance.gap + frame.col(0).dot(carried - plane.at);
+  set_frame(point, carried, frame, gap, values);
+}
+
+Vector3 Contact::place_nearest(std::size_t point, const Vector3& at, const Eigen::Isometry3d& pose,
+                               mechanics::RowValues& values) const {
+  const Vector3 local = pose.inverse() * at;
+  const PrincipalFrame principal = principal_frame(surface_, local);
+  set_frame(point, at, pose.linear() * principal.frame, distance(surface_, local).gap, values);
+  return principal.curvature;
+}
+
+void Contact::set_frame(std::size_t point, const Vector3& carried, const Matrix3& frame, double gap,
+                        mechanics::RowValues& values) const {
   const Vector3 reference(gap, 0.0, 0.0);
   for (int k = 0; k < 3; ++k) {
     values.direction[entry(point) + static_cast<std::size_t>(k)] = frame.col(k);

@@ -50,6 +50,11 @@ class Contact : public Constraint {
   /// @param plane where the tangent plane touches. @param values gets direction, offset, reference.
   void place(std::size_t point, const Vector3& carried, const SurfaceApproach& plane,
              mechanics::RowValues& values) const;
+  /// Sets the frame of one point to the tangent plane at its nearest point, the tangents along the
+  /// principal directions there. @param point of points(). @param at (3,) m, now. @param pose of
+  /// the surface. @param values see place(). @return (3,) 1/m, see PrincipalFrame.
+  Vector3 place_nearest(std::size_t point, const Vector3& at, const Eigen::Isometry3d& pose,
+                        mechanics::RowValues& values) const;
   /// The three rows of a point (m) where it is at (3,) m, and back, by its frame in `values`.
   Vector3 row_values(std::size_t point, const Vector3& at,
                      const mechanics::RowValues& values) const;
@@ -72,6 +77,9 @@ class Contact : public Constraint {
                                std::size_t point) const;
 
  private:
+  void set_frame(std::size_t point, const Vector3& carried, const Matrix3& frame, double gap,
+                 mechanics::RowValues& values) const;
+
   std::vector<mechanics::MaterialPoint> points_;
   Surface surface_;
   double friction_;

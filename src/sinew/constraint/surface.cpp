@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
@@ -32,6 +33,32 @@ SurfaceDistance distance_to(const Capsule& capsule, const Vector3& point) {
   const Vector3 nearest = capsule.from + std::clamp(along, 0.0, 1.0) * axis;
   SurfaceDistance result = from_centre(nearest, capsule.radius, point);
   if (point == nearest && length > 0.0) result.normal = axis.unitOrthogonal();
+  return result;
+}
+
+PrincipalFrame round_about(const Vector3& normal, double distance) {
+  const double curvature = distance > 0.0 ? 1.0 / distance : 0.0;
+  return {tangent_frame(normal), {0.0, curvature, curvature}};
+}
+
+PrincipalFrame principal_frame_of(const Plane& plane, const Vector3&) {
+  return {tangent_frame(plane.normal), Vector3::Zero()};
+}
+
+PrincipalFrame principal_frame_of(const Sphere& sphere, const Vector3& point) {
+  const SurfaceDistance from = distance_to(sphere, point);
+  return round_about(from.normal, from.gap + sphere.radius);
+}
+
+PrincipalFrame principal_frame_of(const Capsule& capsule, const Vector3& point) {
+  const SurfaceDistance from = distance_to(capsule, point);
+  PrincipalFrame result = round_about(from.normal, from.gap + capsule.radius);
+  const Vector3 axis = capsule.to - capsule.from;
+  const double along = axis.dot(point - capsule.from);
+  if (!(along > 0.0 && along < axis.squaredNorm())) return result;  // about an end
+  const Vector3 side = axis.normalized();
+  result.frame << from.normal, side, from.normal.cross(side);
+  result.curvature[1] = 0.0;
   return result;
 }
 
@@ -85,6 +112,10 @@ void check_radius(double radius) {
 
 SurfaceDistance distance(const Surface& surface, const Vector3& point) {
   return std::visit([&](const auto& shape) { return distance_to(shape, point); }, surface);
+}
+
+PrincipalFrame principal_frame(const Surface& surface, const Vector3& point) {
+  return std::visit([&](const auto& one) { return principal_frame_of(one, point); }, surface);
 }
 
 SurfaceApproach approach(const Surface& surface, const Vector3& from, const Vector3& to) {

@@ -54,6 +54,16 @@ SurfaceApproach approach(const Surface& surface, const Vector3& from, const Vect
 /// @param normal (3,) unit length.
 Matrix3 tangent_frame(const Vector3& normal);
 
+/// Normal and two tangents, the eigenvectors of the gap's second derivative, and its eigenvalues.
+struct PrincipalFrame {
+  Matrix3 frame = Matrix3::Identity();  ///< columns: normal, tangents
+  Vector3 curvature = Vector3::Zero();  ///< (3,) 1/m, >= 0, that along the normal zero
+};
+/// With r the distance from the nearest point of the centre or the axis, the gap curves by 1/r
+/// across the way from there: both tangents' for a ball, the one across the axis beside a rod.
+/// @param surface see Surface. @param point (3,) m.
+PrincipalFrame principal_frame(const Surface& surface, const Vector3& point);
+
 /// Throws Error(out-of-range) for a radius that is not positive and a normal without length; else
 /// the surface with its normal of unit length.
 Surface checked(Surface surface);

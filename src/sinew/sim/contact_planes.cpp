@@ -23,7 +23,8 @@ ContactPlanes::ContactPlanes(const Model& model, const constraint::Placement& pl
     : model_(model),
       placement_(placement),
       rows_(rows),
-      start_(VectorX::Zero(model.rows().rows())) {
+      start_(VectorX::Zero(model.rows().rows())),
+      curvature_(VectorX::Zero(model.rows().rows())) {
   for (std::size_t i = 0; i < model.contacts().size(); ++i) {
     contacts_.push_back(&model.contact(static_cast<int>(i)));
   }
@@ -78,6 +79,17 @@ void ContactPlanes::turn(const constraint::Contact& contact, std::size_t point,
   contact.place(point, carried, plane, rows_);
   start_.segment<3>(row) = contact.row_values(point, start, rows_);
   rows_.delta.segment<3>(row) = contact.row_values(point, now, rows_);
+}
+
+void ContactPlanes::follow_points() {
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    const constraint::Contact& contact = *contacts_[i];
+    if (!contact.curved()) continue;
+    for (std::size_t k = 0; k < contact.points().size(); ++k) {
+      const Vector3 at = placement_.position(contact.points()[k]);
+      curvature_.segment<3>(contact.row(k)) = contact.place_nearest(k, at, pose(i), rows_);
+    }
+  }
 }
 
 double ContactPlanes::drift(std::span<const double> effort, double time) const {

@@ -55,6 +55,12 @@ class ContactPlanes {
   bool follow_way(const constraint::Contact& contact, std::size_t point, const Vector3& free,
                   const Eigen::Isometry3d& pose);
 
+  /// Curved surfaces become their tangent planes at the points' nearest, where points are now.
+  void follow_points();
+  /// (rows,) 1/m: of curved surfaces at their last follow_points(), how fast their normals turn
+  /// along tangential rows; zero elsewhere.
+  const VectorX& curvature() const { return curvature_; }
+
   /// m: the farthest that any touching point's gap is from that of its plane, at the pose that
   /// surfaces have at a time. @param effort (rows,) N; who touches. @param time s.
   double drift(std::span<const double> effort, double time) const;
@@ -76,6 +82,7 @@ class ContactPlanes {
   mechanics::RowValues& rows_;
   std::vector<const constraint::Contact*> contacts_;
   VectorX start_;
+  VectorX curvature_;
   bool curved_ = false;
   double end_ = 0.0;  // s, of the step: where surfaces stand
   int turns_left_ = 0;

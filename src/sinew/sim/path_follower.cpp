@@ -33,10 +33,11 @@ constexpr double kDiagonal = 1.75;  // more than the largest coordinate's part o
 
 void PathFollower::check() const {
   for (const auto& contact : run_.world.contacts().planes().contacts()) {
-    if (!contact->curved()) continue;
-    throw Error(
-        ErrorKind::not_in_this_version, {.item = fmt::format("contact '{}'", contact->name())},
-        "paths beside curved surfaces are not followed yet", "step through the load in time");
+    if (!contact->curved() || contact->friction() == 0.0) continue;
+    throw Error(ErrorKind::not_in_this_version,
+                {.item = fmt::format("contact '{}'", contact->name())},
+                "paths along curved surfaces with friction are not followed yet",
+                "step through the load in time");
   }
   if (!run_.model->guides().empty()) {
     throw Error(ErrorKind::bad_argument, {.item = "follow_path"},
@@ -89,19 +90,41 @@ double PathFollower::gap() const {
   return largest;
 }
 
-std::vector<step::HeldRow> PathFollower::joints() const {
+std::vector<step::ContactBlock> PathFollower::pressed() const {
+  std::vector<step::ContactBlock> result;
+  for (const step::ContactBlock& block : run_.world.problem().contacts) {
+    const int row = run_.world.numbering().row_of(block.row);
+    if (run_.effort[static_cast<std::size_t>(row)] > 0.0) result.push_back(block);
+  }
+  return result;
+}
+
+// Joints, and what the force lambda of a point on a curved surface does: its direction n turns with
+// the point, r has lambda grad n dq, and the tangent -lambda/R along the row across.
+std::vector<step::HeldRow> PathFollower::joints(
+    std::span<const step::ContactBlock> touching) const {
   std::vector<step::HeldRow> held;
   step::append_joints(run_.world.problem(), held);
+  const VectorX& curvature = run_.world.contacts().planes().curvature();
+  for (const step::ContactBlock& block : touching) {
+    const int row = run_.world.numbering().row_of(block.row);
+    const double force = run_.effort[static_cast<std::size_t>(row)];
+    for (int k = 1; k < 3; ++k) {
+      const double turns = force * curvature[row + k];
+      if (turns != 0.0) held.push_back({block.row + k, -1.0 / turns});
+    }
+  }
   return held;
 }
 
 // And the tangential rows of points that stick.
 std::vector<step::HeldRow> PathFollower::joints_and_sticking() const {
-  std::vector<step::HeldRow> held = joints();
-  for (const step::ContactBlock& block : run_.world.problem().contacts) {
+  const std::vector<step::ContactBlock> touching = pressed();
+  std::vector<step::HeldRow> held = joints(touching);
+  for (const step::ContactBlock& block : touching) {
     const int row = run_.world.numbering().row_of(block.row);
     const Eigen::Map<const Vector3> force(&run_.effort[static_cast<std::size_t>(row)]);
-    if (!(force[0] > 0.0) || qp::slides(force, block.friction)) continue;
+    if (qp::slides(force, block.friction)) continue;
     held.push_back({block.row + 1, 0.0});
     held.push_back({block.row + 2, 0.0});
   }
@@ -132,7 +155,7 @@ bool PathFollower::predict(const VectorX& here, const VectorX& ahead, double len
 
 bool PathFollower::correct(const VectorX& here, const VectorX& ahead) {
   if (run_.world.condense() == linalg::FactorStatus::singular) return false;
-  HeldMotions motions(run_.world, joints());
+  HeldMotions motions(run_.world, joints(touching_));
   negative_pivots_ = motions.negative_pivots();
   PathContacts contacts(run_.world, motions, touching_, run_.effort);
   if (contacts.is_singular()) return false;
@@ -201,7 +224,7 @@ void PathFollower::count() {
   if (run_.world.condense() == linalg::FactorStatus::singular) return;
   linalg::AlignedNumbers effort;
   run_.world.numbering().gather(run_.effort, effort);
-  std::vector<step::HeldRow> held = joints();
+  std::vector<step::HeldRow> held = joints(pressed());
   append_touching(run_.world.problem(), effort, held);
   negative_pivots_ = HeldMotions(run_.world, std::move(held)).negative_pivots();
 }
@@ -212,6 +235,7 @@ int PathFollower::step(double length) {
   touching_.clear();
   VectorX here, ahead;
   for (int iteration = 0; iteration <= kMostIterations; ++iteration) {
+    run_.world.contacts().planes().follow_points();
     imbalance_at(share_ + 1.0, ahead);
     imbalance_at(share_, here);
     run_.report.relative_residual = here.norm() / (run_.world.bodies().force_scale() + 1e-300);

@@ -28,7 +28,13 @@ struct Run;
 /// their normal rows as joints do. A prediction that goes past corners says which points touch
 /// behind the last one, and D is the motion along the edge that it ends on. A step ends where these
 /// points are pressed and all others are outside; where they are not, the prediction was too long,
-/// and a shorter one, which errs by the square of its length, is tried.
+/// and a shorter one, which errs by the square of its length, is tried. Friction is a law of the
+/// increments of a step (PathContacts).
+///
+/// A curved surface is, in every iteration, the tangent plane at each point's nearest. Of the force
+/// lambda n(x) on a point the derivative is lambda times the gap's second derivative, lambda/R along
+/// a principal tangent: a row with stiffness -lambda/R, that is with compliance -R/lambda, among
+/// those that hold the robot.
 class PathFollower {
  public:
   /// @param run is moved. @param settings see there.
@@ -42,7 +48,8 @@ class PathFollower {
   void settle();
   void imbalance_at(double share, VectorX& imbalance);
   double gap() const;
-  std::vector<step::HeldRow> joints() const;
+  std::vector<step::ContactBlock> pressed() const;
+  std::vector<step::HeldRow> joints(std::span<const step::ContactBlock> touching) const;
   std::vector<step::HeldRow> joints_and_sticking() const;
   bool predict(const VectorX& here, const VectorX& ahead, double length);
   bool correct(const VectorX& here, const VectorX& ahead);
