@@ -13,8 +13,9 @@ HeldMotions::HeldMotions(World& world, std::vector<step::HeldRow> held)
 
 int HeldMotions::count() {
   const int pivots = world_.inertia().negative_pivots;
-  const bool as_it_is = pivots == 0 && world_.problem().stiffness.empty();
-  if (held_.empty() || as_it_is) return pivots;
+  const bool has_less =
+      std::ranges::any_of(held_, [](const step::HeldRow& row) { return row.compliance < 0.0; });
+  if (held_.empty() || (pivots == 0 && !has_less)) return pivots;
   return std::max(0, step::negative_directions(pivots, invert(), held_));
 }
 
