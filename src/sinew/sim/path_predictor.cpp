@@ -15,7 +15,7 @@ constexpr double kTie = 1e-10;
 constexpr std::size_t kMostCorners = 10;
 
 // How far the motion `from` + t `along` goes until its largest coordinate is `length`.
-double reach(const VectorX& from, const VectorX& along, double length) {
+double way_until(const VectorX& from, const VectorX& along, double length) {
   double least = kInfinity;
   for (Eigen::Index i = 0; i < along.size(); ++i) {
     if (along[i] == 0.0) continue;
@@ -90,7 +90,7 @@ bool PathPredictor::predict(const HeldAnswer& by_rest, const HeldAnswer& by_load
   for (std::size_t corners = 0; corners <= kMostCorners * held_.size(); ++corners) {
     const double left = path.look_ahead();
     const double full = path.direction() > 0.0 ? most_share - result.share : kInfinity;
-    const double by = std::min({left, full, reach(moved, edge.motion, length)});
+    const double by = std::min({left, full, way_until(moved, edge.motion, length)});
     if (!(by < kInfinity)) return false;
     const double whole = length / edge.motion.cwiseAbs().maxCoeff();
     result.origin = moved - (whole - by) * edge.motion;
