@@ -7,6 +7,7 @@
 #include "sinew/core/error.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/sim/actuator.hpp"
+#include "sinew/sim/contact_reader.hpp"
 #include "sinew/sim/contact_state.hpp"
 #include "sinew/sim/load_settings.hpp"
 #include "sinew/sim/model.hpp"
@@ -60,8 +61,8 @@ Followed follow(Simulation& simulation, const PathSettings& settings) {
   const double top = simulation.effector_value(0).z();
   result.path = simulation.follow_path(settings, [&] {
     result.visits.push_back({top - simulation.effector_value(0).z(),
-                             simulation.contact_sum(0).normal_force, simulation.body(0).positions(),
-                             simulation.contact_points(0), simulation.state()});
+                             simulation.contacts().sum(0).normal_force, simulation.body(0).positions(),
+                             simulation.contacts().points(0), simulation.state()});
   });
   return result;
 }
@@ -80,7 +81,7 @@ TEST(PathContact, ASnapThatAFloorEndsAgreesWithControlByMotion) {
     moved.solve_static();
     const double load = 0.4 * all.path[k].share;
     EXPECT_NEAR(moved.actuator(0).effort, load, kAgrees * std::max(load, 0.02)) << k;
-    EXPECT_NEAR(moved.contact_sum(0).normal_force, visit.normal, kAgrees * std::max(load, 0.02));
+    EXPECT_NEAR(moved.contacts().sum(0).normal_force, visit.normal, kAgrees * std::max(load, 0.02));
     EXPECT_LT((moved.body(0).positions() - visit.positions).cwiseAbs().maxCoeff(), kAgrees * size);
     const bool touches = Followed::touching(visit) > 0;
     falling += all.path[k].negative_pivots;
@@ -104,7 +105,7 @@ TEST(PathContact, WeldsHoldBesideAFloor) {
     whole.solve_static();
     const double load = 0.4 * all.path[k].share;
     EXPECT_NEAR(whole.actuator(0).effort, load, kAgrees * std::max(load, 0.02)) << k;
-    EXPECT_NEAR(whole.contact_sum(0).normal_force, all.visits[k].normal,
+    EXPECT_NEAR(whole.contacts().sum(0).normal_force, all.visits[k].normal,
                 kAgrees * std::max(load, 0.02));
   }
   EXPECT_GT(all.visits.back().normal, 0.1);
@@ -133,7 +134,7 @@ TEST(PathContact, ABeamIsLaidDownAndLifted) {
       EXPECT_LT((fresh.body(0).positions() - all.visits[k].positions).cwiseAbs().maxCoeff(),
                 kAgrees * size)
           << k;
-      EXPECT_NEAR(fresh.contact_sum(0).normal_force, all.visits[k].normal, kAgrees) << k;
+      EXPECT_NEAR(fresh.contacts().sum(0).normal_force, all.visits[k].normal, kAgrees) << k;
     }
     for (const Visit& visit : all.visits) touching.push_back(Followed::touching(visit));
     down += all.path.back().share * (next_down - down);
@@ -161,7 +162,7 @@ TEST(PathContact, SymmetricPointsCloseTogether) {
     fresh.solve_static();
     EXPECT_LT((fresh.body(0).positions() - all.visits[k].positions).cwiseAbs().maxCoeff(),
               kAgrees * model->size());
-    EXPECT_NEAR(fresh.contact_sum(0).normal_force, all.visits[k].normal, 100.0 * kAgrees) << k;
+    EXPECT_NEAR(fresh.contacts().sum(0).normal_force, all.visits[k].normal, 100.0 * kAgrees) << k;
     touching.push_back(Followed::touching(all.visits[k]));
   }
   EXPECT_GE(touching.back(), 5);
@@ -239,7 +240,7 @@ TEST(PathContact, FrictionTurnsWithTheMotion) {
     const Followed all =
         follow(path, {.first_step = 1e-3, .largest_step = 5e-3, .tolerance = 1e-11});
     check_friction(all, friction, path.model().size(), stuck, slid);
-    const ContactSum sum = path.contact_sum(0);
+    const ContactSum sum = path.contacts().sum(0);
     held.push_back(sum.force.x() / (friction * sum.normal_force));
   }
   EXPECT_NEAR(held[0], -1.0, 0.05);
@@ -262,7 +263,7 @@ TEST(PathContact, FrictionIsThatOfSlowMotionsFromPointToPoint) {
         << k;
     for (std::size_t i = 0; i < all.visits[k].points.size(); ++i) {
       const Vector3 off =
-          still.contact_point(0, i).friction_force - all.visits[k].points[i].friction_force;
+          still.contacts().point(0, i).friction_force - all.visits[k].points[i].friction_force;
       EXPECT_LT(off.norm(), kAgrees) << k << " " << i;
     }
   }
@@ -285,7 +286,7 @@ TEST(PathContact, CurvedSurfacesEndASnap) {
       for (int again = 0; again < 6; ++again) moved.solve_static();
       const double load = 0.2 * all.path[k].share;
       EXPECT_NEAR(moved.actuator(0).effort, load, kAgrees * std::max(load, 0.02)) << k;
-      EXPECT_NEAR(moved.contact_sum(0).normal_force, all.visits[k].normal,
+      EXPECT_NEAR(moved.contacts().sum(0).normal_force, all.visits[k].normal,
                   kAgrees * std::max(load, 0.02));
     }
     EXPECT_GT(all.visits.back().normal, 0.1);
@@ -367,14 +368,14 @@ TEST(PathContact, RefusesFrictionOnCurvedSurfaces) {
 
 TEST(PathContact, RefusesBodiesThatContactsAloneHold) {
   Simulation loose(block_on_plane({}).build());
-  const std::uint64_t before = loose.state_hash();
+  const std::uint64_t before = loose.state().hash();
   try {
     loose.follow_path({});
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::not_in_this_version);
   }
-  EXPECT_EQ(loose.state_hash(), before);
+  EXPECT_EQ(loose.state().hash(), before);
 }
 
 // What touches at the start is found, though nothing was solved before.

@@ -276,7 +276,8 @@ void Collocation::constraints(const VectorX& x, VectorX& result) {
   for (int k = 0; k < grid_.intervals; ++k) {
     const Transcription& rules = all[static_cast<std::size_t>(k)];
     const MatrixX knots = pair(x, k);
-    result.segment(row(k), n_ * defects_) = knots * rules.defect.value.transpose();
+    result.segment(row(k), n_ * defects_).reshaped(n_, defects_) =
+        knots * rules.defect.value.transpose();
     for (std::size_t s = 0; s < rules.stages.size(); ++s) {
       const Stage& stage = rules.stages[s];
       const MatrixX motion = knots * stage.state.value.transpose();
