@@ -1,5 +1,11 @@
 /// @file
-/// All of Sinew's public interface in one include.
+/// One include for robots that are built and simulated in C++: meshes, materials, bodies,
+/// actuators, contacts, the simulation and its inverse controller.
+///
+/// Not included, because they pull in files, formats or optional dependencies:
+/// scene files (sinew/scene/build.hpp), records of runs (sinew/record/run_recorder.hpp), both in
+/// the target sinew::sinew; identification (sinew/identify/..., target sinew::identify) and
+/// planning (sinew/plan/..., target sinew::plan).
 #pragma once
 
 #include "sinew/core/build_info.hpp"

@@ -26,9 +26,9 @@ enum class Tangent {
   exact,  ///< second derivative of the energy, rotation's derivative included; may be indefinite
 };
 
-/// matrix = stiffness K + mass M. An integrator says what it needs by these weights; element code
-/// never knows which integrator runs. (1, 0) is quasi-static; (h^2 + h beta, 1 + h alpha) is
-/// backward Euler in velocities with Rayleigh damping alpha M + beta K.
+/// matrix = stiffness K + mass M. The weights come from the integrator; element code does not know
+/// which one runs. (1, 0) is quasi-static. (1, 1/h^2 + alpha/h) is backward Euler with mass damping
+/// alpha M. BodyElements adds the stiffness damping (beta/h) K, with K from the start of the step.
 struct AssemblyWeights {
   Tangent tangent = Tangent::rotated;
   double stiffness = 1.0;

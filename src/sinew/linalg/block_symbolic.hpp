@@ -1,17 +1,19 @@
+// clang-format off
 /// @file
 /// Everything about the block factorisation that does not depend on numbers: where each panel of L
 /// lies, which panels update which, and where every entry of A, H and b goes.
 ///
 /// L is stored in panels, one a supernode, column-major:
 ///
-///     panel row 0 .. 3w-1                 the supernode's own w nodes (lower triangle of L)
-///     (8 to 15 rows of zeros in split     so that tiles of the diagonal block may run over, and
-///     the panels)                             rows below begin at a multiple of 8 panel row below
-///     .. below+3r-1       the r nodes below, ascending, border nodes last at least 7 rows of zeros
-///     so that full-width tiles may run over the end
+///     rows 0 .. 3w-1              the supernode's own w nodes (lower triangle of L)
+///     8 to 15 rows of zeros       in split panels only: tiles of the diagonal block may run over,
+///                                 and the rows below begin at a multiple of 8
+///     rows below .. below+3r-1    the r nodes below, ascending, border nodes last
+///     at least 7 rows of zeros    full-width tiles may run over the end
 ///
 /// and the next column follows `leading` doubles later. The last panel is the border's: it is
 /// updated by all others and never factorised, and ends as -(H; b) A^-1 (H; b)^T.
+// clang-format on
 #pragma once
 
 #include <cstdint>
