@@ -125,11 +125,11 @@ def main():
                 static.append(rows[0])
                 dynamic.append(rows[1])
                 print(f"done: {element}, {size:.3g} mm, {threads} threads", file=sys.stderr)
-    print("\n**Equilibrium under the weight**\n\n| element | nodes | threads | deflection here, mm | there | whole here, s "
-          "| there | iterations here | there | an iteration here, ms | there | ratio |\n" + "|---" * 12 + "|")
+    print("\n**Equilibrium under the weight**\n\n| element | nodes | threads | deflection, mm: Sinew | CalculiX "
+          "| total, s: Sinew | CalculiX | iterations: Sinew | CalculiX | per iteration, ms: Sinew | CalculiX | ratio |\n" + "|---" * 12 + "|")
     print("\n".join(static))
-    print(f"\n**{STEPS} steps of {1e3 * STEP:g} ms after the release**\n\n| element | nodes | threads | deflection here, mm "
-          "| there | iterations here | there | a step here, ms | there | ratio |\n" + "|---" * 10 + "|")
+    print(f"\n**{STEPS} steps of {1e3 * STEP:g} ms after the release**\n\n| element | nodes | threads | deflection, mm: Sinew "
+          "| CalculiX | iterations: Sinew | CalculiX | per step, ms: Sinew | CalculiX | ratio |\n" + "|---" * 10 + "|")
     print("\n".join(dynamic))
     print("\nload average at the end " + ", ".join(f"{x:.1f}" for x in os.getloadavg()))
 
