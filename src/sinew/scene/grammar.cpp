@@ -48,25 +48,25 @@ std::shared_ptr<const KeyTable> integrator_table() {
                  .forms = {quantity(plain_number(), {.min = 0.0, .max = 1.0})},
                  .example = "0.8",
                  .default_text = "0.8",
-                 .description = "Of generalized-alpha: what is left of the fastest motion after a "
-                                "step. 1 conserves energy, 0 damps most."}}});
+                 .description = "Generalized-alpha: factor by which a step damps the fastest "
+                                "motion. 1 conserves energy, 0 damps most."}}});
 }
 
 std::shared_ptr<const KeyTable> adaptive_table() {
   return make_table(
       {.name = "adaptive",
-       .description = "Substeps inside each time step: smaller where the integrator's error asks "
-                      "for it or where a step fails.",
+       .description = "Substeps within each time step: smaller where the integration error "
+                      "requires it or a step fails.",
        .keys = {{.name = "tolerance",
                  .forms = {quantity(plain_number(), positive())},
                  .example = "1e-4",
                  .default_text = "1e-4",
-                 .description = "Largest error of a substep in any coordinate, over the robot's "
-                                "size."},
+                 .description =
+                     "Largest error of a substep in any coordinate, relative to the robot's size."},
                 {.name = "smallest",
                  .forms = {quantity(time(), positive())},
                  .example = "0.1 ms",
-                 .description = "No substep is smaller; where that does not do, the run stops.",
+                 .description = "Smallest substep; if it is not small enough, the run stops.",
                  .required = true}}});
 }
 
@@ -74,66 +74,65 @@ std::shared_ptr<const KeyTable> solver_table() {
   return make_table(
       {.name = "solver",
        .description = "How each step is solved.",
-       .keys = {
-           {.name = "method",
-            .forms = {method_choice()},
-            .example = "newton",
-            .default_text = "newton",
-            .description = "What a step does."},
-           {.name = "adaptive",
-            .forms = {table(adaptive_table())},
-            .example = "{tolerance: 1e-4, smallest: 0.1 ms}",
-            .description = "Substeps. Without: one step of `time_step` each."},
-           {.name = "tangent",
-            .forms = {choice({{"exact",
-                               "The derivative of the forces; projected where that is "
-                               "indefinite for the robot as it is held."},
-                              {"projected",
-                               "The derivative, each element's part made positive "
-                               "semi-definite: never too soft, slower to converge."},
-                              {"rotated",
-                               "Corotational elements: the rotated stiffness of "
-                               "real-time codes, which leaves out what tension does."}})},
-            .example = "exact",
-            .default_text = "exact",
-            .description = "The matrix of a step's linear equations. It decides how fast a step "
-                           "converges, not where to."},
-           {.name = "tolerance",
-            .forms = {quantity(plain_number(), Range{0.0, 1.0, true, true})},
-            .example = "1e-8",
-            .description = "Newton: residual force relative to the sum of internal and outside "
-                           "forces. Without: 1e-4 in quasi-static steps, which may hand more to "
-                           "the next step, and 1e-8 in dynamics."},
-           {.name = "max_iterations",
-            .forms = {integer(1, 100000)},
-            .example = "50",
-            .default_text = "50",
-            .description = "Newton: iterations a step at most."},
-           {.name = "contact_tolerance",
-            .forms = {quantity(plain_number(), Range{0.0, 1.0, true, true})},
-            .example = "1e-8",
-            .default_text = "1e-10",
-            .description = "Contacts: distance of any point from the laws of contact, over the "
-                           "largest force."},
-           {.name = "threads",
-            .forms = {integer(1, 256)},
-            .example = "4",
-            .default_text = "1",
-            .description = "Threads inside a step; results do not depend on it."},
-           {.name = "factorisation",
-            .forms = {choice({{"block", "Our own, in 3x3 blocks."},
-                              {"eigen-ldlt", "Eigen's SimplicialLDLT, for reference."},
-                              {"eigen-llt", "Eigen's SimplicialLLT, for reference."}})},
-            .example = "block",
-            .default_text = "block",
-            .description = "What factorises the matrix."},
-           {.name = "ordering",
-            .forms = {choice({{"fastest", "Both are timed at the start."},
-                              {"amd", "Approximate minimum degree."},
-                              {"metis", "Nested dissection."}})},
-            .example = "metis",
-            .default_text = "fastest",
-            .description = "How the unknowns are ordered."}}});
+       .keys = {{.name = "method",
+                 .forms = {method_choice()},
+                 .example = "newton",
+                 .default_text = "newton",
+                 .description = "Solution method of a step."},
+                {.name = "adaptive",
+                 .forms = {table(adaptive_table())},
+                 .example = "{tolerance: 1e-4, smallest: 0.1 ms}",
+                 .description = "Substeps. Without: one step of `time_step` each."},
+                {.name = "tangent",
+                 .forms = {choice({{"exact",
+                                    "The derivative of the forces; projected where that is "
+                                    "indefinite for the robot as it is held."},
+                                   {"projected",
+                                    "The derivative, each element's part made positive "
+                                    "semi-definite: never too soft, slower to converge."},
+                                   {"rotated",
+                                    "Corotational elements: the rotated stiffness of "
+                                    "real-time codes, which leaves out what tension does."}})},
+                 .example = "exact",
+                 .default_text = "exact",
+                 .description = "The matrix of a step's linear equations. It affects how fast a "
+                                "step converges, not the solution."},
+                {.name = "tolerance",
+                 .forms = {quantity(plain_number(), Range{0.0, 1.0, true, true})},
+                 .example = "1e-8",
+                 .description = "Newton: residual force relative to the sum of internal and "
+                                "external forces. Without: 1e-4 in quasi-static steps, which may "
+                                "leave more to the next step, and 1e-8 in dynamics."},
+                {.name = "max_iterations",
+                 .forms = {integer(1, 100000)},
+                 .example = "50",
+                 .default_text = "50",
+                 .description = "Newton: maximum number of iterations per step."},
+                {.name = "contact_tolerance",
+                 .forms = {quantity(plain_number(), Range{0.0, 1.0, true, true})},
+                 .example = "1e-8",
+                 .default_text = "1e-10",
+                 .description = "Contacts: largest residual of the contact laws at any point, "
+                                "relative to the largest force."},
+                {.name = "threads",
+                 .forms = {integer(1, 256)},
+                 .example = "4",
+                 .default_text = "1",
+                 .description = "Threads per step; results do not depend on it."},
+                {.name = "factorisation",
+                 .forms = {choice({{"block", "Our own, in 3x3 blocks."},
+                                   {"eigen-ldlt", "Eigen's SimplicialLDLT, for reference."},
+                                   {"eigen-llt", "Eigen's SimplicialLLT, for reference."}})},
+                 .example = "block",
+                 .default_text = "block",
+                 .description = "Factorisation of the matrix."},
+                {.name = "ordering",
+                 .forms = {choice({{"fastest", "Both are timed at the start."},
+                                   {"amd", "Approximate minimum degree."},
+                                   {"metis", "Nested dissection."}})},
+                 .example = "metis",
+                 .default_text = "fastest",
+                 .description = "Elimination order of the unknowns."}}});
 }
 
 std::shared_ptr<const KeyTable> record_table() {
@@ -143,7 +142,7 @@ std::shared_ptr<const KeyTable> record_table() {
                                .forms = {integer(1, 1'000'000'000)},
                                .example = "10",
                                .default_text = "1",
-                               .description = "Steps from one record to the next."},
+                               .description = "Number of steps between records."},
                               {.name = "states",
                                .forms = {boolean()},
                                .example = "false",
@@ -162,21 +161,21 @@ std::vector<Key> world_keys() {
        .forms = {vector(acceleration())},
        .example = "0 0 -9.81 m/s^2",
        .default_text = "0 0 0 m/s^2",
-       .description = "Acceleration of free fall. Without: none."},
+       .description = "Gravitational acceleration. Without: none."},
       {.name = "time_step",
        .forms = {quantity(time(), positive())},
        .example = "10 ms",
        .default_text = "10 ms",
-       .description = "Time from one step to the next."},
+       .description = "Time step."},
       {.name = "duration",
        .forms = {quantity(time(), positive())},
        .example = "5 s",
-       .description = "How long a run lasts. Without: as long as its longest signal or target."},
+       .description = "Duration of a run. Without: the duration of the longest signal or target."},
       {.name = "integrator",
        .forms = {integrator_choice("type"), table(integrator_table())},
        .example = "quasi-static",
        .default_text = "quasi-static",
-       .description = "How time passes."},
+       .description = "Time integration."},
       {.name = "solver",
        .forms = {table(solver_table()), method_choice("method")},
        .example = "{method: newton}",
@@ -190,40 +189,42 @@ KeyTable scene_table() {
   scene.keys.push_back({.name = "bodies",
                         .forms = {names(body_form(), 1)},
                         .example = "{trunk: {type: fem, ...}}",
-                        .description = "The bodies, by names of your choice.",
+                        .description = "The bodies; you choose the names.",
                         .required = true});
   scene.keys.push_back({.name = "actuators",
                         .forms = {names(actuator_form())},
                         .example = "{long_0: {type: cable, ...}}",
-                        .description = "What moves them."});
+                        .description = "Actuators."});
   scene.keys.push_back({.name = "loads",
                         .forms = {names(load_form())},
                         .example = "{sea: {type: water, body: arm}}",
-                        .description = "What the surroundings do to them."});
+                        .description = "External loads."});
   scene.keys.push_back({.name = "masses",
                         .forms = {names(mass_form())},
                         .example = "{hung: {body: trunk, point: 0 0 195 mm, mass: 52 g}}",
-                        .description = "Masses that hang on points of finite-element bodies."});
+                        .description = "Point masses on finite-element bodies."});
   scene.keys.push_back({.name = "effectors",
                         .forms = {names(effector_form())},
                         .example = "{tip: {body: trunk, point: 0 0 195 mm}}",
-                        .description = "What is watched and steered."});
-  scene.keys.push_back({.name = "probes",
-                        .forms = {names(probe_form())},
-                        .example = "{bend: {body: finger, bend: [{set: bottom}, {set: top}]}}",
-                        .description = "What is measured and recorded; they act on nothing."});
+                        .description = "Points whose motion is observed and controlled."});
+  scene.keys.push_back(
+      {.name = "probes",
+       .forms = {names(probe_form())},
+       .example = "{bend: {body: finger, bend: [{set: bottom}, {set: top}]}}",
+       .description = "Measurements that are recorded; they do not affect the robot."});
   scene.keys.push_back({.name = "contacts",
                         .forms = {names(contact_form())},
                         .example = "{floor: {body: block, surface: {plane: {}}, friction: 0.5}}",
-                        .description = "Surfaces that bodies may touch, with friction."});
+                        .description = "Contact surfaces with friction."});
   scene.keys.push_back({.name = "joints",
                         .forms = {names(joint_form())},
                         .example = "{seam: {type: weld, bodies: [upper, lower]}}",
-                        .description = "What holds bodies together."});
-  scene.keys.push_back({.name = "controllers",
-                        .forms = {names(controller_form())},
-                        .example = "{follow: {type: inverse, effectors: {tip: ...}}}",
-                        .description = "What steers. A controller owns the actuators it drives."});
+                        .description = "Joints between bodies."});
+  scene.keys.push_back(
+      {.name = "controllers",
+       .forms = {names(controller_form())},
+       .example = "{follow: {type: inverse, effectors: {tip: ...}}}",
+       .description = "Inverse controllers. A controller owns the actuators it drives."});
   scene.keys.push_back({.name = "record",
                         .forms = {table(record_table())},
                         .example = "{every: 1, states: true}",

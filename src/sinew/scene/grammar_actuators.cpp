@@ -9,7 +9,7 @@ std::shared_ptr<const KeyTable> limit_table(const Measure& measure, const Measur
                                             const char* name, Range range, const char* least,
                                             const char* example, const char* rate_example) {
   return make_table({.name = std::string("limits of ") + name,
-                     .description = "What is left out is unlimited.",
+                     .description = "Omitted keys mean no limit.",
                      .keys = {{.name = "min",
                                .forms = {quantity(measure, range)},
                                .example = std::string("0 ") + measure.unit,
@@ -22,7 +22,7 @@ std::shared_ptr<const KeyTable> limit_table(const Measure& measure, const Measur
                               {.name = "rate",
                                .forms = {quantity(rate, positive())},
                                .example = rate_example,
-                               .description = "Greatest change in time."}}});
+                               .description = "Greatest rate of change."}}});
 }
 
 }  // namespace
@@ -35,7 +35,7 @@ std::vector<Key> drive_keys(const DriveWords& w) {
                                          w.motion_example, w.motion_rate_example);
   const auto limits =
       make_table({.name = "limits of a " + kind,
-                  .description = "What the actuator can do; commands and controllers obey.",
+                  .description = "Limits of the actuator; commands and controllers respect them.",
                   .keys = {{.name = effort,
                             .forms = {table(effort_limits)},
                             .example = std::string("{max: ") + w.effort_example + "}",
@@ -47,7 +47,7 @@ std::vector<Key> drive_keys(const DriveWords& w) {
                             .default_text = "{}",
                             .description = "Limits of the " + motion + "."}}});
   KeyTable command{.name = "command of a " + kind,
-                   .description = "What the actuator is told: a value, or a signal over time.",
+                   .description = "Command of the actuator: a constant, or a signal over time.",
                    .keys = {{.name = motion,
                              .forms = {quantity(w.motion_measure),
                                        table(signal_table(w.motion_measure, w.motion_value))},
@@ -67,7 +67,7 @@ std::vector<Key> drive_keys(const DriveWords& w) {
            .forms = {table(limits)},
            .example = "{" + motion + ": {max: " + w.motion_example + "}}",
            .default_text = "{}",
-           .description = "What the actuator can do."},
+           .description = "Limits of the actuator."},
           {.name = "command",
            .forms = {table(make_table(std::move(command)))},
            .example = "{" + motion + ": " + w.motion_value + "}",
@@ -121,17 +121,17 @@ std::shared_ptr<const KeyTable> cable_table() {
   KeyTable cable{
       .name = "actuator: type cable",
       .description =
-          "A cable that slides through points of a body, with or without friction. It "
-          "pulls and never pushes.",
+          "A cable that slides through points of a body, with or without friction. It can only "
+          "pull.",
       .keys = {
           body_key(),
           {.name = "points",
            .forms = {table(point_file_table()),
                      list({vector(length()), table(body_point_table())}, 2)},
            .example = "[0 10 0 mm, 0 10 60 mm, 0 10 120 mm]",
-           .description = "The points it runs through, in the mesh at rest. The first "
-                          "is the pull point, the last the end that is tied. A point in "
-                          "another body: {body: upper, point: 0 10 80 mm}.",
+           .description =
+               "Routing points in the mesh at rest. The first is the pull point, the last the "
+               "fixed end. A point in another body: {body: upper, point: 0 10 80 mm}.",
            .required = true},
           {.name = "pull",
            .forms = {choice({{"world", "Does not move."}, {"body", "Moves with the body."}})},
@@ -143,30 +143,31 @@ std::shared_ptr<const KeyTable> cable_table() {
            .forms = {quantity(plain_number(), non_negative())},
            .example = "0.2",
            .default_text = "0",
-           .description = "Coulomb's coefficient at every point between its ends: the tension "
-                          "changes there by a factor of at most e^(friction angle)."},
+           .description = "Coulomb friction coefficient at every point between the ends: the "
+                          "tension changes there by a factor of at most e^(friction angle)."},
           {.name = "guide_radius",
            .forms = {quantity(length(), non_negative())},
            .example = "2 mm",
            .default_text = "0 m",
-           .description = "Radius of the tubes or rings it runs through, set into the "
-                          "material: each point is the mean of a ball. 0 pulls at bare points, "
-                          "where a finer mesh dents more without limit."},
+           .description = "Radius of the guide tubes or rings embedded in the material: each point "
+                          "is the average over a ball. With 0 the cable acts on bare points, whose "
+                          "local indentation grows without limit as the mesh is refined."},
           {.name = "guide_spacing",
            .forms = {quantity(length(), non_negative())},
            .example = "10 mm",
            .default_text = "0 m",
-           .description = "Sets guides between the points, evenly and no farther apart than "
-                          "this, as along a conduit. 0: the points alone."},
+           .description = "Adds evenly spaced guides between the points, at most this far apart, "
+                          "as in a conduit. 0: the points alone."},
           {.name = "geometric_stiffness",
            .forms = {boolean()},
            .example = "false",
            .default_text = "true",
-           .description = "The stiffness that tension gives a cable joins every step. Without it, "
-                          "steps of strongly loaded cables converge slowly or not at all."}}};
+           .description =
+               "Adds the cable's geometric stiffness (from tension) to every step. Without it, "
+               "steps with highly loaded cables converge slowly or not at all."}}};
   const DriveWords words = line_words("cable", "tension", non_negative(), "0 N",
                                       "Length of cable pulled in at the pull point.",
-                                      "What it is told. Without: slack until told.");
+                                      "Command. Without: slack until commanded.");
   for (Key& key : drive_keys(words)) cable.keys.push_back(std::move(key));
   return make_table(std::move(cable));
 }
@@ -183,12 +184,12 @@ std::shared_ptr<const KeyTable> force_table() {
                          {.name = "direction",
                           .forms = {vector(plain_number())},
                           .example = "1 0 0",
-                          .description = "Where it points; any length but zero.",
+                          .description = "Direction; any non-zero length.",
                           .required = true},
                          outside_key()}};
   const DriveWords words =
       line_words("force", "force", any(), "", "Motion of the point along the direction.",
-                 "What it is told. Without: no force until told.");
+                 "Command. Without: no force until commanded.");
   for (Key& key : drive_keys(words)) push.keys.push_back(std::move(key));
   return make_table(std::move(push));
 }
@@ -230,8 +231,8 @@ Form effector_form() {
   const Form axis = axis_forms().front();
   return table(make_table(
       {.name = "effector",
-       .description = "Something on a body whose motion matters: exactly one of point, points, "
-                      "set and orientation.",
+       .description = "A point or frame on a body whose motion is observed and controlled: exactly "
+                      "one of point, points, set and orientation.",
        .keys = {body_key(),
                 {.name = "point",
                  .forms = {vector(length())},
@@ -255,8 +256,7 @@ Form effector_form() {
                  .forms = {axis, list(axis_forms(), 1, 3)},
                  .example = "[x, y]",
                  .default_text = "[x, y, z]",
-                 .description = "Along what the motion matters: axes or vectors, independent of "
-                                "each other."},
+                 .description = "Controlled directions: axes or linearly independent vectors."},
                 outside_key()},
        .alternatives = {{{"point", "points", "set", "orientation"}, true}}}));
 }

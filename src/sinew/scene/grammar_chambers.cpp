@@ -8,8 +8,8 @@ namespace {
 std::shared_ptr<const KeyTable> patch_table() {
   return make_table(
       {.name = "surface: patch",
-       .description = "The face of the body's surface nearest to a point, and all that can be "
-                      "reached from it over edges that turn by less than an angle.",
+       .description = "The surface face nearest to a point, and all faces connected to it over "
+                      "edges with less than the given angle.",
        .keys = {{.name = "point",
                  .forms = {vector(length())},
                  .example = "0 0 30 mm",
@@ -19,7 +19,7 @@ std::shared_ptr<const KeyTable> patch_table() {
                  .forms = {quantity(angle(), positive())},
                  .example = "40 deg",
                  .default_text = "40 deg",
-                 .description = "The largest turn between neighbouring faces."}}});
+                 .description = "Largest angle between neighbouring faces."}}});
 }
 
 std::shared_ptr<const KeyTable> supply_table(bool gas) {
@@ -32,22 +32,22 @@ std::shared_ptr<const KeyTable> supply_table(bool gas) {
       .keys = {{.name = "conductance",
                 .forms = {quantity(conductance(), positive())},
                 .example = "2e-9 m^3/(s Pa)",
-                .description = gas ? "Sonic conductance: choked flow, in volume at ambient "
-                                     "pressure, over the absolute pressure before the valve."
-                                   : "Flow over difference of pressures.",
+                .description = gas ? "Sonic conductance: choked flow, as volume at ambient "
+                                     "pressure, divided by the absolute upstream pressure."
+                                   : "Flow divided by pressure difference.",
                 .required = true},
                {.name = "leak",
                 .forms = {quantity(conductance(), non_negative())},
                 .example = "1e-11 m^3/(s Pa)",
                 .default_text = "0 m^3/(s Pa)",
-                .description = "The same of the way out of the chamber to ambient."}}};
+                .description = "The same for the outlet from the chamber to ambient."}}};
   if (gas) {
     supply.keys.push_back(
         {.name = "critical_ratio",
          .forms = {quantity(plain_number(), {.min = 0.0, .max = 1.0, .below_max = true})},
          .example = "0.3",
          .default_text = "0.5",
-         .description = "Ratio of absolute pressures below which the flow is choked."});
+         .description = "Critical pressure ratio, below which the flow is choked."});
   }
   return make_table(std::move(supply));
 }
@@ -57,24 +57,24 @@ Key dead_volume_key() {
           .forms = {quantity(volume(), non_negative())},
           .example = "5 ml",
           .default_text = "0 ml",
-          .description = "Volume of tubes and fittings that fills along with the chamber."};
+          .description = "Dead volume of tubes and fittings."};
 }
 
 std::shared_ptr<const KeyTable> gas_table() {
   return make_table(
       {.name = "gas of a chamber",
-       .description = "What the chamber holds is compressible: absolute pressure times volume to "
-                      "the exponent is constant for a given amount.",
+       .description = "A compressible filling: for a given amount of gas, absolute pressure times "
+                      "volume to the power of the exponent is constant.",
        .keys = {{.name = "ambient_pressure",
                  .forms = {quantity(stress(), positive())},
                  .example = "101.325 kPa",
                  .default_text = "101.325 kPa",
-                 .description = "Absolute pressure outside; the chamber is filled at it at rest."},
+                 .description = "Absolute ambient pressure, also the filling pressure at rest."},
                 {.name = "polytropic_exponent",
                  .forms = {quantity(plain_number(), {.min = 1.0})},
                  .example = "1.4",
                  .default_text = "1",
-                 .description = "1: slow, at constant temperature. 1.4: fast, adiabatic air."},
+                 .description = "1: slow, isothermal. 1.4: fast, adiabatic air."},
                 dead_volume_key(),
                 {.name = "supply",
                  .forms = {table(supply_table(true))},
@@ -83,24 +83,24 @@ std::shared_ptr<const KeyTable> gas_table() {
 }
 
 std::shared_ptr<const KeyTable> liquid_table() {
-  return make_table({.name = "liquid of a chamber",
-                     .description = "What the chamber holds is nearly incompressible.",
-                     .keys = {{.name = "bulk_modulus",
-                               .forms = {quantity(stress(), positive())},
-                               .example = "2.2 GPa",
-                               .default_text = "2.2 GPa",
-                               .description = "Of the liquid; water's, when left out."},
-                              {.name = "density",
-                               .forms = {quantity(density(), non_negative())},
-                               .example = "1000 kg/m^3",
-                               .default_text = "0 kg/m^3",
-                               .description = "What it weighs in the chamber; its inertia is left "
-                                              "out."},
-                              dead_volume_key(),
-                              {.name = "supply",
-                               .forms = {table(supply_table(false))},
-                               .example = "{conductance: 2e-9 m^3/(s Pa)}",
-                               .description = "Without: a commanded pressure acts at once."}}});
+  return make_table(
+      {.name = "liquid of a chamber",
+       .description = "A nearly incompressible filling.",
+       .keys = {{.name = "bulk_modulus",
+                 .forms = {quantity(stress(), positive())},
+                 .example = "2.2 GPa",
+                 .default_text = "2.2 GPa",
+                 .description = "Of the liquid; water's, when left out."},
+                {.name = "density",
+                 .forms = {quantity(density(), non_negative())},
+                 .example = "1000 kg/m^3",
+                 .default_text = "0 kg/m^3",
+                 .description = "Density, for the weight in the chamber; inertia is neglected."},
+                dead_volume_key(),
+                {.name = "supply",
+                 .forms = {table(supply_table(false))},
+                 .example = "{conductance: 2e-9 m^3/(s Pa)}",
+                 .description = "Without: a commanded pressure acts at once."}}});
 }
 
 Key input(const char* name, const Measure& measure, const char* example, const char* description,
@@ -128,8 +128,8 @@ std::vector<Key> coil_keys() {
 std::shared_ptr<const KeyTable> helical_table() {
   KeyTable helical{.name = "stiffness: coil",
                    .description =
-                       "A helical spring: G d^4/(8 n D^3), for d and D the wire's and the mean "
-                       "diameter and n coils.",
+                       "A helical spring: stiffness G d^4/(8 n D^3) with wire diameter d, mean "
+                       "diameter D and n coils.",
                    .keys = coil_keys()};
   helical.keys.push_back(coil("shear_modulus", stress(), "79 GPa", "Of the wire."));
   return make_table(std::move(helical));
@@ -147,27 +147,27 @@ Key positive_key(const char* name, const Measure& measure, const char* example,
 std::shared_ptr<const KeyTable> wire_table() {
   KeyTable wire{.name = "shape memory of a spring",
                 .description =
-                    "A helical spring whose shear modulus follows its phase, and the "
-                    "phase its temperature, with hysteresis.",
+                    "A helical spring whose shear modulus depends on its phase, which follows the "
+                    "temperature with hysteresis.",
                 .keys = coil_keys()};
   for (Key& key : std::vector<Key>{
            positive_key("martensite_modulus", stress(), "14.1 GPa", "14.1 GPa",
-                        "Shear modulus in the cold."),
+                        "Shear modulus when cold."),
            positive_key("austenite_modulus", stress(), "24.7 GPa", "24.7 GPa",
                         "Shear modulus when hot."),
            positive_key("heat_capacity", heat_capacity(), "0.1 J/K", "0.1 J/K", "Of the wire."),
            positive_key("heat_loss", heat_loss(), "0.01 W/K", "0.01 W/K",
-                        "To the surroundings, per degree above them."),
+                        "Heat loss to the surroundings per kelvin."),
            positive_key("ambient", temperature(), "293.15 K", "293.15 K",
                         "Temperature of the surroundings and at rest."),
            positive_key("austenite_start", temperature(), "341 K", "341 K",
-                        "Where austenite begins to form on heating."),
+                        "Austenite start temperature, on heating."),
            positive_key("austenite_end", temperature(), "351 K", "351 K",
-                        "Where all is austenite."),
+                        "Austenite finish temperature."),
            positive_key("martensite_start", temperature(), "325 K", "325 K",
-                        "Where martensite begins to form on cooling."),
+                        "Martensite start temperature, on cooling."),
            positive_key("martensite_end", temperature(), "315 K", "315 K",
-                        "Where all is martensite.")}) {
+                        "Martensite finish temperature.")}) {
     wire.keys.push_back(std::move(key));
   }
   return make_table(std::move(wire));
@@ -182,21 +182,20 @@ std::shared_ptr<const KeyTable> surface_table() {
       .keys = {{.name = "inside",
                 .forms = {vector(length())},
                 .example = "0 0 30 mm",
-                .description = "A point in a void that the body encloses: its whole wall."},
+                .description = "A point in a void enclosed by the body: selects its whole wall."},
                {.name = "patch",
                 .forms = {table(patch_table())},
                 .example = "{point: 0 0 30 mm, angle: 40 deg}",
-                .description = "Faces round a point."},
+                .description = "Faces around a point."},
                {.name = "file",
                 .forms = {file()},
                 .example = "chamber.stl",
-                .description =
-                    "A closed surface as STL, OBJ or PLY, which the body carries along."},
+                .description = "A closed surface as STL, OBJ or PLY, embedded in the body."},
                {.name = "unit",
                 .forms = {unit(length())},
                 .example = "mm",
                 .default_text = "m",
-                .description = "What one unit of the file's coordinates is.",
+                .description = "Length unit of the file's coordinates.",
                 .only_with = "file"}},
       .alternatives = {{{"inside", "patch", "file", "box", "sphere", "plane", "set"}, true}}};
   for (Key& key : region_keys("Faces with all their nodes")) surface.keys.push_back(std::move(key));
@@ -206,7 +205,8 @@ std::shared_ptr<const KeyTable> surface_table() {
 std::shared_ptr<const KeyTable> pressure_table() {
   KeyTable chamber{
       .name = "actuator: type pressure",
-      .description = "A chamber: one pressure over a closed surface of a body, which it follows.",
+      .description =
+          "A chamber: uniform pressure on a closed surface of a body, as a follower load.",
       .keys = {body_key(),
                {.name = "surface",
                 .forms = {table(surface_table())},
@@ -217,8 +217,9 @@ std::shared_ptr<const KeyTable> pressure_table() {
                 .forms = {boolean()},
                 .example = "true",
                 .default_text = "false",
-                .description = "Closes openings of the surface by lids without stiffness, which "
-                               "pass their force to the rim. Without: an open surface is refused."},
+                .description =
+                    "Closes openings of the surface with lids of zero stiffness that transfer "
+                    "their force to the rim. Without: an open surface is an error."},
                {.name = "load_stiffness",
                 .forms = {boolean()},
                 .example = "false",
@@ -228,8 +229,8 @@ std::shared_ptr<const KeyTable> pressure_table() {
                {.name = "gas",
                 .forms = {table(gas_table())},
                 .example = "{dead_volume: 5 ml}",
-                .description = "What fills it. Without gas and liquid, pressure or volume act as "
-                               "commanded."},
+                .description = "Filling. Without gas or liquid, the pressure or volume follows its "
+                               "command directly."},
                {.name = "liquid",
                 .forms = {table(liquid_table())},
                 .example = "{bulk_modulus: 2.2 GPa}",
@@ -251,11 +252,11 @@ std::shared_ptr<const KeyTable> pressure_table() {
   words.motion_example = "20 ml";
   words.motion_rate_example = "5 ml/s";
   words.motion_value = "2 ml";
-  words.motion_text = "Volume that the chamber gains.";
+  words.motion_text = "Volume gained by the chamber.";
   words.inputs = {input("gas", volume(), "5 ml",
-                        "Gas added, in volume at ambient pressure. Chambers with `gas`."),
+                        "Gas added, as volume at ambient pressure. Chambers with `gas`."),
                   input("liquid", volume(), "5 ml", "Liquid added. Chambers with `liquid`.")};
-  words.undriven = "What it is told. Without: no pressure until told.";
+  words.undriven = "Command. Without: no pressure until commanded.";
   for (Key& key : drive_keys(words)) chamber.keys.push_back(std::move(key));
   return make_table(std::move(chamber));
 }
@@ -263,23 +264,22 @@ std::shared_ptr<const KeyTable> pressure_table() {
 std::shared_ptr<const KeyTable> spring_table() {
   const auto command = make_table(
       {.name = "command of a spring",
-       .description = "Of springs with shape memory alone: power heats the wire, or its phase is "
-                      "given.",
+       .description = "Only for shape-memory springs: heating power, or a prescribed phase.",
        .keys = {input("power", power(), "2 W", "Electric power into the wire.", non_negative()),
                 {.name = "phase",
                  .forms = {quantity(plain_number(), {.min = 0.0, .max = 1.0})},
                  .example = "1",
-                 .description = "Part of the wire that is austenite, 0 to 1."}},
+                 .description = "Austenite fraction of the wire, 0 to 1."}},
        .alternatives = {{{"power", "phase"}, true}}});
   return make_table(
       {.name = "actuator: type spring",
-       .description = "A spring or band along a line through points of a body, without friction at "
-                      "those between its ends. Its tension follows its length.",
+       .description = "A spring or elastic band routed through points of a body without friction. "
+                      "Its tension depends on its length.",
        .keys = {body_key(),
                 {.name = "points",
                  .forms = {table(point_file_table()), list({vector(length())}, 2)},
                  .example = "[0 0 20 mm, 0 0 60 mm]",
-                 .description = "The points it runs through, in the mesh at rest.",
+                 .description = "Routing points in the mesh at rest.",
                  .required = true},
                 {.name = "pull",
                  .forms = {choice({{"world", "Does not move."}, {"body", "Moves with the body."}})},
@@ -299,7 +299,7 @@ std::shared_ptr<const KeyTable> spring_table() {
                 {.name = "free_length",
                  .forms = {quantity(length(), non_negative())},
                  .example = "30 mm",
-                 .description = "Length without force. Without: the length at rest."},
+                 .description = "Free length. Without: the length at rest."},
                 {.name = "damping",
                  .forms = {quantity(damper(), non_negative())},
                  .example = "0.5 N s/m",
@@ -314,7 +314,7 @@ std::shared_ptr<const KeyTable> spring_table() {
                 {.name = "command",
                  .forms = {table(command)},
                  .example = "{power: 2 W}",
-                 .description = "What the wire is told.",
+                 .description = "Command of the wire.",
                  .only_with = "shape_memory"}},
        .alternatives = {{{"stiffness", "shape_memory"}, true}}});
 }

@@ -25,7 +25,7 @@ std::shared_ptr<const KeyTable> solid_plane() {
                                .forms = {vector(plain_number())},
                                .example = "0 0 1",
                                .default_text = "0 0 1",
-                               .description = "Out of what is solid; any length but zero."}}});
+                               .description = "Outward from the solid; any non-zero length."}}});
 }
 
 std::shared_ptr<const KeyTable> solid_sphere() {
@@ -41,8 +41,8 @@ std::shared_ptr<const KeyTable> solid_sphere() {
 
 std::shared_ptr<const KeyTable> solid_capsule() {
   return make_table({.name = "solid capsule",
-                     .description = "All that is within a radius of a segment: a rod with round "
-                                    "ends, touched from outside.",
+                     .description = "All points within a radius of a segment: a rod with "
+                                    "hemispherical ends, touched from outside.",
                      .keys = {{.name = "ends",
                                .forms = {list({vector(length())}, 2, 2)},
                                .example = "[-50 0 40 mm, 50 0 40 mm]",
@@ -65,15 +65,14 @@ std::shared_ptr<const KeyTable> solid_table() {
                               {.name = "capsule",
                                .forms = {table(solid_capsule())},
                                .example = "{ends: [-50 0 40 mm, 50 0 40 mm], radius: 5 mm}",
-                               .description = "A rod with round ends."}},
+                               .description = "A rod with hemispherical ends."}},
                      .alternatives = {{{"plane", "sphere", "capsule"}, true}}});
 }
 
 std::shared_ptr<const KeyTable> nodes_table() {
   return make_table({.name = "nodes of a contact",
-                     .description =
-                         "Which nodes of the body's outside may touch, picked in the mesh "
-                         "at rest. Exactly one of box, sphere, plane and set.",
+                     .description = "Surface nodes that may make contact, selected in the mesh at "
+                                    "rest. Exactly one of box, sphere, plane and set.",
                      .keys = region_keys("Nodes"),
                      .alternatives = {{{"box", "sphere", "plane", "set"}, true}}});
 }
@@ -81,25 +80,23 @@ std::shared_ptr<const KeyTable> nodes_table() {
 }  // namespace
 
 Form contact_form() {
-  KeyTable contact{
-      .name = "contact",
-      .description =
-          "A surface that points of a body may touch and not pass, with Coulomb friction. Points "
-          "that touch or are near cost three rows in each step. `sinew run` records the resultant "
-          "force in run.csv.",
-      .keys = {body_key()},
-      .alternatives = {{{"nodes", "points"}, false}}};
-  contact.keys.push_back(
-      {.name = "surface",
-       .forms = {table(solid_table())},
-       .example = "{plane: {point: 0 0 0 mm, normal: 0 0 1}}",
-       .description = "What is touched; fixed in the world, or moved by `motion`.",
-       .required = true});
+  KeyTable contact{.name = "contact",
+                   .description =
+                       "A surface that points of a body may touch but not penetrate, with Coulomb "
+                       "friction. Points near the surface add three rows each to every step. "
+                       "`sinew run` records the resultant force in run.csv.",
+                   .keys = {body_key()},
+                   .alternatives = {{{"nodes", "points"}, false}}};
+  contact.keys.push_back({.name = "surface",
+                          .forms = {table(solid_table())},
+                          .example = "{plane: {point: 0 0 0 mm, normal: 0 0 1}}",
+                          .description = "The surface; fixed in the world, or moved by `motion`.",
+                          .required = true});
   contact.keys.push_back({.name = "nodes",
                           .forms = {table(nodes_table())},
                           .example = "{set: z_min}",
-                          .description = "The nodes of the body's outside that may touch. Without, "
-                                         "and without points: all that are not fixed."});
+                          .description = "Surface nodes that may make contact. Without, and "
+                                         "without points: all that are not fixed."});
   contact.keys.push_back({.name = "points",
                           .forms = {table(point_file_table()), list({vector(length())})},
                           .example = "[0 0 195 mm]",
@@ -109,17 +106,16 @@ Form contact_form() {
                           .forms = {quantity(plain_number(), non_negative())},
                           .example = "0.5",
                           .default_text = "0",
-                          .description = "Coulomb's coefficient. Coated against rigid 0.05 to 0.2, "
-                                         "silicone on steel 0.6 to 0.9."});
+                          .description = "Coulomb friction coefficient. Coated against rigid 0.05 "
+                                         "to 0.2, silicone on steel 0.6 to 0.9."});
   contact.keys.push_back(
       {.name = "motion",
-       .forms = {table(make_table(
-           {.name = "motion of a surface",
-            .description = "How the surface moves: turned about an axis, then shifted, from where "
-                           "it is declared.",
-            .keys = motion_keys()}))},
+       .forms = {table(make_table({.name = "motion of a surface",
+                                   .description = "Motion of the surface from its declared pose: a "
+                                                  "rotation about an axis, then a translation.",
+                                   .keys = motion_keys()}))},
        .example = "{z: {ramp: {to: -4 mm, duration: 1 s}}}",
-       .description = "How the surface moves. Without: it stands still."});
+       .description = "Motion of the surface. Without: at rest."});
   return table(make_table(std::move(contact)));
 }
 

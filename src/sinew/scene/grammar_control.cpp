@@ -7,26 +7,26 @@ namespace {
 
 std::shared_ptr<const KeyTable> ramp_table(const Measure& measure, const char* example) {
   return make_table({.name = std::string("ramp in ") + measure.unit,
-                     .description = "From one value to another at constant speed, then held.",
+                     .description = "Linear change from one value to another, then constant.",
                      .keys = {{.name = "from",
                                .forms = {quantity(measure)},
                                .example = std::string("0 ") + measure.unit,
                                .default_text = "0",
-                               .description = "Value until the start."},
+                               .description = "Initial value."},
                               {.name = "to",
                                .forms = {quantity(measure)},
                                .example = example,
-                               .description = "Value at the end.",
+                               .description = "Final value.",
                                .required = true},
                               {.name = "start",
                                .forms = {quantity(time(), non_negative())},
                                .example = "0.5 s",
                                .default_text = "0 s",
-                               .description = "When it starts."},
+                               .description = "Start time."},
                               {.name = "duration",
                                .forms = {quantity(time(), positive())},
                                .example = "1 s",
-                               .description = "How long it takes.",
+                               .description = "Duration.",
                                .required = true}}});
 }
 
@@ -37,25 +37,25 @@ std::shared_ptr<const KeyTable> sine_table(const Measure& measure, const char* e
                                .forms = {quantity(measure)},
                                .example = example,
                                .default_text = "0",
-                               .description = "Value about which it swings."},
+                               .description = "Mean value."},
                               {.name = "amplitude",
                                .forms = {quantity(measure)},
                                .example = example,
-                               .description = "Half of its range.",
+                               .description = "Amplitude, half the range.",
                                .required = true},
                               {.name = "period",
                                .forms = {quantity(time(), positive())},
                                .example = "2 s",
-                               .description = "Time of one swing."},
+                               .description = "Period."},
                               {.name = "frequency",
                                .forms = {quantity(frequency(), positive())},
                                .example = "0.5 Hz",
-                               .description = "Swings in a second."},
+                               .description = "Frequency."},
                               {.name = "phase",
                                .forms = {quantity(angle())},
                                .example = "90 deg",
                                .default_text = "0",
-                               .description = "Angle at time 0."}},
+                               .description = "Phase at time 0."}},
                      .alternatives = {{{"period", "frequency"}, true}}});
 }
 
@@ -129,21 +129,21 @@ std::shared_ptr<const KeyTable> polyline_table() {
 }
 
 std::shared_ptr<const KeyTable> target_table() {
-  return make_table({.name = "target",
-                     .description =
-                         "Where the effector shall be over time: exactly one of circle, polyline "
-                         "and file.",
-                     .keys = {{.name = "circle",
-                               .forms = {table(circle_table())},
-                               .example = "{center: 0 0 190 mm, radius: 30 mm, period: 10 s}",
-                               .description = "A circle."},
-                              {.name = "polyline",
-                               .forms = {table(polyline_table())},
-                               .example = "{points: [0 0 190 mm, 20 0 185 mm], speed: 10 mm/s}",
-                               .description = "Straight lines."},
-                              path_file_key("A CSV table with four columns, time x y z."),
-                              path_unit_key(length(), "mm")},
-                     .alternatives = {{{"circle", "polyline", "file"}, true}}});
+  return make_table(
+      {.name = "target",
+       .description =
+           "Desired path of the effector over time: exactly one of circle, polyline and file.",
+       .keys = {{.name = "circle",
+                 .forms = {table(circle_table())},
+                 .example = "{center: 0 0 190 mm, radius: 30 mm, period: 10 s}",
+                 .description = "A circle."},
+                {.name = "polyline",
+                 .forms = {table(polyline_table())},
+                 .example = "{points: [0 0 190 mm, 20 0 185 mm], speed: 10 mm/s}",
+                 .description = "Straight lines."},
+                path_file_key("A CSV table with four columns, time x y z."),
+                path_unit_key(length(), "mm")},
+       .alternatives = {{{"circle", "polyline", "file"}, true}}});
 }
 
 std::shared_ptr<const KeyTable> rotation_table() {
@@ -161,35 +161,35 @@ std::shared_ptr<const KeyTable> rotation_table() {
 Form task_form() {
   return table(make_table(
       {.name = "task",
-       .description = "What is asked of one effector: target, or rotation for an orientation.",
+       .description = "Target of one effector: target, or rotation for an orientation.",
        .keys = {{.name = "target",
                  .forms = {vector(length()), table(target_table())},
                  .example = "0 0 190 mm",
-                 .description = "Where it shall be: a fixed position, or a path."},
+                 .description = "Desired position: a point or a path."},
                 {.name = "rotation",
                  .forms = {vector(angle()), table(rotation_table())},
                  .example = "0 0 10 deg",
-                 .description = "How an orientation effector shall be turned from rest: a rotation "
-                                "vector (axis times angle)."},
+                 .description =
+                     "Desired orientation, as a rotation vector from rest (axis times angle)."},
                 {.name = "weight",
                  .forms = {numbers(1, 3, non_negative())},
                  .example = "1 1 0.1",
                  .default_text = "1",
-                 .description = "How much its error counts: one number, or one for each of its "
-                                "directions."}},
+                 .description =
+                     "Weight of its error: one number, or one for each of its directions."}},
        .alternatives = {{{"target", "rotation"}, true}}}));
 }
 
 std::shared_ptr<const KeyTable> regularisation_table() {
   return make_table(
       {.name = "regularisation",
-       .description = "Which efforts are chosen where several serve equally well.",
+       .description = "Choice among efforts that serve the targets equally well.",
        .keys = {{.name = "of",
                  .forms = {choice({{"change", "Those nearest to the last ones; no bias at rest."},
                                    {"effort", "The smallest; biases the effector."}})},
                  .example = "change",
                  .default_text = "change",
-                 .description = "What is kept small."},
+                 .description = "Quantity to minimise."},
                 {.name = "epsilon",
                  .forms = {quantity(plain_number(), positive())},
                  .example = "1e-5",
@@ -216,9 +216,9 @@ std::shared_ptr<const KeyTable> signal_table(const Measure& measure, const char*
                {.name = "steps",
                 .forms = {samples(measure)},
                 .example = "[[0 s, 0 " + std::string(measure.unit) + "], [1 s, " + value + "]]",
-                .description = "Jumps: pairs of time and value, the first at 0 s."},
+                .description = "Steps: pairs of time and value, the first at 0 s."},
                path_file_key("A CSV table with two columns, time and value, or with `column`; "
-                             "straight lines between."),
+                             "linear interpolation."),
                {.name = "column",
                 .forms = {text()},
                 .example = "second",
@@ -232,23 +232,24 @@ std::shared_ptr<const KeyTable> signal_table(const Measure& measure, const char*
 }
 
 Form controller_form() {
-  const auto inverse = make_table(
-      {.name = "controller: type inverse",
-       .description = "Finds, each step, the efforts that bring the effectors to their targets.",
-       .keys = {{.name = "effectors",
-                 .forms = {names(task_form(), 1, "effectors")},
-                 .example = "{tip: {target: 0 0 190 mm}}",
-                 .description = "What is asked of each effector, by its name.",
-                 .required = true},
-                {.name = "actuators",
-                 .forms = {list({reference("actuators")})},
-                 .example = "[long_0, long_1]",
-                 .description = "The actuators it drives. Without: all."},
-                {.name = "regularisation",
-                 .forms = {table(regularisation_table())},
-                 .example = "{of: change}",
-                 .default_text = "{}",
-                 .description = "Which efforts are chosen where several serve."}}});
+  const auto inverse =
+      make_table({.name = "controller: type inverse",
+                  .description = "Inverse control: computes in each step the efforts that move the "
+                                 "effectors to their targets.",
+                  .keys = {{.name = "effectors",
+                            .forms = {names(task_form(), 1, "effectors")},
+                            .example = "{tip: {target: 0 0 190 mm}}",
+                            .description = "Target of each effector, by name.",
+                            .required = true},
+                           {.name = "actuators",
+                            .forms = {list({reference("actuators")})},
+                            .example = "[long_0, long_1]",
+                            .description = "The actuators it drives. Without: all."},
+                           {.name = "regularisation",
+                            .forms = {table(regularisation_table())},
+                            .example = "{of: change}",
+                            .default_text = "{}",
+                            .description = "Choice among equivalent efforts."}}});
   return variants(
       "type",
       {{.word = "inverse", .description = "One-step inverse control.", .table = inverse},

@@ -7,8 +7,8 @@ namespace {
 
 std::shared_ptr<const KeyTable> weld_region_table() {
   return make_table({.name = "region of a weld",
-                     .description = "Nodes of the first body, picked in the mesh at rest. Exactly "
-                                    "one of box, sphere, plane and set.",
+                     .description = "Nodes of the first body, selected in the mesh at rest. "
+                                    "Exactly one of box, sphere, plane and set.",
                      .keys = region_keys("Nodes"),
                      .alternatives = {{{"box", "sphere", "plane", "set"}, true}}});
 }
@@ -16,11 +16,10 @@ std::shared_ptr<const KeyTable> weld_region_table() {
 std::shared_ptr<const KeyTable> weld_table() {
   return make_table(
       {.name = "joint: type weld",
-       .description =
-           "Makes two bodies one: nodes of the first stay where they are in the material of the "
-           "second. Meshes need not match; name the body with the finer mesh first. In statics a "
-           "body may be held by its welds alone. Without region and points: all nodes of the "
-           "first body's outside that lie in or on the second.",
+       .description = "Bonds two bodies: nodes of the first keep their position in the material of "
+                      "the second. Meshes need not match; name the body with the finer mesh first. "
+                      "In statics a body may be held by its welds alone. Without region and "
+                      "points: all surface nodes of the first body that lie in or on the second.",
        .keys = {{.name = "bodies",
                  .forms = {list({reference("bodies")}, 2, 2)},
                  .example = "[upper, lower]",
@@ -34,7 +33,7 @@ std::shared_ptr<const KeyTable> weld_table() {
                  .forms = {table(point_file_table()), list({vector(length())})},
                  .example = "[0 0 60 mm, 10 0 60 mm, 0 10 60 mm]",
                  .description = "Points of the first body, in place of nodes. Three that are not "
-                                "on one line hold all motions."},
+                                "collinear suppress all relative motion."},
                 outside_key()},
        .alternatives = {{{"region", "points"}, false}}});
 }

@@ -10,7 +10,7 @@ Key factor_key() {
           .forms = {quantity(plain_number()), table(signal_table(plain_number(), "1"))},
           .example = "{ramp: {to: 1, duration: 1 s}}",
           .default_text = "1",
-          .description = "What the load is multiplied by, over time."};
+          .description = "Load factor over time."};
 }
 
 Key surface_key(const char* description, bool required) {
@@ -74,31 +74,28 @@ std::shared_ptr<const KeyTable> traction_table() {
 }
 
 std::shared_ptr<const KeyTable> acceleration_table() {
-  return load_table("acceleration",
-                    "A force in proportion to mass, as a shaker or a turntable has it.",
+  return load_table("acceleration", "A force proportional to mass, as on a shaker or a turntable.",
                     {vector_key("acceleration", acceleration(), "2 0 0 m/s^2",
-                                "Which the body's mass feels beside gravity."),
+                                "Acceleration in addition to gravity."),
                      factor_key()});
 }
 
 std::shared_ptr<const KeyTable> pressure_load_table() {
-  return load_table(
-      "pressure",
-      "A pressure that stays normal to faces wherever they turn, open or closed. Steps use the "
-      "symmetric part of its stiffness; static solutions use all of it.",
-      {surface_key("The faces; pressure pushes into the body.", true),
-       {.name = "pressure",
-        .forms = {quantity(stress()), table(signal_table(stress(), "1 kPa"))},
-        .example = "1 kPa",
-        .description = "Over time.",
-        .required = true}});
+  return load_table("pressure",
+                    "Follower pressure on faces, open or closed. Steps use the symmetric part of "
+                    "its stiffness; static solutions use all of it.",
+                    {surface_key("The faces; pressure pushes into the body.", true),
+                     {.name = "pressure",
+                      .forms = {quantity(stress()), table(signal_table(stress(), "1 kPa"))},
+                      .example = "1 kPa",
+                      .description = "Over time.",
+                      .required = true}});
 }
 
 std::shared_ptr<const KeyTable> water_table() {
   return load_table(
       "water",
-      "Water about the body: its buoyancy under the scene's gravity, the drag of every face and "
-      "the water that moves along.",
+      "Surrounding water: buoyancy under the scene's gravity, drag on every face, and added mass.",
       {surface_key("The wet faces. Without: the whole outer surface of the body.", false),
        {.name = "density",
         .forms = {quantity(density(), non_negative())},
@@ -116,12 +113,12 @@ std::shared_ptr<const KeyTable> water_table() {
         .default_text = "0 0 0 m/s",
         .description = "Of the water far from the body."},
        coefficient("normal_drag", "0.9",
-                   "Of a face moving along its normal. A cylinder across the flow has 4/3 of it on "
-                   "its width, a sphere just that."),
-       coefficient("tangential_drag", "0.01", "Of a face moving along itself."),
+                   "Drag coefficient of a face moving along its normal. A cylinder in cross flow "
+                   "gets 4/3 of it on its width, a sphere the same value."),
+       coefficient("tangential_drag", "0.01", "Drag coefficient of a face moving tangentially."),
        coefficient("added_mass", "1",
-                   "Water that moves along, as a part of what the body displaces: 1 for a "
-                   "cylinder across the flow, 0.5 for a sphere."),
+                   "Added mass as a fraction of the displaced water: 1 for a cylinder in cross "
+                   "flow, 0.5 for a sphere."),
        factor_key()});
 }
 
@@ -141,8 +138,8 @@ Form load_form() {
 Form mass_form() {
   return table(make_table(
       {.name = "mass",
-       .description = "A mass at a point of a body, such as a hung weight or a camera: it has "
-                      "weight and inertia, and no size. It comes beside the body's own mass.",
+       .description = "A point mass on a body, such as a suspended weight or a camera, with weight "
+                      "and inertia but no size. It is added to the body's own mass.",
        .keys = {body_key(),
                 vector_key("point", length(), "0 0 195 mm", "Where, in the mesh at rest."),
                 {.name = "mass",

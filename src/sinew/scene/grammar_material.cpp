@@ -43,44 +43,44 @@ std::vector<Key> small_strain_keys() {
 }
 
 std::shared_ptr<const KeyTable> prony_table() {
-  return make_table({.name = "material: viscosity",
-                     .description = "A part of the isochoric stress that relaxes: G(t)/G(0) = 1 - "
-                                    "sum of g (1 - exp(-t/tau)).",
-                     .keys = {{.name = "relative_modulus",
-                               .forms = {quantity(plain_number(), material_range(0.0, 1.0))},
-                               .example = "0.1",
-                               .description = "g, of the modulus of a sudden strain; all below 1 "
-                                              "together.",
-                               .required = true},
-                              {.name = "relaxation_time",
-                               .forms = {quantity(time(), material_range(0.0))},
-                               .example = "50 ms",
-                               .description = "tau.",
-                               .required = true}}});
+  return make_table(
+      {.name = "material: viscosity",
+       .description = "A part of the isochoric stress that relaxes: G(t)/G(0) = 1 - "
+                      "sum of g (1 - exp(-t/tau)).",
+       .keys = {{.name = "relative_modulus",
+                 .forms = {quantity(plain_number(), material_range(0.0, 1.0))},
+                 .example = "0.1",
+                 .description = "g, relative to the instantaneous modulus; the sum is below 1.",
+                 .required = true},
+                {.name = "relaxation_time",
+                 .forms = {quantity(time(), material_range(0.0))},
+                 .example = "50 ms",
+                 .description = "tau.",
+                 .required = true}}});
 }
 
 std::shared_ptr<const KeyTable> softening_table() {
   return make_table(
       {.name = "material: softening",
-       .description = "Softening of rubber that was stretched before (Ogden & Roxburgh 1999): on "
-                      "unloading the isochoric stress is 1 - erf((Wm - W)/(m + beta Wm))/r of the "
-                      "law's, W its energy and Wm the largest so far. `sinew fit --mullins` "
-                      "finds the numbers.",
+       .description =
+           "Mullins softening (Ogden & Roxburgh 1999): on unloading, the isochoric stress is "
+           "multiplied by 1 - erf((Wm - W)/(m + beta Wm))/r, with the law's energy W and its "
+           "maximum so far Wm. `sinew fit --mullins` fits the constants.",
        .keys = {{.name = "r",
                  .forms = {quantity(plain_number(), material_range(1.0))},
                  .example = "2.1",
-                 .description = "How much at most: 1 - 1/r is left.",
+                 .description = "Maximum softening: the fraction 1 - 1/r of the stress remains.",
                  .required = true},
                 {.name = "m",
                  .forms = {quantity(stress(), non_negative())},
                  .example = "500 Pa",
-                 .description = "Energy by which Wm must be undercut, J/m^3.",
+                 .description = "Energy scale of the drop below Wm, J/m^3.",
                  .required = true},
                 {.name = "beta",
                  .forms = {quantity(plain_number(), non_negative())},
                  .example = "0.1",
                  .default_text = "0",
-                 .description = "The same as a share of Wm."}}});
+                 .description = "The same, as a fraction of Wm."}}});
 }
 
 /// Keys of all hyperelastic laws: viscoelasticity and softening.
@@ -95,7 +95,7 @@ std::vector<Key> history_keys() {
                              {"instantaneous", "Those of a sudden strain."}})},
            .example = "instantaneous",
            .default_text = "long-term",
-           .description = "What the law's moduli are.",
+           .description = "Time scale of the law's moduli.",
            .only_with = "viscosity"},
           {.name = "softening",
            .forms = {table(softening_table())},
@@ -107,7 +107,7 @@ std::vector<Key> history_keys() {
 Choice energy(const char* word, const char* description, std::vector<Key> keys,
               std::vector<Alternatives> alternatives = {}) {
   keys.push_back(poisson_ratio(
-      false, "That of small strain, below 0.5: 0.49 to 0.4999 for rubbers on hexahedra."));
+      false, "Initial Poisson's ratio, below 0.5: 0.49 to 0.4999 for rubbers on hexahedra."));
   keys.push_back(modulus("bulk_modulus", "1 MPa", "In place of poisson_ratio.", false));
   for (Key& key : history_keys()) keys.push_back(std::move(key));
   alternatives.push_back({{"poisson_ratio", "bulk_modulus"}, true});
@@ -147,7 +147,7 @@ std::vector<Key> ogden_keys() {
                          {"two-mu-over-alpha-squared",
                           "sum 2 mu/alpha^2 (...): mu adds up to the initial shear modulus."}})},
        .example = "mu-over-alpha",
-       .description = "How the moduli are meant; sources differ, and stiffness with them.",
+       .description = "Convention of the moduli. Sources differ, and so does the stiffness.",
        .required = true}};
 }
 
@@ -166,7 +166,7 @@ Form law_form() {
   return variants(
       "model",
       {small_strain("corotational",
-                    "Linear about the rotated element: large bending, small strain."),
+                    "Corotational linear elasticity: large rotation, small strain."),
        small_strain("linear", "Small displacements and strains."),
        energy("neo-hookean", "mu/2 (I - 3) and kappa/2 (J - 1)^2.",
               {shear, modulus("young_modulus", "72 kPa", "In place of shear_modulus.", false)},
@@ -177,12 +177,12 @@ Form law_form() {
        energy("yeoh", "C10 (I - 3) + C20 (I - 3)^2 + C30 (I - 3)^3.",
               {modulus("c10", "12 kPa", "Of I - 3; half the initial shear modulus."), c20, c30}),
        energy("ogden", "A sum of powers of the principal stretches.", ogden_keys()),
-       energy("arruda-boyce", "Eight chains of finite length, five terms of their series.",
+       energy("arruda-boyce", "Eight-chain model, five terms of its series.",
               {modulus("shear_modulus", "20 kPa", "mu of the series."),
                {.name = "locking_stretch",
                 .forms = {quantity(plain_number(), material_range(1.0))},
                 .example = "3.5",
-                .description = "Where the chains are straight.",
+                .description = "Locking stretch, at which the chains are straight.",
                 .required = true}}),
        {.word = "saint-venant-kirchhoff",
         .description = "Linear in the Green strain: large rotation, small strain; softens and "
@@ -207,8 +207,8 @@ std::vector<Form> material_forms() {
     library.push_back({.word = named.name, .description = std::move(description)});
   }
   const auto own = make_table({.name = "material: file",
-                               .description = "A material in a YAML file of its own, with the keys "
-                                              "of a material here, as `sinew fit` writes it.",
+                               .description = "A material in a separate YAML file with the keys of "
+                                              "a material, as written by `sinew fit`.",
                                .keys = {{.name = "file",
                                          .forms = {file()},
                                          .example = "rubber.yaml",

@@ -23,13 +23,13 @@ std::shared_ptr<const KeyTable> segment_table() {
            {.name = "stiffness",
             .forms = {quantity(torque(), non_negative())},
             .example = "0.108 N m",
-            .description = "Torque a radian of bend: k theta.",
+            .description = "Torque per radian of bend: k theta.",
             .required = true},
            {.name = "damping",
             .forms = {quantity(angular_damper(), non_negative())},
             .example = "4.2e-3 N m s",
             .default_text = "0 N m s",
-            .description = "Torque against the rate of bend: -b theta'."},
+            .description = "Damping torque per bending rate: -b theta'."},
            {.name = "bending",
             .forms = {choice({{"planar", "One angle, towards the side."},
                               {"spatial", "Two angles, about any axis of the section."}})},
@@ -40,7 +40,7 @@ std::shared_ptr<const KeyTable> segment_table() {
             .forms = {quantity(angle())},
             .example = "90 deg",
             .default_text = "0 rad",
-            .description = "Turn about the axis before the segment."},
+            .description = "Rotation about the axis before the segment."},
            {.name = "dead_length",
             .forms = {quantity(length(), non_negative())},
             .example = "10 mm",
@@ -54,52 +54,53 @@ std::shared_ptr<const KeyTable> segment_table() {
             .forms = {quantity(damper(), non_negative())},
             .example = "0.5 N s/m",
             .default_text = "0 N s/m",
-            .description = "Force against the rate of extension."},
+            .description = "Damping force per extension rate."},
        }});
 }
 
 }  // namespace
 
 std::shared_ptr<const KeyTable> pcc_table() {
-  return make_table(
-      {.name = "body: type pcc",
-       .description = "An arm of segments of constant curvature, straight at rest. Its base is "
-                      "fixed.",
-       .keys = {
-           {.name = "segments",
-            .forms = {list({table(segment_table())})},
-            .example = "[{length: 140 mm, mass: 146 g, stiffness: 0.108 N m}]",
-            .description = "From the base on.",
-            .required = true},
-           {.name = "centre",
-            .forms = {choice({{"arc", "Half-way along the axis."},
-                              {"chord", "Half-way along the chord."},
-                              {"distributed", "Along the axis, by Gauss points."}})},
-            .example = "distributed",
-            .default_text = "arc",
-            .description = "Where a segment's mass sits."},
-           {.name = "radius",
-            .forms = {quantity(length(), positive())},
-            .example = "25 mm",
-            .default_text = "20 mm",
-            .description = "How thick it is drawn, and how far from its axis points of cables and "
-                           "effectors may lie."},
-           {.name = "position",
-            .forms = {vector(length())},
-            .example = "0 0 0.5 m",
-            .default_text = "0 0 0 m",
-            .description = "Where the base is."},
-           {.name = "direction",
-            .forms = {vector(plain_number())},
-            .example = "0 0 1",
-            .default_text = "0 0 -1",
-            .description = "Where it points at rest."},
-           {.name = "side",
-            .forms = {vector(plain_number())},
-            .example = "0 1 0",
-            .default_text = "1 0 0",
-            .description = "Towards what positive angles bend; its part across the direction."},
-       }});
+  return make_table({.name = "body: type pcc",
+                     .description =
+                         "An arm of segments of constant curvature, straight at rest. Its base is "
+                         "fixed.",
+                     .keys = {
+                         {.name = "segments",
+                          .forms = {list({table(segment_table())})},
+                          .example = "[{length: 140 mm, mass: 146 g, stiffness: 0.108 N m}]",
+                          .description = "From the base on.",
+                          .required = true},
+                         {.name = "centre",
+                          .forms = {choice({{"arc", "Half-way along the axis."},
+                                            {"chord", "Half-way along the chord."},
+                                            {"distributed", "Along the axis, by Gauss points."}})},
+                          .example = "distributed",
+                          .default_text = "arc",
+                          .description = "Location of a segment's mass."},
+                         {.name = "radius",
+                          .forms = {quantity(length(), positive())},
+                          .example = "25 mm",
+                          .default_text = "20 mm",
+                          .description = "Display radius, and the largest distance of cable and "
+                                         "effector points from the axis."},
+                         {.name = "position",
+                          .forms = {vector(length())},
+                          .example = "0 0 0.5 m",
+                          .default_text = "0 0 0 m",
+                          .description = "Where the base is."},
+                         {.name = "direction",
+                          .forms = {vector(plain_number())},
+                          .example = "0 0 1",
+                          .default_text = "0 0 -1",
+                          .description = "Direction of the arm at rest."},
+                         {.name = "side",
+                          .forms = {vector(plain_number())},
+                          .example = "0 1 0",
+                          .default_text = "1 0 0",
+                          .description = "Direction of bending for positive angles; only the "
+                                         "component normal to the arm's direction counts."},
+                     }});
 }
 
 std::shared_ptr<const KeyTable> torque_table() {
@@ -110,7 +111,7 @@ std::shared_ptr<const KeyTable> torque_table() {
                {.name = "segment",
                 .forms = {integer(0, 10000)},
                 .example = "1",
-                .description = "Which, from the base on; the first is 0.",
+                .description = "Index of the segment from the base; the first is 0.",
                 .required = true},
                {.name = "towards",
                 .forms = {choice({{"side", "Bends it towards the side, a section's x."},
@@ -133,8 +134,8 @@ std::shared_ptr<const KeyTable> torque_table() {
   words.motion_example = "90 deg";
   words.motion_rate_example = "1 1/s";
   words.motion_value = "20 deg";
-  words.motion_text = "The segment's bend.";
-  words.undriven = "What it is told. Without: no torque until told.";
+  words.motion_text = "Bending angle of the segment.";
+  words.undriven = "Command. Without: no torque until commanded.";
   for (Key& key : drive_keys(words)) table.keys.push_back(std::move(key));
   return make_table(std::move(table));
 }

@@ -59,19 +59,19 @@ std::shared_ptr<const KeyTable> extent_table() {
   extent.keys.push_back({.name = "along",
                          .forms = axis_forms(),
                          .example = "z",
-                         .description = "An axis: the largest coordinate less the smallest."});
+                         .description = "An axis: the largest coordinate minus the smallest."});
   extent.keys.push_back({.name = "across",
                          .forms = axis_forms(),
                          .example = "z",
-                         .description = "An axis: the reach in the directions normal to it, the "
-                                        "diameter of a ring round this axis."});
+                         .description = "An axis: the extent in the directions normal to it, the "
+                                        "diameter of a ring around this axis."});
   extent.keys.push_back(
       {.name = "size",
        .forms = {choice({{"largest", "In the direction where they reach farthest."},
                          {"smallest", "In the direction where they reach least."}})},
        .example = "smallest",
        .default_text = "largest",
-       .description = "Which of the directions across the axis.",
+       .description = "Which of the directions normal to the axis.",
        .only_with = "across"});
   return make_table(std::move(extent));
 }
@@ -82,9 +82,9 @@ Form probe_form() {
   KeyTable probe{
       .name = "probe",
       .description =
-          "A number, or several, read off the robot's shape: exactly one of point, points, set, "
-          "line, bend, distance and extent. A probe acts on nothing; what is to be steered is an "
-          "effector. `sinew run` records all in probes.csv and run.h5, in m and rad.",
+          "A measurement of the robot's shape: exactly one of point, points, set, line, bend, "
+          "distance and extent. A probe does not affect the robot. To control something, declare "
+          "an effector. `sinew run` records all probes in probes.csv and run.h5, in m and rad.",
       .keys = spot_keys(),
       .alternatives = {{{"point", "points", "set", "line", "bend", "distance", "extent"}, true}}};
   probe.keys.insert(probe.keys.begin(), body_key());
@@ -97,21 +97,21 @@ Form probe_form() {
                         .forms = {integer(2, 10000)},
                         .example = "21",
                         .default_text = "21",
-                        .description = "How many points along the line, evenly spaced at rest; its "
-                                       "corners are always among them.",
+                        .description = "Number of points along the line, evenly spaced at rest; "
+                                       "the corners are always included.",
                         .only_with = "line"});
   probe.keys.push_back({.name = "bend",
                         .forms = {list({table(face_table())}, 2, 2)},
                         .example = "[{set: bottom}, {set: top}]",
                         .description = "The angle between the normals of two faces, 0 to 180 deg; "
                                        "at rest both point from the first towards the second."});
-  probe.keys.push_back({.name = "about",
-                        .forms = axis_forms(),
-                        .example = "y",
-                        .description =
-                            "An axis across both normals: the angle has a sign then, by "
-                            "the right hand from the first to the second, -180 to 180 deg.",
-                        .only_with = "bend"});
+  probe.keys.push_back(
+      {.name = "about",
+       .forms = axis_forms(),
+       .example = "y",
+       .description = "An axis normal to both face normals. It gives the angle a sign by the "
+                      "right-hand rule from the first to the second, -180 to 180 deg.",
+       .only_with = "bend"});
   probe.keys.push_back({.name = "distance",
                         .forms = {list({vector(length()), table(end_table())}, 2, 2)},
                         .example = "[-10 0 50 mm, 10 0 50 mm]",
@@ -119,7 +119,7 @@ Form probe_form() {
   probe.keys.push_back({.name = "extent",
                         .forms = {table(extent_table())},
                         .example = "{set: side, along: x}",
-                        .description = "How far nodes reach: a height, a diameter."});
+                        .description = "Extent of a set of nodes: a height, a diameter."});
   probe.keys.push_back(outside_key());
   return table(make_table(std::move(probe)));
 }

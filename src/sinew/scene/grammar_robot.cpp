@@ -24,7 +24,7 @@ Key optional_length(const char* name, const char* example, const char* default_t
 Key element_size() {
   return optional_length(
       "element_size", "5 mm", "",
-      "Aimed edge length of the elements. Without: a few through the thinnest part.");
+      "Target edge length of the elements. Without: a few elements through the thinnest part.");
 }
 
 Choice shape(const char* word, const char* description, std::vector<Key> keys) {
@@ -88,7 +88,8 @@ Form mesh_shape() {
 std::shared_ptr<const KeyTable> mesh_file_table() {
   return make_table(
       {.name = "mesh: file",
-       .description = "A mesh file: VTK legacy, VTU, or Gmsh 2.2 and 4.1, told by its content.",
+       .description =
+           "A mesh file: VTK legacy, VTU, or Gmsh 2.2 and 4.1, recognised by its content.",
        .keys = {{.name = "file",
                  .forms = {file()},
                  .example = "trunk.vtk",
@@ -98,7 +99,7 @@ std::shared_ptr<const KeyTable> mesh_file_table() {
                  .forms = {unit(length())},
                  .example = "mm",
                  .default_text = "m",
-                 .description = "What one unit of the file's coordinates is."}}});
+                 .description = "Length unit of the file's coordinates."}}});
 }
 
 std::shared_ptr<const KeyTable> sphere_table() {
@@ -174,7 +175,7 @@ Form fixed_region() {
                  list({choice({{"x", ""}, {"y", ""}, {"z", ""}})}, 1, 3)},
        .example = "z",
        .default_text = "[x, y, z]",
-       .description = "What is held; along the other axes the nodes slide freely, as on rollers."});
+       .description = "Fixed axes; along the other axes the nodes slide freely, as on rollers."});
   return table(make_table(std::move(fixed)));
 }
 
@@ -228,17 +229,15 @@ namespace {
 
 std::shared_ptr<const KeyTable> base_table() {
   return make_table({.name = "base",
-                     .description =
-                         "How the fixed nodes move: turned about an axis, then shifted, from rest. "
-                         "What moves them puts in or takes out work.",
+                     .description = "Motion of the fixed nodes from rest: a rotation about an "
+                                    "axis, then a translation. This motion does work on the robot.",
                      .keys = motion_keys()});
 }
 
 std::shared_ptr<const KeyTable> initial_velocity_table() {
   return make_table(
       {.name = "initial velocity",
-       .description = "How a body moves at the start, as a rigid one would; fixed nodes stay. Acts "
-                      "in dynamics.",
+       .description = "Initial rigid-body motion; fixed nodes stay at rest. Acts in dynamics.",
        .keys = {{.name = "linear",
                  .forms = {vector(speed())},
                  .example = "0 0 -1 m/s",
@@ -256,7 +255,7 @@ std::vector<Key> mass_keys() {
       {.name = "mass",
        .forms = {quantity(mass(), positive())},
        .example = "42 g",
-       .description = "Total mass. Needed, or else density, with gravity or dynamics."},
+       .description = "Total mass. Gravity and dynamics require mass or density."},
       {.name = "density",
        .forms = {quantity(density(), positive())},
        .example = "1070 kg/m^3",
@@ -266,7 +265,7 @@ std::vector<Key> mass_keys() {
            {{"volume", "By the volume of the elements."}, {"even", "The same for every node."}})},
        .example = "even",
        .default_text = "volume",
-       .description = "How `mass` is spread over the nodes.",
+       .description = "How `mass` is distributed over the nodes.",
        .only_with = "mass"},
       {.name = "mass_matrix",
        .forms = {choice({{"lumped", "Diagonal."}, {"consistent", "From the shape functions."}})},
@@ -289,14 +288,14 @@ std::shared_ptr<const KeyTable> fem_table() {
        .forms = {vector(length())},
        .example = "0 0 60 mm",
        .default_text = "0 0 0 m",
-       .description = "Where the mesh's origin stands. Points, boxes and planes of the scene are "
-                      "in the world, where the body is at rest."},
+       .description = "Position of the mesh origin. Points, boxes and planes of the scene are in "
+                      "world coordinates, with the body at rest."},
       {.name = "rotation",
        .forms = {vector(angle())},
        .example = "0 0 90 deg",
        .default_text = "0 0 0 rad",
-       .description = "How the mesh is turned about its origin: a rotation vector (axis times "
-                      "angle)."},
+       .description =
+           "Rotation of the mesh about its origin: a rotation vector (axis times angle)."},
       {.name = "element",
        .forms = {choice(
            {{"tet4", "Linear tetrahedra; above nu = 0.4 they lock, and much more near 0.5."},
@@ -317,8 +316,7 @@ std::shared_ptr<const KeyTable> fem_table() {
       {.name = "material",
        .forms = material_forms(),
        .example = "{young_modulus: 450 kPa, poisson_ratio: 0.45}",
-       .description = "What it is made of: a law, or a name of the library such as "
-                      "ecoflex-00-30.",
+       .description = "Material: a constitutive law, or a library name such as ecoflex-00-30.",
        .required = true}};
   for (Key& key : mass_keys()) fem.keys.push_back(std::move(key));
   fem.keys.push_back({.name = "damping",
@@ -330,16 +328,16 @@ std::shared_ptr<const KeyTable> fem_table() {
                       .forms = {table(initial_velocity_table())},
                       .example = "{linear: 0 0 -1 m/s}",
                       .default_text = "{}",
-                      .description = "How it moves at the start. Without: it is at rest."});
+                      .description = "Initial motion. Without: at rest."});
   fem.keys.push_back({.name = "base",
                       .forms = {table(base_table())},
                       .example = "{x: {sine: {amplitude: 10 mm, period: 2 s}}}",
-                      .description = "How the fixed nodes move. Without: they stand still.",
+                      .description = "Motion of the fixed nodes. Without: at rest.",
                       .only_with = "fixed"});
   fem.keys.push_back({.name = "fixed",
                       .forms = {fixed_region(), list({fixed_region()})},
                       .example = "{box: -20 -20 0 20 20 20 mm}",
-                      .description = "Where it is held: one region, or a list of them."});
+                      .description = "Fixed nodes: one region, or a list of regions."});
   return make_table(std::move(fem));
 }
 
