@@ -1,6 +1,6 @@
 /// @file
-/// Deformation and stress at the points of integration of all elements, of every kind and law,
-/// eight elements at a time: what everything that people look at is made of.
+/// Deformation and stress at the integration points of all elements, of every kind and law, eight
+/// elements at a time: the source of all output fields.
 #pragma once
 
 #include <cstdint>

@@ -70,7 +70,7 @@ struct FemModelSettings {
   std::vector<HeldAxis> held_axes;  ///< of nodes that are not fixed; any order, repeats allowed
   MassMatrix mass = MassMatrix::lumped;
   std::optional<double> total_mass;     ///< kg, > 0; scales the densities (by volume if all are 0)
-  bool even_mass = false;               ///< total_mass / n at each node used, as published codes do
+  bool even_mass = false;               ///< total_mass / n at each of the n used nodes
   std::vector<PointMass> point_masses;  ///< beside the material's mass, whatever total_mass says
   /// Further groups of nodes that may couple (the nodes of a cable segment, for its geometric
   /// stiffness); mesh node numbers, fixed ones are skipped.

@@ -29,15 +29,16 @@ struct BraceTask {
   std::vector<BraceObject> objects;
   /// rad: the base turns about the arm's axis by an angle between these. Both 0: it does not.
   double turn_lower = 0.0, turn_upper = 0.0;
-  /// Points of the skin that may be braced: in every segment at these parts of its length, each >
-  /// 0.
+  /// Candidates for the braced point: skin points at these fractions, > 0, of every segment.
   std::vector<double> fractions{0.25, 0.5, 0.75, 1.0};
-  int along =
-      8;  ///< >= 1: points of the skin are there, and at so many equal steps of a segment ...
-  int sides = 0;  ///< ... at so many places round the section from x on; 0: 2, spatial arms 4
+  /// >= 1: number of equal steps along a segment at which the skin has points, besides fractions.
+  int along = 8;
+  /// Number of points around a section, from x on. 0: 2 for planar arms, 4 for spatial ones.
+  int sides = 0;
   double clearance = 1e-3;  ///< m, >= 0, of the points of the skin that are not braced
-  /// The braced point is to stick under any force on the tip that is a sum of sines up to this
-  /// frequency (Hz, >= 0) whose amplitudes add up to this (N, >= 0): see tip_response().
+  /// The braced point must stick under any sum of sinusoidal tip forces with frequencies up to
+  /// hold_frequency (Hz, >= 0) and amplitudes that add up to hold_force (N, >= 0): see
+  /// tip_response().
   double hold_force = 0.04, hold_frequency = 2.0;
   double friction_share = 0.9;  ///< 0 to 1: of the friction's least, that a brace may need for it
   double least_force = 0.05;    ///< N, > 0, of the normal force

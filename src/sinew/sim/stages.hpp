@@ -10,7 +10,7 @@ namespace sinew::sim {
 /// Every step is these stages, in this order.
 enum class Stage {
   assembly,       ///< elements: forces and matrix
-  compliance,     ///< H and delta
+  compliance,     ///< rows H and delta; W itself comes from the factorisation
   factorisation,  ///< A bordered by H: factor, W and the free motion
   law,            ///< efforts
   correction,     ///< motion, and the check that it is sound
