@@ -18,20 +18,19 @@ Key later_key(const char* name, const char* description) {
 
 Form method_choice(const char* short_for = "") {
   return choice({{"newton",
-                  "Iterates until the step's equation holds to `tolerance`: once where "
+                  "Iterates until the step's equation holds to `tolerance`; one iteration if "
                   "little changes."},
                  {"one-linearisation",
-                  "One linear solution a step, in a time known beforehand. A "
-                  "step that leaves forces out of balance or gains energy "
-                  "says so in its status, and is not corrected."}},
+                  "One linear solve per step, in predictable time. The status reports a step with "
+                  "unbalanced forces or energy gain; the step is not corrected."}},
                 short_for);
 }
 
 Form integrator_choice(const char* short_for = "") {
   return choice({{"quasi-static", "Always in equilibrium; no inertia."},
                  {"backward-euler", "Dynamics; first order, damps."},
-                 {"bdf2", "Dynamics; second order, damps what moves fast."},
-                 {"generalized-alpha", "Dynamics; second order, with a knob for damping."}},
+                 {"bdf2", "Dynamics; second order, damps fast modes."},
+                 {"generalized-alpha", "Dynamics; second order, adjustable damping."}},
                 short_for);
 }
 
@@ -85,14 +84,14 @@ std::shared_ptr<const KeyTable> solver_table() {
                  .description = "Substeps. Without: one step of `time_step` each."},
                 {.name = "tangent",
                  .forms = {choice({{"exact",
-                                    "The derivative of the forces; projected where that is "
-                                    "indefinite for the robot as it is held."},
+                                    "The derivative of the forces; projected where it is "
+                                    "indefinite for the constrained robot."},
                                    {"projected",
-                                    "The derivative, each element's part made positive "
-                                    "semi-definite: never too soft, slower to converge."},
+                                    "The derivative with each element's part made positive "
+                                    "semidefinite: never too soft, slower to converge."},
                                    {"rotated",
-                                    "Corotational elements: the rotated stiffness of "
-                                    "real-time codes, which leaves out what tension does."}})},
+                                    "Corotational elements: the rotated stiffness of real-time "
+                                    "codes, without stress stiffening."}})},
                  .example = "exact",
                  .default_text = "exact",
                  .description = "The matrix of a step's linear equations. It affects how fast a "
@@ -120,14 +119,14 @@ std::shared_ptr<const KeyTable> solver_table() {
                  .default_text = "1",
                  .description = "Threads per step; results do not depend on it."},
                 {.name = "factorisation",
-                 .forms = {choice({{"block", "Our own, in 3x3 blocks."},
+                 .forms = {choice({{"block", "Sinew's supernodal factorisation in 3x3 blocks."},
                                    {"eigen-ldlt", "Eigen's SimplicialLDLT, for reference."},
                                    {"eigen-llt", "Eigen's SimplicialLLT, for reference."}})},
                  .example = "block",
                  .default_text = "block",
                  .description = "Factorisation of the matrix."},
                 {.name = "ordering",
-                 .forms = {choice({{"fastest", "Both are timed at the start."},
+                 .forms = {choice({{"fastest", "The faster of both, timed at the start."},
                                    {"amd", "Approximate minimum degree."},
                                    {"metis", "Nested dissection."}})},
                  .example = "metis",

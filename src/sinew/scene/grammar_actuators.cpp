@@ -84,8 +84,8 @@ Key body_key() {
 
 Key outside_key() {
   return {.name = "outside",
-          .forms = {choice({{"error", "A point outside the mesh is refused."},
-                            {"nearest", "It is carried by the nearest element."}})},
+          .forms = {choice({{"error", "A point outside the mesh is an error."},
+                            {"nearest", "The nearest element carries it."}})},
           .example = "nearest",
           .default_text = "error",
           .description = "What to do with points that lie outside the mesh."};

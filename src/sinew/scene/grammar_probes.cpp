@@ -67,8 +67,8 @@ std::shared_ptr<const KeyTable> extent_table() {
                                         "diameter of a ring around this axis."});
   extent.keys.push_back(
       {.name = "size",
-       .forms = {choice({{"largest", "In the direction where they reach farthest."},
-                         {"smallest", "In the direction where they reach least."}})},
+       .forms = {choice({{"largest", "In the direction of the largest extent."},
+                         {"smallest", "In the direction of the smallest extent."}})},
        .example = "smallest",
        .default_text = "largest",
        .description = "Which of the directions normal to the axis.",
@@ -105,13 +105,13 @@ Form probe_form() {
                         .example = "[{set: bottom}, {set: top}]",
                         .description = "The angle between the normals of two faces, 0 to 180 deg; "
                                        "at rest both point from the first towards the second."});
-  probe.keys.push_back(
-      {.name = "about",
-       .forms = axis_forms(),
-       .example = "y",
-       .description = "An axis normal to both face normals. It gives the angle a sign by the "
-                      "right-hand rule from the first to the second, -180 to 180 deg.",
-       .only_with = "bend"});
+  probe.keys.push_back({.name = "about",
+                        .forms = axis_forms(),
+                        .example = "y",
+                        .description =
+                            "An axis normal to both face normals. It gives the angle a sign by the "
+                            "right-hand rule from the first to the second, -180 to 180 deg.",
+                        .only_with = "bend"});
   probe.keys.push_back({.name = "distance",
                         .forms = {list({vector(length()), table(end_table())}, 2, 2)},
                         .example = "[-10 0 50 mm, 10 0 50 mm]",

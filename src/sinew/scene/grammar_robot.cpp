@@ -300,14 +300,14 @@ std::shared_ptr<const KeyTable> fem_table() {
        .forms = {choice(
            {{"tet4", "Linear tetrahedra; above nu = 0.4 they lock, and much more near 0.5."},
             {"tet4-patch",
-             "Linear tetrahedra that share the dilatation of about eight neighbours: "
-             "no locking in volume. For hyperelastic materials."},
+             "Linear tetrahedra that share the dilatation of about eight neighbours: no volumetric "
+             "locking. For hyperelastic materials."},
             {"tet10",
-             "Quadratic tetrahedra: no locking. A linear mesh gets middle nodes, "
-             "numbered after its own. For hyperelastic materials."},
+             "Quadratic tetrahedra: no locking. A linear mesh gets mid-edge nodes, numbered after "
+             "its own. For hyperelastic materials."},
             {"hex8",
-             "Trilinear hexahedra with the pressure of their mean dilatation: "
-             "no locking in volume. For hyperelastic materials."}})},
+             "Trilinear hexahedra with the pressure of their mean dilatation: no volumetric "
+             "locking. For hyperelastic materials."}})},
        .example = "hex8",
        .description = "The finite element. Without: what a mesh file holds, and tetrahedra for "
                       "shapes. Linear tetrahedra that lock are then made quadratic (tet10): those "
