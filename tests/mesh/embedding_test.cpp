@@ -10,7 +10,9 @@
 #include <gmock/gmock.h>
 
 #include "sinew/mesh/distance.hpp"
+#include "sinew/mesh/quadratic.hpp"
 #include "sinew/mesh/shapes.hpp"
+#include "sinew/mesh/topology.hpp"
 
 #include "support.hpp"
 
@@ -88,6 +90,44 @@ TEST(Embedding, KeepsPointsOnTheSurfaceDespiteRounding) {
   for (const double z : {0.195, 195 * 1e-3, 195 / 1000.0, std::nextafter(0.195, 1.0)}) {
     EXPECT_EQ(embedder.locate({0.05, 0.05, z}, Outside::error, "tip").distance, 0.0);
   }
+}
+
+/// As a file in single precision and millimetres keeps it.
+Vector3 rounded(const Vector3& point) { return (1e3 * point).cast<float>().cast<double>() / 1e3; }
+
+TEST(Embedding, TakesPointsOfASurfaceInSinglePrecision) {
+  Mesh mesh = block({.size = {0.135, 0.06, 0.02}, .cells = {4, 3, 2}});
+  const Matrix3 turn =
+      Eigen::AngleAxisd(0.7, Vector3(1.0, 2.0, -0.5).normalized()).toRotationMatrix();
+  mesh.nodes = (mesh.nodes * turn.transpose()).eval();
+  mesh = with_middle_nodes(mesh);
+  const Embedder embedder(mesh);
+  int off = 0;
+  for (const Face& face : boundary_faces(mesh)) {
+    Vector3 middle = Vector3::Zero();
+    for (std::size_t k = 0; k < 3; ++k) middle += mesh.nodes.row(face.node[k]).transpose() / 3.0;
+    const Vector3 point = rounded(middle);
+    const EmbeddedPoint at = embedder.locate(point, Outside::error, "p");
+    EXPECT_EQ(at.distance, 0.0);
+    EXPECT_EQ(at.nodes.size(), 10U);  // moves as the curved face does
+    Vector3 x = Vector3::Zero();
+    for (std::size_t k = 0; k < at.nodes.size(); ++k) {
+      x += at.weights[k] * mesh.nodes.row(at.nodes[k]).transpose();
+    }
+    EXPECT_NEAR((x - point).norm(), 0.0, 1e-15);
+    if (brute_force_distance(mesh, point) > 1e-9) ++off;
+  }
+  EXPECT_GT(off, 10);
+}
+
+TEST(Embedding, ASurfaceIsAsThickAsAMillionthOfTheMesh) {
+  const Mesh mesh = block({.size = {0.2, 0.2, 0.1}, .cells = {2, 2, 2}});  // diagonal 0.3 m
+  const Embedder embedder(mesh);
+  EXPECT_EQ(embedder.locate({0.05, 0.05, 0.1 + 2.9e-7}, Outside::error, "p").distance, 0.0);
+  EXPECT_GT(embedder.locate({0.05, 0.05, 0.1 + 3.1e-7}, Outside::nearest, "p").distance, 3e-7);
+  error_text(ErrorKind::point_outside_mesh, [&] {
+    embedder.locate({0.05, 0.05, 0.1 + 3.1e-7}, Outside::error, "p");
+  });
 }
 
 TEST(Embedding, NamesThePointItsDistanceAndTheRemedy) {

@@ -60,7 +60,8 @@ struct Embedder::Tree {
   std::vector<Eigen::Matrix<double, 8, 3>> hexahedron_corners;
   std::vector<int> order;
   std::vector<Branch> branches;
-  double tolerance = 0.0;  // m
+  double tolerance = 0.0;   // m
+  double on_surface = 0.0;  // m
 
   explicit Tree(const Mesh& mesh);
   int build(const std::vector<Box>& boxes, int begin, int end);
@@ -110,6 +111,7 @@ Embedder::Tree::Tree(const Mesh& mesh)
     all.extend(boxes[e]);
   }
   tolerance = kDistanceTolerance * all.diagonal().norm();
+  on_surface = kOnSurface * all.diagonal().norm();
   order.resize(nodes.size());
   std::iota(order.begin(), order.end(), 0);
   branches.reserve(2 * nodes.size());
@@ -220,10 +222,13 @@ EmbeddedPoint Embedder::locate(const Vector3& point, Outside outside,
   }
   int part = tree_->find_inside(point);
   double distance = 0.0;
-  const bool inside = part >= 0;
+  bool inside = part >= 0;
   if (!inside) {
     std::tie(part, distance) = tree_->find_nearest(point);
-    if (outside == Outside::error) {
+    inside = distance <= tree_->on_surface;
+    if (inside) {
+      distance = 0.0;
+    } else if (outside == Outside::error) {
       throw Error(
           ErrorKind::point_outside_mesh, {.item = what},
           fmt::format("the point ({:.6g}, {:.6g}, {:.6g}) m lies {:.3g} m outside {} (the nearest "

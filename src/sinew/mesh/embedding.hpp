@@ -11,7 +11,13 @@
 
 namespace sinew::mesh {
 
-/// What to do with a point that lies in no element.
+/// Points nearer to the outside than this share of the mesh's size (its box's diagonal) lie on it.
+/// A file in single precision rounds each coordinate by up to 2^-24 of its value: a point and the
+/// mesh together by 2 sqrt(3) 2^-24 = 2.1e-7 of the largest coordinate, which may exceed the size
+/// when a mesh is far from its origin; six decimal digits round by as much again.
+constexpr double kOnSurface = 1e-6;
+
+/// What to do with a point that lies in no element and not on the surface either (kOnSurface).
 enum class Outside {
   error,    ///< throw Error(point-outside-mesh) naming the point, its distance and the nearest
             ///< element
@@ -23,7 +29,7 @@ struct EmbeddedPoint {
   std::vector<NodeId> nodes;    ///< of the element, or its corners, or four of a hexahedron's
   std::vector<double> weights;  ///< as many
   int element = -1;             ///< that carries the point: tetrahedra, then hexahedra
-  double distance = 0.0;        ///< m, from the nearest element; 0 inside
+  double distance = 0.0;        ///< m, from the nearest element; 0 inside and on the surface
 };
 
 /// Finds the element that holds a point (bounding-volume tree; O(log n) a query). Ties on faces go

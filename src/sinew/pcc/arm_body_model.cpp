@@ -29,7 +29,7 @@ ArmPoint ArmBodyModel::locate(const Vector3& rest_position, mesh::Outside outsid
                 "give three numbers");
   }
   const Vector3 local = settings.frame.transpose() * (rest_position - settings.base);
-  const double length = arm_->length(), slack = 1e-9 * length;
+  const double length = arm_->length(), slack = mesh::kOnSurface * length;
   const double beyond = std::max(-local.z(), local.z() - length);
   const double aside = std::hypot(local.x(), local.y()) - settings.radius;
   if (outside == mesh::Outside::error && (beyond > slack || aside > slack)) {

@@ -14,18 +14,14 @@ namespace sinew::scene {
 
 namespace {
 
-// Nodes nearer to the other body than this, of its size, lie on it.
-constexpr double kOnSurface = 1e-6;
-
 std::vector<NodeId> nodes_on(const mesh::Mesh& first, const mesh::Mesh& second,
                              const JointDescription& joint) {
-  const Vector3 extent = second.nodes.colwise().maxCoeff() - second.nodes.colwise().minCoeff();
   const mesh::Embedder embedder(second);
   std::vector<NodeId> nodes = mesh::outer_nodes(first);
   std::erase_if(nodes, [&](NodeId node) {
     const Vector3 at = first.nodes.row(node).transpose();
     const auto point = embedder.locate(at, mesh::Outside::nearest, joint.name);
-    return point.distance > kOnSurface * extent.norm();
+    return point.distance > 0.0;
   });
   if (!nodes.empty()) return nodes;
   throw Error(ErrorKind::empty_region, joint.place,

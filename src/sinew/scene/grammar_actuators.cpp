@@ -84,8 +84,10 @@ Key body_key() {
 
 Key outside_key() {
   return {.name = "outside",
-          .forms = {choice({{"error", "A point outside the mesh is an error."},
-                            {"nearest", "The nearest element carries it."}})},
+          .forms = {choice({{"error",
+                             "A point outside the mesh is refused. One that is nearer to the "
+                             "surface than a millionth of the mesh's size lies on it."},
+                            {"nearest", "It is carried by the nearest element."}})},
           .example = "nearest",
           .default_text = "error",
           .description = "What to do with points that lie outside the mesh."};
