@@ -213,7 +213,7 @@ Facts scene_facts(const InfoOptions& options) {
       "{}: scene, {}, {} a step, {}\n", robot.description.name,
       mechanics::integrator_name(model.step().integrator),
       format_quantity(model.step().time_step, dimension::kTime),
-      duration > 0.0 ? format_quantity(duration, dimension::kTime) : "without a duration");
+      duration > 0.0 ? rounded_quantity(duration, dimension::kTime) : "without a duration");
   for (const auto& body : model.bodies()) add_body(facts, *body);
   for (const Notice& notice : robot.notices) add_notice(facts, notice);
   for (std::size_t a = 0; a < model.actuators().size(); ++a) {
@@ -230,7 +230,7 @@ Facts scene_facts(const InfoOptions& options) {
       entry["rest_volume_m3"] = cavity->rest_volume();
       entry["rest_area_m2"] = cavity->rest_area();
       size = fmt::format(", {} in {} faces",
-                         format_quantity(cavity->rest_volume(), dimension::kVolume),
+                         rounded_quantity(cavity->rest_volume(), dimension::kVolume),
                          cavity->faces().size());
     }
     facts.json["actuators"].push_back(entry);
@@ -276,8 +276,8 @@ Facts scene_facts(const InfoOptions& options) {
   return facts;
 }
 
-Facts run_facts(const InfoOptions& options) {
-  const record::RunFile run(options.file);
+Facts run_facts(const std::string& file) {
+  const record::RunFile run(file);
   const double first = run.times().empty() ? 0.0 : run.times().front();
   const double last = run.times().empty() ? 0.0 : run.times().back();
   Facts facts;
@@ -299,7 +299,7 @@ Facts run_facts(const InfoOptions& options) {
   facts.text = fmt::format(
       "{}: run of {} by Sinew {}\n  {} frames from {:g} s to {:g} s, {}\n  bodies: {}\n"
       "  actuators: {}\n  effectors: {}\n  probes: {}\n  contacts: {}\n",
-      options.file, run.scene_name(), run.sinew_version(), run.frames(), first, last,
+      file, run.scene_name(), run.sinew_version(), run.frames(), first, last,
       run.has_states() ? "with positions of all nodes" : "without positions of nodes",
       fmt::join(run.bodies(), ", "), fmt::join(run.actuators(), ", "),
       fmt::join(run.effectors(), ", "), fmt::join(run.probes(), ", "),
@@ -333,8 +333,10 @@ Facts state_facts(const InfoOptions& options) {
 Facts facts_of(const InfoOptions& options) {
   const fs::path path(options.file);
   if (fs::is_directory(path)) {
-    throw Error(ErrorKind::file_unreadable, {.file = options.file}, "this is a folder",
-                "name a file in it, such as run.h5");
+    if (fs::exists(path / "run.h5")) return run_facts((path / "run.h5").string());
+    throw Error(ErrorKind::file_unreadable, {.file = options.file},
+                "this is a folder, and there is no run.h5 in it",
+                "name a mesh, a surface, a scene, a saved state, or the folder of a run");
   }
   std::string extension = path.extension().string();
   std::ranges::transform(extension, extension.begin(),
@@ -343,7 +345,7 @@ Facts facts_of(const InfoOptions& options) {
   if (extension == ".stl" || extension == ".obj" || extension == ".ply") {
     return surface_facts(options);
   }
-  if (extension == ".h5" || record::RunFile::is_hdf5(path)) return run_facts(options);
+  if (extension == ".h5" || record::RunFile::is_hdf5(path)) return run_facts(options.file);
   if (starts_as_state(path)) return state_facts(options);
   return mesh_facts(options);
 }
@@ -364,14 +366,14 @@ void add_info(CommandLine& line) {
   Command command =
       line.add_command("info", "Describe a mesh, surface, scene, recorded run or saved state");
   const auto options = std::make_shared<InfoOptions>();
-  command.add_option("FILE", options->file, "The file").required();
+  command.add_option("FILE", options->file, "The file, or the folder of a run").required();
   command.add_option("--unit", options->unit, "Unit of a mesh's lengths: mm").type_name("UNIT");
   command.add_flag("--json", options->json, "As JSON, in SI units");
   command.footer(
       "A mesh with defects is described, not refused.\n\n"
       "Examples:\n"
       "  sinew info finger.vtk --unit mm\n"
-      "  sinew info out/trunk/run.h5 --json");
+      "  sinew info out/trunk --json");
   command.set_action([options] { return info(*options); });
 }
 

@@ -277,7 +277,7 @@ WRONG_ARGUMENTS = [
     (["info"], "bad-argument", "FILE"),
     (["info", "none.vtu"], "file-not-found", "none.vtu"),
     (["info", "{scene}", "--units", "mm"], "unknown-option", "did you mean --unit?"),
-    (["info", "{folder}"], "file-unreadable", "folder"),
+    (["info", "{folder}"], "file-unreadable", "name a mesh, a surface, a scene, a saved state, or the folder of a run"),
     (["info", "{junk}"], "unknown-format", "junk"),
     (["info", "{junk}", "--unit", "kg"], "wrong-dimension", "--unit"),
     (["mesh", "-o", "a.vtu"], "bad-argument", "--shape"),
@@ -353,6 +353,7 @@ def test_info_of_every_kind(scene, tmp_path):
     assert sinew("run", path, "--out", tmp_path / "o").returncode == DONE
     run = json.loads(sinew("info", tmp_path / "o" / "run.h5", "--json").stdout)
     assert run["kind"] == "run" and run["frames"] == 11 and run["bodies"] == ["beam"]
+    assert json.loads(sinew("info", tmp_path / "o", "--json").stdout) == run  # the folder of a run
     described = json.loads(sinew("info", path, "--json").stdout)
     assert described["kind"] == "scene" and described["bodies"][0]["mass_kg"] == pytest.approx(0.0428)
     stl = tmp_path / "t.stl"
@@ -360,6 +361,23 @@ def test_info_of_every_kind(scene, tmp_path):
                    "endloop\nendfacet\nendsolid t\n")
     surface = json.loads(sinew("info", stl, "--json", "--unit", "mm").stdout)
     assert surface["kind"] == "surface" and surface["closed"] is False and surface["triangles"] == 1
+
+
+def test_info_writes_few_digits(scene):
+    path = scene(replace=("effectors:", """  air:
+    type: pressure
+    body: beam
+    surface: {file: cavity.stl, unit: mm}
+effectors:"""))
+    low, high = np.array([20.0, 5.0, 5.0]), np.array([51.3, 12.7, 14.1])
+    corners = [[(low, high)[(k >> axis) & 1][axis] for axis in range(3)] for k in range(8)]
+    quads = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+    faces = [t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]
+    meshio.Mesh(np.array(corners), [("triangle", np.array(faces))]).write(path.parent / "cavity.stl")
+    told = sinew("info", path)
+    assert told.returncode == DONE, told.stderr
+    assert "pressure air, 2.193 ml in 12 faces" in told.stdout
+    assert not re.search(r"\d{7}", told.stdout)
 
 
 STAGES = ["assembly", "compliance", "factorisation", "law", "correction", "total"]

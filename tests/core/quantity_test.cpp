@@ -172,6 +172,16 @@ TEST(Quantity, WritesSensiblePrefixes) {
   EXPECT_EQ(format_quantity(2.0, Dimension{-1, 2, 3}), "2 kg^2 m^-1 s^3");
 }
 
+TEST(Quantity, RoundsForPeople) {
+  EXPECT_EQ(rounded_quantity(8.887499999999994e-6, dimension::kVolume), "8.887 ml");
+  EXPECT_EQ(rounded_quantity(3.500163179565854e-7, dimension::kVolume), "350 mm^3");
+  EXPECT_EQ(rounded_quantity(0.1 + 0.2, dimension::kTime), "300 ms");
+  EXPECT_EQ(rounded_quantity(-1234567.0, dimension::kPressure), "-1.235 MPa");
+  EXPECT_EQ(rounded_quantity(0.0, dimension::kLength), "0 m");
+  EXPECT_EQ(rounded_quantity(1.0 / 3.0, dimension::kNone), "0.3333");
+  EXPECT_EQ(rounded_quantity(2.0 / 3.0, Dimension{-1, 2, 3}), "0.6667 kg^2 m^-1 s^3");
+}
+
 TEST(Quantity, RoundTripsEveryBit) {
   const Dimension all[] = {
       dimension::kNone,         dimension::kLength,    dimension::kArea,

@@ -270,4 +270,13 @@ std::string format_quantity(double value, Dimension dimension) {
   return shortest(value) + ' ' + si_unit_name(dimension);
 }
 
+std::string rounded_quantity(double value, Dimension dimension) {
+  const DimensionWords* words = find_words(dimension);
+  const std::string symbol =
+      words ? std::string(fitting_unit(value, *words)) : si_unit_name(dimension);
+  const std::string number =
+      fmt::format("{:.4g}", value / parse_unit_expression(symbol, {}).to_si(1.0));
+  return symbol.empty() ? number : number + ' ' + symbol;
+}
+
 }  // namespace sinew

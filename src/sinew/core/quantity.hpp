@@ -82,4 +82,7 @@ double parse_unit(std::string_view unit, Dimension expected, const Place& place 
 /// infinities are written "nan m" and "inf m", which parse_quantity refuses.
 std::string format_quantity(double value, Dimension dimension);
 
+/// The same in four significant digits, to be read by people: "8.887 ml".
+std::string rounded_quantity(double value, Dimension dimension);
+
 }  // namespace sinew

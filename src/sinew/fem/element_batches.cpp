@@ -35,7 +35,7 @@ void check_volume(const mesh::Mesh& mesh, int tetrahedron, const Matrix3& edge) 
   if (!flat && volume > 0.0) return;
   throw Error(flat ? ErrorKind::zero_volume : ErrorKind::inverted_element,
               {.file = mesh.name, .item = {}},
-              fmt::format("tetrahedron {} has a volume of {} m^3", tetrahedron, volume),
+              fmt::format("tetrahedron {} has a volume of {:.4g} m^3", tetrahedron, volume),
               flat ? "remove or remesh it" : "swap two of its nodes");
 }
 
