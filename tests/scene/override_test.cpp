@@ -81,8 +81,19 @@ TEST(Override, WrongValuesAreReportedByThePath) {
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::wrong_dimension);
-    EXPECT_EQ(error.place().file, "--set bodies.trunk.mass");
-    EXPECT_EQ(error.place().item, "bodies.trunk.mass");
+    EXPECT_EQ(error.place().text(), "--set: bodies.trunk.mass");
+  }
+  try {
+    with({"bodies.trunk.fixed=[{set: a}, {sett: b}]"});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.place().text(), "--set: bodies.trunk.fixed[1].sett");
+  }
+  try {
+    with({"bodies.trunk.mass={a: 1, a: 2}"});  // where in the value is of use
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.place().text(), "--set bodies.trunk.mass:1:8");
   }
 }
 

@@ -181,10 +181,10 @@ void Node::name_paths(const std::string& path) {
 }
 
 void Node::name_file(const std::string& file) {
-  place_.file = file;
+  place_ = {file, 0, 0, place_.item};
   for (Node& item : items_) item.name_file(file);
   for (Entry& entry : entries_) {
-    entry.key_place.file = file;
+    entry.key_place = {file, 0, 0, entry.key_place.item};
     entry.value.name_file(file);
   }
 }

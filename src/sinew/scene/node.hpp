@@ -69,7 +69,7 @@ class Node {
   /// Gives this node the dotted path `path`, and everything under it the paths that follow
   /// ("bodies.trunk.fixed[0]"). Trees made by hand have no paths until this is called.
   void name_paths(const std::string& path = {});
-  /// Sets the file of every node of the tree (for a tree made by hand: what it is called).
+  /// Says where the whole tree comes from when that has no lines: an option of the command line.
   void name_file(const std::string& file);
 
   /// Same kinds, spellings, keys and order; places do not count.

@@ -206,10 +206,10 @@ void apply_override(Node& tree, const std::string& assignment) {
                 "write a path, '=' and a value: time_step=5ms");
   }
   const std::string path = assignment.substr(0, equals);
-  const Place place{"", 0, 0, "--set " + path};
   Node value = parse_yaml(assignment.substr(equals + 1), "--set " + path);
+  value.name_file("--set");  // the nodes' own paths follow below
   Node changed = tree;
-  Walker walker(changed, place);
+  Walker walker(changed, {"--set", 0, 0, path});
   const std::vector<std::string> steps = split_path(path);
   for (std::size_t i = 0; i < steps.size(); ++i) {
     walker.enter(steps[i], i + 1 == steps.size());
