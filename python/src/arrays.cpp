@@ -65,6 +65,21 @@ double to_number(const py::handle& value, const std::string& place, const std::s
   return number;
 }
 
+std::int64_t to_count(const py::handle& value, const std::string& place) {
+  if (PyIndex_Check(value.ptr()) == 0 || PyBool_Check(value.ptr())) {
+    throw Error(ErrorKind::wrong_type, {.item = place},
+                fmt::format("{} of type {} is no whole number",
+                            std::string(py::repr(value)).substr(0, 60), type_name(value)),
+                "give an int");
+  }
+  const Py_ssize_t number = PyNumber_AsSsize_t(value.ptr(), PyExc_OverflowError);
+  if (PyErr_Occurred() == nullptr) return number;
+  if (PyErr_ExceptionMatches(PyExc_OverflowError) == 0) throw py::error_already_set();
+  PyErr_Clear();
+  throw Error(ErrorKind::out_of_range, {.item = place}, "the number is too large",
+              "give a smaller one");
+}
+
 Array to_array(const py::handle& value, const std::string& place, const std::string& wanted) {
   py::array any = py::array::ensure(value);
   if (!any) PyErr_Clear();

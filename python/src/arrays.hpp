@@ -2,6 +2,7 @@
 /// Between NumPy and Eigen: checked conversions in, copies and live views out.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,11 @@ using Array = py::array_t<double, py::array::c_style>;
 /// real number (NumPy scalars included, booleans not).
 /// @param value from Python. @param place names the argument. @param unit for the message: "m".
 double to_number(const py::handle& value, const std::string& place, const std::string& unit);
+
+/// A whole number from Python. Throws Error(wrong-type | out-of-range) at `place` for anything but
+/// an integer of 64 bits (NumPy scalars included, booleans not).
+/// @param value from Python. @param place names the argument.
+std::int64_t to_count(const py::handle& value, const std::string& place);
 
 /// An array of any shape. Throws Error(wrong-type) when it holds no real numbers,
 /// Error(wrong-shape) when it is ragged, Error(not-finite) naming the first such entry.

@@ -235,9 +235,9 @@ void bind_methods(py::class_<Controller>& type) {
            py::arg("tolerance") = py::none(), py::arg("largest_step") = py::none())
       .def(
           "step",
-          [](const Controller& self, std::int64_t n) {
+          [](const Controller& self, const py::object& n) {
             require_attached(self);
-            self.session->advance(n);
+            self.session->advance(to_count(n, "step(n)"));
             return std::string(inverse_status_name(law(self).status()));
           },
           py::arg("n") = 1,

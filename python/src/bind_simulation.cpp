@@ -352,8 +352,10 @@ A body by its name. Raises Error (unknown-name) with a suggestion.
 }
 
 void bind_stepping(Type& type) {
-  type.def("step", &Session::advance, py::arg("n") = 1,
-           R"(step($self, n=1)
+  type.def(
+          "step", [](Session& self, const py::object& n) { self.advance(to_count(n, "step(n)")); },
+          py::arg("n") = 1,
+          R"(step($self, n=1)
 --
 
 Advances n time steps. Other Python threads run meanwhile; Ctrl-C ends it between steps.

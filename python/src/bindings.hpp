@@ -81,7 +81,7 @@ struct Controller {
 
 /// Runs and records; see Simulation.run in bind_simulation.cpp.
 py::dict run(const std::shared_ptr<Session>& session, const py::object& duration,
-             const py::object& record, std::int64_t every, const py::object& progress);
+             const py::object& record, const py::object& every, const py::object& progress);
 
 /// A target from a Target object or three numbers. Throws Error(wrong-type | wrong-shape |
 /// not-finite).

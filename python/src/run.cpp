@@ -150,9 +150,10 @@ void advance_and_record(Session& session, std::int64_t steps, std::int64_t every
 }  // namespace
 
 py::dict run(const std::shared_ptr<Session>& session, const py::object& duration,
-             const py::object& record, std::int64_t every, const py::object& progress) {
-  if (every < 1) {
-    throw Error(ErrorKind::out_of_range, {.item = "run(every)"}, fmt::format("every is {}", every),
+             const py::object& record, const py::object& every, const py::object& progress) {
+  const std::int64_t pace = to_count(every, "run(every)");
+  if (pace < 1) {
+    throw Error(ErrorKind::out_of_range, {.item = "run(every)"}, fmt::format("every is {}", pace),
                 "give 1 or more");
   }
   if (!progress.is_none() && PyCallable_Check(progress.ptr()) == 0) {
@@ -167,7 +168,7 @@ py::dict run(const std::shared_ptr<Session>& session, const py::object& duration
     return Recording{std::move(observables), std::move(columns)};
   }();
   try {
-    advance_and_record(*session, steps, every, progress, recording);
+    advance_and_record(*session, steps, pace, progress, recording);
   } catch (const Error& error) {
     const py::object exception = to_python(error);
     exception.attr("recorded") = to_arrays(recording);

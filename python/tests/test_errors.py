@@ -78,6 +78,14 @@ CALLS = [
     ("wrong-length", "", lambda s: sinew.Trajectory([0, 1, 2], [[0, 0, 0], [0, 0, 1]])),
     # simulation
     ("out-of-range", "reset()", lambda s: s.step(-1)),
+    ("wrong-type", "int", lambda s: s.step(1.5)),
+    ("wrong-type", "int", lambda s: s.step("ten")),
+    ("wrong-type", "int", lambda s: s.step(True)),
+    ("wrong-type", "int", lambda s: s.step(None)),
+    ("out-of-range", "smaller", lambda s: s.step(10**30)),
+    ("wrong-type", "int", lambda s: controller(s, targets={"tip": [0, 0, 0.1]}).step(1.5)),
+    ("wrong-type", "number in s", lambda s: s.run("x")),
+    ("wrong-type", "int", lambda s: s.run(0.1, every=1.5)),
     ("out-of-range", "", lambda s: s.run(-1.0)),
     ("not-finite", "", lambda s: s.run(NAN)),
     ("out-of-range", "", lambda s: s.run(1e300)),
@@ -173,8 +181,6 @@ def test_broken_calls(sim, kind, remedy, call):
 @pytest.mark.parametrize(
     "call",
     [
-        lambda s: s.step("ten"),
-        lambda s: s.step(1.5),
         lambda s: s.actuator(3),
         lambda s: s.actuator("east", "north"),
         lambda s: sinew.InverseController("sim", targets={}),
