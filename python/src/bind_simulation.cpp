@@ -473,6 +473,18 @@ Returns
 -------
 Simulation
 )")
+      .def("__copy__", &Session::clone, "A clone().")
+      .def(
+          "__deepcopy__", [](const Session& self, const py::dict&) { return self.clone(); },
+          "A clone(), which shares the model.")
+      .def(
+          "__reduce_ex__",
+          [](const Session&, const py::object&) -> py::object {
+            throw py::type_error(
+                "a sinew.Simulation does not pickle; send sim.to_yaml() and sim.state(), load the "
+                "text elsewhere with sinew.loads(text), and restore(state) there");
+          },
+          "Raises TypeError, which says what to pickle instead.")
       .def("state", &Session::state,
            R"(state($self)
 --

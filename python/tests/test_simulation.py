@@ -1,7 +1,9 @@
 """Loading, stepping, recording and the state of a simulation."""
 
+import copy
 import gc
 import os
+import pickle
 import resource
 import signal
 import subprocess
@@ -111,11 +113,11 @@ def test_to_yaml_round_trip(scene, sim, tmp_path, monkeypatch):
     path = tmp_path / "copy.yaml"
     path.write_text(sim.to_yaml())
     monkeypatch.chdir(tmp_path)
-    copy = sinew.load("copy.yaml")
-    for robot in (sim, copy):
+    loaded = sinew.load("copy.yaml")
+    for robot in (sim, loaded):
         robot.actuator("south").displacement = 0.004
         robot.step(10)
-    assert copy.state_hash == sim.state_hash
+    assert loaded.state_hash == sim.state_hash
 
 
 def test_to_yaml_keeps_the_way_to_files(tmp_path, monkeypatch):
@@ -198,14 +200,36 @@ def test_clone_goes_on_as_the_original_does(sim):
     assert other.actuator("north").command == ("tension", 0.0)
 
 
-def test_clone_of_a_controlled_simulation_is_controlled(follow):
+@pytest.mark.parametrize("duplicate", [sinew.Simulation.clone, copy.copy, copy.deepcopy])
+def test_clone_of_a_controlled_simulation_is_controlled(follow, duplicate):
     sim = sinew.load(follow)
     sim.step(5)
-    other = sim.clone()
+    other = duplicate(sim)
+    assert other is not sim and other.steps == 5 and sim.steps == 5
     assert other.controller.name == "follow"
     other.step(50)
     sim.step(50)
     assert np.allclose(other.effector("tip").position, sim.effector("tip").position, atol=1e-12)
+
+
+def test_a_copy_of_a_structure_clones_a_simulation_once(sim):
+    sim.step(3)
+    both = copy.deepcopy({"first": sim, "second": sim})
+    assert both["first"] is both["second"] is not sim
+    both["first"].step()
+    assert sim.steps == 3
+    assert both["first"].state_hash != sim.state_hash
+
+
+def test_what_pickles_in_place_of_a_simulation(sim):
+    sim.actuator("east").displacement = 0.004
+    sim.step(7)
+    with pytest.raises(TypeError, match=r"sim.to_yaml\(\) and sim.state\(\)"):
+        pickle.dumps(sim)
+    text, state = pickle.loads(pickle.dumps((sim.to_yaml(), sim.state())))
+    other = sinew.loads(text)
+    other.restore(state)
+    assert other.state_hash == sim.state_hash
 
 
 def test_clones_share_the_model():
