@@ -482,6 +482,10 @@ def test_plot_draws_a_run(scene, tmp_path):
     assert (out / "run.png").read_bytes().startswith(b"\x89PNG")
     missing = sinew("plot", tmp_path)
     assert missing.returncode == WRONG and "file-not-found" in missing.stderr
+    (out / "mine.png").write_bytes(b"a picture")
+    assert sinew("run", scene(), "--out", out, "--quiet").returncode == DONE
+    assert not (out / "run.png").exists()  # it was of the former run
+    assert (out / "mine.png").read_bytes() == b"a picture"
 
 
 def test_probes_are_recorded_and_plotted(scene, tmp_path):

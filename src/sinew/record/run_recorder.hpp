@@ -20,7 +20,7 @@ inline constexpr std::int64_t kOldestRunFormatVersion = 2;
 /// What to record and where.
 struct RecordSettings {
   std::filesystem::path
-      folder;              ///< made when it does not exist; files of an older run are replaced
+      folder;  ///< made when it does not exist; files of an older run go, its run.png too
   std::string scene_name;  ///< kept in run.h5
   std::string scene;       ///< the scene as resolved, YAML; kept in run.h5 and scene.yaml
   int every = 1;           ///< steps per frame, >= 1
