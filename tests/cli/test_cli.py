@@ -232,6 +232,22 @@ def test_wrong_input_leaves_folders_alone(scene, tmp_path):
     assert not (tmp_path / "new").exists()
 
 
+def test_the_commands_of_the_readme_work_as_printed(tmp_path):
+    text = (ROOT / "README.md").read_text(encoding="utf-8").split("## Your own robot")[1].split("## What works")[0]
+    scenes = re.findall(r"```yaml\n(.*?)```", text, re.DOTALL)
+    commands = re.findall(r"^    build/release/bin/sinew ([^#\n]*)", text, re.MULTILINE)
+    assert len(scenes) == 1 and len(commands) == 4
+    (tmp_path / "finger.yaml").write_text(scenes[0])
+    for command in commands:
+        done = sinew(*command.split(), cwd=tmp_path, timeout=300)
+        assert done.returncode == DONE and not done.stderr, (command, done.stderr)
+    out = tmp_path / "out" / "finger"
+    assert (out / "run.pvd").exists()
+    last = rows_of(out / "run.csv")[-1]
+    assert last["status"] == "solved"
+    assert float(last["pull.displacement [m]"]) == pytest.approx(0.005, rel=1e-6)
+
+
 def test_without_an_end_the_remedy_is_named(scene):
     path = scene(replace=("{displacement: {ramp: {from: 0 mm, to: 4 mm, start: 0 s, duration: 0.1 s}}}",
                           "{displacement: 1 mm}"))
