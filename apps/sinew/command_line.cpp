@@ -146,7 +146,6 @@ Option Command::add_flag(const std::string& names, bool& value, const std::strin
 void Command::footer(const std::string& text) { app_->footer(text); }
 void Command::hide() { app_->group(""); }
 void Command::allow_extras() { app_->allow_extras(); }
-std::vector<std::string> Command::remaining() const { return app_->remaining(); }
 void Command::set_action(Action action) { *action_ = std::move(action); }
 
 CommandLine::CommandLine(const std::string& description, const std::string& version,

@@ -66,9 +66,8 @@ class Command {
   void footer(const std::string& text);
   /// Left out of the program's help.
   void hide();
-  /// Takes any arguments, known or not; remaining() tells those unknown.
+  /// Takes any arguments, known or not.
   void allow_extras();
-  std::vector<std::string> remaining() const;
   /// @param action what the command does.
   void set_action(Action action);
 

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,12 +41,23 @@ fs::path validation_script() {
               "run from a source tree, or set SINEW_VALIDATION_DIR to its folder 'validation'");
 }
 
-int validate(const std::vector<std::string>& cases) {
+struct ValidateOptions {
+  std::vector<std::string> cases;
+  bool list = false, fast = false;
+  std::optional<std::string> out;
+  std::optional<int> jobs;
+};
+
+int validate(const ValidateOptions& options) {
   const std::string script = validation_script().string();
   use_own_python_package();
   std::vector<char*> arguments;
   std::vector<std::string> words = {kInterpreter, script};
-  words.insert(words.end(), cases.begin(), cases.end());
+  if (options.list) words.emplace_back("--list");
+  if (options.fast) words.emplace_back("--fast");
+  if (options.out) words.push_back("--out=" + *options.out);
+  if (options.jobs) words.push_back(fmt::format("--jobs={}", *options.jobs));
+  words.insert(words.end(), options.cases.begin(), options.cases.end());
   arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
@@ -71,22 +83,32 @@ Command add_page(CommandLine& line, const char* name, const char* description,
 }  // namespace
 
 void add_schema(CommandLine& line) {
-  add_page(line, "schema", "Print the JSON Schema of scene files, for editors", scene::json_schema);
+  add_page(line, "schema", "Print the JSON Schema of scene files, for editors", scene::json_schema)
+      .footer(
+          "Example:\n"
+          "  sinew schema > scene.schema.json\n\n"
+          "An editor with YAML's language server then completes and checks scenes that begin with\n"
+          "  # yaml-language-server: $schema=scene.schema.json");
   add_page(line, "reference", "", scene::reference_page).hide();
 }
 
 void add_validate(CommandLine& line) {
   Command command =
       line.add_command("validate", "Compare Sinew's numbers with references: docs/scorecard.md");
-  const auto cases = std::make_shared<std::vector<std::string>>();
-  command.add_option("CASE", *cases, "Cases to run (default: all)");
-  command.allow_extras();  // options of the script itself: --list
-  command.footer("Example:\n  sinew validate --list");
-  command.set_action([cases, command] {
-    std::vector<std::string> all = *cases;
-    for (const std::string& word : command.remaining()) all.push_back(word);
-    return validate(all);
-  });
+  const auto options = std::make_shared<ValidateOptions>();
+  command.add_option("CASE", options->cases, "Cases to run (default: all)");
+  command.add_flag("--list", options->list, "Name the cases and end");
+  command.add_flag("--fast", options->fast, "Only the cases that take seconds");
+  command
+      .add_option("--out", options->out,
+                  "Folder for scorecard.md and images/validation (default: docs)")
+      .type_name("DIR");
+  command.add_option("--jobs", options->jobs, "Cases at once (default: one a core)").type_name("N");
+  command.footer(
+      "Examples:\n"
+      "  sinew validate --list\n"
+      "  sinew validate patch --out /tmp/validation");
+  command.set_action([options] { return validate(*options); });
 }
 
 }  // namespace sinew::cli

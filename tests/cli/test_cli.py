@@ -290,6 +290,9 @@ WRONG_ARGUMENTS = [
     (["bench", "{scene}", "--steps", "0"], "out-of-range", "--steps"),
     (["bench", "{scene}", "--steps", "many"], "bad-argument", "--steps"),
     (["bench", "{scene}", "--tangent", "best"], "unknown-choice", "exact or rotated"),
+    (["validate", "patch", "--json"], "unknown-option", "there is no option '--json'"),
+    (["validate", "patch", "--lst"], "unknown-option", "did you mean --list?"),
+    (["validate", "--jobs", "two"], "bad-argument", "--jobs"),
     (["info"], "bad-argument", "FILE"),
     (["info", "none.vtu"], "file-not-found", "none.vtu"),
     (["info", "{scene}", "--units", "mm"], "unknown-option", "did you mean --unit?"),
@@ -328,7 +331,10 @@ def test_wrong_arguments(arguments, kind, words, scene, tmp_path):
 def test_help(command):
     result = sinew(*command, "--help")
     assert result.returncode == DONE and result.stderr == ""
-    assert "sinew" in result.stdout
+    examples = re.findall(r"^  (sinew .*)", result.stdout, re.MULTILINE)
+    assert examples
+    if command:
+        assert all(command[0] in line for line in examples)  # its own, not the program's
 
 
 def test_version():
@@ -557,10 +563,10 @@ def test_fit_writes_a_material_that_a_scene_takes(scene, tmp_path):
 
 def test_validate_passes_cases_on(tmp_path):
     (tmp_path / "run.py").write_text("import sys\nprint(sys.argv[1:])\nsys.exit(3)\n")
-    result = subprocess.run([os.path.abspath(PROGRAM), "validate", "patch", "--list"], capture_output=True, text=True,
-                            env={**os.environ, "SINEW_VALIDATION_DIR": str(tmp_path)}, check=False)
+    result = subprocess.run([os.path.abspath(PROGRAM), "validate", "patch", "--jobs", "2", "--list"],
+                            capture_output=True, text=True, env={**os.environ, "SINEW_VALIDATION_DIR": str(tmp_path)}, check=False)
     assert result.returncode == 3
-    assert result.stdout.strip() == "['patch', '--list']"
+    assert result.stdout.strip() == "['--list', '--jobs=2', 'patch']"
     nowhere = subprocess.run([os.path.abspath(PROGRAM), "validate"], capture_output=True, text=True,
                              env={**os.environ, "SINEW_VALIDATION_DIR": "/nowhere"}, check=False)
     assert nowhere.returncode == WRONG and "[tool-missing]" in nowhere.stderr
