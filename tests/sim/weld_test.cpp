@@ -1,12 +1,16 @@
 // Bodies that welds hold together, and cables that run through both.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "sinew/constraint/cable.hpp"
+#include "sinew/constraint/constraint.hpp"
+#include "sinew/constraint/tie.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/sim/actuator.hpp"
@@ -15,6 +19,7 @@
 #include "sinew/sim/joint_settings.hpp"
 #include "sinew/sim/linearisation.hpp"
 #include "sinew/sim/model.hpp"
+#include "sinew/sim/row_efforts.hpp"
 #include "sinew/sim/signal.hpp"
 #include "sinew/sim/simulation.hpp"
 #include "sinew/sim/weld_load.hpp"
@@ -155,6 +160,29 @@ TEST(Weld, StandsBesideContactAndFrictionOfCables) {
   EXPECT_GT(whole.contacts().sum(0).normal_force, 0.0);
   EXPECT_NEAR(cut.contacts().sum(0).normal_force, whole.contacts().sum(0).normal_force,
               1e-4 * whole.contacts().sum(0).normal_force);
+}
+
+TEST(Weld, IsNoActuator) {
+  CutBeam options{.cables = 1, .cable_friction = 0.2, .wall = -0.012};
+  Simulation simulation(cut_beam(options));
+  for (int k = 0; k < 30; ++k) {
+    simulation.command(0, effort(0.05 * k));
+    simulation.step();
+  }
+  const RowEfforts efforts = split_efforts(simulation);
+  const constraint::Tie& seam = simulation.model().weld(0);
+  const constraint::Cable& cable = *simulation.model().cable(0);
+  double held = 0.0;
+  for (int row = 0; row < static_cast<int>(efforts.actuation.size()); ++row) {
+    const auto k = static_cast<std::size_t>(row);
+    const auto is_of = [row](const constraint::Constraint& constraint) {
+      return row >= constraint.first_row() && row < constraint.first_row() + constraint.row_count();
+    };
+    if (is_of(seam)) held += std::abs(simulation.efforts()[k]);
+    EXPECT_EQ(efforts.actuation[k], is_of(cable) ? simulation.efforts()[k] : 0.0) << row;
+  }
+  EXPECT_GT(held, 0.1);
+  EXPECT_EQ(cable.row_count(), 4);  // guides rub in three points
 }
 
 TEST(Weld, HoldsBetweenTwoBodiesThatAreFixed) {

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 
-#include "sinew/constraint/contact.hpp"
+#include "sinew/constraint/constraint.hpp"
+#include "sinew/sim/actuator.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/simulation.hpp"
 
@@ -10,14 +11,18 @@ namespace sinew::sim {
 
 RowEfforts split_efforts(const Simulation& simulation) {
   const std::span<const double> all = simulation.efforts();
-  RowEfforts result{{all.begin(), all.end()}, std::vector<double>(all.size(), 0.0)};
+  const std::vector<double> none(all.size(), 0.0);
+  RowEfforts result{none, none};
   const Model& model = simulation.model();
-  for (std::size_t c = 0; c < model.contacts().size(); ++c) {
-    const constraint::Contact& contact = model.contact(static_cast<int>(c));
-    const auto first = result.actuation.begin() + contact.first_row();
-    std::copy_n(first, contact.row_count(), result.contact.begin() + contact.first_row());
-    std::fill_n(first, contact.row_count(), 0.0);
+  const auto take = [&](int index, std::vector<double>& efforts) {
+    const auto& constraint = *model.constraints()[static_cast<std::size_t>(index)];
+    const int row = constraint.first_row();
+    std::copy_n(all.begin() + row, constraint.row_count(), efforts.begin() + row);
+  };
+  for (const ActuatorModel& actuator : model.actuators()) {
+    take(actuator.constraint, result.actuation);
   }
+  for (const ContactModel& contact : model.contacts()) take(contact.constraint, result.contact);
   return result;
 }
 

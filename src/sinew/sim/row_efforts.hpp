@@ -1,5 +1,5 @@
 /// @file
-/// Which of the rows' efforts are the robot's own, and which are those of contacts.
+/// Which of the rows' efforts are those of actuators, and which those of contacts.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,8 @@ namespace sinew::sim {
 
 class Simulation;
 
-/// Efforts of all rows of H, N, N m or Pa, each zero in the rows of the other kind.
+/// Efforts of all rows of H, N, N m or Pa, each zero in the rows of any other kind. Welds are in
+/// neither.
 struct RowEfforts {
   std::vector<double> actuation;  ///< (rows,) actuators, and the friction of cables at their guides
   std::vector<double> contact;    ///< (rows,) forces of contacts
