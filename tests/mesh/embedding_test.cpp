@@ -5,8 +5,10 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <string>
 
 #include <Eigen/Geometry>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "sinew/mesh/distance.hpp"
@@ -92,10 +94,17 @@ TEST(Embedding, KeepsPointsOnTheSurfaceDespiteRounding) {
   }
 }
 
-/// As a file in single precision and millimetres keeps it.
-Vector3 rounded(const Vector3& point) { return (1e3 * point).cast<float>().cast<double>() / 1e3; }
+/// As files in millimetres keep it: in single precision, or in six decimal digits.
+Vector3 single_precision(const Vector3& point) {
+  return (1e3 * point).cast<float>().cast<double>() / 1e3;
+}
+Vector3 six_digits(const Vector3& point) {
+  return point.unaryExpr([](double x) { return std::stod(fmt::format("{:.6g}", 1e3 * x)) / 1e3; });
+}
 
-TEST(Embedding, TakesPointsOfASurfaceInSinglePrecision) {
+class RoundedSurface : public testing::TestWithParam<Vector3 (*)(const Vector3&)> {};
+
+TEST_P(RoundedSurface, LiesOnTheMesh) {
   Mesh mesh = block({.size = {0.135, 0.06, 0.02}, .cells = {4, 3, 2}});
   const Matrix3 turn =
       Eigen::AngleAxisd(0.7, Vector3(1.0, 2.0, -0.5).normalized()).toRotationMatrix();
@@ -106,7 +115,7 @@ TEST(Embedding, TakesPointsOfASurfaceInSinglePrecision) {
   for (const Face& face : boundary_faces(mesh)) {
     Vector3 middle = Vector3::Zero();
     for (std::size_t k = 0; k < 3; ++k) middle += mesh.nodes.row(face.node[k]).transpose() / 3.0;
-    const Vector3 point = rounded(middle);
+    const Vector3 point = GetParam()(middle);
     const EmbeddedPoint at = embedder.locate(point, Outside::error, "p");
     EXPECT_EQ(at.distance, 0.0);
     EXPECT_EQ(at.nodes.size(), 10U);  // moves as the curved face does
@@ -119,14 +128,16 @@ TEST(Embedding, TakesPointsOfASurfaceInSinglePrecision) {
   }
   EXPECT_GT(off, 10);
 }
+INSTANTIATE_TEST_SUITE_P(Embedding, RoundedSurface,
+                         testing::Values(&single_precision, &six_digits));
 
-TEST(Embedding, ASurfaceIsAsThickAsAMillionthOfTheMesh) {
+TEST(Embedding, ASurfaceHasAThickness) {
   const Mesh mesh = block({.size = {0.2, 0.2, 0.1}, .cells = {2, 2, 2}});  // diagonal 0.3 m
   const Embedder embedder(mesh);
-  EXPECT_EQ(embedder.locate({0.05, 0.05, 0.1 + 2.9e-7}, Outside::error, "p").distance, 0.0);
-  EXPECT_GT(embedder.locate({0.05, 0.05, 0.1 + 3.1e-7}, Outside::nearest, "p").distance, 3e-7);
+  EXPECT_EQ(embedder.locate({0.05, 0.05, 0.1 + 2.9e-6}, Outside::error, "p").distance, 0.0);
+  EXPECT_GT(embedder.locate({0.05, 0.05, 0.1 + 3.1e-6}, Outside::nearest, "p").distance, 3e-6);
   error_text(ErrorKind::point_outside_mesh, [&] {
-    embedder.locate({0.05, 0.05, 0.1 + 3.1e-7}, Outside::error, "p");
+    embedder.locate({0.05, 0.05, 0.1 + 3.1e-6}, Outside::error, "p");
   });
 }
 

@@ -12,10 +12,10 @@
 namespace sinew::mesh {
 
 /// Points nearer to the outside than this share of the mesh's size (its box's diagonal) lie on it.
-/// A file in single precision rounds each coordinate by up to 2^-24 of its value: a point and the
-/// mesh together by 2 sqrt(3) 2^-24 = 2.1e-7 of the largest coordinate, which may exceed the size
-/// when a mesh is far from its origin; six decimal digits round by as much again.
-constexpr double kOnSurface = 1e-6;
+/// Files round coordinates: single precision by 2^-24 = 6e-8 of their value, six decimal digits
+/// ("%g", as Gmsh writes STL) by up to 5e-6, which moves a point by sqrt(3) 5e-6 = 8.7e-6 of the
+/// largest coordinate.
+constexpr double kOnSurface = 1e-5;
 
 /// What to do with a point that lies in no element and not on the surface either (kOnSurface).
 enum class Outside {

@@ -86,7 +86,7 @@ Key outside_key() {
   return {.name = "outside",
           .forms = {choice({{"error",
                              "A point outside the mesh is refused. One that is nearer to the "
-                             "surface than a millionth of the mesh's size lies on it."},
+                             "surface than 1e-5 of the mesh's size lies on it."},
                             {"nearest", "It is carried by the nearest element."}})},
           .example = "nearest",
           .default_text = "error",
