@@ -1,7 +1,6 @@
 #include "sinew/record/run_recorder.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <optional>
@@ -37,9 +36,6 @@ namespace fs = std::filesystem;
               "choose another folder with --out, or change its permissions");
 }
 
-// What not every run writes; an older run's would be taken for this one's.
-constexpr std::array kPassing = {"probes.csv", "run.png"};
-
 // Looks before anything is replaced, so that a run that cannot be recorded harms no older one.
 void require_writable(const fs::path& folder) {
   std::error_code problem;
@@ -47,7 +43,7 @@ void require_writable(const fs::path& folder) {
   if (problem) unwritable(folder, problem.message());
   if (!fs::is_directory(folder)) unwritable(folder, "it is a file");
   if (::access(folder.c_str(), W_OK | X_OK) != 0) unwritable(folder, std::strerror(errno));
-  for (const char* name : {"run.csv", "run.h5", "scene.yaml", kPassing[0], kPassing[1]}) {
+  for (const char* name : {"run.csv", "run.h5", "scene.yaml", "probes.csv", "run.png"}) {
     const fs::path file = folder / name;
     if (!fs::exists(file)) continue;
     if (!fs::is_regular_file(file)) unwritable(file, "it is no regular file");
@@ -170,7 +166,8 @@ struct RunRecorder::Files {
         table(settings.folder / "run.csv", observables, TableKind::run) {
     mesh::write_file(settings.folder / "scene.yaml", settings.scene);
     remove_series(settings.folder);
-    for (const char* name : kPassing) fs::remove(settings.folder / name);
+    // An older run's would be taken for this one's.
+    for (const char* name : {"probes.csv", "run.png"}) fs::remove(settings.folder / name);
     const sim::Simulation& simulation = observables.simulation();
     if (!simulation.model().probes().empty()) {
       probes.emplace(settings.folder / "probes.csv", observables, TableKind::probes);
