@@ -11,8 +11,116 @@ namespace sinew::qp {
 namespace {
 
 constexpr int kPanel = 8;
+constexpr int kGroup = 64;  // columns that stay in the cache while all panels act on them
+static_assert(kGroup % kPanel == 0);
+
+class LuElimination {
+ public:
+  LuElimination(Eigen::Map<MatrixX> a, std::span<int> pivot)
+      : a_(a),
+        pivot_(pivot),
+        size_(static_cast<int>(a.rows())),
+        pivots_(static_cast<int>(pivot.size())) {}
+
+  bool run() {
+    for (int begin = 0; begin < size_; begin += kGroup) {
+      const int end = std::min(begin + kGroup, size_);
+      const int done = std::min(begin, pivots_);
+      swap_rows(0, done, begin, end);
+      for (int first = 0; first < done; first += kPanel) apply_panel(first, begin, end);
+      for (int first = begin; first < std::min(end, pivots_); first += kPanel) {
+        if (!factor_panel(first, end)) return false;
+        apply_panel(first, first + width(first), end);
+      }
+    }
+    return true;
+  }
+
+ private:
+  int width(int first) const { return std::min(kPanel, pivots_ - first); }
+
+  void swap_rows(int first, int count, int begin, int end) {
+    for (int k = first; k < first + count; ++k) {
+      const int other = pivot_[static_cast<std::size_t>(k)];
+      if (other == k) continue;
+      for (int j = begin; j < end; ++j) std::swap(a_(k, j), a_(other, j));
+    }
+  }
+
+  // `end`: of the columns that are up to date; those right of it are swapped when they are reached.
+  bool factor_panel(int first, int end) {
+    for (int k = first; k < first + width(first); ++k) {
+      Eigen::Index below = 0;
+      const double largest = a_.col(k).segment(k, pivots_ - k).cwiseAbs().maxCoeff(&below);
+      if (!(largest > std::numeric_limits<double>::min())) return false;
+      pivot_[static_cast<std::size_t>(k)] = static_cast<int>(below) + k;
+      swap_rows(k, 1, 0, end);
+      const int rest = size_ - k - 1;
+      a_.col(k).tail(rest) /= a_(k, k);
+      for (int j = k + 1; j < first + width(first); ++j) {
+        add_scaled(&a_(k, j) + 1, -a_(k, j), &a_(k, k) + 1, rest);
+      }
+    }
+    return true;
+  }
+
+  // Columns begin .. end - 1: the rows of U, and the update of the panel's width below them.
+  void apply_panel(int first, int begin, int end) {
+    if (width(first) < kPanel) return apply_narrow_panel(first, begin, end);
+    solve_rows(first, begin, end);
+    const int last = first + kPanel, rest = size_ - last;
+    if (rest == 0) return;
+    for (int j = begin; j < end; ++j) {
+      Eigen::Map<VectorX> below(&a_(last, j), rest);
+      const Eigen::Map<const Eigen::Matrix<double, kPanel, 1>> factors(&a_(first, j));
+      for (int k = 0; k < kPanel; k += 4) {
+        below -= a_.col(first + k).tail(rest) * factors[k] +
+                 a_.col(first + k + 1).tail(rest) * factors[k + 1] +
+                 a_.col(first + k + 2).tail(rest) * factors[k + 2] +
+                 a_.col(first + k + 3).tail(rest) * factors[k + 3];
+      }
+    }
+  }
+
+  void apply_narrow_panel(int first, int begin, int end) {
+    for (int j = begin; j < end; ++j) {
+      for (int k = first; k < first + width(first); ++k) {
+        add_scaled(&a_(k, j) + 1, -a_(k, j), &a_(k, k) + 1, size_ - k - 1);
+      }
+    }
+  }
+
+  // U_12 = L_11^-1 A_12 of a whole panel, some columns at a time, so that none waits for another.
+  void solve_rows(int first, int begin, int end) {
+    using Column = Eigen::Matrix<double, kPanel, 1>;
+    Eigen::Matrix<double, kPanel, kPanel> lower = a_.block<kPanel, kPanel>(first, first);
+    lower.triangularView<Eigen::Upper>().setZero();
+    int j = begin;
+    for (; j + 4 <= end; j += 4) {
+      Column u[4];
+      for (int c = 0; c < 4; ++c) u[c] = a_.col(j + c).segment<kPanel>(first);
+      for (int k = 0; k < kPanel; ++k) {
+        for (Column& column : u) column += -column[k] * lower.col(k);
+      }
+      for (int c = 0; c < 4; ++c) a_.col(j + c).segment<kPanel>(first) = u[c];
+    }
+    for (; j < end; ++j) {
+      Column u = a_.col(j).segment<kPanel>(first);
+      for (int k = 0; k < kPanel; ++k) u += -u[k] * lower.col(k);
+      a_.col(j).segment<kPanel>(first) = u;
+    }
+  }
+
+  Eigen::Map<MatrixX> a_;
+  std::span<int> pivot_;
+  int size_, pivots_;
+};
 
 }  // namespace
+
+bool eliminate(Eigen::Map<MatrixX> a, std::span<int> pivot) {
+  return LuElimination(a, pivot).run();
+}
 
 void DenseLu::reserve(int size) {
   if (pivot_.size() >= static_cast<std::size_t>(size)) return;
@@ -23,55 +131,7 @@ void DenseLu::reserve(int size) {
 
 bool DenseLu::factorise(int size) {
   size_ = size;
-  for (int first = 0; first < size; first += kPanel) {
-    const int width = std::min(kPanel, size - first);
-    if (!factor_panel(first, width)) return false;
-    apply_panel(first, width);
-  }
-  return true;
-}
-
-bool DenseLu::factor_panel(int first, int width) {
-  auto a = matrix(size_);
-  for (int k = first; k < first + width; ++k) {
-    Eigen::Index below = 0;
-    const double largest = a.col(k).tail(size_ - k).cwiseAbs().maxCoeff(&below);
-    if (!(largest > std::numeric_limits<double>::min())) return false;
-    const auto pivot = static_cast<int>(below) + k;
-    pivot_[static_cast<std::size_t>(k)] = pivot;
-    if (pivot != k) a.row(k).swap(a.row(pivot));
-    const int rest = size_ - k - 1;
-    a.col(k).tail(rest) /= a(k, k);
-    for (int j = k + 1; j < first + width; ++j) {
-      add_scaled(&a(k, j) + 1, -a(k, j), &a(k, k) + 1, rest);
-    }
-  }
-  return true;
-}
-
-// Columns right of the panel: the rows of U, and the rank-`width` update below them.
-void DenseLu::apply_panel(int first, int width) {
-  auto a = matrix(size_);
-  const int end = first + width, rest = size_ - end;
-  for (int j = end; j < size_; ++j) {
-    double* column = &a(0, j);
-    for (int k = first; k < end; ++k) {
-      add_scaled(column + k + 1, -column[k], &a(k, k) + 1, end - k - 1);
-    }
-    if (rest == 0) continue;
-    if (width < kPanel) {
-      for (int k = first; k < end; ++k) add_scaled(column + end, -column[k], &a(end, k), rest);
-      continue;
-    }
-    Eigen::Map<VectorX> below(column + end, rest);
-    const Eigen::Map<const Eigen::Matrix<double, kPanel, 1>> factors(column + first);
-    for (int k = 0; k < kPanel; k += 4) {
-      below -= a.col(first + k).tail(rest) * factors[k] +
-               a.col(first + k + 1).tail(rest) * factors[k + 1] +
-               a.col(first + k + 2).tail(rest) * factors[k + 2] +
-               a.col(first + k + 3).tail(rest) * factors[k + 3];
-    }
-  }
+  return eliminate(matrix(size), std::span(pivot_).first(static_cast<std::size_t>(size)));
 }
 
 void DenseLu::solve(Eigen::Ref<VectorX> right) const {

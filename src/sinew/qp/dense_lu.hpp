@@ -2,13 +2,21 @@
 /// LU factorisation with partial pivoting in storage that grows and is kept.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "sinew/core/types.hpp"
 
 namespace sinew::qp {
 
-/// P A = L U of a general matrix (Golub & Van Loan 2013, algorithm 3.4.1, by panels of columns).
+/// Eliminates the first `pivot.size()` rows and columns of a square matrix in place: P A = L U there
+/// (Golub & Van Loan 2013, algorithm 3.4.1), and in the rest A_22 - L_21 U_12. Pivots are taken by
+/// rows among the eliminated ones. Works by columns of a cache's size from left to right, each by
+/// panels; how columns are grouped changes no bit. @param a (n, n). @param pivot (k,) out: the row
+/// that row i was swapped with. @return false where a pivot vanishes.
+bool eliminate(Eigen::Map<MatrixX> a, std::span<int> pivot);
+
+/// The factors of a whole matrix.
 class DenseLu {
  public:
   /// @param size unknowns of the systems to come.
@@ -23,9 +31,6 @@ class DenseLu {
   void solve(Eigen::Ref<VectorX> right) const;
 
  private:
-  bool factor_panel(int first, int width);
-  void apply_panel(int first, int width);
-
   std::vector<double> storage_;
   std::vector<int> pivot_;
   int size_ = 0;
