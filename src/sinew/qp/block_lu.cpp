@@ -159,7 +159,8 @@ void BlockLu::assemble(const Front& front) {
   const auto number = static_cast<std::size_t>(&front - fronts_.data());
   for (int c = children_begin_[number]; c < children_begin_[number + 1]; ++c) {
     const Front& child = fronts_[at(children_[at(c)])];
-    const auto rest = matrix(child).bottomRightCorner(child.size - child.own, child.size - child.own);
+    const auto rest =
+        matrix(child).bottomRightCorner(child.size - child.own, child.size - child.own);
     const int* place = &in_parent_[child.in_parent];
     for (Eigen::Index j = 0; j < rest.cols(); ++j) {
       double* column = &a(0, place[j]);

@@ -32,12 +32,12 @@ class BlockLu {
 
  private:
   struct Front {
-    int size = 0, own = 0;      // rows, and those that are eliminated
-    std::size_t storage = 0;    // (size, size) doubles
-    std::size_t row = 0;        // into row_: the unknown that each row is
-    std::size_t pivot = 0;      // into pivot_
-    int parent = -1;            // front that takes the rest
-    std::size_t in_parent = 0;  // into in_parent_: rows of the rest there
+    int size = 0, own = 0;                       // rows, and those that are eliminated
+    std::size_t storage = 0;                     // (size, size) doubles
+    std::size_t row = 0;                         // into row_: the unknown that each row is
+    std::size_t pivot = 0;                       // into pivot_
+    int parent = -1;                             // front that takes the rest
+    std::size_t in_parent = 0;                   // into in_parent_: rows of the rest there
     std::size_t block_begin = 0, block_end = 0;  // of placements_
   };
   struct Placement {

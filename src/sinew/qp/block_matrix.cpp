@@ -1,6 +1,7 @@
 #include "sinew/qp/block_matrix.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace sinew::qp {
 
@@ -83,8 +84,10 @@ void BlockMatrix::mirror() {
   for (std::size_t j = 0; j < count; ++j) start_[j + 1] += start_[j];
   row_.resize(at(start_.back()));
   values_.resize(9 * row_.size());
+  diagonal_.resize(count);
   place_.assign(start_.begin(), start_.end() - 1);
   const auto put = [&](int i, int j, std::size_t from, bool transposed) {
+    if (i == j) diagonal_[at(j)] = place_[at(j)];
     const auto to = at(place_[at(j)]++);
     row_[to] = i;
     const Eigen::Map<const Matrix3> block(&lower_values_[9 * from]);
@@ -107,16 +110,17 @@ void BlockMatrix::assign(const BlockMatrix& whole, std::span<const int> members,
   start_.assign(1, 0);
   row_.clear();
   values_.clear();
+  diagonal_.clear();
   int rows = 0;
   for (const int j : members) {
     nodes_.push_back({rows, whole.node(j).size});
     rows += whole.node(j).size;
+    diagonal_.push_back(start_.back() + whole.diagonal_[at(j)] - whole.start_[at(j)]);
     for (int e = whole.start_[at(j)]; e < whole.start_[at(j) + 1]; ++e) {
       row_.push_back(number[at(whole.row_[at(e)])]);
     }
     const auto from = whole.values_.begin() + 9 * whole.start_[at(j)];
-    values_.insert(values_.end(), from,
-                   from + 9 * (whole.start_[at(j) + 1] - whole.start_[at(j)]));
+    values_.insert(values_.end(), from, from + 9 * (whole.start_[at(j) + 1] - whole.start_[at(j)]));
     start_.push_back(static_cast<int>(row_.size()));
   }
 }
@@ -132,6 +136,12 @@ void BlockMatrix::gather(std::span<const int> members, std::span<const int> numb
           block(e).topLeftCorner(row.size, own[k].size);
     }
   }
+}
+
+bool BlockMatrix::all_finite() const {
+  double sum = 0.0;
+  for (const double value : std::span(values_).first(9 * row_.size())) sum += value;
+  return std::isfinite(sum);
 }
 
 void BlockMatrix::add_column(int j, const Vector3& by, Eigen::Ref<VectorX> y) const {

@@ -48,6 +48,10 @@ class BlockMatrix {
   Eigen::Map<const Matrix3> block(int entry) const {
     return Eigen::Map<const Matrix3>(&values_[9 * static_cast<std::size_t>(entry)]);
   }
+  Eigen::Map<const Matrix3> diagonal(int j) const {
+    return block(diagonal_[static_cast<std::size_t>(j)]);
+  }
+  bool all_finite() const;
   /// y += A(:, columns of node j) by, on rows as the nodes give them. @param by (3,), as many as
   /// the node has. @param y (n,).
   void add_column(int j, const Vector3& by, Eigen::Ref<VectorX> y) const;
@@ -56,7 +60,7 @@ class BlockMatrix {
   void mirror();
 
   std::vector<BlockNode> nodes_;
-  std::vector<int> start_, row_;
+  std::vector<int> start_, row_, diagonal_;
   linalg::AlignedNumbers values_;
   // The lower triangle on its way in, and places in the columns.
   std::vector<int> lower_row_, lower_column_, place_;

@@ -7,137 +7,240 @@
 //   its limit, where x - (y - target)/w is beyond it, else y = target.
 // Blocks with a given x leave the system; the others' equations are linearised. The residual may
 // rise while blocks change their branch, and x may leave the cones: projecting it onto them in
-// between would take away what makes the steps Newton's.
+// between would take away what makes the steps Newton's. The proximal term a D (cone_solver.hpp)
+// is added to the matrix alone, since it is zero at the present iterate.
 #include <algorithm>
 #include <cmath>
 
-#include "sinew/qp/cone_workspace.hpp"
+#include "sinew/qp/cone_island.hpp"
 
 namespace sinew::qp {
 
 namespace {
 
 constexpr int kMostSteps = 30;
-// Of the diagonal, on the change of x. Keeps what redundant contacts leave undetermined from
-// growing out of rounding.
-constexpr double kNewtonProximal = 1e-9;
+// The proximal term, in parts of the diagonal: in proportion to the relative residual, and at least
+// so much that what redundant contacts leave undetermined does not grow out of rounding. Where W is
+// regular but stiff, the least is better; every second try has it.
+constexpr double kProximalShare = 0.1, kMostProximal = 1e-2;
+constexpr double kRedundantProximal = 1e-6, kLeastProximal = 1e-9;
+// Up to so many rows, so many steps with the least are tried first: they are cheap.
+constexpr int kPlainRows = 96, kPlainSteps = 12;
+// Rows whose diagonal is under this part of w take the proximal term from w.
+constexpr double kStiff = 1e-12;
+
+double with_proximal(double own, double scale, double proximal) {
+  return own > kStiff * scale ? own * (1.0 + proximal) : own + proximal * scale;
+}
 
 }  // namespace
 
-bool ConeSolver::Workspace::newton(const ConeProblem& problem) {
-  const auto keep = [&] { std::copy_n(x.data(), x.size(), best.data()); };
+bool ConeIsland::newton(const ConePart& part) {
+  const int tries = newton_tries_++;
+  if (tries == 0 && x_.size() <= kPlainRows) {
+    if (newton_steps(part, kPlainSteps, [](double) { return kLeastProximal; })) return true;
+  }
+  const double least = tries % 2 == 0 ? kRedundantProximal : kLeastProximal;
+  return newton_steps(part, kMostSteps, [least](double residual) {
+    return std::clamp(kProximalShare * residual, least, kMostProximal);
+  });
+}
+
+// At most so many steps; without success the iterate is the best of them. @param proximal its size
+// for a relative residual.
+bool ConeIsland::newton_steps(const ConePart& part, int most, auto&& proximal) {
+  const auto keep = [&] { std::copy_n(x_.data(), x_.size(), best_.data()); };
   keep();
-  double least = result.residual;
-  for (int step = 0; step < kMostSteps; ++step) {
-    const int count = choose_unknowns(problem);
-    if (count > settings.newton_limit) break;
-    measure_motion(problem);
-    form_system(problem, count);
-    if (count > 0 && !lu.factorise(count)) break;
-    if (count > 0) lu.solve(right.head(count));
-    ++result.newton_steps;
-    move_unknowns(count);
-    measure_motion(problem);
-    const double residual = judge(problem);
+  double least = result_.residual;
+  for (int step = 0; step < most; ++step) {
+    const double relative = miss_.distance / std::max(miss_.effort, 1e-300);
+    if (!newton_step(part, proximal(relative))) break;
+    const double residual = judge(part);
     if (residual < least) {
       least = residual;
       keep();
     }
-    if (residual <= settings.tolerance) {
-      settle_into_blocks(problem);
-      measure_motion(problem);
-      if (judge(problem) <= settings.tolerance) return true;
+    if (residual <= settings_.tolerance) {
+      settle_into_blocks(part.problem);
+      measure_motion(part);
+      if (judge(part) <= settings_.tolerance) return true;
     }
     if (!std::isfinite(residual)) break;
   }
-  std::copy_n(best.data(), x.size(), x.data());
-  settle_into_blocks(problem);
-  measure_motion(problem);
-  judge(problem);
+  std::copy_n(best_.data(), x_.size(), x_.data());
+  settle_into_blocks(part.problem);
+  measure_motion(part);
+  judge(part);
   return false;
 }
 
+bool ConeIsland::newton_step(const ConePart& part, double proximal) {
+  const int count = choose_unknowns(part.problem);
+  if (part.blocks == nullptr && count > settings_.newton_limit) return false;
+  measure_motion(part);
+  form_right(part.problem);
+  right_.head(count).array() *= row_scale_.head(count).array();
+  if (count > 0) {
+    const bool solved = part.blocks != nullptr ? solve_sparse(part, count, proximal)
+                                               : solve_dense(part, count, proximal);
+    if (!solved) return false;
+  }
+  ++result_.newton_steps;
+  move_unknowns(count);
+  measure_motion(part);
+  return true;
+}
+
 // Puts blocks with a given x there; the others' rows are the unknowns.
-int ConeSolver::Workspace::choose_unknowns(const ConeProblem& problem) {
+int ConeIsland::choose_unknowns(const ConeProblem& problem) {
   int count = 0;
   for (std::size_t k = 0; k < problem.boxes.size(); ++k) {
     const BoxBlock& box = problem.boxes[k];
-    box_at[k] = -1;
-    if (!(box_scale[k] > 0.0)) continue;
-    const double aim = x[box.row] - (motion[box.row] - box.target) / box_scale[k];
+    box_at_[k] = -1;
+    if (!(box_scale_[k] > 0.0)) continue;
+    const double aim = x_[box.row] - (motion_[box.row] - box.target) / box_scale_[k];
     if (aim <= box.lower || aim >= box.upper) {
-      x[box.row] = aim <= box.lower ? box.lower : box.upper;
+      x_[box.row] = aim <= box.lower ? box.lower : box.upper;
       continue;
     }
-    unknown_row[static_cast<std::size_t>(count)] = box.row;
-    row_scale[count] = 1.0 / std::sqrt(box_scale[k]);
-    box_at[k] = count++;
+    unknown_row_[static_cast<std::size_t>(count)] = box.row;
+    row_scale_[count] = 1.0 / std::sqrt(box_scale_[k]);
+    box_at_[k] = count++;
   }
   for (std::size_t k = 0; k < problem.cones.size(); ++k) {
     const int row = problem.cones[k].row;
-    cone_at[k] = -1;
-    if (!usable(k) || x[row] - motion[row] / scale[k] <= 0.0) {
-      x.segment<3>(row).setZero();
+    cone_at_[k] = -1;
+    if (!usable(k) || x_[row] - motion_[row] / scale_[k] <= 0.0) {
+      x_.segment<3>(row).setZero();
       continue;
     }
-    cone_at[k] = count;
-    row_scale.segment<3>(count).setConstant(1.0 / std::sqrt(scale[k]));
-    for (int c = 0; c < 3; ++c) unknown_row[static_cast<std::size_t>(count++)] = row + c;
+    cone_at_[k] = count;
+    row_scale_.segment<3>(count).setConstant(1.0 / std::sqrt(scale_[k]));
+    for (int c = 0; c < 3; ++c) unknown_row_[static_cast<std::size_t>(count++)] = row + c;
   }
   return count;
 }
 
-void ConeSolver::Workspace::form_system(const ConeProblem& problem, int count) {
-  unknowns = count;
-  lu.reserve(count);
-  auto system = lu.matrix(count);
-  for (int j = 0; j < count; ++j) {
-    const auto column = problem.matrix.col(unknown_row[static_cast<std::size_t>(j)]);
-    for (int i = 0; i < count; ++i) {
-      system(i, j) = column[unknown_row[static_cast<std::size_t>(i)]];
-    }
-    system(j, j) *= 1.0 + kNewtonProximal;
-  }
-  for (std::size_t k = 0; k < problem.boxes.size(); ++k) {
-    const BoxBlock& box = problem.boxes[k];
-    if (box_at[k] >= 0) right[box_at[k]] = box.target - motion[box.row];
-  }
-  for (std::size_t k = 0; k < problem.cones.size(); ++k) {
-    if (cone_at[k] >= 0) form_cone(problem, k, cone_at[k]);
-  }
-  for (int j = 0; j < count; ++j)
-    system.col(j).array() *= row_scale[j] * row_scale.head(count).array();
-  right.head(count).array() *= row_scale.head(count).array();
-}
-
-// `at` rows of the system hold W on entry, which is the derivative of u.
-void ConeSolver::Workspace::form_cone(const ConeProblem& problem, std::size_t number, int at) {
+// d(r_t - mu s_n e) = dr_t - mu e ds_n - (mu s_n/|s_t|)(I - e e^T) ds_t, e = s_t/|s_t|,
+// ds = dr - du/w; times w, so that all rows are motions.
+ConeIsland::Branch ConeIsland::branch(const ConeProblem& problem, std::size_t number) const {
   const int row = problem.cones[number].row;
-  const double mu = problem.cones[number].friction, w = scale[number];
-  const Vector3 r = x.segment<3>(row), u = motion.segment<3>(row);
+  const double mu = problem.cones[number].friction, w = scale_[number];
+  const Vector3 r = x_.segment<3>(row), u = motion_.segment<3>(row);
   const Vector3 s = r - u / w;
-  right.segment<3>(at) = -u;
+  Branch result;
+  result.right = -u;
   const double far = s.tail<2>().norm();
-  if (far <= mu * s[0] && mu > 0.0) return;
-  // d(r_t - mu s_n e) = dr_t - mu e ds_n - (mu s_n/|s_t|)(I - e e^T) ds_t, e = s_t/|s_t|,
-  // ds = dr - du/w; times w, so that all rows are motions.
-  auto system = lu.matrix(unknowns);
+  if (far <= mu * s[0] && mu > 0.0) return result;
+  result.slips = true;
+  result.weight = w;
   Eigen::Vector2d e = Eigen::Vector2d::Zero();
   if (far > 0.0) e = s.tail<2>() / far;
   const double share = far > 0.0 ? mu * s[0] / far : 0.0;
-  const Eigen::Matrix2d across = share * (Eigen::Matrix2d::Identity() - e * e.transpose());
-  for (Eigen::Index j = 0; j < system.cols(); ++j) {
-    const Vector3 du = system.block<3, 1>(at, j);
-    system.block<2, 1>(at + 1, j) = mu * e * du[0] + across * du.tail<2>();
-  }
-  system.block<2, 1>(at + 1, at) -= w * mu * e;
-  system.block<2, 2>(at + 1, at + 1) += w * (Eigen::Matrix2d::Identity() - across);
-  right.segment<2>(at + 1) = -w * (r.tail<2>() - mu * s[0] * e);
+  result.friction = mu;
+  result.direction = e;
+  result.across = share * (Eigen::Matrix2d::Identity() - e * e.transpose());
+  result.right.tail<2>() = -w * (r.tail<2>() - mu * s[0] * e);
+  return result;
 }
 
-void ConeSolver::Workspace::move_unknowns(int count) {
+Vector3 ConeIsland::Branch::act(const Vector3& du) const {
+  Vector3 result;
+  result[0] = du[0];
+  result.tail<2>() = friction * direction * du[0] + across * du.tail<2>();
+  return result;
+}
+
+Matrix3 ConeIsland::Branch::own() const {
+  Matrix3 result = Matrix3::Zero();
+  result.block<2, 1>(1, 0) = -(weight * friction * direction);
+  result.block<2, 2>(1, 1) = weight * (Eigen::Matrix2d::Identity() - across);
+  return result;
+}
+
+void ConeIsland::form_right(const ConeProblem& problem) {
+  for (std::size_t k = 0; k < problem.boxes.size(); ++k) {
+    const BoxBlock& box = problem.boxes[k];
+    if (box_at_[k] >= 0) right_[box_at_[k]] = box.target - motion_[box.row];
+  }
+  for (std::size_t k = 0; k < problem.cones.size(); ++k) {
+    if (cone_at_[k] < 0) continue;
+    branches_[k] = branch(problem, k);
+    right_.segment<3>(cone_at_[k]) = branches_[k].right;
+  }
+}
+
+bool ConeIsland::solve_dense(const ConePart& part, int count, double proximal) {
+  lu_.reserve(count);
+  auto system = lu_.matrix(count);
   for (int j = 0; j < count; ++j) {
-    x[unknown_row[static_cast<std::size_t>(j)]] += row_scale[j] * right[j];
+    const auto column = part.problem.matrix.col(unknown_row_[static_cast<std::size_t>(j)]);
+    for (int i = 0; i < count; ++i) {
+      system(i, j) = column[unknown_row_[static_cast<std::size_t>(i)]];
+    }
+    const double scale = 1.0 / (row_scale_[j] * row_scale_[j]);
+    system(j, j) = with_proximal(system(j, j), scale, proximal);
+  }
+  for (std::size_t k = 0; k < part.problem.cones.size(); ++k) {
+    const int at = cone_at_[k];
+    if (at < 0 || !branches_[k].slips) continue;
+    for (int j = 0; j < count; ++j) {
+      system.block<3, 1>(at, j) = branches_[k].act(system.block<3, 1>(at, j));
+    }
+    system.block<3, 3>(at, at) += branches_[k].own();
+  }
+  for (int j = 0; j < count; ++j) {
+    system.col(j).array() *= row_scale_[j] * row_scale_.head(count).array();
+  }
+  if (!lu_.factorise(count)) return false;
+  lu_.solve(right_.head(count));
+  return true;
+}
+
+// The rows of blocks with a given x are those of the unit matrix, so that the pattern stays.
+bool ConeIsland::solve_sparse(const ConePart& part, int count, double proximal) {
+  const BlockMatrix& w = *part.blocks;
+  const std::size_t boxes = part.problem.boxes.size();
+  const auto place = [&](std::size_t node) {
+    return node < boxes ? box_at_[node] : cone_at_[node - boxes];
+  };
+  for (int j = 0; j < w.nodes(); ++j) {
+    const int column = place(static_cast<std::size_t>(j));
+    for (int e = w.starts()[static_cast<std::size_t>(j)];
+         e < w.starts()[static_cast<std::size_t>(j) + 1]; ++e) {
+      const auto i = static_cast<std::size_t>(w.rows()[static_cast<std::size_t>(e)]);
+      const int row = place(i);
+      Eigen::Map<Matrix3> block(part.lu->block(e));
+      if (row < 0 || column < 0) {
+        block.setZero();
+        if (static_cast<int>(i) == j) block.setIdentity();
+        continue;
+      }
+      block = w.block(e);
+      const bool own = static_cast<int>(i) == j;
+      const double scale = row_scale_[row] * row_scale_[column];
+      for (int c = 0; own && c < 3; ++c) {
+        block(c, c) = with_proximal(block(c, c), 1.0 / scale, proximal);
+      }
+      if (i >= boxes && branches_[i - boxes].slips) {
+        for (int c = 0; c < 3; ++c) block.col(c) = branches_[i - boxes].act(block.col(c));
+        if (own) block += branches_[i - boxes].own();
+      }
+      block *= scale;
+    }
+  }
+  if (!part.lu->factorise()) return false;
+  auto step = step_.head(x_.size());
+  step.setZero();
+  for (int k = 0; k < count; ++k) step[unknown_row_[static_cast<std::size_t>(k)]] = right_[k];
+  part.lu->solve(step);
+  for (int k = 0; k < count; ++k) right_[k] = step[unknown_row_[static_cast<std::size_t>(k)]];
+  return true;
+}
+
+void ConeIsland::move_unknowns(int count) {
+  for (int j = 0; j < count; ++j) {
+    x_[unknown_row_[static_cast<std::size_t>(j)]] += row_scale_[j] * right_[j];
   }
 }
 

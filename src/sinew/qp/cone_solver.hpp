@@ -1,7 +1,7 @@
 /// @file
-/// Complementarity problems over a dense compliance whose blocks are friction cones and boxes:
-/// block Gauss-Seidel with exact local solutions, and Newton's method to finish. Knows no physics
-/// beyond the cone.
+/// Complementarity problems over a compliance whose blocks are friction cones and boxes: block
+/// Gauss-Seidel with exact local solutions, and a proximal Newton's method to finish. Knows no
+/// physics beyond the cone.
 #pragma once
 
 #include <memory>
@@ -37,6 +37,14 @@ struct ConeProblem {
   std::span<const ConeBlock> cones;
 };
 
+struct SparseConeProblem;  // sparse_cone_problem.hpp
+
+/// What a tolerance is of.
+enum class ConeMeasure {
+  per_block,    ///< ConeResult::residual as it is defined there: for efforts of several units
+  natural_map,  ///< |x - P(x - v)|/|offset|, norms over all blocks: as published benchmarks have it
+};
+
 /// How a solve ended.
 enum class ConeStatus {
   solved,
@@ -52,7 +60,8 @@ struct ConeSettings {
   double tolerance = 1e-10;  ///< of `residual`
   int max_sweeps = 2000;     ///< of Gauss-Seidel
   int first_sweeps = 4;      ///< before Newton's method is tried; doubled at every further try
-  int newton_limit = 1500;   ///< unknowns; larger problems are left to Gauss-Seidel
+  int newton_limit = 1500;   ///< unknowns of a dense matrix; more are left to Gauss-Seidel
+  ConeMeasure measure = ConeMeasure::per_block;
 };
 
 struct ConeResult {
@@ -62,21 +71,36 @@ struct ConeResult {
   /// third of the trace of the block of the matrix, so that efforts of different units compare.
   /// With De Saxce's change of variables v = (u_n + mu |u_t|, u_t), Signorini's and Coulomb's laws
   /// together are K contains r _|_ v in K* (De Saxce & Feng 1998); the distance is |r - P_K(r -
-  /// v/w)|.
+  /// v/w)|. With ConeMeasure::natural_map that measure.
   double residual = 0.0;
   double signorini = 0.0;  ///< largest |min(u_n, w r_n)|: penetration, effort across a gap; as u
   double coulomb = 0.0;    ///< largest |w r_t - P(w r_t - u_t)|, P onto the disc of w mu r_n; as u
   double complementarity = 0.0;  ///< largest |u_n r_n|, as u times r
-  int sweeps = 0;
-  int newton_steps = 0;
+  int sweeps = 0;                ///< of the part of the problem that took most
+  int newton_steps = 0;          ///< likewise
 };
 
 /// Each sweep solves block after block exactly, all others held (Jean 1999's nonsmooth contact
 /// dynamics; local solutions as in Bonnefon & Daviet 2011). Gauss-Seidel is robust, and slow where
 /// many contacts hold one stiff body; its iterate then starts Newton's method on the equations that
 /// the projection leaves (Alart & Curnier 1991), whose steps are kept where they lessen the
-/// residual. Small multiples of the diagonal that act on the change of x alone, and so have no part
-/// in the solution, keep redundant contacts solvable.
+/// residual.
+///
+/// **Redundant contacts.** Rigid bodies on more contacts than they have coordinates make the matrix
+/// W singular: Newton's step is then one of many, as far away as rounding pleases, and the branches
+/// of the laws change for ever. The proximal point method (Rockafellar 1976; for contacts Acary,
+/// Bremond & Huber 2018, ch. 10) solves a sequence of problems with W + a D, D the diagonal of the
+/// w, and offset - a D x_k, x_k the last solution; each is well posed, and where x_k stays both
+/// have the same solution. Its inner problem needs no solution of its own: here x_k is the present
+/// iterate, so that each of Newton's steps is
+///     J(W + a D) dx = -F(x),
+/// a Levenberg-Marquardt method. With a in proportion to the residual its convergence stays
+/// quadratic where the distance from the solutions is bounded by the residual (Yamashita &
+/// Fukushima 2001; Fan & Yuan 2005), also where solutions are many. In small problems a few steps
+/// with a next to nothing are tried first: they take the shortest way where W is regular.
+///
+/// **Sparse matrices.** From 96 rows on, what has no block of W in common is solved apart, and a
+/// part with few blocks by sparse factorisations (BlockLu).
 class ConeSolver {
  public:
   explicit ConeSolver(ConeSettings settings = {});
@@ -84,10 +108,12 @@ class ConeSolver {
   ConeSolver(ConeSolver&&) noexcept;
   ConeSolver& operator=(ConeSolver&&) noexcept;
 
-  /// Allocates only for problems larger than all before. @param problem see there. @param x (n,)
-  /// in: where to start from; out: the solution, each block inside its cone or box exactly. Throws
+  /// Allocates only where a problem, or a part of it, is larger than all before, and for a sparse
+  /// part whose pattern is not that of the last solve. @param problem see there. @param x (n,) in:
+  /// where to start from; out: the solution, each block inside its cone or box exactly. Throws
   /// Error(wrong-shape).
   const ConeResult& solve(const ConeProblem& problem, std::span<double> x);
+  const ConeResult& solve(const SparseConeProblem& problem, std::span<double> x);
   const ConeResult& result() const;
 
  private:

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sinew/linalg/vector_lanes.hpp"
 #include "sinew/qp/dense_kernels.hpp"
 
 namespace sinew::qp {
@@ -13,6 +14,37 @@ namespace {
 constexpr int kPanel = 8;
 constexpr int kGroup = 64;  // columns that stay in the cache while all panels act on them
 static_assert(kGroup % kPanel == 0);
+
+constexpr int kTile = 4;  // columns that share the loads of a panel
+
+// C -= A F for columns of C and `depth` of A; all have the same leading dimension.
+template <int columns, int depth>
+void subtract(const double* a, const double* f, std::ptrdiff_t leading, double* c, int rows) {
+  using linalg::broadcast, linalg::kLanes, linalg::Lanes, linalg::load, linalg::store;
+  Lanes factor[columns][depth];
+  for (int j = 0; j < columns; ++j) {
+    for (int k = 0; k < depth; ++k) factor[j][k] = broadcast(f[k + j * leading]);
+  }
+  int i = 0;
+  for (; i + kLanes <= rows; i += kLanes) {
+    Lanes sum[columns];
+    SINEW_UNROLL
+    for (int j = 0; j < columns; ++j) sum[j] = load(c + i + j * leading);
+    SINEW_UNROLL
+    for (int k = 0; k < depth; ++k) {
+      const Lanes left = load(a + i + k * leading);
+      SINEW_UNROLL
+      for (int j = 0; j < columns; ++j) sum[j] -= left * factor[j][k];
+    }
+    SINEW_UNROLL
+    for (int j = 0; j < columns; ++j) store(c + i + j * leading, sum[j]);
+  }
+  for (; i < rows; ++i) {
+    for (int j = 0; j < columns; ++j) {
+      for (int k = 0; k < depth; ++k) c[i + j * leading] -= a[i + k * leading] * f[k + j * leading];
+    }
+  }
+}
 
 class LuElimination {
  public:
@@ -66,26 +98,34 @@ class LuElimination {
 
   // Columns begin .. end - 1: the rows of U, and the update of the panel's width below them.
   void apply_panel(int first, int begin, int end) {
-    if (width(first) < kPanel) return apply_narrow_panel(first, begin, end);
-    solve_rows(first, begin, end);
-    const int last = first + kPanel, rest = size_ - last;
-    if (rest == 0) return;
-    for (int j = begin; j < end; ++j) {
-      Eigen::Map<VectorX> below(&a_(last, j), rest);
-      const Eigen::Map<const Eigen::Matrix<double, kPanel, 1>> factors(&a_(first, j));
-      for (int k = 0; k < kPanel; k += 4) {
-        below -= a_.col(first + k).tail(rest) * factors[k] +
-                 a_.col(first + k + 1).tail(rest) * factors[k + 1] +
-                 a_.col(first + k + 2).tail(rest) * factors[k + 2] +
-                 a_.col(first + k + 3).tail(rest) * factors[k + 3];
-      }
+    if (width(first) == kPanel) {
+      solve_rows(first, begin, end);
+    } else {
+      solve_narrow_rows(first, begin, end);
+    }
+    const int last = first + width(first);
+    int j = begin;
+    for (; j + kTile <= end; j += kTile) update<kTile>(first, last, j);
+    for (; j < end; ++j) update<1>(first, last, j);
+  }
+
+  template <int columns>
+  void update(int first, int last, int column) {
+    const int rest = size_ - last;
+    int k = first;
+    for (; k + 4 <= last; k += 4) {
+      subtract<columns, 4>(&a_(last, k), &a_(k, column), size_, &a_(last, column), rest);
+    }
+    for (; k < last; ++k) {
+      subtract<columns, 1>(&a_(last, k), &a_(k, column), size_, &a_(last, column), rest);
     }
   }
 
-  void apply_narrow_panel(int first, int begin, int end) {
+  void solve_narrow_rows(int first, int begin, int end) {
+    const int last = first + width(first);
     for (int j = begin; j < end; ++j) {
-      for (int k = first; k < first + width(first); ++k) {
-        add_scaled(&a_(k, j) + 1, -a_(k, j), &a_(k, k) + 1, size_ - k - 1);
+      for (int k = first; k < last; ++k) {
+        add_scaled(&a_(k, j) + 1, -a_(k, j), &a_(k, k) + 1, last - k - 1);
       }
     }
   }

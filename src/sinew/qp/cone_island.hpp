@@ -1,0 +1,111 @@
+/// @file
+/// Gauss-Seidel and Newton on one part of a cone problem, all of whose blocks hang together: what
+/// ConeSolver works with.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sinew/linalg/scratch.hpp"
+#include "sinew/qp/block_lu.hpp"
+#include "sinew/qp/block_matrix.hpp"
+#include "sinew/qp/cone_solver.hpp"
+#include "sinew/qp/dense_lu.hpp"
+
+namespace sinew::qp {
+
+/// Sizes of the whole problem, against which its parts are measured.
+struct ConeScales {
+  double largest_offset = 0.0;  ///< of all cones, as u
+  double natural_unit = 0.0;    ///< |offset| of all blocks
+  int rows = 0;                 ///< of all blocks
+};
+
+/// A part of a problem. With `blocks`, the matrix is sparse and problem.matrix is empty; nodes are
+/// the boxes, then the cones, with the rows that these have.
+struct ConePart {
+  ConeProblem problem;
+  const BlockMatrix* blocks = nullptr;
+  BlockLu* lu = nullptr;              ///< for the sparse matrix
+  std::span<const double> box_scale;  ///< (boxes,) diagonal; 0: nothing can move here
+  std::span<const double> scale;      ///< (cones,) w; 0 likewise, and x is 0
+  ConeScales scales;
+};
+
+/// How far a part is from its laws.
+struct ConeMiss {
+  double distance = 0.0;  ///< largest |r - P_K(r - v/w)| sqrt(w)
+  double effort = 0.0;    ///< what it is measured against
+  double natural = 0.0;   ///< sum of squares of |r - P_K(r - v)|
+};
+
+class ConeIsland {
+ public:
+  explicit ConeIsland(const ConeSettings& settings) : settings_(settings) {}
+
+  /// x: in, where to start from; out, the solution. result().states is that of the part's cones.
+  ConeStatus solve(const ConePart& part, std::span<double> x);
+  const ConeResult& result() const { return result_; }
+  const ConeMiss& miss() const { return miss_; }
+
+ private:
+  void reserve(const ConeProblem& problem);
+  void prepare(const ConePart& part);
+  void settle_into_blocks(const ConeProblem& problem);
+  void measure_motion(const ConePart& part);
+  void sweep(const ConePart& part);
+  void sweep_box(const ConePart& part, std::size_t number);
+  void sweep_cone(const ConePart& part, std::size_t number);
+  double judge(const ConePart& part);
+  void judge_cone(const ConeProblem& problem, std::size_t number);
+  void judge_box(const BoxBlock& box, double offset, double scale);
+  void classify(const ConePart& part);
+
+  // Newton (cone_newton.cpp).
+  bool newton_pays(const ConePart& part) const;
+  bool newton(const ConePart& part);
+  bool newton_step(const ConePart& part, double proximal);
+  bool newton_steps(const ConePart& part, int most, auto&& proximal);
+  int choose_unknowns(const ConeProblem& problem);
+  bool solve_dense(const ConePart& part, int count, double proximal);
+  bool solve_sparse(const ConePart& part, int count, double proximal);
+  void form_right(const ConeProblem& problem);
+  void move_unknowns(int count);
+
+  bool usable(std::size_t cone) const { return scale_[cone] > 0.0; }
+
+  /// The equations of a cone that is not open, linearised: A du + B dr = right.
+  struct Branch {
+    bool slips = false;  // else A = 1, B = 0
+    double weight = 0.0;
+    double friction = 0.0;
+    Eigen::Vector2d direction;  // e
+    Eigen::Matrix2d across;     // (mu s_n/|s_t|)(I - e e^T)
+    Vector3 right;
+    Vector3 act(const Vector3& du) const;  // A du
+    Matrix3 own() const;                   // B
+  };
+  Branch branch(const ConeProblem& problem, std::size_t number) const;
+
+  ConeSettings settings_;
+  ConeResult result_;
+  ConeMiss miss_;
+  linalg::AlignedNumbers x_memory_, motion_memory_;
+  Eigen::Map<VectorX> x_{nullptr, 0}, motion_{nullptr, 0};  // (n,)
+  std::vector<ConeEquation> equations_;
+  std::span<const double> box_scale_, scale_;         // the part's
+  double largest_ = 0.0, floor_ = 0.0, asked_ = 0.0;  // of the blocks judged so far
+  double rounding_ = 0.0;
+
+  DenseLu lu_{0};
+  std::vector<Branch> branches_;  // (cones,)
+  int newton_tries_ = 0;
+  VectorX right_;                 // (unknowns,) and more
+  linalg::AlignedNumbers best_;   // (n,)
+  VectorX step_;                  // (n,) of a sparse matrix
+  VectorX row_scale_;             // (unknowns,) 1/sqrt(w), by which rows and columns are scaled
+  std::vector<int> unknown_row_;  // (count,) row of every unknown
+  std::vector<int> box_at_, cone_at_;  // position among the unknowns, or -1
+};
+
+}  // namespace sinew::qp
