@@ -9,7 +9,7 @@
 SI units everywhere. docs/python.md is the guide.
 """
 
-from . import errors, fields, mesh, pcc
+from . import errors, fields, mesh, pcc, qp
 from ._core import (
     Actuator,
     Body,
@@ -86,6 +86,7 @@ __all__ = [
     "materials",
     "mesh",
     "pcc",
+    "qp",
     "view",
 ]
 

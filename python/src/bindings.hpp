@@ -51,6 +51,7 @@ void bind_plan_reach(py::module_& module);
 void bind_brace(py::module_& module);
 void bind_plan_drive(py::module_& module);
 void bind_drive(py::module_& module);
+void bind_qp(py::module_& module);
 void bind_identify(py::module_& module);
 void bind_identify_arm(py::module_& module);
 void bind_identify_material(py::module_& module);
