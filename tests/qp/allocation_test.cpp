@@ -7,8 +7,10 @@
 
 #include "sinew/qp/cone_solver.hpp"
 #include "sinew/qp/elastic.hpp"
+#include "sinew/qp/sparse_cone_problem.hpp"
 
 #include "random_problem.hpp"
+#include "rigid_contacts.hpp"
 
 namespace {
 [[maybe_unused]] thread_local long allocations = 0;
@@ -119,6 +121,32 @@ TEST(Allocation, HappensInConeSolveOnlyForLargerProblems) {
   solve_all();
   EXPECT_EQ(allocations, before);
   EXPECT_GT(newton_steps, 0);
+}
+
+// Parts, of which some are sparse: a tower and a heap of bodies that do not touch it.
+TEST(Allocation, NeverHappensWhereAPatternIsSolvedAgain) {
+  Random random(12);
+  for (const RigidContacts& scene : {tower(12), heap(40, 3, 0.1, random)}) {
+    const Eigen::SparseMatrix<double> sparse = scene.matrix();
+    const MatrixX dense = sparse;
+    const VectorX offset = scene.offset();
+    std::vector<ConeBlock> cones;
+    for (int k = 0; k < scene.contacts(); ++k) cones.push_back({3 * k, 0.3});
+    std::vector<double> x(static_cast<std::size_t>(offset.size()));
+    ConeSolver solver;
+    const auto solve_both = [&] {
+      std::ranges::fill(x, 0.0);
+      solver.solve(SparseConeProblem{sparse, offset, {}, cones}, x);
+      const int steps = solver.result().newton_steps;
+      std::ranges::fill(x, 0.0);
+      solver.solve(ConeProblem{dense, offset, {}, cones}, x);
+      return steps;
+    };
+    EXPECT_GT(solve_both(), 0);
+    const long before = allocations;
+    solve_both();
+    EXPECT_EQ(allocations, before);
+  }
 }
 
 #endif

@@ -42,7 +42,8 @@ void ConeIsland::reserve(const ConeProblem& problem) {
 
 ConeStatus ConeIsland::solve(const ConePart& part, std::span<double> start) {
   reserve(part.problem);
-  result_.sweeps = result_.newton_steps = newton_tries_ = 0;
+  result_.sweeps = result_.newton_steps = 0;
+  newton_tries_ = 0;
   result_.states.assign(part.problem.cones.size(), ContactState::open);
   x_ = Eigen::Map<const VectorX>(start.data(), x_.size());
   if (!x_.allFinite()) x_.setZero();

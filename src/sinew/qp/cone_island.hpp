@@ -99,7 +99,7 @@ class ConeIsland {
 
   DenseLu lu_{0};
   std::vector<Branch> branches_;  // (cones,)
-  int newton_tries_ = 0;
+  std::size_t newton_tries_ = 0;
   VectorX right_;                 // (unknowns,) and more
   linalg::AlignedNumbers best_;   // (n,)
   VectorX step_;                  // (n,) of a sparse matrix

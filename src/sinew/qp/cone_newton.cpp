@@ -11,6 +11,7 @@
 // is added to the matrix alone, since it is zero at the present iterate.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "sinew/qp/cone_island.hpp"
 
@@ -19,11 +20,15 @@ namespace sinew::qp {
 namespace {
 
 constexpr int kMostSteps = 30;
-// The proximal term, in parts of the diagonal: in proportion to the relative residual, and at least
-// so much that what redundant contacts leave undetermined does not grow out of rounding. Where W is
-// regular but stiff, the least is better; every second try has it.
-constexpr double kProximalShare = 0.1, kMostProximal = 1e-2;
-constexpr double kRedundantProximal = 1e-6, kLeastProximal = 1e-9;
+// The proximal term, in parts of the diagonal: a share of the relative residual, and at least so
+// much that what redundant contacts leave undetermined does not grow out of rounding. More of it
+// takes more steps and fails less often. Where W is regular but stiff, next to nothing is best.
+struct Proximal {
+  double share, least;
+  double operator()(double residual) const { return std::clamp(share * residual, least, 0.1); }
+};
+constexpr double kLeast = 1e-9;
+constexpr Proximal kProximal[] = {{1.0, 1e-6}, {10.0, 1e-6}, {10.0, 1e-6}, {1.0, kLeast}};
 // Up to so many rows, so many steps with the least are tried first: they are cheap.
 constexpr int kPlainRows = 96, kPlainSteps = 12;
 // Rows whose diagonal is under this part of w take the proximal term from w.
@@ -36,14 +41,11 @@ double with_proximal(double own, double scale, double proximal) {
 }  // namespace
 
 bool ConeIsland::newton(const ConePart& part) {
-  const int tries = newton_tries_++;
+  const std::size_t tries = newton_tries_++;
   if (tries == 0 && x_.size() <= kPlainRows) {
-    if (newton_steps(part, kPlainSteps, [](double) { return kLeastProximal; })) return true;
+    if (newton_steps(part, kPlainSteps, [](double) { return kLeast; })) return true;
   }
-  const double least = tries % 2 == 0 ? kRedundantProximal : kLeastProximal;
-  return newton_steps(part, kMostSteps, [least](double residual) {
-    return std::clamp(kProximalShare * residual, least, kMostProximal);
-  });
+  return newton_steps(part, kMostSteps, kProximal[tries % std::size(kProximal)]);
 }
 
 // At most so many steps; without success the iterate is the best of them. @param proximal its size
