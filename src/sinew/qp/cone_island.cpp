@@ -36,6 +36,7 @@ void ConeIsland::reserve(const ConeProblem& problem) {
     right_.resize(static_cast<Eigen::Index>(2 * most));
     row_scale_.resize(right_.size());
     step_.resize(right_.size());
+    dual_.setZero(right_.size());
   }
   result_.states.reserve(cones);
 }
@@ -50,9 +51,10 @@ ConeStatus ConeIsland::solve(const ConePart& part, std::span<double> start) {
   prepare(part);
   settle_into_blocks(part.problem);
   measure_motion(part);
-  result_.status = ConeStatus::iteration_limit;
+  const bool towering = part.blocks != nullptr && alternate(part);
+  result_.status = towering ? ConeStatus::solved : ConeStatus::iteration_limit;
   int sweeps = settings_.first_sweeps;
-  while (result_.sweeps < settings_.max_sweeps) {
+  while (!towering && result_.sweeps < settings_.max_sweeps) {
     for (int k = 0; k < sweeps; ++k, ++result_.sweeps) sweep(part);
     measure_motion(part);
     if (judge(part) <= settings_.tolerance || (newton_pays(part) && newton(part))) {

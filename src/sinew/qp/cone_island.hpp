@@ -61,6 +61,13 @@ class ConeIsland {
   void judge_box(const BoxBlock& box, double offset, double scale);
   void classify(const ConePart& part);
 
+  // Alternating directions (cone_admm.cpp).
+  bool alternate(const ConePart& part);
+  double node_scale(std::size_t node) const;
+  bool factorise_proximal(const ConePart& part, double penalty);
+  void solve_proximal(const ConePart& part);
+  void project_and_update(const ConeProblem& problem);
+
   // Newton (cone_newton.cpp).
   bool newton_pays(const ConePart& part) const;
   bool newton(const ConePart& part);
@@ -102,7 +109,7 @@ class ConeIsland {
   std::size_t newton_tries_ = 0;
   VectorX right_;                 // (unknowns,) and more
   linalg::AlignedNumbers best_;   // (n,)
-  VectorX step_;                  // (n,) of a sparse matrix
+  VectorX step_, dual_;           // (n,) of a sparse matrix
   VectorX row_scale_;             // (unknowns,) 1/sqrt(w), by which rows and columns are scaled
   std::vector<int> unknown_row_;  // (count,) row of every unknown
   std::vector<int> box_at_, cone_at_;  // position among the unknowns, or -1

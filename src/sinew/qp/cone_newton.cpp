@@ -19,16 +19,17 @@ namespace sinew::qp {
 
 namespace {
 
-constexpr int kMostSteps = 30;
+constexpr int kMostSteps = 30, kMostVain = 20;  // in all, and without a lesser residual
 // The proximal term, in parts of the diagonal: a share of the relative residual, and at least so
 // much that what redundant contacts leave undetermined does not grow out of rounding. More of it
 // takes more steps and fails less often. Where W is regular but stiff, next to nothing is best.
 struct Proximal {
-  double share, least;
-  double operator()(double residual) const { return std::clamp(share * residual, least, 0.1); }
+  double share, least, most;
+  double operator()(double residual) const { return std::clamp(share * residual, least, most); }
 };
 constexpr double kLeast = 1e-9;
-constexpr Proximal kProximal[] = {{1.0, 1e-6}, {10.0, 1e-6}, {10.0, 1e-6}, {1.0, kLeast}};
+constexpr Proximal kProximal[] = {
+    {0.1, 1e-6, 1e-2}, {1.0, 1e-6, 0.1}, {10.0, 1e-6, 0.1}, {1.0, kLeast, 0.1}};  // in turn
 // Up to so many rows, so many steps with the least are tried first: they are cheap.
 constexpr int kPlainRows = 96, kPlainSteps = 12;
 // Rows whose diagonal is under this part of w take the proximal term from w.
@@ -54,12 +55,13 @@ bool ConeIsland::newton_steps(const ConePart& part, int most, auto&& proximal) {
   const auto keep = [&] { std::copy_n(x_.data(), x_.size(), best_.data()); };
   keep();
   double least = result_.residual;
-  for (int step = 0; step < most; ++step) {
+  for (int step = 0, vain = 0; step < most && vain < kMostVain; ++step, ++vain) {
     const double relative = miss_.distance / std::max(miss_.effort, 1e-300);
     if (!newton_step(part, proximal(relative))) break;
     const double residual = judge(part);
     if (residual < least) {
       least = residual;
+      vain = 0;
       keep();
     }
     if (residual <= settings_.tolerance) {

@@ -100,7 +100,8 @@ struct ConeResult {
 /// with a next to nothing are tried first: they take the shortest way where W is regular.
 ///
 /// **Sparse matrices.** From 96 rows on, what has no block of W in common is solved apart, and a
-/// part with few blocks by sparse factorisations (BlockLu).
+/// part with few blocks by sparse factorisations (BlockLu), first for a few iterations by
+/// alternating directions (cone_admm.cpp), which is all that a tower needs.
 class ConeSolver {
  public:
   explicit ConeSolver(ConeSettings settings = {});
