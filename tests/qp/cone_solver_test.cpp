@@ -11,6 +11,7 @@
 #include "sinew/qp/quadratic_program.hpp"
 
 #include "random_problem.hpp"
+#include "rigid_contacts.hpp"
 
 namespace sinew::qp {
 namespace {
@@ -151,8 +152,6 @@ TEST(ConeSolver, SolvesRandomContacts) {
     }
   }
 }
-
-std::span<double> span_of(VectorX& x) { return {x.data(), static_cast<std::size_t>(x.size())}; }
 
 // Without friction the problem is min 1/2 x^T W x + q^T x over normal efforts >= 0.
 TEST(ConeSolver, WithoutFrictionIsTheQuadraticProgram) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include <Eigen/SparseCore>
@@ -188,6 +189,10 @@ inline RigidContacts heap(int bodies, int touches, double speed, Random& random)
     }
   }
   return scene;
+}
+
+inline std::span<double> span_of(VectorX& x) {
+  return {x.data(), static_cast<std::size_t>(x.size())};
 }
 
 /// |r - P_K(r - v)|/|q| of all contacts, written out independently of the solver: P by the cases of

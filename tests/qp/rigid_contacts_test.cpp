@@ -26,8 +26,6 @@ std::vector<ConeBlock> cones_of(int contacts, double friction) {
   return cones;
 }
 
-std::span<double> span_of(VectorX& x) { return {x.data(), static_cast<std::size_t>(x.size())}; }
-
 void expect_solved(const RigidContacts& scene, double friction, const std::string& name) {
   const std::vector<ConeBlock> cones = cones_of(scene.contacts(), friction);
   const auto w = scene.matrix();

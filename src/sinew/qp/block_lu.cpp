@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "sinew/linalg/index.hpp"
 #include "sinew/linalg/supernodes.hpp"
 #include "sinew/qp/dense_lu.hpp"
 
@@ -12,7 +13,7 @@ namespace {
 // Small fronts cost more than the zeros that joining them stores.
 constexpr linalg::SupernodeSettings kSupernodes{.zero_blocks = 24, .zero_fraction = 0.0};
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 linalg::SupernodePartition supernodes(const BlockMatrix& pattern) {
   linalg::BlockPattern lower;

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sinew/linalg/index.hpp"
+
 namespace sinew::qp {
 
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 }  // namespace
 

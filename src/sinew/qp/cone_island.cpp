@@ -8,9 +8,9 @@ namespace sinew::qp {
 
 namespace {
 
-constexpr double kConeProximal = 1e-12;  // of the diagonal
-constexpr double kNewtonShare = 0.3;     // of the cost of a step of Newton's
-constexpr double kRounding = 1e-14;      // of the largest offset
+constexpr double kConeProximal = 1e-12;    // of the diagonal
+constexpr double kNewtonShare = 0.3;       // of the cost of a step of Newton's
+constexpr double kOffsetRounding = 1e-14;  // of the largest offset
 // Efforts that are larger, times what the free motion asks of one block alone, measure nothing:
 // they grow without limit where no motion can obey all blocks.
 constexpr double kMostEffort = 1e4;
@@ -84,7 +84,7 @@ bool ConeIsland::newton_pays(const ConePart& part) const {
 void ConeIsland::prepare(const ConePart& part) {
   scale_ = part.scale;
   box_scale_ = part.box_scale;
-  rounding_ = kRounding * part.scales.largest_offset;
+  rounding_ = kOffsetRounding * part.scales.largest_offset;
   const std::size_t first_node = part.problem.boxes.size();
   for (std::size_t k = 0; k < part.problem.cones.size(); ++k) {
     if (!usable(k)) continue;
@@ -215,7 +215,7 @@ void ConeIsland::judge_box(const BoxBlock& box, double offset, double scale) {
   miss_.distance = std::max(miss_.distance, unit * std::abs(miss));
   largest_ = std::max(largest_, unit * std::abs(at));
   asked_ = std::max(asked_, std::abs(offset - box.target) / unit);
-  floor_ = std::max(floor_, kRounding * std::abs(box.target) / unit);
+  floor_ = std::max(floor_, kOffsetRounding * std::abs(box.target) / unit);
   const double natural = at - std::clamp(at - beyond, box.lower, box.upper);
   miss_.natural += natural * natural;
 }

@@ -19,7 +19,7 @@ namespace sinew::qp {
 
 namespace {
 
-constexpr int kMostSteps = 30, kMostVain = 20;  // in all, and without a lesser residual
+constexpr int kMostNewtonSteps = 30, kMostVain = 20;  // in all, and without a lesser residual
 // The proximal term, in parts of the diagonal: a share of the relative residual, and at least so
 // much that what redundant contacts leave undetermined does not grow out of rounding. More of it
 // takes more steps and fails less often. Where W is regular but stiff, next to nothing is best.
@@ -35,8 +35,10 @@ constexpr int kPlainRows = 96, kPlainSteps = 12;
 // Rows whose diagonal is under this part of w take the proximal term from w.
 constexpr double kStiff = 1e-12;
 
-double with_proximal(double own, double scale, double proximal) {
-  return own > kStiff * scale ? own * (1.0 + proximal) : own + proximal * scale;
+// @param row_scale 1/sqrt(w).
+double with_proximal(double own, double row_scale, double proximal) {
+  const double square = row_scale * row_scale;
+  return own * square > kStiff ? own * (1.0 + proximal) : own + proximal / square;
 }
 
 }  // namespace
@@ -46,7 +48,7 @@ bool ConeIsland::newton(const ConePart& part) {
   if (tries == 0 && x_.size() <= kPlainRows) {
     if (newton_steps(part, kPlainSteps, [](double) { return kLeast; })) return true;
   }
-  return newton_steps(part, kMostSteps, kProximal[tries % std::size(kProximal)]);
+  return newton_steps(part, kMostNewtonSteps, kProximal[tries % std::size(kProximal)]);
 }
 
 // At most so many steps; without success the iterate is the best of them. @param proximal its size
@@ -182,8 +184,7 @@ bool ConeIsland::solve_dense(const ConePart& part, int count, double proximal) {
     for (int i = 0; i < count; ++i) {
       system(i, j) = column[unknown_row_[static_cast<std::size_t>(i)]];
     }
-    const double scale = 1.0 / (row_scale_[j] * row_scale_[j]);
-    system(j, j) = with_proximal(system(j, j), scale, proximal);
+    system(j, j) = with_proximal(system(j, j), row_scale_[j], proximal);
   }
   for (std::size_t k = 0; k < part.problem.cones.size(); ++k) {
     const int at = cone_at_[k];
@@ -224,7 +225,7 @@ bool ConeIsland::solve_sparse(const ConePart& part, int count, double proximal) 
       const bool own = static_cast<int>(i) == j;
       const double scale = row_scale_[row] * row_scale_[column];
       for (int c = 0; own && c < 3; ++c) {
-        block(c, c) = with_proximal(block(c, c), 1.0 / scale, proximal);
+        block(c, c) = with_proximal(block(c, c), row_scale_[row], proximal);
       }
       if (i >= boxes && branches_[i - boxes].slips) {
         for (int c = 0; c < 3; ++c) block.col(c) = branches_[i - boxes].act(block.col(c));

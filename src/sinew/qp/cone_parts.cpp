@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "sinew/linalg/index.hpp"
+
 namespace sinew::qp {
 
 namespace {
@@ -14,7 +16,7 @@ constexpr double kFixed = 1e-14;
 constexpr int kDenseRows = 96;
 constexpr double kSparse = 0.4;
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 void add_column(const ConeProblem& problem, int j, double by, VectorX& motion) {
   motion += by * problem.matrix.col(j);
@@ -42,11 +44,9 @@ const ConeResult& ConeParts::solve_whole(const ConeProblem& problem, std::span<d
   });
   if (!std::isfinite(sum)) result_.status = ConeStatus::not_finite;
   if (result_.status != ConeStatus::solved) return result_;
-  const ConeStatus status =
-      island_.solve({problem, nullptr, nullptr, box_scale_, scale_, scales_}, x);
-  result_ = island_.result();
-  result_.status = status;
-  return result_;
+  island_.solve({problem, nullptr, nullptr, box_scale_, scale_, scales_}, x);
+  whole_result_ = true;
+  return island_.result();
 }
 
 const ConeResult& ConeParts::solve(const ConeProblem& problem, std::span<double> x) {
@@ -197,6 +197,7 @@ void ConeParts::put_back(std::span<double> x, std::span<const int> members) {
 
 void ConeParts::start_result(std::size_t cones) {
   sparse_count_ = 0;
+  whole_result_ = false;
   miss_ = {};
   result_.sweeps = result_.newton_steps = 0;
   result_.residual = result_.signorini = result_.coulomb = result_.complementarity = 0.0;

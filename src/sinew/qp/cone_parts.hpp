@@ -25,7 +25,7 @@ class ConeParts {
   /// Part by part.
   const ConeResult& solve(const ConeProblem& problem, std::span<double> x);
   const ConeResult& solve(const SparseConeProblem& problem, std::span<double> x);
-  const ConeResult& result() const { return result_; }
+  const ConeResult& result() const { return whole_result_ ? island_.result() : result_; }
 
  private:
   /// A part with few blocks: its matrix and plan, kept for the next problem.
@@ -53,8 +53,9 @@ class ConeParts {
 
   ConeMeasure measure_;
   ConeIsland island_;
-  ConeResult result_;
-  ConeMiss miss_;  // of all parts
+  ConeResult result_;          // of all parts
+  bool whole_result_ = false;  // there is but one, the island's
+  ConeMiss miss_;              // of all parts
   ConeScales scales_;
   std::vector<double> box_scale_, scale_;
   std::vector<BlockNode> nodes_;  // boxes, then cones

@@ -34,7 +34,7 @@ void check(Eigen::Index rows, Eigen::Index columns, const VectorX& q,
 }
 
 // Of a matrix and its transpose; nothing where it is zero or not finite.
-double relative(double difference, double largest) {
+double asymmetry_of(double difference, double largest) {
   return largest > 0.0 ? difference / largest : 0.0;
 }
 
@@ -81,7 +81,7 @@ ConeSolution solve_cones(const Eigen::SparseMatrix<double>& w, const VectorX& q,
       largest = std::max(largest, std::abs(it.value()));
     }
   }
-  solution.asymmetry = relative(off, largest);
+  solution.asymmetry = asymmetry_of(off, largest);
   return solution;
 }
 
@@ -93,7 +93,7 @@ ConeSolution solve_cones(const Eigen::Ref<const MatrixX>& w, const VectorX& q,
   ConeSolution solution = solve_symmetric<ConeProblem>(symmetric, q, friction, tolerance, start);
   if (w.size() > 0) {
     solution.asymmetry =
-        relative((w - w.transpose()).cwiseAbs().maxCoeff(), w.cwiseAbs().maxCoeff());
+        asymmetry_of((w - w.transpose()).cwiseAbs().maxCoeff(), w.cwiseAbs().maxCoeff());
   }
   return solution;
 }
