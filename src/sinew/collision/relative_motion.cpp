@@ -1,0 +1,63 @@
+#include "sinew/collision/relative_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sinew::collision {
+
+namespace {
+
+/// Rounding errors of n.d in parts of sum |n_k d_k|: one of the difference, one of the product, two
+/// of the sum make 4 units of 2^-53; those of the bound itself are below one more. Doubled.
+constexpr double kDotError = 5.0 * kEpsilon;
+/// Errors of products that underflow; normals have a largest component of 1.
+constexpr double kUnderflow = 1e-300;
+/// A quotient of two rounded numbers without cancellation is off by 2 units; doubled.
+constexpr double kQuotientError = 2.0 * kEpsilon;
+
+constexpr double kNever = 2.0;
+
+}  // namespace
+
+bool RelativeMotion::apart_along_axis() const {
+  // A rounded difference beyond a double has the exact one beyond it, too.
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (start_[k].min(end_[k]).minCoeff() > separation_) return true;
+    if (start_[k].max(end_[k]).maxCoeff() < -separation_) return true;
+  }
+  return false;
+}
+
+double RelativeMotion::separated_until(const Vector3& normal, double time) const {
+  const double largest = normal.cwiseAbs().maxCoeff();
+  if (!(largest > 0.0)) return time;
+  const Vector3 n = normal / largest;
+  const double offset = separation_ * n.norm() * (1.0 + 8.0 * kEpsilon) + kUnderflow;
+  const auto lower_bound = [&](const std::array<Lanes, 3>& d) -> Lanes {
+    const Lanes x = n[0] * d[0], y = n[1] * d[1], z = n[2] * d[2];
+    return x + y + z - kDotError * (x.abs() + y.abs() + z.abs() + offset) - offset;
+  };
+  const Lanes first = lower_bound(start_), last = lower_bound(end_);
+  if (first.min(last).minCoeff() > 0.0) return kNever;
+  double until = kNever;
+  for (int j = 0; j < 4; ++j) {
+    if (first[j] > 0.0 && last[j] > 0.0) continue;
+    const double crossing = first[j] / (first[j] - last[j]);
+    if (first[j] > 0.0) {
+      until = std::min(until, crossing * (1.0 - kQuotientError));
+    } else if (!(last[j] > 0.0) || !(time > crossing * (1.0 + kQuotientError))) {
+      return time;
+    }
+  }
+  return until > time ? until : time;
+}
+
+Vector3 RelativeMotion::at(int j, double time) const {
+  Vector3 result;
+  for (std::size_t k = 0; k < 3; ++k) {
+    result[static_cast<Eigen::Index>(k)] = start_[k][j] + time * (end_[k][j] - start_[k][j]);
+  }
+  return result;
+}
+
+}  // namespace sinew::collision
