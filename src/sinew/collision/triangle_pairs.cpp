@@ -1,0 +1,113 @@
+#include "sinew/collision/triangle_pairs.hpp"
+
+#include <algorithm>
+
+namespace sinew::collision {
+
+namespace {
+
+/// Pairs of branches that threads share: enough to be even, the same for any number of threads.
+constexpr std::size_t kFront = 512;
+constexpr int kMostLevels = 24;
+
+double extent(const SurfaceTree::Branch& branch) {
+  return (branch.box.high - branch.box.low).sum();
+}
+
+}  // namespace
+
+TrianglePairs::TrianglePairs(ThreadPool& pool)
+    : pool_(pool), shares_(static_cast<std::size_t>(pool.size())) {}
+
+std::span<const TrianglePair> TrianglePairs::between(const SurfaceTree& first,
+                                                     const SurfaceTree& second, double distance) {
+  return find({first, second, distance, false});
+}
+
+std::span<const TrianglePair> TrianglePairs::within(const SurfaceTree& surface, double distance) {
+  return find({surface, surface, distance, true});
+}
+
+std::span<const TrianglePair> TrianglePairs::find(const Search& search) {
+  front_.assign(1, {0, 0});
+  for (int level = 0; level < kMostLevels && front_.size() < kFront; ++level) {
+    next_.clear();
+    for (const BranchPair& pair : front_) {
+      if (is_leaf(search, pair)) {
+        next_.push_back(pair);
+      } else {
+        descend(search, pair, next_);
+      }
+    }
+    front_.swap(next_);
+  }
+  for (Share& share : shares_) share.pairs.clear();
+  pool_.for_range(static_cast<int>(front_.size()), 1, [&](int begin, int end, int thread) {
+    Share& share = shares_[static_cast<std::size_t>(thread)];
+    for (int k = begin; k < end; ++k) {
+      share.open.assign(1, front_[static_cast<std::size_t>(k)]);
+      while (!share.open.empty()) {
+        const BranchPair pair = share.open.back();
+        share.open.pop_back();
+        if (is_leaf(search, pair)) {
+          compare(search, pair, share.pairs);
+        } else {
+          descend(search, pair, share.open);
+        }
+      }
+    }
+  });
+  // Threads have parts of the front in its order.
+  pairs_.clear();
+  for (const Share& share : shares_) {
+    pairs_.insert(pairs_.end(), share.pairs.begin(), share.pairs.end());
+  }
+  return pairs_;
+}
+
+bool TrianglePairs::is_leaf(const Search& search, const BranchPair& pair) {
+  return search.first.branches()[static_cast<std::size_t>(pair.first)].right < 0 &&
+         search.second.branches()[static_cast<std::size_t>(pair.second)].right < 0;
+}
+
+void TrianglePairs::descend(const Search& search, const BranchPair& pair,
+                            std::vector<BranchPair>& to) {
+  const auto& first = search.first.branches();
+  const auto& second = search.second.branches();
+  const auto& a = first[static_cast<std::size_t>(pair.first)];
+  const auto& b = second[static_cast<std::size_t>(pair.second)];
+  const auto keep = [&](int left, int right) {
+    const Box& x = first[static_cast<std::size_t>(left)].box;
+    const Box& y = second[static_cast<std::size_t>(right)].box;
+    if (!x.is_apart(y, search.distance)) to.push_back({left, right});
+  };
+  if (search.same && pair.first == pair.second) {
+    keep(pair.first + 1, pair.first + 1);
+    keep(pair.first + 1, a.right);
+    keep(a.right, a.right);
+  } else if (b.right < 0 || (a.right >= 0 && extent(a) >= extent(b))) {
+    keep(pair.first + 1, pair.second);
+    keep(a.right, pair.second);
+  } else {
+    keep(pair.first, pair.second + 1);
+    keep(pair.first, b.right);
+  }
+}
+
+void TrianglePairs::compare(const Search& search, const BranchPair& leaf,
+                            std::vector<TrianglePair>& to) {
+  const auto& a = search.first.branches()[static_cast<std::size_t>(leaf.first)];
+  const auto& b = search.second.branches()[static_cast<std::size_t>(leaf.second)];
+  const bool same = search.same && leaf.first == leaf.second;
+  for (int i = a.begin; i < a.end; ++i) {
+    const int left = search.first.order()[static_cast<std::size_t>(i)];
+    const Box& box = search.first.box(left);
+    if (box.is_apart(b.box, search.distance)) continue;
+    for (int j = same ? i + 1 : b.begin; j < b.end; ++j) {
+      const int right = search.second.order()[static_cast<std::size_t>(j)];
+      if (!box.is_apart(search.second.box(right), search.distance)) to.push_back({left, right});
+    }
+  }
+}
+
+}  // namespace sinew::collision

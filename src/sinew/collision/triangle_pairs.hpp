@@ -1,0 +1,61 @@
+/// @file
+/// Pairs of triangles that are near each other, by their boxes.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "sinew/collision/surface_tree.hpp"
+#include "sinew/core/thread_pool.hpp"
+
+namespace sinew::collision {
+
+/// Numbers of two triangles.
+struct TrianglePair {
+  int first, second;
+  bool operator==(const TrianglePair&) const = default;
+};
+
+/// Finds pairs and keeps the memory of the largest call. Their order depends on the trees alone,
+/// not on the number of threads.
+class TrianglePairs {
+ public:
+  /// @param pool outlives this.
+  explicit TrianglePairs(ThreadPool& pool);
+
+  /// All pairs whose boxes are nowhere more than `distance` apart along an axis.
+  /// @param first,second may be swept. @param distance m, >= 0.
+  std::span<const TrianglePair> between(const SurfaceTree& first, const SurfaceTree& second,
+                                        double distance);
+  /// The same within one surface: each pair of two triangles once, neighbours included.
+  std::span<const TrianglePair> within(const SurfaceTree& surface, double distance);
+
+ private:
+  struct BranchPair {
+    int first, second;
+  };
+  struct Search {
+    const SurfaceTree& first;
+    const SurfaceTree& second;
+    double distance;
+    bool same;
+  };
+  // Pairs of a thread, and what it has still to look at.
+  struct Share {
+    std::vector<TrianglePair> pairs;
+    std::vector<BranchPair> open;
+  };
+
+  std::span<const TrianglePair> find(const Search& search);
+  static bool is_leaf(const Search& search, const BranchPair& pair);
+  static void descend(const Search& search, const BranchPair& pair, std::vector<BranchPair>& to);
+  static void compare(const Search& search, const BranchPair& leaf, std::vector<TrianglePair>& to);
+
+  ThreadPool& pool_;
+  std::vector<BranchPair> front_, next_;
+  std::vector<Share> shares_;
+  std::vector<TrianglePair> pairs_;
+};
+
+}  // namespace sinew::collision
