@@ -1,0 +1,204 @@
+#include "sinew/collision/proximity.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include "sinew/collision/local_minimum.hpp"
+
+namespace sinew::collision {
+
+namespace {
+
+SurfacePoint on_vertex(const SurfaceTree& surface, NodeId node) {
+  return {FeatureKind::vertex, node, {node, -1, -1}, {1.0, 0.0, 0.0}, surface.at(node)};
+}
+
+SurfacePoint on_edge(const SurfaceTree& surface, int edge, double share) {
+  const Edge& ends = surface.topology().edges()[static_cast<std::size_t>(edge)];
+  const Vector3 from = surface.at(ends[0]);
+  return {FeatureKind::edge,
+          edge,
+          {ends[0], ends[1], -1},
+          {1.0 - share, share, 0.0},
+          from + share * (surface.at(ends[1]) - from)};
+}
+
+SurfacePoint on_face(const SurfaceTree& surface, int triangle, const Vector3& weights) {
+  const Corners x = surface.corners(triangle);
+  const Vector3 unit = weights / weights.sum();
+  return {FeatureKind::face, triangle,
+          surface.topology().triangles()[static_cast<std::size_t>(triangle)], unit,
+          unit[0] * x[0] + unit[1] * x[1] + unit[2] * x[2]};
+}
+
+bool share_node(const SurfacePoint& a, const SurfacePoint& b) {
+  return std::ranges::any_of(a.nodes, [&](NodeId node) {
+    return node >= 0 && std::ranges::find(b.nodes, node) != b.nodes.end();
+  });
+}
+
+// Looks at the features that two triangles own.
+class PairSearch {
+ public:
+  PairSearch(const SurfaceTree& first, const SurfaceTree& second, const ProximitySettings& settings,
+             std::vector<ProximityPair>& found)
+      : first_(first, settings.slack),
+        second_(second, settings.slack),
+        settings_(settings),
+        same_(&first == &second),
+        found_(found) {}
+
+  void look_at(const TrianglePair& pair) {
+    from_vertices(first_, second_, pair.first, pair.second, false);
+    from_vertices(second_, first_, pair.second, pair.first, true);
+    for (const NodeId v : first_.surface().topology().own_nodes(pair.first)) {
+      for (const NodeId w : second_.surface().topology().own_nodes(pair.second)) vertices(v, w);
+    }
+    for (const int e : first_.surface().topology().own_edges(pair.first)) {
+      for (const int f : second_.surface().topology().own_edges(pair.second)) edges(e, f);
+    }
+  }
+
+ private:
+  // Own vertices of a triangle over the other triangle and its own edges.
+  void from_vertices(const LocalMinimum& own, const LocalMinimum& other, int triangle,
+                     int other_triangle, bool swapped) {
+    for (const NodeId node : own.surface().topology().own_nodes(triangle)) {
+      const Vector3 x = own.surface().at(node);
+      Box box;
+      box.extend(x);
+      if (box.is_apart(other.surface().box(other_triangle), settings_.distance)) continue;
+      over_face(own, node, x, other, other_triangle, swapped);
+      for (const int edge : other.surface().topology().own_edges(other_triangle)) {
+        over_edge(own, node, x, other, edge, swapped);
+      }
+    }
+  }
+
+  void over_face(const LocalMinimum& own, NodeId node, const Vector3& x, const LocalMinimum& other,
+                 int triangle, bool swapped) {
+    const Vector3 weights = other.weights(triangle, x);
+    if (!LocalMinimum::over_face(weights)) return;
+    const SurfacePoint p = on_vertex(own.surface(), node);
+    const SurfacePoint q = on_face(other.surface(), triangle, weights);
+    const Vector3 outward = other.face_normal(triangle).normalized();
+    const double height = outward.dot(x - q.point);
+    const Vector3 normal = height < 0.0 ? (-outward).eval() : outward;
+    if (!is_pair(p, q, std::abs(height)) || !own.vertex_is_nearest(node, q.point, -normal)) return;
+    if (is_seen(-own.vertex_normal(node), outward, normal)) keep(p, q, normal, swapped);
+  }
+
+  void over_edge(const LocalMinimum& own, NodeId node, const Vector3& x, const LocalMinimum& other,
+                 int edge, bool swapped) {
+    const double share = other.share(edge, x);
+    if (!LocalMinimum::inside_edge(share, 1.0) || !other.over_edge(edge, x)) return;
+    const SurfacePoint p = on_vertex(own.surface(), node);
+    const SurfacePoint q = on_edge(other.surface(), edge, share);
+    const double distance = (x - q.point).norm();
+    if (!is_pair(p, q, distance)) return;
+    const Vector3 outward = other.edge_normal(edge);
+    const Vector3 normal = direction(x - q.point, outward);
+    if (!own.vertex_is_nearest(node, q.point, -normal)) return;
+    if (is_seen(-own.vertex_normal(node), outward, normal)) keep(p, q, normal, swapped);
+  }
+
+  void vertices(NodeId v, NodeId w) {
+    const SurfacePoint p = on_vertex(first_.surface(), v), q = on_vertex(second_.surface(), w);
+    if (!is_pair(p, q, (p.point - q.point).norm())) return;
+    const Vector3 outward = second_.vertex_normal(w);
+    const Vector3 normal = direction(p.point - q.point, outward);
+    const bool nearest =
+        (second_.over_vertex(w, p.point) && first_.vertex_is_nearest(v, q.point, -normal)) ||
+        (first_.over_vertex(v, q.point) && second_.vertex_is_nearest(w, p.point, normal));
+    if (nearest && is_seen(-first_.vertex_normal(v), outward, normal)) keep(p, q, normal, false);
+  }
+
+  // The common perpendicular c of two lines a(s) and b(t): s = ((b0 - a0) x v).c / c.c, and t.
+  // The projection of the end a0 on b, seen from a, is at s sin^2: below a border that end stands
+  // for the edge. Edges at less than 3e-5 to each other are all border, as parallel ones are.
+  void edges(int e, int f) {
+    const auto ends = [](const SurfaceTree& surface, int edge) {
+      const Edge& own = surface.topology().edges()[static_cast<std::size_t>(edge)];
+      return std::pair(surface.at(own[0]), surface.at(own[1]));
+    };
+    const auto [a0, a1] = ends(first_.surface(), e);
+    const auto [b0, b1] = ends(second_.surface(), f);
+    const Vector3 u = a1 - a0, v = b1 - b0, c = u.cross(v), w = b0 - a0;
+    const double across2 = c.squaredNorm(), product = u.squaredNorm() * v.squaredNorm();
+    if (!(across2 > 0.0)) return;
+    const double s = w.cross(v).dot(c) / across2, t = w.cross(u).dot(c) / across2;
+    const double sine2 = across2 / product;
+    if (!LocalMinimum::inside_edge(s, sine2) || !LocalMinimum::inside_edge(t, sine2)) return;
+    const SurfacePoint p = on_edge(first_.surface(), e, s), q = on_edge(second_.surface(), f, t);
+    const double height = -w.dot(c) / std::sqrt(across2);
+    if (!is_pair(p, q, std::abs(height))) return;
+    const Vector3 outward = second_.edge_normal(f);
+    const double side = height != 0.0 ? height : outward.dot(c);
+    const Vector3 normal = c.normalized() * (side < 0.0 ? -1.0 : 1.0);
+    if (!first_.edge_is_nearest(e, p.point, q.point, -normal)) return;
+    if (!second_.edge_is_nearest(f, q.point, p.point, normal)) return;
+    if (is_seen(-first_.edge_normal(e), outward, normal)) keep(p, q, normal, false);
+  }
+
+  bool is_pair(const SurfacePoint& p, const SurfacePoint& q, double distance) const {
+    return distance <= settings_.distance && !(same_ && share_node(p, q));
+  }
+
+  // From a point to another one; of points at one place outwards.
+  static Vector3 direction(const Vector3& gap, const Vector3& outward) {
+    const double length = gap.norm();
+    return length > 0.0 ? (gap / length).eval() : outward.normalized();
+  }
+
+  bool is_seen(const Vector3& inward, const Vector3& outward, const Vector3& normal) const {
+    return !settings_.facing || (normal.dot(inward) >= 0.0 && normal.dot(outward) >= 0.0);
+  }
+
+  void keep(const SurfacePoint& p, const SurfacePoint& q, const Vector3& normal, bool swapped) {
+    const double distance = std::max(0.0, normal.dot(p.point - q.point));
+    if (swapped) {
+      found_.push_back({q, p, -normal, distance});
+    } else {
+      found_.push_back({p, q, normal, distance});
+    }
+  }
+
+  LocalMinimum first_, second_;
+  const ProximitySettings& settings_;
+  bool same_;
+  std::vector<ProximityPair>& found_;
+};
+
+}  // namespace
+
+Proximity::Proximity(ThreadPool& pool)
+    : pool_(pool), near_(pool), shares_(static_cast<std::size_t>(pool.size())) {}
+
+std::span<const ProximityPair> Proximity::between(const SurfaceTree& first,
+                                                  const SurfaceTree& second,
+                                                  const ProximitySettings& settings) {
+  return collect(first, second, near_.between(first, second, settings.distance), settings);
+}
+
+std::span<const ProximityPair> Proximity::within(const SurfaceTree& surface,
+                                                 const ProximitySettings& settings) {
+  return collect(surface, surface, near_.within(surface, settings.distance), settings);
+}
+
+std::span<const ProximityPair> Proximity::collect(const SurfaceTree& first,
+                                                  const SurfaceTree& second,
+                                                  std::span<const TrianglePair> near,
+                                                  const ProximitySettings& settings) {
+  for (auto& share : shares_) share.clear();
+  pool_.for_range(static_cast<int>(near.size()), 64, [&](int begin, int end, int thread) {
+    PairSearch search(first, second, settings, shares_[static_cast<std::size_t>(thread)]);
+    for (int k = begin; k < end; ++k) search.look_at(near[static_cast<std::size_t>(k)]);
+  });
+  pairs_.clear();
+  for (const auto& share : shares_) pairs_.insert(pairs_.end(), share.begin(), share.end());
+  return pairs_;
+}
+
+}  // namespace sinew::collision

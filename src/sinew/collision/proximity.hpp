@@ -1,0 +1,77 @@
+/// @file
+/// Where two surfaces, or parts of one, come near each other: the local minima of their distance.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "sinew/collision/surface_tree.hpp"
+#include "sinew/collision/triangle_pairs.hpp"
+#include "sinew/core/thread_pool.hpp"
+
+namespace sinew::collision {
+
+/// What a point of a surface lies on.
+enum class FeatureKind : char { vertex, edge, face };
+
+/// A point of a surface by the nodes that carry it.
+struct SurfacePoint {
+  FeatureKind kind = FeatureKind::vertex;
+  int number = -1;                          ///< of the node, edge or triangle
+  std::array<NodeId, 3> nodes{-1, -1, -1};  ///< one, two or three; the rest -1
+  Vector3 weights = Vector3::Zero();        ///< (3,) of them, > 0, sum 1
+  Vector3 point = Vector3::Zero();          ///< (3,) m
+};
+
+/// A local minimum of the distance of a point of one surface from a point of another.
+struct ProximityPair {
+  SurfacePoint first, second;
+  Vector3 normal = Vector3::UnitZ();  ///< (3,) unit length, from the second point to the first
+  double distance = 0.0;              ///< m, >= 0: first.point - second.point = distance normal
+};
+
+/// What is looked for.
+struct ProximitySettings {
+  double distance = 0.0;  ///< m, >= 0: the farthest pair
+  /// Sine of the angle by which a neighbour of the nearest point may lie nearer: 0, local minima
+  /// alone; 1, every vertex over a face or an edge and all edges that cross.
+  double slack = 0.0;
+  /// Only points that see each other from outside, by the normals of their features. Without, a
+  /// thin body's sides see each other through it, and open surfaces have two sides.
+  bool facing = true;
+};
+
+/// Finds all pairs (p, q) where distance rises to first order, or stays, whichever way p or q
+/// leaves its place. They are told apart by what the points lie on: a vertex or an edge's inside
+/// or a triangle's inside, each over one of these where the other one lets it, and two edges that
+/// cross. Decisions on one border are made by one number, so that each pair is found once: over
+/// an edge between two triangles a vertex has one pair, with the edge. Of features that run along
+/// each other, such as two faces on one another, vertices stand for the whole.
+///
+/// Order and numbers do not depend on the number of threads. Memory of the largest call is kept.
+class Proximity {
+ public:
+  /// @param pool outlives this.
+  explicit Proximity(ThreadPool& pool);
+
+  /// @param first,second as they were moved last. @param settings see there.
+  std::span<const ProximityPair> between(const SurfaceTree& first, const SurfaceTree& second,
+                                         const ProximitySettings& settings);
+  /// Of one surface; features that share a node make no pair.
+  /// @param surface as it was moved last. @param settings see there.
+  std::span<const ProximityPair> within(const SurfaceTree& surface,
+                                        const ProximitySettings& settings);
+
+ private:
+  std::span<const ProximityPair> collect(const SurfaceTree& first, const SurfaceTree& second,
+                                         std::span<const TrianglePair> near,
+                                         const ProximitySettings& settings);
+
+  ThreadPool& pool_;
+  TrianglePairs near_;
+  std::vector<std::vector<ProximityPair>> shares_;  // by thread
+  std::vector<ProximityPair> pairs_;
+};
+
+}  // namespace sinew::collision
