@@ -11,6 +11,8 @@ namespace sinew::collision {
 
 namespace {
 
+constexpr int kPairGrain = 64;
+
 SurfacePoint on_vertex(const SurfaceTree& surface, NodeId node) {
   return {FeatureKind::vertex, node, {node, -1, -1}, {1.0, 0.0, 0.0}, surface.at(node)};
 }
@@ -173,8 +175,7 @@ class PairSearch {
 
 }  // namespace
 
-Proximity::Proximity(ThreadPool& pool)
-    : pool_(pool), near_(pool), shares_(static_cast<std::size_t>(pool.size())) {}
+Proximity::Proximity(ThreadPool& pool) : near_(pool), pairs_(pool) {}
 
 std::span<const ProximityPair> Proximity::between(const SurfaceTree& first,
                                                   const SurfaceTree& second,
@@ -191,14 +192,13 @@ std::span<const ProximityPair> Proximity::collect(const SurfaceTree& first,
                                                   const SurfaceTree& second,
                                                   std::span<const TrianglePair> near,
                                                   const ProximitySettings& settings) {
-  for (auto& share : shares_) share.clear();
-  pool_.for_range(static_cast<int>(near.size()), 64, [&](int begin, int end, int thread) {
-    PairSearch search(first, second, settings, shares_[static_cast<std::size_t>(thread)]);
-    for (int k = begin; k < end; ++k) search.look_at(near[static_cast<std::size_t>(k)]);
-  });
-  pairs_.clear();
-  for (const auto& share : shares_) pairs_.insert(pairs_.end(), share.begin(), share.end());
-  return pairs_;
+  return pairs_.collect(static_cast<int>(near.size()), kPairGrain,
+                        [&](int begin, int end, std::vector<ProximityPair>& found) {
+                          PairSearch search(first, second, settings, found);
+                          for (int k = begin; k < end; ++k) {
+                            search.look_at(near[static_cast<std::size_t>(k)]);
+                          }
+                        });
 }
 
 }  // namespace sinew::collision

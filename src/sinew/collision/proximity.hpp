@@ -4,9 +4,9 @@
 
 #include <array>
 #include <span>
-#include <vector>
 
 #include "sinew/collision/surface_tree.hpp"
+#include "sinew/collision/thread_lists.hpp"
 #include "sinew/collision/triangle_pairs.hpp"
 #include "sinew/core/thread_pool.hpp"
 
@@ -68,10 +68,8 @@ class Proximity {
                                          std::span<const TrianglePair> near,
                                          const ProximitySettings& settings);
 
-  ThreadPool& pool_;
   TrianglePairs near_;
-  std::vector<std::vector<ProximityPair>> shares_;  // by thread
-  std::vector<ProximityPair> pairs_;
+  ThreadLists<ProximityPair> pairs_;
 };
 
 }  // namespace sinew::collision

@@ -1,6 +1,6 @@
 #include "sinew/collision/triangle_pairs.hpp"
 
-#include <algorithm>
+#include <array>
 
 namespace sinew::collision {
 
@@ -9,6 +9,8 @@ namespace {
 /// Pairs of branches that threads share: enough to be even, the same for any number of threads.
 constexpr std::size_t kFront = 512;
 constexpr int kMostLevels = 24;
+/// A pair leaves at most three in its place, and two trees have less than 64 levels together.
+constexpr std::size_t kStack = 192;
 
 double extent(const SurfaceTree::Branch& branch) {
   return (branch.box.high - branch.box.low).sum();
@@ -16,8 +18,7 @@ double extent(const SurfaceTree::Branch& branch) {
 
 }  // namespace
 
-TrianglePairs::TrianglePairs(ThreadPool& pool)
-    : pool_(pool), shares_(static_cast<std::size_t>(pool.size())) {}
+TrianglePairs::TrianglePairs(ThreadPool& pool) : pairs_(pool) {}
 
 std::span<const TrianglePair> TrianglePairs::between(const SurfaceTree& first,
                                                      const SurfaceTree& second, double distance) {
@@ -28,7 +29,8 @@ std::span<const TrianglePair> TrianglePairs::within(const SurfaceTree& surface, 
   return find({surface, surface, distance, true});
 }
 
-std::span<const TrianglePair> TrianglePairs::find(const Search& search) {
+// From the roots down, until there is work for all.
+void TrianglePairs::spread(const Search& search) {
   front_.assign(1, {0, 0});
   for (int level = 0; level < kMostLevels && front_.size() < kFront; ++level) {
     next_.clear();
@@ -36,33 +38,33 @@ std::span<const TrianglePair> TrianglePairs::find(const Search& search) {
       if (is_leaf(search, pair)) {
         next_.push_back(pair);
       } else {
-        descend(search, pair, next_);
+        descend(search, pair, [&](const BranchPair& child) { next_.push_back(child); });
       }
     }
     front_.swap(next_);
   }
-  for (Share& share : shares_) share.pairs.clear();
-  pool_.for_range(static_cast<int>(front_.size()), 1, [&](int begin, int end, int thread) {
-    Share& share = shares_[static_cast<std::size_t>(thread)];
-    for (int k = begin; k < end; ++k) {
-      share.open.assign(1, front_[static_cast<std::size_t>(k)]);
-      while (!share.open.empty()) {
-        const BranchPair pair = share.open.back();
-        share.open.pop_back();
-        if (is_leaf(search, pair)) {
-          compare(search, pair, share.pairs);
-        } else {
-          descend(search, pair, share.open);
-        }
+}
+
+std::span<const TrianglePair> TrianglePairs::find(const Search& search) {
+  spread(search);
+  const auto below = [&](const BranchPair& top, std::vector<TrianglePair>& found) {
+    std::array<BranchPair, kStack> open{top};
+    std::size_t count = 1;
+    while (count > 0) {
+      const BranchPair pair = open[--count];
+      if (is_leaf(search, pair)) {
+        compare(search, pair, found);
+      } else {
+        descend(search, pair, [&](const BranchPair& child) { open[count++] = child; });
       }
     }
-  });
-  // Threads have parts of the front in its order.
-  pairs_.clear();
-  for (const Share& share : shares_) {
-    pairs_.insert(pairs_.end(), share.pairs.begin(), share.pairs.end());
-  }
-  return pairs_;
+  };
+  return pairs_.collect(static_cast<int>(front_.size()), 1,
+                        [&](int begin, int end, std::vector<TrianglePair>& found) {
+                          for (int k = begin; k < end; ++k) {
+                            below(front_[static_cast<std::size_t>(k)], found);
+                          }
+                        });
 }
 
 bool TrianglePairs::is_leaf(const Search& search, const BranchPair& pair) {
@@ -70,8 +72,8 @@ bool TrianglePairs::is_leaf(const Search& search, const BranchPair& pair) {
          search.second.branches()[static_cast<std::size_t>(pair.second)].right < 0;
 }
 
-void TrianglePairs::descend(const Search& search, const BranchPair& pair,
-                            std::vector<BranchPair>& to) {
+template <typename Keep>
+void TrianglePairs::descend(const Search& search, const BranchPair& pair, const Keep& keep_pair) {
   const auto& first = search.first.branches();
   const auto& second = search.second.branches();
   const auto& a = first[static_cast<std::size_t>(pair.first)];
@@ -79,7 +81,7 @@ void TrianglePairs::descend(const Search& search, const BranchPair& pair,
   const auto keep = [&](int left, int right) {
     const Box& x = first[static_cast<std::size_t>(left)].box;
     const Box& y = second[static_cast<std::size_t>(right)].box;
-    if (!x.is_apart(y, search.distance)) to.push_back({left, right});
+    if (!x.is_apart(y, search.distance)) keep_pair(BranchPair{left, right});
   };
   if (search.same && pair.first == pair.second) {
     keep(pair.first + 1, pair.first + 1);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sinew/collision/surface_tree.hpp"
+#include "sinew/collision/thread_lists.hpp"
 #include "sinew/core/thread_pool.hpp"
 
 namespace sinew::collision {
@@ -41,21 +42,16 @@ class TrianglePairs {
     double distance;
     bool same;
   };
-  // Pairs of a thread, and what it has still to look at.
-  struct Share {
-    std::vector<TrianglePair> pairs;
-    std::vector<BranchPair> open;
-  };
-
   std::span<const TrianglePair> find(const Search& search);
   static bool is_leaf(const Search& search, const BranchPair& pair);
-  static void descend(const Search& search, const BranchPair& pair, std::vector<BranchPair>& to);
+  template <typename Keep>
+  static void descend(const Search& search, const BranchPair& pair, const Keep& keep);
   static void compare(const Search& search, const BranchPair& leaf, std::vector<TrianglePair>& to);
 
-  ThreadPool& pool_;
+  void spread(const Search& search);
+
   std::vector<BranchPair> front_, next_;
-  std::vector<Share> shares_;
-  std::vector<TrianglePair> pairs_;
+  ThreadLists<TrianglePair> pairs_;
 };
 
 }  // namespace sinew::collision

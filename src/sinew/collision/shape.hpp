@@ -1,0 +1,54 @@
+/// @file
+/// Rigid shapes in closed form: signed distance, nearest point and normal.
+#pragma once
+
+#include <variant>
+
+#include "sinew/core/types.hpp"
+
+namespace sinew::collision {
+
+/// A half space, empty on the side that the normal points to.
+struct Plane {
+  Vector3 point = Vector3::Zero();    ///< (3,) m, on it
+  Vector3 normal = Vector3::UnitZ();  ///< (3,) unit length, out of what is solid
+};
+/// A solid ball.
+struct Sphere {
+  Vector3 centre = Vector3::Zero();  ///< (3,) m
+  double radius = 0.0;               ///< m, > 0
+};
+/// All points within a radius of a segment.
+struct Capsule {
+  Vector3 from = Vector3::Zero(), to = Vector3::Zero();  ///< (3,) m
+  double radius = 0.0;                                   ///< m, > 0
+};
+/// A solid cylinder with flat ends.
+struct Cylinder {
+  Vector3 from = Vector3::Zero(), to = Vector3::Zero();  ///< (3,) m, the ends' centres; apart
+  double radius = 0.0;                                   ///< m, > 0
+};
+/// A solid box.
+struct OrientedBox {
+  Vector3 centre = Vector3::Zero();            ///< (3,) m
+  Matrix3 axes = Matrix3::Identity();          ///< (3, 3) columns: directions of its sides
+  Vector3 half_size = Vector3::Constant(0.5);  ///< (3,) m, > 0
+};
+using Shape = std::variant<Plane, Sphere, Capsule, Cylinder, OrientedBox>;
+
+/// Where a point stands with respect to a shape: point = nearest + distance normal.
+struct ShapeDistance {
+  double distance = 0.0;              ///< m, negative inside
+  Vector3 nearest = Vector3::Zero();  ///< (3,) m, on the shape's surface
+  Vector3 normal = Vector3::UnitZ();  ///< (3,) unit length, the gradient of the distance
+};
+/// Exact but for rounding. Where several points are nearest (centres, axes, middle planes, the
+/// inner side of corners), one of them is taken.
+/// @param shape see Shape. @param point (3,) m.
+ShapeDistance distance(const Shape& shape, const Vector3& point);
+
+/// Throws Error(out-of-range) for sizes that are not positive, a normal without length and axes
+/// that are no rotation (to 1e-9); else the shape with its normal of unit length.
+Shape checked(Shape shape);
+
+}  // namespace sinew::collision
