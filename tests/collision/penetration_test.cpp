@@ -26,21 +26,22 @@ TEST(Penetration, VerticesInsideABall) {
   a.move(placed(box.nodes, Matrix3::Identity(), {0.31, -0.45, -0.35}), pool);
   b.move(ball.nodes, pool);
   const auto inside = penetration.inside(a, b);
-  std::vector<NodeId> nodes;
+  std::vector<char> found(static_cast<std::size_t>(box.nodes.rows()), 0);
   for (const InsideVertex& x : inside) {
-    nodes.push_back(x.node);
+    found[static_cast<std::size_t>(x.node)] = 1;
     const Vector3 at = a.at(x.node);
     EXPECT_LE((at + x.depth * x.normal - x.nearest.point).norm(), 1e-14);
     EXPECT_NEAR(x.depth, 1.0 - at.norm(), 0.02);  // flat triangles stand off the sphere
     EXPECT_GT(x.normal.dot(at), 0.0);
   }
-  std::vector<NodeId> expected;
+  int deep = 0;
   for (NodeId k = 0; k < box.nodes.rows(); ++k) {
-    ASSERT_GT(std::abs(a.at(k).norm() - 0.995), 0.005);  // none between ball and sphere
-    if (a.at(k).norm() < 0.995) expected.push_back(k);
+    const double far = a.at(k).norm();
+    EXPECT_TRUE(far > 0.99 || found[static_cast<std::size_t>(k)]);
+    EXPECT_TRUE(far < 1.0 || !found[static_cast<std::size_t>(k)]);
+    deep += far < 0.99 ? 1 : 0;
   }
-  EXPECT_EQ(nodes, expected);
-  EXPECT_GT(nodes.size(), 20u);
+  EXPECT_GT(deep, 20);
 }
 
 TEST(Penetration, CrossingTrianglesAreThoseOfAllPairs) {
