@@ -193,9 +193,22 @@ TEST_P(Impact, RestsApartOrTouching) {
   EXPECT_EQ(impact(GetParam(), above, above), std::nullopt);
   EXPECT_EQ(impact(GetParam(), above, above, 2e-12), 0.0);
   EXPECT_TRUE(impact(GetParam(), above, x).has_value());  // at the very end
-  FourPoints broken = x;
-  broken[1][0] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_TRUE(impact(GetParam(), x, broken).has_value());
+}
+
+TEST_P(Impact, CountsNumbersThatAreNotFinite) {
+  Random random(16);
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), kInfinity, -kInfinity}) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (Eigen::Index k = 0; k < 3; ++k) {
+        FourPoints start, end;
+        for (Vector3& x : start) x = random_point(random);
+        start[0][(k + 1) % 3] += 10.0;  // far apart otherwise
+        end = start;
+        (random.bits() % 2 == 0 ? start : end)[i][k] = bad;
+        EXPECT_EQ(impact(GetParam(), start, end), 0.0);
+      }
+    }
+  }
 }
 
 TEST(VertexFaceImpact, PassesBesideAnEdge) {

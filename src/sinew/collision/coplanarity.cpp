@@ -5,6 +5,8 @@
 
 #include <Eigen/Geometry>
 
+#include "sinew/collision/impact_bounds.hpp"
+
 namespace sinew::collision {
 
 namespace {
@@ -15,10 +17,7 @@ constexpr double kError = 13.0 * kEpsilon;
 /// Of the part of a cubic between two times, in parts of its largest coefficient: three levels of
 /// interpolation with 4 units each. Doubled.
 constexpr double kPartError = 12.0 * kEpsilon;
-constexpr double kUnderflow = 1e-300;
 constexpr int kMostClips = 40;
-
-constexpr double kNever = 2.0;
 
 using Coefficients = std::array<double, 4>;
 

@@ -69,6 +69,7 @@ std::optional<double> vertex_face_impact(const FourPoints& start, const FourPoin
     const std::size_t corner = j < 3 ? static_cast<std::size_t>(j) + 1 : 3;
     motion.set(j, start[0] - start[corner], end[0] - end[corner]);
   }
+  if (!motion.finite()) return 0.0;
   if (motion.apart_along_axis()) return std::nullopt;
   const Coplanarity coplanarity({start[0] - start[1], end[0] - end[1]},
                                 {start[2] - start[1], end[2] - end[1]},
@@ -83,6 +84,7 @@ std::optional<double> edge_edge_impact(const FourPoints& start, const FourPoints
   motion.set(1, start[1] - start[2], end[1] - end[2]);
   motion.set(2, start[0] - start[3], end[0] - end[3]);
   motion.set(3, start[1] - start[3], end[1] - end[3]);
+  if (!motion.finite()) return 0.0;
   if (motion.apart_along_axis()) return std::nullopt;
   const Coplanarity coplanarity({start[0] - start[2], end[0] - end[2]},
                                 {start[1] - start[0], end[1] - end[0]},

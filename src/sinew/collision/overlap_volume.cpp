@@ -12,8 +12,8 @@ namespace sinew::collision {
 
 namespace {
 
-constexpr int kNodeGrain = 32;
-constexpr int kPairGrain = 32;
+constexpr int kWindingGrain = 32;
+constexpr int kCutGrain = 32;
 /// Shift of the second surface, in parts of the coordinates: above their rounding, below any use.
 constexpr double kShift = 1e-12;
 /// Its direction: along no line or plane that a mesh is likely to have.
@@ -60,7 +60,7 @@ void OverlapVolume::compute(const Points& first, const Points& second) {
   sides_[1].tree.move(shifted_, pool_);
   const auto near = near_.between(sides_[0].tree, sides_[1].tree, 0.0);
   const auto parts = parts_.collect(
-      static_cast<int>(near.size()), kPairGrain, [&](int begin, int end, std::vector<Part>& found) {
+      static_cast<int>(near.size()), kCutGrain, [&](int begin, int end, std::vector<Part>& found) {
         for (int k = begin; k < end; ++k) {
           const TrianglePair& pair = near[static_cast<std::size_t>(k)];
           const auto own = cut(triangle_of(sides_[0].tree, pair.first),
@@ -91,7 +91,7 @@ void OverlapVolume::compute(const Points& first, const Points& second) {
 
 void OverlapVolume::wind(Side& side, const Side& other) {
   const Box& whole = other.tree.branches().front().box;
-  pool_.for_range(side.tree.topology().node_count(), kNodeGrain, [&](int begin, int end, int) {
+  pool_.for_range(side.tree.topology().node_count(), kWindingGrain, [&](int begin, int end, int) {
     for (NodeId node = begin; node < end; ++node) {
       const Vector3 x = side.tree.at(node);
       Box point;

@@ -11,7 +11,7 @@ namespace sinew::collision {
 
 namespace {
 
-constexpr int kNodeGrain = 32;
+constexpr int kInsideGrain = 32;
 constexpr int kCrossingGrain = 64;
 
 InsideVertex describe(const SurfaceTree& other, NodeId node, const Vector3& point) {
@@ -44,7 +44,7 @@ std::span<const InsideVertex> Penetration::inside(const SurfaceTree& own,
                                                   const SurfaceTree& other) {
   require_closed(other.topology(), "other");
   const Box& whole = other.branches().front().box;
-  return inside_.collect(own.topology().node_count(), kNodeGrain,
+  return inside_.collect(own.topology().node_count(), kInsideGrain,
                          [&](int begin, int end, std::vector<InsideVertex>& found) {
                            for (NodeId node = begin; node < end; ++node) {
                              if (own.topology().triangles_of_node(node).empty()) continue;

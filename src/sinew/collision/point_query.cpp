@@ -11,7 +11,7 @@ namespace sinew::collision {
 namespace {
 
 /// Branches that wait are at most one a level, and halving makes fewer than 32 levels.
-constexpr std::size_t kStack = 64;
+constexpr std::size_t kBranchStack = 64;
 constexpr int kAxis = 0;  // of the ray
 
 double squared_distance(const Box& box, const Vector3& point) {
@@ -56,7 +56,7 @@ NearestOnSurface nearest_on_surface(const SurfaceTree& surface, const Vector3& p
   const auto& branches = surface.branches();
   NearestOnSurface best;
   best.distance = reach;
-  std::array<int, kStack> open{0};
+  std::array<int, kBranchStack> open{0};
   std::size_t count = 1;
   const auto distance = [&](int k) {
     return squared_distance(branches[static_cast<std::size_t>(k)].box, point);
@@ -89,7 +89,7 @@ int winding_number(const SurfaceTree& surface, const Vector3& point) {
     return true;
   };
   int winding = 0;
-  std::array<int, kStack> open{0};
+  std::array<int, kBranchStack> open{0};
   std::size_t count = 1;
   while (count > 0) {
     const int number = open[--count];

@@ -11,7 +11,7 @@ namespace sinew::collision {
 
 namespace {
 
-constexpr int kPairGrain = 64;
+constexpr int kProximityGrain = 64;
 
 SurfacePoint on_vertex(const SurfaceTree& surface, NodeId node) {
   return {FeatureKind::vertex, node, {node, -1, -1}, {1.0, 0.0, 0.0}, surface.at(node)};
@@ -192,7 +192,7 @@ std::span<const ProximityPair> Proximity::collect(const SurfaceTree& first,
                                                   const SurfaceTree& second,
                                                   std::span<const TrianglePair> near,
                                                   const ProximitySettings& settings) {
-  return pairs_.collect(static_cast<int>(near.size()), kPairGrain,
+  return pairs_.collect(static_cast<int>(near.size()), kProximityGrain,
                         [&](int begin, int end, std::vector<ProximityPair>& found) {
                           PairSearch search(first, second, settings, found);
                           for (int k = begin; k < end; ++k) {

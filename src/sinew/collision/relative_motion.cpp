@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sinew/collision/impact_bounds.hpp"
+
 namespace sinew::collision {
 
 namespace {
@@ -10,14 +12,17 @@ namespace {
 /// Rounding errors of n.d in parts of sum |n_k d_k|: one of the difference, one of the product, two
 /// of the sum make 4 units of 2^-53; those of the bound itself are below one more. Doubled.
 constexpr double kDotError = 5.0 * kEpsilon;
-/// Errors of products that underflow; normals have a largest component of 1.
-constexpr double kUnderflow = 1e-300;
 /// A quotient of two rounded numbers without cancellation is off by 2 units; doubled.
 constexpr double kQuotientError = 2.0 * kEpsilon;
 
-constexpr double kNever = 2.0;
-
 }  // namespace
+
+bool RelativeMotion::finite() const {
+  // Zero times a number is zero, times infinity it is none.
+  Lanes zero = Lanes::Zero();
+  for (std::size_t k = 0; k < 3; ++k) zero += 0.0 * start_[k] + 0.0 * end_[k];
+  return (zero == 0.0).all();
+}
 
 bool RelativeMotion::apart_along_axis() const {
   // A rounded difference beyond a double has the exact one beyond it, too.
@@ -31,7 +36,7 @@ bool RelativeMotion::apart_along_axis() const {
 double RelativeMotion::separated_until(const Vector3& normal, double time) const {
   const double largest = normal.cwiseAbs().maxCoeff();
   if (!(largest > 0.0)) return time;
-  const Vector3 n = normal / largest;
+  const Vector3 n = normal / largest;  // so that products do not all underflow
   const double offset = separation_ * n.norm() * (1.0 + 8.0 * kEpsilon) + kUnderflow;
   const auto lower_bound = [&](const std::array<Lanes, 3>& d) -> Lanes {
     const Lanes x = n[0] * d[0], y = n[1] * d[1], z = n[2] * d[2];

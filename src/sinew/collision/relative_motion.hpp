@@ -31,6 +31,9 @@ class RelativeMotion {
     }
   }
 
+  /// Whether all differences are finite; if not, nothing else here holds.
+  bool finite() const;
+
   /// Whether a plane across an axis separates the sets all the time.
   bool apart_along_axis() const;
 

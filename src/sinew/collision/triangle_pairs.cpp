@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t kFront = 512;
 constexpr int kMostLevels = 24;
 /// A pair leaves at most three in its place, and two trees have less than 64 levels together.
-constexpr std::size_t kStack = 192;
+constexpr std::size_t kPairStack = 192;
 
 double extent(const SurfaceTree::Branch& branch) {
   return (branch.box.high - branch.box.low).sum();
@@ -48,7 +48,7 @@ void TrianglePairs::spread(const Search& search) {
 std::span<const TrianglePair> TrianglePairs::find(const Search& search) {
   spread(search);
   const auto below = [&](const BranchPair& top, std::vector<TrianglePair>& found) {
-    std::array<BranchPair, kStack> open{top};
+    std::array<BranchPair, kPairStack> open{top};
     std::size_t count = 1;
     while (count > 0) {
       const BranchPair pair = open[--count];
