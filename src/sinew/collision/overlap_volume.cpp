@@ -28,7 +28,7 @@ Vector3 below(const Place2& p, const Place2& q) {
 }
 
 Vector3 of_cut(const CutSide& side) {
-  const Vector3 along_cut = below(side.from, side.to);
+  Vector3 along_cut = below(side.from, side.to);
   if (side.pass.sign == 0) return along_cut;
   return along_cut + side.pass.sign * below(side.pass.place, {0.0, 1.0});
 }
