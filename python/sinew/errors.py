@@ -82,7 +82,8 @@ class Notice(NamedTuple):
         "warning": it follows from a default, and load() warns of it. "remark": the scene asks for
         what it is about.
     kind : str
-        "locking-element": the elements make a body much stiffer than its material.
+        "locking-element": the elements make a body much stiffer than its material. "bare-points": a cable pulls at
+        single points, which dent the material.
     place : Place
         Where in the scene.
     message : str

@@ -53,3 +53,40 @@ def test_the_factor_is_about_what_the_remedy_gains():
     law = {"model": "neo-hookean", "young_modulus": "600 kPa", "poisson_ratio": 0.45}
     stiff = sag(beam(law, element="tet4"))
     assert 2.4 < sag(beam(law)) / stiff < 4.5     # the notice says 3.5
+
+
+def pulled(element, **cable):
+    return sinew.load({
+        "sinew": 1,
+        "bodies": {"finger": {
+            "type": "fem", "element": element,
+            "mesh": {"shape": "cylinder", "radius": 0.015, "height": 0.1, "element_size": 0.007},
+            "material": {"model": "neo-hookean", "young_modulus": 4.5e5, "poisson_ratio": 0.45},
+            "mass": 0.042, "fixed": {"set": "bottom"}}},
+        "actuators": {"pull": {"type": "cable", "body": "finger", "points": [[0, 0.01, z] for z in (0, 0.05, 0.1)], **cable}},
+        "effectors": {"tip": {"body": "finger", "point": [0, 0, 0.1]}}})
+
+
+def test_a_cable_at_bare_points_of_quadratic_elements_is_told_apart():
+    with pytest.warns(sinew.SinewWarning, match=r"cable 'pull' pulls at single points.*guide_radius: \d mm \[bare-points\]"):
+        bare = pulled("tet10")
+    assert [(n.level, n.kind) for n in bare.notices] == [("warning", "bare-points")]
+    # What the warning is about: half of the bend goes into the dents.
+    guided = pulled("tet10", guide_radius=0.003)
+    assert not guided.notices
+    for sim in (bare, guided):
+        sim.actuators["pull"].displacement = 0.005
+        sim.solve_static()
+    tips = [sim.effectors["tip"].position[1] for sim in (bare, guided)]
+    assert tips[0] < 0.75 * tips[1]
+
+
+@pytest.mark.parametrize("element, cable", [
+    ("tet4", {}), ("tet10", {"guide_radius": 0.002}), ("tet10", {"limits": {"tension": {"max": 0.5}}})])
+def test_cables_that_dent_little_are_not_spoken_of(element, cable):
+    sim = pulled(element, **cable)
+    assert "bare-points" not in [notice.kind for notice in sim.notices]
+
+
+def test_who_writes_a_radius_of_zero_knows():
+    assert [(n.level, n.kind) for n in pulled("tet10", guide_radius=0.0).notices] == [("remark", "bare-points")]

@@ -7,7 +7,7 @@
 namespace sinew {
 
 std::string_view notice_kind_name(NoticeKind kind) {
-  constexpr std::array<std::string_view, 1> kNames = {"locking-element"};
+  constexpr std::array<std::string_view, 2> kNames = {"locking-element", "bare-points"};
   return kNames.at(static_cast<std::size_t>(kind));
 }
 

@@ -13,6 +13,7 @@ namespace sinew {
 /// What a notice is about. The kebab-case name (notice_kind_name()) is part of the interface.
 enum class NoticeKind {
   locking_element,  ///< the elements make the body much stiffer than its material
+  bare_points,      ///< a cable pulls at single points, which dent the material
 };
 
 /// Who has to see it.

@@ -79,6 +79,11 @@ Robot build(SceneDescription description) {
   };
   for (const ActuatorDescription& actuator : description.actuators) {
     add_actuator(builder, actuator, body_of);
+    if (actuator.type != ActuatorDescription::Type::cable) continue;
+    const mechanics::BodyModel& body = builder.added_body(body_of(actuator.body).number);
+    if (auto notice = bare_points_notice(actuator, body)) {
+      robot.notices.push_back(std::move(*notice));
+    }
   }
   for (const EffectorDescription& effector : description.effectors) {
     add_effector(builder, effector, body_of);

@@ -51,7 +51,7 @@ void add_cable(sim::ModelBuilder& builder, const ActuatorDescription& actuator, 
   cable.command = command(actuator);
   cable.geometric_stiffness = actuator.geometric_stiffness;
   cable.friction = actuator.friction;
-  cable.guide_radius = actuator.guide_radius;
+  cable.guide_radius = actuator.guide_radius.value_or(0.0);
   cable.guide_spacing = actuator.guide_spacing;
   builder.add_cable(cable);
 }

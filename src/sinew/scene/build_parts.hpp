@@ -12,6 +12,9 @@
 #include "sinew/mesh/topology.hpp"
 #include "sinew/scene/description.hpp"
 
+namespace sinew::mechanics {
+class BodyModel;
+}
 namespace sinew::sim {
 class ModelBuilder;
 }
@@ -40,6 +43,12 @@ void check_element(const BodyDescription& body, const mesh::Mesh& mesh);
 /// What to say about linear tetrahedra at a Poisson's ratio above 0.4: a remark where the scene
 /// asks for them, else a warning. @param body,mesh the body, and its make_body_mesh().
 std::optional<Notice> locking_notice(const BodyDescription& body, const mesh::Mesh& mesh);
+
+/// What to say of a cable that pulls at bare points of quadratic elements so that they dent by a
+/// hundredth of the body's size: a remark where the scene asks for it, else a warning.
+/// @param cable of type cable. @param body that it runs through.
+std::optional<Notice> bare_points_notice(const ActuatorDescription& cable,
+                                         const mechanics::BodyModel& body);
 
 /// The region as the mesh's selections know it.
 mesh::Region region_of(const FixedRegion& region);

@@ -185,9 +185,9 @@ struct ActuatorDescription {
   PointList points;  ///< the first is the pull point
   PullPoint pull = PullPoint::world;
   bool geometric_stiffness = true;
-  double friction = 0.0;       ///< Coulomb's coefficient, >= 0
-  double guide_radius = 0.0;   ///< m, >= 0
-  double guide_spacing = 0.0;  ///< m, >= 0
+  double friction = 0.0;               ///< Coulomb's coefficient, >= 0
+  std::optional<double> guide_radius;  ///< m, >= 0
+  double guide_spacing = 0.0;          ///< m, >= 0
   // force
   Vector3 point = Vector3::Zero();  ///< m
   Place point_place;

@@ -85,9 +85,9 @@ Key body_key() {
 Key outside_key() {
   return {.name = "outside",
           .forms = {choice({{"error",
-                             "A point outside the mesh is refused. One that is nearer to the "
-                             "surface than 1e-5 of the mesh's size lies on it."},
-                            {"nearest", "It is carried by the nearest element."}})},
+                             "A point outside the mesh is an error. A point within 1e-5 of the "
+                             "mesh's size of the surface counts as on it."},
+                            {"nearest", "The nearest element carries it."}})},
           .example = "nearest",
           .default_text = "error",
           .description = "What to do with points that lie outside the mesh."};

@@ -227,7 +227,9 @@ ActuatorDescription read_actuator(const Node::Entry& entry, const ReadContext& c
       read_line(fields, actuator, context);
       fields.read("geometric_stiffness", actuator.geometric_stiffness);
       fields.read("friction", actuator.friction);
-      fields.read("guide_radius", actuator.guide_radius);
+      if (double radius = 0.0; fields.read("guide_radius", radius)) {
+        actuator.guide_radius = radius;
+      }
       fields.read("guide_spacing", actuator.guide_spacing);
       break;
     case Type::force:

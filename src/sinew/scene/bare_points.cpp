@@ -1,0 +1,52 @@
+// What to say of cables whose points dent the material.
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "sinew/fem/fem_body_settings.hpp"
+#include "sinew/fem/fem_model.hpp"
+#include "sinew/fem/has_elements.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
+#include "sinew/scene/build_parts.hpp"
+
+namespace sinew::scene {
+
+namespace {
+
+// A dent below this part of the body's size is left unsaid.
+constexpr double kDent = 0.01;
+
+}  // namespace
+
+// A force F at a point of a medium of modulus E has a displacement without bound (Kelvin); on a
+// mesh of edge h it is about F/(E h). Where the tension has no limit, F is what strains the section
+// of the body by a tenth.
+std::optional<Notice> bare_points_notice(const ActuatorDescription& cable,
+                                         const mechanics::BodyModel& body) {
+  const auto* own = mechanics::as<const fem::HasElements>(body);
+  if (own == nullptr || body.mesh().quadratic.empty() || cable.guide_radius.value_or(0.0) > 0.0) {
+    return std::nullopt;
+  }
+  const mesh::Mesh& mesh = body.mesh();
+  const double modulus = fem::stiffest_modulus(own->settings().elements);
+  const double volume = own->elements().volume();
+  const double edge =
+      std::cbrt(6.0 * std::sqrt(2.0) * volume / static_cast<double>(mesh.quadratic.size()));
+  const Vector3 extent = mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff();
+  const double size = extent.norm();
+  const double force =
+      std::isfinite(cable.effort.max) ? cable.effort.max : 0.1 * modulus * volume / size;
+  const double dent = force / (modulus * edge);
+  if (dent < kDent * size) return std::nullopt;
+  return Notice{
+      cable.guide_radius ? NoticeLevel::remark : NoticeLevel::warning, NoticeKind::bare_points,
+      cable.place,
+      fmt::format("cable '{}' pulls at single points of quadratic elements: {:.2g} N dent "
+                  "the material by about {:.2g} mm at each, and more on a finer mesh",
+                  cable.name, force, 1e3 * dent),
+      fmt::format("write the radius of its tube, for instance guide_radius: {:.1g} mm",
+                  1e3 * 0.5 * edge)};
+}
+
+}  // namespace sinew::scene
