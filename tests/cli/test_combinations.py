@@ -42,7 +42,8 @@ def test_the_program_tells_runs_records_and_plots_it(scene, tmp_path):
     assert facts["bodies"]
     out = tmp_path / "out"
     done = sinew("run", scene, "--duration", "30ms", "--out", out, "--vtk", "--quiet", codes=(DONE, FLAGGED))
-    flagged = "sinew: warning:" in done.stderr
+    # A notice of the scene, such as of cables at bare points, is no flag of the run.
+    flagged = any("sinew: warning:" in line and not line.endswith("[bare-points]") for line in done.stderr.splitlines())
     stopped = "sinew: error:" in done.stderr
     assert (done.returncode == DONE) != (flagged or stopped), done.stderr
     with open(out / "run.csv") as file:
