@@ -50,12 +50,14 @@ class Rod:
         scene = {"sinew": 1, "solver": SOLVER, "bodies": {"rod": {
             "type": "fem", "element": element, "mesh": mesh,
             "material": {"model": "mooney-rivlin", "c10": c1, "c01": c2, "poisson_ratio": 0.4999},
-            "fixed": [{"set": "bottom", "axes": "z" if both else ["x", "y", "z"]}]}}}
+            "fixed": [{"set": "bottom"}]}}}
         self.rest = np.array(sinew.load(scene).body("rod").rest_positions)
         self.top = np.flatnonzero(self.rest[:, 2] > A * (1 - 1e-9))
         self.bottom = np.flatnonzero(self.rest[:, 2] < 1e-9 * A)
         led = {(n, c) for n in self.top for c in range(3)}
-        if both:  # the matrix without rows must be regular: what never moves of the bottom's x axis is fixed
+        if both:
+            scene["bodies"]["rod"]["fixed"] = [{"set": "bottom", "axes": "z"}]
+            # the matrix without rows must be regular: what never moves of the bottom's x axis is fixed
             still = {(n, c) for n in self.bottom for c in range(2) if abs(self.rest[n, c]) < 1e-9 * A
                      and abs(self.rest[n, 1]) < 1e-9 * A}
             scene["bodies"]["rod"]["fixed"] += [
