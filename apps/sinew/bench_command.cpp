@@ -30,7 +30,7 @@ namespace sinew::cli {
 
 namespace {
 
-constexpr int kMostSteps = 10'000'000;
+constexpr int kMaxSteps = 10'000'000;
 constexpr int kWarmUp = 20;           // steps, where no target says how long a turn is
 constexpr double kEigenBudget = 5.0;  // s, about
 
@@ -185,8 +185,8 @@ void print_report(const nlohmann::ordered_json& json) {
 }
 
 void check_options(const BenchOptions& options) {
-  require_range("--steps", options.steps, 1, kMostSteps);
-  if (options.warm_up) require_range("--warm-up", *options.warm_up, 0, kMostSteps);
+  require_range("--steps", options.steps, 1, kMaxSteps);
+  if (options.warm_up) require_range("--warm-up", *options.warm_up, 0, kMaxSteps);
   if (options.tangent && *options.tangent != "exact" && *options.tangent != "rotated") {
     throw Error(ErrorKind::unknown_choice, {.item = "--tangent"},
                 fmt::format("there is no tangent '{}'", *options.tangent),

@@ -30,7 +30,7 @@ using plan::Brace;
 using plan::BraceRun;
 using plan::BraceTask;
 
-constexpr int kMostSeeds = 1000;
+constexpr int kMaxSeeds = 1000;
 
 struct BraceOptions {
   ArmSceneOptions scene;
@@ -208,8 +208,8 @@ void print_trials(const std::vector<BraceTrial>& trials) {
 }
 
 int find_and_carry_out(const BraceOptions& options) {
-  require_range("--disturbances", options.seeds, 1, kMostSeeds);
-  require_range("--starts", options.starts, 1, kMostSeeds);
+  require_range("--disturbances", options.seeds, 1, kMaxSeeds);
+  require_range("--starts", options.starts, 1, kMaxSeeds);
   const ArmScene scene = load_arm_scene(options.scene);
   require_inputs(scene);
   require_range("--segment", options.segments, 0, scene.arm->segments());

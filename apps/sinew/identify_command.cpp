@@ -35,7 +35,7 @@ using identify::ArmFitSettings;
 using identify::MotionRecord;
 using identify::RecordFit;
 
-constexpr int kMostStarts = 1000;
+constexpr int kMaxStarts = 1000;
 constexpr Dimension kAngularDamping{2, 1, -1};  // N m s
 constexpr Dimension kCubic{-7, 1, -2};          // N m/m^9
 
@@ -114,7 +114,7 @@ ArmFitSettings settings_of(const IdentifyOptions& options) {
     settings.step.time_step =
         positive_quantity("--time-step", *options.time_step, dimension::kTime);
   }
-  require_range("--starts", options.starts, 1, kMostStarts);
+  require_range("--starts", options.starts, 1, kMaxStarts);
   settings.search.starts = options.starts;
   settings.search.seed = options.seed;
   return settings;

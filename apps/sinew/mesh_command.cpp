@@ -18,7 +18,7 @@ namespace sinew::cli {
 
 namespace {
 
-constexpr int kMostRefinements = 4;
+constexpr int kMaxRefinements = 4;
 
 struct MeshOptions {
   std::string surface, shape, out;
@@ -66,7 +66,7 @@ int make(const MeshOptions& options) {
         "trunk");
   }
   mesh::require_writable_format(options.out);
-  require_range("--refine", options.refine, 0, kMostRefinements);
+  require_range("--refine", options.refine, 0, kMaxRefinements);
   mesh::Mesh mesh = options.shape.empty() ? from_surface(options) : from_shape(options);
   for (int i = 0; i < options.refine; ++i) mesh = mesh::refine(mesh);
   mesh::write_mesh(options.out, mesh);

@@ -33,10 +33,10 @@ using plan::Plan;
 using plan::Replay;
 using plan::Task;
 
-constexpr int kMostSeeds = 1000;
-constexpr int kMostIntervals = 10000;
+constexpr int kMaxSeeds = 1000;
+constexpr int kMaxIntervals = 10000;
 // How far a free duration goes below and above what was asked for.
-constexpr double kLeastShare = 0.5, kMostShare = 2.0;
+constexpr double kMinShare = 0.5, kMaxShare = 2.0;
 // A jump of a torque, as rows of a table whose times grow; a share of an interval.
 constexpr double kJump = 1e-6;
 
@@ -93,14 +93,14 @@ Task task_of(const PlanOptions& options, const ArmScene& scene) {
     task.limits.torque_rate = task.limits.torque_rate.cwiseMin(torque_rate(*options.rate_limit));
   }
   task.grid.method = method_of(options.method);
-  require_range("--intervals", options.intervals, 2, kMostIntervals);
+  require_range("--intervals", options.intervals, 2, kMaxIntervals);
   task.grid.intervals = options.intervals;
   if (options.duration) {
     task.grid.duration = positive_quantity("--duration", *options.duration, dimension::kTime);
   }
   if (options.free_duration) {
-    task.grid.least_duration = kLeastShare * task.grid.duration;
-    task.grid.most_duration = kMostShare * task.grid.duration;
+    task.grid.least_duration = kMinShare * task.grid.duration;
+    task.grid.most_duration = kMaxShare * task.grid.duration;
   }
   return plan::completed(*scene.arm, std::move(task));
 }
@@ -254,7 +254,7 @@ void say_how_to_play(const PlanOptions& options, const ArmScene& scene, const Pl
 }
 
 int make_plan(const PlanOptions& options) {
-  require_range("--seeds", options.seeds, 1, kMostSeeds);
+  require_range("--seeds", options.seeds, 1, kMaxSeeds);
   const ArmScene scene = load_arm_scene(options.scene);
   require_inputs(scene);
   const Task task = task_of(options, scene);

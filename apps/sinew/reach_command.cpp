@@ -26,7 +26,7 @@ namespace sinew::cli {
 
 namespace {
 
-constexpr int kMostSamples = 10'000'000;
+constexpr int kMaxSamples = 10'000'000;
 
 struct ReachOptions {
   ArmSceneOptions scene;
@@ -150,7 +150,7 @@ nlohmann::ordered_json to_json(const ArmScene& scene, const plan::ReachMap& map,
 }
 
 int reach(const ReachOptions& options) {
-  require_range("--samples", options.samples, 1, kMostSamples);
+  require_range("--samples", options.samples, 1, kMaxSamples);
   const ArmScene scene = load_arm_scene(options.scene);
   require_inputs(scene);
   const plan::Limits limits = torque_limits(scene);

@@ -28,7 +28,7 @@ namespace sinew::cli {
 
 namespace {
 
-constexpr double kMostSteps = 1e9;
+constexpr double kMaxSteps = 1e9;
 
 struct RunOptions {
   SceneOptions scene;
@@ -75,7 +75,7 @@ void count(Tally& tally, Session& session) {
 
 std::int64_t step_count(double duration, double time_step) {
   const double steps = std::round(duration / time_step);
-  if (steps > kMostSteps) {
+  if (steps > kMaxSteps) {
     throw Error(ErrorKind::out_of_range, {.item = "duration"},
                 fmt::format("{:g} s are {:g} steps of {:g} s", duration, steps, time_step),
                 "run for a shorter time or with a larger time step");

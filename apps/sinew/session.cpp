@@ -15,12 +15,12 @@ namespace sinew::cli {
 
 namespace {
 
-constexpr int kMostThreads = 256;
+constexpr int kMaxThreads = 256;
 
 scene::Robot load(const SceneOptions& options) {
   std::vector<std::string> overrides = options.overrides;
   if (options.threads) {
-    require_range("--threads", *options.threads, 1, kMostThreads);
+    require_range("--threads", *options.threads, 1, kMaxThreads);
     overrides.push_back(fmt::format("solver.threads={}", *options.threads));
   }
   scene::Robot robot = scene::load(options.file, overrides);

@@ -17,7 +17,7 @@ constexpr double kError = 13.0 * kEpsilon;
 /// Of the part of a cubic between two times, in parts of its largest coefficient: three levels of
 /// interpolation with 4 units each. Doubled.
 constexpr double kPartError = 12.0 * kEpsilon;
-constexpr int kMostClips = 40;
+constexpr int kMaxClips = 40;
 
 using Coefficients = std::array<double, 4>;
 
@@ -80,7 +80,7 @@ Coefficients Coplanarity::part(double from, double to) const {
 
 double Coplanarity::apart_until(double time) const {
   double to = 1.0;
-  for (int k = 0; k < kMostClips && time < 1.0; ++k) {
+  for (int k = 0; k < kMaxClips && time < 1.0; ++k) {
     Coefficients c = part(time, to);
     const double sign = c[0] < 0.0 ? -1.0 : 1.0;
     for (double& value : c) value = sign * value - error_;

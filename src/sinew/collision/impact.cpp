@@ -14,7 +14,7 @@ namespace {
 
 /// Planes after which a query counts as a meeting. A few are enough but where points turn about
 /// each other while they come as near as `separation` and a thousandth of it, or stay in one plane.
-constexpr int kMostPlanes = 256;
+constexpr int kMaxPlanes = 256;
 /// Planes that are tried before the time of coplanarity is looked for.
 constexpr int kFirstPlanes = 2;
 
@@ -45,7 +45,7 @@ double separated_by_edges(const RelativeMotion& motion, double time, bool edges)
 std::optional<double> first_impact(const RelativeMotion& motion, const Coplanarity& coplanarity,
                                    bool edges) {
   double time = 0.0;
-  for (int plane = 0; plane < kMostPlanes; ++plane) {
+  for (int plane = 0; plane < kMaxPlanes; ++plane) {
     const double before = time;
     time = motion.separated_until(to_nearest(motion, time, edges), time);
     if (time > 1.0) return std::nullopt;

@@ -15,7 +15,7 @@ namespace {
 constexpr double kErrorInSpace = 1e-15;
 constexpr double kErrorInPlane = 5e-16;
 /// Below this products may have lost digits to underflow.
-constexpr double kLeast = 1e-250;
+constexpr double kMinSize = 1e-250;
 
 /// A value as the exact sum of two doubles.
 struct Two {
@@ -99,7 +99,7 @@ int orientation(const Vector3& a, const Vector3& b, const Vector3& c, const Vect
   const Vector3 x = u.cwiseAbs(), y = v.cwiseAbs(), z = w.cwiseAbs();
   const double size = x[0] * (y[1] * z[2] + y[2] * z[1]) + x[1] * (y[2] * z[0] + y[0] * z[2]) +
                       x[2] * (y[0] * z[1] + y[1] * z[0]);
-  if (size > kLeast && std::abs(value) > kErrorInSpace * size) return sign_of(value);
+  if (size > kMinSize && std::abs(value) > kErrorInSpace * size) return sign_of(value);
   return exact_orientation(a, b, c, d);
 }
 
@@ -107,7 +107,7 @@ int orientation_along(int axis, const Vector3& a, const Vector3& b, const Vector
   const int i = (axis + 1) % 3, j = (axis + 2) % 3;
   const double left = (b[i] - a[i]) * (c[j] - a[j]), right = (b[j] - a[j]) * (c[i] - a[i]);
   const double value = left - right, size = std::abs(left) + std::abs(right);
-  if (size > kLeast && std::abs(value) > kErrorInPlane * size) return sign_of(value);
+  if (size > kMinSize && std::abs(value) > kErrorInPlane * size) return sign_of(value);
   const Two ui = sum(b[i], -a[i]), uj = sum(b[j], -a[j]);
   const Two vi = sum(c[i], -a[i]), vj = sum(c[j], -a[j]);
   ExactSum total;

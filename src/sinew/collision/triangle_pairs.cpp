@@ -8,7 +8,7 @@ namespace {
 
 /// Pairs of branches that threads share: enough to be even, the same for any number of threads.
 constexpr std::size_t kFront = 512;
-constexpr int kMostLevels = 24;
+constexpr int kMaxLevels = 24;
 /// A pair leaves at most three in its place, and two trees have less than 64 levels together.
 constexpr std::size_t kPairStack = 192;
 
@@ -32,7 +32,7 @@ std::span<const TrianglePair> TrianglePairs::within(const SurfaceTree& surface, 
 // From the roots down, until there is work for all.
 void TrianglePairs::spread(const Search& search) {
   front_.assign(1, {0, 0});
-  for (int level = 0; level < kMostLevels && front_.size() < kFront; ++level) {
+  for (int level = 0; level < kMaxLevels && front_.size() < kFront; ++level) {
     next_.clear();
     for (const BranchPair& pair : front_) {
       if (is_leaf(search, pair)) {

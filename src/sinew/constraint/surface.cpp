@@ -64,7 +64,7 @@ PrincipalFrame principal_frame_of(const Capsule& capsule, const Vector3& point) 
 
 // Of the way's length: what counts as touching, and how near the least gap is found.
 constexpr double kTouches = 1e-12;
-constexpr int kMostTries = 100;  // a way that grazes a surface halves its distance in each
+constexpr int kMaxTries = 100;  // a way that grazes a surface halves its distance in each
 
 // The gap along a way, at shares of it.
 class GapOnWay {
@@ -121,7 +121,7 @@ PrincipalFrame principal_frame(const Surface& surface, const Vector3& point) {
 SurfaceApproach approach(const Surface& surface, const Vector3& from, const Vector3& to) {
   GapOnWay gap(surface, from, to);
   if (!(gap.slope() < 0.0)) return gap.result(false);
-  for (int k = 0; k < kMostTries && !gap.touches(); ++k) {
+  for (int k = 0; k < kMaxTries && !gap.touches(); ++k) {
     const double before = gap.share(), next = gap.next_zero();
     if (next - before <= kTouches) break;
     gap.move(std::min(next, 1.0));

@@ -15,7 +15,7 @@ constexpr double kLargestSize = 1e3;
 
 // Residuals are judged relative to loads, but not to loads that strain a body less than this: at
 // rest there is nothing but rounding to compare with.
-constexpr double kLeastStrain = 1e-5;
+constexpr double kMinStrain = 1e-5;
 
 std::span<double> span_of(VectorX& v) { return {v.data(), static_cast<std::size_t>(v.size())}; }
 
@@ -32,7 +32,7 @@ FemStep::FemStep(FemState& state, ThreadPool& pool, bool with_curvature)
   const auto size = 3 * static_cast<Eigen::Index>(nodes.size());
   for (VectorX* v : {&right_, &motion_, &from_, &imbalance_}) v->setZero(size);
   const double modulus = stiffest_modulus(model.settings().elements);
-  least_force_ = kLeastStrain * modulus * std::pow(model.elements().volume(), 2.0 / 3.0);
+  least_force_ = kMinStrain * modulus * std::pow(model.elements().volume(), 2.0 / 3.0);
   const Points& positions = state.positions;
   const Vector3 extent = positions.colwise().maxCoeff() - positions.colwise().minCoeff();
   const auto count = static_cast<double>(nodes.size());

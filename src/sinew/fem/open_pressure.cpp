@@ -9,7 +9,7 @@ namespace sinew::fem {
 
 namespace {
 
-constexpr int kMostDirections = 60;  // of GMRES
+constexpr int kMaxDirections = 60;  // of GMRES
 constexpr double kTolerance = 1e-12;
 
 void multiply(std::span<const FreeBlock> blocks, std::span<const std::int32_t> held,
@@ -31,10 +31,10 @@ void correct_for_open_pressure(std::span<const FreeBlock> blocks,
   const double size = motion.norm();
   if (!(size > 0.0)) return;
   std::vector<VectorX> basis{motion / size};
-  MatrixX hessenberg = MatrixX::Zero(kMostDirections + 1, kMostDirections);
+  MatrixX hessenberg = MatrixX::Zero(kMaxDirections + 1, kMaxDirections);
   VectorX weights;
   VectorX product;
-  for (int k = 0; k < kMostDirections; ++k) {
+  for (int k = 0; k < kMaxDirections; ++k) {
     multiply(blocks, held, basis.back(), product);
     const std::span<double> solved(product.data(), static_cast<std::size_t>(product.size()));
     factor.solve(solved, solved);

@@ -22,7 +22,7 @@ using pcc::BendingActuator;
 using pcc::BendingModulus;
 using pcc::BendingParameters;
 
-constexpr int kMostDegree = 5;
+constexpr int kMaxDegree = 5;
 constexpr double kAtBound = 1e-6;  // of the start, or of the upper bound
 
 struct Range {
@@ -128,7 +128,7 @@ void check(std::span<const TipRecord> records, const BendingFitSettings& s) {
     require(!record.pressure.empty(), ErrorKind::missing_key, record.name,
             "the record has no pressures", "add a column pressure_kPa");
   }
-  require(s.degree >= 0 && s.degree <= kMostDegree, ErrorKind::out_of_range, "degree",
+  require(s.degree >= 0 && s.degree <= kMaxDegree, ErrorKind::out_of_range, "degree",
           fmt::format("{}", s.degree), "give 0 (a constant) to 5");
   require(s.lowest > 0.0 && s.lowest < s.highest && std::isfinite(s.highest),
           ErrorKind::contradictory_limits, "bounds",

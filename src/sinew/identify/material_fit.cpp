@@ -12,7 +12,7 @@ namespace sinew::identify {
 
 namespace {
 
-constexpr double kLeastCost = 1e-12;  // a relative RMS of 1e-6
+constexpr double kMinCost = 1e-12;  // a relative RMS of 1e-6
 
 void check(const FitSettings& settings) {
   if (settings.starts < 1) {
@@ -111,7 +111,7 @@ std::vector<double> bayes_information(std::span<const FitResult> fits) {
   }
   std::vector<double> result;
   for (const FitResult& fit : fits) {
-    result.push_back(worth * std::log(std::max(fit.cost, kLeastCost)) +
+    result.push_back(worth * std::log(std::max(fit.cost, kMinCost)) +
                      fit.parameters() * std::log(worth));
   }
   return result;

@@ -7,7 +7,7 @@ namespace sinew::inverse {
 
 namespace {
 
-constexpr double kMost = 1e6;
+constexpr double kMaxDamping = 1e6;
 constexpr double kGrowth = 4.0;
 constexpr double kDecay = 0.5;
 constexpr double kBad = 0.75;
@@ -23,7 +23,7 @@ void StepDamping::review(double before, double foreseen, double found, double ne
   if (change <= noise && std::abs(found - before) <= noise) return;
   const double worse = found - foreseen;
   if (worse > kBad * change + noise) {
-    value_ = std::min(kMost, kGrowth * value_);
+    value_ = std::min(kMaxDamping, kGrowth * value_);
   } else if (worse <= kGood * change) {
     value_ = std::max(1.0, kDecay * value_);
   }

@@ -246,11 +246,11 @@ SINEW_INLINE void scale(LanesLogResponse& response, double factor) {
 SINEW_INLINE void soften(const MullinsEffect& effect, const Lanes& peak,
                          LanesLogResponse& response) {
   constexpr double kRootPi = 1.7724538509055160273;
-  constexpr double kLeastWidth = 1e-9;  // Pa: where nothing was strained yet
-  constexpr double kAtPeak = 1e-9;      // x below which eta is 1
+  constexpr double kMinWidth = 1e-9;  // Pa: where nothing was strained yet
+  constexpr double kAtPeak = 1e-9;    // x below which eta is 1
   for (int lane = 0; lane < kLanes; ++lane) {
     const double w = response.energy[lane], most = peak[lane];
-    const double width = std::fmax(effect.m + effect.beta * most, kLeastWidth);
+    const double width = std::fmax(effect.m + effect.beta * most, kMinWidth);
     if (!(most - w > kAtPeak * width)) continue;
     const double x = (most - w) / width, bell = std::exp(-x * x);
     const double eta = 1.0 - std::erf(x) / effect.r;

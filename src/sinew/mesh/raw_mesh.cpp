@@ -13,7 +13,7 @@ namespace sinew::mesh {
 
 namespace {
 
-constexpr std::size_t kMostLabels = 256;
+constexpr std::size_t kMaxLabels = 256;
 
 /// Where a cell of the file went: which list of the mesh and which place in it.
 struct Destination {
@@ -61,8 +61,8 @@ void check_structure(const RawMesh& raw) {
     fail(raw, ErrorKind::malformed_file,
          fmt::format("{} coordinates are not a multiple of three", raw.coordinates.size()));
   }
-  constexpr std::size_t kMost = std::numeric_limits<NodeId>::max();
-  if (raw.point_count() > kMost || raw.cell_count() > kMost) {
+  constexpr std::size_t kMaxNumber = std::numeric_limits<NodeId>::max();
+  if (raw.point_count() > kMaxNumber || raw.cell_count() > kMaxNumber) {
     fail(raw, ErrorKind::size_limit, "more than 2^31 - 1 points or cells");
   }
   if (raw.offsets.size() != raw.cell_count() + 1) {
@@ -180,11 +180,11 @@ void for_each_label(const IntegerField& field, const Add& add) {
     std::set<std::int64_t> distinct;
     for (const std::int64_t value : field.values) {
       distinct.insert(value);
-      if (distinct.size() > kMostLabels) break;
+      if (distinct.size() > kMaxLabels) break;
     }
     return distinct;
   }();
-  if (labels.size() > kMostLabels) return;
+  if (labels.size() > kMaxLabels) return;
   const bool mask = field.mask && !labels.empty() && *labels.begin() >= 0 && *labels.rbegin() <= 1;
   for (std::size_t i = 0; i < field.values.size(); ++i) {
     if (mask) {

@@ -34,9 +34,9 @@ void require_length(double value, const std::string& shape, const char* what) {
 }
 
 void require_cells(int value, int least, const std::string& shape, const char* what) {
-  constexpr int kMost = 2000;
-  require(value >= least && value <= kMost, shape,
-          fmt::format("{} = {} (from {} to {})", what, value, least, kMost));
+  constexpr int kMaxCount = 2000;
+  require(value >= least && value <= kMaxCount, shape,
+          fmt::format("{} = {} (from {} to {})", what, value, least, kMaxCount));
 }
 
 void require_rings(int rings, Cells cells, const std::string& shape) {
@@ -85,11 +85,11 @@ double least_jacobian(const Mesh& mesh, const QuadraticTetrahedron& element) {
 /// Where cells are flat beside their circle's curve, arcs would fold elements: these get straight
 /// edges again.
 void straighten_folded(Mesh& mesh) {
-  constexpr double kLeast = 0.1;
+  constexpr double kMinJacobian = 0.1;
   for (bool folded = true; folded;) {
     folded = false;
     for (const QuadraticTetrahedron& element : mesh.quadratic) {
-      if (least_jacobian(mesh, element) >= kLeast) continue;
+      if (least_jacobian(mesh, element) >= kMinJacobian) continue;
       folded = true;
       for (std::size_t e = 0; e < kEdges.size(); ++e) {
         mesh.nodes.row(element[4 + e]) =

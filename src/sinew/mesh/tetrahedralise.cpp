@@ -19,7 +19,7 @@ namespace {
 
 /// Gmsh is given millimetres: its absolute tolerances suit numbers near one.
 constexpr double kGmshUnit = 1e-3;
-constexpr double kMostElements = 20e6;
+constexpr double kMaxElements = 20e6;
 
 /// A folder of our own that is removed at the end.
 class TemporaryFolder {
@@ -49,7 +49,7 @@ void check_options(const Surface& surface, const TetrahedraliseOptions& options)
   const double volume = std::abs(enclosed_volume(surface));
   // A regular tetrahedron of edge h has the volume h^3 / 8.5.
   const double elements = 8.5 * volume / std::pow(options.size, 3);
-  if (!(options.size > 0.0) || !std::isfinite(options.size) || elements > kMostElements) {
+  if (!(options.size > 0.0) || !std::isfinite(options.size) || elements > kMaxElements) {
     throw Error(ErrorKind::out_of_range, {.item = "size"},
                 options.size > 0.0
                     ? fmt::format("{} m would give about {:.1e} tetrahedra", options.size, elements)

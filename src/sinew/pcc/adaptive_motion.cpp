@@ -26,9 +26,9 @@ constexpr std::array<std::array<double, 5>, 5> kWeight{{
 constexpr std::array<double, 5> kError{-3.0 / 16, -27.0 / 32, 25.0 / 32, 0.0, 1.0 / 4};
 /// Newton's method leaves so much of the error that is allowed.
 constexpr double kNewton = 0.01;
-constexpr int kMostIterations = 10;
+constexpr int kMaxIterations = 10;
 /// Of the length proposed by the error; how much steps change at once.
-constexpr double kSafety = 0.9, kLeastChange = 0.2, kMostChange = 5.0;
+constexpr double kSafety = 0.9, kMinChange = 0.2, kMaxChange = 5.0;
 
 }  // namespace
 
@@ -62,7 +62,7 @@ bool AdaptiveMotion::solve_stage(std::size_t stage, double h, const VectorX& dri
     start_rate += h * kWeight[stage][j] * stage_acceleration_[j];
   }
   double before = 0.0;
-  for (int k = 0; k < kMostIterations; ++k) {
+  for (int k = 0; k < kMaxIterations; ++k) {
     rate = start_rate + own * acceleration;
     stage_q_ = start_q + own * rate;
     change_ = drive - equations_.residual(stage_q_, rate, acceleration);
@@ -125,9 +125,9 @@ void AdaptiveMotion::advance(double end, const Torque& torque) {
     }
     const std::optional<double> error = attempt(h, torque);
     moved = error && *error <= 1.0;
-    const double change = !error ? kLeastChange
+    const double change = !error ? kMinChange
                                  : std::clamp(kSafety * std::pow(std::max(*error, 1e-10), -0.25),
-                                              kLeastChange, moved ? kMostChange : 1.0);
+                                              kMinChange, moved ? kMaxChange : 1.0);
     // A step cut short by the end says nothing against longer ones.
     next_ = moved && last ? std::max(next_, h * change) : h * change;
     if (moved) {

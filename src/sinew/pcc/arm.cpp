@@ -74,10 +74,10 @@ Arm::Arm(ArmSettings settings) : settings_(std::move(settings)) {
   if (list.empty()) {
     refuse(ErrorKind::empty_list, name, "it has no segments", "give at least one");
   }
-  if (settings_.mass_points < 1 || settings_.mass_points > kMostGaussPoints) {
+  if (settings_.mass_points < 1 || settings_.mass_points > kMaxGaussPoints) {
     refuse(ErrorKind::out_of_range, name,
            fmt::format("{} mass points a segment", settings_.mass_points),
-           fmt::format("give 1 to {}", kMostGaussPoints));
+           fmt::format("give 1 to {}", kMaxGaussPoints));
   }
   if (!settings_.gravity.allFinite() || !settings_.base.allFinite()) {
     refuse(ErrorKind::not_finite, name, "gravity or base is not finite", "give three numbers");

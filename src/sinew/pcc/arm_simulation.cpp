@@ -106,7 +106,7 @@ void ArmSimulation::step(const VectorX& torque) {
 
 ArmEquilibrium find_equilibrium(ArmEquations& equations, const VectorX& torque,
                                 const VectorX& start) {
-  constexpr int kMost = 200;
+  constexpr int kMaxIterations = 200;
   const Arm& arm = equations.arm();
   const Eigen::Index n = arm.coordinates();
   const VectorX drive = arm.actuation() * torque, still = VectorX::Zero(n);
@@ -117,7 +117,7 @@ ArmEquilibrium find_equilibrium(ArmEquations& equations, const VectorX& torque,
   ArmEquilibrium result{start, false, 0};
   VectorX& q = result.position;
   const double unit = arm.stiffness().maxCoeff();
-  for (; result.iterations < kMost; ++result.iterations) {
+  for (; result.iterations < kMaxIterations; ++result.iterations) {
     const auto& linear = equations.linearise(q, still, still);
     const VectorX gradient = linear.residual - drive;
     const MatrixX hessian = 0.5 * (linear.by_position + linear.by_position.transpose());
@@ -143,7 +143,7 @@ ArmEquilibrium find_equilibrium(ArmEquations& equations, const VectorX& torque,
     q += length * move;
   }
   throw Error(ErrorKind::not_converged, {.item = arm.settings().name},
-              fmt::format("no equilibrium after {} iterations", kMost),
+              fmt::format("no equilibrium after {} iterations", kMaxIterations),
               "start nearer to it, or give the arm some stiffness");
 }
 

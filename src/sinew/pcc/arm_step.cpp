@@ -13,7 +13,7 @@ constexpr double kLargestAngle = 1e3;
 // Softest that a real-time tangent is let be, of the stiffest segment.
 constexpr double kSoftest = 1e-3;
 // Residuals are not judged by loads that bend a segment less than this.
-constexpr double kLeastAngle = 1e-5;
+constexpr double kMinAngle = 1e-5;
 
 }  // namespace
 
@@ -38,7 +38,7 @@ ArmStep::ArmStep(const ArmBodyModel& model, ArmState& state, ArmPose& pose)
   moved_rows_.setZero(n, rows);
   compliance_.setZero(rows, rows);
   free_motion_.setZero(rows);
-  least_force_ = kLeastAngle * std::max(model.arm().stiffness().maxCoeff(), 1e-9);
+  least_force_ = kMinAngle * std::max(model.arm().stiffness().maxCoeff(), 1e-9);
   force_scale_ = least_force_;
   equations_.linearise(state.q, state.rate, acceleration_);  // takes its workspace now
 }

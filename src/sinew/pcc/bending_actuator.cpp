@@ -80,13 +80,13 @@ double BendingActuator::linear_angle(double pressure) const {
 }
 
 double BendingActuator::equilibrium(double pressure, double start) const {
-  constexpr int kMostIterations = 100;
+  constexpr int kMaxIterations = 100;
   constexpr double kLongestStep = 0.3;  // rad
   const double shear = parameters_.modulus.shear(pressure);
   const double moment = moment_per_pressure_ * pressure;
   const double lowest = energies_.lowest_angle(), highest = energies_.highest_angle();
   double theta = std::clamp(start, lowest, highest);
-  for (int k = 0; k < kMostIterations; ++k) {
+  for (int k = 0; k < kMaxIterations; ++k) {
     const BendingTerms terms = energies_.at(theta);
     const double force = moment - shear * terms.strain.first - terms.gravity.first;
     const double stiffness = shear * terms.strain.second + terms.gravity.second;

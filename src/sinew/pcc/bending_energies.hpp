@@ -71,7 +71,7 @@ class BendingEnergies {
  private:
   static constexpr int kAlong = 16;  // exact to rounding within a full turn
   static constexpr int kAcross = 24;
-  using Polynomial = std::array<double, kMostOrder + 1>;
+  using Polynomial = std::array<double, kMaxOrder + 1>;
 
   // sum_i cosine[i] cos(t_i theta) + sine[i] sin(t_i theta)
   struct Waves {

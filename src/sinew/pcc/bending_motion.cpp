@@ -55,7 +55,7 @@ void BendingMotion::prepare(double time_step) {
 }
 
 const BendingState& BendingMotion::step(double time_step, double pressure) {
-  constexpr int kMostIterations = 50;
+  constexpr int kMaxIterations = 50;
   constexpr double kLongestStep = 0.3;  // rad: what a Newton step may do
   // Newton's method doubles the digits: a last change of this size leaves its square.
   constexpr double kTolerance = 1e-9;
@@ -77,7 +77,7 @@ const BendingState& BendingMotion::step(double time_step, double pressure) {
                  ? std::clamp(std::clamp(time_step * state_.rate, -kLongestStep, kLongestStep),
                               lowest, highest)
                  : 0.0;
-  for (int k = 0; k < kMostIterations; ++k) {
+  for (int k = 0; k < kMaxIterations; ++k) {
     const double v = rate_motion * d + rate_known, a = turn_motion * d + turn_known;
     const BendingTerms t = energies.at(state_.angle + d);
     const double inertia = weights_.dynamic() ? t.inertia.value : 0.0;

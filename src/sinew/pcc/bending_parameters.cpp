@@ -61,9 +61,9 @@ void check(const BendingParameters& p) {
   not_negative("gravity", p.gravity, "m/s^2");
   not_negative("mass_damping", p.mass_damping, "1/s");
   not_negative("stiffness_damping", p.stiffness_damping, "s");
-  if (p.order && (*p.order < 2 || *p.order > kMostOrder)) {
+  if (p.order && (*p.order < 2 || *p.order > kMaxOrder)) {
     throw Error(ErrorKind::out_of_range, {.item = "order"}, fmt::format("{}", *p.order),
-                fmt::format("give 2 to {}, or none for exact energies", kMostOrder));
+                fmt::format("give 2 to {}, or none for exact energies", kMaxOrder));
   }
 }
 

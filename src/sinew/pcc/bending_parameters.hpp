@@ -36,7 +36,7 @@ struct BendingParameters {
   double mass_damping = 0.0;       ///< Rayleigh's alpha, 1/s, >= 0
   double stiffness_damping = 0.0;  ///< Rayleigh's beta, s, >= 0, on the unbent stiffness
 
-  std::optional<int> order = 5;  ///< of the energies in theta, 2 to kMostOrder; none: exact
+  std::optional<int> order = 5;  ///< of the energies in theta, 2 to kMaxOrder; none: exact
   MassLine mass_line = MassLine::layer;
 
   double outer() const { return outer_radius.value_or(chamber_radius + wall_thickness); }
@@ -44,7 +44,7 @@ struct BendingParameters {
   double chamber_height() const { return chamber_radius + wall_thickness; }
 };
 
-inline constexpr int kMostOrder = 20;
+inline constexpr int kMaxOrder = 20;
 
 /// Throws Error(not-finite | out-of-range) naming the parameter and its value.
 void check(const BendingParameters& parameters);

@@ -10,9 +10,9 @@ struct GaussPoint {
   double at = 0.0, weight = 0.0;
 };
 
-inline constexpr int kMostGaussPoints = 8;
+inline constexpr int kMaxGaussPoints = 8;
 
-/// @param count 1 to kMostGaussPoints; exact for polynomials of degree 2 count - 1.
+/// @param count 1 to kMaxGaussPoints; exact for polynomials of degree 2 count - 1.
 std::vector<GaussPoint> gauss_points(int count);
 
 }  // namespace sinew::pcc

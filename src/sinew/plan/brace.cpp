@@ -27,7 +27,7 @@ constexpr double kPlanShare = 0.4;  // of the tip's tolerance
 constexpr double kReplanShare = 0.95, kReplanForce = 0.5;
 
 // Relative: a point that moves less in a direction than this share of its most is not held in it.
-constexpr double kLeastMotion = 1e-6;
+constexpr double kMinMotion = 1e-6;
 
 [[noreturn]] void refuse(const char* item, const std::string& what, const char* remedy) {
   throw Error(ErrorKind::out_of_range, {.item = item}, what, remedy);
@@ -85,7 +85,7 @@ void hold_as_measured(BraceProblem& problem, const pcc::Arm& arm, double turn,
   const auto in_world = [&](const Vector3& p) -> Vector3 { return base + rotation * (p - base); };
   problem.place = in_world(at[0].value);
   const linalg::Svd svd = linalg::svd(rotation * at[0].jacobian, linalg::SingularVectors::full_u);
-  const Eigen::Index rank = (svd.values.array() > kLeastMotion * svd.values[0]).count();
+  const Eigen::Index rank = (svd.values.array() > kMinMotion * svd.values[0]).count();
   problem.held = svd.u.leftCols(rank);
   std::vector<pcc::ArmPoint> clear;
   for (std::size_t p = 1; p < looked_at.size(); ++p) {

@@ -20,11 +20,11 @@ namespace sinew::plan {
 
 namespace {
 
-constexpr int kMostSteps = 30;
+constexpr int kMaxSteps = 30;
 /// A point starts so far inside its bounds, of itself and of what is between them, and bounds'
 /// multipliers from this on.
 constexpr double kInside = 1e-3;
-constexpr double kLeastBarrier = 1e-11;
+constexpr double kMinBarrier = 1e-11;
 /// Errors that rose so much have lost their way.
 constexpr double kLost = 1e6;
 
@@ -236,10 +236,12 @@ double Solver::error() const {
   x_.each_bound(VectorX::Zero(x_.size()), 0.0, visit);
   s_.each_bound(VectorX::Zero(s_.size()), 0.0, visit);
   sum += bounds;
-  constexpr double kMost = 100.0;
+  constexpr double kMaxMultiplier = 100.0;
   const double dual_scale =
-      std::max(kMost, sum / (static_cast<double>(y_.size()) + std::max(count, 1.0))) / kMost;
-  const double bound_scale = std::max(kMost, bounds / std::max(count, 1.0)) / kMost;
+      std::max(kMaxMultiplier, sum / (static_cast<double>(y_.size()) + std::max(count, 1.0))) /
+      kMaxMultiplier;
+  const double bound_scale =
+      std::max(kMaxMultiplier, bounds / std::max(count, 1.0)) / kMaxMultiplier;
   double dual = (gradient_ - x_.lower_multiplier + x_.upper_multiplier).lpNorm<Eigen::Infinity>();
   if (s_.size() > 0) {
     dual = std::max(dual, (-VectorX(y_(bounded_row_)) - s_.lower_multiplier + s_.upper_multiplier)
@@ -332,7 +334,7 @@ std::pair<double, double> Solver::longest(double barrier, double share) const {
 
 bool Solver::run(const SolverSettings& settings) {
   double least = std::numeric_limits<double>::infinity();
-  const int most = std::min(kMostSteps, settings.max_iterations);
+  const int most = std::min(kMaxSteps, settings.max_iterations);
   for (;; ++steps_) {
     row_error_ = c_ - target_;
     row_error_(bounded_row_) = c_(bounded_row_) - s_.value;
@@ -348,7 +350,7 @@ bool Solver::run(const SolverSettings& settings) {
     if (mean > 0.0) {
       const auto [along, along_multipliers] = longest(0.0, 1.0);
       const double after = complementarity_after(0.0, along, along_multipliers);
-      barrier = std::max(kLeastBarrier, std::min(std::pow(after / mean, 3), 100.0) * mean);
+      barrier = std::max(kMinBarrier, std::min(std::pow(after / mean, 3), 100.0) * mean);
       step(barrier);
     }
     const auto [along, along_multipliers] = longest(barrier, std::max(0.99, 1.0 - barrier));

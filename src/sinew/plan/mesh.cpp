@@ -7,12 +7,12 @@
 namespace sinew::plan {
 
 VectorX refined(const VectorX& shares, const VectorX& defects, double left) {
-  constexpr double kMostParts = 4.0;
+  constexpr double kMaxParts = 4.0;
   const auto count = static_cast<double>(shares.size());
   std::vector<int> parts;
   for (const double defect : defects) {
     const double wanted = std::ceil(std::pow(count * defect / left, 0.25));
-    parts.push_back(static_cast<int>(std::clamp(wanted, 1.0, kMostParts)));
+    parts.push_back(static_cast<int>(std::clamp(wanted, 1.0, kMaxParts)));
   }
   if (*std::max_element(parts.begin(), parts.end()) == 1) parts.assign(parts.size(), 2);
   std::vector<double> cut;

@@ -128,8 +128,8 @@ Plan Planner::solve_verified(const ProgramPoint& start) {
   };
   while (plan.found() && verdict.miss > 1.0 && verdict.miss < kInfinity &&
          plan.corrections < settings_.corrections && time_left() > 0.0) {
-    constexpr int kMostAimed = 3;
-    const bool refine = verdict.coarse || aimed == kMostAimed;
+    constexpr int kMaxAimedRefinements = 3;
+    const bool refine = verdict.coarse || aimed == kMaxAimedRefinements;
     aimed = refine ? 0 : aimed + 1;
     Plan next = refine ? refined_plan(plan) : corrected(plan, verdict);
     next.iterations += plan.iterations;

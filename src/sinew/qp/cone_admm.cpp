@@ -16,7 +16,7 @@ namespace sinew::qp {
 namespace {
 
 constexpr double kPenalty = 1e-3;  // rho, of the diagonal
-constexpr int kMostAlternations = 12;
+constexpr int kMaxAlternations = 12;
 constexpr double kSlow = 0.5;  // an iteration that leaves more of the residual is the last
 
 }  // namespace
@@ -36,7 +36,7 @@ bool ConeIsland::alternate(const ConePart& part) {
   }
   for (std::size_t k = 0; k < problem.boxes.size(); ++k) dual_[problem.boxes[k].row] = 0.0;
   double before = kInfinity;
-  for (int k = 0; k < kMostAlternations; ++k) {
+  for (int k = 0; k < kMaxAlternations; ++k) {
     solve_proximal(part);
     project_and_update(problem);
     measure_motion(part);

@@ -13,7 +13,7 @@ constexpr double kNewtonShare = 0.3;       // of the cost of a step of Newton's
 constexpr double kOffsetRounding = 1e-14;  // of the largest offset
 // Efforts that are larger, times what the free motion asks of one block alone, measure nothing:
 // they grow without limit where no motion can obey all blocks.
-constexpr double kMostEffort = 1e4;
+constexpr double kMaxEffort = 1e4;
 
 }  // namespace
 
@@ -176,7 +176,7 @@ double ConeIsland::judge(const ConePart& part) {
     const BoxBlock& box = problem.boxes[k];
     if (box_scale_[k] > 0.0) judge_box(box, problem.offset[box.row], box_scale_[k]);
   }
-  miss_.effort = std::min(largest_, kMostEffort * asked_);
+  miss_.effort = std::min(largest_, kMaxEffort * asked_);
   if (miss_.distance <= floor_) miss_.distance = 0.0;
   result_.residual = miss_.distance / std::max(miss_.effort, 1e-300);
   if (settings_.measure == ConeMeasure::natural_map) {

@@ -19,7 +19,7 @@ namespace sinew::qp {
 
 namespace {
 
-constexpr int kMostNewtonSteps = 30, kMostVain = 20;  // in all, and without a lesser residual
+constexpr int kMaxNewtonSteps = 30, kMaxVainSteps = 20;  // in all, and without a lesser residual
 // The proximal term, in parts of the diagonal: a share of the relative residual, and at least so
 // much that what redundant contacts leave undetermined does not grow out of rounding. More of it
 // takes more steps and fails less often. Where W is regular but stiff, next to nothing is best.
@@ -27,9 +27,9 @@ struct Proximal {
   double share, least, most;
   double operator()(double residual) const { return std::clamp(share * residual, least, most); }
 };
-constexpr double kLeast = 1e-9;
+constexpr double kMinSmoothing = 1e-9;
 constexpr Proximal kProximal[] = {
-    {0.1, 1e-6, 1e-2}, {1.0, 1e-6, 0.1}, {10.0, 1e-6, 0.1}, {1.0, kLeast, 0.1}};  // in turn
+    {0.1, 1e-6, 1e-2}, {1.0, 1e-6, 0.1}, {10.0, 1e-6, 0.1}, {1.0, kMinSmoothing, 0.1}};  // in turn
 // Up to so many rows, so many steps with the least are tried first: they are cheap.
 constexpr int kPlainRows = 96, kPlainSteps = 12;
 // Rows whose diagonal is under this part of w take the proximal term from w.
@@ -46,9 +46,9 @@ double with_proximal(double own, double row_scale, double proximal) {
 bool ConeIsland::newton(const ConePart& part) {
   const std::size_t tries = newton_tries_++;
   if (tries == 0 && x_.size() <= kPlainRows) {
-    if (newton_steps(part, kPlainSteps, [](double) { return kLeast; })) return true;
+    if (newton_steps(part, kPlainSteps, [](double) { return kMinSmoothing; })) return true;
   }
-  return newton_steps(part, kMostNewtonSteps, kProximal[tries % std::size(kProximal)]);
+  return newton_steps(part, kMaxNewtonSteps, kProximal[tries % std::size(kProximal)]);
 }
 
 // At most so many steps; without success the iterate is the best of them. @param proximal its size
@@ -57,7 +57,7 @@ bool ConeIsland::newton_steps(const ConePart& part, int most, auto&& proximal) {
   const auto keep = [&] { std::copy_n(x_.data(), x_.size(), best_.data()); };
   keep();
   double least = result_.residual;
-  for (int step = 0, vain = 0; step < most && vain < kMostVain; ++step, ++vain) {
+  for (int step = 0, vain = 0; step < most && vain < kMaxVainSteps; ++step, ++vain) {
     const double relative = miss_.distance / std::max(miss_.effort, 1e-300);
     if (!newton_step(part, proximal(relative))) break;
     const double residual = judge(part);

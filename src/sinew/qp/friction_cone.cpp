@@ -11,7 +11,7 @@ namespace sinew::qp {
 
 namespace {
 
-constexpr int kMostIterations = 200;
+constexpr int kMaxIterations = 200;
 constexpr double kAtLimit = 1e-7;  // of the limit
 constexpr double kRounding = std::numeric_limits<double>::epsilon();
 
@@ -73,7 +73,7 @@ Vector3 ConeEquation::slip(const Vector3& q) const {
   double s = 0.0;
   Eigen::Vector2d r_t = Eigen::Vector2d::Zero();
   double r_n = 0.0;
-  for (int i = 0; i < kMostIterations; ++i) {
+  for (int i = 0; i < kMaxIterations; ++i) {
     const Eigen::Vector2d softer = values_.array() + s;
     r_t = -b.cwiseQuotient(softer);
     r_n = -(q[0] + coupling_.dot(r_t)) / normal;

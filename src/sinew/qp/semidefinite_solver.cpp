@@ -22,7 +22,7 @@ constexpr double kStationary = 1e-14;
 constexpr double kAccepted = 1e-10;
 /// A direction changes a limited quantity when it does so by more than this, relative.
 constexpr double kRay = 1e-7;
-constexpr int kMostSteps = 60;
+constexpr int kMaxSteps = 60;
 
 }  // namespace
 
@@ -120,7 +120,7 @@ QpStatus SemidefiniteSolver::approach() {
   double stationarity = kInfinity;
   for (const double share : {kLongSteps, kExactSteps}) {
     load_weight(share * largest_);
-    for (int k = 0; k < kMostSteps; ++k) {
+    for (int k = 0; k < kMaxSteps; ++k) {
       const QpStatus status = take_step(share * largest_, &stationarity);
       if (status != QpStatus::optimal) return status;
       if (stationarity <= kStationary) break;

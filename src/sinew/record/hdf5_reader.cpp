@@ -10,9 +10,9 @@ namespace sinew::record {
 
 namespace {
 
-constexpr std::uint64_t kMostNumbers = std::uint64_t{1} << 31;  // in one read
-constexpr std::size_t kMostText = std::size_t{16} << 20;
-constexpr hsize_t kMostNames = 1u << 20;
+constexpr std::uint64_t kMaxNumbers = std::uint64_t{1} << 31;  // in one read
+constexpr std::size_t kMaxText = std::size_t{16} << 20;
+constexpr hsize_t kMaxNames = 1u << 20;
 
 // The dataset must be stored as it is read: a damaged type must not grow on conversion.
 bool is_stored_as(hid_t dataset, H5T_class_t kind) {
@@ -55,7 +55,7 @@ std::vector<std::string> Hdf5Reader::names(const std::string& group) const {
   const QuietHdf5 quiet;
   const Hdf5Handle opened(H5Gopen2(file_.id(), group.c_str(), H5P_DEFAULT), H5Gclose);
   H5G_info_t info;
-  if (!opened.valid() || H5Gget_info(opened.id(), &info) < 0 || info.nlinks > kMostNames) {
+  if (!opened.valid() || H5Gget_info(opened.id(), &info) < 0 || info.nlinks > kMaxNames) {
     fail(fmt::format("{} cannot be listed", group));
   }
   std::array<char, 256> name{};
@@ -86,7 +86,7 @@ std::vector<std::string> Hdf5Reader::datasets(const std::string& group) const {
       } else if (is_stored_as(object.id(), H5T_FLOAT) || is_stored_as(object.id(), H5T_INTEGER)) {
         found.push_back(path);
       }
-      if (found.size() > kMostNames) fail("it has too many datasets");
+      if (found.size() > kMaxNames) fail("it has too many datasets");
     }
   };
   look(group, 0);
@@ -130,7 +130,7 @@ std::string Hdf5Reader::text_attribute(const std::string& name) const {
   }
   char* found = nullptr;
   if (H5Aread(attribute.id(), type.id(), &found) < 0 || found == nullptr) return {};
-  std::string text(found, strnlen(found, kMostText));
+  std::string text(found, strnlen(found, kMaxText));
   H5Dvlen_reclaim(type.id(), space.id(), H5P_DEFAULT, &found);
   return text;
 }
@@ -156,7 +156,7 @@ Hdf5Reader::Shape Hdf5Reader::shape(const std::string& dataset) const {
 std::uint64_t Hdf5Reader::volume(const std::string& dataset, const Shape& shape) const {
   std::uint64_t count = 1;
   for (const std::uint64_t size : shape) {
-    if (size != 0 && count > kMostNumbers / size) fail(fmt::format("{} is too large", dataset));
+    if (size != 0 && count > kMaxNumbers / size) fail(fmt::format("{} is too large", dataset));
     count *= size;
   }
   return count;
@@ -168,7 +168,7 @@ std::string Hdf5Reader::text(const std::string& dataset) const {
   const Hdf5Handle type(H5Dget_type(opened.id()), H5Tclose);
   const Hdf5Handle space(H5Dget_space(opened.id()), H5Sclose);
   if (H5Tget_class(type.id()) != H5T_STRING || H5Tis_variable_str(type.id()) != 0 ||
-      H5Sget_simple_extent_npoints(space.id()) != 1 || H5Tget_size(type.id()) > kMostText) {
+      H5Sget_simple_extent_npoints(space.id()) != 1 || H5Tget_size(type.id()) > kMaxText) {
     fail(fmt::format("{} is no text", dataset));
   }
   std::string text(H5Tget_size(type.id()), '\0');

@@ -13,7 +13,7 @@ namespace sinew::record {
 
 namespace {
 
-constexpr std::uint64_t kMostFrames = std::uint64_t{1} << 28;
+constexpr std::uint64_t kMaxFrames = std::uint64_t{1} << 28;
 
 void require_known(const std::string& file, const std::vector<std::string>& known,
                    std::string_view name) {
@@ -57,7 +57,7 @@ struct RunFile::Content {
 
   // A run that was cut off may have ended between two series of a frame.
   std::uint64_t complete_frames() const {
-    std::uint64_t least = kMostFrames;
+    std::uint64_t least = kMaxFrames;
     const auto count = [&](const std::string& series) {
       const Hdf5Reader::Shape shape = file.shape(series);
       if (shape.empty()) file.fail(fmt::format("{} is no series", series));

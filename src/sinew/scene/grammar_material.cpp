@@ -128,9 +128,9 @@ Choice small_strain(const char* word, const char* description) {
 }
 
 std::vector<Key> ogden_keys() {
-  constexpr int kMostTerms = 6;
+  constexpr int kMaxTerms = 6;
   Form moduli = quantity(stress(), any());
-  moduli.max_count = kMostTerms;
+  moduli.max_count = kMaxTerms;
   return {
       {.name = "mu",
        .forms = {moduli},
@@ -138,7 +138,7 @@ std::vector<Key> ogden_keys() {
        .description = "Moduli, one to six.",
        .required = true},
       {.name = "alpha",
-       .forms = {numbers(1, kMostTerms, any())},
+       .forms = {numbers(1, kMaxTerms, any())},
        .example = "1.7138 7.0679 -3.3659",
        .description = "Exponents, as many.",
        .required = true},

@@ -14,7 +14,7 @@ namespace {
 // Tangent planes this near each other, of the robot's size, are the same.
 constexpr double kSamePlane = 1e-6;
 // Rounds of a step in which tangent planes follow the ways of their points.
-constexpr int kMostTurns = 20;
+constexpr int kMaxTurns = 20;
 
 }  // namespace
 
@@ -32,7 +32,7 @@ ContactPlanes::ContactPlanes(const Model& model, const constraint::Placement& pl
 
 void ContactPlanes::place(double from, double to) {
   end_ = to;
-  turns_left_ = kMostTurns;
+  turns_left_ = kMaxTurns;
   curved_ = false;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const ContactModel& model = model_.contacts()[i];

@@ -14,7 +14,7 @@ namespace {
 // Above this ratio of pressures the flow is taken linear to zero.
 constexpr double kLinear = 0.999;
 // A chamber is not squeezed below this part of its volume; the gas law would be singular.
-constexpr double kLeastVolume = 1e-3;
+constexpr double kMinVolume = 1e-3;
 
 void require(bool holds, const char* what, double value, const char* remedy) {
   if (holds) return;
@@ -89,7 +89,7 @@ bool GasDrive::acts_on(CommandKind kind) const {
 }
 
 double GasDrive::volume(double motion) const {
-  return std::max(rest_volume_ + motion, kLeastVolume * rest_volume_);
+  return std::max(rest_volume_ + motion, kMinVolume * rest_volume_);
 }
 
 Drive::Response GasDrive::respond(const Step& step, double motion) const {

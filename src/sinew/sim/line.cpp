@@ -15,7 +15,7 @@ namespace sinew::sim {
 
 namespace {
 
-constexpr double kMostGuides = 1e4;  // between two points
+constexpr double kMaxGuides = 1e4;  // between two points
 
 }  // namespace
 
@@ -31,7 +31,7 @@ LinePath set_guides(LinePath written, double spacing) {
     const Vector3 from = written.points.row(i - 1), to = written.points.row(i);
     // A hair less than a whole number of spacings is that number.
     const double parts = std::ceil((to - from).norm() / spacing - 1e-6);
-    if (!(parts <= kMostGuides)) {
+    if (!(parts <= kMaxGuides)) {
       throw Error(
           ErrorKind::out_of_range, {},
           fmt::format("guides {:g} m apart would be {:g} between two points", spacing, parts),

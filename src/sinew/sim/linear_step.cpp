@@ -9,7 +9,7 @@ namespace sinew::sim {
 
 namespace {
 
-constexpr int kMostStepHalvings = 10;
+constexpr int kMaxStepHalvings = 10;
 // Of the robot's size: a point that is deeper in a surface after one linearisation, and is not
 // pushed out, is not there by rounding.
 constexpr double kMaxDepth = 1e-6;
@@ -61,7 +61,7 @@ void LinearStep::move_soundly() {
   StepReport& report = run_.report;
   report.scale = 1.0;
   mechanics::MotionReport motion;
-  for (int halving = 0; halving <= kMostStepHalvings; ++halving, report.scale *= 0.5) {
+  for (int halving = 0; halving <= kMaxStepHalvings; ++halving, report.scale *= 0.5) {
     motion = run_.world.bodies().apply_motion(report.scale);
     if (motion.finite) motion.volume = run_.world.bodies().smallest_volume();
     if (motion.finite && (motion.volume.ratio > 0.0 || !was_sound)) {

@@ -13,7 +13,7 @@ namespace {
 // A step may raise the merit by this factor: slender bodies stretch before they turn, and refusing
 // that costs more iterations than it saves.
 constexpr double kMeritGrowth = 50.0;
-constexpr int kMostHalvings = 12;
+constexpr int kMaxHalvings = 12;
 // Motions under this part of a robot's size are rounding, and then residuals under this part of its
 // forces may be: those of laws that are solved by iterations of their own.
 constexpr double kRounding = 1e-11;
@@ -117,7 +117,7 @@ class NewtonSolver {
     const double residual_before = report_.residual;
     bool inverted = false;
     double scale = 1.0;
-    for (int halving = 0; halving <= kMostHalvings; ++halving, scale *= 0.5) {
+    for (int halving = 0; halving <= kMaxHalvings; ++halving, scale *= 0.5) {
       report_.motion = world_.bodies().apply_motion(scale);
       clock_.mark(Stage::correction);
       inverted = true;

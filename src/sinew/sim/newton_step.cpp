@@ -18,9 +18,9 @@ namespace {
 // What quasi-static steps leave for the next one.
 constexpr Lag kLag{0.1, 1e-3};
 // Iterations with the projected tangent, which end wherever a stable equilibrium is downhill.
-constexpr int kMostDescents = 60;
+constexpr int kMaxDescents = 60;
 // The smallest part of a quasi-static step.
-constexpr double kLeastPart = 1.0 / 64.0;
+constexpr double kMinPart = 1.0 / 64.0;
 constexpr int kIterationsOfPart = 25;
 // A controller chooses where to go anew in every iteration, which need not settle: after this many
 // its efforts are held. It has to keep up with a clock, too: a quasi-static step that it steers
@@ -78,7 +78,7 @@ NewtonReport NewtonStep::search(double time_step) {
   result = approach(time_step);
   tried += result.iterations;
   if (!converged(result)) {
-    result = descend(time_step, kMostDescents);
+    result = descend(time_step, kMaxDescents);
     tried += result.iterations;
   }
   result.iterations = tried;
@@ -128,7 +128,7 @@ NewtonReport NewtonStep::stay(double time_step) {
   begin_again(time_step);
   NewtonReport result = run_.newton(nullptr, settings(time_step));
   if (!converged(result)) result = approach(time_step);
-  if (!converged(result)) result = descend(time_step, kMostDescents);
+  if (!converged(result)) result = descend(time_step, kMaxDescents);
   run_.controller->load_memory(memory);
   return result;
 }
@@ -161,7 +161,7 @@ NewtonReport NewtonStep::approach(double time_step) {
     return converged(result);
   };
   take_load_steps(
-      {.first = 0.5, .least = kLeastPart}, solve, [&] { run_.keep(sound); }, go_back);
+      {.first = 0.5, .least = kMinPart}, solve, [&] { run_.keep(sound); }, go_back);
   world.set_imbalance_share(0.0);
   commands = goal;
   result.iterations = iterations;

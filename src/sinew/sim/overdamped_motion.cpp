@@ -13,13 +13,13 @@ namespace {
 
 // Steps follow the motion roughly: where it ends, Newton takes over.
 constexpr double kRelaxationTolerance = 1e-4;
-constexpr int kMostOfStep = 12;
+constexpr int kMaxIterationsOfStep = 12;
 constexpr int kFewIterations = 4;
 constexpr int kManyIterations = 8;
 constexpr double kLighter = 0.25;  // sigma of the next step after an easy one
 constexpr double kHeavier = 2.0;   // after a hard one
 constexpr double kHeaviest = 8.0;  // after one that failed
-constexpr int kMostFailures = 8;   // in a row
+constexpr int kMaxFailures = 8;    // in a row
 // Motion that becomes smaller, and is less than this of the robot's size in a step, settles.
 constexpr double kSettling = 0.02;
 constexpr double kLater = 0.25;
@@ -134,9 +134,9 @@ OverdampedMotion::End OverdampedMotion::relax(double sigma, double near) {
     ++steps;
     run_.keep(sound_);
     const std::vector<Points> before = positions();
-    if (!search_.step(overdamped(sigma), kRelaxationTolerance, kMostOfStep)) {
+    if (!search_.step(overdamped(sigma), kRelaxationTolerance, kMaxIterationsOfStep)) {
       run_.restore(sound_);
-      if (++failures == kMostFailures) break;
+      if (++failures == kMaxFailures) break;
       sigma *= kHeaviest;
       continue;
     }

@@ -18,7 +18,7 @@ namespace sinew::sim {
 namespace {
 
 constexpr double kWantedIterations = 6.0;  // of a step of the right length
-constexpr int kMostPathHalvings = 14;
+constexpr int kMaxPathHalvings = 14;
 
 }  // namespace
 
@@ -84,7 +84,7 @@ std::vector<PathPoint> PathFollower::follow(const std::function<void()>& visit) 
   while (step.point().share < 1.0 && static_cast<int>(path.size()) < settings_.max_points) {
     int iterations = step.take(length);
     for (int halving = 0; iterations == 0; ++halving) {
-      if (halving == kMostPathHalvings) {
+      if (halving == kMaxPathHalvings) {
         run_.restore(start);
         throw Error(
             ErrorKind::not_converged, {.item = "path"},

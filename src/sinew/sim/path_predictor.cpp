@@ -12,7 +12,7 @@ namespace {
 // Of the robot's size, by which gaps are told apart that close together.
 constexpr double kTie = 1e-10;
 // Corners of one step, over the number of points.
-constexpr std::size_t kMostCorners = 10;
+constexpr std::size_t kMaxCorners = 10;
 
 // How far the motion `from` + t `along` goes until its largest coordinate is `length`.
 double way_until(const VectorX& from, const VectorX& along, double length) {
@@ -87,7 +87,7 @@ bool PathPredictor::predict(const HeldAnswer& by_rest, const HeldAnswer& by_load
   }
   VectorX moved = VectorX::Zero(edge.motion.size());
   result = {.answer = by_rest};
-  for (std::size_t corners = 0; corners <= kMostCorners * held_.size(); ++corners) {
+  for (std::size_t corners = 0; corners <= kMaxCorners * held_.size(); ++corners) {
     const double left = path.look_ahead();
     const double full = path.direction() > 0.0 ? most_share - result.share : kInfinity;
     const double by = std::min({left, full, way_until(moved, edge.motion, length)});

@@ -15,7 +15,7 @@ namespace sinew::sim {
 
 namespace {
 
-constexpr int kMostIterations = 25;
+constexpr int kMaxIterations = 25;
 constexpr double kFarthest = 5.0;  // of a step's length, that its corrections may go
 // Where points touch, loads grow fast: beside contacts no prediction goes beyond the full load by
 // more than the first, and no step by more than the second.
@@ -186,7 +186,7 @@ int PathStep::try_length(double length) {
   run_.world.begin_step(run_.time(), run_.time(), run_.effort, kFarthest * kDiagonal * length);
   touching_.clear();
   VectorX here, ahead;
-  for (int iteration = 0; iteration <= kMostIterations; ++iteration) {
+  for (int iteration = 0; iteration <= kMaxIterations; ++iteration) {
     run_.world.contacts().planes().follow_points();
     imbalance_at(share_ + 1.0, ahead);
     imbalance_at(share_, here);

@@ -14,7 +14,7 @@ namespace {
 
 // Efforts nearer to a limit than this, of their size, are at it.
 constexpr double kAtLimit = 1e-9;
-constexpr int kMostDirections = 80;  // of Lanczos' method
+constexpr int kMaxDirections = 80;  // of Lanczos' method
 constexpr double kRitzTolerance = 1e-2;
 // A direction is neutral where moving the robot by its size along it changes forces by no more
 // than so many times what rounding does.
@@ -107,7 +107,7 @@ Stability::Stability(World& world, std::span<const double> effort)
 // is negative however sharp y is.
 VectorX Stability::find_mode() {
   const Eigen::Index all = static_cast<Eigen::Index>(world_.bodies().size());
-  const Eigen::Index most = std::min<Eigen::Index>(kMostDirections, all);
+  const Eigen::Index most = std::min<Eigen::Index>(kMaxDirections, all);
   VectorX next, ritz;
   motions_.solve(scattered(all), next);  // into the motions that are free
   MatrixX basis(all, 0);

@@ -22,11 +22,11 @@ constexpr double kFlat = 5.0;
 
 // Touching points are this near their surface, of the robot's size.
 constexpr double kSurfaceTolerance = 1e-9;
-constexpr int kMostSurfaceRounds = 60;
+constexpr int kMaxSurfaceRounds = 60;
 
 // Unstable equilibria that are left one after the other, each by a larger disturbance: of the
 // robot's size.
-constexpr int kMostDepartures = 6;
+constexpr int kMaxDepartures = 6;
 constexpr double kDisturbance = 1e-2;
 constexpr double kLargerDisturbance = 2.0;
 
@@ -174,7 +174,7 @@ void StaticSolver::follow_surfaces() {
   const double tolerance = std::max(settings_.tolerance, kSurfaceTolerance) * run_.model->size();
   const ContactPlanes& planes = run_.world.contacts().planes();
   const auto off = [&] { return planes.drift(run_.effort, run_.time()) > tolerance; };
-  for (int round = 0; round < kMostSurfaceRounds; ++round) {
+  for (int round = 0; round < kMaxSurfaceRounds; ++round) {
     if (!off()) return;
     if (!search_.equilibrate(0.0)) break;
   }
@@ -199,8 +199,8 @@ void StaticSolver::settle() {
     report_.negative_pivots = stability.negative_pivots();
     report_.stable = report_.negative_pivots == 0;
     if (report_.stable || settings_.stability == StabilityChoice::any) return;
-    const auto ended = departures < kMostDepartures ? motion_.leave(stability, disturbance)
-                                                    : OverdampedMotion::End::failed;
+    const auto ended = departures < kMaxDepartures ? motion_.leave(stability, disturbance)
+                                                   : OverdampedMotion::End::failed;
     if (ended == OverdampedMotion::End::failed) {
       fail(run_, ErrorKind::not_converged,
            fmt::format("the equilibrium is unstable in {} direction{} (negative pivots of the "

@@ -15,7 +15,7 @@ namespace sinew::sim {
 namespace {
 
 // A step that fails is made in parts, the smallest of which is the inverse of this.
-constexpr double kMostParts = 16.0;
+constexpr double kMaxParts = 16.0;
 // A command that is missed by more than this of the robot's size was not reached.
 constexpr double kReached = 1e-3;
 // Energy that came out of nothing, of the work of all forces over the robot's size: less is
@@ -72,7 +72,7 @@ void Stepper::step_in_parts() {
     } catch (const Error& failure) {
       length *= 0.5;
       ++report.retries;
-      if (length * kMostParts >= 1.0 && failure.is_run_failure()) continue;
+      if (length * kMaxParts >= 1.0 && failure.is_run_failure()) continue;
       part_.reset();
       run_.restore(start_);
       throw;
