@@ -18,7 +18,7 @@ _Floats = NDArray[np.float64]
 _Command = Union[float, "Signal", ArrayLike]
 _Goal = Union["Target", ArrayLike]
 _Path = Union[str, os.PathLike[str]]
-_Tangent = Literal["exact", "real-time"]
+_Tangent = Literal["exact", "rotated"]
 
 class Signal:
     def value(self, time: float) -> float: ...

@@ -81,9 +81,9 @@ Array internal_forces(const Body& self, const py::object& positions) {
 
 // The stored lower blocks as a whole matrix in block compressed rows of scipy.
 py::object stiffness(const Body& self, const py::object& positions, const std::string& tangent) {
-  if (tangent != "exact" && tangent != "real-time") {
+  if (tangent != "exact" && tangent != "rotated") {
     throw Error(ErrorKind::unknown_choice, {.item = "stiffness(tangent)"},
-                fmt::format("there is no tangent '{}'", tangent), "use 'exact' or 'real-time'");
+                fmt::format("there is no tangent '{}'", tangent), "use 'exact' or 'rotated'");
   }
   const Session::Use use(*self.session);
   const Points at = positions_from(self, positions, "stiffness");
@@ -371,8 +371,8 @@ Parameters
 ----------
 positions : (n, 3) array_like, optional
     m; the present ones by default. The simulation is not changed.
-tangent : {'exact', 'real-time'}
-    The derivative of the forces, or R K0 R^T as steps use it.
+tangent : {'exact', 'rotated'}
+    The derivative of the forces, or R K0 R^T with the rotations held fixed.
 
 Returns
 -------

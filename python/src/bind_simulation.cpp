@@ -124,11 +124,11 @@ py::dict all_bodies(const std::shared_ptr<Session>& self) {
 
 sim::LinearisationChoice choice(const std::string& tangent, bool geometric_stiffness,
                                 bool statics) {
-  if (tangent != "exact" && tangent != "real-time") {
+  if (tangent != "exact" && tangent != "rotated") {
     throw Error(ErrorKind::unknown_choice, {.item = "linearise(tangent)"},
-                fmt::format("there is no tangent '{}'", tangent), "use 'exact' or 'real-time'");
+                fmt::format("there is no tangent '{}'", tangent), "use 'exact' or 'rotated'");
   }
-  return {tangent == "exact" ? mechanics::Tangent::exact : mechanics::Tangent::real_time,
+  return {tangent == "exact" ? mechanics::Tangent::exact : mechanics::Tangent::rotated,
           geometric_stiffness, statics};
 }
 
@@ -610,8 +610,8 @@ How motions follow from efforts near the present state, which is not changed.
 
 Parameters
 ----------
-tangent : {'exact', 'real-time'}
-    The elements' stiffness: the derivative of the forces, or R K0 R^T as steps use it.
+tangent : {'exact', 'rotated'}
+    The elements' stiffness: the derivative of the forces, or R K0 R^T with rotations held fixed.
 geometric_stiffness : bool
     Whether loaded cables add theirs.
 statics : bool

@@ -63,7 +63,7 @@ TEST_P(EveryKind, TheMatrixIsTheDerivativeOfTheForces) {
   }
 }
 
-TEST_P(EveryKind, TheRealTimeMatrixIsPositive) {
+TEST_P(EveryKind, TheRotatedMatrixIsPositive) {
   const auto mesh = box(GetParam(), 2, 2, 3);
   Body body(mesh, settings_of(GetParam(), *mesh, rubber(0.45)));
   Points x = mesh->nodes;

@@ -6,7 +6,7 @@ namespace {
 
 Tangent element_tangent(mechanics::Tangent tangent) {
   switch (tangent) {
-    case mechanics::Tangent::real_time:
+    case mechanics::Tangent::rotated:
       return Tangent::rotated;
     case mechanics::Tangent::projected:
       return Tangent::projected;

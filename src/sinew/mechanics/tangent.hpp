@@ -6,7 +6,9 @@ namespace sinew::mechanics {
 
 /// Which derivative of the internal force is used.
 enum class Tangent {
-  real_time,  ///< the cheapest that the body offers (corotational: R K0 R^T); SPD
+  /// Corotational elements: R K0 R^T with the rotation held fixed, positive semi-definite; other
+  /// elements as projected. An arm: made definite.
+  rotated,
   projected,  ///< the exact derivative, projected piece by piece to be positive semi-definite
   exact,      ///< the exact derivative df/dq, which may be indefinite
 };

@@ -47,7 +47,7 @@ ArmStep::ArmStep(const ArmBodyModel& model, ArmState& state, ArmPose& pose)
 // but for what rows pull (add_curvature), and unsymmetric where the arm moves.
 void ArmStep::linearise(const mechanics::LinearisationRequest& request) {
   const auto& weights = request.weights;
-  definite_wanted_ = request.tangent == mechanics::Tangent::real_time;
+  definite_wanted_ = request.tangent == mechanics::Tangent::rotated;
   iterating_ = request.iterating;
   if (weights.dynamic()) {
     state_.combine(weights.velocity, new_rate_);

@@ -37,17 +37,7 @@ sim::StepSettings step_settings(const SceneDescription& scene) {
   step.adaptive = scene.solver.adaptive;
   step.method =
       scene.solver.method == Method::newton ? sim::Method::newton : sim::Method::one_linearisation;
-  switch (scene.solver.tangent) {
-    case Tangent::rotated:
-      step.tangent = mechanics::Tangent::real_time;
-      break;
-    case Tangent::projected:
-      step.tangent = mechanics::Tangent::projected;
-      break;
-    case Tangent::exact:
-      step.tangent = mechanics::Tangent::exact;
-      break;
-  }
+  step.tangent = scene.solver.tangent;
   step.tolerance = scene.solver.tolerance;
   step.max_iterations = scene.solver.max_iterations;
   step.contact_tolerance = scene.solver.contact_tolerance;

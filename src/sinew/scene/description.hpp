@@ -36,8 +36,8 @@ namespace sinew::scene {
 inline constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
 using mechanics::Integrator;
+using mechanics::Tangent;
 enum class Method { one_linearisation, newton };
-enum class Tangent { rotated, projected, exact };
 enum class MaterialModel { linear, corotational, hyperelastic };
 enum class Element { any, tet4, tet4_patch, tet10, hex8 };
 enum class MassDistribution { volume, even };

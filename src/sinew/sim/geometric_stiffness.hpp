@@ -60,7 +60,7 @@ class GeometricStiffness {
   std::vector<mechanics::RowCurvature> curvatures_;
   std::vector<double> effort_;    // (rows,) N, at which constraints curve
   std::span<const int> curving_;  // whose curvature add() adds
-  mechanics::Tangent tangent_ = mechanics::Tangent::real_time;
+  mechanics::Tangent tangent_ = mechanics::Tangent::rotated;
   bool majorant_ = false;
   std::size_t anchor_rows_ = 0;  // of problem_.stiffness; behind them those of couplings
 };

@@ -122,7 +122,7 @@ Linearisation linearise(Simulation& simulation, const LinearisationChoice& choic
   if (world.condense() == linalg::FactorStatus::singular) {
     throw Error(ErrorKind::singular_matrix, {.item = "linearise()"},
                 "the stiffness matrix is singular at this state",
-                "fix a region of every body, or try tangent='real-time'");
+                "fix a region of every body, or try tangent='rotated'");
   }
   result.rows = row_names(model);
   result.compliance = world.compliance();
