@@ -39,7 +39,7 @@ controllers:
   follow:
     type: inverse
     effectors:
-      tip: {{target: {{circle: {{center: {center} mm, radius: {radius} mm, normal: {normal}, period: 2 s}}}}}}
+      tip: {{target: {{circle: {{centre: {centre} mm, radius: {radius} mm, normal: {normal}, period: 2 s}}}}}}
 """
 
 
@@ -70,7 +70,7 @@ def published_trunk(mesh):
                     points.append(turn @ via)
             text += cable(f"{kind}_{k}", "trunk", points[:count],
                           f"{{displacement: {{max: {stroke} mm, rate: 100 mm/s}}}}")
-    return text + TAIL.format(name="trunk", tip="0 0 195", center="0 0 180", radius=30,
+    return text + TAIL.format(name="trunk", tip="0 0 195", centre="0 0 180", radius=30,
                               normal="0 0 1")
 
 
@@ -97,10 +97,10 @@ def size_test(name, mesh, young, poisson, mass):
         text += cable(f"cable_{k}", name, points, f"{{displacement: {{rate: {0.5 * length} mm/s}}}}")
     tip = middle.copy()
     tip[axis] = high[axis]
-    center = tip.copy()
-    center[axis] -= 0.01 * length
+    centre = tip.copy()
+    centre[axis] -= 0.01 * length
     normal = np.eye(3, dtype=int)[axis]
-    return text + TAIL.format(name=name, tip=triple(tip), center=triple(center),
+    return text + TAIL.format(name=name, tip=triple(tip), centre=triple(centre),
                               radius=0.01 * length, normal=triple(normal))
 
 

@@ -51,7 +51,7 @@ class Target:
 class Circle(Target):
     def __init__(
         self,
-        center: ArrayLike,
+        centre: ArrayLike,
         radius: float,
         *,
         period: float,
@@ -315,7 +315,7 @@ class Joint:
     @property
     def moment(self) -> _Floats: ...
     @property
-    def center(self) -> _Floats: ...
+    def centre(self) -> _Floats: ...
     @property
     def gap(self) -> float: ...
 
@@ -346,7 +346,7 @@ class Body:
         self,
         translation: ArrayLike = (0.0, 0.0, 0.0),
         rotation: ArrayLike = (0.0, 0.0, 0.0),
-        center: ArrayLike = (0.0, 0.0, 0.0),
+        centre: ArrayLike = (0.0, 0.0, 0.0),
     ) -> None: ...
     @property
     def deformation_gradients(self) -> _Floats: ...

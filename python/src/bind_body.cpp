@@ -158,7 +158,7 @@ py::array_t<bool> fixed(const Body& self) {
 }
 
 void move_base(const Body& self, const py::object& translation, const py::object& rotation,
-               const py::object& center) {
+               const py::object& centre) {
   const auto read = [](const py::object& value, const char* what) -> Vector3 {
     const Array numbers = to_array(value, what, "(3,)");
     if (numbers.size() != 3) {
@@ -169,20 +169,20 @@ void move_base(const Body& self, const py::object& translation, const py::object
   };
   const Vector3 shift = read(translation, "move_base(translation)");
   const Vector3 turn = read(rotation, "move_base(rotation)");
-  const Vector3 centre = read(center, "move_base(center)");
+  const Vector3 about = read(centre, "move_base(centre)");
   const Session::Use use(*self.session);
-  self.session->simulation().move_base(self.index, shift, turn, centre);
+  self.session->simulation().move_base(self.index, shift, turn, about);
 }
 
 void bind_state(py::class_<Body>& type) {
   type.def(
       "move_base", &move_base, py::arg("translation") = py::make_tuple(0.0, 0.0, 0.0),
       py::arg("rotation") = py::make_tuple(0.0, 0.0, 0.0),
-      py::arg("center") = py::make_tuple(0.0, 0.0, 0.0),
-      R"(move_base($self, translation=(0.0, 0.0, 0.0), rotation=(0.0, 0.0, 0.0), center=(0.0, 0.0, 0.0))
+      py::arg("centre") = py::make_tuple(0.0, 0.0, 0.0),
+      R"(move_base($self, translation=(0.0, 0.0, 0.0), rotation=(0.0, 0.0, 0.0), centre=(0.0, 0.0, 0.0))
 --
 
-Moves the fixed nodes in the next step: turned about `center`, then shifted, from rest. An input, as
+Moves the fixed nodes in the next step: turned about `centre`, then shifted, from rest. An input, as
 commands are: reset() puts the base back, and a saved state says where the base was.
 
 Parameters
@@ -191,7 +191,7 @@ translation : (3,) array_like
     m.
 rotation : (3,) array_like
     Rotation vector, rad.
-center : (3,) array_like
+centre : (3,) array_like
     m, at rest.
 
 Raises

@@ -46,9 +46,9 @@ void bind_joint(py::module_& module) {
           "(3,) ndarray: the force on the second body in the last step (N).")
       .def_property_readonly(
           "moment", [](const Joint& self) { return copy(load(self).moment); },
-          "(3,) ndarray: its moment about `center` (N m).")
+          "(3,) ndarray: its moment about `centre` (N m).")
       .def_property_readonly(
-          "center", [](const Joint& self) { return copy(load(self).centre); },
+          "centre", [](const Joint& self) { return copy(load(self).centre); },
           "(3,) ndarray: the mean of the welded points, now (m).")
       .def_property_readonly(
           "gap", [](const Joint& self) { return load(self).gap; },

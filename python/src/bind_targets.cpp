@@ -53,7 +53,7 @@ Returns
 
 void bind_circle(py::module_& module) {
   py::class_<Circle, Target>(module, "Circle",
-                             R"(Circle(center, radius, *, period, normal=(0, 0, 1), start_angle=0.0)
+                             R"(Circle(centre, radius, *, period, normal=(0, 0, 1), start_angle=0.0)
 --
 
 A circle travelled at constant speed, counter-clockwise about `normal`.
@@ -63,7 +63,7 @@ within 25 degrees of the normal).
 
 Parameters
 ----------
-center : (3,) array_like
+centre : (3,) array_like
     m.
 radius : float
     m, > 0.
@@ -74,17 +74,17 @@ normal : (3,) array_like
 start_angle : float
     rad.
 )")
-      .def(py::init([](const py::object& center, const py::object& radius, const py::object& period,
+      .def(py::init([](const py::object& centre, const py::object& radius, const py::object& period,
                        const py::object& normal, const py::object& start_angle) {
              inverse::Circle circle;
-             circle.center = to_vector3(center, "Circle(center)", "m");
+             circle.centre = to_vector3(centre, "Circle(centre)", "m");
              circle.radius = to_number(radius, "Circle(radius)", "m");
              circle.period = to_number(period, "Circle(period)", "s");
              circle.normal = to_vector3(normal, "Circle(normal)", "m");
              circle.start_angle = to_number(start_angle, "Circle(start_angle)", "rad");
              return Circle{at_argument("Circle", [&] { return Target::circle(circle); })};
            }),
-           py::arg("center"), py::arg("radius"), py::kw_only(), py::arg("period"),
+           py::arg("centre"), py::arg("radius"), py::kw_only(), py::arg("period"),
            py::arg("normal") = py::make_tuple(0.0, 0.0, 1.0), py::arg("start_angle") = 0.0);
 }
 

@@ -19,7 +19,7 @@ def beam(base=None, element="hex8", **world):
 def test_a_body_follows_its_base_without_strain():
     turn = np.pi / 2
     sim = beam({"x": {"ramp": {"to": "20 mm", "duration": "0.3 s"}}, "angle": {"ramp": {"to": turn, "duration": "0.3 s"}},
-                "axis": "0 1 0", "center": "0 5 5 mm"})
+                "axis": "0 1 0", "centre": "0 5 5 mm"})
     sim.step(40)
     body = sim.body("beam")
     rest, centre = np.array(body.rest_positions), np.array([0, 0.005, 0.005])

@@ -30,7 +30,7 @@ def test_a_weld_carries_what_hangs_on_it():
     assert seam.bodies == ("b", "a")
     assert seam.force == pytest.approx([0, 0, -weight], abs=1e-9)
     assert seam.gap < 1e-12
-    assert seam.center == pytest.approx([0.04, 0.01, 0.01], abs=2e-3)
+    assert seam.centre == pytest.approx([0.04, 0.01, 0.01], abs=2e-3)
     assert seam.moment[1] == pytest.approx(weight * 0.02, rel=0.05)
     assert repr(seam) == "<sinew.Joint 'seam', 9 points of 'b' welded to 'a'>"
     assert list(sim.joints) == ["seam"]

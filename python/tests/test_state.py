@@ -37,7 +37,7 @@ CONTACT = {
     "contacts": {
         "floor": {
             "body": "beam",
-            "surface": {"sphere": {"center": "60 10 -15 mm", "radius": "14.9 mm"}},
+            "surface": {"sphere": {"centre": "60 10 -15 mm", "radius": "14.9 mm"}},
             "nodes": {"set": "x_max"},
             "friction": 0.5,
         }

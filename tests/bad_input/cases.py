@@ -34,7 +34,7 @@ controllers:
   follow:
     type: inverse
     effectors:
-      tip: {target: {circle: {center: 100 10 15 mm, radius: 2 mm, normal: 1 0 0, period: 1 s}}}
+      tip: {target: {circle: {centre: 100 10 15 mm, radius: 2 mm, normal: 1 0 0, period: 1 s}}}
 """
 
 # A tetrahedron on the unit square, in mm.
@@ -191,8 +191,8 @@ SCENES = [
     scene("cable-without-length", "degenerate-cable", "scene.yaml:16:39", [], ("30 10 16 mm, 60 10 16 mm", "30 10 16 mm, 30 10 16 mm")),
     scene("cable-beside-the-body", "point-outside-mesh", "scene.yaml:16:39", ["0.016 m"], ("60 10 16 mm", "60 10 36 mm")),
     scene("effector-in-the-air", "point-outside-mesh", "scene.yaml:20:3", [], ("point: 100 10 10 mm", "point: 300 10 10 mm")),
-    scene("orientation-of-a-line", "degenerate-orientation", "scene.yaml:20:34", [], ("{body: beam, point: 100 10 10 mm}", "{body: beam, orientation: [100 2 10 mm, 100 10 10 mm, 100 18 10 mm]}"), ("controllers:\n  follow:\n    type: inverse\n    effectors:\n      tip: {target: {circle: {center: 100 10 15 mm, radius: 2 mm, normal: 1 0 0, period: 1 s}}}\n", "")),
-    scene("controller-without-effectors", "empty-list", "scene.yaml:24:16", [], ("    effectors:\n      tip: {target: {circle: {center: 100 10 15 mm, radius: 2 mm, normal: 1 0 0, period: 1 s}}}", "    effectors: {}")),
+    scene("orientation-of-a-line", "degenerate-orientation", "scene.yaml:20:34", [], ("{body: beam, point: 100 10 10 mm}", "{body: beam, orientation: [100 2 10 mm, 100 10 10 mm, 100 18 10 mm]}"), ("controllers:\n  follow:\n    type: inverse\n    effectors:\n      tip: {target: {circle: {centre: 100 10 15 mm, radius: 2 mm, normal: 1 0 0, period: 1 s}}}\n", "")),
+    scene("controller-without-effectors", "empty-list", "scene.yaml:24:16", [], ("    effectors:\n      tip: {target: {circle: {centre: 100 10 15 mm, radius: 2 mm, normal: 1 0 0, period: 1 s}}}", "    effectors: {}")),
     scene("force-command-of-a-cable", "unknown-key", "scene.yaml:18:15", ["force"], ("{displacement: 2 mm}", "{force: 2 N}")),
     scene("controller-without-actuators", "no-actuators", "scene.yaml:15:3", [], ("actuators:\n  up:\n    type: cable\n    body: beam\n    points: [0 10 16 mm, 30 10 16 mm, 60 10 16 mm, 98 10 16 mm]\n    limits: {tension: {min: 0 N, max: 20 N}}\n    command: {displacement: 2 mm}\n", "")),
 ]
@@ -238,7 +238,7 @@ TABLES = [
     table("table-of-noise", "bad-encoding", "points.csv", [], b"\x00\x01\xfe\xff\x00"),
     table("table-beside-the-body", "point-outside-mesh", "points.csv", [], "0,10,16\n30,10,16\n98,10,61\n"),
     Case("signal-runs-back", "non-monotonic-time", "pull.csv", [], files=(("pull.csv", "0,0\n2,1\n1,2\n"),), scene=(("{displacement: 2 mm}", "{displacement: {file: pull.csv, unit: mm}}"),)),
-    Case("trajectory-of-three-columns", "wrong-columns", "way.csv", ["3"], files=(("way.csv", "0,0,0\n1,0,0\n"),), scene=(("{circle: {center: 100 10 15 mm, radius: 2 mm, normal: 1 0 0, period: 1 s}}", "{file: way.csv, unit: mm}"),)),
+    Case("trajectory-of-three-columns", "wrong-columns", "way.csv", ["3"], files=(("way.csv", "0,0,0\n1,0,0\n"),), scene=(("{circle: {centre: 100 10 15 mm, radius: 2 mm, normal: 1 0 0, period: 1 s}}", "{file: way.csv, unit: mm}"),)),
 ]
 
 # ------------------------------------------------------------------------------------ command lines

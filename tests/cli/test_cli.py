@@ -163,7 +163,7 @@ CONTROL = """
 controllers:
   follow:
     type: inverse
-    effectors: {tip: {target: {circle: {center: 97 10 10 mm, radius: 4 mm, normal: 1 0 0, period: 0.2 s}}}}
+    effectors: {tip: {target: {circle: {centre: 97 10 10 mm, radius: 4 mm, normal: 1 0 0, period: 0.2 s}}}}
 """
 
 
@@ -623,7 +623,7 @@ controllers:
   follow:
     type: inverse
     effectors:
-      tip: {target: {circle: {center: 0 0 190 mm, radius: 30 mm, normal: 0 0 1, period: 10 s}}}
+      tip: {target: {circle: {centre: 0 0 190 mm, radius: 30 mm, normal: 0 0 1, period: 10 s}}}
 record: {every: 1, states: true}
 """
 

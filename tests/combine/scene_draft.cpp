@@ -426,7 +426,7 @@ class Drafter {
     const std::string surface = look_up(
         "contact", of("contact"),
         {{"plane", fmt::format("plane: {{point: {}, normal: {}}}", vector_text(at), axes[below])},
-         {"sphere", fmt::format("sphere: {{center: {}, radius: 15 mm}}", vector_text(centre))},
+         {"sphere", fmt::format("sphere: {{centre: {}, radius: 15 mm}}", vector_text(centre))},
          {"capsule", fmt::format("capsule: {{ends: [{}, {}], radius: 15 mm}}", vector_text(left),
                                  vector_text(right))}});
     std::string text = fmt::format("body: <{}>, surface: {{{}}}", on.id, surface);

@@ -34,7 +34,7 @@ TEST(Target, FixedStaysWhereItIs) {
 
 TEST(Target, CircleAboutZStartsOnXAndTurnsLeft) {
   const Target target = Target::circle(
-      {.center = {0.0, 0.0, 0.19}, .radius = 0.03, .normal = {0.0, 0.0, 2.0}, .period = 10.0});
+      {.centre = {0.0, 0.0, 0.19}, .radius = 0.03, .normal = {0.0, 0.0, 2.0}, .period = 10.0});
   EXPECT_LT((target.at(0.0) - Vector3(0.03, 0.0, 0.19)).norm(), 1e-15);
   EXPECT_LT((target.at(2.5) - Vector3(0.0, 0.03, 0.19)).norm(), 1e-15);
   EXPECT_LT((target.at(5.0) - Vector3(-0.03, 0.0, 0.19)).norm(), 1e-15);
@@ -51,15 +51,15 @@ TEST(Target, CircleStartsAtItsAngle) {
 TEST(Target, CircleLiesInItsPlaneForEveryNormal) {
   for (int i = 0; i < 200; ++i) {
     const Vector3 normal(std::sin(1.7 * i), std::cos(0.9 * i), std::sin(0.3 * i + 1.0));
-    const Vector3 center(0.1 * i, -0.2, 0.3);
+    const Vector3 centre(0.1 * i, -0.2, 0.3);
     const Target target =
-        Target::circle({.center = center, .radius = 0.5, .normal = normal, .period = 3.0});
+        Target::circle({.centre = centre, .radius = 0.5, .normal = normal, .period = 3.0});
     const Vector3 axis = normal.normalized();
     for (const double time : {0.0, 0.4, 1.1, 2.9}) {
-      const Vector3 arm = target.at(time) - center;
+      const Vector3 arm = target.at(time) - centre;
       ASSERT_NEAR(arm.norm(), 0.5, 1e-14);
       ASSERT_NEAR(arm.dot(axis), 0.0, 1e-14);
-      const Vector3 later = target.at(time + 0.1) - center;
+      const Vector3 later = target.at(time + 0.1) - centre;
       ASSERT_GT(arm.cross(later).dot(axis), 0.0) << "turns the wrong way";
     }
   }
@@ -147,9 +147,9 @@ INSTANTIATE_TEST_SUITE_P(
         BadTarget{"circle_normal",
                   [] { return Target::circle({.radius = 1.0, .normal = Vector3::Zero()}); },
                   ErrorKind::out_of_range},
-        BadTarget{"circle_center_nan",
+        BadTarget{"circle_centre_nan",
                   [] {
-                    return Target::circle({.center = {kNan, 0.0, 0.0}, .radius = 1.0});
+                    return Target::circle({.centre = {kNan, 0.0, 0.0}, .radius = 1.0});
                   },
                   ErrorKind::not_finite},
         BadTarget{"circle_angle_nan",

@@ -225,9 +225,9 @@ TEST_F(RunRecorderTest, ContactsReadBackBitForBit) {
   RecordSettings with_series = settings();
   with_series.vtk = true;
   RunRecorder recorder(sim::Observables(simulation), with_series);
-  std::vector<std::array<sim::ContactMoment, 2>> seen;
+  std::vector<std::array<sim::ContactSnapshot, 2>> seen;
   for (int k = 0; k <= 40; ++k) {
-    seen.push_back({simulation.contacts().moment(0), simulation.contacts().moment(1)});
+    seen.push_back({simulation.contacts().snapshot(0), simulation.contacts().snapshot(1)});
     simulation.step();
     recorder.after_step();
   }
@@ -242,7 +242,7 @@ TEST_F(RunRecorderTest, ContactsReadBackBitForBit) {
         return run.numbers(dataset, static_cast<std::int64_t>(frame));
       };
       const auto read = [&](const char* what) { return numbers("/contacts/" + name + "/" + what); };
-      const sim::ContactMoment& was = seen[frame][contact];
+      const sim::ContactSnapshot& was = seen[frame][contact];
       const Eigen::Matrix<double, 3, 4> pose = was.pose.affine();
       EXPECT_TRUE(std::ranges::equal(read("pose"), pose.reshaped<Eigen::RowMajor>()));
       ASSERT_EQ(read("gap").size(), was.points.size());

@@ -49,9 +49,9 @@ const char* const kPoints = "{file: long_0.csv, unit: mm}";
 const char* const kCommand = "{displacement: 0 mm}";
 const char* const kTip = "{body: trunk, point: 0 0 195 mm}";
 const char* const kCircle =
-    "{circle: {center: 0 0 190 mm, radius: 30 mm, normal: 0 0 1, period: 10 s}}";
+    "{circle: {centre: 0 0 190 mm, radius: 30 mm, normal: 0 0 1, period: 10 s}}";
 const char* const kTask =
-    "{target: {circle: {center: 0 0 190 mm, radius: 30 mm, normal: 0 0 1, period: 10 s}}}";
+    "{target: {circle: {centre: 0 0 190 mm, radius: 30 mm, normal: 0 0 1, period: 10 s}}}";
 const char* const kMesh = "{file: trunk.vtk, unit: mm}";
 
 INSTANTIATE_TEST_SUITE_P(
@@ -356,7 +356,7 @@ INSTANTIATE_TEST_SUITE_P(
                "fem"},
         Broken{"contact_with_two_surfaces",
                {{"record:",
-                 "contacts:\n  floor: {body: trunk, surface: {plane: {}, sphere: {center: 0 0 0, "
+                 "contacts:\n  floor: {body: trunk, surface: {plane: {}, sphere: {centre: 0 0 0, "
                  "radius: 1}}}\nrecord:"}},
                K::conflicting_keys,
                31,

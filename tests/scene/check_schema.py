@@ -23,7 +23,7 @@ VALID = {
     "bodies.trunk.material.young_modulus": ["450 kPa", "0.45 N/mm^2", "4.5e5 kg/m s^2", "4.5 bar"],
     "bodies.trunk.fixed": [
         {"set": "base"},
-        [{"box": "0 0 0 1 1 1"}, {"sphere": {"center": "0 0 0", "radius": "1 cm"}}],
+        [{"box": "0 0 0 1 1 1"}, {"sphere": {"centre": "0 0 0", "radius": "1 cm"}}],
         {"plane": {"point": [0, 0, 0], "normal": "0 0 1", "within": "0.1 mm"}},
     ],
     "actuators.long_0.points": [["0 0 0 mm", [0, 0, "10 mm"]], {"file": "p.csv", "unit": "mm"}],

@@ -54,7 +54,7 @@ TEST(Contacts, PickNodesOfTheOutside) {
 
 TEST(Contacts, ReadEverySurfaceAndItsMotion) {
   const auto sphere = scene_with(
-      "{body: block, surface: {sphere: {center: 0 0 -10 mm, radius: 5 mm}}, friction: 0.7}");
+      "{body: block, surface: {sphere: {centre: 0 0 -10 mm, radius: 5 mm}}, friction: 0.7}");
   EXPECT_DOUBLE_EQ(std::get<constraint::Sphere>(sphere.contacts[0].surface).radius, 0.005);
   EXPECT_DOUBLE_EQ(std::get<constraint::Sphere>(sphere.contacts[0].surface).centre[2], -0.01);
   EXPECT_DOUBLE_EQ(sphere.contacts[0].friction, 0.7);
@@ -77,7 +77,7 @@ TEST(Contacts, SayWhatIsWrong) {
   expect_error("{body: block, surface: {plane: {}, capsule: {ends: [0 0 0, 0 0 1], radius: 1}}}",
                K::conflicting_keys, "capsule");
   expect_error("{body: block, surface: {plane: {normal: 0 0 0}}}", K::out_of_range, "0");
-  expect_error("{body: block, surface: {sphere: {center: 0 0 0, radius: 0 mm}}}", K::out_of_range,
+  expect_error("{body: block, surface: {sphere: {centre: 0 0 0, radius: 0 mm}}}", K::out_of_range,
                "radius");
   expect_error("{body: block, surface: {plane: {}}, friction: -0.5}", K::out_of_range, "-0.5");
   expect_error("{body: block, surface: {plane: {}}, nodes: {set: z_mim}}", K::unknown_set, "z_m");

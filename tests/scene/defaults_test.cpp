@@ -50,7 +50,7 @@ controllers:
   follow:
     type: inverse
     effectors:
-      tip: {target: {circle: {center: 0 0 1, radius: 1, period: 1}}}
+      tip: {target: {circle: {centre: 0 0 1, radius: 1, period: 1}}}
   line:
     type: inverse
     actuators: [sine]

@@ -43,7 +43,7 @@ controllers:
   follow:
     type: inverse
     effectors:
-      tip: {target: {circle: {center: 0 0 190 mm, radius: 30 mm, normal: 0 0 1, period: 10 s}}}
+      tip: {target: {circle: {centre: 0 0 190 mm, radius: 30 mm, normal: 0 0 1, period: 10 s}}}
 record: {every: 1, states: true}
 )";
 

@@ -113,7 +113,7 @@ TEST(Scene, OrderOfTheFileIsKept) {
 TEST(Scene, EveryFixedRegionIsRead) {
   const SceneDescription scene = parse_edited(
       {{"fixed: {box: -20 -20 0 20 20 20 mm}",
-        "fixed:\n      - {box: 0 0 0 1 1 1}\n      - {sphere: {center: 1 2 3 mm, radius: 1 cm}}\n"
+        "fixed:\n      - {box: 0 0 0 1 1 1}\n      - {sphere: {centre: 1 2 3 mm, radius: 1 cm}}\n"
         "      - {plane: {point: 0 0 1, normal: 0 0 5, within: 0.1 mm}}\n      - {set: base}"}});
   ASSERT_EQ(scene.bodies[0].fixed.size(), 4u);
   const auto& fixed = scene.bodies[0].fixed;
@@ -163,7 +163,7 @@ TEST(Scene, SignalsAndTargetsComeFromTables) {
   folder.write("path.csv", "0,0,0,190\n2,10,0,190\n");
   const std::string text =
       edited({{"{displacement: 0 mm}", "{displacement: {file: pull.csv, unit: mm}}"},
-              {"{circle: {center: 0 0 190 mm, radius: 30 mm, normal: 0 0 1, period: 10 s}}",
+              {"{circle: {centre: 0 0 190 mm, radius: 30 mm, normal: 0 0 1, period: 10 s}}",
                "{file: path.csv, unit: mm}"}});
   const SceneDescription scene = parse_scene_text(text, "s.yaml", folder.path());
   EXPECT_DOUBLE_EQ(scene.actuators[0].command->signal.value(0.5), 0.005);
@@ -190,7 +190,7 @@ TEST(Scene, SignalsTakeAColumnByItsHeading) {
 
 TEST(Scene, PolylinesTakeASpeedOrAPeriod) {
   const SceneDescription scene = parse_edited(
-      {{"{circle: {center: 0 0 190 mm, radius: 30 mm, normal: 0 0 1, period: 10 s}}",
+      {{"{circle: {centre: 0 0 190 mm, radius: 30 mm, normal: 0 0 1, period: 10 s}}",
         "{polyline: {points: [0 0 190 mm, 20 0 190 mm], speed: 10 mm/s, closed: true}}"}});
   EXPECT_DOUBLE_EQ(scene.controllers[0].tasks[0].target.end_time(), 4.0);
 }
@@ -198,7 +198,7 @@ TEST(Scene, PolylinesTakeASpeedOrAPeriod) {
 TEST(Scene, OrientationsAreAskedForARotation) {
   const SceneDescription scene = parse_edited(
       {{"point: 0 0 195 mm", "orientation: [0 0 190 mm, 10 0 190 mm, 0 10 190 mm]"},
-       {"{target: {circle: {center: 0 0 190 mm, radius: 30 mm, normal: 0 0 1, period: 10 s}}}",
+       {"{target: {circle: {centre: 0 0 190 mm, radius: 30 mm, normal: 0 0 1, period: 10 s}}}",
         "{rotation: 0 0 90 deg, weight: 1 1 0}"}});
   EXPECT_EQ(scene.effectors[0].kind, EffectorDescription::Kind::orientation);
   EXPECT_NEAR(scene.controllers[0].tasks[0].target.at(0).z(), 1.5707963267948966, 1e-15);

@@ -214,11 +214,11 @@ TEST(Observables, ContactsArmsAndTwoBodies) {
     EXPECT_EQ(value(list, "floor.sticking"), sum.sticking);
     EXPECT_EQ(value(list, "floor.slipping"), sum.slipping);
     friction = std::max(friction, sum.friction_force);
-    const ContactMoment moment = simulation.contacts().moment(0);
-    const Eigen::Matrix<double, 3, 4> pose = moment.pose.affine();
+    const ContactSnapshot snapshot = simulation.contacts().snapshot(0);
+    const Eigen::Matrix<double, 3, 4> pose = snapshot.pose.affine();
     EXPECT_TRUE(std::ranges::equal(values(list, "floor.pose"), pose.reshaped<Eigen::RowMajor>()));
-    for (std::size_t p = 0; p < moment.points.size(); ++p) {
-      const ContactPoint& point = moment.points[p];
+    for (std::size_t p = 0; p < snapshot.points.size(); ++p) {
+      const ContactPoint& point = snapshot.points[p];
       const auto vector = [&](const char* name) {
         const std::vector<double> all = values(list, name);
         return Vector3(all[3 * p], all[3 * p + 1], all[3 * p + 2]);

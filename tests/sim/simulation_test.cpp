@@ -97,7 +97,7 @@ TEST(Simulation, RateLimitsTheDrive) {
   simulation.command(0, pull(0.003));
   for (int i = 1; i <= 10; ++i) {
     simulation.step();
-    EXPECT_NEAR(simulation.actuator(0).wound, std::min(0.003, 0.0005 * i), 1e-15) << i;
+    EXPECT_NEAR(simulation.actuator(0).setpoint, std::min(0.003, 0.0005 * i), 1e-15) << i;
   }
 }
 

@@ -119,7 +119,7 @@ contacts:
     motion: {z: {ramp: {to: 2 mm, duration: 0.1 s}}, angle: {ramp: {to: 90 deg, duration: 0.1 s}}, axis: 0 0 1}
   roof:
     body: block
-    surface: {sphere: {center: 10 10 30.5 mm, radius: 10 mm}}
+    surface: {sphere: {centre: 10 10 30.5 mm, radius: 10 mm}}
     nodes: {set: z_max}
     friction: 0
 )";

@@ -40,7 +40,7 @@ def corners(axis):
     points = [np.zeros(3), np.zeros(3), np.zeros(3)]
     points[1][(axis + 1) % 3] = SIZE
     points[2][(axis + 2) % 3] = SIZE
-    return [{"sphere": {"center": p.tolist(), "radius": 1e-6}} for p in points]
+    return [{"sphere": {"centre": p.tolist(), "radius": 1e-6}} for p in points]
 
 
 def patch(path, model, axis, direction, strain):

@@ -16,7 +16,7 @@ def run(case):
     for threads in (1, 2, 4):
         sim = sinew.load(own_trunk(), threads=threads)
         start = sim.state_hash
-        target = sinew.Circle(center=(0, 0, 0.18), radius=0.03, period=2.0)
+        target = sinew.Circle(centre=(0, 0, 0.18), radius=0.03, period=2.0)
         with sinew.InverseController(sim, targets={"tip": target}) as ik:
             ik.step(200)
             hashes.append(sim.state_hash)

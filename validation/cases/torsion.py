@@ -61,7 +61,7 @@ class Rod:
             still = {(n, c) for n in self.bottom for c in range(2) if abs(self.rest[n, c]) < 1e-9 * A
                      and abs(self.rest[n, 1]) < 1e-9 * A}
             scene["bodies"]["rod"]["fixed"] += [
-                {"sphere": {"center": self.rest[n].tolist(), "radius": 1e-6 * A}, "axes": "xy"[c]} for n, c in sorted(still)]
+                {"sphere": {"centre": self.rest[n].tolist(), "radius": 1e-6 * A}, "axes": "xy"[c]} for n, c in sorted(still)]
             led |= {(n, c) for n in self.bottom for c in range(2)} - still
         scene["actuators"] = {
             f"n{n}_{c}": {"type": "force", "body": "rod", "point": self.rest[n].tolist(), "outside": "nearest",

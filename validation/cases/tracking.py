@@ -21,7 +21,7 @@ SOURCES = {
     "SciPy": "scipy.optimize.minimize (L-BFGS-B) over solve_static, tensions in [0, 3] N",
 }
 COST = 5
-CIRCLE = dict(center=(0, 0, 0.18), radius=0.03, period=2.0)
+CIRCLE = dict(centre=(0, 0, 0.18), radius=0.03, period=2.0)
 
 
 def track(scene, outside=None):

@@ -51,7 +51,7 @@ Target Target::fixed(const Vector3& position) {
 }
 
 Target Target::circle(const Circle& circle) {
-  require_finite(circle.center, "the circle's center");
+  require_finite(circle.centre, "the circle's centre");
   require_finite(circle.normal, "the circle's normal");
   require_positive(circle.radius, "the circle's radius", "m");
   require_positive(circle.period, "the circle's period", "s");
@@ -64,7 +64,7 @@ Target Target::circle(const Circle& circle) {
   Vector3 start = Vector3::UnitX();
   if (normal.cross(start).norm() < kTooParallel) start = Vector3::UnitY();
   const Vector3 first = (start - normal.dot(start) * normal).normalized();
-  return Target(Turn{circle.center, circle.radius * first, circle.radius * normal.cross(first),
+  return Target(Turn{circle.centre, circle.radius * first, circle.radius * normal.cross(first),
                      circle.period, circle.start_angle});
 }
 
@@ -142,7 +142,7 @@ Vector3 Target::at(double time) const {
   if (const auto* fixed = std::get_if<Fixed>(&form_)) return fixed->position;
   if (const auto* turn = std::get_if<Turn>(&form_)) {
     const double angle = turn->start_angle + 2.0 * std::numbers::pi * time / turn->period;
-    return turn->center + std::cos(angle) * turn->first + std::sin(angle) * turn->second;
+    return turn->centre + std::cos(angle) * turn->first + std::sin(angle) * turn->second;
   }
   return std::get<Path>(form_).at(time);
 }
@@ -150,7 +150,7 @@ Vector3 Target::at(double time) const {
 double Target::farthest_from(const Vector3& point) const {
   if (const auto* fixed = std::get_if<Fixed>(&form_)) return (fixed->position - point).stableNorm();
   if (const auto* turn = std::get_if<Turn>(&form_)) {
-    return (turn->center - point).stableNorm() + turn->first.stableNorm();
+    return (turn->centre - point).stableNorm() + turn->first.stableNorm();
   }
   double farthest = 0.0;
   const auto& points = std::get<Path>(form_).points;

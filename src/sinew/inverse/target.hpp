@@ -10,11 +10,11 @@
 
 namespace sinew::inverse {
 
-/// center + radius (cos(a) e1 + sin(a) e2), a = start_angle + 2 pi t / period, counter-clockwise
+/// centre + radius (cos(a) e1 + sin(a) e2), a = start_angle + 2 pi t / period, counter-clockwise
 /// about `normal`. e1 is the world's x axis made perpendicular to the normal (its y axis when x is
 /// within 25 degrees of the normal); e2 = normal x e1.
 struct Circle {
-  Vector3 center = Vector3::Zero();   ///< m
+  Vector3 centre = Vector3::Zero();   ///< m
   double radius = 0.0;                ///< m, > 0
   Vector3 normal = Vector3::UnitZ();  ///< any length but zero
   double period = 1.0;                ///< s a turn, > 0
@@ -69,7 +69,7 @@ class Target {
     Vector3 position = Vector3::Zero();
   };
   struct Turn {
-    Vector3 center, first, second;  ///< m; first and second are the radius times e1 and e2
+    Vector3 centre, first, second;  ///< m; first and second are the radius times e1 and e2
     double period = 1.0, start_angle = 0.0;
   };
   struct Path {

@@ -22,14 +22,14 @@ ArmPose::ArmPose(const ArmBodyModel& model, const ArmState& state)
       skin_velocities_(skin_),
       columns_(static_cast<std::size_t>(model.arm().coordinates())) {}
 
-void ArmPose::look() const {
-  if (looking_) return;
+void ArmPose::update_dynamics() const {
+  if (dynamics_current_) return;
   dynamics_.set(numbers(state_.q), numbers(state_.rate), numbers(state_.rate));
-  looking_ = true;
+  dynamics_current_ = true;
 }
 
 const ArmDynamics<double>& ArmPose::dynamics() const {
-  look();
+  update_dynamics();
   return dynamics_;
 }
 
@@ -44,7 +44,7 @@ Matrix3 ArmPose::rotation(int orientation) const {
 
 Vector3 ArmPose::velocity(int site) const {
   const auto& attachment = model_.attachment(site);
-  look();
+  update_dynamics();
   switch (attachment.kind) {
     case Kind::point:
       return plain(dynamics_.velocity(attachment.point));
@@ -72,24 +72,24 @@ const std::vector<Vec3<double>>& ArmPose::jacobian(const ArmBodyModel::Attachmen
   return columns_;
 }
 
-void ArmPose::show() const {
-  if (showing_) return;
-  look();
+void ArmPose::update_skin() const {
+  if (skin_current_) return;
+  update_dynamics();
   for (Eigen::Index i = 0; i < skin_.rows(); ++i) {
     const ArmPoint& point = model_.skin_points()[static_cast<std::size_t>(i)];
     skin_.row(i) = plain(dynamics_.position(point)).transpose();
     skin_velocities_.row(i) = plain(dynamics_.velocity(point)).transpose();
   }
-  showing_ = true;
+  skin_current_ = true;
 }
 
 const Points& ArmPose::skin() const {
-  show();
+  update_skin();
   return skin_;
 }
 
 const Points& ArmPose::skin_velocities() const {
-  show();
+  update_skin();
   return skin_velocities_;
 }
 

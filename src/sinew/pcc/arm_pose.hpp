@@ -12,14 +12,14 @@
 
 namespace sinew::pcc {
 
-/// Looks at the state when somebody asks.
+/// Evaluates the arm's kinematics at the state when somebody asks, once for each state.
 class ArmPose {
  public:
   /// @param model,state must outlive this.
   ArmPose(const ArmBodyModel& model, const ArmState& state);
 
   /// The state is another from now on.
-  void moved() { looking_ = showing_ = false; }
+  void moved() { dynamics_current_ = skin_current_ = false; }
 
   /// At the state; see ArmDynamics::set().
   const ArmDynamics<double>& dynamics() const;
@@ -34,15 +34,15 @@ class ArmPose {
   std::size_t bytes() const;
 
  private:
-  void look() const;
-  void show() const;
+  void update_dynamics() const;
+  void update_skin() const;
 
   const ArmBodyModel& model_;
   const ArmState& state_;
   mutable ArmDynamics<double> dynamics_;
-  mutable bool looking_ = false;  // dynamics_ is at the state
+  mutable bool dynamics_current_ = false;  // dynamics_ is at the state
   mutable Points skin_, skin_velocities_;
-  mutable bool showing_ = false;  // so are these
+  mutable bool skin_current_ = false;  // so are these
   std::vector<Vec3<double>> columns_;
 };
 

@@ -91,7 +91,7 @@ std::optional<Notice> add_body(sim::ModelBuilder& builder, const SceneDescriptio
     const int number = builder.add_fem_body(std::move(settings), body.place);
     if (body.base) {
       builder.add_base_motion(
-          {number, body.base->translation, body.base->angle, body.base->axis, body.base->center},
+          {number, body.base->translation, body.base->angle, body.base->axis, body.base->centre},
           body.base->place);
     }
   } catch (const Error& error) {

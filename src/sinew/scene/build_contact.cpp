@@ -41,7 +41,7 @@ void add_contact(sim::ModelBuilder& builder, const ContactDescription& contact,
   if (settings.points.rows() == 0) settings.nodes = nodes_of(contact, *mesh);
   if (contact.motion) {
     const BaseDescription& motion = *contact.motion;
-    settings.motion = {-1, motion.translation, motion.angle, motion.axis, motion.center};
+    settings.motion = {-1, motion.translation, motion.angle, motion.axis, motion.centre};
   }
   builder.add_contact(settings);
 }

@@ -87,7 +87,7 @@ struct FixedRegion {
   Kind kind = Kind::box;
   Vector3 lower = Vector3::Zero();             ///< box: m
   Vector3 upper = Vector3::Zero();             ///< box: m
-  Vector3 point = Vector3::Zero();             ///< sphere: center; plane: a point of it; m
+  Vector3 point = Vector3::Zero();             ///< sphere: centre; plane: a point of it; m
   Vector3 normal = Vector3::UnitZ();           ///< plane: unit length
   double radius = 0.0;                         ///< sphere: m
   double within = 1e-6;                        ///< plane: m, nodes no farther from it are fixed
@@ -101,7 +101,7 @@ struct BaseDescription {
   std::array<sim::Signal, 3> translation;  ///< m
   sim::Signal angle;                       ///< rad
   Vector3 axis = Vector3::UnitZ();         ///< unit length
-  Vector3 center = Vector3::Zero();        ///< m
+  Vector3 centre = Vector3::Zero();        ///< m
 };
 
 /// How the free nodes of a body move at the start.

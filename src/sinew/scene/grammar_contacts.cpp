@@ -31,10 +31,10 @@ std::shared_ptr<const KeyTable> solid_plane() {
 std::shared_ptr<const KeyTable> solid_sphere() {
   return make_table({.name = "solid sphere",
                      .description = "A ball, touched from outside.",
-                     .keys = {{.name = "center",
+                     .keys = {{.name = "centre",
                                .forms = {vector(length())},
                                .example = "0 0 195 mm",
-                               .description = "Its center.",
+                               .description = "Its centre.",
                                .required = true},
                               radius_key("10 mm")}});
 }
@@ -60,7 +60,7 @@ std::shared_ptr<const KeyTable> solid_table() {
                                .description = "A plane."},
                               {.name = "sphere",
                                .forms = {table(solid_sphere())},
-                               .example = "{center: 0 0 0 mm, radius: 10 mm}",
+                               .example = "{centre: 0 0 0 mm, radius: 10 mm}",
                                .description = "A ball."},
                               {.name = "capsule",
                                .forms = {table(solid_capsule())},

@@ -101,7 +101,7 @@ Key outside_key();
 std::vector<Form> axis_forms();
 /// box, sphere, plane and set, of which one must stand.
 std::vector<Key> region_keys(const char* whose);
-/// x, y, z, angle, axis and center of a motion over time.
+/// x, y, z, angle, axis and centre of a motion over time.
 std::vector<Key> motion_keys();
 
 // The tables of each part, in the file of that part.

@@ -233,7 +233,7 @@ FixedRegion read_region(const Fields& fields) {
   } else if (fields.find("sphere") != nullptr) {
     region.kind = FixedRegion::Kind::sphere;
     const Fields sphere = fields.below("sphere");
-    sphere.read("center", region.point);
+    sphere.read("centre", region.point);
     sphere.read("radius", region.radius);
   } else if (fields.find("plane") != nullptr) {
     region.kind = FixedRegion::Kind::plane;
@@ -283,7 +283,7 @@ BaseDescription read_motion(const Fields& fields, const Place& place, const Read
   }
   if (fields.find("angle") != nullptr) motion.angle = read_signal(fields, "angle", context);
   fields.read_direction("axis", motion.axis);
-  fields.read("center", motion.center);
+  fields.read("centre", motion.centre);
   return motion;
 }
 

@@ -16,7 +16,7 @@ constraint::Surface read_solid(const Fields& fields) {
   if (fields.find("sphere") != nullptr) {
     const Fields written = fields.below("sphere");
     constraint::Sphere sphere;
-    written.read("center", sphere.centre);
+    written.read("centre", sphere.centre);
     written.read("radius", sphere.radius);
     return sphere;
   }

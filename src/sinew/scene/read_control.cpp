@@ -46,7 +46,7 @@ sim::Signal read_sampled(const Fields& fields, const ReadContext& context) {
 
 inverse::Target read_circle(const Fields& fields) {
   inverse::Circle circle;
-  fields.read("center", circle.center);
+  fields.read("centre", circle.centre);
   fields.read("radius", circle.radius);
   fields.read("normal", circle.normal);
   fields.read("period", circle.period);

@@ -32,7 +32,7 @@ step::ActuatorBlock actuator_block(const ActuatorModel& model, const ActuatorSta
                                    std::span<const double> drive_state, double time,
                                    double time_step) {
   const Interval effort = reachable(model.effort, state.effort, time_step);
-  const Interval motion = reachable(model.motion, state.wound, time_step);
+  const Interval motion = reachable(model.motion, state.setpoint, time_step);
   step::ActuatorBlock block;
   block.row = model.row;
   block.effort_min = effort.min;
@@ -128,8 +128,8 @@ void Actuation::read(const VectorX& delta, std::span<const double> effort,
     state.effort = effort[static_cast<std::size_t>(model.row)];
     state.motion = delta[model.row];
     state.slack = is_slack(model, state.effort);
-    const bool winds = !block.owned && block.kind == CommandKind::motion && block.row >= 0;
-    state.wound = winds ? block.value : state.motion;
+    const bool commanded = !block.owned && block.kind == CommandKind::motion && block.row >= 0;
+    state.setpoint = commanded ? block.value : state.motion;
   }
 }
 
@@ -155,7 +155,7 @@ void Actuation::save(State& state) const {
   state.motions.resize(states_.size());
   state.setpoints.resize(states_.size());
   std::ranges::transform(states_, state.motions.begin(), &ActuatorState::motion);
-  std::ranges::transform(states_, state.setpoints.begin(), &ActuatorState::wound);
+  std::ranges::transform(states_, state.setpoints.begin(), &ActuatorState::setpoint);
   state.drives = drives_;
 }
 
@@ -163,7 +163,7 @@ void Actuation::load(const State& state) {
   for (std::size_t i = 0; i < states_.size(); ++i) {
     const ActuatorModel& model = model_.actuators()[i];
     states_[i].motion = state.motions[i];
-    states_[i].wound = state.setpoints[i];
+    states_[i].setpoint = state.setpoints[i];
     states_[i].effort = state.efforts[static_cast<std::size_t>(model.row)];
     states_[i].slack = is_slack(model, states_[i].effort);
   }

@@ -66,8 +66,9 @@ struct ActuatorState {
   Command command;
   double effort = 0.0;  ///< N or Pa, of the last step
   double motion = 0.0;  ///< m or m^3, at the end of the last step
-  double wound =
-      0.0;  ///< m, where the drive stands: its last motion command as far as limits let it
+  /// m or m^3: the last commanded motion as far as limits let it; `motion` where an effort is
+  /// commanded or a controller chooses.
+  double setpoint = 0.0;
   bool slack = true;            ///< a cable without tension
   const void* owner = nullptr;  ///< the controller that has it; null: it obeys its command
 };

@@ -38,7 +38,7 @@ ContactSum ContactReader::sum(int contact) const {
   return sum;
 }
 
-ContactMoment ContactReader::moment(int contact) const {
+ContactSnapshot ContactReader::snapshot(int contact) const {
   return {run_.model->contacts().at(static_cast<std::size_t>(contact)).pose(run_.time()),
           points(contact)};
 }

@@ -25,7 +25,7 @@ class ContactReader {
   std::vector<ContactPoint> points(int contact) const;
   ContactSum sum(int contact) const;
   /// The points and where the surface stands.
-  ContactMoment moment(int contact) const;
+  ContactSnapshot snapshot(int contact) const;
   /// How the forces were last found.
   const qp::ConeResult& result() const;
 

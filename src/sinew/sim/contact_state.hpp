@@ -43,8 +43,8 @@ struct ContactSum {
   }
 };
 
-/// One contact at one moment.
-struct ContactMoment {
+/// One contact at one instant.
+struct ContactSnapshot {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< of the surface, from the scene's
   std::vector<ContactPoint> points;
 };
