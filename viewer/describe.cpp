@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sinew/constraint/cable.hpp"
-#include "sinew/constraint/cavity.hpp"
+#include "sinew/constraint/chamber.hpp"
 #include "sinew/constraint/contact.hpp"
 #include "sinew/constraint/effector.hpp"
 #include "sinew/constraint/probe.hpp"
@@ -56,8 +56,8 @@ struct Ends {
 };
 
 Ends motion_ends(const sim::Model& model, int index) {
-  if (const auto* cavity = model.cavity(index)) {
-    const double volume = std::abs(cavity->rest_volume());
+  if (const auto* chamber = model.chamber(index)) {
+    const double volume = std::abs(chamber->rest_volume());
     return {-0.5 * volume, volume};
   }
   const double far = kFarPull * model.size();
@@ -77,7 +77,7 @@ Ends input_ends(const sim::Model& model, int index) {
       model.actuators()[static_cast<std::size_t>(index)].drive->input().name;
   if (name == "power") return {0.0, kStrongPower};
   if (name == "phase") return {0.0, 1.0};
-  const double volume = std::abs(model.cavity(index)->rest_volume());
+  const double volume = std::abs(model.chamber(index)->rest_volume());
   return {-0.5 * volume, 2.0 * volume};
 }
 

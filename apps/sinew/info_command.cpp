@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sinew/constraint/cable.hpp"
-#include "sinew/constraint/cavity.hpp"
+#include "sinew/constraint/chamber.hpp"
 #include "sinew/constraint/contact.hpp"
 #include "sinew/constraint/probe.hpp"
 #include "sinew/constraint/tie.hpp"
@@ -220,18 +220,18 @@ Facts scene_facts(const InfoOptions& options) {
     const sim::ActuatorModel& actuator = model.actuators()[a];
     const constraint::Cable* cable = model.cable(static_cast<int>(a));
     ordered_json entry = {{"name", actuator.name}, {"type", actuator_type_name(actuator.type)}};
-    const constraint::Cavity* cavity = model.cavity(static_cast<int>(a));
+    const constraint::Chamber* chamber = model.chamber(static_cast<int>(a));
     std::string size;
     if (cable != nullptr) {
       entry["rest_length_m"] = cable->rest_length();
       size = fmt::format(", {} long", mesh::format_length(cable->rest_length()));
     }
-    if (cavity != nullptr) {
-      entry["rest_volume_m3"] = cavity->rest_volume();
-      entry["rest_area_m2"] = cavity->rest_area();
+    if (chamber != nullptr) {
+      entry["rest_volume_m3"] = chamber->rest_volume();
+      entry["rest_area_m2"] = chamber->rest_area();
       size = fmt::format(", {} in {} faces",
-                         rounded_quantity(cavity->rest_volume(), dimension::kVolume),
-                         cavity->faces().size());
+                         rounded_quantity(chamber->rest_volume(), dimension::kVolume),
+                         chamber->faces().size());
     }
     facts.json["actuators"].push_back(entry);
     facts.text +=

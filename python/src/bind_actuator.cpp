@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "sinew/constraint/cable.hpp"
-#include "sinew/constraint/cavity.hpp"
+#include "sinew/constraint/chamber.hpp"
 #include "sinew/constraint/placement.hpp"
 #include "sinew/sim/actuator.hpp"
 #include "sinew/sim/model.hpp"
@@ -49,8 +49,8 @@ const constraint::Cable& cable(const Actuator& self, const char* what) {
   return *found;
 }
 
-const constraint::Cavity& cavity(const Actuator& self, const char* what) {
-  const constraint::Cavity* found = self.session->model().cavity(self.index);
+const constraint::Chamber& chamber(const Actuator& self, const char* what) {
+  const constraint::Chamber* found = self.session->model().chamber(self.index);
   if (found == nullptr) fail_type(self, what);
   return *found;
 }
@@ -208,7 +208,7 @@ Reading gives what it is; assigning commands it: a number (m), a signal such as 
       .def_property_readonly(
           "volume",
           [](const Actuator& self) {
-            const double rest = cavity(self, "volume").rest_volume();
+            const double rest = chamber(self, "volume").rest_volume();
             return rest + motion(self, "volume_growth");
           },
           "float: volume of a chamber now (m^3), without dead volume.")

@@ -33,7 +33,7 @@
 #include "sinew/qp/quadratic_program.hpp"
 #include "sinew/sim/actuator.hpp"
 #include "sinew/sim/cable_settings.hpp"
-#include "sinew/sim/cavity_settings.hpp"
+#include "sinew/sim/chamber_settings.hpp"
 #include "sinew/sim/contact_settings.hpp"
 #include "sinew/sim/contact_state.hpp"
 #include "sinew/sim/effector_settings.hpp"

@@ -1,10 +1,11 @@
+#include "sinew/constraint/chamber.hpp"
+
 #include <array>
 #include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "sinew/constraint/cavity.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
@@ -12,7 +13,7 @@
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/sim/actuator.hpp"
-#include "sinew/sim/cavity_settings.hpp"
+#include "sinew/sim/chamber_settings.hpp"
 #include "sinew/sim/effector_settings.hpp"
 #include "sinew/sim/simulation.hpp"
 #include "sinew/sim/spring_drive.hpp"
@@ -332,10 +333,10 @@ std::shared_ptr<const Model> balloon() {
   body.elements.regions = {region};
   body.elements.fixed_nodes = bottom;
   builder.add_fem_body(std::move(body));
-  CavitySettings cavity;
-  cavity.name = "inside";
-  cavity.surface = mesh::enclosing_surface(*mesh, Vector3::Zero(), "inside");
-  builder.add_cavity(cavity);
+  ChamberSettings chamber;
+  chamber.name = "inside";
+  chamber.surface = mesh::enclosing_surface(*mesh, Vector3::Zero(), "inside");
+  builder.add_chamber(chamber);
   return builder.build();
 }
 
@@ -343,7 +344,7 @@ std::shared_ptr<const Model> balloon() {
 TEST(Chamber, PressureBeyondTheLimitPointIsNamed) {
   const auto model = balloon();
   Simulation held(model);
-  const double volume = model->cavity(0)->rest_volume();
+  const double volume = model->chamber(0)->rest_volume();
   double peak = 0.0;
   for (int tenth = 1; tenth <= 40; ++tenth) {
     held.command(0, {CommandKind::motion, Signal::constant(0.1 * tenth * volume)});

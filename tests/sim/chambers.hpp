@@ -11,7 +11,7 @@
 #include "sinew/mesh/quadratic.hpp"
 #include "sinew/mesh/shapes.hpp"
 #include "sinew/mesh/topology.hpp"
-#include "sinew/sim/cavity_settings.hpp"
+#include "sinew/sim/chamber_settings.hpp"
 #include "sinew/sim/effector_settings.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/model_builder.hpp"
@@ -69,19 +69,19 @@ inline std::shared_ptr<const sim::Model> chamber(const ChamberOptions& options =
   body.elements.regions = {region};
   body.elements.fixed_nodes = mesh->node_sets.at("z_min");
   const int number = builder.add_fem_body(std::move(body));
-  sim::CavitySettings cavity;
-  cavity.name = "chamber";
-  cavity.body = number;
+  sim::ChamberSettings chamber;
+  chamber.name = "chamber";
+  chamber.body = number;
   const Vector3 inside(0.015, 0.015, 0.015);
-  cavity.surface =
+  chamber.surface =
       options.bore ? mesh::select_faces(
                          *mesh, mesh::BoxRegion{{0.01, 0.01, 0.01}, {0.02, 0.02, 0.03}}, "chamber")
                    : mesh::enclosing_surface(*mesh, inside, "chamber");
-  cavity.cap = options.cap;
-  cavity.load_stiffness = options.load_stiffness;
-  cavity.gas = options.gas;
-  cavity.liquid = options.liquid;
-  builder.add_cavity(cavity);
+  chamber.cap = options.cap;
+  chamber.load_stiffness = options.load_stiffness;
+  chamber.gas = options.gas;
+  chamber.liquid = options.liquid;
+  builder.add_chamber(chamber);
   sim::EffectorSettings top;
   top.name = "top";
   top.body = number;

@@ -5,7 +5,7 @@
 #include "sinew/scene/build_parts.hpp"
 #include "sinew/sim/actuator.hpp"
 #include "sinew/sim/cable_settings.hpp"
-#include "sinew/sim/cavity_settings.hpp"
+#include "sinew/sim/chamber_settings.hpp"
 #include "sinew/sim/force_settings.hpp"
 #include "sinew/sim/model_builder.hpp"
 #include "sinew/sim/spring_line_settings.hpp"
@@ -87,10 +87,10 @@ void add_spring(sim::ModelBuilder& builder, const ActuatorDescription& actuator,
 
 void add_chamber(sim::ModelBuilder& builder, const ActuatorDescription& actuator, int body,
                  const mesh::Mesh& mesh) {
-  sim::CavitySettings cavity;
-  cavity.name = actuator.name;
-  cavity.place = actuator.place;
-  cavity.body = body;
+  sim::ChamberSettings chamber;
+  chamber.name = actuator.name;
+  chamber.place = actuator.place;
+  chamber.body = body;
   const SurfaceDescription& surface = actuator.surface;
   if (surface.kind == SurfaceDescription::Kind::file) {
     try {
@@ -98,22 +98,22 @@ void add_chamber(sim::ModelBuilder& builder, const ActuatorDescription& actuator
       options.unit = surface.unit;
       const mesh::Surface read = mesh::read_surface(surface.file, options);
       mesh::require_closed(read);
-      cavity.surface = read;
+      chamber.surface = read;
     } catch (const Error& error) {
       throw error.at(surface.place);
     }
   } else {
-    cavity.surface = faces_of(surface, mesh);
+    chamber.surface = faces_of(surface, mesh);
   }
-  cavity.outside = actuator.outside;
-  cavity.cap = actuator.cap;
-  cavity.load_stiffness = actuator.load_stiffness;
-  cavity.pressure = limits(actuator.effort);
-  cavity.volume_growth = limits(actuator.motion);
-  cavity.command = command(actuator);
-  cavity.gas = actuator.gas;
-  cavity.liquid = actuator.liquid;
-  builder.add_cavity(cavity);
+  chamber.outside = actuator.outside;
+  chamber.cap = actuator.cap;
+  chamber.load_stiffness = actuator.load_stiffness;
+  chamber.pressure = limits(actuator.effort);
+  chamber.volume_growth = limits(actuator.motion);
+  chamber.command = command(actuator);
+  chamber.gas = actuator.gas;
+  chamber.liquid = actuator.liquid;
+  builder.add_chamber(chamber);
 }
 
 void add_torque(sim::ModelBuilder& builder, const ActuatorDescription& actuator, int body) {

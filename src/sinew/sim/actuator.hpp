@@ -47,7 +47,7 @@ struct ActuatorModel {
   Command command;                          ///< where a run begins
   std::shared_ptr<const Drive> drive = {};  ///< none: it obeys its commands as they are
   int first_state = 0;                      ///< of the drive's numbers among those of all drives
-  double motion_scale = 1.0;  ///< m per motion: 1, or 1/m^2 of a cavity, one over its area
+  double motion_scale = 1.0;  ///< m per motion: 1, or 1/m^2 of a chamber, one over its area
 
   /// "tension", N; "force", N; "pressure", Pa; "torque", N m.
   QuantityName effort_name() const;

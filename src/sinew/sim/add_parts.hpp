@@ -23,7 +23,7 @@ namespace sinew::sim {
 struct ActuatorModel;
 struct BaseMotion;
 struct CableSettings;
-struct CavitySettings;
+struct ChamberSettings;
 struct ContactSettings;
 struct EffectorSettings;
 struct ForceSettings;
@@ -46,7 +46,7 @@ int add_cable(ModelData& data, const CableSettings& settings);
 int add_spring(ModelData& data, const SpringLineSettings& settings);
 int add_force(ModelData& data, const ForceSettings& settings);
 int add_torque(ModelData& data, const TorqueSettings& settings);
-int add_cavity(ModelData& data, const CavitySettings& settings);
+int add_chamber(ModelData& data, const ChamberSettings& settings);
 
 void add_base_motion(ModelData& data, const BaseMotion& motion, const Place& place);
 int add_load(ModelData& data, const LoadSettings& settings);

@@ -35,7 +35,7 @@ double total_volume(double rest_volume, double dead_volume) {
   require(dead_volume >= 0.0, "dead_volume", dead_volume, "give zero or more");
   const double volume = rest_volume + dead_volume;
   if (!(volume > 0.0)) {
-    throw Error(ErrorKind::zero_volume, {.item = "cavity"},
+    throw Error(ErrorKind::zero_volume, {.item = "chamber"},
                 fmt::format("the chamber's volume is {:g} m^3", volume),
                 "choose the inside of a chamber");
   }

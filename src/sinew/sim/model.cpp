@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "sinew/constraint/cable.hpp"
-#include "sinew/constraint/cavity.hpp"
+#include "sinew/constraint/chamber.hpp"
 #include "sinew/constraint/contact.hpp"
 #include "sinew/constraint/effector.hpp"
 #include "sinew/constraint/probe.hpp"
@@ -97,9 +97,9 @@ const constraint::Cable* Model::cable(int actuator) const {
   return dynamic_cast<const constraint::Cable*>(&data_.constraint(number));
 }
 
-const constraint::Cavity* Model::cavity(int actuator) const {
+const constraint::Chamber* Model::chamber(int actuator) const {
   const int number = data_.actuators.at(static_cast<std::size_t>(actuator)).constraint;
-  return dynamic_cast<const constraint::Cavity*>(&data_.constraint(number));
+  return dynamic_cast<const constraint::Chamber*>(&data_.constraint(number));
 }
 
 }  // namespace sinew::sim

@@ -13,7 +13,7 @@
 
 namespace sinew::constraint {
 class Cable;
-class Cavity;
+class Chamber;
 class Contact;
 class Effector;
 class Tie;
@@ -70,7 +70,7 @@ class Model {
   /// The line of a cable or spring; null when an actuator has none.
   const constraint::Cable* cable(int actuator) const;
   /// The chamber of an actuator; null when it has none.
-  const constraint::Cavity* cavity(int actuator) const;
+  const constraint::Chamber* chamber(int actuator) const;
   /// Numbers of all drives.
   int drive_states() const { return data_.drive_states; }
   /// A length of the robot's size, m: the largest diagonal of its bodies at rest.

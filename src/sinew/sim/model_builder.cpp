@@ -52,8 +52,8 @@ int ModelBuilder::add_torque(const TorqueSettings& settings) {
   return sim::add_torque(data_, settings);
 }
 
-int ModelBuilder::add_cavity(const CavitySettings& settings) {
-  return sim::add_cavity(data_, settings);
+int ModelBuilder::add_chamber(const ChamberSettings& settings) {
+  return sim::add_chamber(data_, settings);
 }
 
 int ModelBuilder::add_load(const LoadSettings& settings) { return sim::add_load(data_, settings); }

@@ -21,7 +21,7 @@ namespace sinew::sim {
 
 class Model;
 struct CableSettings;
-struct CavitySettings;
+struct ChamberSettings;
 struct ContactSettings;
 struct EffectorSettings;
 struct ForceSettings;
@@ -50,7 +50,7 @@ class ModelBuilder {
   int add_torque(const TorqueSettings& settings);
   /// Throws Error: surface-not-closed, zero-volume, point-outside-mesh, contradictory-limits,
   /// out-of-range, conflicting-keys (gas and liquid).
-  int add_cavity(const CavitySettings& settings);
+  int add_chamber(const ChamberSettings& settings);
   /// Moves a body's fixed nodes. Throws Error: nothing-fixed, out-of-range (no axis), wrong-type.
   void add_base_motion(const BaseMotion& motion, const Place& place);
   /// Throws Error: point-outside-mesh, too-few-points, zero-volume, out-of-range, wrong-type.

@@ -1,4 +1,4 @@
-#include "sinew/sim/cavity_surface.hpp"
+#include "sinew/sim/chamber_surface.hpp"
 
 #include <algorithm>
 #include <array>
@@ -32,19 +32,19 @@ std::map<Edge, NodeId> middles_of(const std::vector<mesh::Face>& patch) {
 
 }  // namespace
 
-int CavitySurface::add(int attached) {
+int ChamberSurface::add(int attached) {
   points_.push_back({number_, attached});
   return static_cast<int>(points_.size()) - 1;
 }
 
-int CavitySurface::corner(NodeId node) {
+int ChamberSurface::corner(NodeId node) {
   const auto found = corners_.find(node);
   if (found != corners_.end()) return found->second;
   return corners_[node] = add(attach_node(body_, node));
 }
 
 // The mean of a loop, or the point half way from it to a node of the loop.
-int CavitySurface::add_spoke(const std::vector<NodeId>& loop, NodeId node) {
+int ChamberSurface::add_spoke(const std::vector<NodeId>& loop, NodeId node) {
   const double share = (node < 0 ? 1.0 : 0.5) / static_cast<double>(loop.size());
   std::vector<double> weights(loop.size(), share);
   for (std::size_t k = 0; k < loop.size(); ++k) {
@@ -53,7 +53,7 @@ int CavitySurface::add_spoke(const std::vector<NodeId>& loop, NodeId node) {
   return add(body_.attach_nodes(loop, weights));
 }
 
-void CavitySurface::take(const std::vector<mesh::Face>& patch) {
+void ChamberSurface::take(const std::vector<mesh::Face>& patch) {
   // Out of the material is into the fluid: turned round.
   for (const mesh::Face& face : patch) {
     const auto& n = face.node;
@@ -69,7 +69,7 @@ void CavitySurface::take(const std::vector<mesh::Face>& patch) {
   }
 }
 
-void CavitySurface::close(const std::vector<mesh::Face>& patch) {
+void ChamberSurface::close(const std::vector<mesh::Face>& patch) {
   const std::map<Edge, NodeId> middles = middles_of(patch);
   for (const std::vector<NodeId>& loop : mesh::open_loops(patch)) {
     const int hub = add_spoke(loop, -1);
@@ -81,7 +81,7 @@ void CavitySurface::close(const std::vector<mesh::Face>& patch) {
     };
     for (std::size_t k = 0; k < loop.size(); ++k) {
       const NodeId from = loop[k], to = loop[(k + 1) % loop.size()];
-      constraint::CavityFace lid{{corner(to), corner(from), hub, -1}};
+      constraint::ChamberFace lid{{corner(to), corner(from), hub, -1}};
       if (const auto middle = middles.find(edge_of(from, to)); middle != middles.end()) {
         lid.middle = {corner(middle->second), spoke(from), spoke(to)};
       }
@@ -90,8 +90,8 @@ void CavitySurface::close(const std::vector<mesh::Face>& patch) {
   }
 }
 
-void CavitySurface::take(const mesh::Surface& surface, mesh::Outside outside,
-                         const std::string& name) {
+void ChamberSurface::take(const mesh::Surface& surface, mesh::Outside outside,
+                          const std::string& name) {
   const bool inwards = mesh::enclosed_volume(surface) < 0.0;
   for (Eigen::Index i = 0; i < surface.nodes.rows(); ++i) {
     const Vector3 at = surface.nodes.row(i).transpose();

@@ -4,13 +4,13 @@
 #include <variant>
 #include <vector>
 
-#include "sinew/constraint/cavity.hpp"
+#include "sinew/constraint/chamber.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/fem/has_elements.hpp"
 #include "sinew/sim/add_parts.hpp"
 #include "sinew/sim/attach.hpp"
-#include "sinew/sim/cavity_settings.hpp"
-#include "sinew/sim/cavity_surface.hpp"
+#include "sinew/sim/chamber_settings.hpp"
+#include "sinew/sim/chamber_surface.hpp"
 #include "sinew/sim/find_body.hpp"
 #include "sinew/sim/fluid_drive.hpp"
 #include "sinew/sim/hydrostatic.hpp"
@@ -20,27 +20,27 @@ namespace sinew::sim {
 
 namespace {
 
-std::unique_ptr<constraint::Cavity> attach_surface(ModelData& data,
-                                                   const CavitySettings& settings) {
-  CavitySurface surface(data.body(settings.body), settings.body);
+std::unique_ptr<constraint::Chamber> attach_surface(ModelData& data,
+                                                    const ChamberSettings& settings) {
+  ChamberSurface surface(data.body(settings.body), settings.body);
   if (const auto* faces = std::get_if<std::vector<mesh::Face>>(&settings.surface)) {
     surface.take(*faces);
     if (settings.cap) surface.close(*faces);
   } else {
     surface.take(std::get<mesh::Surface>(settings.surface), settings.outside, settings.name);
   }
-  return std::make_unique<constraint::Cavity>(settings.name, surface.points(), surface.faces(),
-                                              rest_positions(data, surface.points()));
+  return std::make_unique<constraint::Chamber>(settings.name, surface.points(), surface.faces(),
+                                               rest_positions(data, surface.points()));
 }
 
-std::shared_ptr<const Drive> drive_of(const CavitySettings& settings, double rest_volume) {
+std::shared_ptr<const Drive> drive_of(const ChamberSettings& settings, double rest_volume) {
   if (settings.gas) return std::make_shared<const GasDrive>(*settings.gas, rest_volume);
   if (settings.liquid) return std::make_shared<const LiquidDrive>(*settings.liquid, rest_volume);
   return nullptr;
 }
 
 // What a chamber's liquid weighs, as the pressure that it has more of below than above.
-void add_liquid_weight(ModelData& data, const CavitySettings& settings) {
+void add_liquid_weight(ModelData& data, const ChamberSettings& settings) {
   const auto* faces = std::get_if<std::vector<mesh::Face>>(&settings.surface);
   if (faces == nullptr) {
     throw Error(ErrorKind::conflicting_keys, settings.place,
@@ -54,20 +54,20 @@ void add_liquid_weight(ModelData& data, const CavitySettings& settings) {
 
 }  // namespace
 
-int add_cavity(ModelData& data, const CavitySettings& settings) {
+int add_chamber(ModelData& data, const ChamberSettings& settings) {
   find_body(data, settings.body, settings.place);
   try {
     if (settings.gas && settings.liquid) {
       throw Error(ErrorKind::conflicting_keys, settings.place, "a chamber holds gas or liquid",
                   "give one of them");
     }
-    auto cavity = attach_surface(data, settings);
+    auto chamber = attach_surface(data, settings);
     ActuatorModel actuator{
         settings.name,     settings.place,         ActuatorType::pressure, -1, -1,
         settings.pressure, settings.volume_growth, settings.command};
-    actuator.motion_scale = 1.0 / cavity->rest_area();
-    actuator.drive = drive_of(settings, cavity->rest_volume());
-    const int index = add_actuator(data, std::move(actuator), std::move(cavity));
+    actuator.motion_scale = 1.0 / chamber->rest_area();
+    actuator.drive = drive_of(settings, chamber->rest_volume());
+    const int index = add_actuator(data, std::move(actuator), std::move(chamber));
     if (settings.liquid && settings.liquid->density > 0.0) add_liquid_weight(data, settings);
     if (settings.load_stiffness) data.stiffening.push_back(data.actuators.back().constraint);
     return index;

@@ -1,4 +1,4 @@
-#include "sinew/constraint/cavity.hpp"
+#include "sinew/constraint/chamber.hpp"
 
 #include <cmath>
 
@@ -32,15 +32,15 @@ sinew::testing::ChamberOptions options_of(Kind kind) {
   return options;
 }
 
-class CavityTest : public ::testing::TestWithParam<Kind> {
+class ChamberTest : public ::testing::TestWithParam<Kind> {
  protected:
-  CavityTest() : simulation_(chamber(options_of(GetParam()))) {}
+  ChamberTest() : simulation_(chamber(options_of(GetParam()))) {}
 
-  const Cavity& cavity() { return *simulation_.model().cavity(0); }
+  const Chamber& held_chamber() { return *simulation_.model().chamber(0); }
   mechanics::RowValues rows() {
     mechanics::RowValues values;
     values.resize(simulation_.model().rows());
-    cavity().linearise(simulation_.placement(), values);
+    held_chamber().linearise(simulation_.placement(), values);
     return values;
   }
   /// Moves every node by a smooth field of this size (m).
@@ -68,19 +68,19 @@ class CavityTest : public ::testing::TestWithParam<Kind> {
   sim::Simulation simulation_;
 };
 
-TEST_P(CavityTest, VolumeOfACubeIsExact) {
-  EXPECT_NEAR(cavity().rest_volume(), kVoid, 1e-18);
-  EXPECT_NEAR(cavity().rest_area(), 6e-4, 1e-15);
+TEST_P(ChamberTest, VolumeOfACubeIsExact) {
+  EXPECT_NEAR(held_chamber().rest_volume(), kVoid, 1e-18);
+  EXPECT_NEAR(held_chamber().rest_area(), 6e-4, 1e-15);
   EXPECT_DOUBLE_EQ(rows().delta[0], 0.0);
 }
 
-TEST_P(CavityTest, PressurePutsNoForceAndNoMomentOnTheWhole) {
+TEST_P(ChamberTest, PressurePutsNoForceAndNoMomentOnTheWhole) {
   distort(1e-3);
   const auto values = rows();
   Vector3 force = Vector3::Zero(), moment = Vector3::Zero();
   double size = 0.0;
-  for (std::size_t k = 0; k < cavity().material_points().size(); ++k) {
-    const Vector3 x = simulation_.placement().position(cavity().material_points()[k]);
+  for (std::size_t k = 0; k < held_chamber().material_points().size(); ++k) {
+    const Vector3 x = simulation_.placement().position(held_chamber().material_points()[k]);
     force += values.direction[k];
     moment += x.cross(values.direction[k]);
     size += values.direction[k].norm();
@@ -90,35 +90,35 @@ TEST_P(CavityTest, PressurePutsNoForceAndNoMomentOnTheWhole) {
   EXPECT_LT(moment.norm(), 1e-16 * size);
 }
 
-TEST_P(CavityTest, DirectionsAreTheDerivativeOfTheVolume) {
+TEST_P(ChamberTest, DirectionsAreTheDerivativeOfTheVolume) {
   distort(1e-3);
   const auto exact = rows();
   constexpr double kStep = 1e-5;
-  for (std::size_t k = 0; k < cavity().material_points().size(); ++k) {
+  for (std::size_t k = 0; k < held_chamber().material_points().size(); ++k) {
     for (int axis = 0; axis < 3; ++axis) {
-      move(cavity().material_points()[k], axis, kStep);
+      move(held_chamber().material_points()[k], axis, kStep);
       const double up = rows().delta[0];
-      move(cavity().material_points()[k], axis, -2.0 * kStep);
+      move(held_chamber().material_points()[k], axis, -2.0 * kStep);
       const double down = rows().delta[0];
-      move(cavity().material_points()[k], axis, kStep);
+      move(held_chamber().material_points()[k], axis, kStep);
       // V is linear in each coordinate: central differences are exact but for rounding.
       EXPECT_NEAR(exact.direction[k][axis], (up - down) / (2.0 * kStep), 1e-12) << k;
     }
   }
 }
 
-TEST_P(CavityTest, CurvatureIsTheDerivativeOfTheDirections) {
+TEST_P(ChamberTest, CurvatureIsTheDerivativeOfTheDirections) {
   distort(1e-3);
   auto pairs = simulation_.model().curvatures();
   const std::vector<double> effort{1.0};
-  cavity().curve(simulation_.placement(), effort, pairs);
-  const auto& points = cavity().material_points();
+  held_chamber().curve(simulation_.placement(), effort, pairs);
+  const auto& points = held_chamber().material_points();
   const auto index = [&](const mechanics::MaterialPoint& wanted) {
     std::size_t k = 0;
     while (points[k].number != wanted.number) ++k;
     return k;
   };
-  ASSERT_EQ(static_cast<int>(pairs.size()), cavity().curvature_count());
+  ASSERT_EQ(static_cast<int>(pairs.size()), held_chamber().curvature_count());
   constexpr double kStep = 1e-5;
   double largest = 0.0;
   for (const auto& pair : pairs) {
@@ -137,26 +137,26 @@ TEST_P(CavityTest, CurvatureIsTheDerivativeOfTheDirections) {
   EXPECT_GT(largest, 1e-3);
 }
 
-TEST_P(CavityTest, LoadStiffnessOfAClosedSurfaceNeedsNoWiderPattern) {
+TEST_P(ChamberTest, LoadStiffnessOfAClosedSurfaceNeedsNoWiderPattern) {
   EXPECT_FALSE(simulation_.model().stiffening_widens());
   EXPECT_EQ(simulation_.model().stiffening_constraints().size(), 1U);
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, CavityTest,
+INSTANTIATE_TEST_SUITE_P(Kinds, ChamberTest,
                          ::testing::Values(Kind::tetrahedra, Kind::quadratic, Kind::hexahedra));
 
 using sinew::testing::kind_of;
 
 // On a flat quadratic triangle the corners bear nothing, the middles a third each.
-TEST(Cavity, PressureOnFlatQuadraticFacesIsConsistent) {
+TEST(Chamber, PressureOnFlatQuadraticFacesIsConsistent) {
   const sim::Simulation simulation(chamber(options_of(Kind::quadratic)));
-  const Cavity& cavity = *simulation.model().cavity(0);
+  const Chamber& chamber = *simulation.model().chamber(0);
   mechanics::RowValues values;
   values.resize(simulation.model().rows());
-  cavity.linearise(simulation.placement(), values);
-  std::vector<double> share(cavity.material_points().size(), 0.0);
+  chamber.linearise(simulation.placement(), values);
+  std::vector<double> share(chamber.material_points().size(), 0.0);
   double area = 0.0;
-  for (const CavityFace& face : cavity.faces()) {
+  for (const ChamberFace& face : chamber.faces()) {
     for (const int middle : face.middle) share[static_cast<std::size_t>(middle)] += 0.5e-4 / 3.0;
     area += 0.5e-4;
   }
@@ -168,13 +168,13 @@ TEST(Cavity, PressureOnFlatQuadraticFacesIsConsistent) {
   }
 }
 
-TEST(Cavity, OpenSurfacesAreRefusedOrCapped) {
+TEST(Chamber, OpenSurfacesAreRefusedOrCapped) {
   EXPECT_EQ(kind_of([] { chamber({.bore = true}); }), ErrorKind::surface_not_closed);
   const auto capped = chamber({.bore = true, .cap = true});
-  EXPECT_NEAR(capped->cavity(0)->rest_volume(), 2.0 * kVoid, 1e-17);
+  EXPECT_NEAR(capped->chamber(0)->rest_volume(), 2.0 * kVoid, 1e-17);
 }
 
-TEST_P(CavityTest, ACapPassesItsForceToTheRim) {
+TEST_P(ChamberTest, ACapPassesItsForceToTheRim) {
   auto options = options_of(GetParam());
   options.bore = options.cap = true;
   sim::Simulation simulation(chamber(options));
@@ -185,7 +185,7 @@ TEST_P(CavityTest, ACapPassesItsForceToTheRim) {
   simulation.restore(state);
   mechanics::RowValues values;
   values.resize(simulation.model().rows());
-  simulation.model().cavity(0)->linearise(simulation.placement(), values);
+  simulation.model().chamber(0)->linearise(simulation.placement(), values);
   Vector3 force = Vector3::Zero();
   double size = 0.0;
   for (const Vector3& direction : values.direction) {  // the effector's are not formed
@@ -196,7 +196,7 @@ TEST_P(CavityTest, ACapPassesItsForceToTheRim) {
   EXPECT_LT(force.norm(), 1e-14 * size);
 }
 
-TEST(Cavity, PointsThatEncloseNothingAreRefused) {
+TEST(Chamber, PointsThatEncloseNothingAreRefused) {
   const mesh::Mesh mesh = sinew::testing::hollow_block(mesh::Cells::hexahedra);
   EXPECT_EQ(mesh::enclosing_surface(mesh, {0.015, 0.015, 0.015}, "x").size(), 6U);
   for (const Vector3& at : {Vector3(0.005, 0.005, 0.005), Vector3(0.015, 0.015, 0.05)}) {
@@ -204,7 +204,7 @@ TEST(Cavity, PointsThatEncloseNothingAreRefused) {
   }
 }
 
-TEST(Cavity, APatchGrowsOverBluntEdgesAlone) {
+TEST(Chamber, APatchGrowsOverBluntEdgesAlone) {
   const mesh::Mesh mesh =
       mesh::block({.size = {0.03, 0.03, 0.03}, .cells = {3, 3, 3}}, mesh::Cells::hexahedra);
   EXPECT_EQ(mesh::grow_patch(mesh, {0.015, 0.015, 0.03}, 0.5, "x").size(), 9U);

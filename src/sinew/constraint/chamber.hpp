@@ -10,10 +10,10 @@
 
 namespace sinew::constraint {
 
-/// A triangle, quadratic triangle or quadrilateral of a cavity's surface.
-struct CavityFace {
-  /// Positions in the cavity's points, counter-clockwise seen from the material, so that the normal
-  /// points out of the fluid; the last one -1 for a triangle.
+/// A triangle, quadratic triangle or quadrilateral of a chamber's surface.
+struct ChamberFace {
+  /// Positions in the chamber's points, counter-clockwise seen from the material, so that the
+  /// normal points out of the fluid; the last one -1 for a triangle.
   std::array<int, 4> corner{-1, -1, -1, -1};
   /// Of a quadratic triangle: middle nodes behind each corner.
   std::array<int, 3> middle{-1, -1, -1};
@@ -27,14 +27,14 @@ struct CavityFace {
 /// its derivative, the load stiffness p d2V/dx2, is symmetric since V is a function of the
 /// positions (Rumpel & Schweizerhof, Int. J. Numer. Meth. Eng. 57, 2003). An edge (a, b) with the
 /// triangle's third corner c has d2V/dx_a dx_b v = v x x_c / 6.
-class Cavity : public Constraint {
+class Chamber : public Constraint {
  public:
   /// @param name for messages.
   /// @param points corners of the faces. @param faces closed: every edge twice, once each way.
   /// @param placement_at_rest positions of the points at rest, (n, 3) m.
   /// Throws Error: too-few-points, surface-not-closed, zero-volume.
-  Cavity(std::string name, std::vector<mechanics::MaterialPoint> points,
-         std::vector<CavityFace> faces, const Points& placement_at_rest);
+  Chamber(std::string name, std::vector<mechanics::MaterialPoint> points,
+          std::vector<ChamberFace> faces, const Points& placement_at_rest);
 
   void declare(mechanics::RowPattern& rows,
                std::vector<mechanics::RowCurvature>& curvatures) override;
@@ -49,7 +49,7 @@ class Cavity : public Constraint {
   /// Of the surface at rest, m^2.
   double rest_area() const { return rest_area_; }
   const std::vector<mechanics::MaterialPoint>& material_points() const { return points_; }
-  const std::vector<CavityFace>& faces() const { return faces_; }
+  const std::vector<ChamberFace>& faces() const { return faces_; }
 
  private:
   struct Triangle {
@@ -65,7 +65,7 @@ class Cavity : public Constraint {
   void list_edges();
 
   std::vector<mechanics::MaterialPoint> points_;
-  std::vector<CavityFace> faces_;
+  std::vector<ChamberFace> faces_;
   std::vector<Triangle> triangles_;
   std::vector<std::array<int, 2>> pairs_;  // of points that an edge joins, first < second
   std::vector<Edge> edges_;

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sinew/constraint/cavity.hpp"
+#include "sinew/constraint/chamber.hpp"
 #include "sinew/core/types.hpp"
 #include "sinew/mechanics/rows.hpp"
 #include "sinew/mesh/topology.hpp"
@@ -21,10 +21,10 @@ enum class Outside;
 namespace sinew::sim {
 
 /// Points and faces of a chamber, as they are taken in.
-class CavitySurface {
+class ChamberSurface {
  public:
   /// @param body,number that carries the points, and its number.
-  CavitySurface(mechanics::BodyModel& body, int number) : body_(body), number_(number) {}
+  ChamberSurface(mechanics::BodyModel& body, int number) : body_(body), number_(number) {}
 
   /// Faces of the body's mesh as seen from the material.
   void take(const std::vector<mesh::Face>& patch);
@@ -35,7 +35,7 @@ class CavitySurface {
   void take(const mesh::Surface& surface, mesh::Outside outside, const std::string& name);
 
   const std::vector<mechanics::MaterialPoint>& points() const { return points_; }
-  const std::vector<constraint::CavityFace>& faces() const { return faces_; }
+  const std::vector<constraint::ChamberFace>& faces() const { return faces_; }
 
  private:
   /// All return the position of a point.
@@ -46,7 +46,7 @@ class CavitySurface {
   mechanics::BodyModel& body_;
   int number_;
   std::vector<mechanics::MaterialPoint> points_;
-  std::vector<constraint::CavityFace> faces_;
+  std::vector<constraint::ChamberFace> faces_;
   std::map<NodeId, int> corners_;  // position of the point of each node
 };
 

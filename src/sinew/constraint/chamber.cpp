@@ -1,4 +1,4 @@
-#include "sinew/constraint/cavity.hpp"
+#include "sinew/constraint/chamber.hpp"
 
 #include <cmath>
 #include <map>
@@ -15,7 +15,7 @@ namespace sinew::constraint {
 
 namespace {
 
-// A cavity of less than this part of (its area)^(3/2) is a sheet.
+// A chamber of less than this part of (its area)^(3/2) is a sheet.
 constexpr double kFlat = 1e-9;
 
 struct Weighted {
@@ -68,16 +68,16 @@ Matrix3 cross_matrix(const Vector3& v) {
 
 }  // namespace
 
-Cavity::Cavity(std::string name, std::vector<mechanics::MaterialPoint> points,
-               std::vector<CavityFace> faces, const Points& placement_at_rest)
+Chamber::Chamber(std::string name, std::vector<mechanics::MaterialPoint> points,
+                 std::vector<ChamberFace> faces, const Points& placement_at_rest)
     : Constraint(std::move(name)), points_(std::move(points)), faces_(std::move(faces)) {
   if (points_.size() < 4) {
-    throw Error(ErrorKind::too_few_points, {.item = "cavity '" + this->name() + "'"},
+    throw Error(ErrorKind::too_few_points, {.item = "chamber '" + this->name() + "'"},
                 fmt::format("the surface has {} nodes", points_.size()),
                 "choose a surface that encloses a volume");
   }
   check_closed(placement_at_rest);
-  for (const CavityFace& face : faces_) {
+  for (const ChamberFace& face : faces_) {
     const auto [a, b, c, d] = face.corner;
     if (face.middle[0] >= 0) {
       static const std::vector<Weighted> weights = quadratic_weights();
@@ -104,7 +104,7 @@ Cavity::Cavity(std::string name, std::vector<mechanics::MaterialPoint> points,
     }
     rest_volume_ += t.weight / 6.0 * x[0].dot(x[1].cross(x[2]));
   }
-  for (const CavityFace& face : faces_) {
+  for (const ChamberFace& face : faces_) {
     const auto at = [&](std::size_t k) -> Vector3 {
       return placement_at_rest.row(face.corner[k]).transpose();
     };
@@ -113,15 +113,15 @@ Cavity::Cavity(std::string name, std::vector<mechanics::MaterialPoint> points,
                               : (at(1) - at(0)).cross(at(2) - at(0)).norm());
   }
   if (!(std::abs(rest_volume_) > kFlat * std::pow(rest_area_, 1.5))) {
-    throw Error(ErrorKind::zero_volume, {.item = "cavity '" + this->name() + "'"},
+    throw Error(ErrorKind::zero_volume, {.item = "chamber '" + this->name() + "'"},
                 fmt::format("the surface encloses {:g} m^3", rest_volume_),
                 "choose a surface that encloses a volume, or push with forces");
   }
 }
 
-void Cavity::check_closed(const Points& at_rest) const {
+void Chamber::check_closed(const Points& at_rest) const {
   std::multiset<std::pair<int, int>> edges;
-  for (const CavityFace& face : faces_) {
+  for (const ChamberFace& face : faces_) {
     const std::size_t corners = face.corner[3] < 0 ? 3 : 4;
     for (std::size_t k = 0; k < corners; ++k) {
       edges.insert({face.corner[k], face.corner[(k + 1) % corners]});
@@ -136,14 +136,14 @@ void Cavity::check_closed(const Points& at_rest) const {
   if (open == 0) return;
   const Vector3 a = at_rest.row(first.first), b = at_rest.row(first.second);
   throw Error(
-      ErrorKind::surface_not_closed, {.item = "cavity '" + name() + "'"},
+      ErrorKind::surface_not_closed, {.item = "chamber '" + name() + "'"},
       fmt::format("the surface is open along {} edges, the first from ({:g}, {:g}, {:g}) to "
                   "({:g}, {:g}, {:g}) m",
                   open, a.x(), a.y(), a.z(), b.x(), b.y(), b.z()),
       "choose a closed surface, or close its openings with cap: true");
 }
 
-void Cavity::list_edges() {
+void Chamber::list_edges() {
   std::map<std::array<int, 2>, int> number;
   for (const Triangle& t : triangles_) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -157,8 +157,8 @@ void Cavity::list_edges() {
   }
 }
 
-void Cavity::declare(mechanics::RowPattern& rows,
-                     std::vector<mechanics::RowCurvature>& curvatures) {
+void Chamber::declare(mechanics::RowPattern& rows,
+                      std::vector<mechanics::RowCurvature>& curvatures) {
   first_entry_ = rows.entries();
   first_row_ = rows.add_row(points_);
   row_count_ = 1;
@@ -170,7 +170,7 @@ void Cavity::declare(mechanics::RowPattern& rows,
   curvature_count_ = static_cast<int>(pairs_.size());
 }
 
-void Cavity::linearise(const Placement& placement, mechanics::RowValues& values) const {
+void Chamber::linearise(const Placement& placement, mechanics::RowValues& values) const {
   const auto direction = [&](int corner) -> Vector3& {
     return values.direction[static_cast<std::size_t>(first_entry_ + corner)];
   };
@@ -193,8 +193,8 @@ void Cavity::linearise(const Placement& placement, mechanics::RowValues& values)
   values.delta[first_row_] = volume - rest_volume_;
 }
 
-void Cavity::curve(const Placement& placement, std::span<const double> effort,
-                   std::span<mechanics::RowCurvature> curvatures) const {
+void Chamber::curve(const Placement& placement, std::span<const double> effort,
+                    std::span<mechanics::RowCurvature> curvatures) const {
   for (auto& entry : curvatures) entry.curvature.setZero();
   const double pressure = effort[static_cast<std::size_t>(first_row_)];
   const Vector3 origin = placement.position(points_.front());
@@ -205,8 +205,8 @@ void Cavity::curve(const Placement& placement, std::span<const double> effort,
   }
 }
 
-void Cavity::add_to(ValueHash& hash) const {
-  for (const CavityFace& face : faces_) hash.add(face.corner, face.middle);
+void Chamber::add_to(ValueHash& hash) const {
+  for (const ChamberFace& face : faces_) hash.add(face.corner, face.middle);
 }
 
 }  // namespace sinew::constraint

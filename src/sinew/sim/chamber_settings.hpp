@@ -16,7 +16,7 @@
 namespace sinew::sim {
 
 /// A chamber of a body under pressure.
-struct CavitySettings {
+struct ChamberSettings {
   std::string name;
   Place place;
   int body = 0;
