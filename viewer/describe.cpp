@@ -123,7 +123,7 @@ Json effector_json(const sim::Model& model, int index) {
   for (const Vector3& direction : effector.directions())
     directions.push_back(vector_json(direction));
   return {{"name", model.effectors()[static_cast<std::size_t>(index)].name},
-          {"kind", std::string_view(effector.unit()) == "m" ? "point" : "orientation"},
+          {"kind", constraint::effector_kind_name(effector.kind())},
           {"directions", directions}};
 }
 

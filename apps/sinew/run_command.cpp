@@ -94,7 +94,8 @@ double run_duration(const scene::Robot& robot) {
 // An error is of the largest of all tasks, in m where none of them is an orientation.
 std::string error_text(const Session& session, double error) {
   for (const inverse::Task& task : session.controller()->settings().tasks) {
-    if (std::string_view(session.robot().model->effector(task.effector).unit()) != "m") {
+    const auto kind = session.robot().model->effector(task.effector).kind();
+    if (kind == constraint::EffectorKind::orientation) {
       return fmt::format("{:.4g} m or rad", error);
     }
   }

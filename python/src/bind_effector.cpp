@@ -1,5 +1,3 @@
-#include <cstring>
-
 #include <fmt/format.h>
 
 #include "sinew/constraint/effector.hpp"
@@ -20,7 +18,9 @@ const constraint::Effector& model(const Effector& self) {
   return self.session->model().effector(self.index);
 }
 
-bool is_orientation(const Effector& self) { return std::strcmp(model(self).unit(), "rad") == 0; }
+bool is_orientation(const Effector& self) {
+  return model(self).kind() == constraint::EffectorKind::orientation;
+}
 
 Array value(const Effector& self) {
   const Session::Use use(*self.session);

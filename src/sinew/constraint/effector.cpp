@@ -37,6 +37,10 @@ Matrix3 rotation_matrix(const Vector3& vector) {
 
 }  // namespace
 
+const char* effector_kind_name(EffectorKind kind) {
+  return kind == EffectorKind::point ? "point" : "orientation";
+}
+
 Effector::Effector(std::string name, std::vector<Vector3> directions)
     : Constraint(std::move(name)), directions_(std::move(directions)) {
   if (directions_.empty()) {

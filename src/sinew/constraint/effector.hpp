@@ -11,6 +11,14 @@
 
 namespace sinew::constraint {
 
+/// What an effector measures.
+enum class EffectorKind {
+  point,        ///< where something is, m
+  orientation,  ///< how something has turned since rest, rad
+};
+/// "point", "orientation".
+const char* effector_kind_name(EffectorKind kind);
+
 /// A place whose rows say how it moves. `delta` of a row is the coordinate itself.
 class Effector : public Constraint {
  public:
@@ -21,8 +29,9 @@ class Effector : public Constraint {
   /// What delta must become for the effector to meet `target` (given as value() is): (rows,).
   virtual void target_delta(const Placement& placement, const Vector3& target,
                             Eigen::Ref<VectorX> delta) const = 0;
-  /// "m" or "rad".
-  virtual const char* unit() const = 0;
+  virtual EffectorKind kind() const = 0;
+  /// Of value(): "m" or "rad".
+  const char* unit() const { return kind() == EffectorKind::point ? "m" : "rad"; }
   void add_to(ValueHash& hash) const override { hash.add(directions_); }
 
  protected:
@@ -46,7 +55,7 @@ class PointEffector : public Effector {
   Vector3 value(const Placement& placement) const override;
   void target_delta(const Placement& placement, const Vector3& target,
                     Eigen::Ref<VectorX> delta) const override;
-  const char* unit() const override { return "m"; }
+  EffectorKind kind() const override { return EffectorKind::point; }
   const mechanics::MaterialPoint& point() const { return point_; }
 
  private:
@@ -60,7 +69,7 @@ class OrientationEffector : public Effector {
   Vector3 value(const Placement& placement) const override;
   void target_delta(const Placement& placement, const Vector3& target,
                     Eigen::Ref<VectorX> delta) const override;
-  const char* unit() const override { return "rad"; }
+  EffectorKind kind() const override { return EffectorKind::orientation; }
 
  protected:
   explicit OrientationEffector(std::string name) : Effector(std::move(name), {}) {}

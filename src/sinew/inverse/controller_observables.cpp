@@ -20,6 +20,10 @@ namespace {
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 constexpr int kNone = -2, kStart = -1;  // the status without a controller, and before any step
 
+bool is_orientation(const sim::Model& model, int effector) {
+  return model.effector(effector).kind() == constraint::EffectorKind::orientation;
+}
+
 sim::Observable of_effector(const std::string& name, const char* quantity, const char* unit) {
   return {fmt::format("{}.{}", name, quantity),
           unit,
@@ -36,7 +40,7 @@ void add_effector(sim::Observables& list, const AttachedController& controller, 
   const sim::Model& model = simulation.model();
   const std::string& name = model.effectors()[static_cast<std::size_t>(effector)].name;
   const char* unit = model.effector(effector).unit();
-  const char* turn = std::string_view(unit) == "rad" ? "r" : "";
+  const char* turn = is_orientation(model, effector) ? "r" : "";
   sim::Observable target = of_effector(name, "target", unit),
                   error = of_effector(name, "error", unit);
   target.shape = {3};
@@ -60,9 +64,8 @@ void add_effector(sim::Observables& list, const AttachedController& controller, 
 void add_largest_error(sim::Observables& list, const AttachedController& controller,
                        std::span<const int> effectors) {
   const sim::Model& model = list.simulation().model();
-  const bool turns = std::ranges::all_of(effectors, [&](int effector) {
-    return std::string_view(model.effector(effector).unit()) == "rad";
-  });
+  const bool turns =
+      std::ranges::all_of(effectors, [&](int effector) { return is_orientation(model, effector); });
   list.add({{"error",
              turns ? "rad" : "m",
              {},

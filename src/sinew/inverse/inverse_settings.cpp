@@ -1,7 +1,6 @@
 #include "sinew/inverse/inverse_settings.hpp"
 
 #include <cmath>
-#include <string_view>
 
 #include <fmt/format.h>
 
@@ -21,7 +20,7 @@ constexpr double kFarthest = 100.0;
 
 void check_target(const sim::Simulation& simulation, int effector, const Target& target) {
   const sim::Model& model = simulation.model();
-  if (model.effector(effector).unit() != std::string_view("m")) return;
+  if (model.effector(effector).kind() != constraint::EffectorKind::point) return;
   const double distance = target.farthest_from(simulation.effector_value(effector));
   const double size = model.size();
   if (!(distance > kFarthest * size)) return;

@@ -116,9 +116,10 @@ void add_effectors(Observables& list) {
   for (std::size_t i = 0; i < model.effectors().size(); ++i) {
     const auto index = static_cast<int>(i);
     const std::string& name = model.effectors()[i].name;
-    const char* unit = model.effector(index).unit();
-    const bool turns = std::string_view(unit) == "rad";
-    Observable one = of(ObservableKind::effector, name, turns ? "rotation" : "position", unit, {3});
+    const constraint::Effector& effector = model.effector(index);
+    const bool turns = effector.kind() == constraint::EffectorKind::orientation;
+    Observable one =
+        of(ObservableKind::effector, name, turns ? "rotation" : "position", effector.unit(), {3});
     one.quantity = "position";
     for (const char* axis : kAxes) {
       one.components.push_back(fmt::format("{}.{}{}", name, turns ? "r" : "", axis));
