@@ -88,9 +88,9 @@ Json quantities_json(const sim::Model& model, int index) {
   Json quantities = Json::array();
   if (actuator.controllable()) {
     const auto [low, high] = motion_ends(model, index);
-    quantities.push_back(quantity_json(actuator.motion_name(), actuator.motion, low, high));
+    quantities.push_back(quantity_json(actuator.words().motion, actuator.motion, low, high));
     const auto [least, most] = effort_ends(actuator);
-    quantities.push_back(quantity_json(actuator.effort_name(), actuator.effort, least, most));
+    quantities.push_back(quantity_json(actuator.words().effort, actuator.effort, least, most));
     if (actuator.command.kind == sim::CommandKind::effort) {
       std::swap(quantities[0], quantities[1]);
     }
@@ -111,7 +111,7 @@ Json actuator_json(const sim::Model& model, const scene::Robot& robot, int index
   // As many as the frames hold: guides between those written included.
   const auto points = static_cast<std::size_t>(wire ? model.cable(index)->via_count() + 2 : 0);
   return {{"name", actuator.name},
-          {"type", sim::actuator_type_name(actuator.type)},
+          {"type", actuator.words().type},
           {"body", description.body},
           {"quantities", quantities_json(model, index)},
           {"points", points}};

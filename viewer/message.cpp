@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sinew/core/error.hpp"
+#include "sinew/sim/actuator.hpp"
 
 #include "limits.hpp"
 
@@ -171,13 +172,11 @@ Pull read_pull(Fields& fields) {
 SetCommand read_command(Fields& fields) {
   SetCommand command;
   command.actuator = fields.text("actuator");
-  constexpr std::array<std::string_view, 9> kQuantities = {
-      "displacement", "tension", "force", "pressure", "volume_growth",
-      "gas",          "liquid",  "power", "phase"};
+  const auto& known = sim::command_quantities();
   command.quantity = fields.text("quantity");
-  if (std::ranges::find(kQuantities, command.quantity) == kQuantities.end()) {
+  if (std::ranges::find(known, command.quantity) == known.end()) {
     fail(ErrorKind::unknown_choice, "quantity",
-         fmt::format("'{}' is none of {}", command.quantity, fmt::join(kQuantities, ", ")));
+         fmt::format("'{}' is none of {}", command.quantity, fmt::join(known, ", ")));
   }
   command.value = fields.number("value", -1e9, 1e9);
   return command;

@@ -46,16 +46,16 @@ void add_limits(const sim::ActuatorModel& model, const sim::ActuatorState& state
   const bool most = state.effort > 0.0 && at(state.effort, model.effort.max, 1e-3);
   if (most) {
     list.push_back(trouble("warning", "effort-limit", model.name,
-                           fmt::format("{} is at its limit, {:.3g} {}", model.effort_name().name,
-                                       model.effort.max, model.effort_name().unit)));
+                           fmt::format("{} is at its limit, {:.3g} {}", model.words().effort.name,
+                                       model.effort.max, model.words().effort.unit)));
   }
   const double travel = state.motion * model.motion_scale;
   const bool far = at(travel, model.motion.max * model.motion_scale, 1e-4) ||
                    at(travel, model.motion.min * model.motion_scale, 1e-4);
   if (far && state.motion != 0.0) {
     list.push_back(trouble("warning", "motion-limit", model.name,
-                           fmt::format("{} is at its limit, {:.3g} {}", model.motion_name().name,
-                                       state.motion, model.motion_name().unit)));
+                           fmt::format("{} is at its limit, {:.3g} {}", model.words().motion.name,
+                                       state.motion, model.words().motion.unit)));
   }
   if (state.slack) list.push_back(trouble("info", "slack", model.name, "the cable is slack"));
 }
@@ -178,8 +178,7 @@ void RobotState::command(const SetCommand& command) {
   const std::optional<sim::CommandKind> kind = actuator.kind_of(command.quantity);
   if (!kind) {
     throw Error(ErrorKind::wrong_actuator_type, {.item = command.actuator},
-                fmt::format("a {} is not commanded by {}", sim::actuator_type_name(actuator.type),
-                            command.quantity),
+                fmt::format("a {} is not commanded by {}", actuator.words().type, command.quantity),
                 "use one of the actuator's quantities");
   }
   const sim::Limits limits = *kind == sim::CommandKind::motion   ? actuator.motion

@@ -53,22 +53,6 @@ const BodyDescription& choose(const SceneDescription& scene, const std::string& 
   return *found;
 }
 
-const char* type_name(ActuatorDescription::Type type) {
-  switch (type) {
-    case ActuatorDescription::Type::cable:
-      return "cable";
-    case ActuatorDescription::Type::force:
-      return "force";
-    case ActuatorDescription::Type::pressure:
-      return "pressure";
-    case ActuatorDescription::Type::spring:
-      return "spring";
-    case ActuatorDescription::Type::torque:
-      return "torque";
-  }
-  return "actuator";
-}
-
 std::vector<const ActuatorDescription*> torques_on(const SceneDescription& scene,
                                                    const std::string& body) {
   std::vector<const ActuatorDescription*> torques;
@@ -85,7 +69,7 @@ std::vector<std::string> left_out(const SceneDescription& scene, const std::stri
   std::vector<std::string> names;
   for (const ActuatorDescription& actuator : scene.actuators) {
     if (actuator.body != body || actuator.type == ActuatorDescription::Type::torque) continue;
-    names.push_back(fmt::format("{} '{}'", type_name(actuator.type), actuator.name));
+    names.push_back(fmt::format("{} '{}'", sim::actuator_words(actuator.type).type, actuator.name));
   }
   for (const auto& load : scene.loads) {
     if (load.body == body) names.push_back(fmt::format("load '{}'", load.name));

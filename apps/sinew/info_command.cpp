@@ -219,7 +219,7 @@ Facts scene_facts(const InfoOptions& options) {
   for (std::size_t a = 0; a < model.actuators().size(); ++a) {
     const sim::ActuatorModel& actuator = model.actuators()[a];
     const constraint::Cable* cable = model.cable(static_cast<int>(a));
-    ordered_json entry = {{"name", actuator.name}, {"type", actuator_type_name(actuator.type)}};
+    ordered_json entry = {{"name", actuator.name}, {"type", actuator.words().type}};
     const constraint::Chamber* chamber = model.chamber(static_cast<int>(a));
     std::string size;
     if (cable != nullptr) {
@@ -234,8 +234,7 @@ Facts scene_facts(const InfoOptions& options) {
                          chamber->faces().size());
     }
     facts.json["actuators"].push_back(entry);
-    facts.text +=
-        fmt::format("  {} {}{}\n", actuator_type_name(actuator.type), actuator.name, size);
+    facts.text += fmt::format("  {} {}{}\n", actuator.words().type, actuator.name, size);
   }
   for (const sim::MassModel& mass : model.masses()) {
     const std::string& body = model.bodies()[static_cast<std::size_t>(mass.body)]->name();

@@ -33,13 +33,12 @@ std::string place(const Actuator& self, const char* what) {
 
 [[noreturn]] void fail_type(const Actuator& self, const char* what) {
   const sim::ActuatorModel& own = model(self);
-  std::string has = fmt::format(".{} and .{}", own.effort_name().name, own.motion_name().name);
+  std::string has = fmt::format(".{} and .{}", own.words().effort.name, own.words().motion.name);
   if (own.drive != nullptr && *own.drive->input().name != '\0') {
     has += fmt::format(" and .{}", own.drive->input().name);
   }
   throw Error(ErrorKind::wrong_actuator_type, {.item = place(self, what)},
-              fmt::format("'{}' is a {}, which has no {}", own.name,
-                          sim::actuator_type_name(own.type), what),
+              fmt::format("'{}' is a {}, which has no {}", own.name, own.words().type, what),
               fmt::format("it has {}", has));
 }
 
@@ -77,12 +76,12 @@ void tell(const Actuator& self, const char* what, const py::object& value) {
 }
 
 double effort(const Actuator& self, const char* what) {
-  if (std::string_view(model(self).effort_name().name) != what) fail_type(self, what);
+  if (std::string_view(model(self).words().effort.name) != what) fail_type(self, what);
   return read(self, [](const sim::ActuatorState& state) { return state.effort; });
 }
 
 double motion(const Actuator& self, const char* what) {
-  if (std::string_view(model(self).motion_name().name) != what) fail_type(self, what);
+  if (std::string_view(model(self).words().motion.name) != what) fail_type(self, what);
   return read(self, [](const sim::ActuatorState& state) { return state.motion; });
 }
 
@@ -131,8 +130,8 @@ py::tuple command(const Actuator& self) {
 
 py::dict limits(const Actuator& self) {
   py::dict result;
-  result[model(self).effort_name().name] = py::cast(model(self).effort);
-  result[model(self).motion_name().name] = py::cast(model(self).motion);
+  result[model(self).words().effort.name] = py::cast(model(self).effort);
+  result[model(self).words().motion.name] = py::cast(model(self).motion);
   return result;
 }
 
@@ -273,11 +272,11 @@ void bind_actuator(py::module_& module) {
   type.def_property_readonly(
           "name", [](const Actuator& self) { return model(self).name; }, "str: as in the scene.")
       .def_property_readonly(
-          "type", [](const Actuator& self) { return sim::actuator_type_name(model(self).type); },
+          "type", [](const Actuator& self) { return model(self).words().type; },
           "str: 'cable', 'force', 'pressure' or 'spring'.")
       .def("__repr__", [](const Actuator& self) {
         return fmt::format("<sinew.Actuator '{}', a {}>", model(self).name,
-                           sim::actuator_type_name(model(self).type));
+                           model(self).words().type);
       });
   bind_commands(type);
   bind_measures(type);

@@ -3,6 +3,7 @@
 #include <random>
 #include <string>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
@@ -57,6 +58,15 @@ TEST(Message, ReadsEveryKind) {
   read<Ping>(R"({"type": "ping"})");
   EXPECT_EQ(parse_message(R"({"id": 9007199254740991, "type": "ping"})").id, 9007199254740991);
   EXPECT_FALSE(parse_message(R"({"type": "ping"})").id);
+}
+
+TEST(Message, CommandsOfEveryQuantity) {
+  for (const char* quantity : {"displacement", "tension", "force", "pressure", "volume_growth",
+                               "torque", "angle", "gas", "liquid", "power", "phase"}) {
+    const std::string text = fmt::format(
+        R"({{"type": "command", "actuator": "a", "quantity": "{}", "value": 1}})", quantity);
+    EXPECT_EQ(read<SetCommand>(text).quantity, quantity);
+  }
 }
 
 struct Wrong {

@@ -31,7 +31,7 @@ std::string describe_conflict(const sim::Model& model, const step::Response& res
     const auto i = static_cast<Eigen::Index>(k);
     if (nearest.violation[i] == 0.0) continue;
     const double free = response.free()[actuator(k).row];
-    const sim::QuantityName what = actuator(k).motion_name();
+    const sim::QuantityName what = actuator(k).words().motion;
     append(text,
            fmt::format("{} of '{}' leaves {:.4g}..{:.4g} {} by {:.3g} {}", what.name,
                        actuator(k).name, program.row_lower[i] + free, program.row_upper[i] + free,
@@ -47,7 +47,7 @@ std::string describe_conflict(const sim::Model& model, const step::Response& res
           blocks || (pull > 0.0 && x == program.lower[i]) || (pull < 0.0 && x == program.upper[i]);
     }
     if (!blocks) continue;
-    const sim::QuantityName what = actuator(k).effort_name();
+    const sim::QuantityName what = actuator(k).words().effort;
     append(text, fmt::format("{} of '{}' is at its limit, {:.4g} {}", what.name, actuator(k).name,
                              scale[i] * x, what.unit));
   }

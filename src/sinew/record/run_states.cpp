@@ -81,8 +81,7 @@ void RunStates::describe_owners() {
   if (model.actuators().empty()) file_.group("/actuators");
   if (model.effectors().empty()) file_.group("/effectors");
   for (const sim::ActuatorModel& actuator : model.actuators()) {
-    file_.attribute("/actuators/" + actuator.name, "type",
-                    std::string_view(actuator_type_name(actuator.type)));
+    file_.attribute("/actuators/" + actuator.name, "type", std::string_view(actuator.words().type));
   }
   for (const auto& probe : model.probes()) {
     file_.attribute("/probes/" + probe->name(), "kind", std::string_view(probe->kind()));

@@ -24,6 +24,7 @@
 #include "sinew/mesh/embedding.hpp"
 #include "sinew/pcc/arm.hpp"
 #include "sinew/scene/node.hpp"
+#include "sinew/sim/actuator.hpp"
 #include "sinew/sim/fluid_drive.hpp"
 #include "sinew/sim/load_settings.hpp"
 #include "sinew/sim/signal.hpp"
@@ -171,7 +172,7 @@ struct SurfaceDescription {
 };
 
 struct ActuatorDescription {
-  enum class Type { cable, force, pressure, spring, torque };
+  using Type = sim::ActuatorType;
   std::string name;
   Place place;
   Type type = Type::cable;

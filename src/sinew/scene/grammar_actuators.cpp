@@ -28,11 +28,13 @@ std::shared_ptr<const KeyTable> limit_table(const Measure& measure, const Measur
 }  // namespace
 
 std::vector<Key> drive_keys(const DriveWords& w) {
-  const std::string effort = w.effort, motion = w.motion, kind = w.kind;
-  const auto effort_limits = limit_table(w.effort_measure, w.effort_rate, w.effort, w.effort_range,
-                                         w.least, w.effort_example, w.effort_rate_example);
-  const auto motion_limits = limit_table(w.motion_measure, w.motion_rate, w.motion, any(), "",
-                                         w.motion_example, w.motion_rate_example);
+  const sim::ActuatorWords& words = sim::actuator_words(w.type);
+  const std::string effort = words.effort.name, motion = words.motion.name, kind = w.kind;
+  const auto effort_limits =
+      limit_table(w.effort_measure, w.effort_rate, words.effort.name, w.effort_range, w.least,
+                  w.effort_example, w.effort_rate_example);
+  const auto motion_limits = limit_table(w.motion_measure, w.motion_rate, words.motion.name, any(),
+                                         "", w.motion_example, w.motion_rate_example);
   const auto limits =
       make_table({.name = "limits of a " + kind,
                   .description = "Limits of the actuator; commands and controllers respect them.",
@@ -96,11 +98,9 @@ Key outside_key() {
 namespace {
 
 // Words of an actuator that pulls or pushes along a line.
-DriveWords line_words(const char* kind, const char* effort, Range range, const char* least,
+DriveWords line_words(sim::ActuatorType type, Range range, const char* least,
                       const char* motion_text, const char* undriven) {
-  DriveWords words;
-  words.kind = kind;
-  words.effort = effort;
+  DriveWords words{.kind = sim::actuator_words(type).type, .type = type};
   words.effort_measure = force();
   words.effort_rate = force_rate();
   words.effort_range = range;
@@ -108,7 +108,6 @@ DriveWords line_words(const char* kind, const char* effort, Range range, const c
   words.effort_example = "20 N";
   words.effort_rate_example = "100 N/s";
   words.effort_value = "2 N";
-  words.motion = "displacement";
   words.motion_measure = length();
   words.motion_rate = speed();
   words.motion_example = "70 mm";
@@ -167,7 +166,7 @@ std::shared_ptr<const KeyTable> cable_table() {
            .description =
                "Adds the cable's geometric stiffness (from tension) to every step. Without it, "
                "steps with highly loaded cables converge slowly or not at all."}}};
-  const DriveWords words = line_words("cable", "tension", non_negative(), "0 N",
+  const DriveWords words = line_words(sim::ActuatorType::cable, non_negative(), "0 N",
                                       "Length of cable pulled in at the pull point.",
                                       "Command. Without: slack until commanded.");
   for (Key& key : drive_keys(words)) cable.keys.push_back(std::move(key));
@@ -190,7 +189,7 @@ std::shared_ptr<const KeyTable> force_table() {
                           .required = true},
                          outside_key()}};
   const DriveWords words =
-      line_words("force", "force", any(), "", "Motion of the point along the direction.",
+      line_words(sim::ActuatorType::force, any(), "", "Motion of the point along the direction.",
                  "Command. Without: no force until commanded.");
   for (Key& key : drive_keys(words)) push.keys.push_back(std::move(key));
   return make_table(std::move(push));

@@ -1,5 +1,7 @@
 // The tables of chambers and springs.
 #include "sinew/scene/grammar_forms.hpp"
+#include "sinew/sim/fluid_drive.hpp"
+#include "sinew/sim/spring_drive.hpp"
 
 namespace sinew::scene::forms {
 
@@ -237,25 +239,23 @@ std::shared_ptr<const KeyTable> pressure_table() {
                 .description = "What fills it."},
                outside_key()},
       .alternatives = {{{"gas", "liquid"}, false}}};
-  DriveWords words;
-  words.kind = "chamber";
-  words.effort = "pressure";
+  DriveWords words{.kind = "chamber", .type = sim::ActuatorType::pressure};
   words.effort_measure = stress();
   words.effort_rate = pressure_rate();
   words.effort_range = any();
   words.effort_example = "50 kPa";
   words.effort_rate_example = "100 kPa/s";
   words.effort_value = "20 kPa";
-  words.motion = "volume_growth";
   words.motion_measure = volume();
   words.motion_rate = volume_rate();
   words.motion_example = "20 ml";
   words.motion_rate_example = "5 ml/s";
   words.motion_value = "2 ml";
   words.motion_text = "Volume gained by the chamber.";
-  words.inputs = {input("gas", volume(), "5 ml",
+  words.inputs = {input(sim::GasDrive::kInput.name, volume(), "5 ml",
                         "Gas added, as volume at ambient pressure. Chambers with `gas`."),
-                  input("liquid", volume(), "5 ml", "Liquid added. Chambers with `liquid`.")};
+                  input(sim::LiquidDrive::kInput.name, volume(), "5 ml",
+                        "Liquid added. Chambers with `liquid`.")};
   words.undriven = "Command. Without: no pressure until commanded.";
   for (Key& key : drive_keys(words)) chamber.keys.push_back(std::move(key));
   return make_table(std::move(chamber));
@@ -265,12 +265,13 @@ std::shared_ptr<const KeyTable> spring_table() {
   const auto command = make_table(
       {.name = "command of a spring",
        .description = "Only for shape-memory springs: heating power, or a prescribed phase.",
-       .keys = {input("power", power(), "2 W", "Electric power into the wire.", non_negative()),
-                {.name = "phase",
+       .keys = {input(sim::SmaDrive::kPower.name, power(), "2 W", "Electric power into the wire.",
+                      non_negative()),
+                {.name = sim::SmaDrive::kPhase.name,
                  .forms = {quantity(plain_number(), {.min = 0.0, .max = 1.0})},
                  .example = "1",
                  .description = "Austenite fraction of the wire, 0 to 1."}},
-       .alternatives = {{{"power", "phase"}, true}}});
+       .alternatives = {{{sim::SmaDrive::kPower.name, sim::SmaDrive::kPhase.name}, true}}});
   return make_table(
       {.name = "actuator: type spring",
        .description = "A spring or elastic band routed through points of a body without friction. "

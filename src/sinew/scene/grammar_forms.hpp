@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sinew/scene/grammar.hpp"
+#include "sinew/sim/actuator.hpp"
 
 namespace sinew::scene::forms {
 
@@ -77,14 +78,13 @@ std::shared_ptr<const KeyTable> make_table(KeyTable table);
 /// What the limits and commands of one kind of actuator are called and look like.
 struct DriveWords {
   const char* kind = "";
-  const char* effort = "";
+  sim::ActuatorType type = sim::ActuatorType::cable;  ///< whose words effort and motion have
   Measure effort_measure{}, effort_rate{};
   Range effort_range;
   const char* least = "";
   const char* effort_example = "";
   const char* effort_rate_example = "";
   const char* effort_value = "";
-  const char* motion = "";
   Measure motion_measure{}, motion_rate{};
   const char* motion_example = "";
   const char* motion_rate_example = "";

@@ -119,16 +119,13 @@ std::shared_ptr<const KeyTable> torque_table() {
                 .example = "across",
                 .default_text = "side",
                 .description = "Where a positive torque bends it."}}};
-  DriveWords words;
-  words.kind = "torque";
-  words.effort = "torque";
+  DriveWords words{.kind = "torque", .type = sim::ActuatorType::torque};
   words.effort_measure = torque();
   words.effort_rate = torque_rate();
   words.effort_range = any();
   words.effort_example = "0.18 N m";
   words.effort_rate_example = "1 Nm/s";
   words.effort_value = "0.05 N m";
-  words.motion = "angle";
   words.motion_measure = angle();
   words.motion_rate = frequency();
   words.motion_example = "90 deg";

@@ -20,29 +20,6 @@ void read_limit(const Fields& fields, std::string_view key, LimitDescription& li
               "give a max that is at least min");
 }
 
-// What an actuator's efforts, motions and inputs are called.
-struct Words {
-  const char* effort = "";
-  const char* motion = "displacement";
-  std::vector<const char*> inputs = {};
-};
-
-Words words_of(const ActuatorDescription& actuator) {
-  switch (actuator.type) {
-    case ActuatorDescription::Type::cable:
-      return {"tension"};
-    case ActuatorDescription::Type::force:
-      return {"force"};
-    case ActuatorDescription::Type::pressure:
-      return {"pressure", "volume_growth", {"gas", "liquid"}};
-    case ActuatorDescription::Type::spring:
-      return {"", "", {"power", "phase"}};
-    case ActuatorDescription::Type::torque:
-      return {"torque", "angle"};
-  }
-  return {};
-}
-
 // An input belongs to what fills a chamber.
 void check_input(const ActuatorDescription& actuator, std::string_view input, const Place& place) {
   const bool has = (input != "gas" || actuator.gas) && (input != "liquid" || actuator.liquid);
@@ -52,27 +29,22 @@ void check_input(const ActuatorDescription& actuator, std::string_view input, co
               fmt::format("give the chamber `{}: {{}}`, or command its pressure", input));
 }
 
+// The grammar lets a command have exactly one key: a quantity of the actuator.
 void read_command(const Fields& fields, ActuatorDescription& actuator, const ReadContext& context) {
   if (fields.find("command") == nullptr) return;
   const Fields command = fields.below("command");
-  const Words words = words_of(actuator);
+  const std::string& key = command.map().entries().front().key;
+  const sim::ActuatorWords& words = sim::actuator_words(actuator.type);
+  using Kind = CommandDescription::Kind;
   CommandDescription result;
-  std::string key = words.motion;
-  result.kind = CommandDescription::Kind::motion;
-  if (*words.effort != '\0' && command.find(words.effort) != nullptr) {
-    key = words.effort;
-    result.kind = CommandDescription::Kind::effort;
-  }
-  for (const char* input : words.inputs) {
-    if (command.find(input) == nullptr) continue;
-    key = input;
-    result.kind = CommandDescription::Kind::input;
-    check_input(actuator, input, command.place(input));
-    if (auto* wire = std::get_if<sim::SmaSettings>(&actuator.spring)) {
-      wire->by_phase = key == "phase";
-    }
-  }
+  result.kind = key == words.effort.name   ? Kind::effort
+                : key == words.motion.name ? Kind::motion
+                                           : Kind::input;
   result.place = command.place(key);
+  if (result.kind == Kind::input) check_input(actuator, key, result.place);
+  if (auto* wire = std::get_if<sim::SmaSettings>(&actuator.spring)) {
+    wire->by_phase = key == sim::SmaDrive::kPhase.name;
+  }
   result.signal = read_signal(command, key, context);
   actuator.command = std::move(result);
 }
@@ -251,10 +223,10 @@ ActuatorDescription read_actuator(const Node::Entry& entry, const ReadContext& c
       break;
   }
   if (actuator.type != Type::spring) {
-    const Words words = words_of(actuator);
+    const sim::ActuatorWords& words = sim::actuator_words(actuator.type);
     const Fields limits = fields.below("limits");
-    read_limit(limits, words.effort, actuator.effort);
-    read_limit(limits, words.motion, actuator.motion);
+    read_limit(limits, words.effort.name, actuator.effort);
+    read_limit(limits, words.motion.name, actuator.motion);
   }
   read_command(fields, actuator, context);
   return actuator;

@@ -1,53 +1,62 @@
 #include "sinew/sim/actuator.hpp"
 
+#include <algorithm>
+
+#include "sinew/sim/fluid_drive.hpp"
+#include "sinew/sim/spring_drive.hpp"
+
 namespace sinew::sim {
 
-const char* actuator_type_name(ActuatorType type) {
-  switch (type) {
-    case ActuatorType::cable:
-      return "cable";
-    case ActuatorType::force:
-      return "force";
-    case ActuatorType::pressure:
-      return "pressure";
-    case ActuatorType::spring:
-      return "spring";
-    case ActuatorType::torque:
-      return "torque";
+namespace {
+
+constexpr QuantityName kTension{"tension", "N"}, kDisplacement{"displacement", "m"};
+
+// By ActuatorType.
+constexpr std::array<ActuatorWords, kActuatorTypes> kWords = {{
+    {"cable", kTension, kDisplacement},
+    {"force", {"force", "N"}, kDisplacement},
+    {"pressure",
+     {"pressure", "Pa"},
+     {"volume_growth", "m^3"},
+     {GasDrive::kInput, LiquidDrive::kInput}},
+    {"spring", kTension, kDisplacement, {SmaDrive::kPower, SmaDrive::kPhase}},
+    {"torque", {"torque", "N m"}, {"angle", "rad"}},
+}};
+
+std::vector<std::string_view> every_quantity() {
+  std::vector<std::string_view> names;
+  const auto add = [&](const QuantityName& quantity) {
+    const std::string_view name = quantity.name;
+    if (!name.empty() && std::ranges::find(names, name) == names.end()) names.push_back(name);
+  };
+  for (const ActuatorWords& words : kWords) {
+    add(words.motion);
+    add(words.effort);
+    for (const QuantityName& input : words.inputs) add(input);
   }
-  return "unknown";
+  return names;
 }
 
-QuantityName ActuatorModel::effort_name() const {
-  switch (type) {
-    case ActuatorType::force:
-      return {"force", "N"};
-    case ActuatorType::pressure:
-      return {"pressure", "Pa"};
-    case ActuatorType::torque:
-      return {"torque", "N m"};
-    case ActuatorType::cable:
-    case ActuatorType::spring:
-      return {"tension", "N"};
-  }
-  return {};
+}  // namespace
+
+const ActuatorWords& actuator_words(ActuatorType type) {
+  return kWords[static_cast<std::size_t>(type)];
 }
 
-QuantityName ActuatorModel::motion_name() const {
-  if (type == ActuatorType::pressure) return {"volume_growth", "m^3"};
-  if (type == ActuatorType::torque) return {"angle", "rad"};
-  return {"displacement", "m"};
+const std::vector<std::string_view>& command_quantities() {
+  static const std::vector<std::string_view> names = every_quantity();
+  return names;
 }
 
 QuantityName ActuatorModel::quantity(CommandKind kind) const {
-  if (kind == CommandKind::effort) return effort_name();
-  if (kind == CommandKind::motion || drive == nullptr) return motion_name();
+  if (kind == CommandKind::effort) return words().effort;
+  if (kind == CommandKind::motion || drive == nullptr) return words().motion;
   return drive->input();
 }
 
 std::optional<CommandKind> ActuatorModel::kind_of(std::string_view quantity) const {
-  if (controllable() && quantity == effort_name().name) return CommandKind::effort;
-  if (controllable() && quantity == motion_name().name) return CommandKind::motion;
+  if (controllable() && quantity == words().effort.name) return CommandKind::effort;
+  if (controllable() && quantity == words().motion.name) return CommandKind::motion;
   const bool known = drive != nullptr && !quantity.empty() && quantity == drive->input().name;
   return known ? std::optional(CommandKind::input) : std::nullopt;
 }

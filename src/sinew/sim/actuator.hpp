@@ -3,11 +3,14 @@
 /// limits, or follows a drive.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "sinew/core/error.hpp"
 #include "sinew/sim/signal.hpp"
@@ -27,8 +30,18 @@ struct Limits {
 };
 
 enum class ActuatorType { cable, force, pressure, spring, torque };
-/// "cable", "force", "pressure", "spring", "torque".
-const char* actuator_type_name(ActuatorType type);
+inline constexpr std::size_t kActuatorTypes = 5;
+
+/// What actuators of a type and their quantities are called: in scenes, Python, recordings and the
+/// view.
+struct ActuatorWords {
+  const char* type = "";
+  QuantityName effort, motion;
+  std::array<QuantityName, 2> inputs = {};  ///< of its drives, see Drive::input(); may be nameless
+};
+const ActuatorWords& actuator_words(ActuatorType type);
+/// Every quantity by which some actuator is commanded, once.
+const std::vector<std::string_view>& command_quantities();
 
 /// What an actuator is told, over time.
 struct Command {
@@ -49,10 +62,7 @@ struct ActuatorModel {
   int first_state = 0;                      ///< of the drive's numbers among those of all drives
   double motion_scale = 1.0;  ///< m per motion: 1, or 1/m^2 of a chamber, one over its area
 
-  /// "tension", N; "force", N; "pressure", Pa; "torque", N m.
-  QuantityName effort_name() const;
-  /// "displacement", m; "volume_growth", m^3; "angle", rad.
-  QuantityName motion_name() const;
+  const ActuatorWords& words() const { return actuator_words(type); }
   /// Of what a command of this kind gives.
   QuantityName quantity(CommandKind kind) const;
   /// The command that gives this quantity; none when the actuator takes no such command.

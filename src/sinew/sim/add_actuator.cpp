@@ -32,8 +32,8 @@ void check_limits(const Limits& limits, const char* what, const ActuatorModel& a
 int add_actuator(ModelData& data, ActuatorModel actuator,
                  std::unique_ptr<constraint::Constraint> constraint) {
   check_new_name(data.actuators, &ActuatorModel::name, "actuators", actuator.name, actuator.place);
-  check_limits(actuator.effort, actuator.effort_name().name, actuator);
-  check_limits(actuator.motion, actuator.motion_name().name, actuator);
+  check_limits(actuator.effort, actuator.words().effort.name, actuator);
+  check_limits(actuator.motion, actuator.words().motion.name, actuator);
   if (actuator.drive) {
     actuator.first_state = data.drive_states;
     data.drive_states += actuator.drive->state_size();

@@ -38,6 +38,8 @@ struct GasSettings {
 /// rest at ambient pressure (m^3 at ambient pressure).
 class GasDrive : public Drive {
  public:
+  static constexpr QuantityName kInput{"gas", "m^3"};
+
   /// @param settings see there.
   /// @param rest_volume of the chamber, m^3.
   /// Throws Error(out-of-range); zero-volume when rest_volume + dead_volume is not positive.
@@ -45,7 +47,7 @@ class GasDrive : public Drive {
 
   int state_size() const override { return 1; }
   void rest(std::span<double> state) const override;
-  QuantityName input() const override { return {"gas", "m^3"}; }
+  QuantityName input() const override { return kInput; }
   bool acts_on(CommandKind kind) const override;
   bool controllable() const override { return true; }
   Response respond(const Step& step, double motion) const override;
@@ -75,12 +77,14 @@ struct LiquidSettings {
 /// Effort: pressure. State: v - V_0 (m^3). Input: liquid added (m^3).
 class LiquidDrive : public Drive {
  public:
+  static constexpr QuantityName kInput{"liquid", "m^3"};
+
   /// @param settings,rest_volume as for GasDrive.
   LiquidDrive(const LiquidSettings& settings, double rest_volume);
 
   int state_size() const override { return 1; }
   void rest(std::span<double> state) const override { state[0] = 0.0; }
-  QuantityName input() const override { return {"liquid", "m^3"}; }
+  QuantityName input() const override { return kInput; }
   bool acts_on(CommandKind kind) const override;
   bool controllable() const override { return true; }
   Response respond(const Step& step, double motion) const override;

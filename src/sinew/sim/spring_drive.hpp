@@ -75,15 +75,15 @@ struct SmaSettings {
 /// temperature (K) and x.
 class SmaDrive : public Drive {
  public:
+  static constexpr QuantityName kPower{"power", "W"}, kPhase{"phase", ""};
+
   /// @param settings see there. @param rest_length of the row's cable, m.
   /// Throws Error(out-of-range).
   SmaDrive(const SmaSettings& settings, double rest_length);
 
   int state_size() const override { return 2; }
   void rest(std::span<double> state) const override;
-  QuantityName input() const override {
-    return settings_.by_phase ? QuantityName{"phase", ""} : QuantityName{"power", "W"};
-  }
+  QuantityName input() const override { return settings_.by_phase ? kPhase : kPower; }
   bool acts_on(CommandKind) const override { return true; }
   bool controllable() const override { return false; }
   Response respond(const Step& step, double motion) const override;

@@ -96,8 +96,8 @@ void add_actuators(Observables& list) {
              : kind == CommandKind::motion ? "motion"
                                            : "input";
     };
-    add(actuator.effort_name(), "", role(CommandKind::effort));
-    add(actuator.motion_name(), "", role(CommandKind::motion));
+    add(actuator.words().effort, "", role(CommandKind::effort));
+    add(actuator.words().motion, "", role(CommandKind::motion));
     const std::vector<CommandKind> kinds = command_kinds(actuator);
     for (const CommandKind kind : kinds) add(actuator.quantity(kind), "_command", role(kind));
     list.add(std::move(parts), [&simulation, kinds, i](std::span<double> all) {
