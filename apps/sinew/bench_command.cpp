@@ -13,8 +13,8 @@
 #include <nlohmann/json.hpp>
 
 #include "sinew/core/build_info.hpp"
+#include "sinew/core/file.hpp"
 #include "sinew/mechanics/body_model.hpp"
-#include "sinew/mesh/write.hpp"
 #include "sinew/sim/actuator.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/simulation.hpp"
@@ -208,7 +208,7 @@ int bench(const BenchOptions& options) {
                 "let it run, or ask for fewer steps");
   }
   const nlohmann::ordered_json json = to_json(samples, session, warm_up);
-  if (options.json) mesh::write_file(*options.json, json.dump(2) + "\n");
+  if (options.json) write_file(*options.json, json.dump(2) + "\n");
   print_report(json);
   return 0;
 }

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sinew/core/error.hpp"
-#include "sinew/mesh/write.hpp"
+#include "sinew/core/file.hpp"
 #include "sinew/plan/brace_run.hpp"
 
 #include "arguments.hpp"
@@ -222,13 +222,13 @@ int find_and_carry_out(const BraceOptions& options) {
   std::vector<BraceTrial> trials;
   if (brace.found()) trials = carry_out(options, scene, task, brace);
   const nlohmann::ordered_json json = brace_json(scene, task, names, brace, trials);
-  if (options.json) mesh::write_file(*options.json, json.dump(2) + "\n");
+  if (options.json) write_file(*options.json, json.dump(2) + "\n");
   if (!brace.found()) give_up(brace, task, scene);
   if (trials.empty()) return 0;  // interrupted
   print_trials(trials);
   const BraceRun& run = trials.front().braced;
   if (!options.out.empty()) {
-    mesh::write_file(options.out, brace_table(scene, run));
+    write_file(options.out, brace_table(scene, run));
     fmt::print("wrote {}\n", options.out);
   }
   if (run.status != plan::BraceRunStatus::held && run.status != plan::BraceRunStatus::slipped) {

@@ -10,8 +10,8 @@
 #include <nlohmann/json.hpp>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/file.hpp"
 #include "sinew/identify/material_fit.hpp"
-#include "sinew/mesh/write.hpp"
 
 #include "commands.hpp"
 #include "python_tool.hpp"
@@ -170,7 +170,7 @@ int fit(const FitOptions& options) {
   const FitResult& own = best || chosen == fits.end() ? fits[supported] : *chosen;
   print_fit(own);
   if (!options.out.empty()) {
-    mesh::write_file(options.out, identify::material_yaml(own, tests, settings));
+    write_file(options.out, identify::material_yaml(own, tests, settings));
     fmt::print("wrote {}: in a scene, material: {{file: {}}}\n", options.out, options.out);
   }
   return options.plot.empty() ? 0 : draw_json("fit", json_of(tests, fits), options.plot);

@@ -15,8 +15,8 @@
 
 #include "sinew/core/csv.hpp"
 #include "sinew/core/error.hpp"
+#include "sinew/core/file.hpp"
 #include "sinew/identify/arm_fit.hpp"
-#include "sinew/mesh/write.hpp"
 #include "sinew/pcc/arm.hpp"
 #include "sinew/scene/scene.hpp"
 
@@ -265,10 +265,10 @@ int run_identify(const IdentifyOptions& options) {
   print_records("fitted to", found.records, true);
   print_records("not fitted to", validated, false);
   if (options.json) {
-    mesh::write_file(*options.json, to_json(scene, found, validated).dump(2) + "\n");
+    write_file(*options.json, to_json(scene, found, validated).dump(2) + "\n");
   }
   if (!options.out.empty()) {
-    mesh::write_file(options.out, scene_yaml(options, scene, found));
+    write_file(options.out, scene_yaml(options, scene, found));
     fmt::print("wrote {}\n", options.out);
   }
   if (options.plot.empty()) return 0;

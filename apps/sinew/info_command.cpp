@@ -13,6 +13,7 @@
 #include "sinew/constraint/contact.hpp"
 #include "sinew/constraint/probe.hpp"
 #include "sinew/constraint/tie.hpp"
+#include "sinew/core/file.hpp"
 #include "sinew/core/quantity.hpp"
 #include "sinew/fem/element_count.hpp"
 #include "sinew/fem/fem_model.hpp"
@@ -315,8 +316,7 @@ bool starts_as_state(const fs::path& path) {
 }
 
 Facts state_facts(const InfoOptions& options) {
-  const sim::StateHeader state =
-      sim::read_state_header(mesh::read_file(options.file), options.file);
+  const sim::StateHeader state = sim::read_state_header(read_file(options.file), options.file);
   Facts facts;
   facts.json = {{"kind", "state"},
                 {"format_version", state.version},

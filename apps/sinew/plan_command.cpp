@@ -14,7 +14,7 @@
 
 #include "sinew/core/csv.hpp"
 #include "sinew/core/error.hpp"
-#include "sinew/mesh/write.hpp"
+#include "sinew/core/file.hpp"
 #include "sinew/plan/replay.hpp"
 
 #include "arguments.hpp"
@@ -263,11 +263,11 @@ int make_plan(const PlanOptions& options) {
   if (attempts.empty()) return 0;  // interrupted
   print_attempts(attempts);
   const nlohmann::ordered_json json = to_json(scene, task, attempts);
-  if (options.json) mesh::write_file(*options.json, json.dump(2) + "\n");
+  if (options.json) write_file(*options.json, json.dump(2) + "\n");
   const Attempt* best = best_of(attempts);
   if (best == nullptr) give_up(attempts);
   if (!options.out.empty()) {
-    mesh::write_file(options.out, torque_table(scene, best->plan));
+    write_file(options.out, torque_table(scene, best->plan));
     say_how_to_play(options, scene, best->plan);
   }
   return options.plot.empty() ? 0 : draw_json("plan", json.dump(), options.plot);

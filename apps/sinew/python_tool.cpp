@@ -12,7 +12,7 @@
 #include <unistd.h>
 
 #include "sinew/core/error.hpp"
-#include "sinew/mesh/write.hpp"
+#include "sinew/core/file.hpp"
 
 #include "program_folder.hpp"
 
@@ -66,7 +66,7 @@ int draw_plot(const std::vector<std::string>& arguments) {
 
 int draw_json(const std::string& kind, const std::string& json, const std::string& out) {
   const std::string data = out + ".json";
-  mesh::write_file(data, json);
+  write_file(data, json);
   std::fflush(stdout);
   const int code = draw_plot({kind, data, out});
   std::error_code ignored;

@@ -20,7 +20,7 @@ int draw_plot(const std::vector<std::string>& arguments);
 
 /// Draws figures of a command; the exit code of draw_plot().
 /// @param kind what plot.py is to draw: "fit". @param json the figures. @param out PNG file.
-/// Throws what draw_plot() and mesh::write_file() do.
+/// Throws what draw_plot() and write_file() do.
 int draw_json(const std::string& kind, const std::string& json, const std::string& out);
 
 }  // namespace sinew::cli

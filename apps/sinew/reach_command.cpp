@@ -12,7 +12,7 @@
 
 #include "sinew/core/csv.hpp"
 #include "sinew/core/error.hpp"
-#include "sinew/mesh/write.hpp"
+#include "sinew/core/file.hpp"
 #include "sinew/plan/reach.hpp"
 
 #include "arguments.hpp"
@@ -173,9 +173,9 @@ int reach(const ReachOptions& options) {
   }
   print_reach(map, goals);
   const nlohmann::ordered_json json = to_json(scene, map, goals);
-  if (options.json) mesh::write_file(*options.json, json.dump(2) + "\n");
+  if (options.json) write_file(*options.json, json.dump(2) + "\n");
   if (!options.out.empty()) {
-    mesh::write_file(options.out, reach_table(scene, map));
+    write_file(options.out, reach_table(scene, map));
     fmt::print("wrote {}\n", options.out);
   }
   return options.plot.empty() ? 0 : draw_json("reach", json.dump(), options.plot);

@@ -10,6 +10,7 @@
 
 #include "sinew/core/build_info.hpp"
 #include "sinew/core/error.hpp"
+#include "sinew/core/file.hpp"
 #include "sinew/core/thread_pool.hpp"
 #include "sinew/core/types.hpp"
 #include "sinew/fem/element_fields.hpp"

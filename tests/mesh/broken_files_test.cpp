@@ -6,6 +6,7 @@
 
 #include <gmock/gmock.h>
 
+#include "sinew/core/file.hpp"
 #include "sinew/mesh/byte_reader.hpp"
 #include "sinew/mesh/check.hpp"
 #include "sinew/mesh/codec.hpp"

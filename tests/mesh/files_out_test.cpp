@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>
 
+#include "sinew/core/file.hpp"
 #include "sinew/mesh/check.hpp"
 #include "sinew/mesh/process.hpp"
 #include "sinew/mesh/quadratic.hpp"

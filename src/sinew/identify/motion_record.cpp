@@ -11,8 +11,8 @@
 
 #include "sinew/core/csv.hpp"
 #include "sinew/core/error.hpp"
+#include "sinew/core/file.hpp"
 #include "sinew/identify/column_unit.hpp"
-#include "sinew/mesh/read.hpp"
 
 namespace sinew::identify {
 
@@ -204,7 +204,7 @@ MotionRecord parse_motion_record(std::string_view bytes, const std::string& name
 }
 
 MotionRecord read_motion_record(const std::filesystem::path& path, int segments) {
-  return parse_motion_record(mesh::read_file(path), path.string(), segments);
+  return parse_motion_record(read_file(path), path.string(), segments);
 }
 
 std::string motion_csv(const MotionRecord& record, bool torque) {

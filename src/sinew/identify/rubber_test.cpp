@@ -9,8 +9,8 @@
 
 #include "sinew/core/csv.hpp"
 #include "sinew/core/error.hpp"
+#include "sinew/core/file.hpp"
 #include "sinew/identify/column_unit.hpp"
-#include "sinew/mesh/read.hpp"
 
 namespace sinew::identify {
 
@@ -152,7 +152,7 @@ RubberTest parse_rubber_test(std::string_view bytes, const std::string& name,
 
 RubberTest read_rubber_test(const std::filesystem::path& path,
                             std::optional<DeformationMode> mode) {
-  return parse_rubber_test(mesh::read_file(path), path.string(), mode);
+  return parse_rubber_test(read_file(path), path.string(), mode);
 }
 
 }  // namespace sinew::identify

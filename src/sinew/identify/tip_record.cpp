@@ -7,8 +7,8 @@
 
 #include "sinew/core/csv.hpp"
 #include "sinew/core/error.hpp"
+#include "sinew/core/file.hpp"
 #include "sinew/identify/column_unit.hpp"
-#include "sinew/mesh/read.hpp"
 
 namespace sinew::identify {
 
@@ -97,7 +97,7 @@ TipRecord parse_tip_record(std::string_view bytes, const std::string& name) {
 }
 
 TipRecord read_tip_record(const std::filesystem::path& path) {
-  return parse_tip_record(mesh::read_file(path), path.string());
+  return parse_tip_record(read_file(path), path.string());
 }
 
 }  // namespace sinew::identify

@@ -1,11 +1,11 @@
 #include "sinew/mesh/read.hpp"
 
 #include <cmath>
-#include <fstream>
 
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/file.hpp"
 #include "sinew/mesh/check.hpp"
 #include "sinew/mesh/gmsh.hpp"
 #include "sinew/mesh/vtk_legacy.hpp"
@@ -23,31 +23,6 @@ void scale(Mesh& mesh, double unit) {
   mesh.nodes *= unit;
   mesh.notes.unit = unit;
 }
-
-}  // namespace
-
-std::string read_file(const std::filesystem::path& path) {
-  std::error_code problem;
-  const auto status = std::filesystem::status(path, problem);
-  if (!std::filesystem::exists(status)) {
-    throw Error(
-        ErrorKind::file_not_found, {.file = path.string()}, "there is no such file",
-        fmt::format("paths are relative to {}", std::filesystem::current_path(problem).string()));
-  }
-  std::ifstream stream(path, std::ios::binary);
-  if (!std::filesystem::is_regular_file(status) || !stream) {
-    throw Error(ErrorKind::file_unreadable, {.file = path.string()},
-                std::filesystem::is_directory(status) ? "this is a folder, not a file"
-                                                      : "the file cannot be opened",
-                "check the path and its permissions");
-  }
-  std::string bytes(static_cast<std::size_t>(std::filesystem::file_size(path, problem)), '\0');
-  stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  bytes.resize(static_cast<std::size_t>(stream.gcount()));
-  return bytes;
-}
-
-namespace {
 
 bool is_surface_name(std::string_view name) {
   return name.ends_with(".stl") || name.ends_with(".obj") || name.ends_with(".ply");

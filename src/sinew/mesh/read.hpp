@@ -34,8 +34,4 @@ Mesh read_mesh_unchecked(const std::filesystem::path& path, const ReadOptions& o
 /// @param name its name, for messages.
 Mesh parse_mesh(std::string_view bytes, const std::string& name);
 
-/// The bytes of a file. Throws Error(file-not-found, file-unreadable).
-/// @param path the file.
-std::string read_file(const std::filesystem::path& path);
-
 }  // namespace sinew::mesh

@@ -17,6 +17,7 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/file.hpp"
 #include "sinew/mesh/duplicates.hpp"
 #include "sinew/mesh/ply_guard.hpp"
 

@@ -7,7 +7,6 @@
 #include <string_view>
 
 #include "sinew/mesh/mesh.hpp"
-#include "sinew/mesh/read.hpp"
 
 namespace sinew::mesh {
 

@@ -7,10 +7,10 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/file.hpp"
 #include "sinew/mesh/check.hpp"
 #include "sinew/mesh/gmsh.hpp"
 #include "sinew/mesh/process.hpp"
-#include "sinew/mesh/read.hpp"
 #include "sinew/mesh/write.hpp"
 
 namespace sinew::mesh {

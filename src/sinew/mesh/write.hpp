@@ -63,10 +63,4 @@ class PvdWriter {
   int count_ = 0;
 };
 
-/// Writes a file whole or not at all: first beside it under another name, then renamed. Throws
-/// Error(file-unwritable).
-/// @param path the file.
-/// @param bytes its content.
-void write_file(const std::filesystem::path& path, std::string_view bytes);
-
 }  // namespace sinew::mesh

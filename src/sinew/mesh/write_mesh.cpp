@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/file.hpp"
 #include "sinew/mesh/surface.hpp"
 #include "sinew/mesh/topology.hpp"
 #include "sinew/mesh/write.hpp"

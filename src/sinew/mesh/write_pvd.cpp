@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/file.hpp"
 #include "sinew/mesh/write.hpp"
 
 namespace sinew::mesh {

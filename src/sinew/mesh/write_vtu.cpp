@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/file.hpp"
 #include "sinew/mesh/codec.hpp"
 #include "sinew/mesh/raw_mesh.hpp"
 #include "sinew/mesh/set_masks.hpp"

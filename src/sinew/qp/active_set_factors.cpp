@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "sinew/qp/dense_kernels.hpp"
+#include "sinew/qp/padded_columns.hpp"
 
 namespace sinew::qp {
 

@@ -7,7 +7,7 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/core/types.hpp"
-#include "sinew/qp/dense_kernels.hpp"
+#include "sinew/qp/padded_columns.hpp"
 
 namespace sinew::qp {
 

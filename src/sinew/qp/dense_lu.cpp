@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "sinew/linalg/vector_lanes.hpp"
-#include "sinew/qp/dense_kernels.hpp"
+#include "sinew/qp/padded_columns.hpp"
 
 namespace sinew::qp {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "sinew/core/types.hpp"
-#include "sinew/qp/dense_kernels.hpp"
+#include "sinew/qp/padded_columns.hpp"
 
 namespace sinew::qp {
 

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "sinew/core/build_info.hpp"
+#include "sinew/core/file.hpp"
 #include "sinew/fem/element_fields.hpp"
 #include "sinew/fem/element_states.hpp"
 #include "sinew/fem/has_material.hpp"
@@ -164,7 +165,7 @@ struct RunRecorder::Files {
         settings(checked(std::move(what))),
         states(settings.folder / "run.h5", observables, settings),
         table(settings.folder / "run.csv", observables, TableKind::run) {
-    mesh::write_file(settings.folder / "scene.yaml", settings.scene);
+    write_file(settings.folder / "scene.yaml", settings.scene);
     remove_series(settings.folder);
     // An older run's would be taken for this one's.
     for (const char* name : {"probes.csv", "run.png"}) fs::remove(settings.folder / name);

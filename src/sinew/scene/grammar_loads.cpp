@@ -46,7 +46,7 @@ Key coefficient(const char* name, const char* value, const char* description) {
           .description = description};
 }
 
-std::shared_ptr<const KeyTable> force_table() {
+std::shared_ptr<const KeyTable> force_load_table() {
   return load_table(
       "force", "A force of fixed direction on a point of the body.",
       {vector_key("point", length(), "0 0 195 mm", "Where, in the mesh at rest."),
@@ -127,7 +127,7 @@ std::shared_ptr<const KeyTable> water_table() {
 Form load_form() {
   return variants(
       "type",
-      {{.word = "force", .description = "On a point.", .table = force_table()},
+      {{.word = "force", .description = "On a point.", .table = force_load_table()},
        {.word = "line", .description = "Along a line.", .table = line_table()},
        {.word = "traction", .description = "Over faces.", .table = traction_table()},
        {.word = "acceleration", .description = "On all mass.", .table = acceleration_table()},

@@ -9,9 +9,8 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/file.hpp"
 #include "sinew/core/state_hash.hpp"
-#include "sinew/mesh/read.hpp"
-#include "sinew/mesh/write.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/model_parts.hpp"
 #include "sinew/sim/simulation.hpp"
@@ -210,11 +209,11 @@ void parse_state(Simulation& simulation, std::string_view bytes, const std::stri
 }
 
 void save_state(const Simulation& simulation, const std::filesystem::path& path) {
-  mesh::write_file(path, format_state(simulation));
+  write_file(path, format_state(simulation));
 }
 
 void load_state(Simulation& simulation, const std::filesystem::path& path) {
-  parse_state(simulation, mesh::read_file(path), path.string());
+  parse_state(simulation, read_file(path), path.string());
 }
 
 }  // namespace sinew::sim
