@@ -35,7 +35,7 @@ std::unique_ptr<Source> open_example(const fs::path& path, const std::vector<Exa
   scene::Robot robot = scene::load(path);
   LiveSettings settings;
   settings.gallery = [examples] { return std::make_unique<GallerySource>(examples); };
-  if (!robot.controllers.empty()) settings.controller = robot.controllers.front().name;
+  if (const auto* first = robot.first_controller()) settings.controller = first->name;
   return std::make_unique<LiveSource>(std::move(robot), settings);
 }
 

@@ -10,13 +10,12 @@ namespace sinew::viewer {
 
 LiveSource::LiveSource(const scene::Robot& robot, const LiveSettings& settings)
     : LiveSource(robot, std::make_shared<sim::Simulation>(robot.model, robot.threads()),
-                 settings.controller.empty()
-                     ? std::nullopt
-                     : std::optional(scene_controller(robot, settings.controller)),
+                 settings.controller.empty() ? std::nullopt
+                                             : std::optional(robot.controller(settings.controller)),
                  settings) {}
 
 LiveSource::LiveSource(scene::Robot robot, std::shared_ptr<sim::Simulation> simulation,
-                       std::optional<Steering> first, const LiveSettings& settings)
+                       std::optional<scene::SceneController> first, const LiveSettings& settings)
     : SourceThread(settings.playing, settings.speed),
       state_(std::move(robot), std::move(simulation), std::move(first)),
       description_(state_.description()),

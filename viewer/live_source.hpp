@@ -35,7 +35,7 @@ class LiveSource : public SourceThread {
   /// @param robot,simulation what is shown. @param first,settings the one in place of the
   ///   other's controller.
   LiveSource(scene::Robot robot, std::shared_ptr<sim::Simulation> simulation,
-             std::optional<Steering> first, const LiveSettings& settings);
+             std::optional<scene::SceneController> first, const LiveSettings& settings);
   ~LiveSource() override { LiveSource::stop(); }
 
   std::string_view mode() const override { return "live"; }

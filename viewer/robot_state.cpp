@@ -90,20 +90,8 @@ void add_controller(const inverse::InverseController& controller, const std::str
 
 }  // namespace
 
-Steering scene_controller(const scene::Robot& robot, const std::string& name) {
-  std::vector<std::string> known;
-  for (const scene::SceneController& controller : robot.controllers) {
-    if (controller.name == name) return {name, controller.settings};
-    known.push_back(controller.name);
-  }
-  throw Error(ErrorKind::unknown_name, {.item = "controller"},
-              fmt::format("the scene has no controller '{}'", name),
-              known.empty() ? "the scene has none"
-                            : fmt::format("choose among {}", fmt::join(known, ", ")));
-}
-
 RobotState::RobotState(scene::Robot robot, std::shared_ptr<sim::Simulation> simulation,
-                       std::optional<Steering> first)
+                       std::optional<scene::SceneController> first)
     : robot_(std::move(robot)),
       simulation_(std::move(simulation)),
       observables_(list_observables()),
@@ -214,7 +202,7 @@ void RobotState::choose_controller(const std::optional<std::string>& name) {
   }
   if (!name) return detach();
   if (first_ && first_->name == *name) return attach(*name, first_->settings);
-  attach(*name, scene_controller(robot_, *name).settings);
+  attach(*name, robot_.controller(*name).settings);
 }
 
 void RobotState::set_target(const SetTarget& target) {

@@ -29,15 +29,6 @@ struct StoppedRun {
   std::string kind, message, remedy;
 };
 
-/// A controller that is not among the scene's, or its present targets are not the scene's.
-struct Steering {
-  std::string name;
-  inverse::InverseSettings settings;
-};
-
-/// A controller of the scene. Throws Error(unknown-name). @param robot,name where, and which.
-Steering scene_controller(const scene::Robot& robot, const std::string& name);
-
 /// A moment of a recorded run.
 struct RecordedState {
   /// What was recorded of an observable.
@@ -52,9 +43,10 @@ struct RecordedState {
 class RobotState {
  public:
   /// @param robot,simulation what is shown, and what steps; a hand's spring is taken off it at the
-  ///   end. @param first attached now and by reset().
+  ///   end. @param first attached now and by reset(); its targets need not be
+  ///   the scene's.
   RobotState(scene::Robot robot, std::shared_ptr<sim::Simulation> simulation,
-             std::optional<Steering> first);
+             std::optional<scene::SceneController> first);
   /// A simulation of its own, which nothing steers.
   explicit RobotState(const scene::Robot& robot)
       : RobotState(robot, std::make_shared<sim::Simulation>(robot.model, robot.threads()), {}) {}
@@ -120,7 +112,7 @@ class RobotState {
   std::unique_ptr<inverse::InverseController> own_;
   inverse::InverseController* controller_ = nullptr;  ///< own_, or one that others look after
   std::string controller_name_;
-  std::optional<Steering> first_;
+  std::optional<scene::SceneController> first_;
   bool observing_ = false;
   std::vector<std::unique_ptr<fem::NodalMean>> means_;  ///< one a body; none of an arm
   std::map<std::string, Vector3> targets_;

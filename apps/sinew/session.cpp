@@ -30,18 +30,9 @@ scene::Robot load(const SceneOptions& options) {
 
 // The controller to attach: none, the one that was named, or the first.
 const scene::SceneController* choose(const scene::Robot& robot, const std::string& name) {
-  if (name == "none" || (name.empty() && robot.controllers.empty())) return nullptr;
-  if (name.empty()) return &robot.controllers.front();
-  std::vector<std::string> known = {"none"};
-  for (const scene::SceneController& controller : robot.controllers) {
-    if (controller.name == name) return &controller;
-    known.push_back(controller.name);
-  }
-  const std::string nearest = nearest_word(name, known);
-  throw Error(ErrorKind::unknown_name, {.item = "--controller"},
-              fmt::format("the scene has no controller '{}'", name),
-              nearest.empty() ? fmt::format("choose among {}", fmt::join(known, ", "))
-                              : fmt::format("did you mean '{}'?", nearest));
+  if (name == "none") return nullptr;
+  if (name.empty()) return robot.first_controller();
+  return &robot.controller(name, {.item = "--controller"});
 }
 
 }  // namespace

@@ -139,7 +139,7 @@ void drive(const std::shared_ptr<Session>& session, const ViewOptions& options) 
   const viewer::LiveSettings settings = live_settings(options, 1.0);
   const viewer::ServerSettings where = server_settings(options);
   const std::string name = controller_name(*session);
-  std::optional<viewer::Steering> first;
+  std::optional<scene::SceneController> first;
   if (auto lent = session->lend_controller()) first = {name, std::move(*lent)};
   try {
     auto source = std::make_unique<viewer::LiveSource>(session->robot().robot,

@@ -33,8 +33,7 @@ Session::Use::~Use() { session_.busy_.store(false, std::memory_order_release); }
 
 Session::Session(std::shared_ptr<const LoadedRobot> robot, int threads)
     : robot_(std::move(robot)), simulation_(robot_->robot.model, threads) {
-  const auto& controllers = robot_->robot.controllers;
-  if (!controllers.empty()) attach(controllers.front().settings, controllers.front().name);
+  if (const auto* first = robot_->robot.first_controller()) attach(first->settings, first->name);
 }
 
 std::shared_ptr<Session> Session::clone() const {

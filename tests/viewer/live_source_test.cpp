@@ -222,7 +222,8 @@ TEST(LiveSource, StepsASimulationOfOthersAndGivesItsControllerBack) {
   std::pair<std::string, std::unique_ptr<inverse::InverseController>> left;
   {
     Watcher watcher;
-    LiveSource source(shown, simulation, Steering{"mine", shown.controllers.at(0).settings},
+    LiveSource source(shown, simulation,
+                      scene::SceneController{"mine", shown.controllers.at(0).settings},
                       {.controller = "", .playing = true, .speed = 0.0, .gallery = {}});
     source.start(watcher);
     std::promise<Outcome> done;

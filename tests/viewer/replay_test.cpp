@@ -145,8 +145,7 @@ TEST(Replay, ShowsContactsAsTheyWere) {
 
 TEST(Replay, ShowsWhatAControllerDid) {
   const scene::Robot same = robot();
-  RobotState run(same, std::make_shared<sim::Simulation>(same.model),
-                 scene_controller(same, "hold"));
+  RobotState run(same, std::make_shared<sim::Simulation>(same.model), same.controller("hold"));
   RobotState replay(same);
   for (int i = 0; i < 20; ++i) run.step();
   replay.show(moment(run));

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/scene/build_parts.hpp"
 #include "sinew/scene/scene.hpp"
@@ -53,6 +55,23 @@ linalg::FactorisationSettings factorisation_settings(const SolverDescription& so
 }
 
 }  // namespace
+
+const SceneController* Robot::first_controller() const {
+  return controllers.empty() ? nullptr : &controllers.front();
+}
+
+const SceneController& Robot::controller(const std::string& name, const Place& asked) const {
+  std::vector<std::string> known;
+  for (const SceneController& one : controllers) {
+    if (one.name == name) return one;
+    known.push_back(one.name);
+  }
+  const std::string nearest = nearest_word(name, known);
+  throw Error(ErrorKind::unknown_name, asked, fmt::format("the scene has no controller '{}'", name),
+              !nearest.empty() ? fmt::format("did you mean '{}'?", nearest)
+              : known.empty()  ? "the scene has none"
+                               : fmt::format("choose among {}", fmt::join(known, ", ")));
+}
 
 Robot build(SceneDescription description) {
   Robot robot;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "sinew/core/error.hpp"
 #include "sinew/core/notice.hpp"
 #include "sinew/inverse/inverse_settings.hpp"
 #include "sinew/mesh/mesh.hpp"
@@ -15,7 +16,7 @@
 
 namespace sinew::scene {
 
-/// A controller of the scene, ready to be attached to a simulation of its model.
+/// A controller, ready to be attached to a simulation of the scene's model.
 struct SceneController {
   std::string name;
   inverse::InverseSettings settings;
@@ -28,6 +29,13 @@ struct Robot {
   std::vector<SceneController> controllers;
   std::vector<Notice> notices;  ///< what a user should know of it, in the order of the scene
   int threads() const { return description.solver.threads; }
+
+  /// The one that steers unless another is chosen: the scene's first; null when it has none.
+  const SceneController* first_controller() const;
+  /// One of the scene's. Throws Error(unknown-name) at `asked`. @param name,asked which, and who
+  /// asks.
+  const SceneController& controller(const std::string& name,
+                                    const Place& asked = {.item = "controller"}) const;
 };
 
 /// Builds everything a description names. Throws Error with the place in the scene of what is
