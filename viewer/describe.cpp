@@ -232,7 +232,7 @@ Json contact_json(const sim::Observables& observables, int index) {
   const constraint::Contact& contact = model.contact(index);
   const int body = contact.points().front().body;
   return {{"name", contact.name()},
-          {"body", model.bodies()[static_cast<std::size_t>(body)]->name()},
+          {"body", model.body(body).name()},
           {"surface", surface_json(contact.surface())},
           {"friction", contact.friction()},
           {"points", contact.points().size()},
@@ -264,7 +264,7 @@ Json bounds_json(const sim::Model& model) {
   Vector3 low = Vector3::Constant(std::numeric_limits<double>::infinity());
   Vector3 high = -low;
   for (const auto& body : model.bodies()) {
-    const Points& nodes = body->mesh().nodes;
+    const Points& nodes = body.mesh().nodes;
     low = low.cwiseMin(nodes.colwise().minCoeff().transpose());
     high = high.cwiseMax(nodes.colwise().maxCoeff().transpose());
   }
@@ -374,9 +374,9 @@ Description describe(const scene::Robot& robot, const sim::Observables& observab
   Description result;
   Json bodies = Json::array();
   for (const auto& body : model.bodies()) {
-    result.surfaces.push_back(surface_of(body->mesh()));
-    result.surfaces.back().body = body->name();
-    bodies.push_back(body_json(*body, result.surfaces.back()));
+    result.surfaces.push_back(surface_of(body.mesh()));
+    result.surfaces.back().body = body.name();
+    bodies.push_back(body_json(body, result.surfaces.back()));
   }
   Json actuators = Json::array(), effectors = Json::array(), probes = Json::array();
   for (std::size_t i = 0; i < model.actuators().size(); ++i) {
@@ -388,7 +388,7 @@ Description describe(const scene::Robot& robot, const sim::Observables& observab
     effectors.push_back(effector_json(model, static_cast<int>(i)));
     result.effectors.push_back(model.effectors()[i].name);
   }
-  for (const auto& probe : model.probes()) probes.push_back(probe_json(observables, *probe));
+  for (const auto& probe : model.probes()) probes.push_back(probe_json(observables, probe));
   Json contacts = Json::array();
   for (std::size_t c = 0; c < model.contacts().size(); ++c) {
     contacts.push_back(contact_json(observables, static_cast<int>(c)));

@@ -98,7 +98,7 @@ RobotState::RobotState(scene::Robot robot, std::shared_ptr<sim::Simulation> simu
       description_(describe(robot_, observables_)),
       first_(std::move(first)) {
   for (const auto& body : robot_.model->bodies()) {
-    means_.push_back(fem::nodal_mean(*body));
+    means_.push_back(fem::nodal_mean(body));
   }
   if (first_) attach(first_->name, first_->settings);
 }
@@ -363,7 +363,7 @@ void RobotState::fill_points(Frame& frame) {
     for (Eigen::Index k = 0; k < points.rows(); ++k) put(frame.cables, points.row(k).transpose());
   }
   for (const auto& probe : model.probes()) {
-    const Points marks = probe->marks(simulation_->placement());
+    const Points marks = probe.marks(simulation_->placement());
     for (Eigen::Index k = 0; k < marks.rows(); ++k) put(frame.probes, marks.row(k).transpose());
   }
   // Rotations are no points.

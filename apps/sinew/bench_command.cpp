@@ -124,8 +124,8 @@ nlohmann::ordered_json to_json(const Samples& samples, Session& session, int war
       {"date", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))},
       {"tangent", model.step().tangent == mechanics::Tangent::exact ? "exact" : "rotated"}};
   for (const auto& body : model.bodies()) {
-    const mesh::Mesh& mesh = body->mesh();
-    json["bodies"].push_back({{"name", body->name()},
+    const mesh::Mesh& mesh = body.mesh();
+    json["bodies"].push_back({{"name", body.name()},
                               {"nodes", mesh.node_count()},
                               {"tetrahedra", mesh.tetrahedra.size()}});
   }

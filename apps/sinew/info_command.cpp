@@ -215,7 +215,7 @@ Facts scene_facts(const InfoOptions& options) {
       mechanics::integrator_name(model.step().integrator),
       format_quantity(model.step().time_step, dimension::kTime),
       duration > 0.0 ? rounded_quantity(duration, dimension::kTime) : "without a duration");
-  for (const auto& body : model.bodies()) add_body(facts, *body);
+  for (const auto& body : model.bodies()) add_body(facts, body);
   for (const Notice& notice : robot.notices) add_notice(facts, notice);
   for (std::size_t a = 0; a < model.actuators().size(); ++a) {
     const sim::ActuatorModel& actuator = model.actuators()[a];
@@ -238,7 +238,7 @@ Facts scene_facts(const InfoOptions& options) {
     facts.text += fmt::format("  {} {}{}\n", actuator.words().type, actuator.name, size);
   }
   for (const sim::MassModel& mass : model.masses()) {
-    const std::string& body = model.bodies()[static_cast<std::size_t>(mass.body)]->name();
+    const std::string& body = model.body(mass.body).name();
     facts.json["masses"].push_back({{"name", mass.name}, {"body", body}, {"mass_kg", mass.mass}});
     facts.text += fmt::format("  mass {}: {:.4g} g on {}\n", mass.name, 1e3 * mass.mass, body);
   }
@@ -247,8 +247,8 @@ Facts scene_facts(const InfoOptions& options) {
     facts.text += fmt::format("  effector {}\n", effector.name);
   }
   for (const auto& probe : model.probes()) {
-    facts.json["probes"].push_back(probe->name());
-    facts.text += fmt::format("  probe {}: {}\n", probe->name(), probe->kind());
+    facts.json["probes"].push_back(probe.name());
+    facts.text += fmt::format("  probe {}: {}\n", probe.name(), probe.kind());
   }
   for (std::size_t i = 0; i < model.contacts().size(); ++i) {
     const std::string& name = model.contacts()[i].name;
@@ -258,9 +258,7 @@ Facts scene_facts(const InfoOptions& options) {
   }
   for (std::size_t i = 0; i < model.welds().size(); ++i) {
     const sim::WeldModel& weld = model.welds()[i];
-    const auto name = [&](int body) {
-      return model.bodies()[static_cast<std::size_t>(body)]->name();
-    };
+    const auto name = [&](int body) { return model.body(body).name(); };
     const auto points = model.weld(static_cast<int>(i)).pairs().size();
     facts.json["joints"].push_back({{"name", weld.name},
                                     {"type", "weld"},

@@ -107,9 +107,9 @@ std::vector<std::vector<std::string>> summary(const Tally& tally, Session& sessi
       static_cast<double>(tally.steps) * session.robot().model->step().time_step;
   std::vector<std::vector<std::string>> rows;
   for (const auto& model : session.robot().model->bodies()) {
-    const auto* material = mechanics::as<const fem::HasElements>(*model);
+    const auto* material = mechanics::as<const fem::HasElements>(model);
     if (material == nullptr) continue;
-    rows.push_back({"body " + model->name(), fem::describe_elements(material->elements())});
+    rows.push_back({"body " + model.name(), fem::describe_elements(material->elements())});
   }
   rows.push_back({"steps", fmt::format("{}", tally.steps)});
   rows.push_back({"simulated time", fmt::format("{:.3f} s", simulated)});

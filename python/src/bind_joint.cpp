@@ -18,7 +18,7 @@ const sim::WeldModel& model(const Joint& self) {
 }
 
 const std::string& body_name(const Joint& self, int body) {
-  return self.session->model().bodies()[static_cast<std::size_t>(body)]->name();
+  return self.session->model().body(body).name();
 }
 
 sim::WeldLoad load(const Joint& self) {

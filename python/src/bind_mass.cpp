@@ -31,11 +31,7 @@ void bind_mass(py::module_& module) {
           "name", [](const PointMass& self) { return model(self).name; }, "str: as in the scene.")
       .def_property_readonly(
           "body",
-          [](const PointMass& self) {
-            return self.session->model()
-                .bodies()[static_cast<std::size_t>(model(self).body)]
-                ->name();
-          },
+          [](const PointMass& self) { return self.session->model().body(model(self).body).name(); },
           "str: name of the body that carries it.")
       .def_property_readonly(
           "mass", [](const PointMass& self) { return model(self).mass; }, "float: kg.")

@@ -14,7 +14,7 @@ namespace sinew::python {
 namespace {
 
 const constraint::Probe& model(const Probe& self) {
-  return *self.session->model().probes()[static_cast<std::size_t>(self.index)];
+  return self.session->model().probe(self.index);
 }
 
 bool is_line(const Probe& self) {

@@ -81,7 +81,7 @@ py::dict all_probes(const std::shared_ptr<Session>& self) {
   py::dict result;
   int index = 0;
   for (const auto& probe : self->model().probes()) {
-    result[probe->name().c_str()] = Probe{{self, index++}};
+    result[probe.name().c_str()] = Probe{{self, index++}};
   }
   return result;
 }
@@ -117,7 +117,7 @@ py::dict all_bodies(const std::shared_ptr<Session>& self) {
   py::dict result;
   int index = 0;
   for (const auto& body : self->model().bodies()) {
-    result[body->name().c_str()] = Body{{self, index++}};
+    result[body.name().c_str()] = Body{{self, index++}};
   }
   return result;
 }

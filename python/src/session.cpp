@@ -48,12 +48,11 @@ std::shared_ptr<Session> Session::clone() const {
 }
 
 void Session::check_loads() const {
-  for (std::size_t i = 0; i < model().bodies().size(); ++i) {
-    const auto* body =
-        mechanics::as<const mechanics::TakesForces>(simulation_.body(static_cast<int>(i)));
+  for (int i = 0; i < simulation_.bodies(); ++i) {
+    const auto* body = mechanics::as<const mechanics::TakesForces>(simulation_.body(i));
     if (body == nullptr || body->external_forces().allFinite()) continue;
     throw Error(ErrorKind::not_finite,
-                {.item = fmt::format("body('{}').external_forces", model().bodies()[i]->name())},
+                {.item = fmt::format("body('{}').external_forces", model().body(i).name())},
                 "a force is not a finite number", "write finite forces in N");
   }
 }
@@ -108,8 +107,8 @@ sim::StaticReport Session::solve_static(const sim::StaticSettings& settings) {
 
 void Session::reset() {
   const Use use(*this);
-  for (std::size_t i = 0; i < model().bodies().size(); ++i) {
-    auto* body = mechanics::as<mechanics::TakesForces>(simulation_.body(static_cast<int>(i)));
+  for (int i = 0; i < simulation_.bodies(); ++i) {
+    auto* body = mechanics::as<mechanics::TakesForces>(simulation_.body(i));
     if (body != nullptr) body->external_forces().setZero();
   }
   simulation_.reset();

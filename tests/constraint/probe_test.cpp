@@ -156,7 +156,7 @@ TEST_F(Probes, ALineHasItsPointsAndTheirLength) {
   EXPECT_NEAR(bent[0], 10.0 * 2.0 * radius * std::sin(angle / 20.0), 1e-12) << "chords of the arc";
   EXPECT_NEAR(bent[1 + 3 * 5], radius * std::sin(angle / 2.0), 1e-12);
   EXPECT_NEAR(bent[3 + 3 * 10], radius * (1.0 - std::cos(angle)), 1e-12);
-  const auto& names = simulation_->model().probes()[0]->components();
+  const auto& names = simulation_->model().probe(0).components();
   EXPECT_EQ(names[0].name, "length");
   EXPECT_EQ(names[3 + 3 * 10].name, "10.z");
 }

@@ -33,9 +33,9 @@ class OlderRun {
     file_.text("/scene", scene);
     time_ = file_.series("/time", {});
     for (const auto& body : model.bodies()) {
-      const mesh::Mesh& mesh = body->mesh();
+      const mesh::Mesh& mesh = body.mesh();
       const auto nodes = static_cast<std::uint64_t>(mesh.node_count());
-      const std::string folder = "/mesh/" + body->name();
+      const std::string folder = "/mesh/" + body.name();
       file_.dataset(folder + "/nodes", {nodes, 3},
                     {mesh.nodes.data(), static_cast<std::size_t>(mesh.nodes.size())});
       const std::span<const std::int32_t> corners(mesh.tetrahedra[0].data(),

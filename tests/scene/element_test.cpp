@@ -28,7 +28,7 @@ Robot robot(const std::string& mesh, const std::string& material, const std::str
 }
 
 const fem::FemModel& elements(const Robot& robot) {
-  return mechanics::as<const fem::HasElements>(*robot.model->bodies().front())->elements();
+  return mechanics::as<const fem::HasElements>(robot.model->body(0))->elements();
 }
 
 std::string element(const Robot& robot) {

@@ -59,7 +59,7 @@ TEST(Masses, AreReadAndHung) {
   ASSERT_EQ(masses.size(), 2u);
   EXPECT_EQ(masses[0].name, "hung");
   EXPECT_DOUBLE_EQ(masses[0].mass, 0.052);
-  const mechanics::BodyModel& body = *robot.model->bodies()[0];
+  const mechanics::BodyModel& body = robot.model->body(0);
   EXPECT_LT((body.rest_position(masses[0].point) - Vector3(0.038, 0.010, 0.012)).norm(), 1e-15);
   EXPECT_LT((body.rest_position(masses[1].point) - Vector3(0.050, 0.010, 0.010)).norm(), 1e-15);
   const fem::FemModel& elements = mechanics::as<const fem::HasElements>(body)->elements();

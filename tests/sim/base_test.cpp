@@ -285,7 +285,7 @@ TEST_P(BaseStates, KeepWhatAScriptMoved) {
   first.reset();
   EXPECT_EQ(first.state().hash(), Simulation(model).state().hash());
   first.step();
-  const Points moved = first.body(0).positions() - model->bodies()[0]->mesh().nodes;
+  const Points moved = first.body(0).positions() - model->body(0).mesh().nodes;
   EXPECT_LT(moved.cwiseAbs().maxCoeff(), 1e-12);
 }
 

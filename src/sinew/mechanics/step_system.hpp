@@ -116,9 +116,10 @@ class StepSystem {
   virtual void propose_motion(std::span<const double> motion) = 0;
   /// The same, `time_step` times the velocity of the step's start.
   virtual void propose_drift(double time_step) = 0;
-  /// (3,) m: how far the proposed motion would move an attached point; of bodies that leave rows
-  /// out.
-  virtual Vector3 proposed_motion(int) const { return Vector3::Zero(); }
+  /// (3,) m: how far the proposed motion would move an attached point. Asked of bodies whose model
+  /// leaves rows out (BodyModel::leaves_rows_out()), which have to say; others throw
+  /// Error(internal).
+  virtual Vector3 proposed_motion(int point) const;
   /// State of the last linearisation moved by scale dq; may be called again with another scale.
   /// Leaves the report's volume to smallest_volume().
   virtual MotionReport apply_motion(double scale) = 0;

@@ -81,11 +81,11 @@ class ParaviewSeries {
  public:
   ParaviewSeries(const fs::path& folder, const sim::Simulation& simulation)
       : simulation_(simulation) {
-    const auto& bodies = simulation.model().bodies();
+    const auto bodies = simulation.model().bodies();
     for (const auto& body : bodies) {
-      means_.push_back(fem::nodal_mean(*body));
+      means_.push_back(fem::nodal_mean(body));
       lists_.emplace_back(folder /
-                          (bodies.size() == 1 ? "run.pvd" : "run_" + body->name() + ".pvd"));
+                          (bodies.size() == 1 ? "run.pvd" : "run_" + body.name() + ".pvd"));
     }
   }
 

@@ -46,9 +46,9 @@ void RunStates::describe(const RecordSettings& settings) {
 
 void RunStates::write_meshes() {
   for (const auto& body : observables_.simulation().model().bodies()) {
-    const mesh::Mesh& mesh = body->mesh();
+    const mesh::Mesh& mesh = body.mesh();
     const auto nodes = static_cast<std::uint64_t>(mesh.node_count());
-    const std::string folder = "/mesh/" + body->name();
+    const std::string folder = "/mesh/" + body.name();
     file_.dataset(folder + "/nodes", {nodes, 3},
                   {mesh.nodes.data(), static_cast<std::size_t>(mesh.nodes.size())});
     file_.attribute(folder + "/nodes", "unit", std::string_view("m"));
@@ -84,7 +84,7 @@ void RunStates::describe_owners() {
     file_.attribute("/actuators/" + actuator.name, "type", std::string_view(actuator.words().type));
   }
   for (const auto& probe : model.probes()) {
-    file_.attribute("/probes/" + probe->name(), "kind", std::string_view(probe->kind()));
+    file_.attribute("/probes/" + probe.name(), "kind", std::string_view(probe.kind()));
   }
 }
 

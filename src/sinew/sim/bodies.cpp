@@ -31,7 +31,7 @@ Bodies::Bodies(const Model& model, ThreadPool& pool) {
   const bool curved = model.stiffening_widens();
   const int histories = mechanics::history_count(model.step().integrator);
   for (const auto& body : model.bodies()) {
-    bodies_.push_back(body->create(pool, curved, histories));
+    bodies_.push_back(body.create(pool, curved, histories));
     systems_.push_back(&bodies_.back()->system());
   }
   ends_.resize(bodies_.size());

@@ -52,7 +52,7 @@ void ContactRows::choose_present(std::span<const double> effort, double time_ste
   const double near = std::max(kNear * model_.size(), reach);
   for_each_point([&](const constraint::Contact& contact, std::size_t k) {
     const mechanics::MaterialPoint& point = contact.points()[k];
-    const mechanics::BodyModel& body = *model_.bodies()[static_cast<std::size_t>(point.body)];
+    const mechanics::BodyModel& body = model_.body(point.body);
     const int row = contact.row(k);
     const double arrives = planes_.start()[row] + time_step * rows_.direction[contact.entry(k)].dot(
                                                                   placement_.velocity(point));

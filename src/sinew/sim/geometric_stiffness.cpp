@@ -20,7 +20,7 @@ GeometricStiffness::GeometricStiffness(const Model& model, const constraint::Pla
       curvatures_(model.curvatures()),
       effort_(static_cast<std::size_t>(model.rows().rows())) {
   const auto add_rows = [&](int constraint, int count) {
-    const int row = model.constraints()[static_cast<std::size_t>(constraint)]->first_row();
+    const int row = model.constraint(constraint).first_row();
     for (int k = 0; k < count; ++k) problem_.stiffness.push_back({row + k});
   };
   for (const AnchorModel& anchor : model.anchors()) add_rows(anchor.constraint, 3);
@@ -48,7 +48,7 @@ void GeometricStiffness::add() {
     problem_.stiffness[k].stiffness = 0.0;
   }
   for (const int index : curving_) {
-    add_curvature(*model_.constraints()[static_cast<std::size_t>(index)]);
+    add_curvature(model_.constraint(index));
   }
   curving_ = {};
   add_anchors();

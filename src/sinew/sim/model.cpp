@@ -77,6 +77,18 @@ int Model::probe_index(std::string_view name) const {
   return find_by_name(data_.probes, name, "probe", [](const auto& p) { return p->name(); });
 }
 
+const mechanics::BodyModel& Model::body(int index) const {
+  return *data_.bodies.at(static_cast<std::size_t>(index));
+}
+
+const constraint::Constraint& Model::constraint(int index) const {
+  return *data_.constraints.at(static_cast<std::size_t>(index));
+}
+
+const constraint::Probe& Model::probe(int index) const {
+  return *data_.probes.at(static_cast<std::size_t>(index));
+}
+
 const constraint::Effector& Model::effector(int index) const {
   const int number = data_.effectors.at(static_cast<std::size_t>(index)).constraint;
   return dynamic_cast<const constraint::Effector&>(data_.constraint(number));

@@ -3,13 +3,13 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <string_view>
 #include <vector>
 
 #include "sinew/core/named_hash.hpp"
 #include "sinew/mechanics/rows.hpp"
 #include "sinew/sim/model_data.hpp"
+#include "sinew/sim/part_list.hpp"
 
 namespace sinew::constraint {
 class Cable;
@@ -28,10 +28,8 @@ class Model {
   Model(const Model&) = delete;
   Model& operator=(const Model&) = delete;
 
-  const std::vector<std::unique_ptr<mechanics::BodyModel>>& bodies() const { return data_.bodies; }
-  const std::vector<std::unique_ptr<constraint::Constraint>>& constraints() const {
-    return data_.constraints;
-  }
+  PartList<mechanics::BodyModel> bodies() const { return PartList(data_.bodies); }
+  PartList<constraint::Constraint> constraints() const { return PartList(data_.constraints); }
   const std::vector<ActuatorModel>& actuators() const { return data_.actuators; }
   /// Along each cable from its pull point on.
   const std::vector<GuideModel>& guides() const { return data_.guides; }
@@ -40,7 +38,7 @@ class Model {
   const std::vector<WeldModel>& welds() const { return data_.welds; }
   const std::vector<AnchorModel>& anchors() const { return data_.anchors; }
   const std::vector<CouplingModel>& couplings() const { return data_.couplings; }
-  const std::vector<std::unique_ptr<constraint::Probe>>& probes() const { return data_.probes; }
+  PartList<constraint::Probe> probes() const { return PartList(data_.probes); }
   const mechanics::RowPattern& rows() const { return data_.rows; }
   const std::vector<mechanics::RowCurvature>& curvatures() const { return data_.curvatures; }
   const StepSettings& step() const { return data_.step; }
@@ -64,6 +62,10 @@ class Model {
   int mass_index(std::string_view name) const;
   int probe_index(std::string_view name) const;
 
+  /// By these positions.
+  const mechanics::BodyModel& body(int index) const;
+  const constraint::Constraint& constraint(int index) const;
+  const constraint::Probe& probe(int index) const;
   const constraint::Effector& effector(int index) const;
   const constraint::Contact& contact(int index) const;
   const constraint::Tie& weld(int index) const;

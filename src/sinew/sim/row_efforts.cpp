@@ -15,7 +15,7 @@ RowEfforts split_efforts(const Simulation& simulation) {
   RowEfforts result{none, none};
   const Model& model = simulation.model();
   const auto take = [&](int index, std::vector<double>& efforts) {
-    const auto& constraint = *model.constraints()[static_cast<std::size_t>(index)];
+    const constraint::Constraint& constraint = model.constraint(index);
     const int row = constraint.first_row();
     std::copy_n(all.begin() + row, constraint.row_count(), efforts.begin() + row);
   };

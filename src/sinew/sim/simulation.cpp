@@ -73,7 +73,7 @@ Vector3 Simulation::effector_value(int index) const {
 }
 
 std::vector<double> Simulation::probe_values(int index) const {
-  const constraint::Probe& probe = *model().probes().at(static_cast<std::size_t>(index));
+  const constraint::Probe& probe = model().probe(index);
   std::vector<double> values(probe.components().size());
   probe.measure(placement(), values);
   return values;

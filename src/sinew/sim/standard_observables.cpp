@@ -132,8 +132,7 @@ void add_effectors(Observables& list) {
 
 void add_probes(Observables& list) {
   const Simulation& simulation = list.simulation();
-  for (const auto& owned : simulation.model().probes()) {
-    const constraint::Probe& probe = *owned;
+  for (const constraint::Probe& probe : simulation.model().probes()) {
     const bool line = dynamic_cast<const constraint::LineProbe*>(&probe) != nullptr;
     const auto& numbers = probe.components();
     const std::size_t first = line ? 1 : numbers.size();

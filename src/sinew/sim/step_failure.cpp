@@ -17,7 +17,7 @@ constexpr std::size_t kManyPoints = static_cast<std::size_t>(qp::ConeSettings{}.
 void fail(Run& run, ErrorKind kind, const std::string& message, const std::string& remedy) {
   run.restore(run.before);
   std::string names;
-  for (const auto& body : run.model->bodies()) names += (names.empty() ? "" : ", ") + body->name();
+  for (const auto& body : run.model->bodies()) names += (names.empty() ? "" : ", ") + body.name();
   throw Error(kind,
               {.item = fmt::format("step {} (t = {:g} s), body {}", run.steps + 1, run.now, names)},
               message, remedy);

@@ -42,7 +42,7 @@ void Surroundings::move_bases(double time) {
 void Surroundings::move_base(int body, const Vector3& translation, const Vector3& rotation,
                              const Vector3& centre) {
   auto& base = fem::of_elements<mechanics::HasBase>(body_of(bodies_, body));
-  const std::string& name = model_.bodies()[static_cast<std::size_t>(body)]->name();
+  const std::string& name = model_.body(body).name();
   const Place place{.item = fmt::format("base of body '{}'", name)};
   if (std::ranges::any_of(model_.base_motions(),
                           [&](const BaseMotion& motion) { return motion.body == body; })) {

@@ -81,7 +81,7 @@ void World::linearise(const mechanics::LinearisationRequest& request) {
 }
 
 const VectorX& World::measure_delta() {
-  for (const auto& constraint : model_->constraints()) constraint->linearise(placement_, rows_);
+  for (const auto& constraint : model_->constraints()) constraint.linearise(placement_, rows_);
   return rows_.delta;
 }
 

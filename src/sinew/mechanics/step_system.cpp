@@ -1,0 +1,12 @@
+#include "sinew/mechanics/step_system.hpp"
+
+#include "sinew/core/error.hpp"
+
+namespace sinew::mechanics {
+
+Vector3 StepSystem::proposed_motion(int) const {
+  throw Error(ErrorKind::internal, {},
+              "this body takes all its rows, and was asked of one left out", "report this");
+}
+
+}  // namespace sinew::mechanics
