@@ -32,10 +32,10 @@ struct RowPattern {
   }
 };
 
-/// Second derivative of a constraint's loads, which couples points `first` and `second` of one body
-/// (a loaded cable's geometric stiffness): `curvature` is the sum over the constraint's rows of
-/// effort d2(delta)/d(x_first)d(x_second), N/m; the pair (second, first) is its transpose and is
-/// not listed.
+/// Second derivative of a constraint's loads (a loaded cable's geometric stiffness), which couples
+/// two points, of one body or, along a cable between bodies, of two: `curvature` is the sum over
+/// the constraint's rows of effort d2(delta)/d(x_first)d(x_second), N/m; the pair (second, first)
+/// is its transpose and is not listed.
 struct RowCurvature {
   MaterialPoint first, second;
   Matrix3 curvature = Matrix3::Zero();
