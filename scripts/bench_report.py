@@ -11,7 +11,7 @@ import json
 import pathlib
 import sys
 
-STAGES = ("assembly", "compliance", "factorisation", "law", "correction")
+STAGES = ("assembly", "rows", "factorisation", "law", "correction")
 
 
 def row(figures, eigen):
@@ -32,7 +32,7 @@ def row(figures, eigen):
 def table(runs):
     """The runs under each other, those of one scene together."""
     eigen = {r["scene"]: r["eigen_simplicial_ldlt"]["median_us"] for r in runs if "eigen_simplicial_ldlt" in r}
-    rows = [["scene", "threads", "tangent", "assembly", "compliance", "factor+W", "law", "correction",
+    rows = [["scene", "threads", "tangent", "assembly", "rows", "factor+W", "law", "correction",
              "total", "p95", "Eigen", "ratio", "error mm", "residual", "MB"]]
     rows += [row(r, eigen.get(r["scene"])) for r in runs]
     widths = [max(len(r[c]) for r in rows) for c in range(len(rows[0]))]

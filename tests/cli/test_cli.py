@@ -402,7 +402,7 @@ effectors:"""))
     assert not re.search(r"\d{7}", told.stdout)
 
 
-STAGES = ["assembly", "compliance", "factorisation", "law", "correction", "total"]
+STAGES = ["assembly", "rows", "factorisation", "law", "correction", "total"]
 
 
 def test_bench_writes_its_figures(scene, tmp_path):

@@ -121,7 +121,7 @@ TEST(Observables, HaveTheNamesUnitsAndShapesOfTheRobot) {
                                             "status []",
                                             "time.step [s]",
                                             "time.assembly [s]",
-                                            "time.compliance [s]",
+                                            "time.rows [s]",
                                             "time.factorisation [s]",
                                             "time.law [s]",
                                             "time.correction [s]"}));

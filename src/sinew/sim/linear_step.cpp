@@ -36,7 +36,7 @@ void LinearStep::linearise(const mechanics::LinearisationRequest& request) {
   run_.world.linearise(request);
   run_.clock.mark(Stage::assembly);
   run_.world.form_rows(run_.effort, run_.model->stiffening_constraints());
-  run_.clock.mark(Stage::compliance);
+  run_.clock.mark(Stage::rows);
 }
 
 // With the projected tangent where the exact one is indefinite.

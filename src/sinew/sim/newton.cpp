@@ -53,7 +53,7 @@ class NewtonSolver {
     world_.linearise(request);
     clock_.mark(Stage::assembly);
     world_.form_rows(effort_, settings_.curved);
-    clock_.mark(Stage::compliance);
+    clock_.mark(Stage::rows);
   }
 
   // The exact tangent may be indefinite far from equilibrium; the projected one is not. Where a

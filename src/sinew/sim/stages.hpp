@@ -10,14 +10,14 @@ namespace sinew::sim {
 /// Every step is these stages, in this order.
 enum class Stage {
   assembly,       ///< elements: forces and matrix
-  compliance,     ///< rows H and delta; W itself comes from the factorisation
+  rows,           ///< H and delta
   factorisation,  ///< A bordered by H: factor, W and the free motion
   law,            ///< efforts
   correction,     ///< motion, and the check that it is sound
 };
 inline constexpr std::size_t kStageCount = 5;
 inline constexpr std::array<const char*, kStageCount> kStageNames = {
-    "assembly", "compliance", "factorisation", "law", "correction"};
+    "assembly", "rows", "factorisation", "law", "correction"};
 
 /// Seconds spent in each stage of one step.
 struct StageTimes {
