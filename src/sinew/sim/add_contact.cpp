@@ -77,8 +77,7 @@ int add_contact(ModelData& data, const ContactSettings& settings) {
   try {
     auto contact = std::make_unique<constraint::Contact>(
         settings.name, attach_points(data, on, settings), settings.surface, settings.friction);
-    ContactModel entry{settings.name, settings.place, static_cast<int>(data.constraints.size()),
-                       settings.motion};
+    ContactModel entry{settings.name, static_cast<int>(data.constraints.size()), settings.motion};
     if (entry.motion) entry.motion->axis = checked_axis(entry.motion->axis, settings.place);
     check_gaps(*contact, on, entry.pose(0.0), data.size);
     data.constraints.push_back(std::move(contact));  // declared by ModelBuilder::build()

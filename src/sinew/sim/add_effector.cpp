@@ -83,7 +83,7 @@ int add_effector(ModelData& data, const EffectorSettings& settings) {
     throw error.at(settings.place);
   }
   const int number = data.declare(std::move(effector));
-  data.effectors.push_back({settings.name, settings.place, number});
+  data.effectors.push_back({settings.name, number});
   return static_cast<int>(data.effectors.size()) - 1;
 }
 

@@ -150,7 +150,7 @@ int add_load(ModelData& data, const LoadSettings& settings) {
   check_new_name(data.loads, &LoadModel::name, "loads", settings.name, settings.place);
   fem::HasElements& body = find_elements(data, settings.body, settings.place, "loads");
   try {
-    LoadModel load{settings.name, settings.place, settings.body, {}, settings.factor};
+    LoadModel load{settings.name, settings.body, {}, settings.factor};
     for (fem::Load& part : std::visit(LoadMaker(body, settings), settings.load)) {
       load.numbers.push_back(body.add_load(std::move(part)));
     }

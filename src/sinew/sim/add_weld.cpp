@@ -59,7 +59,7 @@ int add_weld(ModelData& data, const WeldSettings& settings) {
   try {
     auto tie = std::make_unique<constraint::Tie>(settings.name, attach_pairs(data, settings));
     const int number = data.declare(std::move(tie));
-    data.welds.push_back({settings.name, settings.place, settings.first, settings.second, number});
+    data.welds.push_back({settings.name, settings.first, settings.second, number});
     return static_cast<int>(data.welds.size()) - 1;
   } catch (const Error& error) {
     throw error.at(settings.place);

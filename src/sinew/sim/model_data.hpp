@@ -10,7 +10,6 @@
 
 #include <Eigen/Geometry>
 
-#include "sinew/core/error.hpp"
 #include "sinew/mechanics/rows.hpp"
 #include "sinew/sim/actuator.hpp"
 #include "sinew/sim/base_motion.hpp"
@@ -36,17 +35,15 @@ struct GuideModel {
   double friction = 0;  ///< Coulomb's coefficient, > 0
 };
 
-/// An effector and where it is declared.
+/// An effector.
 struct EffectorModel {
   std::string name;
-  Place place;
   int constraint = -1;
 };
 
 /// Points that may touch a surface, and how the surface moves.
 struct ContactModel {
   std::string name;
-  Place place;
   int constraint = -1;               ///< a constraint::Contact
   std::optional<BaseMotion> motion;  ///< of the surface; none: it stands still
 
@@ -57,7 +54,6 @@ struct ContactModel {
 /// What welds two bodies.
 struct WeldModel {
   std::string name;
-  Place place;
   int first = 0, second = 1;  ///< bodies
   int constraint = -1;        ///< a constraint::Tie
 };
@@ -87,7 +83,6 @@ struct MassModel {
 /// A load on a body, and its factor over time.
 struct LoadModel {
   std::string name;
-  Place place;
   int body = 0;
   std::vector<int> numbers;  ///< in fem::HasElements::loads()
   Signal factor;
