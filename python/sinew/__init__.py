@@ -42,7 +42,7 @@ from ._core import (
     materials,
     view,
 )
-from .errors import Error, Notice, Place, RunError, SinewWarning
+from .errors import Error, Location, Notice, RunError, SinewWarning
 from .scene import load, loads
 
 __all__ = [
@@ -57,9 +57,9 @@ __all__ = [
     "Joint",
     "Limits",
     "Linearisation",
+    "Location",
     "Material",
     "Notice",
-    "Place",
     "PointMass",
     "Polyline",
     "Probe",

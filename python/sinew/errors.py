@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple, Union
 
-__all__ = ["Error", "Notice", "Place", "RunError", "SinewWarning"]
+__all__ = ["Error", "Location", "Notice", "RunError", "SinewWarning"]
 
 
-class Place(NamedTuple):
+class Location(NamedTuple):
     """Where something is wrong; what is unknown is empty or 0.
 
     Attributes
@@ -41,7 +41,7 @@ class Error(Exception):
     ----------
     kind : str
         Which error it is, as "unknown-name": stable, to be tested for.
-    place : Place or str
+    place : Location or str
         Where; a string is the item.
     message : str
         What is wrong, with the offending value.
@@ -53,9 +53,9 @@ class Error(Exception):
     recorded: dict[str, Any] | None = None
 
     def __init__(
-        self, kind: str, place: Union[Place, str], message: str, remedy: str = ""
+        self, kind: str, place: Union[Location, str], message: str, remedy: str = ""
     ) -> None:
-        place = Place(item=place) if isinstance(place, str) else Place(*place)
+        place = Location(item=place) if isinstance(place, str) else Location(*place)
         super().__init__(kind, place, message, remedy)
         self.kind = kind
         self.place = place
@@ -84,7 +84,7 @@ class Notice(NamedTuple):
     kind : str
         "locking-element": the elements make a body much stiffer than its material. "bare-points": a cable pulls at
         single points, which dent the material.
-    place : Place
+    place : Location
         Where in the scene.
     message : str
         With the value that it is about.
@@ -94,7 +94,7 @@ class Notice(NamedTuple):
 
     level: str
     kind: str
-    place: Place
+    place: Location
     message: str
     remedy: str
 

@@ -135,9 +135,9 @@ class Learner:
     ) -> None:
         for name, value in (("memory", memory), ("corrections", corrections)):
             if value < 1:
-                raise errors.Error("out-of-range", errors.Place(item=name), f"it is {value}", "give 1 or more")
+                raise errors.Error("out-of-range", errors.Location(item=name), f"it is {value}", "give 1 or more")
         if len(actuators) != len(cylinders):
-            raise errors.Error("wrong-length", errors.Place(item="cylinders"),
+            raise errors.Error("wrong-length", errors.Location(item="cylinders"),
                                f"{len(actuators)} actuators and {len(cylinders)} cylinders",
                                "give a cylinder for each actuator")
         self._first_arm, self._first_actuators = arm, list(actuators)
@@ -177,7 +177,7 @@ class Learner:
         """
         command = np.asarray(command, dtype=float)
         if len(record.time) != len(command):
-            raise errors.Error("wrong-length", errors.Place(item="record"),
+            raise errors.Error("wrong-length", errors.Location(item="record"),
                                f"{len(record.time)} samples for {len(command)} commands", "measure at their times")
         self._motions.append((command, record))
         return self._identify()
@@ -199,7 +199,7 @@ class Learner:
             not-converged: no plan could be simulated.
         """
         if not 0.0 < share < 1.0:
-            raise errors.Error("out-of-range", errors.Place(item="share"), f"it is {share}",
+            raise errors.Error("out-of-range", errors.Location(item="share"), f"it is {share}",
                                "give a number between 0 and 1")
         return share * self._next().command
 
@@ -229,7 +229,7 @@ class Learner:
         """
         proposal = self._proposal
         if proposal is None:
-            raise errors.Error("out-of-range", errors.Place(item="observe"), "nothing was proposed", "call propose()")
+            raise errors.Error("out-of-range", errors.Location(item="observe"), "nothing was proposed", "call propose()")
         fit = self.learn_from(proposal.command, record)
         residual = (record.positions - fit.records[-1].predicted)[-5:, -1] if fit else np.full((1, 3), np.nan)
         if np.isfinite(residual).any(axis=0).all():
@@ -254,7 +254,7 @@ class Learner:
             if planned is not None and (best is None or self._left(planned) < self._left(best)):
                 best = planned
         if best is None:
-            raise errors.RunError("not-converged", errors.Place(item="goal"), "no plan could be simulated",
+            raise errors.RunError("not-converged", errors.Location(item="goal"), "no plan could be simulated",
                                   "give more time or torque, or a looser plan")
         self._last = best
         return best

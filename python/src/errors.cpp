@@ -6,12 +6,12 @@ namespace sinew::python {
 
 namespace {
 
-py::object to_python(const Place& place) {
+py::object to_python(const Location& place) {
   return py::module_::import("sinew.errors")
-      .attr("Place")(place.file, place.line, place.column, place.item);
+      .attr("Location")(place.file, place.line, place.column, place.item);
 }
 
-py::object make(const char* type, std::string_view kind, const Place& place,
+py::object make(const char* type, std::string_view kind, const Location& place,
                 const std::string& message, const std::string& remedy) {
   return py::module_::import("sinew.errors")
       .attr(type)(std::string(kind), to_python(place), message, remedy);

@@ -232,7 +232,7 @@ def test_dict_errors_name_the_path_in_the_dict():
 
 
 def test_errors_survive_pickling_and_stand_alone():
-    error = sinew.RunError("diverged", sinew.Place("a.yaml", 3, 4, "x"), "it blew up", "slow down")
+    error = sinew.RunError("diverged", sinew.Location("a.yaml", 3, 4, "x"), "it blew up", "slow down")
     again = pickle.loads(pickle.dumps(error))
     assert type(again) is sinew.RunError and str(again) == str(error)
     assert str(error) == "a.yaml:3:4: x: it blew up; slow down [diverged]"

@@ -29,13 +29,13 @@ TEST(ErrorKind, NamesStandBesideTheirKinds) {
   EXPECT_EQ(error_kind_name(ErrorKind::internal), "internal");
 }
 
-TEST(Place, LeavesOutWhatIsUnknown) {
-  EXPECT_EQ(Place{}.text(), "");
-  EXPECT_EQ((Place{.file = "a.yaml"}).text(), "a.yaml");
-  EXPECT_EQ((Place{.file = "a.yaml", .line = 3}).text(), "a.yaml:3");
-  EXPECT_EQ((Place{.file = "a.yaml", .line = 3, .column = 5, .item = "mass"}).text(),
+TEST(Location, LeavesOutWhatIsUnknown) {
+  EXPECT_EQ(Location{}.text(), "");
+  EXPECT_EQ((Location{.file = "a.yaml"}).text(), "a.yaml");
+  EXPECT_EQ((Location{.file = "a.yaml", .line = 3}).text(), "a.yaml:3");
+  EXPECT_EQ((Location{.file = "a.yaml", .line = 3, .column = 5, .item = "mass"}).text(),
             "a.yaml:3:5: mass");
-  EXPECT_EQ((Place{.item = "mass"}).text(), "mass");
+  EXPECT_EQ((Location{.item = "mass"}).text(), "mass");
 }
 
 TEST(Error, SaysPlaceMessageRemedyAndKind) {

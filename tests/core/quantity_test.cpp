@@ -73,7 +73,7 @@ class BadQuantities : public ::testing::TestWithParam<BadQuantity> {};
 
 TEST_P(BadQuantities, NamePlaceValueAndRemedy) {
   const BadQuantity& each = GetParam();
-  const Place place{.file = "trunk.yaml", .line = 3, .column = 7, .item = "bodies.trunk.mass"};
+  const Location place{.file = "trunk.yaml", .line = 3, .column = 7, .item = "bodies.trunk.mass"};
   try {
     parse_quantity(each.text, each.dimension, place);
     FAIL() << "accepted '" << each.text << "'";

@@ -202,7 +202,7 @@ class TableReader {
 
   std::string_view bytes_;
   CsvSettings settings_;
-  Place place_;
+  Location place_;
   Table table_;
   std::string_view line_;
   std::vector<std::string_view> cells_;
@@ -238,7 +238,7 @@ Table parse_csv(std::string_view bytes, const std::string& name, const CsvSettin
 }
 
 Table read_csv(const std::filesystem::path& path, const CsvSettings& settings) {
-  const Place place{.file = path.string()};
+  const Location place{.file = path.string()};
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) {

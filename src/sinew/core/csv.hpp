@@ -28,7 +28,7 @@ struct CsvSettings {
 struct Table {
   std::vector<std::string> names;  ///< (columns) or empty
   MatrixX values;                  ///< (rows, columns)
-  Place place;                     ///< the file, for errors about its content
+  Location place;                  ///< the file, for errors about its content
   std::vector<int> lines;          ///< (rows) line of each row in the file, from 1
 
   /// The column of that name. Throws Error(wrong-columns) naming the columns there are.

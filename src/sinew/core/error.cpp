@@ -36,7 +36,7 @@ constexpr std::array kKindNames = {
 // clang-format on
 static_assert(kKindNames.size() == static_cast<std::size_t>(ErrorKind::internal) + 1);
 
-std::string compose(ErrorKind kind, const Place& place, const std::string& message,
+std::string compose(ErrorKind kind, const Location& place, const std::string& message,
                     const std::string& remedy) {
   std::string text = place.text();
   if (!text.empty()) text += ": ";
@@ -55,7 +55,7 @@ std::string_view error_kind_name(ErrorKind kind) {
 
 int error_kind_count() { return static_cast<int>(kKindNames.size()); }
 
-std::string Place::text() const {
+std::string Location::text() const {
   std::string text = file;
   if (line > 0) text += fmt::format(":{}", line);
   if (line > 0 && column > 0) text += fmt::format(":{}", column);
@@ -63,15 +63,15 @@ std::string Place::text() const {
   return text;
 }
 
-Error::Error(ErrorKind kind, Place place, std::string message, std::string remedy)
+Error::Error(ErrorKind kind, Location place, std::string message, std::string remedy)
     : std::runtime_error(compose(kind, place, message, remedy)),
       kind_(kind),
       place_(std::move(place)),
       message_(std::move(message)),
       remedy_(std::move(remedy)) {}
 
-Error Error::at(const Place& outer) const {
-  Place place = place_;
+Error Error::at(const Location& outer) const {
+  Location place = place_;
   if (place.file.empty()) {
     place.file = outer.file;
     place.line = outer.line;

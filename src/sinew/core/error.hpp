@@ -53,7 +53,7 @@ int error_kind_count();
 
 /// Where something stands: a file position, or an argument, or a scene path such as
 /// `bodies.trunk.mass`, or both. Lines and columns count from 1; 0 means unknown.
-struct Place {
+struct Location {
   std::string file;
   int line = 0;
   int column = 0;
@@ -69,22 +69,22 @@ class Error : public std::runtime_error {
  public:
   /// @param kind,place,message what is wrong, where, and in words that name the offending value.
   /// @param remedy says what to write or do instead; may be empty.
-  Error(ErrorKind kind, Place place, std::string message, std::string remedy = {});
+  Error(ErrorKind kind, Location place, std::string message, std::string remedy = {});
 
   ErrorKind kind() const { return kind_; }
-  const Place& place() const { return place_; }
+  const Location& place() const { return place_; }
   const std::string& message() const { return message_; }
   const std::string& remedy() const { return remedy_; }
 
   /// The same error at a better known place (parts of `outer` fill what is unknown here).
-  Error at(const Place& outer) const;
+  Error at(const Location& outer) const;
 
   /// True for a run that failed (exit code 1), false for wrong input (exit code 2).
   bool is_run_failure() const;
 
  private:
   ErrorKind kind_;
-  Place place_;
+  Location place_;
   std::string message_;
   std::string remedy_;
 };

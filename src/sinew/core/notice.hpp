@@ -31,7 +31,7 @@ std::string_view notice_level_name(NoticeLevel level);
 struct Notice {
   NoticeLevel level = NoticeLevel::warning;
   NoticeKind kind = NoticeKind::locking_element;
-  Place place;
+  Location place;
   std::string message;  ///< names the offending value
   std::string remedy;   ///< what to write or do instead
 

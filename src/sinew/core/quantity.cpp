@@ -64,7 +64,7 @@ const DimensionWords* find_words(Dimension dimension) {
 /// Numbers, then whatever is left: the unit. One instance reads one text.
 class NumberReader {
  public:
-  NumberReader(std::string_view text, Dimension expected, const Place& place)
+  NumberReader(std::string_view text, Dimension expected, const Location& place)
       : whole_(trimmed(text)), rest_(whole_), expected_(expected), place_(place) {}
 
   std::vector<double> numbers() {
@@ -148,11 +148,11 @@ class NumberReader {
   std::string_view whole_;
   std::string_view rest_;
   Dimension expected_;
-  const Place& place_;
+  const Location& place_;
 };
 
 [[noreturn]] void fail_dimension(std::string_view text, std::string_view numbers, const Unit& unit,
-                                 Dimension expected, const Place& place) {
+                                 Dimension expected, const Location& place) {
   const DimensionWords* words = find_words(expected);
   const std::string_view symbol =
       words ? words->example.substr(std::min(words->example.find(' '), words->example.size()))
@@ -166,7 +166,7 @@ class NumberReader {
 }
 
 [[noreturn]] void fail_length(std::string_view text, std::size_t found, int count,
-                              const Place& place) {
+                              const Location& place) {
   throw Error(
       ErrorKind::wrong_length, place,
       fmt::format("expected {} number{}, got {} in '{}'", count, count == 1 ? "" : "s", found,
@@ -224,7 +224,7 @@ std::string dimension_example(Dimension dimension) {
 }
 
 std::vector<double> parse_list(std::string_view text, Dimension expected, int count,
-                               const Place& place) {
+                               const Location& place) {
   NumberReader reader(text, expected, place);
   std::vector<double> values = reader.numbers();
   const std::string_view whole = trimmed(text);
@@ -245,16 +245,16 @@ std::vector<double> parse_list(std::string_view text, Dimension expected, int co
   return values;
 }
 
-double parse_quantity(std::string_view text, Dimension expected, const Place& place) {
+double parse_quantity(std::string_view text, Dimension expected, const Location& place) {
   return parse_list(text, expected, 1, place).front();
 }
 
-Vector3 parse_vector3(std::string_view text, Dimension expected, const Place& place) {
+Vector3 parse_vector3(std::string_view text, Dimension expected, const Location& place) {
   const std::vector<double> values = parse_list(text, expected, 3, place);
   return {values[0], values[1], values[2]};
 }
 
-double parse_unit(std::string_view unit, Dimension expected, const Place& place) {
+double parse_unit(std::string_view unit, Dimension expected, const Location& place) {
   const Unit parsed = parse_unit_expression(trimmed(unit), place);
   if (parsed.dimension != expected) fail_dimension(unit, "1", parsed, expected, place);
   return parsed.to_si(1.0);

@@ -62,20 +62,20 @@ std::string dimension_example(Dimension dimension);
 /// A blank after a `/` ("N/m s") is refused, since it is read in two ways.
 /// Throws Error at `place`: not-a-number, not-finite, unknown-unit, wrong-dimension, wrong-length
 /// (several numbers).
-double parse_quantity(std::string_view text, Dimension expected, const Place& place = {});
+double parse_quantity(std::string_view text, Dimension expected, const Location& place = {});
 
 /// Three numbers with one unit behind: "0 0 -9.81 m/s^2". Blanks or commas stand between numbers.
 /// Throws as parse_quantity.
-Vector3 parse_vector3(std::string_view text, Dimension expected, const Place& place = {});
+Vector3 parse_vector3(std::string_view text, Dimension expected, const Location& place = {});
 
 /// `count` numbers with one unit behind, as in parse_vector3: "-20 -20 0 20 20 20 mm".
 /// `count` says how many numbers there must be; -1 stands for any number of them, at least one.
 /// Throws as parse_quantity.
 std::vector<double> parse_list(std::string_view text, Dimension expected, int count,
-                               const Place& place = {});
+                               const Location& place = {});
 
 /// The SI value of one of the unit, such as 0.001 for "mm". Throws as parse_quantity.
-double parse_unit(std::string_view unit, Dimension expected, const Place& place = {});
+double parse_unit(std::string_view unit, Dimension expected, const Location& place = {});
 
 /// The value with a unit whose prefix keeps the number short: "450 kPa", "195 mm".
 /// parse_quantity(format_quantity(v, d), d) == v, bit for bit, for every finite v. NaN and

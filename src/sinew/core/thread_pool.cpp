@@ -93,7 +93,7 @@ struct ThreadPool::Shared {
 
 ThreadPool::ThreadPool(int threads) {
   if (threads < 1) {
-    throw Error(ErrorKind::out_of_range, Place{.file = {}, .item = "threads"},
+    throw Error(ErrorKind::out_of_range, Location{.file = {}, .item = "threads"},
                 "the number of threads is " + std::to_string(threads),
                 "give at least 1 (the caller itself)");
   }

@@ -102,7 +102,7 @@ std::pair<double, double> reduced(double numerator, double denominator) {
 /// Recursive descent over product = factor { ('*' | '/' | blank) factor }.
 class Parser {
  public:
-  Parser(std::string_view text, const Place& place) : text_(text), place_(place) {}
+  Parser(std::string_view text, const Location& place) : text_(text), place_(place) {}
 
   Unit whole() {
     skip_blanks();
@@ -201,7 +201,7 @@ class Parser {
   }
 
   std::string_view text_;
-  const Place& place_;
+  const Location& place_;
   std::size_t position_ = 0;
   int depth_ = 0;
 };
@@ -230,7 +230,7 @@ Unit power(const Unit& unit, int exponent) {
   return exponent < 0 ? inverse(result) : result;
 }
 
-Unit parse_unit_expression(std::string_view text, const Place& place) {
+Unit parse_unit_expression(std::string_view text, const Location& place) {
   return Parser(text, place).whole();
 }
 

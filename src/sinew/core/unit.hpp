@@ -28,7 +28,7 @@ Unit power(const Unit& unit, int exponent);
 
 /// Parses a whole unit expression; empty text is the unit 1. Throws Error(unknown-unit) at `place`,
 /// with the nearest known name as the remedy.
-Unit parse_unit_expression(std::string_view text, const Place& place);
+Unit parse_unit_expression(std::string_view text, const Location& place);
 
 /// "kg m^-3"; "1" without dimension.
 std::string si_unit_name(Dimension dimension);

@@ -22,7 +22,7 @@ struct RayleighDamping {
 /// inertia, and no size.
 struct PointMassSettings {
   std::string name;
-  Place place;                      ///< for errors
+  Location place;                   ///< for errors
   Vector3 point = Vector3::Zero();  ///< m, at rest
   double mass = 0.0;                ///< kg, > 0
   mesh::Outside outside = mesh::Outside::error;

@@ -24,7 +24,7 @@ double stiffest_modulus(const FemModelSettings& settings) {
 }
 
 void check_mesh(const mesh::Mesh& mesh) {
-  const Place place{.file = mesh.name, .item = {}};
+  const Location place{.file = mesh.name, .item = {}};
   const ElementList list(mesh);
   if (list.count() == 0) {
     throw Error(ErrorKind::no_volume_elements, place, "the mesh has no tetrahedra or hexahedra",

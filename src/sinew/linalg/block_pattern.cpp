@@ -12,8 +12,8 @@ namespace {
 
 void check_cliques(int nodes, std::span<const Index> starts, std::span<const Index> members) {
   const auto fail = [](const std::string& message) {
-    throw Error(ErrorKind::index_out_of_range, Place{.file = {}, .item = "block pattern"}, message,
-                "give node numbers from 0 to nodes - 1 and ascending starts");
+    throw Error(ErrorKind::index_out_of_range, Location{.file = {}, .item = "block pattern"},
+                message, "give node numbers from 0 to nodes - 1 and ascending starts");
   };
   if (nodes < 0) fail("the number of nodes is " + std::to_string(nodes));
   if (!starts.empty() && (starts.front() != 0 || !std::is_sorted(starts.begin(), starts.end()) ||

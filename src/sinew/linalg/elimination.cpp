@@ -18,7 +18,7 @@ namespace {
 static_assert(sizeof(idx_t) == sizeof(Index), "METIS must be built with 32-bit indices");
 
 [[noreturn]] void fail(const std::string& library, int status) {
-  throw Error(ErrorKind::internal, Place{.file = {}, .item = "matrix ordering"},
+  throw Error(ErrorKind::internal, Location{.file = {}, .item = "matrix ordering"},
               library + " returned status " + std::to_string(status), {});
 }
 

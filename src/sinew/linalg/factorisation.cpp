@@ -22,7 +22,7 @@ constexpr std::array kBackends = {Backend{"block", make_block_plan},
 
 [[noreturn]] void fail(ErrorKind kind, const char* item, const std::string& message,
                        const std::string& remedy) {
-  throw Error(kind, Place{.file = {}, .item = item}, message, remedy);
+  throw Error(kind, Location{.file = {}, .item = item}, message, remedy);
 }
 
 void check_block_pattern(const BlockPattern& pattern) {

@@ -229,7 +229,7 @@ std::size_t ByteReader::checked_count(std::int64_t count, std::size_t bytes_each
   return wanted;
 }
 
-Place ByteReader::place() const {
+Location ByteReader::place() const {
   if (binary_) return {.file = name_, .item = fmt::format("byte {}", offset_)};
   const auto end = bytes_.begin() + static_cast<std::ptrdiff_t>(offset_);
   return {.file = name_,

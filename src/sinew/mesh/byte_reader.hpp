@@ -96,7 +96,7 @@ class ByteReader {
   void mark_binary() { binary_ = true; }
 
   /// Where the cursor stands: file and line, or file and byte.
-  Place place() const;
+  Location place() const;
 
   /// Throws Error of this kind at the present place.
   /// @param kind kind of error.

@@ -12,7 +12,7 @@ VectorX actuator_lengths(const Bent& bent, double radius, const VectorX& angles)
 }
 
 Bent bend_of_lengths(const VectorX& lengths, double radius, const VectorX& angles) {
-  const Place place{.item = "actuator lengths"};
+  const Location place{.item = "actuator lengths"};
   if (lengths.size() < 3 || lengths.size() != angles.size()) {
     throw Error(ErrorKind::wrong_length, place,
                 fmt::format("{} lengths at {} angles", lengths.size(), angles.size()),

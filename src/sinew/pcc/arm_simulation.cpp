@@ -20,7 +20,7 @@ constexpr double kRounding = 1e-15;
 ArmSimulation::ArmSimulation(std::shared_ptr<const Arm> arm, const ArmStepSettings& settings)
     : equations_(std::move(arm)), settings_(settings) {
   const Eigen::Index n = equations_.arm().coordinates();
-  const Place place{.item = equations_.arm().settings().name};
+  const Location place{.item = equations_.arm().settings().name};
   if (!(settings.time_step > 0.0) || !std::isfinite(settings.time_step)) {
     throw Error(ErrorKind::out_of_range, place,
                 fmt::format("the time step is {:g} s", settings.time_step), "give more than zero");
@@ -60,7 +60,7 @@ void ArmSimulation::step(const VectorX& torque) {
   drive_.noalias() = arm().actuation() * torque;
   start_ = q_;
   motion_ = settings_.time_step * rate_;
-  const Place place{.item = arm().settings().name};
+  const Location place{.item = arm().settings().name};
   for (iterations_ = 0;;) {
     q_ = start_ + motion_;
     combine(weights.velocity, new_rate_);

@@ -115,7 +115,7 @@ Eigen::Vector2d BendingActuator::point(double theta, double fraction) const {
 }
 
 BendingError BendingActuator::taylor_error(double lowest, double highest, double pressure) const {
-  const Place place{.item = "taylor_error"};
+  const Location place{.item = "taylor_error"};
   if (!(lowest <= highest)) {
     throw Error(ErrorKind::contradictory_limits, place,
                 fmt::format("from {:g} to {:g} rad", lowest, highest),

@@ -79,7 +79,7 @@ BendingModulus::BendingModulus(std::vector<double> coefficients, ModulusKind kin
       lowest_(lowest),
       highest_(highest),
       per_unit_(shear_per_unit(kind)) {
-  const Place place{.item = "modulus"};
+  const Location place{.item = "modulus"};
   if (coefficients_.empty()) {
     throw Error(ErrorKind::empty_list, place, "the polynomial has no coefficient",
                 "give them from the constant one on");

@@ -9,7 +9,7 @@
 namespace sinew::pcc {
 
 void FluidicActuator::check() const {
-  const Place place{.item = "fluidic actuator"};
+  const Location place{.item = "fluidic actuator"};
   if (!std::isfinite(linear) || !std::isfinite(cubic) || !std::isfinite(delay)) {
     throw Error(ErrorKind::not_finite, place, "a coefficient is not finite", "give numbers");
   }

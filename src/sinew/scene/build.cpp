@@ -60,7 +60,7 @@ const SceneController* Robot::first_controller() const {
   return controllers.empty() ? nullptr : &controllers.front();
 }
 
-const SceneController& Robot::controller(const std::string& name, const Place& asked) const {
+const SceneController& Robot::controller(const std::string& name, const Location& asked) const {
   std::vector<std::string> known;
   for (const SceneController& one : controllers) {
     if (one.name == name) return one;

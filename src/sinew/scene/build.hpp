@@ -35,7 +35,7 @@ struct Robot {
   /// One of the scene's. Throws Error(unknown-name) at `asked`. @param name,asked which, and who
   /// asks.
   const SceneController& controller(const std::string& name,
-                                    const Place& asked = {.item = "controller"}) const;
+                                    const Location& asked = {.item = "controller"}) const;
 };
 
 /// Builds everything a description names. Throws Error with the place in the scene of what is

@@ -76,7 +76,8 @@ class Checker {
 
  private:
   // Keys that exclude each other, and keys that make sense only beside another.
-  void check_company(const Node& map, const KeyTable& table, const Key& key, const Place& place) {
+  void check_company(const Node& map, const KeyTable& table, const Key& key,
+                     const Location& place) {
     if (!key.only_with.empty() && map.find(key.only_with) == nullptr) {
       throw Error(ErrorKind::conflicting_keys, place,
                   fmt::format("'{}' without '{}'", key.name, key.only_with),
@@ -152,7 +153,7 @@ class Checker {
                 "write names with letters, digits, '_' and '-'");
   }
 
-  void check_name(const std::string& name, const std::string& section, const Place& place) {
+  void check_name(const std::string& name, const std::string& section, const Location& place) {
     auto [found, is_new] = names_.try_emplace(section);
     if (is_new) {
       for (std::string& known : names_under(scene_, section))
@@ -205,20 +206,20 @@ const KeyTable& table_of(const Node& map, const Form& form) {
   return *read_choice(*word, form).table;
 }
 
-void throw_unknown_key(const std::string& key, const KeyTable& table, const Place& place) {
+void throw_unknown_key(const std::string& key, const KeyTable& table, const Location& place) {
   const std::vector<std::string> known = table.key_names();
   throw Error(ErrorKind::unknown_key, place,
               fmt::format("unknown key {} in {}", show(key), table.name),
               fmt::format("{}the keys here are {}", did_you_mean(key, known), join(known)));
 }
 
-void throw_later(const std::string& what, const std::string& instead, const Place& place) {
+void throw_later(const std::string& what, const std::string& instead, const Location& place) {
   throw Error(ErrorKind::not_in_this_version, place, fmt::format("{} is not in this version", what),
               instead);
 }
 
 void throw_unknown_name(const std::string& name, const std::string& section,
-                        const std::vector<std::string>& known, const Place& place) {
+                        const std::vector<std::string>& known, const Location& place) {
   const std::string remedy = known.empty()
                                  ? fmt::format("there is nothing under `{}`; add it there", section)
                                  : fmt::format("{}under `{}` there are {}",

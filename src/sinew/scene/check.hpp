@@ -23,16 +23,16 @@ const KeyTable& table_of(const Node& map, const Form& form);
 
 /// Error(unknown-key) at `place`, with a suggestion and the keys of the table.
 [[noreturn]] void throw_unknown_key(const std::string& key, const KeyTable& table,
-                                    const Place& place);
+                                    const Location& place);
 
 /// Error(not-in-this-version) at `place`.
 [[noreturn]] void throw_later(const std::string& what, const std::string& instead,
-                              const Place& place);
+                              const Location& place);
 
 /// Error(unknown-name) at `place`: `name` is none of `known`, the names under the top-level key
 /// `section`.
 [[noreturn]] void throw_unknown_name(const std::string& name, const std::string& section,
-                                     const std::vector<std::string>& known, const Place& place);
+                                     const std::vector<std::string>& known, const Location& place);
 
 /// The names under a top-level key of the scene; empty when it is not there.
 std::vector<std::string> names_under(const Node& scene, const std::string& section);

@@ -1,7 +1,7 @@
 /// @file
 /// What a scene file says, as plain structs in SI units. The parser fills them, the builder makes a
 /// simulation of them. In-class defaults are the documented ones (a test holds them equal). Every
-/// part keeps its Place, so that what is found wrong later (a point outside the mesh, an unknown
+/// part keeps its Location, so that what is found wrong later (a point outside the mesh, an unknown
 /// set) can still name file:line:column. Maps of the file are vectors here, in the file's order.
 #pragma once
 
@@ -47,7 +47,7 @@ enum class PullPoint { world, body };
 
 /// How each step is solved.
 struct SolverDescription {
-  Place place;
+  Location place;
   Method method = Method::newton;
   Tangent tangent = Tangent::exact;
   std::optional<sim::AdaptiveStep> adaptive;
@@ -61,30 +61,30 @@ struct SolverDescription {
 
 /// A mesh file, or one of the project's own shapes.
 struct MeshDescription {
-  Place place;
+  Location place;
   std::filesystem::path file;  ///< resolved against the scene's folder; empty for a shape
   double unit = 1.0;           ///< m per unit of the file
   bool unit_given = false;     ///< whether the scene says what the unit is
-  Place unit_place;
+  Location unit_place;
   std::string shape;  ///< "block", "cylinder", ...; empty for a file
   std::map<std::string, double>
       parameters;  ///< of the shape, those given only: m, or plain numbers
 };
 
 struct MaterialDescription {
-  Place place;
+  Location place;
   MaterialModel model = MaterialModel::corotational;
   material::Hyperelastic energy;  ///< when hyperelastic; the next two are then unused
   double young_modulus = 0.0;     ///< Pa
   double poisson_ratio = 0.0;
   double density = 0.0;  ///< kg/m^3 of a material of the library; else 0
-  Place young_modulus_place, poisson_ratio_place;
+  Location young_modulus_place, poisson_ratio_place;
 };
 
 /// Nodes that do not move.
 struct FixedRegion {
   enum class Kind { box, sphere, plane, set };
-  Place place;
+  Location place;
   Kind kind = Kind::box;
   Vector3 lower = Vector3::Zero();             ///< box: m
   Vector3 upper = Vector3::Zero();             ///< box: m
@@ -98,7 +98,7 @@ struct FixedRegion {
 
 /// How the fixed nodes of a body, or a surface, move.
 struct BaseDescription {
-  Place place;
+  Location place;
   std::array<sim::Signal, 3> translation;  ///< m
   sim::Signal angle;                       ///< rad
   Vector3 axis = Vector3::UnitZ();         ///< unit length
@@ -107,24 +107,24 @@ struct BaseDescription {
 
 /// How the free nodes of a body move at the start.
 struct InitialVelocityDescription {
-  Place place;
+  Location place;
   Vector3 linear = Vector3::Zero();   ///< m/s, of the centre of mass
   Vector3 angular = Vector3::Zero();  ///< rad/s, about it
 };
 
 struct BodyDescription {
   std::string name;
-  Place place;
+  Location place;
   std::optional<pcc::ArmSettings> arm;  ///< of type pcc; nothing below is then used
   MeshDescription mesh;
   Vector3 position = Vector3::Zero();  ///< m, of the mesh's origin
   Vector3 rotation = Vector3::Zero();  ///< rad, a rotation vector about it
   Element element = Element::any;
-  Place element_place;
+  Location element_place;
   MaterialDescription material;
   std::optional<double> mass;     ///< kg, total; not together with density
   std::optional<double> density;  ///< kg/m^3
-  Place mass_place;               ///< of whichever is given
+  Location mass_place;            ///< of whichever is given
   MassDistribution mass_distribution = MassDistribution::volume;  ///< with `mass`
   MassMatrix mass_matrix = MassMatrix::lumped;
   double mass_damping = 0.0;       ///< 1/s, Rayleigh: damping matrix = mass_damping M + ...
@@ -136,15 +136,15 @@ struct BodyDescription {
 
 /// (n, 3) m, each row with the place where it was written (a scene line or a line of a CSV).
 struct PointList {
-  Place place;
+  Location place;
   Points points = Points(0, 3);
-  std::vector<Place> places;
+  std::vector<Location> places;
   std::vector<std::string> bodies;  ///< (n,) empty: that of the whole; or none at all
 };
 
 /// Limits of an effort (N) or a motion (m).
 struct LimitDescription {
-  Place place;
+  Location place;
   double min = -kUnlimited;
   double max = kUnlimited;
   double rate = kUnlimited;  ///< largest change per second, >= 0
@@ -154,7 +154,7 @@ struct LimitDescription {
 /// m; volume_growth: m^3) or a drive's input over time.
 struct CommandDescription {
   enum class Kind { motion, effort, input };
-  Place place;
+  Location place;
   Kind kind = Kind::motion;
   sim::Signal signal;
 };
@@ -162,7 +162,7 @@ struct CommandDescription {
 /// Where a pressure acts.
 struct SurfaceDescription {
   enum class Kind { inside, patch, file, region };
-  Place place;
+  Location place;
   Kind kind = Kind::region;
   Vector3 point = Vector3::Zero();     ///< inside, patch: m
   double angle = 0.69813170079773179;  ///< patch: rad, 40 degrees
@@ -174,10 +174,10 @@ struct SurfaceDescription {
 struct ActuatorDescription {
   using Type = sim::ActuatorType;
   std::string name;
-  Place place;
+  Location place;
   Type type = Type::cable;
   std::string body;
-  Place body_place;
+  Location body_place;
   mesh::Outside outside = mesh::Outside::error;
   LimitDescription effort;  ///< cable: tension, min >= 0 (0 when not given); force; pressure
   LimitDescription motion;  ///< displacement or volume_growth
@@ -191,7 +191,7 @@ struct ActuatorDescription {
   double guide_spacing = 0.0;          ///< m, >= 0
   // force
   Vector3 point = Vector3::Zero();  ///< m
-  Place point_place;
+  Location point_place;
   Vector3 direction = Vector3::UnitZ();  ///< unit length
   // torque
   int segment = 0;
@@ -211,7 +211,7 @@ struct ActuatorDescription {
 struct LoadDescription {
   enum class Type { force, line, traction, acceleration, pressure, water };
   std::string name;
-  Place place;
+  Location place;
   Type type = Type::force;
   std::string body;
   Vector3 point = Vector3::Zero();   ///< force: m
@@ -226,9 +226,9 @@ struct LoadDescription {
 /// A mass that hangs on a point of a body.
 struct MassDescription {
   std::string name;
-  Place place;
+  Location place;
   std::string body;
-  Place body_place;
+  Location body_place;
   Vector3 point = Vector3::Zero();  ///< m
   double mass = 0.0;                ///< kg, > 0
   mesh::Outside outside = mesh::Outside::error;
@@ -238,13 +238,13 @@ struct MassDescription {
 struct EffectorDescription {
   enum class Kind { point, points, set, orientation };
   std::string name;
-  Place place;
+  Location place;
   Kind kind = Kind::point;
   std::string body;
-  Place body_place;
+  Location body_place;
   PointList points;  ///< point: 1; points: their mean is meant; orientation: 3, or 1 of an arm
   std::string set;   ///< set: mean of the nodes of this set of the mesh
-  Place set_place;
+  Location set_place;
   mesh::Outside outside = mesh::Outside::error;
   /// (k, 3) unit vectors along which the motion matters, k = 1 .. 3; for an orientation always
   /// x, y, z, the components of the rotation vector.
@@ -256,13 +256,13 @@ struct ProbeDescription {
   enum class Kind { point, line, bend, distance, extent };
   /// Points, whose mean is meant, or a region's nodes.
   struct Part {
-    Place place;
+    Location place;
     std::string body;
     PointList points;
     std::optional<FixedRegion> region;  ///< none: `points`, or the whole body for an extent
   };
   std::string name;
-  Place place;
+  Location place;
   Kind kind = Kind::point;
   std::vector<Part> parts;         ///< bend, distance: 2; else 1
   int samples = 21;                ///< line
@@ -275,7 +275,7 @@ struct ProbeDescription {
 /// A surface that points of a body may touch.
 struct ContactDescription {
   std::string name;
-  Place place;
+  Location place;
   std::string body;
   constraint::Surface surface;
   std::optional<FixedRegion> nodes;  ///< of the outside; none, and no points: all of it
@@ -288,9 +288,9 @@ struct ContactDescription {
 /// What holds two bodies together: a weld.
 struct JointDescription {
   std::string name;
-  Place place;
+  Location place;
   std::string first, second;  ///< bodies
-  Place bodies_place;
+  Location bodies_place;
   std::optional<FixedRegion> region;  ///< of the first; none, and no points: where they touch
   PointList points;                   ///< of the first
   mesh::Outside outside = mesh::Outside::error;
@@ -299,9 +299,9 @@ struct JointDescription {
 /// What a controller asks of one effector.
 struct TaskDescription {
   std::string effector;
-  Place place;
+  Location place;
   inverse::Target target;  ///< m; for an orientation effector a rotation vector (rad)
-  Place target_place;
+  Location target_place;
   std::vector<double> weights = {1.0};  ///< one for all, or one per direction of the effector; >= 0
 };
 
@@ -313,16 +313,16 @@ enum class Regularisation {
 
 struct ControllerDescription {
   std::string name;
-  Place place;
+  Location place;
   std::vector<std::string> actuators;  ///< empty: all
-  std::vector<Place> actuator_places;
+  std::vector<Location> actuator_places;
   std::vector<TaskDescription> tasks;
   Regularisation regularisation = Regularisation::change;
   std::optional<double> epsilon;  ///< relative weight of the regularisation; none: the engine's
 };
 
 struct RecordDescription {
-  Place place;
+  Location place;
   int every = 1;       ///< steps per record
   bool states = true;  ///< positions of all nodes, too
 };
@@ -330,10 +330,10 @@ struct RecordDescription {
 /// A whole scene.
 struct SceneDescription {
   std::string name;  ///< file name without folder and extension, or what the caller said
-  Place place;
+  Location place;
   int version = 1;
   Vector3 gravity = Vector3::Zero();  ///< m/s^2
-  Place gravity_place;
+  Location gravity_place;
   double time_step = 0.01;  ///< s
   Integrator integrator = Integrator::quasi_static;
   double spectral_radius = 0.8;  ///< of generalized-alpha

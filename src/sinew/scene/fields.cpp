@@ -16,7 +16,7 @@ const Node* Fields::find(std::string_view key) const {
   return map_.find(key);
 }
 
-Place Fields::place(std::string_view key) const {
+Location Fields::place(std::string_view key) const {
   const Node* node = find(key);
   return node != nullptr ? node->place() : map_.place();
 }
@@ -95,7 +95,7 @@ void Fields::throw_without_meaning(std::string_view key, const std::string& word
               fmt::format("the reader does not know {} of {}", word, key), "report this");
 }
 
-Vector3 unit_vector(const std::vector<double>& numbers, const Place& place) {
+Vector3 unit_vector(const std::vector<double>& numbers, const Location& place) {
   const Vector3 vector(numbers.at(0), numbers.at(1), numbers.at(2));
   const double length = vector.stableNorm();
   if (length > 0.0) return vector / length;

@@ -31,7 +31,7 @@ class Fields {
   /// The value of a key of the table, or nullptr.
   const Node* find(std::string_view key) const;
   /// Where the value stands; where the map stands when it is left out.
-  Place place(std::string_view key) const;
+  Location place(std::string_view key) const;
   /// The form in which a value that stands is written.
   const Form& form(std::string_view key) const;
   /// The fields of the map under `key`; of an empty map when it is left out.
@@ -71,6 +71,6 @@ class Fields {
 };
 
 /// A unit vector of the same direction. Throws Error(out-of-range) for zero, at `place`.
-Vector3 unit_vector(const std::vector<double>& numbers, const Place& place);
+Vector3 unit_vector(const std::vector<double>& numbers, const Location& place);
 
 }  // namespace sinew::scene

@@ -160,7 +160,7 @@ Node& Node::set(std::string key, Node value) {
     *present = std::move(value);
     return *present;
   }
-  Place place = value.place();
+  Location place = value.place();
   return entries_.emplace_back(Entry{std::move(key), std::move(place), std::move(value)}).value;
 }
 

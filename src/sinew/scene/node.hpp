@@ -64,8 +64,8 @@ class Node {
   /// Removes an entry; false when there is none.
   bool erase(std::string_view key);
 
-  const Place& place() const { return place_; }
-  void set_place(Place place) { place_ = std::move(place); }
+  const Location& place() const { return place_; }
+  void set_place(Location place) { place_ = std::move(place); }
   /// Gives this node the dotted path `path`, and everything under it the paths that follow
   /// ("bodies.trunk.fixed[0]"). Trees made by hand have no paths until this is called.
   void name_paths(const std::string& path = {});
@@ -80,13 +80,13 @@ class Node {
   std::string spelling_;
   std::vector<Node> items_;
   std::vector<Entry> entries_;
-  Place place_;
+  Location place_;
 };
 
 /// One line of a map.
 struct Node::Entry {
   std::string key;
-  Place key_place;
+  Location key_place;
   Node value;
 };
 

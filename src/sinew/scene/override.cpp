@@ -25,7 +25,7 @@ std::vector<std::string> split_path(const std::string& path) {
 // any of `forms`.
 class Walker {
  public:
-  Walker(Node& scene, Place place)
+  Walker(Node& scene, Location place)
       : place_(std::move(place)), node_(&scene), forms_({form_of_scene()}) {}
 
   void enter(const std::string& step, bool last) {
@@ -159,7 +159,7 @@ class Walker {
 
   void note(const std::string& step) { path_ += (path_.empty() ? "" : ".") + step; }
 
-  Place place_;
+  Location place_;
   Node* node_;
   std::vector<Form> forms_;
   std::string path_;

@@ -21,7 +21,8 @@ void read_limit(const Fields& fields, std::string_view key, LimitDescription& li
 }
 
 // An input belongs to what fills a chamber.
-void check_input(const ActuatorDescription& actuator, std::string_view input, const Place& place) {
+void check_input(const ActuatorDescription& actuator, std::string_view input,
+                 const Location& place) {
   const bool has = (input != "gas" || actuator.gas) && (input != "liquid" || actuator.liquid);
   if (has) return;
   throw Error(ErrorKind::conflicting_keys, place,

@@ -272,7 +272,8 @@ void read_fixed(const Fields& fields, BodyDescription& body) {
 
 }  // namespace
 
-BaseDescription read_motion(const Fields& fields, const Place& place, const ReadContext& context) {
+BaseDescription read_motion(const Fields& fields, const Location& place,
+                            const ReadContext& context) {
   BaseDescription motion;
   motion.place = place;
   constexpr std::array kAxes = {"x", "y", "z"};

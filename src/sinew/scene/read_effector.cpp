@@ -33,7 +33,7 @@ void read_orientation(const Fields& fields, EffectorDescription& effector) {
 PointList read_point(const Fields& fields, std::string_view key) {
   Vector3 point;
   fields.read(key, point);
-  const Place place = fields.place(key);
+  const Location place = fields.place(key);
   return {.place = place, .points = point.transpose(), .places = {place}};
 }
 

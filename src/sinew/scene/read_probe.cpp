@@ -11,7 +11,7 @@ namespace {
 using Kind = ProbeDescription::Kind;
 using Part = ProbeDescription::Part;
 
-void set_point(const Vector3& point, const Place& place, PointList& list) {
+void set_point(const Vector3& point, const Location& place, PointList& list) {
   list.place = place;
   list.points = point.transpose();
   list.places = {place};

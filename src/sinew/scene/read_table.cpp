@@ -7,7 +7,7 @@ namespace sinew::scene {
 
 namespace {
 
-Place row_place(const Table& table, Eigen::Index row, const Place& written) {
+Location row_place(const Table& table, Eigen::Index row, const Location& written) {
   return {table.place.file, table.lines[static_cast<std::size_t>(row)], 0, written.item};
 }
 
@@ -25,7 +25,7 @@ Table read_scaled(const Fields& fields, int columns, Eigen::Index first,
 }
 
 // The column that a heading "NAME" or "NAME [unit]" names.
-Eigen::Index column_of(const Table& table, const std::string& name, const Place& place) {
+Eigen::Index column_of(const Table& table, const std::string& name, const Location& place) {
   for (std::size_t k = 1; k < table.names.size(); ++k) {
     const std::string& heading = table.names[k];
     if (heading == name || heading.substr(0, heading.find(" [")) == name) {
@@ -40,7 +40,7 @@ Eigen::Index column_of(const Table& table, const std::string& name, const Place&
 }
 
 // What one of a column's heading is in SI; 1 where it says nothing.
-double heading_unit(const std::string& heading, const Fields& fields, const Place& place) {
+double heading_unit(const std::string& heading, const Fields& fields, const Location& place) {
   const std::size_t open = heading.find(" [");
   const Key* key = fields.table().find("unit");
   if (open == std::string::npos || !heading.ends_with(']') || key == nullptr) return 1.0;

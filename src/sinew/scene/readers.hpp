@@ -37,7 +37,8 @@ EffectorDescription read_effector(const Node::Entry& entry, const ReadContext& c
 ContactDescription read_contact(const Node::Entry& entry, const ReadContext& context);
 JointDescription read_joint(const Node::Entry& entry, const ReadContext& context);
 /// A motion over time. @param fields of its map. @param place of it. @param context of the scene.
-BaseDescription read_motion(const Fields& fields, const Place& place, const ReadContext& context);
+BaseDescription read_motion(const Fields& fields, const Location& place,
+                            const ReadContext& context);
 ProbeDescription read_probe(const Node::Entry& entry, const ReadContext& context);
 /// A unit vector, or the axis that x, y or z names. @param node,forms what is read, as one of
 /// these.
@@ -64,7 +65,7 @@ TimeTable read_time_table(const Fields& fields, int columns, const ReadContext& 
 
 /// The value of `make()`; an Error without a place gets `place`.
 template <typename Make>
-auto at_place(const Place& place, Make&& make) {
+auto at_place(const Location& place, Make&& make) {
   try {
     return make();
   } catch (const Error& error) {

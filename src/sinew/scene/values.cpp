@@ -67,7 +67,8 @@ const Form& select_map_form(const Node& node, const std::vector<const Form*>& fi
               fmt::format("add {}: or {}:", telltales.front(), telltales.back()));
 }
 
-void check_range(double value, const Form& form, const Place& place, const std::string& written) {
+void check_range(double value, const Form& form, const Location& place,
+                 const std::string& written) {
   const Range& range = form.range;
   const bool low = value < range.min || (range.above_min && value == range.min);
   const bool high = value > range.max || (range.below_max && value == range.max);

@@ -18,7 +18,7 @@ namespace sinew::scene {
 
 namespace {
 
-Place place_of(const std::string& file, const YAML::Mark& mark) {
+Location place_of(const std::string& file, const YAML::Mark& mark) {
   if (mark.is_null()) return {file, 0, 0, {}};
   return {file, mark.line + 1, mark.column + 1, {}};
 }
@@ -78,7 +78,7 @@ class TreeBuilder : public YAML::EventHandler {
     std::size_t nodes = 1;   // of this subtree, itself included
     std::size_t height = 1;  // levels of this subtree
     std::string key;
-    Place key_place;
+    Location key_place;
     bool has_key = false;
     std::map<std::string, int> lines;  // of the keys so far
   };
@@ -115,7 +115,7 @@ class TreeBuilder : public YAML::EventHandler {
 
   void take_key(const std::string& key, const YAML::Mark& mark) {
     Open& parent = open_.back();
-    Place place = place_of(file_, mark);
+    Location place = place_of(file_, mark);
     if (key.size() > limits_.key_length) {
       throw Error(ErrorKind::size_limit, place, fmt::format("a key of {} characters", key.size()),
                   fmt::format("keys have at most {}", limits_.key_length));
@@ -230,7 +230,7 @@ void check_text(std::string_view text, const std::string& name, const YamlLimits
   }
   const std::size_t bad = first_bad_byte(text);
   if (bad == std::string_view::npos) return;
-  Place place{name, 1, 1, {}};
+  Location place{name, 1, 1, {}};
   for (const char c : text.substr(0, bad)) {
     ++place.column;
     if (c == '\n') {
@@ -246,7 +246,7 @@ void check_text(std::string_view text, const std::string& name, const YamlLimits
 // Tabs in the indentation are YAML's most frequent trap, and the parser's words for it are obscure.
 [[noreturn]] void throw_syntax(std::string_view text, const std::string& name,
                                const YAML::Exception& error) {
-  Place place = place_of(name, error.mark);
+  Location place = place_of(name, error.mark);
   std::size_t begin = 0;
   for (int line = 1; line < place.line && begin < text.size(); ++line) {
     begin = text.find('\n', begin);

@@ -52,7 +52,7 @@ struct Command {
 /// Immutable part of an actuator.
 struct ActuatorModel {
   std::string name;
-  Place place;
+  Location place;
   ActuatorType type = ActuatorType::cable;
   int constraint = -1;  ///< in Model::constraints
   int row = -1;         ///< of H

@@ -13,7 +13,7 @@ namespace sinew::sim {
 namespace {
 
 void check_limits(const Limits& limits, const char* what, const ActuatorModel& actuator) {
-  Place place = actuator.place;
+  Location place = actuator.place;
   if (place.item.empty()) place.item = "actuator '" + actuator.name + "'";
   if (limits.min > limits.max) {
     throw Error(ErrorKind::contradictory_limits, place,

@@ -8,7 +8,7 @@
 
 namespace sinew::sim {
 
-void add_base_motion(ModelData& data, const BaseMotion& motion, const Place& place) {
+void add_base_motion(ModelData& data, const BaseMotion& motion, const Location& place) {
   const fem::HasElements& moved = find_elements(data, motion.body, place, "motion of its base");
   if (moved.settings().elements.fixed_nodes.empty()) {
     throw Error(ErrorKind::nothing_fixed, place, "the body has a base motion but no fixed node",

@@ -6,7 +6,7 @@
 #include <memory>
 
 namespace sinew {
-struct Place;
+struct Location;
 }
 namespace sinew::constraint {
 class Constraint;
@@ -48,7 +48,7 @@ int add_force(ModelData& data, const ForceSettings& settings);
 int add_torque(ModelData& data, const TorqueSettings& settings);
 int add_chamber(ModelData& data, const ChamberSettings& settings);
 
-void add_base_motion(ModelData& data, const BaseMotion& motion, const Place& place);
+void add_base_motion(ModelData& data, const BaseMotion& motion, const Location& place);
 int add_load(ModelData& data, const LoadSettings& settings);
 int add_contact(ModelData& data, const ContactSettings& settings);
 int add_weld(ModelData& data, const WeldSettings& settings);

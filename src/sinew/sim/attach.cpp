@@ -11,7 +11,7 @@
 namespace sinew::sim {
 
 int attach_mean(mechanics::BodyModel& body, const Points& points, mesh::Outside outside,
-                const std::string& what, const Place& place) {
+                const std::string& what, const Location& place) {
   if (points.rows() == 0) {
     throw Error(ErrorKind::too_few_points, place, "there is no point", "give `point: x y z mm`");
   }

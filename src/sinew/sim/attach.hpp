@@ -10,7 +10,7 @@
 #include "sinew/mechanics/rows.hpp"
 
 namespace sinew {
-struct Place;
+struct Location;
 }
 namespace sinew::mechanics {
 class BodyModel;
@@ -27,7 +27,7 @@ struct ModelData;
 /// @param body,points,outside (n, 3) m on it, at rest. @param what names it in messages.
 /// @param place of what is declared. Throws Error: too-few-points, point-outside-mesh, wrong-type.
 int attach_mean(mechanics::BodyModel& body, const Points& points, mesh::Outside outside,
-                const std::string& what, const Place& place);
+                const std::string& what, const Location& place);
 
 /// The mean of nodes, one or more, as one attached point. @return its number.
 int attach_mean(mechanics::BodyModel& body, std::span<const NodeId> nodes);

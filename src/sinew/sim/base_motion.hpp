@@ -8,7 +8,7 @@
 #include "sinew/sim/signal.hpp"
 
 namespace sinew {
-struct Place;
+struct Location;
 }
 
 namespace sinew::sim {
@@ -30,6 +30,6 @@ struct BaseMotion {
 
 /// An axis of unit length. @param axis,place (3,), and where it was written. Throws
 /// Error(out-of-range) for one without length.
-Vector3 checked_axis(const Vector3& axis, const Place& place);
+Vector3 checked_axis(const Vector3& axis, const Location& place);
 
 }  // namespace sinew::sim

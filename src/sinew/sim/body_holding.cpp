@@ -123,7 +123,8 @@ bool welds_hold(const ModelData& data, const std::vector<int>& bodies,
   return motions.all_held();
 }
 
-[[noreturn]] void throw_loose(const ModelData& data, std::size_t body, Place place, bool welded) {
+[[noreturn]] void throw_loose(const ModelData& data, std::size_t body, Location place,
+                              bool welded) {
   if (place.item.empty()) place.item = "body '" + data.bodies[body]->name() + "'";
   const auto* material = mechanics::as<const fem::HasElements>(*data.bodies[body]);
   const fem::FemModelSettings& own = material->settings().elements;
@@ -142,7 +143,7 @@ bool welds_hold(const ModelData& data, const std::vector<int>& bodies,
 
 }  // namespace
 
-void hold_bodies(ModelData& data, const std::vector<Place>& places) {
+void hold_bodies(ModelData& data, const std::vector<Location>& places) {
   const std::vector<int> group = groups_of(data);
   std::vector<char> held;
   for (std::size_t b = 0; b < data.bodies.size(); ++b) {

@@ -14,6 +14,6 @@ struct ModelData;
 /// Anchors the bodies of a finished list that need welds to be held.
 /// @param places (bodies,) where each is written. Throws Error(nothing-fixed) in statics for a body
 /// that keeps a rigid motion.
-void hold_bodies(ModelData& data, const std::vector<Place>& places);
+void hold_bodies(ModelData& data, const std::vector<Location>& places);
 
 }  // namespace sinew::sim

@@ -15,12 +15,12 @@ namespace sinew::sim {
 /// A cable through points given by rest positions.
 struct CableSettings {
   std::string name;
-  Place place;
+  Location place;
   int body = 0;
-  Points points;                    ///< (n, 3) m, n >= 2; the first is the pull point
-  std::vector<Place> point_places;  ///< (n,) where each was written; may be empty
-  std::vector<int> point_bodies;    ///< (n,) whose material each is in; empty: all in `body`
-  bool pull_from_world = true;      ///< the pull point is fixed to the world, else to the body
+  Points points;                       ///< (n, 3) m, n >= 2; the first is the pull point
+  std::vector<Location> point_places;  ///< (n,) where each was written; may be empty
+  std::vector<int> point_bodies;       ///< (n,) whose material each is in; empty: all in `body`
+  bool pull_from_world = true;         ///< the pull point is fixed to the world, else to the body
   mesh::Outside outside = mesh::Outside::error;
   Limits tension{.min = 0.0};  ///< N, min >= 0
   Limits displacement;         ///< m

@@ -18,7 +18,7 @@ namespace sinew::sim {
 /// A chamber of a body under pressure.
 struct ChamberSettings {
   std::string name;
-  Place place;
+  Location place;
   int body = 0;
   /// Faces of the body's mesh as seen from the material, or a surface that the body carries along
   /// (its vertices are attached to the elements; either orientation).

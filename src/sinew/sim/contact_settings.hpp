@@ -17,7 +17,7 @@ namespace sinew::sim {
 /// Points of a body that may touch a surface.
 struct ContactSettings {
   std::string name;
-  Place place;
+  Location place;
   int body = 0;
   constraint::Surface surface;
   std::vector<NodeId> nodes;  ///< of the body's mesh; fixed ones are left out

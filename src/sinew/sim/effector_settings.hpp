@@ -16,7 +16,7 @@ namespace sinew::sim {
 struct EffectorSettings {
   enum class Kind { points, nodes, orientation };
   std::string name;
-  Place place;
+  Location place;
   int body = 0;
   Kind kind = Kind::points;
   Points points;                    ///< (n, 3) m; their mean; of an orientation three, or one

@@ -10,13 +10,14 @@
 
 namespace sinew::sim {
 
-mechanics::BodyModel& find_body(ModelData& data, int index, const Place& place) {
+mechanics::BodyModel& find_body(ModelData& data, int index, const Location& place) {
   if (index >= 0 && index < static_cast<int>(data.bodies.size())) return data.body(index);
   throw Error(ErrorKind::unknown_name, place, fmt::format("there is no body {}", index),
               "add the body first");
 }
 
-fem::HasElements& find_elements(ModelData& data, int index, const Place& place, const char* what) {
+fem::HasElements& find_elements(ModelData& data, int index, const Location& place,
+                                const char* what) {
   auto* elements = mechanics::as<fem::HasElements>(find_body(data, index, place));
   if (elements != nullptr) return *elements;
   throw Error(ErrorKind::wrong_type, place, fmt::format("this body takes no {}", what),

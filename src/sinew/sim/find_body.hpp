@@ -3,7 +3,7 @@
 #pragma once
 
 namespace sinew {
-struct Place;
+struct Location;
 }
 namespace sinew::fem {
 class HasElements;
@@ -17,10 +17,11 @@ namespace sinew::sim {
 struct ModelData;
 
 /// @param index as it was given. @param place of what names it. Throws Error(unknown-name).
-mechanics::BodyModel& find_body(ModelData& data, int index, const Place& place);
+mechanics::BodyModel& find_body(ModelData& data, int index, const Location& place);
 
 /// A body of finite elements. @param index,place as find_body()'s. @param what is for such bodies
 /// alone: "loads". Throws Error: unknown-name, wrong-type.
-fem::HasElements& find_elements(ModelData& data, int index, const Place& place, const char* what);
+fem::HasElements& find_elements(ModelData& data, int index, const Location& place,
+                                const char* what);
 
 }  // namespace sinew::sim

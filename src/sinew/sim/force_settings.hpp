@@ -14,7 +14,7 @@ namespace sinew::sim {
 /// A force along a fixed direction on a point.
 struct ForceSettings {
   std::string name;
-  Place place;
+  Location place;
   int body = 0;
   Vector3 point = Vector3::Zero();  ///< m, at rest
   Vector3 direction = Vector3::UnitZ();

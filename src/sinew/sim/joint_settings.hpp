@@ -14,7 +14,7 @@ namespace sinew::sim {
 /// Two bodies become one: points of the first stay where they are in the material of the second.
 struct WeldSettings {
   std::string name;
-  Place place;
+  Location place;
   int first = 0, second = 1;  ///< bodies
   std::vector<NodeId> nodes;  ///< of the first's mesh
   Points points;              ///< (n, 3) m, at rest; beside the nodes

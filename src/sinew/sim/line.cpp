@@ -21,7 +21,7 @@ constexpr double kMaxGuides = 1e4;  // between two points
 
 LinePath set_guides(LinePath written, double spacing) {
   if (spacing <= 0.0 || written.points.rows() < 2) return written;
-  const std::vector<Place>& places = written.places;
+  const std::vector<Location>& places = written.places;
   const std::vector<int>& bodies = written.bodies;
   std::vector<Vector3> all{written.points.row(0)};
   LinePath result;

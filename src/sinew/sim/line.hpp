@@ -20,9 +20,9 @@ struct ModelData;
 
 /// The points of a line at rest.
 struct LinePath {
-  Points points;              ///< (n, 3) m
-  std::vector<Place> places;  ///< (n,) where each was written, or empty
-  std::vector<int> bodies;    ///< (n,) whose material each is in
+  Points points;                 ///< (n, 3) m
+  std::vector<Location> places;  ///< (n,) where each was written, or empty
+  std::vector<int> bodies;       ///< (n,) whose material each is in
 };
 
 /// The path with guides between its points, evenly and no farther apart than `spacing` (m; 0: as
@@ -32,7 +32,7 @@ LinePath set_guides(LinePath written, double spacing);
 struct Line {
   const char* kind;  ///< for messages: "cable"
   std::string name;
-  Place place;
+  Location place;
   LinePath path;
   bool from_world = false;  ///< the first point is fixed to the world
   mesh::Outside outside = mesh::Outside::error;

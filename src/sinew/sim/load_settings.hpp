@@ -55,7 +55,7 @@ struct WaterSettings {
 
 struct LoadSettings {
   std::string name;
-  Place place;
+  Location place;
   int body = 0;
   mesh::Outside outside = mesh::Outside::error;
   std::variant<PointLoadSettings, LineLoadSettings, SurfaceLoadSettings, BodyLoadSettings,

@@ -24,7 +24,7 @@ ModelBuilder::ModelBuilder(StepSettings settings) {
   data_.step = settings;
 }
 
-int ModelBuilder::add_fem_body(fem::FemBodySettings settings, const Place& place) {
+int ModelBuilder::add_fem_body(fem::FemBodySettings settings, const Location& place) {
   const int index = sim::add_fem_body(data_, std::move(settings));
   places_.push_back(place);
   return index;
@@ -36,7 +36,7 @@ int ModelBuilder::add_arm(pcc::ArmSettings settings) {
   return index;
 }
 
-void ModelBuilder::add_base_motion(const BaseMotion& motion, const Place& place) {
+void ModelBuilder::add_base_motion(const BaseMotion& motion, const Location& place) {
   sim::add_base_motion(data_, motion, place);
 }
 

@@ -39,7 +39,7 @@ class ModelBuilder {
   /// All return the new part's position. Names are unique among their kind: Error(duplicate-key).
   /// Throws what fem::FemBodyModel does, and Error(missing-mass).
   /// @param place where it is written.
-  int add_fem_body(fem::FemBodySettings settings, const Place& place = {});
+  int add_fem_body(fem::FemBodySettings settings, const Location& place = {});
   /// A constant-curvature arm. Throws what pcc::Arm does.
   int add_arm(pcc::ArmSettings settings);
   /// Throws Error: too-few-points, degenerate-cable, point-outside-mesh, contradictory-limits,
@@ -52,7 +52,7 @@ class ModelBuilder {
   /// out-of-range, conflicting-keys (gas and liquid).
   int add_chamber(const ChamberSettings& settings);
   /// Moves a body's fixed nodes. Throws Error: nothing-fixed, out-of-range (no axis), wrong-type.
-  void add_base_motion(const BaseMotion& motion, const Place& place);
+  void add_base_motion(const BaseMotion& motion, const Location& place);
   /// Throws Error: point-outside-mesh, too-few-points, zero-volume, out-of-range, wrong-type.
   int add_load(const LoadSettings& settings);
   /// As add_cable(), and Error(out-of-range).
@@ -81,7 +81,7 @@ class ModelBuilder {
 
  private:
   ModelData data_;
-  std::vector<Place> places_;  // (bodies,) where each is written
+  std::vector<Location> places_;  // (bodies,) where each is written
 };
 
 }  // namespace sinew::sim

@@ -6,7 +6,7 @@
 
 namespace sinew::sim {
 
-void throw_same_name(const char* kind, const std::string& name, const Place& place) {
+void throw_same_name(const char* kind, const std::string& name, const Location& place) {
   throw Error(ErrorKind::duplicate_key, place, fmt::format("two {} are called '{}'", kind, name),
               "rename one");
 }

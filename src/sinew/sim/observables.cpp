@@ -52,7 +52,7 @@ void Observables::add_view(std::vector<Observable> parts, Read read) {
   }
 }
 
-std::size_t Observables::find(std::string_view name, const Place& asked) const {
+std::size_t Observables::find(std::string_view name, const Location& asked) const {
   const auto found = std::ranges::find(list_, name, &Observable::name);
   if (found != list_.end()) return static_cast<std::size_t>(found - list_.begin());
   std::vector<std::string> known;

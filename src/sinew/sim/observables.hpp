@@ -111,7 +111,7 @@ class Observables {
   /// Where an observable is in list(): the first of that name, where an actuator and a contact have
   /// one name. Throws Error(unknown-name) with a suggestion.
   /// @param name of an observable. @param asked by whom, for the error.
-  std::size_t find(std::string_view name, const Place& asked = {}) const;
+  std::size_t find(std::string_view name, const Location& asked = {}) const;
 
   /// Begins a new moment: what was read before is no longer true.
   void refresh();

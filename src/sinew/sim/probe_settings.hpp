@@ -52,7 +52,7 @@ struct ProbeExtent {
 /// A probe: a number, or several, read off the robot's shape.
 struct ProbeSettings {
   std::string name;
-  Place place;
+  Location place;
   mesh::Outside outside = mesh::Outside::error;  ///< for all points given by position
   std::variant<ProbeSpot, ProbeLine, ProbeBend, ProbeDistance, ProbeExtent> what;
 };

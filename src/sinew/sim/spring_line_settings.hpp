@@ -17,10 +17,10 @@ namespace sinew::sim {
 /// A spring, a tendon, or a shape-memory spring.
 struct SpringLineSettings {
   std::string name;
-  Place place;
+  Location place;
   int body = 0;
   Points points;  ///< (n, 3) m; via points without friction between its ends
-  std::vector<Place> point_places;
+  std::vector<Location> point_places;
   bool pull_from_world = false;  ///< the first point is fixed to the world, else to the body
   mesh::Outside outside = mesh::Outside::error;
   std::variant<SpringSettings, SmaSettings> spring;

@@ -43,7 +43,7 @@ void Surroundings::move_base(int body, const Vector3& translation, const Vector3
                              const Vector3& centre) {
   auto& base = fem::of_elements<mechanics::HasBase>(body_of(bodies_, body));
   const std::string& name = model_.body(body).name();
-  const Place place{.item = fmt::format("base of body '{}'", name)};
+  const Location place{.item = fmt::format("base of body '{}'", name)};
   if (std::ranges::any_of(model_.base_motions(),
                           [&](const BaseMotion& motion) { return motion.body == body; })) {
     throw Error(ErrorKind::bad_argument, place, "the scene moves this base",

@@ -12,7 +12,7 @@ namespace sinew::sim {
 struct TorqueSettings {
   enum class Towards { side, across, along };  ///< a segment's coordinates: u, v, e
   std::string name;
-  Place place;
+  Location place;
   int body = 0;
   int segment = 0;
   Towards towards = Towards::side;
