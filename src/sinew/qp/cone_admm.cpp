@@ -34,7 +34,7 @@ bool ConeIsland::alternate(const ConePart& part) {
     const Vector3 y = -v / (kPenalty * scale_[k]);
     dual_.segment<3>(row) = y - project_on_cone(y, problem.cones[k].friction);
   }
-  for (std::size_t k = 0; k < problem.boxes.size(); ++k) dual_[problem.boxes[k].row] = 0.0;
+  for (const auto& box : problem.boxes) dual_[box.row] = 0.0;
   double before = kInfinity;
   for (int k = 0; k < kMaxAlternations; ++k) {
     solve_proximal(part);

@@ -83,12 +83,12 @@ class ConeIsland {
 
   /// The equations of a cone that is not open, linearised: A du + B dr = right.
   struct Branch {
-    bool slips = false;  // else A = 1, B = 0
+    Eigen::Matrix2d across;     // (mu s_n/|s_t|)(I - e e^T)
+    Eigen::Vector2d direction;  // e
     double weight = 0.0;
     double friction = 0.0;
-    Eigen::Vector2d direction;  // e
-    Eigen::Matrix2d across;     // (mu s_n/|s_t|)(I - e e^T)
     Vector3 right;
+    bool slips = false;                    // else A = 1, B = 0
     Vector3 act(const Vector3& du) const;  // A du
     Matrix3 own() const;                   // B
   };
