@@ -48,7 +48,7 @@ void subtract(const double* a, const double* f, std::ptrdiff_t leading, double* 
 
 class LuElimination {
  public:
-  LuElimination(Eigen::Map<MatrixX> a, std::span<int> pivot)
+  LuElimination(const Eigen::Map<MatrixX>& a, std::span<int> pivot)
       : a_(a),
         pivot_(pivot),
         size_(static_cast<int>(a.rows())),
@@ -158,7 +158,7 @@ class LuElimination {
 
 }  // namespace
 
-bool eliminate(Eigen::Map<MatrixX> a, std::span<int> pivot) {
+bool eliminate(const Eigen::Map<MatrixX>& a, std::span<int> pivot) {
   return LuElimination(a, pivot).run();
 }
 

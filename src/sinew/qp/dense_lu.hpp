@@ -14,7 +14,7 @@ namespace sinew::qp {
 /// taken by rows among the eliminated ones. Works by columns of a cache's size from left to right,
 /// each by panels; how columns are grouped changes no bit. @param a (n, n). @param pivot (k,) out:
 /// the row that row i was swapped with. @return false where a pivot vanishes.
-bool eliminate(Eigen::Map<MatrixX> a, std::span<int> pivot);
+bool eliminate(const Eigen::Map<MatrixX>& a, std::span<int> pivot);
 
 /// The factors of a whole matrix.
 class DenseLu {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/sim/require.hpp"
 
 namespace sinew::sim {
 
@@ -15,12 +16,6 @@ namespace {
 constexpr double kLinear = 0.999;
 // A chamber is not squeezed below this part of its volume; the gas law would be singular.
 constexpr double kMinVolume = 1e-3;
-
-void require(bool holds, const char* what, double value, const char* remedy) {
-  if (holds) return;
-  throw Error(ErrorKind::out_of_range, {.item = what}, fmt::format("{} is {:g}", what, value),
-              remedy);
-}
 
 void check(const std::optional<Supply>& supply) {
   if (!supply) return;

@@ -4,19 +4,11 @@
 #include <cmath>
 #include <numbers>
 
-#include <fmt/format.h>
-
-#include "sinew/core/error.hpp"
+#include "sinew/sim/require.hpp"
 
 namespace sinew::sim {
 
 namespace {
-
-void require(bool holds, const char* what, double value, const char* remedy) {
-  if (holds) return;
-  throw Error(ErrorKind::out_of_range, {.item = what}, fmt::format("{} is {:g}", what, value),
-              remedy);
-}
 
 // Tension of a spring and a damper side by side at the end of a step.
 Drive::Response pull(double stiffness, double free_length, double damping, double rest_length,
