@@ -33,6 +33,7 @@ constexpr double kFarPull = 0.25;         // of the robot's size
 constexpr double kStrongPull = 10.0;      // N
 constexpr double kFarBend = 1.5;          // rad
 constexpr double kStrongTorque = 0.5;     // N m
+constexpr double kFastTurn = 10.0;        // rad/s
 constexpr double kStrongPressure = 20e3;  // Pa
 constexpr double kStrongPower = 5.0;      // W
 
@@ -62,19 +63,25 @@ Ends motion_ends(const sim::Model& model, int index) {
   }
   const double far = kFarPull * model.size();
   const auto type = model.actuators()[static_cast<std::size_t>(index)].type;
-  if (type == sim::ActuatorType::torque) return {-kFarBend, kFarBend};
+  if (type == sim::ActuatorType::torque || type == sim::ActuatorType::motor) {
+    return {-kFarBend, kFarBend};
+  }
   return {type == sim::ActuatorType::cable ? 0.0 : -far, far};
 }
 
 Ends effort_ends(const sim::ActuatorModel& actuator) {
   if (actuator.type == sim::ActuatorType::pressure) return {-kStrongPressure, kStrongPressure};
-  if (actuator.type == sim::ActuatorType::torque) return {-kStrongTorque, kStrongTorque};
+  if (actuator.type == sim::ActuatorType::torque || actuator.type == sim::ActuatorType::motor) {
+    return {-kStrongTorque, kStrongTorque};
+  }
   return {actuator.type == sim::ActuatorType::cable ? 0.0 : -kStrongPull, kStrongPull};
 }
 
 Ends input_ends(const sim::Model& model, int index) {
-  const std::string_view name =
-      model.actuators()[static_cast<std::size_t>(index)].drive->input().name;
+  const sim::ActuatorModel& actuator = model.actuators()[static_cast<std::size_t>(index)];
+  if (actuator.type == sim::ActuatorType::motor) return {-kFastTurn, kFastTurn};
+  if (actuator.type == sim::ActuatorType::linear_motor) return {-model.size(), model.size()};
+  const std::string_view name = actuator.input_name().name;
   if (name == "power") return {0.0, kStrongPower};
   if (name == "phase") return {0.0, 1.0};
   const double volume = std::abs(model.chamber(index)->rest_volume());
@@ -95,9 +102,9 @@ Json quantities_json(const sim::Model& model, int index) {
       std::swap(quantities[0], quantities[1]);
     }
   }
-  if (actuator.drive != nullptr && *actuator.drive->input().name != '\0') {
+  if (*actuator.input_name().name != '\0') {
     const auto [low, high] = input_ends(model, index);
-    const Json input = quantity_json(actuator.drive->input(), {}, low, high);
+    const Json input = quantity_json(actuator.input_name(), {}, low, high);
     const bool first = actuator.command.kind == sim::CommandKind::input;
     quantities.insert(first ? quantities.begin() : quantities.end(), input);
   }

@@ -254,12 +254,34 @@ void RobotState::check(const RecordedState& recorded) const {
 void RobotState::put_body(const sim::Observable& what, const std::vector<double>& numbers,
                           sim::State& state) const {
   const int body = simulation_->model().body_index(what.owner);
+  if (mechanics::as<const mechanics::HasPose>(simulation_->body(body)) != nullptr) return;
   const bool of_coordinates =
       mechanics::as<const mechanics::HasCoordinates>(simulation_->body(body)) != nullptr;
   if (what.quantity != (of_coordinates ? "coordinates" : "positions")) return;
   std::vector<double>& own = state.bodies[static_cast<std::size_t>(body)];
   std::ranges::fill(own, 0.0);  // a moment at rest
   std::ranges::copy(numbers, own.begin());
+}
+
+// A rigid body is recorded by its position and rotation.
+void RobotState::put_poses(const RecordedState& recorded, sim::State& state) const {
+  for (int body = 0; body < simulation_->bodies(); ++body) {
+    const auto* rigid = mechanics::as<const mechanics::HasPose>(simulation_->body(body));
+    if (rigid == nullptr) continue;
+    const std::string& name = simulation_->body(body).model().name();
+    const std::vector<double>* position = nullptr;
+    const std::vector<double>* rotation = nullptr;
+    for (const auto& [index, numbers] : recorded.values) {
+      const sim::Observable& one = observables_.list()[index];
+      if (one.kind != sim::ObservableKind::body || one.owner != name) continue;
+      if (one.quantity == "position") position = &numbers;
+      if (one.quantity == "rotation") rotation = &numbers;
+    }
+    if (position == nullptr || rotation == nullptr) continue;
+    const std::vector<double>& q = *rotation;
+    rigid->put_pose(Vector3(position->data()), Eigen::Quaterniond(q[0], q[1], q[2], q[3]),
+                    state.bodies[static_cast<std::size_t>(body)]);
+  }
 }
 
 // An actuator of a replay has the command that it had, whether a controller or the scene gave it.
@@ -288,6 +310,7 @@ void RobotState::show(const RecordedState& recorded) {
     observables_.hold(index, numbers);
     if (one.kind == sim::ObservableKind::actuator) put_actuator(one, numbers.front(), state);
   }
+  put_poses(recorded, state);
   state.volume_ratio = 1.0;  // not recorded
   state.steps = recorded.step;
   simulation_->restore(state);

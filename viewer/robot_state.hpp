@@ -98,6 +98,7 @@ class RobotState {
   void check(const RecordedState& recorded) const;
   void put_body(const sim::Observable& what, const std::vector<double>& numbers,
                 sim::State& state) const;
+  void put_poses(const RecordedState& recorded, sim::State& state) const;
   void put_actuator(const sim::Observable& what, double number, sim::State& state);
   void fill_signals(Frame& frame);
   void fill_body(std::size_t index, const FieldChoice& wanted, BodyFrame& frame);

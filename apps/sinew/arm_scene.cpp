@@ -71,6 +71,10 @@ std::vector<std::string> left_out(const SceneDescription& scene, const std::stri
     if (actuator.body != body || actuator.type == ActuatorDescription::Type::torque) continue;
     names.push_back(fmt::format("{} '{}'", sim::actuator_words(actuator.type).type, actuator.name));
   }
+  for (const auto& joint : scene.joints) {
+    if (joint.first != body && joint.second != body) continue;
+    names.push_back(fmt::format("joint '{}'", joint.name));
+  }
   for (const auto& load : scene.loads) {
     if (load.body == body) names.push_back(fmt::format("load '{}'", load.name));
   }

@@ -11,6 +11,7 @@
 #include "sinew/constraint/cable.hpp"
 #include "sinew/constraint/chamber.hpp"
 #include "sinew/constraint/contact.hpp"
+#include "sinew/constraint/joint.hpp"
 #include "sinew/constraint/probe.hpp"
 #include "sinew/constraint/tie.hpp"
 #include "sinew/core/file.hpp"
@@ -170,6 +171,13 @@ void add_arm(Facts& facts, const pcc::Arm& arm) {
 
 void add_body(Facts& facts, const mechanics::BodyModel& body) {
   if (const auto* arm = mechanics::as<const pcc::HasArm>(body)) return add_arm(facts, arm->arm());
+  if (const auto* shape = mechanics::as<const mechanics::HasShape>(body)) {
+    facts.json["bodies"].push_back(
+        {{"name", body.name()}, {"shape", shape->shape_name()}, {"mass_kg", shape->mass()}});
+    facts.text += fmt::format("  body {}: rigid {}, {:.4g} g\n", body.name(), shape->shape_name(),
+                              1e3 * shape->mass());
+    return;
+  }
   const auto* material = mechanics::as<const fem::HasElements>(body);
   if (material == nullptr) return;
   const fem::FemModel& model = material->elements();
@@ -198,6 +206,27 @@ void add_notice(Facts& facts, const Notice& notice) {
                                    {"message", notice.message},
                                    {"remedy", notice.remedy}});
   facts.text += fmt::format("  {}: {}\n", notice_level_name(notice.level), notice.text());
+}
+
+void add_joint(Facts& facts, const sim::Model& model, int index) {
+  const sim::JointModel& joint = model.joints()[static_cast<std::size_t>(index)];
+  const auto name = [&](int body) -> std::string {
+    return body == sim::kWorld ? "world" : model.body(body).name();
+  };
+  const constraint::Tie* tie = model.tie(index);
+  const std::string type =
+      tie != nullptr ? "weld" : constraint::joint_type_name(model.joint(index)->type());
+  ordered_json json = {
+      {"name", joint.name}, {"type", type}, {"bodies", {name(joint.first), name(joint.second)}}};
+  if (tie != nullptr) {
+    json["points"] = tie->pairs().size();
+    facts.text += fmt::format("  joint {}: {} points of {} welded to {}\n", joint.name,
+                              tie->pairs().size(), name(joint.first), name(joint.second));
+  } else {
+    facts.text += fmt::format("  joint {}: {} of {} and {}\n", joint.name, type, name(joint.first),
+                              name(joint.second));
+  }
+  facts.json["joints"].push_back(json);
 }
 
 Facts scene_facts(const InfoOptions& options) {
@@ -256,16 +285,8 @@ Facts scene_facts(const InfoOptions& options) {
     facts.json["contacts"].push_back({{"name", name}, {"points", points}});
     facts.text += fmt::format("  contact {}: {} points\n", name, points);
   }
-  for (std::size_t i = 0; i < model.welds().size(); ++i) {
-    const sim::WeldModel& weld = model.welds()[i];
-    const auto name = [&](int body) { return model.body(body).name(); };
-    const auto points = model.weld(static_cast<int>(i)).pairs().size();
-    facts.json["joints"].push_back({{"name", weld.name},
-                                    {"type", "weld"},
-                                    {"bodies", {name(weld.first), name(weld.second)}},
-                                    {"points", points}});
-    facts.text += fmt::format("  joint {}: {} points of {} welded to {}\n", weld.name, points,
-                              name(weld.first), name(weld.second));
+  for (std::size_t i = 0; i < model.joints().size(); ++i) {
+    add_joint(facts, model, static_cast<int>(i));
   }
   for (const auto& controller : robot.controllers) {
     facts.json["controllers"].push_back(controller.name);

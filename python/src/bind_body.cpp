@@ -42,9 +42,24 @@ const mechanics::HasCoordinates& arm(const Body& self) {
   return *found;
 }
 
+const mechanics::HasPose& rigid(const Body& self, const char* what) {
+  const auto* found = mechanics::as<const mechanics::HasPose>(body(self));
+  if (found == nullptr) {
+    throw Error(ErrorKind::wrong_type, {.item = fmt::format("body('{}').{}", name(self), what)},
+                "this body is not rigid", "ask for its positions, or declare an effector on it");
+  }
+  return *found;
+}
+
+const mechanics::HasShape* shape(const Body& self) {
+  return mechanics::as<const mechanics::HasShape>(body(self).model());
+}
+
 py::array points_view(const Body& self, const Points& points, bool writable = false) {
-  // An arm works its points out when asked; there is nothing to look at live.
-  if (mechanics::as<const mechanics::HasCoordinates>(body(self)) != nullptr) return copy(points);
+  // Bodies of few coordinates work their points out when asked; there is nothing to look at live.
+  const bool few = mechanics::as<const mechanics::HasCoordinates>(body(self)) != nullptr ||
+                   mechanics::as<const mechanics::HasPose>(body(self)) != nullptr;
+  if (few) return copy(points);
   return view(points.data(), points.rows(), 3, py::cast(self.session), writable);
 }
 
@@ -317,7 +332,10 @@ void bind_mesh_of(py::class_<Body>& type) {
           "node_sets", [](const Body& self) { return body(self).model().mesh().node_sets; },
           "dict: named sets of nodes of the mesh.")
       .def_property_readonly(
-          "mass", [](const Body& self) { return elements(self).total_mass(); },
+          "mass",
+          [](const Body& self) {
+            return shape(self) != nullptr ? shape(self)->mass() : elements(self).total_mass();
+          },
           "float: total mass (kg).")
       .def_property_readonly(
           "node_masses", [](const Body& self) { return copy(elements(self).lumped_mass()); },
@@ -393,18 +411,72 @@ Returns
 )");
 }
 
+// What a rigid body alone has.
+void bind_pose(py::class_<Body>& type) {
+  type.def_property_readonly(
+          "position",
+          [](const Body& self) {
+            const Session::Use use(*self.session);
+            return copy(rigid(self, "position").origin());
+          },
+          "(3,) ndarray: where the frame of a rigid body's shape is (m). Raises Error(wrong-type) "
+          "for bodies that deform.")
+      .def_property_readonly(
+          "rotation",
+          [](const Body& self) {
+            const Session::Use use(*self.session);
+            const Eigen::Quaterniond turn(rigid(self, "rotation").axes());
+            const double sign = turn.w() < 0.0 ? -1.0 : 1.0;
+            const Eigen::Vector4d numbers(turn.w(), turn.x(), turn.y(), turn.z());
+            return copy(VectorX(sign * numbers));
+          },
+          "(4,) ndarray: its axes as a unit quaternion w, x, y, z with w >= 0. Raises as "
+          "`position`.")
+      .def_property_readonly(
+          "velocity",
+          [](const Body& self) {
+            const Session::Use use(*self.session);
+            const mechanics::HasPose& own = rigid(self, "velocity");
+            VectorX both(6);
+            both << own.linear_velocity(), own.angular_velocity();
+            return copy(both);
+          },
+          "(6,) ndarray: the velocity of its centre of mass (m/s), then its angular velocity about "
+          "the world's axes (rad/s). Raises as `position`.")
+      .def_property_readonly(
+          "centre_of_mass",
+          [](const Body& self) {
+            const Session::Use use(*self.session);
+            return copy(rigid(self, "centre_of_mass").centre_of_mass());
+          },
+          "(3,) ndarray: where its centre of mass is (m). Raises as `position`.")
+      .def_property_readonly(
+          "inertia",
+          [](const Body& self) {
+            rigid(self, "inertia");
+            return copy(Points(shape(self)->own_inertia()));
+          },
+          "(3, 3) ndarray: its inertia about the centre of mass, in the shape's axes (kg m^2). "
+          "Raises as `position`.");
+}
+
 }  // namespace
 
 void bind_body(py::module_& module) {
-  py::class_<Body> type(module, "Body", "A body of finite elements. From Simulation.body().");
+  py::class_<Body> type(module, "Body",
+                        "A body: of finite elements, rigid, or an arm. From Simulation.body().");
   type.def_property_readonly(
           "name", [](const Body& self) { return name(self); }, "str: as in the scene.")
       .def("__repr__", [](const Body& self) {
+        if (shape(self) != nullptr) {
+          return fmt::format("<sinew.Body '{}', rigid {}>", name(self), shape(self)->shape_name());
+        }
         const mesh::Mesh& mesh = body(self).model().mesh();
         return fmt::format("<sinew.Body '{}', {} nodes, {} elements>", name(self),
                            mesh.nodes.rows(), mesh.tetrahedra.size() + mesh.hexahedra.size());
       });
   bind_state(type);
+  bind_pose(type);
   bind_fields(module, type);
   bind_loads_of(type);
   bind_mesh_of(type);

@@ -107,7 +107,7 @@ py::dict all_contacts(const std::shared_ptr<Session>& self) {
 py::dict all_joints(const std::shared_ptr<Session>& self) {
   py::dict result;
   int index = 0;
-  for (const auto& weld : self->model().welds()) {
+  for (const auto& weld : self->model().joints()) {
     result[weld.name.c_str()] = Joint{{self, index++}};
   }
   return result;
@@ -316,7 +316,7 @@ A contact by its name. Raises Error (unknown-name) with a suggestion.
       .def(
           "joint",
           [](const std::shared_ptr<Session>& self, const std::string& name) {
-            return Joint{{self, self->model().weld_index(name)}};
+            return Joint{{self, self->model().joint_index(name)}};
           },
           py::arg("name"),
           R"(joint($self, name)

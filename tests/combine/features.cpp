@@ -107,6 +107,8 @@ std::vector<Feature> list_features() {
   const KeyTable& signal = map_of(map_of(cable, "command"), "tension");
   const KeyTable& controller = variant_table("controllers", "inverse");
   const KeyTable& weld = variant_table("joints", "weld");
+  const KeyTable& rigid = variant_table("bodies", "rigid");
+  const KeyTable& motor = variant_table("actuators", "motor");
   const std::vector<std::string> switched{"none", "yes"};
   return {
       {"bodies", {"fem", "pcc", "fem fem", "fem pcc", "pcc fem"}},
@@ -143,8 +145,13 @@ std::vector<Feature> list_features() {
       {"contact", or_none(alternatives(map_of(contact, "surface"), "plane"))},
       {"contact_friction", switched},
       {"contact_motion", switched},
-      // A link that only its joint holds, on any body; by what it is welded.
+      // A link that only its joint holds, on any body: soft and welded, or rigid; by what it is
+      // welded, or what it looks like and what moves it.
       {"link", or_none(words(variants(items("joints"), "type")))},
+      {"link_shape", alternatives(map_of(rigid, "shape"), "box")},
+      {"motor", or_none(alternatives(map_of(motor, "command"), "angle"))},
+      {"joint_limits", switched},
+      {"joint_friction", switched},
       {"weld", with(alternatives(weld, "region"), {"touching"})},
       {"cable_end", {"own", "link"}},
       {"effector", or_none(without(alternatives(effector, "point"), "points"))},

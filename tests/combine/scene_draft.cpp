@@ -90,6 +90,7 @@ struct Body {
   std::string id;
   bool fem = true;
   BodyShape shape;
+  bool rigid = false;
 };
 
 class Drafter {
@@ -128,9 +129,10 @@ class Drafter {
   double draw(double from, double to) { return random_.uniform(from, to); }
   bool dynamic() const { return of("integrator") != "quasi-static"; }
 
-  // The first body that is as asked; none: nullptr.
+  // The first body of elements, or the first arm; none: nullptr.
   const Body* body(bool fem) const {
-    const auto found = std::ranges::find(bodies_, fem, &Body::fem);
+    const auto found = std::ranges::find_if(
+        bodies_, [&](const Body& own) { return own.fem == fem && !own.rigid; });
     return found == bodies_.end() ? nullptr : &*found;
   }
   // Any body.
@@ -242,6 +244,7 @@ class Drafter {
   // that act on any body act on it, too.
   void add_link() {
     if (!has("link")) return;
+    if (of("link") != "weld") return add_rigid_link();
     const Body on = some_body();
     BodyShape shape = block_shape();
     shape.mesh = "{shape: block, length: 60 mm, width: 20 mm, height: 10 mm, element_size: 10 mm}";
@@ -262,6 +265,88 @@ class Drafter {
         fmt::format("{{type: {}, bodies: [<link>, <{}>]{}}}", of("link"), on.id, text));
     bodies_.push_back({"link", true, shape});
     add_fem_body(bodies_.back(), fmt::format("position: {}", vector_text(at)));
+  }
+
+  // In statics something must hold it: other joints stand for hinges there, and a motor for none.
+  std::string link_type() const {
+    const std::string& type = of("link");
+    return dynamic() || type == "slider" ? type : "hinge";
+  }
+
+  // What a rigid link is joined to: a section of an arm, a point of elements where that will do, or
+  // else a bracket that is welded to them.
+  std::string link_base(const Body& on, const std::array<double, 3>& at, const std::string& type) {
+    if (!on.fem || type == "ball") return on.id;
+    add("bodies", "bracket",
+        fmt::format("{{type: rigid, shape: {{box: 8 8 8 mm}}, density: 1200 kg/m^3, pose: "
+                    "{{position: {}}}}}",
+                    vector_text(at)));
+    add("joints", "bond",
+        fmt::format("{{type: weld, bodies: [<{}>, <bracket>], points: [{}, {}, {}], outside: "
+                    "nearest}}",
+                    on.id, vector_text(on.shape.at(0.75, 0.0, 0.0)),
+                    vector_text(on.shape.at(0.85, 0.2, 0.0)),
+                    vector_text(on.shape.at(0.8, -0.2, 0.3))));
+    return "bracket";
+  }
+
+  // A rigid body of 60 mm along x from a joint on a body near its tip.
+  void add_rigid_link() {
+    const Body on = some_body();
+    const std::array<double, 3> at = on.shape.at(0.8, 0.0, 0.0);
+    const std::string type = link_type(), base = link_base(on, at, type);
+    Body link{"link", false, block_shape(), true};
+    link.shape.origin = at;
+    std::array<double, 3> centre = at;
+    centre[0] += 30.0;
+    const std::string shape = look_up("link_shape", of("link_shape"),
+                                      {{"box", "box: 60 20 10 mm"},
+                                       {"sphere", "sphere: {radius: 12 mm}"},
+                                       {"capsule", "capsule: {radius: 8 mm, length: 44 mm}"},
+                                       {"cylinder", "cylinder: {radius: 8 mm, height: 60 mm}"}});
+    const bool lies = of("link_shape") == "capsule" || of("link_shape") == "cylinder";
+    add("bodies", "link",
+        fmt::format(
+            "{{type: rigid, shape: {{{}}}, density: 1000 kg/m^3, pose: {{position: {}{}}}}}", shape,
+            vector_text(centre), lies ? ", rotation: {axis: y, angle: 90 deg}" : ""));
+    bodies_.push_back(link);
+    const bool turns = type == "hinge" || type == "cylindrical";
+    const bool slides = type == "slider" || type == "cylindrical";
+    std::string text =
+        fmt::format("type: {}, bodies: [<{}>, <link>], point: {}", type, base, vector_text(at));
+    if (turns || slides) text += slides ? ", axis: 1 0 0" : ", axis: 0 1 0";
+    if (type == "universal") text += ", axes: [0 1 0, 0 0 1]";
+    if (has("joint_limits") && turns) text += ", limits: {angle: {min: -5 deg, max: 4 deg}}";
+    if (has("joint_limits") && !turns && slides) {
+      text += ", limits: {displacement: {min: -2 mm, max: 1 mm}}";
+    }
+    if (has("joint_friction") && turns != slides) {
+      text += turns ? ", friction: 0.1 mN m" : ", friction: 5 mN";
+    }
+    add("joints", "seam", "{" + text + "}");
+    if (turns != slides) add_motor(turns);
+  }
+
+  void add_motor(bool turns) {
+    std::string told = of("motor");
+    if (!dynamic() && (told == "none" || told == "torque")) told = "angle";
+    if (told == "none") return;
+    const std::string command =
+        look_up("motor", told,
+                {{"angle", turns ? "angle: " + signal(draw(1.0, 5.0), "deg")
+                                 : "displacement: " + signal(draw(0.3, 1.5), "mm")},
+                 {"torque", turns ? "torque: " + signal(draw(0.1, 1.0), "mN m")
+                                  : "force: " + signal(draw(0.01, 0.1), "N")},
+                 {"velocity", turns ? "velocity: " + signal(draw(10.0, 60.0), "deg/s")
+                                    : "velocity: " + signal(draw(2.0, 10.0), "mm/s")}});
+    std::string text = fmt::format("type: {}, joint: <seam>, command: {{{}}}",
+                                   turns ? "motor" : "linear-motor", command);
+    if (dynamic()) {
+      text += turns ? ", limits: {torque: {min: -0.1 N m, max: 0.1 N m}}"
+                    : ", limits: {force: {min: -5 N, max: 5 N}}";
+      steerable_.push_back("motor");
+    }
+    add("actuators", "motor", "{" + text + "}");
   }
 
   // A value over time that ends at so many units.
@@ -433,6 +518,7 @@ class Drafter {
     text += on.fem ? fmt::format(", nodes: {{set: {}}}", on.shape.tip)
                    : fmt::format(", points: [{}, {}]", vector_text(on.shape.at(1.0, 0.0, 0.0)),
                                  vector_text(on.shape.at(1.0, 0.0, -1.0)));
+    if (on.rigid) text += ", outside: nearest";
     if (has("contact_friction")) text += ", friction: 0.5";
     if (has("contact_motion")) {
       text += fmt::format(", motion: {{{}: {{ramp: {{to: {:.3g} mm, duration: 60 ms}}}}}}",

@@ -3,7 +3,7 @@
 
 #include "sinew/inverse/inverse_controller.hpp"
 #include "sinew/sim/signal.hpp"
-#include "sinew/sim/weld_load.hpp"
+#include "sinew/sim/joint_load.hpp"
 
 #include "../sim/cut_beam.hpp"
 
@@ -32,7 +32,7 @@ TEST(WeldControl, SteersTheSecondBodyThroughTheFirst) {
   for (int k = 0; k < 100; ++k) controller.step();
   EXPECT_EQ(controller.status(), InverseStatus::on_target);
   EXPECT_LT((simulation.effector_value(0) - target).norm(), 5e-5);
-  EXPECT_LT(sim::weld_load(simulation, 0).gap, 1e-8);
+  EXPECT_LT(sim::joint_load(simulation, 0).gap, 1e-8);
 }
 
 }  // namespace

@@ -22,7 +22,7 @@
 #include "sinew/sim/row_efforts.hpp"
 #include "sinew/sim/signal.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/weld_load.hpp"
+#include "sinew/sim/joint_load.hpp"
 
 #include "cut_beam.hpp"
 
@@ -58,7 +58,7 @@ TEST(Weld, CutBeamIsTheUncutBeam) {
     EXPECT_GT((tip_of(whole) - Vector3(kBeamLength, 0.0, 0.0)).norm(), 0.004);
     EXPECT_LT((tip_of(cut) - tip_of(whole)).norm(), 1e-8 * kBeamLength);
     EXPECT_NEAR(cut.actuator(0).motion, whole.actuator(0).motion, 1e-9 * kBeamLength);
-    EXPECT_LT(weld_load(cut, 0).gap, 1e-9 * kBeamLength);
+    EXPECT_LT(joint_load(cut, 0).gap, 1e-9 * kBeamLength);
   }
 }
 
@@ -88,7 +88,7 @@ TEST(Weld, DefaultStepsOfTheCutBeamAreThoseOfTheUncut) {
 TEST(Weld, CarriesTheWeightOfWhatHangsOnIt) {
   Simulation simulation(cut_beam({.finer = 2}));
   simulation.solve_static();
-  const WeldLoad load = weld_load(simulation, 0);
+  const JointLoad load = joint_load(simulation, 0);
   const double weight = 0.5 * kBeamLength * 0.02 * 0.02 * 1070.0 * kBeamGravity;
   // The force on the second body, which carries the first.
   EXPECT_LT((load.force - Vector3(0.0, 0.0, -weight)).norm(), 1e-8 * weight);
@@ -170,7 +170,7 @@ TEST(Weld, IsNoActuator) {
     simulation.step();
   }
   const RowEfforts efforts = split_efforts(simulation);
-  const constraint::Tie& seam = simulation.model().weld(0);
+  const constraint::Tie& seam = *simulation.model().tie(0);
   const constraint::Cable& cable = *simulation.model().cable(0);
   double held = 0.0;
   for (int row = 0; row < static_cast<int>(efforts.actuation.size()); ++row) {
@@ -190,7 +190,7 @@ TEST(Weld, HoldsBetweenTwoBodiesThatAreFixed) {
   Simulation cut(cut_beam(options));
   cut.solve_static();
   EXPECT_TRUE(cut.model().anchors().empty());
-  EXPECT_LT(weld_load(cut, 0).gap, 1e-9 * kBeamLength);
+  EXPECT_LT(joint_load(cut, 0).gap, 1e-9 * kBeamLength);
   EXPECT_LT(std::abs(tip_of(cut)[2]), 1e-12);
 }
 

@@ -10,6 +10,7 @@
 
 #include "sinew/constraint/placement.hpp"
 #include "sinew/core/error.hpp"
+#include "sinew/core/rotation.hpp"
 
 namespace sinew::constraint {
 
@@ -58,12 +59,6 @@ std::vector<Weighted> quadratic_weights() {
     }
   }
   return result;
-}
-
-Matrix3 cross_matrix(const Vector3& v) {
-  Matrix3 m;
-  m << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-  return m;
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "sinew/constraint/placement.hpp"
 #include "sinew/core/error.hpp"
+#include "sinew/core/rotation.hpp"
 
 namespace sinew::constraint {
 
@@ -22,17 +23,6 @@ Matrix3 triangle_frame(const Vector3& a, const Vector3& b, const Vector3& c) {
   frame.col(2) = (b - a).cross(c - a).normalized();
   frame.col(1) = frame.col(2).cross(frame.col(0));
   return frame;
-}
-
-Vector3 rotation_vector(const Matrix3& rotation) {
-  const Eigen::AngleAxisd turn(rotation);
-  return turn.angle() * turn.axis();
-}
-
-Matrix3 rotation_matrix(const Vector3& vector) {
-  const double angle = vector.norm();
-  if (angle == 0.0) return Matrix3::Identity();
-  return Eigen::AngleAxisd(angle, vector / angle).toRotationMatrix();
 }
 
 }  // namespace

@@ -9,17 +9,12 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/rotation.hpp"
 #include "sinew/mesh/patch.hpp"
 
 namespace sinew::fem {
 
 namespace {
-
-Matrix3 cross_matrix(const Vector3& v) {
-  Matrix3 m;
-  m << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-  return m;
-}
 
 std::vector<FacePoint> triangle_rule() {
   std::vector<FacePoint> points;

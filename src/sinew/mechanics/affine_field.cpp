@@ -1,8 +1,7 @@
 #include "sinew/mechanics/affine_field.hpp"
 
-#include <Eigen/Geometry>
-
 #include "sinew/core/error.hpp"
+#include "sinew/core/rotation.hpp"
 
 namespace sinew::mechanics {
 
@@ -12,11 +11,7 @@ AffineField rigid_displacement(const Vector3& translation, const Vector3& rotati
     throw Error(ErrorKind::not_finite, {.item = "base"}, "a number is not finite",
                 "give a translation (m), a rotation vector (rad) and a centre (m)");
   }
-  const double angle = rotation.norm();
-  Matrix3 turn = Matrix3::Zero();  // R - I
-  if (angle > 0.0) {
-    turn = Eigen::AngleAxisd(angle, rotation / angle).toRotationMatrix() - Matrix3::Identity();
-  }
+  const Matrix3 turn = rotation_matrix(rotation) - Matrix3::Identity();
   AffineField displacement;
   displacement << turn, translation - turn * centre;
   return displacement;

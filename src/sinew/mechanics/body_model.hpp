@@ -65,6 +65,10 @@ class BodyModel {
   /// coordinates takes all rows always.
   virtual bool leaves_rows_out() const { return false; }
 
+  /// Whether nothing of it is held: it has all rigid motions. Of bodies of elements, what is fixed
+  /// of them says so.
+  virtual bool is_free() const { return false; }
+
   /// All that its motion depends on, by names such as "material", but for its sites.
   virtual std::vector<NamedHash> parts() const = 0;
   /// Where in the body a site is.

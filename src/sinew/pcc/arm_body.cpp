@@ -12,8 +12,7 @@ namespace sinew::pcc {
 
 ArmBody::ArmBody(const ArmBodyModel& model, int histories)
     : model_(model),
-      state_(std::make_unique<ArmState>(model.arm().coordinates(), model.rows().size(),
-                                        model.entries().size(), histories)),
+      state_(std::make_unique<ArmState>(model.arm().coordinates(), model.own_rows(), histories)),
       pose_(std::make_unique<ArmPose>(model, *state_)),
       step_(std::make_unique<ArmStep>(model, *state_, *pose_)),
       rest_gravity_energy_(pose_->dynamics().gravity_energy()) {}

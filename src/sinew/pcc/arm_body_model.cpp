@@ -110,19 +110,7 @@ Vector3 ArmBodyModel::rest_position(int point) const {
 void ArmBodyModel::finish(int body, const mechanics::RowPattern& rows,
                           std::span<const mechanics::RowCurvature>,
                           const linalg::FactorisationSettings&) {
-  rows_.clear();
-  entries_.clear();
-  for (int row = 0; row < rows.rows(); ++row) {
-    const auto end = rows.row_start[static_cast<std::size_t>(row) + 1];
-    bool mine = false;
-    for (auto e = rows.row_start[static_cast<std::size_t>(row)]; e < end; ++e) {
-      const mechanics::Site& site = rows.site[static_cast<std::size_t>(e)];
-      if (site.body != body) continue;
-      mine = true;
-      entries_.push_back({static_cast<int>(rows_.size()), e, site.number});
-    }
-    if (mine) rows_.push_back(row);
-  }
+  own_rows_ = mechanics::OwnRows(body, rows);
 }
 
 std::unique_ptr<mechanics::Body> ArmBodyModel::create(ThreadPool&, bool, int histories) const {

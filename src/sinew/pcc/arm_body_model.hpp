@@ -9,6 +9,7 @@
 
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
+#include "sinew/mechanics/own_rows.hpp"
 #include "sinew/mesh/mesh.hpp"
 #include "sinew/pcc/arm_dynamics.hpp"
 #include "sinew/pcc/has_arm.hpp"
@@ -26,12 +27,6 @@ class ArmBodyModel final : public mechanics::BodyModel,
     ArmPoint point;                               ///< or any of the section whose orientation it is
     int coordinate = -1;                          ///< of kind coordinate
     Matrix3 rest_rotation = Matrix3::Identity();  ///< of kind orientation
-  };
-  /// An attachment that a row touches.
-  struct Entry {
-    int row = 0;    ///< of rows()
-    int entry = 0;  ///< of the world's
-    int attachment = 0;
   };
 
   explicit ArmBodyModel(std::shared_ptr<const Arm> arm);
@@ -66,9 +61,7 @@ class ArmBodyModel final : public mechanics::BodyModel,
   const Attachment& attachment(int site) const {
     return attachments_[static_cast<std::size_t>(site)];
   }
-  /// World rows that touch it, ascending.
-  const std::vector<std::int32_t>& rows() const { return rows_; }
-  const std::vector<Entry>& entries() const { return entries_; }
+  const mechanics::OwnRows& own_rows() const { return own_rows_; }
   /// The points that the nodes of mesh() are.
   const std::vector<ArmPoint>& skin_points() const { return skin_points_; }
 
@@ -81,8 +74,7 @@ class ArmBodyModel final : public mechanics::BodyModel,
 
   std::shared_ptr<const Arm> arm_;
   std::vector<Attachment> attachments_;
-  std::vector<std::int32_t> rows_;
-  std::vector<Entry> entries_;
+  mechanics::OwnRows own_rows_;
   mesh::Mesh skin_;
   std::vector<ArmPoint> skin_points_;
 };

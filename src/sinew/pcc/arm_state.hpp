@@ -8,14 +8,15 @@
 
 #include "sinew/core/types.hpp"
 #include "sinew/mechanics/integrator.hpp"
+#include "sinew/mechanics/own_rows.hpp"
 
 namespace sinew::pcc {
 
 /// One for a body, which its parts look at.
 struct ArmState {
-  /// At rest. @param coordinates,rows,entries of the model. @param histories see
+  /// At rest. @param coordinates,own of the model. @param histories see
   /// mechanics::history_count().
-  ArmState(Eigen::Index coordinates, std::size_t rows, std::size_t entries, int histories);
+  ArmState(Eigen::Index coordinates, const mechanics::OwnRows& own, int histories);
 
   void restart();
   /// Of all but the start of the step in hand.
@@ -28,10 +29,7 @@ struct ArmState {
 
   VectorX q, rate;               ///< (coordinates,) rad and rad/s; extensions: m and m/s
   std::vector<VectorX> history;  ///< what the integrator keeps, (coordinates,) each
-  /// Efforts of the own rows and directions of their entries, as known last: part of the state,
-  /// since the next step's matrix looks at them.
-  VectorX effort;
-  std::vector<Vector3> directions;
+  mechanics::RowMemory memory;
   VectorX start;  ///< q at the start of the step; the rate stays that of its start until it ends
 };
 

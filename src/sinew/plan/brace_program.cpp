@@ -6,17 +6,13 @@
 
 #include <Eigen/Geometry>
 
+#include "sinew/core/rotation.hpp"
+
 namespace sinew::plan {
 
 namespace {
 
 constexpr double kLengthScale = 0.01;  // m
-
-Matrix3 cross_matrix(const Vector3& a) {
-  Matrix3 result;
-  result << 0.0, -a[2], a[1], a[2], 0.0, -a[0], -a[1], a[0], 0.0;
-  return result;
-}
 
 /// A point that the base's turn carries along: p_w = b + R (p - b), by (q, gamma).
 VectorDerivatives turned(const VectorDerivatives& local, const Vector3& base,

@@ -1,6 +1,7 @@
 #include "sinew/scene/build.hpp"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -83,11 +84,23 @@ Robot build(SceneDescription description) {
   }
   const BodyOf body_of = [&](const std::string& name) -> BuiltBody {
     const auto found = std::ranges::find(description.bodies, name, &BodyDescription::name);
+    if (found == description.bodies.end()) return {sim::kWorld};
     const int number = static_cast<int>(found - description.bodies.begin());
-    return {number, &builder.added_body(number).mesh()};
+    const mechanics::BodyModel& model = builder.added_body(number);
+    return {number, &model.mesh(), &model};
   };
+  // Welds come last, where rows of saved states have them; motors need the other joints first.
+  std::map<std::string, int> joints;
+  const auto add_joints = [&](bool welds) {
+    for (const JointDescription& joint : description.joints) {
+      const bool weld = joint.type == constraint::JointType::weld;
+      if (weld == welds) joints[joint.name] = add_joint(builder, joint, body_of);
+    }
+  };
+  add_joints(false);
+  const JointOf joint_of = [&](const std::string& name) { return joints.at(name); };
   for (const ActuatorDescription& actuator : description.actuators) {
-    add_actuator(builder, actuator, body_of);
+    add_actuator(builder, actuator, body_of, joint_of);
     if (actuator.type != ActuatorDescription::Type::cable) continue;
     const mechanics::BodyModel& body = builder.added_body(body_of(actuator.body).number);
     if (auto notice = bare_points_notice(actuator, body)) {
@@ -102,7 +115,7 @@ Robot build(SceneDescription description) {
   for (const ContactDescription& contact : description.contacts) {
     add_contact(builder, contact, body_of);
   }
-  for (const JointDescription& joint : description.joints) add_joint(builder, joint, body_of);
+  add_joints(true);
   robot.model = builder.build(factorisation_settings(description.solver));
   for (const ControllerDescription& controller : description.controllers) {
     robot.controllers.push_back(controller_of(controller, *robot.model));

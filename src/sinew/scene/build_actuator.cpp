@@ -7,6 +7,7 @@
 #include "sinew/sim/cable_settings.hpp"
 #include "sinew/sim/chamber_settings.hpp"
 #include "sinew/sim/force_settings.hpp"
+#include "sinew/sim/joint_settings.hpp"
 #include "sinew/sim/model_builder.hpp"
 #include "sinew/sim/spring_line_settings.hpp"
 #include "sinew/sim/torque_settings.hpp"
@@ -14,10 +15,6 @@
 namespace sinew::scene {
 
 namespace {
-
-sim::Limits limits(const LimitDescription& description) {
-  return {description.min, description.max, description.rate};
-}
 
 sim::Command command(const ActuatorDescription& actuator) {
   if (!actuator.command) return {};
@@ -45,9 +42,9 @@ void add_cable(sim::ModelBuilder& builder, const ActuatorDescription& actuator, 
   }
   cable.pull_from_world = actuator.pull == PullPoint::world;
   cable.outside = actuator.outside;
-  cable.tension = limits(actuator.effort);
+  cable.tension = limits_of(actuator.effort);
   cable.tension.min = std::max(cable.tension.min, 0.0);
-  cable.displacement = limits(actuator.motion);
+  cable.displacement = limits_of(actuator.motion);
   cable.command = command(actuator);
   cable.geometric_stiffness = actuator.geometric_stiffness;
   cable.friction = actuator.friction;
@@ -64,8 +61,8 @@ void add_force(sim::ModelBuilder& builder, const ActuatorDescription& actuator, 
   force.point = actuator.point;
   force.direction = actuator.direction;
   force.outside = actuator.outside;
-  force.force = limits(actuator.effort);
-  force.displacement = limits(actuator.motion);
+  force.force = limits_of(actuator.effort);
+  force.displacement = limits_of(actuator.motion);
   force.command = command(actuator);
   builder.add_force(force);
 }
@@ -108,12 +105,24 @@ void add_chamber(sim::ModelBuilder& builder, const ActuatorDescription& actuator
   chamber.outside = actuator.outside;
   chamber.cap = actuator.cap;
   chamber.load_stiffness = actuator.load_stiffness;
-  chamber.pressure = limits(actuator.effort);
-  chamber.volume_growth = limits(actuator.motion);
+  chamber.pressure = limits_of(actuator.effort);
+  chamber.volume_growth = limits_of(actuator.motion);
   chamber.command = command(actuator);
   chamber.gas = actuator.gas;
   chamber.liquid = actuator.liquid;
   builder.add_chamber(chamber);
+}
+
+void add_motor(sim::ModelBuilder& builder, const ActuatorDescription& actuator, int joint) {
+  sim::MotorSettings motor;
+  motor.name = actuator.name;
+  motor.place = actuator.place;
+  motor.joint = joint;
+  motor.linear = actuator.type == ActuatorDescription::Type::linear_motor;
+  motor.effort = limits_of(actuator.effort);
+  motor.motion = limits_of(actuator.motion);
+  motor.command = command(actuator);
+  builder.add_motor(motor);
 }
 
 void add_torque(sim::ModelBuilder& builder, const ActuatorDescription& actuator, int body) {
@@ -123,17 +132,22 @@ void add_torque(sim::ModelBuilder& builder, const ActuatorDescription& actuator,
   torque.body = body;
   torque.segment = actuator.segment;
   torque.towards = actuator.towards;
-  torque.torque = limits(actuator.effort);
-  torque.angle = limits(actuator.motion);
+  torque.torque = limits_of(actuator.effort);
+  torque.angle = limits_of(actuator.motion);
   torque.command = command(actuator);
   builder.add_torque(torque);
 }
 
 }  // namespace
 
+sim::Limits limits_of(const LimitDescription& description) {
+  return {description.min, description.max, description.rate};
+}
+
 void add_actuator(sim::ModelBuilder& builder, const ActuatorDescription& actuator,
-                  const BodyOf& body_of) {
-  const auto [body, mesh] = body_of(actuator.body);
+                  const BodyOf& body_of, const JointOf& joint_of) {
+  if (!actuator.joint.empty()) return add_motor(builder, actuator, joint_of(actuator.joint));
+  const auto [body, mesh, model] = body_of(actuator.body);
   switch (actuator.type) {
     case ActuatorDescription::Type::cable:
       return add_cable(builder, actuator, body, body_of);
@@ -145,6 +159,9 @@ void add_actuator(sim::ModelBuilder& builder, const ActuatorDescription& actuato
       return add_spring(builder, actuator, body);
     case ActuatorDescription::Type::torque:
       return add_torque(builder, actuator, body);
+    case ActuatorDescription::Type::motor:
+    case ActuatorDescription::Type::linear_motor:
+      break;  // of joints, above
   }
 }
 

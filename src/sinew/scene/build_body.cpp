@@ -76,6 +76,13 @@ void add_arm(sim::ModelBuilder& builder, const SceneDescription& scene,
   builder.add_arm(std::move(settings));
 }
 
+void add_rigid(sim::ModelBuilder& builder, const SceneDescription& scene,
+               const BodyDescription& body) {
+  rigid::RigidSettings settings = *body.rigid;
+  settings.gravity = scene.gravity;
+  builder.add_rigid_body(std::move(settings), body.place);
+}
+
 }  // namespace
 
 std::optional<Notice> add_body(sim::ModelBuilder& builder, const SceneDescription& scene,
@@ -84,6 +91,10 @@ std::optional<Notice> add_body(sim::ModelBuilder& builder, const SceneDescriptio
   try {
     if (body.arm) {
       add_arm(builder, scene, body);
+      return notice;
+    }
+    if (body.rigid) {
+      add_rigid(builder, scene, body);
       return notice;
     }
     fem::FemBodySettings settings = fem_settings(scene, body);

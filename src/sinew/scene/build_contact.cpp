@@ -1,6 +1,11 @@
 #include <algorithm>
+#include <string_view>
+
+#include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 #include "sinew/scene/build_parts.hpp"
 #include "sinew/scene/readers.hpp"
 #include "sinew/sim/contact_settings.hpp"
@@ -25,11 +30,20 @@ std::vector<NodeId> nodes_of(const ContactDescription& contact, const mesh::Mesh
   return nodes;
 }
 
+// The nodes of a rigid body's picture are points of it where it has corners alone.
+void check_corners(const ContactDescription& contact, const mechanics::BodyModel& model) {
+  const auto* shape = mechanics::as<const mechanics::HasShape>(model);
+  if (shape == nullptr || shape->shape_name() == std::string_view("box")) return;
+  throw Error(ErrorKind::not_in_this_version, contact.place,
+              fmt::format("body '{}' is round, and contact of round bodies", contact.body),
+              "name `points` of it that may touch");
+}
+
 }  // namespace
 
 void add_contact(sim::ModelBuilder& builder, const ContactDescription& contact,
                  const BodyOf& body_of) {
-  const auto [body, mesh] = body_of(contact.body);
+  const auto [body, mesh, model] = body_of(contact.body);
   sim::ContactSettings settings;
   settings.name = contact.name;
   settings.place = contact.place;
@@ -38,7 +52,10 @@ void add_contact(sim::ModelBuilder& builder, const ContactDescription& contact,
   settings.points = contact.points.points;
   settings.outside = contact.outside;
   settings.friction = contact.friction;
-  if (settings.points.rows() == 0) settings.nodes = nodes_of(contact, *mesh);
+  if (settings.points.rows() == 0) {
+    check_corners(contact, *model);
+    settings.nodes = nodes_of(contact, *mesh);
+  }
   if (contact.motion) {
     const BaseDescription& motion = *contact.motion;
     settings.motion = {-1, motion.translation, motion.angle, motion.axis, motion.centre};

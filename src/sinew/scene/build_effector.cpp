@@ -7,7 +7,7 @@ namespace sinew::scene {
 
 void add_effector(sim::ModelBuilder& builder, const EffectorDescription& effector,
                   const BodyOf& body_of) {
-  const auto [body, mesh] = body_of(effector.body);
+  const auto [body, mesh, model] = body_of(effector.body);
   sim::EffectorSettings settings;
   settings.name = effector.name;
   settings.place = effector.place;

@@ -1,7 +1,7 @@
 // Which finite element a body is made of, and what there is to say about it.
-#include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "sinew/core/rotation.hpp"
 #include "sinew/fem/bending_stiffness.hpp"
 #include "sinew/mesh/quadratic.hpp"
 #include "sinew/scene/build.hpp"
@@ -83,9 +83,8 @@ mesh::Mesh make_own_mesh(const BodyDescription& body) {
 
 mesh::Mesh make_body_mesh(const BodyDescription& body) {
   mesh::Mesh mesh = make_own_mesh(body);
-  if (const double angle = body.rotation.norm(); angle > 0.0) {
-    const Matrix3 turn = Eigen::AngleAxisd(angle, body.rotation / angle).toRotationMatrix();
-    mesh.nodes = mesh.nodes * turn.transpose();
+  if (!body.rotation.isZero(0.0)) {
+    mesh.nodes = mesh.nodes * rotation_matrix(body.rotation).transpose();
   }
   if (!body.position.isZero(0.0)) mesh.nodes.rowwise() += body.position.transpose();
   return mesh;

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/embedding.hpp"
 #include "sinew/mesh/topology.hpp"
 #include "sinew/scene/build_parts.hpp"
@@ -14,25 +16,60 @@ namespace sinew::scene {
 
 namespace {
 
-std::vector<NodeId> nodes_on(const mesh::Mesh& first, const mesh::Mesh& second,
+// Nodes that lie on a rigid shape do so to this, of the mesh's size.
+constexpr double kOnShape = 1e-5;
+
+std::vector<NodeId> nodes_on(const mesh::Mesh& first, const BuiltBody& second,
                              const JointDescription& joint) {
-  const mesh::Embedder embedder(second);
   std::vector<NodeId> nodes = mesh::outer_nodes(first);
-  std::erase_if(nodes, [&](NodeId node) {
-    const Vector3 at = first.nodes.row(node).transpose();
-    const auto point = embedder.locate(at, mesh::Outside::nearest, joint.name);
-    return point.distance > 0.0;
-  });
+  const auto at = [&](NodeId node) -> Vector3 { return first.nodes.row(node).transpose(); };
+  if (const auto* shape = mechanics::as<const mechanics::HasShape>(*second.model)) {
+    const Vector3 extent = first.nodes.colwise().maxCoeff() - first.nodes.colwise().minCoeff();
+    std::erase_if(nodes, [&](NodeId node) {
+      return shape->rest_distance(at(node)) > kOnShape * extent.norm();
+    });
+  } else {
+    const mesh::Embedder embedder(*second.mesh);
+    std::erase_if(nodes, [&](NodeId node) {
+      return embedder.locate(at(node), mesh::Outside::nearest, joint.name).distance > 0.0;
+    });
+  }
   if (!nodes.empty()) return nodes;
   throw Error(ErrorKind::empty_region, joint.place,
               fmt::format("no node of '{}' lies in or on '{}'", joint.first, joint.second),
               "name a region and `outside: nearest`, or put the bodies together");
 }
 
-}  // namespace
+bool is_rigid(const BuiltBody& body) {
+  return body.model == nullptr || mechanics::as<const mechanics::HasShape>(*body.model) != nullptr;
+}
 
-void add_joint(sim::ModelBuilder& builder, const JointDescription& joint, const BodyOf& body_of) {
-  const BuiltBody first = body_of(joint.first), second = body_of(joint.second);
+// Parts that stay rigid.
+int add_rigid_joint(sim::ModelBuilder& builder, const JointDescription& joint,
+                    const BuiltBody& first, const BuiltBody& second) {
+  sim::JointSettings settings;
+  settings.name = joint.name;
+  settings.place = joint.place;
+  settings.type = joint.type;
+  settings.first = first.number;
+  settings.second = second.number;
+  settings.point = joint.point;
+  settings.axis = joint.axis;
+  settings.second_axis = joint.second_axis;
+  settings.angle = limits_of(joint.angle);
+  settings.displacement = limits_of(joint.displacement);
+  settings.friction = joint.friction;
+  if (joint.type == constraint::JointType::weld) {
+    const BuiltBody& at = first.model != nullptr ? first : second;
+    if (at.model != nullptr) {
+      settings.point = mechanics::as<const mechanics::HasShape>(*at.model)->rest_origin();
+    }
+  }
+  return builder.add_joint(settings);
+}
+
+int add_weld(sim::ModelBuilder& builder, const JointDescription& joint, const BuiltBody& first,
+             const BuiltBody& second) {
   sim::WeldSettings weld;
   weld.name = joint.name;
   weld.place = joint.place;
@@ -45,10 +82,28 @@ void add_joint(sim::ModelBuilder& builder, const JointDescription& joint, const 
       return mesh::select_nodes(*first.mesh, region_of(*joint.region), joint.region->place.item);
     });
   } else if (weld.points.rows() == 0 && first.number != second.number) {
-    weld.nodes = nodes_on(*first.mesh, *second.mesh, joint);
+    weld.nodes = nodes_on(*first.mesh, second, joint);
     weld.outside = mesh::Outside::nearest;
   }
-  builder.add_weld(weld);
+  return builder.add_weld(weld);
+}
+
+}  // namespace
+
+int add_joint(sim::ModelBuilder& builder, const JointDescription& joint, const BodyOf& body_of) {
+  BuiltBody first = body_of(joint.first), second = body_of(joint.second);
+  if (joint.type != constraint::JointType::weld || (is_rigid(first) && is_rigid(second))) {
+    return add_rigid_joint(builder, joint, first, second);
+  }
+  const bool chosen = joint.region || joint.points.points.rows() > 0;
+  // Nodes are the deformable body's, whichever is named first.
+  if (!chosen && is_rigid(first)) std::swap(first, second);
+  if (first.model == nullptr || second.model == nullptr) {
+    throw Error(ErrorKind::wrong_type, joint.bodies_place,
+                "a deformable body is welded to the world",
+                "write `fixed` under the body, with the region that stays");
+  }
+  return add_weld(builder, joint, first, second);
 }
 
 }  // namespace sinew::scene

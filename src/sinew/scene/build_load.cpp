@@ -59,7 +59,7 @@ std::vector<mesh::Face> outer_surface(const mesh::Mesh& mesh, const std::string&
 }  // namespace
 
 void add_load(sim::ModelBuilder& builder, const LoadDescription& load, const BodyOf& body_of) {
-  const auto [body, found] = body_of(load.body);
+  const auto [body, found, model] = body_of(load.body);
   const mesh::Mesh& mesh = *found;
   sim::LoadSettings settings;
   settings.name = load.name;

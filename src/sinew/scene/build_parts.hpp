@@ -17,7 +17,8 @@ class BodyModel;
 }
 namespace sinew::sim {
 class ModelBuilder;
-}
+struct Limits;
+}  // namespace sinew::sim
 
 namespace sinew::scene {
 
@@ -25,9 +26,12 @@ namespace sinew::scene {
 struct BuiltBody {
   int number = 0;
   const mesh::Mesh* mesh = nullptr;
+  const mechanics::BodyModel* model = nullptr;  ///< null: the world
 };
-/// By its name.
+/// By its name; kWorldName gives the world.
 using BodyOf = std::function<BuiltBody(const std::string&)>;
+/// The number of a joint, by its name.
+using JointOf = std::function<int(const std::string&)>;
 
 /// The mesh of a body of finite elements, in the element that it names. Without a name: what the
 /// file holds, tetrahedra for shapes; but quadratic tetrahedra in place of linear ones that would
@@ -53,6 +57,8 @@ std::optional<Notice> bare_points_notice(const ActuatorDescription& cable,
 /// The region as the mesh's selections know it.
 mesh::Region region_of(const FixedRegion& region);
 
+sim::Limits limits_of(const LimitDescription& description);
+
 /// The faces of the mesh that a surface names, whatever but a file. Throws Error at its place.
 std::vector<mesh::Face> faces_of(const SurfaceDescription& surface, const mesh::Mesh& mesh);
 
@@ -60,9 +66,10 @@ std::vector<mesh::Face> faces_of(const SurfaceDescription& surface, const mesh::
 std::optional<Notice> add_body(sim::ModelBuilder& builder, const SceneDescription& scene,
                                const BodyDescription& body);
 
-/// @param builder that has the bodies. @param actuator to be added. @param body_of finds bodies.
+/// @param builder that has the bodies. @param actuator to be added. @param body_of,joint_of find
+/// what it acts on.
 void add_actuator(sim::ModelBuilder& builder, const ActuatorDescription& actuator,
-                  const BodyOf& body_of);
+                  const BodyOf& body_of, const JointOf& joint_of);
 
 /// @param builder that has the bodies. @param effector to be added. @param body_of finds bodies.
 void add_effector(sim::ModelBuilder& builder, const EffectorDescription& effector,
@@ -76,7 +83,8 @@ void add_contact(sim::ModelBuilder& builder, const ContactDescription& contact,
                  const BodyOf& body_of);
 
 /// @param builder that has the bodies. @param joint to be added. @param body_of finds bodies.
-void add_joint(sim::ModelBuilder& builder, const JointDescription& joint, const BodyOf& body_of);
+/// @return its number.
+int add_joint(sim::ModelBuilder& builder, const JointDescription& joint, const BodyOf& body_of);
 
 /// @param builder that has the bodies. @param probe to be added. @param body_of finds bodies.
 void add_probe(sim::ModelBuilder& builder, const ProbeDescription& probe, const BodyOf& body_of);

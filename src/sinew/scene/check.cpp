@@ -55,6 +55,9 @@ class Checker {
         read_text(node);
         return;
       case Shape::reference:
+        if (std::ranges::find(form.choices, read_text(node), &Choice::word) != form.choices.end()) {
+          return;
+        }
         check_name(read_text(node), form.refers_to, node.place());
         return;
       case Shape::samples:

@@ -14,6 +14,7 @@
 #include <variant>
 #include <vector>
 
+#include "sinew/constraint/joint_type.hpp"
 #include "sinew/constraint/probe.hpp"
 #include "sinew/constraint/surface.hpp"
 #include "sinew/core/error.hpp"
@@ -23,6 +24,7 @@
 #include "sinew/material/hyperelastic.hpp"
 #include "sinew/mesh/embedding.hpp"
 #include "sinew/pcc/arm.hpp"
+#include "sinew/rigid/rigid_settings.hpp"
 #include "sinew/scene/node.hpp"
 #include "sinew/sim/actuator.hpp"
 #include "sinew/sim/fluid_drive.hpp"
@@ -115,7 +117,8 @@ struct InitialVelocityDescription {
 struct BodyDescription {
   std::string name;
   Location place;
-  std::optional<pcc::ArmSettings> arm;  ///< of type pcc; nothing below is then used
+  std::optional<pcc::ArmSettings> arm;        ///< of type pcc; nothing below is then used
+  std::optional<rigid::RigidSettings> rigid;  ///< of type rigid; likewise
   MeshDescription mesh;
   Vector3 position = Vector3::Zero();  ///< m, of the mesh's origin
   Vector3 rotation = Vector3::Zero();  ///< rad, a rotation vector about it
@@ -193,6 +196,9 @@ struct ActuatorDescription {
   Vector3 point = Vector3::Zero();  ///< m
   Location point_place;
   Vector3 direction = Vector3::UnitZ();  ///< unit length
+  // motor
+  std::string joint;
+  Location joint_place;
   // torque
   int segment = 0;
   sim::TorqueSettings::Towards towards = sim::TorqueSettings::Towards::side;
@@ -289,12 +295,23 @@ struct ContactDescription {
 struct JointDescription {
   std::string name;
   Location place;
-  std::string first, second;  ///< bodies
+  constraint::JointType type = constraint::JointType::weld;
+  std::string first, second;  ///< bodies, or kWorldName
   Location bodies_place;
+  // all but a weld
+  Vector3 point = Vector3::Zero();         ///< m
+  Vector3 axis = Vector3::UnitZ();         ///< unit length
+  Vector3 second_axis = Vector3::UnitX();  ///< of a universal joint
+  LimitDescription angle, displacement;    ///< rad, m
+  double friction = 0.0;                   ///< N m, N
+  // weld
   std::optional<FixedRegion> region;  ///< of the first; none, and no points: where they touch
   PointList points;                   ///< of the first
   mesh::Outside outside = mesh::Outside::error;
 };
+
+/// In place of a body's name, where a joint may hold a body to the world.
+inline constexpr std::string_view kWorldName = "world";
 
 /// What a controller asks of one effector.
 struct TaskDescription {

@@ -313,7 +313,8 @@ std::string describe(const Form& form) {
     case Shape::file:
       return "a path";
     case Shape::reference:
-      return fmt::format("a name from `{}`", form.refers_to);
+      return fmt::format("a name from `{}`{}", form.refers_to,
+                         form.choices.empty() ? "" : " | " + describe_words(form));
     case Shape::list:
       return fmt::format("a list of ({})", describe(form.items));
     case Shape::samples:

@@ -59,7 +59,7 @@ struct Form {
   int min_count = 1;            ///< numbers of a quantity, items of a list
   int max_count = 1;            ///< see min_count
   Range range;                  ///< of each number
-  std::vector<Choice> choices;  ///< choice, variants
+  std::vector<Choice> choices;  ///< choice, variants; reference: words in place of a name
   std::string refers_to;        ///< reference, names: the top-level key whose names are meant
   /// table, variants: the key that tells this form by; choice: the key of the map form that a lone
   /// word is short for

@@ -213,12 +213,15 @@ std::shared_ptr<const KeyTable> point_file_table() {
 }
 
 Form actuator_form() {
-  return variants("type",
-                  {{.word = "cable", .description = "A sliding cable.", .table = cable_table()},
-                   {.word = "force", .description = "A point force.", .table = force_table()},
-                   {.word = "torque", .description = "On a bend.", .table = torque_table()},
-                   {.word = "pressure", .description = "A chamber.", .table = pressure_table()},
-                   {.word = "spring", .description = "A spring.", .table = spring_table()}});
+  return variants(
+      "type",
+      {{.word = "cable", .description = "A sliding cable.", .table = cable_table()},
+       {.word = "force", .description = "A point force.", .table = force_table()},
+       {.word = "torque", .description = "On a bend.", .table = torque_table()},
+       {.word = "motor", .description = "In a hinge.", .table = motor_table()},
+       {.word = "linear-motor", .description = "On a slider.", .table = linear_motor_table()},
+       {.word = "pressure", .description = "A chamber.", .table = pressure_table()},
+       {.word = "spring", .description = "A spring.", .table = spring_table()}});
 }
 
 std::vector<Form> axis_forms() {

@@ -10,6 +10,7 @@ Measure acceleration() { return {dimension::kAcceleration, "m/s^2"}; }
 Measure stress() { return {dimension::kPressure, "Pa"}; }
 Measure mass() { return {dimension::kMass, "kg"}; }
 Measure density() { return {dimension::kDensity, "kg/m^3"}; }
+Measure inertia() { return {Dimension{2, 1, 0}, "kg m^2"}; }
 Measure force() { return {dimension::kForce, "N"}; }
 Measure frequency() { return {dimension::kFrequency, "1/s"}; }
 Measure speed() { return {dimension::kVelocity, "m/s"}; }
@@ -84,9 +85,10 @@ Form file() {
   return form;
 }
 
-Form reference(const char* top_level_key) {
+Form reference(const char* top_level_key, std::vector<Choice> words) {
   Form form;
   form.shape = Shape::reference;
+  form.choices = std::move(words);
   form.refers_to = top_level_key;
   return form;
 }

@@ -28,6 +28,7 @@ Measure acceleration();
 Measure stress();
 Measure mass();
 Measure density();
+Measure inertia();
 Measure force();
 Measure frequency();
 Measure speed();
@@ -60,7 +61,8 @@ Form integer(int min, int max);
 Form boolean();
 Form text();
 Form file();
-Form reference(const char* top_level_key);
+/// @param words that may stand in place of a name.
+Form reference(const char* top_level_key, std::vector<Choice> words = {});
 /// `short_for`: the key of the map form of the same value that a lone word stands for.
 Form choice(std::vector<Choice> choices, const char* short_for = "");
 Form list(std::vector<Form> items, int min_count = 1, int max_count = kAnyNumber);
@@ -110,6 +112,9 @@ std::shared_ptr<const KeyTable> pressure_table();
 std::shared_ptr<const KeyTable> spring_table();
 std::shared_ptr<const KeyTable> pcc_table();
 std::shared_ptr<const KeyTable> torque_table();
+std::shared_ptr<const KeyTable> rigid_table();
+std::shared_ptr<const KeyTable> motor_table();
+std::shared_ptr<const KeyTable> linear_motor_table();
 std::shared_ptr<const KeyTable> signal_table(const Measure& measure, const char* value_example);
 std::shared_ptr<const KeyTable> point_file_table();
 std::shared_ptr<const KeyTable> body_point_table();

@@ -13,18 +13,24 @@ std::shared_ptr<const KeyTable> weld_region_table() {
                      .alternatives = {{{"box", "sphere", "plane", "set"}, true}}});
 }
 
+Key bodies_key(const char* example, const char* description) {
+  return {.name = "bodies",
+          .forms = {list({reference("bodies", {{"world", "What does not move."}})}, 2, 2)},
+          .example = example,
+          .description = description,
+          .required = true};
+}
+
 std::shared_ptr<const KeyTable> weld_table() {
   return make_table(
       {.name = "joint: type weld",
        .description = "Bonds two bodies: nodes of the first keep their position in the material of "
                       "the second. Meshes need not match; name the body with the finer mesh first. "
-                      "In statics a body may be held by its welds alone. Without region and "
-                      "points: all surface nodes of the first body that lie in or on the second.",
-       .keys = {{.name = "bodies",
-                 .forms = {list({reference("bodies")}, 2, 2)},
-                 .example = "[upper, lower]",
-                 .description = "The two bodies.",
-                 .required = true},
+                      "In statics a body may be held by its joints alone. Without region and "
+                      "points: all surface nodes of the first body that lie in or on the second. "
+                      "Two rigid bodies, or one and the world, become one.",
+       .keys = {bodies_key("[upper, lower]",
+                           "The two bodies; a rigid one or `world` may be either."),
                 {.name = "region",
                  .forms = {table(weld_region_table())},
                  .example = "{set: z_min}",
@@ -36,6 +42,87 @@ std::shared_ptr<const KeyTable> weld_table() {
                                 "collinear suppress all relative motion."},
                 outside_key()},
        .alternatives = {{{"region", "points"}, false}}});
+}
+
+// The limits of one motion of a joint.
+Key motion_limits(const char* name, const Measure& measure, const char* example) {
+  const auto bound = [&](const char* key, const char* at, const char* description) {
+    return Key{
+        .name = key, .forms = {quantity(measure)}, .example = at, .description = description};
+  };
+  return {.name = name,
+          .forms = {table(make_table(
+              {.name = std::string("limits of a joint's ") + name,
+               .description = "Stops, from where the scene puts the bodies; 0 lies between them.",
+               .keys = {bound("min", measure.unit == std::string_view("m") ? "-10 mm" : "-45 deg",
+                              "Least value."),
+                        bound("max", measure.unit == std::string_view("m") ? "40 mm" : "90 deg",
+                              "Greatest value.")}}))},
+          .example = example,
+          .default_text = "{}",
+          .description = std::string("Limits of the ") + name + "."};
+}
+
+struct JointWords {
+  const char* type;
+  const char* description;
+  bool turns = false, slides = false;
+  int axes = 0;
+};
+
+std::shared_ptr<const KeyTable> joint_table(const JointWords& words) {
+  KeyTable joint{.name = std::string("joint: type ") + words.type,
+                 .description = words.description,
+                 .keys = {bodies_key("[box, cover]",
+                                     "The two bodies, rigid or sections of an arm; or one and "
+                                     "`world`."),
+                          {.name = "point",
+                           .forms = {vector(length())},
+                           .example = "0 0 40 mm",
+                           .description = "Where the joint is, with the bodies as the scene puts "
+                                          "them.",
+                           .required = true}}};
+  if (words.axes == 1) {
+    joint.keys.push_back({.name = "axis",
+                          .forms = axis_forms(),
+                          .example = "1 0 0",
+                          .description = "Direction of the axis then; any non-zero length.",
+                          .required = true});
+  }
+  if (words.axes == 2) {
+    joint.keys.push_back({.name = "axes",
+                          .forms = {list({vector(plain_number())}, 2, 2)},
+                          .example = "[1 0 0, 0 1 0]",
+                          .description = "The axis fixed in the first body and the one fixed in "
+                                         "the second, normal to each other.",
+                          .required = true});
+  }
+  if (words.turns || words.slides) {
+    KeyTable limits{.name = std::string("limits of a ") + words.type,
+                    .description = "Stops of the joint."};
+    if (words.turns) limits.keys.push_back(motion_limits("angle", angle(), "{max: 90 deg}"));
+    if (words.slides) {
+      limits.keys.push_back(motion_limits("displacement", length(), "{max: 40 mm}"));
+    }
+    joint.keys.push_back({.name = "limits",
+                          .forms = {table(make_table(std::move(limits)))},
+                          .example = words.turns ? "{angle: {min: 0 deg, max: 90 deg}}"
+                                                 : "{displacement: {min: 0 mm, max: 40 mm}}",
+                          .default_text = "{}",
+                          .description = "How far it moves. Without: as far as it is moved."});
+  }
+  if (words.turns != words.slides) {
+    joint.keys.push_back({.name = "friction",
+                          .forms = {quantity(words.turns ? torque() : force(), non_negative())},
+                          .example = words.turns ? "1 mN m" : "0.1 N",
+                          .default_text = words.turns ? "0 N m" : "0 N",
+                          .description = "Coulomb friction: what it takes to move the joint."});
+  }
+  return make_table(std::move(joint));
+}
+
+Choice joint(const JointWords& words) {
+  return {.word = words.type, .description = words.description, .table = joint_table(words)};
 }
 
 }  // namespace
@@ -52,7 +139,14 @@ std::shared_ptr<const KeyTable> body_point_table() {
 }
 
 Form joint_form() {
-  return variants("type", {{.word = "weld", .description = "One body.", .table = weld_table()}});
+  return variants(
+      "type",
+      {{.word = "weld", .description = "One body.", .table = weld_table()},
+       joint({"ball", "Two points are one.", false, false, 0}),
+       joint({"hinge", "Turns about an axis.", true, false, 1}),
+       joint({"slider", "Slides along an axis.", false, true, 1}),
+       joint({"cylindrical", "Turns about an axis and slides along it.", true, true, 1}),
+       joint({"universal", "Turns about two axes, one fixed in each body.", false, false, 2})});
 }
 
 }  // namespace sinew::scene::forms

@@ -350,7 +350,7 @@ Form body_form() {
        {.word = "reduced", .description = "Reduced elements.", .later = true},
        {.word = "rod", .description = "A slender rod.", .later = true},
        {.word = "pcc", .description = "An arm of constant curvatures.", .table = pcc_table()},
-       {.word = "rigid", .description = "A rigid body.", .later = true}});
+       {.word = "rigid", .description = "A rigid body.", .table = rigid_table()}});
 }
 
 }  // namespace sinew::scene::forms

@@ -175,24 +175,41 @@ void read_surface(const Fields& fields, SurfaceDescription& surface, const ReadC
   }
 }
 
+namespace {
+
+bool moves_joint(ActuatorDescription::Type type) {
+  return type == ActuatorDescription::Type::motor ||
+         type == ActuatorDescription::Type::linear_motor;
+}
+
+bool has_points(ActuatorDescription::Type type) {
+  return type != ActuatorDescription::Type::torque && !moves_joint(type);
+}
+
+}  // namespace
+
 ActuatorDescription read_actuator(const Node::Entry& entry, const ReadContext& context) {
   ActuatorDescription actuator;
   actuator.name = entry.key;
   actuator.place = entry.key_place;
   const Form& form = form_of(grammar(), "actuators", Shape::names).items.front();
   const Fields fields(entry.value, form);
-  fields.read("body", actuator.body);
-  actuator.body_place = fields.place("body");
   using Type = ActuatorDescription::Type;
   const std::string type = read_text(*entry.value.find(form.telltale));
   actuator.type = type == "cable"      ? Type::cable
                   : type == "force"    ? Type::force
                   : type == "pressure" ? Type::pressure
                   : type == "torque"   ? Type::torque
-                                       : Type::spring;
-  if (actuator.type != Type::torque) {
+                  : type == "motor"    ? Type::motor
+                  : type == "spring"   ? Type::spring
+                                       : Type::linear_motor;
+  if (has_points(actuator.type)) {
     fields.read_choice("outside", actuator.outside,
                        {{"error", mesh::Outside::error}, {"nearest", mesh::Outside::nearest}});
+  }
+  if (!moves_joint(actuator.type)) {
+    fields.read("body", actuator.body);
+    actuator.body_place = fields.place("body");
   }
   switch (actuator.type) {
     case Type::cable:
@@ -210,6 +227,11 @@ ActuatorDescription read_actuator(const Node::Entry& entry, const ReadContext& c
       break;
     case Type::pressure:
       read_pressure(fields, actuator, context);
+      break;
+    case Type::motor:
+    case Type::linear_motor:
+      fields.read("joint", actuator.joint);
+      actuator.joint_place = fields.place("joint");
       break;
     case Type::torque:
       fields.read("segment", actuator.segment);

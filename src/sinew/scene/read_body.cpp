@@ -292,10 +292,18 @@ BodyDescription read_body(const Node::Entry& entry, const ReadContext& context) 
   BodyDescription body;
   body.name = entry.key;
   body.place = entry.key_place;
+  if (body.name == kWorldName) {
+    throw Error(ErrorKind::bad_argument, body.place, "`world` is what joints call the world",
+                "give the body another name");
+  }
   const Form& form = form_of(grammar(), "bodies", Shape::names).items.front();
   const Fields fields(entry.value, form);
   if (read_text(*entry.value.find(form.telltale)) == "pcc") {
     body.arm = read_arm(fields, body.name);
+    return body;
+  }
+  if (read_text(*entry.value.find(form.telltale)) == "rigid") {
+    body.rigid = read_rigid(fields, body.name);
     return body;
   }
   body.mesh = read_mesh(fields, context);

@@ -26,6 +26,8 @@ struct ReadContext {
 BodyDescription read_body(const Node::Entry& entry, const ReadContext& context);
 /// What a body of type pcc is. @param fields of it. @param name of the body.
 pcc::ArmSettings read_arm(const Fields& fields, const std::string& name);
+/// What a body of type rigid is. @param fields of it. @param name of the body.
+rigid::RigidSettings read_rigid(const Fields& fields, const std::string& name);
 /// The region that one of the keys box, sphere, plane and set gives.
 FixedRegion read_region(const Fields& fields);
 ActuatorDescription read_actuator(const Node::Entry& entry, const ReadContext& context);

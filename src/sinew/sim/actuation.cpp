@@ -27,6 +27,13 @@ Interval reachable(const Limits& limits, double now, double time_step) {
   return {nearest, nearest};
 }
 
+// From where a commanded velocity goes on: a motor at its limit has fallen behind and does not
+// catch up; else what it was told last, so that rounding does not add up.
+double setpoint(const ActuatorModel& model, const ActuatorState& state) {
+  const bool free = model.effort.min < state.effort && state.effort < model.effort.max;
+  return free ? state.setpoint : state.motion;
+}
+
 // What an actuator may do in a step, from its state and that of its drive before it.
 step::ActuatorBlock actuator_block(const ActuatorModel& model, const ActuatorState& state,
                                    std::span<const double> drive_state, double time,
@@ -44,6 +51,12 @@ step::ActuatorBlock actuator_block(const ActuatorModel& model, const ActuatorSta
   block.motion_scale = model.motion_scale;
   const double told = state.command.signal.value(time);
   const Interval& own = block.kind == CommandKind::motion ? motion : effort;
+  if (block.kind == CommandKind::input && model.joint >= 0) {
+    block.kind = CommandKind::motion;
+    const double way = std::isinf(time_step) ? 0.0 : told * time_step;
+    block.value = std::clamp(setpoint(model, state) + way, motion.min, motion.max);
+    return block;
+  }
   block.value = block.kind == CommandKind::input ? told : std::clamp(told, own.min, own.max);
   if (model.drive == nullptr || block.owned) return block;
   if (!model.drive->acts_on(block.kind)) return block;
@@ -172,7 +185,7 @@ void Actuation::load(const State& state) {
 
 void blend(std::span<step::ActuatorBlock> blocks, std::span<const ActuatorState> start,
            double fraction) {
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
+  for (std::size_t i = 0; i < start.size(); ++i) {
     step::ActuatorBlock& block = blocks[i];
     if (block.owned || block.kind == CommandKind::input) continue;
     const double from = block.kind == CommandKind::effort ? start[i].effort : start[i].motion;

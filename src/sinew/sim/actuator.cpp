@@ -21,6 +21,8 @@ constexpr std::array<ActuatorWords, kActuatorTypes> kWords = {{
      {GasDrive::kInput, LiquidDrive::kInput}},
     {"spring", kTension, kDisplacement, {SmaDrive::kPower, SmaDrive::kPhase}},
     {"torque", {"torque", "N m"}, {"angle", "rad"}},
+    {"motor", {"torque", "N m"}, {"angle", "rad"}, {{{"velocity", "rad/s"}}}},
+    {"linear-motor", {"force", "N"}, kDisplacement, {{{"velocity", "m/s"}}}},
 }};
 
 std::vector<std::string_view> every_quantity() {
@@ -48,16 +50,22 @@ const std::vector<std::string_view>& command_quantities() {
   return names;
 }
 
+QuantityName ActuatorModel::input_name() const {
+  if (drive != nullptr) return drive->input();
+  return joint >= 0 ? words().inputs[0] : QuantityName{};
+}
+
 QuantityName ActuatorModel::quantity(CommandKind kind) const {
   if (kind == CommandKind::effort) return words().effort;
-  if (kind == CommandKind::motion || drive == nullptr) return words().motion;
-  return drive->input();
+  if (kind == CommandKind::motion) return words().motion;
+  const QuantityName input = input_name();
+  return *input.name == '\0' ? words().motion : input;
 }
 
 std::optional<CommandKind> ActuatorModel::kind_of(std::string_view quantity) const {
   if (controllable() && quantity == words().effort.name) return CommandKind::effort;
   if (controllable() && quantity == words().motion.name) return CommandKind::motion;
-  const bool known = drive != nullptr && !quantity.empty() && quantity == drive->input().name;
+  const bool known = !quantity.empty() && quantity == input_name().name;
   return known ? std::optional(CommandKind::input) : std::nullopt;
 }
 

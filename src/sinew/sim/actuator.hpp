@@ -29,15 +29,15 @@ struct Limits {
   double rate = std::numeric_limits<double>::infinity();  ///< >= 0, per second
 };
 
-enum class ActuatorType { cable, force, pressure, spring, torque };
-inline constexpr std::size_t kActuatorTypes = 5;
+enum class ActuatorType { cable, force, pressure, spring, torque, motor, linear_motor };
+inline constexpr std::size_t kActuatorTypes = 7;
 
 /// What actuators of a type and their quantities are called: in scenes, Python, recordings and the
 /// view.
 struct ActuatorWords {
   const char* type = "";
   QuantityName effort, motion;
-  std::array<QuantityName, 2> inputs = {};  ///< of its drives, see Drive::input(); may be nameless
+  std::array<QuantityName, 2> inputs = {};  ///< of its drives, see Drive::input(); of a motor
 };
 const ActuatorWords& actuator_words(ActuatorType type);
 /// Every quantity by which some actuator is commanded, once.
@@ -61,8 +61,11 @@ struct ActuatorModel {
   std::shared_ptr<const Drive> drive = {};  ///< none: it obeys its commands as they are
   int first_state = 0;                      ///< of the drive's numbers among those of all drives
   double motion_scale = 1.0;  ///< m per motion: 1, or 1/m^2 of a chamber, one over its area
+  int joint = -1;             ///< in Model::joints(), that it moves; -1: none
 
   const ActuatorWords& words() const { return actuator_words(type); }
+  /// Of the drive; "velocity" of a motor, rad/s or m/s; none: no name.
+  QuantityName input_name() const;
   /// Of what a command of this kind gives.
   QuantityName quantity(CommandKind kind) const;
   /// The command that gives this quantity; none when the actuator takes no such command.

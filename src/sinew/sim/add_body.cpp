@@ -8,6 +8,7 @@
 #include "sinew/fem/fem_model.hpp"
 #include "sinew/pcc/arm.hpp"
 #include "sinew/pcc/arm_body_model.hpp"
+#include "sinew/rigid/rigid_body_model.hpp"
 #include "sinew/sim/add_parts.hpp"
 #include "sinew/sim/model_data.hpp"
 #include "sinew/sim/new_name.hpp"
@@ -42,6 +43,14 @@ int add_fem_body(ModelData& data, fem::FemBodySettings settings) {
                 "give `mass` or `density`");
   }
   add_masses(data, *body);
+  const Points& nodes = body->mesh().nodes;
+  const Vector3 extent = nodes.colwise().maxCoeff() - nodes.colwise().minCoeff();
+  data.size = std::max(data.size, extent.norm());
+  return add_body(data, std::move(body));
+}
+
+int add_rigid_body(ModelData& data, rigid::RigidSettings settings) {
+  auto body = std::make_unique<rigid::RigidBodyModel>(std::move(settings));
   const Points& nodes = body->mesh().nodes;
   const Vector3 extent = nodes.colwise().maxCoeff() - nodes.colwise().minCoeff();
   data.size = std::max(data.size, extent.norm());

@@ -9,6 +9,7 @@
 #include "sinew/fem/fem_model.hpp"
 #include "sinew/fem/has_elements.hpp"
 #include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 #include "sinew/sim/add_parts.hpp"
 #include "sinew/sim/attach.hpp"
 #include "sinew/sim/contact_settings.hpp"
@@ -45,7 +46,11 @@ void check_gaps(const constraint::Contact& contact, const mechanics::BodyModel& 
 std::vector<mechanics::MaterialPoint> attach_points(ModelData& data, mechanics::BodyModel& on,
                                                     const ContactSettings& settings) {
   std::vector<mechanics::MaterialPoint> points;
-  if (!settings.nodes.empty()) {
+  if (!settings.nodes.empty() && mechanics::as<mechanics::HasShape>(on) != nullptr) {
+    for (const NodeId node : settings.nodes) {
+      points.push_back({settings.body, attach_node(on, node)});
+    }
+  } else if (!settings.nodes.empty()) {
     const auto free = find_elements(data, settings.body, settings.place, "contact of nodes")
                           .elements()
                           .free_index();

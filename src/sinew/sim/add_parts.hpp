@@ -17,6 +17,9 @@ struct FemBodySettings;
 namespace sinew::pcc {
 struct ArmSettings;
 }
+namespace sinew::rigid {
+struct RigidSettings;
+}
 
 namespace sinew::sim {
 
@@ -32,10 +35,13 @@ struct ModelData;
 struct ProbeSettings;
 struct SpringLineSettings;
 struct TorqueSettings;
+struct JointSettings;
+struct MotorSettings;
 struct WeldSettings;
 
 int add_fem_body(ModelData& data, fem::FemBodySettings settings);
 int add_arm(ModelData& data, pcc::ArmSettings settings);
+int add_rigid_body(ModelData& data, rigid::RigidSettings settings);
 
 /// @param actuator without the numbers of its constraint, row and state, which it gets here.
 /// @param constraint whose first row is the actuator's. Throws Error: duplicate-key,
@@ -51,6 +57,8 @@ int add_chamber(ModelData& data, const ChamberSettings& settings);
 void add_base_motion(ModelData& data, const BaseMotion& motion, const Location& place);
 int add_load(ModelData& data, const LoadSettings& settings);
 int add_contact(ModelData& data, const ContactSettings& settings);
+int add_joint(ModelData& data, const JointSettings& settings);
+int add_motor(ModelData& data, const MotorSettings& settings);
 int add_weld(ModelData& data, const WeldSettings& settings);
 
 int add_effector(ModelData& data, const EffectorSettings& settings);

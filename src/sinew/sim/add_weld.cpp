@@ -51,7 +51,7 @@ std::vector<constraint::Tie::Pair> attach_pairs(ModelData& data, const WeldSetti
 int add_weld(ModelData& data, const WeldSettings& settings) {
   find_body(data, settings.first, settings.place);
   find_body(data, settings.second, settings.place);
-  check_new_name(data.welds, &WeldModel::name, "joints", settings.name, settings.place);
+  check_new_name(data.joints, &JointModel::name, "joints", settings.name, settings.place);
   if (settings.first == settings.second) {
     throw Error(ErrorKind::bad_argument, settings.place, "a body cannot be welded to itself",
                 "name two bodies");
@@ -59,8 +59,8 @@ int add_weld(ModelData& data, const WeldSettings& settings) {
   try {
     auto tie = std::make_unique<constraint::Tie>(settings.name, attach_pairs(data, settings));
     const int number = data.declare(std::move(tie));
-    data.welds.push_back({settings.name, settings.first, settings.second, number});
-    return static_cast<int>(data.welds.size()) - 1;
+    data.joints.push_back({settings.name, settings.first, settings.second, number});
+    return static_cast<int>(data.joints.size()) - 1;
   } catch (const Error& error) {
     throw error.at(settings.place);
   }

@@ -13,8 +13,8 @@
 #include "sinew/fem/fem_model.hpp"
 #include "sinew/fem/has_elements.hpp"
 #include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 #include "sinew/sim/attach.hpp"
-#include "sinew/sim/find_body.hpp"
 #include "sinew/sim/model_data.hpp"
 
 namespace sinew::sim {
@@ -41,13 +41,20 @@ std::array<NodeId, 3> spread_nodes(const Points& nodes) {
           static_cast<NodeId>(found[2])};
 }
 
+// N/m, of about what the body's own stiffness is. A rigid body has none, and any number serves: its
+// anchors are all that its matrix has.
+double anchor_stiffness(const mechanics::BodyModel& body) {
+  constexpr double kOfRigidBody = 1e3;
+  const auto* own = mechanics::as<const fem::HasElements>(body);
+  if (own == nullptr) return kOfRigidBody;
+  return fem::stiffest_modulus(own->settings().elements) * std::cbrt(own->elements().volume());
+}
+
 }  // namespace
 
 void add_anchors(ModelData& data, int body) {
-  const fem::HasElements& anchored = find_elements(data, body, {}, "anchor");
-  const double modulus = fem::stiffest_modulus(anchored.settings().elements);
-  const double stiffness = modulus * std::cbrt(anchored.elements().volume());
   mechanics::BodyModel& on = data.body(body);
+  const double stiffness = anchor_stiffness(on);
   for (const NodeId node : spread_nodes(on.mesh().nodes)) {
     const int constraint = data.declare(std::make_unique<constraint::PointEffector>(
         "anchor", mechanics::MaterialPoint{body, attach_node(on, node)}));

@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 
+#include "sinew/constraint/joint.hpp"
 #include "sinew/constraint/tie.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/fem/has_elements.hpp"
@@ -21,13 +22,14 @@ namespace {
 // Singular values below this, of the largest, belong to rigid motions that welds leave free.
 constexpr double kFree = 1e-6;
 
-// Bodies that welds connect have one number.
+// Bodies that joints connect have one number.
 std::vector<int> groups_of(const ModelData& data) {
   std::vector<int> group(data.bodies.size());
   std::iota(group.begin(), group.end(), 0);
-  for (const WeldModel& weld : data.welds) {
-    const int from = group[static_cast<std::size_t>(weld.second)];
-    const int to = group[static_cast<std::size_t>(weld.first)];
+  for (const JointModel& joint : data.joints) {
+    if (joint.first == kWorld || joint.second == kWorld) continue;
+    const int from = group[static_cast<std::size_t>(joint.second)];
+    const int to = group[static_cast<std::size_t>(joint.first)];
     std::ranges::replace(group, from, to);
   }
   return group;
@@ -45,8 +47,9 @@ class RigidMotions {
     normal_.setZero(columns_, columns_);
   }
 
-  // What fixed nodes and held axes hold; bodies without elements are held altogether.
+  // What fixed nodes and held axes hold; other bodies are free or held altogether.
   void hold_own(int body) {
+    if (data_.body(body).is_free()) return;
     const auto* material = mechanics::as<const fem::HasElements>(data_.body(body));
     if (material == nullptr) {
       normal_.diagonal().segment<6>(column_[static_cast<std::size_t>(body)]).array() += 1.0;
@@ -56,7 +59,7 @@ class RigidMotions {
     const Points& nodes = data_.body(body).mesh().nodes;
     const auto add = [&](NodeId node, int axis) {
       begin_row();
-      fill(body, nodes.row(node).transpose(), axis, 1.0);
+      fill(body, nodes.row(node).transpose(), Vector3::Unit(axis), 1.0);
       end_row();
     };
     for (const NodeId node : own.fixed_nodes) {
@@ -67,10 +70,42 @@ class RigidMotions {
   void hold(const constraint::Tie::Pair& pair) {
     for (int axis = 0; axis < 3; ++axis) {
       begin_row();
-      fill(pair.first.body, rest_of(pair.first), axis, -1.0);
-      fill(pair.second.body, rest_of(pair.second), axis, 1.0);
+      fill(pair.first.body, rest_of(pair.first), Vector3::Unit(axis), -1.0);
+      fill(pair.second.body, rest_of(pair.second), Vector3::Unit(axis), 1.0);
       end_row();
     }
+  }
+  void hold(const constraint::Joint& joint) {
+    const std::vector<Vector3> directions = joint.rest_directions();
+    for (std::size_t k = 0; k < directions.size(); ++k) {
+      begin_row();
+      double sign = -1.0;
+      for (const constraint::JointSide& side : joint.place().sides()) {
+        if (static_cast<int>(k) < joint.displacements()) {
+          fill(side.point.body, side.rest, directions[k], sign);
+        } else {
+          turn(side.orientation.body, directions[k], sign);
+        }
+        sign = 1.0;
+      }
+      end_row();
+    }
+  }
+  // What a hinge or slider leaves: a motor moves it, or friction stops it.
+  void hold_rest(const constraint::Joint& joint) {
+    const Vector3 axis = joint.place().axes().col(2);
+    const bool turns = joint.type() == constraint::JointType::hinge;
+    begin_row();
+    double sign = -1.0;
+    for (const constraint::JointSide& side : joint.place().sides()) {
+      if (turns) {
+        turn(side.orientation.body, axis, sign);
+      } else {
+        fill(side.point.body, side.rest, axis, sign);
+      }
+      sign = 1.0;
+    }
+    end_row();
   }
   // Whether no rigid motion is left.
   bool all_held() const {
@@ -83,14 +118,18 @@ class RigidMotions {
     return data_.body(point.body).rest_position(point.number);
   }
   void begin_row() { row_.setZero(columns_); }
-  // The motion along an axis of a point at x: e + (e_k x x/size) of the body's turn.
-  void fill(int body, const Vector3& at, int axis, double sign) {
-    const int column = column_[static_cast<std::size_t>(body)];
+  int column_of(int body) const { return body < 0 ? -1 : column_[static_cast<std::size_t>(body)]; }
+  // The motion along a direction of a point at x, of a body that shifts and turns: d.(s + w x x),
+  // turns counted in sizes.
+  void fill(int body, const Vector3& at, const Vector3& direction, double sign) {
+    const int column = column_of(body);
     if (column < 0) return;
-    row_[column + axis] = sign;
-    for (int turn = 0; turn < 3; ++turn) {
-      row_[column + 3 + turn] = sign * Vector3::Unit(turn).cross(at / data_.size)[axis];
-    }
+    row_.segment<3>(column) += sign * direction;
+    row_.segment<3>(column + 3) += sign * (at / data_.size).cross(direction);
+  }
+  void turn(int body, const Vector3& axis, double sign) {
+    const int column = column_of(body);
+    if (column >= 0) row_.segment<3>(column + 3) += sign * axis;
   }
   void end_row() { normal_.noalias() += row_ * row_.transpose(); }
 
@@ -107,33 +146,50 @@ bool is_held_alone(const ModelData& data, int body) {
   return motions.all_held();
 }
 
-// Whether welds hold every rigid motion of loose bodies. @param bodies one group.
-bool welds_hold(const ModelData& data, const std::vector<int>& bodies,
-                const std::vector<char>& held) {
+bool has_motor(const ModelData& data, const JointModel& joint) {
+  return std::ranges::any_of(data.actuators, [&](const ActuatorModel& actuator) {
+    return actuator.joint >= 0 && &data.joints[static_cast<std::size_t>(actuator.joint)] == &joint;
+  });
+}
+
+// Whether joints hold every rigid motion of loose bodies. @param bodies one group.
+bool joints_hold(const ModelData& data, const std::vector<int>& bodies,
+                 const std::vector<char>& held) {
   std::vector<int> loose;
   for (const int body : bodies) {
     if (held[static_cast<std::size_t>(body)] == 0) loose.push_back(body);
   }
   RigidMotions motions(data, loose);
   for (const int body : loose) motions.hold_own(body);
-  for (const WeldModel& weld : data.welds) {
-    const auto& tie = dynamic_cast<const constraint::Tie&>(data.constraint(weld.constraint));
-    for (const constraint::Tie::Pair& pair : tie.pairs()) motions.hold(pair);
+  for (const JointModel& link : data.joints) {
+    const constraint::Constraint& rows = data.constraint(link.constraint);
+    if (const auto* tie = dynamic_cast<const constraint::Tie*>(&rows)) {
+      for (const constraint::Tie::Pair& pair : tie->pairs()) motions.hold(pair);
+    } else if (const auto* joint = dynamic_cast<const constraint::Joint*>(&rows)) {
+      motions.hold(*joint);
+      if (link.friction > 0.0 || has_motor(data, link)) motions.hold_rest(*joint);
+    }
   }
   return motions.all_held();
 }
 
+bool is_joined(const ModelData& data, int body) {
+  return std::ranges::any_of(data.joints, [&](const JointModel& joint) {
+    return joint.first == body || joint.second == body;
+  });
+}
+
 [[noreturn]] void throw_loose(const ModelData& data, std::size_t body, Location place,
-                              bool welded) {
+                              bool joined) {
   if (place.item.empty()) place.item = "body '" + data.bodies[body]->name() + "'";
   const auto* material = mechanics::as<const fem::HasElements>(*data.bodies[body]);
-  const fem::FemModelSettings& own = material->settings().elements;
-  const bool bare = own.fixed_nodes.empty() && own.held_axes.empty();
-  if (welded) {
+  const bool bare = material == nullptr || (material->settings().elements.fixed_nodes.empty() &&
+                                            material->settings().elements.held_axes.empty());
+  if (joined) {
     throw Error(ErrorKind::nothing_fixed, place,
-                "its welds leave it free to move, so it has no static equilibrium",
-                "fix a region of one of the welded bodies, weld three points that are not on one "
-                "line, or choose a dynamic integrator");
+                "its joints leave it free to move, so it has no static equilibrium",
+                "fix a region of one of the joined bodies, weld three points that are not on one "
+                "line, give a hinge or slider a motor, or choose a dynamic integrator");
   }
   throw Error(ErrorKind::nothing_fixed, place,
               bare ? "nothing holds this body, so it has no static equilibrium"
@@ -155,10 +211,10 @@ void hold_bodies(ModelData& data, const std::vector<Location>& places) {
     for (std::size_t other = 0; other < group.size(); ++other) {
       if (group[other] == group[b]) connected.push_back(static_cast<int>(other));
     }
-    if (welds_hold(data, connected, held)) {
+    if (joints_hold(data, connected, held)) {
       add_anchors(data, static_cast<int>(b));
     } else if (!data.step.dynamic()) {
-      throw_loose(data, b, places[b], connected.size() > 1);
+      throw_loose(data, b, places[b], is_joined(data, static_cast<int>(b)));
     }
   }
 }

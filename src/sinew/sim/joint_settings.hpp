@@ -5,9 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "sinew/constraint/joint_type.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/core/types.hpp"
 #include "sinew/mesh/embedding.hpp"
+#include "sinew/sim/actuator.hpp"
+#include "sinew/sim/model_data.hpp"
 
 namespace sinew::sim {
 
@@ -20,6 +23,29 @@ struct WeldSettings {
   Points points;              ///< (n, 3) m, at rest; beside the nodes
   /// For points that lie in no element of the second; those of the first must be in it.
   mesh::Outside outside = mesh::Outside::error;
+};
+
+/// Parts that stay rigid, of two bodies or of one and the world, move as the type says.
+struct JointSettings {
+  std::string name;
+  Location place;
+  constraint::JointType type = constraint::JointType::hinge;
+  int first = 0, second = 1;               ///< bodies; kWorld: the world
+  Vector3 point = Vector3::Zero();         ///< (3,) m, of the joint, at rest
+  Vector3 axis = Vector3::UnitZ();         ///< at rest; of a universal joint, fixed in the first
+  Vector3 second_axis = Vector3::UnitX();  ///< of a universal joint, fixed in the second
+  Limits angle, displacement;              ///< rad, m
+  double friction = 0.0;                   ///< N m of a hinge, N of a slider, >= 0
+};
+
+/// What moves a hinge or slider.
+struct MotorSettings {
+  std::string name;
+  Location place;
+  int joint = 0;          ///< as add_joint() returned it
+  bool linear = false;    ///< of a slider
+  Limits effort, motion;  ///< N m and rad; N and m
+  Command command;
 };
 
 }  // namespace sinew::sim

@@ -9,6 +9,7 @@
 #include "sinew/constraint/chamber.hpp"
 #include "sinew/constraint/contact.hpp"
 #include "sinew/constraint/effector.hpp"
+#include "sinew/constraint/joint.hpp"
 #include "sinew/constraint/probe.hpp"
 #include "sinew/constraint/tie.hpp"
 #include "sinew/core/error.hpp"
@@ -61,8 +62,8 @@ int Model::contact_index(std::string_view name) const {
   return find_by_name(data_.contacts, name, "contact", [](const auto& c) { return c.name; });
 }
 
-int Model::weld_index(std::string_view name) const {
-  return find_by_name(data_.welds, name, "joint", [](const auto& w) { return w.name; });
+int Model::joint_index(std::string_view name) const {
+  return find_by_name(data_.joints, name, "joint", [](const auto& j) { return j.name; });
 }
 
 int Model::load_index(std::string_view name) const {
@@ -99,9 +100,14 @@ const constraint::Contact& Model::contact(int index) const {
   return dynamic_cast<const constraint::Contact&>(data_.constraint(number));
 }
 
-const constraint::Tie& Model::weld(int index) const {
-  const int number = data_.welds.at(static_cast<std::size_t>(index)).constraint;
-  return dynamic_cast<const constraint::Tie&>(data_.constraint(number));
+const constraint::Tie* Model::tie(int joint) const {
+  const int number = data_.joints.at(static_cast<std::size_t>(joint)).constraint;
+  return dynamic_cast<const constraint::Tie*>(&data_.constraint(number));
+}
+
+const constraint::Joint* Model::joint(int joint) const {
+  const int number = data_.joints.at(static_cast<std::size_t>(joint)).constraint;
+  return dynamic_cast<const constraint::Joint*>(&data_.constraint(number));
 }
 
 const constraint::Cable* Model::cable(int actuator) const {

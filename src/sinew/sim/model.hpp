@@ -16,6 +16,7 @@ class Cable;
 class Chamber;
 class Contact;
 class Effector;
+class Joint;
 class Tie;
 }  // namespace sinew::constraint
 
@@ -35,7 +36,7 @@ class Model {
   const std::vector<GuideModel>& guides() const { return data_.guides; }
   const std::vector<EffectorModel>& effectors() const { return data_.effectors; }
   const std::vector<ContactModel>& contacts() const { return data_.contacts; }
-  const std::vector<WeldModel>& welds() const { return data_.welds; }
+  const std::vector<JointModel>& joints() const { return data_.joints; }
   const std::vector<AnchorModel>& anchors() const { return data_.anchors; }
   const std::vector<CouplingModel>& couplings() const { return data_.couplings; }
   PartList<constraint::Probe> probes() const { return PartList(data_.probes); }
@@ -57,7 +58,7 @@ class Model {
   int actuator_index(std::string_view name) const;
   int effector_index(std::string_view name) const;
   int contact_index(std::string_view name) const;
-  int weld_index(std::string_view name) const;
+  int joint_index(std::string_view name) const;
   int load_index(std::string_view name) const;
   int mass_index(std::string_view name) const;
   int probe_index(std::string_view name) const;
@@ -68,7 +69,10 @@ class Model {
   const constraint::Probe& probe(int index) const;
   const constraint::Effector& effector(int index) const;
   const constraint::Contact& contact(int index) const;
-  const constraint::Tie& weld(int index) const;
+  /// What a weld of points is; null of another joint.
+  const constraint::Tie* tie(int joint) const;
+  /// What a joint of parts that stay rigid is; null of a weld of points.
+  const constraint::Joint* joint(int joint) const;
   /// The line of a cable or spring; null when an actuator has none.
   const constraint::Cable* cable(int actuator) const;
   /// The chamber of an actuator; null when it has none.

@@ -8,6 +8,7 @@
 #include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/pcc/arm.hpp"
+#include "sinew/rigid/rigid_settings.hpp"
 #include "sinew/sim/add_parts.hpp"
 #include "sinew/sim/body_holding.hpp"
 #include "sinew/sim/curvatures.hpp"
@@ -33,6 +34,12 @@ int ModelBuilder::add_fem_body(fem::FemBodySettings settings, const Location& pl
 int ModelBuilder::add_arm(pcc::ArmSettings settings) {
   const int index = sim::add_arm(data_, std::move(settings));
   places_.emplace_back();
+  return index;
+}
+
+int ModelBuilder::add_rigid_body(rigid::RigidSettings settings, const Location& place) {
+  const int index = sim::add_rigid_body(data_, std::move(settings));
+  places_.push_back(place);
   return index;
 }
 
@@ -71,6 +78,14 @@ int ModelBuilder::add_contact(const ContactSettings& settings) {
 }
 
 int ModelBuilder::add_weld(const WeldSettings& settings) { return sim::add_weld(data_, settings); }
+
+int ModelBuilder::add_joint(const JointSettings& settings) {
+  return sim::add_joint(data_, settings);
+}
+
+int ModelBuilder::add_motor(const MotorSettings& settings) {
+  return sim::add_motor(data_, settings);
+}
 
 int ModelBuilder::add_probe(const ProbeSettings& settings) {
   return sim::add_probe(data_, settings);

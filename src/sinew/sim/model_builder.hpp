@@ -16,6 +16,9 @@ struct FemBodySettings;
 namespace sinew::pcc {
 struct ArmSettings;
 }
+namespace sinew::rigid {
+struct RigidSettings;
+}
 
 namespace sinew::sim {
 
@@ -29,6 +32,8 @@ struct LoadSettings;
 struct ProbeSettings;
 struct SpringLineSettings;
 struct TorqueSettings;
+struct JointSettings;
+struct MotorSettings;
 struct WeldSettings;
 
 /// What its functions take is declared in headers of their own, such as cable_settings.hpp.
@@ -42,6 +47,8 @@ class ModelBuilder {
   int add_fem_body(fem::FemBodySettings settings, const Location& place = {});
   /// A constant-curvature arm. Throws what pcc::Arm does.
   int add_arm(pcc::ArmSettings settings);
+  /// Throws what rigid::RigidBodyModel does. @param place where it is written.
+  int add_rigid_body(rigid::RigidSettings settings, const Location& place = {});
   /// Throws Error: too-few-points, degenerate-cable, point-outside-mesh, contradictory-limits,
   /// out-of-range (friction, tension).
   int add_cable(const CableSettings& settings);
@@ -65,6 +72,13 @@ class ModelBuilder {
   /// Throws Error: too-few-points, point-outside-mesh, bad-argument (a body and itself), wrong-type
   /// (nodes of a body without).
   int add_weld(const WeldSettings& settings);
+  /// Throws Error: point-outside-mesh, bad-argument (a body and itself, the world twice),
+  /// wrong-type (parts that do not stay rigid), out-of-range (axes, friction),
+  /// contradictory-limits.
+  int add_joint(const JointSettings& settings);
+  /// Throws Error: unknown-name (no such joint), wrong-type (a joint that a motor cannot move),
+  /// contradictory-limits.
+  int add_motor(const MotorSettings& settings);
   /// Throws Error: too-few-points, empty-region, point-outside-mesh, degenerate-orientation.
   int add_probe(const ProbeSettings& settings);
 

@@ -2,6 +2,7 @@
 /// What a model consists of, as plain lists: ModelBuilder fills them, and a Model owns them.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -51,12 +52,18 @@ struct ContactModel {
   Eigen::Isometry3d pose(double time) const;
 };
 
-/// What welds two bodies.
-struct WeldModel {
+/// What holds two bodies together, or a body to the world.
+struct JointModel {
   std::string name;
-  int first = 0, second = 1;  ///< bodies
-  int constraint = -1;        ///< a constraint::Tie
+  int first = 0, second = 1;           ///< bodies; kWorld: the world
+  int constraint = -1;                 ///< a constraint::Tie or constraint::Joint
+  std::array<int, 2> motions{-1, -1};  ///< its angle and its displacement, where it leaves them
+  std::array<Limits, 2> limits;        ///< of these, rad and m
+  int brake = -1;                      ///< one of these once more, for friction; -1: none
+  double friction = 0.0;               ///< N m or N, that it takes to move it
 };
+/// In place of a body.
+inline constexpr int kWorld = -1;
 
 /// Springs that A has in statics so that it can be factorised, and that the robot has not: see
 /// step::StiffnessBlock.
@@ -115,7 +122,7 @@ struct ModelData {
   std::vector<GuideModel> guides;
   std::vector<EffectorModel> effectors;
   std::vector<ContactModel> contacts;
-  std::vector<WeldModel> welds;
+  std::vector<JointModel> joints;
   std::vector<AnchorModel> anchors;
   std::vector<CouplingModel> couplings;
   std::vector<std::unique_ptr<constraint::Probe>> probes;

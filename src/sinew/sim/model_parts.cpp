@@ -1,6 +1,7 @@
 #include "sinew/sim/model_parts.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -73,6 +74,16 @@ std::uint64_t constraint_hash(const ModelData& data, int index) {
   return hash.value();
 }
 
+std::uint64_t joint_hash(const ModelData& data, const JointModel& joint) {
+  ValueHash hash;
+  add_constraint(hash, data, joint.constraint);
+  for (const Limits& limits : joint.limits) {
+    if (std::isfinite(limits.min) || std::isfinite(limits.max)) add_limits(hash, limits);
+  }
+  if (joint.friction > 0.0) hash.add(joint.friction);
+  return hash.value();
+}
+
 std::uint64_t motion_hash(const BaseMotion& motion) {
   ValueHash hash;
   add_motion(hash, motion);
@@ -102,9 +113,7 @@ std::vector<NamedHash> list_parts(const ModelData& data) {
   for (const ContactModel& contact : data.contacts) {
     add("contact", contact.name, contact_hash(data, contact));
   }
-  for (const WeldModel& weld : data.welds) {
-    add("joint", weld.name, constraint_hash(data, weld.constraint));
-  }
+  for (const JointModel& joint : data.joints) add("joint", joint.name, joint_hash(data, joint));
   for (const BaseMotion& motion : data.base_motions) {
     parts.push_back({fmt::format("body '{}': motion of the base", data.body(motion.body).name()),
                      motion_hash(motion)});

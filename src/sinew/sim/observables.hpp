@@ -28,7 +28,7 @@ enum class ObservableKind {
   probe,          ///< what it measures
   contact_point,  ///< of every point of a contact, and the pose of its surface
   contact,        ///< of all points of a contact together
-  joint,          ///< force, moment and gap of a weld
+  joint,          ///< force, moment, gap and motion
   controller,     ///< targets and errors
   energy,         ///< of all bodies; evaluates their elements
   ledger,         ///< work and losses since the first reading; evaluates the elements, too
@@ -79,18 +79,21 @@ class Observables {
   using Fill = std::function<void(std::span<double>)>;
 
   /// Lists, in this order: `time`; of every body `NAME.positions` (n, 3) m, in dynamics
-  /// `NAME.velocities` (n, 3) m/s, of an arm `NAME.coordinates` (c,) rad, extensions in m; of every
-  /// actuator effort and motion, as `NAME.tension` and `NAME.displacement`, and its commands (see
-  /// commanded()); of every effector `NAME.position` (3,) m or `NAME.rotation` (3,) rad; of every
-  /// probe `NAME.value`, and of a line `NAME.positions` (k, 3) m; of every contact of n points
-  /// `NAME.pose` (3, 4) and `NAME.points.position` (n, 3), `.gap` (n,), `.normal` (n, 3),
+  /// `NAME.velocities` (n, 3) m/s, of a rigid body `NAME.position` (3,) m and `NAME.rotation` (4,)
+  /// w, x, y, z of its frame, `NAME.velocity` (3,) m/s of its centre of mass,
+  /// `NAME.angular_velocity` (3,) rad/s, of an arm `NAME.coordinates` (c,) rad, extensions in m; of
+  /// every actuator effort and motion, as `NAME.tension` and `NAME.displacement`, and its commands
+  /// (see commanded()); of every effector `NAME.position` (3,) m or `NAME.rotation` (3,) rad; of
+  /// every probe `NAME.value`, and of a line `NAME.positions` (k, 3) m; of every contact of n
+  /// points `NAME.pose` (3, 4) and `NAME.points.position` (n, 3), `.gap` (n,), `.normal` (n, 3),
   /// `.normal_force` (n,), `.friction_force` (n, 3), `.state` (n,), and, of the points together,
   /// `NAME.force` (3,) N, `NAME.normal_force` and `NAME.friction_force` N, `NAME.gap` m,
   /// `NAME.sticking`, `NAME.slipping`; of every joint `NAME.force` (3,) N and `NAME.moment` (3,) N
-  /// m (see WeldLoad), `NAME.gap` m; `strain_energy`, `kinetic_energy`, `gravity_energy`,
-  /// `actuator_work`, `outside_work`, `dissipation`, `numerical_loss` J; the report's `residual` N,
-  /// `relative_residual`, `iterations`, `substeps`, `scale`, `smallest_volume_ratio`; `status`;
-  /// `time.step` and the stages' times, s.
+  /// m (see JointLoad), `NAME.gap` m, `NAME.angle` rad and `NAME.displacement` m where it has them;
+  /// `strain_energy`, `kinetic_energy`, `gravity_energy`, `actuator_work`, `outside_work`,
+  /// `dissipation`, `numerical_loss` J; the report's `residual` N, `relative_residual`,
+  /// `iterations`, `substeps`, `scale`, `smallest_volume_ratio`; `status`; `time.step` and the
+  /// stages' times, s.
   /// @param simulation must outlive the list.
   explicit Observables(Simulation& simulation);
   Observables(const Observables&) = delete;

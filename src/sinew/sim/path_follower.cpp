@@ -30,6 +30,10 @@ void PathFollower::check() const {
                 "paths along curved surfaces with friction are not followed yet",
                 "step through the load in time");
   }
+  if (run_.world.joints().block_count() > 0) {
+    throw Error(ErrorKind::bad_argument, {.item = "follow_path"},
+                "paths do not pass limits and friction of joints", "step through the load in time");
+  }
   if (!run_.model->guides().empty()) {
     throw Error(ErrorKind::bad_argument, {.item = "follow_path"},
                 "cables with friction have no path of their own", "step through the load in time");

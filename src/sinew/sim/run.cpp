@@ -35,7 +35,7 @@ void Run::read_commands(double time, double time_step) {
   problem.time = time;
   problem.time_step = time_step;
   actuation.form_blocks(time, time_step, problem.actuators);
-  if (!model->guides().empty()) world.hold_capstans(world.measure_delta());
+  world.hold_friction();
 }
 
 NewtonReport Run::newton(step::Controller* chooser, const NewtonSettings& settings) {
@@ -44,6 +44,7 @@ NewtonReport Run::newton(step::Controller* chooser, const NewtonSettings& settin
 
 void Run::finish_step() {
   actuation.read(world.measure_delta(), effort, world.problem().actuators);
+  world.joints().accept(world.delta());
 }
 
 void Run::restart() {

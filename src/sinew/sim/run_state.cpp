@@ -35,6 +35,7 @@ void check_state(const Run& run, const State& state) {
   check_count("load factors of the state", run.surroundings.applied().size(), state.loads.size());
   check_count("frames of the state", run.world.contacts().planes().frames_size(),
               state.frames.size());
+  check_count("joints of the state", run.world.joints().values().size(), state.joints.size());
 }
 
 }  // namespace
@@ -50,6 +51,7 @@ void Run::keep(State& state) const {
   actuation.save(state);
   state.loads = surroundings.applied();
   world.contacts().planes().save_frames(state.frames);
+  state.joints = world.joints().values();
   state.controller.resize(controller != nullptr ? controller->memory_size() : 0);
   if (controller != nullptr) controller->save_memory(state.controller);
   state.ledger = ledger.sums();
@@ -69,6 +71,7 @@ void Run::restore(const State& state) {
   actuation.load(state);
   for (std::size_t k = 0; k < state.loads.size(); ++k) surroundings.apply(k, state.loads[k]);
   world.contacts().planes().load_frames(state.frames);
+  world.joints().values() = state.joints;
   ledger.set(state.ledger);
   volume_ratio = state.volume_ratio;
   report.relative_residual = state.residual;

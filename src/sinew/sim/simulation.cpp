@@ -118,7 +118,7 @@ std::span<const double> Simulation::drive_state(int actuator) const {
 }
 
 std::span<const step::ActuatorBlock> Simulation::actuator_blocks() const {
-  return run_->world.problem().actuators;
+  return std::span(run_->world.problem().actuators).first(model().actuators().size());
 }
 
 State Simulation::state() const {

@@ -3,6 +3,7 @@
 #include <array>
 #include <optional>
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "sinew/constraint/contact.hpp"
@@ -13,11 +14,11 @@
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/sim/contact_reader.hpp"
 #include "sinew/sim/contact_state.hpp"
+#include "sinew/sim/joint_load.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/observables.hpp"
 #include "sinew/sim/simulation.hpp"
 #include "sinew/sim/state.hpp"
-#include "sinew/sim/weld_load.hpp"
 
 namespace sinew::sim {
 
@@ -50,6 +51,31 @@ Observable number(ObservableKind kind, const char* name, const char* unit = "") 
   return {name, unit, {}, kind, {}, name, {name}, {}};
 }
 
+// Of a rigid body: its frame, and the motion of its centre of mass.
+void add_pose(Observables& list, const std::string& name, const mechanics::HasPose& body) {
+  std::vector<Observable> parts;
+  const auto add = [&](const char* quantity, const char* unit, std::string_view axes) {
+    parts.push_back(of(ObservableKind::body, name, quantity, unit, {axes.size()}));
+    for (const char axis : axes) {
+      parts.back().components.push_back(fmt::format("{}.{}_{}", name, quantity, axis));
+    }
+  };
+  add("position", "m", "xyz");
+  add("rotation", "", "wxyz");
+  add("velocity", "m/s", "xyz");
+  add("angular_velocity", "rad/s", "xyz");
+  list.add(std::move(parts), [&body](std::span<double> all) {
+    const Eigen::Quaterniond rotation(body.axes());
+    const double sign = rotation.w() < 0.0 ? -1.0 : 1.0;
+    Numbers to(all);
+    to.put(body.origin());
+    to.put(sign * rotation.w());
+    to.put(Vector3(sign * rotation.vec()));
+    to.put(body.linear_velocity());
+    to.put(body.angular_velocity());
+  });
+}
+
 void add_bodies(Observables& list) {
   const Simulation& simulation = list.simulation();
   const bool moving = simulation.model().step().integrator != mechanics::Integrator::quasi_static;
@@ -71,6 +97,9 @@ void add_bodies(Observables& list) {
       add(
           "velocities", "m/s",
           [](const mechanics::Body& b) -> const Points& { return b.velocities(); }, shape);
+    }
+    if (const auto* rigid = mechanics::as<const mechanics::HasPose>(body)) {
+      add_pose(list, name, *rigid);
     }
     if (const auto* arm = mechanics::as<const mechanics::HasCoordinates>(body)) {
       add("coordinates", "rad",
@@ -235,11 +264,12 @@ void add_contacts(Observables& list) {
   }
 }
 
-void add_welds(Observables& list) {
+void add_joints(Observables& list) {
   const Simulation& simulation = list.simulation();
   const Model& model = simulation.model();
-  for (std::size_t w = 0; w < model.welds().size(); ++w) {
-    const std::string& name = model.welds()[w].name;
+  for (std::size_t j = 0; j < model.joints().size(); ++j) {
+    const JointModel& joint = model.joints()[j];
+    const std::string& name = joint.name;
     std::vector<Observable> parts;
     const auto add_vector = [&](const char* quantity, const char* unit) {
       parts.push_back(of(ObservableKind::joint, name, quantity, unit, {3}));
@@ -250,12 +280,19 @@ void add_welds(Observables& list) {
     add_vector("force", "N");
     add_vector("moment", "N m");
     parts.push_back(of(ObservableKind::joint, name, "gap", "m"));
-    list.add(std::move(parts), [&simulation, w](std::span<double> all) {
-      const WeldLoad load = weld_load(simulation, static_cast<int>(w));
+    if (joint.motions[0] >= 0) parts.push_back(of(ObservableKind::joint, name, "angle", "rad"));
+    if (joint.motions[1] >= 0)
+      parts.push_back(of(ObservableKind::joint, name, "displacement", "m"));
+    list.add(std::move(parts), [&simulation, &joint, j](std::span<double> all) {
+      const auto index = static_cast<int>(j);
+      const JointLoad load = joint_load(simulation, index);
       Numbers to(all);
       to.put(load.force);
       to.put(load.moment);
       to.put(load.gap);
+      for (std::size_t motion = 0; motion < 2; ++motion) {
+        if (joint.motions[motion] >= 0) to.put(joint_motion(simulation, index, motion));
+      }
     });
   }
 }
@@ -352,7 +389,7 @@ void list_standard_observables(Observables& list) {
   add_effectors(list);
   add_probes(list);
   add_contacts(list);
-  add_welds(list);
+  add_joints(list);
   add_energies(list);
   add_report(list);
   add_timing(list);

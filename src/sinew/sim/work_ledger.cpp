@@ -31,6 +31,13 @@ void WorkLedger::count(const Model& model, const World& world, const Actuation& 
     const double slid = world.delta()[block.row] - block.held;
     sums_.dissipated -= effort[static_cast<std::size_t>(block.row)] * slid;
   }
+  // Limits do no work; friction holds where the step began.
+  for (const step::ActuatorBlock& block : world.problem().actuators) {
+    if (&block < world.problem().actuators.data() + actuation.states().size()) continue;
+    if (block.kind != step::CommandKind::motion) continue;
+    const double slid = world.delta()[block.row] - block.value;
+    sums_.dissipated -= effort[static_cast<std::size_t>(block.row)] * slid;
+  }
   count_contacts(model, world, effort);
 }
 

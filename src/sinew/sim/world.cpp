@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "sinew/constraint/cable.hpp"
-#include "sinew/constraint/tie.hpp"
+#include "sinew/constraint/joint.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/stage_clock.hpp"
 #include "sinew/step/step_solver.hpp"
@@ -23,15 +23,16 @@ mechanics::RowValues rows_of(const Model& model) {
 // With the blocks that stay for all steps, but for those of stiffness.
 step::StepProblem problem_of(const Model& model) {
   step::StepProblem problem;
-  problem.actuators.resize(model.actuators().size());
   problem.size = model.size();
   for (const GuideModel& guide : model.guides()) {
     problem.capstans.push_back({guide.row, guide.actuator, 0.0, 0.0});
   }
-  for (std::size_t w = 0; w < model.welds().size(); ++w) {
-    const constraint::Tie& tie = model.weld(static_cast<int>(w));
-    for (int row = tie.first_row(); row < tie.first_row() + tie.row_count(); ++row) {
-      problem.bilaterals.push_back({row});
+  for (std::size_t j = 0; j < model.joints().size(); ++j) {
+    const constraint::Constraint& held = model.constraint(model.joints()[j].constraint);
+    const constraint::Joint* joint = model.joint(static_cast<int>(j));
+    for (int row = held.first_row(); row < held.first_row() + held.row_count(); ++row) {
+      const bool turn = joint != nullptr && joint->is_turn(row);
+      problem.bilaterals.push_back({row, 0.0, turn ? model.size() : 1.0});
     }
   }
   return problem;
@@ -45,8 +46,10 @@ World::World(std::shared_ptr<const Model> model, ThreadPool& pool)
       placement_(bodies_.all()),
       rows_(rows_of(*model_)),
       problem_(problem_of(*model_)),
+      joints_(*model_),
       contacts_(*model_, placement_, bodies_.systems(), rows_),
       stiffness_(*model_, placement_, bodies_.systems(), problem_) {
+  problem_.actuators.resize(model_->actuators().size() + joints_.block_count());
   number_rows();
   place_contacts(0.0, 0.0);
 }
@@ -82,6 +85,7 @@ void World::linearise(const mechanics::LinearisationRequest& request) {
 
 const VectorX& World::measure_delta() {
   for (const auto& constraint : model_->constraints()) constraint.linearise(placement_, rows_);
+  joints_.unwrap(rows_.delta);
   return rows_.delta;
 }
 
@@ -111,8 +115,11 @@ MatrixX World::row_forces(std::span<const int> rows) {
   return result;
 }
 
-void World::hold_capstans(const VectorX& delta) {
+void World::hold_friction() {
+  if (problem_.capstans.empty() && joints_.block_count() == 0) return;
+  const VectorX& delta = measure_delta();
   for (step::CapstanBlock& block : problem_.capstans) block.held = delta[block.row];
+  joints_.form_blocks(delta, std::span(problem_.actuators).subspan(model_->actuators().size()));
 }
 
 void World::hold_imbalance(std::span<const double> effort) {
@@ -190,6 +197,7 @@ double World::violation(std::span<const double> effort, step::LawStatus law) {
 }
 
 void World::restart() {
+  joints_.restart();
   bodies_.restart();
   place_contacts(0.0, 0.0);
 }

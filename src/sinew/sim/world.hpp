@@ -12,6 +12,7 @@
 #include "sinew/sim/bodies.hpp"
 #include "sinew/sim/contact_rows.hpp"
 #include "sinew/sim/geometric_stiffness.hpp"
+#include "sinew/sim/joint_rows.hpp"
 #include "sinew/sim/row_numbering.hpp"
 #include "sinew/step/law_status.hpp"
 #include "sinew/step/step_problem.hpp"
@@ -72,12 +73,12 @@ class World {
   double violation(std::span<const double> effort, step::LawStatus law);
 
   /// The step's problem, see RowNumbering for its rows. Actuators are the caller's to write;
-  /// capstans' grip, contacts and all numbers of rows are the world's.
+  /// capstans' grip, joints, contacts and all numbers of rows are the world's.
   step::StepProblem& problem() { return problem_; }
   const step::StepProblem& problem() const { return problem_; }
   const RowNumbering& numbering() const { return numbering_; }
-  /// From where cables stick to their guides in this step. @param delta (rows,) m.
-  void hold_capstans(const VectorX& delta);
+  /// From where cables stick to their guides in this step, and joints to their friction.
+  void hold_friction();
   const MatrixX& compliance() const { return problem_.compliance; }  ///< W of the problem, m/N
   const VectorX& delta_free() const { return problem_.delta_free; }  ///< of the problem, m
   const VectorX& delta() const { return rows_.delta; }               ///< (rows,) m, as last formed
@@ -89,6 +90,8 @@ class World {
 
   const ContactRows& contacts() const { return contacts_; }
   ContactRows& contacts() { return contacts_; }
+  const JointRows& joints() const { return joints_; }
+  JointRows& joints() { return joints_; }
   const constraint::Placement& placement() const { return placement_; }
   Bodies& bodies() { return bodies_; }
   const Bodies& bodies() const { return bodies_; }
@@ -109,6 +112,7 @@ class World {
   mechanics::RowValues rows_;
   step::StepProblem problem_;
   RowNumbering numbering_;
+  JointRows joints_;
   ContactRows contacts_;
   GeometricStiffness stiffness_;
   mechanics::Inertia inertia_;

@@ -15,7 +15,7 @@ namespace sinew::step {
 enum class CommandKind {
   effort,  ///< tension or force (N), pressure (Pa)
   motion,  ///< displacement (m), growth of volume (m^3)
-  input,   ///< of the drive: see Drive::input_name()
+  input,   ///< of the drive: see Drive::input(); of a motor, its velocity
 };
 
 /// The name of a number and its SI unit.

@@ -103,7 +103,7 @@ struct StepProblem {
   VectorX delta_free;                    ///< (rows,) m, or m^3, or rad
   VectorX delta;                         ///< (rows,) at the linearisation
   linalg::AlignedNumbers effort_before;  ///< (rows,) N, of the last step or Newton iteration
-  std::vector<ActuatorBlock> actuators;  ///< in the model's order
+  std::vector<ActuatorBlock> actuators;  ///< in the model's order, then of joints (JointRows)
   std::vector<CapstanBlock> capstans;
   std::vector<ContactBlock> contacts;
   std::vector<BilateralBlock> bilaterals;

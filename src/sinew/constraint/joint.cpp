@@ -1,0 +1,194 @@
+#include "sinew/constraint/joint.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include <Eigen/Geometry>
+
+#include "sinew/constraint/placement.hpp"
+
+namespace sinew::constraint {
+
+namespace {
+
+constexpr std::array<std::array<int, 2>, 3> kTurns{{{2, 0}, {2, 1}, {0, 1}}};
+
+std::span<const std::array<int, 2>> turns_of(JointType type) {
+  switch (type) {
+    case JointType::ball:
+      return {};
+    case JointType::universal:
+      return std::span(kTurns).first(1);
+    case JointType::hinge:
+    case JointType::cylindrical:
+      return std::span(kTurns).first(2);
+    case JointType::weld:
+    case JointType::slider:
+      break;
+  }
+  return kTurns;
+}
+
+bool slides(JointType type) { return type == JointType::slider || type == JointType::cylindrical; }
+
+bool is_body(const mechanics::Site& site) { return site.body >= 0; }
+
+}  // namespace
+
+const char* joint_type_name(JointType type) {
+  switch (type) {
+    case JointType::ball:
+      return "ball";
+    case JointType::universal:
+      return "universal";
+    case JointType::hinge:
+      return "hinge";
+    case JointType::weld:
+      return "weld";
+    case JointType::slider:
+      return "slider";
+    case JointType::cylindrical:
+      return "cylindrical";
+  }
+  return "";
+}
+
+double JointFrames::angle() const {
+  const Vector3 turned = axes[1].col(0);
+  return std::atan2(turned.dot(axes[0].col(1)), turned.dot(axes[0].col(0)));
+}
+
+JointPlace::JointPlace(const JointSide& first, const JointSide& second, const Matrix3& axes)
+    : sides_{first, second}, axes_(axes) {}
+
+JointFrames JointPlace::frames(const Placement& placement) const {
+  JointFrames frames;
+  for (std::size_t s = 0; s < 2; ++s) {
+    const JointSide& side = sides_[s];
+    frames.origin[s] = is_body(side.point) ? placement.position(side.point) : side.rest;
+    frames.axes[s] = axes_;
+    if (is_body(side.orientation)) frames.axes[s] = placement.rotation(side.orientation) * axes_;
+  }
+  return frames;
+}
+
+int JointPlace::add_row(mechanics::RowPattern& rows, bool points, bool orientations) const {
+  std::vector<mechanics::Site> sites;
+  for (const std::size_t s : {1U, 0U}) {
+    if (points && is_body(sides_[s].point)) sites.push_back(sides_[s].point);
+  }
+  for (const std::size_t s : {1U, 0U}) {
+    if (orientations && is_body(sides_[s].orientation)) sites.push_back(sides_[s].orientation);
+  }
+  return rows.add_row(sites);
+}
+
+Vector3* JointPlace::write_points(Vector3* entry, const Vector3& direction) const {
+  if (is_body(sides_[1].point)) *entry++ = direction;
+  if (is_body(sides_[0].point)) *entry++ = -direction;
+  return entry;
+}
+
+Vector3* JointPlace::write_turns(Vector3* entry, const Vector3& second,
+                                 const Vector3& first) const {
+  if (is_body(sides_[1].orientation)) *entry++ = second;
+  if (is_body(sides_[0].orientation)) *entry++ = first;
+  return entry;
+}
+
+Joint::Joint(std::string name, JointType type, const JointPlace& place)
+    : Constraint(std::move(name)),
+      type_(type),
+      place_(place),
+      displacements_(slides(type) ? 2 : 3),
+      turns_(turns_of(type)) {}
+
+void Joint::declare(mechanics::RowPattern& rows, std::vector<mechanics::RowCurvature>&) {
+  first_row_ = rows.rows();
+  first_entry_ = rows.entries();
+  row_count_ = displacements_ + static_cast<int>(turns_.size());
+  for (int k = 0; k < displacements_; ++k) place_.add_row(rows, true, slides(type_));
+  for (std::size_t k = 0; k < turns_.size(); ++k) place_.add_row(rows, false, true);
+}
+
+void Joint::linearise(const Placement& placement, mechanics::RowValues& values) const {
+  const JointFrames frames = place_.frames(placement);
+  const auto& [a, b] = frames.axes;
+  const Vector3 offset = frames.offset();
+  Vector3* entry = values.direction.data() + first_entry_;
+  int row = first_row_;
+  for (int k = 0; k < displacements_; ++k) {
+    const Vector3 axis = slides(type_) ? Vector3(a.col(k)) : Vector3(Vector3::Unit(k));
+    entry = place_.write_points(entry, axis);
+    if (slides(type_)) entry = place_.write_turns(entry, Vector3::Zero(), axis.cross(offset));
+    values.delta[row++] = axis.dot(offset);
+  }
+  for (const auto& [i, j] : turns_) {
+    const Vector3 about = b.col(j).cross(a.col(i));
+    entry = place_.write_turns(entry, about, -about);
+    values.delta[row++] = a.col(i).dot(b.col(j));
+  }
+}
+
+std::vector<Vector3> Joint::rest_directions() const {
+  const Matrix3& axes = place_.axes();
+  std::vector<Vector3> result;
+  for (int k = 0; k < displacements_; ++k) {
+    result.push_back(slides(type_) ? Vector3(axes.col(k)) : Vector3(Vector3::Unit(k)));
+  }
+  for (const auto& [i, j] : turns_) result.push_back(axes.col(j).cross(axes.col(i)));
+  return result;
+}
+
+void Joint::add_to(ValueHash& hash) const {
+  hash.add(static_cast<int>(type_));
+  place_.add_to(hash);
+}
+
+Joint::Load Joint::load(const Placement& placement, std::span<const double> effort) const {
+  const JointFrames frames = place_.frames(placement);
+  const auto& [a, b] = frames.axes;
+  Load load;
+  std::size_t row = 0;
+  for (int k = 0; k < displacements_; ++k) {
+    load.force += effort[row++] * (slides(type_) ? Vector3(a.col(k)) : Vector3(Vector3::Unit(k)));
+  }
+  for (const auto& [i, j] : turns_) load.moment += effort[row++] * b.col(j).cross(a.col(i));
+  return load;
+}
+
+double Joint::gap(const Placement& placement) const {
+  const JointFrames frames = place_.frames(placement);
+  const Vector3 offset = frames.offset();
+  return (slides(type_) ? Vector3(offset - frames.slide() * frames.axes[0].col(2)) : offset).norm();
+}
+
+JointMotion::JointMotion(std::string name, Kind kind, const JointPlace& place)
+    : Constraint(std::move(name)), kind_(kind), place_(place) {}
+
+void JointMotion::declare(mechanics::RowPattern& rows, std::vector<mechanics::RowCurvature>&) {
+  first_entry_ = rows.entries();
+  first_row_ = place_.add_row(rows, kind_ == Kind::displacement, true);
+  row_count_ = 1;
+}
+
+void JointMotion::linearise(const Placement& placement, mechanics::RowValues& values) const {
+  const JointFrames frames = place_.frames(placement);
+  const Vector3 axis = frames.axes[0].col(2);
+  Vector3* entry = values.direction.data() + first_entry_;
+  if (kind_ == Kind::angle) {
+    place_.write_turns(entry, axis, -axis);
+    values.delta[first_row_] = frames.angle();
+    return;
+  }
+  entry = place_.write_points(entry, axis);
+  place_.write_turns(entry, Vector3::Zero(), axis.cross(frames.offset()));
+  values.delta[first_row_] = frames.slide();
+}
+
+void JointMotion::add_to(ValueHash& hash) const {
+  hash.add(static_cast<int>(kind_));
+  place_.add_to(hash);
+}
+
+}  // namespace sinew::constraint

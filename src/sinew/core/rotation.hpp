@@ -1,0 +1,25 @@
+/// @file
+/// Rotations of space: matrices and rotation vectors (axis times angle, rad), in fixed axes.
+#pragma once
+
+#include "sinew/core/types.hpp"
+
+namespace sinew {
+
+/// [v] with [v] x = v cross x.
+inline Matrix3 cross_matrix(const Vector3& v) {
+  Matrix3 m;
+  m << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
+  return m;
+}
+/// The turn by a rotation vector: exp [v].
+Matrix3 rotation_matrix(const Vector3& v);
+/// The shortest rotation vector of a rotation: length 0 to pi.
+Vector3 rotation_vector(const Matrix3& rotation);
+/// D with rotation_vector(exp[w] exp[v]) = v + D w + O(w^2), the inverse of the left Jacobian
+/// (Chirikjian, Stochastic Models, Information Theory, and Lie Groups 2, 2011, eq. 10.86):
+///   D = 1 - [v]/2 + (1/a^2 - 1/(2 a tan(a/2))) [v]^2,  a = |v|.
+/// @param v shorter than 2 pi.
+Matrix3 rotation_vector_rate(const Vector3& v);
+
+}  // namespace sinew

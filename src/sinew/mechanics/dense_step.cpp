@@ -1,0 +1,167 @@
+#include "sinew/mechanics/dense_step.hpp"
+
+#include <algorithm>
+
+namespace sinew::mechanics {
+
+DenseStep::DenseStep(Eigen::Index coordinates, const OwnRows& own, RowMemory& memory)
+    : own_(own),
+      memory_(memory),
+      decomposed_(coordinates),
+      pivots_(coordinates),
+      spectrum_(coordinates) {
+  const Eigen::Index n = coordinates;
+  const auto rows = static_cast<Eigen::Index>(own.rows.size());
+  for (VectorX* v : {&right_, &motion_, &scratch_, &lessening_}) v->setZero(n);
+  for (MatrixX* m : {&matrix_, &symmetric_}) m->setZero(n, n);
+  for (MatrixX* m : {&jacobian_, &second_jacobian_, &pulled_}) m->setZero(3, n);
+  rows_.setZero(n, rows);
+  moved_rows_.setZero(n, rows);
+  compliance_.setZero(rows, rows);
+  free_motion_.setZero(rows);
+}
+
+void DenseStep::linearise(const LinearisationRequest& request) {
+  definite_wanted_ = request.tangent == Tangent::rotated;
+  iterating_ = request.iterating;
+  force_scale_ = form(request, right_, matrix_);
+  if (lessens_) right_ -= lessening_;
+  add_row_stiffness(matrix_);
+}
+
+void DenseStep::add_curvature(const RowCurvature& curvature) {
+  site_jacobian(curvature.first.number, jacobian_);
+  site_jacobian(curvature.second.number, second_jacobian_);
+  pulled_.noalias() = curvature.curvature * second_jacobian_;
+  symmetric_.noalias() = jacobian_.transpose() * pulled_;
+  matrix_ -= symmetric_;
+  if (curvature.first.number != curvature.second.number) matrix_ -= symmetric_.transpose();
+}
+
+void DenseStep::take_rows(const RowValues& rows) {
+  rows_.setZero();
+  for (std::size_t e = 0; e < own_.entries.size(); ++e) {
+    const auto& entry = own_.entries[e];
+    const Vector3& direction = rows.direction[static_cast<std::size_t>(entry.entry)];
+    memory_.directions[e] = direction;
+    site_jacobian(entry.site, jacobian_);
+    for (Eigen::Index i = 0; i < rows_.rows(); ++i) {
+      rows_(i, entry.row) += direction.dot(jacobian_.col(i));
+    }
+  }
+}
+
+void DenseStep::retake_rows(const RowValues& rows) {
+  take_rows(rows);
+  respond();
+}
+
+void DenseStep::find_imbalance(std::span<const double> effort) {
+  for (std::size_t k = 0; k < own_.rows.size(); ++k) {
+    memory_.effort[static_cast<Eigen::Index>(k)] = effort[static_cast<std::size_t>(own_.rows[k])];
+  }
+  scratch_ = right_;
+  scratch_.noalias() += rows_ * memory_.effort;
+}
+
+double DenseStep::residual(std::span<const double> effort, std::span<double> imbalance) {
+  find_imbalance(effort);
+  if (!imbalance.empty()) std::copy_n(scratch_.data(), scratch_.size(), imbalance.data());
+  return scratch_.norm();
+}
+
+void DenseStep::lessen(std::span<const double> force) {
+  lessens_ = !force.empty();
+  if (lessens_) lessening_ = Eigen::Map<const VectorX>(force.data(), right_.size());
+}
+
+Inertia DenseStep::condense() {
+  if (motion_.size() == 0) return {};  // it does not move
+  symmetric_ = 0.5 * (matrix_ + matrix_.transpose());
+  pivots_.compute(symmetric_);
+  Inertia inertia;
+  inertia.negative_pivots = pivots_.negative();
+  if (inertia.negative_pivots > 0 && definite_wanted_) {
+    make_definite();
+    inertia.negative_pivots = 0;
+  }
+  decomposed_.compute(matrix_);
+  respond();
+  if (inertia.negative_pivots > 0) inertia.status = linalg::FactorStatus::indefinite;
+  if (!moved_rows_.allFinite() || pivots_.vanishes()) {
+    inertia.status = linalg::FactorStatus::singular;
+  }
+  return inertia;
+}
+
+void DenseStep::respond() {
+  decomposed_.solve(rows_, moved_rows_);
+  if (rows_.cols() == 0) return;
+  decomposed_.solve(right_, motion_);
+  free_motion_.noalias() = rows_.transpose() * motion_;
+  compliance_.noalias() = rows_.transpose() * moved_rows_;
+}
+
+// In the directions in which the arm would buckle the real-time tangent is as stiff as it is soft
+// there: a law's program must be convex, and a step must go downhill.
+void DenseStep::make_definite() {
+  spectrum_.compute(symmetric_);
+  const double floor = softest();
+  for (Eigen::Index i = 0; i < motion_.size(); ++i) {
+    const double value = spectrum_.values()[i];
+    if (value >= floor) break;  // ascending
+    const auto direction = spectrum_.vectors().col(i);
+    matrix_.noalias() += (std::max(-value, floor) - value) * direction * direction.transpose();
+  }
+}
+
+// The law's programs want a symmetric W: gyroscopic terms, of the order of h times the rates, are
+// averaged out of it here but not of the motion. Newton's iterations would then end where the law
+// holds of the averaged W alone, off by (W - W_sym) lambda of what it holds; the free motion takes
+// that difference at the efforts known last, and in the limit the law holds of the motion.
+void DenseStep::add_compliance(std::span<const int> place, MatrixX& compliance,
+                               VectorX& free_motion) const {
+  const auto& rows = own_.rows;
+  for (std::size_t j = 0; j < rows.size(); ++j) {
+    const auto column = static_cast<Eigen::Index>(j);
+    const int across = place[static_cast<std::size_t>(rows[j])];
+    free_motion[across] += free_motion_[column];
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      const int down = place[static_cast<std::size_t>(rows[i])];
+      const double mean = 0.5 * (compliance_(row, column) + compliance_(column, row));
+      compliance(down, across) += mean;
+      if (!iterating_) continue;
+      free_motion[down] += (compliance_(row, column) - mean) * memory_.effort[column];
+    }
+  }
+}
+
+void DenseStep::solve_motion(std::span<const double> effort) {
+  find_imbalance(effort);
+  decomposed_.solve(scratch_, motion_);
+  depart();
+}
+
+void DenseStep::solve(std::span<const double> right, std::span<double> result) {
+  scratch_ = Eigen::Map<const VectorX>(right.data(), motion_.size());
+  decomposed_.solve(scratch_, Eigen::Map<VectorX>(result.data(), motion_.size()));
+}
+
+void DenseStep::propose_motion(std::span<const double> motion) {
+  std::ranges::copy(motion, motion_.data());
+  depart();
+}
+
+void DenseStep::propose_drift(double time_step) {
+  drift(time_step, motion_);
+  depart();
+}
+
+std::size_t DenseStep::bytes() const {
+  const Eigen::Index n = right_.size();
+  const Eigen::Index numbers = 3 * n * n + 3 * rows_.size() + compliance_.size() + 9 * n;
+  return sizeof(double) * static_cast<std::size_t>(numbers);
+}
+
+}  // namespace sinew::mechanics

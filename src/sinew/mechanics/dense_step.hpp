@@ -1,0 +1,79 @@
+/// @file
+/// A body of few coordinates in a step.
+#pragma once
+
+#include "sinew/linalg/dense_factor.hpp"
+#include "sinew/mechanics/own_rows.hpp"
+#include "sinew/mechanics/step_system.hpp"
+
+namespace sinew::mechanics {
+
+/// A is dense and may be unsymmetric; rows are taken all. What the body's equation is, how its
+/// sites move, and what a motion does to its state is said by those who derive from it.
+class DenseStep : public StepSystem {
+ public:
+  void linearise(const LinearisationRequest& request) final;
+  void add_curvature(const RowCurvature& curvature) final;
+  void take_rows(const RowValues& rows) final;
+  void retake_rows(const RowValues& rows) final;
+  Inertia condense() final;
+  void add_compliance(std::span<const int> place, MatrixX& compliance,
+                      VectorX& free_motion) const final;
+
+  std::size_t size() const final { return static_cast<std::size_t>(motion_.size()); }
+  double residual(std::span<const double> effort, std::span<double> imbalance) final;
+  double force_scale() const final { return force_scale_; }
+  void lessen(std::span<const double> force) final;
+
+  void solve_motion(std::span<const double> effort) final;
+  void solve(std::span<const double> right, std::span<double> result) final;
+  void propose_motion(std::span<const double> motion) final;
+  void propose_drift(double time_step) final;
+
+  virtual std::size_t bytes() const;
+
+ protected:
+  /// @param coordinates n. @param own,memory must outlive this.
+  DenseStep(Eigen::Index coordinates, const OwnRows& own, RowMemory& memory);
+
+  /// Writes b and A of the present state. @param right (n,). @param matrix (n, n).
+  /// @return force_scale().
+  virtual double form(const LinearisationRequest& request, VectorX& right, MatrixX& matrix) = 0;
+  /// A -= sum over entries of effort direction . d2(motion of the site)/dq2, at the efforts and
+  /// directions remembered.
+  virtual void add_row_stiffness(MatrixX& matrix) = 0;
+  /// The motion of a site for each coordinate. @param result (3, n).
+  virtual void site_jacobian(int site, MatrixX& result) = 0;
+  /// The softest that a real-time tangent lets a direction be.
+  virtual double softest() const = 0;
+  /// The motion proposed next starts from the present state.
+  virtual void depart() = 0;
+  /// (n,) of the rates.
+  virtual void drift(double time_step, VectorX& motion) const = 0;
+
+  const VectorX& motion() const { return motion_; }
+  const MatrixX& matrix() const { return matrix_; }
+
+ private:
+  void find_imbalance(std::span<const double> effort);
+  void make_definite();
+  void respond();
+
+  const OwnRows& own_;
+  RowMemory& memory_;
+  VectorX right_, motion_, scratch_;
+  VectorX lessening_;
+  bool lessens_ = false;
+  MatrixX matrix_, symmetric_;
+  MatrixX jacobian_, second_jacobian_, pulled_;  // (3, n), of sites
+  linalg::LuFactor decomposed_;
+  linalg::SymmetricPivots pivots_;
+  linalg::SymmetricSpectrum spectrum_;
+  bool definite_wanted_ = true;
+  bool iterating_ = false;                  // further linearisations of this step may follow
+  MatrixX rows_, moved_rows_, compliance_;  // (n, own rows): H^T, A^-1 H^T; (own rows, own rows)
+  VectorX free_motion_;
+  double force_scale_ = 1.0;
+};
+
+}  // namespace sinew::mechanics

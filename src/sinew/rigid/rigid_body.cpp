@@ -1,0 +1,96 @@
+#include "sinew/rigid/rigid_body.hpp"
+
+#include "sinew/rigid/rigid_body_model.hpp"
+#include "sinew/rigid/rigid_state.hpp"
+#include "sinew/rigid/rigid_step.hpp"
+
+namespace sinew::rigid {
+
+RigidBody::RigidBody(const RigidBodyModel& model, int histories)
+    : model_(model),
+      state_(std::make_unique<RigidState>(model, histories)),
+      step_(std::make_unique<RigidStep>(*state_)),
+      positions_(model.mesh().nodes),
+      velocities_(Points::Zero(positions_.rows(), 3)) {}
+
+RigidBody::~RigidBody() = default;
+
+const mechanics::BodyModel& RigidBody::model() const { return model_; }
+
+Vector3 RigidBody::position(int point) const {
+  return state_->pose.centre + state_->pose.rotation * model_.attachment(point).arm;
+}
+
+Vector3 RigidBody::velocity(int site) const {
+  const auto& at = model_.attachment(site);
+  if (at.kind == RigidBodyModel::Attachment::Kind::orientation) return angular_velocity();
+  return linear_velocity() + angular_velocity().cross(state_->pose.rotation * at.arm);
+}
+
+const Points& RigidBody::positions() const {
+  const Matrix3 turn = state_->pose.rotation.toRotationMatrix();
+  positions_ = (model_.mesh().nodes.rowwise() - model_.centre().transpose()) * turn.transpose();
+  positions_.rowwise() += state_->pose.centre.transpose();
+  return positions_;
+}
+
+const Points& RigidBody::velocities() const {
+  const Vector3 spin = angular_velocity(), linear = linear_velocity();
+  positions();
+  for (Eigen::Index i = 0; i < positions_.rows(); ++i) {
+    const Vector3 arm = positions_.row(i).transpose() - state_->pose.centre;
+    velocities_.row(i) = (linear + spin.cross(arm)).transpose();
+  }
+  return velocities_;
+}
+
+mechanics::Energies RigidBody::energies() {
+  const Matrix3 turn = state_->pose.rotation.toRotationMatrix();
+  const Vector3 spin = turn.transpose() * angular_velocity();
+  const Vector3 fallen = state_->pose.centre - model_.centre();
+  mechanics::Energies energies;
+  energies.kinetic =
+      0.5 * (model_.mass() * linear_velocity().squaredNorm() + spin.dot(model_.inertia() * spin));
+  energies.gravity = -model_.mass() * model_.settings().gravity.dot(fallen);
+  return energies;
+}
+
+void RigidBody::restart() { state_->restart(); }
+std::size_t RigidBody::state_size() const { return state_->size(); }
+void RigidBody::save_state(std::span<double> state) const { state_->save(state); }
+void RigidBody::load_state(std::span<const double> state) { state_->load(state); }
+mechanics::StepSystem& RigidBody::system() { return *step_; }
+const mechanics::StepSystem& RigidBody::system() const { return *step_; }
+
+std::size_t RigidBody::bytes() const {
+  return step_->bytes() +
+         sizeof(double) * (state_->size() + 6 * static_cast<std::size_t>(positions_.rows()));
+}
+
+Matrix3 RigidBody::rotation(int) const { return state_->pose.rotation.toRotationMatrix(); }
+
+Vector3 RigidBody::origin() const {
+  return state_->pose.centre +
+         state_->pose.rotation * (model_.settings().position - model_.centre());
+}
+
+Vector3 RigidBody::centre_of_mass() const { return state_->pose.centre; }
+Matrix3 RigidBody::axes() const { return rotation(0) * model_.settings().rotation; }
+Vector3 RigidBody::linear_velocity() const { return state_->rate.head<3>(); }
+
+void RigidBody::put_pose(const Vector3& origin, const Eigen::Quaterniond& axes,
+                         std::span<double> state) const {
+  RigidState shown(model_, static_cast<int>(state_->history.size()));
+  const RigidSettings& rest = model_.settings();
+  shown.pose.rotation = axes * Eigen::Quaterniond(rest.rotation).conjugate();
+  shown.pose.rotation.normalize();
+  shown.pose.centre = origin - shown.pose.rotation * (rest.position - model_.centre());
+  shown.rate.setZero();
+  shown.save(state);
+}
+
+Vector3 RigidBody::angular_velocity() const {
+  return state_->rate.tail<3>() / model_.turning_radius();
+}
+
+}  // namespace sinew::rigid

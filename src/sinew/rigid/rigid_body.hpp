@@ -1,0 +1,55 @@
+/// @file
+/// The state of a rigid body.
+#pragma once
+
+#include <memory>
+
+#include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/capabilities.hpp"
+
+namespace sinew::rigid {
+
+class RigidBodyModel;
+class RigidStep;
+struct RigidState;
+
+/// Its state, and RigidStep for its steps.
+class RigidBody : public mechanics::Body,
+                  public mechanics::HasOrientations,
+                  public mechanics::HasPose {
+ public:
+  /// @param model must outlive the body. @param histories see mechanics::BodyModel::create().
+  RigidBody(const RigidBodyModel& model, int histories);
+  ~RigidBody() override;
+
+  const mechanics::BodyModel& model() const override;
+  Vector3 position(int point) const override;
+  Vector3 velocity(int site) const override;
+  const Points& positions() const override;
+  const Points& velocities() const override;
+  mechanics::Energies energies() override;
+  void restart() override;
+  std::size_t state_size() const override;
+  void save_state(std::span<double> state) const override;
+  void load_state(std::span<const double> state) override;
+  mechanics::StepSystem& system() override;
+  const mechanics::StepSystem& system() const override;
+  std::size_t bytes() const override;
+
+  Matrix3 rotation(int orientation) const override;
+  Vector3 origin() const override;
+  Vector3 centre_of_mass() const override;
+  Matrix3 axes() const override;
+  Vector3 linear_velocity() const override;
+  Vector3 angular_velocity() const override;
+  void put_pose(const Vector3& origin, const Eigen::Quaterniond& axes,
+                std::span<double> state) const override;
+
+ private:
+  const RigidBodyModel& model_;
+  std::unique_ptr<RigidState> state_;
+  std::unique_ptr<RigidStep> step_;
+  mutable Points positions_, velocities_;  // of the skin, when last asked for
+};
+
+}  // namespace sinew::rigid

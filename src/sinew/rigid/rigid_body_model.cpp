@@ -1,0 +1,148 @@
+#include "sinew/rigid/rigid_body_model.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include "sinew/core/error.hpp"
+#include "sinew/linalg/dense.hpp"
+#include "sinew/mesh/embedding.hpp"
+#include "sinew/rigid/rigid_body.hpp"
+
+namespace sinew::rigid {
+
+namespace {
+
+// A point so far outside, of the body's size, is on its surface.
+constexpr double kSlack = 1e-9;
+// Principal moments of a solid obey the triangle's inequality; by so much may rounding break it.
+constexpr double kInertiaSlack = 1e-9;
+
+void check_inertia(const RigidSettings& settings, const Matrix3& inertia) {
+  const VectorX moments = linalg::symmetric_eigenvalues(inertia);
+  const bool solid =
+      moments[0] > 0.0 && moments[0] + moments[1] >= (1.0 - kInertiaSlack) * moments[2];
+  if (solid && (inertia - inertia.transpose()).norm() <= kInertiaSlack * inertia.norm()) return;
+  throw Error(ErrorKind::out_of_range, {.item = "body '" + settings.name + "'"},
+              fmt::format("principal moments of inertia {:.4g}, {:.4g} and {:.4g} kg m^2 belong to "
+                          "no body",
+                          moments[0], moments[1], moments[2]),
+              "each is positive and no larger than the sum of the other two");
+}
+
+// At the pose of the start, in the world's axes.
+MassProperties placed_mass(const RigidSettings& settings) {
+  MassProperties own = mass_properties(settings.shape, settings.density.value_or(1.0));
+  const auto refuse = [&](ErrorKind kind, const std::string& what, const std::string& remedy) {
+    throw Error(kind, {.item = "body '" + settings.name + "'"}, what, remedy);
+  };
+  if (!(own.mass > 0.0) || !std::isfinite(own.mass)) {
+    refuse(ErrorKind::out_of_range, "its shape has no volume", "give lengths above zero");
+  }
+  if (settings.mass) {
+    if (!(*settings.mass > 0.0)) {
+      refuse(ErrorKind::out_of_range, fmt::format("its mass is {:g} kg", *settings.mass),
+             "give a mass above zero");
+    }
+    own.inertia *= *settings.mass / own.mass;
+    own.mass = *settings.mass;
+  } else if (!settings.density && !settings.fixed) {
+    refuse(ErrorKind::missing_mass, "it has no mass", "give `mass` or `density`");
+  }
+  if (settings.inertia) own.inertia = *settings.inertia;
+  check_inertia(settings, own.inertia);
+  own.centre = settings.position + settings.rotation * own.centre;
+  own.inertia = settings.rotation * own.inertia * settings.rotation.transpose();
+  return own;
+}
+
+}  // namespace
+
+RigidBodyModel::RigidBodyModel(RigidSettings settings)
+    : settings_(std::move(settings)),
+      mass_(placed_mass(settings_)),
+      radius_(std::sqrt(mass_.inertia.trace() / (2.0 * mass_.mass))),
+      skin_(skin(settings_.shape)) {
+  skin_.name = name();
+  skin_.nodes = (skin_.nodes * settings_.rotation.transpose()).eval();
+  skin_.nodes.rowwise() += settings_.position.transpose();
+}
+
+double RigidBodyModel::rest_distance(const Vector3& point) const {
+  return signed_distance(settings_.shape,
+                         settings_.rotation.transpose() * (point - settings_.position));
+}
+
+void RigidBodyModel::check_inside(const Vector3& rest_position, mesh::Outside outside,
+                                  const std::string& what) const {
+  if (!rest_position.allFinite()) {
+    throw Error(ErrorKind::not_finite, {.item = what}, "the point is not finite",
+                "give three numbers");
+  }
+  const double beyond = rest_distance(rest_position);
+  if (outside != mesh::Outside::error || beyond <= kSlack * radius_) return;
+  throw Error(ErrorKind::point_outside_mesh, {.item = what},
+              fmt::format("the point ({:.6g}, {:.6g}, {:.6g}) m lies {:.3g} m outside body '{}'",
+                          rest_position.x(), rest_position.y(), rest_position.z(), beyond, name()),
+              "move it inside, or write `outside: nearest`: the body then carries it where it is");
+}
+
+int RigidBodyModel::attach(const Vector3& rest_position, mesh::Outside outside,
+                           const std::string& what) {
+  check_inside(rest_position, outside, what);
+  return add({Attachment::Kind::point, rest_position - centre()});
+}
+
+int RigidBodyModel::attach_ball(const Vector3& centre, double, mesh::Outside outside,
+                                const std::string& what) {
+  return attach(centre, outside, what);
+}
+
+int RigidBodyModel::attach_nodes(std::span<const NodeId> nodes, std::span<const double> weights) {
+  Vector3 mean = Vector3::Zero();
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    mean += weights[k] * skin_.nodes.row(nodes[k]).transpose();
+  }
+  return add({Attachment::Kind::point, mean - centre()});
+}
+
+int RigidBodyModel::attach_orientation(const Vector3& rest_position, mesh::Outside outside,
+                                       const std::string& what) {
+  check_inside(rest_position, outside, what);
+  return add({.kind = Attachment::Kind::orientation});
+}
+
+int RigidBodyModel::add(const Attachment& attachment) {
+  attachments_.push_back(attachment);
+  return static_cast<int>(attachments_.size()) - 1;
+}
+
+Vector3 RigidBodyModel::rest_position(int point) const { return centre() + attachment(point).arm; }
+
+void RigidBodyModel::finish(int body, const mechanics::RowPattern& rows,
+                            std::span<const mechanics::RowCurvature>,
+                            const linalg::FactorisationSettings&) {
+  own_rows_ = mechanics::OwnRows(body, rows);
+}
+
+std::vector<NamedHash> RigidBodyModel::parts() const {
+  const ValueHash shape = ValueHash().add(skin_.nodes);
+  const ValueHash mass = ValueHash().add(mass_.mass, mass_.centre, mass_.inertia);
+  return {{"shape", shape.value()},
+          {"mass", mass.value()},
+          {"fixed", ValueHash().add(settings_.fixed).value()},
+          {"gravity", ValueHash().add(settings_.gravity).value()}};
+}
+
+std::uint64_t RigidBodyModel::site_hash(int site) const {
+  const Attachment& at = attachment(site);
+  return ValueHash().add(at.kind, at.arm).value();
+}
+
+std::unique_ptr<mechanics::Body> RigidBodyModel::create(ThreadPool&, bool, int histories) const {
+  return std::make_unique<RigidBody>(*this, histories);
+}
+
+}  // namespace sinew::rigid

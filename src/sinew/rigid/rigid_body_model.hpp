@@ -1,0 +1,82 @@
+/// @file
+/// A rigid body as a BodyModel.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
+#include "sinew/mechanics/own_rows.hpp"
+#include "sinew/mesh/mesh.hpp"
+#include "sinew/rigid/rigid_settings.hpp"
+
+namespace sinew::rigid {
+
+class RigidBodyModel final : public mechanics::BodyModel,
+                             public mechanics::AttachesOrientations,
+                             public mechanics::HasShape {
+ public:
+  struct Attachment {
+    enum class Kind { point, orientation };
+    Kind kind = Kind::point;
+    Vector3 arm = Vector3::Zero();  ///< m, from the centre of mass, at rest in the world's axes
+  };
+
+  /// Throws Error: out-of-range for a size, a mass or an inertia that cannot be, missing-mass where
+  /// a body that moves has none.
+  explicit RigidBodyModel(RigidSettings settings);
+
+  const std::string& name() const override { return settings_.name; }
+  int attach(const Vector3& rest_position, mesh::Outside outside, const std::string& what) override;
+  int attach_ball(const Vector3& centre, double radius, mesh::Outside outside,
+                  const std::string& what) override;
+  int attach_nodes(std::span<const NodeId> nodes, std::span<const double> weights) override;
+  int attach_orientation(const Vector3& rest_position, mesh::Outside outside,
+                         const std::string& what) override;
+  Vector3 rest_position(int point) const override;
+  void finish(int body, const mechanics::RowPattern& rows,
+              std::span<const mechanics::RowCurvature> curvatures,
+              const linalg::FactorisationSettings& settings) override;
+  bool couples(int, int) const override { return true; }
+  bool is_free() const override { return !settings_.fixed; }
+  std::vector<NamedHash> parts() const override;
+  std::uint64_t site_hash(int site) const override;
+  const mesh::Mesh& mesh() const override { return skin_; }
+  std::unique_ptr<mechanics::Body> create(ThreadPool& pool, bool with_curvature,
+                                          int histories) const override;
+
+  Vector3 rest_origin() const override { return settings_.position; }
+  double rest_distance(const Vector3& point) const override;
+
+  const RigidSettings& settings() const { return settings_; }
+  double mass() const override { return mass_.mass; }
+  Matrix3 own_inertia() const override {
+    return settings_.rotation.transpose() * mass_.inertia * settings_.rotation;
+  }
+  const char* shape_name() const override { return rigid::shape_name(settings_.shape); }
+  const Vector3& centre() const { return mass_.centre; }    ///< (3,) m, at rest, in the world
+  const Matrix3& inertia() const { return mass_.inertia; }  ///< the same, about the centre
+  /// m: a turn by an angle moves the body by about this times it. Turns are counted in metres of
+  /// it, so that all coordinates are of one unit.
+  double turning_radius() const { return radius_; }
+  const Attachment& attachment(int site) const {
+    return attachments_[static_cast<std::size_t>(site)];
+  }
+  const mechanics::OwnRows& own_rows() const { return own_rows_; }
+
+ private:
+  int add(const Attachment& attachment);
+  void check_inside(const Vector3& rest_position, mesh::Outside outside,
+                    const std::string& what) const;
+
+  RigidSettings settings_;
+  MassProperties mass_;
+  double radius_ = 1.0;
+  mesh::Mesh skin_;
+  std::vector<Attachment> attachments_;
+  mechanics::OwnRows own_rows_;
+};
+
+}  // namespace sinew::rigid

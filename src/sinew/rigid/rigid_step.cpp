@@ -1,0 +1,134 @@
+#include "sinew/rigid/rigid_step.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/core/rotation.hpp"
+#include "sinew/rigid/rigid_body_model.hpp"
+
+namespace sinew::rigid {
+
+namespace {
+
+// Residuals are not judged by forces that accelerate a body by less than this many of its radii
+// per second squared.
+constexpr double kMinAcceleration = 1e-6;
+
+}  // namespace
+
+RigidStep::RigidStep(RigidState& state)
+    : DenseStep(state.model.is_free() ? 6 : 0, state.model.own_rows(), state.memory),
+      state_(state),
+      from_(state.pose) {}
+
+double RigidStep::form(const mechanics::LinearisationRequest& request, VectorX& right,
+                       MatrixX& matrix) {
+  const RigidBodyModel& model = state_.model;
+  if (!model.is_free()) return 1.0;
+  const Vector3 weight = model.mass() * model.settings().gravity;
+  right.setZero();
+  right.head<3>() = weight;
+  matrix.setZero();
+  if (request.weights.dynamic()) add_inertia(request.weights, right, matrix);
+  const double least = kMinAcceleration * model.mass() * model.turning_radius();
+  return least + weight.norm() + (right.head<3>() - weight).norm() + right.tail<3>().norm();
+}
+
+void RigidStep::add_inertia(const mechanics::StepWeights& weights, VectorX& right,
+                            MatrixX& matrix) const {
+  const RigidBodyModel& model = state_.model;
+  const double s = model.turning_radius();
+  const Vector6 rate = state_.combine(weights.velocity);
+  const Vector6 acceleration = state_.combine(weights.acceleration);
+  const Matrix3 turned = state_.pose.rotation.toRotationMatrix();
+  const Matrix3 inertia = turned * model.inertia() * turned.transpose();
+  const Vector3 omega = rate.tail<3>() / s, alpha = acceleration.tail<3>() / s;
+  const Vector3 momentum = inertia * omega, pushed = inertia * alpha;
+  right.head<3>() -= model.mass() * acceleration.head<3>();
+  right.tail<3>() -= (pushed + omega.cross(momentum)) / s;
+
+  matrix.topLeftCorner<3, 3>().diagonal().setConstant(model.mass() * weights.acceleration.motion);
+  const Matrix3 turning = rotation_vector_rate(state_.motion().tail<3>() / s);
+  const Matrix3 spin = cross_matrix(omega), carried = inertia * spin - cross_matrix(momentum);
+  const Matrix3 by_pose = inertia * cross_matrix(alpha) - cross_matrix(pushed) + spin * carried;
+  const Matrix3 by_turn = weights.acceleration.motion * inertia +
+                          weights.velocity.motion * (spin * inertia - cross_matrix(momentum));
+  matrix.bottomRightCorner<3, 3>() = (by_turn * turning + by_pose) / (s * s);
+}
+
+// A force f at r = R r_0 has the moment r x f, which changes by (w x r) x f = [f] [r] w. A moment
+// keeps its axis.
+void RigidStep::add_row_stiffness(MatrixX& matrix) {
+  const RigidBodyModel& model = state_.model;
+  if (!model.is_free()) return;
+  const double square = model.turning_radius() * model.turning_radius();
+  const auto& entries = model.own_rows().entries;
+  for (std::size_t e = 0; e < entries.size(); ++e) {
+    const double effort = state_.memory.effort[entries[e].row];
+    const auto& site = model.attachment(entries[e].site);
+    if (effort == 0.0 || site.kind == RigidBodyModel::Attachment::Kind::orientation) continue;
+    const Vector3 arm = state_.pose.rotation * site.arm;
+    matrix.bottomRightCorner<3, 3>() -=
+        effort / square * cross_matrix(state_.memory.directions[e]) * cross_matrix(arm);
+  }
+}
+
+void RigidStep::site_jacobian(int site, MatrixX& result) {
+  const RigidBodyModel& model = state_.model;
+  if (!model.is_free()) return;
+  const auto& at = model.attachment(site);
+  const double s = model.turning_radius();
+  if (at.kind == RigidBodyModel::Attachment::Kind::orientation) {
+    result << Matrix3::Zero(), Matrix3::Identity() / s;
+  } else {
+    result << Matrix3::Identity(), -cross_matrix(state_.pose.rotation * at.arm) / s;
+  }
+}
+
+// Positions are known to eps |x|, and turns to eps.
+double RigidStep::rounding_floor() const {
+  if (size() == 0) return 0.0;
+  const double at =
+      std::max(state_.pose.centre.cwiseAbs().maxCoeff(), state_.model.turning_radius());
+  return kEpsilon * at * matrix().cwiseAbs().rowwise().sum().norm();
+}
+
+mechanics::MotionReport RigidStep::apply_motion(double scale) {
+  if (size() == 0) return {};
+  const Vector6 moved = scale * motion();
+  state_.pose = from_.moved(moved.head<3>(), moved.tail<3>() / state_.model.turning_radius());
+  mechanics::MotionReport report;
+  report.largest_move = moved.cwiseAbs().maxCoeff();
+  report.finite = moved.allFinite() && state_.pose.centre.allFinite();
+  return report;
+}
+
+mechanics::StepEnd RigidStep::end_step(const mechanics::StepWeights& weights) {
+  using Jump = mechanics::StepWeights::Jump;
+  mechanics::StepEnd end;
+  if (size() == 0) return end;
+  if (!weights.dynamic()) {
+    state_.rate.setZero();
+    for (Vector6& kept : state_.history) kept.setZero();
+    return end;
+  }
+  const Vector6 rate = state_.combine(weights.velocity);
+  const auto size_of = [](const Vector6& jump) { return jump.cwiseAbs().maxCoeff(); };
+  double jump = 0.0;
+  if (weights.error_of == Jump::velocity) jump = size_of(rate - state_.rate);
+  if (!state_.history.empty()) {
+    const Vector6 first = state_.combine(weights.first), second = state_.combine(weights.second);
+    if (weights.error_of == Jump::first) jump = size_of(first - state_.history[0]);
+    if (weights.error_of == Jump::acceleration) {
+      const Vector6 before = (state_.rate - state_.history[1]) / weights.step_before;
+      jump = size_of(state_.combine(weights.acceleration) - before);
+    }
+    state_.history[0] = first;
+    state_.history[1] = second;
+  }
+  state_.rate = rate;
+  end.error = weights.error_jump * jump;
+  return end;
+}
+
+}  // namespace sinew::rigid

@@ -1,0 +1,40 @@
+/// @file
+/// A rigid body in a step.
+#pragma once
+
+#include "sinew/mechanics/dense_step.hpp"
+#include "sinew/rigid/rigid_state.hpp"
+
+namespace sinew::rigid {
+
+/// Newton's and Euler's equations at the end of the step, in the world's axes (Featherstone, Rigid
+/// Body Dynamics Algorithms, 2008, sec. 2.15),
+///   m a = m g + forces,   J alpha + omega x J omega = moments about the centre,   J = R J_0 R^T,
+/// with a and alpha the integrator's combinations. Unknowns are the six numbers of a motion. A turn
+/// by w after the one by theta since the step's start changes that by D w (rotation_vector_rate),
+/// and J by [w] J - J [w]; the matrix is the derivative, exact and unsymmetric.
+class RigidStep : public mechanics::DenseStep {
+ public:
+  /// @param state must outlive this.
+  explicit RigidStep(RigidState& state);
+
+  void begin_step() override { state_.start = state_.pose; }
+  double rounding_floor() const override;
+  mechanics::MotionReport apply_motion(double scale) override;
+  mechanics::StepEnd end_step(const mechanics::StepWeights& weights) override;
+
+ private:
+  double form(const mechanics::LinearisationRequest& request, VectorX& right,
+              MatrixX& matrix) override;
+  void add_row_stiffness(MatrixX& matrix) override;
+  void site_jacobian(int site, MatrixX& result) override;
+  double softest() const override { return 0.0; }
+  void depart() override { from_ = state_.pose; }
+  void drift(double time_step, VectorX& motion) const override { motion = time_step * state_.rate; }
+  void add_inertia(const mechanics::StepWeights& weights, VectorX& right, MatrixX& matrix) const;
+
+  RigidState& state_;
+  RigidPose from_;  // that the motion starts from
+};
+
+}  // namespace sinew::rigid

@@ -1,0 +1,162 @@
+#include "sinew/rigid/shape.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include "sinew/mesh/shapes.hpp"
+
+namespace sinew::rigid {
+
+namespace {
+
+using std::numbers::pi;
+
+template <class... Visitors>
+struct Overloaded : Visitors... {
+  using Visitors::operator()...;
+};
+
+constexpr int kCellsAcross = 8;  // of a round skin
+
+Matrix3 diagonal(double x, double y, double z) { return Vector3(x, y, z).asDiagonal(); }
+
+MassProperties of(const Box& box, double density) {
+  const Vector3 squares = box.edges.cwiseAbs2();
+  const double mass = density * box.edges.prod();
+  return {mass, Vector3::Zero(),
+          mass / 12.0 *
+              diagonal(squares.y() + squares.z(), squares.x() + squares.z(),
+                       squares.x() + squares.y())};
+}
+
+MassProperties of(const Sphere& sphere, double density) {
+  const double square = sphere.radius * sphere.radius;
+  const double mass = density * 4.0 / 3.0 * pi * square * sphere.radius;
+  return {mass, Vector3::Zero(), 0.4 * mass * square * Matrix3::Identity()};
+}
+
+MassProperties of(const Cylinder& cylinder, double density) {
+  const double square = cylinder.radius * cylinder.radius;
+  const double mass = density * pi * square * cylinder.height;
+  const double across = mass / 12.0 * (3.0 * square + cylinder.height * cylinder.height);
+  return {mass, Vector3::Zero(), diagonal(across, across, 0.5 * mass * square)};
+}
+
+// A half sphere's centre of mass stands 3/8 r from its plane; about that centre its inertia across
+// the axis is (2/5 - 9/64) m r^2.
+MassProperties of(const Capsule& capsule, double density) {
+  const double r = capsule.radius;
+  MassProperties result = of(Cylinder{r, capsule.length}, density);
+  const double ends = of(Sphere{r}, density).mass;
+  const double arm = 0.5 * capsule.length + 0.375 * r;
+  const double across = ends * ((0.4 - 9.0 / 64.0) * r * r + arm * arm);
+  result.mass += ends;
+  result.inertia += diagonal(across, across, 0.4 * ends * r * r);
+  return result;
+}
+
+double distance(const Box& box, const Vector3& point) {
+  const Vector3 beyond = point.cwiseAbs() - 0.5 * box.edges;
+  return beyond.cwiseMax(0.0).norm() + std::min(beyond.maxCoeff(), 0.0);
+}
+
+double distance(const Sphere& sphere, const Vector3& point) { return point.norm() - sphere.radius; }
+
+double distance(const Capsule& capsule, const Vector3& point) {
+  const double half = 0.5 * capsule.length;
+  const Vector3 from(point.x(), point.y(), point.z() - std::clamp(point.z(), -half, half));
+  return from.norm() - capsule.radius;
+}
+
+double distance(const Cylinder& cylinder, const Vector3& point) {
+  const Eigen::Vector2d beyond(std::hypot(point.x(), point.y()) - cylinder.radius,
+                               std::abs(point.z()) - 0.5 * cylinder.height);
+  return beyond.cwiseMax(0.0).norm() + std::min(beyond.maxCoeff(), 0.0);
+}
+
+mesh::Mesh cells(const Vector3& edges, const std::array<int, 3>& count) {
+  return mesh::block({.corner = -0.5 * edges, .size = edges, .cells = count},
+                     mesh::Cells::hexahedra);
+}
+
+mesh::Mesh mesh_of(const Box& box) { return cells(box.edges, {1, 1, 1}); }
+
+// A cube whose shells of equal |x|_max become spheres.
+mesh::Mesh mesh_of(const Sphere& sphere) {
+  mesh::Mesh ball =
+      cells(2.0 * sphere.radius * Vector3::Ones(), {kCellsAcross, kCellsAcross, kCellsAcross});
+  for (Eigen::Index i = 0; i < ball.nodes.rows(); ++i) {
+    const double length = ball.nodes.row(i).norm();
+    if (length > 0.0) ball.nodes.row(i) *= ball.nodes.row(i).cwiseAbs().maxCoeff() / length;
+  }
+  return ball;
+}
+
+mesh::Mesh mesh_of(const Cylinder& cylinder) {
+  mesh::Mesh result = mesh::cylinder({.radius = cylinder.radius,
+                                      .height = cylinder.height,
+                                      .rings = kCellsAcross / 2,
+                                      .layers = 2},
+                                     mesh::Cells::hexahedra);
+  result.nodes.col(2).array() -= 0.5 * cylinder.height;
+  return result;
+}
+
+// A ball that is cut in its middle and drawn apart.
+mesh::Mesh mesh_of(const Capsule& capsule) {
+  mesh::Mesh result = mesh_of(Sphere{capsule.radius});
+  for (Eigen::Index i = 0; i < result.nodes.rows(); ++i) {
+    double& z = result.nodes(i, 2);
+    if (z != 0.0) z += std::copysign(0.5 * capsule.length, z);
+  }
+  return result;
+}
+
+}  // namespace
+
+const char* shape_name(const Shape& shape) {
+  constexpr std::array kNames = {"box", "sphere", "capsule", "cylinder"};
+  static_assert(kNames.size() == std::variant_size_v<Shape>);
+  return kNames[shape.index()];
+}
+
+MassProperties mass_properties(const Shape& shape, double density) {
+  return std::visit([&](const auto& kind) { return of(kind, density); }, shape);
+}
+
+MassProperties mass_properties(const mesh::Surface& surface, double density) {
+  double volume = 0.0;
+  Vector3 first = Vector3::Zero();
+  Matrix3 second = Matrix3::Zero();  // integral of x x^T
+  for (const mesh::Triangle& t : surface.triangles) {
+    Matrix3 corners;
+    for (int c = 0; c < 3; ++c) {
+      corners.col(c) = surface.nodes.row(t[static_cast<std::size_t>(c)]).transpose();
+    }
+    const double part = corners.determinant() / 6.0;
+    const Vector3 sum = corners.rowwise().sum();
+    volume += part;
+    first += part / 4.0 * sum;
+    second += part / 20.0 * (corners * corners.transpose() + sum * sum.transpose());
+  }
+  MassProperties result;
+  result.mass = density * volume;
+  result.centre = first / volume;
+  second -= volume * result.centre * result.centre.transpose();
+  result.inertia = density * (second.trace() * Matrix3::Identity() - second);
+  return result;
+}
+
+double signed_distance(const Shape& shape, const Vector3& point) {
+  return std::visit([&](const auto& kind) { return distance(kind, point); }, shape);
+}
+
+mesh::Mesh skin(const Shape& shape) {
+  return std::visit([](const auto& kind) { return mesh_of(kind); }, shape);
+}
+
+}  // namespace sinew::rigid

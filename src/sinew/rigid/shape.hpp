@@ -1,0 +1,48 @@
+/// @file
+/// Shapes of rigid bodies, and their mass.
+#pragma once
+
+#include <variant>
+
+#include "sinew/core/types.hpp"
+#include "sinew/mesh/mesh.hpp"
+
+namespace sinew::rigid {
+
+// All are centred on the origin.
+struct Box {
+  Vector3 edges;  ///< (3,) m, whole
+};
+struct Sphere {
+  double radius = 0.0;  ///< m
+};
+/// A cylinder along z with half spheres at its ends.
+struct Capsule {
+  double radius = 0.0, length = 0.0;  ///< m; of the cylinder, ends not counted
+};
+struct Cylinder {
+  double radius = 0.0, height = 0.0;  ///< m, along z
+};
+
+using Shape = std::variant<Box, Sphere, Capsule, Cylinder>;
+const char* shape_name(const Shape& shape);
+
+struct MassProperties {
+  double mass = 0.0;                          ///< kg
+  Vector3 centre = Vector3::Zero();           ///< m, of mass
+  Matrix3 inertia = Matrix3::Identity() * 0;  ///< kg m^2, about the centre
+};
+
+/// Of a homogeneous solid. @param density kg/m^3.
+MassProperties mass_properties(const Shape& shape, double density);
+/// The same inside a closed surface, by the divergence theorem: the sum over tetrahedra from the
+/// origin to each triangle, with the signs of their volumes (Tonon, J. Math. Stat. 1, 2005).
+MassProperties mass_properties(const mesh::Surface& surface, double density);
+
+/// Distance of a point to the shape's surface, m: negative inside.
+double signed_distance(const Shape& shape, const Vector3& point);
+
+/// A volume mesh that shows the shape.
+mesh::Mesh skin(const Shape& shape);
+
+}  // namespace sinew::rigid

@@ -1,0 +1,197 @@
+// The tables of rigid bodies and of motors.
+#include "sinew/scene/grammar_forms.hpp"
+
+namespace sinew::scene::forms {
+
+namespace {
+
+Key shape_key(const char* name, const char* example, const char* description) {
+  return {.name = name,
+          .forms = {quantity(length(), positive())},
+          .example = example,
+          .description = description,
+          .required = true};
+}
+
+Key shape_form(const char* name, const char* example, const char* description,
+               std::vector<Key> keys) {
+  return {.name = name,
+          .forms = {table(make_table({.name = std::string("shape: ") + name,
+                                      .description = description,
+                                      .keys = std::move(keys)}))},
+          .example = example,
+          .description = description};
+}
+
+std::shared_ptr<const KeyTable> shape_table() {
+  return make_table(
+      {.name = "shape of a rigid body",
+       .description = "Centred on the body's origin.",
+       .keys = {{.name = "box",
+                 .forms = {vector(length())},
+                 .example = "40 30 20 mm",
+                 .description = "A box along the body's axes: its whole edges."},
+                shape_form("sphere", "{radius: 15 mm}", "A ball.",
+                           {shape_key("radius", "15 mm", "Its radius.")}),
+                shape_form("capsule", "{radius: 10 mm, length: 40 mm}",
+                           "A cylinder about z with half spheres at its ends.",
+                           {shape_key("radius", "10 mm", "Of the cylinder and the half spheres."),
+                            shape_key("length", "40 mm", "Of the cylinder, without its ends.")}),
+                shape_form("cylinder", "{radius: 10 mm, height: 40 mm}", "A cylinder about z.",
+                           {shape_key("radius", "10 mm", "Its radius."),
+                            shape_key("height", "40 mm", "Along z.")})},
+       .alternatives = {{{"box", "sphere", "capsule", "cylinder"}, true}}});
+}
+
+std::shared_ptr<const KeyTable> pose_rotation_table() {
+  return make_table({.name = "rotation",
+                     .description = "A rotation about an axis.",
+                     .keys = {{.name = "axis",
+                               .forms = axis_forms(),
+                               .example = "0 0 1",
+                               .description = "Direction of the axis; any non-zero length.",
+                               .required = true},
+                              {.name = "angle",
+                               .forms = {quantity(angle())},
+                               .example = "20 deg",
+                               .description = "Right-handed about it.",
+                               .required = true}}});
+}
+
+std::shared_ptr<const KeyTable> pose_table() {
+  return make_table({.name = "pose",
+                     .description = "Where a rigid body is at the start.",
+                     .keys = {{.name = "position",
+                               .forms = {vector(length())},
+                               .example = "0 0 30 mm",
+                               .default_text = "0 0 0 m",
+                               .description = "Of its origin."},
+                              {.name = "rotation",
+                               .forms = {vector(angle()), table(pose_rotation_table())},
+                               .example = "{axis: 0 0 1, angle: 20 deg}",
+                               .default_text = "0 0 0 rad",
+                               .description = "Of its axes, about its origin: an axis and an "
+                                              "angle, or a rotation vector."}}});
+}
+
+std::shared_ptr<const KeyTable> velocity_table() {
+  return make_table({.name = "velocity",
+                     .description = "Motion of a rigid body at the start.",
+                     .keys = {{.name = "linear",
+                               .forms = {vector(speed())},
+                               .example = "0 0 -1 m/s",
+                               .default_text = "0 0 0 m/s",
+                               .description = "Of its centre of mass."},
+                              {.name = "angular",
+                               .forms = {vector(angular_speed())},
+                               .example = "0 0 20 rad/s",
+                               .default_text = "0 0 0 rad/s",
+                               .description = "About the world's axes."}}});
+}
+
+KeyTable motor_table(const char* word, const char* description, const char* joint_text,
+                     DriveWords words) {
+  KeyTable table{.name = std::string("actuator: type ") + word,
+                 .description = description,
+                 .keys = {{.name = "joint",
+                           .forms = {reference("joints")},
+                           .example = "lid",
+                           .description = joint_text,
+                           .required = true}}};
+  words.kind = word;
+  words.undriven = "Command. Without: no effort until commanded.";
+  for (Key& key : drive_keys(words)) table.keys.push_back(std::move(key));
+  return table;
+}
+
+Key velocity_key(const Measure& measure, const char* example, const char* description) {
+  return {.name = "velocity",
+          .forms = {quantity(measure), table(signal_table(measure, example))},
+          .example = example,
+          .description = description};
+}
+
+}  // namespace
+
+std::shared_ptr<const KeyTable> rigid_table() {
+  return make_table(
+      {.name = "body: type rigid",
+       .description = "A rigid body of homogeneous material.",
+       .keys = {{.name = "shape",
+                 .forms = {table(shape_table())},
+                 .example = "{box: 40 30 20 mm}",
+                 .description = "The shape, centred on the body's origin.",
+                 .required = true},
+                {.name = "density",
+                 .forms = {quantity(density(), positive())},
+                 .example = "1200 kg/m^3",
+                 .description = "Density."},
+                {.name = "mass",
+                 .forms = {quantity(mass(), positive())},
+                 .example = "100 g",
+                 .description = "Total mass, in place of a density."},
+                {.name = "inertia",
+                 .forms = {vector(inertia())},
+                 .example = "1e-5 2e-5 2.5e-5 kg m^2",
+                 .description = "Moments of inertia about the body's axes through the centre of "
+                                "mass. Without: of the shape.",
+                 .only_with = "mass"},
+                {.name = "pose",
+                 .forms = {table(pose_table())},
+                 .example = "{position: 0 0 30 mm, rotation: {axis: 0 0 1, angle: 20 deg}}",
+                 .default_text = "{}",
+                 .description = "Position and rotation at the start."},
+                {.name = "velocity",
+                 .forms = {table(velocity_table())},
+                 .example = "{linear: 0 0 -1 m/s}",
+                 .default_text = "{}",
+                 .description = "Initial motion. Without: at rest."},
+                {.name = "fixed",
+                 .forms = {boolean()},
+                 .example = "true",
+                 .default_text = "false",
+                 .description = "Whether the body stays where it is; it then needs no mass."}},
+       .alternatives = {{{"density", "mass"}, false}}});
+}
+
+std::shared_ptr<const KeyTable> motor_table() {
+  DriveWords words;
+  words.type = sim::ActuatorType::motor;
+  words.effort_measure = torque();
+  words.effort_rate = torque_rate();
+  words.effort_range = any();
+  words.effort_example = "1 N m";
+  words.effort_rate_example = "10 Nm/s";
+  words.effort_value = "0.2 N m";
+  words.motion_measure = angle();
+  words.motion_rate = frequency();
+  words.motion_example = "90 deg";
+  words.motion_rate_example = "1 1/s";
+  words.motion_value = "30 deg";
+  words.motion_text = "Angle of the hinge, 0 at rest.";
+  words.inputs = {velocity_key(angular_speed(), "60 deg/s",
+                               "Angular velocity: each step advances the hinge from where it is.")};
+  return make_table(motor_table("motor", "A motor in a hinge.", "The hinge.", words));
+}
+
+std::shared_ptr<const KeyTable> linear_motor_table() {
+  DriveWords words;
+  words.type = sim::ActuatorType::linear_motor;
+  words.effort_measure = force();
+  words.effort_rate = force_rate();
+  words.effort_range = any();
+  words.effort_example = "5 N";
+  words.effort_rate_example = "10 N/s";
+  words.effort_value = "1 N";
+  words.motion_measure = length();
+  words.motion_rate = speed();
+  words.motion_example = "20 mm";
+  words.motion_rate_example = "50 mm/s";
+  words.motion_value = "10 mm";
+  words.motion_text = "Displacement of the slider, 0 at rest.";
+  words.inputs = {
+      velocity_key(speed(), "5 mm/s", "Velocity: each step advances the slider from where it is.")};
+  return make_table(motor_table("linear-motor", "A motor on a slider.", "The slider.", words));
+}
+
+}  // namespace sinew::scene::forms

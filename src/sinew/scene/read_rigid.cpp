@@ -1,0 +1,70 @@
+// Bodies of type rigid.
+#include "sinew/core/rotation.hpp"
+#include "sinew/rigid/rigid_settings.hpp"
+#include "sinew/scene/readers.hpp"
+
+namespace sinew::scene {
+
+namespace {
+
+rigid::Shape read_shape(const Fields& fields) {
+  const auto number = [](const Fields& from, const char* key) {
+    double value = 0.0;
+    from.read(key, value);
+    return value;
+  };
+  if (fields.find("sphere") != nullptr)
+    return rigid::Sphere{number(fields.below("sphere"), "radius")};
+  if (fields.find("capsule") != nullptr) {
+    const Fields capsule = fields.below("capsule");
+    return rigid::Capsule{number(capsule, "radius"), number(capsule, "length")};
+  }
+  if (fields.find("cylinder") != nullptr) {
+    const Fields cylinder = fields.below("cylinder");
+    return rigid::Cylinder{number(cylinder, "radius"), number(cylinder, "height")};
+  }
+  rigid::Box box{Vector3::Zero()};
+  fields.read("box", box.edges);
+  if ((box.edges.array() > 0.0).all()) return box;
+  throw Error(ErrorKind::out_of_range, fields.place("box"), "an edge of the box is not positive",
+              "give three lengths above zero");
+}
+
+Matrix3 read_rotation(const Fields& pose) {
+  Vector3 turn = Vector3::Zero();
+  if (pose.find("rotation") == nullptr) return Matrix3::Identity();
+  if (pose.form("rotation").shape == Shape::quantity) {
+    pose.read("rotation", turn);
+    return rotation_matrix(turn);
+  }
+  const Fields rotation = pose.below("rotation");
+  double angle = 0.0;
+  Vector3 axis = Vector3::UnitZ();
+  rotation.read("angle", angle);
+  axis = read_axis(*rotation.find("axis"), rotation.table().find("axis")->forms);
+  return rotation_matrix(angle * axis);
+}
+
+}  // namespace
+
+rigid::RigidSettings read_rigid(const Fields& fields, const std::string& name) {
+  rigid::RigidSettings body;
+  body.name = name;
+  body.shape = read_shape(fields.below("shape"));
+  if (double value = 0.0; fields.read("density", value)) body.density = value;
+  if (double value = 0.0; fields.read("mass", value)) body.mass = value;
+  if (Vector3 moments; fields.find("inertia") != nullptr) {
+    fields.read("inertia", moments);
+    body.inertia = Matrix3(moments.asDiagonal());
+  }
+  const Fields pose = fields.below("pose");
+  pose.read("position", body.position);
+  body.rotation = read_rotation(pose);
+  const Fields velocity = fields.below("velocity");
+  velocity.read("linear", body.velocity);
+  velocity.read("angular", body.spin);
+  fields.read("fixed", body.fixed);
+  return body;
+}
+
+}  // namespace sinew::scene

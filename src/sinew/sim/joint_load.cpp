@@ -1,0 +1,51 @@
+#include "sinew/sim/joint_load.hpp"
+
+#include <Eigen/Geometry>
+
+#include "sinew/constraint/joint.hpp"
+#include "sinew/constraint/placement.hpp"
+#include "sinew/constraint/tie.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/simulation.hpp"
+#include "sinew/sim/world.hpp"
+
+namespace sinew::sim {
+
+namespace {
+
+JointLoad load_of(const Simulation& simulation, const constraint::Tie& tie) {
+  const constraint::Placement& placement = simulation.placement();
+  JointLoad load;
+  load.gap = tie.largest_gap(placement);
+  for (const auto& pair : tie.pairs()) load.centre += placement.position(pair.first);
+  load.centre /= static_cast<double>(tie.pairs().size());
+  for (std::size_t k = 0; k < tie.pairs().size(); ++k) {
+    const Eigen::Map<const Vector3> force(simulation.efforts().data() + tie.row(k));
+    load.force += force;
+    load.moment += (placement.position(tie.pairs()[k].first) - load.centre).cross(Vector3(force));
+  }
+  return load;
+}
+
+JointLoad load_of(const Simulation& simulation, const constraint::Joint& joint) {
+  const constraint::Placement& placement = simulation.placement();
+  const auto own = joint.load(
+      placement, simulation.efforts().subspan(static_cast<std::size_t>(joint.first_row()),
+                                              static_cast<std::size_t>(joint.row_count())));
+  const constraint::JointFrames frames = joint.place().frames(placement);
+  return {frames.origin[1], own.force, own.moment, joint.gap(placement)};
+}
+
+}  // namespace
+
+JointLoad joint_load(const Simulation& simulation, int joint) {
+  const Model& model = simulation.model();
+  if (const constraint::Tie* tie = model.tie(joint)) return load_of(simulation, *tie);
+  return load_of(simulation, *model.joint(joint));
+}
+
+double joint_motion(const Simulation& simulation, int joint, std::size_t motion) {
+  return simulation.world().joints().value(joint, motion);
+}
+
+}  // namespace sinew::sim
