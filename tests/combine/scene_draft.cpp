@@ -284,16 +284,16 @@ class Drafter {
     add("joints", "bond",
         fmt::format("{{type: weld, bodies: [<{}>, <bracket>], points: [{}, {}, {}], outside: "
                     "nearest}}",
-                    on.id, vector_text(on.shape.at(0.75, 0.0, 0.0)),
-                    vector_text(on.shape.at(0.85, 0.2, 0.0)),
-                    vector_text(on.shape.at(0.8, -0.2, 0.3))));
+                    on.id, vector_text(on.shape.at(0.75, 0.0, 0.8)),
+                    vector_text(on.shape.at(0.85, 0.3, 0.8)),
+                    vector_text(on.shape.at(0.8, -0.3, 0.7))));
     return "bracket";
   }
 
   // A rigid body of 60 mm along x from a joint on a body near its tip.
   void add_rigid_link() {
     const Body on = some_body();
-    const std::array<double, 3> at = on.shape.at(0.8, 0.0, 0.0);
+    const std::array<double, 3> at = on.shape.at(0.8, 0.0, 0.8);  // beside bores and chambers
     const std::string type = link_type(), base = link_base(on, at, type);
     Body link{"link", false, block_shape(), true};
     link.shape.origin = at;

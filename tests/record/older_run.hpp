@@ -42,7 +42,7 @@ class OlderRun {
                                                   4 * mesh.tetrahedra.size());
       file_.dataset(folder + "/tetrahedra", {mesh.tetrahedra.size(), 4}, corners);
       file_.dataset(folder + "/hexahedra", {0, 8}, std::span<const std::int32_t>());
-      positions_.push_back(file_.series("/positions/" + body->name(), {nodes, 3}));
+      positions_.push_back(file_.series("/positions/" + body.name(), {nodes, 3}));
     }
     for (const sim::ActuatorModel& actuator : model.actuators()) {
       const std::string folder = "/actuators/" + actuator.name;

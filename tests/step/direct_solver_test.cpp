@@ -1,5 +1,7 @@
 #include "sinew/step/direct_solver.hpp"
 
+#include <algorithm>
+
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
@@ -98,6 +100,46 @@ TEST(DirectSolver, TwinHeldRowsShareTheEffort) {
   ASSERT_EQ(solver.solve(problem, effort), LawStatus::solved);
   EXPECT_NEAR(effort[0], 1.0, 1e-12);
   EXPECT_NEAR(effort[1], 1.0, 1e-12);
+}
+
+// A brake and a motor in one hinge, W with the row twice: the motor moves it as it is told, and the
+// brake is at its limit against that, exactly, or idle where nothing moves.
+TEST(DirectSolver, ABrakeBesideWhatHoldsItsRowIsAtItsLimit) {
+  Random random(18);
+  for (int trial = 0; trial < 200; ++trial) {
+    BlockCounts counts = random_counts(random);
+    counts.owned = counts.capstans = 0;
+    counts.held = 1;
+    RandomProblem robot = random_problem(counts, random);
+    StepProblem& problem = robot.problem;
+    const auto motor = std::ranges::find_if(problem.actuators, &ActuatorBlock::holds_motion);
+    ASSERT_NE(motor, problem.actuators.end());
+    const Eigen::Index rows = problem.delta_free.size();
+    problem.compliance.conservativeResize(rows + 1, rows + 1);
+    problem.compliance.row(rows).head(rows) = problem.compliance.row(motor->row).head(rows);
+    problem.compliance.col(rows) = problem.compliance.col(motor->row);
+    problem.compliance(rows, rows) = problem.compliance(motor->row, motor->row);
+    problem.delta_free.conservativeResize(rows + 1);
+    problem.delta_free[rows] = problem.delta_free[motor->row];
+    problem.delta = problem.delta_free;
+    ActuatorBlock brake;
+    brake.row = static_cast<int>(rows);
+    brake.effort_min = -0.3;
+    brake.effort_max = 0.3;
+    brake.motion_min = -kInfinity;
+    brake.motion_max = kInfinity;
+    brake.kind = CommandKind::motion;
+    const int way = random.integer(-1, 1);
+    brake.value = motor->value - 0.1 * way;
+    problem.actuators.push_back(brake);
+    std::vector<double> effort(static_cast<std::size_t>(rows) + 1, 0.0);
+    DirectSolver solver;
+    solver.begin_step();
+    ASSERT_EQ(solver.solve(problem, effort), LawStatus::solved) << trial;
+    EXPECT_EQ(effort.back(), -0.3 * way) << trial;
+    problem.delta = robot.motion(effort);
+    EXPECT_LT(violation(problem, effort, LawStatus::solved), 1e-8) << trial;
+  }
 }
 
 // The problem as A with springs at `rows` makes it (Sherman, Morrison & Woodbury).

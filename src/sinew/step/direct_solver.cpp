@@ -16,6 +16,9 @@ constexpr double kMotionTolerance = 1e-12;
 // here.
 constexpr double kUsable = 1e-6;
 
+// Of a row's own compliance: what is less is rounding.
+constexpr double kDecided = 1e-10;
+
 constexpr int kMaxDriveRounds = 60;
 // Of the effort and of what the robot's compliance allows.
 constexpr double kDriveTolerance = 1e-13;
@@ -156,6 +159,7 @@ LawStatus DirectSolver::solve_with_drives(const StepProblem& problem, std::span<
   const bool curves = followers_.has_curves();
   for (int round = 0; round < kMaxDriveRounds; ++round) {
     followers_.take_out(problem, free_, unknown_, compliance, motion.col(0));
+    settle_decided(problem, compliance, motion);
     const LawStatus status = solve_blocks(problem);
     if (status == LawStatus::failed) return status;
     for (std::size_t i = 0; i < x_.size(); ++i) {
@@ -165,6 +169,34 @@ LawStatus DirectSolver::solve_with_drives(const StepProblem& problem, std::span<
     if (!curves || left <= kDriveTolerance) break;
   }
   return LawStatus::solved;
+}
+
+// Where held rows move a row by themselves (a brake beside a motor that holds the same hinge), of
+// its compliance rounding is left. Its effort then moves nothing, and follows from where it is: at
+// a limit on either side of its motion, the least there.
+void DirectSolver::settle_decided(const StepProblem& problem, Eigen::Map<MatrixX> compliance,
+                                  Eigen::Map<MatrixX> motion) {
+  for (std::size_t i = 0; i < boxes_.size(); ++i) {
+    Box& box = boxes_[i];
+    const auto k = static_cast<Eigen::Index>(i);
+    const double alone = problem.compliance(box.row, box.row);
+    box.decided = compliance(k, k) <= kDecided * alone;
+    if (!box.decided) continue;
+    const double gap = motion(k, 0) - box.motion;
+    const bool stays = std::abs(gap) <= kMotionTolerance;
+    double effort = stays ? 0.0 : gap > 0.0 ? box.lower : box.upper;
+    effort = std::clamp(effort, box.lower, box.upper);
+    if (!std::isfinite(effort)) {  // nothing can be done: what is held is beyond a stop
+      box.decided = false;
+      continue;
+    }
+    // A problem of its own, whose solution that is, well beyond a limit where it is one.
+    const double beyond = stays ? 0.0 : std::copysign(problem.size, gap);
+    compliance.row(k).setZero();
+    compliance.col(k).setZero();
+    compliance(k, k) = alone;
+    motion(k, 0) = box.motion - alone * effort + beyond;
+  }
 }
 
 LawStatus DirectSolver::solve_blocks(const StepProblem& problem) {
@@ -237,7 +269,7 @@ bool DirectSolver::switch_branches(const StepProblem& problem,
     Box& box = boxes_[i];
     if (box.actuator < 0) continue;
     const ActuatorBlock& block = problem.actuators[static_cast<std::size_t>(box.actuator)];
-    if (block.kind == CommandKind::motion) continue;
+    if (block.kind == CommandKind::motion || box.decided) continue;
     const auto k = static_cast<Eigen::Index>(i);
     const double there = motion(k, 0) + compliance.row(k).dot(x);
     const double tolerance = kMotionTolerance / block.motion_scale;

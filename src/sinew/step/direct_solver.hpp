@@ -53,6 +53,7 @@ class DirectSolver {
     int row;
     int actuator;  // -1: a capstan
     double lower, upper, motion;
+    bool decided = false;  // by what is held, see settle_decided()
   };
   enum class Branch : char { pull, hold };  // an effort at or below its command, or above it
 
@@ -62,6 +63,8 @@ class DirectSolver {
   LawStatus solve_with_friction(const StepProblem& problem, std::span<double> effort);
   bool follow_tensions(const StepProblem& problem, std::span<const double> effort, double share);
   LawStatus solve_with_drives(const StepProblem& problem, std::span<double> effort);
+  void settle_decided(const StepProblem& problem, Eigen::Map<MatrixX> compliance,
+                      Eigen::Map<MatrixX> motion);
   LawStatus solve_blocks(const StepProblem& problem);
   LawStatus solve_boxes(const Eigen::Map<const MatrixX>& compliance);
   LawStatus solve_cones(const Eigen::Map<const MatrixX>& compliance);
