@@ -96,6 +96,9 @@ TEST(ClosestOnTriangle, TakesFlatOnes) {
     expect_triangle(p, a, a, a);
     expect_triangle(p, a, b, a + 0.5 * (b - a) + 1e-9 * random_point(random));
   }
+  const Vector3 a(0, 0, 0), b(1, 0, 0), c(3, 0, 0);
+  EXPECT_EQ(closest_on_triangle({2, 1, 0}, a, b, c).point, Vector3(2, 0, 0));
+  EXPECT_EQ(closest_on_triangle({2, 1, 0}, a, a, a).point, a);
 }
 
 TEST(ClosestOnTriangle, IsObtuse) {

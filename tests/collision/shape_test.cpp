@@ -59,7 +59,7 @@ TEST(ShapeDistance, TellsInsideFromOutside) {
   for (const Sample& sample : samples()) {
     for (int trial = 0; trial < 300; ++trial) {
       const Vector3 x = random_point(random, 1.5);
-      const double far = distance(sample.shape, x).distance;
+      const double far = distance(sample.shape, x).gap;
       if (std::abs(far) < 1e-6) continue;
       const bool inside = std::visit([&](const auto& own) { return holds(own, x); }, sample.shape);
       EXPECT_EQ(far < 0.0, inside) << sample.name;
@@ -76,15 +76,15 @@ TEST(ShapeDistance, IsTheLeastOneToTheSurface) {
     for (int k = 0; k < 2000; ++k) {
       const Vector3 x = random_point(random, 1.5);
       const ShapeDistance at = distance(sample.shape, x);
-      EXPECT_NEAR(distance(sample.shape, at.nearest).distance, 0.0, 1e-14) << sample.name;
-      EXPECT_NEAR((x - at.nearest).norm(), std::abs(at.distance), 1e-14);
+      EXPECT_NEAR(distance(sample.shape, at.nearest).gap, 0.0, 1e-14) << sample.name;
+      EXPECT_NEAR((x - at.nearest).norm(), std::abs(at.gap), 1e-14);
       EXPECT_NEAR(at.normal.norm(), 1.0, 1e-14);
-      EXPECT_LE((at.nearest + at.distance * at.normal - x).norm(), 1e-14);
+      EXPECT_LE((at.nearest + at.gap * at.normal - x).norm(), 1e-14);
       surface.push_back(at.nearest);
     }
     for (int trial = 0; trial < 100; ++trial) {
       const Vector3 x = random_point(random, 1.5);
-      const double far = std::abs(distance(sample.shape, x).distance);
+      const double far = std::abs(distance(sample.shape, x).gap);
       for (const Vector3& point : surface) ASSERT_GE((x - point).norm(), far - 1e-13);
     }
   }
@@ -104,7 +104,7 @@ TEST(ShapeDistance, NormalIsItsGradient) {
         const Vector3 step = kStep * Vector3::Unit(k);
         const ShapeDistance up = distance(sample.shape, x + step);
         const ShapeDistance down = distance(sample.shape, x - step);
-        slope[k] = (up.distance - down.distance) / (2.0 * kStep);
+        slope[k] = (up.gap - down.gap) / (2.0 * kStep);
         // Across a middle plane the normal jumps.
         smooth = smooth && (up.normal - down.normal).norm() < 1e-3;
       }
@@ -131,7 +131,7 @@ TEST(ShapeDistance, OfABoxIsThatOfItsTriangles) {
   for (int trial = 0; trial < 500; ++trial) {
     const Vector3 x = random_point(random, 1.2);
     const double far = nearest_on_surface(tree, x).distance;
-    EXPECT_NEAR(distance(OrientedBox{centre, axes, half}, x).distance,
+    EXPECT_NEAR(distance(OrientedBox{centre, axes, half}, x).gap,
                 winding_number(tree, x) == 1 ? -far : far, 1e-14);
   }
 }
@@ -147,8 +147,22 @@ TEST(ShapeDistance, OnCentresAndAxes) {
         sample.shape);
     const ShapeDistance at = distance(sample.shape, centre);
     EXPECT_NEAR(at.normal.norm(), 1.0, 1e-14) << sample.name;
-    EXPECT_NEAR(distance(sample.shape, at.nearest).distance, 0.0, 1e-14) << sample.name;
+    EXPECT_NEAR(distance(sample.shape, at.nearest).gap, 0.0, 1e-14) << sample.name;
   }
+}
+
+TEST(ShapeDistance, HasEveryRegionOfACapsule) {
+  const Capsule capsule{{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, 0.25};
+  EXPECT_DOUBLE_EQ(distance(capsule, {0.5, 1.0, 0.0}).gap, 0.75);   // beside the segment
+  EXPECT_DOUBLE_EQ(distance(capsule, {-1.0, 0.0, 0.0}).gap, 0.75);  // before its beginning
+  EXPECT_DOUBLE_EQ(distance(capsule, {1.0, 0.0, -2.0}).gap, 1.75);  // at its end
+  EXPECT_DOUBLE_EQ(distance(capsule, {3.0, 0.0, 0.0}).gap, 1.75);   // beyond it
+  const ShapeDistance inside = distance(capsule, {0.5, 0.0, 0.0});  // on the axis
+  EXPECT_DOUBLE_EQ(inside.gap, -0.25);
+  EXPECT_NEAR(inside.normal[0], 0.0, 1e-15);
+  const Capsule ball{{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, 0.25};  // without length
+  EXPECT_DOUBLE_EQ(distance(ball, {0.0, 1.0, 0.0}).gap, 0.75);
+  EXPECT_DOUBLE_EQ(distance(Sphere{{0.0, 0.0, 0.0}, 0.25}, {0.0, 0.0, 0.0}).gap, -0.25);
 }
 
 TEST(Shape, RefusesSizesThatAreNone) {
@@ -162,8 +176,7 @@ TEST(Shape, RefusesSizesThatAreNone) {
   EXPECT_TRUE(refused(OrientedBox{{}, 2.0 * Matrix3::Identity(), {1, 1, 1}}));
   EXPECT_TRUE(refused(OrientedBox{{}, Matrix3::Identity(), {1, 0, 1}}));
   EXPECT_TRUE(refused(Sphere{{}, std::numeric_limits<double>::quiet_NaN()}));
-  const Shape plane = checked(Plane{{}, {0, 0, 5}});
-  EXPECT_EQ(std::get<Plane>(plane).normal, Vector3::UnitZ());
+  EXPECT_EQ(checked(Plane{{}, {0, 0, 5}}).normal, Vector3::UnitZ());
 }
 
 }  // namespace

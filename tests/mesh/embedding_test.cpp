@@ -189,22 +189,6 @@ TEST(Embedding, NeedsTetrahedra) {
   error_text(ErrorKind::no_volume_elements, [] { const Embedder embedder((Mesh())); });
 }
 
-TEST(NearestPointOnTriangle, CoversEveryRegion) {
-  const Vector3 a(0, 0, 0), b(1, 0, 0), c(0, 1, 0);
-  const auto near = [&](double x, double y) {
-    return nearest_point_on_triangle({x, y, 0.5}, a, b, c);
-  };
-  EXPECT_EQ(near(0.25, 0.25), Vector3(0.25, 0.25, 0));  // face
-  EXPECT_EQ(near(-1, -1), a);
-  EXPECT_EQ(near(3, -0.5), b);
-  EXPECT_EQ(near(-0.5, 3), c);
-  EXPECT_EQ(near(0.5, -1), Vector3(0.5, 0, 0));  // edges
-  EXPECT_EQ(near(-1, 0.5), Vector3(0, 0.5, 0));
-  EXPECT_EQ(near(1, 1), Vector3(0.5, 0.5, 0));
-  EXPECT_EQ(nearest_point_on_triangle({2, 1, 0}, a, b, Vector3(3, 0, 0)), Vector3(2, 0, 0));
-  EXPECT_EQ(nearest_point_on_triangle({2, 1, 0}, a, a, a), a);
-}
-
 /// Mean of f over an embedded point's nodes.
 template <typename F>
 double mean_of(const Mesh& mesh, const EmbeddedPoint& at, const F& f) {

@@ -13,8 +13,8 @@ namespace sinew::collision {
 
 namespace {
 
-ShapeDistance along(const Vector3& point, double distance, const Vector3& normal) {
-  return {distance, point - distance * normal, normal};
+ShapeDistance along(const Vector3& point, double gap, const Vector3& normal) {
+  return {gap, point - gap * normal, normal};
 }
 
 ShapeDistance from_axis(const Vector3& axis_point, double radius, const Vector3& point,
@@ -22,21 +22,6 @@ ShapeDistance from_axis(const Vector3& axis_point, double radius, const Vector3&
   const Vector3 out = point - axis_point;
   const double far = out.norm();
   return along(point, far - radius, far > 0.0 ? (out / far).eval() : otherwise);
-}
-
-ShapeDistance distance_to(const Plane& plane, const Vector3& point) {
-  return along(point, plane.normal.dot(point - plane.point), plane.normal);
-}
-
-ShapeDistance distance_to(const Sphere& sphere, const Vector3& point) {
-  return from_axis(sphere.centre, sphere.radius, point, Vector3::UnitZ());
-}
-
-ShapeDistance distance_to(const Capsule& capsule, const Vector3& point) {
-  const Vector3 axis = capsule.to - capsule.from;
-  const Vector3 nearest = closest_on_edge(point, capsule.from, capsule.to).point;
-  return from_axis(nearest, capsule.radius, point,
-                   axis.norm() > 0.0 ? axis.unitOrthogonal() : Vector3::UnitZ());
 }
 
 // Of a solid whose sides stand on each other at right angles: the excess beyond each side and the
@@ -52,7 +37,30 @@ ShapeDistance over_sides(const Vector3& point, const Eigen::Matrix<double, N, 1>
   return along(point, depth, outward.col(nearest));
 }
 
-ShapeDistance distance_to(const Cylinder& cylinder, const Vector3& point) {
+void check_size(double size, const char* what) {
+  if (size > 0.0 && std::isfinite(size)) return;
+  throw Error(ErrorKind::out_of_range, {}, fmt::format("the {} is {:g} m", what, size),
+              "give a positive length");
+}
+
+}  // namespace
+
+ShapeDistance distance(const Plane& plane, const Vector3& point) {
+  return along(point, plane.normal.dot(point - plane.point), plane.normal);
+}
+
+ShapeDistance distance(const Sphere& sphere, const Vector3& point) {
+  return from_axis(sphere.centre, sphere.radius, point, Vector3::UnitZ());
+}
+
+ShapeDistance distance(const Capsule& capsule, const Vector3& point) {
+  const Vector3 axis = capsule.to - capsule.from;
+  const Vector3 nearest = closest_on_edge(point, capsule.from, capsule.to).point;
+  return from_axis(nearest, capsule.radius, point,
+                   axis.norm() > 0.0 ? axis.unitOrthogonal() : Vector3::UnitZ());
+}
+
+ShapeDistance distance(const Cylinder& cylinder, const Vector3& point) {
   const Vector3 whole = cylinder.to - cylinder.from;
   const double length = whole.norm();
   const Vector3 axis = whole / length;
@@ -66,50 +74,45 @@ ShapeDistance distance_to(const Cylinder& cylinder, const Vector3& point) {
   return over_sides<2>(point, {far - cylinder.radius, std::abs(height) - 0.5 * length}, outward);
 }
 
-ShapeDistance distance_to(const OrientedBox& box, const Vector3& point) {
+ShapeDistance distance(const OrientedBox& box, const Vector3& point) {
   const Vector3 local = box.axes.transpose() * (point - box.centre);
   const Vector3 side = local.unaryExpr([](double x) { return std::copysign(1.0, x); });
   return over_sides<3>(point, local.cwiseAbs() - box.half_size, box.axes * side.asDiagonal());
 }
 
-void check_size(double size, const char* what) {
-  if (size > 0.0 && std::isfinite(size)) return;
-  throw Error(ErrorKind::out_of_range, {}, fmt::format("the {} is {:g} m", what, size),
-              "give a positive length");
-}
-
-void check(Plane& plane) {
+Plane checked(Plane plane) {
   const double length = plane.normal.norm();
   if (!(length > 0.0) || !std::isfinite(length)) {
     throw Error(ErrorKind::out_of_range, {}, "the plane's normal has no length",
                 "give one such as 0 0 1, out of what is solid");
   }
   plane.normal /= length;
+  return plane;
 }
-void check(Sphere& sphere) { check_size(sphere.radius, "radius"); }
-void check(Capsule& capsule) { check_size(capsule.radius, "radius"); }
-void check(Cylinder& cylinder) {
+
+Sphere checked(Sphere sphere) {
+  check_size(sphere.radius, "radius");
+  return sphere;
+}
+
+Capsule checked(Capsule capsule) {
+  check_size(capsule.radius, "radius");
+  return capsule;
+}
+
+Cylinder checked(Cylinder cylinder) {
   check_size(cylinder.radius, "radius");
   check_size((cylinder.to - cylinder.from).norm(), "cylinder's length");
+  return cylinder;
 }
-void check(OrientedBox& box) {
+
+OrientedBox checked(OrientedBox box) {
   for (const double size : box.half_size) check_size(size, "box's half size");
   const double skew = (box.axes.transpose() * box.axes - Matrix3::Identity()).norm();
-  if (skew <= 1e-9) return;
+  if (skew <= 1e-9) return box;
   throw Error(ErrorKind::out_of_range, {},
               fmt::format("the box's axes are off a rotation by {:g}", skew),
               "give three orthogonal columns of unit length");
-}
-
-}  // namespace
-
-ShapeDistance distance(const Shape& shape, const Vector3& point) {
-  return std::visit([&](const auto& own) { return distance_to(own, point); }, shape);
-}
-
-Shape checked(Shape shape) {
-  std::visit([](auto& own) { check(own); }, shape);
-  return shape;
 }
 
 }  // namespace sinew::collision

@@ -36,19 +36,38 @@ struct OrientedBox {
 };
 using Shape = std::variant<Plane, Sphere, Capsule, Cylinder, OrientedBox>;
 
-/// Where a point stands with respect to a shape: point = nearest + distance normal.
+/// Where a point stands with respect to a shape: point = nearest + gap normal.
 struct ShapeDistance {
-  double distance = 0.0;              ///< m, negative inside
+  double gap = 0.0;                   ///< m, negative inside
   Vector3 nearest = Vector3::Zero();  ///< (3,) m, on the shape's surface
-  Vector3 normal = Vector3::UnitZ();  ///< (3,) unit length, the gradient of the distance
+  Vector3 normal = Vector3::UnitZ();  ///< (3,) unit length, the gradient of the gap
 };
 /// Exact but for rounding. Where several points are nearest (centres, axes, middle planes, the
 /// inner side of corners), one of them is taken.
-/// @param shape see Shape. @param point (3,) m.
-ShapeDistance distance(const Shape& shape, const Vector3& point);
+/// @param point (3,) m.
+ShapeDistance distance(const Plane& plane, const Vector3& point);
+ShapeDistance distance(const Sphere& sphere, const Vector3& point);
+ShapeDistance distance(const Capsule& capsule, const Vector3& point);
+ShapeDistance distance(const Cylinder& cylinder, const Vector3& point);
+ShapeDistance distance(const OrientedBox& box, const Vector3& point);
+/// @param shape Shape, or a variant of some of its kinds.
+template <class... Kinds>
+ShapeDistance distance(const std::variant<Kinds...>& shape, const Vector3& point) {
+  return std::visit([&](const auto& own) { return distance(own, point); }, shape);
+}
 
 /// Throws Error(out-of-range) for sizes that are not positive, a normal without length and axes
 /// that are no rotation (to 1e-9); else the shape with its normal of unit length.
-Shape checked(Shape shape);
+Plane checked(Plane plane);
+Sphere checked(Sphere sphere);
+Capsule checked(Capsule capsule);
+Cylinder checked(Cylinder cylinder);
+OrientedBox checked(OrientedBox box);
+/// @param shape see distance().
+template <class... Kinds>
+std::variant<Kinds...> checked(std::variant<Kinds...> shape) {
+  std::visit([](auto& own) { own = checked(own); }, shape);
+  return shape;
+}
 
 }  // namespace sinew::collision

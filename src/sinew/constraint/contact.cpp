@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "sinew/collision/principal_frame.hpp"
 #include "sinew/constraint/placement.hpp"
 #include "sinew/core/error.hpp"
 
@@ -49,18 +50,18 @@ void Contact::begin_step(const Placement& placement, const Eigen::Isometry3d& st
   }
 }
 
-SurfaceApproach Contact::approach(const Vector3& from, const Vector3& to,
-                                  const Eigen::Isometry3d& pose) const {
+collision::ShapeApproach Contact::approach(const Vector3& from, const Vector3& to,
+                                           const Eigen::Isometry3d& pose) const {
   const Eigen::Isometry3d into = pose.inverse();
-  SurfaceApproach result = constraint::approach(surface_, into * from, into * to);
+  collision::ShapeApproach result = collision::approach(surface_, into * from, into * to);
   result.at = pose * result.at;
   result.distance.normal = pose.linear() * result.distance.normal;
   return result;
 }
 
-void Contact::place(std::size_t point, const Vector3& carried, const SurfaceApproach& plane,
-                    mechanics::RowValues& values) const {
-  const Matrix3 frame = tangent_frame(plane.distance.normal);
+void Contact::place(std::size_t point, const Vector3& carried,
+                    const collision::ShapeApproach& plane, mechanics::RowValues& values) const {
+  const Matrix3 frame = collision::tangent_frame(plane.distance.normal);
   const double gap = plane.distance.gap + frame.col(0).dot(carried - plane.at);
   set_frame(point, carried, frame, gap, values);
 }
@@ -68,7 +69,7 @@ void Contact::place(std::size_t point, const Vector3& carried, const SurfaceAppr
 Vector3 Contact::place_nearest(std::size_t point, const Vector3& at, const Eigen::Isometry3d& pose,
                                mechanics::RowValues& values) const {
   const Vector3 local = pose.inverse() * at;
-  const PrincipalFrame principal = principal_frame(surface_, local);
+  const collision::PrincipalFrame principal = principal_frame(surface_, local);
   set_frame(point, at, pose.linear() * principal.frame, distance(surface_, local).gap, values);
   return principal.curvature;
 }
@@ -108,9 +109,11 @@ void Contact::linearise(const Placement& placement, mechanics::RowValues& values
   }
 }
 
-SurfaceDistance Contact::distance_now(const Placement& placement, const Eigen::Isometry3d& pose,
-                                      std::size_t point) const {
-  SurfaceDistance result = distance(surface_, pose.inverse() * placement.position(points_[point]));
+collision::ShapeDistance Contact::distance_now(const Placement& placement,
+                                               const Eigen::Isometry3d& pose,
+                                               std::size_t point) const {
+  collision::ShapeDistance result =
+      distance(surface_, pose.inverse() * placement.position(points_[point]));
   result.normal = pose.linear() * result.normal;
   return result;
 }

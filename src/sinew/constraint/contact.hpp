@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include "sinew/collision/approach.hpp"
 #include "sinew/constraint/constraint.hpp"
 #include "sinew/constraint/surface.hpp"
 
@@ -19,7 +20,8 @@ namespace sinew::constraint {
 /// In a step the surface counts as one of its tangent planes, so that rows are linear in the
 /// motion. Relative to the surface a point moves from x_s, where the surface's own motion would
 /// carry it, x_s = P_end P_start^-1 x_start, to x. The plane touches at x_c, where a given way from
-/// x_s meets the surface first, or where a way that misses it comes nearest (approach()):
+/// x_s meets the surface first, or where a way that misses it comes nearest
+/// (collision::approach()):
 ///   gap = g(x_c) + n.(x - x_c),   slid = (t_1, t_2).(x - x_s),   g the signed distance at P_end.
 /// The surfaces are convex, and so are the half spaces that their planes bound: what keeps to the
 /// plane's outer side is outside the surface, and a point on the way of a miss is not pushed.
@@ -44,15 +46,15 @@ class Contact : public Constraint {
   void linearise(const Placement& placement, mechanics::RowValues& values) const override;
 
   /// @param from,to (3,) m, a way at the step's end. @param pose of the surface there.
-  SurfaceApproach approach(const Vector3& from, const Vector3& to,
-                           const Eigen::Isometry3d& pose) const;
+  collision::ShapeApproach approach(const Vector3& from, const Vector3& to,
+                                    const Eigen::Isometry3d& pose) const;
   /// Sets the frame of one point. @param point of points(). @param carried (3,) m, x_s.
   /// @param plane where the tangent plane touches. @param values gets direction, offset, reference.
-  void place(std::size_t point, const Vector3& carried, const SurfaceApproach& plane,
+  void place(std::size_t point, const Vector3& carried, const collision::ShapeApproach& plane,
              mechanics::RowValues& values) const;
   /// Sets the frame of one point to the tangent plane at its nearest point, the tangents along the
   /// principal directions there. @param point of points(). @param at (3,) m, now. @param pose of
-  /// the surface. @param values see place(). @return (3,) 1/m, see PrincipalFrame.
+  /// the surface. @param values see place(). @return (3,) 1/m, see collision::PrincipalFrame.
   Vector3 place_nearest(std::size_t point, const Vector3& at, const Eigen::Isometry3d& pose,
                         mechanics::RowValues& values) const;
   /// The three rows of a point (m) where it is at (3,) m, and back, by its frame in `values`.
@@ -73,8 +75,8 @@ class Contact : public Constraint {
   }
   /// Exact gap of a point now, m. @param placement of the points. @param pose of the surface.
   /// @param point of points().
-  SurfaceDistance distance_now(const Placement& placement, const Eigen::Isometry3d& pose,
-                               std::size_t point) const;
+  collision::ShapeDistance distance_now(const Placement& placement, const Eigen::Isometry3d& pose,
+                                        std::size_t point) const;
 
  private:
   void set_frame(std::size_t point, const Vector3& carried, const Matrix3& frame, double gap,

@@ -1,5 +1,5 @@
 /// @file
-/// Where a point lies relative to a triangle or a tetrahedron.
+/// Where a point lies relative to a tetrahedron.
 #pragma once
 
 #include <array>
@@ -13,15 +13,6 @@ namespace sinew::mesh {
 /// @param point (3,) m.
 /// @param corners of the tetrahedron, m.
 std::array<double, 4> barycentric_weights(const Vector3& point, const Corners& corners);
-
-/// The point of the triangle (a, b, c) nearest to `point`, m; degenerate triangles are allowed.
-/// Regions as in C. Ericson, "Real-Time Collision Detection", 2005, section 5.1.5.
-/// @param point (3,) m.
-/// @param a first corner, m.
-/// @param b second corner, m.
-/// @param c third corner, m.
-Vector3 nearest_point_on_triangle(const Vector3& point, const Vector3& a, const Vector3& b,
-                                  const Vector3& c);
 
 /// Distance to the tetrahedron, m; 0 inside.
 /// @param point (3,) m.

@@ -80,7 +80,7 @@ std::vector<SurfacePatch> patches_of(const constraint::Surface& surface) {
 }
 
 Matrix3 distance_hessian(const constraint::Surface& surface, const Vector3& point) {
-  const constraint::SurfaceDistance at = constraint::distance(surface, point);
+  const collision::ShapeDistance at = constraint::distance(surface, point);
   const Matrix3 across = Matrix3::Identity() - at.normal * at.normal.transpose();
   if (const auto* sphere = std::get_if<constraint::Sphere>(&surface)) {
     return across / (at.gap + sphere->radius);

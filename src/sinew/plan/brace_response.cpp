@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sinew/constraint/surface.hpp"
+#include "sinew/collision/principal_frame.hpp"
 #include "sinew/linalg/dense.hpp"
 
 namespace sinew::plan {
@@ -35,7 +35,7 @@ MatrixX real_form(const MatrixX& real, const MatrixX& imaginary) {
 /// max over u of |(u - mu n)^T G|. @param real,imaginary parts of G, (3, 3).
 double gain_of(const Matrix3& real, const Matrix3& imaginary, const Vector3& normal,
                double friction) {
-  const Matrix3 frame = constraint::tangent_frame(normal);
+  const Matrix3 frame = collision::tangent_frame(normal);
   double gain = 0.0;
   for (int k = 0; k < kDirections; ++k) {
     const double angle = 2.0 * std::numbers::pi * k / kDirections;

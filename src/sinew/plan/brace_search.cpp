@@ -118,7 +118,7 @@ BraceSearch::Judged BraceSearch::judge(BraceProgram& program, int object, const 
   const Vector3 force = x.tail<3>();
   brace.force = turn * force;
   const BraceObject& on = task_.objects[static_cast<std::size_t>(object)];
-  const constraint::SurfaceDistance touch = constraint::distance(on.surface, brace.place);
+  const collision::ShapeDistance touch = constraint::distance(on.surface, brace.place);
   brace.normal = touch.normal;
   brace.gap = touch.gap;
   brace.normal_force = touch.normal.dot(brace.force);

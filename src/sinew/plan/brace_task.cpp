@@ -26,7 +26,7 @@ BraceTask completed(const pcc::Arm& arm, BraceTask task) {
   static_cast<void>(completed(arm, common));  // the goal's checks
   task.limits = completed_limits(arm, task.limits);
   for (BraceObject& object : task.objects) {
-    object.surface = constraint::checked(object.surface);
+    object.surface = collision::checked(object.surface);
     if (!(object.friction.least >= 0.0) || !(object.friction.most >= object.friction.least)) {
       refuse("object.friction",
              fmt::format("{:g} to {:g}", object.friction.least, object.friction.most),

@@ -69,7 +69,7 @@ bool ContactPlanes::follow_way(const constraint::Contact& contact, std::size_t p
 }
 
 void ContactPlanes::turn(const constraint::Contact& contact, std::size_t point,
-                         const constraint::SurfaceApproach& plane) {
+                         const collision::ShapeApproach& plane) {
   const int row = contact.row(point);
   const auto position = [&](const VectorX& rows) {
     return contact.position(point, rows.segment<3>(row), rows_);

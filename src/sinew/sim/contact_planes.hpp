@@ -10,10 +10,12 @@
 
 #include "sinew/core/types.hpp"
 
+namespace sinew::collision {
+struct ShapeApproach;
+}
 namespace sinew::constraint {
 class Contact;
 class Placement;
-struct SurfaceApproach;
 }  // namespace sinew::constraint
 namespace sinew::mechanics {
 struct RowValues;
@@ -75,7 +77,7 @@ class ContactPlanes {
 
  private:
   void turn(const constraint::Contact& contact, std::size_t point,
-            const constraint::SurfaceApproach& plane);
+            const collision::ShapeApproach& plane);
 
   const Model& model_;
   const constraint::Placement& placement_;
