@@ -88,6 +88,58 @@ TEST(DirectSolver, DoesNotDependOnItsStartWithoutFriction) {
   }
 }
 
+// Motions of the contacts' rows where these have given efforts and all else obeys its law.
+VectorX contact_motion(const RandomProblem& robot, std::vector<double> effort,
+                       const VectorX& forces) {
+  StepProblem rest = robot.problem;
+  rest.contacts.clear();
+  const int first = robot.problem.contacts.front().row;
+  for (Eigen::Index k = 0; k < forces.size(); ++k) {
+    rest.delta_free += forces[k] * rest.compliance.col(first + k);
+    effort[static_cast<std::size_t>(first + k)] = 0.0;
+  }
+  DirectSolver solver;
+  solver.begin_step();
+  EXPECT_EQ(solver.solve(rest, effort), LawStatus::solved);
+  const Eigen::Map<const VectorX> all(effort.data(), rest.delta_free.size());
+  return (rest.delta_free + rest.compliance * all).segment(first, forces.size());
+}
+
+// The problem of the contacts alone has the step's efforts and motions; W is how the rest answers.
+TEST(DirectSolver, ContactsByThemselvesAreThoseOfTheStep) {
+  Random random(7);
+  for (int trial = 0; trial < 300; ++trial) {
+    BlockCounts counts = random_counts(random);
+    counts.contacts = random.integer(1, 4);
+    if (trial % 2 == 0) counts.capstans = 0;
+    const RandomProblem robot = random_problem(counts, random);
+    std::vector<double> effort(static_cast<std::size_t>(robot.problem.delta_free.size()), 0.0);
+    DirectSolver solver;
+    solver.begin_step();
+    ASSERT_EQ(solver.solve(robot.problem, effort), LawStatus::solved) << trial;
+    const ContactProblem alone = solver.contact_problem();
+    const VectorX motion = alone.compliance * alone.effort + alone.motion;
+    const VectorX expected = robot.motion(effort);
+    ASSERT_EQ(alone.friction.size(), robot.problem.contacts.size());
+    for (std::size_t k = 0; k < alone.friction.size(); ++k) {
+      const ContactBlock& block = robot.problem.contacts[k];
+      const auto own = static_cast<Eigen::Index>(3 * k);
+      EXPECT_EQ(alone.friction[k], block.friction);
+      EXPECT_LT((motion.segment<3>(own) - expected.segment<3>(block.row)).norm(), 1e-8) << trial;
+      for (int c = 0; c < 3; ++c) {
+        EXPECT_EQ(alone.effort[own + c], effort[static_cast<std::size_t>(block.row + c)]);
+      }
+    }
+    if (counts.capstans > 0) continue;  // sliding ones would follow the tensions
+    const double step = 1e-5;
+    const VectorX turn = random.vector(static_cast<int>(alone.effort.size()));
+    const VectorX slope = (contact_motion(robot, effort, alone.effort + step * turn) -
+                           contact_motion(robot, effort, alone.effort - step * turn)) /
+                          (2.0 * step);
+    EXPECT_LT((slope - alone.compliance * turn).norm(), 1e-4 * (1.0 + slope.norm())) << trial;
+  }
+}
+
 // Rows that repeat each other: held at one motion they share the effort evenly.
 TEST(DirectSolver, TwinHeldRowsShareTheEffort) {
   StepProblem problem;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstring>
 #include <functional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -22,7 +23,8 @@ bool is_stored_as(hid_t dataset, H5T_class_t kind) {
 
 }  // namespace
 
-Hdf5Reader::Hdf5Reader(const std::filesystem::path& path) : path_(path.string()) {
+Hdf5Reader::Hdf5Reader(const std::filesystem::path& path, Hdf5Remedies remedies)
+    : path_(path.string()), remedies_(std::move(remedies)) {
   const QuietHdf5 quiet;
   std::error_code problem;
   if (!std::filesystem::exists(path, problem)) {
@@ -32,13 +34,11 @@ Hdf5Reader::Hdf5Reader(const std::filesystem::path& path) : path_(path.string())
   file_ = Hdf5Handle(H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (file_.valid()) return;
   throw Error(ErrorKind::unknown_format, {.file = path_},
-              fmt::format("this cannot be opened as HDF5: {}", hdf5_reason()),
-              "give a run.h5 that 'sinew run' wrote, and that no run is writing now");
+              fmt::format("this cannot be opened as HDF5: {}", hdf5_reason()), remedies_.unknown);
 }
 
 void Hdf5Reader::fail(const std::string& what) const {
-  throw Error(ErrorKind::malformed_file, {.file = path_}, what,
-              "record the run again; the file is damaged or not of a run");
+  throw Error(ErrorKind::malformed_file, {.file = path_}, what, remedies_.malformed);
 }
 
 bool Hdf5Reader::has(const std::string& object) const {

@@ -11,14 +11,20 @@
 
 namespace sinew::record {
 
+/// What to do about a file that cannot be read, as errors say it.
+struct Hdf5Remedies {
+  std::string unknown = "give a run.h5 that 'sinew run' wrote, and that no run is writing now";
+  std::string malformed = "record the run again; the file is damaged or not of a run";
+};
+
 /// An HDF5 file open for reading. Errors are malformed-file unless said otherwise.
 class Hdf5Reader {
  public:
   using Shape = std::vector<std::uint64_t>;
 
   /// Throws Error: file-not-found, unknown-format.
-  /// @param path of the file.
-  explicit Hdf5Reader(const std::filesystem::path& path);
+  /// @param path of the file. @param remedies for errors.
+  explicit Hdf5Reader(const std::filesystem::path& path, Hdf5Remedies remedies = {});
 
   const std::string& path() const { return path_; }
   bool has(const std::string& object) const;
@@ -54,6 +60,7 @@ class Hdf5Reader {
   std::uint64_t volume(const std::string& dataset, const Shape& shape) const;
 
   std::string path_;
+  Hdf5Remedies remedies_;
   Hdf5Handle file_;
 };
 

@@ -47,4 +47,8 @@ const qp::ConeResult& ContactReader::result() const {
   return run_.solver.direct().contact_result();
 }
 
+step::ContactProblem ContactReader::problem() const {
+  return run_.solver.direct().contact_problem();
+}
+
 }  // namespace sinew::sim

@@ -10,6 +10,9 @@
 namespace sinew::qp {
 struct ConeResult;
 }
+namespace sinew::step {
+struct ContactProblem;
+}
 
 namespace sinew::sim {
 
@@ -28,6 +31,10 @@ class ContactReader {
   ContactSnapshot snapshot(int contact) const;
   /// How the forces were last found.
   const qp::ConeResult& result() const;
+  /// What they were found from: the problem of the last step (its last substep, its last
+  /// linearisation) or equilibrium. Of the points that took part, in the order of contacts and
+  /// their points. Not part of the state: empty before the first step.
+  step::ContactProblem problem() const;
 
  private:
   const Run& run_;

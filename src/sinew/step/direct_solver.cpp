@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace sinew::step {
@@ -282,6 +283,30 @@ bool DirectSolver::switch_branches(const StepProblem& problem,
     switched = true;
   }
   return switched;
+}
+
+// Followers are taken out of compliance_ and motion_ already; boxes that hold a motion are here.
+ContactProblem DirectSolver::contact_problem() const {
+  const auto count = static_cast<Eigen::Index>(3 * cones_.size());
+  ContactProblem result{MatrixX(count, count), VectorX(count), {}, VectorX(count)};
+  if (cones_.empty()) return result;
+  StepProblem all;
+  all.compliance = compliance_.view();
+  all.delta_free = motion_.view().col(0);
+  Followers held;
+  for (std::size_t i = 0; i < boxes_.size(); ++i) {
+    const Box& box = boxes_[i];
+    const auto row = static_cast<Eigen::Index>(i);
+    const bool holds = x_[i] > box.lower && x_[i] < box.upper && all.compliance(row, row) > 0.0;
+    if (holds) held.add_held(static_cast<int>(i), box.motion);
+    if (!holds) all.delta_free += x_[i] * all.compliance.col(row);
+  }
+  std::vector<int> rows(static_cast<std::size_t>(count));
+  std::iota(rows.begin(), rows.end(), static_cast<int>(boxes_.size()));
+  held.take_out(all, all.delta_free, rows, result.compliance, result.motion);
+  result.effort = Eigen::Map<const VectorX>(x_.data() + boxes_.size(), count);
+  for (const qp::ConeBlock& cone : cones_) result.friction.push_back(cone.friction);
+  return result;
 }
 
 }  // namespace sinew::step

@@ -10,6 +10,7 @@
 #include "sinew/linalg/scratch.hpp"
 #include "sinew/qp/cone_solver.hpp"
 #include "sinew/qp/quadratic_program.hpp"
+#include "sinew/step/contact_problem.hpp"
 #include "sinew/step/followers.hpp"
 #include "sinew/step/law_status.hpp"
 #include "sinew/step/step_problem.hpp"
@@ -45,6 +46,8 @@ class DirectSolver {
   /// @param problem of the step. @param effort (rows,) N: where to start from, on return the
   /// solution. Rows without a block keep theirs.
   LawStatus solve(const StepProblem& problem, std::span<double> effort);
+  /// The contacts of the last problem. Drives that it has are linearised where they came out.
+  ContactProblem contact_problem() const;
   /// Of the last problem with contacts.
   const qp::ConeResult& contact_result() const { return cone_solver_.result(); }
 
