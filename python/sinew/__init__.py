@@ -9,7 +9,7 @@
 SI units everywhere. docs/python.md is the guide.
 """
 
-from . import errors, fields, mesh, pcc, qp
+from . import collision, errors, fields, mesh, pcc, qp
 from ._core import (
     Actuator,
     Body,
@@ -78,6 +78,7 @@ __all__ = [
     "Trajectory",
     "View",
     "__version__",
+    "collision",
     "errors",
     "fields",
     "load",

@@ -145,6 +145,16 @@ MatrixX to_matrix(const py::handle& value, const std::string& place, const std::
   return Eigen::Map<const RowMajor>(array.data(), array.shape(0), array.shape(1));
 }
 
+Eigen::SparseMatrix<double> to_sparse(const py::object& matrix) {
+  const py::object columns = matrix.attr("tocsc")();
+  const auto shape = columns.attr("shape").cast<std::pair<int, int>>();
+  const auto values = columns.attr("data").cast<py::array_t<double, py::array::forcecast>>();
+  const auto rows = columns.attr("indices").cast<py::array_t<int, py::array::forcecast>>();
+  const auto starts = columns.attr("indptr").cast<py::array_t<int, py::array::forcecast>>();
+  return Eigen::Map<const Eigen::SparseMatrix<double>>(shape.first, shape.second, values.size(),
+                                                       starts.data(), rows.data(), values.data());
+}
+
 MatrixX to_gappy_matrix(const py::handle& value, const std::string& place,
                         const std::string& wanted) {
   const py::array any = py::array::ensure(value);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/SparseCore>
 #include <pybind11/numpy.h>
 
 #include "sinew/core/error.hpp"
@@ -54,6 +55,9 @@ VectorX to_vector(const py::handle& value, const std::string& place, Eigen::Inde
 /// Any matrix. Throws as to_array(), and Error(wrong-shape).
 /// @param wanted describes shape and unit: "(steps, inputs) N m".
 MatrixX to_matrix(const py::handle& value, const std::string& place, const std::string& wanted);
+
+/// By columns. @param matrix of scipy.sparse.
+Eigen::SparseMatrix<double> to_sparse(const py::object& matrix);
 
 /// (rows,) or (rows, columns) with nan where nothing was measured; a vector is one column.
 /// Throws Error(wrong-type | wrong-shape).

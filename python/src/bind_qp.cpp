@@ -14,16 +14,6 @@ namespace {
 
 using qp::ConeSolution;
 
-Eigen::SparseMatrix<double> to_sparse(const py::object& matrix) {
-  const py::object columns = matrix.attr("tocsc")();
-  const auto shape = columns.attr("shape").cast<std::pair<int, int>>();
-  const auto values = columns.attr("data").cast<py::array_t<double, py::array::forcecast>>();
-  const auto rows = columns.attr("indices").cast<py::array_t<int, py::array::forcecast>>();
-  const auto starts = columns.attr("indptr").cast<py::array_t<int, py::array::forcecast>>();
-  return Eigen::Map<const Eigen::SparseMatrix<double>>(shape.first, shape.second, values.size(),
-                                                       starts.data(), rows.data(), values.data());
-}
-
 ConeSolution solve_cones(const py::object& w, const py::object& q, const py::object& friction,
                          const py::object& tolerance, const py::object& start) {
   const double tol = to_number(tolerance, "solve_cones(tolerance)", "");

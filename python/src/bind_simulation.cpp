@@ -675,6 +675,7 @@ simulation (others get an Error of kind 'simulation-busy'); several simulations 
   bind_state(type);
   bind_linearisation(type);
   bind_control(type);
+  bind_contact_problem(module, type);
   type.def("__repr__", [](const Session& self) {
     return fmt::format("<sinew.Simulation '{}' at {:g} s: {} actuators, {} effectors>",
                        self.robot().robot.description.name, self.time(),

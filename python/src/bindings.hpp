@@ -52,6 +52,9 @@ void bind_brace(py::module_& module);
 void bind_plan_drive(py::module_& module);
 void bind_drive(py::module_& module);
 void bind_qp(py::module_& module);
+void bind_collision(py::module_& module);
+void bind_collision_pairs(py::module_& module);
+void bind_collision_primitives(py::module_& module);
 void bind_identify(py::module_& module);
 void bind_identify_arm(py::module_& module);
 void bind_identify_material(py::module_& module);
@@ -73,6 +76,11 @@ struct Body : Part {};
 /// The part of bind_body() about stress and strain.
 /// @param module,type where it goes.
 void bind_fields(py::module_& module, py::class_<Body>& type);
+
+/// Problems of contacts by themselves: their files, and Simulation.contact_problem().
+/// @param module,simulation where they go.
+void bind_contact_problem(py::module_& module,
+                          py::class_<Session, std::shared_ptr<Session>>& simulation);
 
 /// A controller with the simulation that it steers, which it keeps alive.
 struct Controller {

@@ -128,7 +128,7 @@ def split_arguments(signature):
     return parts
 
 
-@pytest.mark.parametrize("module", [sinew, sinew.pcc], ids=lambda module: module.__name__)
+@pytest.mark.parametrize("module", [sinew, sinew.collision, sinew.pcc, sinew.qp], ids=lambda module: module.__name__)
 def test_everything_public_has_a_docstring(module):
     for name in module.__all__:
         member = getattr(module, name)

@@ -1,0 +1,61 @@
+"""Geometry of triangle surfaces: what is near, crosses, lies inside, overlaps, or meets in motion.
+
+    ball = sinew.collision.Surface(points, triangles)          # (n, 3) m, (m, 3) nodes
+    near = sinew.collision.proximity(ball, other, distance=1e-3)
+    near.distances, near.first_points, near.normals
+
+docs/collision.md says how each of them works.
+"""
+
+from ._core import (
+    InsideVertices,
+    NearestPoints,
+    Overlap,
+    ProximityPairs,
+    Shape,
+    Surface,
+    SurfaceImpacts,
+    closest_on_edges,
+    closest_on_triangles,
+    crossing,
+    edge_edge_impacts,
+    impacts,
+    overlap,
+    penetration,
+    proximity,
+    triangles_meet,
+    vertex_face_impacts,
+)
+
+__all__ = [
+    "InsideVertices",
+    "NearestPoints",
+    "Overlap",
+    "ProximityPairs",
+    "Shape",
+    "Surface",
+    "SurfaceImpacts",
+    "closest_on_edges",
+    "closest_on_triangles",
+    "crossing",
+    "edge_edge_impacts",
+    "impacts",
+    "overlap",
+    "penetration",
+    "proximity",
+    "triangles_meet",
+    "vertex_face_impacts",
+]
+
+# The name by which users know them.
+for _type in (
+    InsideVertices,
+    NearestPoints,
+    Overlap,
+    ProximityPairs,
+    Shape,
+    Surface,
+    SurfaceImpacts,
+):
+    _type.__module__ = "sinew.collision"
+del _type

@@ -1,0 +1,162 @@
+// Contacts of a step by themselves, and files of such problems.
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "sinew/record/fclib.hpp"
+#include "sinew/sim/contact_reader.hpp"
+#include "sinew/sim/simulation.hpp"
+#include "sinew/step/contact_problem.hpp"
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "session.hpp"
+
+namespace sinew::python {
+
+namespace {
+
+/// u = W r + q: W dense, or sparse as scipy has it; r None where there is no solution.
+struct ContactProblem {
+  py::object w;
+  Array q, friction;
+  py::object r;
+};
+
+Array copy_list(const std::vector<double>& list) {
+  return Array(static_cast<py::ssize_t>(list.size()), list.data());
+}
+
+ContactProblem problem_of(const Session& session) {
+  const Session::Use use(session);
+  const step::ContactProblem problem = session.simulation().contacts().problem();
+  return {copy(problem.compliance), copy(problem.motion), copy_list(problem.friction),
+          copy(problem.effort)};
+}
+
+py::object by_columns(const Eigen::SparseMatrix<double>& matrix) {
+  const auto entries = static_cast<py::ssize_t>(matrix.nonZeros());
+  const auto columns = static_cast<py::ssize_t>(matrix.cols());
+  const py::tuple parts = py::make_tuple(Array(entries, matrix.valuePtr()),
+                                         py::array_t<int>(entries, matrix.innerIndexPtr()),
+                                         py::array_t<int>(columns + 1, matrix.outerIndexPtr()));
+  return py::module_::import("scipy.sparse")
+      .attr("csc_matrix")(parts, py::arg("shape") = py::make_tuple(columns, columns));
+}
+
+ContactProblem read_fclib(const std::filesystem::path& path) {
+  record::FclibProblem problem;
+  {
+    const py::gil_scoped_release others;
+    problem = record::read_fclib(path);
+  }
+  const bool solved = problem.r.size() > 0;
+  return {by_columns(problem.w), copy(problem.q), copy_list(problem.friction),
+          solved ? py::object(copy(problem.r)) : py::none()};
+}
+
+void write_fclib(const std::filesystem::path& path, const py::object& w, const py::object& q,
+                 const py::object& friction, const py::object& r, const std::string& title,
+                 const std::string& description) {
+  const auto vector = [](const py::object& value, const char* place) {
+    const std::vector<double> list = to_list(value, place, "");
+    return VectorX(Eigen::Map<const VectorX>(list.data(), static_cast<Eigen::Index>(list.size())));
+  };
+  record::FclibProblem problem;
+  problem.w =
+      py::hasattr(w, "tocsc")
+          ? to_sparse(w)
+          : Eigen::SparseMatrix<double>(to_matrix(w, "write_fclib(W)", "(3n, 3n)").sparseView());
+  problem.q = vector(q, "write_fclib(q)");
+  problem.friction = to_list(friction, "write_fclib(friction)", "");
+  if (!r.is_none()) problem.r = vector(r, "write_fclib(r)");
+  problem.title = title;
+  problem.description = description;
+  const py::gil_scoped_release others;
+  record::write_fclib(path, problem);
+}
+
+void bind_files(py::module_& module) {
+  module.def("read_fclib", read_fclib, py::arg("path"), R"(read_fclib(path)
+--
+
+Reads a contact problem of the FCLIB collection (HDF5, group fclib_local; W by columns, rows or
+triplets). Needs scipy.
+
+Parameters
+----------
+path : path-like
+
+Returns
+-------
+ContactProblem
+    W a scipy.sparse.csc_matrix; r None where the file has no solution.
+
+Raises
+------
+Error
+    file-not-found, unknown-format, malformed-file; not-in-this-version for problems in two
+    dimensions, with equations of joints, and global ones.
+)");
+  module.def("write_fclib", write_fclib, py::arg("path"), py::arg("W"), py::arg("q"),
+             py::arg("friction"), py::arg("r") = py::none(), py::arg("title") = "",
+             py::arg("description") = "",
+             R"(write_fclib(path, W, q, friction, r=None, title='', description='')
+--
+
+Writes a contact problem as FCLIB has it, for other solvers: u = W r + q, see solve_cones().
+
+Parameters
+----------
+path : path-like
+    Is replaced.
+W : (3n, 3n) array_like, or a sparse matrix of scipy
+    Rows of a contact: normal, two tangents.
+q : (3n,) array_like
+friction : (n,) array_like
+r : (3n,) array_like, optional
+    A solution; u is written with it.
+title, description : str
+
+Raises
+------
+Error
+    wrong-shape, not-finite, file-unwritable, recording-failed.
+)");
+}
+
+}  // namespace
+
+void bind_contact_problem(py::module_& module,
+                          py::class_<Session, std::shared_ptr<Session>>& simulation) {
+  py::class_<ContactProblem>(
+      module, "ContactProblem",
+      "Contacts by themselves: u = W r + q with Signorini's and Coulomb's laws. From "
+      "Simulation.contact_problem() (u in m, r in N) or read_fclib().")
+      .def_readonly("W", &ContactProblem::w,
+                    "(3n, 3n) ndarray or sparse matrix: of each contact the normal, two tangents.")
+      .def_readonly("q", &ContactProblem::q, "(3n,) ndarray: u without efforts.")
+      .def_readonly("friction", &ContactProblem::friction, "(n,) ndarray: mu of each contact.")
+      .def_readonly("r", &ContactProblem::r,
+                    "(3n,) ndarray: a solution; None where there is none.");
+  simulation.def("contact_problem", problem_of, R"(contact_problem($self)
+--
+
+The problem that the contact forces of the last step, or equilibrium, solve.
+
+Its n contacts are the points that took part, in the order of contacts and their points; W and q are
+those of the last substep's last linearisation. Everything else keeps the state of the step: what
+holds a motion (joints, cables at a commanded length) goes on to hold it, what is at a limit keeps
+its effort, a gas is linearised. It is no part of the state: empty before the first step.
+
+Returns
+-------
+sinew.qp.ContactProblem
+    W (m/N), q: gaps (m, negative inside) and slip of the step (m) without contact forces, r: the
+    step's forces (N). sinew.qp.solve_cones() solves it, sinew.qp.write_fclib() writes it.
+)");
+  bind_files(module);
+}
+
+}  // namespace sinew::python
