@@ -25,7 +25,10 @@ SOLVERS = ["NSGS", "NSN_AC", "PROX", "ADMM", "VI_EG", "ACLMFP", "VI_FPP"]
 
 
 def read(path):
-    """W (3n, 3n) sparse, q (3n,), friction (n,) of a text file: dense by columns, or 3x3 blocks by rows of blocks."""
+    """W (3n, 3n) sparse, q (3n,), friction (n,): of FCLIB's HDF5, or of a text file, dense by columns or 3x3 blocks by rows."""
+    if path.suffix == ".hdf5":
+        problem = sinew.qp.read_fclib(path)
+        return csc_matrix(0.5 * (problem.W + problem.W.T)), problem.q, problem.friction
     numbers = iter(path.read_text().split())
     take = lambda count: np.array([float(next(numbers)) for _ in range(count)])
     _, contacts, kind = take(3).astype(int)
@@ -93,7 +96,8 @@ def best_of_siconos(w, q, friction):
 def main():
     folder, *names = sys.argv[1:]
     print("| problem | contacts | sinew ms | iterations | error | Siconos ms | its solver |\n|---|---|---|---|---|---|---|")
-    for path in sorted(pathlib.Path(folder).glob("*.dat"), key=lambda p: p.stat().st_size):
+    paths = [path for path in pathlib.Path(folder).iterdir() if path.suffix in (".dat", ".hdf5")]
+    for path in sorted(paths, key=lambda p: p.stat().st_size):
         if names and path.stem not in names:
             continue
         w, q, friction = read(path)
