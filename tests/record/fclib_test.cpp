@@ -17,7 +17,6 @@ namespace sinew::record {
 namespace {
 
 namespace fs = std::filesystem;
-using sinew::testing::kind_of;
 
 class Fclib : public ::testing::Test {
  protected:
@@ -60,7 +59,7 @@ class Fclib : public ::testing::Test {
     file.flush();
   }
   ErrorKind refused() {
-    return kind_of([&] { read_fclib(path_); });
+    return sinew::testing::kind_of([&] { read_fclib(path_); });
   }
 
   fs::path path_ = fs::temp_directory_path() / "sinew_fclib_test.hdf5";
@@ -124,7 +123,7 @@ TEST_F(Fclib, RefusesWhatIsNoProblem) {
   EXPECT_EQ(refused(), ErrorKind::malformed_file);  // before it asks for the memory
   FclibProblem problem = Fclib::problem(2);
   problem.friction.pop_back();
-  EXPECT_EQ(kind_of([&] { write_fclib(path_, problem); }), ErrorKind::wrong_shape);
+  EXPECT_EQ(sinew::testing::kind_of([&] { write_fclib(path_, problem); }), ErrorKind::wrong_shape);
 }
 
 }  // namespace

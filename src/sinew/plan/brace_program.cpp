@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include "sinew/collision/principal_frame.hpp"
 #include "sinew/core/rotation.hpp"
 
 namespace sinew::plan {
@@ -80,18 +81,8 @@ std::vector<SurfacePatch> patches_of(const constraint::Surface& surface) {
 }
 
 Matrix3 distance_hessian(const constraint::Surface& surface, const Vector3& point) {
-  const collision::ShapeDistance at = constraint::distance(surface, point);
-  const Matrix3 across = Matrix3::Identity() - at.normal * at.normal.transpose();
-  if (const auto* sphere = std::get_if<constraint::Sphere>(&surface)) {
-    return across / (at.gap + sphere->radius);
-  }
-  const auto* capsule = std::get_if<constraint::Capsule>(&surface);
-  if (capsule == nullptr) return Matrix3::Zero();
-  const Vector3 axis = capsule->to - capsule->from;
-  const double share = axis.dot(point - capsule->from) / std::max(axis.squaredNorm(), 1e-300);
-  const double far = at.gap + capsule->radius;
-  if (share <= 0.0 || share >= 1.0) return across / far;
-  return (across - axis * axis.transpose() / axis.squaredNorm()) / far;
+  const collision::PrincipalFrame at = principal_frame(surface, point);
+  return at.frame * at.curvature.asDiagonal() * at.frame.transpose();
 }
 
 BraceProgram::BraceProgram(const std::shared_ptr<const pcc::Arm>& arm, BraceProblem problem)

@@ -88,7 +88,11 @@ Eigen::SparseMatrix<double> read_matrix(const Hdf5Reader& file, std::size_t size
       const auto own = static_cast<std::int32_t>(list);
       for (auto k = static_cast<std::size_t>(p[list]); k < static_cast<std::size_t>(p[list + 1]);
            ++k) {
-        nz == kByColumns ? add(i[k], own, x[k]) : add(own, i[k], x[k]);
+        if (nz == kByColumns) {
+          add(i[k], own, x[k]);
+        } else {
+          add(own, i[k], x[k]);
+        }
       }
     }
   }
