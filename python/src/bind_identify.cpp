@@ -89,7 +89,7 @@ py::dict by_name(const ParameterFit& fit, const Get& get) {
   return result;
 }
 
-py::list directions(const ParameterFit& fit) {
+py::list fit_directions(const ParameterFit& fit) {
   py::list result;
   for (const Direction& direction : fit.directions) {
     py::dict entry, weights;
@@ -193,7 +193,7 @@ void bind_identify(py::module_& module) {
             return names;
           },
           "list of str: parameters that a bound decides.")
-      .def_property_readonly("directions", &directions,
+      .def_property_readonly("directions", &fit_directions,
                              "list of dict: combinations of parameters from the best determined to "
                              "the worst: 'singular_value', 'relative_error', 'undetermined', "
                              "'weights' by name.")

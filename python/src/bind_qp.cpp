@@ -32,7 +32,7 @@ ConeSolution solve_cones(const py::object& w, const py::object& q, const py::obj
   return qp::solve_cones(dense, given, mu, tol, from);
 }
 
-std::vector<std::string> states(const ConeSolution& self) {
+std::vector<std::string> state_names(const ConeSolution& self) {
   std::vector<std::string> names;
   for (const qp::ContactState state : self.states) names.emplace_back(contact_state_name(state));
   return names;
@@ -55,7 +55,7 @@ void bind_qp(py::module_& module) {
                     "Gauss-Seidel sweeps and Newton steps of the part that took most.")
       .def_readonly("asymmetry", &ConeSolution::asymmetry,
                     "The largest entry of W - W^T over the largest of W.")
-      .def_property_readonly("states", states, "Of each contact 'open', 'stick' or 'slip'.");
+      .def_property_readonly("states", state_names, "Of each contact 'open', 'stick' or 'slip'.");
   module.def("solve_cones", solve_cones, py::arg("W"), py::arg("q"), py::arg("friction"),
              py::arg("tolerance") = 1e-8, py::arg("start") = py::none(),
              R"(solve_cones(W, q, friction, tolerance=1e-8, start=None)
