@@ -71,8 +71,8 @@ RigidBodyModel::RigidBodyModel(RigidSettings settings)
 }
 
 double RigidBodyModel::rest_distance(const Vector3& point) const {
-  return signed_distance(settings_.shape,
-                         settings_.rotation.transpose() * (point - settings_.position));
+  const Vector3 local = settings_.rotation.transpose() * (point - settings_.position);
+  return collision::distance(solid(settings_.shape), local).gap;
 }
 
 void RigidBodyModel::check_inside(const Vector3& rest_position, mesh::Outside outside,

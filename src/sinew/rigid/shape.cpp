@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 
 #include "sinew/mesh/shapes.hpp"
 
@@ -59,25 +58,6 @@ MassProperties of(const Capsule& capsule, double density) {
   return result;
 }
 
-double distance(const Box& box, const Vector3& point) {
-  const Vector3 beyond = point.cwiseAbs() - 0.5 * box.edges;
-  return beyond.cwiseMax(0.0).norm() + std::min(beyond.maxCoeff(), 0.0);
-}
-
-double distance(const Sphere& sphere, const Vector3& point) { return point.norm() - sphere.radius; }
-
-double distance(const Capsule& capsule, const Vector3& point) {
-  const double half = 0.5 * capsule.length;
-  const Vector3 from(point.x(), point.y(), point.z() - std::clamp(point.z(), -half, half));
-  return from.norm() - capsule.radius;
-}
-
-double distance(const Cylinder& cylinder, const Vector3& point) {
-  const Eigen::Vector2d beyond(std::hypot(point.x(), point.y()) - cylinder.radius,
-                               std::abs(point.z()) - 0.5 * cylinder.height);
-  return beyond.cwiseMax(0.0).norm() + std::min(beyond.maxCoeff(), 0.0);
-}
-
 mesh::Mesh cells(const Vector3& edges, const std::array<int, 3>& count) {
   return mesh::block({.corner = -0.5 * edges, .size = edges, .cells = count},
                      mesh::Cells::hexahedra);
@@ -128,31 +108,25 @@ MassProperties mass_properties(const Shape& shape, double density) {
   return std::visit([&](const auto& kind) { return of(kind, density); }, shape);
 }
 
-MassProperties mass_properties(const mesh::Surface& surface, double density) {
-  double volume = 0.0;
-  Vector3 first = Vector3::Zero();
-  Matrix3 second = Matrix3::Zero();  // integral of x x^T
-  for (const mesh::Triangle& t : surface.triangles) {
-    Matrix3 corners;
-    for (int c = 0; c < 3; ++c) {
-      corners.col(c) = surface.nodes.row(t[static_cast<std::size_t>(c)]).transpose();
-    }
-    const double part = corners.determinant() / 6.0;
-    const Vector3 sum = corners.rowwise().sum();
-    volume += part;
-    first += part / 4.0 * sum;
-    second += part / 20.0 * (corners * corners.transpose() + sum * sum.transpose());
-  }
-  MassProperties result;
-  result.mass = density * volume;
-  result.centre = first / volume;
-  second -= volume * result.centre * result.centre.transpose();
-  result.inertia = density * (second.trace() * Matrix3::Identity() - second);
-  return result;
-}
-
-double signed_distance(const Shape& shape, const Vector3& point) {
-  return std::visit([&](const auto& kind) { return distance(kind, point); }, shape);
+collision::Shape solid(const Shape& shape) {
+  const auto along_z = [](double length) -> Vector3 { return 0.5 * length * Vector3::UnitZ(); };
+  const Overloaded convert{
+      [](const Box& box) -> collision::Shape {
+        return collision::OrientedBox{.half_size = 0.5 * box.edges};
+      },
+      [](const Sphere& sphere) -> collision::Shape {
+        return collision::Sphere{.radius = sphere.radius};
+      },
+      [&](const Capsule& capsule) -> collision::Shape {
+        return collision::Capsule{-along_z(capsule.length), along_z(capsule.length),
+                                  capsule.radius};
+      },
+      [&](const Cylinder& cylinder) -> collision::Shape {
+        return collision::Cylinder{-along_z(cylinder.height), along_z(cylinder.height),
+                                   cylinder.radius};
+      },
+  };
+  return std::visit(convert, shape);
 }
 
 mesh::Mesh skin(const Shape& shape) {

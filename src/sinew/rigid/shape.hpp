@@ -4,6 +4,7 @@
 
 #include <variant>
 
+#include "sinew/collision/shape.hpp"
 #include "sinew/core/types.hpp"
 #include "sinew/mesh/mesh.hpp"
 
@@ -35,12 +36,9 @@ struct MassProperties {
 
 /// Of a homogeneous solid. @param density kg/m^3.
 MassProperties mass_properties(const Shape& shape, double density);
-/// The same inside a closed surface, by the divergence theorem: the sum over tetrahedra from the
-/// origin to each triangle, with the signs of their volumes (Tonon, J. Math. Stat. 1, 2005).
-MassProperties mass_properties(const mesh::Surface& surface, double density);
 
-/// Distance of a point to the shape's surface, m: negative inside.
-double signed_distance(const Shape& shape, const Vector3& point);
+/// The same as a shape of collision, in its own frame.
+collision::Shape solid(const Shape& shape);
 
 /// A volume mesh that shows the shape.
 mesh::Mesh skin(const Shape& shape);
