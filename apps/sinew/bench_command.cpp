@@ -82,12 +82,15 @@ int warm_up_steps(const BenchOptions& options, const Session& session) {
   return std::max(kWarmUp, static_cast<int>(std::min(turn, 1e5)));
 }
 
-Samples measure(const BenchOptions& options, Session& session, int warm_up) {
-  Samples samples;
-  for (auto& stage : samples.stages) stage.reserve(static_cast<std::size_t>(options.steps));
+void measure_steps(const BenchOptions& options, Session& session, int warm_up, Samples& samples) {
   std::vector<int> before, active;
   const Interrupt interrupt;
-  for (int i = 0; i < warm_up + options.steps && !Interrupt::requested(); ++i) {
+  const int steps = warm_up + options.steps;
+  ProgressBar bar(steps, true);
+  std::int64_t i = 0;
+  const WatchedSteps watched(session.simulation(), bar, i);
+  for (; i < steps; ++i) {
+    Interrupt::check();
     session.step();
     const sim::StepReport& report = session.simulation().report();
     before.swap(active);
@@ -101,6 +104,15 @@ Samples measure(const BenchOptions& options, Session& session, int warm_up) {
     samples.error_sum += session.error();
     samples.error_max = std::max(samples.error_max, session.error());
     samples.active_set_changes += active == before ? 0 : 1;
+  }
+}
+
+Samples measure(const BenchOptions& options, Session& session, int warm_up) {
+  Samples samples;
+  for (auto& stage : samples.stages) stage.reserve(static_cast<std::size_t>(options.steps));
+  try {
+    measure_steps(options, session, warm_up, samples);
+  } catch (const Interrupted&) {  // what was measured counts
   }
   if (!options.compare_eigen || samples.stages.back().empty()) return samples;
   const double once = eigen_factorisation_times(session.simulation(), 1).front();

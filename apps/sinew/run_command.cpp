@@ -143,7 +143,9 @@ void advance(Session& session, record::RunRecorder& recorder, std::int64_t steps
              Tally& tally) {
   const Interrupt interrupt;
   ProgressBar bar(steps, !quiet);
-  while (tally.steps < steps && !Interrupt::requested()) {
+  const WatchedSteps watched(session.simulation(), bar, tally.steps);
+  while (tally.steps < steps) {
+    Interrupt::check();
     session.step();
     recorder.after_step();
     count(tally, session);
@@ -193,6 +195,7 @@ int run(const RunOptions& options) {
   };
   try {
     advance(session, recorder, steps, options.quiet, tally);
+  } catch (const Interrupted&) {  // told of below
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::recording_failed) finish();
     throw;

@@ -16,6 +16,7 @@ namespace sinew::cli {
 namespace {
 
 constexpr int kMaxThreads = 256;
+constexpr double kSlowStep = 2.0;  // s, of wall time
 
 scene::Robot load(const SceneOptions& options) {
   std::vector<std::string> overrides = options.overrides;
@@ -68,6 +69,20 @@ std::string Session::resolved_scene() const {
   scene::resolve_paths(tree, folder_);
   return scene::to_yaml(tree);
 }
+
+WatchedSteps::WatchedSteps(sim::Simulation& simulation, ProgressBar& bar, const std::int64_t& done)
+    : simulation_(simulation) {
+  simulation.watch([&simulation, &bar, &done](const sim::StepProgress& step) {
+    Interrupt::check();
+    if (step.seconds < kSlowStep || !bar.slow_due()) return;
+    bar.update_slow(done, fmt::format("t = {:g} s: this step has taken {:.0f} s: iteration {}, "
+                                      "residual {:.1e}, {}",
+                                      simulation.time(), step.seconds, step.iterations,
+                                      step.relative_residual, search_stage_text(step.stage)));
+  });
+}
+
+WatchedSteps::~WatchedSteps() { simulation_.watch({}); }
 
 void add_scene_options(Command& command, SceneOptions& options, bool optional) {
   command.add_option("SCENE", options.file, "Scene file (YAML)").required(!optional);

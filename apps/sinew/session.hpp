@@ -2,6 +2,7 @@
 /// A scene made ready to run, as `run` and `bench` need it.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -15,6 +16,7 @@
 namespace sinew::cli {
 
 class Command;
+class ProgressBar;
 
 /// What the command line says about a scene.
 struct SceneOptions {
@@ -63,6 +65,20 @@ class Session {
   std::unique_ptr<sim::Simulation> simulation_;
   std::string controller_name_;
   std::unique_ptr<inverse::InverseController> controller_;
+};
+
+/// While it lives, Ctrl-C ends the step in hand (by Interrupted, see terminal.hpp), and steps that
+/// take more than two seconds are told of.
+class WatchedSteps {
+ public:
+  /// All outlive it. @param bar tells. @param done the steps that it counts.
+  WatchedSteps(sim::Simulation& simulation, ProgressBar& bar, const std::int64_t& done);
+  ~WatchedSteps();
+  WatchedSteps(const WatchedSteps&) = delete;
+  WatchedSteps& operator=(const WatchedSteps&) = delete;
+
+ private:
+  sim::Simulation& simulation_;
 };
 
 /// Adds SCENE (which must be given unless `optional`), --set, --threads and --controller to a

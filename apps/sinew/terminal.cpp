@@ -19,6 +19,7 @@ void note_interrupt(int) { interrupted = 1; }
 
 constexpr int kBarWidth = 30;
 constexpr std::chrono::milliseconds kRedraw{100};
+constexpr std::chrono::seconds kLogPause{10};
 constexpr std::array<int, 2> kSignals = {SIGINT, SIGTERM};
 
 }  // namespace
@@ -37,16 +38,34 @@ Interrupt::~Interrupt() {
 
 bool Interrupt::requested() { return interrupted != 0; }
 
+void Interrupt::check() {
+  if (requested()) throw Interrupted{};
+}
+
 ProgressBar::ProgressBar(std::int64_t total, bool shown)
-    : total_(std::max<std::int64_t>(total, 1)), shown_(shown && isatty(STDERR_FILENO) != 0) {}
+    : total_(std::max<std::int64_t>(total, 1)),
+      shown_(shown),
+      terminal_(isatty(STDERR_FILENO) != 0) {}
 
 ProgressBar::~ProgressBar() {
   if (drawn_) fmt::print(stderr, "\r\033[K");
   std::fflush(stderr);
 }
 
+bool ProgressBar::slow_due() const {
+  return terminal_ ? due() : shown_ && std::chrono::steady_clock::now() - last_ >= kLogPause;
+}
+
+void ProgressBar::update_slow(std::int64_t done, const std::string& note) {
+  if (terminal_) return update(done, note);
+  if (!slow_due()) return;
+  last_ = std::chrono::steady_clock::now();
+  fmt::print(stderr, "sinew: {}\n", note);
+  std::fflush(stderr);
+}
+
 bool ProgressBar::due() const {
-  return shown_ && std::chrono::steady_clock::now() - last_ >= kRedraw;
+  return shown_ && terminal_ && std::chrono::steady_clock::now() - last_ >= kRedraw;
 }
 
 void ProgressBar::update(std::int64_t done, const std::string& note) {

@@ -12,8 +12,11 @@
 
 namespace sinew::cli {
 
-/// While it lives, the first Ctrl-C or SIGTERM only raises a flag, so that work ends between two
-/// steps; a second one ends the program at once.
+/// Thrown by work that a signal ends early: no error.
+struct Interrupted {};
+
+/// While it lives, the first Ctrl-C or SIGTERM only raises a flag, so that work ends where it can
+/// go on; a second one ends the program at once.
 class Interrupt {
  public:
   Interrupt();
@@ -23,9 +26,11 @@ class Interrupt {
 
   /// Whether one was received.
   static bool requested();
+  /// Throws Interrupted if so.
+  static void check();
 };
 
-/// A line on standard error that shows how far work has come; nothing unless that is a terminal.
+/// A line on standard error that shows how far work has come.
 class ProgressBar {
  public:
   /// @param total amount of work. @param shown false: never drawn.
@@ -34,15 +39,19 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// Redraws at most ten times a second.
+  /// Redraws at most ten times a second; nothing unless standard error is a terminal.
   /// @param done of the work. @param note behind the bar.
   void update(std::int64_t done, const std::string& note);
   /// True when a call of update() would draw, so that its note is worth making.
   bool due() const;
+  /// Of work that does not go on for long: the same on a terminal, else a line every ten seconds.
+  void update_slow(std::int64_t done, const std::string& note);
+  /// As due().
+  bool slow_due() const;
 
  private:
   std::int64_t total_;
-  bool shown_;
+  bool shown_, terminal_;
   bool drawn_ = false;
   std::chrono::steady_clock::time_point last_{};
 };

@@ -212,12 +212,11 @@ A mass that hangs on a body, by its name. Raises Error (unknown-name) with a sug
           "follow_path",
           [](Session& self, double first_step, double largest_step, double tolerance,
              int max_points) {
-            const Session::Use use(self);
             sim::Simulation& simulation = self.simulation();
             const auto& effectors = simulation.model().effectors();
             std::vector<std::vector<Vector3>> values(effectors.size());
             const auto path =
-                simulation.follow_path({first_step, largest_step, tolerance, max_points}, [&] {
+                self.follow_path({first_step, largest_step, tolerance, max_points}, [&] {
                   for (std::size_t i = 0; i < effectors.size(); ++i) {
                     values[i].push_back(simulation.effector_value(static_cast<int>(i)));
                   }

@@ -23,6 +23,25 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr auto kSignalInterval = std::chrono::milliseconds(50);
 
+// While it lives, steps and searches look for Ctrl-C now and then, and end by it.
+class SignalWatch {
+ public:
+  explicit SignalWatch(sim::Simulation& simulation) : simulation_(simulation) {
+    simulation.watch([due = Clock::now() + kSignalInterval](const sim::StepProgress&) mutable {
+      if (Clock::now() < due) return;
+      const pybind11::gil_scoped_acquire lock;
+      if (PyErr_CheckSignals() != 0) throw pybind11::error_already_set();
+      due = Clock::now() + kSignalInterval;
+    });
+  }
+  ~SignalWatch() { simulation_.watch({}); }
+  SignalWatch(const SignalWatch&) = delete;
+  SignalWatch& operator=(const SignalWatch&) = delete;
+
+ private:
+  sim::Simulation& simulation_;
+};
+
 }  // namespace
 
 Session::Use::Use(const Session& session) : session_(session) {
@@ -64,6 +83,7 @@ void Session::advance(std::int64_t count) {
   }
   const Use use(*this);
   check_loads();
+  const SignalWatch watch(simulation_);
   for (std::int64_t done = 0; done < count;) {
     {
       const pybind11::gil_scoped_release release;
@@ -101,8 +121,17 @@ void Session::warn() {
 sim::StaticReport Session::solve_static(const sim::StaticSettings& settings) {
   const Use use(*this);
   check_loads();
+  const SignalWatch watch(simulation_);
   const pybind11::gil_scoped_release release;
   return simulation_.solve_static(settings);
+}
+
+std::vector<sim::PathPoint> Session::follow_path(const sim::PathSettings& settings,
+                                                 const std::function<void()>& visit) {
+  const Use use(*this);
+  const SignalWatch watch(simulation_);
+  const pybind11::gil_scoped_release release;
+  return simulation_.follow_path(settings, visit);
 }
 
 void Session::reset() {

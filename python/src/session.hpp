@@ -75,11 +75,15 @@ class Session {
   std::int64_t steps() const { return steps_.load(std::memory_order_relaxed); }
   double time() const { return static_cast<double>(steps()) * model().step().time_step; }
 
-  /// Advances `count` steps without the interpreter's lock; looks for Ctrl-C now and then. Warns
+  /// Advances `count` steps without the interpreter's lock; looks for Ctrl-C now and then, within
+  /// steps, too, as the searches below do: the state is then that of the last step. Warns
   /// (sinew.SinewWarning) of flagged steps, of each status once until the next reset. Throws
   /// what sim::Simulation::step() does, and Error(not-finite) for external forces that are not.
   void advance(std::int64_t count);
   sim::StaticReport solve_static(const sim::StaticSettings& settings);
+  /// @param visit is called without the interpreter's lock.
+  std::vector<sim::PathPoint> follow_path(const sim::PathSettings& settings,
+                                          const std::function<void()>& visit);
   /// Simulation::reset(), and external forces set to zero.
   void reset();
   SavedState state() const;

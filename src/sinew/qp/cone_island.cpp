@@ -55,7 +55,10 @@ ConeStatus ConeIsland::solve(const ConePart& part, std::span<double> start) {
   result_.status = towering ? ConeStatus::solved : ConeStatus::iteration_limit;
   int sweeps = settings_.first_sweeps;
   while (!towering && result_.sweeps < settings_.max_sweeps) {
-    for (int k = 0; k < sweeps; ++k, ++result_.sweeps) sweep(part);
+    for (int k = 0; k < sweeps; ++k, ++result_.sweeps) {
+      poll();
+      sweep(part);
+    }
     measure_motion(part);
     if (judge(part) <= settings_.tolerance || (newton_pays(part) && newton(part))) {
       result_.status = ConeStatus::solved;

@@ -60,6 +60,9 @@ class ConeIsland {
   void judge_cone(const ConeProblem& problem, std::size_t number);
   void judge_box(const BoxBlock& box, double offset, double scale);
   void classify(const ConePart& part);
+  void poll() const {
+    if (settings_.poll != nullptr) (*settings_.poll)();
+  }
 
   // Alternating directions (cone_admm.cpp).
   bool alternate(const ConePart& part);

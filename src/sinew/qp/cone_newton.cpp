@@ -58,6 +58,7 @@ bool ConeIsland::newton_steps(const ConePart& part, int most, auto&& proximal) {
   keep();
   double least = result_.residual;
   for (int step = 0, vain = 0; step < most && vain < kMaxVainSteps; ++step, ++vain) {
+    poll();
     const double relative = miss_.distance / std::max(miss_.effort, 1e-300);
     if (!newton_step(part, proximal(relative))) break;
     const double residual = judge(part);

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "sinew/core/poll.hpp"
 #include "sinew/core/types.hpp"
 #include "sinew/qp/friction_cone.hpp"
 
@@ -62,6 +63,7 @@ struct ConeSettings {
   int first_sweeps = 4;      ///< before Newton's method is tried; doubled at every further try
   int newton_limit = 1500;   ///< unknowns of a dense matrix; more are left to Gauss-Seidel
   ConeMeasure measure = ConeMeasure::per_block;
+  const Poll* poll = nullptr;  ///< called in every sweep and step of Newton's; outlives the solver
 };
 
 struct ConeResult {
@@ -112,7 +114,7 @@ class ConeSolver {
   /// Allocates only where a problem, or a part of it, is larger than all before, and for a sparse
   /// part whose pattern is not that of the last solve. @param problem see there. @param x (n,) in:
   /// where to start from; out: the solution, each block inside its cone or box exactly. Throws
-  /// Error(wrong-shape).
+  /// Error(wrong-shape), and what settings.poll throws: x is then of no use.
   const ConeResult& solve(const ConeProblem& problem, std::span<double> x);
   const ConeResult& solve(const SparseConeProblem& problem, std::span<double> x);
   const ConeResult& result() const;

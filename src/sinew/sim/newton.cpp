@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sinew/sim/stage_clock.hpp"
+#include "sinew/sim/step_watch.hpp"
 #include "sinew/sim/world.hpp"
 
 namespace sinew::sim {
@@ -24,13 +25,15 @@ constexpr double kLessened = 0.5;
 class NewtonSolver {
  public:
   NewtonSolver(World& world, step::StepSolver& solver, step::Controller* controller,
-               std::span<double> effort, const NewtonSettings& settings, StageClock& clock)
+               std::span<double> effort, const NewtonSettings& settings, StageClock& clock,
+               StepWatch& watch)
       : world_(world),
         solver_(solver),
         controller_(controller),
         effort_(effort),
         settings_(settings),
-        clock_(clock) {}
+        clock_(clock),
+        watch_(watch) {}
 
   NewtonReport run() {
     linearise(settings_.request.tangent);
@@ -41,6 +44,7 @@ class NewtonSolver {
       if (report_.law == step::LawStatus::failed) return finish(NewtonStatus::law_failed);
       const NewtonStatus moved = move();
       ++report_.iterations;
+      watch_.count(report_.relative_residual);
       if (moved != NewtonStatus::converged) return finish(moved);
     }
     return finish(converged_ ? NewtonStatus::converged : NewtonStatus::iteration_limit);
@@ -146,6 +150,7 @@ class NewtonSolver {
   std::span<double> effort_;
   const NewtonSettings& settings_;
   StageClock& clock_;
+  StepWatch& watch_;
   NewtonReport report_;
   bool converged_ = false;   // after the last motion
   bool full_step_ = false;   // of that motion
@@ -175,8 +180,8 @@ std::string_view newton_status_name(NewtonStatus status) {
 
 NewtonReport solve_newton(World& world, step::StepSolver& solver, step::Controller* controller,
                           std::span<double> effort, const NewtonSettings& settings,
-                          StageClock& clock) {
-  return NewtonSolver(world, solver, controller, effort, settings, clock).run();
+                          StageClock& clock, StepWatch& watch) {
+  return NewtonSolver(world, solver, controller, effort, settings, clock, watch).run();
 }
 
 }  // namespace sinew::sim

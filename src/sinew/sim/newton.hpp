@@ -17,6 +17,7 @@ class StepSolver;
 namespace sinew::sim {
 
 class StageClock;
+class StepWatch;
 class World;
 
 /// What an iteration may leave for the next step although the residual is above its tolerance. A
@@ -52,9 +53,9 @@ struct NewtonReport {
 /// @param world is moved; its problem's actuators are told what to do. @param solver finds efforts.
 /// @param controller chooses those of owned actuators; null where there are none.
 /// @param effort (rows,) N, in and out. @param settings see there. @param clock gets the stages'
-/// times.
+/// times. @param watch is told of every iteration, and may throw.
 NewtonReport solve_newton(World& world, step::StepSolver& solver, step::Controller* controller,
                           std::span<double> effort, const NewtonSettings& settings,
-                          StageClock& clock);
+                          StageClock& clock, StepWatch& watch);
 
 }  // namespace sinew::sim

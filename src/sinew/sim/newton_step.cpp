@@ -88,6 +88,7 @@ NewtonReport NewtonStep::search(double time_step) {
 // A controller's choice need not settle: what it chose last is what its actuators are told in the
 // rest of the step, within their limits.
 NewtonReport NewtonStep::hold_choice(const NewtonReport& chosen, double time_step) {
+  run_.watch.enter(SearchStage::held_efforts);
   const bool dynamic = run_.model->step().dynamic();
   NewtonSettings held = settings(time_step);
   const int few = std::min(held.max_iterations, kSteeredIterations);
@@ -117,6 +118,7 @@ void NewtonStep::begin_again(double time_step) {
 // Where a controller's choice leads nowhere its actuators keep the efforts of the last step. It
 // remembers what it foresaw, and trusts its next choice less (see inverse::StepDamping).
 NewtonReport NewtonStep::stay(double time_step) {
+  run_.watch.enter(SearchStage::last_efforts);
   std::vector<double> memory(run_.controller->memory_size());
   run_.controller->save_memory(memory);
   run_.restore(run_.before);
@@ -136,6 +138,7 @@ NewtonReport NewtonStep::stay(double time_step) {
 // What the start of the step lacks to equilibrium is taken away bit by bit, as in statics
 // (static_solver.cpp), and commands go in proportion from where the actuators were.
 NewtonReport NewtonStep::approach(double time_step) {
+  run_.watch.enter(SearchStage::parts);
   World& world = run_.world;
   std::vector<step::ActuatorBlock>& commands = world.problem().actuators;
   const std::vector<step::ActuatorBlock> goal = commands;
@@ -172,6 +175,7 @@ NewtonReport NewtonStep::approach(double time_step) {
 // lowers the energy of conservative loads, through a buckling to wherever the robot then rests.
 // What is slow at the end of that, Newton finishes.
 NewtonReport NewtonStep::descend(double time_step, int iterations) {
+  run_.watch.enter(SearchStage::downhill);
   NewtonSettings downhill = settings(time_step);
   downhill.request.tangent = mechanics::Tangent::projected;
   // A matrix that is never less has the stiffness of all cables, whatever the scene leaves out.

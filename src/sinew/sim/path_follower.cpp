@@ -75,18 +75,28 @@ void PathFollower::rest() {
 std::vector<PathPoint> PathFollower::follow(const std::function<void()>& visit) {
   State start;
   run_.keep(start);
+  run_.watch.begin();
   run_.now = run_.time();
   run_.surroundings.move_bases(run_.now);
   check();
   PathLoads loads(run_);
   run_.keep(run_.before);
-  settle(loads);
+  // What a watcher throws leaves the last point.
+  const auto from_before = [&](auto&& part) {
+    try {
+      return part();
+    } catch (...) {
+      run_.go_back();
+      throw;
+    }
+  };
+  from_before([&] { settle(loads); });
   PathStep step(run_, settings_, loads);
   std::vector<PathPoint> path;
   double length = settings_.first_step * run_.model->size();
   const double longest = settings_.largest_step * run_.model->size();
   while (step.point().share < 1.0 && static_cast<int>(path.size()) < settings_.max_points) {
-    int iterations = step.take(length);
+    int iterations = from_before([&] { return step.take(length); });
     for (int halving = 0; iterations == 0; ++halving) {
       if (halving == kMaxPathHalvings) {
         run_.restore(start);
@@ -98,7 +108,7 @@ std::vector<PathPoint> PathFollower::follow(const std::function<void()>& visit) 
             "begin with a smaller first_step, or disturb the symmetry before a bifurcation");
       }
       length *= 0.5;
-      iterations = step.take(length);
+      iterations = from_before([&] { return step.take(length); });
     }
     path.push_back(step.point());
     rest();

@@ -191,6 +191,7 @@ int PathStep::try_length(double length) {
     imbalance_at(share_ + 1.0, ahead);
     imbalance_at(share_, here);
     run_.report.relative_residual = here.norm() / (run_.world.bodies().force_scale() + 1e-300);
+    if (iteration > 0) run_.watch.count(run_.report.relative_residual);
     const bool arrived = run_.report.relative_residual <= settings_.tolerance &&
                          gap() <= settings_.tolerance * run_.model->size();
     if (iteration > 0 && arrived) {

@@ -12,7 +12,7 @@ Run::Run(std::shared_ptr<const Model> shared_model, int threads)
     : model(std::move(shared_model)),
       pool(threads),
       world(model, pool),
-      solver(qp::ConeSettings{.tolerance = model->step().contact_tolerance}),
+      solver(qp::ConeSettings{.tolerance = model->step().contact_tolerance, .poll = &watch.poll()}),
       actuation(*model),
       surroundings(*model, world.bodies()),
       effort(static_cast<std::size_t>(model->rows().rows()), 0.0) {
@@ -39,7 +39,7 @@ void Run::read_commands(double time, double time_step) {
 }
 
 NewtonReport Run::newton(step::Controller* chooser, const NewtonSettings& settings) {
-  return solve_newton(world, solver, chooser, effort, settings, clock);
+  return solve_newton(world, solver, chooser, effort, settings, clock, watch);
 }
 
 void Run::finish_step() {

@@ -12,6 +12,7 @@
 #include "sinew/sim/stage_clock.hpp"
 #include "sinew/sim/state.hpp"
 #include "sinew/sim/step_report.hpp"
+#include "sinew/sim/step_watch.hpp"
 #include "sinew/sim/surroundings.hpp"
 #include "sinew/sim/work_ledger.hpp"
 #include "sinew/sim/world.hpp"
@@ -47,6 +48,8 @@ struct Run {
   void keep(State& state) const;
   /// See Simulation.
   void restore(const State& state);
+  /// To `before`, after what failed or was ended there.
+  void go_back();
   Inputs inputs() const;
   void set_inputs(const Inputs& inputs);
 
@@ -55,6 +58,7 @@ struct Run {
   std::shared_ptr<const Model> model;
   ThreadPool pool;
   World world;
+  StepWatch watch;
   step::StepSolver solver;
   step::Controller* controller = nullptr;  ///< that is attached
   Actuation actuation;

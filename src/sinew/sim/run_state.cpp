@@ -86,6 +86,11 @@ void Run::restore(const State& state) {
   }
 }
 
+void Run::go_back() {
+  restore(before);
+  world.set_imbalance_share(0.0);
+}
+
 Inputs Run::inputs() const {
   Inputs inputs;
   for (const ActuatorState& actuator : actuation.states()) {

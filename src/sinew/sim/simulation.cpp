@@ -33,6 +33,7 @@ const StepReport& Simulation::step() {
 }
 
 const StepReport& Simulation::report() const { return run_->report; }
+void Simulation::watch(StepWatcher watcher) { run_->watch.set_watcher(std::move(watcher)); }
 mechanics::Energies Simulation::energies() { return run_->world.bodies().energies(); }
 const EnergyLedger& Simulation::ledger() const { return run_->ledger.sums(); }
 

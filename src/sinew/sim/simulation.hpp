@@ -13,6 +13,7 @@
 #include "sinew/mechanics/energies.hpp"
 #include "sinew/sim/path_settings.hpp"
 #include "sinew/sim/static_settings.hpp"
+#include "sinew/sim/step_progress.hpp"
 #include "sinew/sim/step_report.hpp"
 
 namespace sinew::constraint {
@@ -62,6 +63,11 @@ class Simulation {
   /// step.
   const StepReport& step();
   const StepReport& report() const;
+  /// Has steps, solve_static() and follow_path() tell how far they are, from the next one on. What
+  /// the watcher throws ends them and passes on; the state is then that before the step or the
+  /// search, or that of the path's last point. No part of inputs or state, and not cloned.
+  /// @param watcher see there; empty: nobody watches.
+  void watch(StepWatcher watcher);
   /// Of all bodies now. Evaluates their elements.
   mechanics::Energies energies();
   /// What has been put into the energy and taken out since the start or reset().

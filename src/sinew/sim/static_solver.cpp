@@ -41,14 +41,17 @@ StaticSolver::StaticSolver(Run& run, const StaticSettings& settings)
 
 StaticReport StaticSolver::run() {
   run_.clock.start();
+  run_.watch.begin();
   run_.now = run_.time();
   run_.surroundings.move_bases(run_.now);
   run_.surroundings.apply(run_.now);
   run_.keep(run_.before);
-  read_goal();
-  if (!search_.equilibrate(0.0)) approach();
-  follow_surfaces();
-  settle();
+  try {
+    search();
+  } catch (...) {  // failures have gone back already; what a watcher throws has not
+    run_.go_back();
+    throw;
+  }
   const NewtonReport& last = search_.last();
   report_.status = last.status;
   report_.residual = last.residual;
@@ -63,6 +66,13 @@ StaticReport StaticSolver::run() {
   run_.finish_step();
   run_.actuation.advance_drives(run_.world.problem().actuators);
   return report_;
+}
+
+void StaticSolver::search() {
+  read_goal();
+  if (!search_.equilibrate(0.0)) approach();
+  follow_surfaces();
+  settle();
 }
 
 void StaticSolver::read_goal() {
@@ -92,6 +102,7 @@ void StaticSolver::approach() {
 
 // The share of the imbalance that is left at the end.
 double StaticSolver::step_load() {
+  run_.watch.enter(SearchStage::parts);
   run_.restore(run_.before);
   search_.linearise({});
   run_.world.hold_imbalance(run_.effort);

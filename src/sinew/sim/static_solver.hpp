@@ -32,6 +32,7 @@ class StaticSolver {
   StaticReport run();
 
  private:
+  void search();
   void read_goal();
   void approach();
   double step_load();

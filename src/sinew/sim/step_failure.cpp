@@ -15,7 +15,7 @@ constexpr std::size_t kManyPoints = static_cast<std::size_t>(qp::ConeSettings{}.
 }  // namespace
 
 void fail(Run& run, ErrorKind kind, const std::string& message, const std::string& remedy) {
-  run.restore(run.before);
+  run.go_back();
   std::string names;
   for (const auto& body : run.model->bodies()) names += (names.empty() ? "" : ", ") + body.name();
   throw Error(kind,

@@ -27,6 +27,7 @@ constexpr double kNoEnergy = 1e-10;
 void Stepper::step() {
   StepReport& report = run_.report;
   run_.clock.start();
+  run_.watch.begin();
   report.substeps = 1;
   report.retries = 0;
   report.status = StepStatus::solved;
@@ -34,10 +35,17 @@ void Stepper::step() {
   if (run_.model->step().dynamic() && !run_.ledger.is_open()) {
     run_.ledger.open(run_.world.bodies().energies());
   }
-  if (run_.model->step().adaptive) {
-    step_adaptively();
-  } else {
-    step_in_parts();
+  divided_ = false;
+  try {
+    if (run_.model->step().adaptive) {
+      step_adaptively();
+    } else {
+      step_in_parts();
+    }
+  } catch (...) {
+    if (divided_) run_.restore(start_);
+    part_.reset();
+    throw;
   }
   ++run_.steps;
   judge();
@@ -60,6 +68,7 @@ void Stepper::step_in_parts() {
   }
   const double begin = run_.time();  // what failed is undone
   start_ = run_.before;
+  divided_ = true;
   part_ = Part{0.0, run_.actuation.states()};
   double done = 0.0, length = 0.5;
   report.substeps = 0;
@@ -72,10 +81,7 @@ void Stepper::step_in_parts() {
     } catch (const Error& failure) {
       length *= 0.5;
       ++report.retries;
-      if (length * kMaxParts >= 1.0 && failure.is_run_failure()) continue;
-      part_.reset();
-      run_.restore(start_);
-      throw;
+      if (length * kMaxParts < 1.0 || !failure.is_run_failure()) throw;
     }
   }
   part_.reset();
@@ -92,6 +98,7 @@ void Stepper::step_adaptively() {
   const double order = mechanics::history_count(settings.integrator) > 0 ? 3.0 : 2.0;
   if (!(run_.next_step > 0.0)) run_.next_step = whole;
   run_.keep(start_);
+  divided_ = true;
   report.substeps = 0;
   report.error = 0.0;
   double done = 0.0;
@@ -113,10 +120,7 @@ void Stepper::step_adaptively() {
       report.error = std::max(report.error, error);
       run_.next_step = std::min(whole, std::max(smallest, aim * h));
     } catch (const Error& failure) {
-      if (0.5 * h < smallest || !failure.is_run_failure()) {
-        run_.restore(start_);
-        throw;
-      }
+      if (0.5 * h < smallest || !failure.is_run_failure()) throw;
       run_.next_step = 0.5 * h;
       ++report.retries;
     }
@@ -150,7 +154,12 @@ void Stepper::solve(double time_step) {
 // One solution of the step's equation; the error estimate, m.
 double Stepper::substep(double end, double time_step) {
   begin_substep(end, time_step);
-  solve(time_step);
+  try {
+    solve(time_step);
+  } catch (...) {  // failures have gone back already; what a watcher throws has not
+    run_.go_back();
+    throw;
+  }
   const double error = run_.world.bodies().end_step(run_.step_weights(time_step));
   // A gap that closes stops its point at once. A multistep formula that reaches back over such a
   // jump would have the point rebound, and gain energy: it starts afresh behind it.

@@ -39,7 +39,8 @@ class Stepper {
   };
 
   Run& run_;
-  State start_;  // of the whole step, where that is made in parts
+  State start_;           // of the whole step, where that is made in parts
+  bool divided_ = false;  // it is
   std::optional<Part> part_;
 };
 

@@ -1,0 +1,175 @@
+// Steps and searches that are watched, and ended from outside.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "sinew/mechanics/body.hpp"
+#include "sinew/sim/actuator.hpp"
+#include "sinew/sim/load_settings.hpp"
+#include "sinew/sim/simulation.hpp"
+#include "sinew/sim/state.hpp"
+
+#include "sim/contact_robots.hpp"
+#include "sim/robots.hpp"
+
+namespace sinew::sim {
+namespace {
+
+using sinew::testing::beam;
+using sinew::testing::BeamOptions;
+using sinew::testing::pull;
+using sinew::testing::tension;
+
+struct Ended {};
+
+// Ends the work at the `calls`th call; whether it was reached.
+template <class Work>
+bool ends_at(Simulation& simulation, int calls, Work&& work) {
+  simulation.watch([&calls](const StepProgress&) {
+    if (--calls == 0) throw Ended{};
+  });
+  bool ended = false;
+  try {
+    work();
+  } catch (const Ended&) {
+    ended = true;
+  }
+  simulation.watch({});
+  return ended;
+}
+
+// Ends a step at its first, second, ... and at some later calls, until it is done before; each time
+// the state is that before the step. What follows is what follows without a watcher.
+void expect_steps_that_can_be_ended(const std::shared_ptr<const Model>& model, Command command,
+                                    int least_calls) {
+  Simulation plain(model), ended(model);
+  for (Simulation* one : {&plain, &ended}) {
+    one->step();
+    one->command(0, command);
+  }
+  const State before = ended.state();
+  int calls = 1;
+  while (ends_at(ended, calls, [&] { ended.step(); })) {
+    ASSERT_EQ(ended.state(), before) << calls;
+    ASSERT_EQ(ended.steps(), 1);
+    calls += 1 + calls / 8;
+  }
+  EXPECT_GE(calls, least_calls);
+  for (int k = 0; k < 3; ++k) {
+    if (k > 0) ended.step();
+    plain.step();
+    EXPECT_EQ(plain.state(), ended.state()) << k;
+  }
+}
+
+TEST(Watch, AQuasiStaticStepEndsAsIfItHadNotBegun) {
+  expect_steps_that_can_be_ended(beam(), pull(0.01), 5);
+}
+
+// A strip that a cable folds at once goes through parts and downhill.
+BeamOptions soft() {
+  BeamOptions options;
+  options.young_modulus = 2e4;
+  options.friction = 0.2;
+  options.step.max_iterations = 5;
+  return options;
+}
+
+TEST(Watch, AStepThatIsApproachedInPartsEndsAsIfItHadNotBegun) {
+  expect_steps_that_can_be_ended(beam(soft()), pull(0.03), 30);
+}
+
+TEST(Watch, ADynamicStepInHalvesEndsAsIfItHadNotBegun) {
+  BeamOptions options;
+  options.step.integrator = mechanics::Integrator::bdf2;
+  options.step.max_iterations = 4;
+  expect_steps_that_can_be_ended(beam(options), pull(0.01), 6);
+}
+
+TEST(Watch, AnAdaptiveStepEndsAsIfItHadNotBegun) {
+  BeamOptions options;
+  options.step.integrator = mechanics::Integrator::bdf2;
+  options.step.adaptive = {.tolerance = 1e-4, .smallest = 1e-4};
+  expect_steps_that_can_be_ended(beam(options), pull(0.001), 10);
+}
+
+TEST(Watch, AStepWithContactsEndsWithinALawToo) {
+  BeamOptions options;
+  options.wall = -0.012;
+  options.gravity = {0.0, 0.0, -9.81};
+  options.step.integrator = mechanics::Integrator::backward_euler;
+  const auto model = beam(options);
+  Simulation simulation(model);
+  int within = 0, last = -1;
+  simulation.watch([&](const StepProgress& step) {
+    within += step.iterations == last ? 1 : 0;
+    last = step.iterations;
+  });
+  for (int k = 0; k < 20; ++k) simulation.step();
+  EXPECT_GT(within, 0);  // calls that are not of an iteration of Newton's
+  simulation.watch({});
+  const State before = simulation.state();
+  Simulation plain(model);
+  plain.restore(before);
+  for (int calls = 1; ends_at(simulation, calls, [&] { simulation.step(); }); ++calls) {
+    ASSERT_EQ(simulation.state(), before) << calls;
+  }
+  plain.step();
+  EXPECT_EQ(simulation.state(), plain.state());
+}
+
+TEST(Watch, AStaticSearchEndsAsIfItHadNotBegun) {
+  Simulation simulation(beam());
+  simulation.step();
+  simulation.command(0, tension(2.0));
+  const State before = simulation.state();
+  int calls = 1;
+  while (ends_at(simulation, calls, [&] { simulation.solve_static({.max_iterations = 4}); })) {
+    ASSERT_EQ(simulation.state(), before) << calls;
+    ++calls;
+  }
+  EXPECT_GT(calls, 10);
+}
+
+TEST(Watch, AnEndedPathLeavesItsLastPoint) {
+  BeamOptions options;
+  Simulation simulation(beam(options));
+  simulation.command(0, tension(0.5));
+  State last;
+  int points = 0;
+  const bool ended = ends_at(simulation, 8, [&] {
+    simulation.follow_path({.largest_step = 0.01}, [&] {
+      last = simulation.state();
+      ++points;
+    });
+  });
+  EXPECT_TRUE(ended);
+  ASSERT_GT(points, 0);
+  EXPECT_EQ(simulation.state().bodies, last.bodies);
+  EXPECT_EQ(simulation.state().efforts, last.efforts);
+}
+
+TEST(Watch, ProgressCountsIterationsAndTime) {
+  Simulation simulation(beam(soft()));
+  simulation.command(0, pull(0.03));
+  int largest = 0;
+  bool in_parts = false, in_order = true;
+  double seconds = 0.0, residual = 0.0;
+  simulation.watch([&](const StepProgress& step) {
+    in_order = in_order && step.iterations >= largest && step.seconds >= seconds;
+    largest = step.iterations;
+    seconds = step.seconds;
+    residual = step.relative_residual;
+    in_parts = in_parts || step.stage == SearchStage::parts;
+  });
+  simulation.step();
+  EXPECT_TRUE(in_order);
+  EXPECT_TRUE(in_parts);
+  EXPECT_EQ(largest, simulation.report().iterations);
+  EXPECT_EQ(residual, simulation.report().relative_residual);
+  EXPECT_GT(seconds, 0.0);
+  EXPECT_LE(seconds, simulation.report().times.total);
+}
+
+}  // namespace
+}  // namespace sinew::sim
