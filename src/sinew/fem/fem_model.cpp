@@ -283,6 +283,10 @@ void FemModel::list_held(const std::vector<HeldAxis>& axes) {
   }
 }
 
+bool FemModel::has_memory() const {
+  return std::ranges::any_of(solids_, [](const SolidGroup& g) { return g.law.has_memory(); });
+}
+
 std::span<const SolidGroup> FemModel::solids() const { return solids_; }
 
 void FemModel::apply_mass(std::span<const double> x, std::span<double> y) const {

@@ -123,6 +123,7 @@ class FemModel {
   const VectorX& load_mass() const { return load_mass_; }
   double total_mass() const { return total_mass_; }  ///< kg, of the material
   double volume() const { return volume_; }          ///< m^3 at rest
+  bool has_memory() const;  ///< whether any material's stress depends on past strains
   /// Whether M has blocks beside its diagonal: a consistent matrix, or point masses.
   bool has_mass_blocks() const { return !mass_blocks_.empty(); }
 

@@ -73,6 +73,8 @@ struct Hyperelastic {
   std::vector<PronyTerm> prony;
   std::optional<MullinsEffect> mullins;  ///< of the isochoric part
 
+  /// Whether its stress depends on more than the present strain.
+  bool has_memory() const { return !prony.empty() || mullins.has_value(); }
   /// 1 - sum g: stiffness of slow motion over that of a sudden one; 1 without a series.
   double long_term_share() const;
   /// mu_0 = 1/2 sum c a^2 + 2 w_1 (or that of Saint Venant-Kirchhoff), Pa.

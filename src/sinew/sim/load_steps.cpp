@@ -8,16 +8,26 @@ double take_load_steps(const LoadSteps& steps, const std::function<bool(double)>
                        const std::function<void()>& keep, const std::function<void()>& go_back) {
   double share = 1.0;
   double step = steps.first;
-  while (share > 0.0 && step >= steps.least) {
+  int wanted = 1, successes = 0;  // before the step is doubled, and since the last change
+  bool doubled = false;
+  const auto is_long_enough = [&] {
+    return step >= (share == 1.0 ? std::max(steps.least, steps.least_at_first) : steps.least);
+  };
+  while (share > 0.0 && is_long_enough()) {
     const double next = std::max(0.0, share - step);
     if (solve(next)) {
       share = next;
-      step *= 2.0;
       keep();
+      doubled = ++successes >= wanted;
+      if (!doubled) continue;
+      step *= 2.0;
     } else {
       go_back();
       step *= 0.5;
+      if (doubled) wanted *= 2;
+      doubled = false;
     }
+    successes = 0;
   }
   return share;
 }

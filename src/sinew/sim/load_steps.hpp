@@ -9,12 +9,14 @@ namespace sinew::sim {
 /// How to go along the path r(q, lambda) = s r_start, from the share s = 1 to 0 (Allgower & Georg,
 /// Numerical Continuation Methods, 1990, 1.3).
 struct LoadSteps {
-  double first = 0.25;       ///< of the share
-  double least = 1.0 / 256;  ///< steps shorter than this end the search
+  double first = 0.25;          ///< of the share
+  double least = 1.0 / 256;     ///< steps shorter than this end the search
+  double least_at_first = 0.0;  ///< the same, before any step has succeeded
 };
 
-/// Doubles the step after each success and halves it after each failure. Returns the share that is
-/// left: 0 when the end was reached.
+/// Halves the step after each failure, and doubles it after a success: where that fails at once,
+/// after twice as many successes as the last time. Returns the share that is left: 0 when the end
+/// was reached.
 /// @param steps see there. @param solve whether there is an equilibrium at a share, which is then
 ///   the present state. @param keep the present state is one to come back to. @param go_back to the
 ///   last state that was kept, or to the start.

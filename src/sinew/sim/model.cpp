@@ -1,5 +1,6 @@
 #include "sinew/sim/model.hpp"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -13,7 +14,10 @@
 #include "sinew/constraint/probe.hpp"
 #include "sinew/constraint/tie.hpp"
 #include "sinew/core/error.hpp"
+#include "sinew/fem/fem_model.hpp"
+#include "sinew/fem/has_elements.hpp"
 #include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 #include "sinew/sim/model_parts.hpp"
 
 namespace sinew::sim {
@@ -41,10 +45,19 @@ std::uint64_t fingerprint_of(const std::vector<NamedHash>& parts) {
   return hash.value();
 }
 
+bool has_memory(const mechanics::BodyModel& body) {
+  const auto* material = mechanics::as<const fem::HasElements>(body);
+  return material != nullptr && material->elements().has_memory();
+}
+
 }  // namespace
 
 Model::Model(ModelData data)
-    : data_(std::move(data)), parts_(list_parts(data_)), fingerprint_(fingerprint_of(parts_)) {}
+    : data_(std::move(data)),
+      errors_last_(data_.step.dynamic() ||
+                   std::ranges::any_of(data_.bodies, [](const auto& b) { return has_memory(*b); })),
+      parts_(list_parts(data_)),
+      fingerprint_(fingerprint_of(parts_)) {}
 
 int Model::body_index(std::string_view name) const {
   return find_by_name(data_.bodies, name, "body", [](const auto& b) { return b->name(); });

@@ -43,6 +43,9 @@ class Model {
   const mechanics::RowPattern& rows() const { return data_.rows; }
   const std::vector<mechanics::RowCurvature>& curvatures() const { return data_.curvatures; }
   const StepSettings& step() const { return data_.step; }
+  /// Whether what a step leaves of its equation stays in the motion: in dynamics, and where a
+  /// material has a memory. Other quasi-static steps begin with it.
+  bool errors_last() const { return errors_last_; }
   const std::vector<BaseMotion>& base_motions() const { return data_.base_motions; }
   const std::vector<LoadModel>& loads() const { return data_.loads; }
   const std::vector<MassModel>& masses() const { return data_.masses; }
@@ -88,6 +91,7 @@ class Model {
 
  private:
   const ModelData data_;
+  const bool errors_last_;
   const std::vector<NamedHash> parts_;
   const std::uint64_t fingerprint_;
 };

@@ -46,11 +46,17 @@ class NewtonSolver {
       ++report_.iterations;
       watch_.count(report_.relative_residual);
       if (moved != NewtonStatus::converged) return finish(moved);
+      if (is_only_descending()) break;
     }
     return finish(converged_ ? NewtonStatus::converged : NewtonStatus::iteration_limit);
   }
 
  private:
+  bool is_only_descending() const {
+    return settings_.max_indefinite > 0 && report_.iterations >= settings_.max_indefinite &&
+           report_.tangent_fallbacks == report_.iterations;
+  }
+
   void linearise(mechanics::Tangent tangent) {
     auto request = settings_.request;
     request.tangent = tangent;

@@ -35,6 +35,9 @@ struct NewtonSettings {
   int max_iterations = 50;
   std::span<const int> curved = {};  ///< constraints whose curvature joins A
   Lag lag = {};
+  /// As many first iterations of which each found the exact tangent indefinite are the last; 0: any
+  /// number.
+  int max_indefinite = 0;
 };
 
 struct NewtonReport {

@@ -15,13 +15,19 @@ namespace sinew::sim {
 
 namespace {
 
-// What quasi-static steps leave for the next one.
+// What quasi-static steps leave for the next one, where it does not stay.
 constexpr Lag kLag{0.1, 1e-3};
+// The bounds of a search are those beyond which none of 600 random robots' steps was solved
+// (docs/solver.md).
 // Iterations with the projected tangent, which end wherever a stable equilibrium is downhill.
 constexpr int kMaxDescents = 60;
-// The smallest part of a quasi-static step.
+// The smallest part of a quasi-static step, and the smallest to begin with.
 constexpr double kMinPart = 1.0 / 64.0;
+constexpr double kMinFirstPart = 1.0 / 16.0;
 constexpr int kIterationsOfPart = 25;
+constexpr int kIterationsInParts = 1000;
+// So many first iterations whose exact tangents are indefinite only descend.
+constexpr int kIndefinite = 25;
 // A controller chooses where to go anew in every iteration, which need not settle: after this many
 // its efforts are held. It has to keep up with a clock, too: a quasi-static step that it steers
 // takes no parts, and as many iterations with held efforts, with either tangent.
@@ -37,13 +43,17 @@ bool goes_on(const NewtonReport& result) {
 
 NewtonSettings NewtonStep::settings(double time_step) const {
   const StepSettings& step = run_.model->step();
-  const bool lags = !step.dynamic() && !step.tolerance;
+  const bool lasts = run_.model->errors_last();
+  const bool lags = !lasts && !step.tolerance;
+  const double tolerance =
+      step.tolerance.value_or(lasts ? kLastingTolerance : kQuasiStaticTolerance);
   return {run_.request(time_step),
-          step.newton_tolerance(),
-          std::min(step.newton_tolerance(), kMotionTolerance),
+          tolerance,
+          std::min(tolerance, kMotionTolerance),
           step.max_iterations,
           run_.model->stiffening_constraints(),
-          lags ? kLag : Lag{}};
+          lags ? kLag : Lag{},
+          0};
 }
 
 NewtonSettings NewtonStep::settings_of_part(double time_step) const {
@@ -70,13 +80,22 @@ void NewtonStep::solve(double time_step) {
 NewtonReport NewtonStep::search(double time_step) {
   NewtonSettings whole = settings(time_step);
   const bool steered = run_.controller != nullptr;
+  if (!run_.model->step().dynamic()) whole.max_indefinite = kIndefinite;
   if (steered) whole.max_iterations = std::min(whole.max_iterations, kSteeredIterations);
   NewtonReport result = run_.newton(run_.controller, whole);
   if (steered && goes_on(result)) return hold_choice(result, time_step);
   if (run_.model->step().dynamic() || converged(result)) return result;
+  // From where the last step found no equilibrium by any way, none leads to one in this step.
+  if (run_.before.residual > kLag.residual) return result;
   int tried = result.iterations;
-  result = approach(time_step);
-  tried += result.iterations;
+  if (result.iterations > 0 && result.tangent_fallbacks == result.iterations) {
+    // What is unstable from the start on is unstable in parts, too.
+    run_.restore(run_.before);
+    begin_again(time_step);
+  } else {
+    result = approach(time_step);
+    tried += result.iterations;
+  }
   if (!converged(result)) {
     result = descend(time_step, kMaxDescents);
     tried += result.iterations;
@@ -156,6 +175,7 @@ NewtonReport NewtonStep::approach(double time_step) {
   NewtonReport result;
   int iterations = 0;
   const auto solve = [&](double share) {
+    if (iterations >= kIterationsInParts) return false;
     commands = goal;
     blend(commands, start, 1.0 - share);
     world.set_imbalance_share(share);
@@ -164,7 +184,8 @@ NewtonReport NewtonStep::approach(double time_step) {
     return converged(result);
   };
   take_load_steps(
-      {.first = 0.5, .least = kMinPart}, solve, [&] { run_.keep(sound); }, go_back);
+      {.first = 0.5, .least = kMinPart, .least_at_first = kMinFirstPart}, solve,
+      [&] { run_.keep(sound); }, go_back);
   world.set_imbalance_share(0.0);
   commands = goal;
   result.iterations = iterations;

@@ -24,8 +24,9 @@ struct AdaptiveStep {
 /// Of quasi-static steps; what is of second order in an iteration's move is left to the next step
 /// at higher residuals.
 inline constexpr double kQuasiStaticTolerance = 1e-4;
-/// In dynamics a residual is an impulse that stays.
-inline constexpr double kDynamicTolerance = 1e-8;
+/// Where the error of a step stays: as an impulse in dynamics, as a strain in materials with
+/// memory.
+inline constexpr double kLastingTolerance = 1e-8;
 
 /// How each step is solved.
 struct StepSettings {
@@ -38,15 +39,13 @@ struct StepSettings {
   /// little: a compressed robot's own tangent may be indefinite where the held robot is stable.
   /// Where it is indefinite for the held robot, too, the projected one takes its place.
   mechanics::Tangent tangent = mechanics::Tangent::exact;
-  /// Newton: residual relative to the loads, and motion to the size. None: kQuasiStaticTolerance
-  /// or kDynamicTolerance.
+  /// Newton: residual relative to the loads, and motion to the size; nothing above it is left to
+  /// the next step. None: kQuasiStaticTolerance, and what is left (docs/solver.md), or
+  /// kLastingTolerance.
   std::optional<double> tolerance;
   int max_iterations = 50;  ///< Newton
 
   bool dynamic() const { return integrator != mechanics::Integrator::quasi_static; }
-  double newton_tolerance() const {
-    return tolerance.value_or(dynamic() ? kDynamicTolerance : kQuasiStaticTolerance);
-  }
   double contact_tolerance = 1e-10;  ///< of the contacts' residual, see qp::ConeResult
 };
 

@@ -1,0 +1,141 @@
+// What quasi-static steps leave to the next one, and which must not leave anything.
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "sinew/material/hyperelastic.hpp"
+#include "sinew/mechanics/body.hpp"
+#include "sinew/sim/actuator.hpp"
+#include "sinew/sim/force_settings.hpp"
+#include "sinew/sim/model_builder.hpp"
+#include "sinew/sim/simulation.hpp"
+
+#include "sim/robots.hpp"
+
+namespace sinew::sim {
+namespace {
+
+using sinew::testing::beam;
+using sinew::testing::BeamOptions;
+
+constexpr double kSide = 0.02;  // m
+constexpr double kC1 = 1e4, kC2 = 2e2, kC3 = 5.0;
+constexpr material::MullinsEffect kSoftening{.r = 1.6, .m = 900.0, .beta = 0.05};
+
+// A cube on rollers, one hexahedron, that four forces stretch along x.
+std::shared_ptr<const Model> cube(material::Hyperelastic rubber, const StepSettings& step) {
+  ModelBuilder builder(step);
+  fem::FemBodySettings body;
+  body.name = "cube";
+  const auto mesh = std::make_shared<const mesh::Mesh>(
+      mesh::block({.corner = Vector3::Zero(), .size = Vector3::Constant(kSide), .cells = {1, 1, 1}},
+                  mesh::Cells::hexahedra));
+  body.mesh = mesh;
+  rubber.bulk_modulus = material::bulk_modulus_of(rubber.shear_modulus(), 0.4999);
+  fem::Region region;
+  region.hyperelastic = std::move(rubber);
+  body.elements.regions = {std::move(region)};
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::string side(1, "xyz"[axis]);
+    for (const NodeId node : mesh->node_sets.at(side + "_min")) {
+      body.elements.held_axes.push_back({node, axis});
+    }
+  }
+  const int number = builder.add_fem_body(std::move(body));
+  for (const NodeId node : mesh->node_sets.at("x_max")) {
+    ForceSettings force;
+    force.name = "force_" + std::to_string(node);
+    force.body = number;
+    force.point = mesh->nodes.row(node);
+    force.direction = Vector3::UnitX();
+    builder.add_force(force);
+  }
+  return builder.build({});
+}
+
+// Pa, over the area at rest, after each step to a stretch.
+std::vector<double> stresses(const std::shared_ptr<const Model>& model,
+                             const std::vector<double>& stretches) {
+  Simulation simulation(model);
+  std::vector<double> result;
+  for (const double stretch : stretches) {
+    for (int k = 0; k < 4; ++k) {
+      simulation.command(k, sinew::testing::pull(kSide * (stretch - 1.0)));
+    }
+    simulation.step();
+    double sum = 0.0;
+    for (int k = 0; k < 4; ++k) sum += simulation.actuator(k).effort;
+    result.push_back(sum / (kSide * kSide));
+  }
+  return result;
+}
+
+// Up, down, farther up, and down.
+std::vector<double> cycles() {
+  std::vector<double> stretches;
+  double last = 1.0;
+  for (const double turn : {2.0, 1.02, 2.4, 1.3}) {
+    for (int k = 1; k <= 100; ++k) stretches.push_back(last + 0.01 * k * (turn - last));
+    last = turn;
+  }
+  return stretches;
+}
+
+// Ogden & Roxburgh, Proc. R. Soc. A 455 (1999) 2861, of an incompressible Yeoh solid in tension.
+double softened_stress(double stretch, double& peak) {
+  const double i = stretch * stretch + 2.0 / stretch - 3.0;
+  const double energy = kC1 * i + kC2 * i * i + kC3 * i * i * i;
+  const double slope = kC1 + 2.0 * kC2 * i + 3.0 * kC3 * i * i;
+  peak = std::max(peak, energy);
+  const double left = std::erf((peak - energy) / (kSoftening.m + kSoftening.beta * peak));
+  return 2.0 * slope * (stretch - 1.0 / (stretch * stretch)) * (1.0 - left / kSoftening.r);
+}
+
+TEST(Lag, SofteningRubberTurnsWhereItsFormulaTurns) {
+  material::Hyperelastic rubber = material::yeoh({kC1, kC2, kC3});
+  rubber.mullins = kSoftening;
+  const std::vector<double> stretches = cycles();
+  const std::vector<double> found = stresses(cube(rubber, {}), stretches);
+  double peak = 0.0;
+  for (std::size_t k = 0; k < stretches.size(); ++k) {
+    const double expected = softened_stress(stretches[k], peak);
+    EXPECT_NEAR(found[k], expected, 2e-3 * std::max(std::abs(expected), 1e3)) << stretches[k];
+  }
+}
+
+TEST(Lag, ViscousRubberKeepsNoErrorOfAStep) {
+  material::Hyperelastic rubber = material::neo_hookean(2e4);
+  rubber.prony = {{0.3, 0.05}, {0.2, 0.5}};
+  const StepSettings exact{.tolerance = 1e-12};
+  const std::vector<double> expected = stresses(cube(rubber, exact), cycles());
+  const std::vector<double> found = stresses(cube(rubber, {}), cycles());
+  for (std::size_t k = 0; k < expected.size(); ++k) {
+    EXPECT_NEAR(found[k], expected[k], 1e-5 * std::max(std::abs(expected[k]), 1e3)) << k;
+  }
+}
+
+// The largest relative residual of the steps of a beam that a cable bends.
+double largest_residual(const StepSettings& step) {
+  BeamOptions options;
+  options.step = step;
+  Simulation simulation(beam(options));
+  simulation.command(0, {CommandKind::motion, Signal::ramp({0.0, 0.02, 0.0, 0.2})});
+  double largest = 0.0;
+  for (int k = 0; k < 20; ++k) {
+    largest = std::max(largest, simulation.step().relative_residual);
+    EXPECT_EQ(simulation.report().status, StepStatus::solved);
+  }
+  return largest;
+}
+
+// What is asked for is kept, though it be the default's.
+TEST(Lag, AToleranceThatIsAskedForIsKept) {
+  EXPECT_GT(largest_residual({}), 1.2 * kQuasiStaticTolerance);
+  for (const double tolerance : {kQuasiStaticTolerance, 1e-6}) {
+    EXPECT_LE(largest_residual({.tolerance = tolerance}), tolerance);
+  }
+}
+
+}  // namespace
+}  // namespace sinew::sim
