@@ -79,11 +79,12 @@ class Notice(NamedTuple):
     Attributes
     ----------
     level : str
-        "warning": it follows from a default, and load() warns of it. "remark": the scene asks for
-        what it is about.
+        "warning": it follows from a default, or the scene does not get what it asks for, and load()
+        warns of it. "remark": the scene asks for what it is about.
     kind : str
         "locking-element": the elements make a body much stiffer than its material. "bare-points": a cable pulls at
-        single points, which dent the material.
+        single points, which dent the material. "other-tangent": the tangent that the scene asks for is none of
+        its materials, and another takes its place.
     place : Location
         Where in the scene.
     message : str

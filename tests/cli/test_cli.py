@@ -204,6 +204,56 @@ def test_interrupted_runs_end_cleanly(scene, tmp_path, how):
         assert file["time"][-1] == float(rows[-1]["time [s]"])
 
 
+# 1681 points on a floor, more than Newton's method for contacts takes: one law takes far longer than the test.
+LONG_STEP = """sinew: 1
+gravity: 0 0 -9.81 m/s^2
+integrator: backward-euler
+duration: 1 s
+bodies:
+  block:
+    type: fem
+    mesh: {shape: block, length: 60 mm, width: 60 mm, height: 3 mm, element_size: 1.5 mm}
+    material: {young_modulus: 500 kPa, poisson_ratio: 0.3}
+    density: 1000 kg/m^3
+contacts:
+  floor:
+    body: block
+    surface: {plane: {point: 0 0 -0.01 mm}}
+    nodes: {plane: {point: 0 0 0 mm, within: 0.1 mm}}
+    friction: 0.5
+"""
+
+
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
+def test_a_long_step_tells_of_itself_and_can_be_ended(tmp_path, how):
+    (tmp_path / "long.yaml").write_text(LONG_STEP)
+    out = tmp_path / "o"
+    words = [os.path.abspath(PROGRAM), "run", str(tmp_path / "long.yaml"), "--out", str(out)]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        line = process.stderr.readline()
+        assert re.match(r"sinew: t = \S+ s: this step has taken \d+ s: iteration \d+, residual \S+, ", line), line
+        sent = time.monotonic()
+        process.send_signal(how)
+        _, errors = process.communicate(timeout=60)
+        assert time.monotonic() - sent < 10
+        assert process.returncode == DONE
+        assert "interrupted at t = " in errors
+    rows = rows_of(out / "run.csv")
+    with h5py.File(out / "run.h5") as file:
+        assert len(file["time"]) == len(rows) >= 1
+
+
+def test_rubber_takes_the_exact_tangent_in_place_of_the_rotated_one(scene, tmp_path):
+    soft = ["--set", "solver.tangent=rotated", "--set", "bodies.beam.material.model=neo-hookean", "--duration", "0.05s"]
+    told = sinew("run", scene(), *soft, "--out", "o", cwd=tmp_path)
+    assert told.returncode == DONE and "'beam' has no rotated tangent" in told.stderr
+    assert told.stderr.rstrip().endswith("[other-tangent]") and told.stderr.count("\n") == 1
+    iterations = [float(row["iterations"]) for row in rows_of(tmp_path / "o" / "run.csv")]
+    assert max(iterations) <= 6
+    plain = sinew("run", scene(), "--set", "solver.tangent=rotated", "--duration", "0.05s", "--out", "p", cwd=tmp_path)
+    assert plain.stderr == ""
+
+
 def test_a_run_that_fails_keeps_what_it_recorded(scene, tmp_path):
     # A soft beam crushed by a force that no step can follow.
     path = scene(replace=("command: {displacement: {ramp: {from: 0 mm, to: 4 mm, start: 0 s, duration: 0.1 s}}}",

@@ -60,6 +60,48 @@ TEST(DefaultStep, GravityThatComesAtOnceHangsTheBeamWhereItRests) {
   EXPECT_LT(distance_to_rest(simulation), 1e-6);
 }
 
+// The iterations of a step, whatever comes of it.
+int count_iterations(Simulation& simulation) {
+  int iterations = 0;
+  simulation.watch([&](const StepProgress& step) { iterations = step.iterations; });
+  try {
+    simulation.step();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::not_converged);
+  }
+  simulation.watch({});
+  return iterations;
+}
+
+// A cable that folds the beam: what docs/solver.md says of the longest search.
+TEST(DefaultStep, TheSearchForWhatIsNotThereEnds) {
+  BeamOptions options;
+  options.young_modulus = 2e4;
+  for (const double force : {2.5, 5.0, 20.0}) {
+    Simulation simulation(beam(options));
+    simulation.command(0, tension(force));
+    const int iterations = count_iterations(simulation);
+    EXPECT_GT(iterations, 50) << force;
+    EXPECT_LE(iterations, 385) << force;
+  }
+}
+
+// Where the step before found nothing, this one looks no farther than Newton's method does.
+TEST(DefaultStep, AStepFromFarOutOfBalanceIsNotSearchedForLong) {
+  BeamOptions options;
+  options.young_modulus = 2e4;
+  options.step.max_iterations = 5;
+  Simulation simulation(beam(options));
+  simulation.command(0, pull(0.03));
+  State lost = simulation.state();
+  EXPECT_GT(count_iterations(simulation), 5);
+  EXPECT_EQ(simulation.report().status, StepStatus::solved);
+  lost.residual = 0.5;
+  simulation.restore(lost);
+  EXPECT_EQ(count_iterations(simulation), 5);
+  EXPECT_EQ(simulation.report().status, StepStatus::not_in_equilibrium);
+}
+
 TEST(DefaultStep, AStepAtRestTakesOneIteration) {
   Simulation simulation(beam());
   simulation.command(0, tension(0.5));

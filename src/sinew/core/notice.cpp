@@ -7,7 +7,8 @@
 namespace sinew {
 
 std::string_view notice_kind_name(NoticeKind kind) {
-  constexpr std::array<std::string_view, 2> kNames = {"locking-element", "bare-points"};
+  constexpr std::array<std::string_view, 3> kNames = {"locking-element", "bare-points",
+                                                      "other-tangent"};
   return kNames.at(static_cast<std::size_t>(kind));
 }
 

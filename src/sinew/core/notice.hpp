@@ -14,12 +14,15 @@ namespace sinew {
 enum class NoticeKind {
   locking_element,  ///< the elements make the body much stiffer than its material
   bare_points,      ///< a cable pulls at single points, which dent the material
+  other_tangent,    ///< the tangent that the scene asks for is none of its materials
 };
 
 /// Who has to see it.
 enum class NoticeLevel {
-  remark,   ///< it follows from what the scene says in so many words: `info` and the view show it
-  warning,  ///< it follows from a default: `run`, `bench` and Python's load() print it, too
+  remark,  ///< it follows from what the scene says in so many words: `info` and the view show it
+  /// It follows from a default, or the scene does not get what it asks for: `run`, `bench` and
+  /// Python's load() print it, too.
+  warning,
 };
 
 /// The kind as it is printed: "locking-element".

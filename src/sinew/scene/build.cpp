@@ -47,6 +47,21 @@ sim::StepSettings step_settings(const SceneDescription& scene) {
   return step;
 }
 
+// Corotational elements alone have a rotated tangent. Rubber's would be its projected one, which
+// takes ten iterations for one of the exact tangent's; the robot takes that.
+std::optional<Notice> replace_tangent(const SceneDescription& scene, sim::StepSettings& step) {
+  const auto rubber = std::ranges::find_if(scene.bodies, [](const BodyDescription& body) {
+    return !body.arm && body.material.model == MaterialModel::hyperelastic;
+  });
+  if (scene.solver.tangent != Tangent::rotated || rubber == scene.bodies.end()) return std::nullopt;
+  step.tangent = mechanics::Tangent::exact;
+  return Notice{NoticeLevel::warning, NoticeKind::other_tangent, scene.solver.place,
+                fmt::format("the material of body '{}' has no rotated tangent, which corotational "
+                            "elements have: steps take the exact one",
+                            rubber->name),
+                "leave out `tangent`, or write `tangent: exact`"};
+}
+
 linalg::FactorisationSettings factorisation_settings(const SolverDescription& solver) {
   linalg::FactorisationSettings settings;
   settings.backend = solver.backend;
@@ -76,7 +91,11 @@ const SceneController& Robot::controller(const std::string& name, const Location
 
 Robot build(SceneDescription description) {
   Robot robot;
-  sim::ModelBuilder builder(step_settings(description));
+  sim::StepSettings step = step_settings(description);
+  if (auto notice = replace_tangent(description, step)) {
+    robot.notices.push_back(std::move(*notice));
+  }
+  sim::ModelBuilder builder(step);
   for (const BodyDescription& body : description.bodies) {
     if (auto notice = add_body(builder, description, body)) {
       robot.notices.push_back(std::move(*notice));

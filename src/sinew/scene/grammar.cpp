@@ -91,7 +91,8 @@ std::shared_ptr<const KeyTable> solver_table() {
                                     "semidefinite: never too soft, slower to converge."},
                                    {"rotated",
                                     "Corotational elements: the rotated stiffness of real-time "
-                                    "codes, without stress stiffening."}})},
+                                    "codes, without stress stiffening. `exact` where a body is "
+                                    "hyperelastic."}})},
                  .example = "exact",
                  .default_text = "exact",
                  .description = "The matrix of a step's linear equations. It affects how fast a "
@@ -100,8 +101,9 @@ std::shared_ptr<const KeyTable> solver_table() {
                  .forms = {quantity(plain_number(), Range{0.0, 1.0, true, true})},
                  .example = "1e-8",
                  .description = "Newton: residual force relative to the sum of internal and "
-                                "external forces. Without: 1e-4 in quasi-static steps, which may "
-                                "leave more to the next step, and 1e-8 in dynamics."},
+                                "external forces, kept by every step. Without: 1e-4 in "
+                                "quasi-static steps, which may leave more to the next step; 1e-8 "
+                                "in dynamics and for materials with viscosity or softening."},
                 {.name = "max_iterations",
                  .forms = {integer(1, 100000)},
                  .example = "50",

@@ -11,8 +11,11 @@ namespace sinew::sim {
 
 namespace {
 
-// A step may raise the merit by this factor: slender bodies stretch before they turn, and refusing
-// that costs more iterations than it saves.
+// A step may raise the merit by this factor. A slender body that an iteration turns by t stretches
+// by t^2/2, whose force is about 6 t (L/h)^2 times that of the bending: 50 at 0.1 rad and L/h = 9.
+// Of 400 random robots (validation/cases/default_steps.py) a factor of 1 leaves 49 with flagged
+// steps, 2 leaves 24, 10 leaves 3, 50 and more none, at 155, 102, 81, 76 and 73 thousand
+// iterations.
 constexpr double kMeritGrowth = 50.0;
 constexpr int kMaxHalvings = 12;
 // Motions under this part of a robot's size are rounding, and then residuals under this part of its

@@ -25,7 +25,7 @@ constexpr int kMaxDescents = 60;
 constexpr double kMinPart = 1.0 / 64.0;
 constexpr double kMinFirstPart = 1.0 / 16.0;
 constexpr int kIterationsOfPart = 25;
-constexpr int kIterationsInParts = 1000;
+constexpr int kIterationsInParts = 250;
 // So many first iterations whose exact tangents are indefinite only descend.
 constexpr int kIndefinite = 25;
 // A controller chooses where to go anew in every iteration, which need not settle: after this many
@@ -162,7 +162,7 @@ NewtonReport NewtonStep::approach(double time_step) {
   std::vector<step::ActuatorBlock>& commands = world.problem().actuators;
   const std::vector<step::ActuatorBlock> goal = commands;
   const std::vector<ActuatorState> start = run_.actuation.states();
-  const NewtonSettings part = settings_of_part(time_step);
+  NewtonSettings part = settings_of_part(time_step);
   State sound = run_.before;
   const auto go_back = [&] {
     run_.restore(sound);
@@ -175,7 +175,8 @@ NewtonReport NewtonStep::approach(double time_step) {
   NewtonReport result;
   int iterations = 0;
   const auto solve = [&](double share) {
-    if (iterations >= kIterationsInParts) return false;
+    if (iterations == kIterationsInParts) return false;
+    part.max_iterations = std::min(part.max_iterations, kIterationsInParts - iterations);
     commands = goal;
     blend(commands, start, 1.0 - share);
     world.set_imbalance_share(share);
