@@ -118,6 +118,19 @@ TEST(Watch, AStepWithContactsEndsWithinALawToo) {
   EXPECT_EQ(simulation.state(), plain.state());
 }
 
+TEST(Watch, TheFirstStepOfARunCanBeEndedToo) {
+  BeamOptions options;
+  options.step.integrator = mechanics::Integrator::bdf2;
+  options.gravity = {0.0, 0.0, -9.81};
+  for (const bool adaptive : {false, true}) {
+    if (adaptive) options.step.adaptive = {.tolerance = 1e-4, .smallest = 1e-4};
+    Simulation simulation(beam(options));
+    const State start = simulation.state();
+    EXPECT_TRUE(ends_at(simulation, 2, [&] { simulation.step(); }));
+    EXPECT_EQ(simulation.state(), start);
+  }
+}
+
 TEST(Watch, AStaticSearchEndsAsIfItHadNotBegun) {
   Simulation simulation(beam());
   simulation.step();

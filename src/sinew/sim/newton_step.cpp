@@ -25,7 +25,7 @@ constexpr int kMaxDescents = 60;
 constexpr double kMinPart = 1.0 / 64.0;
 constexpr double kMinFirstPart = 1.0 / 16.0;
 constexpr int kIterationsOfPart = 25;
-constexpr int kIterationsInParts = 250;
+constexpr int kIterationsInParts = 1000;
 // So many first iterations whose exact tangents are indefinite only descend.
 constexpr int kIndefinite = 25;
 // A controller chooses where to go anew in every iteration, which need not settle: after this many

@@ -32,9 +32,8 @@ void Stepper::step() {
   report.retries = 0;
   report.status = StepStatus::solved;
   report.energy_gained = 0.0;
-  if (run_.model->step().dynamic() && !run_.ledger.is_open()) {
-    run_.ledger.open(run_.world.bodies().energies());
-  }
+  const bool opens = run_.model->step().dynamic() && !run_.ledger.is_open();
+  if (opens) run_.ledger.open(run_.world.bodies().energies());
   divided_ = false;
   try {
     if (run_.model->step().adaptive) {
@@ -44,6 +43,7 @@ void Stepper::step() {
     }
   } catch (...) {
     if (divided_) run_.restore(start_);
+    if (opens) run_.ledger.restart();
     part_.reset();
     throw;
   }
@@ -96,9 +96,9 @@ void Stepper::step_adaptively() {
   const double tolerance = settings.adaptive->tolerance * run_.model->size();
   const double smallest = settings.adaptive->smallest;
   const double order = mechanics::history_count(settings.integrator) > 0 ? 3.0 : 2.0;
-  if (!(run_.next_step > 0.0)) run_.next_step = whole;
   run_.keep(start_);
   divided_ = true;
+  if (!(run_.next_step > 0.0)) run_.next_step = whole;
   report.substeps = 0;
   report.error = 0.0;
   double done = 0.0;
