@@ -340,13 +340,6 @@ INSTANTIATE_TEST_SUITE_P(
     Later, BrokenScenes,
     testing::Values(
         Broken{"rod", {{"type: fem", "type: rod"}}, K::not_in_this_version, 7, 11, "'rod'", "fem"},
-        Broken{"rigid",
-               {{"type: fem", "type: rigid"}},
-               K::not_in_this_version,
-               7,
-               11,
-               "'rigid'",
-               "fem"},
         Broken{"reduced",
                {{"type: fem", "type: reduced"}},
                K::not_in_this_version,
