@@ -25,6 +25,7 @@ static_assert(std::endian::native == std::endian::little,
 
 constexpr std::string_view kMagic = "SINEWST\n";
 constexpr std::size_t kWord = 8;
+constexpr std::uint32_t kFirstWithJoints = 7;
 constexpr std::size_t kPreamble = 2 * kWord;  // magic and version
 
 [[noreturn]] void corrupt(const std::string& name, const std::string& what) {
@@ -152,7 +153,11 @@ SavedState read(std::string_view bytes, const std::string& name) {
   State& state = saved.state;
   state.steps = saved.header.steps;
   state.bodies.resize(reader.count());
-  State::visit(state, [&](std::string_view, auto& numbers) { reader.number(numbers); });
+  State::visit(state, [&](std::string_view part, auto& numbers) {
+    // Robots of before had no joints that move.
+    const bool lacks = part == "joints" && saved.header.version < kFirstWithJoints;
+    if (!lacks) reader.number(numbers);
+  });
   if (!reader.done()) corrupt(name, "something follows the last number");
   saved.header.count = state.size();
   return saved;
