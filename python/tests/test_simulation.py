@@ -462,7 +462,7 @@ FOLDED = {
     "sinew": 1,
     "bodies": {"block": {
         "type": "fem", "fixed": [{"set": "x_min"}], "material": {"young_modulus": 1e5, "poisson_ratio": 0.4},
-        "mesh": {"shape": "block", "length": 0.1, "width": 0.03, "height": 0.03, "element_size": 0.00375}}},
+        "mesh": {"shape": "block", "length": 0.1, "width": 0.03, "height": 0.03, "element_size": 0.0025}}},
     "actuators": {"fold": {
         "type": "cable", "body": "block", "points": [[x, 0.015, 0.026] for x in (0, 0.05, 0.099)],
         "command": {"tension": 60.0}}},
@@ -499,7 +499,7 @@ def test_ctrl_c_ends_what_is_not_done(work):
         assert process.stdout.readline() == "ready\n"
         import time
 
-        time.sleep(3.0)
+        time.sleep(2.0)
         sent = time.monotonic()
         process.send_signal(signal.SIGINT)
         assert process.stdout.readline() == "interrupted True 1\n"
