@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "sinew/inverse/inverse_controller.hpp"
-#include "sinew/sim/signal.hpp"
 #include "sinew/sim/joint_load.hpp"
+#include "sinew/sim/signal.hpp"
 
 #include "../sim/cut_beam.hpp"
 

@@ -60,9 +60,9 @@ Followed follow(Simulation& simulation, const PathSettings& settings) {
   Followed result;
   const double top = simulation.effector_value(0).z();
   result.path = simulation.follow_path(settings, [&] {
-    result.visits.push_back({top - simulation.effector_value(0).z(),
-                             simulation.contacts().sum(0).normal_force, simulation.body(0).positions(),
-                             simulation.contacts().points(0), simulation.state()});
+    result.visits.push_back(
+        {top - simulation.effector_value(0).z(), simulation.contacts().sum(0).normal_force,
+         simulation.body(0).positions(), simulation.contacts().points(0), simulation.state()});
   });
   return result;
 }

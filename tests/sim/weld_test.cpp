@@ -16,13 +16,13 @@
 #include "sinew/sim/actuator.hpp"
 #include "sinew/sim/contact_reader.hpp"
 #include "sinew/sim/contact_state.hpp"
+#include "sinew/sim/joint_load.hpp"
 #include "sinew/sim/joint_settings.hpp"
 #include "sinew/sim/linearisation.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/row_efforts.hpp"
 #include "sinew/sim/signal.hpp"
 #include "sinew/sim/simulation.hpp"
-#include "sinew/sim/joint_load.hpp"
 
 #include "cut_beam.hpp"
 
