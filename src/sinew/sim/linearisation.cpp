@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "sinew/constraint/constraint.hpp"
 #include "sinew/constraint/contact.hpp"
 #include "sinew/constraint/effector.hpp"
 #include "sinew/core/error.hpp"
@@ -101,7 +102,16 @@ std::vector<std::string> row_names(const Model& model) {
       }
     }
   }
-  std::erase(names, "");  // rows of joints
+  const auto name_motion = [&](int constraint, const char* suffix) {
+    if (constraint < 0) return;
+    const constraint::Constraint& motion = model.constraint(constraint);
+    names[static_cast<std::size_t>(motion.first_row())] = motion.name() + suffix;
+  };
+  for (const JointModel& joint : model.joints()) {
+    for (const int motion : joint.motions) name_motion(motion, "");
+    name_motion(joint.brake, ".friction");
+  }
+  std::erase(names, "");  // rows that joints hold
   return names;
 }
 
