@@ -65,6 +65,7 @@ class Run {
       try {
         simulation.step();
         condition = std::max(condition, simulation.report().status);
+        choice_held = choice_held || simulation.report().choice_held;
       } catch (const Error& error) {
         error_ = error.what();
       }
@@ -86,6 +87,7 @@ class Run {
   sim::Simulation& simulation;
   std::vector<sim::State> states;
   sim::StepStatus condition = sim::StepStatus::solved;
+  bool choice_held = false;
 
  private:
   std::vector<std::unique_ptr<inverse::InverseController>> controllers_;
@@ -198,8 +200,9 @@ class Trial {
       renamed.advance(kSteps);
       compare("other names", renamed.states, 0);
     }
-    // A step that is flagged may have wandered, where rounding decides.
-    if (!sim::is_flagged(first->condition)) {
+    // A step that is flagged may have wandered, and a choice that did not settle may be another,
+    // where rounding decides.
+    if (!sim::is_flagged(first->condition) && !first->choice_held) {
       Run reversed(build(write_scene(draft_, {.reversed = true})));
       reversed.advance(kSteps);
       const double distance = largest_distance(first->simulation, reversed.simulation);

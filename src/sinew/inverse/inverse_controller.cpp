@@ -74,6 +74,8 @@ InverseController::InverseController(sim::Simulation& simulation, InverseSetting
   solver_ = qp::QpSolver(static_cast<int>(count), static_cast<int>(count));
   elastic_ = qp::ElasticSolver(static_cast<int>(count), static_cast<int>(count));
   efforts_.setZero(count);
+  last_choice_.setZero(count);
+  gap_linearised_.setZero(rows);
   simulation_.attach(*this, settings_.actuators);
   attached_ = true;
 }
@@ -95,24 +97,39 @@ void InverseController::set_target(int task, Target target) {
   settings_.tasks.at(static_cast<std::size_t>(task)).target = std::move(target);
 }
 
-// Once a step, whose law may be solved several times: what became of the step before, and what is
-// asked in this one.
+// Of a step, whose law may be solved several times. First: what became of the step before, and what
+// is asked in this one. Later: what became of the last choice, where the robot has been linearised
+// anew since.
 void InverseController::look_back(const StepProblem& problem) {
-  if (!(problem.time > time_)) return;
+  if (!(problem.time > time_)) return review_choice(problem);
+  inner_damping_.set(1.0);
+  tried_ = false;
   if (std::isfinite(time_)) {
     measure_gap(problem);
     surprise_ = 0.0;
     for (Eigen::Index k = 0; k < gap_.size(); ++k) {
       if (row_weights_[k] > 0.0) surprise_ = std::hypot(surprise_, gap_[k] - foreseen_[k]);
     }
-    const double still = kStill * settings_.tolerance;
     damping_.review(objective(gap_before_), objective(foreseen_), objective(gap_),
-                    0.5 * row_weights_.maxCoeff() * still * still);
+                    negligible_objective());
   }
   time_ = problem.time;
   for (std::size_t t = 0; t < asked_.size(); ++t) asked_[t] = settings_.tasks[t].target.at(time_);
   measure_gap(problem);
   gap_before_ = gap_;
+  gap_linearised_ = gap_;
+}
+
+// Within a step the damping only grows: choices that go back and forth come to rest.
+void InverseController::review_choice(const StepProblem& problem) {
+  if (!tried_) return;
+  measure_gap(problem);
+  const double least = inner_damping_.value();
+  inner_damping_.review(objective(gap_linearised_), objective(foreseen_), objective(gap_),
+                        negligible_objective());
+  inner_damping_.set(std::max(least, inner_damping_.value()));
+  gap_linearised_ = gap_;
+  tried_ = false;
 }
 
 void InverseController::measure_gap(const StepProblem& problem) {
@@ -130,6 +147,11 @@ void InverseController::measure_gap(const StepProblem& problem) {
 
 double InverseController::objective(const VectorX& gap) const {
   return 0.5 * gap.dot(row_weights_.cwiseProduct(gap));
+}
+
+double InverseController::negligible_objective() const {
+  const double still = kStill * settings_.tolerance;
+  return 0.5 * row_weights_.maxCoeff() * still * still;
 }
 
 // However often the step is linearised, its goal stays: the part of the gap at its start that one
@@ -184,11 +206,12 @@ void InverseController::form_objective(const StepProblem& problem, const Respons
   regularise(problem, response);
 }
 
-// With p the pull to zero efforts and d the damping, adds
-//   eps/2 (d lambda^T R lambda - 2 (d - p) lambda^T R lambda_0),
-// whose derivative at lambda = lambda_0 is that of p eps/2 lambda^T R lambda: d moves no fixed
-// point.
-// Where friction slides R would be unsymmetric, and keeps its diagonal alone.
+// With p the pull to zero efforts, d the damping, and c that within the step, adds
+//   eps/2 (d lambda^T R lambda - 2 (d - p) lambda^T R lambda_0
+//          + (c - 1) (lambda - lambda_1)^T R (lambda - lambda_1)),
+// with lambda_1 the step's last choice. At lambda = lambda_0 and lambda = lambda_1 the derivative
+// is that of p eps/2 lambda^T R lambda: neither d nor c moves a fixed point. Where friction slides
+// R would be unsymmetric, and keeps its diagonal alone.
 void InverseController::regularise(const StepProblem& problem, const Response& response) {
   const Eigen::Index count = program_.gradient.size();
   double norm = 0.0;
@@ -201,6 +224,7 @@ void InverseController::regularise(const StepProblem& problem, const Response& r
   const bool change = settings_.regularisation == Regularisation::change;
   const double damping = damping_.value();
   const double keep = damping - (change ? settings_.relaxation : 1.0);
+  const double stay = inner_damping_.value() - 1.0;
   for (Eigen::Index j = 0; j < count; ++j) {
     const int row = block(problem, response, j).row;
     const double before = problem.effort_before[static_cast<std::size_t>(row)] / scale_[j];
@@ -209,8 +233,8 @@ void InverseController::regularise(const StepProblem& problem, const Response& r
       // What moves nothing is held by others: a drive, or the clamp.
       if (i == j) weight = weight > 0.0 ? (1.0 + kEvenly) * weight : eps * norm;
       if (i != j && response.is_unsymmetric()) weight = 0.0;
-      program_.hessian(i, j) += damping * weight;
-      program_.gradient[i] -= keep * weight * before;
+      program_.hessian(i, j) += (damping + stay) * weight;
+      program_.gradient[i] -= weight * (keep * before + stay * last_choice_[j] / scale_[j]);
     }
   }
 }
@@ -274,6 +298,8 @@ double InverseController::negligible_miss() const { return kStill * settings_.to
 
 void InverseController::accept(const StepProblem& problem, const Response& response,
                                const VectorX& motion, std::span<const double> effort) {
+  tried_ = true;
+  last_choice_ = Eigen::Map<const VectorX>(effort.data(), std::ssize(effort));
   for (std::size_t k = 0; k < effort.size(); ++k) {
     const auto place = std::ranges::find(settings_.actuators, response.controlled()[k]);
     efforts_[place - settings_.actuators.begin()] = effort[k];

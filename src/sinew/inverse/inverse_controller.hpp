@@ -77,12 +77,14 @@ class InverseController : public step::Controller {
 
  private:
   void look_back(const step::StepProblem& problem);
+  void review_choice(const step::StepProblem& problem);
   template <class Self, class Visitor>
   static void visit_memory(Self& self, Visitor&& visitor);
   static const step::ActuatorBlock& block(const step::StepProblem& problem,
                                           const step::Response& response, Eigen::Index k);
   void measure_gap(const step::StepProblem& problem);
   double objective(const VectorX& gap) const;
+  double negligible_objective() const;
   void form_residual(const step::StepProblem& problem, const step::Response& response);
   void form_scales(const step::StepProblem& problem, const step::Response& response);
   void form_objective(const step::StepProblem& problem, const step::Response& response);
@@ -110,6 +112,10 @@ class InverseController : public step::Controller {
   VectorX scale_;                   // (controlled,) of each effort
   VectorX scaled_effort_;
   StepDamping damping_;
+  StepDamping inner_damping_;  // of the choices of one step
+  VectorX last_choice_;        // (controlled,) efforts
+  bool tried_ = false;         // whether the robot has followed it
+  VectorX gap_linearised_;     // where it was linearised for that choice
   qp::QuadraticProgram program_;
   qp::QpSolver solver_;
   qp::ElasticSolver elastic_{0, 0};  // for steps in which limits contradict each other

@@ -108,6 +108,7 @@ NewtonReport NewtonStep::search(double time_step) {
 // rest of the step, within their limits.
 NewtonReport NewtonStep::hold_choice(const NewtonReport& chosen, double time_step) {
   run_.watch.enter(SearchStage::held_efforts);
+  run_.report.choice_held = true;
   const bool dynamic = run_.model->step().dynamic();
   NewtonSettings held = settings(time_step);
   const int few = std::min(held.max_iterations, kSteeredIterations);

@@ -26,6 +26,9 @@ struct StepReport {
   double energy_gained = 0.0;  ///< J, since the start: energy beyond what was put in, if > 0
   double smallest_volume_ratio = 1.0;  ///< min det F at the end of the step
   double contact_residual = 0.0;       ///< relative, see qp::ConeResult; 0 without contacts
+  /// Whether a controller's choice did not settle and was held as it was: another one, that serves
+  /// about as well, may have been found from other rounding.
+  bool choice_held = false;
   int contact_sweeps = 0;              ///< of Gauss-Seidel, in the last solution of the law
   NewtonStatus newton = NewtonStatus::converged;
   StageTimes times;

@@ -30,6 +30,7 @@ void Stepper::step() {
   run_.watch.begin();
   report.substeps = 1;
   report.retries = 0;
+  report.choice_held = false;
   report.status = StepStatus::solved;
   report.energy_gained = 0.0;
   const bool opens = run_.model->step().dynamic() && !run_.ledger.is_open();
