@@ -26,6 +26,12 @@ void add_masses(ModelData& data, const fem::FemBodyModel& body) {
   }
 }
 
+// m, of the box along the world's axes that holds them.
+double box_diagonal(const Points& nodes) {
+  const Vector3 extent = nodes.colwise().maxCoeff() - nodes.colwise().minCoeff();
+  return extent.norm();
+}
+
 int add_body(ModelData& data, std::unique_ptr<mechanics::BodyModel> body) {
   const auto name_of = [](const auto& other) { return other->name(); };
   check_new_name(data.bodies, name_of, "bodies", body->name(), {.item = body->name()});
@@ -43,17 +49,13 @@ int add_fem_body(ModelData& data, fem::FemBodySettings settings) {
                 "give `mass` or `density`");
   }
   add_masses(data, *body);
-  const Points& nodes = body->mesh().nodes;
-  const Vector3 extent = nodes.colwise().maxCoeff() - nodes.colwise().minCoeff();
-  data.size = std::max(data.size, extent.norm());
+  data.size = std::max(data.size, box_diagonal(body->mesh().nodes));
   return add_body(data, std::move(body));
 }
 
 int add_rigid_body(ModelData& data, rigid::RigidSettings settings) {
   auto body = std::make_unique<rigid::RigidBodyModel>(std::move(settings));
-  const Points& nodes = body->mesh().nodes;
-  const Vector3 extent = nodes.colwise().maxCoeff() - nodes.colwise().minCoeff();
-  data.size = std::max(data.size, extent.norm());
+  data.size = std::max(data.size, box_diagonal(body->mesh().nodes));
   return add_body(data, std::move(body));
 }
 
