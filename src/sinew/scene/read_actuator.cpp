@@ -195,14 +195,8 @@ ActuatorDescription read_actuator(const Node::Entry& entry, const ReadContext& c
   const Form& form = form_of(grammar(), "actuators", Shape::names).items.front();
   const Fields fields(entry.value, form);
   using Type = ActuatorDescription::Type;
-  const std::string type = read_text(*entry.value.find(form.telltale));
-  actuator.type = type == "cable"      ? Type::cable
-                  : type == "force"    ? Type::force
-                  : type == "pressure" ? Type::pressure
-                  : type == "torque"   ? Type::torque
-                  : type == "motor"    ? Type::motor
-                  : type == "spring"   ? Type::spring
-                                       : Type::linear_motor;
+  // The grammar lets no other word through.
+  actuator.type = sim::actuator_type(read_text(*entry.value.find(form.telltale))).value();
   if (has_points(actuator.type)) {
     fields.read_choice("outside", actuator.outside,
                        {{"error", mesh::Outside::error}, {"nearest", mesh::Outside::nearest}});

@@ -45,6 +45,12 @@ const ActuatorWords& actuator_words(ActuatorType type) {
   return kWords[static_cast<std::size_t>(type)];
 }
 
+std::optional<ActuatorType> actuator_type(std::string_view word) {
+  const auto found = std::ranges::find(kWords, word, &ActuatorWords::type);
+  if (found == kWords.end()) return std::nullopt;
+  return static_cast<ActuatorType>(found - kWords.begin());
+}
+
 const std::vector<std::string_view>& command_quantities() {
   static const std::vector<std::string_view> names = every_quantity();
   return names;

@@ -40,6 +40,8 @@ struct ActuatorWords {
   std::array<QuantityName, 2> inputs = {};  ///< of its drives, see Drive::input(); of a motor
 };
 const ActuatorWords& actuator_words(ActuatorType type);
+/// By ActuatorWords::type; none where no type has this name.
+std::optional<ActuatorType> actuator_type(std::string_view word);
 /// Every quantity by which some actuator is commanded, once.
 const std::vector<std::string_view>& command_quantities();
 
