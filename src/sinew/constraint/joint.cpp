@@ -29,8 +29,6 @@ std::span<const std::array<int, 2>> turns_of(JointType type) {
   return kTurns;
 }
 
-bool slides(JointType type) { return type == JointType::slider || type == JointType::cylindrical; }
-
 bool is_body(const mechanics::Site& site) { return site.body >= 0; }
 
 }  // namespace
@@ -100,14 +98,14 @@ Joint::Joint(std::string name, JointType type, const JointPlace& place)
     : Constraint(std::move(name)),
       type_(type),
       place_(place),
-      displacements_(slides(type) ? 2 : 3),
+      displacements_(slides_along_axis(type) ? 2 : 3),
       turns_(turns_of(type)) {}
 
 void Joint::declare(mechanics::RowPattern& rows, std::vector<mechanics::RowCurvature>&) {
   first_row_ = rows.rows();
   first_entry_ = rows.entries();
   row_count_ = displacements_ + static_cast<int>(turns_.size());
-  for (int k = 0; k < displacements_; ++k) place_.add_row(rows, true, slides(type_));
+  for (int k = 0; k < displacements_; ++k) place_.add_row(rows, true, slides_along_axis(type_));
   for (std::size_t k = 0; k < turns_.size(); ++k) place_.add_row(rows, false, true);
 }
 
@@ -118,9 +116,10 @@ void Joint::linearise(const Placement& placement, mechanics::RowValues& values) 
   Vector3* entry = values.direction.data() + first_entry_;
   int row = first_row_;
   for (int k = 0; k < displacements_; ++k) {
-    const Vector3 axis = slides(type_) ? Vector3(a.col(k)) : Vector3(Vector3::Unit(k));
+    const Vector3 axis = slides_along_axis(type_) ? Vector3(a.col(k)) : Vector3(Vector3::Unit(k));
     entry = place_.write_points(entry, axis);
-    if (slides(type_)) entry = place_.write_turns(entry, Vector3::Zero(), axis.cross(offset));
+    if (slides_along_axis(type_))
+      entry = place_.write_turns(entry, Vector3::Zero(), axis.cross(offset));
     values.delta[row++] = axis.dot(offset);
   }
   for (const auto& [i, j] : turns_) {
@@ -134,7 +133,7 @@ std::vector<Vector3> Joint::rest_directions() const {
   const Matrix3& axes = place_.axes();
   std::vector<Vector3> result;
   for (int k = 0; k < displacements_; ++k) {
-    result.push_back(slides(type_) ? Vector3(axes.col(k)) : Vector3(Vector3::Unit(k)));
+    result.push_back(slides_along_axis(type_) ? Vector3(axes.col(k)) : Vector3(Vector3::Unit(k)));
   }
   for (const auto& [i, j] : turns_) result.push_back(axes.col(j).cross(axes.col(i)));
   return result;
@@ -151,7 +150,8 @@ Joint::Load Joint::load(const Placement& placement, std::span<const double> effo
   Load load;
   std::size_t row = 0;
   for (int k = 0; k < displacements_; ++k) {
-    load.force += effort[row++] * (slides(type_) ? Vector3(a.col(k)) : Vector3(Vector3::Unit(k)));
+    load.force +=
+        effort[row++] * (slides_along_axis(type_) ? Vector3(a.col(k)) : Vector3(Vector3::Unit(k)));
   }
   for (const auto& [i, j] : turns_) load.moment += effort[row++] * b.col(j).cross(a.col(i));
   return load;
@@ -160,7 +160,9 @@ Joint::Load Joint::load(const Placement& placement, std::span<const double> effo
 double Joint::gap(const Placement& placement) const {
   const JointFrames frames = place_.frames(placement);
   const Vector3 offset = frames.offset();
-  return (slides(type_) ? Vector3(offset - frames.slide() * frames.axes[0].col(2)) : offset).norm();
+  return (slides_along_axis(type_) ? Vector3(offset - frames.slide() * frames.axes[0].col(2))
+                                   : offset)
+      .norm();
 }
 
 JointMotion::JointMotion(std::string name, Kind kind, const JointPlace& place)

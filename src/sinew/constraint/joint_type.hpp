@@ -15,4 +15,13 @@ enum class JointType {
 };
 const char* joint_type_name(JointType type);
 
+/// Whether it leaves the turn about its one axis.
+constexpr bool turns_about_axis(JointType type) {
+  return type == JointType::hinge || type == JointType::cylindrical;
+}
+/// Whether it leaves the displacement along it.
+constexpr bool slides_along_axis(JointType type) {
+  return type == JointType::slider || type == JointType::cylindrical;
+}
+
 }  // namespace sinew::constraint

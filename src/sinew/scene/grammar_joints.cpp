@@ -1,9 +1,12 @@
 // The tables of joints: what holds bodies together.
+#include "sinew/constraint/joint_type.hpp"
 #include "sinew/scene/grammar_forms.hpp"
 
 namespace sinew::scene::forms {
 
 namespace {
+
+using constraint::JointType;
 
 std::shared_ptr<const KeyTable> weld_region_table() {
   return make_table({.name = "region of a weld",
@@ -64,14 +67,16 @@ Key motion_limits(const char* name, const Measure& measure, const char* example)
 }
 
 struct JointWords {
-  const char* type;
+  JointType type;
   const char* description;
-  bool turns = false, slides = false;
   int axes = 0;
 };
 
 std::shared_ptr<const KeyTable> joint_table(const JointWords& words) {
-  KeyTable joint{.name = std::string("joint: type ") + words.type,
+  const std::string type = constraint::joint_type_name(words.type);
+  const bool turns = constraint::turns_about_axis(words.type);
+  const bool slides = constraint::slides_along_axis(words.type);
+  KeyTable joint{.name = "joint: type " + type,
                  .description = words.description,
                  .keys = {bodies_key("[box, cover]",
                                      "The two bodies, rigid or sections of an arm; or one and "
@@ -97,32 +102,33 @@ std::shared_ptr<const KeyTable> joint_table(const JointWords& words) {
                                          "the second, normal to each other.",
                           .required = true});
   }
-  if (words.turns || words.slides) {
-    KeyTable limits{.name = std::string("limits of a ") + words.type,
-                    .description = "Stops of the joint."};
-    if (words.turns) limits.keys.push_back(motion_limits("angle", angle(), "{max: 90 deg}"));
-    if (words.slides) {
+  if (turns || slides) {
+    KeyTable limits{.name = "limits of a " + type, .description = "Stops of the joint."};
+    if (turns) limits.keys.push_back(motion_limits("angle", angle(), "{max: 90 deg}"));
+    if (slides) {
       limits.keys.push_back(motion_limits("displacement", length(), "{max: 40 mm}"));
     }
     joint.keys.push_back({.name = "limits",
                           .forms = {table(make_table(std::move(limits)))},
-                          .example = words.turns ? "{angle: {min: 0 deg, max: 90 deg}}"
-                                                 : "{displacement: {min: 0 mm, max: 40 mm}}",
+                          .example = turns ? "{angle: {min: 0 deg, max: 90 deg}}"
+                                           : "{displacement: {min: 0 mm, max: 40 mm}}",
                           .default_text = "{}",
                           .description = "How far it moves. Without: as far as it is moved."});
   }
-  if (words.turns != words.slides) {
+  if (turns != slides) {
     joint.keys.push_back({.name = "friction",
-                          .forms = {quantity(words.turns ? torque() : force(), non_negative())},
-                          .example = words.turns ? "1 mN m" : "0.1 N",
-                          .default_text = words.turns ? "0 N m" : "0 N",
+                          .forms = {quantity(turns ? torque() : force(), non_negative())},
+                          .example = turns ? "1 mN m" : "0.1 N",
+                          .default_text = turns ? "0 N m" : "0 N",
                           .description = "Coulomb friction: what it takes to move the joint."});
   }
   return make_table(std::move(joint));
 }
 
 Choice joint(const JointWords& words) {
-  return {.word = words.type, .description = words.description, .table = joint_table(words)};
+  return {.word = constraint::joint_type_name(words.type),
+          .description = words.description,
+          .table = joint_table(words)};
 }
 
 }  // namespace
@@ -140,13 +146,12 @@ std::shared_ptr<const KeyTable> body_point_table() {
 
 Form joint_form() {
   return variants(
-      "type",
-      {{.word = "weld", .description = "One body.", .table = weld_table()},
-       joint({"ball", "Two points are one.", false, false, 0}),
-       joint({"hinge", "Turns about an axis.", true, false, 1}),
-       joint({"slider", "Slides along an axis.", false, true, 1}),
-       joint({"cylindrical", "Turns about an axis and slides along it.", true, true, 1}),
-       joint({"universal", "Turns about two axes, one fixed in each body.", false, false, 2})});
+      "type", {{.word = "weld", .description = "One body.", .table = weld_table()},
+               joint({JointType::ball, "Two points are one.", 0}),
+               joint({JointType::hinge, "Turns about an axis.", 1}),
+               joint({JointType::slider, "Slides along an axis.", 1}),
+               joint({JointType::cylindrical, "Turns about an axis and slides along it.", 1}),
+               joint({JointType::universal, "Turns about two axes, one fixed in each body.", 2})});
 }
 
 }  // namespace sinew::scene::forms

@@ -33,9 +33,9 @@ constexpr double kNormal = 1e-6;
   throw Error(kind, joint.place, what, remedy);
 }
 
+// By JointModel::motions.
 bool has(JointType type, std::size_t motion) {
-  if (motion == 0) return type == JointType::hinge || type == JointType::cylindrical;
-  return type == JointType::slider || type == JointType::cylindrical;
+  return motion == 0 ? constraint::turns_about_axis(type) : constraint::slides_along_axis(type);
 }
 
 // A body without parts that stay rigid takes a ball joint's points alone.

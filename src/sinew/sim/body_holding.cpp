@@ -94,7 +94,7 @@ class RigidMotions {
   // What a hinge or slider leaves: a motor moves it, or friction stops it.
   void hold_rest(const constraint::Joint& joint) {
     const Vector3 axis = joint.place().axes().col(2);
-    const bool turns = joint.type() == constraint::JointType::hinge;
+    const bool turns = constraint::turns_about_axis(joint.type());
     begin_row();
     double sign = -1.0;
     for (const constraint::JointSide& side : joint.place().sides()) {
