@@ -109,33 +109,40 @@ void Joint::declare(mechanics::RowPattern& rows, std::vector<mechanics::RowCurva
   for (std::size_t k = 0; k < turns_.size(); ++k) place_.add_row(rows, false, true);
 }
 
+Vector3 Joint::direction(const JointFrames& frames, int row) const {
+  const auto& [a, b] = frames.axes;
+  if (row < displacements_) {
+    return slides_along_axis(type_) ? Vector3(a.col(row)) : Vector3(Vector3::Unit(row));
+  }
+  const auto& [i, j] = turns_[static_cast<std::size_t>(row - displacements_)];
+  return b.col(j).cross(a.col(i));
+}
+
 void Joint::linearise(const Placement& placement, mechanics::RowValues& values) const {
   const JointFrames frames = place_.frames(placement);
   const auto& [a, b] = frames.axes;
   const Vector3 offset = frames.offset();
   Vector3* entry = values.direction.data() + first_entry_;
-  int row = first_row_;
-  for (int k = 0; k < displacements_; ++k) {
-    const Vector3 axis = slides_along_axis(type_) ? Vector3(a.col(k)) : Vector3(Vector3::Unit(k));
+  int row = 0;
+  for (; row < displacements_; ++row) {
+    const Vector3 axis = direction(frames, row);
     entry = place_.write_points(entry, axis);
-    if (slides_along_axis(type_))
+    if (slides_along_axis(type_)) {
       entry = place_.write_turns(entry, Vector3::Zero(), axis.cross(offset));
-    values.delta[row++] = axis.dot(offset);
+    }
+    values.delta[first_row_ + row] = axis.dot(offset);
   }
   for (const auto& [i, j] : turns_) {
-    const Vector3 about = b.col(j).cross(a.col(i));
+    const Vector3 about = direction(frames, row);
     entry = place_.write_turns(entry, about, -about);
-    values.delta[row++] = a.col(i).dot(b.col(j));
+    values.delta[first_row_ + row++] = a.col(i).dot(b.col(j));
   }
 }
 
 std::vector<Vector3> Joint::rest_directions() const {
-  const Matrix3& axes = place_.axes();
+  const JointFrames frames{.axes = {place_.axes(), place_.axes()}};
   std::vector<Vector3> result;
-  for (int k = 0; k < displacements_; ++k) {
-    result.push_back(slides_along_axis(type_) ? Vector3(axes.col(k)) : Vector3(Vector3::Unit(k)));
-  }
-  for (const auto& [i, j] : turns_) result.push_back(axes.col(j).cross(axes.col(i)));
+  for (int row = 0; row < row_count_; ++row) result.push_back(direction(frames, row));
   return result;
 }
 
@@ -146,14 +153,11 @@ void Joint::add_to(ValueHash& hash) const {
 
 Joint::Load Joint::load(const Placement& placement, std::span<const double> effort) const {
   const JointFrames frames = place_.frames(placement);
-  const auto& [a, b] = frames.axes;
   Load load;
-  std::size_t row = 0;
-  for (int k = 0; k < displacements_; ++k) {
-    load.force +=
-        effort[row++] * (slides_along_axis(type_) ? Vector3(a.col(k)) : Vector3(Vector3::Unit(k)));
+  for (int row = 0; row < row_count_; ++row) {
+    Vector3& sum = row < displacements_ ? load.force : load.moment;
+    sum += effort[static_cast<std::size_t>(row)] * direction(frames, row);
   }
-  for (const auto& [i, j] : turns_) load.moment += effort[row++] * b.col(j).cross(a.col(i));
   return load;
 }
 

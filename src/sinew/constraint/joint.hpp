@@ -90,6 +90,9 @@ class Joint : public Constraint {
   double gap(const Placement& placement) const;
 
  private:
+  // Of a displacement, or the axis of a turn. row: of its own, from 0.
+  Vector3 direction(const JointFrames& frames, int row) const;
+
   JointType type_;
   JointPlace place_;
   int displacements_ = 3;
