@@ -78,34 +78,12 @@ class RigidMotions {
   void hold(const constraint::Joint& joint) {
     const std::vector<Vector3> directions = joint.rest_directions();
     for (std::size_t k = 0; k < directions.size(); ++k) {
-      begin_row();
-      double sign = -1.0;
-      for (const constraint::JointSide& side : joint.place().sides()) {
-        if (static_cast<int>(k) < joint.displacements()) {
-          fill(side.point.body, side.rest, directions[k], sign);
-        } else {
-          turn(side.orientation.body, directions[k], sign);
-        }
-        sign = 1.0;
-      }
-      end_row();
+      add_row(joint, directions[k], static_cast<int>(k) >= joint.displacements());
     }
   }
   // What a hinge or slider leaves: a motor moves it, or friction stops it.
   void hold_rest(const constraint::Joint& joint) {
-    const Vector3 axis = joint.place().axes().col(2);
-    const bool turns = constraint::turns_about_axis(joint.type());
-    begin_row();
-    double sign = -1.0;
-    for (const constraint::JointSide& side : joint.place().sides()) {
-      if (turns) {
-        turn(side.orientation.body, axis, sign);
-      } else {
-        fill(side.point.body, side.rest, axis, sign);
-      }
-      sign = 1.0;
-    }
-    end_row();
+    add_row(joint, joint.place().axes().col(2), constraint::turns_about_axis(joint.type()));
   }
   // Whether no rigid motion is left.
   bool all_held() const {
@@ -130,6 +108,20 @@ class RigidMotions {
   void turn(int body, const Vector3& axis, double sign) {
     const int column = column_of(body);
     if (column >= 0) row_.segment<3>(column + 3) += sign * axis;
+  }
+  // Of the second side's motion less the first's: a turn about a direction, or a displacement.
+  void add_row(const constraint::Joint& joint, const Vector3& direction, bool is_turn) {
+    begin_row();
+    double sign = -1.0;
+    for (const constraint::JointSide& side : joint.place().sides()) {
+      if (is_turn) {
+        turn(side.orientation.body, direction, sign);
+      } else {
+        fill(side.point.body, side.rest, direction, sign);
+      }
+      sign = 1.0;
+    }
+    end_row();
   }
   void end_row() { normal_.noalias() += row_ * row_.transpose(); }
 
