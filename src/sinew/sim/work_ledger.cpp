@@ -31,9 +31,10 @@ void WorkLedger::count(const Model& model, const World& world, const Actuation& 
     const double slid = world.delta()[block.row] - block.held;
     sums_.dissipated -= effort[static_cast<std::size_t>(block.row)] * slid;
   }
-  // Limits do no work; friction holds where the step began.
-  for (const step::ActuatorBlock& block : world.problem().actuators) {
-    if (&block < world.problem().actuators.data() + actuation.states().size()) continue;
+  // After the actuators' blocks, those of joints: limits do no work; friction holds where the step
+  // began.
+  const std::span<const step::ActuatorBlock> blocks = world.problem().actuators;
+  for (const step::ActuatorBlock& block : blocks.subspan(actuation.states().size())) {
     if (block.kind != step::CommandKind::motion) continue;
     const double slid = world.delta()[block.row] - block.value;
     sums_.dissipated -= effort[static_cast<std::size_t>(block.row)] * slid;
