@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "sinew/core/rotation.hpp"
 #include "sinew/fem/assembly.hpp"
 #include "sinew/fem/element_count.hpp"
 #include "sinew/fem/fem_model.hpp"
@@ -425,10 +426,7 @@ void bind_pose(py::class_<Body>& type) {
           "rotation",
           [](const Body& self) {
             const Session::Use use(*self.session);
-            const Eigen::Quaterniond turn(rigid(self, "rotation").axes());
-            const double sign = turn.w() < 0.0 ? -1.0 : 1.0;
-            const Eigen::Vector4d numbers(turn.w(), turn.x(), turn.y(), turn.z());
-            return copy(VectorX(sign * numbers));
+            return copy(VectorX(unit_quaternion(rigid(self, "rotation").axes())));
           },
           "(4,) ndarray: its axes as a unit quaternion w, x, y, z with w >= 0. Raises as "
           "`position`.")

@@ -24,6 +24,12 @@ Vector3 rotation_vector(const Matrix3& rotation) {
   return turn.angle() * turn.axis();
 }
 
+Eigen::Vector4d unit_quaternion(const Matrix3& rotation) {
+  const Eigen::Quaterniond turn(rotation);
+  const double sign = turn.w() < 0.0 ? -1.0 : 1.0;
+  return sign * Eigen::Vector4d(turn.w(), turn.x(), turn.y(), turn.z());
+}
+
 Matrix3 rotation_vector_rate(const Vector3& v) {
   const double angle = v.norm();
   const double factor = angle < kSmallAngle

@@ -1,5 +1,6 @@
 /// @file
-/// Rotations of space: matrices and rotation vectors (axis times angle, rad), in fixed axes.
+/// Rotations of space: matrices, rotation vectors (axis times angle, rad) and quaternions, in fixed
+/// axes.
 #pragma once
 
 #include "sinew/core/types.hpp"
@@ -16,6 +17,8 @@ inline Matrix3 cross_matrix(const Vector3& v) {
 Matrix3 rotation_matrix(const Vector3& v);
 /// The shortest rotation vector of a rotation: length 0 to pi.
 Vector3 rotation_vector(const Matrix3& rotation);
+/// The unit quaternion of a rotation: w, x, y, z with w >= 0.
+Eigen::Vector4d unit_quaternion(const Matrix3& rotation);
 /// D with rotation_vector(exp[w] exp[v]) = v + D w + O(w^2), the inverse of the left Jacobian
 /// (Chirikjian, Stochastic Models, Information Theory, and Lie Groups 2, 2011, eq. 10.86):
 ///   D = 1 - [v]/2 + (1/a^2 - 1/(2 a tan(a/2))) [v]^2,  a = |v|.

@@ -9,6 +9,7 @@
 #include "sinew/constraint/contact.hpp"
 #include "sinew/constraint/effector.hpp"
 #include "sinew/constraint/probe.hpp"
+#include "sinew/core/rotation.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
@@ -65,12 +66,9 @@ void add_pose(Observables& list, const std::string& name, const mechanics::HasPo
   add("velocity", "m/s", "xyz");
   add("angular_velocity", "rad/s", "xyz");
   list.add(std::move(parts), [&body](std::span<double> all) {
-    const Eigen::Quaterniond rotation(body.axes());
-    const double sign = rotation.w() < 0.0 ? -1.0 : 1.0;
     Numbers to(all);
     to.put(body.origin());
-    to.put(sign * rotation.w());
-    to.put(Vector3(sign * rotation.vec()));
+    for (const double part : unit_quaternion(body.axes())) to.put(part);
     to.put(body.linear_velocity());
     to.put(body.angular_velocity());
   });
