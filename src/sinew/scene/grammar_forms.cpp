@@ -147,6 +147,14 @@ Form later(Form form) {
   return form;
 }
 
+Key shape_length(const char* name, const char* example, const char* description) {
+  return {.name = name,
+          .forms = {quantity(length(), positive())},
+          .example = example,
+          .description = description,
+          .required = true};
+}
+
 std::shared_ptr<const KeyTable> make_table(KeyTable table) {
   return std::make_shared<const KeyTable>(std::move(table));
 }

@@ -98,6 +98,8 @@ struct DriveWords {
 /// The keys `limits` and `command`.
 std::vector<Key> drive_keys(const DriveWords& words);
 Key body_key();
+/// A length of a shape, positive and required.
+Key shape_length(const char* name, const char* example, const char* description);
 Key outside_key();
 /// x, y, z, which name the world's axes, or a vector.
 std::vector<Form> axis_forms();

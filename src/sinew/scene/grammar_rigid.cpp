@@ -5,14 +5,6 @@ namespace sinew::scene::forms {
 
 namespace {
 
-Key shape_key(const char* name, const char* example, const char* description) {
-  return {.name = name,
-          .forms = {quantity(length(), positive())},
-          .example = example,
-          .description = description,
-          .required = true};
-}
-
 Key shape_form(const char* name, const char* example, const char* description,
                std::vector<Key> keys) {
   return {.name = name,
@@ -32,14 +24,15 @@ std::shared_ptr<const KeyTable> shape_table() {
                  .example = "40 30 20 mm",
                  .description = "A box along the body's axes: its whole edges."},
                 shape_form("sphere", "{radius: 15 mm}", "A ball.",
-                           {shape_key("radius", "15 mm", "Its radius.")}),
-                shape_form("capsule", "{radius: 10 mm, length: 40 mm}",
-                           "A cylinder about z with half spheres at its ends.",
-                           {shape_key("radius", "10 mm", "Of the cylinder and the half spheres."),
-                            shape_key("length", "40 mm", "Of the cylinder, without its ends.")}),
+                           {shape_length("radius", "15 mm", "Its radius.")}),
+                shape_form(
+                    "capsule", "{radius: 10 mm, length: 40 mm}",
+                    "A cylinder about z with half spheres at its ends.",
+                    {shape_length("radius", "10 mm", "Of the cylinder and the half spheres."),
+                     shape_length("length", "40 mm", "Of the cylinder, without its ends.")}),
                 shape_form("cylinder", "{radius: 10 mm, height: 40 mm}", "A cylinder about z.",
-                           {shape_key("radius", "10 mm", "Its radius."),
-                            shape_key("height", "40 mm", "Along z.")})},
+                           {shape_length("radius", "10 mm", "Its radius."),
+                            shape_length("height", "40 mm", "Along z.")})},
        .alternatives = {{{"box", "sphere", "capsule", "cylinder"}, true}}});
 }
 

@@ -5,14 +5,6 @@ namespace sinew::scene::forms {
 
 namespace {
 
-Key shape_length(const char* name, const char* example, const char* description) {
-  return {.name = name,
-          .forms = {quantity(length(), positive())},
-          .example = example,
-          .description = description,
-          .required = true};
-}
-
 Key optional_length(const char* name, const char* example, const char* default_text,
                     const char* description) {
   Key key = shape_length(name, example, description);
