@@ -105,8 +105,7 @@ Robot build(SceneDescription description) {
     const auto found = std::ranges::find(description.bodies, name, &BodyDescription::name);
     if (found == description.bodies.end()) return {sim::kWorld};
     const int number = static_cast<int>(found - description.bodies.begin());
-    const mechanics::BodyModel& model = builder.added_body(number);
-    return {number, &model.mesh(), &model};
+    return {number, &builder.added_body(number)};
   };
   // Welds come last, where rows of saved states have them; motors need the other joints first.
   std::map<std::string, int> joints;

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "sinew/core/error.hpp"
+#include "sinew/mechanics/body_model.hpp"
 #include "sinew/mesh/surface.hpp"
 #include "sinew/scene/build_parts.hpp"
 #include "sinew/sim/actuator.hpp"
@@ -147,14 +148,14 @@ sim::Limits limits_of(const LimitDescription& description) {
 void add_actuator(sim::ModelBuilder& builder, const ActuatorDescription& actuator,
                   const BodyOf& body_of, const JointOf& joint_of) {
   if (!actuator.joint.empty()) return add_motor(builder, actuator, joint_of(actuator.joint));
-  const auto [body, mesh, model] = body_of(actuator.body);
+  const auto [body, model] = body_of(actuator.body);
   switch (actuator.type) {
     case ActuatorDescription::Type::cable:
       return add_cable(builder, actuator, body, body_of);
     case ActuatorDescription::Type::force:
       return add_force(builder, actuator, body);
     case ActuatorDescription::Type::pressure:
-      return add_chamber(builder, actuator, body, *mesh);
+      return add_chamber(builder, actuator, body, model->mesh());
     case ActuatorDescription::Type::spring:
       return add_spring(builder, actuator, body);
     case ActuatorDescription::Type::torque:

@@ -43,7 +43,7 @@ void check_corners(const ContactDescription& contact, const mechanics::BodyModel
 
 void add_contact(sim::ModelBuilder& builder, const ContactDescription& contact,
                  const BodyOf& body_of) {
-  const auto [body, mesh, model] = body_of(contact.body);
+  const auto [body, model] = body_of(contact.body);
   sim::ContactSettings settings;
   settings.name = contact.name;
   settings.place = contact.place;
@@ -54,7 +54,7 @@ void add_contact(sim::ModelBuilder& builder, const ContactDescription& contact,
   settings.friction = contact.friction;
   if (settings.points.rows() == 0) {
     check_corners(contact, *model);
-    settings.nodes = nodes_of(contact, *mesh);
+    settings.nodes = nodes_of(contact, model->mesh());
   }
   if (contact.motion) {
     const BaseDescription& motion = *contact.motion;

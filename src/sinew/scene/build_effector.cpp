@@ -1,4 +1,5 @@
 #include "sinew/core/error.hpp"
+#include "sinew/mechanics/body_model.hpp"
 #include "sinew/scene/build_parts.hpp"
 #include "sinew/sim/effector_settings.hpp"
 #include "sinew/sim/model_builder.hpp"
@@ -7,7 +8,7 @@ namespace sinew::scene {
 
 void add_effector(sim::ModelBuilder& builder, const EffectorDescription& effector,
                   const BodyOf& body_of) {
-  const auto [body, mesh, model] = body_of(effector.body);
+  const auto [body, model] = body_of(effector.body);
   sim::EffectorSettings settings;
   settings.name = effector.name;
   settings.place = effector.place;
@@ -17,7 +18,8 @@ void add_effector(sim::ModelBuilder& builder, const EffectorDescription& effecto
   if (effector.kind == EffectorDescription::Kind::set) {
     settings.kind = sim::EffectorSettings::Kind::nodes;
     try {
-      settings.nodes = mesh::select_nodes(*mesh, mesh::NamedRegion{effector.set}, effector.name);
+      settings.nodes =
+          mesh::select_nodes(model->mesh(), mesh::NamedRegion{effector.set}, effector.name);
     } catch (const Error& error) {
       throw error.at(effector.set_place);
     }

@@ -29,7 +29,7 @@ std::vector<NodeId> nodes_on(const mesh::Mesh& first, const BuiltBody& second,
       return shape->rest_distance(at(node)) > kOnShape * extent.norm();
     });
   } else {
-    const mesh::Embedder embedder(*second.mesh);
+    const mesh::Embedder embedder(second.model->mesh());
     std::erase_if(nodes, [&](NodeId node) {
       return embedder.locate(at(node), mesh::Outside::nearest, joint.name).distance > 0.0;
     });
@@ -79,10 +79,11 @@ int add_weld(sim::ModelBuilder& builder, const JointDescription& joint, const Bu
   weld.outside = joint.outside;
   if (joint.region) {
     weld.nodes = at_place(joint.region->place, [&] {
-      return mesh::select_nodes(*first.mesh, region_of(*joint.region), joint.region->place.item);
+      return mesh::select_nodes(first.model->mesh(), region_of(*joint.region),
+                                joint.region->place.item);
     });
   } else if (weld.points.rows() == 0 && first.number != second.number) {
-    weld.nodes = nodes_on(*first.mesh, second, joint);
+    weld.nodes = nodes_on(first.model->mesh(), second, joint);
     weld.outside = mesh::Outside::nearest;
   }
   return builder.add_weld(weld);

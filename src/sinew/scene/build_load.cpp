@@ -1,6 +1,7 @@
 #include <numbers>
 
 #include "sinew/core/error.hpp"
+#include "sinew/mechanics/body_model.hpp"
 #include "sinew/mesh/patch.hpp"
 #include "sinew/scene/build_parts.hpp"
 #include "sinew/sim/load_settings.hpp"
@@ -59,8 +60,8 @@ std::vector<mesh::Face> outer_surface(const mesh::Mesh& mesh, const std::string&
 }  // namespace
 
 void add_load(sim::ModelBuilder& builder, const LoadDescription& load, const BodyOf& body_of) {
-  const auto [body, found, model] = body_of(load.body);
-  const mesh::Mesh& mesh = *found;
+  const auto [body, model] = body_of(load.body);
+  const mesh::Mesh& mesh = model->mesh();
   sim::LoadSettings settings;
   settings.name = load.name;
   settings.place = load.place;

@@ -25,7 +25,6 @@ namespace sinew::scene {
 /// A body of the model.
 struct BuiltBody {
   int number = 0;
-  const mesh::Mesh* mesh = nullptr;
   const mechanics::BodyModel* model = nullptr;  ///< null: the world
 };
 /// By its name; kWorldName gives the world.

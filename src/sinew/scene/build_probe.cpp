@@ -1,5 +1,6 @@
 #include <numeric>
 
+#include "sinew/mechanics/body_model.hpp"
 #include "sinew/mesh/selection.hpp"
 #include "sinew/mesh/topology.hpp"
 #include "sinew/scene/build_parts.hpp"
@@ -21,7 +22,7 @@ class Parts {
   int body(std::size_t k) const { return body_of_(probe_.parts[k].body).number; }
   std::vector<NodeId> nodes(std::size_t k) const {
     const Part& part = probe_.parts[k];
-    const mesh::Mesh& mesh = *body_of_(part.body).mesh;
+    const mesh::Mesh& mesh = body_of_(part.body).model->mesh();
     if (!part.region) return all_nodes(mesh);
     return at_place(part.region->place, [&] {
       return mesh::select_nodes(mesh, region_of(*part.region), part.region->place.item);
