@@ -16,7 +16,8 @@ namespace sinew::fem {
 /// Over the plain pattern or the wider one, as each linearisation asks for it.
 class BodyElements {
  public:
-  /// @param state,pool must outlive this. @param with_curvature the system to take memory for now.
+  /// @param state,pool must outlive this. @param with_curvature the system whose memory is taken at
+  /// once; the other's is when it is first asked for.
   BodyElements(FemState& state, ThreadPool& pool, bool with_curvature);
 
   /// What the last linearisation was over.

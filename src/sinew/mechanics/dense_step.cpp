@@ -102,8 +102,8 @@ void DenseStep::respond() {
   compliance_.noalias() = rows_.transpose() * moved_rows_;
 }
 
-// In the directions in which the arm would buckle the real-time tangent is as stiff as it is soft
-// there: a law's program must be convex, and a step must go downhill.
+// In the directions in which the body would buckle the rotated tangent is as stiff as the exact one
+// is soft there: a law's program must be convex, and a step must go downhill.
 void DenseStep::make_definite() {
   spectrum_.compute(symmetric_);
   const double floor = softest();

@@ -44,7 +44,7 @@ class DenseStep : public StepSystem {
   virtual void add_row_stiffness(MatrixX& matrix) = 0;
   /// The motion of a site for each coordinate. @param result (3, n).
   virtual void site_jacobian(int site, MatrixX& result) = 0;
-  /// The softest that a real-time tangent lets a direction be.
+  /// The softest that a rotated tangent lets a direction be: see Tangent.
   virtual double softest() const = 0;
   /// The motion proposed next starts from the present state.
   virtual void depart() = 0;

@@ -291,7 +291,7 @@ struct ContactDescription {
   std::optional<BaseDescription> motion;
 };
 
-/// What holds two bodies together: a weld.
+/// What holds two bodies together, or a body to the world.
 struct JointDescription {
   std::string name;
   Location place;

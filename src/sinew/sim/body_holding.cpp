@@ -19,7 +19,7 @@ namespace sinew::sim {
 
 namespace {
 
-// Singular values below this, of the largest, belong to rigid motions that welds leave free.
+// Singular values below this, of the largest, belong to rigid motions that joints leave free.
 constexpr double kFree = 1e-6;
 
 // Bodies that joints connect have one number.

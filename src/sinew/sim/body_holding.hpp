@@ -1,6 +1,6 @@
 /// @file
-/// In statics something has to hold every body: what is fixed of it, or welds to bodies that are
-/// held.
+/// In statics something has to hold every body: what is fixed of it, or joints to bodies that are
+/// held, or to the world.
 #pragma once
 
 #include <vector>
@@ -11,7 +11,7 @@ namespace sinew::sim {
 
 struct ModelData;
 
-/// Anchors the bodies of a finished list that need welds to be held.
+/// Anchors the bodies of a finished list that need joints to be held.
 /// @param places (bodies,) where each is written. Throws Error(nothing-fixed) in statics for a body
 /// that keeps a rigid motion.
 void hold_bodies(ModelData& data, const std::vector<Location>& places);

@@ -84,10 +84,9 @@ class ModelBuilder {
 
   /// Plans and hands the model over; the builder is empty afterwards.
   /// @param settings of the factorisation.
-  /// Throws Error(nothing-fixed) when the integrator is quasi-static and a body has no fixed node
-  /// nor hangs, by welds that leave it no rigid motion, on bodies that have,
-  /// Error(out-of-range) for a time step that is not positive, Error(missing-mass) for dynamics
-  /// without mass.
+  /// Throws Error(nothing-fixed) when the integrator is quasi-static and a body keeps a rigid
+  /// motion that neither what is fixed of it nor a joint holds, Error(out-of-range) for a time step
+  /// that is not positive, Error(missing-mass) for dynamics without mass.
   std::shared_ptr<const Model> build(const linalg::FactorisationSettings& settings = {});
 
   /// A body that was added.
