@@ -48,14 +48,7 @@ __all__ = [
 ]
 
 # The name by which users know them.
-for _type in (
-    InsideVertices,
-    NearestPoints,
-    Overlap,
-    ProximityPairs,
-    Shape,
-    Surface,
-    SurfaceImpacts,
-):
-    _type.__module__ = "sinew.collision"
-del _type
+for _name in __all__:
+    if isinstance(globals()[_name], type):
+        globals()[_name].__module__ = "sinew.collision"
+del _name
