@@ -18,6 +18,7 @@
 #include "sinew/plan/brace_response.hpp"
 #include "sinew/plan/brace_search.hpp"
 #include "sinew/plan/reach.hpp"
+#include "sinew/plan/refuse.hpp"
 
 namespace sinew::plan {
 
@@ -28,10 +29,6 @@ constexpr double kReplanShare = 0.95, kReplanForce = 0.5;
 
 // Relative: a point that moves less in a direction than this share of its most is not held in it.
 constexpr double kMinMotion = 1e-6;
-
-[[noreturn]] void refuse(const char* item, const std::string& what, const char* remedy) {
-  throw Error(ErrorKind::out_of_range, {.item = item}, what, remedy);
-}
 
 bool same_point(const pcc::ArmPoint& a, const pcc::ArmPoint& b) {
   return a.segment == b.segment && a.fraction == b.fraction && a.x == b.x && a.y == b.y;

@@ -9,16 +9,9 @@
 #include "sinew/pcc/arm.hpp"
 #include "sinew/plan/brace.hpp"
 #include "sinew/plan/reach.hpp"
+#include "sinew/plan/refuse.hpp"
 
 namespace sinew::plan {
-
-namespace {
-
-[[noreturn]] void refuse(const char* item, const std::string& what, const char* remedy) {
-  throw Error(ErrorKind::out_of_range, {.item = item}, what, remedy);
-}
-
-}  // namespace
 
 BraceTask completed(const pcc::Arm& arm, BraceTask task) {
   Task common;

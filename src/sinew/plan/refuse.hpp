@@ -1,0 +1,16 @@
+/// @file
+/// The error of a number that a plan cannot have.
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "sinew/core/error.hpp"
+
+namespace sinew::plan {
+
+[[noreturn]] inline void refuse(const std::string& item, std::string what, std::string remedy) {
+  throw Error(ErrorKind::out_of_range, {.item = item}, std::move(what), std::move(remedy));
+}
+
+}  // namespace sinew::plan
