@@ -60,20 +60,6 @@ void take_joints_out(const step::StepProblem& problem, Linearisation& result) {
   result.effort = std::move(effort);
 }
 
-// Puts the state back whatever happens.
-class StateGuard {
- public:
-  explicit StateGuard(Simulation& simulation)
-      : simulation_(simulation), state_(simulation.state()) {}
-  ~StateGuard() { simulation_.restore(state_); }
-  StateGuard(const StateGuard&) = delete;
-  StateGuard& operator=(const StateGuard&) = delete;
-
- private:
-  Simulation& simulation_;
-  State state_;
-};
-
 }  // namespace
 
 std::vector<std::string> row_names(const Model& model) {
@@ -115,9 +101,11 @@ std::vector<std::string> row_names(const Model& model) {
   return names;
 }
 
-Linearisation linearise(Simulation& simulation, const LinearisationChoice& choice) {
+namespace {
+
+// Leaves the simulation's state changed.
+Linearisation linearise_here(Simulation& simulation, const LinearisationChoice& choice) {
   const Model& model = simulation.model();
-  const StateGuard guard(simulation);
   const std::vector<int> curved =
       choice.geometric_stiffness ? model.curved_constraints() : std::vector<int>{};
   const auto weights =
@@ -143,6 +131,21 @@ Linearisation linearise(Simulation& simulation, const LinearisationChoice& choic
   const step::StepProblem& problem = world.problem();
   if (!problem.bilaterals.empty() || !problem.stiffness.empty()) take_joints_out(problem, result);
   return result;
+}
+
+}  // namespace
+
+// No destructor puts the state back: restore() may throw.
+Linearisation linearise(Simulation& simulation, const LinearisationChoice& choice) {
+  const State state = simulation.state();
+  try {
+    Linearisation result = linearise_here(simulation, choice);
+    simulation.restore(state);
+    return result;
+  } catch (...) {
+    simulation.restore(state);
+    throw;
+  }
 }
 
 }  // namespace sinew::sim
