@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <unordered_map>
 
+#include <Eigen/Geometry>
+
 #include "sinew/mesh/distance.hpp"
 #include "sinew/mesh/topology.hpp"
 

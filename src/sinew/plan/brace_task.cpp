@@ -3,6 +3,7 @@
 #include <numbers>
 #include <string>
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"

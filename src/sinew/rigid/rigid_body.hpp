@@ -4,6 +4,8 @@
 
 #include <memory>
 
+#include <Eigen/Geometry>
+
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 

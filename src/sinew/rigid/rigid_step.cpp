@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 #include "sinew/core/rotation.hpp"
 #include "sinew/rigid/rigid_body_model.hpp"
 
