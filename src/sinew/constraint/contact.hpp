@@ -2,6 +2,7 @@
 /// Unilateral contact with friction between material points and an analytic surface.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,12 +28,25 @@ namespace sinew::constraint {
 /// plane's outer side is outside the surface, and a point on the way of a miss is not pushed.
 /// begin_step() takes the way at the point's velocity; sim::ContactRows::correct() replaces it by
 /// that which the point would go without its own force.
+///
+/// Where a rigid body carries the surface, motions are relative to it: with y its point that was at
+/// x when the step began, rows measure frame^T (x - y), and forces act on both bodies, with the
+/// lever y - c on the carrier. Frames keep their directions through a step, the surface is the one
+/// that stood where the carrier was when it began.
 class Contact : public Constraint {
  public:
+  /// A body that is rigid as a whole, which carries the surface.
+  struct Carrier {
+    mechanics::MaterialPoint centre;        ///< any of its points
+    mechanics::Orientation turn;            ///< of it
+    Vector3 rest_centre = Vector3::Zero();  ///< m
+  };
+
   /// @param name for messages. @param points that may touch. @param surface checked() is applied.
-  /// @param friction Coulomb's coefficient, >= 0. Throws Error: out-of-range, too-few-points.
-  Contact(std::string name, std::vector<mechanics::MaterialPoint> points, Surface surface,
-          double friction);
+  /// @param friction Coulomb's coefficient, >= 0. @param carrier none: the surface's poses are
+  /// given. Throws Error: out-of-range, too-few-points.
+  Contact(std::string name, std::vector<mechanics::MaterialPoint> points, collision::Shape surface,
+          double friction, std::optional<Carrier> carrier = {});
 
   void declare(mechanics::RowPattern& rows,
                std::vector<mechanics::RowCurvature>& curvatures) override;
@@ -66,13 +80,27 @@ class Contact : public Constraint {
   void add_to(ValueHash& hash) const override;
 
   const std::vector<mechanics::MaterialPoint>& points() const { return points_; }
-  const Surface& surface() const { return surface_; }
+  const collision::Shape& surface() const { return surface_; }
+  const std::optional<Carrier>& carrier() const { return carrier_; }
+  /// Where the carrier has taken the surface, from rest.
+  Eigen::Isometry3d carried_pose(const Placement& placement) const;
+  /// (3,) m: where a point is now beside its surface as the step began it. @param values of the
+  /// step.
+  Vector3 position_beside(const Placement& placement, std::size_t point,
+                          const mechanics::RowValues& values) const;
+  /// (3,) m/s, relative to the surface's carrier. @param values of the step.
+  Vector3 velocity_beside(const Placement& placement, std::size_t point,
+                          const mechanics::RowValues& values) const;
   bool curved() const { return !std::holds_alternative<Plane>(surface_); }
   double friction() const { return friction_; }
   int row(std::size_t point) const { return first_row_ + 3 * static_cast<int>(point); }
-  std::size_t entry(std::size_t point) const {
-    return static_cast<std::size_t>(first_entry_) + 3 * point;
+  /// Of the point itself, in one of its three rows.
+  std::size_t entry(std::size_t point, int row = 0) const {
+    return static_cast<std::size_t>(first_entry_) +
+           static_cast<std::size_t>(stride_) * (3 * point + static_cast<std::size_t>(row));
   }
+  /// Columns: the normal and two tangents of a point in `values`.
+  Matrix3 frame(std::size_t point, const mechanics::RowValues& values) const;
   /// Exact gap of a point now, m. @param placement of the points. @param pose of the surface.
   /// @param point of points().
   collision::ShapeDistance distance_now(const Placement& placement, const Eigen::Isometry3d& pose,
@@ -81,10 +109,14 @@ class Contact : public Constraint {
  private:
   void set_frame(std::size_t point, const Vector3& carried, const Matrix3& frame, double gap,
                  mechanics::RowValues& values) const;
+  void begin_carried(const Placement& placement, mechanics::RowValues& values) const;
+  void write_carrier(std::size_t point, mechanics::RowValues& values) const;
 
   std::vector<mechanics::MaterialPoint> points_;
-  Surface surface_;
+  collision::Shape surface_;
   double friction_;
+  std::optional<Carrier> carrier_;
+  int stride_ = 1;  // entries of a row: the point; the carrier's centre and turn
   int first_entry_ = -1;
 };
 

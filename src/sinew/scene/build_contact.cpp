@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <string_view>
+#include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 
@@ -39,16 +41,39 @@ void check_corners(const ContactDescription& contact, const mechanics::BodyModel
               "name `points` of it that may touch");
 }
 
+// The surface is that of a rigid body, the points are the other's.
+void order(const ContactDescription& contact, BuiltBody& touching, BuiltBody& other) {
+  const auto is_rigid = [](const BuiltBody& body) {
+    return mechanics::as<const mechanics::HasShape>(*body.model) != nullptr;
+  };
+  if (touching.number == other.number || (!is_rigid(touching) && !is_rigid(other))) {
+    throw Error(ErrorKind::not_in_this_version, contact.between_place,
+                "contact of deformable bodies with one another or themselves",
+                "name a rigid body and another one");
+  }
+  if (!is_rigid(other)) std::swap(touching, other);
+}
+
 }  // namespace
 
 void add_contact(sim::ModelBuilder& builder, const ContactDescription& contact,
                  const BodyOf& body_of) {
-  const auto [body, model] = body_of(contact.body);
+  BuiltBody touching = body_of(contact.body), other;
+  if (!contact.other.empty()) {
+    other = body_of(contact.other);
+    order(contact, touching, other);
+  }
+  const auto [body, model] = touching;
   sim::ContactSettings settings;
   settings.name = contact.name;
   settings.place = contact.place;
   settings.body = body;
-  settings.surface = contact.surface;
+  if (other.model != nullptr) {
+    settings.surface = mechanics::as<const mechanics::HasShape>(*other.model)->rest_shape();
+    settings.carrier = other.number;
+  } else {
+    std::visit([&](const auto& surface) { settings.surface = surface; }, contact.surface);
+  }
   settings.points = contact.points.points;
   settings.outside = contact.outside;
   settings.friction = contact.friction;

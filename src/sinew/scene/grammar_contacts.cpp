@@ -86,12 +86,19 @@ Form contact_form() {
                        "friction. Points near the surface add three rows each to every step. "
                        "`sinew run` records the resultant force in run.csv.",
                    .keys = {body_key()},
-                   .alternatives = {{{"nodes", "points"}, false}}};
+                   .alternatives = {{{"body", "between"}, true}, {{"nodes", "points"}, false}}};
+  contact.keys.front().required = false;
+  contact.keys.push_back(
+      {.name = "between",
+       .forms = {list({reference("bodies")}, 2, 2)},
+       .example = "[finger, box]",
+       .description = "Two bodies, one of them rigid: points of the other (nodes, or a "
+                      "box's corners) may touch its shape. In place of body and surface. Of "
+                      "two rigid bodies the first one has the corners."});
   contact.keys.push_back({.name = "surface",
                           .forms = {table(solid_table())},
                           .example = "{plane: {point: 0 0 0 mm, normal: 0 0 1}}",
-                          .description = "The surface; fixed in the world, or moved by `motion`.",
-                          .required = true});
+                          .description = "The surface; fixed in the world, or moved by `motion`."});
   contact.keys.push_back({.name = "nodes",
                           .forms = {table(nodes_table())},
                           .example = "{set: z_min}",

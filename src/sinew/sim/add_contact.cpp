@@ -30,7 +30,7 @@ void check_gaps(const constraint::Contact& contact, const mechanics::BodyModel& 
   Vector3 where = Vector3::Zero();
   for (const mechanics::MaterialPoint& point : contact.points()) {
     const Vector3 at = body.rest_position(point.number);
-    const double gap = constraint::distance(contact.surface(), pose.inverse() * at).gap;
+    const double gap = collision::distance(contact.surface(), pose.inverse() * at).gap;
     if (gap >= deepest) continue;
     deepest = gap;
     where = at;
@@ -67,6 +67,26 @@ std::vector<mechanics::MaterialPoint> attach_points(ModelData& data, mechanics::
   return points;
 }
 
+std::optional<constraint::Contact::Carrier> attach_carrier(ModelData& data,
+                                                           const ContactSettings& settings) {
+  if (!settings.carrier) return std::nullopt;
+  const int body = *settings.carrier;
+  mechanics::BodyModel& on = find_body(data, body, settings.place);
+  auto* rigid = mechanics::as<mechanics::AttachesOrientations>(on);
+  const auto* shape = mechanics::as<const mechanics::HasShape>(on);
+  if (rigid == nullptr || shape == nullptr || body == settings.body) {
+    throw Error(ErrorKind::wrong_type, settings.place,
+                fmt::format("body '{}' carries no surface for itself or others", on.name()),
+                "name two bodies, of which one is of type rigid");
+  }
+  const Vector3 centre = shape->rest_origin();
+  const std::string what = "contact '" + settings.name + "'";
+  return constraint::Contact::Carrier{
+      {{body, on.attach(centre, mesh::Outside::nearest, what)}},
+      {{body, rigid->attach_orientation(centre, mesh::Outside::nearest, what)}},
+      centre};
+}
+
 }  // namespace
 
 int add_contact(ModelData& data, const ContactSettings& settings) {
@@ -81,7 +101,8 @@ int add_contact(ModelData& data, const ContactSettings& settings) {
   check_new_name(data.contacts, &ContactModel::name, "contacts", settings.name, settings.place);
   try {
     auto contact = std::make_unique<constraint::Contact>(
-        settings.name, attach_points(data, on, settings), settings.surface, settings.friction);
+        settings.name, attach_points(data, on, settings), settings.surface, settings.friction,
+        attach_carrier(data, settings));
     ContactModel entry{settings.name, static_cast<int>(data.constraints.size()), settings.motion};
     if (entry.motion) entry.motion->axis = checked_axis(entry.motion->axis, settings.place);
     check_gaps(*contact, on, entry.pose(0.0), data.size);

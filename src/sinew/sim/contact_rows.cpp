@@ -54,8 +54,9 @@ void ContactRows::choose_present(std::span<const double> effort, double time_ste
     const mechanics::MaterialPoint& point = contact.points()[k];
     const mechanics::BodyModel& body = model_.body(point.body);
     const int row = contact.row(k);
-    const double arrives = planes_.start()[row] + time_step * rows_.direction[contact.entry(k)].dot(
-                                                                  placement_.velocity(point));
+    const Vector3 velocity = contact.velocity_beside(placement_, k, rows_);
+    const double arrives =
+        planes_.start()[row] + time_step * rows_.direction[contact.entry(k)].dot(velocity);
     const bool present = !body.leaves_rows_out() || effort[static_cast<std::size_t>(row)] > 0.0 ||
                          std::min(rows_.reference[row], arrives) <= near;
     set_present(row, present);
@@ -105,9 +106,14 @@ bool ContactRows::correct(const step::StepProblem& problem, const RowNumbering& 
 // the surface is replaced by one that it does not.
 bool ContactRows::take_in(const constraint::Contact& contact, std::size_t point,
                           const Eigen::Isometry3d& pose) {
-  const mechanics::MaterialPoint& of = contact.points()[point];
-  const mechanics::StepSystem& system = *systems_[static_cast<std::size_t>(of.body)];
-  const Vector3 end = placement_.position(of) + system.proposed_motion(of.number);
+  const auto motion = [&](const mechanics::Site& site) {
+    return systems_[static_cast<std::size_t>(site.body)]->proposed_motion(site.number);
+  };
+  Vector3 end = contact.position_beside(placement_, point, rows_) + motion(contact.points()[point]);
+  if (const auto& carrier = contact.carrier()) {
+    const Vector3& lever = rows_.carried_lever[static_cast<std::size_t>(contact.row(point))];
+    end -= motion(carrier->centre) + motion(carrier->turn).cross(lever);
+  }
   if (contact.row_values(point, end, rows_)[0] >= 0.0) return false;
   if (contact.curved() && planes_.may_turn() && !planes_.turn_to(contact, point, end, pose)) {
     return false;
@@ -130,8 +136,8 @@ double ContactRows::deepest_free_point(std::span<const double> effort) const {
   for_each_point([&](const constraint::Contact& contact, std::size_t k) {
     const int row = contact.row(k);
     if (effort[static_cast<std::size_t>(row)] > 0.0) return;
-    const double gap = rows_.offset[row] + rows_.direction[contact.entry(k)].dot(
-                                               placement_.position(contact.points()[k]));
+    const double gap =
+        contact.row_values(k, contact.position_beside(placement_, k, rows_), rows_)[0];
     deepest = std::max(deepest, -gap);
   });
   return deepest;

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sinew/constraint/surface.hpp"
+#include "sinew/collision/shape.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/core/types.hpp"
 #include "sinew/mesh/embedding.hpp"
@@ -19,7 +19,9 @@ struct ContactSettings {
   std::string name;
   Location place;
   int body = 0;
-  constraint::Surface surface;
+  collision::Shape surface;  ///< where it is at rest
+  /// The rigid body that carries the surface; none: it stands still, or moves by `motion`.
+  std::optional<int> carrier;
   std::vector<NodeId> nodes;  ///< of the body's mesh; fixed ones are left out
   Points points;              ///< (n, 3) m, at rest; beside the nodes
   mesh::Outside outside = mesh::Outside::error;

@@ -19,6 +19,7 @@
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/observables.hpp"
 #include "sinew/sim/simulation.hpp"
+#include "sinew/sim/world.hpp"
 #include "sinew/sim/state.hpp"
 
 namespace sinew::sim {
@@ -194,8 +195,11 @@ void put_contact(const Simulation& simulation, int index, std::span<double> all)
     all = all.subspan(size);
     return numbers;
   };
-  const ContactModel& contact = simulation.model().contacts()[static_cast<std::size_t>(index)];
-  Eigen::Map<Pose>(all.data()) = contact.pose(simulation.time()).affine();
+  Eigen::Map<Pose>(all.data()) = simulation.world()
+                                     .contacts()
+                                     .planes()
+                                     .pose_now(static_cast<std::size_t>(index), simulation.time())
+                                     .affine();
   part(12);
   Numbers position = part(3 * n), gap = part(n), normal = part(3 * n), normal_force = part(n),
           friction_force = part(3 * n), state = part(n), sums = part(8);
