@@ -14,7 +14,7 @@
 namespace sinew::constraint {
 namespace {
 
-std::vector<Surface> surfaces() {
+std::vector<collision::Shape> surfaces() {
   return {Plane{{0.1, -0.2, 0.05}, Vector3(0.3, -0.4, 0.8).normalized()},
           Sphere{{0.02, 0.01, -0.03}, 0.02},
           Capsule{{-0.01, 0.0, 0.0}, {0.03, 0.02, -0.01}, 0.005}};
@@ -47,7 +47,7 @@ class ContactRows : public ::testing::Test {
 
 TEST_F(ContactRows, AreTheDerivativeOfGapAndSlip) {
   const auto& effector = dynamic_cast<const PointEffector&>(model_->effector(0));
-  for (const Surface& surface : surfaces()) {
+  for (const collision::Shape& surface : surfaces()) {
     Contact contact("contact", {effector.point()}, surface, 0.5);
     mechanics::RowPattern pattern;
     std::vector<mechanics::RowCurvature> curvatures;
