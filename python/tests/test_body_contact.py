@@ -87,7 +87,7 @@ def test_a_soft_block_stands_on_a_cube_that_stands_on_a_table():
     sim = make({"block": soft_block(position="-10 -10 40.1 mm"), "cube": cube(), "table": TABLE},
                {"top": {"between": ["block", "cube"], "nodes": {"set": "z_min"}, "friction": 0.5},
                 "floor": {"between": ["cube", "table"], "friction": 0.5}})
-    sim.run(duration=0.3)
+    sim.run(duration=0.6)
     block = sim.body("block").mass
     assert sim.contact("top").normal_force == pytest.approx(block * GRAVITY, rel=1e-5)
     assert sim.contact("floor").normal_force == pytest.approx((block + 0.2) * GRAVITY, rel=1e-5)
@@ -106,7 +106,7 @@ def grasp(friction, mass, lift="20 mm"):
                 "floor": {"between": ["cube", "table"], "friction": 0.3}}, step="2 ms")
     sim.run(duration=0.2)
     squeeze = 0.5 * (sim.contact("left_pad").normal_force + sim.contact("right_pad").normal_force)
-    sim.run(duration=0.3)
+    sim.run(duration=0.6)
     return sim, squeeze
 
 
