@@ -240,12 +240,12 @@ Json surface_json(const constraint::Contact& contact) {
 Json contact_json(const sim::Observables& observables, int index) {
   const sim::Model& model = observables.simulation().model();
   const constraint::Contact& contact = model.contact(index);
-  const int body = contact.points().front().body;
+  const int body = contact.body();
   return {{"name", contact.name()},
           {"body", model.body(body).name()},
           {"surface", surface_json(contact)},
           {"friction", contact.friction()},
-          {"points", contact.points().size()},
+          {"points", contact.size()},
           {"signals", keys_of(observables, sim::ObservableKind::contact, contact.name())}};
 }
 

@@ -130,22 +130,10 @@ collision::Shape solid(const Shape& shape) {
 }
 
 collision::Shape placed(const Shape& shape, const Vector3& position, const Matrix3& rotation) {
-  const auto move = [&](Vector3& point) { point = position + rotation * point; };
-  const Overloaded convert{
-      [](collision::Plane&) {},  // no rigid body is one
-      [&](collision::Sphere& sphere) { move(sphere.centre); },
-      [&](collision::OrientedBox& box) {
-        move(box.centre);
-        box.axes = rotation * box.axes;
-      },
-      [&](auto& rod) {
-        move(rod.from);
-        move(rod.to);
-      },
-  };
-  collision::Shape result = solid(shape);
-  std::visit(convert, result);
-  return result;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = rotation;
+  pose.translation() = position;
+  return collision::moved(solid(shape), pose);
 }
 
 mesh::Mesh skin(const Shape& shape) {

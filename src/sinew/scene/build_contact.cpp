@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <string_view>
 #include <utility>
 #include <variant>
 
@@ -32,15 +31,6 @@ std::vector<NodeId> nodes_of(const ContactDescription& contact, const mesh::Mesh
   return nodes;
 }
 
-// The nodes of a rigid body's picture are points of it where it has corners alone.
-void check_corners(const ContactDescription& contact, const mechanics::BodyModel& model) {
-  const auto* shape = mechanics::as<const mechanics::HasShape>(model);
-  if (shape == nullptr || shape->shape_name() == std::string_view("box")) return;
-  throw Error(ErrorKind::not_in_this_version, contact.place,
-              fmt::format("body '{}' is round, and contact of round bodies", contact.body),
-              "name `points` of it that may touch");
-}
-
 // The surface is that of a rigid body, the points are the other's.
 void order(const ContactDescription& contact, BuiltBody& touching, BuiltBody& other) {
   const auto is_rigid = [](const BuiltBody& body) {
@@ -68,19 +58,13 @@ void add_contact(sim::ModelBuilder& builder, const ContactDescription& contact,
   settings.name = contact.name;
   settings.place = contact.place;
   settings.body = body;
-  if (other.model != nullptr) {
-    settings.surface = mechanics::as<const mechanics::HasShape>(*other.model)->rest_shape();
-    settings.carrier = other.number;
-  } else {
-    std::visit([&](const auto& surface) { settings.surface = surface; }, contact.surface);
-  }
+  std::visit([&](const auto& surface) { settings.surface = surface; }, contact.surface);
+  if (other.model != nullptr) settings.carrier = other.number;
   settings.points = contact.points.points;
   settings.outside = contact.outside;
   settings.friction = contact.friction;
-  if (settings.points.rows() == 0) {
-    check_corners(contact, *model);
-    settings.nodes = nodes_of(contact, model->mesh());
-  }
+  const bool whole = mechanics::as<const mechanics::HasShape>(*model) != nullptr && !contact.nodes;
+  if (settings.points.rows() == 0 && !whole) settings.nodes = nodes_of(contact, model->mesh());
   if (contact.motion) {
     const BaseDescription& motion = *contact.motion;
     settings.motion = {-1, motion.translation, motion.angle, motion.axis, motion.centre};

@@ -92,9 +92,10 @@ Form contact_form() {
       {.name = "between",
        .forms = {list({reference("bodies")}, 2, 2)},
        .example = "[finger, box]",
-       .description = "Two bodies, one of them rigid: points of the other (nodes, or a "
-                      "box's corners) may touch its shape. In place of body and surface. Of "
-                      "two rigid bodies the first one has the corners."});
+       .description =
+           "Two bodies, one of them rigid, in place of body and surface. Nodes or points of "
+           "a body with elements or of an arm touch the other one's shape; two rigid "
+           "bodies touch with their shapes."});
   contact.keys.push_back({.name = "surface",
                           .forms = {table(solid_table())},
                           .example = "{plane: {point: 0 0 0 mm, normal: 0 0 1}}",
@@ -103,7 +104,8 @@ Form contact_form() {
                           .forms = {table(nodes_table())},
                           .example = "{set: z_min}",
                           .description = "Surface nodes that may make contact. Without, and "
-                                         "without points: all that are not fixed."});
+                                         "without points: all that are not fixed; of a rigid "
+                                         "body its whole shape."});
   contact.keys.push_back({.name = "points",
                           .forms = {table(point_file_table()), list({vector(length())})},
                           .example = "[0 0 195 mm]",

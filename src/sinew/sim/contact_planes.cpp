@@ -46,7 +46,9 @@ void ContactPlanes::place(double from, double to) {
 void ContactPlanes::begin() { start_ = rows_.delta; }
 
 Eigen::Isometry3d ContactPlanes::pose_now(std::size_t contact, double time) const {
-  if (contacts_[contact]->carrier()) return contacts_[contact]->carried_pose(placement_);
+  if (contacts_[contact]->carrier()) {
+    return contacts_[contact]->carrier()->pose(placement_);
+  }
   return model_.contacts()[contact].pose(time);
 }
 
@@ -88,7 +90,7 @@ void ContactPlanes::follow_points() {
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const constraint::Contact& contact = *contacts_[i];
     if (!contact.curved()) continue;
-    for (std::size_t k = 0; k < contact.points().size(); ++k) {
+    for (std::size_t k = 0; k < contact.size(); ++k) {
       const Vector3 at = contact.position_beside(placement_, k, rows_);
       curvature_.segment<3>(contact.row(k)) = contact.place_nearest(k, at, pose(i), rows_);
     }
@@ -100,9 +102,9 @@ double ContactPlanes::drift(std::span<const double> effort, double time) const {
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const constraint::Contact& contact = *contacts_[i];
     const Eigen::Isometry3d pose = pose_now(i, time);
-    for (std::size_t k = 0; k < contact.points().size(); ++k) {
+    for (std::size_t k = 0; k < contact.size(); ++k) {
       if (effort[static_cast<std::size_t>(contact.row(k))] == 0.0) continue;
-      const double gap = contact.distance_now(placement_, pose, k).gap;
+      const double gap = contact.distance_now(placement_, pose, k, rows_).gap;
       worst = std::max(worst, std::abs(gap - rows_.delta[contact.row(k)]));
     }
   }
@@ -110,29 +112,25 @@ double ContactPlanes::drift(std::span<const double> effort, double time) const {
 }
 
 std::size_t ContactPlanes::frames_size() const {
-  std::size_t points = 0;
-  for (const constraint::Contact* contact : contacts_) points += contact->points().size();
-  return 9 * points;
+  std::size_t size = 0;
+  for (const constraint::Contact* contact : contacts_) size += contact->memory_size();
+  return size;
 }
 
 void ContactPlanes::save_frames(std::vector<double>& frames) const {
   frames.resize(frames_size());
   double* to = frames.data();
   for (const constraint::Contact* contact : contacts_) {
-    for (std::size_t k = 0; k < contact->points().size(); ++k) {
-      to = std::copy_n(contact->frame(k, rows_).data(), 9, to);
-    }
+    contact->save(rows_, to);
+    to += contact->memory_size();
   }
 }
 
 void ContactPlanes::load_frames(std::span<const double> frames) {
   const double* from = frames.data();
   for (const constraint::Contact* contact : contacts_) {
-    for (std::size_t k = 0; k < contact->points().size(); ++k, from += 9) {
-      for (int row = 0; row < 3; ++row) {
-        rows_.direction[contact->entry(k, row)] = Eigen::Map<const Vector3>(from + 3 * row);
-      }
-    }
+    contact->load(from, rows_);
+    from += contact->memory_size();
   }
 }
 

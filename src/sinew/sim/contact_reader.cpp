@@ -12,8 +12,8 @@ ContactPoint ContactReader::point(int contact, std::size_t point) const {
   const auto row = static_cast<std::size_t>(touching.row(point));
   const Matrix3 frame = touching.frame(point, run_.world.rows());
   ContactPoint result;
-  result.position = run_.world.placement().position(touching.points()[point]);
-  result.gap = touching.distance_now(run_.world.placement(), pose, point).gap;
+  result.position = touching.position_now(run_.world.placement(), point, run_.world.rows());
+  result.gap = touching.distance_now(run_.world.placement(), pose, point, run_.world.rows()).gap;
   result.normal = frame.col(0);
   result.normal_force = run_.effort[row];
   result.friction_force = run_.effort[row + 1] * frame.col(1) + run_.effort[row + 2] * frame.col(2);
@@ -25,14 +25,14 @@ ContactPoint ContactReader::point(int contact, std::size_t point) const {
 }
 
 std::vector<ContactPoint> ContactReader::points(int contact) const {
-  std::vector<ContactPoint> result(run_.model->contact(contact).points().size());
+  std::vector<ContactPoint> result(run_.model->contact(contact).size());
   for (std::size_t k = 0; k < result.size(); ++k) result[k] = point(contact, k);
   return result;
 }
 
 ContactSum ContactReader::sum(int contact) const {
   ContactSum sum;
-  for (std::size_t k = 0; k < run_.model->contact(contact).points().size(); ++k) {
+  for (std::size_t k = 0; k < run_.model->contact(contact).size(); ++k) {
     sum.add(point(contact, k));
   }
   return sum;

@@ -19,11 +19,11 @@ struct ContactSettings {
   std::string name;
   Location place;
   int body = 0;
-  collision::Shape surface;  ///< where it is at rest
-  /// The rigid body that carries the surface; none: it stands still, or moves by `motion`.
+  collision::Shape surface;  ///< where it is at rest, in the world
+  /// The rigid body whose shape is touched, in place of the surface.
   std::optional<int> carrier;
   std::vector<NodeId> nodes;  ///< of the body's mesh; fixed ones are left out
-  Points points;              ///< (n, 3) m, at rest; beside the nodes
+  Points points;  ///< (n, 3) m, at rest; beside the nodes. Neither: a rigid body's shape
   mesh::Outside outside = mesh::Outside::error;
   double friction = 0.0;             ///< Coulomb's coefficient, >= 0
   std::optional<BaseMotion> motion;  ///< of the surface

@@ -31,9 +31,10 @@ void PathFollower::check() const {
                 "step through the load in time");
   }
   for (std::size_t i = 0; i < run_.model->contacts().size(); ++i) {
-    if (!run_.model->contact(static_cast<int>(i)).carrier()) continue;
+    const constraint::Contact& contact = run_.model->contact(static_cast<int>(i));
+    if (!contact.own() && !contact.carrier()) continue;
     throw Error(ErrorKind::not_in_this_version, {.item = "follow_path"},
-                "paths beside surfaces that bodies carry are not followed yet",
+                "paths on which the shapes of rigid bodies touch are not followed yet",
                 "step through the load in time");
   }
   if (run_.world.joints().block_count() > 0) {
