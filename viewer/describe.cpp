@@ -218,7 +218,10 @@ Json probe_json(const sim::Observables& observables, const constraint::Probe& pr
           {"signals", keys_of(observables, sim::ObservableKind::probe, probe.name())}};
 }
 
-Json surface_json(const constraint::Surface& surface) {
+// A rigid body's own surface is drawn with it.
+Json surface_json(const constraint::Contact& contact) {
+  if (contact.carrier()) return {{"kind", "body"}};
+  const collision::Shape& surface = contact.surface();
   if (const auto* plane = std::get_if<constraint::Plane>(&surface)) {
     return {{"kind", "plane"},
             {"point", vector_json(plane->point)},
@@ -237,12 +240,12 @@ Json surface_json(const constraint::Surface& surface) {
 Json contact_json(const sim::Observables& observables, int index) {
   const sim::Model& model = observables.simulation().model();
   const constraint::Contact& contact = model.contact(index);
-  const int body = contact.points().front().body;
+  const int body = contact.body();
   return {{"name", contact.name()},
           {"body", model.body(body).name()},
-          {"surface", surface_json(contact.surface())},
+          {"surface", surface_json(contact)},
           {"friction", contact.friction()},
-          {"points", contact.points().size()},
+          {"points", contact.size()},
           {"signals", keys_of(observables, sim::ObservableKind::contact, contact.name())}};
 }
 

@@ -8,6 +8,24 @@
 
 namespace sinew::viewer {
 
+namespace {
+
+// While it lives, steps are watched: the simulation may outlive who watches.
+class Watched {
+ public:
+  Watched(RobotState& state, sim::StepWatcher watcher) : state_(state) {
+    state.watch(std::move(watcher));
+  }
+  ~Watched() { state_.watch({}); }
+  Watched(const Watched&) = delete;
+  Watched& operator=(const Watched&) = delete;
+
+ private:
+  RobotState& state_;
+};
+
+}  // namespace
+
 LiveSource::LiveSource(const scene::Robot& robot, const LiveSettings& settings)
     : LiveSource(robot, std::make_shared<sim::Simulation>(robot.model, robot.threads()),
                  settings.controller.empty() ? std::nullopt
@@ -30,9 +48,21 @@ void LiveSource::stop() {
   writer_.join();
 }
 
+bool LiveSource::complete(void (RobotState::*work)()) {
+  struct Ended {};
+  const Watched watched(state_, [this](const sim::StepProgress&) {
+    if (stopping()) throw Ended{};
+  });
+  try {
+    (state_.*work)();
+  } catch (const Ended&) {
+    return false;
+  }
+  return true;
+}
+
 bool LiveSource::advance() {
-  state_.step();
-  if (state_.stopped()) return false;
+  if (!complete(&RobotState::step) || state_.stopped()) return false;
   record();
   return true;
 }
@@ -93,7 +123,10 @@ void LiveSource::handle(const Request& request) {
     state_.reset();
     restart_clock();
   } else if (std::holds_alternative<Settle>(request)) {
-    state_.settle();
+    if (!complete(&RobotState::settle)) {
+      throw Error(ErrorKind::not_converged, {}, "the view ended before an equilibrium was found",
+                  "open it again");
+    }
   } else if (const auto* command = std::get_if<SetCommand>(&request)) {
     state_.command(*command);
   } else if (const auto* controller = std::get_if<ChooseController>(&request)) {

@@ -63,6 +63,9 @@ class LiveSource : public SourceThread {
   void record();
 
  private:
+  /// Whether a step or a search came to its end: not where the source is to stop meanwhile. The
+  /// state is then that before it.
+  bool complete(void (RobotState::*work)());
   void record(bool on);
 
   RobotState state_;

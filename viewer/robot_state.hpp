@@ -65,6 +65,8 @@ class RobotState {
 
   /// One step; what it throws is kept as stopped().
   void step();
+  /// As the simulation's: steps and settle() tell how far they are.
+  void watch(sim::StepWatcher watcher) { simulation_->watch(std::move(watcher)); }
   /// The simulation was stepped by others.
   void moved() { ++shape_; }
   /// Shows a controller that others attach and detach: from now on none is attached here.

@@ -47,6 +47,8 @@ class SourceThread : public Source {
   virtual std::optional<Download> download(std::string_view) { return std::nullopt; }
 
   void pause() { playing_ = false; }
+  /// Whether end() waits for the thread.
+  bool stopping();
   Publisher& publisher() { return *publisher_; }
   /// Time was changed other than by advance().
   void restart_clock();
@@ -65,7 +67,6 @@ class SourceThread : public Source {
   void catch_up();
   void measure_factor();
   void publish();
-  bool stopping();
   bool asked();
   void enqueue(std::function<void()> work);
 

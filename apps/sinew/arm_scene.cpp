@@ -79,7 +79,8 @@ std::vector<std::string> left_out(const SceneDescription& scene, const std::stri
     if (load.body == body) names.push_back(fmt::format("load '{}'", load.name));
   }
   for (const auto& contact : scene.contacts) {
-    if (takes_contacts || contact.body != body) continue;
+    const bool taken = takes_contacts && contact.other.empty();
+    if (taken || (contact.body != body && contact.other != body)) continue;
     names.push_back(fmt::format("contact '{}'", contact.name));
   }
   return names;

@@ -59,7 +59,7 @@ std::vector<std::string> take_objects(const BraceOptions& options, const ArmScen
                                       BraceTask& task) {
   std::vector<std::string> names;
   for (const auto& contact : scene.description.contacts) {
-    if (contact.body != scene.arm->settings().name) continue;
+    if (contact.body != scene.arm->settings().name || !contact.other.empty()) continue;
     if (contact.motion) {
       throw Error(ErrorKind::bad_argument,
                   {.file = options.scene.file.string(),

@@ -281,7 +281,7 @@ Facts scene_facts(const InfoOptions& options) {
   }
   for (std::size_t i = 0; i < model.contacts().size(); ++i) {
     const std::string& name = model.contacts()[i].name;
-    const auto points = model.contact(static_cast<int>(i)).points().size();
+    const auto points = model.contact(static_cast<int>(i)).size();
     facts.json["contacts"].push_back({{"name", name}, {"points", points}});
     facts.text += fmt::format("  contact {}: {} points\n", name, points);
   }

@@ -111,7 +111,7 @@ void bind_contact(py::module_& module) {
   bind_points(type);
   type.def("__repr__", [](const Contact& self) {
     return fmt::format("<sinew.Contact '{}', {} points>", model(self).name,
-                       self.session->model().contact(self.index).points().size());
+                       self.session->model().contact(self.index).size());
   });
 }
 

@@ -243,6 +243,19 @@ def test_a_long_step_tells_of_itself_and_can_be_ended(tmp_path, how):
         assert len(file["time"]) == len(rows) >= 1
 
 
+def test_a_long_step_in_the_view_can_be_ended(tmp_path):
+    (tmp_path / "long.yaml").write_text(LONG_STEP)
+    words = [os.path.abspath(PROGRAM), "view", str(tmp_path / "long.yaml"), "--no-open", "--port", "0"]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as view:
+        assert "the view is at" in view.stdout.readline()
+        time.sleep(3)  # into the first step
+        sent = time.monotonic()
+        view.send_signal(signal.SIGINT)
+        view.communicate(timeout=60)
+        assert time.monotonic() - sent < 10
+        assert view.returncode == DONE
+
+
 def test_rubber_takes_the_exact_tangent_in_place_of_the_rotated_one(scene, tmp_path):
     soft = ["--set", "solver.tangent=rotated", "--set", "bodies.beam.material.model=neo-hookean", "--duration", "0.05s"]
     told = sinew("run", scene(), *soft, "--out", "o", cwd=tmp_path)

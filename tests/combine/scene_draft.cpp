@@ -494,6 +494,17 @@ class Drafter {
                     vector_text(on->shape.at(0.95, 0.2, 0.2))));
   }
 
+  // A box on its way along an axis; in statics it stands still.
+  void add_stone(const std::array<double, 3>& centre, const char* axis) {
+    const std::string moves =
+        dynamic()
+            ? fmt::format("mass: 20 g, velocity: {{linear: {} m/s, angular: 3 1 2 rad/s}}", axis)
+            : "fixed: true";
+    add("bodies", "stone",
+        fmt::format("{{type: rigid, shape: {{box: 30 30 30 mm}}, pose: {{position: {}}}, {}}}",
+                    vector_text(centre), moves));
+  }
+
   // Surfaces lie a little beside the tip.
   void add_contact() {
     if (!has("contact")) return;
@@ -513,14 +524,19 @@ class Drafter {
         {{"plane", fmt::format("plane: {{point: {}, normal: {}}}", vector_text(at), axes[below])},
          {"sphere", fmt::format("sphere: {{centre: {}, radius: 15 mm}}", vector_text(centre))},
          {"capsule", fmt::format("capsule: {{ends: [{}, {}], radius: 15 mm}}", vector_text(left),
-                                 vector_text(right))}});
+                                 vector_text(right))},
+         {"body", ""}});
     std::string text = fmt::format("body: <{}>, surface: {{{}}}", on.id, surface);
+    if (surface.empty()) {
+      add_stone(centre, axes[below]);
+      text = fmt::format("between: [<{}>, <stone>]", on.id);
+    }
     text += on.fem ? fmt::format(", nodes: {{set: {}}}", on.shape.tip)
                    : fmt::format(", points: [{}, {}]", vector_text(on.shape.at(1.0, 0.0, 0.0)),
                                  vector_text(on.shape.at(1.0, 0.0, -1.0)));
     if (on.rigid) text += ", outside: nearest";
     if (has("contact_friction")) text += ", friction: 0.5";
-    if (has("contact_motion")) {
+    if (has("contact_motion") && !surface.empty()) {
       text += fmt::format(", motion: {{{}: {{ramp: {{to: {:.3g} mm, duration: 60 ms}}}}}}",
                           "xyz"[below], gap + draw(0.5, 2.5));
     }

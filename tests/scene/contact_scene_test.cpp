@@ -31,7 +31,7 @@ SceneDescription scene_with(const std::string& contact) {
 }
 
 std::size_t points_of(const std::string& contact) {
-  return build(scene_with(contact)).model->contact(0).points().size();
+  return build(scene_with(contact)).model->contact(0).size();
 }
 
 void expect_error(const std::string& contact, ErrorKind kind, const std::string& words) {

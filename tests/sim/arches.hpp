@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "sinew/constraint/surface.hpp"
+#include "sinew/collision/shape.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/mechanics/body_model.hpp"
@@ -27,9 +27,9 @@ struct ArchOptions {
   bool by_load = true;  ///< of 0.02 N; else by a force actuator of the same place
   /// Into three bodies that are welded together again: welds alone hold the one in the middle.
   bool cut = false;
-  std::optional<double> floor;               ///< m: z of a plane under the crown
-  double friction = 0.0;                     ///< of that
-  std::optional<constraint::Surface> below;  ///< in place of the plane
+  std::optional<double> floor;            ///< m: z of a plane under the crown
+  double friction = 0.0;                  ///< of that
+  std::optional<collision::Shape> below;  ///< in place of the plane
 };
 
 // A part of the arch along x.
@@ -68,7 +68,7 @@ inline void add_floor(sim::ModelBuilder& builder, int body, const ArchOptions& o
   floor.name = "floor";
   floor.body = body;
   floor.surface = options.below ? *options.below
-                                : constraint::Plane{{0.0, 0.0, *options.floor}, Vector3::UnitZ()};
+                                : collision::Plane{{0.0, 0.0, *options.floor}, Vector3::UnitZ()};
   floor.friction = options.friction;
   const mesh::Mesh& mesh = builder.added_body(body).mesh();
   for (const NodeId node : mesh.node_sets.at("z_min")) {

@@ -99,7 +99,7 @@ std::shared_ptr<const Model> commanded(const StepSettings& step, double angle, d
   if (far > 0.0) {
     ContactSettings wall;
     wall.name = "wall";
-    wall.surface = constraint::Plane{{far, 0.0, 0.0}, -Vector3::UnitX()};
+    wall.surface = collision::Plane{{far, 0.0, 0.0}, -Vector3::UnitX()};
     wall.points = Points::Zero(2, 3);
     wall.points(0, 2) = -0.2;
     wall.points(1, 2) = -0.4;

@@ -64,7 +64,7 @@ std::unique_ptr<Simulation> thrown(const Throw& options) {
   builder.add_fem_body(std::move(body));
   ContactSettings wall;
   wall.name = "wall";
-  wall.surface = constraint::Plane{{0.0, 0.0, -options.gap}, Vector3::UnitZ()};
+  wall.surface = collision::Plane{{0.0, 0.0, -options.gap}, Vector3::UnitZ()};
   wall.nodes = mesh->node_sets.at("z_min");
   builder.add_contact(wall);
   auto simulation = std::make_unique<Simulation>(builder.build());

@@ -28,7 +28,7 @@ using sinew::testing::BlockOptions;
 using sinew::testing::mean_velocity;
 
 struct Flight {
-  constraint::Surface surface;
+  collision::Shape surface;
   double speed = 1.0;       ///< m/s, of the block along x
   double time_step = 0.01;  ///< s
   Method method = Method::newton;
@@ -67,11 +67,11 @@ std::unique_ptr<Simulation> flying(const Flight& flight) {
   return simulation;
 }
 
-std::vector<constraint::Surface> obstacles(double x, double below) {
+std::vector<collision::Shape> obstacles(double x, double below) {
   const double radius = 0.005, z = -below - radius;
-  return {constraint::Sphere{{x, 0.0, z}, radius},
-          constraint::Capsule{{x, -0.01, z}, {x + 0.004, 0.01, z}, radius},
-          constraint::Capsule{{x, -0.3, z}, {x, 0.3, z}, radius}};  // a cylinder across the way
+  return {collision::Sphere{{x, 0.0, z}, radius},
+          collision::Capsule{{x, -0.01, z}, {x + 0.004, 0.01, z}, radius},
+          collision::Capsule{{x, -0.3, z}, {x, 0.3, z}, radius}};  // a cylinder across the way
 }
 
 TEST(Passing, BodiesThatMissFeelNothing) {
@@ -82,7 +82,7 @@ TEST(Passing, BodiesThatMissFeelNothing) {
                         Case{10.0, 0.01, 0.04}, Case{1.0, 0.001, 0.0001}}) {
     for (const double phase : {0.0, 0.3, 0.7}) {
       const double x = 0.06 + phase * c.speed * c.time_step;
-      for (const constraint::Surface& surface : obstacles(x, c.below)) {
+      for (const collision::Shape& surface : obstacles(x, c.below)) {
         for (const Method method : {Method::one_linearisation, Method::newton}) {
           const auto flown = flying(
               {.surface = surface, .speed = c.speed, .time_step = c.time_step, .method = method});
@@ -103,7 +103,7 @@ TEST(Passing, BodiesThatMissFeelNothing) {
 
 // The same motion as the surface's: it passes a body at rest.
 TEST(Passing, SurfacesThatMissAreNotFelt) {
-  for (const constraint::Surface& surface : obstacles(0.06, 0.001)) {
+  for (const collision::Shape& surface : obstacles(0.06, 0.001)) {
     BaseMotion motion;
     motion.translation[0] = Signal::ramp({0.0, -0.12, 0.0, 0.12});
     const auto flown = flying({.surface = surface, .speed = 0.0, .motion = motion});
@@ -133,10 +133,9 @@ TEST(Passing, NothingGoesThroughASurface) {
   for (const double speed : {1.0, 5.0}) {
     for (const double phase : {0.0, 0.3, 0.7}) {
       const double x = 0.03 + phase * speed * 0.01, radius = 0.004;
-      const constraint::Sphere ball{{x, 0.0, 0.01}, radius};
-      const constraint::Capsule bar{{x, -0.3, 0.01}, {x, 0.3, 0.01}, radius};
-      for (const constraint::Surface& surface :
-           {constraint::Surface(ball), constraint::Surface(bar)}) {
+      const collision::Sphere ball{{x, 0.0, 0.01}, radius};
+      const collision::Capsule bar{{x, -0.3, 0.01}, {x, 0.3, 0.01}, radius};
+      for (const collision::Shape& surface : {collision::Shape(ball), collision::Shape(bar)}) {
         for (const Method method : {Method::one_linearisation, Method::newton}) {
           const auto flown = flying({.surface = surface, .speed = speed, .method = method});
           Simulation& simulation = *flown;
@@ -166,7 +165,7 @@ TEST(Passing, NothingGoesThroughASurface) {
 // Where the lower front edge meets a ball, the normal is that of the place of the impact, whatever
 // the step: 3 mm below the edge and 4 mm behind it lies the ball's centre.
 TEST(Passing, ImpactsAreThoseOfThePlaceWhereTheyHappen) {
-  const constraint::Sphere ball{{0.045, 0.0, -0.003}, 0.005};
+  const collision::Sphere ball{{0.045, 0.0, -0.003}, 0.005};
   for (const double time_step : {1e-3, 4e-3, 1e-2}) {
     for (const Method method : {Method::one_linearisation, Method::newton}) {
       const auto flown =
@@ -192,7 +191,7 @@ TEST(Passing, ImpactsAreThoseOfThePlaceWhereTheyHappen) {
 }
 
 TEST(Passing, RunsGoOnFromASavedStateBitForBit) {
-  const Flight flight{.surface = constraint::Sphere{{0.035, 0.0, -0.003}, 0.005}};
+  const Flight flight{.surface = collision::Sphere{{0.035, 0.0, -0.003}, 0.005}};
   for (const Integrator integrator : {Integrator::backward_euler, Integrator::bdf2}) {
     Flight own = flight;
     own.integrator = integrator;
@@ -225,7 +224,7 @@ std::size_t memory_of_a_simulation(bool contact) {
   if (contact) {
     ContactSettings floor;
     floor.name = "floor";
-    floor.surface = constraint::Plane{{0.0, 0.0, -1.0}, Vector3::UnitZ()};
+    floor.surface = collision::Plane{{0.0, 0.0, -1.0}, Vector3::UnitZ()};
     for (Eigen::Index n = 0; n < mesh->nodes.rows(); ++n) {
       floor.nodes.push_back(static_cast<NodeId>(n));
     }

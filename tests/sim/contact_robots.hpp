@@ -54,7 +54,7 @@ inline sim::ModelBuilder block_on_plane(const BlockOptions& options) {
   if (options.floor) {
     sim::ContactSettings floor;
     floor.name = "floor";
-    floor.surface = constraint::Plane{};
+    floor.surface = collision::Plane{};
     floor.nodes = mesh->node_sets.at("z_min");
     floor.friction = options.friction;
     builder.add_contact(floor);

@@ -144,7 +144,7 @@ TEST(Contact, LedgerOfACarriedBlock) {
   ModelBuilder builder = block_on_plane(options);
   ContactSettings belt;
   belt.name = "belt";
-  belt.surface = constraint::Plane{};
+  belt.surface = collision::Plane{};
   belt.friction = 0.5;
   const auto mesh =
       mesh::block({.corner = {-0.02, -0.02, 0.0}, .size = {0.04, 0.04, 0.02}, .cells = {4, 4, 2}});
@@ -192,7 +192,7 @@ std::shared_ptr<const Model> pressed_by_a_ball(Method method, double friction, d
   builder.add_fem_body(std::move(body));
   ContactSettings ball;
   ball.name = "ball";
-  ball.surface = constraint::Sphere{Vector3(0.001, 0.002, 0.02 + 0.03), 0.03};
+  ball.surface = collision::Sphere{Vector3(0.001, 0.002, 0.02 + 0.03), 0.03};
   ball.nodes = mesh->node_sets.at("z_max");
   ball.friction = friction;
   BaseMotion motion;
@@ -246,7 +246,7 @@ TEST(Contact, TwoCapsulesHoldABlockByFriction) {
       ContactSettings finger;
       finger.name = side < 0.0 ? "left" : "right";
       const double x = side * (0.02 + 0.008);
-      finger.surface = constraint::Capsule{{x, -0.03, 0.01}, {x, 0.03, 0.01}, 0.008};
+      finger.surface = collision::Capsule{{x, -0.03, 0.01}, {x, 0.03, 0.01}, 0.008};
       finger.nodes = mesh.node_sets.at(side < 0.0 ? "x_min" : "x_max");
       finger.friction = friction;
       BaseMotion motion;
@@ -286,7 +286,7 @@ TEST(Contact, ActuatorsAndContactsShareOneProblem) {
     builder.add_fem_body(std::move(body));
     ContactSettings floor;
     floor.name = "floor";
-    floor.surface = constraint::Plane{{0.0, 0.0, -0.0005}, Vector3::UnitZ()};
+    floor.surface = collision::Plane{{0.0, 0.0, -0.0005}, Vector3::UnitZ()};
     floor.nodes = mesh->node_sets.at("z_min");
     floor.friction = 0.3;
     builder.add_contact(floor);
@@ -337,7 +337,7 @@ Simulation bent_to_a_floor(double below, bool floor, bool led) {
   if (floor) {
     ContactSettings contact;
     contact.name = "floor";
-    contact.surface = constraint::Plane{{0.0, 0.0, -below}};
+    contact.surface = collision::Plane{{0.0, 0.0, -below}};
     contact.nodes = mesh->node_sets.at("z_min");
     contact.friction = 0.4;
     builder.add_contact(contact);
@@ -382,7 +382,7 @@ Simulation sliding(bool whole, Method method) {
                                        .cells = options.cells});
   ContactSettings floor;
   floor.name = "floor";
-  floor.surface = constraint::Plane{};
+  floor.surface = collision::Plane{};
   floor.friction = 0.5;
   if (whole) {
     for (Eigen::Index n = 0; n < mesh.nodes.rows(); ++n) {
@@ -427,7 +427,7 @@ TEST(Contact, PointsThatArriveUnexpectedlyAreTakenIn) {
       builder.add_fem_body(std::move(body));
       ContactSettings floor;
       floor.name = "floor";
-      floor.surface = constraint::Plane{{0.0, 0.0, -0.003}};
+      floor.surface = collision::Plane{{0.0, 0.0, -0.003}};
       floor.nodes = mesh->node_sets.at("z_min");
       floor.friction = 0.3;
       builder.add_contact(floor);
@@ -482,7 +482,7 @@ std::uint64_t fingerprint(const std::function<void(ContactSettings&)>& change) {
   ModelBuilder builder = block_on_plane({.floor = false});
   ContactSettings contact;
   contact.name = "tool";
-  contact.surface = constraint::Capsule{{0.0, 0.0, -0.02}, {0.01, 0.0, -0.02}, 0.01};
+  contact.surface = collision::Capsule{{0.0, 0.0, -0.02}, {0.01, 0.0, -0.02}, 0.01};
   contact.points = Points::Zero(2, 3);
   contact.points.row(1) << 0.01, 0.0, 0.0;
   BaseMotion motion;
@@ -495,8 +495,8 @@ std::uint64_t fingerprint(const std::function<void(ContactSettings&)>& change) {
 
 TEST(Contact, FingerprintsTellApartWhatMovesDifferently) {
   using Change = std::function<void(ContactSettings&)>;
-  const auto capsule = [](ContactSettings& c) -> constraint::Capsule& {
-    return std::get<constraint::Capsule>(c.surface);
+  const auto capsule = [](ContactSettings& c) -> collision::Capsule& {
+    return std::get<collision::Capsule>(c.surface);
   };
   const std::vector<Change> changes = {
       [](ContactSettings&) {},
@@ -522,22 +522,22 @@ TEST(Contact, FingerprintsTellApartWhatMovesDifferently) {
       [](ContactSettings& c) { c.motion->centre[0] = 0.001; },
       [](ContactSettings& c) { c.motion->angle = Signal::constant(0.1); },
       [](ContactSettings& c) {
-        c.surface = constraint::Plane{{0.0, 0.0, -0.03}};
+        c.surface = collision::Plane{{0.0, 0.0, -0.03}};
       },
       [](ContactSettings& c) {
-        c.surface = constraint::Plane{{0.0, 0.0, -0.04}};
+        c.surface = collision::Plane{{0.0, 0.0, -0.04}};
       },
       [](ContactSettings& c) {
-        c.surface = constraint::Plane{{0.0, 0.0, -0.03}, {0.0, 0.1, 1.0}};
+        c.surface = collision::Plane{{0.0, 0.0, -0.03}, {0.0, 0.1, 1.0}};
       },
       [](ContactSettings& c) {
-        c.surface = constraint::Sphere{{0.0, 0.0, -0.03}, 0.01};
+        c.surface = collision::Sphere{{0.0, 0.0, -0.03}, 0.01};
       },
       [](ContactSettings& c) {
-        c.surface = constraint::Sphere{{0.0, 0.0, -0.04}, 0.01};
+        c.surface = collision::Sphere{{0.0, 0.0, -0.04}, 0.01};
       },
       [](ContactSettings& c) {
-        c.surface = constraint::Sphere{{0.0, 0.0, -0.03}, 0.02};
+        c.surface = collision::Sphere{{0.0, 0.0, -0.03}, 0.02};
       },
   };
   std::map<std::uint64_t, std::size_t> seen;

@@ -110,7 +110,7 @@ inline std::shared_ptr<const sim::Model> cut_beam(const CutBeam& options) {
     sim::ContactSettings wall;
     wall.name = "wall";
     wall.body = second;
-    wall.surface = constraint::Plane{{0.0, 0.0, *options.wall}, Vector3::UnitZ()};
+    wall.surface = collision::Plane{{0.0, 0.0, *options.wall}, Vector3::UnitZ()};
     wall.nodes = (options.cut ? upper : whole)->node_sets.at("z_min");
     wall.friction = 0.3;
     builder.add_contact(wall);

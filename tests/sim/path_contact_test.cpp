@@ -216,7 +216,7 @@ std::shared_ptr<const Model> pulled_strip(double friction) {
   builder.add_fem_body(std::move(body));
   ContactSettings floor;
   floor.name = "floor";
-  floor.surface = constraint::Plane{};
+  floor.surface = collision::Plane{};
   floor.nodes = mesh->node_sets.at("z_min");
   floor.friction = friction;
   builder.add_contact(floor);
@@ -272,11 +272,11 @@ TEST(PathContact, FrictionIsThatOfSlowMotionsFromPointToPoint) {
 
 // Balls and rods: their tangent planes turn with the points.
 TEST(PathContact, CurvedSurfacesEndASnap) {
-  const constraint::Sphere ball{{0.002, 0.002, -0.004}, 0.007};
-  const constraint::Capsule across{{0.002, -0.02, -0.001}, {0.002, 0.02, -0.001}, 0.004};
-  const constraint::Capsule askew{{-0.02, -0.01, -0.001}, {0.02, 0.02, -0.002}, 0.004};
-  for (const constraint::Surface& surface :
-       {constraint::Surface(ball), constraint::Surface(across), constraint::Surface(askew)}) {
+  const collision::Sphere ball{{0.002, 0.002, -0.004}, 0.007};
+  const collision::Capsule across{{0.002, -0.02, -0.001}, {0.002, 0.02, -0.001}, 0.004};
+  const collision::Capsule askew{{-0.02, -0.01, -0.001}, {0.02, 0.02, -0.002}, 0.004};
+  for (const collision::Shape& surface :
+       {collision::Shape(ball), collision::Shape(across), collision::Shape(askew)}) {
     Simulation loaded(arch({.below = surface})), moved(arch({.by_load = false, .below = surface}));
     loaded.set_load(0, Signal::constant(10.0));
     const Followed all = follow(loaded, {.first_step = 2e-3, .largest_step = 5e-3});
@@ -312,7 +312,7 @@ std::shared_ptr<const Model> beam_on_a_ball() {
   builder.add_fem_body(std::move(body));
   ContactSettings ball;
   ball.name = "ball";
-  ball.surface = constraint::Sphere{{0.1, 0.0, -0.015}, 0.005};
+  ball.surface = collision::Sphere{{0.1, 0.0, -0.015}, 0.005};
   ball.points = Vector3(0.1, 0.0, -0.01).transpose();
   builder.add_contact(ball);
   const Vector3 end(0.1, 0.0, -0.01);
@@ -355,7 +355,7 @@ TEST(PathContact, ABallLetsGoOfWhatIsPressedOnIt) {
 }
 
 TEST(PathContact, RefusesFrictionOnCurvedSurfaces) {
-  const constraint::Sphere ball{{0.0, 0.0, -0.01}, 0.01};
+  const collision::Sphere ball{{0.0, 0.0, -0.01}, 0.01};
   Simulation rough(arch({.friction = 0.1, .below = ball}));
   try {
     rough.follow_path({});

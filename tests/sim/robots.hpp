@@ -89,7 +89,7 @@ inline std::shared_ptr<const sim::Model> beam(const BeamOptions& options = {}) {
     sim::ContactSettings wall;
     wall.name = "wall";
     wall.body = beam;
-    wall.surface = constraint::Plane{{0.0, 0.0, *options.wall}, Vector3::UnitZ()};
+    wall.surface = collision::Plane{{0.0, 0.0, *options.wall}, Vector3::UnitZ()};
     wall.nodes = mesh->node_sets.at("z_min");
     wall.friction = options.wall_friction;
     builder.add_contact(wall);

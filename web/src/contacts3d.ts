@@ -65,6 +65,7 @@ class Drawn {
       rod.quaternion.setFromUnitVectors(Y, axis.lengthSq() > 0 ? axis.normalize() : Y);
       return rod;
     }
+    if (surface.kind === 'body') return new Group();
     // A patch of the plane; follow() keeps it under the points.
     this.cell = 10 ** Math.floor(Math.log10(this.size)) / 5;
     while (this.cell * CELLS < 1.2 * this.size) this.cell *= 2;

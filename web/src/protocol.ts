@@ -9,7 +9,8 @@ export interface Effector {name: string; kind: 'point' | 'orientation'; directio
 /** `marks`: its points in the frame's `probes`; `signals`: keys of its numbers. */
 export interface Probe {name: string; kind: string; marks: number; signals: string[]}
 export type ContactSurface = {kind: 'plane'; point: number[]; normal: number[]}
-  | {kind: 'sphere'; centre: number[]; radius: number} | {kind: 'capsule'; ends: number[][]; radius: number};
+  | {kind: 'sphere'; centre: number[]; radius: number} | {kind: 'capsule'; ends: number[][]; radius: number}
+  | {kind: 'body'};  // drawn with the body that it is of
 /** Points of a body that may touch a surface; `signals`: keys of its numbers. */
 export interface Contact {
   name: string; body: string; surface: ContactSurface; friction: number; points: number; signals: string[];

@@ -13,6 +13,9 @@ namespace sinew::collision {
 
 namespace {
 
+// A normal that leans along a cylinder's axis by less than this belongs to its side.
+constexpr double kSide = 1e-6;
+
 ShapeDistance along(const Vector3& point, double gap, const Vector3& normal) {
   return {gap, point - gap * normal, normal};
 }
@@ -78,6 +81,35 @@ ShapeDistance distance(const OrientedBox& box, const Vector3& point) {
   const Vector3 local = box.axes.transpose() * (point - box.centre);
   const Vector3 side = local.unaryExpr([](double x) { return std::copysign(1.0, x); });
   return over_sides<3>(point, local.cwiseAbs() - box.half_size, box.axes * side.asDiagonal());
+}
+
+Shape moved(const Shape& shape, const Eigen::Isometry3d& pose) {
+  Shape result = shape;
+  if (auto* plane = std::get_if<Plane>(&result)) {
+    plane->point = pose * plane->point;
+    plane->normal = pose.linear() * plane->normal;
+  } else if (auto* sphere = std::get_if<Sphere>(&result)) {
+    sphere->centre = pose * sphere->centre;
+  } else if (auto* capsule = std::get_if<Capsule>(&result)) {
+    capsule->from = pose * capsule->from;
+    capsule->to = pose * capsule->to;
+  } else if (auto* cylinder = std::get_if<Cylinder>(&result)) {
+    cylinder->from = pose * cylinder->from;
+    cylinder->to = pose * cylinder->to;
+  } else if (auto* box = std::get_if<OrientedBox>(&result)) {
+    box->centre = pose * box->centre;
+    box->axes = pose.linear() * box->axes;
+  }
+  return result;
+}
+
+double rounding_radius(const Shape& shape, const Vector3& normal) {
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) return sphere->radius;
+  if (const auto* capsule = std::get_if<Capsule>(&shape)) return capsule->radius;
+  const auto* cylinder = std::get_if<Cylinder>(&shape);
+  if (cylinder == nullptr) return 0.0;
+  const double lean = normal.dot((cylinder->to - cylinder->from).normalized());
+  return std::abs(lean) <= kSide ? cylinder->radius : 0.0;
 }
 
 Plane checked(Plane plane) {

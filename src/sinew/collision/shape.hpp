@@ -4,6 +4,8 @@
 
 #include <variant>
 
+#include <Eigen/Geometry>
+
 #include "sinew/core/types.hpp"
 
 namespace sinew::collision {
@@ -55,6 +57,15 @@ template <class... Kinds>
 ShapeDistance distance(const std::variant<Kinds...>& shape, const Vector3& point) {
   return std::visit([&](const auto& own) { return distance(own, point); }, shape);
 }
+
+/// The shape where a pose takes it. @param pose a rotation and a translation.
+Shape moved(const Shape& shape, const Eigen::Isometry3d& pose);
+
+/// How far below its surface the centres of a shape's roundness lie, m: a sphere's or capsule's
+/// radius, a cylinder's where it touches with its side, else 0. A body that turns about such a
+/// centre keeps its gaps along the normal.
+/// @param normal (3,) unit length, of the surface, out of the shape or into it.
+double rounding_radius(const Shape& shape, const Vector3& normal);
 
 /// Throws Error(out-of-range) for sizes that are not positive, a normal without length and axes
 /// that are no rotation (to 1e-9); else the shape with its normal of unit length.

@@ -1,27 +1,56 @@
 #include "sinew/constraint/contact.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "sinew/collision/principal_frame.hpp"
+#include "sinew/collision/touching_points.hpp"
 #include "sinew/constraint/placement.hpp"
 #include "sinew/core/error.hpp"
 
 namespace sinew::constraint {
 
-Contact::Contact(std::string name, std::vector<mechanics::MaterialPoint> points, Surface surface,
-                 double friction)
+namespace {
+
+// The gap of a point that a step has no use for, m: beyond anything that could come to touch.
+constexpr double kIdle = 1e6;
+
+}  // namespace
+
+Contact::Contact(std::string name, std::vector<mechanics::MaterialPoint> points,
+                 collision::Shape surface, double friction, std::optional<RigidSide> carrier)
     : Constraint(std::move(name)),
       points_(std::move(points)),
       surface_(checked(std::move(surface))),
-      friction_(friction) {
-  if (!(friction >= 0.0) || !std::isfinite(friction)) {
+      friction_(friction),
+      carrier_(std::move(carrier)),
+      count_(points_.size()),
+      stride_(carrier_ ? 3 : 1) {
+  check();
+}
+
+Contact::Contact(std::string name, RigidSide own, collision::Shape surface, double friction,
+                 std::optional<RigidSide> carrier)
+    : Constraint(std::move(name)),
+      own_(std::move(own)),
+      surface_(checked(std::move(surface))),
+      friction_(friction),
+      carrier_(std::move(carrier)),
+      count_(collision::TouchingPoints::kMost),
+      stride_(carrier_ ? 4 : 2) {
+  check();
+}
+
+void Contact::check() const {
+  if (!(friction_ >= 0.0) || !std::isfinite(friction_)) {
     throw Error(ErrorKind::out_of_range, {},
-                fmt::format("the friction coefficient is {:g}", friction), "give zero or more");
+                fmt::format("the friction coefficient is {:g}", friction_), "give zero or more");
   }
-  if (points_.empty()) {
+  if (count_ == 0) {
     throw Error(ErrorKind::too_few_points, {}, "no point can touch the surface",
                 "name a region that has nodes that are not fixed");
   }
@@ -30,24 +59,77 @@ Contact::Contact(std::string name, std::vector<mechanics::MaterialPoint> points,
 void Contact::declare(mechanics::RowPattern& rows, std::vector<mechanics::RowCurvature>&) {
   first_row_ = rows.rows();
   first_entry_ = rows.entries();
-  row_count_ = 3 * static_cast<int>(points_.size());
-  for (const auto& point : points_) {
-    for (int k = 0; k < 3; ++k) rows.add_row({point}, true);
+  row_count_ = 3 * static_cast<int>(count_);
+  std::vector<mechanics::Site> sites;
+  for (std::size_t k = 0; k < count_; ++k) {
+    sites.clear();
+    if (own_) {
+      sites.insert(sites.end(), {own_->centre, own_->turn});
+    } else {
+      sites.push_back(points_[k]);
+    }
+    if (carrier_) sites.insert(sites.end(), {carrier_->centre, carrier_->turn});
+    for (int j = 0; j < 3; ++j) rows.add_row(sites, true);
   }
 }
 
 void Contact::begin_step(const Placement& placement, const Eigen::Isometry3d& start,
                          const Eigen::Isometry3d& end, double time_step,
                          mechanics::RowValues& values) const {
+  if (own_ || carrier_) prepare(values);
   const Eigen::Isometry3d carry = end * start.inverse();
+  if (own_) return find_points(placement, start, carry, values);
   const bool rests = start.isApprox(end, 0.0);
-  for (std::size_t i = 0; i < points_.size(); ++i) {
+  for (std::size_t i = 0; i < count_; ++i) {
     const Vector3 at = placement.position(points_[i]);
     const Vector3 carried = rests ? at : Vector3(carry * at);
-    const Vector3 towards = curved() ? Vector3(at + time_step * placement.velocity(points_[i]))
+    Vector3 velocity = placement.velocity(points_[i]);
+    if (carrier_) velocity -= carrier_->velocity(placement, at);
+    const Vector3 towards = curved() ? Vector3(at + time_step * velocity)
                                      : carried;  // a plane is its own tangent plane anywhere
     place(i, carried, approach(carried, towards, end), values);
+    if (carrier_) watch(placement, i, at, values);
   }
+}
+
+// Where the surface moves of itself, the points' frames go with it.
+void Contact::find_points(const Placement& placement, const Eigen::Isometry3d& start,
+                          const Eigen::Isometry3d& carry, mechanics::RowValues& values) const {
+  const collision::TouchingPoints found = collision::touching_points(
+      collision::moved(own_->shape, own_->pose(placement)), collision::moved(surface_, start),
+      std::numeric_limits<double>::infinity());
+  const Vector3 centre = placement.position(own_->centre);
+  for (std::size_t k = 0; k < count_; ++k) {
+    const bool used = k < found.size();
+    const Vector3 at = used ? found[k].on_first : centre;
+    const Vector3 normal = used ? Vector3(carry.linear() * found[k].normal) : Vector3::UnitZ();
+    set_frame(k, carry * at, collision::tangent_frame(normal), used ? found[k].gap : kIdle, values);
+    watch(placement, k, at, values);
+  }
+}
+
+bool Contact::idle(std::size_t point, const mechanics::RowValues& values) const {
+  return own_ && values.reference[row(point)] == kIdle;
+}
+
+// The gap's row watches the centres of roundness, which lie on the normal through the point.
+void Contact::watch(const Placement& placement, std::size_t point, const Vector3& at,
+                    mechanics::RowValues& values) const {
+  const Vector3 normal = values.direction[entry(point)];
+  const double gap = values.reference[row(point)];
+  values.start[static_cast<std::size_t>(row(point))] = at;
+  const auto hold = [&](const RigidSide& side, const collision::Shape& shape, double sense,
+                        double below, std::size_t first) {
+    const Matrix3 turn = side.pose(placement).linear();
+    const double radius = collision::rounding_radius(shape, turn.transpose() * normal);
+    const Vector3 core = radius > 0.0 ? Vector3(at + sense * (radius + below) * normal) : at;
+    for (int j = 0; j < 3; ++j) {
+      side.watch(placement, entry(point, j) + first, j == 0 ? core : at, values);
+    }
+  };
+  if (own_) hold(*own_, own_->shape, 1.0, 0.0, 0);
+  if (carrier_) hold(*carrier_, surface_, -1.0, idle(point, values) ? 0.0 : gap, own_entries());
+  write_sides(placement, point, values);
 }
 
 collision::ShapeApproach Contact::approach(const Vector3& from, const Vector3& to,
@@ -66,10 +148,76 @@ void Contact::place(std::size_t point, const Vector3& carried,
   set_frame(point, carried, frame, gap, values);
 }
 
+Vector3 Contact::position_now(const Placement& placement, std::size_t point,
+                              const mechanics::RowValues& values) const {
+  if (!own_) return placement.position(points_[point]);
+  if (values.arm.empty()) return placement.position(own_->centre);
+  return own_->watched(placement, entry(point, 1), values);
+}
+
+Vector3 Contact::position_beside(const Placement& placement, std::size_t point,
+                                 const mechanics::RowValues& values) const {
+  if ((!own_ && !carrier_) || values.arm.empty()) return position_now(placement, point, values);
+  const Vector3& start = values.start[static_cast<std::size_t>(row(point))];
+  const auto moved = [&](int row) {
+    const std::size_t at = entry(point, row);
+    Vector3 result = own_ ? own_->displacement(placement, at, values)
+                          : Vector3(placement.position(points_[point]) - start);
+    if (carrier_) result -= carrier_->displacement(placement, at + own_entries(), values);
+    return result;
+  };
+  const Vector3 along = moved(1);
+  const Vector3& normal = values.direction[entry(point)];
+  return start + along + normal.dot(moved(0) - along) * normal;
+}
+
+Vector3 Contact::velocity_beside(const Placement& placement, std::size_t point,
+                                 const mechanics::RowValues& values) const {
+  const Vector3 at = position_now(placement, point, values);
+  Vector3 result =
+      own_ ? own_->velocity(placement, at) : Vector3(placement.velocity(points_[point]));
+  if (carrier_) result -= carrier_->velocity(placement, at);
+  return result;
+}
+
+Matrix3 Contact::frame(std::size_t point, const mechanics::RowValues& values) const {
+  Matrix3 result;
+  for (int k = 0; k < 3; ++k) result.col(k) = values.direction[entry(point, k)];
+  return result;
+}
+
+// What rows' efforts do to the bodies: on the carrier, the opposite of what they do to the point.
+void Contact::write_sides(const Placement& placement, std::size_t point,
+                          mechanics::RowValues& values) const {
+  for (int j = 0; j < 3; ++j) {
+    const std::size_t at = entry(point, j);
+    const Vector3 direction = values.direction[at];
+    if (own_) own_->write(placement, at, direction, values);
+    if (carrier_) carrier_->write(placement, at + own_entries(), -direction, values);
+  }
+}
+
+namespace {
+
+// Edges have no principal curvatures; faces have none.
+collision::PrincipalFrame nearest_frame(const collision::Shape& surface, const Vector3& point) {
+  return std::visit(
+      [&](const auto& own) -> collision::PrincipalFrame {
+        if constexpr (requires { principal_frame(own, point); }) {
+          return principal_frame(own, point);
+        } else {
+          return {collision::tangent_frame(distance(own, point).normal), Vector3::Zero()};
+        }
+      },
+      surface);
+}
+
+}  // namespace
+
 Vector3 Contact::place_nearest(std::size_t point, const Vector3& at, const Eigen::Isometry3d& pose,
                                mechanics::RowValues& values) const {
   const Vector3 local = pose.inverse() * at;
-  const collision::PrincipalFrame principal = principal_frame(surface_, local);
+  const collision::PrincipalFrame principal = nearest_frame(surface_, local);
   set_frame(point, at, pose.linear() * principal.frame, distance(surface_, local).gap, values);
   return principal.curvature;
 }
@@ -78,7 +226,7 @@ void Contact::set_frame(std::size_t point, const Vector3& carried, const Matrix3
                         mechanics::RowValues& values) const {
   const Vector3 reference(gap, 0.0, 0.0);
   for (int k = 0; k < 3; ++k) {
-    values.direction[entry(point) + static_cast<std::size_t>(k)] = frame.col(k);
+    values.direction[entry(point, k)] = frame.col(k);
   }
   values.reference.segment<3>(row(point)) = reference;
   values.offset.segment<3>(row(point)) = reference - frame.transpose() * carried;
@@ -88,7 +236,7 @@ Vector3 Contact::row_values(std::size_t point, const Vector3& at,
                             const mechanics::RowValues& values) const {
   Vector3 result = values.offset.segment<3>(row(point));
   for (int k = 0; k < 3; ++k) {
-    result[k] += values.direction[entry(point) + static_cast<std::size_t>(k)].dot(at);
+    result[k] += values.direction[entry(point, k)].dot(at);
   }
   return result;
 }
@@ -97,32 +245,78 @@ Vector3 Contact::position(std::size_t point, const Vector3& row_values,
                           const mechanics::RowValues& values) const {
   Vector3 result = Vector3::Zero();
   for (int k = 0; k < 3; ++k) {
-    result += values.direction[entry(point) + static_cast<std::size_t>(k)] *
-              (row_values[k] - values.offset[row(point) + k]);
+    result += values.direction[entry(point, k)] * (row_values[k] - values.offset[row(point) + k]);
   }
   return result;
 }
 
 void Contact::linearise(const Placement& placement, mechanics::RowValues& values) const {
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    values.delta.segment<3>(row(i)) = row_values(i, placement.position(points_[i]), values);
+  const bool begun = !values.arm.empty();
+  for (std::size_t i = 0; i < count_; ++i) {
+    if ((own_ || carrier_) && begun) write_sides(placement, i, values);
+    values.delta.segment<3>(row(i)) = row_values(i, position_beside(placement, i, values), values);
   }
 }
 
 collision::ShapeDistance Contact::distance_now(const Placement& placement,
-                                               const Eigen::Isometry3d& pose,
-                                               std::size_t point) const {
+                                               const Eigen::Isometry3d& pose, std::size_t point,
+                                               const mechanics::RowValues& values) const {
   collision::ShapeDistance result =
-      distance(surface_, pose.inverse() * placement.position(points_[point]));
+      distance(surface_, pose.inverse() * position_now(placement, point, values));
   result.normal = pose.linear() * result.normal;
   return result;
 }
 
+void Contact::save(const mechanics::RowValues& values, double* to) const {
+  for (std::size_t k = 0; k < count_; ++k) {
+    to = std::copy_n(frame(k, values).data(), 9, to);
+    if (!own_) continue;
+    const Vector3 arm = values.arm.empty() ? Vector3(Vector3::Zero()) : values.arm[entry(k, 1)];
+    to = std::copy_n(arm.data(), 3, to);
+  }
+}
+
+void Contact::load(const double* from, mechanics::RowValues& values) const {
+  if (own_ && values.arm.empty()) prepare(values);
+  for (std::size_t k = 0; k < count_; ++k) {
+    for (int j = 0; j < 3; ++j, from += 3) {
+      values.direction[entry(k, j)] = Eigen::Map<const Vector3>(from);
+    }
+    if (!own_) continue;
+    values.arm[entry(k, 1)] = Eigen::Map<const Vector3>(from);
+    from += 3;
+  }
+}
+
+void Contact::prepare(mechanics::RowValues& values) {
+  if (!values.arm.empty()) return;
+  for (auto* numbers : {&values.arm, &values.lever, &values.watched_start}) {
+    numbers->resize(values.direction.size(), Vector3::Zero());
+  }
+  values.start.resize(values.present.size(), Vector3::Zero());
+}
+
+namespace {
+
+void hash_shape(const collision::Shape& shape, ValueHash& hash) {
+  hash.add(shape.index());
+  if (const auto* plane = std::get_if<Plane>(&shape)) hash.add(plane->point, plane->normal);
+  if (const auto* ball = std::get_if<Sphere>(&shape)) hash.add(ball->centre, ball->radius);
+  if (const auto* rod = std::get_if<Capsule>(&shape)) hash.add(rod->from, rod->to, rod->radius);
+  if (const auto* rod = std::get_if<collision::Cylinder>(&shape)) {
+    hash.add(rod->from, rod->to, rod->radius);
+  }
+  if (const auto* box = std::get_if<collision::OrientedBox>(&shape)) {
+    hash.add(box->centre, box->axes, box->half_size);
+  }
+}
+
+}  // namespace
+
 void Contact::add_to(ValueHash& hash) const {
-  hash.add(friction_, surface_.index());
-  if (const auto* plane = std::get_if<Plane>(&surface_)) hash.add(plane->point, plane->normal);
-  if (const auto* ball = std::get_if<Sphere>(&surface_)) hash.add(ball->centre, ball->radius);
-  if (const auto* rod = std::get_if<Capsule>(&surface_)) hash.add(rod->from, rod->to, rod->radius);
+  hash.add(friction_);
+  hash_shape(surface_, hash);
+  if (own_) hash_shape(own_->shape, hash);
 }
 
 }  // namespace sinew::constraint

@@ -10,6 +10,7 @@
 
 #include <Eigen/Geometry>
 
+#include "sinew/collision/shape.hpp"
 #include "sinew/core/types.hpp"
 #include "sinew/mechanics/affine_field.hpp"
 
@@ -102,7 +103,8 @@ class HasShape {
   virtual double mass() const = 0;  ///< kg
   /// kg m^2, (3, 3) about the centre of mass, in the shape's axes.
   virtual Matrix3 own_inertia() const = 0;
-  virtual const char* shape_name() const = 0;  ///< "box", "sphere", ...
+  virtual const char* shape_name() const = 0;       ///< "box", "sphere", ...
+  virtual collision::Shape rest_shape() const = 0;  ///< where it is at rest, in the world
 };
 
 /// A body of such a model.

@@ -17,7 +17,6 @@ DenseStep::DenseStep(Eigen::Index coordinates, const OwnRows& own, RowMemory& me
   for (MatrixX* m : {&jacobian_, &second_jacobian_, &pulled_}) m->setZero(3, n);
   rows_.setZero(n, rows);
   moved_rows_.setZero(n, rows);
-  compliance_.setZero(rows, rows);
   free_motion_.setZero(rows);
 }
 
@@ -99,7 +98,6 @@ void DenseStep::respond() {
   if (rows_.cols() == 0) return;
   decomposed_.solve(right_, motion_);
   free_motion_.noalias() = rows_.transpose() * motion_;
-  compliance_.noalias() = rows_.transpose() * moved_rows_;
 }
 
 // In the directions in which the body would buckle the rotated tangent is as stiff as the exact one
@@ -122,17 +120,20 @@ void DenseStep::make_definite() {
 void DenseStep::add_compliance(std::span<const int> place, MatrixX& compliance,
                                VectorX& free_motion) const {
   const auto& rows = own_.rows;
-  for (std::size_t j = 0; j < rows.size(); ++j) {
-    const auto column = static_cast<Eigen::Index>(j);
-    const int across = place[static_cast<std::size_t>(rows[j])];
-    free_motion[across] += free_motion_[column];
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      const auto row = static_cast<Eigen::Index>(i);
-      const int down = place[static_cast<std::size_t>(rows[i])];
-      const double mean = 0.5 * (compliance_(row, column) + compliance_(column, row));
+  const auto place_of = [&](Eigen::Index own) {
+    return place[static_cast<std::size_t>(rows[static_cast<std::size_t>(own)])];
+  };
+  for (Eigen::Index j = 0; j < rows_.cols(); ++j) {
+    const int across = place_of(j);
+    if (across < 0) continue;
+    free_motion[across] += free_motion_[j];
+    for (Eigen::Index i = 0; i < rows_.cols(); ++i) {
+      const int down = place_of(i);
+      if (down < 0) continue;
+      const double own = rows_.col(i).dot(moved_rows_.col(j));
+      const double mean = 0.5 * (own + rows_.col(j).dot(moved_rows_.col(i)));
       compliance(down, across) += mean;
-      if (!iterating_) continue;
-      free_motion[down] += (compliance_(row, column) - mean) * memory_.effort[column];
+      if (iterating_) free_motion[down] += (own - mean) * memory_.effort[j];
     }
   }
 }
@@ -141,6 +142,12 @@ void DenseStep::solve_motion(std::span<const double> effort) {
   find_imbalance(effort);
   decomposed_.solve(scratch_, motion_);
   depart();
+}
+
+Vector3 DenseStep::proposed_motion(int site) const {
+  if (motion_.size() == 0) return Vector3::Zero();
+  site_jacobian(site, jacobian_);
+  return jacobian_ * motion_;
 }
 
 void DenseStep::solve(std::span<const double> right, std::span<double> result) {
@@ -160,7 +167,7 @@ void DenseStep::propose_drift(double time_step) {
 
 std::size_t DenseStep::bytes() const {
   const Eigen::Index n = right_.size();
-  const Eigen::Index numbers = 3 * n * n + 3 * rows_.size() + compliance_.size() + 9 * n;
+  const Eigen::Index numbers = 3 * n * n + 2 * rows_.size() + 9 * n;
   return sizeof(double) * static_cast<std::size_t>(numbers);
 }
 

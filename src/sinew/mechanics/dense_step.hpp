@@ -8,8 +8,9 @@
 
 namespace sinew::mechanics {
 
-/// A is dense and may be unsymmetric; rows are taken all. What the body's equation is, how its
-/// sites move, and what a motion does to its state is said by those who derive from it.
+/// A is dense and may be unsymmetric; all rows are taken, also those that are left out elsewhere.
+/// What the body's equation is, how its sites move, and what a motion does to its state is said by
+/// those who derive from it.
 class DenseStep : public StepSystem {
  public:
   void linearise(const LinearisationRequest& request) final;
@@ -26,6 +27,7 @@ class DenseStep : public StepSystem {
   void lessen(std::span<const double> force) final;
 
   void solve_motion(std::span<const double> effort) final;
+  Vector3 proposed_motion(int site) const final;
   void solve(std::span<const double> right, std::span<double> result) final;
   void propose_motion(std::span<const double> motion) final;
   void propose_drift(double time_step) final;
@@ -43,7 +45,7 @@ class DenseStep : public StepSystem {
   /// directions remembered.
   virtual void add_row_stiffness(MatrixX& matrix) = 0;
   /// The motion of a site for each coordinate. @param result (3, n).
-  virtual void site_jacobian(int site, MatrixX& result) = 0;
+  virtual void site_jacobian(int site, MatrixX& result) const = 0;
   /// The softest that a rotated tangent lets a direction be: see Tangent.
   virtual double softest() const = 0;
   /// The motion proposed next starts from the present state.
@@ -65,13 +67,14 @@ class DenseStep : public StepSystem {
   VectorX lessening_;
   bool lessens_ = false;
   MatrixX matrix_, symmetric_;
-  MatrixX jacobian_, second_jacobian_, pulled_;  // (3, n), of sites
+  mutable MatrixX jacobian_;          // (3, n), of sites: scratch
+  MatrixX second_jacobian_, pulled_;  // likewise
   linalg::LuFactor decomposed_;
   linalg::SymmetricPivots pivots_;
   linalg::SymmetricSpectrum spectrum_;
   bool definite_wanted_ = true;
-  bool iterating_ = false;                  // further linearisations of this step may follow
-  MatrixX rows_, moved_rows_, compliance_;  // (n, own rows): H^T, A^-1 H^T; (own rows, own rows)
+  bool iterating_ = false;     // further linearisations of this step may follow
+  MatrixX rows_, moved_rows_;  // (n, own rows): H^T, A^-1 H^T
   VectorX free_motion_;
   double force_scale_ = 1.0;
 };

@@ -50,6 +50,12 @@ struct RowValues {
   VectorX offset, reference;
   /// (rows,) 0: a passing row that is left out; its motion and compliance are not computed.
   std::vector<char> present;
+  /// (entries,) of contacts of rigid bodies, at the entry of such a body's centre; empty where
+  /// there are none. See constraint::RigidSide.
+  std::vector<Vector3> arm;            ///< m, of the watched point from the centre, in axes at rest
+  std::vector<Vector3> lever;          ///< m, the same now, in the world
+  std::vector<Vector3> watched_start;  ///< m, where the point was when the step began
+  std::vector<Vector3> start;  ///< (rows,) m, at the first of a point's rows: the point then
 
   void resize(const RowPattern& pattern) {
     direction.assign(static_cast<std::size_t>(pattern.entries()), Vector3::Zero());

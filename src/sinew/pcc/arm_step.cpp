@@ -63,7 +63,7 @@ double ArmStep::softest() const { return kSoftest * model_.arm().stiffness().max
 
 void ArmStep::drift(double time_step, VectorX& motion) const { motion = time_step * state_.rate; }
 
-void ArmStep::site_jacobian(int site, MatrixX& result) {
+void ArmStep::site_jacobian(int site, MatrixX& result) const {
   const auto& columns = pose_.jacobian(model_.attachment(site));
   for (std::size_t i = 0; i < columns.size(); ++i) {
     result.col(static_cast<Eigen::Index>(i)) = plain(columns[i]);

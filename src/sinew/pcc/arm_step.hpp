@@ -25,7 +25,7 @@ class ArmStep : public mechanics::DenseStep {
   double form(const mechanics::LinearisationRequest& request, VectorX& right,
               MatrixX& matrix) override;
   void add_row_stiffness(MatrixX& matrix) override;
-  void site_jacobian(int site, MatrixX& result) override;
+  void site_jacobian(int site, MatrixX& result) const override;
   double softest() const override;
   void depart() override { from_ = state_.q; }
   void drift(double time_step, VectorX& motion) const override;

@@ -55,6 +55,9 @@ class RigidBodyModel final : public mechanics::BodyModel,
   Matrix3 own_inertia() const override {
     return settings_.rotation.transpose() * mass_.inertia * settings_.rotation;
   }
+  collision::Shape rest_shape() const override {
+    return placed(settings_.shape, settings_.position, settings_.rotation);
+  }
   const char* shape_name() const override { return rigid::shape_name(settings_.shape); }
   const Vector3& centre() const { return mass_.centre; }    ///< (3,) m, at rest, in the world
   const Matrix3& inertia() const { return mass_.inertia; }  ///< the same, about the centre

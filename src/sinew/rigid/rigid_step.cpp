@@ -75,7 +75,7 @@ void RigidStep::add_row_stiffness(MatrixX& matrix) {
   }
 }
 
-void RigidStep::site_jacobian(int site, MatrixX& result) {
+void RigidStep::site_jacobian(int site, MatrixX& result) const {
   const RigidBodyModel& model = state_.model;
   if (!model.is_free()) return;
   const auto& at = model.attachment(site);

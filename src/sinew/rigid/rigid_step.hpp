@@ -27,7 +27,7 @@ class RigidStep : public mechanics::DenseStep {
   double form(const mechanics::LinearisationRequest& request, VectorX& right,
               MatrixX& matrix) override;
   void add_row_stiffness(MatrixX& matrix) override;
-  void site_jacobian(int site, MatrixX& result) override;
+  void site_jacobian(int site, MatrixX& result) const override;
   double softest() const override { return 0.0; }
   void depart() override { from_ = state_.pose; }
   void drift(double time_step, VectorX& motion) const override { motion = time_step * state_.rate; }

@@ -129,6 +129,13 @@ collision::Shape solid(const Shape& shape) {
   return std::visit(convert, shape);
 }
 
+collision::Shape placed(const Shape& shape, const Vector3& position, const Matrix3& rotation) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = rotation;
+  pose.translation() = position;
+  return collision::moved(solid(shape), pose);
+}
+
 mesh::Mesh skin(const Shape& shape) {
   return std::visit([](const auto& kind) { return mesh_of(kind); }, shape);
 }

@@ -39,6 +39,8 @@ MassProperties mass_properties(const Shape& shape, double density);
 
 /// The same as a shape of collision, in its own frame.
 collision::Shape solid(const Shape& shape);
+/// That shape elsewhere. @param position (3,) m, of its origin. @param rotation of its axes.
+collision::Shape placed(const Shape& shape, const Vector3& position, const Matrix3& rotation);
 
 /// A volume mesh that shows the shape.
 mesh::Mesh skin(const Shape& shape);

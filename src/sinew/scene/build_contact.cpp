@@ -1,5 +1,6 @@
 #include <algorithm>
-#include <string_view>
+#include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 
@@ -30,32 +31,40 @@ std::vector<NodeId> nodes_of(const ContactDescription& contact, const mesh::Mesh
   return nodes;
 }
 
-// The nodes of a rigid body's picture are points of it where it has corners alone.
-void check_corners(const ContactDescription& contact, const mechanics::BodyModel& model) {
-  const auto* shape = mechanics::as<const mechanics::HasShape>(model);
-  if (shape == nullptr || shape->shape_name() == std::string_view("box")) return;
-  throw Error(ErrorKind::not_in_this_version, contact.place,
-              fmt::format("body '{}' is round, and contact of round bodies", contact.body),
-              "name `points` of it that may touch");
+// The surface is that of a rigid body, the points are the other's.
+void order(const ContactDescription& contact, BuiltBody& touching, BuiltBody& other) {
+  const auto is_rigid = [](const BuiltBody& body) {
+    return mechanics::as<const mechanics::HasShape>(*body.model) != nullptr;
+  };
+  if (touching.number == other.number || (!is_rigid(touching) && !is_rigid(other))) {
+    throw Error(ErrorKind::not_in_this_version, contact.between_place,
+                "contact of deformable bodies with one another or themselves",
+                "name a rigid body and another one");
+  }
+  if (!is_rigid(other)) std::swap(touching, other);
 }
 
 }  // namespace
 
 void add_contact(sim::ModelBuilder& builder, const ContactDescription& contact,
                  const BodyOf& body_of) {
-  const auto [body, model] = body_of(contact.body);
+  BuiltBody touching = body_of(contact.body), other;
+  if (!contact.other.empty()) {
+    other = body_of(contact.other);
+    order(contact, touching, other);
+  }
+  const auto [body, model] = touching;
   sim::ContactSettings settings;
   settings.name = contact.name;
   settings.place = contact.place;
   settings.body = body;
-  settings.surface = contact.surface;
+  std::visit([&](const auto& surface) { settings.surface = surface; }, contact.surface);
+  if (other.model != nullptr) settings.carrier = other.number;
   settings.points = contact.points.points;
   settings.outside = contact.outside;
   settings.friction = contact.friction;
-  if (settings.points.rows() == 0) {
-    check_corners(contact, *model);
-    settings.nodes = nodes_of(contact, model->mesh());
-  }
+  const bool whole = mechanics::as<const mechanics::HasShape>(*model) != nullptr && !contact.nodes;
+  if (settings.points.rows() == 0 && !whole) settings.nodes = nodes_of(contact, model->mesh());
   if (contact.motion) {
     const BaseDescription& motion = *contact.motion;
     settings.motion = {-1, motion.translation, motion.angle, motion.axis, motion.centre};

@@ -278,11 +278,13 @@ struct ProbeDescription {
   mesh::Outside outside = mesh::Outside::error;
 };
 
-/// A surface that points of a body may touch.
+/// A surface that points of a body may touch, or two bodies.
 struct ContactDescription {
   std::string name;
   Location place;
   std::string body;
+  std::string other;  ///< that has the surface; empty: the surface below
+  Location between_place;
   constraint::Surface surface;
   std::optional<FixedRegion> nodes;  ///< of the outside; none, and no points: all of it
   PointList points;

@@ -86,17 +86,26 @@ Form contact_form() {
                        "friction. Points near the surface add three rows each to every step. "
                        "`sinew run` records the resultant force in run.csv.",
                    .keys = {body_key()},
-                   .alternatives = {{{"nodes", "points"}, false}}};
+                   .alternatives = {{{"body", "between"}, true}, {{"nodes", "points"}, false}}};
+  contact.keys.front().required = false;
+  contact.keys.push_back(
+      {.name = "between",
+       .forms = {list({reference("bodies")}, 2, 2)},
+       .example = "[finger, box]",
+       .description =
+           "Two bodies, one of them rigid, in place of body and surface. Nodes or points of "
+           "a body with elements or of an arm touch the other one's shape; two rigid "
+           "bodies touch with their shapes."});
   contact.keys.push_back({.name = "surface",
                           .forms = {table(solid_table())},
                           .example = "{plane: {point: 0 0 0 mm, normal: 0 0 1}}",
-                          .description = "The surface; fixed in the world, or moved by `motion`.",
-                          .required = true});
+                          .description = "The surface; fixed in the world, or moved by `motion`."});
   contact.keys.push_back({.name = "nodes",
                           .forms = {table(nodes_table())},
                           .example = "{set: z_min}",
                           .description = "Surface nodes that may make contact. Without, and "
-                                         "without points: all that are not fixed."});
+                                         "without points: all that are not fixed; of a rigid "
+                                         "body its whole shape."});
   contact.keys.push_back({.name = "points",
                           .forms = {table(point_file_table()), list({vector(length())})},
                           .example = "[0 0 195 mm]",

@@ -1,5 +1,8 @@
+#include <fmt/format.h>
+
 #include "sinew/mesh/embedding.hpp"
 #include "sinew/scene/readers.hpp"
+#include "sinew/scene/values.hpp"
 
 namespace sinew::scene {
 
@@ -39,8 +42,24 @@ ContactDescription read_contact(const Node::Entry& entry, const ReadContext& con
   contact.name = entry.key;
   contact.place = entry.key_place;
   const Fields fields(entry.value, form_of(grammar(), "contacts", Shape::names).items.front());
-  fields.read("body", contact.body);
-  contact.surface = read_solid(fields.below("surface"));
+  if (const Node* between = fields.find("between")) {
+    contact.body = read_text(between->items()[0]);
+    contact.other = read_text(between->items()[1]);
+    contact.between_place = between->place();
+    for (const char* key : {"surface", "motion"}) {
+      if (fields.find(key) == nullptr) continue;
+      throw Error(ErrorKind::conflicting_keys, fields.place(key),
+                  fmt::format("the surface is that of a body, and `{}` is another's", key),
+                  "leave it out, or name one `body` in place of `between`");
+    }
+  } else {
+    fields.read("body", contact.body);
+    if (fields.find("surface") == nullptr) {
+      throw Error(ErrorKind::missing_key, contact.place, "'surface' is missing",
+                  "add the surface that the body may touch, or write between: [it, another body]");
+    }
+    contact.surface = read_solid(fields.below("surface"));
+  }
   if (fields.find("nodes") != nullptr) contact.nodes = read_region(fields.below("nodes"));
   if (fields.find("points") != nullptr) contact.points = read_points(fields, "points", context);
   fields.read_choice("outside", contact.outside,

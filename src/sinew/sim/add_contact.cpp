@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "sinew/collision/touching_points.hpp"
 #include "sinew/constraint/contact.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/fem/fem_model.hpp"
@@ -28,19 +29,26 @@ void check_gaps(const constraint::Contact& contact, const mechanics::BodyModel& 
                 const Eigen::Isometry3d& pose, double size) {
   double deepest = 0.0;
   Vector3 where = Vector3::Zero();
-  for (const mechanics::MaterialPoint& point : contact.points()) {
-    const Vector3 at = body.rest_position(point.number);
-    const double gap = constraint::distance(contact.surface(), pose.inverse() * at).gap;
-    if (gap >= deepest) continue;
+  const auto see = [&](double gap, const Vector3& at) {
+    if (gap >= deepest) return;
     deepest = gap;
     where = at;
+  };
+  if (const auto& own = contact.own()) {
+    const auto found = collision::touching_points(
+        own->shape, collision::moved(contact.surface(), pose), kDeepest * size);
+    for (const collision::TouchingPoint& point : found) see(point.gap, point.on_first);
+  } else {
+    for (std::size_t k = 0; k < contact.size(); ++k) {
+      const Vector3 at = body.rest_position(contact.material(k).number);
+      see(collision::distance(contact.surface(), pose.inverse() * at).gap, at);
+    }
   }
-  if (deepest < -kDeepest * size) {
-    throw Error(ErrorKind::out_of_range, {},
-                fmt::format("the point {:g} {:g} {:g} m starts {:g} m inside the surface", where[0],
-                            where[1], where[2], -deepest),
-                "move the surface away; it may then approach by a motion");
-  }
+  if (deepest >= -kDeepest * size) return;
+  throw Error(ErrorKind::out_of_range, {},
+              fmt::format("the point {:g} {:g} {:g} m starts {:g} m inside the surface", where[0],
+                          where[1], where[2], -deepest),
+              "move the surface away; it may then approach by a motion");
 }
 
 std::vector<mechanics::MaterialPoint> attach_points(ModelData& data, mechanics::BodyModel& on,
@@ -67,6 +75,46 @@ std::vector<mechanics::MaterialPoint> attach_points(ModelData& data, mechanics::
   return points;
 }
 
+constraint::RigidSide attach_side(ModelData& data, int body, const ContactSettings& settings) {
+  mechanics::BodyModel& on = find_body(data, body, settings.place);
+  auto* rigid = mechanics::as<mechanics::AttachesOrientations>(on);
+  const auto* shape = mechanics::as<const mechanics::HasShape>(on);
+  if (rigid == nullptr || shape == nullptr) {
+    throw Error(ErrorKind::wrong_type, settings.place,
+                fmt::format("body '{}' is not rigid and carries no surface", on.name()),
+                "name two bodies, of which one is of type rigid");
+  }
+  const Vector3 centre = shape->rest_origin();
+  const std::string what = "contact '" + settings.name + "'";
+  return {{{body, on.attach(centre, mesh::Outside::nearest, what)}},
+          {{body, rigid->attach_orientation(centre, mesh::Outside::nearest, what)}},
+          centre,
+          shape->rest_shape()};
+}
+
+// A rigid body touches with all of its shape where no points of it are named.
+std::unique_ptr<constraint::Contact> make_contact(ModelData& data, mechanics::BodyModel& on,
+                                                  const ContactSettings& settings) {
+  std::optional<constraint::RigidSide> carrier;
+  if (settings.carrier) {
+    if (*settings.carrier == settings.body) {
+      throw Error(ErrorKind::wrong_type, settings.place,
+                  fmt::format("body '{}' is to touch itself", on.name()), "name two bodies");
+    }
+    carrier = attach_side(data, *settings.carrier, settings);
+  }
+  const collision::Shape& surface = carrier ? carrier->shape : settings.surface;
+  const bool whole = settings.nodes.empty() && settings.points.rows() == 0 &&
+                     mechanics::as<const mechanics::HasShape>(on) != nullptr;
+  if (whole) {
+    return std::make_unique<constraint::Contact>(settings.name,
+                                                 attach_side(data, settings.body, settings),
+                                                 surface, settings.friction, carrier);
+  }
+  return std::make_unique<constraint::Contact>(settings.name, attach_points(data, on, settings),
+                                               surface, settings.friction, carrier);
+}
+
 }  // namespace
 
 int add_contact(ModelData& data, const ContactSettings& settings) {
@@ -80,8 +128,7 @@ int add_contact(ModelData& data, const ContactSettings& settings) {
   }
   check_new_name(data.contacts, &ContactModel::name, "contacts", settings.name, settings.place);
   try {
-    auto contact = std::make_unique<constraint::Contact>(
-        settings.name, attach_points(data, on, settings), settings.surface, settings.friction);
+    auto contact = make_contact(data, on, settings);
     ContactModel entry{settings.name, static_cast<int>(data.constraints.size()), settings.motion};
     if (entry.motion) entry.motion->axis = checked_axis(entry.motion->axis, settings.place);
     check_gaps(*contact, on, entry.pose(0.0), data.size);

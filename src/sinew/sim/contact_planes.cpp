@@ -28,23 +28,28 @@ ContactPlanes::ContactPlanes(const Model& model, const constraint::Placement& pl
   for (std::size_t i = 0; i < model.contacts().size(); ++i) {
     contacts_.push_back(&model.contact(static_cast<int>(i)));
   }
+  poses_.resize(contacts_.size(), Eigen::Isometry3d::Identity());
 }
 
 void ContactPlanes::place(double from, double to) {
-  end_ = to;
   turns_left_ = kMaxTurns;
   curved_ = false;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const ContactModel& model = model_.contacts()[i];
     curved_ |= contacts_[i]->curved();
-    contacts_[i]->begin_step(placement_, model.pose(from), model.pose(to), to - from, rows_);
+    poses_[i] = pose_now(i, to);
+    const Eigen::Isometry3d start = contacts_[i]->carrier() ? poses_[i] : model.pose(from);
+    contacts_[i]->begin_step(placement_, start, poses_[i], to - from, rows_);
   }
 }
 
 void ContactPlanes::begin() { start_ = rows_.delta; }
 
-Eigen::Isometry3d ContactPlanes::pose(std::size_t contact) const {
-  return model_.contacts()[contact].pose(end_);
+Eigen::Isometry3d ContactPlanes::pose_now(std::size_t contact, double time) const {
+  if (contacts_[contact]->carrier()) {
+    return contacts_[contact]->carrier()->pose(placement_);
+  }
+  return model_.contacts()[contact].pose(time);
 }
 
 bool ContactPlanes::turn_to(const constraint::Contact& contact, std::size_t point,
@@ -75,7 +80,7 @@ void ContactPlanes::turn(const constraint::Contact& contact, std::size_t point,
     return contact.position(point, rows.segment<3>(row), rows_);
   };
   const Vector3 start = position(start_), carried = position(rows_.reference);
-  const Vector3 now = placement_.position(contact.points()[point]);
+  const Vector3 now = contact.position_beside(placement_, point, rows_);
   contact.place(point, carried, plane, rows_);
   start_.segment<3>(row) = contact.row_values(point, start, rows_);
   rows_.delta.segment<3>(row) = contact.row_values(point, now, rows_);
@@ -85,8 +90,8 @@ void ContactPlanes::follow_points() {
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const constraint::Contact& contact = *contacts_[i];
     if (!contact.curved()) continue;
-    for (std::size_t k = 0; k < contact.points().size(); ++k) {
-      const Vector3 at = placement_.position(contact.points()[k]);
+    for (std::size_t k = 0; k < contact.size(); ++k) {
+      const Vector3 at = contact.position_beside(placement_, k, rows_);
       curvature_.segment<3>(contact.row(k)) = contact.place_nearest(k, at, pose(i), rows_);
     }
   }
@@ -96,10 +101,10 @@ double ContactPlanes::drift(std::span<const double> effort, double time) const {
   double worst = 0.0;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const constraint::Contact& contact = *contacts_[i];
-    const Eigen::Isometry3d pose = model_.contacts()[i].pose(time);
-    for (std::size_t k = 0; k < contact.points().size(); ++k) {
+    const Eigen::Isometry3d pose = pose_now(i, time);
+    for (std::size_t k = 0; k < contact.size(); ++k) {
       if (effort[static_cast<std::size_t>(contact.row(k))] == 0.0) continue;
-      const double gap = contact.distance_now(placement_, pose, k).gap;
+      const double gap = contact.distance_now(placement_, pose, k, rows_).gap;
       worst = std::max(worst, std::abs(gap - rows_.delta[contact.row(k)]));
     }
   }
@@ -107,27 +112,25 @@ double ContactPlanes::drift(std::span<const double> effort, double time) const {
 }
 
 std::size_t ContactPlanes::frames_size() const {
-  std::size_t points = 0;
-  for (const constraint::Contact* contact : contacts_) points += contact->points().size();
-  return 9 * points;
+  std::size_t size = 0;
+  for (const constraint::Contact* contact : contacts_) size += contact->memory_size();
+  return size;
 }
 
 void ContactPlanes::save_frames(std::vector<double>& frames) const {
   frames.resize(frames_size());
   double* to = frames.data();
   for (const constraint::Contact* contact : contacts_) {
-    for (std::size_t k = 0; k < contact->points().size(); ++k) {
-      to = std::copy_n(rows_.direction[contact->entry(k)].data(), 9, to);
-    }
+    contact->save(rows_, to);
+    to += contact->memory_size();
   }
 }
 
 void ContactPlanes::load_frames(std::span<const double> frames) {
   const double* from = frames.data();
   for (const constraint::Contact* contact : contacts_) {
-    for (std::size_t k = 0; k < contact->points().size(); ++k, from += 9) {
-      std::copy_n(from, 9, rows_.direction[contact->entry(k)].data());
-    }
+    contact->load(from, rows_);
+    from += contact->memory_size();
   }
 }
 

@@ -42,8 +42,11 @@ class ContactPlanes {
   void begin();
   /// Whether any surface is curved.
   bool curved() const { return curved_; }
-  /// Of a surface at the end of the step. @param contact of contacts().
-  Eigen::Isometry3d pose(std::size_t contact) const;
+  /// Of the surface that a step's planes touch: where it stands at the end of the step, or where
+  /// its carrier was when the step began. @param contact of contacts().
+  const Eigen::Isometry3d& pose(std::size_t contact) const { return poses_[contact]; }
+  /// Of the surface now. @param contact of contacts(). @param time s.
+  Eigen::Isometry3d pose_now(std::size_t contact, double time) const;
 
   /// Planes turn in a bounded number of rounds a step, after which they stay as they are.
   bool may_turn() const { return turns_left_ > 0; }
@@ -86,7 +89,7 @@ class ContactPlanes {
   VectorX start_;
   VectorX curvature_;
   bool curved_ = false;
-  double end_ = 0.0;  // s, of the step: where surfaces stand
+  std::vector<Eigen::Isometry3d> poses_;  // (contacts,)
   int turns_left_ = 0;
 };
 

@@ -8,15 +8,15 @@ namespace sinew::sim {
 ContactPoint ContactReader::point(int contact, std::size_t point) const {
   const constraint::Contact& touching = run_.model->contact(contact);
   const Eigen::Isometry3d pose =
-      run_.model->contacts()[static_cast<std::size_t>(contact)].pose(run_.time());
+      run_.world.contacts().planes().pose_now(static_cast<std::size_t>(contact), run_.time());
   const auto row = static_cast<std::size_t>(touching.row(point));
-  const auto* frame = &run_.world.rows().direction[touching.entry(point)];
+  const Matrix3 frame = touching.frame(point, run_.world.rows());
   ContactPoint result;
-  result.position = run_.world.placement().position(touching.points()[point]);
-  result.gap = touching.distance_now(run_.world.placement(), pose, point).gap;
-  result.normal = frame[0];
+  result.position = touching.position_now(run_.world.placement(), point, run_.world.rows());
+  result.gap = touching.distance_now(run_.world.placement(), pose, point, run_.world.rows()).gap;
+  result.normal = frame.col(0);
   result.normal_force = run_.effort[row];
-  result.friction_force = run_.effort[row + 1] * frame[1] + run_.effort[row + 2] * frame[2];
+  result.friction_force = run_.effort[row + 1] * frame.col(1) + run_.effort[row + 2] * frame.col(2);
   if (!(result.normal_force > 0.0)) return result;
   const Eigen::Map<const Vector3> force(&run_.effort[row]);
   const bool slips = qp::slides(force, touching.friction());
@@ -25,21 +25,21 @@ ContactPoint ContactReader::point(int contact, std::size_t point) const {
 }
 
 std::vector<ContactPoint> ContactReader::points(int contact) const {
-  std::vector<ContactPoint> result(run_.model->contact(contact).points().size());
+  std::vector<ContactPoint> result(run_.model->contact(contact).size());
   for (std::size_t k = 0; k < result.size(); ++k) result[k] = point(contact, k);
   return result;
 }
 
 ContactSum ContactReader::sum(int contact) const {
   ContactSum sum;
-  for (std::size_t k = 0; k < run_.model->contact(contact).points().size(); ++k) {
+  for (std::size_t k = 0; k < run_.model->contact(contact).size(); ++k) {
     sum.add(point(contact, k));
   }
   return sum;
 }
 
 ContactSnapshot ContactReader::snapshot(int contact) const {
-  return {run_.model->contacts().at(static_cast<std::size_t>(contact)).pose(run_.time()),
+  return {run_.world.contacts().planes().pose_now(static_cast<std::size_t>(contact), run_.time()),
           points(contact)};
 }
 

@@ -42,7 +42,7 @@ ContactRows::ContactRows(const Model& model, const constraint::Placement& placem
 template <class Visit>
 void ContactRows::for_each_point(Visit&& visit) const {
   for (const constraint::Contact* contact : planes_.contacts()) {
-    for (std::size_t k = 0; k < contact->points().size(); ++k) visit(*contact, k);
+    for (std::size_t k = 0; k < contact->size(); ++k) visit(*contact, k);
   }
 }
 
@@ -51,11 +51,12 @@ void ContactRows::choose_present(std::span<const double> effort, double time_ste
   left_out_ = false;
   const double near = std::max(kNear * model_.size(), reach);
   for_each_point([&](const constraint::Contact& contact, std::size_t k) {
-    const mechanics::MaterialPoint& point = contact.points()[k];
-    const mechanics::BodyModel& body = model_.body(point.body);
+    const mechanics::BodyModel& body = model_.body(contact.body());
     const int row = contact.row(k);
-    const double arrives = planes_.start()[row] + time_step * rows_.direction[contact.entry(k)].dot(
-                                                                  placement_.velocity(point));
+    if (contact.idle(k, rows_)) return set_present(row, false);
+    const Vector3 velocity = contact.velocity_beside(placement_, k, rows_);
+    const double arrives =
+        planes_.start()[row] + time_step * rows_.direction[contact.entry(k)].dot(velocity);
     const bool present = !body.leaves_rows_out() || effort[static_cast<std::size_t>(row)] > 0.0 ||
                          std::min(rows_.reference[row], arrives) <= near;
     set_present(row, present);
@@ -88,7 +89,7 @@ bool ContactRows::correct(const step::StepProblem& problem, const RowNumbering& 
     const constraint::Contact& contact = *planes_.contacts()[i];
     const Eigen::Isometry3d pose = planes_.pose(i);
     const bool may_turn = contact.curved() && planes_.may_turn();
-    for (std::size_t k = 0; k < contact.points().size(); ++k) {
+    for (std::size_t k = 0; k < contact.size(); ++k) {
       const int row = contact.row(k), place = numbering.place_of(row);
       if (rows_.present[static_cast<std::size_t>(row)] == 0) {
         found = take_in(contact, k, pose) || found;
@@ -105,9 +106,12 @@ bool ContactRows::correct(const step::StepProblem& problem, const RowNumbering& 
 // the surface is replaced by one that it does not.
 bool ContactRows::take_in(const constraint::Contact& contact, std::size_t point,
                           const Eigen::Isometry3d& pose) {
-  const mechanics::MaterialPoint& of = contact.points()[point];
-  const mechanics::StepSystem& system = *systems_[static_cast<std::size_t>(of.body)];
-  const Vector3 end = placement_.position(of) + system.proposed_motion(of.number);
+  if (contact.idle(point, rows_)) return false;
+  const auto motion = [&](const mechanics::Site& site) {
+    return systems_[static_cast<std::size_t>(site.body)]->proposed_motion(site.number);
+  };
+  const Vector3 end = contact.position_beside(placement_, point, rows_) +
+                      contact.relative_motion(point, rows_, motion);
   if (contact.row_values(point, end, rows_)[0] >= 0.0) return false;
   if (contact.curved() && planes_.may_turn() && !planes_.turn_to(contact, point, end, pose)) {
     return false;
@@ -130,8 +134,8 @@ double ContactRows::deepest_free_point(std::span<const double> effort) const {
   for_each_point([&](const constraint::Contact& contact, std::size_t k) {
     const int row = contact.row(k);
     if (effort[static_cast<std::size_t>(row)] > 0.0) return;
-    const double gap = rows_.offset[row] + rows_.direction[contact.entry(k)].dot(
-                                               placement_.position(contact.points()[k]));
+    const double gap =
+        contact.row_values(k, contact.position_beside(placement_, k, rows_), rows_)[0];
     deepest = std::max(deepest, -gap);
   });
   return deepest;

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sinew/constraint/surface.hpp"
+#include "sinew/collision/shape.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/core/types.hpp"
 #include "sinew/mesh/embedding.hpp"
@@ -19,9 +19,11 @@ struct ContactSettings {
   std::string name;
   Location place;
   int body = 0;
-  constraint::Surface surface;
+  collision::Shape surface;  ///< where it is at rest, in the world
+  /// The rigid body whose shape is touched, in place of the surface.
+  std::optional<int> carrier;
   std::vector<NodeId> nodes;  ///< of the body's mesh; fixed ones are left out
-  Points points;              ///< (n, 3) m, at rest; beside the nodes
+  Points points;  ///< (n, 3) m, at rest; beside the nodes. Neither: a rigid body's shape
   mesh::Outside outside = mesh::Outside::error;
   double friction = 0.0;             ///< Coulomb's coefficient, >= 0
   std::optional<BaseMotion> motion;  ///< of the surface

@@ -80,7 +80,7 @@ std::vector<std::string> row_names(const Model& model) {
   }
   for (std::size_t i = 0; i < model.contacts().size(); ++i) {
     const constraint::Contact& contact = model.contact(static_cast<int>(i));
-    for (std::size_t k = 0; k < contact.points().size(); ++k) {
+    for (std::size_t k = 0; k < contact.size(); ++k) {
       constexpr const char* kAlong[] = {"normal", "tangent 1", "tangent 2"};
       for (int c = 0; c < 3; ++c) {
         name(contact.row(k) + c) =

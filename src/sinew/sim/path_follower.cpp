@@ -30,6 +30,13 @@ void PathFollower::check() const {
                 "paths along curved surfaces with friction are not followed yet",
                 "step through the load in time");
   }
+  for (std::size_t i = 0; i < run_.model->contacts().size(); ++i) {
+    const constraint::Contact& contact = run_.model->contact(static_cast<int>(i));
+    if (!contact.own() && !contact.carrier()) continue;
+    throw Error(ErrorKind::not_in_this_version, {.item = "follow_path"},
+                "paths on which the shapes of rigid bodies touch are not followed yet",
+                "step through the load in time");
+  }
   if (run_.world.joints().block_count() > 0) {
     throw Error(ErrorKind::bad_argument, {.item = "follow_path"},
                 "paths do not pass limits and friction of joints", "step through the load in time");

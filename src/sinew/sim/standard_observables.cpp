@@ -20,6 +20,7 @@
 #include "sinew/sim/observables.hpp"
 #include "sinew/sim/simulation.hpp"
 #include "sinew/sim/state.hpp"
+#include "sinew/sim/world.hpp"
 
 namespace sinew::sim {
 
@@ -187,15 +188,18 @@ void add_probes(Observables& list) {
 }
 
 void put_contact(const Simulation& simulation, int index, std::span<double> all) {
-  const std::size_t n = simulation.model().contact(index).points().size();
+  const std::size_t n = simulation.model().contact(index).size();
   using Pose = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
   const auto part = [&all](std::size_t size) {
     Numbers numbers(all.first(size));
     all = all.subspan(size);
     return numbers;
   };
-  const ContactModel& contact = simulation.model().contacts()[static_cast<std::size_t>(index)];
-  Eigen::Map<Pose>(all.data()) = contact.pose(simulation.time()).affine();
+  Eigen::Map<Pose>(all.data()) = simulation.world()
+                                     .contacts()
+                                     .planes()
+                                     .pose_now(static_cast<std::size_t>(index), simulation.time())
+                                     .affine();
   part(12);
   Numbers position = part(3 * n), gap = part(n), normal = part(3 * n), normal_force = part(n),
           friction_force = part(3 * n), state = part(n), sums = part(8);
@@ -224,7 +228,7 @@ void add_contacts(Observables& list) {
   for (std::size_t c = 0; c < model.contacts().size(); ++c) {
     const auto index = static_cast<int>(c);
     const std::string& name = model.contacts()[c].name;
-    const std::size_t n = model.contact(index).points().size();
+    const std::size_t n = model.contact(index).size();
     std::vector<Observable> parts;
     const auto add_point = [&](const char* quantity, const char* unit,
                                std::vector<std::size_t> shape) {

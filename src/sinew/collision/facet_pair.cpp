@@ -1,0 +1,108 @@
+#include "sinew/collision/facet_pair.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Geometry>
+
+namespace sinew::collision {
+
+namespace {
+
+// What the number of a point within its facet begins with; those of a border are below.
+constexpr int kCrossing = 4, kAround = 8, kLowest = 12;
+
+bool is_disc(const Facet& facet) { return facet.kind == Facet::Kind::disc; }
+
+}  // namespace
+
+void FacetPair::clip_both() {
+  if (second_.flat()) clip_border(first_, second_, true);
+  if (first_.flat()) clip_border(second_, first_, false);
+  if (is_disc(first_) && second_.flat()) rim_points(first_, second_, true);
+  if (is_disc(second_) && first_.flat()) rim_points(second_, first_, false);
+  if (!is_disc(first_) || !is_disc(second_)) return;
+  rim_crossings(first_, second_, true);
+  rim_crossings(second_, first_, false);
+}
+
+void FacetPair::add(const Vector3& point, const Facet& other, bool is_first, int source) {
+  const Vector3 opposite = other.cast(point, normal_);
+  const int feature = feature_of(first_.number, second_.number, is_first, source);
+  candidates_.add(is_first ? point : opposite, is_first ? opposite : point, normal_, feature);
+}
+
+void FacetPair::add_if_over(const Vector3& point, const Facet& other, bool is_first, int source) {
+  if (clip(point, point, other, normal_, candidates_.same()).any) {
+    add(point, other, is_first, source);
+  }
+}
+
+void FacetPair::clip_border(const Facet& own, const Facet& other, bool is_first) {
+  const std::size_t edges = own.corner_count == 2 ? 1 : own.corner_count;
+  for (std::size_t k = 0; k < edges; ++k) {
+    const Clipped kept = clip(own.corners[k], own.corners[(k + 1) % own.corner_count], other,
+                              normal_, candidates_.same());
+    if (!kept.any) continue;
+    add(kept.from, other, is_first, static_cast<int>(2 * k));
+    add(kept.to, other, is_first, static_cast<int>(2 * k + 1));
+  }
+}
+
+// Four points of a rim, in directions that do not turn with the disc's noise, and the one with the
+// least gap, which is well defined where the gaps differ.
+void FacetPair::rim_points(const Facet& disc, const Facet& other, bool is_first) {
+  const Vector3 v = across_rim(disc, other), u = v.cross(disc.normal);
+  const std::array<Vector3, 4> ways = {u, v, -u, -v};
+  for (std::size_t k = 0; k < 4; ++k) {
+    add_if_over(disc.centre + disc.radius * ways[k], other, is_first,
+                kAround + static_cast<int>(k));
+  }
+  constexpr double kLevel = 1e-9;  // sine
+  const double side = is_first ? 1.0 : -1.0;
+  const Vector3 rise = side * other.normal / other.normal.dot(normal_);
+  const Vector3 across = rise - disc.normal.dot(rise) * disc.normal;
+  if (across.norm() <= kLevel) return;
+  add_if_over(disc.centre - disc.radius * across.normalized(), other, is_first, kLowest);
+}
+
+// A direction in the plane of a disc, normal to a polygon's side.
+Vector3 FacetPair::across_rim(const Facet& disc, const Facet& other) const {
+  if (other.kind != Facet::Kind::polygon) {
+    return disc.normal.cross(normal_.unitOrthogonal()).normalized();
+  }
+  const Vector3 a = disc.normal.cross((other.corners[1] - other.corners[0]).normalized());
+  const Vector3 b = disc.normal.cross((other.corners[2] - other.corners[1]).normalized());
+  return (a.squaredNorm() > 0.25 ? a : b).normalized();
+}
+
+// Where a rim crosses another one, seen along the normal: by bisection between points that part
+// them. The first of these is towards the other's centre, so that two parts would do for discs that
+// are parallel; those that lean on each other have up to four crossings.
+void FacetPair::rim_crossings(const Facet& disc, const Facet& other, bool is_first) {
+  constexpr int kParts = 16;
+  constexpr double kPart = 2.0 * std::numbers::pi / kParts;
+  const Vector3 towards = disc.cast(other.centre, normal_) - disc.centre;
+  const double apart = towards.norm();
+  if (apart <= candidates_.same()) return;
+  const Vector3 u = towards / apart, v = disc.normal.cross(u);
+  const auto at = [&](double angle) -> Vector3 {
+    return disc.centre + disc.radius * (std::cos(angle) * u + std::sin(angle) * v);
+  };
+  const auto inside = [&](double angle) {
+    return (other.cast(at(angle), normal_) - other.centre).norm() < other.radius;
+  };
+  int found = 0;
+  for (int k = 0; k < kParts && found < 4; ++k) {
+    double low = k * kPart, high = (k + 1) * kPart;
+    const bool starts_inside = inside(low);
+    if (starts_inside == inside(high)) continue;
+    for (int halving = 0; halving < 50; ++halving) {
+      const double middle = 0.5 * (low + high);
+      (inside(middle) == starts_inside ? low : high) = middle;
+    }
+    add(at(low), other, is_first, kCrossing + found++);
+  }
+}
+
+}  // namespace sinew::collision

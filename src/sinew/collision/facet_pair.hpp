@@ -1,0 +1,36 @@
+/// @file
+/// Points at which two facets touch.
+#pragma once
+
+#include "sinew/collision/facet.hpp"
+#include "sinew/collision/touching_candidates.hpp"
+
+namespace sinew::collision {
+
+/// Two facets that look at each other along a normal.
+class FacetPair {
+ public:
+  /// All outlive this. @param normal (3,) unit length, from the second towards the first.
+  FacetPair(const Facet& first, const Facet& second, const Vector3& normal,
+            TouchingCandidates& candidates)
+      : first_(first), second_(second), normal_(normal), candidates_(candidates) {}
+
+  /// Adds the corners of what is common to both, as far as they are known: of two lines none; of a
+  /// rim the points at which it crosses the other's border, four between and the lowest one.
+  void clip_both();
+
+ private:
+  void add(const Vector3& point, const Facet& other, bool is_first, int source);
+  void add_if_over(const Vector3& point, const Facet& other, bool is_first, int source);
+  void clip_border(const Facet& own, const Facet& other, bool is_first);
+  void rim_points(const Facet& disc, const Facet& other, bool is_first);
+  void rim_crossings(const Facet& disc, const Facet& other, bool is_first);
+  Vector3 across_rim(const Facet& disc, const Facet& other) const;
+
+  const Facet& first_;
+  const Facet& second_;
+  const Vector3& normal_;
+  TouchingCandidates& candidates_;
+};
+
+}  // namespace sinew::collision

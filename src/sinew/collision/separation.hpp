@@ -1,0 +1,29 @@
+/// @file
+/// The direction in which two convex solids are farthest apart, or overlap least.
+#pragma once
+
+#include "sinew/collision/symmetric_solid.hpp"
+
+namespace sinew::collision {
+
+/// Two solids lie on both sides of a slab, or overlap by it.
+struct Separation {
+  Vector3 normal = Vector3::UnitZ();  ///< (3,) unit length, from the second towards the first
+  double gap = -kInfinity;            ///< m, the slab's thickness; negative where they overlap
+  /// (3,) m, a pair of points at that gap.
+  Vector3 on_first = Vector3::Zero(), on_second = Vector3::Zero();
+};
+/// Thickness of the slab normal to `direction`, m: never more than the signed distance, so that the
+/// first, moved by -gap along the normal, is free. @param direction (3,) unit length.
+double slab(const SymmetricSolid& first, const SymmetricSolid& second, const Vector3& direction);
+
+/// The greatest slab. It is the distance where the solids are apart, found by nearest_cores().
+/// Where cores overlap, it is that of the normals of faces and of pairs of edges (S. Gottschalk, M.
+/// C. Lin & D. Manocha, SIGGRAPH 1996, section 5), which are all there are for polytopes. A
+/// cylinder's rim adds normals between: the best one is turned to that of the distance which the
+/// solids would have if they were apart, as long as the slab grows; for a shallow overlap that is
+/// the least one.
+/// @param margin m: where the gap is certainly larger, only a gap above it is promised.
+Separation separation(const SymmetricSolid& first, const SymmetricSolid& second, double margin);
+
+}  // namespace sinew::collision

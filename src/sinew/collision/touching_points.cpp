@@ -1,0 +1,94 @@
+#include "sinew/collision/touching_points.hpp"
+
+#include <Eigen/Geometry>
+
+#include "sinew/collision/closest_points.hpp"
+#include "sinew/collision/facet_pair.hpp"
+#include "sinew/collision/separation.hpp"
+#include "sinew/collision/touching_candidates.hpp"
+
+namespace sinew::collision {
+
+namespace {
+
+bool has_side(const SymmetricSolid& solid) {
+  return solid.half_size[2] > 0.0 && !(solid.half_size[0] > 0.0);
+}
+
+// The ends of a round side beside another one, for the contact of two that lie along each other:
+// the end's point that faces the other axis, and its nearest point of the other shape.
+// @param round is the first of the pair if `is_first`.
+void add_ends(const SymmetricSolid& round, const SymmetricSolid& other, const Shape& other_shape,
+              bool is_first, TouchingCandidates& candidates) {
+  constexpr double kFacing = 0.5;  // sine: an end that is turned to the other touches with its face
+  for (int side = 0; side < 2; ++side) {
+    const Vector3 end = round.end(side);
+    const OnEdge foot = closest_on_edge(end, other.end(0), other.end(1));
+    if (!(foot.share > 0.0 && foot.share < 1.0)) continue;
+    const Vector3 towards = foot.point - end;
+    const Vector3 across = towards - round.axis().dot(towards) * round.axis();
+    const double length = across.norm();
+    if (!(length > kFacing * towards.norm() && length > candidates.same())) continue;
+    const ShapeDistance at = distance(other_shape, end + round.rim / length * across);
+    const Vector3 own = at.nearest + (at.gap - round.radius) * at.normal;
+    const int feature = feature_of(kRoundSide, kRoundSide, is_first, side);
+    if (is_first) {
+      candidates.add(own, at.nearest, at.normal, feature);
+    } else {
+      candidates.add(at.nearest, own, -at.normal, feature);
+    }
+  }
+}
+
+void clip_all(const Facets& first, const Facets& second, const Vector3& normal,
+              TouchingCandidates& candidates) {
+  for (const Facet& a : first) {
+    for (const Facet& b : second) FacetPair(a, b, normal, candidates).clip_both();
+  }
+}
+
+TouchingPoints of_bounded(const Shape& first_shape, const Shape& second_shape, double margin) {
+  const SymmetricSolid first = symmetric_solid(first_shape), second = symmetric_solid(second_shape);
+  const Separation apart = separation(first, second, margin);
+  if (!(apart.gap <= margin)) return {};
+  TouchingCandidates candidates(first.reach() + second.reach(), margin);
+  clip_all(Facets(first, -apart.normal), Facets(second, apart.normal), apart.normal, candidates);
+  if (has_side(first) && has_side(second)) {
+    add_ends(first, second, second_shape, true, candidates);
+    add_ends(second, first, first_shape, false, candidates);
+  }
+  candidates.add_nearest(apart);
+  return candidates.reduced();
+}
+
+// Of a solid as the first.
+TouchingPoints on_plane(const SymmetricSolid& solid, const Plane& plane, double margin) {
+  TouchingCandidates candidates(solid.reach(), margin);
+  const Vector3& normal = plane.normal;
+  const Facets ground(plane);
+  clip_all(Facets(solid, -normal), ground, normal, candidates);
+  const Vector3 lowest = solid.core_support(-normal) - solid.radius * normal;
+  const double gap = normal.dot(lowest - plane.point);
+  candidates.add_nearest({normal, gap, lowest, lowest - gap * normal});
+  return candidates.reduced();
+}
+
+TouchingPoints swapped(const TouchingPoints& points) {
+  TouchingPoints other;
+  for (const TouchingPoint& at : points) {
+    other.add({at.on_second, at.on_first, -at.normal, at.gap, at.feature});
+  }
+  return other;
+}
+
+}  // namespace
+
+TouchingPoints touching_points(const Shape& first, const Shape& second, double margin) {
+  const Plane *below = std::get_if<Plane>(&second), *above = std::get_if<Plane>(&first);
+  if (below && above) return {};
+  if (below) return on_plane(symmetric_solid(first), *below, margin);
+  if (above) return swapped(on_plane(symmetric_solid(second), *above, margin));
+  return of_bounded(first, second, margin);
+}
+
+}  // namespace sinew::collision
