@@ -29,7 +29,7 @@ struct StepReport {
   /// Whether a controller's choice did not settle and was held as it was: another one, that serves
   /// about as well, may have been found from other rounding.
   bool choice_held = false;
-  int contact_sweeps = 0;              ///< of Gauss-Seidel, in the last solution of the law
+  int contact_sweeps = 0;  ///< of Gauss-Seidel, in the last solution of the law
   NewtonStatus newton = NewtonStatus::converged;
   StageTimes times;
 };
