@@ -5,6 +5,7 @@
 #include "sinew/collision/penetration.hpp"
 #include "sinew/collision/proximity.hpp"
 #include "sinew/collision/surface_impacts.hpp"
+#include "sinew/collision/touching_points.hpp"
 
 #include "support/allocation_guard.hpp"
 #include "surfaces.hpp"
@@ -41,6 +42,9 @@ TEST(Allocation, NoneInASteadyStep) {
     b.move(inside, pool);
     found += penetration.inside(b, a).size() + penetration.crossing(a, b).size();
     overlap.compute(moved, inside);
+    found += touching_points(Cylinder{{0, 0, 0}, {0, 0, 1}, 0.5},
+                             OrientedBox{.centre = {0, 0, -0.5}}, 0.1)
+                 .size();
     return found;
   };
   const std::size_t expected = step();

@@ -12,12 +12,14 @@ namespace sinew::collision {
 struct Facet {
   enum class Kind { half_space, polygon, disc, line };
   Kind kind = Kind::half_space;
-  int number = 0;                       ///< within its shape, below 8
   Vector3 centre = Vector3::Zero();     ///< (3,) m, on it
   Vector3 normal = Vector3::Zero();     ///< (3,) unit length; of a line none
   std::array<Vector3, 4> corners = {};  ///< (3,) m, round the polygon; a line's ends
+  std::array<int, 4> names = {};        ///< of the corners, below 8, the same for all facets
   std::size_t corner_count = 0;
   double radius = 0.0;  ///< m, of the disc
+  int face = 0;         ///< of a box, the polygon's number, below 6
+  int end = 0;          ///< of the cylinder that the disc is at: 0 or 1
 
   bool flat() const { return kind != Kind::line; }
   /// (3,) m: the point of the facet's plane on a line. @param point (3,) m. @param direction (3,).
@@ -48,10 +50,14 @@ class Facets {
 struct Clipped {
   bool any = false;
   Vector3 from = Vector3::Zero(), to = Vector3::Zero();  ///< (3,) m
+  /// What cuts off the rest: a polygon's side, from the corner of that number, or a rim, 0; -1 for
+  /// an end of the way.
+  int from_cut = -1, to_cut = -1;
 };
 /// Looks along a direction: what is kept has a point of the facet before or behind it.
 /// @param from,to (3,) m. @param facet a flat one. @param direction (3,) unit length.
-/// @param slack m: what is less far outside counts as inside.
+/// @param slack m: what is less far outside counts as inside. A way that only touches the facet's
+///   border is not over it: by rounding it might as well miss it.
 Clipped clip(const Vector3& from, const Vector3& to, const Facet& facet, const Vector3& direction,
              double slack);
 

@@ -9,10 +9,24 @@ namespace sinew::collision {
 
 namespace {
 
-// What the number of a point within its facet begins with; those of a border are below.
-constexpr int kCrossing = 4, kAround = 8, kLowest = 12;
+// What the number of a point of a rim begins with.
+constexpr int kCut = 0, kCrossing = 4, kAround = 8, kLowest = 12;
 
 bool is_disc(const Facet& facet) { return facet.kind == Facet::Kind::disc; }
+
+// What ends a way over a facet: a side, or one of its corners, where rounding chooses the side.
+// @param at (3,) m, on the facet. @param near m. @param cut see Clipped. @param end 0 or 1, of the
+// way.
+int cutting_part(const Facet& facet, const Vector3& at, double near, int cut, int end) {
+  if (cut < 0) return part::kInside;
+  if (is_disc(facet)) return part::rim(facet.end, kCut + end);
+  const auto k = static_cast<std::size_t>(cut);
+  const std::size_t next = (k + 1) % facet.corner_count;
+  int a = facet.names[k], b = facet.names[next];
+  if ((facet.corners[k] - at).norm() <= near) b = a;
+  if ((facet.corners[next] - at).norm() <= near) a = b;
+  return part::edge(a, b);
+}
 
 }  // namespace
 
@@ -26,26 +40,37 @@ void FacetPair::clip_both() {
   rim_crossings(second_, first_, false);
 }
 
-void FacetPair::add(const Vector3& point, const Facet& other, bool is_first, int source) {
+void FacetPair::add(const Vector3& point, int own_part, const Facet& other, int other_part,
+                    bool is_first) {
   const Vector3 opposite = other.cast(point, normal_);
-  const int feature = feature_of(first_.number, second_.number, is_first, source);
-  candidates_.add(is_first ? point : opposite, is_first ? opposite : point, normal_, feature);
-}
-
-void FacetPair::add_if_over(const Vector3& point, const Facet& other, bool is_first, int source) {
-  if (clip(point, point, other, normal_, candidates_.same()).any) {
-    add(point, other, is_first, source);
+  if (is_first) {
+    candidates_.add(point, opposite, normal_, feature_of(own_part, other_part));
+  } else {
+    candidates_.add(opposite, point, normal_, feature_of(other_part, own_part));
   }
 }
 
+void FacetPair::add_if_over(const Vector3& point, int own_part, const Facet& other, bool is_first) {
+  if (!clip(point, point, other, normal_, candidates_.same()).any) return;
+  const bool face = other.kind == Facet::Kind::polygon;
+  add(point, own_part, other, face ? part::face(other.face) : part::kInside, is_first);
+}
+
 void FacetPair::clip_border(const Facet& own, const Facet& other, bool is_first) {
+  const double near = 10.0 * candidates_.same();
   const std::size_t edges = own.corner_count == 2 ? 1 : own.corner_count;
   for (std::size_t k = 0; k < edges; ++k) {
-    const Clipped kept = clip(own.corners[k], own.corners[(k + 1) % own.corner_count], other,
-                              normal_, candidates_.same());
+    const std::size_t next = (k + 1) % own.corner_count;
+    const auto add_end = [&](const Vector3& at, int cut, int end) {
+      const int here = own.names[end == 0 ? k : next], there = own.names[end == 0 ? next : k];
+      add(at, part::edge(here, cut < 0 ? here : there), other,
+          cutting_part(other, other.cast(at, normal_), near, cut, end), is_first);
+    };
+    const Clipped kept =
+        clip(own.corners[k], own.corners[next], other, normal_, candidates_.same());
     if (!kept.any) continue;
-    add(kept.from, other, is_first, static_cast<int>(2 * k));
-    add(kept.to, other, is_first, static_cast<int>(2 * k + 1));
+    add_end(kept.from, kept.from_cut, 0);
+    add_end(kept.to, kept.to_cut, 1);
   }
 }
 
@@ -55,15 +80,16 @@ void FacetPair::rim_points(const Facet& disc, const Facet& other, bool is_first)
   const Vector3 v = across_rim(disc, other), u = v.cross(disc.normal);
   const std::array<Vector3, 4> ways = {u, v, -u, -v};
   for (std::size_t k = 0; k < 4; ++k) {
-    add_if_over(disc.centre + disc.radius * ways[k], other, is_first,
-                kAround + static_cast<int>(k));
+    add_if_over(disc.centre + disc.radius * ways[k],
+                part::rim(disc.end, kAround + static_cast<int>(k)), other, is_first);
   }
   constexpr double kLevel = 1e-9;  // sine
   const double side = is_first ? 1.0 : -1.0;
   const Vector3 rise = side * other.normal / other.normal.dot(normal_);
-  const Vector3 across = rise - disc.normal.dot(rise) * disc.normal;
+  const Vector3 across = disc.normal.cross(rise).cross(disc.normal);
   if (across.norm() <= kLevel) return;
-  add_if_over(disc.centre - disc.radius * across.normalized(), other, is_first, kLowest);
+  add_if_over(disc.centre - disc.radius * across.normalized(), part::rim(disc.end, kLowest), other,
+              is_first);
 }
 
 // A direction in the plane of a disc, normal to a polygon's side.
@@ -101,7 +127,7 @@ void FacetPair::rim_crossings(const Facet& disc, const Facet& other, bool is_fir
       const double middle = 0.5 * (low + high);
       (inside(middle) == starts_inside ? low : high) = middle;
     }
-    add(at(low), other, is_first, kCrossing + found++);
+    add(at(low), part::rim(disc.end, kCrossing + found++), other, part::kInside, is_first);
   }
 }
 

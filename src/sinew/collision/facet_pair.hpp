@@ -20,8 +20,8 @@ class FacetPair {
   void clip_both();
 
  private:
-  void add(const Vector3& point, const Facet& other, bool is_first, int source);
-  void add_if_over(const Vector3& point, const Facet& other, bool is_first, int source);
+  void add(const Vector3& point, int own_part, const Facet& other, int other_part, bool is_first);
+  void add_if_over(const Vector3& point, int own_part, const Facet& other, bool is_first);
   void clip_border(const Facet& own, const Facet& other, bool is_first);
   void rim_points(const Facet& disc, const Facet& other, bool is_first);
   void rim_crossings(const Facet& disc, const Facet& other, bool is_first);

@@ -98,7 +98,7 @@ class Simplex {
 
 NearestCores nearest_cores(const SymmetricSolid& first, const SymmetricSolid& second,
                            const Vector3& shift) {
-  constexpr int kMost = 100;
+  constexpr int kMax = 100;
   constexpr double kTolerance = 1e-14;
   const auto farthest = [&](const Vector3& towards) {
     const Vector3 a = first.core_support(-towards) + shift, b = second.core_support(towards);
@@ -109,7 +109,7 @@ NearestCores nearest_cores(const SymmetricSolid& first, const SymmetricSolid& se
   simplex.add(farthest(between.squaredNorm() > 0.0 ? between : Vector3::UnitX().eval()));
   double least = kInfinity;
   bool apart = false;  // known from a plane between
-  for (int k = 0; k < kMost; ++k) {
+  for (int k = 0; k < kMax; ++k) {
     const bool outside = simplex.reduce();
     const Vector3 nearest = outside ? simplex.nearest() : Vector3::Zero().eval();
     const double square = nearest.squaredNorm();

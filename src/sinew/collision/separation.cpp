@@ -87,7 +87,7 @@ class SlabNewton {
 
   Vector3 on_sphere(Vector3 normal) const {
     Eigen::Matrix<double, 3, 2> tangents;
-    for (int k = 0; k < kMost; ++k) {
+    for (int k = 0; k < kMax; ++k) {
       tangents.col(0) = normal.unitOrthogonal();
       tangents.col(1) = normal.cross(tangents.col(0));
       normal = stepped(normal, tangents);
@@ -96,12 +96,12 @@ class SlabNewton {
   }
   Vector3 on_circle(Vector3 normal, const Vector3& edge) const {
     normal = (normal - edge.dot(normal) * edge).normalized();
-    for (int k = 0; k < kMost; ++k) normal = stepped(normal, edge.cross(normal).eval());
+    for (int k = 0; k < kMax; ++k) normal = stepped(normal, edge.cross(normal).eval());
     return normal;
   }
 
  private:
-  static constexpr int kMost = 5;  // digits double with each
+  static constexpr int kMax = 5;  // digits double with each
 
   // The slab's slope is that of the supports, its curvature that of the rims and of the sphere.
   // Where it does not curve to a greatest value, the normal stays.
@@ -129,11 +129,14 @@ class SlabNewton {
   const SymmetricSolid& second_;
 };
 
-void polish(const SymmetricSolid& first, const SymmetricSolid& second, SlabSearch& search) {
+// Considers what Newton's method makes of a direction.
+void consider_polished(const SymmetricSolid& first, const SymmetricSolid& second,
+                       const Vector3& direction, SlabSearch& search) {
   constexpr double kNear = 0.01;  // sine
+  search.consider(direction);
   if (!(first.rim > 0.0 || second.rim > 0.0)) return;
   const SlabNewton newton(first, second);
-  const Vector3 start = search.best().normal;
+  const Vector3 start = direction.normalized();
   search.consider(search.reach() * newton.on_sphere(start));
   for (const SymmetricSolid* solid : {&first, &second}) {
     for (int k = 0; k < 3; ++k) {
@@ -147,18 +150,17 @@ void polish(const SymmetricSolid& first, const SymmetricSolid& second, SlabSearc
 // The normal and the nearest points of overlapping cores, from those of the same ones moved apart.
 void turn_to_least_overlap(const SymmetricSolid& first, const SymmetricSolid& second,
                            SlabSearch& search) {
-  constexpr int kMost = 20;
+  constexpr int kMax = 20;
   constexpr double kParted = 1e-2;  // the less, the fewer turns; rounding bounds it
   const double balls = first.radius + second.radius;
-  const bool round = first.rim > 0.0 || second.rim > 0.0;
-  for (int k = 0; k < kMost; ++k) {
-    const Vector3 shift =
-        (kParted * search.reach() - search.best().gap - balls) * search.best().normal;
+  for (int k = 0; k <= kMax; ++k) {
+    const Separation before = search.best();
+    const Vector3 shift = (kParted * search.reach() - before.gap - balls) * before.normal;
     const NearestCores nearest = nearest_cores(first, second, shift);
-    const bool turned = round && search.consider(nearest.on_first - nearest.on_second);
     search.set_points(nearest.on_first - shift, nearest.on_second);
-    if (!turned) return;
-    polish(first, second, search);
+    if (k == kMax || !(first.rim > 0.0 || second.rim > 0.0)) return;
+    consider_polished(first, second, nearest.on_first - nearest.on_second, search);
+    if (!(search.best().gap > before.gap)) return;
   }
 }
 
@@ -180,7 +182,7 @@ Separation separation(const SymmetricSolid& first, const SymmetricSolid& second,
   const NearestCores nearest = nearest_cores(first, second);
   const Vector3 between = nearest.on_first - nearest.on_second;
   if (nearest.apart && between.norm() > kTouching * search.reach()) {
-    if (search.consider(between)) polish(first, second, search);
+    consider_polished(first, second, between, search);
     search.set_points(nearest.on_first, nearest.on_second);
   } else {
     if (search.best().gap == -kInfinity) search.consider(search.reach() * Vector3::UnitZ());

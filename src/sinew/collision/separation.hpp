@@ -21,9 +21,13 @@ double slab(const SymmetricSolid& first, const SymmetricSolid& second, const Vec
 /// Where cores overlap, it is that of the normals of faces and of pairs of edges (S. Gottschalk, M.
 /// C. Lin & D. Manocha, SIGGRAPH 1996, section 5), which are all there are for polytopes. A
 /// cylinder's rim adds normals between: the best one is turned to that of the distance which the
-/// solids would have if they were apart, as long as the slab grows; for a shallow overlap that is
-/// the least one.
-/// @param margin m: where the gap is certainly larger, only a gap above it is promised.
+/// cores would have if they were parted along it, and from there by Newton's method, as long as the
+/// slab grows. What is found is a slab in any case; in rare poses, about one in thousands, it is
+/// not the greatest.
+///
+/// The points of overlapping round solids have about half the digits of the gap, and fewer where
+/// the overlap is of the solids' own size.
+/// @param margin m: above it only its excess is promised, and no points.
 Separation separation(const SymmetricSolid& first, const SymmetricSolid& second, double margin);
 
 }  // namespace sinew::collision

@@ -4,14 +4,10 @@
 
 namespace sinew::collision {
 
-int feature_of(int first_facet, int second_facet, bool of_first, int source) {
-  return 1 + source + 16 * ((of_first ? 0 : 1) + 2 * (first_facet + 8 * second_facet));
-}
-
 void TouchingCandidates::add(const Vector3& on_first, const Vector3& on_second,
                              const Vector3& normal, int feature) {
   const double gap = normal.dot(on_first - on_second);
-  if (!(gap <= margin_) || size_ == kMost) return;
+  if (!(gap <= margin_) || size_ == kMax) return;
   for (std::size_t k = 0; k < size_; ++k) {
     if ((points_[k].on_first - on_first).norm() <= same_ &&
         (points_[k].on_second - on_second).norm() <= same_) {
@@ -36,14 +32,18 @@ void TouchingCandidates::add_nearest(const Separation& nearest) {
 
 TouchingPoints TouchingCandidates::reduced() const {
   TouchingPoints kept;
-  std::array<double, kMost> far;
+  std::array<double, kMax> far;
   far.fill(kInfinity);
-  const bool all = size_ <= TouchingPoints::kMost;
-  for (std::size_t n = 0; n < std::min(size_, TouchingPoints::kMost); ++n) {
+  const bool all = size_ <= TouchingPoints::kMax;
+  // Of both shapes, so that they may change places.
+  const auto middle = [&](std::size_t k) -> Vector3 {
+    return 0.5 * (points_[k].on_first + points_[k].on_second);
+  };
+  for (std::size_t n = 0; n < std::min(size_, TouchingPoints::kMax); ++n) {
     const std::size_t next = all ? n : farthest(far);
     kept.add(points_[next]);
     for (std::size_t k = 0; k < size_; ++k) {
-      far[k] = std::min(far[k], (points_[k].on_first - points_[next].on_first).squaredNorm());
+      far[k] = std::min(far[k], (middle(k) - middle(next)).squaredNorm());
     }
     far[next] = -1.0;
   }
@@ -51,7 +51,7 @@ TouchingPoints TouchingCandidates::reduced() const {
 }
 
 // Of those equally far, the deepest.
-std::size_t TouchingCandidates::farthest(const std::array<double, kMost>& far) const {
+std::size_t TouchingCandidates::farthest(const std::array<double, kMax>& far) const {
   std::size_t best = 0;
   for (std::size_t k = 1; k < size_; ++k) {
     if (far[k] > far[best] || (far[k] == far[best] && points_[k].gap < points_[best].gap)) {

@@ -9,12 +9,24 @@
 
 namespace sinew::collision {
 
-/// Stands for a round side in place of a facet's number.
-inline constexpr int kRoundSide = 7;
+/// What is at a touching point on one of the shapes. Whichever facets are clipped, names are the
+/// same.
+namespace part {
+inline constexpr int kInside = 127;  ///< of a facet, or a place that nothing marks
+/// An edge of a box or a line, or one corner of it, twice. @param a,b corners' names.
+constexpr int edge(int a, int b) { return a < b ? a + 8 * b : b + 8 * a; }
+/// A point of a cylinder's rim. @param end 0 or 1. @param source below 16.
+constexpr int rim(int end, int source) { return 64 + 16 * end + source; }
+/// The end of a round side beside another one.
+constexpr int side_end(int end) { return 96 + end; }
+/// The inside of a box's face. @param face below 6.
+constexpr int face(int face) { return 100 + face; }
+}  // namespace part
 
-/// A name for a touching point; 0 is left for the nearest pair of no facets.
-/// @param first_facet,second_facet below 8. @param source below 16: which point of one of them.
-int feature_of(int first_facet, int second_facet, bool of_first, int source);
+/// A name for a touching point; 0 is left for the nearest pair of no such parts.
+constexpr int feature_of(int first_part, int second_part) {
+  return 1 + first_part + 128 * second_part;
+}
 
 /// A list of fixed capacity without repetitions.
 class TouchingCandidates {
@@ -33,12 +45,12 @@ class TouchingCandidates {
   TouchingPoints reduced() const;
 
  private:
-  static constexpr std::size_t kMost = 96;
+  static constexpr std::size_t kMax = 96;
   static constexpr double kSame = 1e-9;  // relative to the size
 
-  std::size_t farthest(const std::array<double, kMost>& far) const;
+  std::size_t farthest(const std::array<double, kMax>& far) const;
 
-  std::array<TouchingPoint, kMost> points_;
+  std::array<TouchingPoint, kMax> points_;
   std::size_t size_ = 0;
   double same_, margin_;
   double least_ = kInfinity;

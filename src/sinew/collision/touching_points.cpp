@@ -26,16 +26,15 @@ void add_ends(const SymmetricSolid& round, const SymmetricSolid& other, const Sh
     const OnEdge foot = closest_on_edge(end, other.end(0), other.end(1));
     if (!(foot.share > 0.0 && foot.share < 1.0)) continue;
     const Vector3 towards = foot.point - end;
-    const Vector3 across = towards - round.axis().dot(towards) * round.axis();
+    const Vector3 across = round.axis().cross(towards).cross(round.axis());
     const double length = across.norm();
     if (!(length > kFacing * towards.norm() && length > candidates.same())) continue;
     const ShapeDistance at = distance(other_shape, end + round.rim / length * across);
     const Vector3 own = at.nearest + (at.gap - round.radius) * at.normal;
-    const int feature = feature_of(kRoundSide, kRoundSide, is_first, side);
     if (is_first) {
-      candidates.add(own, at.nearest, at.normal, feature);
+      candidates.add(own, at.nearest, at.normal, feature_of(part::side_end(side), part::kInside));
     } else {
-      candidates.add(at.nearest, own, -at.normal, feature);
+      candidates.add(at.nearest, own, -at.normal, feature_of(part::kInside, part::side_end(side)));
     }
   }
 }

@@ -19,7 +19,7 @@ struct TouchingPoint {
 /// A list of fixed capacity.
 class TouchingPoints {
  public:
-  static constexpr std::size_t kMost = 8;
+  static constexpr std::size_t kMax = 8;
 
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
@@ -29,24 +29,28 @@ class TouchingPoints {
   void add(const TouchingPoint& point) { points_[size_++] = point; }
 
  private:
-  std::array<TouchingPoint, kMost> points_ = {};
+  std::array<TouchingPoint, kMax> points_ = {};
   std::size_t size_ = 0;
 };
 
 /// The pairs of points of two shapes with a gap of at most `margin`, enough of them to hold one
 /// shape on the other. The least gap is the signed distance (see separation()): moved by it along
-/// the normal, shapes that overlap are free.
+/// its normal, shapes that overlap are free. No gap is less.
 ///
 /// Looking along the normal of that distance, facets that face each other are clipped (C. Ericson,
 /// "Real-Time Collision Detection", 2005, section 5.5): corners of a polygon, ends of lines and
 /// four points of a round end, each with the gap of its own two points. Capsules and the sides of
-/// cylinders that lie along each other touch in two, with normals of their own. The nearest pair is
-/// always there. Of more than eight, the deepest one stays and those farthest from each other.
+/// cylinders that lie along each other touch at the ends of what they share, with normals of their
+/// own. The nearest pair is always there. Of more than eight, the deepest one stays and those
+/// farthest from each other.
 ///
-/// All rim points of an end have the same gap as it stands; then they are in directions that the
-/// other shape gives, so that noise does not turn them. A tilted end has its lowest point, too.
-/// Two planes have no points.
-/// @param margin m.
+/// The four points of a standing end are in directions that the other shape gives (its sides; of a
+/// plane or a round end the normal's unitOrthogonal()), so that noise does not turn them. A tilted
+/// end has its lowest point, too. A capsule that leans is touched through the balls at its ends:
+/// the upper one's point may be in it.
+///
+/// Two planes have no points. Shapes are taken to be checked().
+/// @param margin m; also a negative one.
 TouchingPoints touching_points(const Shape& first, const Shape& second, double margin);
 
 }  // namespace sinew::collision

@@ -40,7 +40,7 @@ Contact::Contact(std::string name, RigidSide own, collision::Shape surface, doub
       surface_(checked(std::move(surface))),
       friction_(friction),
       carrier_(std::move(carrier)),
-      count_(collision::TouchingPoints::kMost),
+      count_(collision::TouchingPoints::kMax),
       stride_(carrier_ ? 4 : 2) {
   check();
 }

@@ -129,7 +129,8 @@ class Bench {
       for (std::size_t k = 0; k < task.objects.size(); ++k) {
         sim::ContactSettings contact;
         contact.name = fmt::format("object {}", k);
-        std::visit([&](const auto& surface) { contact.surface = surface; }, task.objects[k].surface);
+        std::visit([&](const auto& surface) { contact.surface = surface; },
+                   task.objects[k].surface);
         contact.points = rest;
         contact.outside = mesh::Outside::nearest;
         contact.friction = settings.friction.value_or(task.objects[k].friction.least);
