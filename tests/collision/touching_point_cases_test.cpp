@@ -238,5 +238,27 @@ TEST(TouchingPointCases, TakeShapesThatAreInEachOther) {
   EXPECT_TRUE(touching_points(Plane{}, Plane{}, 1.0).empty());
 }
 
+// Cubes of one size whose sides are flush up to noise: no side that is seen edge-on takes part.
+TEST(TouchingPointCases, FlushCubesTouchWithFacesAlone) {
+  const Vector3 half = Vector3::Constant(0.01);
+  for (int trial = 0; trial < 1000; ++trial) {
+    std::srand(static_cast<unsigned>(trial));
+    const auto noise = [&](double size) { return Vector3(size * Vector3::Random()); };
+    const auto cube = [&](double height) {
+      const Vector3 turn = noise(1e-9);
+      const Matrix3 axes = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
+      return OrientedBox{Vector3(0.0, 0.0, height) + noise(1e-10), axes, half};
+    };
+    const TouchingPoints found = touching_points(cube(0.03), cube(0.01), kInfinity);
+    ASSERT_GE(found.size(), 4U);
+    for (const TouchingPoint& at : found) {
+      EXPECT_NEAR(at.gap, 0.0, 1e-9);
+      EXPECT_NEAR(at.normal.z(), 1.0, 1e-9);
+      EXPECT_NEAR(at.on_first.z(), 0.02, 1e-9);
+      EXPECT_NEAR(at.on_second.z(), 0.02, 1e-9);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace sinew::collision

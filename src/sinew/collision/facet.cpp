@@ -9,8 +9,9 @@ namespace sinew::collision {
 
 namespace {
 
-// Faces that are turned away by more are seen edge-on: the line of sight does not meet them.
-constexpr double kEdgeOn = 1e-9;
+// Sine of the angle at which faces are seen edge-on and left out: what is clipped to a slack lies
+// off such a face by the slack over this.
+constexpr double kEdgeOn = 1e-3;
 
 // The shares of a way that are kept, from its first end.
 struct Range {

@@ -7,7 +7,7 @@ namespace sinew::collision {
 void TouchingCandidates::add(const Vector3& on_first, const Vector3& on_second,
                              const Vector3& normal, int feature) {
   const double gap = normal.dot(on_first - on_second);
-  if (!(gap <= margin_) || size_ == kMax) return;
+  if (!(gap <= margin_ && gap >= deepest_) || size_ == kMax) return;
   for (std::size_t k = 0; k < size_; ++k) {
     if ((points_[k].on_first - on_first).norm() <= same_ &&
         (points_[k].on_second - on_second).norm() <= same_) {
@@ -19,7 +19,6 @@ void TouchingCandidates::add(const Vector3& on_first, const Vector3& on_second,
 }
 
 void TouchingCandidates::add_nearest(const Separation& nearest) {
-  constexpr double kNear = 1e4;  // times same()
   if (least_ <= nearest.gap + same_) return;
   for (std::size_t k = 0; k < size_; ++k) {
     if ((points_[k].on_first - nearest.on_first).norm() > kNear * same_) continue;

@@ -31,8 +31,11 @@ constexpr int feature_of(int first_part, int second_part) {
 /// A list of fixed capacity without repetitions.
 class TouchingCandidates {
  public:
-  /// @param size m, of both shapes. @param margin m: pairs with larger gaps are left out.
-  TouchingCandidates(double size, double margin) : same_(kSame * size), margin_(margin) {}
+  /// @param size m, of both shapes. @param nearest m, the gap of the shapes: what seems to be
+  /// deeper by more than iterations leave is no point of theirs. @param margin m: pairs with larger
+  /// gaps are left out.
+  TouchingCandidates(double size, double nearest, double margin)
+      : same_(kSame * size), deepest_(nearest - kNear * same_), margin_(margin) {}
 
   /// Points that are nearer to each other are one, m.
   double same() const { return same_; }
@@ -47,12 +50,13 @@ class TouchingCandidates {
  private:
   static constexpr std::size_t kMax = 96;
   static constexpr double kSame = 1e-9;  // relative to the size
+  static constexpr double kNear = 1e4;   // times same()
 
   std::size_t farthest(const std::array<double, kMax>& far) const;
 
   std::array<TouchingPoint, kMax> points_;
   std::size_t size_ = 0;
-  double same_, margin_;
+  double same_, deepest_, margin_;
   double least_ = kInfinity;
 };
 

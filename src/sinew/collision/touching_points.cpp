@@ -50,7 +50,7 @@ TouchingPoints of_bounded(const Shape& first_shape, const Shape& second_shape, d
   const SymmetricSolid first = symmetric_solid(first_shape), second = symmetric_solid(second_shape);
   const Separation apart = separation(first, second, margin);
   if (!(apart.gap <= margin)) return {};
-  TouchingCandidates candidates(first.reach() + second.reach(), margin);
+  TouchingCandidates candidates(first.reach() + second.reach(), apart.gap, margin);
   clip_all(Facets(first, -apart.normal), Facets(second, apart.normal), apart.normal, candidates);
   if (has_side(first) && has_side(second)) {
     add_ends(first, second, second_shape, true, candidates);
@@ -62,12 +62,11 @@ TouchingPoints of_bounded(const Shape& first_shape, const Shape& second_shape, d
 
 // Of a solid as the first.
 TouchingPoints on_plane(const SymmetricSolid& solid, const Plane& plane, double margin) {
-  TouchingCandidates candidates(solid.reach(), margin);
   const Vector3& normal = plane.normal;
-  const Facets ground(plane);
-  clip_all(Facets(solid, -normal), ground, normal, candidates);
   const Vector3 lowest = solid.core_support(-normal) - solid.radius * normal;
   const double gap = normal.dot(lowest - plane.point);
+  TouchingCandidates candidates(solid.reach(), gap, margin);
+  clip_all(Facets(solid, -normal), Facets(plane), normal, candidates);
   candidates.add_nearest({normal, gap, lowest, lowest - gap * normal});
   return candidates.reduced();
 }
