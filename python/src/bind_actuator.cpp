@@ -108,11 +108,9 @@ double wire_number(const Actuator& self, const char* what, std::size_t index) {
   return self.session->simulation().drive_state(self.index)[index];
 }
 
-double power(const Actuator& self) {
-  const auto& drive = model(self).drive;
-  if (drive == nullptr || std::string_view(drive->input().name) != "power") {
-    fail_type(self, "power");
-  }
+/// What the actuator is told of its input, 0 while it is told something else.
+double told(const Actuator& self, const char* what) {
+  if (std::string_view(model(self).input_name().name) != what) fail_type(self, what);
   const Session::Use use(*self.session);
   const auto& command = self.session->simulation().actuator(self.index).command;
   return command.kind == CommandKind::input
@@ -178,9 +176,15 @@ Reading gives what it is; assigning commands it: a number (m), a signal such as 
                 "float: pressure in a chamber above ambient (Pa). Assigning commands it, as for "
                 "`displacement`; through the chamber's supply when it has one.");
   bind_quantity(type, "torque", effort,
-                "float: torque on a bend (N m). Assigning commands it, as for `displacement`.");
+                "float: torque on a bend, or of a motor on its joint (N m). Assigning commands it, as "
+                "for `displacement`.");
   bind_quantity(type, "angle", motion,
-                "float: a bend under a torque (rad). Assigning commands it.");
+                "float: a bend under a torque, or a motor's joint angle (rad). Assigning commands "
+                "it.");
+  bind_quantity(type, "velocity", told,
+                "float: the rate that a motor is told to turn or travel at (rad/s, m/s), 0 while it "
+                "is told something else. Assigning commands it; the joint obeys within the limits "
+                "of the motor's effort.");
   bind_quantity(type, "volume_growth", motion,
                 "float: volume that a chamber gained since rest (m^3). Assigning commands it, as "
                 "a syringe of liquid would.");
@@ -194,7 +198,7 @@ Reading gives what it is; assigning commands it: a number (m), a signal such as 
       "float: liquid added to a chamber (m^3). Assigning commands it. Chambers with `liquid` "
       "alone.");
   bind_quantity(
-      type, "power", [](const Actuator& self, const char*) { return power(self); },
+      type, "power", told,
       "float: electric power into a shape-memory spring (W). Assigning commands it.");
   bind_quantity(
       type, "phase",

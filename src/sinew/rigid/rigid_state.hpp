@@ -45,9 +45,9 @@ struct RigidState {
   /// A combination of that motion and of what was before it.
   Vector6 combine(const mechanics::Combination& weights) const;
 
-  const RigidBodyModel& model;
   RigidPose pose, start;
   Vector6 rate;
+  const RigidBodyModel& model;
   std::vector<Vector6> history;  ///< what the integrator keeps
   mechanics::RowMemory memory;
 };

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "sinew/mesh/embedding.hpp"
 #include "sinew/scene/readers.hpp"
 #include "sinew/scene/values.hpp"
@@ -8,12 +10,11 @@ namespace {
 
 using constraint::JointType;
 
+// The grammar takes no other word.
 JointType type_of(const std::string& word) {
-  for (const JointType type : {JointType::ball, JointType::universal, JointType::hinge,
-                               JointType::slider, JointType::cylindrical}) {
-    if (word == constraint::joint_type_name(type)) return type;
-  }
-  return JointType::weld;
+  return *std::ranges::find_if(constraint::kJointTypes, [&](JointType type) {
+    return word == constraint::joint_type_name(type);
+  });
 }
 
 void read_weld(const Fields& fields, JointDescription& weld, const ReadContext& context) {
