@@ -74,6 +74,10 @@ await draw('docs/images/view_contact.png', [join(root, 'examples/contact/squeeze
   await page.selectOption('[aria-label="Signals to plot"]', 'contact');
   await step(page, 500);
 });
+await draw('docs/images/contact_lift.png', [join(root, 'examples/contact/lift.yaml')], {}, async (page) => {
+  await page.selectOption('[aria-label="Signals to plot"]', 'contact');
+  await step(page, 300);
+});
 const folder = mkdtempSync(join(tmpdir(), 'sinew-pictures-'));
 execFileSync(program, ['run', circle, '--duration', '4s', '--out', folder, '--quiet']);
 await draw('docs/images/view_replay.png', [folder], {}, async (page) => {

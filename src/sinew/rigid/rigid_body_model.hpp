@@ -67,6 +67,8 @@ class RigidBodyModel final : public mechanics::BodyModel,
   const Attachment& attachment(int site) const {
     return attachments_[static_cast<std::size_t>(site)];
   }
+  /// Of the many points of a heap few touch.
+  bool leaves_rows_out() const override { return true; }
   const mechanics::OwnRows& own_rows() const { return own_rows_; }
 
  private:

@@ -39,11 +39,12 @@ void LinearStep::linearise(const mechanics::LinearisationRequest& request) {
   run_.clock.mark(Stage::rows);
 }
 
-// With the projected tangent where the exact one is indefinite.
+// With the projected tangent where the exact one is indefinite; a factorisation for definite
+// matrices alone ends there as if it were singular.
 void LinearStep::condense(mechanics::LinearisationRequest& request) {
   auto status = run_.world.condense();
-  if (status != linalg::FactorStatus::singular && request.tangent == mechanics::Tangent::exact &&
-      !run_.world.is_stable()) {
+  const bool suits = status != linalg::FactorStatus::singular && run_.world.is_stable();
+  if (!suits && request.tangent == mechanics::Tangent::exact) {
     request.tangent = mechanics::Tangent::projected;
     linearise(request);
     status = run_.world.condense();
