@@ -42,6 +42,7 @@ def test_a_cube_falls_on_a_table_and_rests(order):
     sim = make({"table": TABLE, "cube": cube(height=25)}, {"floor": {"between": order, "friction": 0.5}})
     sim.run(duration=0.2)
     floor = sim.contact("floor")
+    assert floor.bodies == order
     assert sim.body("cube").position == pytest.approx([0, 0, 0.02], abs=1e-8)
     assert floor.normal_force == pytest.approx(0.2 * GRAVITY, rel=1e-6)
     assert np.linalg.norm(sim.body("cube").velocity) < 1e-8
