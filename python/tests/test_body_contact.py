@@ -258,3 +258,33 @@ def test_a_saved_state_goes_on_bit_for_bit():
         sim.step()
         other.step()
     assert sim.state() == other.state()
+
+
+def heap(**more):
+    ball = {"type": "rigid", "shape": {"sphere": {"radius": "10 mm"}}, "mass": "50 g"}
+    return make({"low": {**ball, "pose": {"position": "0 0 11 mm"}}, "high": {**ball, "pose": {"position": "1 0 32 mm"}},
+                 "table": TABLE, "wall": {**TABLE, "pose": {"position": "0 300 0 mm"}}},
+                {"all": {"between": "all", "friction": 0.3, **more.pop("entry", {})}, **more.pop("contacts", {})}, **more)
+
+
+def test_all_pairs_touch():
+    """But those of fixed bodies, those that joints connect, those with an entry of their own and those excepted."""
+    assert set(heap().contacts) == {"all-low-high", "all-low-table", "all-high-table", "all-low-wall", "all-high-wall"}
+    sim = heap(entry={"except": [["wall", "low"], ["high", "wall"]]}, contacts={"own": {"between": ["high", "low"], "friction": 0.1}})
+    assert set(sim.contacts) == {"own", "all-low-table", "all-high-table"}
+    assert sim.contact("own").friction == 0.1
+    sim.run(duration=0.3)
+    assert sum(sim.contact(f"all-{name}-table").normal_force for name in ("low", "high")) > 0.0
+    joined = heap(joints={"rod": {"type": "ball", "bodies": ["low", "high"], "point": "0 0 21 mm"}})
+    assert "all-low-high" not in joined.contacts
+
+
+def test_what_all_cannot_be_is_said():
+    with pytest.raises(sinew.Error) as error:
+        make({"a": soft_block(), "cube": cube(height=80)}, {"all": {"between": "all"}})
+    assert error.value.kind == "not-in-this-version" and "except: [[a, a]]" in str(error.value)
+    sim = make({"a": soft_block(), "cube": cube(height=80)}, {"all": {"between": "all", "except": [["a", "a"]]}})
+    assert list(sim.contacts) == ["all-a-cube"]
+    with pytest.raises(sinew.Error) as error:
+        heap(contacts={"one": {"between": ["low", "high"]}, "two": {"between": ["high", "low"]}})
+    assert error.value.kind == "conflicting-keys"

@@ -130,7 +130,7 @@ Robot build(SceneDescription description) {
   }
   for (const LoadDescription& load : description.loads) add_load(builder, load, body_of);
   for (const ProbeDescription& probe : description.probes) add_probe(builder, probe, body_of);
-  for (const ContactDescription& contact : description.contacts) {
+  for (const ContactDescription& contact : contact_pairs(description)) {
     add_contact(builder, contact, body_of);
   }
   add_joints(true);

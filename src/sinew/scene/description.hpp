@@ -285,6 +285,8 @@ struct ContactDescription {
   std::string body;
   std::string other;  ///< that has the surface; empty: the surface below
   Location between_place;
+  bool all = false;  ///< between all pairs, but:
+  std::vector<std::pair<std::string, std::string>> except;
   constraint::Surface surface;
   std::optional<FixedRegion> nodes;  ///< of the outside; none, and no points: all of it
   PointList points;

@@ -90,12 +90,20 @@ Form contact_form() {
   contact.keys.front().required = false;
   contact.keys.push_back(
       {.name = "between",
-       .forms = {list({reference("bodies")}, 2, 2)},
+       .forms = {list({reference("bodies")}, 2, 2), choice({{"all", "All pairs of bodies."}})},
        .example = "[finger, box]",
        .description =
            "Two bodies, one of them rigid, in place of body and surface. Nodes or points of "
            "a body with elements or of an arm touch the other one's shape; two rigid "
-           "bodies touch with their shapes."});
+           "bodies touch with their shapes. `all`: every pair but those that joints connect, those "
+           "of two fixed bodies, and those that have an entry of their own; the contacts are "
+           "called "
+           "NAME-FIRST-SECOND."});
+  contact.keys.push_back({.name = "except",
+                          .forms = {list({list({reference("bodies")}, 2, 2)})},
+                          .example = "[[palm, finger]]",
+                          .description = "Pairs that may pass through each other. Only with "
+                                         "`between: all`."});
   contact.keys.push_back({.name = "surface",
                           .forms = {table(solid_table())},
                           .example = "{plane: {point: 0 0 0 mm, normal: 0 0 1}}",

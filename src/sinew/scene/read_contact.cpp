@@ -35,6 +35,35 @@ constraint::Surface read_solid(const Fields& fields) {
   return capsule;
 }
 
+void refuse_key(const Fields& fields, const char* key, const char* why, const char* remedy) {
+  if (fields.find(key) == nullptr) return;
+  throw Error(ErrorKind::conflicting_keys, fields.place(key), fmt::format("`{}` {}", key, why),
+              remedy);
+}
+
+void read_between(const Fields& fields, const Node& between, ContactDescription& contact) {
+  contact.between_place = between.place();
+  contact.all = between.items().empty();
+  for (const char* key : {"surface", "motion"}) {
+    refuse_key(fields, key, "is no part of contact between bodies",
+               "leave it out, or name one `body` in place of `between`");
+  }
+  if (contact.all) {
+    for (const char* key : {"nodes", "points"}) {
+      refuse_key(fields, key, "belongs to one body", "give that pair an entry of its own");
+    }
+    const Node* except = fields.find("except");
+    if (except == nullptr) return;
+    for (const Node& pair : except->items()) {
+      contact.except.emplace_back(read_text(pair.items()[0]), read_text(pair.items()[1]));
+    }
+    return;
+  }
+  refuse_key(fields, "except", "is for `between: all`", "leave it out");
+  contact.body = read_text(between.items()[0]);
+  contact.other = read_text(between.items()[1]);
+}
+
 }  // namespace
 
 ContactDescription read_contact(const Node::Entry& entry, const ReadContext& context) {
@@ -43,15 +72,7 @@ ContactDescription read_contact(const Node::Entry& entry, const ReadContext& con
   contact.place = entry.key_place;
   const Fields fields(entry.value, form_of(grammar(), "contacts", Shape::names).items.front());
   if (const Node* between = fields.find("between")) {
-    contact.body = read_text(between->items()[0]);
-    contact.other = read_text(between->items()[1]);
-    contact.between_place = between->place();
-    for (const char* key : {"surface", "motion"}) {
-      if (fields.find(key) == nullptr) continue;
-      throw Error(ErrorKind::conflicting_keys, fields.place(key),
-                  fmt::format("the surface is that of a body, and `{}` is another's", key),
-                  "leave it out, or name one `body` in place of `between`");
-    }
+    read_between(fields, *between, contact);
   } else {
     fields.read("body", contact.body);
     if (fields.find("surface") == nullptr) {

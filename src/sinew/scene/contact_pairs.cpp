@@ -1,0 +1,84 @@
+#include <algorithm>
+#include <set>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "sinew/core/error.hpp"
+#include "sinew/scene/build_parts.hpp"
+
+namespace sinew::scene {
+
+namespace {
+
+using Pair = std::pair<std::string, std::string>;
+
+Pair ordered(const std::string& one, const std::string& other) {
+  return one < other ? Pair{one, other} : Pair{other, one};
+}
+
+// Pairs with an entry of their own.
+std::set<Pair> named_pairs(const SceneDescription& scene) {
+  std::set<Pair> pairs;
+  for (const ContactDescription& contact : scene.contacts) {
+    if (contact.other.empty()) continue;
+    if (pairs.insert(ordered(contact.body, contact.other)).second) continue;
+    throw Error(ErrorKind::conflicting_keys, contact.between_place,
+                fmt::format("'{}' and '{}' have a contact already", contact.body, contact.other),
+                "give a pair of bodies one entry");
+  }
+  return pairs;
+}
+
+bool is_fixed(const BodyDescription& body) { return body.rigid && body.rigid->fixed; }
+
+// Of those pairs that `all` stands for, the ones that this version has no contact for.
+void refuse_pairs(const std::vector<Pair>& pairs, const Location& place) {
+  if (pairs.empty()) return;
+  std::vector<std::string> texts;
+  for (const auto& [one, other] : pairs) texts.push_back(fmt::format("[{}, {}]", one, other));
+  throw Error(ErrorKind::not_in_this_version, place,
+              "contact of deformable bodies with one another or themselves, and of arms without "
+              "points,",
+              fmt::format("write except: [{}], and give arms entries with `points`",
+                          fmt::join(texts, ", ")));
+}
+
+}  // namespace
+
+std::vector<ContactDescription> contact_pairs(const SceneDescription& scene) {
+  std::set<Pair> left_out = named_pairs(scene);
+  for (const JointDescription& joint : scene.joints) {
+    left_out.insert(ordered(joint.first, joint.second));
+  }
+  std::vector<ContactDescription> contacts;
+  for (const ContactDescription& contact : scene.contacts) {
+    if (!contact.all) {
+      contacts.push_back(contact);
+      continue;
+    }
+    for (const auto& [one, other] : contact.except) left_out.insert(ordered(one, other));
+    std::vector<Pair> refused;
+    for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+      for (std::size_t j = i; j < scene.bodies.size(); ++j) {
+        const BodyDescription &one = scene.bodies[i], &other = scene.bodies[j];
+        const bool itself = i == j;
+        if ((itself && one.rigid) || (is_fixed(one) && is_fixed(other))) continue;
+        if (left_out.contains(ordered(one.name, other.name))) continue;
+        left_out.insert(ordered(one.name, other.name));
+        if (one.arm || other.arm || (!one.rigid && !other.rigid)) {
+          refused.emplace_back(one.name, other.name);
+          continue;
+        }
+        ContactDescription& pair = contacts.emplace_back(contact);
+        pair.name = fmt::format("{}-{}-{}", contact.name, one.name, other.name);
+        pair.body = one.name;
+        pair.other = other.name;
+      }
+    }
+    refuse_pairs(refused, contact.between_place);
+  }
+  return contacts;
+}
+
+}  // namespace sinew::scene
