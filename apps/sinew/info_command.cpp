@@ -6,6 +6,7 @@
 #include <string>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "sinew/constraint/cable.hpp"
@@ -281,9 +282,17 @@ Facts scene_facts(const InfoOptions& options) {
   }
   for (std::size_t i = 0; i < model.contacts().size(); ++i) {
     const std::string& name = model.contacts()[i].name;
-    const auto points = model.contact(static_cast<int>(i)).size();
-    facts.json["contacts"].push_back({{"name", name}, {"points", points}});
-    facts.text += fmt::format("  contact {}: {} points\n", name, points);
+    const constraint::Contact& contact = model.contact(static_cast<int>(i));
+    std::vector<std::string> bodies{model.body(contact.body()).name()};
+    if (contact.carrier()) {
+      bodies.push_back(model.body(contact.carrier()->centre.body).name());
+    }
+    facts.json["contacts"].push_back(
+        {{"name", name}, {"bodies", bodies}, {"points", contact.size()}});
+    facts.text += contact.own() ? fmt::format("  contact {}: of {}, up to {} points\n", name,
+                                              fmt::join(bodies, " and "), contact.size())
+                                : fmt::format("  contact {}: of {}, {} points\n", name,
+                                              fmt::join(bodies, " and "), contact.size());
   }
   for (std::size_t i = 0; i < model.joints().size(); ++i) {
     add_joint(facts, model, static_cast<int>(i));
