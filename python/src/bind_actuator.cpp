@@ -175,16 +175,18 @@ Reading gives what it is; assigning commands it: a number (m), a signal such as 
   bind_quantity(type, "pressure", effort,
                 "float: pressure in a chamber above ambient (Pa). Assigning commands it, as for "
                 "`displacement`; through the chamber's supply when it has one.");
-  bind_quantity(type, "torque", effort,
-                "float: torque on a bend, or of a motor on its joint (N m). Assigning commands it, as "
-                "for `displacement`.");
+  bind_quantity(
+      type, "torque", effort,
+      "float: torque on a bend, or of a motor on its joint (N m). Assigning commands it, as "
+      "for `displacement`.");
   bind_quantity(type, "angle", motion,
                 "float: a bend under a torque, or a motor's joint angle (rad). Assigning commands "
                 "it.");
-  bind_quantity(type, "velocity", told,
-                "float: the rate that a motor is told to turn or travel at (rad/s, m/s), 0 while it "
-                "is told something else. Assigning commands it; the joint obeys within the limits "
-                "of the motor's effort.");
+  bind_quantity(
+      type, "velocity", told,
+      "float: the rate that a motor is told to turn or travel at (rad/s, m/s), 0 while it "
+      "is told something else. Assigning commands it; the joint obeys within the limits "
+      "of the motor's effort.");
   bind_quantity(type, "volume_growth", motion,
                 "float: volume that a chamber gained since rest (m^3). Assigning commands it, as "
                 "a syringe of liquid would.");
@@ -197,9 +199,8 @@ Reading gives what it is; assigning commands it: a number (m), a signal such as 
       [](const Actuator& self, const char*) { return drive_number(self, "liquid", "liquid", 0); },
       "float: liquid added to a chamber (m^3). Assigning commands it. Chambers with `liquid` "
       "alone.");
-  bind_quantity(
-      type, "power", told,
-      "float: electric power into a shape-memory spring (W). Assigning commands it.");
+  bind_quantity(type, "power", told,
+                "float: electric power into a shape-memory spring (W). Assigning commands it.");
   bind_quantity(
       type, "phase",
       [](const Actuator& self, const char*) { return wire_number(self, "phase", 1); },

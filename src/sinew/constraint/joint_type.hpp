@@ -15,9 +15,9 @@ enum class JointType {
   slider,       ///< a displacement along its axis alone
   cylindrical,  ///< that, and a turn about it
 };
-inline constexpr std::array kJointTypes = {JointType::ball, JointType::universal, JointType::hinge,
-                                           JointType::weld, JointType::slider,
-                                           JointType::cylindrical};
+inline constexpr std::array kJointTypes = {JointType::ball,   JointType::universal,
+                                           JointType::hinge,  JointType::weld,
+                                           JointType::slider, JointType::cylindrical};
 const char* joint_type_name(JointType type);
 
 /// Whether it leaves the turn about its one axis.
