@@ -36,6 +36,7 @@ bool is_fixed(const BodyDescription& body) { return body.rigid && body.rigid->fi
 void refuse_pairs(const std::vector<Pair>& pairs, const Location& place) {
   if (pairs.empty()) return;
   std::vector<std::string> texts;
+  texts.reserve(pairs.size());
   for (const auto& [one, other] : pairs) texts.push_back(fmt::format("[{}, {}]", one, other));
   throw Error(ErrorKind::not_in_this_version, place,
               "contact of deformable bodies with one another or themselves, and of arms without "
