@@ -8,24 +8,6 @@
 
 namespace sinew::viewer {
 
-namespace {
-
-// While it lives, steps are watched: the simulation may outlive who watches.
-class Watched {
- public:
-  Watched(RobotState& state, sim::StepWatcher watcher) : state_(state) {
-    state.watch(std::move(watcher));
-  }
-  ~Watched() { state_.watch({}); }
-  Watched(const Watched&) = delete;
-  Watched& operator=(const Watched&) = delete;
-
- private:
-  RobotState& state_;
-};
-
-}  // namespace
-
 LiveSource::LiveSource(const scene::Robot& robot, const LiveSettings& settings)
     : LiveSource(robot, std::make_shared<sim::Simulation>(robot.model, robot.threads()),
                  settings.controller.empty() ? std::nullopt
@@ -50,7 +32,7 @@ void LiveSource::stop() {
 
 bool LiveSource::complete(void (RobotState::*work)()) {
   struct Ended {};
-  const Watched watched(state_, [this](const sim::StepProgress&) {
+  const sim::Watched watched = state_.watch([this](const sim::StepProgress&) {
     if (stopping()) throw Ended{};
   });
   try {

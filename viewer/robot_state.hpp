@@ -16,6 +16,7 @@
 #include "sinew/scene/build.hpp"
 #include "sinew/sim/observables.hpp"
 #include "sinew/sim/simulation.hpp"
+#include "sinew/sim/watched.hpp"
 
 #include "describe.hpp"
 #include "frame.hpp"
@@ -65,8 +66,8 @@ class RobotState {
 
   /// One step; what it throws is kept as stopped().
   void step();
-  /// As the simulation's: steps and settle() tell how far they are.
-  void watch(sim::StepWatcher watcher) { simulation_->watch(std::move(watcher)); }
+  /// While the result lives, step() and settle() tell how far they are.
+  sim::Watched watch(sim::StepWatcher watcher) { return {*simulation_, std::move(watcher)}; }
   /// The simulation was stepped by others.
   void moved() { ++shape_; }
   /// Shows a controller that others attach and detach: from now on none is attached here.

@@ -88,7 +88,7 @@ void measure_steps(const BenchOptions& options, Session& session, int warm_up, S
   const int steps = warm_up + options.steps;
   ProgressBar bar(steps, true);
   std::int64_t i = 0;
-  const WatchedSteps watched(session.simulation(), bar, i);
+  const sim::Watched watched = watch_steps(session.simulation(), bar, i);
   for (; i < steps; ++i) {
     Interrupt::check();
     session.step();

@@ -30,6 +30,7 @@
 #include "sinew/record/run_file.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/sim/actuator.hpp"
+#include "sinew/sim/contact_state.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/state_io.hpp"
 
@@ -283,16 +284,12 @@ Facts scene_facts(const InfoOptions& options) {
   for (std::size_t i = 0; i < model.contacts().size(); ++i) {
     const std::string& name = model.contacts()[i].name;
     const constraint::Contact& contact = model.contact(static_cast<int>(i));
-    std::vector<std::string> bodies{model.body(contact.body()).name()};
-    if (contact.carrier()) {
-      bodies.push_back(model.body(contact.carrier()->centre.body).name());
-    }
+    const std::vector<std::string> bodies = sim::touching_bodies(model, static_cast<int>(i));
     facts.json["contacts"].push_back(
         {{"name", name}, {"bodies", bodies}, {"points", contact.size()}});
-    facts.text += contact.own() ? fmt::format("  contact {}: of {}, up to {} points\n", name,
-                                              fmt::join(bodies, " and "), contact.size())
-                                : fmt::format("  contact {}: of {}, {} points\n", name,
-                                              fmt::join(bodies, " and "), contact.size());
+    facts.text +=
+        fmt::format("  contact {}: of {}, {}{} points\n", name, fmt::join(bodies, " and "),
+                    contact.own() ? "up to " : "", contact.size());
   }
   for (std::size_t i = 0; i < model.joints().size(); ++i) {
     add_joint(facts, model, static_cast<int>(i));

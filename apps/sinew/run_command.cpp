@@ -143,7 +143,7 @@ void advance(Session& session, record::RunRecorder& recorder, std::int64_t steps
              Tally& tally) {
   const Interrupt interrupt;
   ProgressBar bar(steps, !quiet);
-  const WatchedSteps watched(session.simulation(), bar, tally.steps);
+  const sim::Watched watched = watch_steps(session.simulation(), bar, tally.steps);
   while (tally.steps < steps) {
     Interrupt::check();
     session.step();

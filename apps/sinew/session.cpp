@@ -70,19 +70,17 @@ std::string Session::resolved_scene() const {
   return scene::to_yaml(tree);
 }
 
-WatchedSteps::WatchedSteps(sim::Simulation& simulation, ProgressBar& bar, const std::int64_t& done)
-    : simulation_(simulation) {
-  simulation.watch([&simulation, &bar, &done](const sim::StepProgress& step) {
-    Interrupt::check();
-    if (step.seconds < kSlowStep || !bar.slow_due()) return;
-    bar.update_slow(done, fmt::format("t = {:g} s: this step has taken {:.0f} s: iteration {}, "
-                                      "residual {:.1e}, {}",
-                                      simulation.time(), step.seconds, step.iterations,
-                                      step.relative_residual, search_stage_text(step.stage)));
-  });
+sim::Watched watch_steps(sim::Simulation& simulation, ProgressBar& bar, const std::int64_t& done) {
+  return {simulation, [&simulation, &bar, &done](const sim::StepProgress& step) {
+            Interrupt::check();
+            if (step.seconds < kSlowStep || !bar.slow_due()) return;
+            bar.update_slow(done,
+                            fmt::format("t = {:g} s: this step has taken {:.0f} s: iteration {}, "
+                                        "residual {:.1e}, {}",
+                                        simulation.time(), step.seconds, step.iterations,
+                                        step.relative_residual, search_stage_text(step.stage)));
+          }};
 }
-
-WatchedSteps::~WatchedSteps() { simulation_.watch({}); }
 
 void add_scene_options(Command& command, SceneOptions& options, bool optional) {
   command.add_option("SCENE", options.file, "Scene file (YAML)").required(!optional);

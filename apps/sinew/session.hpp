@@ -12,6 +12,7 @@
 #include "sinew/inverse/inverse_controller.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/sim/simulation.hpp"
+#include "sinew/sim/watched.hpp"
 
 namespace sinew::cli {
 
@@ -67,19 +68,10 @@ class Session {
   std::unique_ptr<inverse::InverseController> controller_;
 };
 
-/// While it lives, Ctrl-C ends the step in hand (by Interrupted, see terminal.hpp), and steps that
-/// take more than two seconds are told of.
-class WatchedSteps {
- public:
-  /// All outlive it. @param bar tells. @param done the steps that it counts.
-  WatchedSteps(sim::Simulation& simulation, ProgressBar& bar, const std::int64_t& done);
-  ~WatchedSteps();
-  WatchedSteps(const WatchedSteps&) = delete;
-  WatchedSteps& operator=(const WatchedSteps&) = delete;
-
- private:
-  sim::Simulation& simulation_;
-};
+/// While the result lives, Ctrl-C ends the step in hand (by Interrupted, see terminal.hpp), and
+/// steps that take more than two seconds are told of.
+/// All outlive it. @param bar tells. @param done the steps that it counts.
+sim::Watched watch_steps(sim::Simulation& simulation, ProgressBar& bar, const std::int64_t& done);
 
 /// Adds SCENE (which must be given unless `optional`), --set, --threads and --controller to a
 /// command.

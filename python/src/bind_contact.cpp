@@ -1,10 +1,6 @@
-#include <string>
-#include <vector>
-
 #include <fmt/format.h>
 
 #include "sinew/constraint/contact.hpp"
-#include "sinew/mechanics/body_model.hpp"
 #include "sinew/sim/contact_reader.hpp"
 #include "sinew/sim/contact_state.hpp"
 #include "sinew/sim/model.hpp"
@@ -101,23 +97,19 @@ void bind_points(py::class_<Contact>& type) {
 
 }  // namespace
 
-std::vector<std::string> bodies(const Contact& self) {
-  const sim::Model& robot = self.session->model();
-  const constraint::Contact& contact = robot.contact(self.index);
-  std::vector<std::string> names{robot.body(contact.body()).name()};
-  if (contact.carrier()) names.push_back(robot.body(contact.carrier()->centre.body).name());
-  return names;
-}
-
 void bind_contact(py::module_& module) {
   py::class_<Contact> type(module, "Contact",
                            "Points of a body that may touch a surface. From Simulation.contact() "
                            "or Simulation.contacts.");
   type.def_property_readonly(
           "name", [](const Contact& self) { return model(self).name; }, "str: as in the scene.")
-      .def_property_readonly("bodies", &bodies,
-                             "list of str: the body whose points touch, and the rigid body that it "
-                             "touches; a surface of the world has no name.")
+      .def_property_readonly(
+          "bodies",
+          [](const Contact& self) {
+            return sim::touching_bodies(self.session->model(), self.index);
+          },
+          "list of str: the body whose points touch, and the rigid body that it "
+          "touches; a surface of the world has no name.")
       .def_property_readonly(
           "friction",
           [](const Contact& self) { return self.session->model().contact(self.index).friction(); },

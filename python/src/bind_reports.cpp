@@ -42,6 +42,9 @@ void bind_step_report(py::module_& module) {
       .def_readonly("violation", &StepReport::violation,
                     "float: how far the actuators are from their law at the end (m).")
       .def_readonly("iterations", &StepReport::iterations, "int: linear solutions in the step.")
+      .def_readonly("substeps", &StepReport::substeps,
+                    "int: parts that the step was made in; more than 1 where the whole found no "
+                    "solution, or in adaptive steps.")
       .def_readonly("choice_held", &StepReport::choice_held,
                     "bool: whether a controller's choice of efforts did not settle in the step and "
                     "was held as it was. Efforts that serve about as well may then differ.")

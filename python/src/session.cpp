@@ -13,6 +13,7 @@
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/simulation.hpp"
 #include "sinew/sim/state.hpp"
+#include "sinew/sim/watched.hpp"
 
 #include "errors.hpp"
 
@@ -23,24 +24,15 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr auto kSignalInterval = std::chrono::milliseconds(50);
 
-// While it lives, steps and searches look for Ctrl-C now and then, and end by it.
-class SignalWatch {
- public:
-  explicit SignalWatch(sim::Simulation& simulation) : simulation_(simulation) {
-    simulation.watch([due = Clock::now() + kSignalInterval](const sim::StepProgress&) mutable {
-      if (Clock::now() < due) return;
-      const pybind11::gil_scoped_acquire lock;
-      if (PyErr_CheckSignals() != 0) throw pybind11::error_already_set();
-      due = Clock::now() + kSignalInterval;
-    });
-  }
-  ~SignalWatch() { simulation_.watch({}); }
-  SignalWatch(const SignalWatch&) = delete;
-  SignalWatch& operator=(const SignalWatch&) = delete;
-
- private:
-  sim::Simulation& simulation_;
-};
+// While the result lives, steps and searches look for Ctrl-C now and then, and end by it.
+sim::Watched look_for_signals(sim::Simulation& simulation) {
+  return {simulation, [due = Clock::now() + kSignalInterval](const sim::StepProgress&) mutable {
+            if (Clock::now() < due) return;
+            const pybind11::gil_scoped_acquire lock;
+            if (PyErr_CheckSignals() != 0) throw pybind11::error_already_set();
+            due = Clock::now() + kSignalInterval;
+          }};
+}
 
 }  // namespace
 
@@ -83,7 +75,7 @@ void Session::advance(std::int64_t count) {
   }
   const Use use(*this);
   check_loads();
-  const SignalWatch watch(simulation_);
+  const sim::Watched watched = look_for_signals(simulation_);
   for (std::int64_t done = 0; done < count;) {
     {
       const pybind11::gil_scoped_release release;
@@ -121,7 +113,7 @@ void Session::warn() {
 sim::StaticReport Session::solve_static(const sim::StaticSettings& settings) {
   const Use use(*this);
   check_loads();
-  const SignalWatch watch(simulation_);
+  const sim::Watched watched = look_for_signals(simulation_);
   const pybind11::gil_scoped_release release;
   return simulation_.solve_static(settings);
 }
@@ -129,7 +121,7 @@ sim::StaticReport Session::solve_static(const sim::StaticSettings& settings) {
 std::vector<sim::PathPoint> Session::follow_path(const sim::PathSettings& settings,
                                                  const std::function<void()>& visit) {
   const Use use(*this);
-  const SignalWatch watch(simulation_);
+  const sim::Watched watched = look_for_signals(simulation_);
   const pybind11::gil_scoped_release release;
   return simulation_.follow_path(settings, visit);
 }

@@ -275,6 +275,10 @@ def test_all_pairs_touch():
     assert sim.contact("own").friction == 0.1
     sim.run(duration=0.3)
     assert sum(sim.contact(f"all-{name}-table").normal_force for name in ("low", "high")) > 0.0
+    # What one entry leaves out, the next may take.
+    sim = heap(entry={"except": [["low", "high"]]}, contacts={"rest": {"between": "all", "friction": 0.7}})
+    assert "all-low-high" not in sim.contacts and sim.contact("rest-low-high").friction == 0.7
+    assert len(sim.contacts) == 5
     joined = heap(joints={"rod": {"type": "ball", "bodies": ["low", "high"], "point": "0 0 21 mm"}})
     assert "all-low-high" not in joined.contacts
 

@@ -247,6 +247,7 @@ def test_a_choice_that_goes_back_and_forth_comes_to_rest(tmp_path):
     errors = [sim.controller.error]
     for _ in range(8):
         sim.step()
+        assert sim.report.choice_held  # said, as long as it does not settle within a step
         errors.append(sim.controller.error)
     assert not sim.report.flagged
     assert max(errors) < 1.1 * errors[0]

@@ -189,6 +189,33 @@ def test_slider_crank_runs_as_its_geometry_says():
         expected = 0.05 * np.cos(angle) + np.sqrt(0.15**2 - (0.05 * np.sin(angle))**2)
         assert 0.2 + sim.joint("guide").displacement == pytest.approx(expected, abs=1e-9)
     assert sim.joint("shaft").angle == pytest.approx(7.0, abs=1e-9)  # beyond a whole turn
+    motor = sim.actuator("motor")
+    assert motor.velocity == 10.0
+    motor.velocity = -20.0
+    assert motor.velocity == -20.0
+    sim.run(duration=0.1)
+    assert sim.joint("shaft").angle == pytest.approx(5.0, abs=1e-9)
+    motor.torque = 0.0
+    assert motor.velocity == 0.0  # told something else
+
+
+@pytest.mark.parametrize("most", [3, 50])
+def test_a_commanded_velocity_is_that_of_the_whole_step(most):
+    """Also where the step is made in parts, as here with too few iterations for a jump of 50 rad/s."""
+    bar = {"type": "rigid", "density": "1000 kg/m^3"}
+    sim = make({"upper": {**bar, "shape": {"box": "100 10 5 mm"}, "pose": {"position": "50 0 0 mm"}},
+                "lower": {**bar, "shape": {"box": "60 10 5 mm"}, "pose": {"position": "130 0 0 mm"}}},
+               {"shoulder": {"type": "hinge", "bodies": ["world", "upper"], "point": "0 0 0 mm", "axis": "y"},
+                "elbow": {"type": "hinge", "bodies": ["upper", "lower"], "point": "100 0 0 mm", "axis": "y"}},
+               step="2 ms", integrator="backward-euler", solver={"method": "newton", "max_iterations": most},
+               actuators={"motor": {"type": "motor", "joint": "shoulder", "command": {"velocity": "0 rad/s"}}})
+    sim.step(3)
+    sim.actuator("motor").velocity = 50.0
+    for k in range(1, 6):
+        sim.step()
+        assert sim.report.substeps == 1 or most == 3
+        assert sim.report.substeps > 1 or most == 50 or k > 1
+        assert sim.joint("shoulder").angle == pytest.approx(0.1 * k, abs=1e-9)
 
 
 def test_a_hinge_with_friction_comes_to_rest_when_it_must():

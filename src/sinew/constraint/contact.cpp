@@ -120,7 +120,7 @@ void Contact::watch(const Placement& placement, std::size_t point, const Vector3
   values.start[static_cast<std::size_t>(row(point))] = at;
   const auto hold = [&](const RigidSide& side, const collision::Shape& shape, double sense,
                         double below, std::size_t first) {
-    const Matrix3 turn = side.pose(placement).linear();
+    const Matrix3 turn = placement.rotation(side.turn);
     const double radius = collision::rounding_radius(shape, turn.transpose() * normal);
     const Vector3 core = radius > 0.0 ? Vector3(at + sense * (radius + below) * normal) : at;
     for (int j = 0; j < 3; ++j) {

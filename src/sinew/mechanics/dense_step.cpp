@@ -8,6 +8,7 @@ DenseStep::DenseStep(Eigen::Index coordinates, const OwnRows& own, RowMemory& me
     : own_(own),
       memory_(memory),
       decomposed_(coordinates),
+      symmetric_factor_(coordinates),
       pivots_(coordinates),
       spectrum_(coordinates) {
   const Eigen::Index n = coordinates;
@@ -17,6 +18,7 @@ DenseStep::DenseStep(Eigen::Index coordinates, const OwnRows& own, RowMemory& me
   for (MatrixX* m : {&jacobian_, &second_jacobian_, &pulled_}) m->setZero(3, n);
   rows_.setZero(n, rows);
   moved_rows_.setZero(n, rows);
+  soft_rows_.setZero(n, rows);
   free_motion_.setZero(rows);
 }
 
@@ -98,6 +100,17 @@ void DenseStep::respond() {
   if (rows_.cols() == 0) return;
   decomposed_.solve(right_, motion_);
   free_motion_.noalias() = rows_.transpose() * motion_;
+  respond_symmetrically();
+}
+
+void DenseStep::respond_symmetrically() {
+  symmetric_ = 0.5 * (matrix_ + matrix_.transpose());
+  if (symmetric_ == matrix_) {
+    soft_rows_ = moved_rows_;
+    return;
+  }
+  symmetric_factor_.compute(symmetric_);
+  symmetric_factor_.solve(rows_, soft_rows_);
 }
 
 // In the directions in which the body would buckle the rotated tangent is as stiff as the exact one
@@ -113,10 +126,13 @@ void DenseStep::make_definite() {
   }
 }
 
-// The law's programs want a symmetric W: gyroscopic terms, of the order of h times the rates, are
-// averaged out of it here but not of the motion. Newton's iterations would then end where the law
-// holds of the averaged W alone, off by (W - W_sym) lambda of what it holds; the free motion takes
-// that difference at the efforts known last, and in the limit the law holds of the motion.
+// The law's programs want a symmetric W. They get that of A_s, the symmetric part of A; the free
+// motion takes the rest, H (A^-1 - A_s^-1) H^T lambda, at the efforts known last, so that in the
+// limit of Newton's iterations the law holds of the motion. With A = A_s + A_a, A_s > 0, the
+// iteration lambda <- lambda - W_s^-1 (W lambda - d) contracts: in the metric of A_s, W is the
+// compression of (I + S)^-1 with S skew, whose numerical range lies in |z - 1/2| <= 1/2. The
+// symmetric part of W itself is no such bound: it is softer than W_s by S^2, and near the rank of
+// redundant joints the iteration then diverges.
 void DenseStep::add_compliance(std::span<const int> place, MatrixX& compliance,
                                VectorX& free_motion) const {
   const auto& rows = own_.rows;
@@ -126,15 +142,18 @@ void DenseStep::add_compliance(std::span<const int> place, MatrixX& compliance,
   for (Eigen::Index j = 0; j < rows_.cols(); ++j) {
     const int across = place_of(j);
     if (across < 0) continue;
-    free_motion[across] += free_motion_[j];
-    for (Eigen::Index i = 0; i < rows_.cols(); ++i) {
+    for (Eigen::Index i = 0; i <= j; ++i) {
       const int down = place_of(i);
       if (down < 0) continue;
-      const double own = rows_.col(i).dot(moved_rows_.col(j));
-      const double mean = 0.5 * (own + rows_.col(j).dot(moved_rows_.col(i)));
-      compliance(down, across) += mean;
-      if (iterating_) free_motion[down] += (own - mean) * memory_.effort[j];
+      const double soft = rows_.col(i).dot(soft_rows_.col(j));
+      compliance(down, across) += soft;
+      if (i != j) compliance(across, down) += soft;
+      if (!iterating_) continue;
+      free_motion[down] += (rows_.col(i).dot(moved_rows_.col(j)) - soft) * memory_.effort[j];
+      if (i == j) continue;
+      free_motion[across] += (rows_.col(j).dot(moved_rows_.col(i)) - soft) * memory_.effort[i];
     }
+    free_motion[across] += free_motion_[j];
   }
 }
 

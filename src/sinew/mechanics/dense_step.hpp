@@ -60,6 +60,7 @@ class DenseStep : public StepSystem {
   void find_imbalance(std::span<const double> effort);
   void make_definite();
   void respond();
+  void respond_symmetrically();
 
   const OwnRows& own_;
   RowMemory& memory_;
@@ -69,12 +70,13 @@ class DenseStep : public StepSystem {
   MatrixX matrix_, symmetric_;
   mutable MatrixX jacobian_;          // (3, n), of sites: scratch
   MatrixX second_jacobian_, pulled_;  // likewise
-  linalg::LuFactor decomposed_;
+  linalg::LuFactor decomposed_, symmetric_factor_;
   linalg::SymmetricPivots pivots_;
   linalg::SymmetricSpectrum spectrum_;
   bool definite_wanted_ = true;
   bool iterating_ = false;     // further linearisations of this step may follow
   MatrixX rows_, moved_rows_;  // (n, own rows): H^T, A^-1 H^T
+  MatrixX soft_rows_;          // the same of the symmetric part of A
   VectorX free_motion_;
   double force_scale_ = 1.0;
 };

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <iterator>
 #include <set>
 
 #include <fmt/format.h>
@@ -45,39 +46,47 @@ void refuse_pairs(const std::vector<Pair>& pairs, const Location& place) {
                           fmt::join(texts, ", ")));
 }
 
+// The pairs that an entry between all stands for. @param settled pairs that are none of them, which
+// these join.
+std::vector<ContactDescription> pairs_of(const ContactDescription& contact,
+                                         const SceneDescription& scene, std::set<Pair>& settled) {
+  std::set<Pair> excepted;
+  for (const auto& [one, other] : contact.except) excepted.insert(ordered(one, other));
+  std::vector<ContactDescription> contacts;
+  std::vector<Pair> refused;
+  for (auto one = scene.bodies.begin(); one != scene.bodies.end(); ++one) {
+    for (auto other = one; other != scene.bodies.end(); ++other) {
+      if ((one == other && one->rigid) || (is_fixed(*one) && is_fixed(*other))) continue;
+      const Pair pair = ordered(one->name, other->name);
+      if (excepted.contains(pair) || !settled.insert(pair).second) continue;
+      if (one->arm || other->arm || (!one->rigid && !other->rigid)) {
+        refused.emplace_back(one->name, other->name);
+        continue;
+      }
+      ContactDescription& added = contacts.emplace_back(contact);
+      added.name = fmt::format("{}-{}-{}", contact.name, one->name, other->name);
+      added.body = one->name;
+      added.other = other->name;
+    }
+  }
+  refuse_pairs(refused, contact.between_place);
+  return contacts;
+}
+
 }  // namespace
 
 std::vector<ContactDescription> contact_pairs(const SceneDescription& scene) {
-  std::set<Pair> left_out = named_pairs(scene);
+  std::set<Pair> settled = named_pairs(scene);
   for (const JointDescription& joint : scene.joints) {
-    left_out.insert(ordered(joint.first, joint.second));
+    settled.insert(ordered(joint.first, joint.second));
   }
   std::vector<ContactDescription> contacts;
   for (const ContactDescription& contact : scene.contacts) {
-    if (!contact.all) {
+    if (contact.all) {
+      std::ranges::move(pairs_of(contact, scene, settled), std::back_inserter(contacts));
+    } else {
       contacts.push_back(contact);
-      continue;
     }
-    for (const auto& [one, other] : contact.except) left_out.insert(ordered(one, other));
-    std::vector<Pair> refused;
-    for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-      for (std::size_t j = i; j < scene.bodies.size(); ++j) {
-        const BodyDescription &one = scene.bodies[i], &other = scene.bodies[j];
-        const bool itself = i == j;
-        if ((itself && one.rigid) || (is_fixed(one) && is_fixed(other))) continue;
-        if (left_out.contains(ordered(one.name, other.name))) continue;
-        left_out.insert(ordered(one.name, other.name));
-        if (one.arm || other.arm || (!one.rigid && !other.rigid)) {
-          refused.emplace_back(one.name, other.name);
-          continue;
-        }
-        ContactDescription& pair = contacts.emplace_back(contact);
-        pair.name = fmt::format("{}-{}-{}", contact.name, one.name, other.name);
-        pair.body = one.name;
-        pair.other = other.name;
-      }
-    }
-    refuse_pairs(refused, contact.between_place);
   }
   return contacts;
 }

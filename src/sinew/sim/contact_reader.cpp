@@ -1,14 +1,32 @@
 #include "sinew/sim/contact_reader.hpp"
 
 #include "sinew/constraint/contact.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/sim/model.hpp"
 #include "sinew/sim/run.hpp"
 
 namespace sinew::sim {
 
+std::vector<std::string> touching_bodies(const Model& model, int contact) {
+  const constraint::Contact& touching = model.contact(contact);
+  std::vector<std::string> names{model.body(touching.body()).name()};
+  if (const auto& carrier = touching.carrier()) {
+    names.push_back(model.body(carrier->centre.body).name());
+  }
+  return names;
+}
+
+Eigen::Isometry3d ContactReader::pose(int contact) const {
+  return run_.world.contacts().planes().pose_now(static_cast<std::size_t>(contact), run_.time());
+}
+
 ContactPoint ContactReader::point(int contact, std::size_t point) const {
+  return this->point(contact, point, pose(contact));
+}
+
+ContactPoint ContactReader::point(int contact, std::size_t point,
+                                  const Eigen::Isometry3d& pose) const {
   const constraint::Contact& touching = run_.model->contact(contact);
-  const Eigen::Isometry3d pose =
-      run_.world.contacts().planes().pose_now(static_cast<std::size_t>(contact), run_.time());
   const auto row = static_cast<std::size_t>(touching.row(point));
   const Matrix3 frame = touching.frame(point, run_.world.rows());
   ContactPoint result;
@@ -25,22 +43,25 @@ ContactPoint ContactReader::point(int contact, std::size_t point) const {
 }
 
 std::vector<ContactPoint> ContactReader::points(int contact) const {
-  std::vector<ContactPoint> result(run_.model->contact(contact).size());
-  for (std::size_t k = 0; k < result.size(); ++k) result[k] = point(contact, k);
-  return result;
+  return snapshot(contact).points;
 }
 
 ContactSum ContactReader::sum(int contact) const {
+  const Eigen::Isometry3d stands = pose(contact);
   ContactSum sum;
   for (std::size_t k = 0; k < run_.model->contact(contact).size(); ++k) {
-    sum.add(point(contact, k));
+    sum.add(point(contact, k, stands));
   }
   return sum;
 }
 
 ContactSnapshot ContactReader::snapshot(int contact) const {
-  return {run_.world.contacts().planes().pose_now(static_cast<std::size_t>(contact), run_.time()),
-          points(contact)};
+  ContactSnapshot result{pose(contact), {}};
+  result.points.resize(run_.model->contact(contact).size());
+  for (std::size_t k = 0; k < result.points.size(); ++k) {
+    result.points[k] = point(contact, k, result.pose);
+  }
+  return result;
 }
 
 const qp::ConeResult& ContactReader::result() const {

@@ -23,10 +23,14 @@ class ContactReader {
  public:
   /// @param run outlives it.
   explicit ContactReader(const Run& run) : run_(run) {}
-  /// @param contact of Model::contacts(). @param point of constraint::Contact::points().
+  /// @param contact of Model::contacts(). @param point below constraint::Contact::size().
   ContactPoint point(int contact, std::size_t point) const;
   std::vector<ContactPoint> points(int contact) const;
   ContactSum sum(int contact) const;
+  /// Where the surface stands now, from where the scene puts it.
+  Eigen::Isometry3d pose(int contact) const;
+  /// The same as point(), of a pose that is known.
+  ContactPoint point(int contact, std::size_t point, const Eigen::Isometry3d& pose) const;
   /// The points and where the surface stands.
   ContactSnapshot snapshot(int contact) const;
   /// How the forces were last found.

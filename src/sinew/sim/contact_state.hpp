@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -12,6 +13,12 @@
 #include "sinew/qp/friction_cone.hpp"
 
 namespace sinew::sim {
+
+class Model;
+
+/// The body whose points may touch, and the rigid body that they may touch; of a surface of the
+/// world the first alone. @param contact of Model::contacts().
+std::vector<std::string> touching_bodies(const Model& model, int contact);
 
 /// One point that may touch, after the last step.
 struct ContactPoint {

@@ -20,7 +20,6 @@
 #include "sinew/sim/observables.hpp"
 #include "sinew/sim/simulation.hpp"
 #include "sinew/sim/state.hpp"
-#include "sinew/sim/world.hpp"
 
 namespace sinew::sim {
 
@@ -195,17 +194,14 @@ void put_contact(const Simulation& simulation, int index, std::span<double> all)
     all = all.subspan(size);
     return numbers;
   };
-  Eigen::Map<Pose>(all.data()) = simulation.world()
-                                     .contacts()
-                                     .planes()
-                                     .pose_now(static_cast<std::size_t>(index), simulation.time())
-                                     .affine();
+  const Eigen::Isometry3d pose = simulation.contacts().pose(index);
+  Eigen::Map<Pose>(all.data()) = pose.affine();
   part(12);
   Numbers position = part(3 * n), gap = part(n), normal = part(3 * n), normal_force = part(n),
           friction_force = part(3 * n), state = part(n), sums = part(8);
   ContactSum sum;
   for (std::size_t k = 0; k < n; ++k) {
-    const ContactPoint point = simulation.contacts().point(index, k);
+    const ContactPoint point = simulation.contacts().point(index, k, pose);
     position.put(point.position);
     gap.put(point.gap);
     normal.put(point.normal);

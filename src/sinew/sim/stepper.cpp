@@ -70,7 +70,7 @@ void Stepper::step_in_parts() {
   const double begin = run_.time();  // what failed is undone
   start_ = run_.before;
   divided_ = true;
-  part_ = Part{0.0, run_.actuation.states()};
+  part_ = whole_step(begin);
   double done = 0.0, length = 0.5;
   report.substeps = 0;
   while (done < 1.0) {
@@ -86,6 +86,25 @@ void Stepper::step_in_parts() {
     }
   }
   part_.reset();
+}
+
+// What is commanded as a rate counts from the start of the step, and rates' limits span all of it.
+Stepper::Part Stepper::whole_step(double begin) {
+  const double whole = run_.model->step().time_step;
+  run_.read_commands(begin + whole, whole);
+  Part part{0.0, run_.actuation.states(), {}};
+  for (std::size_t i = 0; i < part.start.size(); ++i) {
+    part.goal.push_back(run_.world.problem().actuators[i].value);
+  }
+  return part;
+}
+
+void Stepper::go_in_proportion() {
+  std::vector<step::ActuatorBlock>& blocks = run_.world.problem().actuators;
+  for (std::size_t i = 0; i < part_->goal.size(); ++i) {
+    if (blocks[i].kind != CommandKind::input) blocks[i].value = part_->goal[i];
+  }
+  blend(blocks, part_->start, part_->fraction);
 }
 
 // Halves where a substep fails; else aims at nine tenths of the step that the tolerance allows, by
@@ -131,7 +150,7 @@ void Stepper::step_adaptively() {
 void Stepper::begin_substep(double end, double time_step) {
   run_.now = end;
   run_.read_commands(end, time_step);
-  if (part_) blend(run_.world.problem().actuators, part_->start, part_->fraction);
+  if (part_) go_in_proportion();
   run_.keep(run_.before);
   run_.surroundings.move_bases(end);
   run_.surroundings.apply(end);

@@ -23,7 +23,16 @@ class Stepper {
   std::size_t bytes() const { return sizeof(double) * start_.size(); }
 
  private:
+  // Commands of a step that is made in parts go in proportion to where the whole step leads.
+  struct Part {
+    double fraction = 1.0;             // of the step, at the end of the part
+    std::vector<ActuatorState> start;  // of the step
+    std::vector<double> goal;          // (actuators,) commands at its end
+  };
+
   void step_in_parts();
+  Part whole_step(double begin);
+  void go_in_proportion();
   void step_adaptively();
   double substep(double end, double time_step);
   void begin_substep(double end, double time_step);
@@ -31,12 +40,6 @@ class Stepper {
   bool is_balanced() const;
   void judge();
   void watch_energy();
-
-  // Commands of a step that is made in parts go there in proportion.
-  struct Part {
-    double fraction = 1.0;             // of the step, at the end of the part
-    std::vector<ActuatorState> start;  // of the step
-  };
 
   Run& run_;
   State start_;           // of the whole step, where that is made in parts
