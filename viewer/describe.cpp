@@ -9,9 +9,9 @@
 
 #include "sinew/constraint/cable.hpp"
 #include "sinew/constraint/chamber.hpp"
-#include "sinew/constraint/contact.hpp"
 #include "sinew/constraint/effector.hpp"
 #include "sinew/constraint/probe.hpp"
+#include "sinew/constraint/shape_contact.hpp"
 #include "sinew/fem/has_material.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/body_model.hpp"
@@ -220,8 +220,9 @@ Json probe_json(const sim::Observables& observables, const constraint::Probe& pr
 
 // A rigid body's own surface is drawn with it.
 Json surface_json(const constraint::Contact& contact) {
-  if (contact.carrier()) return {{"kind", "body"}};
-  const collision::Shape& surface = contact.surface();
+  if (contact.other_body() >= 0) return {{"kind", "body"}};
+  const collision::Shape& surface =
+      dynamic_cast<const constraint::ShapeContact&>(contact).surface();
   if (const auto* plane = std::get_if<constraint::Plane>(&surface)) {
     return {{"kind", "plane"},
             {"point", vector_json(plane->point)},

@@ -289,7 +289,7 @@ Facts scene_facts(const InfoOptions& options) {
         {{"name", name}, {"bodies", bodies}, {"points", contact.size()}});
     facts.text +=
         fmt::format("  contact {}: of {}, {}{} points\n", name, fmt::join(bodies, " and "),
-                    contact.own() ? "up to " : "", contact.size());
+                    contact.is_found_anew() ? "up to " : "", contact.size());
   }
   for (std::size_t i = 0; i < model.joints().size(); ++i) {
     add_joint(facts, model, static_cast<int>(i));

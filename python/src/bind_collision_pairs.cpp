@@ -91,8 +91,8 @@ ProximityPoints points_of(const std::vector<ProximityPair>& pairs,
 
 ProximityPairs proximity(const CollisionSurface& first, const SharedSurface& second,
                          const py::object& distance, double slack, bool facing, int threads) {
-  const collision::ProximitySettings settings{to_length(distance, "proximity(distance)"), slack,
-                                              facing};
+  const collision::ProximitySettings settings{
+      .distance = to_length(distance, "proximity(distance)"), .slack = slack, .facing = facing};
   if (!(slack >= 0.0 && slack <= 1.0)) {
     throw Error(ErrorKind::out_of_range, {.item = "proximity(slack)"},
                 fmt::format("the sine of an angle is {:g}", slack), "give a number from 0 to 1");

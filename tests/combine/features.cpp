@@ -142,8 +142,9 @@ std::vector<Feature> list_features() {
       {"torque", or_none(alternatives(map_of(torque, "command"), "torque"))},
       {"load", or_none(words(variants(items("loads"), "type")))},
       {"mass", switched},
-      // A surface of the world, or a rigid body that flies by.
-      {"contact", or_none(with(alternatives(map_of(contact, "surface"), "plane"), {"body"}))},
+      // A surface of the world, a rigid or a soft body that flies by, or the body itself.
+      {"contact",
+       or_none(with(alternatives(map_of(contact, "surface"), "plane"), {"body", "soft", "self"}))},
       {"contact_friction", switched},
       {"contact_motion", switched},
       // A link that only its joint holds, on any body: soft and welded, or rigid; by what it is

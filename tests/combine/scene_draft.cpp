@@ -505,6 +505,39 @@ class Drafter {
                     vector_text(centre), moves));
   }
 
+  // The same of silicone; in statics it is held at its far side.
+  void add_pillow(const std::array<double, 3>& centre, std::size_t along, const char* axis) {
+    const std::string moves = dynamic() ? fmt::format("initial_velocity: {{linear: {} m/s}}", axis)
+                                        : fmt::format("fixed: [{{set: {}_min}}]", "xyz"[along]);
+    std::array<double, 3> corner = centre;
+    for (double& x : corner) x -= 15.0;
+    add("bodies", "pillow",
+        fmt::format(
+            "{{type: fem, mesh: {{shape: block, length: 30 mm, width: 30 mm, height: 30 mm, "
+            "element_size: 15 mm}}, position: {}, density: 1000 kg/m^3, material: "
+            "{{young_modulus: 100 kPa, poisson_ratio: 0.3}}, {}}}",
+            vector_text(corner), moves));
+  }
+
+  // What two bodies' surfaces touch with, or one's with itself; rigid bodies and arms meet a stone.
+  std::string touching(const Body& on, std::size_t below, const std::array<double, 3>& centre) {
+    const char* axes[] = {"1 0 0", "0 1 0", "0 0 1"};
+    if (on.fem && of("contact") == "self") return fmt::format("between: [<{0}>, <{0}>]", on.id);
+    if (on.fem && of("contact") == "soft") {
+      add_pillow(centre, below, axes[below]);
+      return fmt::format("between: [<{}>, <pillow>]", on.id);
+    }
+    add_stone(centre, axes[below]);
+    return fmt::format("between: [<{}>, <stone>]", on.id);
+  }
+
+  static std::string tip_points(const Body& on) {
+    if (on.fem) return fmt::format(", nodes: {{set: {}}}", on.shape.tip);
+    return fmt::format(", points: [{}, {}]{}", vector_text(on.shape.at(1.0, 0.0, 0.0)),
+                       vector_text(on.shape.at(1.0, 0.0, -1.0)),
+                       on.rigid ? ", outside: nearest" : "");
+  }
+
   // Surfaces lie a little beside the tip.
   void add_contact() {
     if (!has("contact")) return;
@@ -513,7 +546,7 @@ class Drafter {
     const double gap = draw(0.05, 1.0);
     const char* axes[] = {"1 0 0", "0 1 0", "0 0 1"};
     std::array<double, 3> at = on.shape.at(1.0, 0.0, 0.0);
-    at[below] = on.shape.origin[below] - 1.25 * on.shape.half[below] - gap;
+    at[below] = on.shape.origin[below] - 1.3 * on.shape.half[below] - gap;
     std::array<double, 3> centre = at;
     centre[below] -= 15.0;
     std::array<double, 3> left = centre, right = centre;
@@ -525,16 +558,12 @@ class Drafter {
          {"sphere", fmt::format("sphere: {{centre: {}, radius: 15 mm}}", vector_text(centre))},
          {"capsule", fmt::format("capsule: {{ends: [{}, {}], radius: 15 mm}}", vector_text(left),
                                  vector_text(right))},
-         {"body", ""}});
-    std::string text = fmt::format("body: <{}>, surface: {{{}}}", on.id, surface);
-    if (surface.empty()) {
-      add_stone(centre, axes[below]);
-      text = fmt::format("between: [<{}>, <stone>]", on.id);
-    }
-    text += on.fem ? fmt::format(", nodes: {{set: {}}}", on.shape.tip)
-                   : fmt::format(", points: [{}, {}]", vector_text(on.shape.at(1.0, 0.0, 0.0)),
-                                 vector_text(on.shape.at(1.0, 0.0, -1.0)));
-    if (on.rigid) text += ", outside: nearest";
+         {"body", ""},
+         {"soft", ""},
+         {"self", ""}});
+    std::string text = surface.empty() ? touching(on, below, centre)
+                                       : fmt::format("body: <{}>, surface: {{{}}}", on.id, surface);
+    if (!on.fem || (of("contact") != "soft" && of("contact") != "self")) text += tip_points(on);
     if (has("contact_friction")) text += ", friction: 0.5";
     if (has("contact_motion") && !surface.empty()) {
       text += fmt::format(", motion: {{{}: {{ramp: {{to: {:.3g} mm, duration: 60 ms}}}}}}",

@@ -1,11 +1,10 @@
-#include "sinew/constraint/contact.hpp"
-
 #include <random>
 
 #include <gtest/gtest.h>
 
 #include "sinew/constraint/effector.hpp"
 #include "sinew/constraint/placement.hpp"
+#include "sinew/constraint/shape_contact.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/sim/simulation.hpp"
 
@@ -48,7 +47,7 @@ class ContactRows : public ::testing::Test {
 TEST_F(ContactRows, AreTheDerivativeOfGapAndSlip) {
   const auto& effector = dynamic_cast<const PointEffector&>(model_->effector(0));
   for (const collision::Shape& surface : surfaces()) {
-    Contact contact("contact", std::vector{effector.point()}, surface, 0.5);
+    ShapeContact contact("contact", std::vector{effector.point()}, surface, 0.5);
     mechanics::RowPattern pattern;
     std::vector<mechanics::RowCurvature> curvatures;
     contact.declare(pattern, curvatures);
@@ -59,7 +58,7 @@ TEST_F(ContactRows, AreTheDerivativeOfGapAndSlip) {
     contact.linearise(placement, values);
     const VectorX before = values.delta;
     const Vector3 at = placement.position(effector.point());
-    const double gap = contact.distance_now(placement, pose(1.5), 0, values).gap;
+    const double gap = contact.gap_now(placement, pose(1.5), 0, values);
     const double t = 1e-6;
     shift(t);
     contact.linearise(placement, values);
@@ -87,7 +86,7 @@ TEST_F(ContactRows, FrameIsThatOfTheWay) {
   body.load_state(state);
   const Vector3 at = placement.position(effector.point());
   const Sphere ball{at + Vector3(0.05, 0.0, -0.0051), 0.005};
-  Contact contact("contact", std::vector{effector.point()}, ball, 0.5);
+  ShapeContact contact("contact", std::vector{effector.point()}, ball, 0.5);
   mechanics::RowPattern pattern;
   std::vector<mechanics::RowCurvature> curvatures;
   contact.declare(pattern, curvatures);
@@ -107,7 +106,8 @@ TEST_F(ContactRows, FrameIsThatOfTheWay) {
 
 TEST_F(ContactRows, PointThatTheSurfaceCarriesDoesNotSlip) {
   const auto& effector = dynamic_cast<const PointEffector&>(model_->effector(0));
-  Contact contact("contact", std::vector{effector.point()}, Sphere{{0.1, 0.0, 0.03}, 0.03}, 0.5);
+  ShapeContact contact("contact", std::vector{effector.point()}, Sphere{{0.1, 0.0, 0.03}, 0.03},
+                       0.5);
   mechanics::RowPattern pattern;
   std::vector<mechanics::RowCurvature> curvatures;
   contact.declare(pattern, curvatures);
@@ -131,8 +131,9 @@ TEST_F(ContactRows, PointThatTheSurfaceCarriesDoesNotSlip) {
 }
 
 TEST(Contact, RefusesBadFrictionAndNoPoints) {
-  EXPECT_THROW(Contact("c", std::vector<mechanics::MaterialPoint>{{0, 0}}, Plane{}, -0.1), Error);
-  EXPECT_THROW(Contact("c", std::vector<mechanics::MaterialPoint>{}, Plane{}, 0.1), Error);
+  EXPECT_THROW(ShapeContact("c", std::vector<mechanics::MaterialPoint>{{0, 0}}, Plane{}, -0.1),
+               Error);
+  EXPECT_THROW(ShapeContact("c", std::vector<mechanics::MaterialPoint>{}, Plane{}, 0.1), Error);
 }
 
 }  // namespace

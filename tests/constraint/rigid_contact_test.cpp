@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "sinew/constraint/contact.hpp"
 #include "sinew/constraint/placement.hpp"
+#include "sinew/constraint/shape_contact.hpp"
 #include "sinew/core/rotation.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/rigid/rigid_settings.hpp"
@@ -72,7 +72,7 @@ TEST(RigidContact, RowsAreTheDerivativeOfGapAndSlip) {
     sim::Simulation simulation(model);
     const Placement& placement = simulation.placement();
     move(simulation.body(0), Vector3(0.001, 0.0, 0.0), Vector3(0.01, 0.02, 0.3));
-    const Contact& contact = model->contact(0);
+    const auto& contact = dynamic_cast<const ShapeContact&>(model->contact(0));
     mechanics::RowValues values;
     values.resize(model->rows());
     const auto pose = contact.carrier()->pose(placement);
@@ -107,7 +107,7 @@ TEST(RigidContact, ForcesCancel) {
     const auto model = make(pair);
     sim::Simulation simulation(model);
     const Placement& placement = simulation.placement();
-    const Contact& contact = model->contact(0);
+    const auto& contact = dynamic_cast<const ShapeContact&>(model->contact(0));
     mechanics::RowValues values;
     values.resize(model->rows());
     const auto pose = contact.carrier()->pose(placement);
@@ -130,7 +130,7 @@ TEST(RigidContact, ForcesCancel) {
 TEST(RigidContact, RollingKeepsTheGap) {
   const auto model = make({rigid::Sphere{0.01}, rigid::Box{{0.4, 0.3, 0.02}}, 0.0202});
   sim::Simulation simulation(model);
-  const Contact& contact = model->contact(0);
+  const auto& contact = dynamic_cast<const ShapeContact&>(model->contact(0));
   mechanics::RowValues values;
   values.resize(model->rows());
   const auto pose = contact.carrier()->pose(simulation.placement());

@@ -2,6 +2,8 @@
 /// Where a point stands with respect to a triangle surface.
 #pragma once
 
+#include <span>
+
 #include "sinew/collision/surface_tree.hpp"
 
 namespace sinew::collision {
@@ -14,9 +16,9 @@ struct NearestOnSurface {
   double distance = kInfinity;        ///< m
 };
 /// @param surface as it was moved last. @param point (3,) m. @param reach m: farther ones are not
-///   looked for.
+///   looked for. @param avoid nodes, whose triangles are not looked at.
 NearestOnSurface nearest_on_surface(const SurfaceTree& surface, const Vector3& point,
-                                    double reach = kInfinity);
+                                    double reach = kInfinity, std::span<const NodeId> avoid = {});
 
 /// How often a closed surface winds round a point: 0 outside, 1 inside, more where it overlaps
 /// itself, negative inside one that is turned inside out. Counted exactly as the signed crossings

@@ -6,12 +6,17 @@
 #include <Eigen/Geometry>
 
 #include "sinew/collision/local_minimum.hpp"
+#include "sinew/collision/point_query.hpp"
 
 namespace sinew::collision {
 
 namespace {
 
 constexpr int kProximityGrain = 64;
+// A way out of a body is another one where it is shorter than this part of it: of a vertex, and of
+// features on ridges.
+constexpr double kSameWay = 1.0 - 1e-6;
+constexpr double kBelowRidge = 0.3;
 
 SurfacePoint on_vertex(const SurfaceTree& surface, NodeId node) {
   return {FeatureKind::vertex, node, {node, -1, -1}, {1.0, 0.0, 0.0}, surface.at(node)};
@@ -35,6 +40,11 @@ SurfacePoint on_face(const SurfaceTree& surface, int triangle, const Vector3& we
           unit[0] * x[0] + unit[1] * x[1] + unit[2] * x[2]};
 }
 
+// Of boxes in which there may be a pair.
+double reach(const ProximitySettings& settings) {
+  return std::max(settings.distance, settings.depth);
+}
+
 bool share_node(const SurfacePoint& a, const SurfacePoint& b) {
   return std::ranges::any_of(a.nodes, [&](NodeId node) {
     return node >= 0 && std::ranges::find(b.nodes, node) != b.nodes.end();
@@ -48,6 +58,8 @@ class PairSearch {
              std::vector<ProximityPair>& found)
       : first_(first, settings.slack),
         second_(second, settings.slack),
+        first_edges_(first, settings.edge_slack.value_or(settings.slack)),
+        second_edges_(second, settings.edge_slack.value_or(settings.slack)),
         settings_(settings),
         same_(&first == &second),
         found_(found) {}
@@ -71,7 +83,7 @@ class PairSearch {
       const Vector3 x = own.surface().at(node);
       Box box;
       box.extend(x);
-      if (box.is_apart(other.surface().box(other_triangle), settings_.distance)) continue;
+      if (box.is_apart(other.surface().box(other_triangle), reach(settings_))) continue;
       over_face(own, node, x, other, other_triangle, swapped);
       for (const int edge : other.surface().topology().own_edges(other_triangle)) {
         over_edge(own, node, x, other, edge, swapped);
@@ -86,10 +98,8 @@ class PairSearch {
     const SurfacePoint p = on_vertex(own.surface(), node);
     const SurfacePoint q = on_face(other.surface(), triangle, weights);
     const Vector3 outward = other.face_normal(triangle).normalized();
-    const double height = outward.dot(x - q.point);
-    const Vector3 normal = height < 0.0 ? (-outward).eval() : outward;
-    if (!is_pair(p, q, std::abs(height)) || !own.vertex_is_nearest(node, q.point, -normal)) return;
-    if (is_seen(-own.vertex_normal(node), outward, normal)) keep(p, q, normal, swapped);
+    consider({own, node}, p, q, outward, outward.dot(x - q.point) < 0.0 ? -outward : outward,
+             swapped);
   }
 
   void over_edge(const LocalMinimum& own, NodeId node, const Vector3& x, const LocalMinimum& other,
@@ -98,23 +108,40 @@ class PairSearch {
     if (!LocalMinimum::inside_edge(share, 1.0) || !other.over_edge(edge, x)) return;
     const SurfacePoint p = on_vertex(own.surface(), node);
     const SurfacePoint q = on_edge(other.surface(), edge, share);
-    const double distance = (x - q.point).norm();
-    if (!is_pair(p, q, distance)) return;
     const Vector3 outward = other.edge_normal(edge);
-    const Vector3 normal = direction(x - q.point, outward);
-    if (!own.vertex_is_nearest(node, q.point, -normal)) return;
-    if (is_seen(-own.vertex_normal(node), outward, normal)) keep(p, q, normal, swapped);
+    consider({own, node}, p, q, outward, direction(x - q.point, outward), swapped);
+  }
+
+  // A vertex over a face or an edge. @param away (3,) from the nearest point to it.
+  struct OwnVertex {
+    const LocalMinimum& of;
+    NodeId node;
+  };
+  void consider(const OwnVertex& own, const SurfacePoint& p, const SurfacePoint& q,
+                const Vector3& outward, const Vector3& away, bool swapped) {
+    if (!is_near(p, q)) return;
+    const Vector3 inward = -own.of.vertex_normal(own.node);
+    const Vector3 normal = signed_normal(away, inward, outward);
+    if (!is_pair(p, q, normal)) return;
+    if (!own.of.vertex_is_nearest(own.node, q.point, -normal)) return;
+    if (!is_seen(inward, outward, normal)) return;
+    if (swapped) {
+      keep(q, p, -normal);
+    } else {
+      keep(p, q, normal);
+    }
   }
 
   void vertices(NodeId v, NodeId w) {
     const SurfacePoint p = on_vertex(first_.surface(), v), q = on_vertex(second_.surface(), w);
-    if (!is_pair(p, q, (p.point - q.point).norm())) return;
-    const Vector3 outward = second_.vertex_normal(w);
-    const Vector3 normal = direction(p.point - q.point, outward);
+    if (!is_near(p, q)) return;
+    const Vector3 outward = second_.vertex_normal(w), inward = -first_.vertex_normal(v);
+    const Vector3 normal = signed_normal(direction(p.point - q.point, outward), inward, outward);
+    if (!is_pair(p, q, normal)) return;
     const bool nearest =
         (second_.over_vertex(w, p.point) && first_.vertex_is_nearest(v, q.point, -normal)) ||
         (first_.over_vertex(v, q.point) && second_.vertex_is_nearest(w, p.point, normal));
-    if (nearest && is_seen(-first_.vertex_normal(v), outward, normal)) keep(p, q, normal, false);
+    if (nearest && is_seen(inward, outward, normal)) keep(p, q, normal);
   }
 
   // The common perpendicular c of two lines a(s) and b(t): s = ((b0 - a0) x v).c / c.c, and t.
@@ -135,17 +162,32 @@ class PairSearch {
     if (!LocalMinimum::inside_edge(s, sine2) || !LocalMinimum::inside_edge(t, sine2)) return;
     const SurfacePoint p = on_edge(first_.surface(), e, s), q = on_edge(second_.surface(), f, t);
     const double height = -w.dot(c) / std::sqrt(across2);
-    if (!is_pair(p, q, std::abs(height))) return;
-    const Vector3 outward = second_.edge_normal(f);
+    if (!is_near(p, q)) return;
+    const Vector3 outward = second_.edge_normal(f), inward = -first_.edge_normal(e);
     const double side = height != 0.0 ? height : outward.dot(c);
-    const Vector3 normal = c.normalized() * (side < 0.0 ? -1.0 : 1.0);
-    if (!first_.edge_is_nearest(e, p.point, q.point, -normal)) return;
-    if (!second_.edge_is_nearest(f, q.point, p.point, normal)) return;
-    if (is_seen(-first_.edge_normal(e), outward, normal)) keep(p, q, normal, false);
+    const Vector3 normal =
+        signed_normal(c.normalized() * (side < 0.0 ? -1.0 : 1.0), inward, outward);
+    if (!is_pair(p, q, normal)) return;
+    if (!first_edges_.edge_is_nearest(e, p.point, q.point, -normal)) return;
+    if (!second_edges_.edge_is_nearest(f, q.point, p.point, normal)) return;
+    if (is_seen(inward, outward, normal)) keep(p, q, normal);
   }
 
-  bool is_pair(const SurfacePoint& p, const SurfacePoint& q, double distance) const {
-    return distance <= settings_.distance && !(same_ && share_node(p, q));
+  // Of features that have passed each other, the way between them is turned round.
+  Vector3 signed_normal(const Vector3& away, const Vector3& inward, const Vector3& outward) const {
+    const bool passed = settings_.depth > 0.0 && away.dot(inward) < 0.0 && away.dot(outward) < 0.0;
+    return passed ? Vector3(-away) : away;
+  }
+
+  bool is_near(const SurfacePoint& p, const SurfacePoint& q) const {
+    const double reached = reach(settings_);
+    return (p.point - q.point).squaredNorm() <= reached * reached * (1.0 + 1e-12);
+  }
+
+  bool is_pair(const SurfacePoint& p, const SurfacePoint& q, const Vector3& normal) const {
+    const double distance = normal.dot(p.point - q.point);
+    return distance <= settings_.distance && distance >= -settings_.depth &&
+           !(same_ && share_node(p, q));
   }
 
   // From a point to another one; of points at one place outwards.
@@ -158,16 +200,31 @@ class PairSearch {
     return !settings_.facing || (normal.dot(inward) >= 0.0 && normal.dot(outward) >= 0.0);
   }
 
-  void keep(const SurfacePoint& p, const SurfacePoint& q, const Vector3& normal, bool swapped) {
-    const double distance = std::max(0.0, normal.dot(p.point - q.point));
-    if (swapped) {
-      found_.push_back({q, p, -normal, distance});
-    } else {
-      found_.push_back({p, q, normal, distance});
-    }
+  void keep(const SurfacePoint& p, const SurfacePoint& q, const Vector3& normal) {
+    const double along = normal.dot(p.point - q.point);
+    const double distance = settings_.depth > 0.0 ? along : std::max(0.0, along);
+    if (distance < 0.0 && !leads_out(p, q, -distance)) return;
+    found_.push_back({p, q, normal, distance});
   }
 
-  LocalMinimum first_, second_;
+  // Whether features that have passed each other went no shorter way: beside an edge of a body one
+  // of its faces is near, and the other one is a way through much of it. From below ridges, their
+  // faces are nearer than they are.
+  bool leads_out(const SurfacePoint& p, const SurfacePoint& q, double depth) const {
+    const bool p_stands = p.kind == FeatureKind::vertex && q.kind != FeatureKind::vertex;
+    const bool q_stands = q.kind == FeatureKind::vertex && p.kind != FeatureKind::vertex;
+    const double shorter = depth * (p_stands || q_stands ? kSameWay : kBelowRidge);
+    return (q_stands || !has_shorter_way(p, second_, shorter)) &&
+           (p_stands || !has_shorter_way(q, first_, shorter));
+  }
+
+  bool has_shorter_way(const SurfacePoint& point, const LocalMinimum& of, double reach) const {
+    const std::span<const NodeId> own(point.nodes);
+    const std::span<const NodeId> avoid = same_ ? own : std::span<const NodeId>();
+    return nearest_on_surface(of.surface(), point.point, reach, avoid).triangle >= 0;
+  }
+
+  LocalMinimum first_, second_, first_edges_, second_edges_;
   const ProximitySettings& settings_;
   bool same_;
   std::vector<ProximityPair>& found_;
@@ -180,12 +237,12 @@ Proximity::Proximity(ThreadPool& pool) : near_(pool), pairs_(pool) {}
 std::span<const ProximityPair> Proximity::between(const SurfaceTree& first,
                                                   const SurfaceTree& second,
                                                   const ProximitySettings& settings) {
-  return collect(first, second, near_.between(first, second, settings.distance), settings);
+  return collect(first, second, near_.between(first, second, reach(settings)), settings);
 }
 
 std::span<const ProximityPair> Proximity::within(const SurfaceTree& surface,
                                                  const ProximitySettings& settings) {
-  return collect(surface, surface, near_.within(surface, settings.distance), settings);
+  return collect(surface, surface, near_.within(surface, reach(settings)), settings);
 }
 
 std::span<const ProximityPair> Proximity::collect(const SurfaceTree& first,

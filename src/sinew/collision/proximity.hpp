@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 
 #include "sinew/collision/surface_tree.hpp"
@@ -27,16 +28,21 @@ struct SurfacePoint {
 /// A local minimum of the distance of a point of one surface from a point of another.
 struct ProximityPair {
   SurfacePoint first, second;
-  Vector3 normal = Vector3::UnitZ();  ///< (3,) unit length, from the second point to the first
-  double distance = 0.0;              ///< m, >= 0: first.point - second.point = distance normal
+  Vector3 normal = Vector3::UnitZ();  ///< (3,) unit length, from the second surface to the first
+  /// m: first.point - second.point = distance normal. Negative where the surfaces overlap.
+  double distance = 0.0;
 };
 
 /// What is looked for.
 struct ProximitySettings {
   double distance = 0.0;  ///< m, >= 0: the farthest pair
+  /// m, >= 0: of pairs that face each other, those are found, too, which have passed each other by
+  /// no more than this. It has to be less than the thickness of either body.
+  double depth = 0.0;
   /// Sine of the angle by which a neighbour of the nearest point may lie nearer: 0, local minima
   /// alone; 1, every vertex over a face or an edge and all edges that cross.
   double slack = 0.0;
+  std::optional<double> edge_slack;  ///< of edges that cross; none: the same
   /// Only points that see each other from outside, by the normals of their features. Without, a
   /// thin body's sides see each other through it, and open surfaces have two sides.
   bool facing = true;

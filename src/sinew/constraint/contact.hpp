@@ -1,126 +1,47 @@
 /// @file
-/// Unilateral contact with friction between material points and an analytic surface.
+/// Unilateral contact with friction at points.
 #pragma once
 
-#include <optional>
+#include <cstddef>
 #include <string>
-#include <vector>
 
 #include <Eigen/Geometry>
 
-#include "sinew/collision/approach.hpp"
 #include "sinew/constraint/constraint.hpp"
-#include "sinew/constraint/rigid_side.hpp"
-#include "sinew/constraint/surface.hpp"
 
 namespace sinew::constraint {
 
-/// Three rows per point: gap (m, negative inside) and two tangential motions relative to the
-/// surface since the step began (m). Efforts (N): the normal force, >= 0, along the outward normal
-/// on the body, and friction along the tangents.
-///
-/// In a step the surface counts as one of its tangent planes, so that rows are linear in the
-/// motion. Relative to the surface a point moves from x_s, where the surface's own motion would
-/// carry it, x_s = P_end P_start^-1 x_start, to x. The plane touches at x_c, where a given way from
-/// x_s meets the surface first, or where a way that misses it comes nearest
-/// (collision::approach()):
-///   gap = g(x_c) + n.(x - x_c),   slid = (t_1, t_2).(x - x_s),   g the signed distance at P_end.
-/// The surfaces are convex, and so are the half spaces that their planes bound: what keeps to the
-/// plane's outer side is outside the surface, and a point on the way of a miss is not pushed.
-/// begin_step() takes the way at the point's velocity; sim::ContactRows::correct() replaces it by
-/// that which the point would go without its own force.
-///
-/// Where a rigid body carries the surface, motions are relative to it: with y its point that was at
-/// x when the step began, rows measure frame^T (x - y), and forces act on both bodies. Frames keep
-/// their directions through a step, the surface is the one that stood where the carrier was when it
-/// began. Where the surface is round, y of the gap is the centre of its roundness instead, which
-/// stays where it is while the body rolls.
-///
-/// Of a rigid body with a shape the points are found anew in every step
-/// (collision::touching_points()); those that a step does not need are idle. Their frames stay, and
-/// the gap watches centres of roundness on both sides.
+/// Three rows per point: gap (m, negative inside) and two tangential motions relative to what it
+/// may touch since the step began (m). Efforts (N): the normal force, >= 0, along the outward
+/// normal on the body, and friction along the tangents. In a step, rows are linear in the motion:
+/// frames keep their directions through it, but may turn between two of its solutions.
 class Contact : public Constraint {
  public:
-  /// @param name for messages. @param points that may touch. @param surface checked() is applied.
-  /// @param friction Coulomb's coefficient, >= 0. @param carrier none: the surface's poses are
-  /// given; else `surface` is its shape. Throws Error: out-of-range, too-few-points.
-  Contact(std::string name, std::vector<mechanics::MaterialPoint> points, collision::Shape surface,
-          double friction, std::optional<RigidSide> carrier = {});
-  /// @param own the rigid body whose shape touches the surface.
-  Contact(std::string name, RigidSide own, collision::Shape surface, double friction,
-          std::optional<RigidSide> carrier = {});
-
-  void declare(mechanics::RowPattern& rows,
-               std::vector<mechanics::RowCurvature>& curvatures) override;
-  /// Sets the frames of a step. @param placement at its start. @param start,end the surface's
-  /// poses. @param time_step s; 0: points are taken to stay.
-  /// @param values gets directions, offset, and reference: the rows' values at x_s.
-  void begin_step(const Placement& placement, const Eigen::Isometry3d& start,
-                  const Eigen::Isometry3d& end, double time_step,
-                  mechanics::RowValues& values) const;
-  /// Writes delta alone; directions are those of begin_step() and place().
-  void linearise(const Placement& placement, mechanics::RowValues& values) const override;
-
-  /// @param from,to (3,) m, a way at the step's end. @param pose of the surface there.
-  collision::ShapeApproach approach(const Vector3& from, const Vector3& to,
-                                    const Eigen::Isometry3d& pose) const;
-  /// Sets the frame of one point. @param point below size(). @param carried (3,) m, x_s.
-  /// @param plane where the tangent plane touches. @param values gets direction, offset, reference.
-  void place(std::size_t point, const Vector3& carried, const collision::ShapeApproach& plane,
-             mechanics::RowValues& values) const;
-  /// Sets the frame of one point to the tangent plane at its nearest point, the tangents along the
-  /// principal directions there. @param point below size(). @param at (3,) m, now. @param pose of
-  /// the surface. @param values see place(). @return (3,) 1/m, see collision::PrincipalFrame.
-  Vector3 place_nearest(std::size_t point, const Vector3& at, const Eigen::Isometry3d& pose,
-                        mechanics::RowValues& values) const;
-  /// The three rows of a point (m) where it is at (3,) m, and back, by its frame in `values`.
-  Vector3 row_values(std::size_t point, const Vector3& at,
-                     const mechanics::RowValues& values) const;
-  Vector3 position(std::size_t point, const Vector3& row_values,
-                   const mechanics::RowValues& values) const;
-
-  void add_to(ValueHash& hash) const override;
-
-  std::size_t size() const { return count_; }  ///< number of points
-  /// That the points belong to.
-  int body() const { return own_ ? own_->centre.body : points_.front().body; }
-  /// Whether they are found anew in every step; material() is then not to be asked.
-  const std::optional<RigidSide>& own() const { return own_; }
-  const mechanics::MaterialPoint& material(std::size_t point) const { return points_[point]; }
-  const collision::Shape& surface() const { return surface_; }
-  const std::optional<RigidSide>& carrier() const { return carrier_; }
-  /// Whether a step has no use for a point. @param values of the step.
-  bool idle(std::size_t point, const mechanics::RowValues& values) const;
-  /// (3,) m: where a point is now. @param values of the step.
-  Vector3 position_now(const Placement& placement, std::size_t point,
-                       const mechanics::RowValues& values) const;
-  /// (3,) m: where a point is now beside its surface as the step began it. @param values of the
-  /// step.
-  Vector3 position_beside(const Placement& placement, std::size_t point,
-                          const mechanics::RowValues& values) const;
-  /// (3,) m/s, relative to the surface's carrier. @param values of the step.
-  Vector3 velocity_beside(const Placement& placement, std::size_t point,
-                          const mechanics::RowValues& values) const;
-  /// (3,) m: a point's motion relative to its surface. @param motion of a site: (3,) m or rad.
-  template <class Motion>
-  Vector3 relative_motion(std::size_t point, const mechanics::RowValues& values,
-                          Motion&& motion) const {
-    const auto of = [&](const RigidSide& side, std::size_t at) {
-      return Vector3(motion(side.centre) + motion(side.turn).cross(values.lever[at]));
-    };
-    const std::size_t at = entry(point, 1);  // a tangent's: the point itself
-    Vector3 result = own_ ? of(*own_, at) : Vector3(motion(points_[point]));
-    if (carrier_) result -= of(*carrier_, at + own_entries());
-    return result;
-  }
-  /// What a state remembers of a step's frames. @param to,from memory_size() numbers.
-  std::size_t memory_size() const { return count_ * (own_ ? 12 : 9); }
-  void save(const mechanics::RowValues& values, double* to) const;
-  void load(const double* from, mechanics::RowValues& values) const;
-
-  /// Whether tangent planes follow the points in a step.
-  bool curved() const { return !own_ && !std::holds_alternative<Plane>(surface_); }
+  std::size_t size() const { return count_; }  ///< how many points there may be
   double friction() const { return friction_; }
+  /// That the points belong to.
+  virtual int body() const = 0;
+  /// That they may touch; -1: a surface of the world.
+  virtual int other_body() const = 0;
+  /// Whether points are found anew in every step.
+  virtual bool is_found_anew() const = 0;
+  /// Whether a step has no use for a point. @param values of the step.
+  virtual bool idle(std::size_t point, const mechanics::RowValues& values) const = 0;
+
+  /// (3,) m: where a point is now. @param values of the step.
+  virtual Vector3 position_now(const Placement& placement, std::size_t point,
+                               const mechanics::RowValues& values) const = 0;
+  /// (3,) m/s, relative to what it may touch. @param values of the step.
+  virtual Vector3 velocity_beside(const Placement& placement, std::size_t point,
+                                  const mechanics::RowValues& values) const = 0;
+  /// m: the gap's row now. @param values of the step.
+  virtual double linear_gap(const Placement& placement, std::size_t point,
+                            const mechanics::RowValues& values) const = 0;
+  /// m: the gap now. @param placement of the bodies. @param pose of a surface of the world.
+  /// @param values of the step.
+  virtual double gap_now(const Placement& placement, const Eigen::Isometry3d& pose,
+                         std::size_t point, const mechanics::RowValues& values) const = 0;
+
   int row(std::size_t point) const { return first_row_ + 3 * static_cast<int>(point); }
   /// Of the point itself, in one of its three rows.
   std::size_t entry(std::size_t point, int row = 0) const {
@@ -129,33 +50,18 @@ class Contact : public Constraint {
   }
   /// Columns: the normal and two tangents of a point in `values`.
   Matrix3 frame(std::size_t point, const mechanics::RowValues& values) const;
-  /// Exact gap of a point now, m. @param placement of the points. @param pose of the surface.
-  /// @param point below size(). @param values of the step.
-  collision::ShapeDistance distance_now(const Placement& placement, const Eigen::Isometry3d& pose,
-                                        std::size_t point,
-                                        const mechanics::RowValues& values) const;
+
+ protected:
+  /// @param name for messages. @param count of points. @param friction Coulomb's coefficient, >= 0.
+  /// @param stride entries of a row. Throws Error: out-of-range, too-few-points.
+  Contact(std::string name, std::size_t count, double friction, std::size_t stride);
+
+  int first_entry_ = -1;
 
  private:
-  void set_frame(std::size_t point, const Vector3& carried, const Matrix3& frame, double gap,
-                 mechanics::RowValues& values) const;
-  void check() const;
-  static void prepare(mechanics::RowValues& values);
-  void find_points(const Placement& placement, const Eigen::Isometry3d& start,
-                   const Eigen::Isometry3d& carry, mechanics::RowValues& values) const;
-  void watch(const Placement& placement, std::size_t point, const Vector3& at,
-             mechanics::RowValues& values) const;
-  void write_sides(const Placement& placement, std::size_t point,
-                   mechanics::RowValues& values) const;
-  std::size_t own_entries() const { return own_ ? 2 : 1; }
-
-  std::vector<mechanics::MaterialPoint> points_;
-  std::optional<RigidSide> own_;
-  collision::Shape surface_;
-  double friction_;
-  std::optional<RigidSide> carrier_;
   std::size_t count_;
-  std::size_t stride_;  // entries of a row: the point, or a body's centre and turn; the carrier's
-  int first_entry_ = -1;
+  double friction_;
+  std::size_t stride_;
 };
 
 }  // namespace sinew::constraint

@@ -34,4 +34,12 @@ Vector3 Placement::velocity(const mechanics::Site& site) const {
   return body_of(bodies_, site).velocity(site.number);
 }
 
+const Points& Placement::nodes(int body) const {
+  return bodies_[static_cast<std::size_t>(body)]->positions();
+}
+
+const Points& Placement::node_velocities(int body) const {
+  return bodies_[static_cast<std::size_t>(body)]->velocities();
+}
+
 }  // namespace sinew::constraint

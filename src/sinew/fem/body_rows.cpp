@@ -4,9 +4,7 @@
 
 namespace sinew::fem {
 
-BodyRows::BodyRows(const FemBodyModel& model) : model_(model), fixed_effort_(model.fixed_rows()) {
-  passing_.reserve((model.rows().size() - model.fixed_rows()) / 3);
-}
+BodyRows::BodyRows(const FemBodyModel& model) : model_(model), fixed_effort_(model.fixed_rows()) {}
 
 void BodyRows::take(const mechanics::RowValues& rows, SystemNumbers& numbers) {
   std::ranges::fill(numbers.border, 0.0);
@@ -15,28 +13,78 @@ void BodyRows::take(const mechanics::RowValues& rows, SystemNumbers& numbers) {
     const Vector3& direction = rows.direction[static_cast<std::size_t>(s.entry)];
     for (int c = 0; c < 3; ++c) value[c] += s.weight * direction[c];
   }
-  take_presence(rows);
-  hold(numbers);
+  hold(numbers.system.border, numbers.border);
+  take_passing(rows);
+  hold(passing_, passing_values_);
 }
 
-void BodyRows::take_presence(const mechanics::RowValues& rows) {
-  passing_.clear();
+void BodyRows::take_passing(const mechanics::RowValues& rows) {
+  passing_.row_start.assign(1, 0);
+  passing_.node.clear();
+  passing_values_.clear();
+  passing_world_.clear();
   const auto& own = model_.rows();
   for (std::size_t k = model_.fixed_rows(); k < own.size(); k += 3) {
-    if (rows.present[static_cast<std::size_t>(own[k])] == 0) continue;
-    passing_.push_back(static_cast<std::int32_t>((k - model_.fixed_rows()) / 3));
+    if (rows.present[static_cast<std::size_t>(own[k])] != 0) add_group(own[k], rows);
   }
 }
 
-// Takes held coordinates out of the border.
-void BodyRows::hold(SystemNumbers& numbers) const {
+// Calls visit(free node, weight) for the nodes of an entry's site.
+template <typename Visit>
+void BodyRows::each_node(std::int32_t entry, const mechanics::RowValues& rows, Visit visit) const {
+  const mechanics::Site& site = model_.world_rows().site[static_cast<std::size_t>(entry)];
+  if (site.body != model_.body()) return;
+  const auto free = model_.elements().free_index();
+  const auto see = [&](NodeId node, double weight) {
+    const std::int32_t number = node < 0 ? -1 : free[static_cast<std::size_t>(node)];
+    if (number >= 0) visit(number, weight);
+  };
+  if (site.number == model_.surface_site()) {
+    const mechanics::Patch& patch = rows.patch[static_cast<std::size_t>(entry)];
+    for (std::size_t k = 0; k < 3; ++k) {
+      see(patch.nodes[k], patch.weights[static_cast<Eigen::Index>(k)]);
+    }
+    return;
+  }
+  const Attachment& at = model_.attachment(site.number);
+  for (std::size_t k = 0; k < at.nodes.size(); ++k) see(at.nodes[k], at.weights[k]);
+}
+
+// The three rows of a group are on the same sites.
+void BodyRows::add_group(std::int32_t row, const mechanics::RowValues& rows) {
+  const auto& starts = model_.world_rows().row_start;
+  const auto start = [&](int k) { return starts[static_cast<std::size_t>(row + k)]; };
+  nodes_.clear();
+  for (std::int32_t entry = start(0); entry < start(1); ++entry) {
+    each_node(entry, rows, [&](std::int32_t node, double) { nodes_.push_back(node); });
+  }
+  std::ranges::sort(nodes_);
+  nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
+  for (int r = 0; r < 3; ++r) {
+    const std::size_t first = passing_values_.size();
+    passing_.node.insert(passing_.node.end(), nodes_.begin(), nodes_.end());
+    passing_.row_start.push_back(passing_.entries());
+    passing_values_.resize(first + 3 * nodes_.size(), 0.0);
+    for (std::int32_t entry = start(r); entry < start(r + 1); ++entry) {
+      const Vector3& direction = rows.direction[static_cast<std::size_t>(entry)];
+      each_node(entry, rows, [&](std::int32_t node, double weight) {
+        const auto at = std::ranges::lower_bound(nodes_, node) - nodes_.begin();
+        double* value = passing_values_.data() + first + 3 * static_cast<std::size_t>(at);
+        for (int c = 0; c < 3; ++c) value[c] += weight * direction[c];
+      });
+    }
+  }
+  passing_world_.push_back(row);
+}
+
+// Takes held coordinates out of rows.
+void BodyRows::hold(const linalg::BorderPattern& pattern, std::vector<double>& values) const {
   const auto held = model_.elements().held();
   if (held.empty()) return;
-  const auto& nodes = numbers.system.border.node;
-  for (std::size_t e = 0; e < nodes.size(); ++e) {
+  for (std::size_t e = 0; e < pattern.node.size(); ++e) {
     for (int c = 0; c < 3; ++c) {
-      if (std::ranges::binary_search(held, 3 * nodes[e] + c)) {
-        numbers.border[3 * e + static_cast<std::size_t>(c)] = 0.0;
+      if (std::ranges::binary_search(held, 3 * pattern.node[e] + c)) {
+        values[3 * e + static_cast<std::size_t>(c)] = 0.0;
       }
     }
   }
@@ -46,14 +94,20 @@ void BodyRows::hold(SystemNumbers& numbers) const {
 template <typename Add>
 void BodyRows::each_entry(std::span<const double> effort, const SystemNumbers& numbers,
                           Add add) const {
-  const auto& border = numbers.system.border;
-  for (std::size_t k = 0; k < model_.rows().size(); ++k) {
-    const double lambda = effort[static_cast<std::size_t>(model_.rows()[k])];
-    if (lambda == 0.0) continue;
-    for (auto e = border.row_start[k]; e < border.row_start[k + 1]; ++e) {
-      const double* value = numbers.border.data() + 3 * static_cast<std::size_t>(e);
-      add(border.node[static_cast<std::size_t>(e)], lambda, value);
+  const auto each = [&](const linalg::BorderPattern& pattern, std::span<const double> values,
+                        std::size_t k, std::int32_t row) {
+    const double lambda = effort[static_cast<std::size_t>(row)];
+    if (lambda == 0.0) return;
+    for (auto e = pattern.row_start[k]; e < pattern.row_start[k + 1]; ++e) {
+      const double* value = values.data() + 3 * static_cast<std::size_t>(e);
+      add(pattern.node[static_cast<std::size_t>(e)], lambda, value);
     }
+  };
+  for (std::size_t k = 0; k < model_.fixed_rows(); ++k) {
+    each(numbers.system.border, numbers.border, k, model_.rows()[k]);
+  }
+  for (std::size_t k = 0; k < 3 * passing_world_.size(); ++k) {
+    each(passing_, passing_values_, k, passing_world_[k / 3] + static_cast<std::int32_t>(k % 3));
   }
 }
 
@@ -89,24 +143,22 @@ void BodyRows::add_compliance(std::span<const int> place, const SystemNumbers& n
       compliance(place_of(i), to) += own(static_cast<Eigen::Index>(i), column);
     }
   }
-  if (!passing_.empty()) add_passing_compliance(place, numbers, compliance, free_motion);
+  if (!passing_world_.empty()) add_passing_compliance(place, numbers, compliance, free_motion);
 }
 
 void BodyRows::add_passing_compliance(std::span<const int> place, const SystemNumbers& numbers,
                                       MatrixX& compliance, VectorX& free_motion) const {
   linalg::Factorisation& factor = *numbers.factorisation;
-  const std::span<const double> border(numbers.border);
-  factor.pass(border.subspan(3 * numbers.system.fixed_entries), passing_);
+  factor.pass(passing_, passing_values_);
   const MatrixX& own = factor.passing_compliance();
   const MatrixX& coupling = factor.passing_coupling();
   const std::span<const std::int32_t> rows(model_.rows());
   const std::size_t fixed = model_.fixed_rows();
   const auto row_of = [&](Eigen::Index k) {
-    const auto group = static_cast<std::size_t>(passing_[static_cast<std::size_t>(k / 3)]);
-    const std::int32_t row = rows[fixed + 3 * group + static_cast<std::size_t>(k % 3)];
-    return place[static_cast<std::size_t>(row)];
+    const std::int32_t first = passing_world_[static_cast<std::size_t>(k / 3)];
+    return place[static_cast<std::size_t>(first + k % 3)];
   };
-  const auto count = 3 * static_cast<Eigen::Index>(passing_.size());
+  const auto count = 3 * static_cast<Eigen::Index>(passing_world_.size());
   for (Eigen::Index j = 0; j < count; ++j) {
     const int column = row_of(j);
     free_motion[column] += coupling(j, static_cast<Eigen::Index>(fixed));

@@ -9,11 +9,14 @@
 
 #include "sinew/core/types.hpp"
 #include "sinew/fem/system_numbers.hpp"
+#include "sinew/linalg/block_pattern.hpp"
 #include "sinew/mechanics/rows.hpp"
 
 namespace sinew::fem {
 
 /// Numbers are those of the last linearisation's system; efforts are (rows,) N of the world's rows.
+/// Rows that are always there stand in the factorisation's border. Those that come and go have
+/// their nodes listed anew whenever they are taken, those that are present alone.
 class BodyRows {
  public:
   /// @param model must outlive this.
@@ -35,15 +38,20 @@ class BodyRows {
  private:
   template <typename Add>
   void each_entry(std::span<const double> effort, const SystemNumbers& numbers, Add add) const;
+  template <typename Visit>
+  void each_node(std::int32_t entry, const mechanics::RowValues& rows, Visit visit) const;
   void add_passing_compliance(std::span<const int> place, const SystemNumbers& numbers,
                               MatrixX& compliance, VectorX& free_motion) const;
-  void take_presence(const mechanics::RowValues& rows);
-  void hold(SystemNumbers& numbers) const;
+  void take_passing(const mechanics::RowValues& rows);
+  void add_group(std::int32_t row, const mechanics::RowValues& rows);
+  void hold(const linalg::BorderPattern& pattern, std::vector<double>& values) const;
 
   const FemBodyModel& model_;
   std::vector<double> fixed_effort_;
-  std::vector<std::int32_t>
-      passing_;  // groups of three of the rows that come and go: those present
+  linalg::BorderPattern passing_;            // groups of three rows that are present
+  std::vector<double> passing_values_;       // of them
+  std::vector<std::int32_t> passing_world_;  // by group: the first of its rows in the world
+  std::vector<std::int32_t> nodes_;          // of a group, ascending: scratch
 };
 
 }  // namespace sinew::fem

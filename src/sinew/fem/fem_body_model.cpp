@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "sinew/collision/surface_topology.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/fem/fem_body.hpp"
 
@@ -81,6 +82,16 @@ int FemBodyModel::attach_ball(const Vector3& centre, double radius, mesh::Outsid
 int FemBodyModel::attach_nodes(std::span<const NodeId> nodes, std::span<const double> weights) {
   attachments_.push_back({{nodes.begin(), nodes.end()}, {weights.begin(), weights.end()}});
   return static_cast<int>(attachments_.size()) - 1;
+}
+
+int FemBodyModel::attach_surface() {
+  if (surface_site_ >= 0) return surface_site_;
+  std::vector<collision::Triangle> triangles;
+  for (const mesh::Triangle& t : mesh::boundary_surface(mesh()).triangles) triangles.push_back(t);
+  surface_ = std::make_shared<const collision::SurfaceTopology>(
+      std::move(triangles), static_cast<int>(mesh().nodes.rows()));
+  surface_site_ = attach_nodes({}, {});
+  return surface_site_;
 }
 
 int FemBodyModel::add_load(Load load) {
@@ -161,7 +172,7 @@ FemSystem FemBodyModel::make_system(const FemModelSettings& elements) const {
                         ? plain_.elements
                         : std::make_shared<const FemModel>(settings_.mesh, elements);
   const auto free = system.elements->free_index();
-  for (const auto row : rows_) {
+  for (const auto row : std::span(rows_).first(fixed_rows_)) {
     const auto begin = world_rows_.row_start[static_cast<std::size_t>(row)];
     const auto end = world_rows_.row_start[static_cast<std::size_t>(row) + 1];
     // Position of every free node that the row touches, ascending by node.
@@ -190,18 +201,7 @@ FemSystem FemBodyModel::make_system(const FemModelSettings& elements) const {
       }
     }
   }
-  // What stands in the factorisation's border, and what beside it.
-  linalg::BorderPattern fixed;
-  const auto& starts = system.border.row_start;
-  const auto split = static_cast<std::ptrdiff_t>(fixed_rows_);
-  const std::int32_t entries = starts[fixed_rows_];
-  system.fixed_entries = static_cast<std::size_t>(entries);
-  fixed.row_start.assign(starts.begin(), starts.begin() + split + 1);
-  fixed.node.assign(system.border.node.begin(), system.border.node.begin() + entries);
-  system.passing.row_start.assign(starts.begin() + split, starts.end());
-  for (std::int32_t& start : system.passing.row_start) start -= entries;
-  system.passing.node.assign(system.border.node.begin() + entries, system.border.node.end());
-  system.plan = linalg::analyse(system.elements->pattern(), fixed, factorisation_, system.passing);
+  system.plan = linalg::analyse(system.elements->pattern(), system.border, factorisation_);
   return system;
 }
 

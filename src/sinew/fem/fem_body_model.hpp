@@ -14,6 +14,7 @@
 #include "sinew/fem/loads.hpp"
 #include "sinew/linalg/factorisation.hpp"
 #include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 
 namespace sinew::fem {
 
@@ -27,14 +28,14 @@ struct FemSystem {
     double weight = 0.0;
   };
   std::shared_ptr<const FemModel> elements;
-  linalg::BorderPattern border;   ///< of all rows, those that come and go behind the others
-  linalg::BorderPattern passing;  ///< these alone
-  std::size_t fixed_entries = 0;  ///< of the border, before those
+  linalg::BorderPattern border;  ///< of the rows that are always there
   std::vector<Scatter> scatter;
   std::shared_ptr<const linalg::FactorisationPlan> plan;
 };
 
-class FemBodyModel final : public mechanics::BodyModel, public HasElements {
+class FemBodyModel final : public mechanics::BodyModel,
+                           public mechanics::HasSurface,
+                           public HasElements {
  public:
   /// Throws what FemModel does, and Error: out-of-range for negative damping or a mass that is not
   /// positive, point-outside-mesh for a mass outside.
@@ -46,6 +47,8 @@ class FemBodyModel final : public mechanics::BodyModel, public HasElements {
   int attach_ball(const Vector3& centre, double radius, mesh::Outside outside,
                   const std::string& what) override;
   int attach_nodes(std::span<const NodeId> nodes, std::span<const double> weights) override;
+  int attach_surface() override;
+  std::shared_ptr<const collision::SurfaceTopology> surface() const override { return surface_; }
   Vector3 rest_position(int point) const override;
   mesh::EmbeddedPoint locate(const Vector3& rest_position, mesh::Outside outside,
                              const std::string& what) const override;
@@ -78,6 +81,11 @@ class FemBodyModel final : public mechanics::BodyModel, public HasElements {
   const std::vector<std::int32_t>& rows() const { return rows_; }
   /// How many of them are always there.
   std::size_t fixed_rows() const { return fixed_rows_; }
+  /// Of all constraints of the world, and this body's position in it.
+  const mechanics::RowPattern& world_rows() const { return world_rows_; }
+  int body() const { return body_; }
+  /// What attach_surface() returned; -1: nothing touches the body's surface.
+  int surface_site() const { return surface_site_; }
   bool leaves_rows_out() const override { return true; }
   /// The plain system, or the one whose pattern holds the rows' curvature (made at first use; safe
   /// from several threads).
@@ -90,6 +98,8 @@ class FemBodyModel final : public mechanics::BodyModel, public HasElements {
   FemBodySettings settings_;
   std::unique_ptr<mesh::Embedder> embedder_;
   std::vector<Attachment> attachments_;
+  int surface_site_ = -1;
+  std::shared_ptr<const collision::SurfaceTopology> surface_;  // from attach_surface() on
   std::vector<int> mass_points_;
   std::vector<Load> added_loads_;  // until finish()
   std::unique_ptr<const LoadSet> loads_;

@@ -118,10 +118,9 @@ mechanics::Inertia FemStep::condense() {
   loads_.stiffen(tangent_, numbers.assembly);
   numbers.assembly.hold();
   numbers.present.reset();
-  const std::span<const double> border(numbers.border);
   mechanics::Inertia inertia;
-  inertia.status = numbers.factorisation->factorise(
-      numbers.assembly.matrix(), border.first(3 * numbers.system.fixed_entries), span_of(right_));
+  inertia.status =
+      numbers.factorisation->factorise(numbers.assembly.matrix(), numbers.border, span_of(right_));
   inertia.negative_pivots = numbers.factorisation->negative_pivots();
   inertia.unsymmetric = !loads_.unsymmetric().empty();
   return inertia;
@@ -211,6 +210,13 @@ Vector3 FemStep::proposed_motion(int point) const {
     if (node >= 0) sum += a.weights[k] * motion_.segment<3>(3 * node);
   }
   return sum;
+}
+
+void FemStep::add_proposed_motion(Points& nodes) const {
+  const auto free = state_.model.elements().free_nodes();
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    nodes.row(free[i]) += motion_.segment<3>(3 * static_cast<Eigen::Index>(i)).transpose();
+  }
 }
 
 mechanics::MotionReport FemStep::apply_motion(double scale) {

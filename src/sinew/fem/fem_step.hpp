@@ -38,6 +38,7 @@ class FemStep : public mechanics::StepSystem {
   void propose_motion(std::span<const double> motion) override;
   void propose_drift(double time_step) override;
   Vector3 proposed_motion(int point) const override;
+  void add_proposed_motion(Points& nodes) const override;
   mechanics::MotionReport apply_motion(double scale) override;
   mechanics::SmallestVolume smallest_volume() override { return elements_.smallest_volume(); }
   mechanics::StepEnd end_step(const mechanics::StepWeights& weights) override;

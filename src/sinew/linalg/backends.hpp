@@ -12,16 +12,14 @@ using PlanPointer = std::shared_ptr<const FactorisationPlan>;
 
 /// Our bordered supernodal factorisation L S L^T of 3x3 blocks.
 PlanPointer make_block_plan(const BlockPattern& pattern, const BorderPattern& border,
-                            const FactorisationSettings& settings, const BorderPattern& passing);
+                            const FactorisationSettings& settings);
 
 /// Eigen's SimplicialLDLT, as a reference; unlike ours, its solves allocate.
 PlanPointer make_eigen_ldlt_plan(const BlockPattern& pattern, const BorderPattern& border,
-                                 const FactorisationSettings& settings,
-                                 const BorderPattern& passing);
+                                 const FactorisationSettings& settings);
 
 /// Eigen's SimplicialLLT, as a reference; reports indefinite matrices as singular.
 PlanPointer make_eigen_llt_plan(const BlockPattern& pattern, const BorderPattern& border,
-                                const FactorisationSettings& settings,
-                                const BorderPattern& passing);
+                                const FactorisationSettings& settings);
 
 }  // namespace sinew::linalg

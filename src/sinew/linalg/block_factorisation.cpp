@@ -18,13 +18,12 @@ constexpr double kDissectionBonus = 1.1;
 
 class BlockFactorisation final : public Factorisation {
  public:
-  BlockFactorisation(std::shared_ptr<const BlockSymbolic> symbolic, const BorderPattern& passing,
-                     ThreadPool& pool)
+  BlockFactorisation(std::shared_ptr<const BlockSymbolic> symbolic, ThreadPool& pool)
       : symbolic_(std::move(symbolic)),
         pool_(pool),
         numeric_(*symbolic_, pool.size()),
         schedule_(*symbolic_, pool.size()),
-        passing_(*symbolic_, passing),
+        passing_(*symbolic_),
         unknowns_(3 * static_cast<std::size_t>(symbolic_->nodes)),
         weights_(3 * static_cast<std::size_t>(symbolic_->border_nodes)),
         compliance_(symbolic_->border_rows, symbolic_->border_rows),
@@ -62,8 +61,8 @@ class BlockFactorisation final : public Factorisation {
     }
   }
 
-  void pass(std::span<const double> values, std::span<const std::int32_t> groups) override {
-    passing_.condense(numeric_, values, groups);
+  void pass(const BorderPattern& rows, std::span<const double> values) override {
+    passing_.condense(numeric_, rows, values);
   }
   const MatrixX& passing_compliance() const override { return passing_.compliance(); }
   const MatrixX& passing_coupling() const override { return passing_.coupling(); }
@@ -117,9 +116,8 @@ class BlockFactorisation final : public Factorisation {
 
 class BlockPlan final : public FactorisationPlan {
  public:
-  BlockPlan(std::shared_ptr<const BlockSymbolic> symbolic, Ordering ordering,
-            const BorderPattern& passing)
-      : symbolic_(std::move(symbolic)), ordering_(ordering), passing_(passing) {}
+  BlockPlan(std::shared_ptr<const BlockSymbolic> symbolic, Ordering ordering)
+      : symbolic_(std::move(symbolic)), ordering_(ordering) {}
 
   std::string_view backend() const override { return "block"; }
   std::string_view ordering() const override {
@@ -130,30 +128,29 @@ class BlockPlan final : public FactorisationPlan {
   }
   double factor_flops() const override { return symbolic_->flops; }
   std::unique_ptr<Factorisation> create(ThreadPool& pool) const override {
-    return std::make_unique<BlockFactorisation>(symbolic_, passing_, pool);
+    return std::make_unique<BlockFactorisation>(symbolic_, pool);
   }
 
  private:
   std::shared_ptr<const BlockSymbolic> symbolic_;
   Ordering ordering_;
-  BorderPattern passing_;
 };
 
 }  // namespace
 
 PlanPointer make_block_plan(const BlockPattern& pattern, const BorderPattern& border,
-                            const FactorisationSettings& settings, const BorderPattern& passing) {
+                            const FactorisationSettings& settings) {
   const auto make = [&](Ordering ordering) {
     return std::make_shared<const BlockSymbolic>(pattern, border, ordering, SupernodeSettings{});
   };
   if (settings.ordering != Ordering::fastest) {
-    return std::make_shared<BlockPlan>(make(settings.ordering), settings.ordering, passing);
+    return std::make_shared<BlockPlan>(make(settings.ordering), settings.ordering);
   }
   auto amd = make(Ordering::amd);
   auto metis = make(Ordering::metis);
   const bool keep_metis = estimated_time(*metis) < kDissectionBonus * estimated_time(*amd);
   return std::make_shared<BlockPlan>(keep_metis ? metis : amd,
-                                     keep_metis ? Ordering::metis : Ordering::amd, passing);
+                                     keep_metis ? Ordering::metis : Ordering::amd);
 }
 
 }  // namespace sinew::linalg

@@ -21,7 +21,7 @@ using Llt = Eigen::SimplicialLLT<SparseMatrix, Eigen::Lower, AmdOrdering>;
 struct ScalarPattern {
   SparseMatrix matrix;  ///< values are 1
   std::vector<int> source;
-  BorderPattern border, passing;
+  BorderPattern border;
   std::size_t entries = 0;
   double flops = 0;
 };
@@ -96,13 +96,10 @@ class EigenFactorisation final : public Factorisation {
     Eigen::Map<MatrixX>(x.data(), matrix_.rows(), count) = solver_.solve(b).eval();
   }
 
-  void pass(std::span<const double> values, std::span<const std::int32_t> groups) override {
-    MatrixX rows = MatrixX::Zero(matrix_.rows(), 3 * static_cast<Eigen::Index>(groups.size()));
-    const BorderPattern& pattern = pattern_->passing;
+  void pass(const BorderPattern& pattern, std::span<const double> values) override {
+    MatrixX rows = MatrixX::Zero(matrix_.rows(), pattern.rows());
     for (Eigen::Index k = 0; k < rows.cols(); ++k) {
-      const auto row = 3 * static_cast<std::size_t>(groups[static_cast<std::size_t>(k / 3)]) +
-                       static_cast<std::size_t>(k % 3);
-      fill_row(pattern, row, values, rows.col(k));
+      fill_row(pattern, static_cast<std::size_t>(k), values, rows.col(k));
     }
     const MatrixX solved = solver_.solve(rows);
     passing_compliance_ = rows.transpose() * solved;
@@ -162,11 +159,9 @@ class EigenFactorisation final : public Factorisation {
 template <typename Solver>
 class EigenPlan final : public FactorisationPlan {
  public:
-  EigenPlan(const BlockPattern& pattern, const BorderPattern& border, const BorderPattern& passing,
-            std::string_view name)
+  EigenPlan(const BlockPattern& pattern, const BorderPattern& border, std::string_view name)
       : name_(name) {
     auto scalars = std::make_shared<ScalarPattern>(expand(pattern, border));
-    scalars->passing = passing;
     count_factor(*scalars);
     scalars_ = std::move(scalars);
   }
@@ -219,13 +214,13 @@ class EigenPlan final : public FactorisationPlan {
 }  // namespace
 
 PlanPointer make_eigen_ldlt_plan(const BlockPattern& pattern, const BorderPattern& border,
-                                 const FactorisationSettings&, const BorderPattern& passing) {
-  return std::make_shared<EigenPlan<Ldlt>>(pattern, border, passing, "eigen-ldlt");
+                                 const FactorisationSettings&) {
+  return std::make_shared<EigenPlan<Ldlt>>(pattern, border, "eigen-ldlt");
 }
 
 PlanPointer make_eigen_llt_plan(const BlockPattern& pattern, const BorderPattern& border,
-                                const FactorisationSettings&, const BorderPattern& passing) {
-  return std::make_shared<EigenPlan<Llt>>(pattern, border, passing, "eigen-llt");
+                                const FactorisationSettings&) {
+  return std::make_shared<EigenPlan<Llt>>(pattern, border, "eigen-llt");
 }
 
 }  // namespace sinew::linalg

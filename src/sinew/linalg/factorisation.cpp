@@ -12,8 +12,7 @@ namespace {
 
 struct Backend {
   std::string_view name;
-  PlanPointer (*make)(const BlockPattern&, const BorderPattern&, const FactorisationSettings&,
-                      const BorderPattern&);
+  PlanPointer (*make)(const BlockPattern&, const BorderPattern&, const FactorisationSettings&);
 };
 
 constexpr std::array kBackends = {Backend{"block", make_block_plan},
@@ -72,18 +71,16 @@ void check_border_pattern(const BorderPattern& border, int nodes) {
 
 std::shared_ptr<const FactorisationPlan> analyse(const BlockPattern& pattern,
                                                  const BorderPattern& border,
-                                                 const FactorisationSettings& settings,
-                                                 const BorderPattern& passing) {
+                                                 const FactorisationSettings& settings) {
   check_block_pattern(pattern);
   check_border_pattern(border, pattern.nodes);
-  check_border_pattern(passing, pattern.nodes);
   if (settings.threads < 1) {
     fail(ErrorKind::out_of_range, "threads",
          "the number of threads is " + std::to_string(settings.threads), "give at least 1");
   }
   for (const Backend& backend : kBackends) {
     if (backend.name == settings.backend) {
-      return backend.make(pattern, border, settings, passing);
+      return backend.make(pattern, border, settings);
     }
   }
   const std::string near = nearest_word(settings.backend, backends());

@@ -56,11 +56,11 @@ class Factorisation {
   /// `count` right sides stand one behind the other. In place allowed.
   virtual void solve(std::span<const double> right, std::span<double> x, int count = 1) = 0;
 
-  /// Rows H_p that come and go, of those that the plan knows (see analyse()): forward substitution
-  /// of the present ones. Valid until the next factorise() or pass().
-  /// @param values 3 * passing.entries() doubles, layout of BorderPattern.
-  /// @param groups (k,) which groups of three rows are there, ascending.
-  virtual void pass(std::span<const double> values, std::span<const std::int32_t> groups) = 0;
+  /// Forward substitution of rows H_p that come and go beside the border. Valid until the next
+  /// factorise() or pass().
+  /// @param rows k groups of three on the same nodes.
+  /// @param values 3 * rows.entries() doubles, layout of BorderPattern.
+  virtual void pass(const BorderPattern& rows, std::span<const double> values) = 0;
   /// (3 k, 3 k) leading block: H_p A^-1 H_p^T, the lower triangle alone.
   virtual const MatrixX& passing_compliance() const = 0;
   /// (3 k, m + 1) leading block: H_p A^-1 H^T, then H_p A^-1 b.
@@ -92,12 +92,10 @@ class FactorisationPlan {
 };
 
 /// Makes a plan. Throws Error(unknown-choice) for an unknown backend.
-/// @param pattern,border,settings see there. @param passing rows beside the border that come and
-///   go, in groups of three on the same nodes.
+/// @param pattern,border,settings see there.
 std::shared_ptr<const FactorisationPlan> analyse(const BlockPattern& pattern,
                                                  const BorderPattern& border,
-                                                 const FactorisationSettings& settings = {},
-                                                 const BorderPattern& passing = {});
+                                                 const FactorisationSettings& settings = {});
 
 /// The names that `FactorisationSettings::backend` takes.
 std::vector<std::string> backends();

@@ -13,28 +13,28 @@ std::int32_t leading_of(std::int32_t groups) { return (3 * groups + kOverrun + 7
 
 }  // namespace
 
-PassingRows::PassingRows(const BlockSymbolic& symbolic, const BorderPattern& rows)
-    : symbolic_(&symbolic),
-      rows_(rows),
-      groups_(at(rows.rows() / 3)),
-      panel_of_(at(symbolic.nodes)),
-      stamp_(symbolic.panels.size(), -1),
-      stores_(symbolic.panels.size()),
-      column_place_(at(symbolic.max_width)) {
-  if (groups_ == 0) return;  // most bodies: no memory is taken
-  for (std::size_t p = 0; p + 1 < symbolic.panels.size(); ++p) {
-    const Panel& panel = symbolic.panels[p];
+PassingRows::PassingRows(const BlockSymbolic& symbolic) : symbolic_(&symbolic) {}
+
+// Most bodies never have such rows: no memory is taken before.
+void PassingRows::prepare() {
+  if (!stores_.empty()) return;
+  panel_of_.resize(at(symbolic_->nodes));
+  stamp_.resize(symbolic_->panels.size());
+  stores_.resize(symbolic_->panels.size());
+  column_place_.resize(at(symbolic_->max_width));
+  for (std::size_t p = 0; p + 1 < symbolic_->panels.size(); ++p) {
+    const Panel& panel = symbolic_->panels[p];
     std::fill_n(panel_of_.begin() + panel.first, panel.width, static_cast<std::int32_t>(p));
   }
 }
 
 // The panels on the ways from a group's nodes to the root, each once.
 template <typename Visit>
-void PassingRows::for_panels(std::int32_t group, Visit&& visit) {
+void PassingRows::for_panels(const BorderPattern& rows, std::int32_t group, Visit&& visit) {
   const auto root = static_cast<std::int32_t>(symbolic_->panels.size()) - 1;
   for (int row = 3 * group; row < 3 * group + 3; ++row) {
-    for (int e = rows_.row_start[at(row)]; e < rows_.row_start[at(row) + 1]; ++e) {
-      std::int32_t p = panel_of_[at(symbolic_->position[at(rows_.node[at(e)])])];
+    for (int e = rows.row_start[at(row)]; e < rows.row_start[at(row) + 1]; ++e) {
+      std::int32_t p = panel_of_[at(symbolic_->position[at(rows.node[at(e)])])];
       for (; p != root && stamp_[at(p)] != group; p = symbolic_->panels[at(p)].parent) {
         stamp_[at(p)] = group;
         visit(p);
@@ -43,11 +43,12 @@ void PassingRows::for_panels(std::int32_t group, Visit&& visit) {
   }
 }
 
-void PassingRows::list(std::span<const std::int32_t> groups) {
+void PassingRows::list(const BorderPattern& rows) {
+  const std::int32_t groups = rows.rows() / 3;
   for (Store& store : stores_) store.count = 0;
   std::ranges::fill(stamp_, -1);
-  for (const std::int32_t group : groups) {
-    for_panels(group, [&](int p) { ++stores_[at(p)].count; });
+  for (std::int32_t group = 0; group < groups; ++group) {
+    for_panels(rows, group, [&](int p) { ++stores_[at(p)].count; });
   }
   std::int64_t doubles = 0;
   std::size_t entries = 0;
@@ -60,12 +61,12 @@ void PassingRows::list(std::span<const std::int32_t> groups) {
     entries += at(store.count);
     store.count = 0;
   }
-  make_room(static_cast<std::int32_t>(groups.size()), at(doubles), entries);
+  make_room(groups, at(doubles), entries);
   std::ranges::fill(stamp_, -1);
-  for (std::size_t k = 0; k < groups.size(); ++k) {
-    for_panels(groups[k], [&](int p) {
+  for (std::int32_t group = 0; group < groups; ++group) {
+    for_panels(rows, group, [&](int p) {
       Store& store = stores_[at(p)];
-      members_[store.first_member + at(store.count++)] = static_cast<std::int32_t>(k);
+      members_[store.first_member + at(store.count++)] = group;
     });
   }
 }
@@ -78,7 +79,7 @@ void PassingRows::make_room(std::int32_t groups, std::size_t doubles, std::size_
   grow(values_, doubles);
   if (members_.size() < entries) members_.resize(entries);
   if (groups <= room_) return;
-  room_ = std::min(static_cast<std::int32_t>(groups_), std::max(groups, room_ + room_ / 2));
+  room_ = std::max(groups, room_ + room_ / 2);
   const std::int64_t columns =
       std::max({symbolic_->max_width, 3 * room_, 3 * symbolic_->border_nodes});
   std::int64_t signs = 0;
@@ -94,18 +95,17 @@ void PassingRows::make_room(std::int32_t groups, std::size_t doubles, std::size_
   coupling_.resize(3 * room_, 3 * symbolic_->border_nodes);
 }
 
-void PassingRows::fill(int p, std::span<const double> values,
-                       std::span<const std::int32_t> groups) {
+void PassingRows::fill(int p, const BorderPattern& rows, std::span<const double> values) {
   const Panel& panel = symbolic_->panels[at(p)];
   const Store& store = stores_[at(p)];
   double* const x = values_.data() + store.offset;
   std::fill_n(x, std::int64_t{store.leading} * 3 * panel.width, 0.0);
   const auto present = members(p);
   for (std::size_t slot = 0; slot < present.size(); ++slot) {
-    const int first = 3 * groups[at(present[slot])];
+    const int first = 3 * present[slot];
     for (int r = 0; r < 3; ++r) {
-      for (int e = rows_.row_start[at(first + r)]; e < rows_.row_start[at(first + r) + 1]; ++e) {
-        const int column = symbolic_->position[at(rows_.node[at(e)])] - panel.first;
+      for (int e = rows.row_start[at(first + r)]; e < rows.row_start[at(first + r) + 1]; ++e) {
+        const int column = symbolic_->position[at(rows.node[at(e)])] - panel.first;
         if (column < 0 || column >= panel.width) continue;
         for (int c = 0; c < 3; ++c) {
           x[(3 * column + c) * store.leading + 3 * static_cast<long>(slot) + r] =
@@ -200,17 +200,18 @@ void PassingRows::add_compliance(const BlockNumeric& numeric, int p) {
   }
 }
 
-void PassingRows::condense(BlockNumeric& numeric, std::span<const double> values,
-                           std::span<const std::int32_t> groups) {
-  list(groups);
-  const auto count = 3 * static_cast<Eigen::Index>(groups.size());
+void PassingRows::condense(BlockNumeric& numeric, const BorderPattern& rows,
+                           std::span<const double> values) {
+  prepare();
+  list(rows);
+  const auto count = static_cast<Eigen::Index>(rows.rows());
   compliance_.topLeftCorner(count, count).setZero();
   coupling_.topRows(count).setZero();
   BlockNumeric::Scratch& scratch = numeric.scratch(0);
   for (int p = 0; p < symbolic_->panel_count(); ++p) {
     const Store& store = stores_[at(p)];
     if (store.count == 0) continue;
-    fill(p, values, groups);
+    fill(p, rows, values);
     update(numeric, p);
     solve_rows_apart(numeric.diagonal_block(p, scratch), values_.data() + store.offset,
                      store.leading, 3 * store.count);

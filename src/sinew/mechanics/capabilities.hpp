@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -14,6 +15,9 @@
 #include "sinew/core/types.hpp"
 #include "sinew/mechanics/affine_field.hpp"
 
+namespace sinew::collision {
+class SurfaceTopology;
+}
 namespace sinew::mesh {
 enum class Outside;
 }
@@ -91,6 +95,17 @@ class HasOrientations {
   virtual ~HasOrientations() = default;
   /// Rotation of an attached orientation since rest.
   virtual Matrix3 rotation(int orientation) const = 0;
+};
+
+/// A body model with a surface of triangles between nodes of its mesh.
+class HasSurface {
+ public:
+  virtual ~HasSurface() = default;
+  /// Attaches the whole surface as one site (SurfaceSite). Building only. @return its number.
+  virtual int attach_surface() = 0;
+  /// Its triangles, outwards; those of quadratic faces are split at the middles of their edges.
+  /// After attach_surface().
+  virtual std::shared_ptr<const collision::SurfaceTopology> surface() const = 0;
 };
 
 /// A body model that is rigid as a whole, with a shape in closed form.

@@ -4,6 +4,7 @@
 /// motion conjugate to the row's effort changes by d(delta_k) = sum direction_e . dx_e.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <initializer_list>
 #include <vector>
@@ -41,6 +42,12 @@ struct RowCurvature {
   Matrix3 curvature = Matrix3::Zero();
 };
 
+/// A point of a surface that is found anew in every step, by the nodes of its body's mesh.
+struct Patch {
+  std::array<NodeId, 3> nodes{-1, -1, -1};  ///< one, two or three; the rest -1
+  Vector3 weights = Vector3::Zero();        ///< (3,) of them, sum 1
+};
+
 /// The numbers of one linearisation, in the layout of RowPattern. Allocated once.
 struct RowValues {
   std::vector<Vector3> direction;  ///< one per entry; see site.hpp
@@ -56,6 +63,9 @@ struct RowValues {
   std::vector<Vector3> lever;          ///< m, the same now, in the world
   std::vector<Vector3> watched_start;  ///< m, where the point was when the step began
   std::vector<Vector3> start;  ///< (rows,) m, at the first of a point's rows: the point then
+  /// (entries,) of contacts between surfaces, where an entry's site is a SurfaceSite; empty where
+  /// there are none.
+  std::vector<Patch> patch;
 
   void resize(const RowPattern& pattern) {
     direction.assign(static_cast<std::size_t>(pattern.entries()), Vector3::Zero());

@@ -5,6 +5,7 @@
 /// |---|---|---|---|
 /// | MaterialPoint | displacement, m | of the displacement | force, N |
 /// | Orientation | turn about the world's axes, rad | the axis of the turn | moment, N m |
+/// | SurfaceSite | displacement, m | of the displacement | force, N |
 /// | Coordinate | change of q, rad or m | (factor, 0, 0) | generalised force, N m or N |
 #pragma once
 
@@ -22,6 +23,9 @@ struct Site {
 
 /// A point fixed in a body's material.
 struct MaterialPoint : Site {};
+
+/// Any point of a body's surface: which one, RowValues::patch says in every step anew.
+struct SurfaceSite : Site {};
 
 /// The rotation of a part of a body that stays rigid: a section of an arm.
 struct Orientation : Site {};

@@ -9,4 +9,9 @@ Vector3 StepSystem::proposed_motion(int) const {
               "this body takes all its rows, and was asked of one left out", "report this");
 }
 
+void StepSystem::add_proposed_motion(Points&) const {
+  throw Error(ErrorKind::internal, {}, "this body has no surface, and was asked to move it",
+              "report this");
+}
+
 }  // namespace sinew::mechanics

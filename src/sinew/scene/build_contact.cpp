@@ -31,17 +31,19 @@ std::vector<NodeId> nodes_of(const ContactDescription& contact, const mesh::Mesh
   return nodes;
 }
 
-// The surface is that of a rigid body, the points are the other's.
-void order(const ContactDescription& contact, BuiltBody& touching, BuiltBody& other) {
-  const auto is_rigid = [](const BuiltBody& body) {
-    return mechanics::as<const mechanics::HasShape>(*body.model) != nullptr;
-  };
-  if (touching.number == other.number || (!is_rigid(touching) && !is_rigid(other))) {
-    throw Error(ErrorKind::not_in_this_version, contact.between_place,
-                "contact of deformable bodies with one another or themselves",
-                "name a rigid body and another one");
+bool is_rigid(const BuiltBody& body) {
+  return mechanics::as<const mechanics::HasShape>(*body.model) != nullptr;
+}
+
+// The surfaces of two deformable bodies, or of one and itself.
+void touch_surfaces(const ContactDescription& contact, const BuiltBody& other,
+                    sim::ContactSettings& settings) {
+  if (contact.nodes || contact.points.points.rows() > 0) {
+    throw Error(ErrorKind::conflicting_keys, contact.place,
+                "deformable bodies touch with the whole of their surfaces",
+                "leave `nodes` and `points` out");
   }
-  if (!is_rigid(other)) std::swap(touching, other);
+  settings.touched = other.number;
 }
 
 }  // namespace
@@ -51,20 +53,27 @@ void add_contact(sim::ModelBuilder& builder, const ContactDescription& contact,
   BuiltBody touching = body_of(contact.body), other;
   if (!contact.other.empty()) {
     other = body_of(contact.other);
-    order(contact, touching, other);
+    if (!is_rigid(other) && is_rigid(touching)) std::swap(touching, other);
   }
+  const bool surfaces = other.model != nullptr && !is_rigid(other);
   const auto [body, model] = touching;
   sim::ContactSettings settings;
   settings.name = contact.name;
   settings.place = contact.place;
   settings.body = body;
   std::visit([&](const auto& surface) { settings.surface = surface; }, contact.surface);
-  if (other.model != nullptr) settings.carrier = other.number;
+  if (surfaces) {
+    touch_surfaces(contact, other, settings);
+  } else if (other.model != nullptr) {
+    settings.carrier = other.number;
+  }
   settings.points = contact.points.points;
   settings.outside = contact.outside;
   settings.friction = contact.friction;
   const bool whole = mechanics::as<const mechanics::HasShape>(*model) != nullptr && !contact.nodes;
-  if (settings.points.rows() == 0 && !whole) settings.nodes = nodes_of(contact, model->mesh());
+  if (settings.points.rows() == 0 && !whole && !surfaces) {
+    settings.nodes = nodes_of(contact, model->mesh());
+  }
   if (contact.motion) {
     const BaseDescription& motion = *contact.motion;
     settings.motion = {-1, motion.translation, motion.angle, motion.axis, motion.centre};

@@ -40,8 +40,7 @@ void refuse_pairs(const std::vector<Pair>& pairs, const Location& place) {
   texts.reserve(pairs.size());
   for (const auto& [one, other] : pairs) texts.push_back(fmt::format("[{}, {}]", one, other));
   throw Error(ErrorKind::not_in_this_version, place,
-              "contact of deformable bodies with one another or themselves, and of arms without "
-              "points,",
+              "contact of arms with one another, with themselves and without points",
               fmt::format("write except: [{}], and give arms entries with `points`",
                           fmt::join(texts, ", ")));
 }
@@ -59,7 +58,7 @@ std::vector<ContactDescription> pairs_of(const ContactDescription& contact,
       if ((one == other && one->rigid) || (is_fixed(*one) && is_fixed(*other))) continue;
       const Pair pair = ordered(one->name, other->name);
       if (excepted.contains(pair) || !settled.insert(pair).second) continue;
-      if (one->arm || other->arm || (!one->rigid && !other->rigid)) {
+      if (one->arm || other->arm) {
         refused.emplace_back(one->name, other->name);
         continue;
       }

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "sinew/collision/touching_points.hpp"
-#include "sinew/constraint/contact.hpp"
+#include "sinew/constraint/shape_contact.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/fem/fem_model.hpp"
 #include "sinew/fem/has_elements.hpp"
@@ -25,7 +25,7 @@ namespace {
 // Points deeper inside a surface than this part of the robot's size are an error of the scene.
 constexpr double kDeepest = 1e-6;
 
-void check_gaps(const constraint::Contact& contact, const mechanics::BodyModel& body,
+void check_gaps(const constraint::ShapeContact& contact, const mechanics::BodyModel& body,
                 const Eigen::Isometry3d& pose, double size) {
   double deepest = 0.0;
   Vector3 where = Vector3::Zero();
@@ -93,8 +93,8 @@ constraint::RigidSide attach_side(ModelData& data, int body, const ContactSettin
 }
 
 // A rigid body touches with all of its shape where no points of it are named.
-std::unique_ptr<constraint::Contact> make_contact(ModelData& data, mechanics::BodyModel& on,
-                                                  const ContactSettings& settings) {
+std::unique_ptr<constraint::ShapeContact> make_contact(ModelData& data, mechanics::BodyModel& on,
+                                                       const ContactSettings& settings) {
   std::optional<constraint::RigidSide> carrier;
   if (settings.carrier) {
     if (*settings.carrier == settings.body) {
@@ -107,12 +107,12 @@ std::unique_ptr<constraint::Contact> make_contact(ModelData& data, mechanics::Bo
   const bool whole = settings.nodes.empty() && settings.points.rows() == 0 &&
                      mechanics::as<const mechanics::HasShape>(on) != nullptr;
   if (whole) {
-    return std::make_unique<constraint::Contact>(settings.name,
-                                                 attach_side(data, settings.body, settings),
-                                                 surface, settings.friction, carrier);
+    return std::make_unique<constraint::ShapeContact>(settings.name,
+                                                      attach_side(data, settings.body, settings),
+                                                      surface, settings.friction, carrier);
   }
-  return std::make_unique<constraint::Contact>(settings.name, attach_points(data, on, settings),
-                                               surface, settings.friction, carrier);
+  return std::make_unique<constraint::ShapeContact>(
+      settings.name, attach_points(data, on, settings), surface, settings.friction, carrier);
 }
 
 }  // namespace
@@ -128,11 +128,15 @@ int add_contact(ModelData& data, const ContactSettings& settings) {
   }
   check_new_name(data.contacts, &ContactModel::name, "contacts", settings.name, settings.place);
   try {
-    auto contact = make_contact(data, on, settings);
     ContactModel entry{settings.name, static_cast<int>(data.constraints.size()), settings.motion};
     if (entry.motion) entry.motion->axis = checked_axis(entry.motion->axis, settings.place);
-    check_gaps(*contact, on, entry.pose(0.0), data.size);
-    data.constraints.push_back(std::move(contact));  // declared by ModelBuilder::build()
+    if (settings.touched) {
+      data.constraints.push_back(make_surface_contact(data, settings));
+    } else {
+      auto contact = make_contact(data, on, settings);
+      check_gaps(*contact, on, entry.pose(0.0), data.size);
+      data.constraints.push_back(std::move(contact));  // declared by ModelBuilder::build()
+    }
     data.contacts.push_back(std::move(entry));
     return static_cast<int>(data.contacts.size()) - 1;
   } catch (const Error& error) {

@@ -10,7 +10,8 @@ struct Location;
 }
 namespace sinew::constraint {
 class Constraint;
-}
+class Contact;
+}  // namespace sinew::constraint
 namespace sinew::fem {
 struct FemBodySettings;
 }
@@ -57,6 +58,10 @@ int add_chamber(ModelData& data, const ChamberSettings& settings);
 void add_base_motion(ModelData& data, const BaseMotion& motion, const Location& place);
 int add_load(ModelData& data, const LoadSettings& settings);
 int add_contact(ModelData& data, const ContactSettings& settings);
+/// Of the surfaces of two deformable bodies. Throws Error: not-in-this-version (a body without
+/// one), out-of-range (bodies overlap).
+std::unique_ptr<constraint::Contact> make_surface_contact(ModelData& data,
+                                                          const ContactSettings& settings);
 int add_joint(ModelData& data, const JointSettings& settings);
 int add_motor(ModelData& data, const MotorSettings& settings);
 int add_weld(ModelData& data, const WeldSettings& settings);

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sinew/constraint/contact.hpp"
 #include "sinew/constraint/placement.hpp"
+#include "sinew/constraint/shape_contact.hpp"
+#include "sinew/constraint/surface_contact.hpp"
 #include "sinew/sim/model.hpp"
+#include "sinew/sim/touching_surfaces.hpp"
 
 namespace sinew::sim {
 
@@ -19,40 +21,55 @@ constexpr int kMaxTurns = 20;
 }  // namespace
 
 ContactPlanes::ContactPlanes(const Model& model, const constraint::Placement& placement,
-                             mechanics::RowValues& rows)
+                             mechanics::RowValues& rows, ThreadPool& pool)
     : model_(model),
       placement_(placement),
       rows_(rows),
       start_(VectorX::Zero(model.rows().rows())),
       curvature_(VectorX::Zero(model.rows().rows())) {
   for (std::size_t i = 0; i < model.contacts().size(); ++i) {
-    contacts_.push_back(&model.contact(static_cast<int>(i)));
+    const constraint::Contact& contact = model.contact(static_cast<int>(i));
+    contacts_.push_back(&contact);
+    shapes_.push_back(dynamic_cast<const constraint::ShapeContact*>(&contact));
+    const auto* touching = dynamic_cast<const constraint::SurfaceContact*>(&contact);
+    if (touching == nullptr) continue;
+    surfaces_.push_back(std::make_unique<TouchingSurfaces>(*touching, placement, rows, pool));
   }
   poses_.resize(contacts_.size(), Eigen::Isometry3d::Identity());
 }
+
+ContactPlanes::~ContactPlanes() = default;
 
 void ContactPlanes::place(double from, double to) {
   turns_left_ = kMaxTurns;
   curved_ = false;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    const ContactModel& model = model_.contacts()[i];
-    curved_ |= contacts_[i]->curved();
+    if (shapes_[i] == nullptr) continue;
+    const constraint::ShapeContact& contact = *shapes_[i];
+    curved_ |= contact.curved();
     poses_[i] = pose_now(i, to);
-    const Eigen::Isometry3d start = contacts_[i]->carrier() ? poses_[i] : model.pose(from);
-    contacts_[i]->begin_step(placement_, start, poses_[i], to - from, rows_);
+    const Eigen::Isometry3d start = contact.carrier() ? poses_[i] : model_.contacts()[i].pose(from);
+    contact.begin_step(placement_, start, poses_[i], to - from, rows_);
   }
+}
+
+void ContactPlanes::find_points(double reach, std::span<double> effort) {
+  for (const auto& touching : surfaces_) touching->begin_step(reach, effort);
+}
+
+void ContactPlanes::forget_points() {
+  for (const auto& touching : surfaces_) touching->restart();
 }
 
 void ContactPlanes::begin() { start_ = rows_.delta; }
 
 Eigen::Isometry3d ContactPlanes::pose_now(std::size_t contact, double time) const {
-  if (contacts_[contact]->carrier()) {
-    return contacts_[contact]->carrier()->pose(placement_);
-  }
-  return model_.contacts()[contact].pose(time);
+  if (shapes_[contact] == nullptr) return Eigen::Isometry3d::Identity();
+  const auto& carrier = shapes_[contact]->carrier();
+  return carrier ? carrier->pose(placement_) : model_.contacts()[contact].pose(time);
 }
 
-bool ContactPlanes::turn_to(const constraint::Contact& contact, std::size_t point,
+bool ContactPlanes::turn_to(const constraint::ShapeContact& contact, std::size_t point,
                             const Vector3& end, const Eigen::Isometry3d& pose) {
   const Vector3 reference = rows_.reference.segment<3>(contact.row(point));
   const auto plane = contact.approach(contact.position(point, reference, rows_), end, pose);
@@ -61,7 +78,7 @@ bool ContactPlanes::turn_to(const constraint::Contact& contact, std::size_t poin
 }
 
 // Where the way meets the surface, planes that find it equally deep in the end are one.
-bool ContactPlanes::follow_way(const constraint::Contact& contact, std::size_t point,
+bool ContactPlanes::follow_way(const constraint::ShapeContact& contact, std::size_t point,
                                const Vector3& free, const Eigen::Isometry3d& pose) {
   const Vector3 reference = rows_.reference.segment<3>(contact.row(point));
   const Vector3 from = contact.position(point, reference, rows_);
@@ -73,7 +90,7 @@ bool ContactPlanes::follow_way(const constraint::Contact& contact, std::size_t p
   return true;
 }
 
-void ContactPlanes::turn(const constraint::Contact& contact, std::size_t point,
+void ContactPlanes::turn(const constraint::ShapeContact& contact, std::size_t point,
                          const collision::ShapeApproach& plane) {
   const int row = contact.row(point);
   const auto position = [&](const VectorX& rows) {
@@ -88,8 +105,8 @@ void ContactPlanes::turn(const constraint::Contact& contact, std::size_t point,
 
 void ContactPlanes::follow_points() {
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    const constraint::Contact& contact = *contacts_[i];
-    if (!contact.curved()) continue;
+    if (shapes_[i] == nullptr || !shapes_[i]->curved()) continue;
+    const constraint::ShapeContact& contact = *shapes_[i];
     for (std::size_t k = 0; k < contact.size(); ++k) {
       const Vector3 at = contact.position_beside(placement_, k, rows_);
       curvature_.segment<3>(contact.row(k)) = contact.place_nearest(k, at, pose(i), rows_);
@@ -97,14 +114,16 @@ void ContactPlanes::follow_points() {
   }
 }
 
-double ContactPlanes::drift(std::span<const double> effort, double time) const {
+double ContactPlanes::drift(std::span<const double> effort, double time) {
   double worst = 0.0;
+  for (const auto& touching : surfaces_) worst = std::max(worst, touching->drift(effort));
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    const constraint::Contact& contact = *contacts_[i];
+    if (shapes_[i] == nullptr) continue;
+    const constraint::ShapeContact& contact = *shapes_[i];
     const Eigen::Isometry3d pose = pose_now(i, time);
     for (std::size_t k = 0; k < contact.size(); ++k) {
       if (effort[static_cast<std::size_t>(contact.row(k))] == 0.0) continue;
-      const double gap = contact.distance_now(placement_, pose, k, rows_).gap;
+      const double gap = contact.gap_now(placement_, pose, k, rows_);
       worst = std::max(worst, std::abs(gap - rows_.delta[contact.row(k)]));
     }
   }
@@ -113,14 +132,15 @@ double ContactPlanes::drift(std::span<const double> effort, double time) const {
 
 std::size_t ContactPlanes::frames_size() const {
   std::size_t size = 0;
-  for (const constraint::Contact* contact : contacts_) size += contact->memory_size();
+  for (const auto* contact : shapes_) size += contact == nullptr ? 0 : contact->memory_size();
   return size;
 }
 
 void ContactPlanes::save_frames(std::vector<double>& frames) const {
   frames.resize(frames_size());
   double* to = frames.data();
-  for (const constraint::Contact* contact : contacts_) {
+  for (const constraint::ShapeContact* contact : shapes_) {
+    if (contact == nullptr) continue;
     contact->save(rows_, to);
     to += contact->memory_size();
   }
@@ -128,10 +148,20 @@ void ContactPlanes::save_frames(std::vector<double>& frames) const {
 
 void ContactPlanes::load_frames(std::span<const double> frames) {
   const double* from = frames.data();
-  for (const constraint::Contact* contact : contacts_) {
+  for (const constraint::ShapeContact* contact : shapes_) {
+    if (contact == nullptr) continue;
     contact->load(from, rows_);
     from += contact->memory_size();
   }
+}
+
+void ContactPlanes::save_points(std::vector<double>& points) const {
+  points.clear();
+  for (const auto& touching : surfaces_) touching->save(points);
+}
+
+void ContactPlanes::load_points(std::span<const double> points) {
+  for (const auto& touching : surfaces_) points = touching->load(points);
 }
 
 }  // namespace sinew::sim

@@ -3,43 +3,62 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include <Eigen/Geometry>
 
 #include "sinew/core/types.hpp"
+#include "sinew/mechanics/rows.hpp"
 
+namespace sinew {
+class ThreadPool;
+}
 namespace sinew::collision {
 struct ShapeApproach;
 }
 namespace sinew::constraint {
 class Contact;
 class Placement;
+class ShapeContact;
 }  // namespace sinew::constraint
-namespace sinew::mechanics {
-struct RowValues;
-}
 
 namespace sinew::sim {
 
 class Model;
+class TouchingSurfaces;
 
 /// One plane for every point that may touch. It begins as that which the way at the point's
 /// velocity leads to, and may follow the way that a solution finds (constraint::Contact).
 class ContactPlanes {
  public:
   /// All must outlive it. @param rows gets the frames of contacts.
+  /// @param pool see TouchingSurfaces.
   ContactPlanes(const Model& model, const constraint::Placement& placement,
-                mechanics::RowValues& rows);
+                mechanics::RowValues& rows, ThreadPool& pool);
+  ~ContactPlanes();
+  ContactPlanes(const ContactPlanes&) = delete;
+  ContactPlanes& operator=(const ContactPlanes&) = delete;
 
   /// In the model's order.
   std::span<const constraint::Contact* const> contacts() const { return contacts_; }
+  /// The same as contacts with shapes; null where surfaces touch each other.
+  const constraint::ShapeContact* shape(std::size_t contact) const { return shapes_[contact]; }
   /// Before bodies follow their bases: what they are carried by counts as motion along the surface.
   /// @param from,to s, when the step begins and ends: where surfaces stand then.
   void place(double from, double to);
+  /// The points of contacts between surfaces. @param reach m: nearer ones have points.
+  /// @param effort (rows,) N of the last step, in and out: points take theirs along.
+  void find_points(double reach, std::span<double> effort);
+  /// Those of contacts between surfaces are forgotten.
+  void forget_points();
+  /// Of contacts between surfaces.
+  std::span<const std::unique_ptr<TouchingSurfaces>> surfaces() const { return surfaces_; }
   /// After a measurement of delta there: where contacts begin.
   void begin();
+  /// The same of a point that is found later. @param row its normal's.
+  void begin_point(int row) { start_.segment<3>(row) = rows_.reference.segment<3>(row); }
   /// Whether any surface is curved.
   bool curved() const { return curved_; }
   /// Of the surface that a step's planes touch: where it stands at the end of the step, or where
@@ -53,11 +72,11 @@ class ContactPlanes {
   void end_round() { --turns_left_; }
   /// Turns a point's plane to that of the way to where the point will be. Whether that way meets
   /// the surface. @param end (3,) m. @param pose of the surface.
-  bool turn_to(const constraint::Contact& contact, std::size_t point, const Vector3& end,
+  bool turn_to(const constraint::ShapeContact& contact, std::size_t point, const Vector3& end,
                const Eigen::Isometry3d& pose);
   /// Turns a pushed point's plane to that of the way that it would go without its own force, where
   /// that is another one. Whether it is. @param free (3,) m, the point's rows without its force.
-  bool follow_way(const constraint::Contact& contact, std::size_t point, const Vector3& free,
+  bool follow_way(const constraint::ShapeContact& contact, std::size_t point, const Vector3& free,
                   const Eigen::Isometry3d& pose);
 
   /// Curved surfaces become their tangent planes at the points' nearest, where points are now.
@@ -68,7 +87,7 @@ class ContactPlanes {
 
   /// m: the farthest that any touching point's gap is from that of its plane, at the pose that
   /// surfaces have at a time. @param effort (rows,) N; who touches. @param time s.
-  double drift(std::span<const double> effort, double time) const;
+  double drift(std::span<const double> effort, double time);
   /// (rows,) m: delta of contacts when the step began.
   const VectorX& start() const { return start_; }
 
@@ -77,15 +96,21 @@ class ContactPlanes {
   std::size_t frames_size() const;
   void save_frames(std::vector<double>& frames) const;
   void load_frames(std::span<const double> frames);
+  /// The points of contacts between surfaces, whose number varies.
+  void save_points(std::vector<double>& points) const;
+  /// Throws Error(wrong-length).
+  void load_points(std::span<const double> points);
 
  private:
-  void turn(const constraint::Contact& contact, std::size_t point,
+  void turn(const constraint::ShapeContact& contact, std::size_t point,
             const collision::ShapeApproach& plane);
 
   const Model& model_;
   const constraint::Placement& placement_;
   mechanics::RowValues& rows_;
   std::vector<const constraint::Contact*> contacts_;
+  std::vector<const constraint::ShapeContact*> shapes_;
+  std::vector<std::unique_ptr<TouchingSurfaces>> surfaces_;
   VectorX start_;
   VectorX curvature_;
   bool curved_ = false;

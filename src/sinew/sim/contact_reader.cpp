@@ -10,9 +10,7 @@ namespace sinew::sim {
 std::vector<std::string> touching_bodies(const Model& model, int contact) {
   const constraint::Contact& touching = model.contact(contact);
   std::vector<std::string> names{model.body(touching.body()).name()};
-  if (const auto& carrier = touching.carrier()) {
-    names.push_back(model.body(carrier->centre.body).name());
-  }
+  if (touching.other_body() >= 0) names.push_back(model.body(touching.other_body()).name());
   return names;
 }
 
@@ -31,7 +29,7 @@ ContactPoint ContactReader::point(int contact, std::size_t point,
   const Matrix3 frame = touching.frame(point, run_.world.rows());
   ContactPoint result;
   result.position = touching.position_now(run_.world.placement(), point, run_.world.rows());
-  result.gap = touching.distance_now(run_.world.placement(), pose, point, run_.world.rows()).gap;
+  result.gap = touching.gap_now(run_.world.placement(), pose, point, run_.world.rows());
   result.normal = frame.col(0);
   result.normal_force = run_.effort[row];
   result.friction_force = run_.effort[row + 1] * frame.col(1) + run_.effort[row + 2] * frame.col(2);

@@ -1,13 +1,16 @@
 #include "sinew/sim/contact_rows.hpp"
 
 #include <algorithm>
+#include <cmath>
 
-#include "sinew/constraint/contact.hpp"
 #include "sinew/constraint/placement.hpp"
+#include "sinew/constraint/shape_contact.hpp"
+#include "sinew/constraint/surface_contact.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/step_system.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/row_numbering.hpp"
+#include "sinew/sim/touching_surfaces.hpp"
 #include "sinew/step/step_problem.hpp"
 
 namespace sinew::sim {
@@ -16,6 +19,10 @@ namespace {
 
 // Points whose gap is under this part of the robot's size take part in a step at once.
 constexpr double kNear = 0.01;
+// Of this many times what the fastest node moves in a step, surfaces of bodies have points.
+constexpr double kAhead = 3.0;
+// Rounds of a step in which overlapping surfaces get points.
+constexpr int kMaxRounds = 20;
 
 // The rows of a point without its own force.
 Vector3 free_motion(const step::StepProblem& problem, const linalg::AlignedNumbers& effort,
@@ -30,12 +37,12 @@ Vector3 free_motion(const step::StepProblem& problem, const linalg::AlignedNumbe
 
 ContactRows::ContactRows(const Model& model, const constraint::Placement& placement,
                          std::span<mechanics::StepSystem* const> systems,
-                         mechanics::RowValues& rows)
+                         mechanics::RowValues& rows, ThreadPool& pool)
     : model_(model),
       placement_(placement),
       systems_(systems),
       rows_(rows),
-      planes_(model, placement, rows),
+      planes_(model, placement, rows, pool),
       touched_(static_cast<std::size_t>(model.rows().rows()), 0) {}
 
 // Calls visit(contact, point) for every point of every contact.
@@ -46,9 +53,22 @@ void ContactRows::for_each_point(Visit&& visit) const {
   }
 }
 
+double ContactRows::reach(double time_step, double reach) const {
+  double fastest = 0.0;
+  for (const auto& touching : planes_.surfaces()) {
+    for (const int body : {touching->contact().body(), touching->contact().other_body()}) {
+      const Points& rates = placement_.node_velocities(body);
+      fastest = std::max(fastest, rates.rowwise().squaredNorm().maxCoeff());
+    }
+  }
+  const double ahead = std::isfinite(time_step) ? kAhead * time_step * std::sqrt(fastest) : 0.0;
+  return std::max({kNear * model_.size(), reach, ahead});
+}
+
 // A function of the state alone, so that a run goes on from a saved one bit for bit.
 void ContactRows::choose_present(std::span<const double> effort, double time_step, double reach) {
   left_out_ = false;
+  rounds_left_ = kMaxRounds;
   const double near = std::max(kNear * model_.size(), reach);
   for_each_point([&](const constraint::Contact& contact, std::size_t k) {
     const mechanics::BodyModel& body = model_.body(contact.body());
@@ -67,7 +87,9 @@ void ContactRows::choose_present(std::span<const double> effort, double time_ste
 
 void ContactRows::take_all() {
   left_out_ = false;
-  std::ranges::fill(rows_.present, static_cast<char>(true));
+  for_each_point([&](const constraint::Contact& contact, std::size_t k) {
+    set_present(contact.row(k), !contact.idle(k, rows_));
+  });
 }
 
 void ContactRows::set_present(int row, bool present) {
@@ -86,25 +108,35 @@ bool ContactRows::correct(const step::StepProblem& problem, const RowNumbering& 
                           const linalg::AlignedNumbers& effort) {
   bool found = false;
   for (std::size_t i = 0; i < planes_.contacts().size(); ++i) {
-    const constraint::Contact& contact = *planes_.contacts()[i];
-    const Eigen::Isometry3d pose = planes_.pose(i);
-    const bool may_turn = contact.curved() && planes_.may_turn();
-    for (std::size_t k = 0; k < contact.size(); ++k) {
-      const int row = contact.row(k), place = numbering.place_of(row);
-      if (rows_.present[static_cast<std::size_t>(row)] == 0) {
-        found = take_in(contact, k, pose) || found;
-      } else if (may_turn && effort[static_cast<std::size_t>(place)] > 0.0) {
-        found = planes_.follow_way(contact, k, free_motion(problem, effort, place), pose) || found;
-      }
-    }
+    if (planes_.shape(i) == nullptr) continue;
+    found = correct_shape(i, problem, numbering, effort) || found;
   }
   if (found) planes_.end_round();
+  for (const auto& touching : planes_.surfaces()) found = correct_surfaces(*touching) || found;
+  return found;
+}
+
+bool ContactRows::correct_shape(std::size_t number, const step::StepProblem& problem,
+                                const RowNumbering& numbering,
+                                const linalg::AlignedNumbers& effort) {
+  const constraint::ShapeContact& contact = *planes_.shape(number);
+  const Eigen::Isometry3d pose = planes_.pose(number);
+  const bool may_turn = contact.curved() && planes_.may_turn();
+  bool found = false;
+  for (std::size_t k = 0; k < contact.size(); ++k) {
+    const int row = contact.row(k), place = numbering.place_of(row);
+    if (rows_.present[static_cast<std::size_t>(row)] == 0) {
+      found = take_in(contact, k, pose) || found;
+    } else if (may_turn && effort[static_cast<std::size_t>(place)] > 0.0) {
+      found = planes_.follow_way(contact, k, free_motion(problem, effort, place), pose) || found;
+    }
+  }
   return found;
 }
 
 // Whether a point that was left out moves into its surface. A plane that it merely crosses beside
 // the surface is replaced by one that it does not.
-bool ContactRows::take_in(const constraint::Contact& contact, std::size_t point,
+bool ContactRows::take_in(const constraint::ShapeContact& contact, std::size_t point,
                           const Eigen::Isometry3d& pose) {
   if (contact.idle(point, rows_)) return false;
   const auto motion = [&](const mechanics::Site& site) {
@@ -118,6 +150,30 @@ bool ContactRows::take_in(const constraint::Contact& contact, std::size_t point,
   }
   set_present(contact.row(point), true);
   return true;
+}
+
+// Points that were left out, and then those that nobody thought of.
+bool ContactRows::correct_surfaces(TouchingSurfaces& touching) {
+  if (rounds_left_ == 0) return false;
+  bool found = false;
+  touching.propose(systems_);
+  for (std::size_t k = 0; k < touching.count(); ++k) {
+    const int row = touching.contact().row(k);
+    if (rows_.present[static_cast<std::size_t>(row)] != 0) continue;
+    if (!(touching.proposed_gap(k) < 0.0)) continue;
+    set_present(row, true);
+    found = true;
+  }
+  const std::size_t known = touching.count();
+  if (!found && touching.add_overlaps()) {
+    for (std::size_t k = known; k < touching.count(); ++k) {
+      set_present(touching.contact().row(k), true);
+      planes_.begin_point(touching.contact().row(k));
+    }
+    found = true;
+  }
+  if (found) --rounds_left_;
+  return found;
 }
 
 bool ContactRows::gap_closed(std::span<const double> effort) const {
@@ -134,9 +190,8 @@ double ContactRows::deepest_free_point(std::span<const double> effort) const {
   for_each_point([&](const constraint::Contact& contact, std::size_t k) {
     const int row = contact.row(k);
     if (effort[static_cast<std::size_t>(row)] > 0.0) return;
-    const double gap =
-        contact.row_values(k, contact.position_beside(placement_, k, rows_), rows_)[0];
-    deepest = std::max(deepest, -gap);
+    if (contact.idle(k, rows_)) return;
+    deepest = std::max(deepest, -contact.linear_gap(placement_, k, rows_));
   });
   return deepest;
 }

@@ -28,7 +28,11 @@ class ContactRows {
  public:
   /// All must outlive it. @param systems of the bodies. @param rows whose contacts it looks after.
   ContactRows(const Model& model, const constraint::Placement& placement,
-              std::span<mechanics::StepSystem* const> systems, mechanics::RowValues& rows);
+              std::span<mechanics::StepSystem* const> systems, mechanics::RowValues& rows,
+              ThreadPool& pool);
+
+  /// m: how near surfaces of bodies have points in a step. @param time_step s. @param reach m.
+  double reach(double time_step, double reach) const;
 
   bool empty() const { return planes_.contacts().empty(); }
   const ContactPlanes& planes() const { return planes_; }
@@ -38,7 +42,7 @@ class ContactRows {
   /// @param effort (rows,) N of the last step: points with a force are near, whatever their gap.
   /// @param time_step s. @param reach m: points that are nearer than this are near, too.
   void choose_present(std::span<const double> effort, double time_step, double reach);
-  /// For a look at the present state: every point takes part.
+  /// For a look at the present state: every point that a step has a use for takes part.
   void take_all();
   /// Appends the blocks of the points that take part.
   void list(const RowNumbering& numbering, std::vector<step::ContactBlock>& blocks) const;
@@ -53,7 +57,7 @@ class ContactRows {
   bool correct(const step::StepProblem& problem, const RowNumbering& numbering,
                const linalg::AlignedNumbers& effort);
   /// Whether correct() could find anything.
-  bool are_guessed() const { return left_out_ || planes_.curved(); }
+  bool are_guessed() const { return left_out_ || planes_.curved() || !planes_.surfaces().empty(); }
   bool leave_points_out() const { return left_out_; }
 
   /// Whether a point has a force that had none when the step began. @param effort (rows,) N.
@@ -68,8 +72,11 @@ class ContactRows {
   template <class Visit>
   void for_each_point(Visit&& visit) const;
   void set_present(int row, bool present);
-  bool take_in(const constraint::Contact& contact, std::size_t point,
+  bool correct_shape(std::size_t contact, const step::StepProblem& problem,
+                     const RowNumbering& numbering, const linalg::AlignedNumbers& effort);
+  bool take_in(const constraint::ShapeContact& contact, std::size_t point,
                const Eigen::Isometry3d& pose);
+  bool correct_surfaces(TouchingSurfaces& touching);
 
   const Model& model_;
   const constraint::Placement& placement_;
@@ -77,6 +84,7 @@ class ContactRows {
   mechanics::RowValues& rows_;
   ContactPlanes planes_;
   bool left_out_ = false;      // some point
+  int rounds_left_ = 0;        // of a step, in which overlapping surfaces get points
   std::vector<char> touched_;  // (rows,) normal rows with a force when the step began
 };
 

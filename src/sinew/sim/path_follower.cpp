@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "sinew/constraint/contact.hpp"
+#include "sinew/constraint/shape_contact.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/sim/path_loads.hpp"
 #include "sinew/sim/path_step.hpp"
@@ -23,8 +23,10 @@ constexpr int kMaxPathHalvings = 14;
 }  // namespace
 
 void PathFollower::check() const {
-  for (const auto& contact : run_.world.contacts().planes().contacts()) {
-    if (!contact->curved() || contact->friction() == 0.0) continue;
+  const ContactPlanes& planes = run_.world.contacts().planes();
+  for (std::size_t i = 0; i < planes.contacts().size(); ++i) {
+    const constraint::ShapeContact* contact = planes.shape(i);
+    if (contact == nullptr || !contact->curved() || contact->friction() == 0.0) continue;
     throw Error(ErrorKind::not_in_this_version,
                 {.item = fmt::format("contact '{}'", contact->name())},
                 "paths along curved surfaces with friction are not followed yet",
@@ -32,9 +34,9 @@ void PathFollower::check() const {
   }
   for (std::size_t i = 0; i < run_.model->contacts().size(); ++i) {
     const constraint::Contact& contact = run_.model->contact(static_cast<int>(i));
-    if (!contact.own() && !contact.carrier()) continue;
+    if (contact.other_body() < 0 && !contact.is_found_anew()) continue;
     throw Error(ErrorKind::not_in_this_version, {.item = "follow_path"},
-                "paths on which the shapes of rigid bodies touch are not followed yet",
+                "paths on which bodies touch each other are not followed yet",
                 "step through the load in time");
   }
   if (run_.world.joints().block_count() > 0) {

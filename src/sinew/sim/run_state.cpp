@@ -51,6 +51,7 @@ void Run::keep(State& state) const {
   actuation.save(state);
   state.loads = surroundings.applied();
   world.contacts().planes().save_frames(state.frames);
+  world.contacts().planes().save_points(state.points);
   state.joints = world.joints().values();
   state.controller.resize(controller != nullptr ? controller->memory_size() : 0);
   if (controller != nullptr) controller->save_memory(state.controller);
@@ -71,6 +72,7 @@ void Run::restore(const State& state) {
   actuation.load(state);
   for (std::size_t k = 0; k < state.loads.size(); ++k) surroundings.apply(k, state.loads[k]);
   world.contacts().planes().load_frames(state.frames);
+  world.contacts().planes().load_points(state.points);
   world.joints().values() = state.joints;
   ledger.set(state.ledger);
   volume_ratio = state.volume_ratio;

@@ -36,6 +36,7 @@ struct State {
   std::vector<double> drives;      ///< of all drives, see Drive::state_size()
   std::vector<double> loads;       ///< (loads,) factors that acted last
   std::vector<double> frames;      ///< (contact points, 3, 3) normals and tangents of the last step
+  std::vector<double> points;      ///< of contacts between surfaces, see TouchingSurfaces
   std::vector<double> joints;      ///< (motions of joints,) rad or m, see JointRows
   std::vector<double> controller;  ///< memory of the attached controller; empty without one
   EnergyLedger ledger;
@@ -58,6 +59,7 @@ struct State {
     visitor("drives", state.drives);
     visitor("loads", state.loads);
     visitor("frames", state.frames);
+    visitor("points", state.points);
     visitor("joints", state.joints);
     visitor("controller", state.controller);
     visitor("actuators' work", state.ledger.actuators);

@@ -25,7 +25,7 @@ static_assert(std::endian::native == std::endian::little,
 
 constexpr std::string_view kMagic = "SINEWST\n";
 constexpr std::size_t kWord = 8;
-constexpr std::uint32_t kFirstWithJoints = 7;
+constexpr std::uint32_t kFirstWithJoints = 7, kFirstWithPoints = 8;
 constexpr std::size_t kPreamble = 2 * kWord;  // magic and version
 
 [[noreturn]] void corrupt(const std::string& name, const std::string& what) {
@@ -154,8 +154,9 @@ SavedState read(std::string_view bytes, const std::string& name) {
   state.steps = saved.header.steps;
   state.bodies.resize(reader.count());
   State::visit(state, [&](std::string_view part, auto& numbers) {
-    // Robots of before had no joints that move.
-    const bool lacks = part == "joints" && saved.header.version < kFirstWithJoints;
+    // Robots of before had no joints that move, and no surfaces that touched each other.
+    const bool lacks = (part == "joints" && saved.header.version < kFirstWithJoints) ||
+                       (part == "points" && saved.header.version < kFirstWithPoints);
     if (!lacks) reader.number(numbers);
   });
   if (!reader.done()) corrupt(name, "something follows the last number");

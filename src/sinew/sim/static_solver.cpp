@@ -183,7 +183,7 @@ void StaticSolver::fail_to_find(const std::string& known) {
 // own another.
 void StaticSolver::follow_surfaces() {
   const double tolerance = std::max(settings_.tolerance, kSurfaceTolerance) * run_.model->size();
-  const ContactPlanes& planes = run_.world.contacts().planes();
+  ContactPlanes& planes = run_.world.contacts().planes();
   const auto off = [&] { return planes.drift(run_.effort, run_.time()) > tolerance; };
   for (int round = 0; round < kMaxSurfaceRounds; ++round) {
     if (!off()) return;

@@ -47,10 +47,11 @@ World::World(std::shared_ptr<const Model> model, ThreadPool& pool)
       rows_(rows_of(*model_)),
       problem_(problem_of(*model_)),
       joints_(*model_),
-      contacts_(*model_, placement_, bodies_.systems(), rows_),
+      contacts_(*model_, placement_, bodies_.systems(), rows_, pool),
       stiffness_(*model_, placement_, bodies_.systems(), problem_) {
   problem_.actuators.resize(model_->actuators().size() + joints_.block_count());
   number_rows();
+  contacts_.planes().find_points(contacts_.reach(0.0, 0.0), {});
   place_contacts(0.0, 0.0);
 }
 
@@ -60,8 +61,9 @@ void World::place_contacts(double from, double to) {
   contacts_.planes().begin();
 }
 
-void World::begin_step(double from, double to, std::span<const double> effort, double reach) {
+void World::begin_step(double from, double to, std::span<double> effort, double reach) {
   if (!contacts_.empty()) {
+    contacts_.planes().find_points(contacts_.reach(to - from, reach), effort);
     place_contacts(from, to);
     contacts_.choose_present(effort, to - from, reach);
     number_rows();
@@ -199,6 +201,8 @@ double World::violation(std::span<const double> effort, step::LawStatus law) {
 void World::restart() {
   joints_.restart();
   bodies_.restart();
+  contacts_.planes().forget_points();
+  contacts_.planes().find_points(contacts_.reach(0.0, 0.0), {});
   place_contacts(0.0, 0.0);
 }
 

@@ -36,9 +36,10 @@ class World {
   World& operator=(const World&) = delete;
 
   /// @param from,to s, when the step begins and ends: where surfaces stand then. @param effort
-  ///   (rows,) N of the last step: points with a force are near, whatever their gap.
+  ///   (rows,) N of the last step, in and out: points with a force are near, whatever their gap,
+  ///   and those that are found anew take it to other rows.
   /// @param reach m: points that are nearer than this to their surface are near, too.
-  void begin_step(double from, double to, std::span<const double> effort, double reach = 0.0);
+  void begin_step(double from, double to, std::span<double> effort, double reach = 0.0);
   /// For a look at the present state: every contact point takes part, and no base moves.
   /// @param at s, when surfaces are looked at.
   void begin_query(double at);

@@ -1,0 +1,300 @@
+#include "sinew/constraint/shape_contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "sinew/collision/principal_frame.hpp"
+#include "sinew/collision/touching_points.hpp"
+#include "sinew/constraint/placement.hpp"
+#include "sinew/core/error.hpp"
+
+namespace sinew::constraint {
+
+namespace {
+
+// The gap of a point that a step has no use for, m: beyond anything that could come to touch.
+constexpr double kIdle = 1e6;
+
+}  // namespace
+
+// Entries of a row: the point, or a body's centre and turn; then the carrier's.
+ShapeContact::ShapeContact(std::string name, std::vector<mechanics::MaterialPoint> points,
+                           collision::Shape surface, double friction,
+                           std::optional<RigidSide> carrier)
+    : Contact(std::move(name), points.size(), friction, carrier ? 3 : 1),
+      points_(std::move(points)),
+      surface_(checked(std::move(surface))),
+      carrier_(std::move(carrier)) {}
+
+ShapeContact::ShapeContact(std::string name, RigidSide own, collision::Shape surface,
+                           double friction, std::optional<RigidSide> carrier)
+    : Contact(std::move(name), collision::TouchingPoints::kMax, friction, carrier ? 4 : 2),
+      own_(std::move(own)),
+      surface_(checked(std::move(surface))),
+      carrier_(std::move(carrier)) {}
+
+void ShapeContact::declare(mechanics::RowPattern& rows, std::vector<mechanics::RowCurvature>&) {
+  first_row_ = rows.rows();
+  first_entry_ = rows.entries();
+  row_count_ = 3 * static_cast<int>(size());
+  std::vector<mechanics::Site> sites;
+  for (std::size_t k = 0; k < size(); ++k) {
+    sites.clear();
+    if (own_) {
+      sites.insert(sites.end(), {own_->centre, own_->turn});
+    } else {
+      sites.push_back(points_[k]);
+    }
+    if (carrier_) sites.insert(sites.end(), {carrier_->centre, carrier_->turn});
+    for (int j = 0; j < 3; ++j) rows.add_row(sites, true);
+  }
+}
+
+void ShapeContact::begin_step(const Placement& placement, const Eigen::Isometry3d& start,
+                              const Eigen::Isometry3d& end, double time_step,
+                              mechanics::RowValues& values) const {
+  if (own_ || carrier_) prepare(values);
+  const Eigen::Isometry3d carry = end * start.inverse();
+  if (own_) return find_points(placement, start, carry, values);
+  const bool rests = start.isApprox(end, 0.0);
+  for (std::size_t i = 0; i < size(); ++i) {
+    const Vector3 at = placement.position(points_[i]);
+    const Vector3 carried = rests ? at : Vector3(carry * at);
+    Vector3 velocity = placement.velocity(points_[i]);
+    if (carrier_) velocity -= carrier_->velocity(placement, at);
+    const Vector3 towards = curved() ? Vector3(at + time_step * velocity)
+                                     : carried;  // a plane is its own tangent plane anywhere
+    place(i, carried, approach(carried, towards, end), values);
+    if (carrier_) watch(placement, i, at, values);
+  }
+}
+
+// Where the surface moves of itself, the points' frames go with it.
+void ShapeContact::find_points(const Placement& placement, const Eigen::Isometry3d& start,
+                               const Eigen::Isometry3d& carry, mechanics::RowValues& values) const {
+  const collision::TouchingPoints found = collision::touching_points(
+      collision::moved(own_->shape, own_->pose(placement)), collision::moved(surface_, start),
+      std::numeric_limits<double>::infinity());
+  const Vector3 centre = placement.position(own_->centre);
+  for (std::size_t k = 0; k < size(); ++k) {
+    const bool used = k < found.size();
+    const Vector3 at = used ? found[k].on_first : centre;
+    const Vector3 normal = used ? Vector3(carry.linear() * found[k].normal) : Vector3::UnitZ();
+    set_frame(k, carry * at, collision::tangent_frame(normal), used ? found[k].gap : kIdle, values);
+    watch(placement, k, at, values);
+  }
+}
+
+bool ShapeContact::idle(std::size_t point, const mechanics::RowValues& values) const {
+  return own_ && values.reference[row(point)] == kIdle;
+}
+
+// The gap's row watches the centres of roundness, which lie on the normal through the point.
+void ShapeContact::watch(const Placement& placement, std::size_t point, const Vector3& at,
+                         mechanics::RowValues& values) const {
+  const Vector3 normal = values.direction[entry(point)];
+  const double gap = values.reference[row(point)];
+  values.start[static_cast<std::size_t>(row(point))] = at;
+  const auto hold = [&](const RigidSide& side, const collision::Shape& shape, double sense,
+                        double below, std::size_t first) {
+    const Matrix3 turn = placement.rotation(side.turn);
+    const double radius = collision::rounding_radius(shape, turn.transpose() * normal);
+    const Vector3 core = radius > 0.0 ? Vector3(at + sense * (radius + below) * normal) : at;
+    for (int j = 0; j < 3; ++j) {
+      side.watch(placement, entry(point, j) + first, j == 0 ? core : at, values);
+    }
+  };
+  if (own_) hold(*own_, own_->shape, 1.0, 0.0, 0);
+  if (carrier_) hold(*carrier_, surface_, -1.0, idle(point, values) ? 0.0 : gap, own_entries());
+  write_sides(placement, point, values);
+}
+
+collision::ShapeApproach ShapeContact::approach(const Vector3& from, const Vector3& to,
+                                                const Eigen::Isometry3d& pose) const {
+  const Eigen::Isometry3d into = pose.inverse();
+  collision::ShapeApproach result = collision::approach(surface_, into * from, into * to);
+  result.at = pose * result.at;
+  result.distance.normal = pose.linear() * result.distance.normal;
+  return result;
+}
+
+void ShapeContact::place(std::size_t point, const Vector3& carried,
+                         const collision::ShapeApproach& plane,
+                         mechanics::RowValues& values) const {
+  const Matrix3 frame = collision::tangent_frame(plane.distance.normal);
+  const double gap = plane.distance.gap + frame.col(0).dot(carried - plane.at);
+  set_frame(point, carried, frame, gap, values);
+}
+
+Vector3 ShapeContact::position_now(const Placement& placement, std::size_t point,
+                                   const mechanics::RowValues& values) const {
+  if (!own_) return placement.position(points_[point]);
+  if (values.arm.empty()) return placement.position(own_->centre);
+  return own_->watched(placement, entry(point, 1), values);
+}
+
+Vector3 ShapeContact::position_beside(const Placement& placement, std::size_t point,
+                                      const mechanics::RowValues& values) const {
+  if ((!own_ && !carrier_) || values.arm.empty()) return position_now(placement, point, values);
+  const Vector3& start = values.start[static_cast<std::size_t>(row(point))];
+  const auto moved = [&](int row) {
+    const std::size_t at = entry(point, row);
+    Vector3 result = own_ ? own_->displacement(placement, at, values)
+                          : Vector3(placement.position(points_[point]) - start);
+    if (carrier_) result -= carrier_->displacement(placement, at + own_entries(), values);
+    return result;
+  };
+  const Vector3 along = moved(1);
+  const Vector3& normal = values.direction[entry(point)];
+  return start + along + normal.dot(moved(0) - along) * normal;
+}
+
+Vector3 ShapeContact::velocity_beside(const Placement& placement, std::size_t point,
+                                      const mechanics::RowValues& values) const {
+  const Vector3 at = position_now(placement, point, values);
+  Vector3 result =
+      own_ ? own_->velocity(placement, at) : Vector3(placement.velocity(points_[point]));
+  if (carrier_) result -= carrier_->velocity(placement, at);
+  return result;
+}
+
+// What rows' efforts do to the bodies: on the carrier, the opposite of what they do to the point.
+void ShapeContact::write_sides(const Placement& placement, std::size_t point,
+                               mechanics::RowValues& values) const {
+  for (int j = 0; j < 3; ++j) {
+    const std::size_t at = entry(point, j);
+    const Vector3 direction = values.direction[at];
+    if (own_) own_->write(placement, at, direction, values);
+    if (carrier_) carrier_->write(placement, at + own_entries(), -direction, values);
+  }
+}
+
+namespace {
+
+// Edges have no principal curvatures; faces have none.
+collision::PrincipalFrame nearest_frame(const collision::Shape& surface, const Vector3& point) {
+  return std::visit(
+      [&](const auto& own) -> collision::PrincipalFrame {
+        if constexpr (requires { principal_frame(own, point); }) {
+          return principal_frame(own, point);
+        } else {
+          return {collision::tangent_frame(distance(own, point).normal), Vector3::Zero()};
+        }
+      },
+      surface);
+}
+
+}  // namespace
+
+Vector3 ShapeContact::place_nearest(std::size_t point, const Vector3& at,
+                                    const Eigen::Isometry3d& pose,
+                                    mechanics::RowValues& values) const {
+  const Vector3 local = pose.inverse() * at;
+  const collision::PrincipalFrame principal = nearest_frame(surface_, local);
+  set_frame(point, at, pose.linear() * principal.frame, distance(surface_, local).gap, values);
+  return principal.curvature;
+}
+
+void ShapeContact::set_frame(std::size_t point, const Vector3& carried, const Matrix3& frame,
+                             double gap, mechanics::RowValues& values) const {
+  const Vector3 reference(gap, 0.0, 0.0);
+  for (int k = 0; k < 3; ++k) {
+    values.direction[entry(point, k)] = frame.col(k);
+  }
+  values.reference.segment<3>(row(point)) = reference;
+  values.offset.segment<3>(row(point)) = reference - frame.transpose() * carried;
+}
+
+Vector3 ShapeContact::row_values(std::size_t point, const Vector3& at,
+                                 const mechanics::RowValues& values) const {
+  Vector3 result = values.offset.segment<3>(row(point));
+  for (int k = 0; k < 3; ++k) {
+    result[k] += values.direction[entry(point, k)].dot(at);
+  }
+  return result;
+}
+
+Vector3 ShapeContact::position(std::size_t point, const Vector3& row_values,
+                               const mechanics::RowValues& values) const {
+  Vector3 result = Vector3::Zero();
+  for (int k = 0; k < 3; ++k) {
+    result += values.direction[entry(point, k)] * (row_values[k] - values.offset[row(point) + k]);
+  }
+  return result;
+}
+
+void ShapeContact::linearise(const Placement& placement, mechanics::RowValues& values) const {
+  const bool begun = !values.arm.empty();
+  for (std::size_t i = 0; i < size(); ++i) {
+    if ((own_ || carrier_) && begun) write_sides(placement, i, values);
+    values.delta.segment<3>(row(i)) = row_values(i, position_beside(placement, i, values), values);
+  }
+}
+
+double ShapeContact::linear_gap(const Placement& placement, std::size_t point,
+                                const mechanics::RowValues& values) const {
+  return row_values(point, position_beside(placement, point, values), values)[0];
+}
+
+double ShapeContact::gap_now(const Placement& placement, const Eigen::Isometry3d& pose,
+                             std::size_t point, const mechanics::RowValues& values) const {
+  return distance(surface_, pose.inverse() * position_now(placement, point, values)).gap;
+}
+
+void ShapeContact::save(const mechanics::RowValues& values, double* to) const {
+  for (std::size_t k = 0; k < size(); ++k) {
+    to = std::copy_n(frame(k, values).data(), 9, to);
+    if (!own_) continue;
+    const Vector3 arm = values.arm.empty() ? Vector3(Vector3::Zero()) : values.arm[entry(k, 1)];
+    to = std::copy_n(arm.data(), 3, to);
+  }
+}
+
+void ShapeContact::load(const double* from, mechanics::RowValues& values) const {
+  if (own_ && values.arm.empty()) prepare(values);
+  for (std::size_t k = 0; k < size(); ++k) {
+    for (int j = 0; j < 3; ++j, from += 3) {
+      values.direction[entry(k, j)] = Eigen::Map<const Vector3>(from);
+    }
+    if (!own_) continue;
+    values.arm[entry(k, 1)] = Eigen::Map<const Vector3>(from);
+    from += 3;
+  }
+}
+
+void ShapeContact::prepare(mechanics::RowValues& values) {
+  if (!values.arm.empty()) return;
+  for (auto* numbers : {&values.arm, &values.lever, &values.watched_start}) {
+    numbers->resize(values.direction.size(), Vector3::Zero());
+  }
+  values.start.resize(values.present.size(), Vector3::Zero());
+}
+
+namespace {
+
+void hash_shape(const collision::Shape& shape, ValueHash& hash) {
+  hash.add(shape.index());
+  if (const auto* plane = std::get_if<Plane>(&shape)) hash.add(plane->point, plane->normal);
+  if (const auto* ball = std::get_if<Sphere>(&shape)) hash.add(ball->centre, ball->radius);
+  if (const auto* rod = std::get_if<Capsule>(&shape)) hash.add(rod->from, rod->to, rod->radius);
+  if (const auto* rod = std::get_if<collision::Cylinder>(&shape)) {
+    hash.add(rod->from, rod->to, rod->radius);
+  }
+  if (const auto* box = std::get_if<collision::OrientedBox>(&shape)) {
+    hash.add(box->centre, box->axes, box->half_size);
+  }
+}
+
+}  // namespace
+
+void ShapeContact::add_to(ValueHash& hash) const {
+  hash.add(friction());
+  hash_shape(surface_, hash);
+  if (own_) hash_shape(own_->shape, hash);
+}
+
+}  // namespace sinew::constraint

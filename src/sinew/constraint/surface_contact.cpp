@@ -1,0 +1,170 @@
+#include "sinew/constraint/surface_contact.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "sinew/collision/principal_frame.hpp"
+#include "sinew/collision/surface_topology.hpp"
+#include "sinew/constraint/placement.hpp"
+
+namespace sinew::constraint {
+
+namespace {
+
+// Of one contact: more pairs of places never take part in a step.
+constexpr std::size_t kMaxPoints = 4096;
+
+std::size_t vertices_of(const collision::SurfaceTopology& surface) {
+  std::size_t count = 0;
+  for (NodeId node = 0; node < surface.node_count(); ++node) {
+    count += surface.triangles_of_node(node).empty() ? 0 : 1;
+  }
+  return count;
+}
+
+std::size_t most_points(const SurfaceContact::Side& first, const SurfaceContact::Side& second) {
+  return std::min(kMaxPoints, vertices_of(*first.surface) + vertices_of(*second.surface));
+}
+
+Vector3 weighted(const Points& nodes, const mechanics::Patch& patch) {
+  Vector3 sum = Vector3::Zero();
+  for (std::size_t k = 0; k < 3 && patch.nodes[k] >= 0; ++k) {
+    sum += patch.weights[static_cast<Eigen::Index>(k)] * nodes.row(patch.nodes[k]).transpose();
+  }
+  return sum;
+}
+
+}  // namespace
+
+SurfaceContact::SurfaceContact(std::string name, Side first, Side second, const Settings& settings)
+    : Contact(std::move(name), most_points(first, second), settings.friction, 2),
+      first_(std::move(first)),
+      second_(std::move(second)),
+      settings_(settings) {}
+
+void SurfaceContact::declare(mechanics::RowPattern& rows, std::vector<mechanics::RowCurvature>&) {
+  first_row_ = rows.rows();
+  first_entry_ = rows.entries();
+  row_count_ = 3 * static_cast<int>(size());
+  for (int k = 0; k < row_count_; ++k) rows.add_row({first_.site, second_.site}, true);
+}
+
+void SurfaceContact::prepare(mechanics::RowValues& values) const {
+  if (values.patch.empty()) values.patch.resize(values.direction.size());
+}
+
+void SurfaceContact::put(std::size_t point, const collision::ProximityPair& pair,
+                         const Points& first_nodes, const Points& second_nodes,
+                         mechanics::RowValues& values) const {
+  const Matrix3 frame = collision::tangent_frame(pair.normal);
+  for (int j = 0; j < 3; ++j) {
+    const std::size_t at = entry(point, j);
+    values.direction[at] = frame.col(j);
+    values.direction[at + 1] = -frame.col(j);
+    values.patch[at] = {pair.first.nodes, pair.first.weights};
+    values.patch[at + 1] = {pair.second.nodes, pair.second.weights};
+  }
+  const Vector3 start = frame.transpose() * relative(first_nodes, second_nodes, point, values);
+  values.offset.segment<3>(row(point)) = Vector3(-separation(), -start[1], -start[2]);
+  values.reference.segment<3>(row(point)) = Vector3(start[0] - separation(), 0.0, 0.0);
+}
+
+void SurfaceContact::clear(std::size_t point, mechanics::RowValues& values) const {
+  for (int j = 0; j < 3; ++j) {
+    for (const std::size_t at : {entry(point, j), entry(point, j) + 1}) {
+      values.direction[at].setZero();
+      values.patch[at] = {};
+    }
+  }
+  for (VectorX* numbers : {&values.offset, &values.reference, &values.delta}) {
+    numbers->segment<3>(row(point)).setZero();
+  }
+}
+
+bool SurfaceContact::idle(std::size_t point, const mechanics::RowValues& values) const {
+  return values.patch.empty() || values.patch[entry(point)].nodes[0] < 0;
+}
+
+Vector3 SurfaceContact::relative(const Points& first, const Points& second, std::size_t point,
+                                 const mechanics::RowValues& values) const {
+  const std::size_t at = entry(point);
+  return weighted(first, values.patch[at]) - weighted(second, values.patch[at + 1]);
+}
+
+void SurfaceContact::linearise(const Placement& placement, mechanics::RowValues& values) const {
+  for (std::size_t k = 0; k < size(); ++k) {
+    if (!idle(k, values)) measure(placement, k, values);
+  }
+}
+
+void SurfaceContact::measure(const Placement& placement, std::size_t point,
+                             mechanics::RowValues& values) const {
+  values.delta.segment<3>(row(point)) =
+      values.offset.segment<3>(row(point)) +
+      frame(point, values).transpose() *
+          relative(placement.nodes(body()), placement.nodes(other_body()), point, values);
+}
+
+double SurfaceContact::gap_at(const Points& first, const Points& second, std::size_t point,
+                              const mechanics::RowValues& values) const {
+  return values.direction[entry(point)].dot(relative(first, second, point, values)) +
+         values.offset[row(point)];
+}
+
+// Half-way between the surfaces.
+Vector3 SurfaceContact::position_now(const Placement& placement, std::size_t point,
+                                     const mechanics::RowValues& values) const {
+  if (idle(point, values)) return Vector3::Zero();
+  const std::size_t at = entry(point);
+  return 0.5 * (weighted(placement.nodes(body()), values.patch[at]) +
+                weighted(placement.nodes(other_body()), values.patch[at + 1]));
+}
+
+Vector3 SurfaceContact::velocity_beside(const Placement& placement, std::size_t point,
+                                        const mechanics::RowValues& values) const {
+  return relative(placement.node_velocities(body()), placement.node_velocities(other_body()), point,
+                  values);
+}
+
+double SurfaceContact::linear_gap(const Placement& placement, std::size_t point,
+                                  const mechanics::RowValues& values) const {
+  return gap_at(placement.nodes(body()), placement.nodes(other_body()), point, values);
+}
+
+double SurfaceContact::gap_now(const Placement& placement, const Eigen::Isometry3d&,
+                               std::size_t point, const mechanics::RowValues& values) const {
+  return idle(point, values) ? kInfinity : linear_gap(placement, point, values);
+}
+
+void SurfaceContact::save(std::size_t point, const mechanics::RowValues& values, double* to) const {
+  to = std::copy_n(frame(point, values).data(), 9, to);
+  for (const std::size_t at : {entry(point), entry(point) + 1}) {
+    const mechanics::Patch& patch = values.patch[at];
+    for (const NodeId node : patch.nodes) *to++ = static_cast<double>(node);
+    to = std::copy_n(patch.weights.data(), 3, to);
+  }
+}
+
+void SurfaceContact::load(std::size_t point, const double* from,
+                          mechanics::RowValues& values) const {
+  const Eigen::Map<const Matrix3> frame(from);
+  from += 9;
+  for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
+    mechanics::Patch patch;
+    for (NodeId& node : patch.nodes) node = static_cast<NodeId>(*from++);
+    patch.weights = Eigen::Map<const Vector3>(from);
+    from += 3;
+    for (int j = 0; j < 3; ++j) {
+      values.patch[entry(point, j) + side] = patch;
+      values.direction[entry(point, j) + side] = (side == 0 ? 1.0 : -1.0) * frame.col(j);
+    }
+  }
+  values.offset.segment<3>(row(point)) = Vector3(-separation(), 0.0, 0.0);
+}
+
+void SurfaceContact::add_to(ValueHash& hash) const {
+  hash.add(friction(), settings_.separation, settings_.depth);
+  hash.add(is_within());
+}
+
+}  // namespace sinew::constraint

@@ -1,0 +1,141 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "sinew/collision/penetration.hpp"
+#include "sinew/collision/proximity.hpp"
+#include "sinew/collision/surface_topology.hpp"
+#include "sinew/collision/surface_tree.hpp"
+#include "sinew/constraint/surface_contact.hpp"
+#include "sinew/core/error.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
+#include "sinew/mesh/mesh.hpp"
+#include "sinew/sim/add_parts.hpp"
+#include "sinew/sim/contact_settings.hpp"
+#include "sinew/sim/find_body.hpp"
+
+namespace sinew::sim {
+
+namespace {
+
+// Of the larger body: how far apart surfaces rest, and how deep they may overlap at the start.
+constexpr double kSeparation = 1e-7;
+constexpr double kDeepest = 1e-6;
+// Overlaps are undone up to this part of an edge and of the thinnest wall: what is deeper in a wall
+// would leave it on the other side.
+constexpr double kDepth = 0.45;
+
+// A surface at rest.
+struct RestSurface {
+  RestSurface(const mechanics::BodyModel& body, const mechanics::HasSurface& of, ThreadPool& pool)
+      : name(body.name()), tree(of.surface()) {
+    tree.move(body.mesh().nodes, pool);
+    const auto& box = tree.branches().front().box;
+    size = (box.high - box.low).norm();
+  }
+
+  double mean_edge() const {
+    double sum = 0.0;
+    for (const auto& [a, b] : tree.topology().edges()) sum += (tree.at(a) - tree.at(b)).norm();
+    return sum / static_cast<double>(tree.topology().edges().size());
+  }
+
+  const std::string& name;
+  collision::SurfaceTree tree;
+  double size = 0.0;
+};
+
+// m, or `most` where no wall is thinner.
+double thinnest_wall(const RestSurface& surface, double most, ThreadPool& pool) {
+  collision::Proximity proximity(pool);
+  double thinnest = most;
+  for (const auto& pair : proximity.within(surface.tree, {.distance = 0.0, .depth = most})) {
+    thinnest = std::min(thinnest, -pair.distance);
+  }
+  return thinnest;
+}
+
+[[noreturn]] void refuse_overlap(const RestSurface& first, const RestSurface& second, double depth,
+                                 const Vector3& where) {
+  throw Error(ErrorKind::out_of_range, {},
+              fmt::format("bodies '{}' and '{}' overlap by {:.3g} m at {:.4g} {:.4g} {:.4g} m",
+                          first.name, second.name, depth, where[0], where[1], where[2]),
+              fmt::format("move one of them by at least {:.3g} m", depth));
+}
+
+void check_apart(const RestSurface& first, const RestSurface& second, ThreadPool& pool) {
+  const double most = kDeepest * std::max(first.size, second.size);
+  collision::Penetration penetration(pool);
+  double deepest = most;
+  Vector3 where = Vector3::Zero();
+  const auto look = [&](const RestSurface& own, const RestSurface& other) {
+    if (!other.tree.topology().closed()) return;
+    for (const auto& vertex : penetration.inside(own.tree, other.tree)) {
+      if (vertex.depth <= deepest) continue;
+      deepest = vertex.depth;
+      where = own.tree.at(vertex.node);
+    }
+  };
+  look(first, second);
+  look(second, first);
+  if (deepest > most) refuse_overlap(first, second, deepest, where);
+  collision::Proximity proximity(pool);
+  for (const auto& pair : proximity.between(
+           first.tree, second.tree,
+           {.distance = 0.0, .depth = kDepth * std::min(first.mean_edge(), second.mean_edge())})) {
+    if (-pair.distance > most) refuse_overlap(first, second, -pair.distance, pair.first.point);
+  }
+}
+
+void check_apart(const RestSurface& surface, ThreadPool& pool) {
+  collision::Penetration penetration(pool);
+  const auto crossing = penetration.crossing_within(surface.tree);
+  if (crossing.empty()) return;
+  const Vector3 where = surface.tree.corners(crossing.front().first)[0];
+  throw Error(ErrorKind::out_of_range, {},
+              fmt::format("the surface of body '{}' crosses itself near {:.4g} {:.4g} {:.4g} m",
+                          surface.name, where[0], where[1], where[2]),
+              "mend the mesh");
+}
+
+}  // namespace
+
+std::unique_ptr<constraint::Contact> make_surface_contact(ModelData& data,
+                                                          const ContactSettings& settings) {
+  const auto attach = [&](int body) {
+    mechanics::BodyModel& model = find_body(data, body, settings.place);
+    auto* surface = mechanics::as<mechanics::HasSurface>(model);
+    if (surface == nullptr) {
+      throw Error(
+          ErrorKind::not_in_this_version, settings.place,
+          fmt::format("body '{}' has no surface that touches a deformable body's", model.name()),
+          "name bodies of finite elements, or a rigid body and another one");
+    }
+    const mechanics::SurfaceSite site{{body, surface->attach_surface()}};
+    return constraint::SurfaceContact::Side{site, surface->surface()};
+  };
+  const auto first = attach(settings.body), second = attach(*settings.touched);
+  ThreadPool pool(1);
+  const auto rest = [&](int body) {
+    const mechanics::BodyModel& model = find_body(data, body, settings.place);
+    return RestSurface(model, *mechanics::as<const mechanics::HasSurface>(model), pool);
+  };
+  const RestSurface one = rest(settings.body), other = rest(*settings.touched);
+  if (settings.body == *settings.touched) {
+    check_apart(one, pool);
+  } else {
+    check_apart(one, other, pool);
+  }
+  const double edge = std::min(one.mean_edge(), other.mean_edge());
+  const double wall = std::min(thinnest_wall(one, edge, pool), thinnest_wall(other, edge, pool));
+  return std::make_unique<constraint::SurfaceContact>(
+      settings.name, first, second,
+      constraint::SurfaceContact::Settings{
+          .friction = settings.friction,
+          .separation = kSeparation * std::max(one.size, other.size),
+          .depth = kDepth * wall});
+}
+
+}  // namespace sinew::sim

@@ -1,0 +1,195 @@
+#include "sinew/sim/touching_surfaces.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/collision/surface_topology.hpp"
+#include "sinew/constraint/placement.hpp"
+#include "sinew/constraint/surface_contact.hpp"
+#include "sinew/core/error.hpp"
+#include "sinew/mechanics/step_system.hpp"
+
+namespace sinew::sim {
+
+namespace {
+
+// Vertices on slopes up to this sine towards the other surface are points: they come to touch where
+// bodies flatten on each other. Of edges the nearest ones alone.
+constexpr double kSlack = 0.5;
+// Overlaps up to this many separations, 1e-6 of the larger body, are left to the next step: where
+// flat meshes lie on each other their edges cross, and overlap at second order in the motion.
+constexpr double kOverlap = 10.0;
+constexpr std::size_t kKeyMemory = 3;
+
+}  // namespace
+
+TouchingSurfaces::TouchingSurfaces(const constraint::SurfaceContact& contact,
+                                   const constraint::Placement& placement,
+                                   mechanics::RowValues& rows, ThreadPool& pool)
+    : contact_(contact),
+      placement_(placement),
+      rows_(rows),
+      pool_(pool),
+      proximity_(pool),
+      first_(contact.first().surface),
+      second_(contact.second().surface) {
+  contact.prepare(rows);
+}
+
+TouchingSurfaces::Key TouchingSurfaces::name(const collision::ProximityPair& pair) {
+  using enum collision::FeatureKind;
+  if (pair.first.kind == vertex) return {0, pair.first.number, -1};
+  if (pair.second.kind == vertex) return {1, pair.second.number, -1};
+  return {2, pair.first.number, pair.second.number};
+}
+
+void TouchingSurfaces::move_trees(const Points& first, const Points& second) {
+  first_.move(first, pool_);
+  if (!contact_.is_within()) second_.move(second, pool_);
+}
+
+// In an order that does not depend on how the trees came about. Of more pairs than there is room
+// for, the nearest.
+void TouchingSurfaces::find(double reach) {
+  const collision::ProximitySettings settings{
+      .distance = reach, .depth = contact_.depth(), .slack = kSlack, .edge_slack = 0.0};
+  const auto pairs = contact_.is_within() ? proximity_.within(first_, settings)
+                                          : proximity_.between(first_, second_, settings);
+  found_.clear();
+  for (const collision::ProximityPair& pair : pairs) found_.push_back({name(pair), pair});
+  const auto order = [](const Named& a, const Named& b) {
+    if (a.key != b.key) return a.key < b.key;
+    if (a.pair.distance != b.pair.distance) return a.pair.distance < b.pair.distance;
+    return std::ranges::lexicographical_compare(a.pair.normal, b.pair.normal);
+  };
+  if (found_.size() > contact_.size()) {
+    const auto nearer = [&](const Named& a, const Named& b) {
+      if (a.pair.distance != b.pair.distance) return a.pair.distance < b.pair.distance;
+      return order(a, b);
+    };
+    const auto end = found_.begin() + static_cast<std::ptrdiff_t>(contact_.size());
+    std::ranges::nth_element(found_, end, nearer);
+    found_.erase(end, found_.end());
+  }
+  std::ranges::sort(found_, order);
+}
+
+void TouchingSurfaces::begin_step(double reach, std::span<double> effort) {
+  first_start_ = placement_.nodes(contact_.body());
+  second_start_ = placement_.nodes(contact_.other_body());
+  move_trees(first_start_, second_start_);
+  find(reach);
+  keep_forces(effort);
+  for (std::size_t k = found_.size(); k < keys_.size(); ++k) contact_.clear(k, rows_);
+  keys_.clear();
+  for (const Named& one : found_) {
+    contact_.put(keys_.size(), one.pair, first_start_, second_start_, rows_);
+    keys_.push_back(one.key);
+  }
+  pass_forces_on(effort);
+}
+
+// Takes them out of the rows.
+void TouchingSurfaces::keep_forces(std::span<double> effort) {
+  before_.clear();
+  for (std::size_t k = 0; k < keys_.size(); ++k) {
+    Eigen::Map<Vector3> force(effort.data() + contact_.row(k));
+    if (force[0] > 0.0) before_.push_back({keys_[k], contact_.frame(k, rows_) * force});
+    force.setZero();
+  }
+  std::ranges::stable_sort(before_, {}, &Force::key);
+}
+
+void TouchingSurfaces::pass_forces_on(std::span<double> effort) const {
+  auto before = before_.begin();
+  for (std::size_t k = 0; k < keys_.size() && before != before_.end(); ++k) {
+    while (before != before_.end() && before->key < keys_[k]) ++before;
+    if (before == before_.end() || before->key != keys_[k]) continue;
+    const Vector3 force = contact_.frame(k, rows_).transpose() * (before++)->force;
+    if (force[0] > 0.0) std::copy_n(force.data(), 3, effort.begin() + contact_.row(k));
+  }
+}
+
+void TouchingSurfaces::propose(std::span<mechanics::StepSystem* const> systems) {
+  const auto look = [&](int body, Points& nodes) {
+    nodes = placement_.nodes(body);
+    systems[static_cast<std::size_t>(body)]->add_proposed_motion(nodes);
+  };
+  look(contact_.body(), first_end_);
+  look(contact_.other_body(), second_end_);
+}
+
+double TouchingSurfaces::proposed_gap(std::size_t point) const {
+  return contact_.gap_at(first_end_, second_end_, point, rows_);
+}
+
+bool TouchingSurfaces::add_overlaps() {
+  if (!first_end_.allFinite() || !second_end_.allFinite()) return false;
+  move_trees(first_end_, second_end_);
+  find(0.0);
+  const double allowed = kOverlap * contact_.separation();
+  const std::size_t points = keys_.size();
+  for (const Named& one : found_) {
+    if (one.pair.distance >= -allowed || keys_.size() == contact_.size()) continue;
+    if (std::ranges::find(keys_, one.key) != keys_.end()) continue;
+    contact_.put(keys_.size(), one.pair, first_start_, second_start_, rows_);
+    contact_.measure(placement_, keys_.size(), rows_);
+    keys_.push_back(one.key);
+  }
+  return keys_.size() > points;
+}
+
+void TouchingSurfaces::restart() {
+  for (std::size_t k = 0; k < keys_.size(); ++k) contact_.clear(k, rows_);
+  keys_.clear();
+}
+
+double TouchingSurfaces::drift(std::span<const double> effort) {
+  move_trees(placement_.nodes(contact_.body()), placement_.nodes(contact_.other_body()));
+  find(1e3 * contact_.separation());
+  double worst = 0.0;
+  for (std::size_t k = 0; k < keys_.size(); ++k) {
+    if (effort[static_cast<std::size_t>(contact_.row(k))] == 0.0) continue;
+    const double gap = contact_.linear_gap(placement_, k, rows_);
+    double nearest = kInfinity;
+    for (const Named& one : found_) {
+      if (one.key != keys_[k]) continue;
+      const double off = std::abs(one.pair.distance - contact_.separation() - gap);
+      nearest = std::min(nearest, off);
+    }
+    worst = std::max(worst, nearest);
+  }
+  return worst;
+}
+
+void TouchingSurfaces::save(std::vector<double>& to) const {
+  to.push_back(static_cast<double>(keys_.size()));
+  for (std::size_t k = 0; k < keys_.size(); ++k) {
+    for (const int part : {keys_[k].kind, keys_[k].first, keys_[k].second}) {
+      to.push_back(static_cast<double>(part));
+    }
+    to.resize(to.size() + constraint::SurfaceContact::kMemory);
+    contact_.save(k, rows_, to.data() + to.size() - constraint::SurfaceContact::kMemory);
+  }
+}
+
+std::span<const double> TouchingSurfaces::load(std::span<const double> from) {
+  constexpr std::size_t kEach = kKeyMemory + constraint::SurfaceContact::kMemory;
+  const double told = from.empty() ? -1.0 : from[0];
+  if (!(told >= 0.0 && told <= static_cast<double>(contact_.size())) ||
+      from.size() - 1 < kEach * static_cast<std::size_t>(told)) {
+    throw Error(ErrorKind::wrong_length, {.item = "points of contact '" + contact_.name() + "'"},
+                "the state has none that fit", "take it from a simulation of the same model");
+  }
+  const auto count = static_cast<std::size_t>(told);
+  for (std::size_t k = count; k < keys_.size(); ++k) contact_.clear(k, rows_);
+  keys_.resize(count);
+  const double* at = from.data() + 1;
+  for (std::size_t k = 0; k < count; ++k, at += kEach) {
+    keys_[k] = {static_cast<int>(at[0]), static_cast<int>(at[1]), static_cast<int>(at[2])};
+    contact_.load(k, at + kKeyMemory, rows_);
+  }
+  return from.subspan(1 + count * kEach);
+}
+
+}  // namespace sinew::sim

@@ -1,0 +1,92 @@
+/// @file
+/// Where the surfaces of a SurfaceContact touch, in one simulation.
+#pragma once
+
+#include <array>
+#include <compare>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "sinew/collision/proximity.hpp"
+#include "sinew/collision/surface_tree.hpp"
+#include "sinew/core/thread_pool.hpp"
+#include "sinew/core/types.hpp"
+
+namespace sinew::constraint {
+class Placement;
+class SurfaceContact;
+}  // namespace sinew::constraint
+namespace sinew::mechanics {
+struct RowValues;
+class StepSystem;
+}  // namespace sinew::mechanics
+
+namespace sinew::sim {
+
+/// Finds the points of a step: where it begins, and again where a motion that was solved leads, as
+/// far as surfaces have passed each other there. A function of positions and of the last step's
+/// forces alone.
+class TouchingSurfaces {
+ public:
+  /// All must outlive it. @param rows gets the points.
+  TouchingSurfaces(const constraint::SurfaceContact& contact,
+                   const constraint::Placement& placement, mechanics::RowValues& rows,
+                   ThreadPool& pool);
+
+  const constraint::SurfaceContact& contact() const { return contact_; }
+  /// Takes the pairs nearer than `reach` (m) for the step's points. Forces of the last step go to
+  /// those that are the same. @param effort (rows,) N, in and out.
+  void begin_step(double reach, std::span<double> effort);
+  /// Looks at where a proposed motion leads. @param systems of the bodies.
+  void propose(std::span<mechanics::StepSystem* const> systems);
+  /// m: of a point's row there.
+  double proposed_gap(std::size_t point) const;
+  /// Adds pairs that overlap there and are no points yet. Whether there were any.
+  bool add_overlaps();
+  /// m: the farthest that the gap of a point with a force is from its row's. @param effort (rows,)
+  /// N.
+  double drift(std::span<const double> effort);
+  std::size_t count() const { return keys_.size(); }
+  /// No point, and no force to remember.
+  void restart();
+
+  /// Points and what they are called, a number of numbers that varies.
+  void save(std::vector<double>& to) const;
+  /// @return what is left of `from`. Throws Error(wrong-length).
+  std::span<const double> load(std::span<const double> from);
+
+ private:
+  // A point's name from step to step: a vertex of the first or of the second surface, or two edges.
+  struct Key {
+    int kind = 0, first = -1, second = -1;
+    auto operator<=>(const Key&) const = default;
+  };
+  struct Named {
+    Key key;
+    collision::ProximityPair pair;
+  };
+  struct Force {
+    Key key;
+    Vector3 force;  // N, in the world
+  };
+  static Key name(const collision::ProximityPair& pair);
+  void find(double reach);
+  void move_trees(const Points& first, const Points& second);
+  void keep_forces(std::span<double> effort);
+  void pass_forces_on(std::span<double> effort) const;
+
+  const constraint::SurfaceContact& contact_;
+  const constraint::Placement& placement_;
+  mechanics::RowValues& rows_;
+  ThreadPool& pool_;
+  collision::Proximity proximity_;
+  collision::SurfaceTree first_, second_;  // the second one stands still within one surface
+  std::vector<Named> found_;               // by name
+  std::vector<Key> keys_;                  // of the points
+  std::vector<Force> before_;              // of the last step, by name
+  Points first_start_, second_start_;      // m, when the step began
+  Points first_end_, second_end_;          // m, where a motion leads
+};
+
+}  // namespace sinew::sim
