@@ -185,6 +185,11 @@ bool ContactRows::gap_closed(std::span<const double> effort) const {
   return closed;
 }
 
+bool ContactRows::passed() const {
+  return std::ranges::any_of(planes_.surfaces(),
+                             [](const auto& touching) { return touching->passed(); });
+}
+
 double ContactRows::deepest_free_point(std::span<const double> effort) const {
   double deepest = 0.0;
   for_each_point([&](const constraint::Contact& contact, std::size_t k) {

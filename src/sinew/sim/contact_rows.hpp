@@ -62,6 +62,8 @@ class ContactRows {
 
   /// Whether a point has a force that had none when the step began. @param effort (rows,) N.
   bool gap_closed(std::span<const double> effort) const;
+  /// Whether surfaces have passed through each other in the step.
+  bool passed() const;
   /// m, >= 0: how deep the deepest point without a normal force is in its surface's tangent plane.
   /// @param effort (rows,) N.
   double deepest_free_point(std::span<const double> effort) const;

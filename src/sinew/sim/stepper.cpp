@@ -7,6 +7,7 @@
 #include "sinew/sim/linear_step.hpp"
 #include "sinew/sim/newton_step.hpp"
 #include "sinew/sim/run.hpp"
+#include "sinew/sim/step_failure.hpp"
 #include "sinew/sim/step_tolerances.hpp"
 #include "sinew/step/controller.hpp"
 
@@ -166,6 +167,10 @@ void Stepper::solve(double time_step) {
     LinearStep(run_).solve(time_step);
   }
   if (run_.model->contacts().empty()) return;
+  if (run_.world.contacts().passed()) {
+    fail(run_, ErrorKind::not_converged, "surfaces would pass through each other",
+         "take a smaller time step");
+  }
   const qp::ConeResult& contacts = run_.solver.direct().contact_result();
   run_.report.contact_residual = contacts.residual;
   run_.report.contact_sweeps = contacts.sweeps;

@@ -31,6 +31,7 @@ TouchingSurfaces::TouchingSurfaces(const constraint::SurfaceContact& contact,
       rows_(rows),
       pool_(pool),
       proximity_(pool),
+      impacts_(pool),
       first_(contact.first().surface),
       second_(contact.second().surface) {
   contact.prepare(rows);
@@ -137,6 +138,56 @@ bool TouchingSurfaces::add_overlaps() {
     keys_.push_back(one.key);
   }
   return keys_.size() > points;
+}
+
+// What moved by less than the depth up to which overlaps are found is found (add_overlaps()).
+bool TouchingSurfaces::passed() {
+  if (farthest_way() < contact_.depth()) return false;
+  first_.sweep(first_start_, placement_.nodes(contact_.body()), pool_);
+  if (!contact_.is_within()) {
+    second_.sweep(second_start_, placement_.nodes(contact_.other_body()), pool_);
+  }
+  const auto impacts =
+      contact_.is_within() ? impacts_.within(first_, 0.0) : impacts_.between(first_, second_, 0.0);
+  return std::ranges::any_of(impacts, [&](const auto& impact) { return has_passed(impact); });
+}
+
+double TouchingSurfaces::farthest_way() const {
+  const auto farthest = [&](int body, const Points& start) {
+    return (placement_.nodes(body) - start).rowwise().norm().maxCoeff();
+  };
+  return farthest(contact_.body(), first_start_) + farthest(contact_.other_body(), second_start_);
+}
+
+// Whether a vertex stands on the other side of a face, or an edge of an edge, by more than the
+// depth that is undone.
+bool TouchingSurfaces::has_passed(const collision::SurfaceImpact& impact) const {
+  using enum collision::FeatureKind;
+  const collision::SurfaceTree& second = contact_.is_within() ? first_ : second_;
+  const auto height = [&](auto at_first, auto at_second) {
+    if (impact.first_kind == edge) {
+      const auto [a, b] = first_.topology().edges()[static_cast<std::size_t>(impact.first)];
+      const auto [c, d] = second.topology().edges()[static_cast<std::size_t>(impact.second)];
+      const Vector3 across =
+          Vector3(at_first(b) - at_first(a)).cross(at_second(d) - at_second(c)).normalized();
+      return across.dot(at_first(a) - at_second(c));
+    }
+    const bool swapped = impact.first_kind == face;
+    const auto over = [&](auto at_vertex, NodeId vertex, auto at_face, const auto& corners) {
+      const Vector3 x = at_face(corners[0]);
+      const Vector3 normal = Vector3(at_face(corners[1]) - x).cross(at_face(corners[2]) - x);
+      return normal.normalized().dot(at_vertex(vertex) - x);
+    };
+    const auto& triangles = (swapped ? first_ : second).topology().triangles();
+    const auto number = static_cast<std::size_t>(swapped ? impact.first : impact.second);
+    return swapped ? over(at_second, impact.second, at_first, triangles[number])
+                   : over(at_first, impact.first, at_second, triangles[number]);
+  };
+  const double before = height([&](NodeId node) { return first_.at(node); },
+                               [&](NodeId node) { return second.at(node); });
+  const double after = height([&](NodeId node) { return first_.at_end(node); },
+                              [&](NodeId node) { return second.at_end(node); });
+  return before * after < 0.0 && std::abs(after) > contact_.depth();
 }
 
 void TouchingSurfaces::restart() {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sinew/collision/proximity.hpp"
+#include "sinew/collision/surface_impacts.hpp"
 #include "sinew/collision/surface_tree.hpp"
 #include "sinew/core/thread_pool.hpp"
 #include "sinew/core/types.hpp"
@@ -44,6 +45,9 @@ class TouchingSurfaces {
   double proposed_gap(std::size_t point) const;
   /// Adds pairs that overlap there and are no points yet. Whether there were any.
   bool add_overlaps();
+  /// Whether parts of the surfaces have passed through each other since the step began. Overlaps
+  /// that the next step undoes are none.
+  bool passed();
   /// m: the farthest that the gap of a point with a force is from its row's. @param effort (rows,)
   /// N.
   double drift(std::span<const double> effort);
@@ -73,6 +77,8 @@ class TouchingSurfaces {
   static Key name(const collision::ProximityPair& pair);
   void find(double reach);
   void move_trees(const Points& first, const Points& second);
+  double farthest_way() const;
+  bool has_passed(const collision::SurfaceImpact& impact) const;
   void keep_forces(std::span<double> effort);
   void pass_forces_on(std::span<double> effort) const;
 
@@ -81,6 +87,7 @@ class TouchingSurfaces {
   mechanics::RowValues& rows_;
   ThreadPool& pool_;
   collision::Proximity proximity_;
+  collision::SurfaceImpacts impacts_;
   collision::SurfaceTree first_, second_;  // the second one stands still within one surface
   std::vector<Named> found_;               // by name
   std::vector<Key> keys_;                  // of the points
