@@ -135,3 +135,19 @@ def _sets_of_half(points: np.ndarray, core: float, outer: float) -> dict:
     radius = np.hypot(points[:, 0], points[:, 2]) if np.ptp(points[:, 1]) < core else np.linalg.norm(points, axis=1)
     inside = np.abs(points[:, :2]).max(axis=1) < 1.001 * core
     return {"far": np.abs(radius / outer - 1.0) < 1e-9, "core": (np.abs(points[:, 2]) < 1e-9 * core) & inside}
+
+
+def split_into_tetrahedra(path: pathlib.Path, source: pathlib.Path) -> pathlib.Path:
+    """A mesh of hexahedra as twelve tetrahedra each, between its centre and its faces, which are cut at their least node; sets stay."""
+    mesh = meshio.read(source)
+    hexahedra, count = mesh.cells[0].data, len(mesh.points)
+    points = np.vstack([mesh.points, mesh.points[hexahedra].mean(axis=1)])
+    outward = ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
+    tetrahedra = []
+    for i, hexahedron in enumerate(hexahedra):
+        for face in outward:
+            square = hexahedron[list(face)]
+            first, second, third, fourth = np.roll(square, -int(np.argmin(square)))
+            tetrahedra += [(first, third, second, count + i), (first, fourth, third, count + i)]
+    sets = {name: np.concatenate([mask > 0, np.zeros(len(hexahedra), bool)]) for name, mask in mesh.point_data.items()}
+    return write_tetrahedra(path, points, tetrahedra, sets)
