@@ -121,8 +121,8 @@ def under_a_plate(case, element, force=20.0):
     stretch = brentq(lambda stretch: force_of(stretch) - force, 0.7, 1.0)
     case.identity(f"{element}: way of the plate under its motor, over the closed form less 1", abs(way / ((1.0 - stretch) * SIZE[2]) - 1.0), 1e-8,
                   source="patch")
-    case.bound(f"{element}: unevenness of the face under the plate, over its way", float(np.ptp(np.asarray(sim.contact("press").positions)[:, 2])) / way,
-               1e-8, source="patch")
+    uneven = float(np.ptp(np.asarray(sim.contact("press").positions)[:, 2]))
+    case.bound(f"{element}: unevenness of the face under the plate, over its way", uneven / way, 1e-8, source="patch")
 
 
 def run(case):

@@ -108,7 +108,8 @@ def circles(case, axis, convergence):
                    source="turntable", relative=False, known_miss=FIRST if color == plots.OURS else "")
         convergence.loglog(steps, errors, "s--", color=color, label=f"turntable, {integrator}")
     fine = np.linspace(0.0, 2.0 * np.pi, 200)
-    axis.plot(*(1e3 * (centre[:, None] + radius * np.array([np.cos(fine), np.sin(fine)]))), "--", color=plots.REFERENCE, lw=1, label="turntable: circle")
+    axis.plot(*(1e3 * (centre[:, None] + radius * np.array([np.cos(fine), np.sin(fine)]))), "--", color=plots.REFERENCE, lw=1,
+              label="turntable: circle")
     axis.plot(*(1e3 * (centre + seen)[::400].T), "s", ms=3, color=plots.SECOND, label="turntable, Sinew")
     axis.set(xlabel="x (mm)", ylabel="y (mm)", aspect="equal")
     axis.legend(fontsize=7)
@@ -235,5 +236,5 @@ def run(case):
     forced(case)
     middle.set(xlabel="time step (s)", ylabel="relative error")
     middle.legend(fontsize=6)
-    case.figure(figure, "Left: ways of the skidding ball and of the ball on the turntable, in the finest steps. Middle: errors over the time step. Right: the box on its "
-                        "spring comes to rest.")
+    case.figure(figure, "Left: ways of the skidding ball and of the ball on the turntable, in the finest steps. Middle: errors over the time "
+                        "step. Right: the box on its spring comes to rest.")

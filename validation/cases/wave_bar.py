@@ -86,7 +86,7 @@ def run(case):
     lost = [1.0 - bar.speed[-1] / SPEED for bar in seen]
     right.loglog([1.0 / n for n in sizes], lost, "o-", color=plots.OURS, label="speed lost, BDF2")
     right.loglog([1.0 / n for n in sizes], [abs(bar.duration / DURATION - 1.0) for bar in seen], "s-", color=plots.SECOND, label="duration, BDF2")
-    plots.slope_line(right, [1.0 / n for n in sizes], lost, 2.0 / 3.0)
+    plots.slope_line(right, [1.0 / n for n in sizes], lost, 0.67)
     right.set(xlabel="1 / n", ylabel="relative error, steps of h/(2 c)")
     for axis in (left, middle, right):
         axis.legend()
