@@ -9,19 +9,19 @@ from suite import plots
 from .hertz import E, SPOT, core_cells, in_plane
 
 TITLE = "Cattaneo and Mindlin: a ball that sticks in the middle and slips around"
-SETUP = """The rigid ball of the case hertz, a/R = 0.01, on rubber with nu = 0.49 and mu = 0.5, is pressed down and then pushed along x; a half
-ball of radius 400 a, y >= 0, is meshed. (The theory neglects how normal and tangential tractions act on each other, which vanishes at
-nu = 0.5.) With x = Q/(mu P), a disc of radius c = a (1 - x)^(1/3) sticks and the ball moves d_t = 3 mu P S/(16 a) (1 - (1 - x)^(2/3)), S =
-(2 - nu)/G. P, Q and a, from the second moment of the normal forces, 2/5 P a^2, are those of the simulation. The tractions that friction
-leaves over, mu p - |q|, are theirs of a smaller ball over the stick disc: c follows from their second moment, as a does. The disc
-of the area of sticking nodes is reported. Then the ball goes to and fro between +-d_t, and
-the area of the loop of Q over d_t, by Simpson's rule, is compared with the loss of a cycle. The border of the half ball takes about 0.25 % from
-d_t, which is not corrected."""
+SETUP = """The rigid ball of the case hertz, a/R = 0.01, on rubber with nu = 0.49 and mu = 0.5, is pressed down and then
+pushed along x; a half ball of radius 400 a, y >= 0, is meshed. (The theory neglects how normal and tangential tractions
+act on each other, which vanishes at nu = 0.5.) With x = Q/(mu P), a disc of radius c = a (1 - x)^(1/3) sticks and the
+ball moves d_t = 3 mu P S/(16 a) (1 - (1 - x)^(2/3)), S = (2 - nu)/G. P, Q and a, from the second moment of the normal
+forces, 2/5 P a^2, are those of the simulation. The tractions that friction leaves over, mu p - |q|, are theirs of a
+smaller ball over the stick disc: c follows from their second moment, as a does. The disc of the area of sticking nodes
+is reported. Then the ball goes to and fro between +-d_t, and the area of the loop of Q over d_t, by Simpson's rule, is
+compared with the loss of a cycle. The border of the half ball takes about 0.25 % from d_t, which is not corrected."""
 SOURCES = {"Mindlin": "C. Cattaneo, Rend. Accad. Naz. Lincei 27 (1938) 342; R. D. Mindlin, Compliance of elastic bodies in contact, J. Appl. Mech. "
                       "16 (1949) 259-268; K. L. Johnson, Contact Mechanics, 1985, sec. 7.2",
            "Deresiewicz": "R. D. Mindlin, H. Deresiewicz, Elastic spheres in contact under varying oblique forces, J. Appl. Mech. 20 (1953) "
                           "327-344; Johnson sec. 7.4: 9 mu^2 P^2 S/(10 a) (1 - (1-x)^(5/3) - 5x/6 (1 + (1-x)^(2/3)))"}
-COST = 50
+COST = 60
 POISSON, FRICTION, RADIUS = 0.49, 0.5, SPOT / 0.01
 SHEAR = (2.0 - POISSON) * 2.0 * (1.0 + POISSON) / E  # S
 MOST = 3.0 / 16.0 * FRICTION / SPOT * SHEAR * 4.0 / 3.0 * E / (1.0 - POISSON**2) * SPOT**3 / RADIUS  # d_t where it slips

@@ -10,13 +10,14 @@ from suite import plots
 from suite.robots import SOLVER
 
 TITLE = "Contact patch test: uniform pressure under a rigid plate"
-SETUP = """A block of 40 x 40 x 20 mm of 5 x 5 x 3 distorted cells stands on rollers; a rigid surface presses it from above, without friction: a plane
-that moves down by 2 mm, then a rigid plate on a slider that a motor presses with 20 N. The Saint Venant-Kirchhoff law, E = 100 kPa, nu = 0.3,
-gives uniform stress: F = A E l (l^2 - 1)/2, l the stretch. The forces of nodes ought to be the loads that belong to a uniform pressure on
-the faces of the elements, a third of a triangle's area to each corner (tet4) or each mid-edge (tet10, nothing to its corners)."""
+SETUP = """A block of 40 x 40 x 20 mm of 5 x 5 x 3 distorted cells stands on rollers; a rigid surface presses it from
+above, without friction: a plane that moves down by 2 mm, then a rigid plate on a slider that a motor presses with 20 N.
+The Saint Venant-Kirchhoff law, E = 100 kPa, nu = 0.3, gives uniform stress: F = A E l (l^2 - 1)/2, l the stretch. The
+forces of nodes ought to be the loads that belong to a uniform pressure on the faces of the elements, a third of a
+triangle's area to each corner (tet4) or each mid-edge (tet10, nothing to its corners)."""
 SOURCES = {"patch": "uniform stress; consistent loads of a pressure: O. C. Zienkiewicz, R. L. Taylor, The Finite Element Method, 6th ed. 2005, "
                     "sec. 3.3; R. L. Taylor, P. Papadopoulos, On a patch test for contact problems, 1991"}
-COST = 3
+COST = 4
 SIZE, CELLS, YOUNG = np.array([0.04, 0.04, 0.02]), (5, 5, 3), 1e5
 
 

@@ -9,21 +9,22 @@ from suite import plots
 from suite.case import observed_order
 
 TITLE = "Hertz: a rigid ball and a rigid cylinder pressed on an elastic half space"
-SETUP = """A rigid ball, R = 100 mm, is pressed d = 10 um deep, without friction, on hexahedra of neo-Hookean rubber, E = 100 kPa,
-nu = 0.3 and 0.45: a = sqrt(R d) = 1 mm and a/R = 0.01, so that strains are small. A quarter of a half ball of radius L = 50 a, held at its
-border, stands for the half space; cells are even, h = a/2 to a/8, out to 1.25 a and grow from there. Such a half ball gives less than the half
-space by c F/(4 pi G L), c = 2.37 and 2.58, which is computed from harmonic functions (reference/half_space.py): d is 1.4 % smaller for
-the same force, and is corrected by that. The pressure at a node is its force over the deformed area nearest to it; the contact
-radius follows from the second moment of the forces, 2/5 F a^2. Then a cylinder, R = 100 mm, on half a disc in plane strain, by its force per
-length: a^2 = 4 F R/(pi E*), p0 = 2 F/(pi a), second moment 1/4 F a^2; its depth depends on the border and is not compared. The same with the load of
-NAFEMS CB1, 35 kN/mm on R = 50 mm: both bodies are elastic there (210 and 70 GPa, nu = 0.3), which Sinew cannot have touch yet, so that the
-block alone has the E* of both. The half ball is also split into tetrahedra, twelve a cell; tet10 carries no pressure at
-its corners, so that force and radius are compared. At larger a/R the theory, a parabola on a plane at small strain, departs from a ball on
-rubber; that is plotted."""
+SETUP = """A rigid ball, R = 100 mm, is pressed d = 10 um deep, without friction, on hexahedra of neo-Hookean rubber, E
+= 100 kPa, nu = 0.3 and 0.45: a = sqrt(R d) = 1 mm and a/R = 0.01, so that strains are small. A quarter of a half ball
+of radius L = 50 a, held at its border, stands for the half space; cells are even, h = a/2 to a/8, out to 1.25 a and
+grow from there. Such a half ball gives less than the half space by c F/(4 pi G L), c = 2.37 and 2.58, which is computed
+from harmonic functions (reference/half_space.py): d is 1.4 % smaller for the same force, and is corrected by that. The
+pressure at a node is its force over the deformed area nearest to it; the contact radius follows from the second moment
+of the forces, 2/5 F a^2. Then a cylinder, R = 100 mm, on half a disc in plane strain, by its force per length: a^2 = 4
+F R/(pi E*), p0 = 2 F/(pi a), second moment 1/4 F a^2; its depth depends on the border and is not compared. The same
+with the load of NAFEMS CB1, 35 kN/mm on R = 50 mm: both bodies are elastic there (210 and 70 GPa, nu = 0.3), which
+Sinew cannot have touch yet, so that the block alone has the E* of both. The half ball is also split into tetrahedra,
+twelve a cell; tet10 carries no pressure at its corners, so that force and radius are compared. At larger a/R the
+theory, a parabola on a plane at small strain, departs from a ball on rubber; that is plotted."""
 SOURCES = {"Hertz": "H. Hertz, Ueber die Beruehrung fester elastischer Koerper, J. reine angew. Math. 92 (1882) 156-171; K. L. Johnson, Contact "
                     "Mechanics, 1985, sec. 4.2: F = 4/3 E* sqrt(R) d^1.5, p0 = 2 E*/pi sqrt(d/R), a = sqrt(R d), E* = E/(1 - nu^2)",
            "NAFEMS CB1": "NAFEMS, Advanced finite element contact benchmarks, 2006, no. 1: half width 6.2146 mm, 3585.4 MPa by Hertz"}
-COST = 30
+COST = 55
 E, SPOT, LARGE = 1e5, 1e-3, 50.0
 
 

@@ -9,17 +9,20 @@ from suite import plots
 from suite.case import observed_order
 
 TITLE = "Leaning and leaving: ladders, a card tent, balls on a sphere"
-SETUP = """(i) A ladder, a capsule of l = 300 mm between the centres of its ends, r = 2 mm, 100 g, leans on a wall, mu = 0.2 and 0.4, and a floor, mu = 0.4 and
-0.3; balance with both contacts at their limits gives the least angle, about which it stands 0.1 degrees above, and slides 0.1 below. (ii) A tent of two
-cards of 100 x 1 mm at 60 degrees stands if mu on the floor exceeds cot(60)/2, less a little since thick cards stand on corners. Corner on corner, the
-normal may be any between the faces'; Sinew takes that of a face, 30 degrees off the force, which mu = 0.9 between the cards carries. (iii) The
-ladder without friction, let go at 75 degrees: (m l^2/4 + I) theta'' = -m g l/2 cos(theta), until the wall's force is nought at sin(theta) = 2/3 sin(75); then it keeps its
-horizontal speed. (iv) A ball, r = 20 mm, at rest 0.2 rad from the top of a fixed sphere, R = 80 mm: without friction it leaves at cos = 2/3 cos(0.2),
-with mu = 100 it rolls and leaves at 10/17 cos(0.2). The angle at which it leaves is read where the normal force ends, between two steps by a straight line."""
+SETUP = """(i) A ladder, a capsule of l = 300 mm between the centres of its ends, r = 2 mm, 100 g, leans on a wall, mu =
+0.2 and 0.4, and a floor, mu = 0.4 and 0.3; balance with both contacts at their limits gives the least angle, about
+which it stands 0.1 degrees above, and slides 0.1 below. (ii) A tent of two cards of 100 x 1 mm at 60 degrees stands if
+mu on the floor exceeds cot(60)/2, less a little since thick cards stand on corners. Corner on corner, the normal may be
+any between the faces'; Sinew takes that of a face, 30 degrees off the force, which mu = 0.9 between the cards carries.
+(iii) The ladder without friction, let go at 75 degrees: (m l^2/4 + I) theta'' = -m g l/2 cos(theta), until the wall's
+force is nought at sin(theta) = 2/3 sin(75); then it keeps its horizontal speed. (iv) A ball, r = 20 mm, at rest 0.2 rad
+from the top of a fixed sphere, R = 80 mm: without friction it leaves at cos = 2/3 cos(0.2), with mu = 100 it rolls and
+leaves at 10/17 cos(0.2). The angle at which it leaves is read where the normal force ends, between two steps by a
+straight line."""
 SOURCES = {"Coulomb": "statics with Coulomb friction at its limits",
            "ladder": "energy: theta'^2 = 3 g/l (sin(start) - sin(theta)), leaves where sin(theta) = 2/3 sin(start)",
            "sphere": "energy and centripetal force: m v^2/(R + r) = m g cos, with v^2 = 2 g (R + r)(cos(start) - cos)/(1 + k), k = 0 or 2/5"}
-COST = 10
+COST = 3
 G, LENGTH, RADIUS, MASS = 9.81, 0.3, 0.002, 0.1
 
 

@@ -9,17 +9,19 @@ from suite import plots
 from suite.case import observed_order
 
 TITLE = "Mechanisms: four-bar linkage, slider-crank, double pendulum and hanging chain"
-SETUP = """Links are boxes of 5 x 5 mm and 100 g, turned and hinged in the x-y plane, gravity along -y. (i) A four-bar linkage, crank 40,
-coupler 120, rocker 80, ground 100 mm, all joints hinges about z (three rows more than the plane needs), turned at 10 rad/s: the positions follow
-from two circles, the motor's torque from the power, M w = d/dt (T + V), with T and V of the closed form. (ii) A slider-crank, 50 and 150 mm,
-piston 200 g, starts from rest under a torque of 50 mN m and gravity: I(theta) theta'' + I' theta'^2/2 + V' = M, with one unknown. (iii)
-Two bars of 200 mm let go from the horizontal for 1 s. (ii) and (iii) are integrated by DOP853 to 1e-12. (iv) A chain of 12 bars of 50 mm,
-whose masses grow from 20 to 86 g, hung between two points at one height: a drawing in statics is solved for two unknowns, the force at one end; Sinew
-takes it there by backward Euler steps of 50 ms, which damp the swinging. Integrators are BDF2 and generalized-alpha where not said."""
+SETUP = """Links are boxes of 5 x 5 mm and 100 g, turned and hinged in the x-y plane, gravity along -y. (i) A four-bar
+linkage, crank 40, coupler 120, rocker 80, ground 100 mm, all joints hinges about z (three rows more than the plane
+needs), turned at 10 rad/s: the positions follow from two circles, the motor's torque from the power, M w = d/dt (T +
+V), with T and V of the closed form. (ii) A slider-crank, 50 and 150 mm, piston 200 g, starts from rest under a torque
+of 50 mN m and gravity: I(theta) theta'' + I' theta'^2/2 + V' = M, with one unknown. (iii) Two bars of 200 mm let go
+from the horizontal for 1 s. (ii) and (iii) are integrated by DOP853 to 1e-12. (iv) A chain of 12 bars of 50 mm, whose
+masses grow from 20 to 86 g, hung between two points at one height: a drawing in statics is solved for two unknowns, the
+force at one end; Sinew takes it there by backward Euler steps of 50 ms, which damp the swinging. Integrators are BDF2
+and generalized-alpha where not said."""
 SOURCES = {"geometry": "plane kinematics in closed form",
            "Lagrange": "Lagrange's equations in minimal coordinates, integrated by E. Hairer's DOP853 (scipy) to 1e-12",
            "statics": "each bar in balance: tan(angle) = (V_left + V_right)/(2 H); two unknowns by scipy's fsolve"}
-COST = 25
+COST = 5
 G, MASS, THICK = 9.81, 0.1, 0.005
 SECOND_ORDER = ("bdf2", "generalized-alpha")
 

@@ -8,21 +8,23 @@ from suite import plots
 from suite.case import observed_order
 
 TITLE = "Rolling and sliding: a skidding ball, a turntable, a leaning disc, friction oscillators"
-SETUP = """(i) A ball, r = 20 mm, 100 g, is thrown along x at 0.6 m/s with a spin of (25, 10, 0) rad/s, mu = 0.2, so that it skids across its way:
-the direction of the slip u stays, friction is constant, the way a parabola until t = 2 |u|/(7 mu g), when it rolls at v - 2/7 u. Nothing has
-a moment about the vertical. (ii) The ball rolls on a turntable of 1 m at 7 rad/s: in the world it goes round a circle at 2/7 of that, with any
-velocity. (iii) A disc, r = 30 mm, 4 mm thick, rolls on its rim, leaning by 15 degrees, in a circle at 4 rad/s; the steady spin, from Euler's equations, is
-11.1 rad/s about its axis. Lean and energy are constant; watched for 0.2 s. (iv) A box of 1 kg on a spring of 100 N/m, pulled out by 50 mm, mu = 0.05:
-each half period takes 2 mu m g/k from the amplitude until it rests. Then a force of 2 N sin(w t), w from 0.45 to 1.4 of the natural one, mu = 0.06: Den
-Hartog's amplitude of motion without stops, after 25 periods. Backward Euler or BDF2; the point that rolls is taken where the step begins, so that rolling is of
-first order under both."""
+SETUP = """(i) A ball, r = 20 mm, 100 g, is thrown along x at 0.6 m/s with a spin of (25, 10, 0) rad/s, mu = 0.2, so
+that it skids across its way: the direction of the slip u stays, friction is constant, the way a parabola until t = 2
+|u|/(7 mu g), when it rolls at v - 2/7 u. Nothing has a moment about the vertical. (ii) The ball rolls on a turntable of
+1 m at 7 rad/s: in the world it goes round a circle at 2/7 of that, with any velocity. (iii) A disc, r = 30 mm, 4 mm
+thick, rolls on its rim, leaning by 15 degrees, in a circle at 4 rad/s; the steady spin, from Euler's equations, is 11.1
+rad/s about its axis. Lean and energy are constant; watched for 0.2 s. (iv) A box of 1 kg on a spring of 100 N/m, pulled
+out by 50 mm, mu = 0.05: each half period takes 2 mu m g/k from the amplitude until it rests. Then a force of 2 N sin(w
+t), w from 0.45 to 1.4 of the natural one, mu = 0.06: Den Hartog's amplitude of motion without stops, after 25 periods.
+Backward Euler or BDF2; the point that rolls is taken where the step begins, so that rolling is of first order under
+both."""
 SOURCES = {"Coulomb": "skidding of a homogeneous ball with Coulomb friction: constant deceleration, then rolling",
            "turntable": "R. H. Romer, Motion of a sphere on a tilted turntable, Am. J. Phys. 49 (1981) 985: 2/7 of the table's rate",
            "Euler": "steady motion of a rolling disc: d/dt of the angular momentum in the frame that precesses; the root by scipy's brentq",
            "oscillator": "free vibration with dry friction: 2 mu N/k a half period",
            "Den Hartog": "J. P. Den Hartog, Forced vibrations with combined Coulomb and viscous friction, Trans. ASME 53 (1931) 107: X = F/k "
                          "sqrt(V^2 - (mu N/F)^2 U^2), V = 1/(1 - b^2), U = sin(pi/b)/(b (1 + cos(pi/b)))"}
-COST = 25
+COST = 15
 G, RADIUS, MASS = 9.81, 0.02, 0.1
 FIRST = "points that roll are followed from where they touch when the step begins, and forces act there at its end: first order"
 

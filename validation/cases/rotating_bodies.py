@@ -9,15 +9,16 @@ from suite import plots
 from suite.case import observed_order
 
 TITLE = "Rotating bodies: a box about its middle axis, a heavy top"
-SETUP = """(i) A box of 60 x 40 x 20 mm, 300 g, free of forces, spins at 20 rad/s about its middle axis, 0.5 rad/s about the others, for 2 s. The
-axis turns over again and again (Dzhanibekov): the time between two is 2 K(m)/p in closed form. Momentum and energy ought to be kept. (ii) A disc of 200 g,
-r = 50 mm, 100 mm from the ball joint at the foot of its axis, is let go at 60 degrees from the vertical with a spin of 200 rad/s: it falls, precesses
-and nods. Equations in Euler's angles with their two momenta, integrated by DOP853 to 1e-12, tell where the axis points. Errors are the largest in the
-run; drifts are relative."""
+SETUP = """(i) A box of 60 x 40 x 20 mm, 300 g, free of forces, spins at 20 rad/s about its middle axis, 0.5 rad/s about
+the others, for 2 s. The axis turns over again and again (Dzhanibekov): the time between two is 2 K(m)/p in closed form.
+Momentum and energy ought to be kept. (ii) A disc of 200 g, r = 50 mm, 100 mm from the ball joint at the foot of its
+axis, is let go at 60 degrees from the vertical with a spin of 200 rad/s: it falls, precesses and nods. Equations in
+Euler's angles with their two momenta, integrated by DOP853 to 1e-12, tell where the axis points. Errors are the largest
+in the run; drifts are relative."""
 SOURCES = {"Landau": "L. D. Landau, E. M. Lifshitz, Mechanics, 3rd ed. 1976, sec. 37: the asymmetrical top in Jacobi's functions",
            "Goldstein": "H. Goldstein, Classical Mechanics, 2nd ed. 1980, sec. 5-7: the heavy symmetrical top; integrated by DOP853 (scipy)",
            "conserved": "momentum and energy of a body without moments"}
-COST = 10
+COST = 4
 G = 9.81
 ORDERS = {"backward-euler": 1.0, "bdf2": 2.0, "generalized-alpha": 2.0}
 COLORS = {"backward-euler": plots.THIRD, "bdf2": plots.OURS, "generalized-alpha": plots.SECOND}

@@ -9,15 +9,17 @@ from suite.case import observed_order
 from suite.robots import SOLVER
 
 TITLE = "Friction of finite elements: the wedge of CGS-4, a belt on a drum"
-SETUP = """(i) A block of 40 x 40 x 20 mm, 1 MPa, of weight W is pushed up a wedge of slope 0.1 by a horizontal force at its centre, whose
-displacement is commanded, at 20 mm/s in backward Euler steps of 1 ms: F/W = (tan a + mu)/(1 - mu tan a) (geometry and loads of NAFEMS CGS-4, one deformable
-block on a rigid plane). (ii) A belt, 1 MPa, 0.1 to 0.4 mm thick, lies on a rigid drum, R = 20 mm, with a straight tail at both ends, of hexahedra in
-plane strain, one through the thickness. One end is held, the other pulled in 20 quasi-static steps until the strain is 0.2 %; all of it slips. T1/T2,
-T2 being the reaction, is e^(mu theta) on a thin belt. Friction acts at R and the tension at R + t/2, so that its moment about the axis
-makes the exponent mu theta R/(R + t/2), which is compared; 60 elements round half the drum, t/R = 0.01, if not said otherwise."""
+SETUP = """(i) A block of 40 x 40 x 20 mm, 1 MPa, of weight W is pushed up a wedge of slope 0.1 by a horizontal force at
+its centre, whose displacement is commanded, at 20 mm/s in backward Euler steps of 1 ms: F/W = (tan a + mu)/(1 - mu tan
+a) (geometry and loads of NAFEMS CGS-4, one deformable block on a rigid plane). (ii) A belt, 1 MPa, 0.1 to 0.4 mm thick,
+lies on a rigid drum, R = 20 mm, with a straight tail at both ends, of hexahedra in plane strain, one through the
+thickness. One end is held, the other pulled in 20 quasi-static steps until the strain is 0.2 %; all of it slips. T1/T2,
+T2 being the reaction, is e^(mu theta) on a thin belt. Friction acts at R and the tension at R + t/2, so that its moment
+about the axis makes the exponent mu theta R/(R + t/2), which is compared; 60 elements round half the drum, t/R = 0.01,
+if not said otherwise."""
 SOURCES = {"NAFEMS": "NAFEMS, Benchmark tests for contact and gap elements (CGS-4), by the closed form (tan a + mu)/(1 - mu tan a)",
            "Euler": "L. Euler 1762: T1/T2 = e^(mu theta); with the moment of friction about the axis, dT (R + t/2) = mu T R dtheta"}
-COST = 25
+COST = 20
 G, RADIUS, WIDE, YOUNG, STRAIN = 9.81, 0.02, 0.01, 1e6, 2e-3
 
 
@@ -135,4 +137,5 @@ def run(case):
     belts(case, left)
     converge(case, right)
     unsolved(case)
-    case.figure(figure, "Left: tension along the belt, from the friction of its nodes; lines: e^(-mu theta R/(R + t/2)). Right: errors over elements.")
+    case.figure(figure, "Left: tension along the belt, from the friction of its nodes; lines: e^(-mu theta R/(R + t/2)). Right: errors "
+                        "over elements.")
