@@ -74,7 +74,7 @@ class Push:
 
 
 def pushes(case, convergence, stick):
-    fractions, sizes, errors = np.array([0.2, 0.5, 0.8]), (2, 4, 6, 8), []
+    fractions, sizes, errors = np.array([0.2, 0.5, 0.8]), (2, 4, 8), []
     for cells in sizes:
         way, normal, tangential, spot, disc, nodes = Push(case, cells, moved(fractions)).steps().T
         x = tangential / (FRICTION * normal)

@@ -156,7 +156,7 @@ def split(case, convergence):
 
 
 def departs(case, axis):
-    slender = np.array([0.003, 0.03, 0.1, 0.2, 0.3])
+    slender = np.array([0.01, 0.1, 0.2, 0.3])
     seen = [Ball(case, 6, 0.45, ratio) for ratio in slender]
     axis.semilogx(slender, [ball.force for ball in seen], "o-", color=plots.OURS, label="force")
     axis.semilogx(slender, [ball.peak for ball in seen], "s--", color=plots.SECOND, label="peak pressure")
