@@ -53,3 +53,101 @@ def hollow_sphere(path: pathlib.Path, inner: float, outer: float, around: int, t
                     for k in range(through):
                         cells.append([node(d, k) for d in square] + [node(d, k + 1) for d in square])
     return write_hexahedra(path, points, cells)
+
+
+def _to_the_border(cells: int, outer: float) -> tuple[np.ndarray, np.ndarray]:
+    """Scales of the layers around a core, 1 to `outer`, and how round each is, 0 to 1.
+
+    What a load moves falls with the distance s, so that layers may grow: they are even in s^-0.3, which leaves the least
+    error for their number under a point load.
+    """
+    scale = np.linspace(1.0, outer**-0.3, 3 * cells + 1) ** (-1.0 / 0.3)
+    return scale, np.minimum(1.0, np.log(scale) / np.log(4.0))
+
+
+def half_ball(path: pathlib.Path, core: float, cells: int, outer: float, *, whole: bool = False) -> pathlib.Path:
+    """A quarter of a half ball, x >= 0, y >= 0, z <= 0, or its half y >= 0 if `whole`: even cells in a cube of edge
+    `core` at the origin, then layers that grow to the radius `outer`. Sets 'far', 'core' (the cube's face z = 0). Lengths in m."""
+    scale, roundness = _to_the_border(cells, outer / core)
+    layers = len(scale) - 1
+    numbers: dict[tuple, int] = {}
+    points: list[np.ndarray] = []
+
+    def node(i: int, j: int, k: int, layer: int) -> int:
+        key = (i, j, k, layer)
+        if key not in numbers:
+            at = np.array([i, j, k], float) / cells
+            if layer:
+                at = (1.0 - roundness[layer]) * at + roundness[layer] * at / np.linalg.norm(at)
+            numbers[key] = len(points)
+            points.append(core * scale[layer] * at)
+        return numbers[key]
+
+    low, hexahedra = -cells if whole else 0, []
+    square = ((0, 0), (1, 0), (1, 1), (0, 1))
+    across, wide, deep = range(cells), range(low, cells), range(-cells, 0)
+    for i in wide:
+        for j in across:
+            for k in deep:
+                hexahedra.append([node(i + a, j + b, k + c, 0) for c in (0, 1) for a, b in square])
+    faces = [[(i + b, j + a, -cells) for a, b in square] for i in wide for j in across]
+    faces += [[(i + b, cells, k + a) for a, b in square] for i in wide for k in deep]
+    faces += [[(cells, j + a, k + b) for a, b in square] for j in across for k in deep]
+    if whole:
+        faces += [[(-cells, j + b, k + a) for a, b in square] for j in across for k in deep]
+    hexahedra += [[node(*p, layer + c) for c in (0, 1) for p in face] for face in faces for layer in range(layers)]
+    points = np.array(points)
+    return write_hexahedra(path, points, hexahedra, _sets_of_half(points, core, outer))
+
+
+def half_disc(path: pathlib.Path, core: float, cells: int, outer: float) -> pathlib.Path:
+    """The like in the plane, x >= 0, z <= 0, one cell of `core` / `cells` thick along y."""
+    scale, roundness = _to_the_border(cells, outer / core)
+    layers = len(scale) - 1
+    numbers: dict[tuple, int] = {}
+    points: list[np.ndarray] = []
+
+    def node(i: int, k: int, layer: int, side: int) -> int:
+        key = (i, k, layer, side)
+        if key not in numbers:
+            at = np.array([i, k], float) / cells
+            if layer:
+                at = (1.0 - roundness[layer]) * at + roundness[layer] * at / np.linalg.norm(at)
+            at *= core * scale[layer]
+            numbers[key] = len(points)
+            points.append(np.array([at[0], side * core / cells, at[1]]))
+        return numbers[key]
+
+    square = ((0, 0), (1, 0), (1, 1), (0, 1))
+    hexahedra = [[node(i + a, k + c, 0, b) for c in (0, 1) for a, b in square]
+                 for i in range(cells) for k in range(-cells, 0)]
+    edges = [((i, -cells), (i + 1, -cells)) for i in range(cells)]
+    edges += [((cells, k), (cells, k + 1)) for k in range(-cells, 0)]
+    for first, second in edges:
+        for layer in range(layers):
+            corners = [(first, layer), (second, layer), (second, layer + 1), (first, layer + 1)]
+            hexahedra.append([node(*at, depth, side) for side in (0, 1) for at, depth in corners])
+    points = np.array(points)
+    return write_hexahedra(path, points, hexahedra, _sets_of_half(points, core, outer))
+
+
+def _sets_of_half(points: np.ndarray, core: float, outer: float) -> dict:
+    radius = np.hypot(points[:, 0], points[:, 2]) if np.ptp(points[:, 1]) < core else np.linalg.norm(points, axis=1)
+    inside = np.abs(points[:, :2]).max(axis=1) < 1.001 * core
+    return {"far": np.abs(radius / outer - 1.0) < 1e-9, "core": (np.abs(points[:, 2]) < 1e-9 * core) & inside}
+
+
+def split_into_tetrahedra(path: pathlib.Path, source: pathlib.Path) -> pathlib.Path:
+    """A mesh of hexahedra as twelve tetrahedra each, between its centre and its faces, which are cut at their least node; sets stay."""
+    mesh = meshio.read(source)
+    hexahedra, count = mesh.cells[0].data, len(mesh.points)
+    points = np.vstack([mesh.points, mesh.points[hexahedra].mean(axis=1)])
+    outward = ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
+    tetrahedra = []
+    for i, hexahedron in enumerate(hexahedra):
+        for face in outward:
+            square = hexahedron[list(face)]
+            first, second, third, fourth = np.roll(square, -int(np.argmin(square)))
+            tetrahedra += [(first, third, second, count + i), (first, fourth, third, count + i)]
+    sets = {name: np.concatenate([mask > 0, np.zeros(len(hexahedra), bool)]) for name, mask in mesh.point_data.items()}
+    return write_tetrahedra(path, points, tetrahedra, sets)
