@@ -13,8 +13,9 @@ namespace sinew::collision {
 
 namespace {
 
-// A normal that leans along a cylinder's axis by less than this belongs to its side.
-constexpr double kSide = 1e-6;
+// The sine of the lean from which on a rim rolls about its axis. The less it leans, the farther away
+// is the point where its normal meets the axis, and the worse does it stand for one that tilts.
+constexpr double kRim = 0.3;
 
 ShapeDistance along(const Vector3& point, double gap, const Vector3& normal) {
   return {gap, point - gap * normal, normal};
@@ -109,7 +110,8 @@ double rounding_radius(const Shape& shape, const Vector3& normal) {
   const auto* cylinder = std::get_if<Cylinder>(&shape);
   if (cylinder == nullptr) return 0.0;
   const double lean = normal.dot((cylinder->to - cylinder->from).normalized());
-  return std::abs(lean) <= kSide ? cylinder->radius : 0.0;
+  const double across = std::sqrt(std::max(0.0, 1.0 - lean * lean));
+  return across >= kRim ? cylinder->radius / across : 0.0;
 }
 
 Plane checked(Plane plane) {
