@@ -24,6 +24,7 @@
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/read.hpp"
 #include "sinew/mesh/report.hpp"
+#include "sinew/mesh/solid.hpp"
 #include "sinew/mesh/surface.hpp"
 #include "sinew/pcc/arm.hpp"
 #include "sinew/pcc/has_arm.hpp"
@@ -144,7 +145,7 @@ Facts surface_facts(const InfoOptions& options) {
                            surface.nodes.rows(), surface.triangles.size(), size_text(size));
   try {
     mesh::require_closed(surface);
-    const double volume = mesh::enclosed_volume(surface);
+    const double volume = mesh::solid_moments(surface).volume;
     facts.json["closed"] = true;
     facts.json["volume_m3"] = volume;
     facts.text += fmt::format("  closed, encloses {:.6g} cm^3{}\n", 1e6 * std::abs(volume),

@@ -7,6 +7,7 @@
 #include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/mesh/selection.hpp"
 #include "sinew/pcc/arm.hpp"
+#include "sinew/scene/build.hpp"
 #include "sinew/scene/build_parts.hpp"
 #include "sinew/sim/model_builder.hpp"
 
@@ -80,6 +81,9 @@ void add_rigid(sim::ModelBuilder& builder, const SceneDescription& scene,
                const BodyDescription& body) {
   rigid::RigidSettings settings = *body.rigid;
   settings.gravity = scene.gravity;
+  if (!body.mesh.file.empty()) {
+    settings.shape = rigid::Solid{std::make_shared<const mesh::Surface>(make_surface(body.mesh))};
+  }
   builder.add_rigid_body(std::move(settings), body.place);
 }
 

@@ -31,6 +31,12 @@ std::set<Pair> named_pairs(const SceneDescription& scene) {
   return pairs;
 }
 
+// Whose shape this version has no contact of.
+bool is_surface(const BodyDescription& body) {
+  return body.rigid &&
+         (!body.mesh.file.empty() || std::holds_alternative<rigid::Solid>(body.rigid->shape));
+}
+
 bool is_fixed(const BodyDescription& body) { return body.rigid && body.rigid->fixed; }
 
 // Of those pairs that `all` stands for, the ones that this version has no contact for.
@@ -40,8 +46,8 @@ void refuse_pairs(const std::vector<Pair>& pairs, const Location& place) {
   texts.reserve(pairs.size());
   for (const auto& [one, other] : pairs) texts.push_back(fmt::format("[{}, {}]", one, other));
   throw Error(ErrorKind::not_in_this_version, place,
-              "contact of deformable bodies with one another or themselves, and of arms without "
-              "points,",
+              "contact of deformable bodies with one another or themselves, of surfaces of "
+              "meshes, and of arms without points,",
               fmt::format("write except: [{}], and give arms entries with `points`",
                           fmt::join(texts, ", ")));
 }
@@ -59,7 +65,8 @@ std::vector<ContactDescription> pairs_of(const ContactDescription& contact,
       if ((one == other && one->rigid) || (is_fixed(*one) && is_fixed(*other))) continue;
       const Pair pair = ordered(one->name, other->name);
       if (excepted.contains(pair) || !settled.insert(pair).second) continue;
-      if (one->arm || other->arm || (!one->rigid && !other->rigid)) {
+      if (one->arm || other->arm || (!one->rigid && !other->rigid) || is_surface(*one) ||
+          is_surface(*other)) {
         refused.emplace_back(one->name, other->name);
         continue;
       }
