@@ -26,6 +26,7 @@
 #include "sinew/mesh/report.hpp"
 #include "sinew/mesh/solid.hpp"
 #include "sinew/mesh/surface.hpp"
+#include "sinew/mesh/topology.hpp"
 #include "sinew/pcc/arm.hpp"
 #include "sinew/pcc/has_arm.hpp"
 #include "sinew/record/run_file.hpp"
@@ -128,6 +129,40 @@ Facts mesh_facts(const InfoOptions& options) {
   return {mesh_json(report), mesh::format_report(report)};
 }
 
+ordered_json square(const Matrix3& m) {
+  return {triple(m.row(0)), triple(m.row(1)), triple(m.row(2))};
+}
+
+// What a surface encloses, or why it encloses nothing.
+void add_solid(ordered_json& json, std::string& text, const mesh::Surface& surface) {
+  try {
+    mesh::require_closed(surface);
+  } catch (const Error& error) {
+    json["closed"] = false;
+    json["defect"] = error.message();
+    text += fmt::format("  not closed: {}\n", error.message());
+    return;
+  }
+  const mesh::SolidMoments moments = mesh::solid_moments(surface);
+  const Matrix3 inertia = moments.inertia();
+  json["closed"] = true;
+  json["volume_m3"] = moments.volume;
+  json["centre_m"] = triple(moments.centre);
+  json["inertia_m5"] = square(inertia);
+  text += fmt::format(
+      "  closed, encloses {:.6g} cm^3{}\n  centre of volume {:.6g} {:.6g} {:.6g} mm, moments of "
+      "inertia per density {:.4g} {:.4g} {:.4g} m^5\n",
+      1e6 * std::abs(moments.volume), moments.volume < 0.0 ? "; its triangles face inwards" : "",
+      1e3 * moments.centre.x(), 1e3 * moments.centre.y(), 1e3 * moments.centre.z(), inertia(0, 0),
+      inertia(1, 1), inertia(2, 2));
+  try {
+    mesh::require_solid(surface);
+  } catch (const Error& error) {
+    json["defect"] = error.message();
+    if (error.kind() == ErrorKind::self_crossing) text += fmt::format("  {}\n", error.message());
+  }
+}
+
 Facts surface_facts(const InfoOptions& options) {
   mesh::SurfaceOptions settings;
   settings.unit_given = true;  // described, not judged
@@ -143,18 +178,7 @@ Facts surface_facts(const InfoOptions& options) {
                 {"size_m", triple(size)}};
   facts.text = fmt::format("{}: surface\n  {} nodes, {} triangles\n  size {}\n", surface.name,
                            surface.nodes.rows(), surface.triangles.size(), size_text(size));
-  try {
-    mesh::require_closed(surface);
-    const double volume = mesh::solid_moments(surface).volume;
-    facts.json["closed"] = true;
-    facts.json["volume_m3"] = volume;
-    facts.text += fmt::format("  closed, encloses {:.6g} cm^3{}\n", 1e6 * std::abs(volume),
-                              volume < 0.0 ? "; its triangles face inwards" : "");
-  } catch (const Error& error) {
-    facts.json["closed"] = false;
-    facts.json["defect"] = error.message();
-    facts.text += fmt::format("  not closed: {}\n", error.message());
-  }
+  add_solid(facts.json, facts.text, surface);
   return facts;
 }
 
@@ -172,14 +196,46 @@ void add_arm(Facts& facts, const pcc::Arm& arm) {
       arm.settings().name, arm.segments(), arm.coordinates(), 1e3 * arm.length(), 1e3 * mass);
 }
 
+void add_triangles(ordered_json& json, std::string& text, const mesh::Mesh& mesh) {
+  const mesh::Surface surface = mesh::boundary_surface(mesh);
+  bool closed = true;
+  try {
+    mesh::require_closed(surface);
+  } catch (const Error&) {
+    closed = false;
+  }
+  json["triangles"] = surface.triangles.size();
+  json["closed"] = closed;
+  text += fmt::format("    {} triangles, {}", surface.triangles.size(), closed ? "closed" : "open");
+  if (closed) {
+    const double volume = mesh::solid_moments(surface).volume;
+    json["volume_m3"] = volume;
+    text += fmt::format(", {:.6g} cm^3", 1e6 * volume);
+  }
+  text += "\n";
+}
+
+void add_rigid(Facts& facts, const mechanics::BodyModel& body, const mechanics::HasShape& shape) {
+  const Vector3 centre = shape.own_centre();
+  const Matrix3 inertia = shape.own_inertia();
+  ordered_json json = {{"name", body.name()},
+                       {"shape", shape.shape_name()},
+                       {"mass_kg", shape.mass()},
+                       {"centre_of_mass_m", triple(centre)},
+                       {"inertia_kg_m2", square(inertia)}};
+  facts.text += fmt::format(
+      "  body {}: rigid {}, {:.4g} g, centre of mass {:.4g} {:.4g} {:.4g} mm, moments of inertia "
+      "{:.4g} {:.4g} {:.4g} kg m^2\n",
+      body.name(), shape.shape_name(), 1e3 * shape.mass(), 1e3 * centre.x(), 1e3 * centre.y(),
+      1e3 * centre.z(), inertia(0, 0), inertia(1, 1), inertia(2, 2));
+  if (body.mesh().hexahedra.empty()) add_triangles(json, facts.text, body.mesh());
+  facts.json["bodies"].push_back(json);
+}
+
 void add_body(Facts& facts, const mechanics::BodyModel& body) {
   if (const auto* arm = mechanics::as<const pcc::HasArm>(body)) return add_arm(facts, arm->arm());
   if (const auto* shape = mechanics::as<const mechanics::HasShape>(body)) {
-    facts.json["bodies"].push_back(
-        {{"name", body.name()}, {"shape", shape->shape_name()}, {"mass_kg", shape->mass()}});
-    facts.text += fmt::format("  body {}: rigid {}, {:.4g} g\n", body.name(), shape->shape_name(),
-                              1e3 * shape->mass());
-    return;
+    return add_rigid(facts, body, *shape);
   }
   const auto* material = mechanics::as<const fem::HasElements>(body);
   if (material == nullptr) return;

@@ -109,8 +109,9 @@ def test_a_box_of_triangles_swings_and_is_driven_as_a_box(tmp_path):
     ends = []
     for part in (body(box_file(tmp_path)), {"type": "rigid", "shape": {"box": "60 40 20 mm"},
                                             "density": f"{DENSITY} kg/m^3"}):
-        free = make({"part": part}, joints=joints, gravity="0 0 -9.81 m/s^2",
-                    loads={"push": {"type": "force", "body": "part", "point": "30 0 0 mm", "force": "0 0 0.1 N"}})
+        free = make({"part": part}, joints=joints, gravity="0 0 -9.81 m/s^2", actuators={
+            "push": {"type": "force", "body": "part", "point": "30 0 0 mm", "direction": "0 0 1",
+                     "command": {"force": "0.1 N"}}})
         free.run(duration=0.3)
         driven = make({"part": part}, joints=joints, gravity="0 0 -9.81 m/s^2", actuators={
             "motor": {"type": "motor", "joint": "pin", "command": {"velocity": "2 rad/s"}},
@@ -192,10 +193,10 @@ def test_vtk_files_give_a_surface(tmp_path):
 
 def test_points_attach_inside_and_not_outside(tmp_path):
     part = body(box_file(tmp_path))
-    pull = {"type": "force", "body": "part", "force": "0 0 1 N"}
-    make({"part": part}, loads={"pull": {**pull, "point": "29 19 9 mm"}})
+    pull = {"type": "force", "body": "part", "direction": "0 0 1"}
+    make({"part": part}, actuators={"pull": {**pull, "point": "29 19 9 mm"}})
     with pytest.raises(sinew.Error, match="0.005 m outside body 'part'"):
-        make({"part": part}, loads={"pull": {**pull, "point": "35 0 0 mm"}})
+        make({"part": part}, actuators={"pull": {**pull, "point": "35 0 0 mm"}})
 
 
 def test_contact_of_a_surface_is_refused(tmp_path):

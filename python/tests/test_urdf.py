@@ -84,7 +84,7 @@ def test_a_double_pendulum_swings_as_the_one_written_by_hand(tmp_path):
     turn, position = Rotation.from_rotvec([0.1, -0.4, 0.7]), np.array([0.3, -0.2, 0.1])
     ours = make(pendulum(tmp_path), {"pose": {"position": "0.3 -0.2 0.1 m", "rotation": "0.1 -0.4 0.7 rad"}})
     theirs = by_hand(turn, position)
-    assert [body.name for body in ours.bodies] == ["robot.upper", "robot.lower"]
+    assert list(ours.bodies) == ["robot.upper", "robot.lower"]
     for _ in range(4):
         ours.run(duration=0.1)
         theirs.run(duration=0.1)
@@ -105,7 +105,8 @@ def test_angles_at_the_start(tmp_path):
     sim = make(pendulum(tmp_path), {"angles": {"top": "30 deg", "middle": "1 rad"}}, gravity="0 0 0 m/s^2")
     upper = Rotation.from_rotvec([0.2, 0, 0]) * Rotation.from_rotvec([0, np.pi / 6, 0])
     lower = upper * Rotation.from_rotvec([0, 0, 1.3])
-    np.testing.assert_allclose(np.roll(sim.body("robot.lower").rotation, -1), lower.as_quat(canonical=True), atol=1e-12)
+    frame = Rotation.from_quat(np.roll(sim.body("robot.lower").rotation, -1))
+    np.testing.assert_allclose(frame.as_matrix(), lower.as_matrix(), atol=1e-12)
     np.testing.assert_allclose(sim.body("robot.lower").position, [0, 0, 0.5] + upper.apply([0.2, 0, 0]), atol=1e-12)
     # The limits stay where the file has them: it stops at 2 rad, which is 2 - pi / 6 from the start.
     pushed = make(pendulum(tmp_path), {"angles": {"top": "30 deg"}}, gravity="0 0 0 m/s^2",
@@ -118,11 +119,10 @@ def test_angles_at_the_start(tmp_path):
 def test_motors_drive_an_arm_within_the_limits_of_the_file(tmp_path):
     motors = {"shoulder": {"type": "motor", "joint": "robot.top", "command": {"angle": "-0.5 rad"}},
               "elbow": {"type": "motor", "joint": "robot.middle", "command": {"angle": "0.4 rad"}}}
-    sim = make(pendulum(tmp_path), integrator="quasi-static", step="20 ms", actuators=motors,
-               effectors={"tip": {"body": "robot.lower", "point": "0.391067 0.0579 0.5118 m", "outside": "nearest"}})
+    sim = make(pendulum(tmp_path), integrator="backward-euler", step="20 ms", actuators=motors)
     sim.step(2)
-    assert abs(sim.joint("robot.top").angle) <= 2 * 0.02 * 3 + 1e-12  # 3 rad/s
-    sim.run(duration=0.5)
+    assert sim.joint("robot.top").angle == pytest.approx(-2 * 0.02 * 3, abs=1e-9)  # 3 rad/s
+    sim.run(duration=2.0)
     assert sim.joint("robot.top").angle == pytest.approx(-0.5, abs=1e-9)
     assert sim.joint("robot.middle").angle == pytest.approx(0.4, abs=1e-9)
     # Torques are those of the weights about the axes.
@@ -159,7 +159,7 @@ def test_fixed_links_weld_or_are_part_of_their_parent(tmp_path):
              joint("flange", "fixed", "arm", "tool", "0.2 0 0"), joint("end", "fixed", "tool", "tcp", "0.05 0 0"),
              joint("grip", "fixed", "tcp", "hand", "0.02 0 0", "0 0 0.5")]
     sim = make(urdf(tmp_path, *parts), effectors={"tip": {"body": "robot.tcp", "point": "0.25 0 1 m", "outside": "nearest"}})
-    assert [body.name for body in sim.bodies] == ["robot.base", "robot.arm", "robot.hand"]
+    assert list(sim.bodies) == ["robot.base", "robot.arm", "robot.hand"]
     sim.run(duration=0.2)
     np.testing.assert_array_equal(sim.body("robot.base").position, [0, 0, 1])
     arm, hand = sim.body("robot.arm"), sim.body("robot.hand")
@@ -174,7 +174,7 @@ def test_a_free_root_falls_and_a_floating_joint_is_none(tmp_path):
     file = urdf(tmp_path, link("foot"), link("body", inertial(0.5, MOMENTS), box("0.1 0.1 0.1")), link("ball", *BAR),
                 joint("a", "fixed", "foot", "body", "0 0 0.1"), joint("b", "floating", "body", "ball", "1 0 0"))
     sim = make(file, {"fixed": False}, gravity="0 0 -10 m/s^2", integrator="backward-euler", step="0.1 ms")
-    assert [body.name for body in sim.bodies] == ["robot.body", "robot.ball"] and not sim.joints
+    assert list(sim.bodies) == ["robot.body", "robot.ball"] and not sim.joints
     sim.run(duration=0.1)
     for name, x, z in (("robot.body", 0, 0.1), ("robot.ball", 1, 0.1)):
         np.testing.assert_allclose(sim.body(name).position, [x, 0, z - 0.05], atol=1e-4)
@@ -257,7 +257,7 @@ HINGE = joint("j", "continuous", "base", "arm")
     ([BASE, "<link name="], r"robot.urdf:6: this is no XML", "syntax-error"),
     ([BASE, ARM], "'base' and 'arm' have no parent both", "malformed-file"),
     ([], "has no <link>", "malformed-file"),
-    ([BASE, ARM, joint("j", "continuous", "base", "amr")], r"robot.urdf:9.*'j'.*\"?amr\"? is no link; did you mean 'arm'", "unknown-name"),
+    ([BASE, ARM, joint("j", "continuous", "base", "amr")], r"robot.urdf:9.*'j'.*'amr' is no link; did you mean 'arm'", "unknown-name"),
     ([BASE, ARM, HINGE, HINGE], r"robot.urdf:10.*line 9 has a <joint> of this name", "duplicate-key"),
     ([BASE, BASE], "line 3 has a <link> of this name", "duplicate-key"),
     ([BASE, ARM, HINGE, joint("k", "continuous", "base", "arm")], "has a parent already, by the joint of line 9", "malformed-file"),

@@ -100,7 +100,8 @@ class HasShape {
   virtual Vector3 rest_origin() const = 0;  ///< (3,) m, of its own frame at rest
   /// m, of a point (3,) m to its surface at rest: negative inside.
   virtual double rest_distance(const Vector3& point) const = 0;
-  virtual double mass() const = 0;  ///< kg
+  virtual double mass() const = 0;         ///< kg
+  virtual Vector3 own_centre() const = 0;  ///< (3,) m, of mass, in its own frame
   /// kg m^2, (3, 3) about the centre of mass, in its own axes.
   virtual Matrix3 own_inertia() const = 0;
   virtual const char* shape_name() const = 0;  ///< "box", "sphere", ..., "mesh"

@@ -53,6 +53,9 @@ class RigidBodyModel final : public mechanics::BodyModel,
 
   const RigidSettings& settings() const { return settings_; }
   double mass() const override { return mass_.mass; }
+  Vector3 own_centre() const override {
+    return settings_.rotation.transpose() * (mass_.centre - settings_.position);
+  }
   Matrix3 own_inertia() const override {
     return settings_.rotation.transpose() * mass_.inertia * settings_.rotation;
   }

@@ -43,8 +43,9 @@ urdf::ModelInterfaceSharedPtr parse_values(const UrdfTree& tree) {
   } catch (const std::exception& error) {
     reason = error.what();
   }
-  if (model != nullptr) return model;
-  reason = messages.text().empty() ? reason : messages.text();
+  // It goes on after some errors, without the element.
+  if (model != nullptr && messages.text().empty()) return model;
+  if (!messages.text().empty()) reason = messages.text();
   throw Error(ErrorKind::malformed_file, tree.place_named_in(reason), reason,
               "correct the file there");
 }
