@@ -224,6 +224,39 @@ def test_meshes_are_found_in_folders_and_packages(tmp_path):
         make(robot("package://arm/bar.stl"), {"packages": {"arm": str(tmp_path / "none")}})
 
 
+def test_a_visual_of_another_format_is_drawn_as_the_collision(tmp_path):
+    (tmp_path / "look.dae").write_text("<COLLADA/>")
+    visual = '<visual><geometry><mesh filename="look.dae"/></geometry></visual>'
+    with pytest.warns(sinew.SinewWarning, match=r"robot.urdf:\d+.*collision geometry is drawn.*unused-element"):
+        sim = make(urdf(tmp_path, link("base"), link("arm", *BAR, visual), joint("j", "continuous", "base", "arm")))
+    assert np.ptp(sim.body("robot.arm").positions[:, 0]) == pytest.approx(0.2)
+
+
+def test_one_mesh_touches_with_its_hull(tmp_path):
+    nodes, triangles = solids.box(np.array([0.2, 0.02, 0.01]), (0.1, 0, 0))
+    solids.write_stl(tmp_path / "bar.stl", nodes, triangles)
+    mesh = '<collision><geometry><mesh filename="bar.stl"/></geometry></collision>'
+    sim = make(urdf(tmp_path, link("base"), link("arm", BAR[0], mesh), joint("j", "continuous", "base", "arm", "0 0 0.1")),
+               integrator="backward-euler", contacts={"floor": {"body": "robot.arm", "surface": {"plane": {}}}})
+    sim.run(duration=0.5)
+    angle = sim.joint("robot.j").angle
+    assert 0.2 * np.sin(angle) + 0.005 * np.cos(angle) == pytest.approx(0.1, abs=1e-5)
+
+
+def test_runs_keep_the_paths_of_a_robot(tmp_path, monkeypatch):
+    (tmp_path / "parts").mkdir()
+    solids.write_stl(tmp_path / "parts" / "bar.stl", *solids.box(np.array([0.2, 0.02, 0.01]), (0.1, 0, 0)))
+    mesh = '<visual><geometry><mesh filename="package://arm/bar.stl"/></geometry></visual>'
+    urdf(tmp_path, link("base"), link("arm", BAR[0], mesh), joint("j", "continuous", "base", "arm"))
+    scene = tmp_path / "scene.yaml"
+    scene.write_text("sinew: 1\ntime_step: 1 ms\nintegrator: bdf2\nbodies:\n"
+                     "  r: {type: urdf, file: robot.urdf, packages: {arm: parts}}\n")
+    sim = sinew.load(scene, set={"bodies.r.angles": "{j: 90 deg}"})
+    np.testing.assert_allclose(sim.body("r.arm").positions[:, 2].min(), -0.2, atol=1e-9)
+    monkeypatch.chdir("/")
+    np.testing.assert_allclose(sinew.load(scene).body("r.arm").positions[:, 2].min(), -0.005, atol=1e-9)
+
+
 def test_contact_of_links(tmp_path):
     file = urdf(tmp_path, link("base", box("1 1 0.1", "0 0 -0.05")), link("arm", *BAR),
                 joint("j", "continuous", "base", "arm", "0 0 0.1"))

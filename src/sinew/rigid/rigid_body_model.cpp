@@ -191,6 +191,9 @@ std::vector<NamedHash> RigidBodyModel::parts() const {
   for (const mesh::Triangle& triangle : skin_.triangles) {
     shape.add(triangle[0], triangle[1], triangle[2]);
   }
+  if (const auto* solid = std::get_if<Solid>(&settings_.shape); solid && solid->hull) {
+    for (const Vector3& corner : solid->hull->corners()) shape.add(corner);
+  }
   if (settings_.look != nullptr) {
     shape.add(skin(settings_.shape).nodes, shape_origin(), shape_axes());
   }

@@ -142,9 +142,10 @@ collision::Shape solid(const Shape& shape) {
         return collision::Cylinder{-along_z(cylinder.height), along_z(cylinder.height),
                                    cylinder.radius};
       },
-      [](const Solid&) -> collision::Shape {
+      [](const Solid& solid) -> collision::Shape {
+        if (solid.hull != nullptr) return collision::ConvexSolid{.hull = solid.hull};
         throw Error(ErrorKind::not_in_this_version, {}, "contact of the surface of a mesh",
-                    "give the body a `shape`, or contact at `points` of it");
+                    "write `use: convex` for that of its hull, or give `points` that touch");
       },
   };
   return std::visit(convert, shape);

@@ -28,7 +28,8 @@ struct Cylinder {
 
 /// What a closed triangle surface encloses.
 struct Solid {
-  std::shared_ptr<const mesh::Surface> surface;  ///< m
+  std::shared_ptr<const mesh::Surface> surface;       ///< m
+  std::shared_ptr<const collision::Polyhedron> hull;  ///< what touches; null: nothing does
 };
 
 using Shape = std::variant<Box, Sphere, Capsule, Cylinder, Solid>;
@@ -44,7 +45,7 @@ struct MassProperties {
 MassProperties mass_properties(const Shape& shape, double density);
 
 /// The same as a shape of collision, in its own frame. Throws Error(not-in-this-version) for a
-/// Solid.
+/// Solid without a hull.
 collision::Shape solid(const Shape& shape);
 /// That shape elsewhere. @param position (3,) m, of its origin. @param rotation of its axes.
 collision::Shape placed(const Shape& shape, const Vector3& position, const Matrix3& rotation);

@@ -67,6 +67,10 @@ std::vector<mesh::Face> faces_of(const SurfaceDescription& surface, const mesh::
 /// mesh), missing-mass, contradictory-limits. @return what the files say and the robots do not do.
 std::vector<Notice> expand_urdf(SceneDescription& scene);
 
+/// @param surface of it. @param convex whether its hull touches. Throws Error(zero-volume) for a
+/// hull without volume.
+rigid::Solid make_solid(mesh::Surface surface, bool convex);
+
 /// Adds a body that its scene describes. @return what a user should know of it.
 std::optional<Notice> add_body(sim::ModelBuilder& builder, const SceneDescription& scene,
                                const BodyDescription& body);

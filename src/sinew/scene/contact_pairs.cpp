@@ -31,10 +31,23 @@ std::set<Pair> named_pairs(const SceneDescription& scene) {
   return pairs;
 }
 
-// Whose shape this version has no contact of.
+// Whose shape this version has no contact of with points of finite elements.
 bool is_surface(const BodyDescription& body) {
-  return body.rigid &&
-         (!body.mesh.file.empty() || std::holds_alternative<rigid::Solid>(body.rigid->shape));
+  if (!body.rigid) return false;
+  if (!body.mesh.file.empty()) return !body.convex;
+  const auto* solid = std::get_if<rigid::Solid>(&body.rigid->shape);
+  return solid != nullptr && solid->hull == nullptr;
+}
+
+bool is_hull(const BodyDescription& body) {
+  if (!body.rigid || is_surface(body)) return false;
+  return !body.mesh.file.empty() || std::holds_alternative<rigid::Solid>(body.rigid->shape);
+}
+
+bool can_touch(const BodyDescription& one, const BodyDescription& other) {
+  if (one.arm || other.arm || is_surface(one) || is_surface(other)) return false;
+  if (!one.rigid || !other.rigid) return one.rigid || other.rigid;
+  return !is_hull(one) && !is_hull(other);
 }
 
 bool is_fixed(const BodyDescription& body) { return body.rigid && body.rigid->fixed; }
@@ -47,7 +60,7 @@ void refuse_pairs(const std::vector<Pair>& pairs, const Location& place) {
   for (const auto& [one, other] : pairs) texts.push_back(fmt::format("[{}, {}]", one, other));
   throw Error(ErrorKind::not_in_this_version, place,
               "contact of deformable bodies with one another or themselves, of surfaces of "
-              "meshes, and of arms without points,",
+              "meshes, of their hulls with rigid bodies, and of arms without points,",
               fmt::format("write except: [{}], and give arms entries with `points`",
                           fmt::join(texts, ", ")));
 }
@@ -65,8 +78,7 @@ std::vector<ContactDescription> pairs_of(const ContactDescription& contact,
       if ((one == other && one->rigid) || (is_fixed(*one) && is_fixed(*other))) continue;
       const Pair pair = ordered(one->name, other->name);
       if (excepted.contains(pair) || !settled.insert(pair).second) continue;
-      if (one->arm || other->arm || (!one->rigid && !other->rigid) || is_surface(*one) ||
-          is_surface(*other)) {
+      if (!can_touch(*one, *other)) {
         refused.emplace_back(one->name, other->name);
         continue;
       }

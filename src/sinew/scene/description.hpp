@@ -137,6 +137,7 @@ struct BodyDescription {
   Location place;
   std::optional<UrdfDescription> urdf;        ///< of type urdf; nothing below is then used
   std::optional<pcc::ArmSettings> arm;        ///< of type pcc; nothing below is then used
+  bool convex = false;                        ///< of type rigid, a mesh: its hull touches
   std::optional<rigid::RigidSettings> rigid;  ///< of type rigid; likewise, but for a mesh file
   MeshDescription mesh;
   Vector3 position = Vector3::Zero();  ///< m, of the mesh's origin

@@ -80,6 +80,7 @@ std::vector<BodyDescription> expand(const BodyDescription& body, SceneDescriptio
 template <class Value>
 std::vector<std::string> keys_of(const std::map<std::string, Value>& map) {
   std::vector<std::string> keys;
+  keys.reserve(map.size());
   for (const auto& entry : map) keys.push_back(entry.first);
   return keys;
 }

@@ -37,20 +37,27 @@ std::shared_ptr<const KeyTable> shape_table() {
 }
 
 std::shared_ptr<const KeyTable> solid_table() {
-  return make_table({.name = "mesh of a rigid body",
-                     .description =
-                         "A closed surface: STL, OBJ or PLY, or that of a VTK legacy, VTU or Gmsh "
-                         "file. The body's origin and axes are the file's.",
-                     .keys = {{.name = "file",
-                               .forms = {file()},
-                               .example = "part.stl",
-                               .description = "Path of the mesh, relative to the scene file.",
-                               .required = true},
-                              {.name = "unit",
-                               .forms = {unit(length())},
-                               .example = "mm",
-                               .default_text = "m",
-                               .description = "Length unit of the file's coordinates."}}});
+  return make_table(
+      {.name = "mesh of a rigid body",
+       .description = "A closed surface: STL, OBJ or PLY, or that of a VTK legacy, VTU or Gmsh "
+                      "file. The body's origin and axes are the file's.",
+       .keys = {{.name = "file",
+                 .forms = {file()},
+                 .example = "part.stl",
+                 .description = "Path of the mesh, relative to the scene file.",
+                 .required = true},
+                {.name = "unit",
+                 .forms = {unit(length())},
+                 .example = "mm",
+                 .default_text = "m",
+                 .description = "Length unit of the file's coordinates."},
+                {.name = "use",
+                 .forms = {choice({{"surface", "Nothing touches; points of the body may."},
+                                   {"convex", "Its convex hull touches."}})},
+                 .example = "convex",
+                 .default_text = "surface",
+                 .description = "What of it touches in contacts. Mass, drawing and attached points "
+                                "are of the surface."}}});
 }
 
 std::shared_ptr<const KeyTable> pose_rotation_table() {

@@ -313,6 +313,7 @@ BodyDescription read_body(const Node::Entry& entry, const ReadContext& context) 
     body.rigid = read_rigid(fields, body.name);
     if (fields.find("mesh") != nullptr) {
       body.mesh = read_mesh_file(fields.below("mesh"), context);
+      fields.below("mesh").read_choice("use", body.convex, {{"surface", false}, {"convex", true}});
     }
     return body;
   }

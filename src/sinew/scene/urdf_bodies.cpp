@@ -10,6 +10,7 @@
 #include "sinew/core/error.hpp"
 #include "sinew/mesh/topology.hpp"
 #include "sinew/scene/build.hpp"
+#include "sinew/scene/build_parts.hpp"
 #include "sinew/scene/readers.hpp"
 
 namespace sinew::scene {
@@ -184,7 +185,13 @@ mesh::Surface UrdfBodies::surface_of(const UrdfGeometry& geometry) const {
   file.place = geometry.place;
   file.file = resolved(mesh, geometry.place);
   file.unit_given = true;
-  mesh::Surface surface = make_surface(file);
+  mesh::Surface surface;
+  try {
+    surface = make_surface(file);
+  } catch (const Error& error) {
+    throw Error(error.kind(), geometry.place, fmt::format("{}: {}", mesh.file, error.message()),
+                error.remedy());
+  }
   surface.nodes *= mesh.scale.asDiagonal();
   if (mesh.scale.prod() < 0.0) {  // mirrored
     for (mesh::Triangle& triangle : surface.triangles) std::swap(triangle[1], triangle[2]);
@@ -224,10 +231,8 @@ rigid::MassProperties UrdfBodies::mass_of(int link, const Parts& solids) const {
   for (const Part& part : solids) {
     const std::optional<rigid::Shape> shape = primitive(*part.geometry);
     rigid::MassProperties mass = at_place(part.geometry->place, [&] {
-      return rigid::mass_properties(
-          shape ? *shape
-                : rigid::Solid{std::make_shared<const mesh::Surface>(surface_of(*part.geometry))},
-          *description_.density);
+      return rigid::mass_properties(shape ? *shape : make_solid(surface_of(*part.geometry), false),
+                                    *description_.density);
     });
     mass.centre = part.pose * mass.centre;
     mass.inertia = part.pose.linear() * mass.inertia * part.pose.linear().transpose();
@@ -236,7 +241,8 @@ rigid::MassProperties UrdfBodies::mass_of(int link, const Parts& solids) const {
   return sum(parts);
 }
 
-// One shape in closed form stays one. What has no geometry is a ball of its inertia.
+// One shape in closed form stays one, and of one mesh the hull touches. What has no geometry is a
+// ball of its inertia.
 void UrdfBodies::give_shape(const Parts& parts, rigid::RigidSettings& body) const {
   if (parts.empty()) {
     body.shape = rigid::Sphere{std::sqrt(2.5 / 3.0 * body.inertia->trace() / *body.mass)};
@@ -250,7 +256,7 @@ void UrdfBodies::give_shape(const Parts& parts, rigid::RigidSettings& body) cons
     body.shape_rotation = parts.front().pose.linear();
     return;
   }
-  body.shape = rigid::Solid{std::make_shared<const mesh::Surface>(united(parts))};
+  body.shape = make_solid(united(parts), parts.size() == 1);
 }
 
 void UrdfBodies::give_look(const Parts& visuals, rigid::RigidSettings& body,

@@ -40,6 +40,7 @@ bool is_spelled_well(std::string_view name) {
 
 std::vector<std::string> names_of(const std::vector<pugi::xml_node>& elements) {
   std::vector<std::string> names;
+  names.reserve(elements.size());
   for (const pugi::xml_node& element : elements) names.emplace_back(name_of(element));
   return names;
 }
