@@ -309,6 +309,7 @@ HINGE = joint("j", "continuous", "base", "arm")
     ([BASE, link("arm", inertial(1, MOMENTS), box("1 0 1")), HINGE], "an edge is not positive", "out-of-range"),
     ([BASE, link("arm"), HINGE], "it moves and has no mass; add <inertial>", "missing-mass"),
     ([link("the base"), ARM, HINGE], "is no name", "bad-argument"),
+    ([BASE, link("arm", inertial("%s%n", MOMENTS)), HINGE], "robot.urdf:7.*holds a '%'", "bad-argument"),
     ([BASE, ARM, HINGE, "<xacro:macro/>"], "xacro", "malformed-file"),
 ])
 def test_files_that_are_wrong_are_named(tmp_path, parts, message, kind):

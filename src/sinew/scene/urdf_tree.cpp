@@ -20,6 +20,18 @@ struct DepthLimit : pugi::xml_tree_walker {
   bool for_each(pugi::xml_node&) override { return depth() < kMaxDepth; }
 };
 
+// The parser behind this one prints what it does not understand, as the format of its message.
+struct FormatSearch : pugi::xml_tree_walker {
+  pugi::xml_node found;
+
+  bool for_each(pugi::xml_node& element) override {
+    for (const pugi::xml_attribute& attribute : element.attributes()) {
+      if (std::string_view(attribute.value()).find('%') != std::string_view::npos) found = element;
+    }
+    return found.empty();
+  }
+};
+
 bool is_one_of(std::string_view word, std::initializer_list<std::string_view> words) {
   return std::ranges::find(words, word) != words.end();
 }
@@ -69,6 +81,9 @@ UrdfTree::UrdfTree(std::string_view text, std::string name)
                 "write the file flat");
   }
   read_elements();
+  for (auto* elements : {&links_, &joints_}) {
+    for (pugi::xml_node& element : *elements) refuse_formats(element);
+  }
   for (const pugi::xml_node& joint : joints_) check_tie(joint);
   sort_from_root();
 }
@@ -200,6 +215,14 @@ void UrdfTree::check_joint(const pugi::xml_node& joint) {
       ignore(part, "viscous damping of a joint");
     }
   }
+}
+
+void UrdfTree::refuse_formats(pugi::xml_node& element) const {
+  FormatSearch search;
+  element.traverse(search);
+  if (search.found.empty()) return;
+  throw Error(ErrorKind::bad_argument, place(search.found), "an attribute holds a '%'",
+              "write it without, as a file of another name");
 }
 
 void UrdfTree::check_tie(const pugi::xml_node& joint) {

@@ -39,6 +39,7 @@ class UrdfTree {
   void read_elements();
   void check_link(const pugi::xml_node& link);
   void check_joint(const pugi::xml_node& joint);
+  void refuse_formats(pugi::xml_node& element) const;
   void check_tie(const pugi::xml_node& joint);
   void check_name(const pugi::xml_node& element, const std::vector<pugi::xml_node>& others) const;
   void sort_from_root();
