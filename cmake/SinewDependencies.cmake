@@ -9,6 +9,8 @@ find_package(nlohmann_json REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(assimp REQUIRED)
 find_package(pugixml REQUIRED)
+find_package(urdfdom REQUIRED)
+find_package(Qhull REQUIRED CONFIG)
 find_package(CLI11 REQUIRED)
 include(SinewSystemLibraries)
 

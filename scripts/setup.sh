@@ -12,7 +12,7 @@ needs_known="build demo wheel test validate bench docs format lint fuzz"
 # What a need adds to those that it rests on (packages_for).
 build="build-essential cmake ninja-build
   libeigen3-dev libmetis-dev libsuitesparse-dev libtbb-dev libhdf5-dev libyaml-cpp-dev
-  libpugixml-dev libassimp-dev libcli11-dev libfmt-dev nlohmann-json3-dev zlib1g-dev
+  libpugixml-dev libassimp-dev libqhull-dev liburdfdom-dev libcli11-dev libfmt-dev nlohmann-json3-dev zlib1g-dev
   libceres-dev coinor-libipopt-dev libboost-dev
   python3 python3-dev python3-numpy pybind11-dev"
 # The view's page is bundled by Node.js. One that did not come from Debian (and brings its own npm,

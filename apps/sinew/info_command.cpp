@@ -17,16 +17,10 @@
 #include "sinew/constraint/tie.hpp"
 #include "sinew/core/file.hpp"
 #include "sinew/core/quantity.hpp"
-#include "sinew/fem/element_count.hpp"
-#include "sinew/fem/fem_model.hpp"
-#include "sinew/fem/has_elements.hpp"
 #include "sinew/mechanics/body_model.hpp"
-#include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/read.hpp"
 #include "sinew/mesh/report.hpp"
 #include "sinew/mesh/surface.hpp"
-#include "sinew/pcc/arm.hpp"
-#include "sinew/pcc/has_arm.hpp"
 #include "sinew/record/run_file.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/sim/actuator.hpp"
@@ -36,6 +30,7 @@
 
 #include "arguments.hpp"
 #include "commands.hpp"
+#include "info_body.hpp"
 #include "terminal.hpp"
 
 namespace sinew::cli {
@@ -51,18 +46,10 @@ struct InfoOptions {
   bool json = false;
 };
 
-// The same facts for people and for programs. (The JSON type's move asserts what cannot fail.)
-struct Facts {  // NOLINT(bugprone-exception-escape)
-  ordered_json json;
-  std::string text;
-};
-
 std::string size_text(const Vector3& size) {
   return fmt::format("{} x {} x {}", mesh::format_length(size.x()), mesh::format_length(size.y()),
                      mesh::format_length(size.z()));
 }
-
-ordered_json triple(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 
 ordered_json histogram(const mesh::Histogram& histogram) {
   return {{"low", histogram.low}, {"high", histogram.high}, {"counts", histogram.counts}};
@@ -142,63 +129,8 @@ Facts surface_facts(const InfoOptions& options) {
                 {"size_m", triple(size)}};
   facts.text = fmt::format("{}: surface\n  {} nodes, {} triangles\n  size {}\n", surface.name,
                            surface.nodes.rows(), surface.triangles.size(), size_text(size));
-  try {
-    mesh::require_closed(surface);
-    const double volume = mesh::enclosed_volume(surface);
-    facts.json["closed"] = true;
-    facts.json["volume_m3"] = volume;
-    facts.text += fmt::format("  closed, encloses {:.6g} cm^3{}\n", 1e6 * std::abs(volume),
-                              volume < 0.0 ? "; its triangles face inwards" : "");
-  } catch (const Error& error) {
-    facts.json["closed"] = false;
-    facts.json["defect"] = error.message();
-    facts.text += fmt::format("  not closed: {}\n", error.message());
-  }
+  add_solid(facts, surface);
   return facts;
-}
-
-void add_arm(Facts& facts, const pcc::Arm& arm) {
-  double mass = 0.0;
-  for (const pcc::Segment& segment : arm.settings().segments) mass += segment.mass;
-  facts.json["bodies"].push_back({{"name", arm.settings().name},
-                                  {"segments", arm.segments()},
-                                  {"coordinates", arm.coordinates()},
-                                  {"length_m", arm.length()},
-                                  {"mass_kg", mass}});
-  facts.text += fmt::format(
-      "  body {}: {} segments of constant curvature, {} coordinates, "
-      "{:.4g} mm, {:.4g} g\n",
-      arm.settings().name, arm.segments(), arm.coordinates(), 1e3 * arm.length(), 1e3 * mass);
-}
-
-void add_body(Facts& facts, const mechanics::BodyModel& body) {
-  if (const auto* arm = mechanics::as<const pcc::HasArm>(body)) return add_arm(facts, arm->arm());
-  if (const auto* shape = mechanics::as<const mechanics::HasShape>(body)) {
-    facts.json["bodies"].push_back(
-        {{"name", body.name()}, {"shape", shape->shape_name()}, {"mass_kg", shape->mass()}});
-    facts.text += fmt::format("  body {}: rigid {}, {:.4g} g\n", body.name(), shape->shape_name(),
-                              1e3 * shape->mass());
-    return;
-  }
-  const auto* material = mechanics::as<const fem::HasElements>(body);
-  if (material == nullptr) return;
-  const fem::FemModel& model = material->elements();
-  ordered_json elements = ordered_json::object();
-  for (const auto& [element, count] : fem::count_elements(model)) {
-    elements[std::string(element)] = count;
-  }
-  facts.json["bodies"].push_back({{"name", body.name()},
-                                  {"elements", elements},
-                                  {"nodes", body.mesh().node_count()},
-                                  {"free_nodes", model.free_count()},
-                                  {"tetrahedra", body.mesh().tetrahedra.size()},
-                                  {"hexahedra", body.mesh().hexahedra.size()},
-                                  {"mass_kg", model.total_mass()},
-                                  {"volume_m3", model.volume()}});
-  facts.text +=
-      fmt::format("  body {}: {} nodes ({} free), {}, {:.4g} g, {:.4g} cm^3\n", body.name(),
-                  body.mesh().node_count(), model.free_count(), fem::describe_elements(model),
-                  1e3 * model.total_mass(), 1e6 * model.volume());
 }
 
 void add_notice(Facts& facts, const Notice& notice) {

@@ -68,7 +68,8 @@ void bind_sums(py::class_<Contact>& type) {
           "float: sum of the magnitudes of the points' friction forces (N).")
       .def_property_readonly(
           "gap", [](const Contact& self) { return sum(self).smallest_gap; },
-          "float: the smallest gap of any point (m), negative inside the surface.");
+          "float: the smallest gap of any point (m), negative inside the surface; between "
+          "deformable bodies that are not near each other, how far was looked.");
 }
 
 void bind_points(py::class_<Contact>& type) {

@@ -29,6 +29,11 @@ TEST(Allocation, NoneInASteadyStep) {
   OverlapVolume overlap(ring.topology(), ball.topology(), pool);
   const Points moved = shaken(ring.nodes, random, 0.05);
   const Points near = placed(ball.nodes, random_rotation(random), {2.2, 0.1, 0.3});
+  const ConvexSolid solid{std::make_shared<const Polyhedron>(ball.nodes), {}, Matrix3::Identity()};
+  const auto moved_solid = [&] {
+    return std::get<ConvexSolid>(
+        collision::moved(solid, Eigen::Isometry3d(Eigen::Translation3d(0, 0, 0.3))));
+  };
   const Points inside = placed(ball.nodes, random_rotation(random), {1.5, 0.1, 0.3});
   const auto step = [&] {
     std::size_t found = 0;
@@ -45,6 +50,8 @@ TEST(Allocation, NoneInASteadyStep) {
     found += touching_points(Cylinder{{0, 0, 0}, {0, 0, 1}, 0.5},
                              OrientedBox{.centre = {0, 0, -0.5}}, 0.1)
                  .size();
+    found += touching_points(moved_solid(), Plane{}, 0.1).size();
+    found += distance(moved_solid(), Vector3(0, 0, 3)).gap > 0.0 ? 1 : 0;
     return found;
   };
   const std::size_t expected = step();

@@ -1,6 +1,7 @@
 #include "sinew/collision/approach.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <random>
 #include <vector>
 
@@ -13,10 +14,14 @@ namespace {
 std::vector<Shape> shapes() {
   const Matrix3 axes =
       Eigen::AngleAxisd(0.7, Vector3(0.2, 0.5, 0.7).normalized()).toRotationMatrix();
+  Points wedge(6, 3);
+  wedge << 0, 0, 0, 0.03, 0, 0, 0, 0.02, 0, 0.03, 0.02, 0, 0.01, 0.01, 0.02, 0.02, 0.01, 0.025;
   return {Plane{{0.1, -0.2, 0.05}, Vector3(0.3, -0.4, 0.8).normalized()},
-          Sphere{{0.02, 0.01, -0.03}, 0.02}, Capsule{{-0.01, 0.0, 0.0}, {0.03, 0.02, -0.01}, 0.005},
+          Sphere{{0.02, 0.01, -0.03}, 0.02},
+          Capsule{{-0.01, 0.0, 0.0}, {0.03, 0.02, -0.01}, 0.005},
           Cylinder{{-0.01, 0.0, 0.0}, {0.03, 0.02, -0.01}, 0.015},
-          OrientedBox{{0.01, -0.01, 0.0}, axes, {0.02, 0.01, 0.03}}};
+          OrientedBox{{0.01, -0.01, 0.0}, axes, {0.02, 0.01, 0.03}},
+          ConvexSolid{std::make_shared<const Polyhedron>(wedge), {0.01, -0.01, 0.0}, axes}};
 }
 
 // Against many points of the way: the first that is inside, else the nearest.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -23,13 +24,22 @@ struct Sample {
   Shape shape;
 };
 
+constexpr double kOctahedron = 0.8;  // m, from its centre to its corners
+
+std::shared_ptr<const Polyhedron> octahedron() {
+  Points corners(6, 3);
+  corners << kOctahedron * Matrix3::Identity(), -kOctahedron * Matrix3::Identity();
+  return std::make_shared<const Polyhedron>(corners);
+}
+
 std::vector<Sample> samples() {
   Random random(41);
   return {{"plane", Plane{{0.1, 0.2, 0.3}, Vector3(1, 2, 3).normalized()}},
           {"sphere", Sphere{{0.1, -0.2, 0.3}, 0.7}},
           {"capsule", Capsule{{-0.4, 0.1, 0.0}, {0.5, 0.3, -0.2}, 0.4}},
           {"cylinder", Cylinder{{-0.4, 0.1, 0.0}, {0.5, 0.3, -0.2}, 0.6}},
-          {"box", OrientedBox{{0.1, 0.2, 0.0}, random_rotation(random), {0.5, 0.7, 0.3}}}};
+          {"box", OrientedBox{{0.1, 0.2, 0.0}, random_rotation(random), {0.5, 0.7, 0.3}}},
+          {"octahedron", ConvexSolid{octahedron(), {0.1, 0.0, 0.2}, random_rotation(random)}}};
 }
 
 // By definition of the solids.
@@ -52,6 +62,9 @@ bool holds(const Cylinder& cylinder, const Vector3& x) {
 bool holds(const OrientedBox& box, const Vector3& x) {
   return ((box.axes.transpose() * (x - box.centre)).cwiseAbs().array() < box.half_size.array())
       .all();
+}
+bool holds(const ConvexSolid& solid, const Vector3& x) {
+  return (solid.axes.transpose() * (x - solid.origin)).lpNorm<1>() < kOctahedron;
 }
 
 TEST(ShapeDistance, TellsInsideFromOutside) {
@@ -143,6 +156,7 @@ TEST(ShapeDistance, OnCentresAndAxes) {
           if constexpr (requires { own.centre; }) return own.centre;
           if constexpr (requires { own.from; }) return 0.5 * (own.from + own.to);
           if constexpr (requires { own.point; }) return own.point;
+          if constexpr (requires { own.origin; }) return own.origin;
         },
         sample.shape);
     const ShapeDistance at = distance(sample.shape, centre);

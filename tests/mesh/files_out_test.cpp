@@ -16,6 +16,7 @@
 #include "sinew/mesh/read.hpp"
 #include "sinew/mesh/report.hpp"
 #include "sinew/mesh/shapes.hpp"
+#include "sinew/mesh/solid.hpp"
 #include "sinew/mesh/surface.hpp"
 #include "sinew/mesh/tetrahedralise.hpp"
 #include "sinew/mesh/topology.hpp"
@@ -88,7 +89,7 @@ TEST(WriteMesh, AnStlHoldsTheOutside) {
   const Surface surface = read_surface(scratch / "block.stl");
   require_closed(surface);
   EXPECT_EQ(surface.triangles.size(), boundary_surface(mesh).triangles.size());
-  EXPECT_NEAR(enclosed_volume(surface), 4e-5, 1e-11);
+  EXPECT_NEAR(solid_moments(surface).volume, 4e-5, 1e-11);
 }
 
 TEST(WriteMesh, OtherEndingsAreRefusedAndNothingIsWritten) {
@@ -128,7 +129,7 @@ TEST(WriteVtu, RoundTripsQuadraticTetrahedra) {
   EXPECT_EQ(reorder_elements(turned), 12);
   EXPECT_EQ(turned.quadratic, back.quadratic);
   EXPECT_EQ(boundary_surface(back).triangles.size(), 4U * 2U * 10U);
-  EXPECT_NEAR(enclosed_volume(boundary_surface(back)), 2e-6, 1e-18);
+  EXPECT_NEAR(solid_moments(boundary_surface(back)).volume, 2e-6, 1e-18);
 }
 
 TEST(WriteVtu, ChecksFieldsAndPaths) {
@@ -199,7 +200,7 @@ TEST_P(SurfaceFile, IsAWeldedClosedCube) {
   EXPECT_EQ(cube.nodes.rows(), 8);
   EXPECT_EQ(cube.triangles.size(), 12u);
   EXPECT_NO_THROW(require_closed(cube));
-  EXPECT_NEAR(enclosed_volume(cube), 1e-3, 1e-9);
+  EXPECT_NEAR(solid_moments(cube).volume, 1e-3, 1e-9);
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, SurfaceFile,
@@ -234,7 +235,7 @@ TEST(Surfaces, SayWhereTheyAreOpenAndWhenTheUnitIsSuspicious) {
   write_file(scratch / "large.stl", format_stl(read_surface(surfaces() / "cube.obj"), 1e3));
   error_text(ErrorKind::suspicious_unit, [&] { read_surface(scratch / "large.stl"); });
   const Surface scaled = read_surface(scratch / "large.stl", {.unit = 1e-3});
-  EXPECT_NEAR(enclosed_volume(scaled), 1e-3, 1e-9);
+  EXPECT_NEAR(solid_moments(scaled).volume, 1e-3, 1e-9);
 }
 
 TEST(Process, ReportsCodeOutputAndMissingPrograms) {

@@ -15,6 +15,7 @@
 #include "sinew/mesh/refine.hpp"
 #include "sinew/mesh/report.hpp"
 #include "sinew/mesh/selection.hpp"
+#include "sinew/mesh/solid.hpp"
 #include "sinew/mesh/surface.hpp"
 #include "sinew/mesh/topology.hpp"
 
@@ -32,7 +33,7 @@ MeshReport require_sound(Mesh mesh) {
   EXPECT_EQ(mesh.notes.reordered_elements, 0);
   const Surface surface = boundary_surface(mesh);
   EXPECT_NO_THROW(require_closed(surface));
-  EXPECT_NEAR(enclosed_volume(surface) / volume(mesh), 1.0, 1e-12);
+  EXPECT_NEAR(solid_moments(surface).volume / volume(mesh), 1.0, 1e-12);
   return describe(mesh);
 }
 
@@ -80,7 +81,7 @@ TEST(Shapes, QuadraticTetrahedraFollowTheCircle) {
   }
   EXPECT_GT(on, 3 * 12 + 2 * 12);
   // A surface of four triangles a face on the arcs lies much nearer to the circle than 12 corners.
-  const double volume = enclosed_volume(boundary_surface(mesh));
+  const double volume = solid_moments(boundary_surface(mesh)).volume;
   EXPECT_NEAR(volume / (std::numbers::pi * 1e-4 * 0.02), 1.0, 0.015);
 }
 

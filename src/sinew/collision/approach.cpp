@@ -84,4 +84,8 @@ ShapeApproach approach(const OrientedBox& box, const Vector3& from, const Vector
   return approach_to(box, from, to);
 }
 
+ShapeApproach approach(const ConvexSolid& solid, const Vector3& from, const Vector3& to) {
+  return approach_to(solid, from, to);
+}
+
 }  // namespace sinew::collision

@@ -25,6 +25,7 @@ ShapeApproach approach(const Sphere& sphere, const Vector3& from, const Vector3&
 ShapeApproach approach(const Capsule& capsule, const Vector3& from, const Vector3& to);
 ShapeApproach approach(const Cylinder& cylinder, const Vector3& from, const Vector3& to);
 ShapeApproach approach(const OrientedBox& box, const Vector3& from, const Vector3& to);
+ShapeApproach approach(const ConvexSolid& solid, const Vector3& from, const Vector3& to);
 /// @param shape see distance().
 template <class... Kinds>
 ShapeApproach approach(const std::variant<Kinds...>& shape, const Vector3& from,

@@ -47,6 +47,14 @@ void check_size(double size, const char* what) {
               "give a positive length");
 }
 
+void check_axes(const Matrix3& axes, const char* what) {
+  const double skew = (axes.transpose() * axes - Matrix3::Identity()).norm();
+  if (skew <= 1e-9) return;
+  throw Error(ErrorKind::out_of_range, {},
+              fmt::format("the {}'s axes are off a rotation by {:g}", what, skew),
+              "give three orthogonal columns of unit length");
+}
+
 }  // namespace
 
 ShapeDistance distance(const Plane& plane, const Vector3& point) {
@@ -84,6 +92,31 @@ ShapeDistance distance(const OrientedBox& box, const Vector3& point) {
   return over_sides<3>(point, local.cwiseAbs() - box.half_size, box.axes * side.asDiagonal());
 }
 
+ShapeDistance distance(const ConvexSolid& solid, const Vector3& point) {
+  constexpr double kNear = 1e-12;  // of the size: a nearer point has too few digits for a normal
+  const Vector3 local = solid.axes.transpose() * (point - solid.origin);
+  const Polyhedron& hull = *solid.hull;
+  double excess = -kInfinity, square = kInfinity;
+  Vector3 normal = Vector3::UnitZ(), nearest = local;
+  for (const Polyhedron::Face& face : hull.faces()) {
+    const double above = face.normal.dot(local) - face.offset;
+    if (above > excess) {
+      excess = above;
+      normal = face.normal;
+    }
+    if (!(above > 0.0) || above * above >= square) continue;
+    const auto& [a, b, c] = face.corners;
+    const Vector3 on = closest_on_triangle(local, a, b, c).point;
+    if (!((local - on).squaredNorm() < square)) continue;
+    square = (local - on).squaredNorm();
+    nearest = on;
+  }
+  const double far = std::sqrt(square);
+  const bool outside = excess > 0.0 && far > kNear * hull.reach();
+  if (!outside) return along(point, excess, solid.axes * normal);
+  return along(point, far, (solid.axes * (local - nearest)).normalized());
+}
+
 Shape moved(const Shape& shape, const Eigen::Isometry3d& pose) {
   Shape result = shape;
   if (auto* plane = std::get_if<Plane>(&result)) {
@@ -100,6 +133,9 @@ Shape moved(const Shape& shape, const Eigen::Isometry3d& pose) {
   } else if (auto* box = std::get_if<OrientedBox>(&result)) {
     box->centre = pose * box->centre;
     box->axes = pose.linear() * box->axes;
+  } else if (auto* solid = std::get_if<ConvexSolid>(&result)) {
+    solid->origin = pose * solid->origin;
+    solid->axes = pose.linear() * solid->axes;
   }
   return result;
 }
@@ -142,11 +178,16 @@ Cylinder checked(Cylinder cylinder) {
 
 OrientedBox checked(OrientedBox box) {
   for (const double size : box.half_size) check_size(size, "box's half size");
-  const double skew = (box.axes.transpose() * box.axes - Matrix3::Identity()).norm();
-  if (skew <= 1e-9) return box;
-  throw Error(ErrorKind::out_of_range, {},
-              fmt::format("the box's axes are off a rotation by {:g}", skew),
-              "give three orthogonal columns of unit length");
+  check_axes(box.axes, "box");
+  return box;
+}
+
+ConvexSolid checked(ConvexSolid solid) {
+  if (solid.hull == nullptr) {
+    throw Error(ErrorKind::zero_volume, {}, "the convex solid has no hull", "give it one");
+  }
+  check_axes(solid.axes, "solid");
+  return solid;
 }
 
 }  // namespace sinew::collision

@@ -2,10 +2,12 @@
 /// Rigid shapes in closed form: signed distance, nearest point and normal.
 #pragma once
 
+#include <memory>
 #include <variant>
 
 #include <Eigen/Geometry>
 
+#include "sinew/collision/polyhedron.hpp"
 #include "sinew/core/types.hpp"
 
 namespace sinew::collision {
@@ -36,7 +38,13 @@ struct OrientedBox {
   Matrix3 axes = Matrix3::Identity();          ///< (3, 3) columns: directions of its sides
   Vector3 half_size = Vector3::Constant(0.5);  ///< (3,) m, > 0
 };
-using Shape = std::variant<Plane, Sphere, Capsule, Cylinder, OrientedBox>;
+/// A solid convex polyhedron.
+struct ConvexSolid {
+  std::shared_ptr<const Polyhedron> hull;  ///< in its own frame
+  Vector3 origin = Vector3::Zero();        ///< (3,) m, of that frame
+  Matrix3 axes = Matrix3::Identity();      ///< (3, 3) columns: its axes
+};
+using Shape = std::variant<Plane, Sphere, Capsule, Cylinder, OrientedBox, ConvexSolid>;
 
 /// Where a point stands with respect to a shape: point = nearest + gap normal.
 struct ShapeDistance {
@@ -52,6 +60,9 @@ ShapeDistance distance(const Sphere& sphere, const Vector3& point);
 ShapeDistance distance(const Capsule& capsule, const Vector3& point);
 ShapeDistance distance(const Cylinder& cylinder, const Vector3& point);
 ShapeDistance distance(const OrientedBox& box, const Vector3& point);
+/// Inside, the nearest face's plane is as far as the surface; outside, the nearest of the faces
+/// that the point sees (all of them, in turn).
+ShapeDistance distance(const ConvexSolid& solid, const Vector3& point);
 /// @param shape Shape, or a variant of some of its kinds.
 template <class... Kinds>
 ShapeDistance distance(const std::variant<Kinds...>& shape, const Vector3& point) {
@@ -75,6 +86,7 @@ Sphere checked(Sphere sphere);
 Capsule checked(Capsule capsule);
 Cylinder checked(Cylinder cylinder);
 OrientedBox checked(OrientedBox box);
+ConvexSolid checked(ConvexSolid solid);
 /// @param shape see distance().
 template <class... Kinds>
 std::variant<Kinds...> checked(std::variant<Kinds...> shape) {

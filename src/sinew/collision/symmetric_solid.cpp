@@ -51,6 +51,12 @@ SymmetricSolid as_solid(const OrientedBox& box) {
   return {.centre = box.centre, .axes = box.axes, .half_size = box.half_size};
 }
 
+SymmetricSolid as_solid(const ConvexSolid&) {
+  throw Error(ErrorKind::not_in_this_version, {},
+              "contact of a convex hull with another rigid shape but a plane",
+              "give one of the bodies `points` that touch");
+}
+
 }  // namespace
 
 double SymmetricSolid::extent(const Vector3& direction) const {

@@ -28,7 +28,8 @@ struct SymmetricSolid {
   Vector3 core_support(const Vector3& direction) const;
 };
 
-/// @param shape not a Plane, which is no bounded one: Error(internal).
+/// @param shape not a Plane, which is no bounded one: Error(internal); nor a ConvexSolid, which has
+/// no such symmetry: Error(not-in-this-version).
 SymmetricSolid symmetric_solid(const Shape& shape);
 
 }  // namespace sinew::collision

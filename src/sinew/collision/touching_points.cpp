@@ -1,5 +1,9 @@
 #include "sinew/collision/touching_points.hpp"
 
+#include <cmath>
+#include <numbers>
+#include <vector>
+
 #include <Eigen/Geometry>
 
 #include "sinew/collision/closest_points.hpp"
@@ -71,6 +75,71 @@ TouchingPoints on_plane(const SymmetricSolid& solid, const Plane& plane, double 
   return candidates.reduced();
 }
 
+// The corners of a polyhedron above a plane.
+class CornersOnPlane {
+ public:
+  CornersOnPlane(const ConvexSolid& solid, const Plane& plane, double margin)
+      : solid_(solid), plane_(plane), margin_(margin) {}
+
+  std::size_t size() const { return solid_.hull->corners().size(); }
+  Vector3 at(std::size_t k) const {
+    return solid_.origin + solid_.axes * solid_.hull->corners()[k];
+  }
+  double gap(std::size_t k) const { return plane_.normal.dot(at(k) - plane_.point); }
+  bool is_near(std::size_t k) const { return gap(k) <= margin_; }
+  void add(std::size_t k, TouchingCandidates& candidates) const {
+    candidates.add(at(k), at(k) - gap(k) * plane_.normal, plane_.normal, 1 + static_cast<int>(k));
+  }
+  // The near one that is farthest in a direction, or size().
+  std::size_t farthest(const Vector3& direction) const {
+    std::size_t best = size();
+    double most = -kInfinity;
+    for (std::size_t k = 0; k < size(); ++k) {
+      const double far = direction.dot(at(k) - solid_.origin);
+      if (!(far > most) || !is_near(k)) continue;
+      best = k;
+      most = far;
+    }
+    return best;
+  }
+
+ private:
+  const ConvexSolid& solid_;
+  const Plane& plane_;
+  double margin_;
+};
+
+// All near corners; of many those that are farthest in directions along the plane and slightly or
+// steeply down, so that no upper corner stands for the lower ones.
+TouchingPoints on_plane(const ConvexSolid& solid, const Plane& plane, double margin) {
+  constexpr int kDirections = 32;
+  const CornersOnPlane corners(solid, plane, margin);
+  const std::size_t lowest = corners.farthest(-plane.normal);
+  if (lowest == corners.size()) return {};
+  TouchingCandidates candidates(2.0 * solid.hull->reach(), corners.gap(lowest), margin);
+  corners.add(lowest, candidates);
+  std::size_t near = 0;
+  for (std::size_t k = 0; k < corners.size(); ++k) near += corners.is_near(k) ? 1 : 0;
+  for (std::size_t k = 0; k < corners.size() && near <= TouchingPoints::kMax; ++k) {
+    corners.add(k, candidates);
+  }
+  if (near <= TouchingPoints::kMax) return candidates.reduced();
+  const Vector3 u = plane.normal.unitOrthogonal(), v = plane.normal.cross(u);
+  for (int d = 0; d < kDirections; ++d) {
+    const double angle = 2.0 * std::numbers::pi * d / kDirections;
+    const Vector3 way = std::cos(angle) * u + std::sin(angle) * v;
+    for (const double down : {0.2, 1.0}) {
+      corners.add(corners.farthest(way - down * plane.normal), candidates);
+    }
+  }
+  return candidates.reduced();
+}
+
+TouchingPoints on_plane(const Shape& shape, const Plane& plane, double margin) {
+  if (const auto* solid = std::get_if<ConvexSolid>(&shape)) return on_plane(*solid, plane, margin);
+  return on_plane(symmetric_solid(shape), plane, margin);
+}
+
 TouchingPoints swapped(const TouchingPoints& points) {
   TouchingPoints other;
   for (const TouchingPoint& at : points) {
@@ -84,8 +153,8 @@ TouchingPoints swapped(const TouchingPoints& points) {
 TouchingPoints touching_points(const Shape& first, const Shape& second, double margin) {
   const Plane *below = std::get_if<Plane>(&second), *above = std::get_if<Plane>(&first);
   if (below && above) return {};
-  if (below) return on_plane(symmetric_solid(first), *below, margin);
-  if (above) return swapped(on_plane(symmetric_solid(second), *above, margin));
+  if (below) return on_plane(first, *below, margin);
+  if (above) return swapped(on_plane(second, *above, margin));
   return of_bounded(first, second, margin);
 }
 

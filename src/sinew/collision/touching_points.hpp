@@ -49,6 +49,9 @@ class TouchingPoints {
 /// end has its lowest point, too. A capsule that leans is touched through the balls at its ends:
 /// the upper one's point may be in it.
 ///
+/// A ConvexSolid is touched by planes alone, at its corners: the lowest one and those farthest out
+/// along the plane. With any other shape: Error(not-in-this-version).
+///
 /// Two planes have no points. Shapes are taken to be checked().
 /// @param margin m; also a negative one.
 TouchingPoints touching_points(const Shape& first, const Shape& second, double margin);

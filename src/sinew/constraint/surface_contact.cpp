@@ -133,7 +133,7 @@ double SurfaceContact::linear_gap(const Placement& placement, std::size_t point,
 
 double SurfaceContact::gap_now(const Placement& placement, const Eigen::Isometry3d&,
                                std::size_t point, const mechanics::RowValues& values) const {
-  return idle(point, values) ? kInfinity : linear_gap(placement, point, values);
+  return idle(point, values) ? values.reference[row(point)] : linear_gap(placement, point, values);
 }
 
 void SurfaceContact::save(std::size_t point, const mechanics::RowValues& values, double* to) const {

@@ -53,7 +53,8 @@ class SurfaceContact : public Contact {
                           const mechanics::RowValues& values) const override;
   double linear_gap(const Placement& placement, std::size_t point,
                     const mechanics::RowValues& values) const override;
-  /// That of its row: places and normal stay through a step.
+  /// That of its row: places and normal stay through a step. Of a point that is none, its
+  /// reference: how far points were looked for.
   double gap_now(const Placement& placement, const Eigen::Isometry3d& pose, std::size_t point,
                  const mechanics::RowValues& values) const override;
 

@@ -23,7 +23,7 @@ constexpr std::array kKindNames = {
     "index-out-of-range", "duplicate-node", "zero-volume", "inverted-element",
     "repeated-node-in-element", "disconnected-mesh", "no-volume-elements", "non-finite-node",
     "suspicious-unit", "point-outside-mesh", "unknown-set", "empty-region", "everything-fixed",
-    "nothing-fixed", "surface-not-closed", "unsupported-element",
+    "nothing-fixed", "surface-not-closed", "self-crossing", "unsupported-element",
     "invalid-material", "missing-mass", "wrong-element",
     "too-few-points", "degenerate-cable", "wrong-actuator-type", "actuator-owned", "no-actuators",
     "no-effectors", "degenerate-orientation", "infeasible-limits",

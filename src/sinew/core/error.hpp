@@ -25,7 +25,7 @@ enum class ErrorKind {
   index_out_of_range, duplicate_node, zero_volume, inverted_element, repeated_node_in_element,
   disconnected_mesh, no_volume_elements, non_finite_node, suspicious_unit, point_outside_mesh,
   unknown_set, empty_region, everything_fixed, nothing_fixed, surface_not_closed,
-  unsupported_element,
+  self_crossing, unsupported_element,
   // materials and bodies
   invalid_material, missing_mass, wrong_element,
   // actuators, effectors, controllers

@@ -108,27 +108,30 @@ class HasSurface {
   virtual std::shared_ptr<const collision::SurfaceTopology> surface() const = 0;
 };
 
-/// A body model that is rigid as a whole, with a shape in closed form.
+/// A body model that is rigid as a whole.
 class HasShape {
  public:
   virtual ~HasShape() = default;
-  virtual Vector3 rest_origin() const = 0;  ///< (3,) m, of the shape's frame at rest
+  virtual Vector3 rest_origin() const = 0;  ///< (3,) m, of its own frame at rest
   /// m, of a point (3,) m to its surface at rest: negative inside.
   virtual double rest_distance(const Vector3& point) const = 0;
-  virtual double mass() const = 0;  ///< kg
-  /// kg m^2, (3, 3) about the centre of mass, in the shape's axes.
+  virtual double mass() const = 0;         ///< kg
+  virtual Vector3 own_centre() const = 0;  ///< (3,) m, of mass, in its own frame
+  /// kg m^2, (3, 3) about the centre of mass, in its own axes.
   virtual Matrix3 own_inertia() const = 0;
-  virtual const char* shape_name() const = 0;       ///< "box", "sphere", ...
-  virtual collision::Shape rest_shape() const = 0;  ///< where it is at rest, in the world
+  virtual const char* shape_name() const = 0;  ///< "box", "sphere", ..., "mesh"
+  /// What touches, where it is at rest, in the world. Throws Error(not-in-this-version) where this
+  /// version has no contact of the shape.
+  virtual collision::Shape rest_shape() const = 0;
 };
 
 /// A body of such a model.
 class HasPose {
  public:
   virtual ~HasPose() = default;
-  virtual Vector3 origin() const = 0;            ///< (3,) m, of its shape's frame
+  virtual Vector3 origin() const = 0;            ///< (3,) m, of its own frame
   virtual Vector3 centre_of_mass() const = 0;    ///< (3,) m
-  virtual Matrix3 axes() const = 0;              ///< columns: of its shape's frame, in the world
+  virtual Matrix3 axes() const = 0;              ///< columns: of its own frame, in the world
   virtual Vector3 linear_velocity() const = 0;   ///< (3,) m/s, of the centre of mass
   virtual Vector3 angular_velocity() const = 0;  ///< (3,) rad/s, about the world's axes
   /// The state of the body at rest in a pose. @param origin (3,) m. @param axes unit quaternion.

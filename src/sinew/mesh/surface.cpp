@@ -229,19 +229,6 @@ void require_closed(const Surface& surface) {
               "close the holes and let all triangles face outwards");
 }
 
-double enclosed_volume(const Surface& surface) {
-  // The divergence theorem; from the first node, so that a far origin costs no digits.
-  const Vector3 origin = surface.nodes.rows() > 0 ? Vector3(surface.nodes.row(0)) : Vector3::Zero();
-  double sum = 0.0;
-  for (const auto& [a, b, c] : surface.triangles) {
-    const Vector3 xa = Vector3(surface.nodes.row(a)) - origin;
-    const Vector3 xb = Vector3(surface.nodes.row(b)) - origin;
-    const Vector3 xc = Vector3(surface.nodes.row(c)) - origin;
-    sum += xa.dot(xb.cross(xc)) / 6.0;
-  }
-  return sum;
-}
-
 std::string format_stl(const Surface& surface, double scale) {
   std::string bytes(80, ' ');
   const auto append = [&](const auto& value) {

@@ -38,10 +38,6 @@ Surface parse_surface(std::string_view bytes, const std::string& extension, cons
 /// @param surface to check.
 void require_closed(const Surface& surface);
 
-/// Volume inside a closed surface, m^3; negative when its triangles face inwards.
-/// @param surface closed.
-double enclosed_volume(const Surface& surface);
-
 /// The surface as binary STL, for other programs.
 /// @param surface to write.
 /// @param scale multiplies the coordinates: 1000 writes mm.

@@ -11,6 +11,7 @@
 #include "sinew/mesh/check.hpp"
 #include "sinew/mesh/gmsh.hpp"
 #include "sinew/mesh/process.hpp"
+#include "sinew/mesh/solid.hpp"
 #include "sinew/mesh/write.hpp"
 
 namespace sinew::mesh {
@@ -46,7 +47,7 @@ class TemporaryFolder {
 };
 
 void check_options(const Surface& surface, const TetrahedraliseOptions& options) {
-  const double volume = std::abs(enclosed_volume(surface));
+  const double volume = std::abs(solid_moments(surface).volume);
   // A regular tetrahedron of edge h has the volume h^3 / 8.5.
   const double elements = 8.5 * volume / std::pow(options.size, 3);
   if (!(options.size > 0.0) || !std::isfinite(options.size) || elements > kMaxElements) {

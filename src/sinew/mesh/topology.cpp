@@ -111,6 +111,10 @@ std::vector<FaceUse> face_uses(const Mesh& mesh) {
 
 std::vector<Face> boundary_faces(const Mesh& mesh) {
   std::vector<Face> result;
+  if (mesh.tetrahedra.empty() && mesh.hexahedra.empty()) {
+    for (const auto& [a, b, c] : mesh.triangles) result.push_back({.node = {a, b, c, -1}});
+    return result;
+  }
   const std::vector<FaceUse> uses = face_uses(mesh);
   for (std::size_t i = 0; i < uses.size();) {
     std::size_t end = i + 1;

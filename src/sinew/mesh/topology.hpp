@@ -40,7 +40,7 @@ struct Face {
 };
 
 /// The faces that belong to one element only: triangles of tetrahedra, then quadrilaterals of
-/// hexahedra.
+/// hexahedra. Of a mesh without volume elements its triangles.
 std::vector<Face> boundary_faces(const Mesh& mesh);
 
 /// The nodes of boundary_faces(), ascending; middles of quadratic faces included.

@@ -6,7 +6,9 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "sinew/collision/point_query.hpp"
 #include "sinew/core/error.hpp"
+#include "sinew/core/thread_pool.hpp"
 #include "sinew/linalg/dense.hpp"
 #include "sinew/mesh/embedding.hpp"
 #include "sinew/rigid/rigid_body.hpp"
@@ -32,30 +34,70 @@ void check_inertia(const RigidSettings& settings, const Matrix3& inertia) {
               "each is positive and no larger than the sum of the other two");
 }
 
+[[noreturn]] void refuse(const RigidSettings& settings, ErrorKind kind, const std::string& what,
+                         const std::string& remedy) {
+  throw Error(kind, {.item = "body '" + settings.name + "'"}, what, remedy);
+}
+
+// What fixed bodies without a mass have, which counts nowhere.
+MassProperties stand_in(const mesh::Surface& surface) {
+  const Vector3 low = surface.nodes.colwise().minCoeff().transpose();
+  const Vector3 edges = surface.nodes.colwise().maxCoeff().transpose() - low;
+  const Vector3 some = edges.cwiseMax(1e-3 * edges.maxCoeff());
+  MassProperties result = mass_properties(Box{some}, 1.0);
+  result.centre = low + 0.5 * edges;
+  return result;
+}
+
+// Of the shape, in the body's own frame; of any mass where the scene gives all that depends on it.
+MassProperties shape_mass(const RigidSettings& settings) {
+  const auto* solid = std::get_if<Solid>(&settings.shape);
+  const bool given = settings.mass && settings.inertia && settings.centre_of_mass;
+  const bool idle = settings.fixed && !settings.mass && !settings.density;
+  MassProperties own = solid != nullptr && (given || idle)
+                           ? stand_in(*solid->surface)
+                           : mass_properties(settings.shape, settings.density.value_or(1.0));
+  if (!(own.mass > 0.0) || !std::isfinite(own.mass)) {
+    refuse(settings, ErrorKind::out_of_range, "its shape has no volume", "give lengths above zero");
+  }
+  const Matrix3& turn = settings.shape_rotation;
+  own.centre = settings.shape_position + turn * own.centre;
+  own.inertia = turn * own.inertia * turn.transpose();
+  return own;
+}
+
 // At the pose of the start, in the world's axes.
 MassProperties placed_mass(const RigidSettings& settings) {
-  MassProperties own = mass_properties(settings.shape, settings.density.value_or(1.0));
-  const auto refuse = [&](ErrorKind kind, const std::string& what, const std::string& remedy) {
-    throw Error(kind, {.item = "body '" + settings.name + "'"}, what, remedy);
-  };
-  if (!(own.mass > 0.0) || !std::isfinite(own.mass)) {
-    refuse(ErrorKind::out_of_range, "its shape has no volume", "give lengths above zero");
-  }
+  MassProperties own = shape_mass(settings);
   if (settings.mass) {
     if (!(*settings.mass > 0.0)) {
-      refuse(ErrorKind::out_of_range, fmt::format("its mass is {:g} kg", *settings.mass),
+      refuse(settings, ErrorKind::out_of_range, fmt::format("its mass is {:g} kg", *settings.mass),
              "give a mass above zero");
     }
     own.inertia *= *settings.mass / own.mass;
     own.mass = *settings.mass;
   } else if (!settings.density && !settings.fixed) {
-    refuse(ErrorKind::missing_mass, "it has no mass", "give `mass` or `density`");
+    refuse(settings, ErrorKind::missing_mass, "it has no mass", "give `mass` or `density`");
   }
   if (settings.inertia) own.inertia = *settings.inertia;
+  if (settings.centre_of_mass) own.centre = *settings.centre_of_mass;
   check_inertia(settings, own.inertia);
   own.centre = settings.position + settings.rotation * own.centre;
   own.inertia = settings.rotation * own.inertia * settings.rotation.transpose();
   return own;
+}
+
+void move(Points& points, const Vector3& position, const Matrix3& rotation) {
+  points = (points * rotation.transpose()).eval();
+  points.rowwise() += position.transpose();
+}
+
+// In the body's own frame.
+mesh::Mesh own_skin(const RigidSettings& settings) {
+  if (settings.look != nullptr) return skin(Solid{settings.look});
+  mesh::Mesh result = skin(settings.shape);
+  move(result.nodes, settings.shape_position, settings.shape_rotation);
+  return result;
 }
 
 }  // namespace
@@ -64,15 +106,32 @@ RigidBodyModel::RigidBodyModel(RigidSettings settings)
     : settings_(std::move(settings)),
       mass_(placed_mass(settings_)),
       radius_(std::sqrt(mass_.inertia.trace() / (2.0 * mass_.mass))),
-      skin_(skin(settings_.shape)) {
+      skin_(own_skin(settings_)) {
   skin_.name = name();
-  skin_.nodes = (skin_.nodes * settings_.rotation.transpose()).eval();
-  skin_.nodes.rowwise() += settings_.position.transpose();
+  move(skin_.nodes, settings_.position, settings_.rotation);
+  if (const auto* solid = std::get_if<Solid>(&settings_.shape)) {
+    const mesh::Surface& surface = *solid->surface;
+    surface_ =
+        std::make_unique<collision::SurfaceTree>(std::make_shared<const collision::SurfaceTopology>(
+            surface.triangles, static_cast<int>(surface.nodes.rows())));
+    ThreadPool pool;
+    surface_->move(surface.nodes, pool);
+  }
 }
 
+Vector3 RigidBodyModel::shape_origin() const {
+  return settings_.position + settings_.rotation * settings_.shape_position;
+}
+
+Matrix3 RigidBodyModel::shape_axes() const { return settings_.rotation * settings_.shape_rotation; }
+
 double RigidBodyModel::rest_distance(const Vector3& point) const {
-  const Vector3 local = settings_.rotation.transpose() * (point - settings_.position);
-  return collision::distance(solid(settings_.shape), local).gap;
+  const Vector3 local = shape_axes().transpose() * (point - shape_origin());
+  if (surface_ == nullptr) return collision::distance(solid(settings_.shape), local).gap;
+  const double distance = collision::nearest_on_surface(*surface_, local).distance;
+  const bool inside =
+      surface_->topology().closed() && collision::winding_number(*surface_, local) > 0;
+  return inside ? -distance : distance;
 }
 
 void RigidBodyModel::check_inside(const Vector3& rest_position, mesh::Outside outside,
@@ -128,7 +187,16 @@ void RigidBodyModel::finish(int body, const mechanics::RowPattern& rows,
 }
 
 std::vector<NamedHash> RigidBodyModel::parts() const {
-  const ValueHash shape = ValueHash().add(skin_.nodes);
+  ValueHash shape = ValueHash().add(skin_.nodes);
+  for (const mesh::Triangle& triangle : skin_.triangles) {
+    shape.add(triangle[0], triangle[1], triangle[2]);
+  }
+  if (const auto* solid = std::get_if<Solid>(&settings_.shape); solid && solid->hull) {
+    for (const Vector3& corner : solid->hull->corners()) shape.add(corner);
+  }
+  if (settings_.look != nullptr) {
+    shape.add(skin(settings_.shape).nodes, shape_origin(), shape_axes());
+  }
   const ValueHash mass = ValueHash().add(mass_.mass, mass_.centre, mass_.inertia);
   return {{"shape", shape.value()},
           {"mass", mass.value()},

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "sinew/collision/surface_tree.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mechanics/own_rows.hpp"
@@ -25,7 +26,7 @@ class RigidBodyModel final : public mechanics::BodyModel,
   };
 
   /// Throws Error: out-of-range for a size, a mass or an inertia that cannot be, missing-mass where
-  /// a body that moves has none.
+  /// a body that moves has none, what mesh::require_solid() does where the mass needs a solid.
   explicit RigidBodyModel(RigidSettings settings);
 
   const std::string& name() const override { return settings_.name; }
@@ -52,11 +53,14 @@ class RigidBodyModel final : public mechanics::BodyModel,
 
   const RigidSettings& settings() const { return settings_; }
   double mass() const override { return mass_.mass; }
+  Vector3 own_centre() const override {
+    return settings_.rotation.transpose() * (mass_.centre - settings_.position);
+  }
   Matrix3 own_inertia() const override {
     return settings_.rotation.transpose() * mass_.inertia * settings_.rotation;
   }
   collision::Shape rest_shape() const override {
-    return placed(settings_.shape, settings_.position, settings_.rotation);
+    return placed(settings_.shape, shape_origin(), shape_axes());
   }
   const char* shape_name() const override { return rigid::shape_name(settings_.shape); }
   const Vector3& centre() const { return mass_.centre; }    ///< (3,) m, at rest, in the world
@@ -73,6 +77,8 @@ class RigidBodyModel final : public mechanics::BodyModel,
 
  private:
   int add(const Attachment& attachment);
+  Vector3 shape_origin() const;  // m, at rest, in the world
+  Matrix3 shape_axes() const;
   void check_inside(const Vector3& rest_position, mesh::Outside outside,
                     const std::string& what) const;
 
@@ -80,6 +86,7 @@ class RigidBodyModel final : public mechanics::BodyModel,
   MassProperties mass_;
   double radius_ = 1.0;
   mesh::Mesh skin_;
+  std::unique_ptr<collision::SurfaceTree> surface_;  // of a Solid, in its own frame
   std::vector<Attachment> attachments_;
   mechanics::OwnRows own_rows_;
 };

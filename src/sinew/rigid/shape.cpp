@@ -6,7 +6,9 @@
 
 #include <Eigen/Geometry>
 
+#include "sinew/core/error.hpp"
 #include "sinew/mesh/shapes.hpp"
+#include "sinew/mesh/solid.hpp"
 
 namespace sinew::rigid {
 
@@ -60,6 +62,12 @@ MassProperties of(const Capsule& capsule, double density) {
   return result;
 }
 
+MassProperties of(const Solid& solid, double density) {
+  mesh::require_solid(*solid.surface);
+  const mesh::SolidMoments moments = mesh::solid_moments(*solid.surface);
+  return {density * moments.volume, moments.centre, density * moments.inertia()};
+}
+
 mesh::Mesh cells(const Vector3& edges, const std::array<int, 3>& count) {
   return mesh::block({.corner = -0.5 * edges, .size = edges, .cells = count},
                      mesh::Cells::hexahedra);
@@ -98,10 +106,17 @@ mesh::Mesh mesh_of(const Capsule& capsule) {
   return result;
 }
 
+mesh::Mesh mesh_of(const Solid& solid) {
+  mesh::Mesh result;
+  result.nodes = solid.surface->nodes;
+  result.triangles = solid.surface->triangles;
+  return result;
+}
+
 }  // namespace
 
 const char* shape_name(const Shape& shape) {
-  constexpr std::array kNames = {"box", "sphere", "capsule", "cylinder"};
+  constexpr std::array kNames = {"box", "sphere", "capsule", "cylinder", "mesh"};
   static_assert(kNames.size() == std::variant_size_v<Shape>);
   return kNames[shape.index()];
 }
@@ -126,6 +141,11 @@ collision::Shape solid(const Shape& shape) {
       [&](const Cylinder& cylinder) -> collision::Shape {
         return collision::Cylinder{-along_z(cylinder.height), along_z(cylinder.height),
                                    cylinder.radius};
+      },
+      [](const Solid& solid) -> collision::Shape {
+        if (solid.hull != nullptr) return collision::ConvexSolid{.hull = solid.hull};
+        throw Error(ErrorKind::not_in_this_version, {}, "contact of the surface of a mesh",
+                    "write `use: convex` for that of its hull, or give `points` that touch");
       },
   };
   return std::visit(convert, shape);

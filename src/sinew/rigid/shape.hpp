@@ -2,6 +2,7 @@
 /// Shapes of rigid bodies, and their mass.
 #pragma once
 
+#include <memory>
 #include <variant>
 
 #include "sinew/collision/shape.hpp"
@@ -10,7 +11,7 @@
 
 namespace sinew::rigid {
 
-// All are centred on the origin.
+// All but a solid are centred on the origin.
 struct Box {
   Vector3 edges;  ///< (3,) m, whole
 };
@@ -25,7 +26,13 @@ struct Cylinder {
   double radius = 0.0, height = 0.0;  ///< m, along z
 };
 
-using Shape = std::variant<Box, Sphere, Capsule, Cylinder>;
+/// What a closed triangle surface encloses.
+struct Solid {
+  std::shared_ptr<const mesh::Surface> surface;       ///< m
+  std::shared_ptr<const collision::Polyhedron> hull;  ///< what touches; null: nothing does
+};
+
+using Shape = std::variant<Box, Sphere, Capsule, Cylinder, Solid>;
 const char* shape_name(const Shape& shape);
 
 struct MassProperties {
@@ -34,15 +41,16 @@ struct MassProperties {
   Matrix3 inertia = Matrix3::Identity() * 0;  ///< kg m^2, about the centre
 };
 
-/// Of a homogeneous solid. @param density kg/m^3.
+/// Of a homogeneous solid. @param density kg/m^3. Throws what mesh::require_solid() does.
 MassProperties mass_properties(const Shape& shape, double density);
 
-/// The same as a shape of collision, in its own frame.
+/// The same as a shape of collision, in its own frame. Throws Error(not-in-this-version) for a
+/// Solid without a hull.
 collision::Shape solid(const Shape& shape);
 /// That shape elsewhere. @param position (3,) m, of its origin. @param rotation of its axes.
 collision::Shape placed(const Shape& shape, const Vector3& position, const Matrix3& rotation);
 
-/// A volume mesh that shows the shape.
+/// A mesh that shows the shape: of volume elements, but of triangles for a Solid.
 mesh::Mesh skin(const Shape& shape);
 
 }  // namespace sinew::rigid

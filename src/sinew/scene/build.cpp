@@ -1,6 +1,7 @@
 #include "sinew/scene/build.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -95,6 +96,7 @@ Robot build(SceneDescription description) {
   if (auto notice = replace_tangent(description, step)) {
     robot.notices.push_back(std::move(*notice));
   }
+  std::ranges::move(expand_urdf(description), std::back_inserter(robot.notices));
   sim::ModelBuilder builder(step);
   for (const BodyDescription& body : description.bodies) {
     if (auto notice = add_body(builder, description, body)) {

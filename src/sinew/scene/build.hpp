@@ -52,4 +52,8 @@ Robot load(const std::filesystem::path& path, const std::vector<std::string>& ov
 ///   mesh::read_mesh() and the shapes do.
 mesh::Mesh make_mesh(const MeshDescription& description, Element element = Element::any);
 
+/// The surface in a file that a description names, or that of its volume elements; in m. Throws
+/// what mesh::read_surface() and mesh::read_mesh() do. @param description of a file.
+mesh::Surface make_surface(const MeshDescription& description);
+
 }  // namespace sinew::scene

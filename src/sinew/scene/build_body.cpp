@@ -7,6 +7,7 @@
 #include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/mesh/selection.hpp"
 #include "sinew/pcc/arm.hpp"
+#include "sinew/scene/build.hpp"
 #include "sinew/scene/build_parts.hpp"
 #include "sinew/sim/model_builder.hpp"
 
@@ -80,10 +81,18 @@ void add_rigid(sim::ModelBuilder& builder, const SceneDescription& scene,
                const BodyDescription& body) {
   rigid::RigidSettings settings = *body.rigid;
   settings.gravity = scene.gravity;
+  if (!body.mesh.file.empty()) settings.shape = make_solid(make_surface(body.mesh), body.convex);
   builder.add_rigid_body(std::move(settings), body.place);
 }
 
 }  // namespace
+
+rigid::Solid make_solid(mesh::Surface surface, bool convex) {
+  rigid::Solid solid;
+  solid.surface = std::make_shared<const mesh::Surface>(std::move(surface));
+  if (convex) solid.hull = std::make_shared<const collision::Polyhedron>(solid.surface->nodes);
+  return solid;
+}
 
 std::optional<Notice> add_body(sim::ModelBuilder& builder, const SceneDescription& scene,
                                const BodyDescription& body) {

@@ -61,6 +61,16 @@ sim::Limits limits_of(const LimitDescription& description);
 /// The faces of the mesh that a surface names, whatever but a file. Throws Error at its place.
 std::vector<mesh::Face> faces_of(const SurfaceDescription& surface, const mesh::Mesh& mesh);
 
+/// Replaces robots in URDF files by their bodies ROBOT.LINK and joints ROBOT.JOINT, and names that
+/// stand for a link within another body by that body's. Motors without limits get those of the
+/// file. Throws what parse_urdf() does, and Error: unknown-name, file-not-found, unknown-format (a
+/// mesh), missing-mass, contradictory-limits. @return what the files say and the robots do not do.
+std::vector<Notice> expand_urdf(SceneDescription& scene);
+
+/// @param surface of it. @param convex whether its hull touches. Throws Error(zero-volume) for a
+/// hull without volume.
+rigid::Solid make_solid(mesh::Surface surface, bool convex);
+
 /// Adds a body that its scene describes. @return what a user should know of it.
 std::optional<Notice> add_body(sim::ModelBuilder& builder, const SceneDescription& scene,
                                const BodyDescription& body);

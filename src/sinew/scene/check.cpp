@@ -162,8 +162,18 @@ class Checker {
       for (std::string& known : names_under(scene_, section))
         found->second.insert(std::move(known));
     }
-    if (found->second.contains(name)) return;
+    if (found->second.contains(name) || is_part_of_robot(name, section)) return;
     throw_unknown_name(name, section, names_under(scene_, section), place);
+  }
+
+  // ROBOT.LINK and ROBOT.JOINT, whose second part expand_urdf() knows.
+  bool is_part_of_robot(const std::string& name, const std::string& section) const {
+    const std::size_t dot = name.find('.');
+    if (dot == std::string::npos || (section != "bodies" && section != "joints")) return false;
+    const Node* bodies = scene_.find("bodies");
+    const Node* robot = bodies != nullptr ? bodies->find(name.substr(0, dot)) : nullptr;
+    const Node* type = robot != nullptr && robot->is_map() ? robot->find("type") : nullptr;
+    return type != nullptr && type->spelling() == "urdf";
   }
 
   const Node& scene_;

@@ -31,6 +31,25 @@ std::set<Pair> named_pairs(const SceneDescription& scene) {
   return pairs;
 }
 
+// Whose shape this version has no contact of with points of finite elements.
+bool is_surface(const BodyDescription& body) {
+  if (!body.rigid) return false;
+  if (!body.mesh.file.empty()) return !body.convex;
+  const auto* solid = std::get_if<rigid::Solid>(&body.rigid->shape);
+  return solid != nullptr && solid->hull == nullptr;
+}
+
+bool is_hull(const BodyDescription& body) {
+  if (!body.rigid || is_surface(body)) return false;
+  return !body.mesh.file.empty() || std::holds_alternative<rigid::Solid>(body.rigid->shape);
+}
+
+bool can_touch(const BodyDescription& one, const BodyDescription& other) {
+  if (one.arm || other.arm || is_surface(one) || is_surface(other)) return false;
+  if (!one.rigid || !other.rigid) return true;
+  return !is_hull(one) && !is_hull(other);
+}
+
 bool is_fixed(const BodyDescription& body) { return body.rigid && body.rigid->fixed; }
 
 // Of those pairs that `all` stands for, the ones that this version has no contact for.
@@ -40,7 +59,8 @@ void refuse_pairs(const std::vector<Pair>& pairs, const Location& place) {
   texts.reserve(pairs.size());
   for (const auto& [one, other] : pairs) texts.push_back(fmt::format("[{}, {}]", one, other));
   throw Error(ErrorKind::not_in_this_version, place,
-              "contact of arms with one another, with themselves and without points",
+              "contact of arms with one another, with themselves and without points, of surfaces of "
+              "meshes, and of their hulls with rigid bodies,",
               fmt::format("write except: [{}], and give arms entries with `points`",
                           fmt::join(texts, ", ")));
 }
@@ -58,7 +78,7 @@ std::vector<ContactDescription> pairs_of(const ContactDescription& contact,
       if ((one == other && one->rigid) || (is_fixed(*one) && is_fixed(*other))) continue;
       const Pair pair = ordered(one->name, other->name);
       if (excepted.contains(pair) || !settled.insert(pair).second) continue;
-      if (one->arm || other->arm) {
+      if (!can_touch(*one, *other)) {
         refused.emplace_back(one->name, other->name);
         continue;
       }

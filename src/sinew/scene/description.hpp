@@ -114,11 +114,31 @@ struct InitialVelocityDescription {
   Vector3 angular = Vector3::Zero();  ///< rad/s, about it
 };
 
+/// A robot in a URDF file, which expand_urdf() replaces by its bodies and joints.
+struct UrdfDescription {
+  struct Start {
+    std::string joint;
+    Location place;
+    double value = 0.0;  ///< rad or m
+    bool turns = true;
+  };
+  std::filesystem::path file;  ///< resolved against the scene's folder
+  Location file_place;
+  std::map<std::string, std::filesystem::path> packages;
+  Vector3 position = Vector3::Zero();      ///< m, of the root link
+  Matrix3 rotation = Matrix3::Identity();  ///< of its axes
+  bool fixed = true;                       ///< the root link
+  std::optional<double> density;           ///< kg/m^3, of links without <inertial>
+  std::vector<Start> starts;
+};
+
 struct BodyDescription {
   std::string name;
   Location place;
+  std::optional<UrdfDescription> urdf;        ///< of type urdf; nothing below is then used
   std::optional<pcc::ArmSettings> arm;        ///< of type pcc; nothing below is then used
-  std::optional<rigid::RigidSettings> rigid;  ///< of type rigid; likewise
+  bool convex = false;                        ///< of type rigid, a mesh: its hull touches
+  std::optional<rigid::RigidSettings> rigid;  ///< of type rigid; likewise, but for a mesh file
   MeshDescription mesh;
   Vector3 position = Vector3::Zero();  ///< m, of the mesh's origin
   Vector3 rotation = Vector3::Zero();  ///< rad, a rotation vector about it

@@ -115,6 +115,7 @@ std::shared_ptr<const KeyTable> spring_table();
 std::shared_ptr<const KeyTable> pcc_table();
 std::shared_ptr<const KeyTable> torque_table();
 std::shared_ptr<const KeyTable> rigid_table();
+std::shared_ptr<const KeyTable> urdf_table();
 std::shared_ptr<const KeyTable> motor_table();
 std::shared_ptr<const KeyTable> linear_motor_table();
 std::shared_ptr<const KeyTable> signal_table(const Measure& measure, const char* value_example);

@@ -36,6 +36,30 @@ std::shared_ptr<const KeyTable> shape_table() {
        .alternatives = {{{"box", "sphere", "capsule", "cylinder"}, true}}});
 }
 
+std::shared_ptr<const KeyTable> solid_table() {
+  return make_table(
+      {.name = "mesh of a rigid body",
+       .description = "A closed surface: STL, OBJ or PLY, or that of a VTK legacy, VTU or Gmsh "
+                      "file. The body's origin and axes are the file's.",
+       .keys = {{.name = "file",
+                 .forms = {file()},
+                 .example = "part.stl",
+                 .description = "Path of the mesh, relative to the scene file.",
+                 .required = true},
+                {.name = "unit",
+                 .forms = {unit(length())},
+                 .example = "mm",
+                 .default_text = "m",
+                 .description = "Length unit of the file's coordinates."},
+                {.name = "use",
+                 .forms = {choice({{"surface", "Nothing touches; points of the body may."},
+                                   {"convex", "Its convex hull touches."}})},
+                 .example = "convex",
+                 .default_text = "surface",
+                 .description = "What of it touches in contacts. Mass, drawing and attached points "
+                                "are of the surface."}}});
+}
+
 std::shared_ptr<const KeyTable> pose_rotation_table() {
   return make_table({.name = "rotation",
                      .description = "A rotation about an axis.",
@@ -113,8 +137,11 @@ std::shared_ptr<const KeyTable> rigid_table() {
        .keys = {{.name = "shape",
                  .forms = {table(shape_table())},
                  .example = "{box: 40 30 20 mm}",
-                 .description = "The shape, centred on the body's origin.",
-                 .required = true},
+                 .description = "The shape, centred on the body's origin."},
+                {.name = "mesh",
+                 .forms = {table(solid_table())},
+                 .example = "{file: part.stl, unit: mm}",
+                 .description = "A solid that a surface encloses, in place of a shape."},
                 {.name = "density",
                  .forms = {quantity(density(), positive())},
                  .example = "1200 kg/m^3",
@@ -129,6 +156,11 @@ std::shared_ptr<const KeyTable> rigid_table() {
                  .description = "Moments of inertia about the body's axes through the centre of "
                                 "mass. Without: of the shape.",
                  .only_with = "mass"},
+                {.name = "centre_of_mass",
+                 .forms = {vector(length())},
+                 .example = "0 0 5 mm",
+                 .description = "In the body's frame. Without: of the shape.",
+                 .only_with = "inertia"},
                 {.name = "pose",
                  .forms = {table(pose_table())},
                  .example = "{position: 0 0 30 mm, rotation: {axis: 0 0 1, angle: 20 deg}}",
@@ -144,7 +176,50 @@ std::shared_ptr<const KeyTable> rigid_table() {
                  .example = "true",
                  .default_text = "false",
                  .description = "Whether the body stays where it is; it then needs no mass."}},
-       .alternatives = {{{"density", "mass"}, false}}});
+       .alternatives = {{{"shape", "mesh"}, true}, {{"density", "mass"}, false}}});
+}
+
+std::shared_ptr<const KeyTable> urdf_table() {
+  return make_table(
+      {.name = "body: type urdf",
+       .description = "The links and joints of a robot in a URDF file: rigid bodies ROBOT.LINK and "
+                      "joints ROBOT.JOINT, which the scene names as it names others.",
+       .keys = {{.name = "file",
+                 .forms = {file()},
+                 .example = "arm.urdf",
+                 .description = "Path of the URDF file, relative to the scene file.",
+                 .required = true},
+                {.name = "packages",
+                 .forms = {names(file())},
+                 .example = "{arm_description: ../arm_description}",
+                 .default_text = "{}",
+                 .description = "Folders of the packages that package:// paths of the file name."},
+                {.name = "pose",
+                 .forms = {table(pose_table())},
+                 .example = "{position: 0 0 100 mm, rotation: {axis: z, angle: 90 deg}}",
+                 .default_text = "{}",
+                 .description = "Position and rotation of the root link at the start."},
+                {.name = "fixed",
+                 .forms = {boolean()},
+                 .example = "false",
+                 .default_text = "true",
+                 .description = "Whether the root link stays where it is."},
+                {.name = "angles",
+                 .forms = {names(quantity(angle()))},
+                 .example = "{elbow: -90 deg}",
+                 .default_text = "{}",
+                 .description = "Of revolute and continuous joints at the start, by the file's "
+                                "names. Without: 0. The joint's `angle` counts from there."},
+                {.name = "displacements",
+                 .forms = {names(quantity(length()))},
+                 .example = "{finger: 10 mm}",
+                 .default_text = "{}",
+                 .description = "The same of prismatic joints."},
+                {.name = "density",
+                 .forms = {quantity(density(), positive())},
+                 .example = "1200 kg/m^3",
+                 .description = "Of the collision geometry of moving links that have no "
+                                "<inertial>. Without: an error names them."}}});
 }
 
 std::shared_ptr<const KeyTable> motor_table() {

@@ -342,7 +342,8 @@ Form body_form() {
        {.word = "reduced", .description = "Reduced elements.", .later = true},
        {.word = "rod", .description = "A slender rod.", .later = true},
        {.word = "pcc", .description = "An arm of constant curvatures.", .table = pcc_table()},
-       {.word = "rigid", .description = "A rigid body.", .table = rigid_table()}});
+       {.word = "rigid", .description = "A rigid body.", .table = rigid_table()},
+       {.word = "urdf", .description = "A robot in a URDF file.", .table = urdf_table()}});
 }
 
 }  // namespace sinew::scene::forms

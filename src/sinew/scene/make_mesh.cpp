@@ -1,5 +1,6 @@
 // Meshes of scenes: files, and the project's own shapes with cells of about the asked size.
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -7,7 +8,10 @@
 #include "sinew/mesh/quadratic.hpp"
 #include "sinew/mesh/read.hpp"
 #include "sinew/mesh/shapes.hpp"
+#include "sinew/mesh/surface.hpp"
+#include "sinew/mesh/topology.hpp"
 #include "sinew/scene/build.hpp"
+#include "sinew/scene/readers.hpp"
 
 namespace sinew::scene {
 
@@ -135,7 +139,28 @@ mesh::Cells cells_of(Element element) {
   return element == Element::tet10 ? mesh::Cells::quadratic : mesh::Cells::tetrahedra;
 }
 
+bool holds_surface(const std::filesystem::path& file) {
+  std::string ending = file.extension().string();
+  std::ranges::transform(ending, ending.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending == ".stl" || ending == ".obj" || ending == ".ply";
+}
+
 }  // namespace
+
+mesh::Surface make_surface(const MeshDescription& description) {
+  return at_place(description.place, [&] {
+    if (holds_surface(description.file)) {
+      return mesh::read_surface(description.file,
+                                {.unit = description.unit, .unit_given = description.unit_given});
+    }
+    const mesh::ReadOptions options{.unit = description.unit, .unit_given = description.unit_given};
+    mesh::Mesh mesh = mesh::read_mesh_unchecked(description.file, options);
+    const bool hollow = mesh.tetrahedra.empty() && mesh.hexahedra.empty();
+    if (!hollow) mesh = mesh::read_mesh(description.file, options);
+    return mesh::boundary_surface(mesh);
+  });
+}
 
 mesh::Mesh make_mesh(const MeshDescription& description, Element element) {
   try {

@@ -8,18 +8,21 @@ namespace sinew::scene {
 
 namespace {
 
-MeshDescription read_mesh(const Fields& body, const ReadContext& context) {
+MeshDescription read_mesh_file(const Fields& fields, const ReadContext& context) {
   MeshDescription mesh;
-  mesh.place = body.place("mesh");
+  mesh.file = context.path(fields, "file");
+  mesh.place = fields.place("file");
+  mesh.unit_given = fields.read("unit", mesh.unit);
+  if (mesh.unit_given) mesh.unit_place = fields.place("unit");
+  return mesh;
+}
+
+MeshDescription read_mesh(const Fields& body, const ReadContext& context) {
   const Form& form = body.form("mesh");
   const Fields fields = body.below("mesh");
-  if (form.shape == Shape::table) {
-    mesh.file = context.path(fields, "file");
-    mesh.place = fields.place("file");
-    mesh.unit_given = fields.read("unit", mesh.unit);
-    if (mesh.unit_given) mesh.unit_place = fields.place("unit");
-    return mesh;
-  }
+  if (form.shape == Shape::table) return read_mesh_file(fields, context);
+  MeshDescription mesh;
+  mesh.place = body.place("mesh");
   mesh.shape = read_text(*fields.map().find(form.telltale));
   for (const Node::Entry& entry : fields.map().entries()) {
     if (entry.key == form.telltale) continue;
@@ -302,8 +305,16 @@ BodyDescription read_body(const Node::Entry& entry, const ReadContext& context) 
     body.arm = read_arm(fields, body.name);
     return body;
   }
+  if (read_text(*entry.value.find(form.telltale)) == "urdf") {
+    body.urdf = read_urdf(fields, context);
+    return body;
+  }
   if (read_text(*entry.value.find(form.telltale)) == "rigid") {
     body.rigid = read_rigid(fields, body.name);
+    if (fields.find("mesh") != nullptr) {
+      body.mesh = read_mesh_file(fields.below("mesh"), context);
+      fields.below("mesh").read_choice("use", body.convex, {{"surface", false}, {"convex", true}});
+    }
     return body;
   }
   body.mesh = read_mesh(fields, context);

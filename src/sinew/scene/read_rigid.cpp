@@ -30,6 +30,8 @@ rigid::Shape read_shape(const Fields& fields) {
               "give three lengths above zero");
 }
 
+}  // namespace
+
 Matrix3 read_rotation(const Fields& pose) {
   Vector3 turn = Vector3::Zero();
   if (pose.find("rotation") == nullptr) return Matrix3::Identity();
@@ -45,18 +47,17 @@ Matrix3 read_rotation(const Fields& pose) {
   return rotation_matrix(angle * axis);
 }
 
-}  // namespace
-
 rigid::RigidSettings read_rigid(const Fields& fields, const std::string& name) {
   rigid::RigidSettings body;
   body.name = name;
-  body.shape = read_shape(fields.below("shape"));
+  if (fields.find("shape") != nullptr) body.shape = read_shape(fields.below("shape"));
   if (double value = 0.0; fields.read("density", value)) body.density = value;
   if (double value = 0.0; fields.read("mass", value)) body.mass = value;
   if (Vector3 moments; fields.find("inertia") != nullptr) {
     fields.read("inertia", moments);
     body.inertia = Matrix3(moments.asDiagonal());
   }
+  if (Vector3 centre; fields.read("centre_of_mass", centre)) body.centre_of_mass = centre;
   const Fields pose = fields.below("pose");
   pose.read("position", body.position);
   body.rotation = read_rotation(pose);

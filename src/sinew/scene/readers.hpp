@@ -28,6 +28,10 @@ BodyDescription read_body(const Node::Entry& entry, const ReadContext& context);
 pcc::ArmSettings read_arm(const Fields& fields, const std::string& name);
 /// What a body of type rigid is. @param fields of it. @param name of the body.
 rigid::RigidSettings read_rigid(const Fields& fields, const std::string& name);
+/// What a body of type urdf is. @param fields of it. @param context of the scene.
+UrdfDescription read_urdf(const Fields& fields, const ReadContext& context);
+/// The rotation of a pose. @param pose its fields.
+Matrix3 read_rotation(const Fields& pose);
 /// The region that one of the keys box, sphere, plane and set gives.
 FixedRegion read_region(const Fields& fields);
 ActuatorDescription read_actuator(const Node::Entry& entry, const ReadContext& context);

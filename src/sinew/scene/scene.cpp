@@ -85,7 +85,8 @@ void check_mass(const SceneDescription& scene) {
       scene.gravity != Vector3::Zero() || scene.integrator != Integrator::quasi_static;
   if (!needed) return;
   for (const BodyDescription& body : scene.bodies) {
-    if (body.arm || body.rigid || body.mass || body.density || body.material.density > 0.0)
+    if (body.arm || body.rigid || body.urdf || body.mass || body.density ||
+        body.material.density > 0.0)
       continue;
     throw Error(ErrorKind::missing_mass, body.place,
                 fmt::format("'{}' has no mass, but there is {}", body.name,

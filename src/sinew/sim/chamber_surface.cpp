@@ -8,6 +8,7 @@
 
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mesh/patch.hpp"
+#include "sinew/mesh/solid.hpp"
 #include "sinew/mesh/surface.hpp"
 #include "sinew/sim/attach.hpp"
 
@@ -92,7 +93,7 @@ void ChamberSurface::close(const std::vector<mesh::Face>& patch) {
 
 void ChamberSurface::take(const mesh::Surface& surface, mesh::Outside outside,
                           const std::string& name) {
-  const bool inwards = mesh::enclosed_volume(surface) < 0.0;
+  const bool inwards = mesh::solid_moments(surface).volume < 0.0;
   for (Eigen::Index i = 0; i < surface.nodes.rows(); ++i) {
     const Vector3 at = surface.nodes.row(i).transpose();
     add(body_.attach(at, outside, fmt::format("vertex {} of the surface of '{}'", i, name)));

@@ -81,13 +81,21 @@ void TouchingSurfaces::begin_step(double reach, std::span<double> effort) {
   move_trees(first_start_, second_start_);
   find(reach);
   keep_forces(effort);
-  for (std::size_t k = found_.size(); k < keys_.size(); ++k) contact_.clear(k, rows_);
+  reach_ = reach;
   keys_.clear();
   for (const Named& one : found_) {
     contact_.put(keys_.size(), one.pair, first_start_, second_start_, rows_);
     keys_.push_back(one.key);
   }
+  clear_rest();
   pass_forces_on(effort);
+}
+
+void TouchingSurfaces::clear_rest() {
+  for (std::size_t k = keys_.size(); k < contact_.size(); ++k) {
+    if (!contact_.idle(k, rows_)) contact_.clear(k, rows_);
+    rows_.reference[contact_.row(k)] = reach_;
+  }
 }
 
 // Takes them out of the rows.
@@ -191,8 +199,8 @@ bool TouchingSurfaces::has_passed(const collision::SurfaceImpact& impact) const 
 }
 
 void TouchingSurfaces::restart() {
-  for (std::size_t k = 0; k < keys_.size(); ++k) contact_.clear(k, rows_);
   keys_.clear();
+  clear_rest();
 }
 
 double TouchingSurfaces::drift(std::span<const double> effort) {
@@ -215,6 +223,7 @@ double TouchingSurfaces::drift(std::span<const double> effort) {
 
 void TouchingSurfaces::save(std::vector<double>& to) const {
   to.push_back(static_cast<double>(keys_.size()));
+  to.push_back(reach_);
   for (std::size_t k = 0; k < keys_.size(); ++k) {
     for (const int part : {keys_[k].kind, keys_[k].first, keys_[k].second}) {
       to.push_back(static_cast<double>(part));
@@ -225,22 +234,24 @@ void TouchingSurfaces::save(std::vector<double>& to) const {
 }
 
 std::span<const double> TouchingSurfaces::load(std::span<const double> from) {
+  constexpr std::size_t kHead = 2;  // how many, and the reach
   constexpr std::size_t kEach = kKeyMemory + constraint::SurfaceContact::kMemory;
   const double told = from.empty() ? -1.0 : from[0];
   if (!(told >= 0.0 && told <= static_cast<double>(contact_.size())) ||
-      from.size() - 1 < kEach * static_cast<std::size_t>(told)) {
+      from.size() < kHead + kEach * static_cast<std::size_t>(told)) {
     throw Error(ErrorKind::wrong_length, {.item = "points of contact '" + contact_.name() + "'"},
                 "the state has none that fit", "take it from a simulation of the same model");
   }
   const auto count = static_cast<std::size_t>(told);
-  for (std::size_t k = count; k < keys_.size(); ++k) contact_.clear(k, rows_);
+  reach_ = from[1];
   keys_.resize(count);
-  const double* at = from.data() + 1;
+  clear_rest();
+  const double* at = from.data() + kHead;
   for (std::size_t k = 0; k < count; ++k, at += kEach) {
     keys_[k] = {static_cast<int>(at[0]), static_cast<int>(at[1]), static_cast<int>(at[2])};
     contact_.load(k, at + kKeyMemory, rows_);
   }
-  return from.subspan(1 + count * kEach);
+  return from.subspan(kHead + count * kEach);
 }
 
 }  // namespace sinew::sim

@@ -79,6 +79,7 @@ class TouchingSurfaces {
   void move_trees(const Points& first, const Points& second);
   double farthest_way() const;
   bool has_passed(const collision::SurfaceImpact& impact) const;
+  void clear_rest();
   void keep_forces(std::span<double> effort);
   void pass_forces_on(std::span<double> effort) const;
 
@@ -91,6 +92,7 @@ class TouchingSurfaces {
   collision::SurfaceTree first_, second_;  // the second one stands still within one surface
   std::vector<Named> found_;               // by name
   std::vector<Key> keys_;                  // of the points
+  double reach_ = 0.0;                     // m, of the step
   std::vector<Force> before_;              // of the last step, by name
   Points first_start_, second_start_;      // m, when the step began
   Points first_end_, second_end_;          // m, where a motion leads

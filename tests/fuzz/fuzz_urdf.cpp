@@ -1,0 +1,17 @@
+// Whatever the bytes, the reader returns or throws an Error; see CMakeLists.txt.
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "sinew/core/error.hpp"
+#include "sinew/scene/urdf.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view bytes(reinterpret_cast<const char*>(data), size);
+  try {
+    static_cast<void>(sinew::scene::parse_urdf(bytes, "fuzz"));
+  } catch (const sinew::Error&) {
+    // What a broken input deserves.
+  }
+  return 0;
+}
