@@ -13,8 +13,9 @@ namespace sinew::collision {
 
 namespace {
 
-// The sine of the lean from which on a rim rolls about its axis. The less it leans, the farther away
-// is the point where its normal meets the axis, and the worse does it stand for one that tilts.
+// The sine of the lean from which on a rim rolls about its axis. The less it leans, the farther
+// away is the point where its normal meets the axis, and the worse does it stand for one that
+// tilts.
 constexpr double kRim = 0.3;
 
 ShapeDistance along(const Vector3& point, double gap, const Vector3& normal) {

@@ -72,10 +72,11 @@ ShapeDistance distance(const std::variant<Kinds...>& shape, const Vector3& point
 /// The shape where a pose takes it. @param pose a rotation and a translation.
 Shape moved(const Shape& shape, const Eigen::Isometry3d& pose);
 
-/// How far below its surface the centres of a shape's roundness lie, m, along the normal: a sphere's
-/// or capsule's radius; of a cylinder, whose normals all meet its axis, the way to there, on its
-/// side and on its rims; 0 on what is flat, and on a rim that leans by less than 17 degrees. A body
-/// that turns about such a centre, or about the axis through it, keeps its gaps along the normal.
+/// How far below its surface the centres of a shape's roundness lie, m, along the normal: a
+/// sphere's or capsule's radius; of a cylinder, whose normals all meet its axis, the way to there,
+/// on its side and on its rims; 0 on what is flat, and on a rim that leans by less than 17 degrees.
+/// A body that turns about such a centre, or about the axis through it, keeps its gaps along the
+/// normal.
 /// @param normal (3,) unit length, of the surface, out of the shape or into it.
 double rounding_radius(const Shape& shape, const Vector3& normal);
 

@@ -58,11 +58,12 @@ void refuse_pairs(const std::vector<Pair>& pairs, const Location& place) {
   std::vector<std::string> texts;
   texts.reserve(pairs.size());
   for (const auto& [one, other] : pairs) texts.push_back(fmt::format("[{}, {}]", one, other));
-  throw Error(ErrorKind::not_in_this_version, place,
-              "contact of arms with one another, with themselves and without points, of surfaces of "
-              "meshes, and of their hulls with rigid bodies,",
-              fmt::format("write except: [{}], and give arms entries with `points`",
-                          fmt::join(texts, ", ")));
+  throw Error(
+      ErrorKind::not_in_this_version, place,
+      "contact of arms with one another, with themselves and without points, of surfaces of "
+      "meshes, and of their hulls with rigid bodies,",
+      fmt::format("write except: [{}], and give arms entries with `points`",
+                  fmt::join(texts, ", ")));
 }
 
 // The pairs that an entry between all stands for. @param settled pairs that are none of them, which
