@@ -263,14 +263,15 @@ def test_what_nothing_holds_is_refused_in_statics():
              integrator="quasi-static")
 
 
-def test_motors_hold_an_arm_in_statics():
+@pytest.mark.parametrize("limits", [{}, {"limits": {"torque": {"min": "-1 N m", "max": "1 N m"}}}])
+def test_motors_hold_an_arm_in_statics(limits):
     # Two links that motors turn, quasi-statically and in statics: torques are those of the weights.
     sim = make({"upper": box(pose={"position": "50 0 0 mm"}), "lower": box(pose={"position": "150 0 0 mm"})},
                {"shoulder": {"type": "hinge", "bodies": ["world", "upper"], "point": "0 0 0 mm", "axis": "0 -1 0"},
                 "elbow": {"type": "hinge", "bodies": ["upper", "lower"], "point": "100 0 0 mm", "axis": "0 -1 0"}},
                integrator="quasi-static", step="10 ms",
-               actuators={"first": {"type": "motor", "joint": "shoulder", "command": {"angle": "30 deg"}},
-                          "second": {"type": "motor", "joint": "elbow", "command": {"angle": "-50 deg"}}})
+               actuators={"first": {"type": "motor", "joint": "shoulder", "command": {"angle": "30 deg"}, **limits},
+                          "second": {"type": "motor", "joint": "elbow", "command": {"angle": "-50 deg"}, **limits}})
     for solve in (sim.solve_static, sim.step):
         solve()
         a, b = np.radians([30, -20])
@@ -278,6 +279,20 @@ def test_motors_hold_an_arm_in_statics():
         upper = MASS * 9.81 * (0.05 * np.cos(a) + 0.1 * np.cos(a)) + lower
         assert sim.actuator("first").torque == pytest.approx(upper, rel=1e-9)
         assert sim.actuator("second").torque == pytest.approx(lower, rel=1e-9)
+
+
+def test_a_motor_that_is_too_weak_gives_way_in_statics():
+    sim = make({"arm": box(pose={"position": "50 0 0 mm"})},
+               {"pin": {"type": "hinge", "bodies": ["world", "arm"], "point": "0 0 0 mm", "axis": "0 -1 0"}},
+               integrator="quasi-static", step="10 ms",
+               actuators={"motor": {"type": "motor", "joint": "pin", "command": {"angle": "0 deg"},
+                                    "limits": {"torque": {"min": "-0.1 N m", "max": "0.1 N m"}}}})
+    sim.step(2)
+    weight = MASS * 9.81 * 0.05
+    assert weight > 0.1
+    # It hangs where its weight's moment is what the motor can.
+    assert sim.actuator("motor").torque == pytest.approx(0.1)
+    assert weight * np.cos(sim.joint("pin").angle) == pytest.approx(0.1, rel=1e-6)
 
 
 def beam(**more):

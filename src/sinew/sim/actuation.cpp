@@ -194,6 +194,30 @@ void blend(std::span<step::ActuatorBlock> blocks, std::span<const ActuatorState>
   }
 }
 
+bool lift_motor_limits(const Model& model, std::span<step::ActuatorBlock> blocks) {
+  bool lifted = false;
+  for (std::size_t i = 0; i < model.actuators().size(); ++i) {
+    step::ActuatorBlock& block = blocks[i];
+    const bool told = block.kind == CommandKind::motion && !block.owned;
+    if (model.actuators()[i].joint < 0 || !told || block.holds_motion()) continue;
+    block.effort_min = -kInfinity;
+    block.effort_max = kInfinity;
+    lifted = true;
+  }
+  return lifted;
+}
+
+bool keeps_motor_limits(const Model& model, std::span<const step::ActuatorBlock> blocks,
+                        std::span<const double> effort) {
+  for (std::size_t i = 0; i < model.actuators().size(); ++i) {
+    const step::ActuatorBlock& block = blocks[i];
+    if (model.actuators()[i].joint < 0 || block.row < 0) continue;
+    const double own = effort[static_cast<std::size_t>(block.row)];
+    if (own < block.effort_min || own > block.effort_max) return false;
+  }
+  return true;
+}
+
 void hold_efforts(std::span<step::ActuatorBlock> blocks, std::span<const double> effort) {
   for (step::ActuatorBlock& block : blocks) {
     if (block.owned) block.hold_effort(effort[static_cast<std::size_t>(block.row)]);

@@ -82,6 +82,9 @@ NewtonReport NewtonStep::search(double time_step) {
   const bool steered = run_.controller != nullptr;
   if (!run_.model->step().dynamic()) whole.max_indefinite = kIndefinite;
   if (steered) whole.max_iterations = std::min(whole.max_iterations, kSteeredIterations);
+  if (!run_.model->step().dynamic() && !steered) {
+    if (const auto held = hold_motors(time_step)) return *held;
+  }
   NewtonReport result = run_.newton(run_.controller, whole);
   if (steered && goes_on(result)) return hold_choice(result, time_step);
   if (run_.model->step().dynamic() || converged(result)) return result;
@@ -102,6 +105,19 @@ NewtonReport NewtonStep::search(double time_step) {
   }
   result.iterations = tried;
   return result;
+}
+
+// See lift_motor_limits(). None: it did not end there.
+std::optional<NewtonReport> NewtonStep::hold_motors(double time_step) {
+  std::vector<step::ActuatorBlock>& blocks = run_.world.problem().actuators;
+  const std::vector<step::ActuatorBlock> limited = blocks;
+  if (!lift_motor_limits(*run_.model, blocks)) return {};
+  const NewtonReport result = run_.newton(nullptr, settings(time_step));
+  blocks = limited;
+  if (converged(result) && keeps_motor_limits(*run_.model, blocks, run_.effort)) return result;
+  run_.restore(run_.before);
+  begin_again(time_step);
+  return {};
 }
 
 // A controller's choice need not settle: what it chose last is what its actuators are told in the

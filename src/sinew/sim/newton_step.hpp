@@ -2,6 +2,8 @@
 /// A step's equation solved by Newton's method, and by longer ways where that finds nothing.
 #pragma once
 
+#include <optional>
+
 #include "sinew/sim/newton.hpp"
 
 namespace sinew::sim {
@@ -22,6 +24,7 @@ class NewtonStep {
   NewtonSettings settings(double time_step) const;
   NewtonSettings settings_of_part(double time_step) const;
   NewtonReport search(double time_step);
+  std::optional<NewtonReport> hold_motors(double time_step);
   NewtonReport hold_choice(const NewtonReport& chosen, double time_step);
   NewtonReport stay(double time_step);
   NewtonReport approach(double time_step);

@@ -70,6 +70,28 @@ StaticReport StaticSolver::run() {
 
 void StaticSolver::search() {
   read_goal();
+  const std::vector<step::ActuatorBlock> limited = goal_;
+  if (lift_motor_limits(*run_.model, goal_)) {
+    run_.world.problem().actuators = goal_;
+    const bool found = finds();
+    goal_ = run_.world.problem().actuators = limited;
+    if (found && keeps_motor_limits(*run_.model, goal_, run_.effort)) return;
+    run_.restore(run_.before);
+  }
+  find();
+}
+
+bool StaticSolver::finds() {
+  try {
+    find();
+    return true;
+  } catch (const Error& failure) {
+    if (!failure.is_run_failure()) throw;
+    return false;
+  }
+}
+
+void StaticSolver::find() {
   if (!search_.equilibrate(0.0)) approach();
   follow_surfaces();
   settle();

@@ -33,6 +33,8 @@ class StaticSolver {
 
  private:
   void search();
+  bool finds();
+  void find();
   void read_goal();
   void approach();
   double step_load();
