@@ -78,6 +78,11 @@ await draw('docs/images/contact_lift.png', [join(root, 'examples/contact/lift.ya
   await page.selectOption('[aria-label="Signals to plot"]', 'contact');
   await step(page, 300);
 });
+await draw('docs/images/contact_soft_lift.png', [join(root, 'examples/contact/soft_lift.yaml')], {}, async (page) => {
+  await page.selectOption('[aria-label="Signals to plot"]', 'contact');
+  await colour(page, 'von_mises_stress');
+  await step(page, 300);
+});
 const folder = mkdtempSync(join(tmpdir(), 'sinew-pictures-'));
 execFileSync(program, ['run', circle, '--duration', '4s', '--out', folder, '--quiet']);
 await draw('docs/images/view_replay.png', [folder], {}, async (page) => {
