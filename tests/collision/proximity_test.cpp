@@ -375,5 +375,69 @@ TEST(Proximity, DoesNotDependOnThreads) {
   }
 }
 
+// Two boxes that do not match, one on the other, pushed through each other by a little: the same
+// pairs face each other, and their distances go on below zero.
+TEST(Proximity, OverlapsGoOnFromGaps) {
+  TestSurface low = unit_box(3), top = unit_box(4);
+  const Eigen::AngleAxisd turn(0.3, Vector3::UnitZ());
+  for (Eigen::Index k = 0; k < top.nodes.rows(); ++k) {
+    top.nodes.row(k) =
+        (turn * (0.6 * top.nodes.row(k).transpose()) + Vector3(0.3, 0.1, 0)).transpose();
+  }
+  const auto at = [&](double height) {
+    Points nodes = top.nodes;
+    nodes.col(2).array() += 1.0 + height;
+    TwoSurfaces bodies(low, {nodes, top.triangles});
+    std::map<Name, ProximityPair> result;
+    const auto found =
+        bodies.pairs({.distance = 0.05, .depth = 0.05, .slack = 0.5, .edge_slack = 1e-9});
+    expect_once(found);
+    for (const ProximityPair& pair : found) {
+      expect_consistent(pair, bodies.first, bodies.second);
+      result.emplace(name_of(pair), pair);
+    }
+    return result;
+  };
+  const auto apart = at(1e-3), through = at(-1e-3);
+  ASSERT_GT(apart.size(), 20U);
+  std::size_t common = 0;
+  for (const auto& [name, pair] : apart) {
+    const auto found = through.find(name);
+    if (found == through.end()) continue;
+    ++common;
+    EXPECT_NEAR(pair.distance, 1e-3, 1e-12);
+    EXPECT_NEAR(found->second.distance, -1e-3, 1e-12);
+    EXPECT_LE((found->second.normal - pair.normal).norm(), 1e-9);
+  }
+  EXPECT_EQ(common, apart.size());
+  // No pair leads out through a side face, which is farther away than the top.
+  for (const auto& [name, pair] : through) EXPECT_NEAR(pair.distance, -1e-3, 1e-12);
+}
+
+// Ridges that cross: a pair of edges, on either side of touching.
+TEST(Proximity, CrossingRidgesPassEachOther) {
+  const auto ridge = [](const Vector3& axis, double height) {
+    TestSurface box = unit_box(1);
+    const Eigen::AngleAxisd lean(M_PI / 4, axis);
+    for (Eigen::Index k = 0; k < box.nodes.rows(); ++k) {
+      Vector3 x = box.nodes.row(k).transpose();
+      x += Vector3(-0.5, -0.5, -0.5);
+      x = lean * x;
+      box.nodes.row(k) = (x + Vector3(0, 0, height)).transpose();
+    }
+    return box;
+  };
+  for (const double gap : {2e-3, -2e-3}) {
+    TwoSurfaces bodies(ridge(Vector3::UnitX(), 0.0), ridge(Vector3::UnitY(), std::sqrt(2.0) + gap));
+    const auto found =
+        bodies.pairs({.distance = 0.01, .depth = 0.01, .slack = 0.5, .edge_slack = 1e-9});
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_EQ(found[0].first.kind, FeatureKind::edge);
+    EXPECT_EQ(found[0].second.kind, FeatureKind::edge);
+    EXPECT_NEAR(found[0].distance, gap, 1e-12);
+    EXPECT_LE((found[0].normal + Vector3::UnitZ()).norm(), 1e-12);
+  }
+}
+
 }  // namespace
 }  // namespace sinew::collision

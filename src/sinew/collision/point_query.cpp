@@ -1,6 +1,5 @@
 #include "sinew/collision/point_query.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -17,13 +16,6 @@ constexpr int kAxis = 0;  // of the ray
 
 double squared_distance(const Box& box, const Vector3& point) {
   return (box.low - point).cwiseMax(point - box.high).cwiseMax(0.0).squaredNorm();
-}
-
-bool has_any(const SurfaceTopology& topology, int triangle, std::span<const NodeId> nodes) {
-  if (nodes.empty()) return false;
-  const Triangle& own = topology.triangles()[static_cast<std::size_t>(triangle)];
-  return std::ranges::any_of(
-      own, [&](NodeId node) { return std::ranges::find(nodes, node) != nodes.end(); });
 }
 
 void take_nearer(const SurfaceTree& surface, const Vector3& point, int triangle,
@@ -60,7 +52,7 @@ int signed_crossing(const Corners& x, const Vector3& point) {
 }  // namespace
 
 NearestOnSurface nearest_on_surface(const SurfaceTree& surface, const Vector3& point, double reach,
-                                    std::span<const NodeId> avoid) {
+                                    const std::function<bool(int)>& skips) {
   const auto& branches = surface.branches();
   NearestOnSurface best;
   best.distance = reach;
@@ -76,9 +68,7 @@ NearestOnSurface nearest_on_surface(const SurfaceTree& surface, const Vector3& p
     if (branch.right < 0) {
       for (int i = branch.begin; i < branch.end; ++i) {
         const int triangle = surface.order()[static_cast<std::size_t>(i)];
-        if (!has_any(surface.topology(), triangle, avoid)) {
-          take_nearer(surface, point, triangle, best);
-        }
+        if (!skips || !skips(triangle)) take_nearer(surface, point, triangle, best);
       }
       continue;
     }

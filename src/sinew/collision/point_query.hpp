@@ -2,7 +2,7 @@
 /// Where a point stands with respect to a triangle surface.
 #pragma once
 
-#include <span>
+#include <functional>
 
 #include "sinew/collision/surface_tree.hpp"
 
@@ -16,9 +16,10 @@ struct NearestOnSurface {
   double distance = kInfinity;        ///< m
 };
 /// @param surface as it was moved last. @param point (3,) m. @param reach m: farther ones are not
-///   looked for. @param avoid nodes, whose triangles are not looked at.
+///   looked for. @param skips triangles that are not looked at; none: all are.
 NearestOnSurface nearest_on_surface(const SurfaceTree& surface, const Vector3& point,
-                                    double reach = kInfinity, std::span<const NodeId> avoid = {});
+                                    double reach = kInfinity,
+                                    const std::function<bool(int)>& skips = {});
 
 /// How often a closed surface winds round a point: 0 outside, 1 inside, more where it overlaps
 /// itself, negative inside one that is turned inside out. Counted exactly as the signed crossings

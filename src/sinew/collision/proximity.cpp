@@ -214,14 +214,22 @@ class PairSearch {
     const bool p_stands = p.kind == FeatureKind::vertex && q.kind != FeatureKind::vertex;
     const bool q_stands = q.kind == FeatureKind::vertex && p.kind != FeatureKind::vertex;
     const double shorter = depth * (p_stands || q_stands ? kSameWay : kBelowRidge);
-    return (q_stands || !has_shorter_way(p, second_, shorter)) &&
-           (p_stands || !has_shorter_way(q, first_, shorter));
+    return (q_stands || !has_shorter_way(p, q, second_, shorter)) &&
+           (p_stands || !has_shorter_way(q, p, first_, shorter));
   }
 
-  bool has_shorter_way(const SurfacePoint& point, const LocalMinimum& of, double reach) const {
-    const std::span<const NodeId> own(point.nodes);
-    const std::span<const NodeId> avoid = same_ ? own : std::span<const NodeId>();
-    return nearest_on_surface(of.surface(), point.point, reach, avoid).triangle >= 0;
+  // The faces of the edge that a point has passed are none: on a ridge they may pass through it.
+  bool has_shorter_way(const SurfacePoint& point, const SurfacePoint& passed,
+                       const LocalMinimum& of, double reach) const {
+    const auto& triangles = of.surface().topology().triangles();
+    const auto skips = [&](int number) {
+      const Triangle& own = triangles[static_cast<std::size_t>(number)];
+      const auto has = [&](NodeId node) { return std::ranges::find(own, node) != own.end(); };
+      const bool at_edge =
+          passed.kind == FeatureKind::edge && has(passed.nodes[0]) && has(passed.nodes[1]);
+      return at_edge || (same_ && std::ranges::any_of(point.nodes, has));
+    };
+    return nearest_on_surface(of.surface(), point.point, reach, skips).triangle >= 0;
   }
 
   LocalMinimum first_, second_, first_edges_, second_edges_;

@@ -14,8 +14,9 @@ namespace sinew::sim {
 namespace {
 
 // Vertices on slopes up to this sine towards the other surface are points: they come to touch where
-// bodies flatten on each other. Of edges the nearest ones alone.
-constexpr double kSlack = 0.5;
+// bodies flatten on each other. Of edges the nearest ones alone, but for rounding: the neighbours
+// of one in a flat part are as near.
+constexpr double kSlack = 0.5, kEdgeSlack = 1e-9;
 // Overlaps up to this many separations, 1e-6 of the larger body, are left to the next step: where
 // flat meshes lie on each other their edges cross, and overlap at second order in the motion.
 constexpr double kOverlap = 10.0;
@@ -53,7 +54,7 @@ void TouchingSurfaces::move_trees(const Points& first, const Points& second) {
 // for, the nearest.
 void TouchingSurfaces::find(double reach) {
   const collision::ProximitySettings settings{
-      .distance = reach, .depth = contact_.depth(), .slack = kSlack, .edge_slack = 0.0};
+      .distance = reach, .depth = contact_.depth(), .slack = kSlack, .edge_slack = kEdgeSlack};
   const auto pairs = contact_.is_within() ? proximity_.within(first_, settings)
                                           : proximity_.between(first_, second_, settings);
   found_.clear();
