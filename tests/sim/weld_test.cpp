@@ -36,7 +36,7 @@ using sinew::testing::CutBeam;
 using sinew::testing::kBeamGravity;
 using sinew::testing::kBeamLength;
 
-Command pull(double metres) { return {CommandKind::motion, Signal::constant(metres)}; }
+Command pull_cable(double metres) { return {CommandKind::motion, Signal::constant(metres)}; }
 Command effort(double newtons) { return {CommandKind::effort, Signal::constant(newtons)}; }
 
 Vector3 tip_of(const Simulation& simulation) { return simulation.effector_value(0); }
@@ -74,7 +74,7 @@ TEST(Weld, DefaultStepsOfTheCutBeamAreThoseOfTheUncut) {
     Simulation whole(cut_beam(options));
     for (int k = 0; k < 30; ++k) {
       for (Simulation* simulation : {&cut, &whole}) {
-        simulation->command(0, pull(2e-4 * std::min(k, 20)));
+        simulation->command(0, pull_cable(2e-4 * std::min(k, 20)));
         EXPECT_EQ(simulation->step().status, StepStatus::solved);
       }
       // The curvature of the cable between the bodies is as exact as that within them.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "sinew/collision/surface_topology.hpp"
 #include "sinew/constraint/placement.hpp"
@@ -104,10 +105,12 @@ void TouchingSurfaces::keep_forces(std::span<double> effort) {
   before_.clear();
   for (std::size_t k = 0; k < keys_.size(); ++k) {
     Eigen::Map<Vector3> force(effort.data() + contact_.row(k));
-    if (force[0] > 0.0) before_.push_back({keys_[k], contact_.frame(k, rows_) * force});
+    if (force[0] > 0.0) before_.push_back({keys_[k], k, contact_.frame(k, rows_) * force});
     force.setZero();
   }
-  std::ranges::stable_sort(before_, {}, &Force::key);
+  std::ranges::sort(before_, [](const Force& a, const Force& b) {
+    return std::tie(a.key, a.point) < std::tie(b.key, b.point);
+  });
 }
 
 void TouchingSurfaces::pass_forces_on(std::span<double> effort) const {

@@ -72,6 +72,7 @@ class TouchingSurfaces {
   };
   struct Force {
     Key key;
+    std::size_t point;
     Vector3 force;  // N, in the world
   };
   static Key name(const collision::ProximityPair& pair);
