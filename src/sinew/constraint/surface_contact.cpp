@@ -111,10 +111,10 @@ double SurfaceContact::gap_at(const Points& first, const Points& second, std::si
          values.offset[row(point)];
 }
 
-// Half-way between the surfaces.
+// Half-way between the surfaces. A point that is none stays out of the way, on the body.
 Vector3 SurfaceContact::position_now(const Placement& placement, std::size_t point,
                                      const mechanics::RowValues& values) const {
-  if (idle(point, values)) return Vector3::Zero();
+  if (idle(point, values)) return placement.nodes(body()).row(0).transpose();
   const std::size_t at = entry(point);
   return 0.5 * (weighted(placement.nodes(body()), values.patch[at]) +
                 weighted(placement.nodes(other_body()), values.patch[at + 1]));
