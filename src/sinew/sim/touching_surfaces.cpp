@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 #include "sinew/collision/surface_topology.hpp"
 #include "sinew/constraint/placement.hpp"

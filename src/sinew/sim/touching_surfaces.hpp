@@ -2,10 +2,9 @@
 /// Where the surfaces of a SurfaceContact touch, in one simulation.
 #pragma once
 
-#include <array>
-#include <compare>
 #include <cstddef>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "sinew/collision/proximity.hpp"
@@ -64,7 +63,10 @@ class TouchingSurfaces {
   // A point's name from step to step: a vertex of the first or of the second surface, or two edges.
   struct Key {
     int kind = 0, first = -1, second = -1;
-    auto operator<=>(const Key&) const = default;
+    bool operator==(const Key&) const = default;
+    bool operator<(const Key& other) const {
+      return std::tie(kind, first, second) < std::tie(other.kind, other.first, other.second);
+    }
   };
   struct Named {
     Key key;
