@@ -194,17 +194,28 @@ void blend(std::span<step::ActuatorBlock> blocks, std::span<const ActuatorState>
   }
 }
 
-bool lift_motor_limits(const Model& model, std::span<step::ActuatorBlock> blocks) {
-  bool lifted = false;
+namespace {
+
+bool is_limited_motor(const ActuatorModel& model, const step::ActuatorBlock& block) {
+  const bool told = block.kind == CommandKind::motion && !block.owned;
+  return model.joint >= 0 && told && !block.holds_motion();
+}
+
+}  // namespace
+
+bool limits_motors(const Model& model, std::span<const step::ActuatorBlock> blocks) {
   for (std::size_t i = 0; i < model.actuators().size(); ++i) {
-    step::ActuatorBlock& block = blocks[i];
-    const bool told = block.kind == CommandKind::motion && !block.owned;
-    if (model.actuators()[i].joint < 0 || !told || block.holds_motion()) continue;
-    block.effort_min = -kInfinity;
-    block.effort_max = kInfinity;
-    lifted = true;
+    if (is_limited_motor(model.actuators()[i], blocks[i])) return true;
   }
-  return lifted;
+  return false;
+}
+
+void lift_motor_limits(const Model& model, std::span<step::ActuatorBlock> blocks) {
+  for (std::size_t i = 0; i < model.actuators().size(); ++i) {
+    if (!is_limited_motor(model.actuators()[i], blocks[i])) continue;
+    blocks[i].effort_min = -kInfinity;
+    blocks[i].effort_max = kInfinity;
+  }
 }
 
 bool keeps_motor_limits(const Model& model, std::span<const step::ActuatorBlock> blocks,

@@ -71,12 +71,14 @@ class Actuation {
 void blend(std::span<step::ActuatorBlock> blocks, std::span<const ActuatorState> start,
            double fraction);
 
-/// Lets the motors of joints that are told where to go do so whatever it takes. Whether there are
-/// any. In statics nothing else may hold a chain of links: while it is on its way, the torques of
-/// an iteration say nothing about those of the equilibrium, and limits would let go of the chain.
-/// So the way is made without them first, which counts where they are kept in the end.
+/// Whether motors of joints are told where to go, and may not do so whatever it takes.
 /// @param blocks (actuators,) of a step.
-bool lift_motor_limits(const Model& model, std::span<step::ActuatorBlock> blocks);
+bool limits_motors(const Model& model, std::span<const step::ActuatorBlock> blocks);
+/// Lets them do so. In statics nothing else may hold a chain of links: while it is on its way, the
+/// torques of an iteration say nothing about those of the equilibrium, and limits would let go of
+/// the chain. So the way is made without them first, which counts where they are kept in the end.
+/// @param blocks (actuators,) of a step.
+void lift_motor_limits(const Model& model, std::span<step::ActuatorBlock> blocks);
 /// Whether motors' efforts are within limits. @param blocks (actuators,), with their limits.
 /// @param effort (rows,) N or Pa.
 bool keeps_motor_limits(const Model& model, std::span<const step::ActuatorBlock> blocks,

@@ -110,8 +110,9 @@ NewtonReport NewtonStep::search(double time_step) {
 // See lift_motor_limits(). None: it did not end there.
 std::optional<NewtonReport> NewtonStep::hold_motors(double time_step) {
   std::vector<step::ActuatorBlock>& blocks = run_.world.problem().actuators;
+  if (!limits_motors(*run_.model, blocks)) return {};
   const std::vector<step::ActuatorBlock> limited = blocks;
-  if (!lift_motor_limits(*run_.model, blocks)) return {};
+  lift_motor_limits(*run_.model, blocks);
   const NewtonReport result = run_.newton(nullptr, settings(time_step));
   blocks = limited;
   if (converged(result) && keeps_motor_limits(*run_.model, blocks, run_.effort)) return result;

@@ -70,8 +70,9 @@ StaticReport StaticSolver::run() {
 
 void StaticSolver::search() {
   read_goal();
-  const std::vector<step::ActuatorBlock> limited = goal_;
-  if (lift_motor_limits(*run_.model, goal_)) {
+  if (limits_motors(*run_.model, goal_)) {
+    const std::vector<step::ActuatorBlock> limited = goal_;
+    lift_motor_limits(*run_.model, goal_);
     run_.world.problem().actuators = goal_;
     const bool found = finds();
     goal_ = run_.world.problem().actuators = limited;
