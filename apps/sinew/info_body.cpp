@@ -1,6 +1,7 @@
 #include "info_body.hpp"
 
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -39,14 +40,19 @@ void add_arm(Facts& facts, const pcc::Arm& arm) {
       arm.settings().name, arm.segments(), arm.coordinates(), 1e3 * arm.length(), 1e3 * mass);
 }
 
+// What a check of a surface refuses; none where it holds.
+std::optional<Error> defect(const mesh::Surface& surface, void (*check)(const mesh::Surface&)) {
+  try {
+    check(surface);
+    return {};
+  } catch (const Error& error) {
+    return error;
+  }
+}
+
 void add_triangles(ordered_json& json, std::string& text, const mesh::Mesh& mesh) {
   const mesh::Surface surface = mesh::boundary_surface(mesh);
-  bool closed = true;
-  try {
-    mesh::require_closed(surface);
-  } catch (const Error&) {
-    closed = false;
-  }
+  const bool closed = !defect(surface, mesh::require_closed);
   json["triangles"] = surface.triangles.size();
   json["closed"] = closed;
   text += fmt::format("    {} triangles, {}", surface.triangles.size(), closed ? "closed" : "open");
@@ -84,12 +90,10 @@ ordered_json triple(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 void add_solid(Facts& facts, const mesh::Surface& surface) {
   ordered_json& json = facts.json;
   std::string& text = facts.text;
-  try {
-    mesh::require_closed(surface);
-  } catch (const Error& error) {
+  if (const auto open = defect(surface, mesh::require_closed)) {
     json["closed"] = false;
-    json["defect"] = error.message();
-    text += fmt::format("  not closed: {}\n", error.message());
+    json["defect"] = open->message();
+    text += fmt::format("  not closed: {}\n", open->message());
     return;
   }
   const mesh::SolidMoments moments = mesh::solid_moments(surface);
@@ -104,11 +108,9 @@ void add_solid(Facts& facts, const mesh::Surface& surface) {
       1e6 * std::abs(moments.volume), moments.volume < 0.0 ? "; its triangles face inwards" : "",
       1e3 * moments.centre.x(), 1e3 * moments.centre.y(), 1e3 * moments.centre.z(), inertia(0, 0),
       inertia(1, 1), inertia(2, 2));
-  try {
-    mesh::require_solid(surface);
-  } catch (const Error& error) {
-    json["defect"] = error.message();
-    if (error.kind() == ErrorKind::self_crossing) text += fmt::format("  {}\n", error.message());
+  if (const auto none = defect(surface, mesh::require_solid)) {
+    json["defect"] = none->message();
+    if (none->kind() == ErrorKind::self_crossing) text += fmt::format("  {}\n", none->message());
   }
 }
 

@@ -109,8 +109,8 @@ void bind_contact(py::module_& module) {
           [](const Contact& self) {
             return sim::touching_bodies(self.session->model(), self.index);
           },
-          "list of str: the body whose points touch, and the rigid body that it "
-          "touches; a surface of the world has no name.")
+          "list of str: the body that `force` acts on, and the body that it touches; a surface "
+          "of the world has no name.")
       .def_property_readonly(
           "friction",
           [](const Contact& self) { return self.session->model().contact(self.index).friction(); },

@@ -446,12 +446,12 @@ def test_info_of_every_kind(scene, tmp_path):
                    "endloop\nendfacet\nendsolid t\n")
     surface = json.loads(sinew("info", stl, "--json", "--unit", "mm").stdout)
     assert surface["kind"] == "surface" and surface["closed"] is False and surface["triangles"] == 1
-    cube = json.loads(sinew("info", "tests/mesh/data_surface/cube_binary.stl", "--json").stdout)
+    cube = json.loads(sinew("info", ROOT / "tests" / "mesh" / "data_surface" / "cube_binary.stl", "--json").stdout)
     assert cube["closed"] is True and cube["triangles"] == 12 and "defect" not in cube
     size = cube["size_m"][0]
     assert abs(cube["volume_m3"] / size**3 - 1) < 1e-9
     assert abs(cube["inertia_m5"][1][1] / (size**5 / 6) - 1) < 1e-9 and len(cube["centre_m"]) == 3
-    robot = json.loads(sinew("info", "examples/rigid/urdf_arm.yaml", "--json").stdout)
+    robot = json.loads(sinew("info", ROOT / "examples" / "rigid" / "urdf_arm.yaml", "--json").stdout)
     upper = next(body for body in robot["bodies"] if body["name"] == "arm.upper")
     assert upper["mass_kg"] == 0.5 and upper["closed"] is True and upper["triangles"] == 76
     assert abs(upper["centre_of_mass_m"][2] - 0.093) < 1e-12 and abs(upper["inertia_kg_m2"][0][0] - 0.0022) < 1e-12

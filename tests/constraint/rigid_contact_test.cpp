@@ -48,7 +48,7 @@ std::shared_ptr<const sim::Model> make(const Pair& pair) {
   sim::ContactSettings contact;
   contact.name = "touch";
   contact.body = 0;
-  contact.carrier = 1;
+  contact.touched = 1;
   contact.friction = 0.5;
   builder.add_contact(contact);
   return builder.build();

@@ -184,8 +184,14 @@ class PairSearch {
     return (p.point - q.point).squaredNorm() <= reached * reached * (1.0 + 1e-12);
   }
 
+  // m. Without a depth normals lead from one point to the other: what is less than 0 is rounding.
+  double distance_along(const Vector3& normal, const SurfacePoint& p, const SurfacePoint& q) const {
+    const double along = normal.dot(p.point - q.point);
+    return settings_.depth > 0.0 ? along : std::max(0.0, along);
+  }
+
   bool is_pair(const SurfacePoint& p, const SurfacePoint& q, const Vector3& normal) const {
-    const double distance = normal.dot(p.point - q.point);
+    const double distance = distance_along(normal, p, q);
     return distance <= settings_.distance && distance >= -settings_.depth &&
            !(same_ && share_node(p, q));
   }
@@ -201,8 +207,7 @@ class PairSearch {
   }
 
   void keep(const SurfacePoint& p, const SurfacePoint& q, const Vector3& normal) {
-    const double along = normal.dot(p.point - q.point);
-    const double distance = settings_.depth > 0.0 ? along : std::max(0.0, along);
+    const double distance = distance_along(normal, p, q);
     if (distance < 0.0 && !leads_out(p, q, -distance)) return;
     found_.push_back({p, q, normal, distance});
   }

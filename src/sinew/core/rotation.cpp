@@ -19,6 +19,10 @@ Matrix3 rotation_matrix(const Vector3& v) {
   return Eigen::AngleAxisd(angle, v / angle).toRotationMatrix();
 }
 
+Points moved(const Points& points, const Matrix3& rotation, const Vector3& displacement) {
+  return (points * rotation.transpose()).rowwise() + displacement.transpose();
+}
+
 Vector3 rotation_vector(const Matrix3& rotation) {
   const Eigen::AngleAxisd turn(rotation);
   return turn.angle() * turn.axis();

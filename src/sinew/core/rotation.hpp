@@ -15,6 +15,8 @@ inline Matrix3 cross_matrix(const Vector3& v) {
 }
 /// The turn by a rotation vector: exp [v].
 Matrix3 rotation_matrix(const Vector3& v);
+/// Points x as R x + d. @param points (n, 3) m. @param rotation R. @param displacement d (3,) m.
+Points moved(const Points& points, const Matrix3& rotation, const Vector3& displacement);
 /// The shortest rotation vector of a rotation: length 0 to pi.
 Vector3 rotation_vector(const Matrix3& rotation);
 /// The unit quaternion of a rotation: w, x, y, z with w >= 0.

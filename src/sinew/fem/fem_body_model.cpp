@@ -86,10 +86,8 @@ int FemBodyModel::attach_nodes(std::span<const NodeId> nodes, std::span<const do
 
 int FemBodyModel::attach_surface() {
   if (surface_site_ >= 0) return surface_site_;
-  std::vector<collision::Triangle> triangles;
-  for (const mesh::Triangle& t : mesh::boundary_surface(mesh()).triangles) triangles.push_back(t);
   surface_ = std::make_shared<const collision::SurfaceTopology>(
-      std::move(triangles), static_cast<int>(mesh().nodes.rows()));
+      mesh::boundary_surface(mesh()).triangles, static_cast<int>(mesh().nodes.rows()));
   surface_site_ = attach_nodes({}, {});
   return surface_site_;
 }

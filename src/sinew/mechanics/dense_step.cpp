@@ -84,9 +84,12 @@ Inertia DenseStep::condense() {
   inertia.negative_pivots = pivots_.negative();
   if (inertia.negative_pivots > 0 && definite_wanted_) {
     make_definite();
+    symmetric_ = 0.5 * (matrix_ + matrix_.transpose());
     inertia.negative_pivots = 0;
   }
   decomposed_.compute(matrix_);
+  is_symmetric_ = symmetric_ == matrix_;
+  if (!is_symmetric_ && rows_.cols() > 0) symmetric_factor_.compute(symmetric_);
   respond();
   if (inertia.negative_pivots > 0) inertia.status = linalg::FactorStatus::indefinite;
   if (!moved_rows_.allFinite() || pivots_.vanishes()) {
@@ -100,17 +103,11 @@ void DenseStep::respond() {
   if (rows_.cols() == 0) return;
   decomposed_.solve(right_, motion_);
   free_motion_.noalias() = rows_.transpose() * motion_;
-  respond_symmetrically();
-}
-
-void DenseStep::respond_symmetrically() {
-  symmetric_ = 0.5 * (matrix_ + matrix_.transpose());
-  if (symmetric_ == matrix_) {
+  if (is_symmetric_) {
     soft_rows_ = moved_rows_;
-    return;
+  } else {
+    symmetric_factor_.solve(rows_, soft_rows_);
   }
-  symmetric_factor_.compute(symmetric_);
-  symmetric_factor_.solve(rows_, soft_rows_);
 }
 
 // In the directions in which the body would buckle the rotated tangent is as stiff as the exact one

@@ -60,7 +60,6 @@ class DenseStep : public StepSystem {
   void find_imbalance(std::span<const double> effort);
   void make_definite();
   void respond();
-  void respond_symmetrically();
 
   const OwnRows& own_;
   RowMemory& memory_;
@@ -74,6 +73,7 @@ class DenseStep : public StepSystem {
   linalg::SymmetricPivots pivots_;
   linalg::SymmetricSpectrum spectrum_;
   bool definite_wanted_ = true;
+  bool is_symmetric_ = true;   // A, of the last condensation
   bool iterating_ = false;     // further linearisations of this step may follow
   MatrixX rows_, moved_rows_;  // (n, own rows): H^T, A^-1 H^T
   MatrixX soft_rows_;          // the same of the symmetric part of A

@@ -22,6 +22,8 @@ double diagonal(const Surface& surface) {
   return (surface.nodes.colwise().maxCoeff() - surface.nodes.colwise().minCoeff()).norm();
 }
 
+}  // namespace
+
 void require_no_crossing(const Surface& surface) {
   ThreadPool pool;
   collision::SurfaceTree tree(std::make_shared<const collision::SurfaceTopology>(
@@ -38,8 +40,6 @@ void require_no_crossing(const Surface& surface) {
                           pairs.size(), place.x(), place.y(), place.z()),
               "unite the parts of the solid before it is exported");
 }
-
-}  // namespace
 
 SolidMoments solid_moments(const Surface& surface) {
   SolidMoments result;

@@ -24,6 +24,10 @@ struct SolidMoments {
 /// @param surface closed. A volume of 0 has its centre at the mean of the nodes.
 SolidMoments solid_moments(const Surface& surface);
 
+/// Throws Error(self-crossing) where triangles that share no corner cross or touch each other;
+/// names the place of the first. @param surface to check.
+void require_no_crossing(const Surface& surface);
+
 /// Throws Error unless the surface is the outside of a solid: surface-not-closed, inverted-element
 /// (it faces inwards), zero-volume, self-crossing. Names the place of the first fault.
 /// @param surface to check; may have several parts, and hollows that face into themselves.

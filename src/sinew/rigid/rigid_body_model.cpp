@@ -8,6 +8,7 @@
 
 #include "sinew/collision/point_query.hpp"
 #include "sinew/core/error.hpp"
+#include "sinew/core/rotation.hpp"
 #include "sinew/core/thread_pool.hpp"
 #include "sinew/linalg/dense.hpp"
 #include "sinew/mesh/embedding.hpp"
@@ -87,16 +88,11 @@ MassProperties placed_mass(const RigidSettings& settings) {
   return own;
 }
 
-void move(Points& points, const Vector3& position, const Matrix3& rotation) {
-  points = (points * rotation.transpose()).eval();
-  points.rowwise() += position.transpose();
-}
-
 // In the body's own frame.
 mesh::Mesh own_skin(const RigidSettings& settings) {
   if (settings.look != nullptr) return skin(Solid{settings.look});
   mesh::Mesh result = skin(settings.shape);
-  move(result.nodes, settings.shape_position, settings.shape_rotation);
+  result.nodes = moved(result.nodes, settings.shape_rotation, settings.shape_position);
   return result;
 }
 
@@ -108,7 +104,7 @@ RigidBodyModel::RigidBodyModel(RigidSettings settings)
       radius_(std::sqrt(mass_.inertia.trace() / (2.0 * mass_.mass))),
       skin_(own_skin(settings_)) {
   skin_.name = name();
-  move(skin_.nodes, settings_.position, settings_.rotation);
+  skin_.nodes = moved(skin_.nodes, settings_.rotation, settings_.position);
   if (const auto* solid = std::get_if<Solid>(&settings_.shape)) {
     const mesh::Surface& surface = *solid->surface;
     surface_ =

@@ -35,15 +35,11 @@ bool is_rigid(const BuiltBody& body) {
   return mechanics::as<const mechanics::HasShape>(*body.model) != nullptr;
 }
 
-// The surfaces of two deformable bodies, or of one and itself.
-void touch_surfaces(const ContactDescription& contact, const BuiltBody& other,
-                    sim::ContactSettings& settings) {
-  if (contact.nodes || contact.points.points.rows() > 0) {
-    throw Error(ErrorKind::conflicting_keys, contact.place,
-                "deformable bodies touch with the whole of their surfaces",
-                "leave `nodes` and `points` out");
-  }
-  settings.touched = other.number;
+void refuse_points(const ContactDescription& contact) {
+  if (!contact.nodes && contact.points.points.rows() == 0) return;
+  throw Error(ErrorKind::conflicting_keys, contact.place,
+              "deformable bodies touch with the whole of their surfaces",
+              "leave `nodes` and `points` out");
 }
 
 }  // namespace
@@ -62,15 +58,12 @@ void add_contact(sim::ModelBuilder& builder, const ContactDescription& contact,
   settings.place = contact.place;
   settings.body = body;
   std::visit([&](const auto& surface) { settings.surface = surface; }, contact.surface);
-  if (surfaces) {
-    touch_surfaces(contact, other, settings);
-  } else if (other.model != nullptr) {
-    settings.carrier = other.number;
-  }
+  if (surfaces) refuse_points(contact);
+  if (other.model != nullptr) settings.touched = other.number;
   settings.points = contact.points.points;
   settings.outside = contact.outside;
   settings.friction = contact.friction;
-  const bool whole = mechanics::as<const mechanics::HasShape>(*model) != nullptr && !contact.nodes;
+  const bool whole = is_rigid(touching) && !contact.nodes;
   if (settings.points.rows() == 0 && !whole && !surfaces) {
     settings.nodes = nodes_of(contact, model->mesh());
   }

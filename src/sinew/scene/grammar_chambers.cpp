@@ -193,12 +193,7 @@ std::shared_ptr<const KeyTable> surface_table() {
                 .forms = {file()},
                 .example = "chamber.stl",
                 .description = "A closed surface as STL, OBJ or PLY, embedded in the body."},
-               {.name = "unit",
-                .forms = {unit(length())},
-                .example = "mm",
-                .default_text = "m",
-                .description = "Length unit of the file's coordinates.",
-                .only_with = "file"}},
+               file_unit_key("file")},
       .alternatives = {{{"inside", "patch", "file", "box", "sphere", "plane", "set"}, true}}};
   for (Key& key : region_keys("Faces with all their nodes")) surface.keys.push_back(std::move(key));
   return make_table(std::move(surface));

@@ -159,4 +159,21 @@ std::shared_ptr<const KeyTable> make_table(KeyTable table) {
   return std::make_shared<const KeyTable>(std::move(table));
 }
 
+Key mesh_file_key(const char* example) {
+  return {.name = "file",
+          .forms = {file()},
+          .example = example,
+          .description = "Path of the mesh, relative to the scene file.",
+          .required = true};
+}
+
+Key file_unit_key(const char* only_with) {
+  return {.name = "unit",
+          .forms = {unit(length())},
+          .example = "mm",
+          .default_text = "m",
+          .description = "Length unit of the file's coordinates.",
+          .only_with = only_with};
+}
+
 }  // namespace sinew::scene::forms

@@ -101,6 +101,10 @@ Key body_key();
 /// A length of a shape, positive and required.
 Key shape_length(const char* name, const char* example, const char* description);
 Key outside_key();
+/// `file` of a mesh, required.
+Key mesh_file_key(const char* example);
+/// `unit` of a file's coordinates. @param only_with the key of the file, where that is optional.
+Key file_unit_key(const char* only_with = "");
 /// x, y, z, which name the world's axes, or a vector.
 std::vector<Form> axis_forms();
 /// box, sphere, plane and set, of which one must stand.

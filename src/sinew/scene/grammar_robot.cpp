@@ -82,16 +82,7 @@ std::shared_ptr<const KeyTable> mesh_file_table() {
       {.name = "mesh: file",
        .description =
            "A mesh file: VTK legacy, VTU, or Gmsh 2.2 and 4.1, recognised by its content.",
-       .keys = {{.name = "file",
-                 .forms = {file()},
-                 .example = "trunk.vtk",
-                 .description = "Path of the mesh, relative to the scene file.",
-                 .required = true},
-                {.name = "unit",
-                 .forms = {unit(length())},
-                 .example = "mm",
-                 .default_text = "m",
-                 .description = "Length unit of the file's coordinates."}}});
+       .keys = {mesh_file_key("trunk.vtk"), file_unit_key()}});
 }
 
 std::shared_ptr<const KeyTable> sphere_table() {

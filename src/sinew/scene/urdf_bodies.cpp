@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/rotation.hpp"
 #include "sinew/mesh/topology.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/scene/build_parts.hpp"
@@ -206,8 +207,7 @@ mesh::Surface UrdfBodies::united(const Parts& parts) const {
     const auto first = static_cast<NodeId>(result.nodes.rows());
     result.nodes.conservativeResize(first + surface.nodes.rows(), 3);
     result.nodes.bottomRows(surface.nodes.rows()) =
-        (surface.nodes * part.pose.linear().transpose()).rowwise() +
-        part.pose.translation().transpose();
+        sinew::moved(surface.nodes, part.pose.linear(), part.pose.translation());
     for (const auto& [a, b, c] : surface.triangles) {
       result.triangles.push_back({first + a, first + b, first + c});
     }

@@ -70,6 +70,11 @@ bool is_slack(const ActuatorModel& model, double effort) {
   return model.type == ActuatorType::cable && !(effort > 0.0);
 }
 
+bool is_limited_motor(const ActuatorModel& model, const step::ActuatorBlock& block) {
+  const bool told = block.kind == CommandKind::motion && !block.owned;
+  return model.joint >= 0 && told && !block.holds_motion();
+}
+
 }  // namespace
 
 Actuation::Actuation(const Model& model)
@@ -193,15 +198,6 @@ void blend(std::span<step::ActuatorBlock> blocks, std::span<const ActuatorState>
     block.drive_step.command = block.value;
   }
 }
-
-namespace {
-
-bool is_limited_motor(const ActuatorModel& model, const step::ActuatorBlock& block) {
-  const bool told = block.kind == CommandKind::motion && !block.owned;
-  return model.joint >= 0 && told && !block.holds_motion();
-}
-
-}  // namespace
 
 bool limits_motors(const Model& model, std::span<const step::ActuatorBlock> blocks) {
   for (std::size_t i = 0; i < model.actuators().size(); ++i) {

@@ -79,11 +79,6 @@ constraint::RigidSide attach_side(ModelData& data, int body, const ContactSettin
   mechanics::BodyModel& on = find_body(data, body, settings.place);
   auto* rigid = mechanics::as<mechanics::AttachesOrientations>(on);
   const auto* shape = mechanics::as<const mechanics::HasShape>(on);
-  if (rigid == nullptr || shape == nullptr) {
-    throw Error(ErrorKind::wrong_type, settings.place,
-                fmt::format("body '{}' is not rigid and carries no surface", on.name()),
-                "name two bodies, of which one is of type rigid");
-  }
   const Vector3 centre = shape->rest_origin();
   const std::string what = "contact '" + settings.name + "'";
   return {{{body, on.attach(centre, mesh::Outside::nearest, what)}},
@@ -92,20 +87,23 @@ constraint::RigidSide attach_side(ModelData& data, int body, const ContactSettin
           shape->rest_shape()};
 }
 
+bool is_rigid(const mechanics::BodyModel& body) {
+  return mechanics::as<const mechanics::HasShape>(body) != nullptr;
+}
+
 // A rigid body touches with all of its shape where no points of it are named.
 std::unique_ptr<constraint::ShapeContact> make_contact(ModelData& data, mechanics::BodyModel& on,
                                                        const ContactSettings& settings) {
   std::optional<constraint::RigidSide> carrier;
-  if (settings.carrier) {
-    if (*settings.carrier == settings.body) {
+  if (settings.touched) {
+    if (*settings.touched == settings.body) {
       throw Error(ErrorKind::wrong_type, settings.place,
                   fmt::format("body '{}' is to touch itself", on.name()), "name two bodies");
     }
-    carrier = attach_side(data, *settings.carrier, settings);
+    carrier = attach_side(data, *settings.touched, settings);
   }
   const collision::Shape& surface = carrier ? carrier->shape : settings.surface;
-  const bool whole = settings.nodes.empty() && settings.points.rows() == 0 &&
-                     mechanics::as<const mechanics::HasShape>(on) != nullptr;
+  const bool whole = settings.nodes.empty() && settings.points.rows() == 0 && is_rigid(on);
   if (whole) {
     return std::make_unique<constraint::ShapeContact>(settings.name,
                                                       attach_side(data, settings.body, settings),
@@ -130,7 +128,7 @@ int add_contact(ModelData& data, const ContactSettings& settings) {
   try {
     ContactModel entry{settings.name, static_cast<int>(data.constraints.size()), settings.motion};
     if (entry.motion) entry.motion->axis = checked_axis(entry.motion->axis, settings.place);
-    if (settings.touched) {
+    if (settings.touched && !is_rigid(find_body(data, *settings.touched, settings.place))) {
       data.constraints.push_back(make_surface_contact(data, settings));
     } else {
       auto contact = make_contact(data, on, settings);

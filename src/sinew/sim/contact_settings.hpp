@@ -20,10 +20,9 @@ struct ContactSettings {
   Location place;
   int body = 0;
   collision::Shape surface;  ///< where it is at rest, in the world
-  /// The rigid body whose shape is touched, in place of the surface.
-  std::optional<int> carrier;
-  /// The body whose surface is touched by that of `body`, both deformable; the same one: parts of
-  /// its own. Then neither surface, carrier, nodes nor points count.
+  /// The body that is touched, in place of the surface: a rigid one with its shape. A deformable
+  /// one with its surface by that of `body`, of which it may be parts; nodes and points do not
+  /// count.
   std::optional<int> touched;
   std::vector<NodeId> nodes;  ///< of the body's mesh; fixed ones are left out
   Points points;  ///< (n, 3) m, at rest; beside the nodes. Neither: a rigid body's shape

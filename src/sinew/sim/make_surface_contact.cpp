@@ -12,6 +12,8 @@
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/mesh.hpp"
+#include "sinew/mesh/solid.hpp"
+#include "sinew/mesh/topology.hpp"
 #include "sinew/sim/add_parts.hpp"
 #include "sinew/sim/contact_settings.hpp"
 #include "sinew/sim/find_body.hpp"
@@ -89,17 +91,6 @@ void check_apart(const RestSurface& first, const RestSurface& second, ThreadPool
   }
 }
 
-void check_apart(const RestSurface& surface, ThreadPool& pool) {
-  collision::Penetration penetration(pool);
-  const auto crossing = penetration.crossing_within(surface.tree);
-  if (crossing.empty()) return;
-  const Vector3 where = surface.tree.corners(crossing.front().first)[0];
-  throw Error(ErrorKind::out_of_range, {},
-              fmt::format("the surface of body '{}' crosses itself near {:.4g} {:.4g} {:.4g} m",
-                          surface.name, where[0], where[1], where[2]),
-              "mend the mesh");
-}
-
 }  // namespace
 
 std::unique_ptr<constraint::Contact> make_surface_contact(ModelData& data,
@@ -124,7 +115,8 @@ std::unique_ptr<constraint::Contact> make_surface_contact(ModelData& data,
   };
   const RestSurface one = rest(settings.body), other = rest(*settings.touched);
   if (settings.body == *settings.touched) {
-    check_apart(one, pool);
+    const mechanics::BodyModel& body = find_body(data, settings.body, settings.place);
+    mesh::require_no_crossing(mesh::boundary_surface(body.mesh()));
   } else {
     check_apart(one, other, pool);
   }

@@ -70,26 +70,27 @@ StaticReport StaticSolver::run() {
 
 void StaticSolver::search() {
   read_goal();
-  if (limits_motors(*run_.model, goal_)) {
-    const std::vector<step::ActuatorBlock> limited = goal_;
-    lift_motor_limits(*run_.model, goal_);
-    run_.world.problem().actuators = goal_;
-    const bool found = finds();
-    goal_ = run_.world.problem().actuators = limited;
-    if (found && keeps_motor_limits(*run_.model, goal_, run_.effort)) return;
-    run_.restore(run_.before);
-  }
+  if (limits_motors(*run_.model, goal_) && find_without_limits()) return;
   find();
 }
 
-bool StaticSolver::finds() {
+// See lift_motor_limits().
+bool StaticSolver::find_without_limits() {
+  std::vector<step::ActuatorBlock>& blocks = run_.world.problem().actuators;
+  const std::vector<step::ActuatorBlock> limited = goal_;
+  lift_motor_limits(*run_.model, goal_);
+  blocks = goal_;
+  bool found = true;
   try {
     find();
-    return true;
   } catch (const Error& failure) {
     if (!failure.is_run_failure()) throw;
-    return false;
+    found = false;
   }
+  blocks = goal_ = limited;
+  if (found && keeps_motor_limits(*run_.model, goal_, run_.effort)) return true;
+  run_.restore(run_.before);
+  return false;
 }
 
 void StaticSolver::find() {

@@ -33,7 +33,7 @@ class StaticSolver {
 
  private:
   void search();
-  bool finds();
+  bool find_without_limits();
   void find();
   void read_goal();
   void approach();

@@ -170,34 +170,40 @@ double TouchingSurfaces::farthest_way() const {
   return farthest(contact_.body(), first_start_) + farthest(contact_.other_body(), second_start_);
 }
 
-// Whether a vertex stands on the other side of a face, or an edge of an edge, by more than the
-// depth that is undone.
-bool TouchingSurfaces::has_passed(const collision::SurfaceImpact& impact) const {
-  using enum collision::FeatureKind;
-  const collision::SurfaceTree& second = contact_.is_within() ? first_ : second_;
-  const auto height = [&](auto at_first, auto at_second) {
-    if (impact.first_kind == edge) {
-      const auto [a, b] = first_.topology().edges()[static_cast<std::size_t>(impact.first)];
-      const auto [c, d] = second.topology().edges()[static_cast<std::size_t>(impact.second)];
-      const Vector3 across =
-          Vector3(at_first(b) - at_first(a)).cross(at_second(d) - at_second(c)).normalized();
-      return across.dot(at_first(a) - at_second(c));
-    }
-    const bool swapped = impact.first_kind == face;
-    const auto over = [&](auto at_vertex, NodeId vertex, auto at_face, const auto& corners) {
-      const Vector3 x = at_face(corners[0]);
-      const Vector3 normal = Vector3(at_face(corners[1]) - x).cross(at_face(corners[2]) - x);
-      return normal.normalized().dot(at_vertex(vertex) - x);
-    };
-    const auto& triangles = (swapped ? first_ : second).topology().triangles();
-    const auto number = static_cast<std::size_t>(swapped ? impact.first : impact.second);
-    return swapped ? over(at_second, impact.second, at_first, triangles[number])
-                   : over(at_first, impact.first, at_second, triangles[number]);
+// How far a vertex is above a face, or an edge above another one, m: signed.
+double TouchingSurfaces::height(const collision::SurfaceImpact& impact, const Points& first,
+                                const Points& second) const {
+  using collision::FeatureKind;
+  const collision::SurfaceTopology &one = *contact_.first().surface,
+                                   &other = *contact_.second().surface;
+  const auto at = [](const Points& nodes, NodeId node) -> Vector3 {
+    return nodes.row(node).transpose();
   };
-  const double before = height([&](NodeId node) { return first_.at(node); },
-                               [&](NodeId node) { return second.at(node); });
-  const double after = height([&](NodeId node) { return first_.at_end(node); },
-                              [&](NodeId node) { return second.at_end(node); });
+  const auto over = [&](const Points& own, NodeId vertex, const Points& nodes,
+                        const collision::Triangle& face) {
+    const Vector3 corner = at(nodes, face[0]);
+    const Vector3 normal = (at(nodes, face[1]) - corner).cross(at(nodes, face[2]) - corner);
+    return normal.normalized().dot(at(own, vertex) - corner);
+  };
+  const auto i = static_cast<std::size_t>(impact.first),
+             j = static_cast<std::size_t>(impact.second);
+  if (impact.first_kind == FeatureKind::vertex) {
+    return over(first, impact.first, second, other.triangles()[j]);
+  }
+  if (impact.first_kind == FeatureKind::face) {
+    return over(second, impact.second, first, one.triangles()[i]);
+  }
+  const auto [a, b] = one.edges()[i];
+  const auto [c, d] = other.edges()[j];
+  const Vector3 across = (at(first, b) - at(first, a)).cross(at(second, d) - at(second, c));
+  return across.normalized().dot(at(first, a) - at(second, c));
+}
+
+// Whether what met stands on the other side by more than the depth that is undone.
+bool TouchingSurfaces::has_passed(const collision::SurfaceImpact& impact) const {
+  const collision::SurfaceTree& second = contact_.is_within() ? first_ : second_;
+  const double before = height(impact, first_.positions(), second.positions());
+  const double after = height(impact, first_.end_positions(), second.end_positions());
   return before * after < 0.0 && std::abs(after) > contact_.depth();
 }
 

@@ -81,6 +81,8 @@ class TouchingSurfaces {
   void find(double reach);
   void move_trees(const Points& first, const Points& second);
   double farthest_way() const;
+  double height(const collision::SurfaceImpact& impact, const Points& first,
+                const Points& second) const;
   bool has_passed(const collision::SurfaceImpact& impact) const;
   void clear_rest();
   void keep_forces(std::span<double> effort);
