@@ -13,7 +13,7 @@ const program = process.env.SINEW_PROGRAM ?? join(root, 'build/release/bin/sinew
 const circle = join(root, 'examples/trunk/circle.yaml');
 // Scene, the step at which it is drawn.
 const EXAMPLES = [['trunk/circle', 320], ['trunk/trunk', 250], ['arm/square', 420], ['beam/swing', 60], ['arm/conical', 25],
-                  ['finger/module', 190], ['ring/sma', 300]];
+                  ['finger/module', 190], ['ring/sma', 300], ['roll/roll', 60], ['arm/curl', 540]];
 const browser = await chromium.launch({executablePath: '/usr/bin/chromium', args: [
   '--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
   '--disable-background-networking', '--disable-component-update', '--disable-sync', '--no-first-run']});
