@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/rotation.hpp"
 #include "sinew/linalg/dense_factor.hpp"
 #include "sinew/material/principal.hpp"
 
@@ -44,11 +45,11 @@ class EveryEnergy : public testing::TestWithParam<NamedLaw> {
  protected:
   const Hyperelastic& law() const { return GetParam().law; }
 
-  Lanes9x9 tangent_at(const Matrix3& f, bool positive) const {
+  Lanes9x9 tangent_at(const Matrix3& f, Projection projection) const {
     const Lanes3x3 lanes_f = broadcast(f);
     const Principal at = principal(lanes_f);
     Lanes9x9 result;
-    tangent(lanes_f, at, response_at(at), positive, result);
+    tangent(lanes_f, at, response_at(at), projection, result);
     return result;
   }
   LanesLogResponse response_at(const Principal& at) const {
@@ -136,7 +137,7 @@ TEST_P(EveryEnergy, StressIsTheDerivativeOfTheEnergy) {
 TEST_P(EveryEnergy, TangentIsTheDerivativeOfTheStress) {
   constexpr double kStep = 1e-5;
   for (const Matrix3& f : gradients()) {
-    const Lanes9x9 a = tangent_at(f, false);
+    const Lanes9x9 a = tangent_at(f, Projection::none);
     for (int k = 0; k < 3; ++k) {
       for (int l = 0; l < 3; ++l) {
         const Matrix3 step = kStep * Vector3::Unit(k) * Vector3::Unit(l).transpose();
@@ -164,19 +165,32 @@ TEST_P(EveryEnergy, TheProjectionIsTheNearestPositiveOne) {
   };
   int indefinite = 0;
   for (const Matrix3& f : gradients()) {
-    const Matrix9 a = dense(tangent_at(f, false)), projected = dense(tangent_at(f, true));
+    const Matrix9 a = dense(tangent_at(f, Projection::none)),
+                  projected = dense(tangent_at(f, Projection::positive));
     const linalg::SymmetricSpectrum spectrum(a);
     const MatrixX expected = spectrum.vectors() * spectrum.values().cwiseMax(0.0).asDiagonal() *
                              spectrum.vectors().transpose();
     indefinite += spectrum.values().minCoeff() < -1e-6 ? 1 : 0;
     EXPECT_LT((projected - expected).norm(), 1e-9 * (1.0 + a.norm()));
+    Eigen::Matrix<double, 9, 3> spins;  // W F for turns about the axes
+    for (int k = 0; k < 3; ++k) {
+      const Matrix3 spin = cross_matrix(Vector3::Unit(k)) * f;
+      for (int r = 0; r < 3; ++r) {
+        for (int c = 0; c < 3; ++c) spins(3 * r + c, k) = spin(r, c);
+      }
+    }
+    const Matrix9 rest =
+        Matrix9::Identity() - spins * (spins.transpose() * spins).inverse() * spins.transpose();
+    const Matrix9 rates = dense(tangent_at(f, Projection::rates));
+    EXPECT_LT((rates - rest * projected * rest).norm(), 1e-9 * (1.0 + a.norm()));
+    EXPECT_LT((rates * spins).norm(), 1e-9 * (1.0 + a.norm()));
   }
   EXPECT_GT(indefinite, 0) << "nothing was to be projected";
 }
 
 TEST_P(EveryEnergy, AtRestItIsHookesLaw) {
   const double mu = law().shear_modulus(), kappa = law().bulk_modulus;
-  const Lanes9x9 a = tangent_at(Matrix3::Identity(), false);
+  const Lanes9x9 a = tangent_at(Matrix3::Identity(), Projection::none);
   const double lambda = kappa - 2.0 / 3.0 * mu;
   for (int r = 0; r < 3; ++r) {
     for (int c = 0; c < 3; ++c) {

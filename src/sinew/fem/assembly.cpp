@@ -67,7 +67,8 @@ struct Assembly::Workspace {
 
   double* records(Tangent tangent) {
     if (tangent == Tangent::none) return nullptr;
-    return tangent == Tangent::rotated ? rotated_records : exact_records;
+    const bool rotated = tangent == Tangent::rotated || tangent == Tangent::rates;
+    return rotated ? rotated_records : exact_records;
   }
 };
 

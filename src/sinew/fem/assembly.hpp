@@ -23,12 +23,15 @@ enum class Tangent {
   /// The exact derivative of each element (of hyperelastic laws: of each point) projected onto the
   /// positive semi-definite matrices: never less than the exact one.
   projected,
+  /// What rates of strain are resisted with: as rotated, but of hyperelastic laws blind to spins of
+  /// each point (material::Projection::rates).
+  rates,
   exact,  ///< second derivative of the energy, rotation's derivative included; may be indefinite
 };
 
 /// matrix = stiffness K + mass M. The weights come from the integrator; element code does not know
 /// which one runs. (1, 0) is quasi-static. (1, 1/h^2 + alpha/h) is backward Euler with mass damping
-/// alpha M. BodyElements adds the stiffness damping (beta/h) K, with K from the start of the step.
+/// alpha M. BodyElements adds the stiffness damping (beta/h) K, with K ahead in the step.
 struct AssemblyWeights {
   Tangent tangent = Tangent::rotated;
   double stiffness = 1.0;

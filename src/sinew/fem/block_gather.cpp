@@ -144,7 +144,7 @@ void gather_blocks(const GatherLists& lists, const linalg::BlockPattern& pattern
   if (weights.tangent == Tangent::exact || weights.tangent == Tangent::projected) {
     gather_columns<Tangent::exact>(lists, pattern, begin, end, records, solids, patch_rows, weights,
                                    node_mass, block_mass, matrix);
-  } else if (weights.tangent == Tangent::rotated) {
+  } else if (weights.tangent == Tangent::rotated || weights.tangent == Tangent::rates) {
     gather_columns<Tangent::rotated>(lists, pattern, begin, end, records, solids, patch_rows,
                                      weights, node_mass, block_mass, matrix);
   }

@@ -44,9 +44,10 @@ void BodyElements::begin_step() {
   if (active_->assembly.linearise_from(nullptr)) active_->present.reset();
 }
 
-// C = alpha M + beta K with the rotated K at the start of the step: positive semi-definite, so that
-// damping damps, and constant, so that Newton's derivative is exact. Softening has no part in it:
-// where a step ends at the largest strain so far its slope jumps, and rounding would decide.
+// C = alpha M + beta K with K of rates of strain, half-way through the step as the velocity leads:
+// positive semi-definite, so that damping damps, and constant, so that Newton's derivative is
+// exact. Softening has no part in it: where a step ends at the largest strain so far its slope
+// jumps, and rounding would decide.
 void BodyElements::linearise(const mechanics::LinearisationRequest& request, bool first) {
   SystemNumbers* const before = active_;
   active_ = &numbers(request.with_curvature);
@@ -59,20 +60,31 @@ void BodyElements::linearise(const mechanics::LinearisationRequest& request, boo
   const double rate = damping.stiffness * weights.velocity.motion;
   const AssemblyWeights wanted{element_tangent(request.tangent), 1.0, mass};
   active_->damped = rate > 0.0;
-  if (active_->damped && first) keep_start_stiffness();
+  if (active_->damped && first) keep_damping_stiffness(request.weights);
   const bool historic = !state_.element_history.empty();
   if (active_->present == wanted && !historic && !active_->damped) return;
   active_->assembly.evaluate(state_.positions, wanted);
   active_->present = wanted;
   if (!active_->damped) return;
   const auto matrix = active_->assembly.matrix();
-  for (std::size_t i = 0; i < matrix.size(); ++i) matrix[i] += rate * active_->start_stiffness[i];
+  for (std::size_t i = 0; i < matrix.size(); ++i) matrix[i] += rate * active_->damping_stiffness[i];
 }
 
-void BodyElements::keep_start_stiffness() {
-  active_->assembly.evaluate(state_.positions, {Tangent::rotated, 1.0, 0.0, false});
+// Where the integrator's velocity is that of the body: a chord between two places of a turning body
+// is a spin about where it is half-way between them, and other formulas stand at the step's end.
+// There a spin costs nothing. A fast body would be inverted; it is taken where it is.
+void BodyElements::keep_damping_stiffness(const mechanics::StepWeights& weights) {
+  constexpr double kLeastVolume = 0.5;
+  const AssemblyWeights wanted{Tangent::rates, 1.0, 0.0, false};
+  const bool chord = weights.velocity.velocity == 0.0 && weights.velocity.first == 0.0;
+  const double ahead = (chord ? 0.5 : 1.0) * weights.time_step;
+  ahead_ = state_.start_positions + ahead * state_.velocities;
+  active_->assembly.evaluate(ahead_, wanted);
+  if (!(active_->assembly.minimum_volume_ratio() > kLeastVolume)) {
+    active_->assembly.evaluate(state_.start_positions, wanted);
+  }
   const auto matrix = active_->assembly.matrix();
-  active_->start_stiffness.assign(matrix.begin(), matrix.end());
+  active_->damping_stiffness.assign(matrix.begin(), matrix.end());
   active_->present.reset();
 }
 

@@ -43,12 +43,13 @@ class BodyElements {
  private:
   SystemNumbers& numbers(bool with_curvature);
   void prepare_history(double time_step);
-  void keep_start_stiffness();
+  void keep_damping_stiffness(const mechanics::StepWeights& weights);
 
   FemState& state_;
   ThreadPool& pool_;
   std::unique_ptr<SystemNumbers> plain_, curved_;
   SystemNumbers* active_ = nullptr;
+  Points ahead_ = Points(0, 3);          // m, in the step, as the velocity leads
   std::optional<double> prepared_step_;  // that the elements' history was last prepared for
 };
 

@@ -152,6 +152,7 @@ SmallestRatio evaluate_batches(const ElementBatches& elements, int begin, int en
       evaluate_laws<Tangent::none>(elements, begin, end, points, output, minimum);
       break;
     case Tangent::rotated:
+    case Tangent::rates:  // turns of the material by small strains are left
       evaluate_laws<Tangent::rotated>(elements, begin, end, points, output, minimum);
       break;
     case Tangent::projected:

@@ -17,7 +17,7 @@ void InertiaForces::multiply_by_mass(const FemModel& elements) {
 
 void InertiaForces::multiply_by_stiffness(const SystemNumbers& numbers) {
   force_.resize(motion_.size());
-  linalg::multiply(numbers.system.elements->pattern(), numbers.start_stiffness, view(motion_),
+  linalg::multiply(numbers.system.elements->pattern(), numbers.damping_stiffness, view(motion_),
                    view(force_));
 }
 

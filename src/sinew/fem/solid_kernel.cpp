@@ -132,6 +132,13 @@ SINEW_INLINE Lanes linear_pressure(const SolidGroup& group, const Batch<N, Q>& b
   return shared_dilatation(group, batch, number, ratio, nullptr, bulk).pressure;
 }
 
+template <Tangent kTangent>
+constexpr material::Projection projection() {
+  using enum material::Projection;
+  if (kTangent == Tangent::rates) return rates;
+  return kTangent == Tangent::projected ? positive : none;
+}
+
 template <int N, int Q, Tangent kTangent>
 void evaluate(const SolidGroup& group, int begin, int end, const double* points,
               const SolidOutput& output, LaneMinimum& minimum) {
@@ -195,7 +202,7 @@ void evaluate(const SolidGroup& group, int begin, int end, const double* points,
           for (int j = 0; j <= i; ++j) response.second[i][j] += lag * ratio[q];
         }
         material::Lanes9x9 a9;
-        material::tangent(f[q], at, response, kTangent == Tangent::projected, a9);
+        material::tangent(f[q], at, response, projection<kTangent>(), a9);
         if (kTangent == Tangent::exact && past.carried != nullptr) {
           Overstress(past.carried + 6 * q, split, f[q], cof[q], ratio[q]).add_tangent(a9);
         }
@@ -320,6 +327,8 @@ void evaluate_kind(const SolidGroup& group, int begin, int end, const double* po
     case Tangent::rotated:
     case Tangent::projected:
       return evaluate<N, Q, Tangent::projected>(group, begin, end, points, output, minimum);
+    case Tangent::rates:
+      return evaluate<N, Q, Tangent::rates>(group, begin, end, points, output, minimum);
     case Tangent::exact:
       return evaluate<N, Q, Tangent::exact>(group, begin, end, points, output, minimum);
   }

@@ -36,7 +36,7 @@ struct SolidOutput {
 /// @param group,begin,end which batches.
 /// @param points (n, 4) m, positions padded to four.
 /// @param tangent exact: the derivative; rotated: its projection onto the positive semi-definite
-///   matrices, point by point. @param output where everything is written.
+///   matrices, point by point; rates: see there. @param output where everything is written.
 /// The smallest det F at a point of integration is returned, with the slot among all of the body;
 /// positions that are not finite give minus infinity.
 SmallestRatio evaluate_solids(const SolidGroup& group, int begin, int end, const double* points,

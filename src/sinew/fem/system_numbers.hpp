@@ -22,14 +22,14 @@ struct SystemNumbers {
 
   std::size_t bytes() const {
     return assembly.bytes() + factorisation->bytes() +
-           sizeof(double) * (border.size() + start_stiffness.size());
+           sizeof(double) * (border.size() + damping_stiffness.size());
   }
 
   const FemSystem& system;
   std::unique_ptr<linalg::Factorisation> factorisation;
   Assembly assembly;  ///< works where the factor will stand: a linearisation ends the last factor
   std::vector<double> border;
-  std::vector<double> start_stiffness;  ///< rotated K at the start of the step, for damping
+  std::vector<double> damping_stiffness;  ///< K of rates of strain (Tangent::rates)
   bool damped = false;
   /// What the elements' forces and matrix in `assembly` are of, at the body's present positions:
   /// the next linearisation there takes them as they are. None once the body moved or something

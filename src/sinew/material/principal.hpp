@@ -325,10 +325,22 @@ SINEW_INLINE void project(Lanes (&m)[3][3]) {
 
 }  // namespace detail
 
-/// dP/dF, or its projection.
-/// @param f,at,response of one point. @param positive whether to project. @param result replaced.
+/// What is made of dP/dF.
+enum class Projection {
+  none,
+  positive,  ///< projected onto the positive semi-definite matrices
+  /// That, and blind to spins dF = W F, W skew: in the plane of two principal stretches,
+  ///   (dF_ij, dF_ji) . (l_i, l_j)/sqrt(l_i^2 + l_j^2) alone counts,
+  /// which is the rate of the right Cauchy-Green strain there but for a factor. What a rate of
+  /// strain is resisted with: turns of strained and stressed material cost nothing.
+  rates,
+};
+
+/// dP/dF.
+/// @param f,at,response of one point. @param projection see there. @param result replaced.
 SINEW_INLINE void tangent(const Lanes3x3& f, const Principal& at, const LanesLogResponse& response,
-                          bool positive, Lanes9x9& result) {
+                          Projection projection, Lanes9x9& result) {
+  const bool positive = projection != Projection::none;
   constexpr double kMeeting = 1e-4;  // relative distance below which stretches count as equal
   const Lanes zero = lanes(0.0);
   const auto& l = at.stretch;
@@ -341,7 +353,8 @@ SINEW_INLINE void tangent(const Lanes3x3& f, const Principal& at, const LanesLog
       second[i][j] = second[j][i] = value / (l[i] * l[j]);
     }
   }
-  Lanes same[3], crossed[3];  // of pairs (0,1), (0,2), (1,2): (x + y)/2 and (x - y)/2
+  // Of pairs (0,1), (0,2), (1,2): (x + y)/2, of dF_ij and of dF_ji, and (x - y)/2.
+  Lanes same[3], reversed[3], crossed[3];
   constexpr int kPairs[3][2] = {{0, 1}, {0, 2}, {1, 2}};
   for (int k = 0; k < 3; ++k) {
     const int i = kPairs[k][0], j = kPairs[k][1];
@@ -354,8 +367,15 @@ SINEW_INLINE void tangent(const Lanes3x3& f, const Principal& at, const LanesLog
       x = maximum(x, zero);
       y = maximum(y, zero);
     }
-    same[k] = 0.5 * (x + y);
+    same[k] = reversed[k] = 0.5 * (x + y);
     crossed[k] = 0.5 * (x - y);
+    if (projection == Projection::rates) {
+      const Lanes unit = 1.0 / (l[i] * l[i] + l[j] * l[j]);
+      const Lanes along = (same[k] + 2.0 * crossed[k] * l[i] * l[j] * unit) * unit;
+      same[k] = along * l[i] * l[i];
+      reversed[k] = along * l[j] * l[j];
+      crossed[k] = along * l[i] * l[j];
+    }
   }
   if (positive) detail::project(second);
   Lanes n[3][3];  // n[i][r]: component r of n_i
@@ -381,7 +401,7 @@ SINEW_INLINE void tangent(const Lanes3x3& f, const Principal& at, const LanesLog
           second[i][0] * e[0][0][a] + second[i][1] * e[1][1][a] + second[i][2] * e[2][2][a];
       const int p = kPairs[i][0], q = kPairs[i][1];
       with[3 + i][a] = same[i] * e[p][q][a] + crossed[i] * e[q][p][a];
-      with[6 + i][a] = same[i] * e[q][p][a] + crossed[i] * e[p][q][a];
+      with[6 + i][a] = reversed[i] * e[q][p][a] + crossed[i] * e[p][q][a];
     }
   }
   for (int a = 0; a < 9; ++a) {
