@@ -10,6 +10,22 @@ def box(edges, centre=(0, 0, 0)):
     return corners * edges + centre, np.array(triangles)
 
 
+def cup(edges, wall):
+    """An open box: bottom and four walls, centred; (16, 3) nodes and (28, 3) triangles, outwards."""
+    half, inner = np.array(edges) / 2, np.array(edges) / 2 - wall
+    corners = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
+
+    def ring(size, z):
+        return np.column_stack([corners * size[:2], np.full(4, z)])
+
+    nodes = np.vstack([ring(half, -half[2]), ring(half, half[2]), ring(inner, -inner[2]), ring(inner, half[2])])
+    quads = [(3, 2, 1, 0), (8, 9, 10, 11)]  # below, and the bottom's inside
+    for k in range(4):
+        n = (k + 1) % 4
+        quads += [(k, n, 4 + n, 4 + k), (8 + n, 8 + k, 12 + k, 12 + n), (4 + k, 4 + n, 12 + n, 12 + k)]
+    return nodes, np.array([t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))])
+
+
 def tetrahedron():
     return np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]]), np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
 

@@ -116,11 +116,11 @@ TEST(DenseFactor, SolvesVectorsAndColumns) {
   ASSERT_TRUE(cholesky.compute(spd));
   MatrixX x(6, 4);
   VectorX y = b.col(1);
-  lu.solve(b, x);
+  lu.solve_columns(b, x);
   EXPECT_LT((a * x - b).norm(), kRounding);
   lu.solve(VectorX(b.col(1)), y);
   EXPECT_LT((a * y - b.col(1)).norm(), kRounding);
-  cholesky.solve(b, x);
+  cholesky.solve_columns(b, x);
   EXPECT_LT((spd * x - b).norm(), kRounding);
   y = b.col(2);
   cholesky.solve(y, y);

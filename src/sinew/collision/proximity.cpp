@@ -70,8 +70,13 @@ class PairSearch {
     for (const NodeId v : first_.surface().topology().own_nodes(pair.first)) {
       for (const NodeId w : second_.surface().topology().own_nodes(pair.second)) vertices(v, w);
     }
-    for (const int e : first_.surface().topology().own_edges(pair.first)) {
-      for (const int f : second_.surface().topology().own_edges(pair.second)) edges(e, f);
+    const SurfaceTopology &first = first_.surface().topology(),
+                          &second = second_.surface().topology();
+    for (const int e : first.own_edges(pair.first)) {
+      if (first.is_flat(e)) continue;
+      for (const int f : second.own_edges(pair.second)) {
+        if (!second.is_flat(f)) edges(e, f);
+      }
     }
   }
 

@@ -10,6 +10,13 @@
 
 namespace sinew::collision {
 
+namespace {
+
+// Sine of an angle that is rounding.
+constexpr double kFlat = 1e-9;
+
+}  // namespace
+
 NumberLists::NumberLists(int count, std::span<const int> owners, std::span<const int> entries)
     : begin_(static_cast<std::size_t>(count) + 1, 0), entries_(entries.size()) {
   for (const int owner : owners) ++begin_[static_cast<std::size_t>(owner) + 1];
@@ -26,6 +33,27 @@ SurfaceTopology::SurfaceTopology(std::vector<Triangle> triangles, int node_count
   check();
   number_edges();
   list_neighbours();
+}
+
+SurfaceTopology SurfaceTopology::of_rigid(std::vector<Triangle> triangles, const Points& nodes) {
+  SurfaceTopology result(std::move(triangles), static_cast<int>(nodes.rows()));
+  const auto at = [&](NodeId node) -> Vector3 { return nodes.row(node).transpose(); };
+  result.flat_.assign(result.edges_.size(), 0);
+  for (std::size_t e = 0; e < result.edges_.size(); ++e) {
+    const auto faces = result.edge_triangles_[static_cast<int>(e)];
+    if (faces.size() != 2) continue;
+    const Triangle& own = result.triangles_[static_cast<std::size_t>(faces[0])];
+    const Vector3 corner = at(own[0]);
+    const Vector3 normal = (at(own[1]) - corner).cross(at(own[2]) - corner).normalized();
+    double lowest = 0.0;  // of the other triangle, over the first one's plane
+    double farthest = 0.0;
+    for (const NodeId node : result.triangles_[static_cast<std::size_t>(faces[1])]) {
+      lowest = std::min(lowest, normal.dot(at(node) - corner));
+      farthest = std::max(farthest, (at(node) - corner).norm());
+    }
+    result.flat_[e] = lowest >= -kFlat * farthest ? 1 : 0;
+  }
+  return result;
 }
 
 void SurfaceTopology::check() const {

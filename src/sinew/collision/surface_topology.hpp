@@ -41,6 +41,9 @@ class SurfaceTopology {
   /// @param node_count rows of the positions. Throws Error: empty-region (no triangle),
   ///   index-out-of-range, repeated-node-in-element.
   SurfaceTopology(std::vector<Triangle> triangles, int node_count);
+  /// Of a surface that never changes its shape, which knows its flat edges. @param triangles see
+  /// above. @param nodes (n, 3) m.
+  static SurfaceTopology of_rigid(std::vector<Triangle> triangles, const Points& nodes);
 
   int node_count() const { return node_count_; }
   const std::vector<Triangle>& triangles() const { return triangles_; }
@@ -58,6 +61,11 @@ class SurfaceTopology {
   std::span<const int> own_nodes(int triangle) const { return own_nodes_[triangle]; }
   std::span<const int> own_edges(int triangle) const { return own_edges_[triangle]; }
 
+  /// Whether the surface is known not to turn outwards at an edge: it is flat or concave there, and
+  /// another edge that crosses it is no nearer there than at its ends.
+  bool is_flat(int edge) const {
+    return !flat_.empty() && flat_[static_cast<std::size_t>(edge)] != 0;
+  }
   /// Whether every edge has two triangles, which run along it in opposite directions.
   bool closed() const { return closed_; }
 
@@ -71,6 +79,7 @@ class SurfaceTopology {
   std::vector<Edge> edges_;
   std::vector<std::array<int, 3>> triangle_edges_;
   NumberLists edge_triangles_, node_triangles_, node_edges_, own_nodes_, own_edges_;
+  std::vector<char> flat_;  // of edges; empty: not known
   bool closed_ = true;
 };
 

@@ -34,12 +34,14 @@ Vector3 Placement::velocity(const mechanics::Site& site) const {
   return body_of(bodies_, site).velocity(site.number);
 }
 
-const Points& Placement::nodes(int body) const {
-  return bodies_[static_cast<std::size_t>(body)]->positions();
+const Points& Placement::surface_nodes(int body) const {
+  return mechanics::as<const mechanics::HasSurfaceNodes>(*bodies_[static_cast<std::size_t>(body)])
+      ->surface_nodes();
 }
 
-const Points& Placement::node_velocities(int body) const {
-  return bodies_[static_cast<std::size_t>(body)]->velocities();
+const Points& Placement::surface_node_velocities(int body) const {
+  return mechanics::as<const mechanics::HasSurfaceNodes>(*bodies_[static_cast<std::size_t>(body)])
+      ->surface_node_velocities();
 }
 
 }  // namespace sinew::constraint

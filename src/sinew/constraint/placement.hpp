@@ -27,9 +27,10 @@ class Placement {
   /// (3,) rate of a site's motion: m/s; of an orientation, its angular velocity, rad/s; of a
   /// coordinate, (rate, 0, 0).
   Vector3 velocity(const mechanics::Site& site) const;
-  /// (n, 3) m and m/s, of the nodes of a body's mesh. @param body in the world's list.
-  const Points& nodes(int body) const;
-  const Points& node_velocities(int body) const;
+  /// (n, 3) m and m/s, of the nodes of a body's surface (HasSurface). @param body in the world's
+  /// list.
+  const Points& surface_nodes(int body) const;
+  const Points& surface_node_velocities(int body) const;
 
  private:
   std::span<const std::unique_ptr<mechanics::Body>> bodies_;

@@ -36,6 +36,12 @@ Vector3 weighted(const Points& nodes, const mechanics::Patch& patch) {
 
 }  // namespace
 
+bool SurfaceContact::Side::holds(const collision::SurfacePoint& place) const {
+  return std::ranges::all_of(place.nodes, [&](NodeId node) {
+    return node < 0 || held[static_cast<std::size_t>(node)] != 0;
+  });
+}
+
 SurfaceContact::SurfaceContact(std::string name, Side first, Side second, const Settings& settings)
     : Contact(std::move(name), most_points(first, second), settings.friction, 2),
       first_(std::move(first)),
@@ -101,8 +107,9 @@ void SurfaceContact::measure(const Placement& placement, std::size_t point,
                              mechanics::RowValues& values) const {
   values.delta.segment<3>(row(point)) =
       values.offset.segment<3>(row(point)) +
-      frame(point, values).transpose() *
-          relative(placement.nodes(body()), placement.nodes(other_body()), point, values);
+      frame(point, values).transpose() * relative(placement.surface_nodes(body()),
+                                                  placement.surface_nodes(other_body()), point,
+                                                  values);
 }
 
 double SurfaceContact::gap_at(const Points& first, const Points& second, std::size_t point,
@@ -114,21 +121,22 @@ double SurfaceContact::gap_at(const Points& first, const Points& second, std::si
 // Half-way between the surfaces. A point that is none stays out of the way, on the body.
 Vector3 SurfaceContact::position_now(const Placement& placement, std::size_t point,
                                      const mechanics::RowValues& values) const {
-  if (idle(point, values)) return placement.nodes(body()).row(0).transpose();
+  if (idle(point, values)) return placement.surface_nodes(body()).row(0).transpose();
   const std::size_t at = entry(point);
-  return 0.5 * (weighted(placement.nodes(body()), values.patch[at]) +
-                weighted(placement.nodes(other_body()), values.patch[at + 1]));
+  return 0.5 * (weighted(placement.surface_nodes(body()), values.patch[at]) +
+                weighted(placement.surface_nodes(other_body()), values.patch[at + 1]));
 }
 
 Vector3 SurfaceContact::velocity_beside(const Placement& placement, std::size_t point,
                                         const mechanics::RowValues& values) const {
-  return relative(placement.node_velocities(body()), placement.node_velocities(other_body()), point,
-                  values);
+  return relative(placement.surface_node_velocities(body()),
+                  placement.surface_node_velocities(other_body()), point, values);
 }
 
 double SurfaceContact::linear_gap(const Placement& placement, std::size_t point,
                                   const mechanics::RowValues& values) const {
-  return gap_at(placement.nodes(body()), placement.nodes(other_body()), point, values);
+  return gap_at(placement.surface_nodes(body()), placement.surface_nodes(other_body()), point,
+                values);
 }
 
 double SurfaceContact::gap_now(const Placement& placement, const Eigen::Isometry3d&,

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "sinew/collision/proximity.hpp"
 #include "sinew/constraint/contact.hpp"
@@ -22,6 +23,9 @@ class SurfaceContact : public Contact {
   struct Side {
     mechanics::SurfaceSite site;
     std::shared_ptr<const collision::SurfaceTopology> surface;
+    std::vector<char> held;  ///< (nodes,) 1: no force moves it
+    /// Whether no force moves a place.
+    bool holds(const collision::SurfacePoint& place) const;
   };
   struct Settings {
     double friction = 0.0;    ///< Coulomb's coefficient, >= 0

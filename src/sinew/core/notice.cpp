@@ -7,8 +7,8 @@
 namespace sinew {
 
 std::string_view notice_kind_name(NoticeKind kind) {
-  constexpr std::array<std::string_view, 4> kNames = {"locking-element", "bare-points",
-                                                      "unused-element", "other-tangent"};
+  constexpr std::array<std::string_view, 5> kNames = {
+      "locking-element", "bare-points", "unused-element", "coarse-contact", "other-tangent"};
   return kNames.at(static_cast<std::size_t>(kind));
 }
 

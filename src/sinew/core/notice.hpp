@@ -15,6 +15,7 @@ enum class NoticeKind {
   locking_element,  ///< the elements make the body much stiffer than its material
   bare_points,      ///< a cable pulls at single points, which dent the material
   unused_element,   ///< a file holds what this version does not do
+  coarse_contact,   ///< a round surface is smaller than the faces between the nodes that touch it
   other_tangent,    ///< the tangent that the scene asks for is none of its materials
 };
 

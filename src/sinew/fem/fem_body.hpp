@@ -23,6 +23,7 @@ class FemBody : public mechanics::Body,
                 public mechanics::TakesForces,
                 public mechanics::HasBase,
                 public mechanics::TakesLoads,
+                public mechanics::HasSurfaceNodes,
                 public HasMaterial {
  public:
   /// @param model must outlive the body. @param pool likewise.
@@ -35,6 +36,8 @@ class FemBody : public mechanics::Body,
   Vector3 velocity(int point) const override;
   const Points& positions() const override;
   const Points& velocities() const override;
+  const Points& surface_nodes() const override { return positions(); }
+  const Points& surface_node_velocities() const override { return velocities(); }
   mechanics::Energies energies() override;
   void restart() override;
   std::size_t state_size() const override;

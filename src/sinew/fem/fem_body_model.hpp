@@ -49,6 +49,10 @@ class FemBodyModel final : public mechanics::BodyModel,
   int attach_nodes(std::span<const NodeId> nodes, std::span<const double> weights) override;
   int attach_surface() override;
   std::shared_ptr<const collision::SurfaceTopology> surface() const override { return surface_; }
+  const Points& rest_surface_nodes() const override { return mesh().nodes; }
+  bool holds(NodeId node) const override {
+    return elements().free_index()[static_cast<std::size_t>(node)] < 0;
+  }
   Vector3 rest_position(int point) const override;
   mesh::EmbeddedPoint locate(const Vector3& rest_position, mesh::Outside outside,
                              const std::string& what) const override;

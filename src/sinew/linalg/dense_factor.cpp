@@ -8,7 +8,7 @@ void LuFactor::solve(const Eigen::Ref<const VectorX>& b, Eigen::Ref<VectorX> x) 
   x = lu_.solve(b);
 }
 
-void LuFactor::solve(const MatrixX& b, MatrixX& x) const {
+void LuFactor::solve_columns(const Eigen::Ref<const MatrixX>& b, Eigen::Ref<MatrixX> x) const {
   // Eigen takes the address of the first entry, which there must be.
   if (b.size() == 0) {
     x = b;
@@ -32,7 +32,8 @@ void CholeskyFactor::solve(const Eigen::Ref<const VectorX>& b, Eigen::Ref<Vector
   llt_.solveInPlace(x);
 }
 
-void CholeskyFactor::solve(const MatrixX& b, MatrixX& x) const {
+void CholeskyFactor::solve_columns(const Eigen::Ref<const MatrixX>& b,
+                                   Eigen::Ref<MatrixX> x) const {
   x = b;
   if (x.size() > 0) llt_.solveInPlace(x);
 }

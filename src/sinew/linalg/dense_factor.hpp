@@ -21,7 +21,7 @@ class LuFactor {
   /// x of A x = b. @param b (size,). @param x (size,), not b.
   void solve(const Eigen::Ref<const VectorX>& b, Eigen::Ref<VectorX> x) const;
   /// Column by column. @param b (size, k). @param x (size, k), not b.
-  void solve(const MatrixX& b, MatrixX& x) const;
+  void solve_columns(const Eigen::Ref<const MatrixX>& b, Eigen::Ref<MatrixX> x) const;
   /// Of a matrix scaled to entries of order 1: whether a pivot is rounding, or not finite.
   bool is_singular() const;
 
@@ -39,7 +39,7 @@ class CholeskyFactor {
   /// x of A x = b. @param b (size,). @param x (size,), may be b.
   void solve(const Eigen::Ref<const VectorX>& b, Eigen::Ref<VectorX> x) const;
   /// Column by column. @param b (size, k). @param x (size, k), may be b.
-  void solve(const MatrixX& b, MatrixX& x) const;
+  void solve_columns(const Eigen::Ref<const MatrixX>& b, Eigen::Ref<MatrixX> x) const;
 
  private:
   Eigen::LLT<MatrixX> llt_;

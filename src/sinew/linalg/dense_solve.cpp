@@ -23,7 +23,7 @@ MatrixX pseudo_inverse(const MatrixX& a) {
 
 MatrixX solve(const MatrixX& a, const MatrixX& b) {
   MatrixX x(b.rows(), b.cols());
-  LuFactor(a).solve(b, x);
+  LuFactor(a).solve_columns(b, x);
   return x;
 }
 

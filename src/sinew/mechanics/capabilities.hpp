@@ -97,16 +97,32 @@ class HasOrientations {
   virtual Matrix3 rotation(int orientation) const = 0;
 };
 
-/// A body model with a surface of triangles between nodes of its mesh.
+/// A body model with a surface of triangles. What nodes they join is the body's own matter.
 class HasSurface {
  public:
   virtual ~HasSurface() = default;
   /// Attaches the whole surface as one site (SurfaceSite). Building only. @return its number.
+  /// Throws Error(not-in-this-version) for a shape that triangles do not bound.
   virtual int attach_surface() = 0;
   /// Its triangles, outwards; those of quadratic faces are split at the middles of their edges.
   /// After attach_surface().
   virtual std::shared_ptr<const collision::SurfaceTopology> surface() const = 0;
+  /// (n, 3) m, of its nodes at rest. After attach_surface().
+  virtual const Points& rest_surface_nodes() const = 0;
+  /// Whether no force moves a node: its motion is given.
+  virtual bool holds(NodeId node) const = 0;
 };
+
+/// A body of such a model.
+class HasSurfaceNodes {
+ public:
+  virtual ~HasSurfaceNodes() = default;
+  virtual const Points& surface_nodes() const = 0;            ///< (n, 3) m
+  virtual const Points& surface_node_velocities() const = 0;  ///< (n, 3) m/s
+};
+
+/// What of a rigid body touches others.
+enum class TouchingPart { shape, hull, surface };
 
 /// A body model that is rigid as a whole.
 class HasShape {
@@ -120,8 +136,12 @@ class HasShape {
   /// kg m^2, (3, 3) about the centre of mass, in its own axes.
   virtual Matrix3 own_inertia() const = 0;
   virtual const char* shape_name() const = 0;  ///< "box", "sphere", ..., "mesh"
-  /// What touches, where it is at rest, in the world. Throws Error(not-in-this-version) where this
-  /// version has no contact of the shape.
+  virtual TouchingPart touching_part() const = 0;
+  /// m: what bends least sharply of a smooth shape, a ball or a capsule; of others 0, since edges
+  /// or corners of theirs touch.
+  virtual double touching_radius() const = 0;
+  /// The shape or the hull, which touches, where it is at rest, in the world. Of a surface its
+  /// hull, which touches planes as it does.
   virtual collision::Shape rest_shape() const = 0;
 };
 

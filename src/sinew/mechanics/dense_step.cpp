@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "sinew/core/error.hpp"
+
 namespace sinew::mechanics {
 
 DenseStep::DenseStep(Eigen::Index coordinates, const OwnRows& own, RowMemory& memory)
@@ -12,14 +14,20 @@ DenseStep::DenseStep(Eigen::Index coordinates, const OwnRows& own, RowMemory& me
       pivots_(coordinates),
       spectrum_(coordinates) {
   const Eigen::Index n = coordinates;
-  const auto rows = static_cast<Eigen::Index>(own.rows.size());
   for (VectorX* v : {&right_, &motion_, &scratch_, &lessening_}) v->setZero(n);
   for (MatrixX* m : {&matrix_, &symmetric_}) m->setZero(n, n);
   for (MatrixX* m : {&jacobian_, &second_jacobian_, &pulled_}) m->setZero(3, n);
-  rows_.setZero(n, rows);
-  moved_rows_.setZero(n, rows);
-  soft_rows_.setZero(n, rows);
-  free_motion_.setZero(rows);
+  make_room(static_cast<Eigen::Index>(own.rows.size()));
+  rows_.setZero();
+  moved_rows_.setZero();
+}
+
+void DenseStep::make_room(Eigen::Index columns) {
+  columns_ = columns;
+  if (columns <= effort_.size()) return;
+  for (MatrixX* m : {&rows_, &moved_rows_, &soft_rows_}) m->resize(right_.size(), columns);
+  for (VectorX* v : {&free_motion_, &effort_}) v->resize(columns);
+  places_.reserve(static_cast<std::size_t>(columns));
 }
 
 void DenseStep::linearise(const LinearisationRequest& request) {
@@ -39,8 +47,30 @@ void DenseStep::add_curvature(const RowCurvature& curvature) {
   if (curvature.first.number != curvature.second.number) matrix_ -= symmetric_.transpose();
 }
 
+void DenseStep::patch_jacobian(const Patch&, MatrixX&) const {
+  throw Error(ErrorKind::internal, {}, "a body without a surface is asked how that moves");
+}
+
+// Efforts stay with their rows.
+void DenseStep::take_surface_rows(const RowValues& rows) {
+  surface_rows_before_.swap(surface_rows_);
+  surface_rows_.clear();
+  auto before = surface_rows_before_.begin();
+  for (const OwnRows::SurfaceEntry& entry : own_.surface) {
+    if (rows.present[static_cast<std::size_t>(entry.row)] == 0) continue;
+    const auto at = static_cast<std::size_t>(entry.entry);
+    while (before != surface_rows_before_.end() && before->row < entry.row) ++before;
+    const bool known = before != surface_rows_before_.end() && before->row == entry.row;
+    surface_rows_.push_back(
+        {entry.row, rows.direction[at], rows.patch[at], known ? before->effort : 0.0});
+  }
+}
+
 void DenseStep::take_rows(const RowValues& rows) {
-  rows_.setZero();
+  take_surface_rows(rows);
+  const auto lasting = static_cast<Eigen::Index>(own_.rows.size());
+  make_room(lasting + static_cast<Eigen::Index>(surface_rows_.size()));
+  rows_.leftCols(lasting).setZero();
   for (std::size_t e = 0; e < own_.entries.size(); ++e) {
     const auto& entry = own_.entries[e];
     const Vector3& direction = rows.direction[static_cast<std::size_t>(entry.entry)];
@@ -50,6 +80,16 @@ void DenseStep::take_rows(const RowValues& rows) {
       rows_(i, entry.row) += direction.dot(jacobian_.col(i));
     }
   }
+  for (std::size_t k = 0; k < surface_rows_.size(); ++k) {
+    patch_jacobian(surface_rows_[k].patch, jacobian_);
+    rows_.col(lasting + static_cast<Eigen::Index>(k)).noalias() =
+        jacobian_.transpose() * surface_rows_[k].direction;
+  }
+}
+
+std::int32_t DenseStep::world_row(Eigen::Index column) const {
+  const auto k = static_cast<std::size_t>(column);
+  return k < own_.rows.size() ? own_.rows[k] : surface_rows_[k - own_.rows.size()].row;
 }
 
 void DenseStep::retake_rows(const RowValues& rows) {
@@ -57,12 +97,22 @@ void DenseStep::retake_rows(const RowValues& rows) {
   respond();
 }
 
+double DenseStep::known_effort(Eigen::Index column) const {
+  const Eigen::Index lasting = memory_.effort.size();
+  return column < lasting ? memory_.effort[column]
+                          : surface_rows_[static_cast<std::size_t>(column - lasting)].effort;
+}
+
 void DenseStep::find_imbalance(std::span<const double> effort) {
-  for (std::size_t k = 0; k < own_.rows.size(); ++k) {
-    memory_.effort[static_cast<Eigen::Index>(k)] = effort[static_cast<std::size_t>(own_.rows[k])];
+  for (Eigen::Index j = 0; j < columns_; ++j) {
+    effort_[j] = effort[static_cast<std::size_t>(world_row(j))];
+  }
+  memory_.effort = effort_.head(memory_.effort.size());
+  for (std::size_t k = 0; k < surface_rows_.size(); ++k) {
+    surface_rows_[k].effort = effort_[memory_.effort.size() + static_cast<Eigen::Index>(k)];
   }
   scratch_ = right_;
-  scratch_.noalias() += rows_ * memory_.effort;
+  scratch_.noalias() += rows_.leftCols(columns_) * effort_.head(columns_);
 }
 
 double DenseStep::residual(std::span<const double> effort, std::span<double> imbalance) {
@@ -89,24 +139,25 @@ Inertia DenseStep::condense() {
   }
   decomposed_.compute(matrix_);
   is_symmetric_ = symmetric_ == matrix_;
-  if (!is_symmetric_ && rows_.cols() > 0) symmetric_factor_.compute(symmetric_);
+  if (!is_symmetric_ && !own_.empty()) symmetric_factor_.compute(symmetric_);
   respond();
   if (inertia.negative_pivots > 0) inertia.status = linalg::FactorStatus::indefinite;
-  if (!moved_rows_.allFinite() || pivots_.vanishes()) {
+  if (!moved_rows_.leftCols(columns_).allFinite() || pivots_.vanishes()) {
     inertia.status = linalg::FactorStatus::singular;
   }
   return inertia;
 }
 
 void DenseStep::respond() {
-  decomposed_.solve(rows_, moved_rows_);
-  if (rows_.cols() == 0) return;
+  if (columns_ == 0 || motion_.size() == 0) return;
+  const auto rows = rows_.leftCols(columns_);
+  decomposed_.solve_columns(rows, moved_rows_.leftCols(columns_));
   decomposed_.solve(right_, motion_);
-  free_motion_.noalias() = rows_.transpose() * motion_;
+  free_motion_.head(columns_).noalias() = rows.transpose() * motion_;
   if (is_symmetric_) {
-    soft_rows_ = moved_rows_;
+    soft_rows_.leftCols(columns_) = moved_rows_.leftCols(columns_);
   } else {
-    symmetric_factor_.solve(rows_, soft_rows_);
+    symmetric_factor_.solve_columns(rows, soft_rows_.leftCols(columns_));
   }
 }
 
@@ -132,23 +183,22 @@ void DenseStep::make_definite() {
 // redundant joints the iteration then diverges.
 void DenseStep::add_compliance(std::span<const int> place, MatrixX& compliance,
                                VectorX& free_motion) const {
-  const auto& rows = own_.rows;
-  const auto place_of = [&](Eigen::Index own) {
-    return place[static_cast<std::size_t>(rows[static_cast<std::size_t>(own)])];
-  };
-  for (Eigen::Index j = 0; j < rows_.cols(); ++j) {
-    const int across = place_of(j);
-    if (across < 0) continue;
-    for (Eigen::Index i = 0; i <= j; ++i) {
-      const int down = place_of(i);
-      if (down < 0) continue;
+  if (motion_.size() == 0) return;
+  places_.clear();
+  for (Eigen::Index j = 0; j < columns_; ++j) {
+    const int at = place[static_cast<std::size_t>(world_row(j))];
+    if (at >= 0) places_.push_back({j, at});
+  }
+  for (const auto& [j, across] : places_) {
+    for (const auto& [i, down] : places_) {
+      if (i > j) break;
       const double soft = rows_.col(i).dot(soft_rows_.col(j));
       compliance(down, across) += soft;
       if (i != j) compliance(across, down) += soft;
       if (!iterating_) continue;
-      free_motion[down] += (rows_.col(i).dot(moved_rows_.col(j)) - soft) * memory_.effort[j];
+      free_motion[down] += (rows_.col(i).dot(moved_rows_.col(j)) - soft) * known_effort(j);
       if (i == j) continue;
-      free_motion[across] += (rows_.col(j).dot(moved_rows_.col(i)) - soft) * memory_.effort[i];
+      free_motion[across] += (rows_.col(j).dot(moved_rows_.col(i)) - soft) * known_effort(i);
     }
     free_motion[across] += free_motion_[j];
   }
@@ -183,7 +233,7 @@ void DenseStep::propose_drift(double time_step) {
 
 std::size_t DenseStep::bytes() const {
   const Eigen::Index n = right_.size();
-  const Eigen::Index numbers = 3 * n * n + 2 * rows_.size() + 9 * n;
+  const Eigen::Index numbers = 3 * n * n + 3 * rows_.size() + 9 * n;
   return sizeof(double) * static_cast<std::size_t>(numbers);
 }
 

@@ -2,15 +2,19 @@
 /// A body of few coordinates in a step.
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "sinew/linalg/dense_factor.hpp"
 #include "sinew/mechanics/own_rows.hpp"
 #include "sinew/mechanics/step_system.hpp"
 
 namespace sinew::mechanics {
 
-/// A is dense and may be unsymmetric; all rows are taken, also those that are left out elsewhere.
-/// What the body's equation is, how its sites move, and what a motion does to its state is said by
-/// those who derive from it.
+/// A is dense and may be unsymmetric. Rows on sites that stay are all taken, also those that are
+/// left out elsewhere; of those on the body's surface, the ones that are present. What the body's
+/// equation is, how its sites move, and what a motion does to its state is said by those who derive
+/// from it.
 class DenseStep : public StepSystem {
  public:
   void linearise(const LinearisationRequest& request) final;
@@ -42,10 +46,13 @@ class DenseStep : public StepSystem {
   /// @return force_scale().
   virtual double form(const LinearisationRequest& request, VectorX& right, MatrixX& matrix) = 0;
   /// A -= sum over entries of effort direction . d2(motion of the site)/dq2, at the efforts and
-  /// directions remembered.
+  /// directions remembered, and those of surface_rows().
   virtual void add_row_stiffness(MatrixX& matrix) = 0;
   /// The motion of a site for each coordinate. @param result (3, n).
   virtual void site_jacobian(int site, MatrixX& result) const = 0;
+  /// The same of a point of the surface. Asked of bodies that have one; others throw
+  /// Error(internal).
+  virtual void patch_jacobian(const Patch& patch, MatrixX& result) const;
   /// The softest that a rotated tangent lets a direction be: see Tangent.
   virtual double softest() const = 0;
   /// The motion proposed next starts from the present state.
@@ -55,8 +62,23 @@ class DenseStep : public StepSystem {
 
   const VectorX& motion() const { return motion_; }
   const MatrixX& matrix() const { return matrix_; }
+  /// A row on the surface as it was taken last.
+  struct SurfaceRow {
+    std::int32_t row = 0;  // of the world's
+    Vector3 direction = Vector3::Zero();
+    Patch patch;
+    double effort = 0.0;  // N, as known last in this step
+  };
+  /// Those present, ascending.
+  const std::vector<SurfaceRow>& surface_rows() const { return surface_rows_; }
+  /// When a step begins, since their points are found anew.
+  void forget_surface_rows() { surface_rows_.clear(); }
 
  private:
+  void take_surface_rows(const RowValues& rows);
+  void make_room(Eigen::Index columns);
+  std::int32_t world_row(Eigen::Index column) const;
+  double known_effort(Eigen::Index column) const;  // N
   void find_imbalance(std::span<const double> effort);
   void make_definite();
   void respond();
@@ -73,11 +95,20 @@ class DenseStep : public StepSystem {
   linalg::SymmetricPivots pivots_;
   linalg::SymmetricSpectrum spectrum_;
   bool definite_wanted_ = true;
-  bool is_symmetric_ = true;   // A, of the last condensation
-  bool iterating_ = false;     // further linearisations of this step may follow
-  MatrixX rows_, moved_rows_;  // (n, own rows): H^T, A^-1 H^T
+  bool is_symmetric_ = true;  // A, of the last condensation
+  bool iterating_ = false;    // further linearisations of this step may follow
+  std::vector<SurfaceRow> surface_rows_, surface_rows_before_;
+  // Columns in use: those of the own rows that stay, then of surface_rows_. There is room for more.
+  Eigen::Index columns_ = 0;
+  MatrixX rows_, moved_rows_;  // (n, columns): H^T, A^-1 H^T
   MatrixX soft_rows_;          // the same of the symmetric part of A
-  VectorX free_motion_;
+  VectorX free_motion_, effort_;
+  // Of the columns that are in a step's problem: which, and where there.
+  struct Place {
+    Eigen::Index column;
+    int place;
+  };
+  mutable std::vector<Place> places_;
   double force_scale_ = 1.0;
 };
 

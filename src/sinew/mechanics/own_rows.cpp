@@ -4,13 +4,17 @@
 
 namespace sinew::mechanics {
 
-OwnRows::OwnRows(int body, const RowPattern& world) {
+OwnRows::OwnRows(int body, const RowPattern& world, int surface_site) {
   for (int row = 0; row < world.rows(); ++row) {
     const auto end = world.row_start[static_cast<std::size_t>(row) + 1];
     bool mine = false;
     for (auto e = world.row_start[static_cast<std::size_t>(row)]; e < end; ++e) {
       const Site& site = world.site[static_cast<std::size_t>(e)];
       if (site.body != body) continue;
+      if (site.number == surface_site) {
+        surface.push_back({row, e});
+        continue;
+      }
       mine = true;
       entries.push_back({static_cast<int>(rows.size()), e, site.number});
     }

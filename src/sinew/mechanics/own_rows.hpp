@@ -12,19 +12,27 @@
 
 namespace sinew::mechanics {
 
-/// Which rows have entries on a body, for one of few coordinates that takes all of them.
+/// Which rows have entries on a body, for one of few coordinates.
 struct OwnRows {
   struct Entry {
     int row = 0;    ///< of `rows`
     int entry = 0;  ///< of the world's
     int site = 0;
   };
+  /// A row on the body's surface, which has one entry there.
+  struct SurfaceEntry {
+    std::int32_t row = 0;  ///< of the world's
+    int entry = 0;         ///< of the world's
+  };
   OwnRows() = default;
-  /// @param body position in the world. @param world all rows.
-  OwnRows(int body, const RowPattern& world);
+  /// @param body position in the world. @param world all rows. @param surface_site -1: none.
+  OwnRows(int body, const RowPattern& world, int surface_site = -1);
 
-  std::vector<std::int32_t> rows;  ///< of the world's, ascending
+  std::vector<std::int32_t> rows;  ///< of the world's, ascending; without those on the surface
   std::vector<Entry> entries;
+  std::vector<SurfaceEntry> surface;  ///< ascending
+
+  bool empty() const { return rows.empty() && surface.empty(); }
 };
 
 /// Efforts of the own rows and directions of their entries, as known last: part of the state, since

@@ -120,8 +120,8 @@ class StepSystem {
   /// leaves rows out (BodyModel::leaves_rows_out()), which have to say; others throw
   /// Error(internal).
   virtual Vector3 proposed_motion(int point) const;
-  /// Adds the proposed motion to the nodes of the body's mesh. Asked of bodies that have a surface
-  /// (HasSurface); others throw Error(internal). @param nodes (n, 3) m.
+  /// Moves the nodes of the body's surface as the proposed motion would. Asked of bodies that have
+  /// one (HasSurface); others throw Error(internal). @param nodes (n, 3) m, in and out.
   virtual void add_proposed_motion(Points& nodes) const;
   /// State of the last linearisation moved by scale dq; may be called again with another scale.
   /// Leaves the report's volume to smallest_volume().

@@ -168,6 +168,17 @@ Surface boundary_surface(const Mesh& mesh) {
   return surface;
 }
 
+double longest_edge(const Surface& surface) {
+  double longest = 0.0;
+  for (const Triangle& triangle : surface.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto edge = surface.nodes.row(triangle[k]) - surface.nodes.row(triangle[(k + 1) % 3]);
+      longest = std::max(longest, edge.norm());
+    }
+  }
+  return longest;
+}
+
 std::vector<char> used_nodes(const Mesh& mesh) {
   std::vector<char> used(static_cast<std::size_t>(mesh.node_count()), 0);
   for_each_element(mesh, [&](const auto& element) {

@@ -50,6 +50,9 @@ std::vector<NodeId> outer_nodes(const Mesh& mesh);
 /// those of the mesh, in its numbering, unused ones included.
 Surface boundary_surface(const Mesh& mesh);
 
+/// m, of the longest edge of its triangles.
+double longest_edge(const Surface& surface);
+
 /// For each node whether a volume element uses it.
 std::vector<char> used_nodes(const Mesh& mesh);
 

@@ -264,9 +264,10 @@ const ArmEquations::ForwardDerivatives& ArmEquations::forward_derivatives(const 
   linearise(q, rate, w.forward.acceleration);
   w.forward.by_position = -w.linear.by_position;
   w.forward.by_rate = -w.linear.by_rate;
-  w.decomposed.solve(w.forward.by_position, w.forward.by_position);
-  w.decomposed.solve(w.forward.by_rate, w.forward.by_rate);
-  w.decomposed.solve(w.arm->actuation(), w.forward.by_torque);
+  w.forward.by_torque = w.arm->actuation();
+  for (MatrixX* columns : {&w.forward.by_position, &w.forward.by_rate, &w.forward.by_torque}) {
+    w.decomposed.solve_columns(*columns, *columns);
+  }
   return w.forward;
 }
 

@@ -43,8 +43,8 @@ StepLinearisation linearise_step(pcc::ArmEquations& equations, const VectorX& q,
   const MatrixX& actuation = equations.arm().actuation();
   MatrixX moved(n, 2 * n), rates(n, 2 * n), driven(n, actuation.cols());
   moved << -linear.by_position, inertia;
-  step.solve(moved, rates);
-  step.solve(actuation, driven);
+  step.solve_columns(moved, rates);
+  step.solve_columns(actuation, driven);
   StepLinearisation result{MatrixX(2 * n, 2 * n), MatrixX(2 * n, driven.cols())};
   result.state << h * rates, rates;
   result.state.topLeftCorner(n, n) += MatrixX::Identity(n, n);

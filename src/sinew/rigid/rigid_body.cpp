@@ -3,6 +3,7 @@
 #include "sinew/rigid/rigid_body_model.hpp"
 #include "sinew/rigid/rigid_state.hpp"
 #include "sinew/rigid/rigid_step.hpp"
+#include "sinew/rigid/rigid_surface.hpp"
 
 namespace sinew::rigid {
 
@@ -10,6 +11,7 @@ RigidBody::RigidBody(const RigidBodyModel& model, int histories)
     : model_(model),
       state_(std::make_unique<RigidState>(model, histories)),
       step_(std::make_unique<RigidStep>(*state_)),
+      surface_(std::make_unique<RigidSurface>(*state_)),
       positions_(model.mesh().nodes),
       velocities_(Points::Zero(positions_.rows(), 3)) {}
 
@@ -44,6 +46,9 @@ const Points& RigidBody::velocities() const {
   return velocities_;
 }
 
+const Points& RigidBody::surface_nodes() const { return surface_->nodes(); }
+const Points& RigidBody::surface_node_velocities() const { return surface_->velocities(); }
+
 mechanics::Energies RigidBody::energies() {
   const Matrix3 turn = state_->pose.rotation.toRotationMatrix();
   const Vector3 spin = turn.transpose() * angular_velocity();
@@ -64,7 +69,8 @@ const mechanics::StepSystem& RigidBody::system() const { return *step_; }
 
 std::size_t RigidBody::bytes() const {
   return step_->bytes() +
-         sizeof(double) * (state_->size() + 6 * static_cast<std::size_t>(positions_.rows()));
+         sizeof(double) * (state_->size() + 6 * static_cast<std::size_t>(positions_.rows()) +
+                           6 * static_cast<std::size_t>(model_.rest_surface_nodes().rows()));
 }
 
 Matrix3 RigidBody::rotation(int) const { return state_->pose.rotation.toRotationMatrix(); }

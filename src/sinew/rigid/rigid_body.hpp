@@ -13,12 +13,14 @@ namespace sinew::rigid {
 
 class RigidBodyModel;
 class RigidStep;
+class RigidSurface;
 struct RigidState;
 
 /// Its state, and RigidStep for its steps.
 class RigidBody : public mechanics::Body,
                   public mechanics::HasOrientations,
-                  public mechanics::HasPose {
+                  public mechanics::HasPose,
+                  public mechanics::HasSurfaceNodes {
  public:
   /// @param model must outlive the body. @param histories see mechanics::BodyModel::create().
   RigidBody(const RigidBodyModel& model, int histories);
@@ -29,6 +31,8 @@ class RigidBody : public mechanics::Body,
   Vector3 velocity(int site) const override;
   const Points& positions() const override;
   const Points& velocities() const override;
+  const Points& surface_nodes() const override;
+  const Points& surface_node_velocities() const override;
   mechanics::Energies energies() override;
   void restart() override;
   std::size_t state_size() const override;
@@ -51,6 +55,7 @@ class RigidBody : public mechanics::Body,
   const RigidBodyModel& model_;
   std::unique_ptr<RigidState> state_;
   std::unique_ptr<RigidStep> step_;
+  std::unique_ptr<RigidSurface> surface_;
   mutable Points positions_, velocities_;  // of the skin, when last asked for
 };
 

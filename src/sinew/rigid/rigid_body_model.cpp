@@ -169,6 +169,23 @@ int RigidBodyModel::attach_orientation(const Vector3& rest_position, mesh::Outsi
   return add({.kind = Attachment::Kind::orientation});
 }
 
+mechanics::TouchingPart RigidBodyModel::touching_part() const {
+  using enum mechanics::TouchingPart;
+  const auto* solid = std::get_if<Solid>(&settings_.shape);
+  if (solid == nullptr) return shape;
+  return solid->hull != nullptr ? hull : surface;
+}
+
+int RigidBodyModel::attach_surface() {
+  if (surface_site_ >= 0) return surface_site_;
+  const mesh::Surface surface = bounding_triangles(settings_.shape);
+  touching_nodes_ = moved(surface.nodes, shape_axes(), shape_origin());
+  touching_ = std::make_shared<const collision::SurfaceTopology>(
+      collision::SurfaceTopology::of_rigid(surface.triangles, touching_nodes_));
+  surface_site_ = add({.kind = Attachment::Kind::surface});
+  return surface_site_;
+}
+
 int RigidBodyModel::add(const Attachment& attachment) {
   attachments_.push_back(attachment);
   return static_cast<int>(attachments_.size()) - 1;
@@ -179,7 +196,7 @@ Vector3 RigidBodyModel::rest_position(int point) const { return centre() + attac
 void RigidBodyModel::finish(int body, const mechanics::RowPattern& rows,
                             std::span<const mechanics::RowCurvature>,
                             const linalg::FactorisationSettings&) {
-  own_rows_ = mechanics::OwnRows(body, rows);
+  own_rows_ = mechanics::OwnRows(body, rows, surface_site_);
 }
 
 std::vector<NamedHash> RigidBodyModel::parts() const {

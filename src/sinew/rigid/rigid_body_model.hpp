@@ -17,10 +17,11 @@ namespace sinew::rigid {
 
 class RigidBodyModel final : public mechanics::BodyModel,
                              public mechanics::AttachesOrientations,
-                             public mechanics::HasShape {
+                             public mechanics::HasShape,
+                             public mechanics::HasSurface {
  public:
   struct Attachment {
-    enum class Kind { point, orientation };
+    enum class Kind { point, orientation, surface };
     Kind kind = Kind::point;
     Vector3 arm = Vector3::Zero();  ///< m, from the centre of mass, at rest in the world's axes
   };
@@ -36,6 +37,10 @@ class RigidBodyModel final : public mechanics::BodyModel,
   int attach_nodes(std::span<const NodeId> nodes, std::span<const double> weights) override;
   int attach_orientation(const Vector3& rest_position, mesh::Outside outside,
                          const std::string& what) override;
+  int attach_surface() override;
+  std::shared_ptr<const collision::SurfaceTopology> surface() const override { return touching_; }
+  const Points& rest_surface_nodes() const override { return touching_nodes_; }
+  bool holds(NodeId) const override { return settings_.fixed; }
   Vector3 rest_position(int point) const override;
   void finish(int body, const mechanics::RowPattern& rows,
               std::span<const mechanics::RowCurvature> curvatures,
@@ -59,6 +64,8 @@ class RigidBodyModel final : public mechanics::BodyModel,
   Matrix3 own_inertia() const override {
     return settings_.rotation.transpose() * mass_.inertia * settings_.rotation;
   }
+  mechanics::TouchingPart touching_part() const override;
+  double touching_radius() const override { return smooth_radius(settings_.shape); }
   collision::Shape rest_shape() const override {
     return placed(settings_.shape, shape_origin(), shape_axes());
   }
@@ -86,7 +93,10 @@ class RigidBodyModel final : public mechanics::BodyModel,
   MassProperties mass_;
   double radius_ = 1.0;
   mesh::Mesh skin_;
-  std::unique_ptr<collision::SurfaceTree> surface_;  // of a Solid, in its own frame
+  std::unique_ptr<collision::SurfaceTree> surface_;             // of a Solid, in its own frame
+  std::shared_ptr<const collision::SurfaceTopology> touching_;  // where surfaces touch
+  Points touching_nodes_ = Points(0, 3);                        // m, at rest, in the world
+  int surface_site_ = -1;
   std::vector<Attachment> attachments_;
   mechanics::OwnRows own_rows_;
 };

@@ -7,6 +7,7 @@
 
 #include "sinew/core/rotation.hpp"
 #include "sinew/rigid/rigid_body_model.hpp"
+#include "sinew/rigid/rigid_surface.hpp"
 
 namespace sinew::rigid {
 
@@ -22,6 +23,11 @@ RigidStep::RigidStep(RigidState& state)
     : DenseStep(state.model.is_free() ? 6 : 0, state.model.own_rows(), state.memory),
       state_(state),
       from_(state.pose) {}
+
+void RigidStep::begin_step() {
+  state_.start = state_.pose;
+  forget_surface_rows();
+}
 
 double RigidStep::form(const mechanics::LinearisationRequest& request, VectorX& right,
                        MatrixX& matrix) {
@@ -58,20 +64,35 @@ void RigidStep::add_inertia(const mechanics::StepWeights& weights, VectorX& righ
   matrix.bottomRightCorner<3, 3>() = (by_turn * turning + by_pose) / (s * s);
 }
 
+// m, at rest, from the centre of mass.
+Vector3 RigidStep::arm_of(const mechanics::Patch& patch) const {
+  const Points& nodes = state_.model.rest_surface_nodes();
+  Vector3 sum = -state_.model.centre();
+  for (std::size_t k = 0; k < 3 && patch.nodes[k] >= 0; ++k) {
+    sum += patch.weights[static_cast<Eigen::Index>(k)] * nodes.row(patch.nodes[k]).transpose();
+  }
+  return sum;
+}
+
 // A force f at r = R r_0 has the moment r x f, which changes by (w x r) x f = [f] [r] w. A moment
 // keeps its axis.
 void RigidStep::add_row_stiffness(MatrixX& matrix) {
   const RigidBodyModel& model = state_.model;
   if (!model.is_free()) return;
   const double square = model.turning_radius() * model.turning_radius();
+  const auto turned = [&](const Vector3& force, const Vector3& arm) -> Matrix3 {
+    return cross_matrix(force) * cross_matrix(state_.pose.rotation * arm) / square;
+  };
+  auto block = matrix.bottomRightCorner<3, 3>();
   const auto& entries = model.own_rows().entries;
   for (std::size_t e = 0; e < entries.size(); ++e) {
     const double effort = state_.memory.effort[entries[e].row];
     const auto& site = model.attachment(entries[e].site);
     if (effort == 0.0 || site.kind == RigidBodyModel::Attachment::Kind::orientation) continue;
-    const Vector3 arm = state_.pose.rotation * site.arm;
-    matrix.bottomRightCorner<3, 3>() -=
-        effort / square * cross_matrix(state_.memory.directions[e]) * cross_matrix(arm);
+    block -= turned(effort * state_.memory.directions[e], site.arm);
+  }
+  for (const SurfaceRow& row : surface_rows()) {
+    if (row.effort != 0.0) block -= turned(row.effort * row.direction, arm_of(row.patch));
   }
 }
 
@@ -85,6 +106,18 @@ void RigidStep::site_jacobian(int site, MatrixX& result) const {
   } else {
     result << Matrix3::Identity(), -cross_matrix(state_.pose.rotation * at.arm) / s;
   }
+}
+
+void RigidStep::patch_jacobian(const mechanics::Patch& patch, MatrixX& result) const {
+  if (!state_.model.is_free()) return;
+  result << Matrix3::Identity(),
+      -cross_matrix(state_.pose.rotation * arm_of(patch)) / state_.model.turning_radius();
+}
+
+void RigidStep::add_proposed_motion(Points& nodes) const {
+  if (size() == 0) return;
+  const Vector3 turn = motion().tail<3>() / state_.model.turning_radius();
+  place_surface(state_.model, from_.moved(motion().head<3>(), turn), nodes);
 }
 
 // Positions are known to eps |x|, and turns to eps.

@@ -18,7 +18,8 @@ class RigidStep : public mechanics::DenseStep {
   /// @param state must outlive this.
   explicit RigidStep(RigidState& state);
 
-  void begin_step() override { state_.start = state_.pose; }
+  void begin_step() override;
+  void add_proposed_motion(Points& nodes) const override;
   double rounding_floor() const override;
   mechanics::MotionReport apply_motion(double scale) override;
   mechanics::StepEnd end_step(const mechanics::StepWeights& weights) override;
@@ -28,9 +29,11 @@ class RigidStep : public mechanics::DenseStep {
               MatrixX& matrix) override;
   void add_row_stiffness(MatrixX& matrix) override;
   void site_jacobian(int site, MatrixX& result) const override;
+  void patch_jacobian(const mechanics::Patch& patch, MatrixX& result) const override;
   double softest() const override { return 0.0; }
   void depart() override { from_ = state_.pose; }
   void drift(double time_step, VectorX& motion) const override { motion = time_step * state_.rate; }
+  Vector3 arm_of(const mechanics::Patch& patch) const;
   void add_inertia(const mechanics::StepWeights& weights, VectorX& right, MatrixX& matrix) const;
 
   RigidState& state_;

@@ -5,10 +5,13 @@
 #include <numbers>
 
 #include <Eigen/Geometry>
+#include <fmt/format.h>
 
+#include "sinew/collision/polyhedron.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/mesh/shapes.hpp"
 #include "sinew/mesh/solid.hpp"
+#include "sinew/mesh/topology.hpp"
 
 namespace sinew::rigid {
 
@@ -24,6 +27,7 @@ template <class... Visitors>
 Overloaded(Visitors...) -> Overloaded<Visitors...>;
 
 constexpr int kCellsAcross = 8;  // of a round skin
+constexpr int kSides = 48;       // of what stands for a circle: 1 - cos(pi/48) = 0.2 % inside it
 
 Matrix3 diagonal(double x, double y, double z) { return Vector3(x, y, z).asDiagonal(); }
 
@@ -113,6 +117,90 @@ mesh::Mesh mesh_of(const Solid& solid) {
   return result;
 }
 
+// Corners of faces are corners of the solid, bit for bit.
+mesh::Surface triangles_of(const collision::Polyhedron& hull) {
+  mesh::Surface result;
+  const auto& corners = hull.corners();
+  result.nodes.resize(static_cast<Eigen::Index>(corners.size()), 3);
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    result.nodes.row(static_cast<Eigen::Index>(k)) = corners[k].transpose();
+  }
+  for (const auto& face : hull.faces()) {
+    mesh::Triangle& triangle = result.triangles.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) {
+      triangle[k] =
+          static_cast<NodeId>(std::ranges::find(corners, face.corners[k]) - corners.begin());
+    }
+  }
+  return result;
+}
+
+// Rings about z, from a pole or a lid's middle below to one above.
+class Lathe {
+ public:
+  Lathe() { add(Vector3::Zero()); }  // the lower end, placed by close()
+  void ring(double radius, double z) {
+    for (int k = 0; k < kSides; ++k) {
+      const double angle = 2.0 * pi * k / kSides;
+      add({radius * std::cos(angle), radius * std::sin(angle), z});
+    }
+    const NodeId first = 1 + kSides * rings_++;
+    for (int k = 0; k < kSides; ++k) {
+      const NodeId a = first + k, b = first + (k + 1) % kSides;
+      if (rings_ == 1) {
+        triangles_.push_back({0, b, a});
+      } else {
+        triangles_.push_back({a - kSides, b - kSides, b});
+        triangles_.push_back({a - kSides, b, a});
+      }
+    }
+  }
+  mesh::Surface close(double low, double high) {
+    nodes_[0] = low * Vector3::UnitZ();
+    const auto top = static_cast<NodeId>(nodes_.size());
+    for (int k = 0; k < kSides; ++k) {
+      triangles_.push_back({top - kSides + k, top - kSides + (k + 1) % kSides, top});
+    }
+    add(high * Vector3::UnitZ());
+    mesh::Surface result;
+    result.nodes.resize(static_cast<Eigen::Index>(nodes_.size()), 3);
+    for (std::size_t k = 0; k < nodes_.size(); ++k) {
+      result.nodes.row(static_cast<Eigen::Index>(k)) = nodes_[k].transpose();
+    }
+    result.triangles = triangles_;
+    return result;
+  }
+
+ private:
+  void add(const Vector3& node) { nodes_.push_back(node); }
+
+  std::vector<Vector3> nodes_;
+  std::vector<mesh::Triangle> triangles_;
+  NodeId rings_ = 0;
+};
+
+// A ball that is cut in its middle and drawn apart by a length.
+mesh::Surface round_surface(double radius, double length) {
+  Lathe lathe;
+  constexpr int kBelow = kSides / 4;  // rings of half a ball, its equator counted
+  const auto ring = [&](int k, double z) {
+    const double angle = 0.5 * pi * k / kBelow;
+    lathe.ring(radius * std::cos(angle), z + radius * std::sin(angle));
+  };
+  for (int k = 1 - kBelow; k <= 0; ++k) ring(k, -0.5 * length);
+  for (int k = length > 0.0 ? 0 : 1; k < kBelow; ++k) ring(k, 0.5 * length);
+  const double end = radius + 0.5 * length;
+  return lathe.close(-end, end);
+}
+
+mesh::Surface drum_surface(const Cylinder& cylinder) {
+  Lathe lathe;
+  const double end = 0.5 * cylinder.height;
+  lathe.ring(cylinder.radius, -end);
+  lathe.ring(cylinder.radius, end);
+  return lathe.close(-end, end);
+}
+
 }  // namespace
 
 const char* shape_name(const Shape& shape) {
@@ -144,8 +232,8 @@ collision::Shape solid(const Shape& shape) {
       },
       [](const Solid& solid) -> collision::Shape {
         if (solid.hull != nullptr) return collision::ConvexSolid{.hull = solid.hull};
-        throw Error(ErrorKind::not_in_this_version, {}, "contact of the surface of a mesh",
-                    "write `use: convex` for that of its hull, or give `points` that touch");
+        return collision::ConvexSolid{
+            .hull = std::make_shared<const collision::Polyhedron>(solid.surface->nodes)};
       },
   };
   return std::visit(convert, shape);
@@ -156,6 +244,25 @@ collision::Shape placed(const Shape& shape, const Vector3& position, const Matri
   pose.linear() = rotation;
   pose.translation() = position;
   return collision::moved(solid(shape), pose);
+}
+
+mesh::Surface bounding_triangles(const Shape& shape) {
+  const Overloaded convert{
+      [](const Box& box) { return mesh::boundary_surface(mesh_of(box)); },
+      [](const Sphere& sphere) { return round_surface(sphere.radius, 0.0); },
+      [](const Capsule& capsule) { return round_surface(capsule.radius, capsule.length); },
+      [](const Cylinder& cylinder) { return drum_surface(cylinder); },
+      [](const Solid& solid) {
+        return solid.hull != nullptr ? triangles_of(*solid.hull) : *solid.surface;
+      },
+  };
+  return std::visit(convert, shape);
+}
+
+double smooth_radius(const Shape& shape) {
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) return sphere->radius;
+  if (const auto* capsule = std::get_if<Capsule>(&shape)) return capsule->radius;
+  return 0.0;
 }
 
 mesh::Mesh skin(const Shape& shape) {

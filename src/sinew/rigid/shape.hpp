@@ -29,7 +29,7 @@ struct Cylinder {
 /// What a closed triangle surface encloses.
 struct Solid {
   std::shared_ptr<const mesh::Surface> surface;       ///< m
-  std::shared_ptr<const collision::Polyhedron> hull;  ///< what touches; null: nothing does
+  std::shared_ptr<const collision::Polyhedron> hull;  ///< what touches; null: the surface does
 };
 
 using Shape = std::variant<Box, Sphere, Capsule, Cylinder, Solid>;
@@ -44,11 +44,17 @@ struct MassProperties {
 /// Of a homogeneous solid. @param density kg/m^3. Throws what mesh::require_solid() does.
 MassProperties mass_properties(const Shape& shape, double density);
 
-/// The same as a shape of collision, in its own frame. Throws Error(not-in-this-version) for a
-/// Solid without a hull.
+/// The same as a shape of collision, in its own frame; of a Solid its hull. Throws
+/// Error(zero-volume) where that has none.
 collision::Shape solid(const Shape& shape);
 /// That shape elsewhere. @param position (3,) m, of its origin. @param rotation of its axes.
 collision::Shape placed(const Shape& shape, const Vector3& position, const Matrix3& rotation);
+
+/// The triangles that bound it, a Solid's hull's where it touches with that; in its own frame.
+/// Round shapes have their corners on the surface, and triangles up to 0.2 % of the radius below.
+mesh::Surface bounding_triangles(const Shape& shape);
+/// m, of a ball or a capsule; others, which have edges, 0.
+double smooth_radius(const Shape& shape);
 
 /// A mesh that shows the shape: of volume elements, but of triangles for a Solid.
 mesh::Mesh skin(const Shape& shape);

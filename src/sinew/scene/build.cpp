@@ -133,7 +133,9 @@ Robot build(SceneDescription description) {
   for (const LoadDescription& load : description.loads) add_load(builder, load, body_of);
   for (const ProbeDescription& probe : description.probes) add_probe(builder, probe, body_of);
   for (const ContactDescription& contact : contact_pairs(description)) {
-    add_contact(builder, contact, body_of);
+    if (auto notice = add_contact(builder, contact, body_of)) {
+      robot.notices.push_back(std::move(*notice));
+    }
   }
   add_joints(true);
   robot.model = builder.build(factorisation_settings(description.solver));

@@ -7,6 +7,7 @@
 #include "sinew/core/error.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
+#include "sinew/mesh/topology.hpp"
 #include "sinew/scene/build_parts.hpp"
 #include "sinew/scene/readers.hpp"
 #include "sinew/sim/contact_settings.hpp"
@@ -35,23 +36,50 @@ bool is_rigid(const BuiltBody& body) {
   return mechanics::as<const mechanics::HasShape>(*body.model) != nullptr;
 }
 
+bool names_points(const ContactDescription& contact) {
+  return contact.nodes || contact.points.points.rows() > 0;
+}
+
 void refuse_points(const ContactDescription& contact) {
-  if (!contact.nodes && contact.points.points.rows() == 0) return;
+  if (!names_points(contact)) return;
   throw Error(ErrorKind::conflicting_keys, contact.place,
-              "deformable bodies touch with the whole of their surfaces",
+              "these bodies touch with the whole of their surfaces",
               "leave `nodes` and `points` out");
+}
+
+// Of a plane none.
+double radius_of(const constraint::Surface& surface) {
+  if (const auto* sphere = std::get_if<collision::Sphere>(&surface)) return sphere->radius;
+  if (const auto* capsule = std::get_if<collision::Capsule>(&surface)) return capsule->radius;
+  return kInfinity;
+}
+
+std::optional<Notice> coarse_notice(const ContactDescription& contact, const mesh::Mesh& mesh) {
+  const double longest = mesh::longest_edge(mesh::boundary_surface(mesh));
+  const double radius = radius_of(contact.surface);
+  if (longest <= sim::kFineEdge * radius) return std::nullopt;
+  return Notice{
+      contact.nodes ? NoticeLevel::remark : NoticeLevel::warning, NoticeKind::coarse_contact,
+      contact.place,
+      fmt::format("nodes of body '{}' up to {:.2g} mm apart touch a surface of radius {:.2g} mm, "
+                  "which may pass between them",
+                  contact.body, 1e3 * longest, 1e3 * radius),
+      "mesh the body finer, or make the surface a body (type: rigid, fixed) and name both in "
+      "`between`"};
 }
 
 }  // namespace
 
-void add_contact(sim::ModelBuilder& builder, const ContactDescription& contact,
-                 const BodyOf& body_of) {
+std::optional<Notice> add_contact(sim::ModelBuilder& builder, const ContactDescription& contact,
+                                  const BodyOf& body_of) {
   BuiltBody touching = body_of(contact.body), other;
   if (!contact.other.empty()) {
     other = body_of(contact.other);
     if (!is_rigid(other) && is_rigid(touching)) std::swap(touching, other);
   }
-  const bool surfaces = other.model != nullptr && !is_rigid(other);
+  const bool deformable = other.model != nullptr && !is_rigid(touching) && !is_rigid(other);
+  const bool surfaces = other.model != nullptr && (deformable || !names_points(contact)) &&
+                        sim::touch_by_surfaces(*touching.model, *other.model);
   const auto [body, model] = touching;
   sim::ContactSettings settings;
   settings.name = contact.name;
@@ -72,6 +100,8 @@ void add_contact(sim::ModelBuilder& builder, const ContactDescription& contact,
     settings.motion = {-1, motion.translation, motion.angle, motion.axis, motion.centre};
   }
   builder.add_contact(settings);
+  if (settings.touched || settings.nodes.empty() || is_rigid(touching)) return std::nullopt;
+  return coarse_notice(contact, model->mesh());
 }
 
 }  // namespace sinew::scene

@@ -87,12 +87,13 @@ void add_effector(sim::ModelBuilder& builder, const EffectorDescription& effecto
 /// @param builder that has the bodies. @param load to be added. @param body_of finds bodies.
 void add_load(sim::ModelBuilder& builder, const LoadDescription& load, const BodyOf& body_of);
 
-/// @param builder that has the bodies. @param contact to be added. @param body_of finds bodies.
 /// With `between: all` replaced by its pairs. Throws Error: conflicting-keys (a pair twice),
 /// not-in-this-version (pairs of deformable bodies, arms without points).
 std::vector<ContactDescription> contact_pairs(const SceneDescription& scene);
-void add_contact(sim::ModelBuilder& builder, const ContactDescription& contact,
-                 const BodyOf& body_of);
+/// @param builder that has the bodies. @param contact to be added. @param body_of finds bodies.
+/// @return what nodes of a deformable body may miss.
+std::optional<Notice> add_contact(sim::ModelBuilder& builder, const ContactDescription& contact,
+                                  const BodyOf& body_of);
 
 /// @param builder that has the bodies. @param joint to be added. @param body_of finds bodies.
 /// @return its number.

@@ -31,23 +31,8 @@ std::set<Pair> named_pairs(const SceneDescription& scene) {
   return pairs;
 }
 
-// Whose shape this version has no contact of with points of finite elements.
-bool is_surface(const BodyDescription& body) {
-  if (!body.rigid) return false;
-  if (!body.mesh.file.empty()) return !body.convex;
-  const auto* solid = std::get_if<rigid::Solid>(&body.rigid->shape);
-  return solid != nullptr && solid->hull == nullptr;
-}
-
-bool is_hull(const BodyDescription& body) {
-  if (!body.rigid || is_surface(body)) return false;
-  return !body.mesh.file.empty() || std::holds_alternative<rigid::Solid>(body.rigid->shape);
-}
-
 bool can_touch(const BodyDescription& one, const BodyDescription& other) {
-  if (one.arm || other.arm || is_surface(one) || is_surface(other)) return false;
-  if (!one.rigid || !other.rigid) return true;
-  return !is_hull(one) && !is_hull(other);
+  return !one.arm && !other.arm;
 }
 
 bool is_fixed(const BodyDescription& body) { return body.rigid && body.rigid->fixed; }
@@ -58,12 +43,10 @@ void refuse_pairs(const std::vector<Pair>& pairs, const Location& place) {
   std::vector<std::string> texts;
   texts.reserve(pairs.size());
   for (const auto& [one, other] : pairs) texts.push_back(fmt::format("[{}, {}]", one, other));
-  throw Error(
-      ErrorKind::not_in_this_version, place,
-      "contact of arms with one another, with themselves and without points, of surfaces of "
-      "meshes, and of their hulls with rigid bodies,",
-      fmt::format("write except: [{}], and give arms entries with `points`",
-                  fmt::join(texts, ", ")));
+  throw Error(ErrorKind::not_in_this_version, place,
+              "contact of arms with one another, with themselves and without points,",
+              fmt::format("write except: [{}], and give arms entries with `points`",
+                          fmt::join(texts, ", ")));
 }
 
 // The pairs that an entry between all stands for. @param settled pairs that are none of them, which

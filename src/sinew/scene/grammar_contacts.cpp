@@ -93,12 +93,11 @@ Form contact_form() {
        .forms = {list({reference("bodies")}, 2, 2), choice({{"all", "All pairs of bodies."}})},
        .example = "[finger, box]",
        .description =
-           "Two bodies, in place of body and surface. Nodes or points of a body with elements or "
-           "of "
-           "an arm touch a rigid body's shape; two rigid bodies touch with their shapes, two "
-           "bodies "
-           "with elements with their surfaces, and one named twice touches itself. `all`: every "
-           "pair "
+           "Two bodies, in place of body and surface. They touch with their surfaces, and one "
+           "named "
+           "twice touches itself; spheres, boxes, capsules and cylinders touch each other with "
+           "their shapes. Nodes or points of a body with elements or of an arm, where they are "
+           "named, touch a rigid body's shape or hull. `all`: every pair "
            "but those that joints connect, those of two fixed bodies, and those that have an entry "
            "of their own; the contacts are called NAME-FIRST-SECOND."});
   contact.keys.push_back({.name = "except",

@@ -44,7 +44,7 @@ std::shared_ptr<const KeyTable> solid_table() {
        .keys = {mesh_file_key("part.stl"),
                 file_unit_key(),
                 {.name = "use",
-                 .forms = {choice({{"surface", "Nothing touches; points of the body may."},
+                 .forms = {choice({{"surface", "Its triangles touch."},
                                    {"convex", "Its convex hull touches."}})},
                  .example = "convex",
                  .default_text = "surface",

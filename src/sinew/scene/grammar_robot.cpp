@@ -165,7 +165,9 @@ Form fixed_region() {
 std::shared_ptr<const KeyTable> damping_table() {
   return make_table(
       {.name = "damping",
-       .description = "Rayleigh damping: mass times M plus stiffness times K. Acts in dynamics.",
+       .description =
+           "Rayleigh damping: mass times M plus stiffness times K. Acts in dynamics. Stiffness "
+           "damping resists strain, not rotation.",
        .keys = {{.name = "mass",
                  .forms = {quantity(frequency(), non_negative())},
                  .example = "0.1 1/s",

@@ -11,6 +11,8 @@
 #include "sinew/fem/has_elements.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/capabilities.hpp"
+#include "sinew/mesh/mesh.hpp"
+#include "sinew/mesh/topology.hpp"
 #include "sinew/sim/add_parts.hpp"
 #include "sinew/sim/attach.hpp"
 #include "sinew/sim/contact_settings.hpp"
@@ -81,14 +83,20 @@ constraint::RigidSide attach_side(ModelData& data, int body, const ContactSettin
   const auto* shape = mechanics::as<const mechanics::HasShape>(on);
   const Vector3 centre = shape->rest_origin();
   const std::string what = "contact '" + settings.name + "'";
+  if (shape->touching_part() == mechanics::TouchingPart::surface && body != settings.body) {
+    throw Error(ErrorKind::not_in_this_version, settings.place,
+                fmt::format("contact of points with the surface of mesh '{}'", on.name()),
+                "leave `points` and `nodes` out, or write `use: convex` for that of its hull");
+  }
   return {{{body, on.attach(centre, mesh::Outside::nearest, what)}},
           {{body, rigid->attach_orientation(centre, mesh::Outside::nearest, what)}},
           centre,
           shape->rest_shape()};
 }
 
-bool is_rigid(const mechanics::BodyModel& body) {
-  return mechanics::as<const mechanics::HasShape>(body) != nullptr;
+// Null for a deformable body.
+const mechanics::HasShape* shape_of(const mechanics::BodyModel& body) {
+  return mechanics::as<const mechanics::HasShape>(body);
 }
 
 // A rigid body touches with all of its shape where no points of it are named.
@@ -103,7 +111,8 @@ std::unique_ptr<constraint::ShapeContact> make_contact(ModelData& data, mechanic
     carrier = attach_side(data, *settings.touched, settings);
   }
   const collision::Shape& surface = carrier ? carrier->shape : settings.surface;
-  const bool whole = settings.nodes.empty() && settings.points.rows() == 0 && is_rigid(on);
+  const bool whole =
+      settings.nodes.empty() && settings.points.rows() == 0 && shape_of(on) != nullptr;
   if (whole) {
     return std::make_unique<constraint::ShapeContact>(settings.name,
                                                       attach_side(data, settings.body, settings),
@@ -111,6 +120,32 @@ std::unique_ptr<constraint::ShapeContact> make_contact(ModelData& data, mechanic
   }
   return std::make_unique<constraint::ShapeContact>(
       settings.name, attach_points(data, on, settings), surface, settings.friction, carrier);
+}
+
+}  // namespace
+
+bool touch_by_surfaces(const mechanics::BodyModel& one, const mechanics::BodyModel& other) {
+  using enum mechanics::TouchingPart;
+  const auto *first = shape_of(one), *second = shape_of(other);
+  if (first == nullptr && second == nullptr) return true;
+  if (first != nullptr && second != nullptr) {
+    return first->touching_part() != shape || second->touching_part() != shape;
+  }
+  const mechanics::BodyModel& deformable = first == nullptr ? one : other;
+  const double radius = (first == nullptr ? second : first)->touching_radius();
+  if (mechanics::as<const mechanics::HasSurface>(deformable) == nullptr) return false;
+  return radius == 0.0 ||
+         mesh::longest_edge(mesh::boundary_surface(deformable.mesh())) > kFineEdge * radius;
+}
+
+namespace {
+
+// Named points of a body touch the shape of a rigid one.
+bool uses_surfaces(ModelData& data, const mechanics::BodyModel& on,
+                   const ContactSettings& settings) {
+  const mechanics::BodyModel& touched = find_body(data, *settings.touched, settings.place);
+  const bool named = !settings.nodes.empty() || settings.points.rows() > 0;
+  return touch_by_surfaces(on, touched) && !(named && shape_of(touched) != nullptr);
 }
 
 }  // namespace
@@ -128,7 +163,7 @@ int add_contact(ModelData& data, const ContactSettings& settings) {
   try {
     ContactModel entry{settings.name, static_cast<int>(data.constraints.size()), settings.motion};
     if (entry.motion) entry.motion->axis = checked_axis(entry.motion->axis, settings.place);
-    if (settings.touched && !is_rigid(find_body(data, *settings.touched, settings.place))) {
+    if (settings.touched && uses_surfaces(data, on, settings)) {
       data.constraints.push_back(make_surface_contact(data, settings));
     } else {
       auto contact = make_contact(data, on, settings);

@@ -57,7 +57,7 @@ double ContactRows::reach(double time_step, double reach) const {
   double fastest = 0.0;
   for (const auto& touching : planes_.surfaces()) {
     for (const int body : {touching->contact().body(), touching->contact().other_body()}) {
-      const Points& rates = placement_.node_velocities(body);
+      const Points& rates = placement_.surface_node_velocities(body);
       fastest = std::max(fastest, rates.rowwise().squaredNorm().maxCoeff());
     }
   }

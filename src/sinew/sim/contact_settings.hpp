@@ -12,6 +12,10 @@
 #include "sinew/mesh/embedding.hpp"
 #include "sinew/sim/base_motion.hpp"
 
+namespace sinew::mechanics {
+class BodyModel;
+}
+
 namespace sinew::sim {
 
 /// Points of a body that may touch a surface.
@@ -20,9 +24,8 @@ struct ContactSettings {
   Location place;
   int body = 0;
   collision::Shape surface;  ///< where it is at rest, in the world
-  /// The body that is touched, in place of the surface: a rigid one with its shape. A deformable
-  /// one with its surface by that of `body`, of which it may be parts; nodes and points do not
-  /// count.
+  /// The body that is touched, in place of the surface: a rigid one with its shape, or by surfaces
+  /// (touch_by_surfaces()), which may be parts of one body's.
   std::optional<int> touched;
   std::vector<NodeId> nodes;  ///< of the body's mesh; fixed ones are left out
   Points points;  ///< (n, 3) m, at rest; beside the nodes. Neither: a rigid body's shape
@@ -30,5 +33,15 @@ struct ContactSettings {
   double friction = 0.0;             ///< Coulomb's coefficient, >= 0
   std::optional<BaseMotion> motion;  ///< of the surface
 };
+
+/// Of a ball's radius: a triangle of such edges goes up to 1/24 of the radius into a ball that its
+/// corners touch.
+inline constexpr double kFineEdge = 0.5;
+
+/// Whether two bodies touch with the triangles of their surfaces where no points are named.
+/// Deformable ones do, with others, too. But a ball or a capsule touches a deformable surface of
+/// edges up to kFineEdge of its radius at the nodes of that, exactly round. Of rigid bodies, meshes
+/// do; others touch as shapes. An arm touches with points alone.
+bool touch_by_surfaces(const mechanics::BodyModel& one, const mechanics::BodyModel& other);
 
 }  // namespace sinew::sim

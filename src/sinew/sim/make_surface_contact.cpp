@@ -33,7 +33,7 @@ constexpr double kDepth = 0.45;
 struct RestSurface {
   RestSurface(const mechanics::BodyModel& body, const mechanics::HasSurface& of, ThreadPool& pool)
       : name(body.name()), tree(of.surface()) {
-    tree.move(body.mesh().nodes, pool);
+    tree.move(of.rest_surface_nodes(), pool);
     const auto& box = tree.branches().front().box;
     size = (box.high - box.low).norm();
   }
@@ -99,13 +99,16 @@ std::unique_ptr<constraint::Contact> make_surface_contact(ModelData& data,
     mechanics::BodyModel& model = find_body(data, body, settings.place);
     auto* surface = mechanics::as<mechanics::HasSurface>(model);
     if (surface == nullptr) {
-      throw Error(
-          ErrorKind::not_in_this_version, settings.place,
-          fmt::format("body '{}' has no surface that touches a deformable body's", model.name()),
-          "name bodies of finite elements, or a rigid body and another one");
+      throw Error(ErrorKind::not_in_this_version, settings.place,
+                  fmt::format("body '{}' has no surface that touches another one", model.name()),
+                  "give `points` of it, and the other body a shape or `use: convex`");
     }
     const mechanics::SurfaceSite site{{body, surface->attach_surface()}};
-    return constraint::SurfaceContact::Side{site, surface->surface()};
+    std::vector<char> held;
+    for (NodeId node = 0; node < surface->rest_surface_nodes().rows(); ++node) {
+      held.push_back(surface->holds(node) ? 1 : 0);
+    }
+    return constraint::SurfaceContact::Side{site, surface->surface(), std::move(held)};
   };
   const auto first = attach(settings.body), second = attach(*settings.touched);
   ThreadPool pool(1);

@@ -50,7 +50,8 @@ void TouchingSurfaces::move_trees(const Points& first, const Points& second) {
   if (!contact_.is_within()) second_.move(second, pool_);
 }
 
-// In an order that does not depend on how the trees came about. Of more pairs than there is room
+// In an order that does not depend on how the trees came about. Places that both are held touch
+// without a force. Of more pairs than there is room
 // for, the nearest.
 void TouchingSurfaces::find(double reach) {
   const collision::ProximitySettings settings{
@@ -58,7 +59,10 @@ void TouchingSurfaces::find(double reach) {
   const auto pairs = contact_.is_within() ? proximity_.within(first_, settings)
                                           : proximity_.between(first_, second_, settings);
   found_.clear();
-  for (const collision::ProximityPair& pair : pairs) found_.push_back({name(pair), pair});
+  for (const collision::ProximityPair& pair : pairs) {
+    const bool held = contact_.first().holds(pair.first) && contact_.second().holds(pair.second);
+    if (!held) found_.push_back({name(pair), pair});
+  }
   const auto order = [](const Named& a, const Named& b) {
     if (a.key != b.key) return a.key < b.key;
     if (a.pair.distance != b.pair.distance) return a.pair.distance < b.pair.distance;
@@ -77,8 +81,8 @@ void TouchingSurfaces::find(double reach) {
 }
 
 void TouchingSurfaces::begin_step(double reach, std::span<double> effort) {
-  first_start_ = placement_.nodes(contact_.body());
-  second_start_ = placement_.nodes(contact_.other_body());
+  first_start_ = placement_.surface_nodes(contact_.body());
+  second_start_ = placement_.surface_nodes(contact_.other_body());
   move_trees(first_start_, second_start_);
   find(reach);
   keep_forces(effort);
@@ -124,7 +128,7 @@ void TouchingSurfaces::pass_forces_on(std::span<double> effort) const {
 
 void TouchingSurfaces::propose(std::span<mechanics::StepSystem* const> systems) {
   const auto look = [&](int body, Points& nodes) {
-    nodes = placement_.nodes(body);
+    nodes = placement_.surface_nodes(body);
     systems[static_cast<std::size_t>(body)]->add_proposed_motion(nodes);
   };
   look(contact_.body(), first_end_);
@@ -154,9 +158,9 @@ bool TouchingSurfaces::add_overlaps() {
 // What moved by less than the depth up to which overlaps are found is found (add_overlaps()).
 bool TouchingSurfaces::passed() {
   if (farthest_way() < contact_.depth()) return false;
-  first_.sweep(first_start_, placement_.nodes(contact_.body()), pool_);
+  first_.sweep(first_start_, placement_.surface_nodes(contact_.body()), pool_);
   if (!contact_.is_within()) {
-    second_.sweep(second_start_, placement_.nodes(contact_.other_body()), pool_);
+    second_.sweep(second_start_, placement_.surface_nodes(contact_.other_body()), pool_);
   }
   const auto impacts =
       contact_.is_within() ? impacts_.within(first_, 0.0) : impacts_.between(first_, second_, 0.0);
@@ -165,7 +169,7 @@ bool TouchingSurfaces::passed() {
 
 double TouchingSurfaces::farthest_way() const {
   const auto farthest = [&](int body, const Points& start) {
-    return (placement_.nodes(body) - start).rowwise().norm().maxCoeff();
+    return (placement_.surface_nodes(body) - start).rowwise().norm().maxCoeff();
   };
   return farthest(contact_.body(), first_start_) + farthest(contact_.other_body(), second_start_);
 }
@@ -213,7 +217,8 @@ void TouchingSurfaces::restart() {
 }
 
 double TouchingSurfaces::drift(std::span<const double> effort) {
-  move_trees(placement_.nodes(contact_.body()), placement_.nodes(contact_.other_body()));
+  move_trees(placement_.surface_nodes(contact_.body()),
+             placement_.surface_nodes(contact_.other_body()));
   find(1e3 * contact_.separation());
   double worst = 0.0;
   for (std::size_t k = 0; k < keys_.size(); ++k) {

@@ -73,7 +73,7 @@ void Followers::take_out(const StepProblem& problem, const VectorX& free,
     solved_.noalias() = inverse_ * right_;
   } else {
     solved_.resize(count, rest + 1);
-    factor_.solve(right_, solved_);
+    factor_.solve_columns(right_, solved_);
   }
   compliance.noalias() -= right_.leftCols(rest).transpose() * solved_.leftCols(rest);
   motion.noalias() += right_.leftCols(rest).transpose() * solved_.col(rest);

@@ -223,7 +223,7 @@ void Response::solve(const StepProblem& problem, std::span<const double> effort)
     solved_ = linalg::pseudo_inverse(system_) * right_;
   } else {
     solved_.resize(count, 1 + inputs);
-    factor_.solve(right_, solved_);
+    factor_.solve_columns(right_, solved_);
   }
   for (Eigen::Index i = 0; i < count; ++i) {
     const auto column = problem.compliance.col(equations_[static_cast<std::size_t>(i)].unknown);
