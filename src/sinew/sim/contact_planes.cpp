@@ -63,6 +63,13 @@ void ContactPlanes::forget_points() {
 
 void ContactPlanes::begin() { start_ = rows_.delta; }
 
+void ContactPlanes::keep_gap(int row) {
+  const double gap = rows_.delta[row];
+  for (double* value : {&rows_.offset[row], &rows_.reference[row], &rows_.delta[row]})
+    *value -= gap;
+  begin_point(row);
+}
+
 Eigen::Isometry3d ContactPlanes::pose_now(std::size_t contact, double time) const {
   if (shapes_[contact] == nullptr) return Eigen::Isometry3d::Identity();
   const auto& carrier = shapes_[contact]->carrier();

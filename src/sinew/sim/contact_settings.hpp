@@ -29,6 +29,9 @@ struct ContactSettings {
   mesh::Outside outside = mesh::Outside::error;
   double friction = 0.0;             ///< Coulomb's coefficient, >= 0
   std::optional<BaseMotion> motion;  ///< of the surface
+  /// Newton's, 0 to 1; none: StepSettings::restitution. Of rigid bodies in event-driven
+  /// integration.
+  std::optional<double> restitution;
 };
 
 }  // namespace sinew::sim
