@@ -248,9 +248,10 @@ bool FemStep::can_carry_on() const {
   return state_.element_history.size() == 0 && !state_.base.moves();
 }
 
-void FemStep::carry_on() {
+void FemStep::scale_motion(double factor) {
   for (const NodeId node : state_.model.elements().free_nodes()) {
-    state_.positions.row(node) += state_.positions.row(node) - state_.start_positions.row(node);
+    const auto start = state_.start_positions.row(node);
+    state_.positions.row(node) = start + factor * (state_.positions.row(node) - start);
   }
   elements_.moved();
 }

@@ -43,7 +43,7 @@ class FemStep : public mechanics::StepSystem {
   mechanics::SmallestVolume smallest_volume() override { return elements_.smallest_volume(); }
   mechanics::StepEnd end_step(const mechanics::StepWeights& weights) override;
   bool can_carry_on() const override;
-  void carry_on() override;
+  void scale_motion(double factor) override;
   void add_velocity(std::span<const double> change) override;
 
   /// Another state was taken up.

@@ -122,8 +122,8 @@ double ArmStep::keep_motion(const mechanics::StepWeights& weights) {
   return jump;
 }
 
-void ArmStep::carry_on() {
-  state_.q += state_.q - state_.start;
+void ArmStep::scale_motion(double factor) {
+  state_.q = state_.start + factor * (state_.q - state_.start);
   pose_.moved();
 }
 

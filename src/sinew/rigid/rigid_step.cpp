@@ -133,10 +133,11 @@ mechanics::StepEnd RigidStep::end_step(const mechanics::StepWeights& weights) {
   return end;
 }
 
-void RigidStep::carry_on() {
+void RigidStep::scale_motion(double factor) {
   if (size() == 0) return;
-  const Vector6 moved = state_.motion();
-  state_.pose = state_.pose.moved(moved.head<3>(), moved.tail<3>() / state_.model.turning_radius());
+  const Vector6 moved = factor * state_.motion();
+  state_.pose =
+      state_.start.moved(moved.head<3>(), moved.tail<3>() / state_.model.turning_radius());
 }
 
 void RigidStep::add_velocity(std::span<const double> change) {

@@ -22,7 +22,7 @@ class RigidStep : public mechanics::DenseStep {
   double rounding_floor() const override;
   mechanics::MotionReport apply_motion(double scale) override;
   mechanics::StepEnd end_step(const mechanics::StepWeights& weights) override;
-  void carry_on() override;
+  void scale_motion(double factor) override;
   void add_velocity(std::span<const double> change) override;
 
  private:

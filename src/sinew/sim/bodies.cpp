@@ -164,8 +164,8 @@ bool Bodies::can_carry_on() const {
   return std::ranges::all_of(systems_, &mechanics::StepSystem::can_carry_on);
 }
 
-void Bodies::carry_on() {
-  for (auto* system : systems_) system->carry_on();
+void Bodies::scale_motion(double factor) {
+  for (auto* system : systems_) system->scale_motion(factor);
 }
 
 void Bodies::add_velocity(const VectorX& change) {

@@ -66,7 +66,7 @@ class Bodies {
   mechanics::SmallestVolume smallest_volume();
   /// See mechanics::StepSystem. @param change (all bodies' size(),) m/s.
   bool can_carry_on() const;
-  void carry_on();
+  void scale_motion(double factor);
   void add_velocity(const VectorX& change);
   /// The largest error estimate of any body, m.
   double end_step(const mechanics::StepWeights& weights);

@@ -64,10 +64,14 @@ void ContactPlanes::forget_points() {
 void ContactPlanes::begin() { start_ = rows_.delta; }
 
 void ContactPlanes::keep_gap(int row) {
-  const double gap = rows_.delta[row];
-  for (double* value : {&rows_.offset[row], &rows_.reference[row], &rows_.delta[row]})
-    *value -= gap;
+  widen(row, -rows_.delta[row]);
   begin_point(row);
+}
+
+void ContactPlanes::widen(int row, double more) {
+  rows_.offset[row] += more;
+  rows_.reference[row] += more;
+  rows_.delta[row] += more;
 }
 
 Eigen::Isometry3d ContactPlanes::pose_now(std::size_t contact, double time) const {

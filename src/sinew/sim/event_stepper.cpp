@@ -22,7 +22,7 @@ constexpr double kSmallest = 1.0 / 64.0;
 }  // namespace
 
 EventStepper::EventStepper(Run& run)
-    : run_(run), substep_(run), impact_(run), points_(*run.model, run.world) {}
+    : run_(run), substep_(run), midpoint_(run), impact_(run), points_(*run.model, run.world) {}
 
 void EventStepper::step(double begin, double time_step) {
   StepReport& report = run_.report;
@@ -40,23 +40,17 @@ void EventStepper::step(double begin, double time_step) {
   }
 }
 
-// Impacts of the present moment, until no point approaches. Rows that joints hold have no velocity
-// afterwards: the midpoint rule does not see to that.
+// Impacts of the present moment, until no point approaches.
 void EventStepper::collide(double time) {
   has_struck_ = false;
-  bool held = !impact_.holds_rows();
   for (int count = 0;; ++count) {
     points_.look(time);
-    const bool strikes = points_.strike();
-    if (held && !strikes) break;
+    if (!points_.strike()) break;
     if (count == kMaxImpacts) give_up("impacts of one moment do not end");
-    if (strikes && !has_struck_) {
-      run_.keep(struck_);
-      has_struck_ = true;
-    }
+    if (!has_struck_) run_.keep(struck_);
+    has_struck_ = true;
     impact_.solve(points_.restitution());
-    run_.report.impacts += strikes ? 1 : 0;
-    held = true;
+    ++run_.report.impacts;
   }
   points_.close();
 }
@@ -76,7 +70,10 @@ double EventStepper::advance(double time, double left) {
       continue;
     }
     const double free = points_.free_length(length);
-    if (free >= length && !points_.found_rest()) return length;
+    if (free >= length && !points_.found_rest()) {
+      if (!run_.world.problem().bilaterals.empty() || points_.drift(run_.effort)) impact_.hold();
+      return length;
+    }
     ++run_.report.retries;
     run_.restore(start_);
     length = free;
@@ -103,6 +100,7 @@ double EventStepper::move(double time, double length) {
   substep_.begin(solved);
   substep_.solve(solved);
   if (smooth && stays_smooth()) {
+    midpoint_.carry_on(substep_, solved);
     substep_.end_as_midpoint(length);
     return length;
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sinew/sim/impact.hpp"
+#include "sinew/sim/midpoint.hpp"
 #include "sinew/sim/state.hpp"
 #include "sinew/sim/striking_points.hpp"
 #include "sinew/sim/substep.hpp"
@@ -48,6 +49,7 @@ class EventStepper {
 
   Run& run_;
   Substep substep_;
+  Midpoint midpoint_;
   Impact impact_;
   StrikingPoints points_;
   State start_, struck_;  // of a part; before the impact that it begins with

@@ -27,7 +27,18 @@ mechanics::StepWeights weights_of_inertia() {
 
 }  // namespace
 
-bool Impact::holds_rows() const { return !run_.world.problem().bilaterals.empty(); }
+void Impact::hold() {
+  run_.world.bodies().begin_query();
+  form();
+  for (const step::ContactBlock& block : law_.contacts) {
+    const int row = run_.world.numbering().row_of(block.row);
+    const bool pressed = run_.effort[static_cast<std::size_t>(row)] > 0.0;
+    if (pressed) law_.bilaterals.push_back({block.row, 0.0, 1.0});
+  }
+  law_.contacts.clear();
+  find_impulses({}, 0.0);
+  apply();
+}
 
 void Impact::solve(std::span<const double> restitution) {
   form();

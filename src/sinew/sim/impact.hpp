@@ -31,8 +31,9 @@ class Impact {
   /// @param restitution (rows,) of each point, at its normal's row.
   /// Throws Error(not-converged | singular-matrix).
   void solve(std::span<const double> restitution);
-  /// Whether there is anything beside points whose velocities an impact corrects.
-  bool holds_rows() const;
+  /// After a part of a step, at its end: takes away the velocities of joints and of closed points
+  /// that were pressed. They are errors of second order.
+  void hold();
 
  private:
   void form();

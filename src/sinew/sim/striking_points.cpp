@@ -19,8 +19,6 @@ constexpr double kClosed = 1e-9;
 constexpr double kUnseen = 1e-6;
 // Of a body's speed: a point that slides less than this rolls.
 constexpr double kRolls = 0.05;
-// A length is shortened by no less.
-constexpr double kShorter = 0.999;
 
 }  // namespace
 
@@ -83,7 +81,7 @@ double StrikingPoints::free_length(double length) {
     const double end = world_.delta()[point.row];
     least = std::min(least, closing_time(point, end, length));
   }
-  if (least < length) return std::min(least, kShorter * length);
+  if (least < length) return least;
   const bool unseen = deepest() < std::min(deepest_, 0.0) - kUnseen * model_.size();
   return unseen ? 0.5 * length : length;
 }
@@ -118,6 +116,14 @@ bool StrikingPoints::caught(std::span<const double> effort) const {
     const Eigen::Map<const Vector3> force(effort.data() + point.row);
     const bool sticks = force[0] > 0.0 && !qp::slides(force, point.friction);
     return sticks && point.slip > std::max(still_, kRolls * point.speed);
+  });
+}
+
+bool StrikingPoints::drift(std::span<const double> effort) const {
+  return std::ranges::any_of(points_, [&](const Point& point) {
+    const bool pressed =
+        world_.contacts().is_closed(point.row) && effort[static_cast<std::size_t>(point.row)] > 0.0;
+    return pressed && std::abs(world_.row_velocity(point.row)) > still_;
   });
 }
 

@@ -34,6 +34,9 @@ class StrikingPoints {
   bool found_rest() const { return found_rest_; }
   /// Rebounds may be made again.
   void forget_rest();
+  /// Whether a closed point that is pressed has a velocity along its normal now.
+  /// @param effort (rows,) N.
+  bool drift(std::span<const double> effort) const;
   /// Whether a closed point has just stopped to slide. @param effort (rows,) N.
   bool caught(std::span<const double> effort) const;
 

@@ -59,7 +59,6 @@ double Substep::end(double time_step) {
 }
 
 void Substep::end_as_midpoint(double time_step) {
-  run_.world.bodies().carry_on();
   run_.world.bodies().end_step(mechanics::midpoint_weights(time_step));
   run_.last_step = time_step;
   count();

@@ -20,8 +20,8 @@ class Substep {
   void solve(double time_step);
   /// Velocities follow, and what the part came to is counted. @return error estimate, m.
   double end(double time_step);
-  /// What was solved is the first half of a step of the midpoint rule: so does the whole.
-  /// @param time_step s, of the whole.
+  /// The same where what was solved was the first half of a step of the midpoint rule, whose motion
+  /// was then doubled. @param time_step s, of the whole.
   void end_as_midpoint(double time_step);
 
  private:
