@@ -48,11 +48,11 @@ struct Flights {
   double first = std::sqrt(2.0 * kHeight / kGravity);
 };
 
-struct Case {
+struct BallCase {
   double slope, restitution, step;
 };
 
-class BouncingBall : public ::testing::TestWithParam<Case> {
+class BouncingBall : public ::testing::TestWithParam<BallCase> {
  protected:
   Vector3 normal() const { return {std::sin(GetParam().slope), 0.0, std::cos(GetParam().slope)}; }
   double gap(const sim::Simulation& simulation) const {
@@ -134,9 +134,9 @@ TEST_P(BouncingBall, LosesEnergyInImpactsAlone) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, BouncingBall,
-                         ::testing::Values(Case{0.0, 0.5, 1e-3}, Case{0.0, 0.9, 1e-3},
-                                           Case{0.0, 0.5, 20e-3}, Case{0.0, 0.9, 20e-3},
-                                           Case{0.3, 0.5, 20e-3}, Case{0.3, 0.9, 20e-3}));
+                         ::testing::Values(BallCase{0.0, 0.5, 1e-3}, BallCase{0.0, 0.9, 1e-3},
+                                           BallCase{0.0, 0.5, 20e-3}, BallCase{0.0, 0.9, 20e-3},
+                                           BallCase{0.3, 0.5, 20e-3}, BallCase{0.3, 0.9, 20e-3}));
 
 TEST(EventDriven, AnElasticBallBouncesForEver) {
   const auto simulation = ball(20e-3, 1.0, 0.0);

@@ -1,10 +1,12 @@
 // Impacts of rigid bodies against closed forms of Newton's law with friction in Moreau's form.
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
 #include "sinew/core/rotation.hpp"
+#include "sinew/sim/contact_reader.hpp"
 #include "sinew/sim/state.hpp"
 
 #include "event_robots.hpp"
@@ -248,6 +250,106 @@ TEST(EventImpact, APendulumStrikesAWallInTime) {
   }
   EXPECT_LT(errors[1], 2e-5);
   EXPECT_NEAR(errors[0] / errors[1], 4.0, 1.0);  // second order
+}
+
+// A block of rubber that falls beside a ball. While it is in flight, the ball moves as it would
+// alone; while it touches the floor, by backward Euler's steps, which lose g h t/2 of height.
+TEST(EventDriven, ADeformableBodyFallsBesideABall) {
+  BlockOptions options{.step = events(2e-3, 0.5), .height = 0.01};
+  sim::ModelBuilder builder = block_on_plane(options);
+  const int ball = add_ball(builder, "ball", Vector3(0.3, 0.0, 0.1));
+  add_floor(builder, ball);
+  sim::Simulation simulation(builder.build());
+  sim::ModelBuilder other(options.step);
+  add_floor(other, add_ball(other, "ball", Vector3(0.3, 0.0, 0.1)));
+  sim::Simulation alone(other.build());
+  for (int k = 0; k < 200; ++k) {
+    const sim::StepReport& report = simulation.step();
+    EXPECT_EQ(report.status, sim::StepStatus::solved);
+    alone.step();
+    const double error = pose(simulation, ball).origin()[2] - pose(alone, 0).origin()[2];
+    const double time = simulation.time();
+    const bool flies = time < std::sqrt(2.0 * options.height / kGravity);
+    EXPECT_LT(std::abs(error), flies ? 1e-12 : 0.5 * kGravity * options.step.time_step * time);
+  }
+  EXPECT_NEAR(pose(simulation, ball).origin()[2], 0.05, 1e-9);
+  EXPECT_NEAR(simulation.contacts().sum(0).normal_force, kBlockWeight, 1e-3 * kBlockWeight);
+  EXPECT_NEAR(simulation.contacts().sum(1).normal_force, 2.0 * kGravity, 1e-6);
+}
+
+// A ball that falls on soft ground rebounds by the ground's elasticity.
+TEST(EventDriven, ABallReboundsFromADeformableBody) {
+  BlockOptions options{.step = events(0.5e-3, 0.9), .friction = 0.0, .modulus = 1e7};
+  options.damping = {};
+  sim::ModelBuilder builder = block_on_plane(options);
+  const int ball = add_ball(builder, "ball", Vector3(0.0, 0.0, 0.025), Vector3(0.0, 0.0, -0.3),
+                            Vector3(0.0, 0.0, -kGravity), 0.004);
+  sim::ContactSettings contact;
+  contact.name = "ground";
+  contact.body = 0;
+  contact.touched = ball;
+  contact.points = Points(1, 3);
+  contact.points << 0.0, 0.0, 0.02;
+  builder.add_contact(contact);
+  sim::Simulation simulation(builder.build());
+  const double start = simulation.energies().total();
+  double fastest = 0.0;
+  for (int k = 0; k < 60; ++k) {
+    const sim::StepReport& report = simulation.step();
+    EXPECT_EQ(report.status, sim::StepStatus::solved);
+    EXPECT_EQ(report.impacts, 0);
+    fastest = std::max(fastest, pose(simulation, ball).linear_velocity()[2]);
+    EXPECT_LT(simulation.energies().total(), start + 1e-6);
+  }
+  EXPECT_GT(fastest, 0.1);
+}
+
+// What cannot be combined is refused, with the way out.
+class Refused : public ::testing::Test {
+ protected:
+  template <class Build>
+  static ErrorKind kind_of(Build&& build) {
+    try {
+      build();
+    } catch (const Error& error) {
+      EXPECT_FALSE(error.remedy().empty());
+      return error.kind();
+    }
+    return ErrorKind::internal;
+  }
+};
+
+TEST_F(Refused, SettingsThatDivideStepsOtherwise) {
+  sim::StepSettings adaptive = events(1e-3, 0.5);
+  adaptive.adaptive = sim::AdaptiveStep{.tolerance = 1e-4, .smallest = 1e-5};
+  EXPECT_EQ(kind_of([&] { sim::ModelBuilder{adaptive}; }), ErrorKind::conflicting_keys);
+  sim::StepSettings linear = events(1e-3, 0.5);
+  linear.method = sim::Method::one_linearisation;
+  EXPECT_EQ(kind_of([&] { sim::ModelBuilder{linear}; }), ErrorKind::conflicting_keys);
+  EXPECT_EQ(kind_of([] { sim::ModelBuilder{events(1e-3, 1.5)}; }), ErrorKind::out_of_range);
+}
+
+TEST_F(Refused, RestitutionWhereNothingStrikes) {
+  const auto add = [](const sim::StepSettings& step, bool rigid, double restitution, bool moves) {
+    sim::ModelBuilder builder = block_on_plane({.step = step, .floor = false});
+    sim::ContactSettings contact;
+    contact.name = "floor";
+    contact.surface = collision::Plane{};
+    contact.body = rigid ? add_ball(builder, "ball", Vector3(0.3, 0.0, 0.1)) : 0;
+    if (!rigid) contact.points = Points::Zero(1, 3);
+    contact.restitution = restitution;
+    if (moves) contact.motion.emplace();
+    builder.add_contact(contact);
+  };
+  const sim::StepSettings step = events(1e-3, 0.5);
+  EXPECT_EQ(kind_of([&] { add(step, false, 0.5, false); }), ErrorKind::conflicting_keys);
+  EXPECT_EQ(kind_of([&] { add(step, true, 1.5, false); }), ErrorKind::out_of_range);
+  EXPECT_EQ(kind_of([&] { add(step, true, 0.5, true); }), ErrorKind::not_in_this_version);
+  sim::StepSettings euler = step;
+  euler.integrator = mechanics::Integrator::backward_euler;
+  EXPECT_EQ(kind_of([&] { add(euler, true, 0.5, false); }), ErrorKind::conflicting_keys);
+  add(step, true, 0.5, false);
+  add(step, false, 0.0, false);
 }
 
 }  // namespace

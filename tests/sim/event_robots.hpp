@@ -19,9 +19,9 @@
 #include "sinew/sim/model_builder.hpp"
 #include "sinew/sim/simulation.hpp"
 
-namespace sinew::testing {
+#include "contact_robots.hpp"
 
-inline constexpr double kGravity = 9.81;  // m/s^2
+namespace sinew::testing {
 
 /// Event-driven, in steps of this length.
 inline sim::StepSettings events(double time_step, double restitution) {
