@@ -279,15 +279,16 @@ TEST(EventDriven, ADeformableBodyFallsBesideABall) {
 
 // A ball that falls on soft ground rebounds by the ground's elasticity.
 TEST(EventDriven, ABallReboundsFromADeformableBody) {
-  BlockOptions options{.step = events(0.5e-3, 0.9), .friction = 0.0, .modulus = 1e7};
+  BlockOptions options{.step = events(0.5e-3, 0.9), .friction = 0.5, .modulus = 1e7};
   options.damping = {};
   sim::ModelBuilder builder = block_on_plane(options);
-  const int ball = add_ball(builder, "ball", Vector3(0.0, 0.0, 0.025), Vector3(0.0, 0.0, -0.3),
-                            Vector3(0.0, 0.0, -kGravity), 0.004);
+  const int ball = add_ball(builder, "ball", Vector3(0.0, 0.0, 0.071), Vector3(0.0, 0.0, -0.3),
+                            Vector3(0.0, 0.0, -kGravity));
   sim::ContactSettings contact;
   contact.name = "ground";
   contact.body = 0;
   contact.touched = ball;
+  contact.friction = 0.5;
   contact.points = Points(1, 3);
   contact.points << 0.0, 0.0, 0.02;
   builder.add_contact(contact);
