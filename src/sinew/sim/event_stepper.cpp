@@ -42,16 +42,14 @@ void EventStepper::step(double begin, double time_step) {
 
 // Impacts of the present moment, until no point approaches.
 void EventStepper::collide(double time) {
-  has_struck_ = false;
-  for (int count = 0;; ++count) {
+  for (strikes_ = 0;; ++strikes_) {
     points_.look(time);
     if (!points_.strike()) break;
-    if (count == kMaxImpacts) give_up("impacts of one moment do not end");
-    if (!has_struck_) run_.keep(struck_);
-    has_struck_ = true;
+    if (strikes_ == kMaxImpacts) give_up("impacts of one moment do not end");
+    if (strikes_ == 0) run_.keep(struck_);
     impact_.solve(points_.restitution());
-    ++run_.report.impacts;
   }
+  run_.report.impacts += strikes_;
   points_.close();
 }
 
@@ -86,7 +84,8 @@ double EventStepper::advance(double time, double left) {
 
 // Points that rebounded next to nothing stay closed: the impact was an inelastic one.
 void EventStepper::rest(double time) {
-  if (has_struck_) run_.restore(struck_);
+  if (strikes_ > 0) run_.restore(struck_);
+  run_.report.impacts -= strikes_;
   collide(time);
   run_.keep(start_);
 }

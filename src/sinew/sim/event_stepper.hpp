@@ -52,8 +52,8 @@ class EventStepper {
   Midpoint midpoint_;
   Impact impact_;
   StrikingPoints points_;
-  State start_, struck_;  // of a part; before the impact that it begins with
-  bool has_struck_ = false;
+  State start_, struck_;               // of a part; before the impact that it begins with
+  int strikes_ = 0;                    // impacts since struck_
   std::vector<double> effort_before_;  // (rows,) N
 };
 

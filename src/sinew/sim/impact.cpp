@@ -40,13 +40,14 @@ void Impact::hold() {
   apply();
 }
 
+// Several coefficients at once may gain energy (Kane's paradox). Less of them for all gains less,
+// and none gains nothing.
 void Impact::solve(std::span<const double> restitution) {
   form();
-  find_impulses(restitution, 1.0);
-  const Eigen::Map<const VectorX> p(impulse_.data(), before_.size());
-  // Several coefficients at once may gain energy (Kane's paradox); the smallest for all does not.
-  if (gained_ > kGain * std::abs(p.dot(before_))) {
-    find_impulses(restitution, smallest(restitution));
+  for (const double most : {1.0, smallest(restitution), 0.0}) {
+    find_impulses(restitution, most);
+    const Eigen::Map<const VectorX> p(impulse_.data(), before_.size());
+    if (gained_ <= kGain * std::abs(p.dot(before_))) break;
   }
   apply();
 }

@@ -18,10 +18,12 @@ struct Run;
 /// all closed points, joints and held motors, u+ = u- + W p, W = H M^-1 H^T,
 ///   K contains p _|_ (u + mu |u_t| n) in K*,   u = u+ + e u-,   at each point,
 ///   u+ = 0 of joints,   u+ = u- of motors that hold a motion.
-/// One e acts along and across the normal. With one e for all points the kinetic energy changes by
-/// p.(u+ + u-)/2 <= -(1 - e)/(1 + e) (u+ - u-).p/2 <= 0: W is positive semi-definite, and the law
-/// has u.p <= 0. A point that does not approach has e = 0. Springs, commanded efforts and bodies'
-/// own stiffness are finite forces, which give no impulse.
+/// One e acts along and across the normal; a point that does not approach has e = 0. With one e for
+/// all points, the kinetic energy changes by
+///   p.(u+ + u-)/2 = (p.u - (1 - e)/2 p.W p)/(1 + e) <= 0,
+/// since the law has p.u <= 0. With several, it might grow: then the smallest holds for all, or
+/// none. Springs, commanded efforts and bodies' own stiffness are finite forces, which give no
+/// impulse.
 class Impact {
  public:
   /// @param run outlives it.
