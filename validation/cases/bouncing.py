@@ -99,7 +99,8 @@ def swings(case, axis):
                    restitution, joints={"hinge": {"type": "hinge", "bodies": ["world", "ball"], "point": [0, 0, 0], "axis": "y"}})
         found = []
         while len(found) < len(moments):
-            if sim.step().impacts == 0:
+            sim.step()
+            if sim.report.impacts == 0:
                 continue
             body = sim.body("ball")
             found.append(sim.time + np.arctan2(body.position[0], -body.position[2]) / body.velocity[4])

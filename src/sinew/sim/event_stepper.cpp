@@ -18,6 +18,12 @@ constexpr int kMaxParts = 100000;
 constexpr int kMaxTrials = 200;
 // The smallest part that is tried after a failure, of what is left of the step.
 constexpr double kSmallest = 1.0 / 64.0;
+// Of the robot's size: motions in a part that are none.
+constexpr double kStill = 1e-9;
+
+bool stops(const step::ActuatorBlock& block) {
+  return std::isfinite(block.motion_min) || std::isfinite(block.motion_max);
+}
 
 }  // namespace
 
@@ -107,14 +113,19 @@ double EventStepper::move(double time, double length) {
   return solved;
 }
 
+// Whether the first half of a part may say what the second one does. A stop or a taut cable that
+// has just caught a body leaves it a velocity that a step of backward Euler takes away.
 bool EventStepper::is_smooth(double end, double length) {
+  World& world = run_.world;
   if (run_.actuation.drive_numbers() > 0 || !run_.model->guides().empty()) return false;
-  if (run_.world.contacts().touches_softly(run_.effort)) return false;
+  if (!world.bodies().can_carry_on() || world.contacts().touches_softly(run_.effort)) return false;
   substep_.read_commands(end, length);
-  const auto blocks =
-      std::span(run_.world.problem().actuators).first(run_.model->actuators().size());
-  return std::ranges::none_of(blocks, [](const step::ActuatorBlock& block) {
-    return block.kind == step::CommandKind::motion;
+  return std::ranges::none_of(world.problem().actuators, [&](const step::ActuatorBlock& block) {
+    if (block.row < 0) return false;
+    if (block.kind == step::CommandKind::motion) return true;
+    if (!stops(block) || run_.effort[static_cast<std::size_t>(block.row)] == 0.0) return false;
+    const double way = length * block.motion_scale * world.row_velocity(block.row);
+    return std::abs(way) > kStill * run_.model->size();
   });
 }
 
@@ -127,8 +138,7 @@ bool EventStepper::stays_smooth() const {
   return std::ranges::none_of(world.problem().actuators, [&](const step::ActuatorBlock& block) {
     if (block.row < 0) return false;
     const auto row = static_cast<std::size_t>(block.row);
-    const bool stops = std::isfinite(block.motion_min) || std::isfinite(block.motion_max);
-    return stops && effort_before_[row] == 0.0 && run_.effort[row] != 0.0;
+    return stops(block) && effort_before_[row] == 0.0 && run_.effort[row] != 0.0;
   });
 }
 

@@ -20,11 +20,11 @@ struct Run;
 /// if open points could pass through; where a gap would close in it, it is made again, up to there.
 /// Then an impact is solved (Impact), and the next part begins.
 ///
-/// A part is a step of the midpoint rule (mechanics::midpoint_weights()). It is one of backward
-/// Euler where half a motion says little about the other half: where deformable bodies touch
-/// anything, actuators are told motions, drives or materials have memories; and it ends in its
-/// middle where something else catches a body (a joint's limit, a cable that becomes taut, a point
-/// that stops to slide).
+/// A part is a step of the midpoint rule (Midpoint). It is one of backward Euler where half a
+/// motion says little about the other half: where deformable bodies touch anything or bases move,
+/// where actuators are told motions, joints or cables rub, drives or materials have memories. It
+/// ends in its middle where something else catches a body (a joint's limit, a cable that becomes
+/// taut, a point that stops to slide).
 ///
 /// A rebound that would rise less than 1e-9 of the robot's size is none: the impact is solved again
 /// without restitution, and the point stays closed. That ends the infinite sequences of rebounds

@@ -35,6 +35,7 @@ StrikingPoints::StrikingPoints(const Model& model, World& world)
 }
 
 void StrikingPoints::look(double time) {
+  if (contacts_.empty()) return;
   world_.begin_query(time);
   points_.clear();
   time_ = time;
