@@ -20,7 +20,7 @@ namespace {
 
 void check_event_driven(const StepSettings& settings) {
   const auto refuse = [](const char* item, const char* what, const char* remedy) {
-    throw Error(ErrorKind::conflicting_keys, {.item = item}, what, remedy);
+    throw Error(ErrorKind::not_in_this_version, {.item = item}, what, remedy);
   };
   if (settings.adaptive) {
     refuse("solver.adaptive", "event-driven integration divides steps by its impacts alone",
