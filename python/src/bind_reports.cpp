@@ -45,6 +45,9 @@ void bind_step_report(py::module_& module) {
       .def_readonly("substeps", &StepReport::substeps,
                     "int: parts that the step was made in; more than 1 where the whole found no "
                     "solution, or in adaptive steps.")
+      .def_readonly("impacts", &StepReport::impacts,
+                    "int: moments in the step at which rigid bodies struck; of the integrator "
+                    "'event-driven'.")
       .def_readonly("choice_held", &StepReport::choice_held,
                     "bool: whether a controller's choice of efforts did not settle in the step and "
                     "was held as it was. Efforts that serve about as well may then differ.")

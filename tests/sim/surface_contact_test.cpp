@@ -13,8 +13,10 @@
 #include "sinew/sim/contact_reader.hpp"
 #include "sinew/sim/contact_settings.hpp"
 #include "sinew/sim/contact_state.hpp"
+#include "sinew/sim/model.hpp"
 #include "sinew/sim/model_builder.hpp"
 #include "sinew/sim/simulation.hpp"
+#include "sinew/sim/world.hpp"
 
 #include "../support/allocation_guard.hpp"
 

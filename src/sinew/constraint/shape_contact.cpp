@@ -245,6 +245,29 @@ double ShapeContact::gap_now(const Placement& placement, const Eigen::Isometry3d
   return distance(surface_, pose.inverse() * position_now(placement, point, values)).gap;
 }
 
+double ShapeContact::speed(const Placement& placement, std::size_t point) const {
+  const mechanics::MaterialPoint& own = own_ ? own_->centre : points_[point];
+  Vector3 velocity = placement.velocity(own);
+  if (carrier_) velocity -= placement.velocity(carrier_->centre);
+  return velocity.norm();
+}
+
+double ShapeContact::deepest(const Placement& placement, const Eigen::Isometry3d& pose,
+                             const mechanics::RowValues& values) const {
+  double least = std::numeric_limits<double>::infinity();
+  if (own_) {
+    const auto found =
+        collision::touching_points(collision::moved(own_->shape, own_->pose(placement)),
+                                   collision::moved(surface_, pose), 0.0);
+    for (const collision::TouchingPoint& point : found) least = std::min(least, point.gap);
+    return least;
+  }
+  for (std::size_t k = 0; k < size(); ++k) {
+    least = std::min(least, gap_now(placement, pose, k, values));
+  }
+  return least;
+}
+
 void ShapeContact::save(const mechanics::RowValues& values, double* to) const {
   for (std::size_t k = 0; k < size(); ++k) {
     to = std::copy_n(frame(k, values).data(), 9, to);

@@ -94,6 +94,12 @@ class ShapeContact : public Contact {
                           const mechanics::RowValues& values) const;
   Vector3 velocity_beside(const Placement& placement, std::size_t point,
                           const mechanics::RowValues& values) const override;
+  /// m/s: of the body that a point belongs to, relative to what it may touch.
+  double speed(const Placement& placement, std::size_t point) const;
+  /// m: the least gap now, of points that a step has found or not; negative where they overlap.
+  /// @param placement,pose,values see gap_now().
+  double deepest(const Placement& placement, const Eigen::Isometry3d& pose,
+                 const mechanics::RowValues& values) const;
   double linear_gap(const Placement& placement, std::size_t point,
                     const mechanics::RowValues& values) const override;
   /// (3,) m: a point's motion relative to its surface. @param motion of a site: (3,) m or rad.

@@ -244,6 +244,26 @@ mechanics::StepEnd FemStep::end_step(const mechanics::StepWeights& weights) {
   return end;
 }
 
+bool FemStep::can_carry_on() const {
+  return state_.element_history.size() == 0 && !state_.base.moves();
+}
+
+void FemStep::scale_motion(double factor) {
+  for (const NodeId node : state_.model.elements().free_nodes()) {
+    const auto start = state_.start_positions.row(node);
+    state_.positions.row(node) = start + factor * (state_.positions.row(node) - start);
+  }
+  elements_.moved();
+}
+
+void FemStep::add_velocity(std::span<const double> change) {
+  const double* next = change.data();
+  for (const NodeId node : state_.model.elements().free_nodes()) {
+    state_.velocities.row(node) += Eigen::Map<const Eigen::RowVector3d>(next);
+    next += 3;
+  }
+}
+
 void FemStep::count_work(const mechanics::StepWeights& weights, mechanics::StepEnd& end) {
   const RayleighDamping& damping = state_.model.settings().damping;
   if (weights.dynamic() && (damping.mass > 0.0 || damping.stiffness > 0.0)) {

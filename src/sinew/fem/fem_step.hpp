@@ -42,6 +42,9 @@ class FemStep : public mechanics::StepSystem {
   mechanics::MotionReport apply_motion(double scale) override;
   mechanics::SmallestVolume smallest_volume() override { return elements_.smallest_volume(); }
   mechanics::StepEnd end_step(const mechanics::StepWeights& weights) override;
+  bool can_carry_on() const override;
+  void scale_motion(double factor) override;
+  void add_velocity(std::span<const double> change) override;
 
   /// Another state was taken up.
   void forget() { elements_.forget(); }

@@ -69,6 +69,8 @@ std::string_view integrator_name(Integrator integrator) {
       return "bdf2";
     case Integrator::generalized_alpha:
       return "generalized-alpha";
+    case Integrator::event_driven:
+      return "event-driven";
   }
   return "unknown";
 }
@@ -84,7 +86,9 @@ StepWeights step_weights(Integrator integrator, double time_step, double step_be
   StepWeights weights;
   weights.time_step = time_step;  // materials that relax do so without inertia, too
   if (integrator == Integrator::quasi_static) return weights;
-  if (integrator == Integrator::backward_euler || !(step_before > 0.0)) {
+  const bool alone =
+      integrator == Integrator::backward_euler || integrator == Integrator::event_driven;
+  if (alone || !(step_before > 0.0)) {
     weights = backward_euler(time_step);
     if (bdf) {  // as bdf2() keeps them
       weights.first = {.motion = 1.0};
@@ -95,6 +99,15 @@ StepWeights step_weights(Integrator integrator, double time_step, double step_be
   } else {
     weights = bdf ? bdf2(time_step, step_before) : generalized_alpha(time_step, spectral_radius);
   }
+  weights.time_step = time_step;
+  return weights;
+}
+
+StepWeights midpoint_weights(double time_step) {
+  const double rate = 1.0 / time_step;
+  StepWeights weights;
+  weights.velocity = {.motion = 2.0 * rate, .velocity = -1.0};
+  weights.acceleration = {.motion = 2.0 * rate * rate, .velocity = -2.0 * rate};
   weights.time_step = time_step;
   return weights;
 }

@@ -13,9 +13,10 @@ enum class Integrator {
   backward_euler,     ///< v_f = d / h; first order, strongly damping
   bdf2,               ///< second order, damps little but what moves fast
   generalized_alpha,  ///< second order, damps fast motion as its spectral radius says
+  event_driven,       ///< the midpoint rule from one impact to the next; second order
 };
 
-/// "quasi-static", "backward-euler", "bdf2", "generalized-alpha".
+/// "quasi-static", "backward-euler", "bdf2", "generalized-alpha", "event-driven".
 std::string_view integrator_name(Integrator integrator);
 
 /// Vectors that a body keeps from step to step besides position and velocity.
@@ -55,11 +56,20 @@ struct StepWeights {
 /// keeps the algorithmic acceleration a' and the true one a. rho = 1 conserves the energy of linear
 /// motion, rho = 0 annihilates fast motion in one step. The first step of either is one of backward
 /// Euler, which keeps the second order.
+/// Of event-driven integration these are the weights of a part that is solved, backward Euler's;
+/// see midpoint_weights().
 /// @param integrator which one.
 /// @param time_step h, s, > 0.
 /// @param step_before the last step, s; 0: none, nothing was kept.
 /// @param spectral_radius rho of generalized-alpha, 0 to 1.
 StepWeights step_weights(Integrator integrator, double time_step, double step_before = 0.0,
                          double spectral_radius = 0.8);
+
+/// The implicit midpoint rule (Hairer, Lubich & Wanner, Geometric Numerical Integration, 2006,
+/// VI.4): a step of backward Euler over h/2, whose motion is then repeated,
+///   d = 2 d_half,   v = 2 d/h - v_start,   a = (v - v_start)/h.
+/// It needs no history, is symmetric, of second order, and exact for constant accelerations.
+/// @param time_step h, s, > 0. @return of the whole step, whose motion is d.
+StepWeights midpoint_weights(double time_step);
 
 }  // namespace sinew::mechanics

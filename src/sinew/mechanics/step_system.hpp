@@ -129,6 +129,15 @@ class StepSystem {
   /// Of the current state, which is finite; costs nothing where it is linearised.
   virtual SmallestVolume smallest_volume() { return {}; }
   virtual StepEnd end_step(const StepWeights& weights) = 0;
+
+  /// Whether the second half of a step may repeat the motion of the first: not where a base moves
+  /// or the material remembers its strain.
+  virtual bool can_carry_on() const { return true; }
+  /// Makes the step's motion longer or shorter, q <- q_start (+) factor (q - q_start): 2 is the
+  /// second half of the midpoint rule.
+  virtual void scale_motion(double factor) = 0;
+  /// Changes the velocity at once: an impact. @param change (size(),) m/s.
+  virtual void add_velocity(std::span<const double> change) = 0;
 };
 
 }  // namespace sinew::mechanics

@@ -122,6 +122,16 @@ double ArmStep::keep_motion(const mechanics::StepWeights& weights) {
   return jump;
 }
 
+void ArmStep::scale_motion(double factor) {
+  state_.q = state_.start + factor * (state_.q - state_.start);
+  pose_.moved();
+}
+
+void ArmStep::add_velocity(std::span<const double> change) {
+  state_.rate += Eigen::Map<const VectorX>(change.data(), state_.rate.size());
+  pose_.moved();
+}
+
 std::size_t ArmStep::bytes() const { return DenseStep::bytes() + 5 * sizeof(double) * size(); }
 
 }  // namespace sinew::pcc

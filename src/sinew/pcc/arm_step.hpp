@@ -19,6 +19,8 @@ class ArmStep : public mechanics::DenseStep {
   double rounding_floor() const override;
   mechanics::MotionReport apply_motion(double scale) override;
   mechanics::StepEnd end_step(const mechanics::StepWeights& weights) override;
+  void scale_motion(double factor) override;
+  void add_velocity(std::span<const double> change) override;
   std::size_t bytes() const override;
 
  private:

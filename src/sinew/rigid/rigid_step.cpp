@@ -166,4 +166,15 @@ mechanics::StepEnd RigidStep::end_step(const mechanics::StepWeights& weights) {
   return end;
 }
 
+void RigidStep::scale_motion(double factor) {
+  if (size() == 0) return;
+  const Vector6 moved = factor * state_.motion();
+  state_.pose =
+      state_.start.moved(moved.head<3>(), moved.tail<3>() / state_.model.turning_radius());
+}
+
+void RigidStep::add_velocity(std::span<const double> change) {
+  if (size() > 0) state_.rate += Eigen::Map<const Vector6>(change.data());
+}
+
 }  // namespace sinew::rigid

@@ -23,6 +23,8 @@ class RigidStep : public mechanics::DenseStep {
   double rounding_floor() const override;
   mechanics::MotionReport apply_motion(double scale) override;
   mechanics::StepEnd end_step(const mechanics::StepWeights& weights) override;
+  void scale_motion(double factor) override;
+  void add_velocity(std::span<const double> change) override;
 
  private:
   double form(const mechanics::LinearisationRequest& request, VectorX& right,

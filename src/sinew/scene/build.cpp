@@ -38,6 +38,7 @@ sim::StepSettings step_settings(const SceneDescription& scene) {
   step.time_step = scene.time_step;
   step.integrator = scene.integrator;
   step.spectral_radius = scene.spectral_radius;
+  step.restitution = scene.restitution;
   step.adaptive = scene.solver.adaptive;
   step.method =
       scene.solver.method == Method::newton ? sim::Method::newton : sim::Method::one_linearisation;

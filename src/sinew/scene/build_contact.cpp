@@ -91,6 +91,7 @@ std::optional<Notice> add_contact(sim::ModelBuilder& builder, const ContactDescr
   settings.points = contact.points.points;
   settings.outside = contact.outside;
   settings.friction = contact.friction;
+  settings.restitution = contact.restitution;
   const bool whole = is_rigid(touching) && !contact.nodes;
   if (settings.points.rows() == 0 && !whole && !surfaces) {
     settings.nodes = nodes_of(contact, model->mesh());

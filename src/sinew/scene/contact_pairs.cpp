@@ -70,6 +70,7 @@ std::vector<ContactDescription> pairs_of(const ContactDescription& contact,
       added.name = fmt::format("{}-{}-{}", contact.name, one->name, other->name);
       added.body = one->name;
       added.other = other->name;
+      if (!one->rigid || !other->rigid) added.restitution.reset();  // of rigid pairs alone
     }
   }
   refuse_pairs(refused, contact.between_place);

@@ -311,7 +311,8 @@ struct ContactDescription {
   std::optional<FixedRegion> nodes;  ///< of the outside; none, and no points: all of it
   PointList points;
   mesh::Outside outside = mesh::Outside::error;
-  double friction = 0.0;  ///< Coulomb's coefficient, >= 0
+  double friction = 0.0;              ///< Coulomb's coefficient, >= 0
+  std::optional<double> restitution;  ///< 0 to 1; none: the integrator's
   std::optional<BaseDescription> motion;
 };
 
@@ -378,6 +379,7 @@ struct SceneDescription {
   double time_step = 0.01;  ///< s
   Integrator integrator = Integrator::quasi_static;
   double spectral_radius = 0.8;  ///< of generalized-alpha
+  double restitution = 0.0;      ///< of event-driven integration
   SolverDescription solver;
   std::optional<double> duration;  ///< s
   std::vector<BodyDescription> bodies;

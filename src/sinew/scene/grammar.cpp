@@ -27,28 +27,39 @@ Form method_choice(const char* short_for = "") {
 }
 
 Form integrator_choice(const char* short_for = "") {
-  return choice({{"quasi-static", "Always in equilibrium; no inertia."},
-                 {"backward-euler", "Dynamics; first order, damps."},
-                 {"bdf2", "Dynamics; second order, damps fast modes."},
-                 {"generalized-alpha", "Dynamics; second order, adjustable damping."}},
-                short_for);
+  return choice(
+      {{"quasi-static", "Always in equilibrium; no inertia."},
+       {"backward-euler", "Dynamics; first order, damps."},
+       {"bdf2", "Dynamics; second order, damps fast modes."},
+       {"generalized-alpha", "Dynamics; second order, adjustable damping."},
+       {"event-driven",
+        "Dynamics; second order, undamped. Impacts of rigid bodies at their moments, with "
+        "restitution."}},
+      short_for);
 }
 
 std::shared_ptr<const KeyTable> integrator_table() {
   return make_table(
       {.name = "integrator",
        .description = "The integrator with its settings.",
-       .keys = {{.name = "type",
-                 .forms = {integrator_choice()},
-                 .example = "backward-euler",
-                 .description = "The integrator.",
-                 .required = true},
-                {.name = "spectral_radius",
-                 .forms = {quantity(plain_number(), {.min = 0.0, .max = 1.0})},
-                 .example = "0.8",
-                 .default_text = "0.8",
-                 .description = "Generalized-alpha: factor by which a step damps the fastest "
-                                "motion. 1 conserves energy, 0 damps most."}}});
+       .keys = {
+           {.name = "type",
+            .forms = {integrator_choice()},
+            .example = "backward-euler",
+            .description = "The integrator.",
+            .required = true},
+           {.name = "spectral_radius",
+            .forms = {quantity(plain_number(), {.min = 0.0, .max = 1.0})},
+            .example = "0.8",
+            .default_text = "0.8",
+            .description = "Generalized-alpha: factor by which a step damps the fastest "
+                           "motion. 1 conserves energy, 0 damps most."},
+           {.name = "restitution",
+            .forms = {quantity(plain_number(), {.min = 0.0, .max = 1.0})},
+            .example = "0.6",
+            .default_text = "0",
+            .description = "Event-driven: coefficient of restitution of impacts between rigid "
+                           "bodies. 0: no rebound, 1: elastic. Contacts may have their own."}}});
 }
 
 std::shared_ptr<const KeyTable> adaptive_table() {

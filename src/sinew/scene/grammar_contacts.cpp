@@ -126,6 +126,13 @@ Form contact_form() {
                           .default_text = "0",
                           .description = "Coulomb friction coefficient. Coated against rigid 0.05 "
                                          "to 0.2, silicone on steel 0.6 to 0.9."});
+  contact.keys.push_back({.name = "restitution",
+                          .forms = {quantity(plain_number(), {.min = 0.0, .max = 1.0})},
+                          .example = "0.8",
+                          .description =
+                              "Coefficient of restitution of impacts, for integrator: "
+                              "event-driven. Only between rigid bodies; deformable ones "
+                              "rebound by their elasticity. Without: the integrator's."});
   contact.keys.push_back(
       {.name = "motion",
        .forms = {table(make_table({.name = "motion of a surface",

@@ -86,6 +86,8 @@ ContactDescription read_contact(const Node::Entry& entry, const ReadContext& con
   fields.read_choice("outside", contact.outside,
                      {{"error", mesh::Outside::error}, {"nearest", mesh::Outside::nearest}});
   fields.read("friction", contact.friction);
+  if (fields.find("restitution") != nullptr)
+    fields.read("restitution", contact.restitution.emplace());
   if (fields.find("motion") != nullptr) {
     contact.motion = read_motion(fields.below("motion"), fields.place("motion"), context);
   }

@@ -20,11 +20,17 @@ void read_integrator(const Fields& fields, SceneDescription& scene) {
   } else {
     fields.below("integrator").read_word("type", word);
     fields.below("integrator").read("spectral_radius", scene.spectral_radius);
+    fields.below("integrator").read("restitution", scene.restitution);
   }
-  for (const Integrator integrator : {Integrator::quasi_static, Integrator::backward_euler,
-                                      Integrator::bdf2, Integrator::generalized_alpha}) {
+  for (const Integrator integrator :
+       {Integrator::quasi_static, Integrator::backward_euler, Integrator::bdf2,
+        Integrator::generalized_alpha, Integrator::event_driven}) {
     if (word == mechanics::integrator_name(integrator)) scene.integrator = integrator;
   }
+  if (scene.restitution == 0.0 || scene.integrator == Integrator::event_driven) return;
+  throw Error(ErrorKind::conflicting_keys, fields.below("integrator").place("restitution"),
+              fmt::format("{} knows no restitution", word),
+              "write type: event-driven, or leave `restitution` out");
 }
 
 void read_solver(const Fields& fields, SolverDescription& solver) {

@@ -122,6 +122,34 @@ std::unique_ptr<constraint::ShapeContact> make_contact(ModelData& data, mechanic
       settings.name, attach_points(data, on, settings), surface, settings.friction, carrier);
 }
 
+// Whether impacts are events of the integrator: those of rigid bodies. Deformable ones rebound by
+// their elasticity.
+bool strikes(ModelData& data, const mechanics::BodyModel& on, const ContactSettings& settings) {
+  const bool rigid = is_rigid(on) && (!settings.touched ||
+                                      is_rigid(find_body(data, *settings.touched, settings.place)));
+  if (settings.restitution && !data.step.event_driven()) {
+    throw Error(ErrorKind::conflicting_keys, settings.place,
+                "restitution is a law of event-driven integration",
+                "write integrator: event-driven, or leave `restitution` out");
+  }
+  const double own = settings.restitution.value_or(0.0);
+  if (!(own >= 0.0 && own <= 1.0)) {
+    throw Error(ErrorKind::out_of_range, settings.place,
+                fmt::format("the restitution is {:g}", own), "give 0 (no rebound) to 1 (elastic)");
+  }
+  if (own > 0.0 && !rigid) {
+    throw Error(ErrorKind::conflicting_keys, settings.place,
+                "a deformable body rebounds by its elasticity, and has no restitution",
+                "leave `restitution` out, or make both bodies rigid");
+  }
+  if (data.step.event_driven() && rigid && settings.motion) {
+    throw Error(ErrorKind::not_in_this_version, settings.place,
+                "event-driven integration has no impacts on a surface that moves by itself",
+                "let a rigid body with a motor carry the surface, or choose bdf2");
+  }
+  return data.step.event_driven() && rigid;
+}
+
 }  // namespace
 
 bool touch_by_surfaces(const mechanics::BodyModel& one, const mechanics::BodyModel& other) {
@@ -162,6 +190,10 @@ int add_contact(ModelData& data, const ContactSettings& settings) {
   check_new_name(data.contacts, &ContactModel::name, "contacts", settings.name, settings.place);
   try {
     ContactModel entry{settings.name, static_cast<int>(data.constraints.size()), settings.motion};
+    entry.strikes = strikes(data, on, settings);
+    if (entry.strikes) {
+      entry.restitution = settings.restitution.value_or(data.step.restitution);
+    }
     if (entry.motion) entry.motion->axis = checked_axis(entry.motion->axis, settings.place);
     if (settings.touched && uses_surfaces(data, on, settings)) {
       data.constraints.push_back(make_surface_contact(data, settings));

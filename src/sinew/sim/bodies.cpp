@@ -160,6 +160,19 @@ mechanics::SmallestVolume Bodies::smallest_volume() {
   return smallest;
 }
 
+bool Bodies::can_carry_on() const {
+  return std::ranges::all_of(systems_, &mechanics::StepSystem::can_carry_on);
+}
+
+void Bodies::scale_motion(double factor) {
+  for (auto* system : systems_) system->scale_motion(factor);
+}
+
+void Bodies::add_velocity(const VectorX& change) {
+  for_each_part(systems_, numbers(change),
+                [](auto& system, std::span<const double> part) { system.add_velocity(part); });
+}
+
 double Bodies::end_step(const mechanics::StepWeights& weights) {
   double worst = 0.0;
   for (std::size_t i = 0; i < systems_.size(); ++i) {

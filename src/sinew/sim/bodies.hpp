@@ -64,6 +64,10 @@ class Bodies {
   void drift(double time_step);
   mechanics::MotionReport apply_motion(double scale);
   mechanics::SmallestVolume smallest_volume();
+  /// See mechanics::StepSystem. @param change (all bodies' size(),) m/s.
+  bool can_carry_on() const;
+  void scale_motion(double factor);
+  void add_velocity(const VectorX& change);
   /// The largest error estimate of any body, m.
   double end_step(const mechanics::StepWeights& weights);
   /// What the last step of each came to.

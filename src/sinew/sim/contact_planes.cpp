@@ -63,6 +63,17 @@ void ContactPlanes::forget_points() {
 
 void ContactPlanes::begin() { start_ = rows_.delta; }
 
+void ContactPlanes::keep_gap(int row) {
+  widen(row, -rows_.delta[row]);
+  begin_point(row);
+}
+
+void ContactPlanes::widen(int row, double more) {
+  rows_.offset[row] += more;
+  rows_.reference[row] += more;
+  rows_.delta[row] += more;
+}
+
 Eigen::Isometry3d ContactPlanes::pose_now(std::size_t contact, double time) const {
   if (shapes_[contact] == nullptr) return Eigen::Isometry3d::Identity();
   const auto& carrier = shapes_[contact]->carrier();

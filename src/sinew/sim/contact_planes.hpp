@@ -59,6 +59,10 @@ class ContactPlanes {
   void begin();
   /// The same of a point that is found later. @param row its normal's.
   void begin_point(int row) { start_.segment<3>(row) = rows_.reference.segment<3>(row); }
+  /// Moves a point's plane so that its gap is zero where the step begins. @param row its normal's.
+  void keep_gap(int row);
+  /// Adds to the gap of a point in the step. @param row its normal's. @param more m.
+  void widen(int row, double more);
   /// Whether any surface is curved.
   bool curved() const { return curved_; }
   /// Of the surface that a step's planes touch: where it stands at the end of the step, or where

@@ -43,13 +43,26 @@ ContactRows::ContactRows(const Model& model, const constraint::Placement& placem
       systems_(systems),
       rows_(rows),
       planes_(model, placement, rows, pool),
-      touched_(static_cast<std::size_t>(model.rows().rows()), 0) {}
+      touched_(static_cast<std::size_t>(model.rows().rows()), 0),
+      closed_(touched_) {
+  for (const ContactModel& contact : model.contacts()) strikes_.push_back(contact.strikes ? 1 : 0);
+}
 
 // Calls visit(contact, point) for every point of every contact.
 template <class Visit>
 void ContactRows::for_each_point(Visit&& visit) const {
   for (const constraint::Contact* contact : planes_.contacts()) {
     for (std::size_t k = 0; k < contact->size(); ++k) visit(*contact, k);
+  }
+}
+
+// The same of contacts that strike, or of all others.
+template <class Visit>
+void ContactRows::for_each_point(bool striking, Visit&& visit) const {
+  for (std::size_t i = 0; i < strikes_.size(); ++i) {
+    if (strikes(i) != striking) continue;
+    const constraint::Contact& contact = *planes_.contacts()[i];
+    for (std::size_t k = 0; k < contact.size(); ++k) visit(contact, k);
   }
 }
 
@@ -70,7 +83,12 @@ void ContactRows::choose_present(std::span<const double> effort, double time_ste
   left_out_ = false;
   rounds_left_ = kMaxRounds;
   const double near = std::max(kNear * model_.size(), reach);
-  for_each_point([&](const constraint::Contact& contact, std::size_t k) {
+  for_each_point(true, [&](const constraint::Contact& contact, std::size_t k) {
+    const int row = contact.row(k);
+    set_present(row, is_closed(row));
+    if (is_closed(row)) planes_.keep_gap(row);
+  });
+  for_each_point(false, [&](const constraint::Contact& contact, std::size_t k) {
     const mechanics::BodyModel& body = model_.body(contact.body());
     const int row = contact.row(k);
     if (contact.idle(k, rows_)) return set_present(row, false);
@@ -89,6 +107,13 @@ void ContactRows::take_all() {
   left_out_ = false;
   for_each_point([&](const constraint::Contact& contact, std::size_t k) {
     set_present(contact.row(k), !contact.idle(k, rows_));
+  });
+}
+
+void ContactRows::take_closed() {
+  left_out_ = false;
+  for_each_point([&](const constraint::Contact& contact, std::size_t k) {
+    set_present(contact.row(k), is_closed(contact.row(k)));
   });
 }
 
@@ -126,7 +151,7 @@ bool ContactRows::correct_shape(std::size_t number, const step::StepProblem& pro
   for (std::size_t k = 0; k < contact.size(); ++k) {
     const int row = contact.row(k), place = numbering.place_of(row);
     if (rows_.present[static_cast<std::size_t>(row)] == 0) {
-      found = take_in(contact, k, pose) || found;
+      found = (!strikes(number) && take_in(contact, k, pose)) || found;
     } else if (may_turn && effort[static_cast<std::size_t>(place)] > 0.0) {
       found = planes_.follow_way(contact, k, free_motion(problem, effort, place), pose) || found;
     }
@@ -178,11 +203,19 @@ bool ContactRows::correct_surfaces(TouchingSurfaces& touching) {
 
 bool ContactRows::gap_closed(std::span<const double> effort) const {
   bool closed = false;
-  for_each_point([&](const constraint::Contact& contact, std::size_t k) {
+  for_each_point(false, [&](const constraint::Contact& contact, std::size_t k) {
     const auto row = static_cast<std::size_t>(contact.row(k));
     closed = closed || (effort[row] > 0.0 && touched_[row] == 0);
   });
   return closed;
+}
+
+bool ContactRows::touches_softly(std::span<const double> effort) const {
+  bool touches = false;
+  for_each_point(false, [&](const constraint::Contact& contact, std::size_t k) {
+    touches = touches || effort[static_cast<std::size_t>(contact.row(k))] > 0.0;
+  });
+  return touches;
 }
 
 bool ContactRows::passed() const {
@@ -204,7 +237,7 @@ double ContactRows::deepest_free_point(std::span<const double> effort) const {
 double ContactRows::deepest_left_out() const {
   double deepest = 0.0;
   if (!left_out_) return deepest;
-  for_each_point([&](const constraint::Contact& contact, std::size_t k) {
+  for_each_point(false, [&](const constraint::Contact& contact, std::size_t k) {
     const int row = contact.row(k);
     if (rows_.present[static_cast<std::size_t>(row)] != 0) return;
     deepest = std::max(deepest, -rows_.delta[row]);

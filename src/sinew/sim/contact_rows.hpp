@@ -44,6 +44,8 @@ class ContactRows {
   void choose_present(std::span<const double> effort, double time_step, double reach);
   /// For a look at the present state: every point that a step has a use for takes part.
   void take_all();
+  /// For an impact at the present state: the closed points of contacts that strike.
+  void take_closed();
   /// Appends the blocks of the points that take part.
   void list(const RowNumbering& numbering, std::vector<step::ContactBlock>& blocks) const;
 
@@ -60,6 +62,15 @@ class ContactRows {
   bool are_guessed() const { return left_out_ || planes_.curved() || !planes_.surfaces().empty(); }
   bool leave_points_out() const { return left_out_; }
 
+  /// Of event-driven integration: whether impacts of a contact are events. Of its points, those
+  /// that are closed take part in steps, and keep the gap that they have; others pass through.
+  /// @param contact of planes().contacts().
+  bool strikes(std::size_t contact) const { return strikes_[contact] != 0; }
+  void set_closed(int row, bool closed) { closed_[static_cast<std::size_t>(row)] = closed; }
+  bool is_closed(int row) const { return closed_[static_cast<std::size_t>(row)] != 0; }
+  /// Whether a point of another contact has a force. @param effort (rows,) N.
+  bool touches_softly(std::span<const double> effort) const;
+
   /// Whether a point has a force that had none when the step began. @param effort (rows,) N.
   bool gap_closed(std::span<const double> effort) const;
   /// Whether surfaces have passed through each other in the step.
@@ -73,6 +84,8 @@ class ContactRows {
  private:
   template <class Visit>
   void for_each_point(Visit&& visit) const;
+  template <class Visit>
+  void for_each_point(bool striking, Visit&& visit) const;
   void set_present(int row, bool present);
   bool correct_shape(std::size_t contact, const step::StepProblem& problem,
                      const RowNumbering& numbering, const linalg::AlignedNumbers& effort);
@@ -88,6 +101,8 @@ class ContactRows {
   bool left_out_ = false;      // some point
   int rounds_left_ = 0;        // of a step, in which overlapping surfaces get points
   std::vector<char> touched_;  // (rows,) normal rows with a force when the step began
+  std::vector<char> strikes_;  // (contacts,)
+  std::vector<char> closed_;   // (rows,) normal rows of contacts that strike
 };
 
 }  // namespace sinew::sim

@@ -32,6 +32,9 @@ struct ContactSettings {
   mesh::Outside outside = mesh::Outside::error;
   double friction = 0.0;             ///< Coulomb's coefficient, >= 0
   std::optional<BaseMotion> motion;  ///< of the surface
+  /// Newton's, 0 to 1; none: StepSettings::restitution. Of rigid bodies in event-driven
+  /// integration.
+  std::optional<double> restitution;
 };
 
 /// Of a ball's radius: a triangle of such edges goes up to 1/24 of the radius into a ball that its

@@ -16,12 +16,36 @@
 
 namespace sinew::sim {
 
+namespace {
+
+void check_event_driven(const StepSettings& settings) {
+  const auto refuse = [](const char* item, const char* what, const char* remedy) {
+    throw Error(ErrorKind::not_in_this_version, {.item = item}, what, remedy);
+  };
+  if (settings.adaptive) {
+    refuse("solver.adaptive", "event-driven integration divides steps by its impacts alone",
+           "leave `adaptive` out, or choose bdf2");
+  }
+  if (settings.method != Method::newton) {
+    refuse("solver.method", "event-driven integration solves each part to its tolerance",
+           "write `method: newton`, or choose bdf2");
+  }
+  if (!(settings.restitution >= 0.0 && settings.restitution <= 1.0)) {
+    throw Error(ErrorKind::out_of_range, {.item = "integrator.restitution"},
+                fmt::format("the restitution is {:g}", settings.restitution),
+                "give 0 (no rebound) to 1 (elastic)");
+  }
+}
+
+}  // namespace
+
 ModelBuilder::ModelBuilder(StepSettings settings) {
   if (!(settings.time_step > 0.0)) {
     throw Error(ErrorKind::out_of_range, {.item = "time_step"},
                 fmt::format("the time step is {:g} s", settings.time_step),
                 "give a positive time such as 10 ms");
   }
+  if (settings.event_driven()) check_event_driven(settings);
   data_.step = settings;
 }
 

@@ -47,6 +47,8 @@ struct ContactModel {
   std::string name;
   int constraint = -1;               ///< a constraint::Contact
   std::optional<BaseMotion> motion;  ///< of the surface; none: it stands still
+  bool strikes = false;              ///< its impacts are events: of rigid bodies alone
+  double restitution = 0.0;          ///< of these, 0 to 1
 
   /// Of the surface at a time.
   Eigen::Isometry3d pose(double time) const;

@@ -65,6 +65,7 @@ std::uint64_t contact_hash(const ModelData& data, const ContactModel& contact) {
   ValueHash hash;
   add_constraint(hash, data, contact.constraint);
   if (contact.motion) add_motion(hash, *contact.motion);
+  if (contact.strikes) hash.add(contact.restitution);
   return hash.value();
 }
 

@@ -108,6 +108,12 @@ class NewtonSolver {
            left <= settings_.lag.move * world_.problem().size;
   }
 
+  // Whether the last full step did not lessen the residual, or moved nothing by a digit.
+  bool is_spent() const {
+    return stagnant_ ||
+           (full_step_ && report_.motion.largest_move <= kEpsilon * world_.problem().size);
+  }
+
   // Where rounding keeps the residual above the tolerance, a full step that moves nothing by more
   // than rounding does, or that no longer lessens a residual at its floor, says that there is
   // nothing left to find.
@@ -122,7 +128,7 @@ class NewtonSolver {
     const double tolerance =
         strict ? std::min(settings_.tolerance, kRoundedResidual) : settings_.tolerance;
     return report_.relative_residual <= tolerance || at_rest ||
-           (stagnant_ && report_.residual <= world_.bodies().rounding_floor()) || lags_little();
+           (is_spent() && report_.residual <= world_.bodies().rounding_floor()) || lags_little();
   }
 
   NewtonStatus move() {

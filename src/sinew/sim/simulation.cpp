@@ -83,6 +83,12 @@ std::vector<double> Simulation::probe_values(int index) const {
 ContactReader Simulation::contacts() const { return ContactReader(*run_); }
 
 void Simulation::attach(step::Controller& controller, std::span<const int> actuators) {
+  if (model().step().event_driven()) {
+    throw Error(ErrorKind::not_in_this_version, {.item = "controller"},
+                "event-driven integration makes parts of a step several times, which a controller "
+                "would take for steps",
+                "choose backward-euler or bdf2 for a robot with a controller");
+  }
   if (run_->controller != nullptr && run_->controller != &controller) {
     throw Error(ErrorKind::actuator_owned, {.item = "controller"},
                 "another controller is attached to this simulation", "detach it first");

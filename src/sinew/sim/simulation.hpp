@@ -117,7 +117,8 @@ class Simulation {
   ContactReader contacts() const;
 
   /// Gives a controller the actuators that it chooses efforts for, in every step until it is
-  /// detached. One controller at a time. Throws Error(actuator-owned).
+  /// detached. One controller at a time. Throws Error(actuator-owned); Error(not-in-this-version)
+  /// with event-driven integration.
   void attach(step::Controller& controller, std::span<const int> actuators);
   void detach(const step::Controller& controller);
   const step::Controller* attached_controller() const;

@@ -21,6 +21,7 @@ struct StepReport {
   int iterations = 1;              ///< linear solutions, of the last substep
   int substeps = 1;                ///< that the step was made of
   int retries = 0;                 ///< substeps that were taken back and tried smaller
+  int impacts = 0;                 ///< moments at which event-driven integration solved an impact
   double error = 0.0;              ///< m, largest estimate of a substep's error in any coordinate
   double scale = 1.0;  ///< of the motion; < 1 when it was cut back to keep elements from inverting
   double energy_gained = 0.0;  ///< J, since the start: energy beyond what was put in, if > 0

@@ -33,6 +33,7 @@ struct StepSettings {
   double time_step = 0.01;  ///< s, > 0
   mechanics::Integrator integrator = mechanics::Integrator::quasi_static;
   double spectral_radius = 0.8;  ///< of generalized-alpha, 0 to 1
+  double restitution = 0.0;      ///< of event-driven integration, 0 to 1: of contacts without own
   std::optional<AdaptiveStep> adaptive;
   Method method = Method::newton;
   /// The exact tangent comes with the geometric stiffness of all cables, without which it says
@@ -46,6 +47,7 @@ struct StepSettings {
   int max_iterations = 50;  ///< Newton
 
   bool dynamic() const { return integrator != mechanics::Integrator::quasi_static; }
+  bool event_driven() const { return integrator == mechanics::Integrator::event_driven; }
   double contact_tolerance = 1e-10;  ///< of the contacts' residual, see qp::ConeResult
 };
 

@@ -4,12 +4,9 @@
 #include <cmath>
 
 #include "sinew/core/error.hpp"
-#include "sinew/sim/linear_step.hpp"
-#include "sinew/sim/newton_step.hpp"
 #include "sinew/sim/run.hpp"
-#include "sinew/sim/step_failure.hpp"
 #include "sinew/sim/step_tolerances.hpp"
-#include "sinew/step/controller.hpp"
+#include "sinew/sim/substep.hpp"
 
 namespace sinew::sim {
 
@@ -31,6 +28,7 @@ void Stepper::step() {
   run_.watch.begin();
   report.substeps = 1;
   report.retries = 0;
+  report.impacts = 0;
   report.choice_held = false;
   report.status = StepStatus::solved;
   report.energy_gained = 0.0;
@@ -38,7 +36,9 @@ void Stepper::step() {
   if (opens) run_.ledger.open(run_.world.bodies().energies());
   divided_ = false;
   try {
-    if (run_.model->step().adaptive) {
+    if (run_.model->step().event_driven()) {
+      step_by_events();
+    } else if (run_.model->step().adaptive) {
       step_adaptively();
     } else {
       step_in_parts();
@@ -87,6 +87,12 @@ void Stepper::step_in_parts() {
     }
   }
   part_.reset();
+}
+
+void Stepper::step_by_events() {
+  run_.keep(start_);
+  divided_ = true;
+  events_.step(run_.time(), run_.model->step().time_step);
 }
 
 // What is commanded as a rate counts from the start of the step, and rates' limits span all of it.
@@ -148,51 +154,14 @@ void Stepper::step_adaptively() {
   }
 }
 
-void Stepper::begin_substep(double end, double time_step) {
-  run_.now = end;
-  run_.read_commands(end, time_step);
-  if (part_) go_in_proportion();
-  run_.keep(run_.before);
-  run_.surroundings.move_bases(end);
-  run_.surroundings.apply(end);
-  run_.world.begin_step(end - time_step, end, run_.effort);
-  run_.solver.begin_step();
-  if (run_.controller != nullptr) run_.controller->begin_step();
-}
-
-void Stepper::solve(double time_step) {
-  if (run_.model->step().method == Method::newton) {
-    NewtonStep(run_).solve(time_step);
-  } else {
-    LinearStep(run_).solve(time_step);
-  }
-  if (run_.model->contacts().empty()) return;
-  if (run_.world.contacts().passed()) {
-    fail(run_, ErrorKind::not_converged, "surfaces would pass through each other",
-         "take a smaller time step");
-  }
-  const qp::ConeResult& contacts = run_.solver.direct().contact_result();
-  run_.report.contact_residual = contacts.residual;
-  run_.report.contact_sweeps = contacts.sweeps;
-}
-
 // One solution of the step's equation; the error estimate, m.
 double Stepper::substep(double end, double time_step) {
-  begin_substep(end, time_step);
-  try {
-    solve(time_step);
-  } catch (...) {  // failures have gone back already; what a watcher throws has not
-    run_.go_back();
-    throw;
-  }
-  const double error = run_.world.bodies().end_step(run_.step_weights(time_step));
-  // A gap that closes stops its point at once. A multistep formula that reaches back over such a
-  // jump would have the point rebound, and gain energy: it starts afresh behind it.
-  run_.last_step = run_.world.contacts().gap_closed(run_.effort) ? 0.0 : time_step;
-  run_.finish_step();
-  run_.actuation.advance_drives(run_.world.problem().actuators);
-  run_.ledger.count(*run_.model, run_.world, run_.actuation, run_.effort);
-  return error;
+  Substep part(run_);
+  part.read_commands(end, time_step);
+  if (part_) go_in_proportion();
+  part.begin(time_step);
+  part.solve(time_step);
+  return part.end(time_step);
 }
 
 // Newton knows. Where it had few iterations, or was not asked, the residual says.

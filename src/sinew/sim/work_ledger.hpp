@@ -28,6 +28,9 @@ class WorkLedger {
   void count(const Model& model, const World& world, const Actuation& actuation,
              std::span<const double> effort);
 
+  /// An impact. @param lost J.
+  void count_impact(double lost) { sums_.dissipated += lost; }
+
   /// Before the first step that is watched, so that its own gain counts.
   void open(const mechanics::Energies& now);
   bool is_open() const { return sums_.begun != 0.0; }

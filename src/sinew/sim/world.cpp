@@ -80,6 +80,22 @@ void World::begin_query(double at) {
   bodies_.begin_query();
 }
 
+void World::take_closed_points() {
+  contacts_.take_closed();
+  number_rows();
+}
+
+double World::row_velocity(int row) const {
+  const mechanics::RowPattern& pattern = model_->rows();
+  const auto first = static_cast<std::size_t>(pattern.row_start[static_cast<std::size_t>(row)]);
+  const auto end = static_cast<std::size_t>(pattern.row_start[static_cast<std::size_t>(row) + 1]);
+  double rate = 0.0;
+  for (std::size_t e = first; e < end; ++e) {
+    rate += rows_.direction[e].dot(placement_.velocity(pattern.site[e]));
+  }
+  return rate;
+}
+
 void World::linearise(const mechanics::LinearisationRequest& request) {
   stiffness_.begin(request);
   bodies_.linearise(request);

@@ -43,6 +43,9 @@ class World {
   /// For a look at the present state: every contact point takes part, and no base moves.
   /// @param at s, when surfaces are looked at.
   void begin_query(double at);
+  /// For an impact at the present state, after begin_query(): the closed points of contacts that
+  /// strike, and no others, are in the problem.
+  void take_closed_points();
   /// Assembly: every body at its current state.
   void linearise(const mechanics::LinearisationRequest& request);
   /// H and delta at the current placement, handed to the bodies. condense() adds the curvature of
@@ -86,6 +89,9 @@ class World {
   /// delta at the current placement, without forming the rows anew for the bodies.
   const VectorX& measure_delta();
   const mechanics::RowValues& rows() const { return rows_; }
+  /// Rate of a row's motion, H v, m/s. @param row of the model, neither of a contact between
+  /// surfaces; formed.
+  double row_velocity(int row) const;
   /// (all bodies' size(), k) columns of H^T. @param rows (k,) of the problem; formed.
   MatrixX row_forces(std::span<const int> rows);
 

@@ -1,0 +1,122 @@
+"""Impacts of rigid bodies at their moments, with restitution."""
+
+import numpy as np
+import pytest
+import sinew
+
+GRAVITY = 9.81
+FLOOR = {"plane": {"point": "0 0 0 mm", "normal": "0 0 1"}}
+BALL = {"type": "rigid", "shape": {"sphere": {"radius": "50 mm"}}, "mass": "2 kg", "pose": {"position": "0 0 550 mm"}}
+BLOCK = {"type": "fem", "density": 1000.0, "mesh": {"shape": "block", "length": 0.02, "width": 0.02, "height": 0.02, "element_size": 0.01},
+         "material": {"young_modulus": "200 kPa", "poisson_ratio": 0.3}}
+
+
+def make(bodies, contacts, step=20e-3, restitution=0.5, gravity=(0.0, 0.0, -GRAVITY), **more):
+    return sinew.load({"sinew": 1, "time_step": step, "integrator": {"type": "event-driven", "restitution": restitution},
+                       "gravity": list(gravity), "bodies": bodies, "contacts": contacts, **more})
+
+
+def ball_on_floor(step=20e-3, restitution=0.5, **contact):
+    return make({"ball": BALL}, {"floor": {"body": "ball", "surface": FLOOR, **contact}}, step, restitution)
+
+
+@pytest.mark.parametrize("restitution", [0.5, 0.9])
+@pytest.mark.parametrize("step", [2e-3, 20e-3])
+def test_a_ball_comes_to_rest_in_time(restitution, step):
+    first = np.sqrt(2 * 0.5 / GRAVITY)
+    end = first * (1 + restitution) / (1 - restitution)
+    steps = int(np.ceil(end / step))
+    for part, rests in ((0.999, False), (1.001, True)):
+        sim = ball_on_floor(part * end / steps, restitution)
+        for _ in range(steps):
+            sim.step()
+        body = sim.body("ball")
+        speed = np.hypot(body.velocity[2], np.sqrt(2 * GRAVITY * max(body.position[2] - 0.05, 0.0)))
+        assert (speed < 1e-6) == rests
+
+
+def test_the_restitution_of_a_contact_is_its_own():
+    sim = make({"low": BALL, "high": {**BALL, "pose": {"position": "1 0 0.55 m"}}},
+               {"floor": {"body": "low", "surface": FLOOR, "restitution": 0.25}, "other": {"body": "high", "surface": FLOOR}}, 5e-3, 0.75)
+    first, impacts = np.sqrt(2 * 0.5 / GRAVITY), 0
+    while not impacts:
+        sim.step()
+        impacts = sim.report.impacts
+    for name, restitution in (("low", 0.25), ("high", 0.75)):
+        expected = restitution * GRAVITY * first - GRAVITY * (sim.time - first)
+        assert sim.body(name).velocity[2] == pytest.approx(expected, abs=1e-9)
+
+
+def test_balls_head_on_keep_momentum_and_return_e_of_their_approach():
+    left = {**BALL, "pose": {"position": "-200 0 0 mm"}, "velocity": {"linear": "3 0 0 m/s"}}
+    right = {**BALL, "mass": "1 kg", "pose": {"position": "100 0 0 mm"}, "velocity": {"linear": "-1 0 0 m/s"}}
+    sim = make({"left": left, "right": right}, {"pair": {"between": ["left", "right"]}}, restitution=0.6, gravity=(0, 0, 0))
+    sim.run(duration=0.2)
+    u, v = sim.body("left").velocity[0], sim.body("right").velocity[0]
+    assert 2 * u + v == pytest.approx(5.0, abs=1e-9)
+    assert v - u == pytest.approx(0.6 * 4.0, abs=1e-9)
+
+
+def test_a_state_between_rebounds_goes_on_bit_for_bit(tmp_path):
+    sim = ball_on_floor(restitution=0.9)
+    sim.run(duration=1.0)
+    sim.save_state(tmp_path / "flight.state")
+    copy = sim.clone()
+    other = ball_on_floor(restitution=0.9)
+    other.load_state(tmp_path / "flight.state")
+    for one in (sim, copy, other):
+        one.run(duration=6.0)
+    assert sim.state_hash == copy.state_hash == other.state_hash
+    sim.reset()
+    sim.run(duration=7.0)
+    assert sim.state_hash == copy.state_hash
+
+
+def test_a_state_of_another_restitution_is_refused(tmp_path):
+    ball_on_floor(restitution=0.9).save_state(tmp_path / "one.state")
+    with pytest.raises(sinew.Error, match="contact 'floor'"):
+        ball_on_floor(restitution=0.8).load_state(tmp_path / "one.state")
+
+
+def test_bodies_beside_a_deformable_one():
+    sim = make({"ball": BALL, "other": {**BALL, "pose": {"position": "1 0 0.3 m"}},
+                "block": {**BLOCK, "damping": {"stiffness": "2 ms"}}},
+               {"all": {"between": "all", "restitution": 0.5}, "floor": {"body": "ball", "surface": FLOOR},
+                "next": {"body": "other", "surface": FLOOR, "restitution": 0.0},
+                "ground": {"body": "block", "surface": {"plane": {"point": "0 0 -10 mm"}}}}, 2e-3)
+    sim.run(duration=1.2)
+    assert not sim.report.flagged
+    for name in ("ball", "other"):
+        assert sim.body(name).position[2] == pytest.approx(0.05, abs=1e-8)
+    assert sim.contact("ground").normal_force == pytest.approx(0.008 * GRAVITY, rel=1e-3)
+
+
+@pytest.mark.parametrize(("change", "kind"), [
+    ({"solver": {"adaptive": {"smallest": "1 ms"}}}, "not-in-this-version"),
+    ({"solver": "one-linearisation"}, "not-in-this-version"),
+    ({"integrator": {"type": "bdf2", "restitution": 0.5}}, "conflicting-keys"),
+    ({"integrator": {"type": "event-driven", "restitution": 1.5}}, "out-of-range"),
+    ({"integrator": "bdf2", "contacts": {"floor": {"body": "ball", "surface": FLOOR, "restitution": 0.5}}}, "conflicting-keys"),
+    ({"contacts": {"floor": {"body": "ball", "surface": FLOOR, "motion": {"z": {"ramp": {"to": "1 mm", "duration": "1 s"}}}}}},
+     "not-in-this-version"),
+    ({"bodies": {"ball": BLOCK}, "contacts": {"floor": {"body": "ball", "surface": {"plane": {"point": "0 0 -20 mm"}}, "restitution": 0.5}}},
+     "conflicting-keys"),
+])
+def test_what_cannot_be_combined_is_refused(change, kind):
+    scene = {"sinew": 1, "integrator": {"type": "event-driven", "restitution": 0.5}, "bodies": {"ball": BALL},
+             "contacts": {"floor": {"body": "ball", "surface": FLOOR}}}
+    sinew.load(scene)
+    with pytest.raises(sinew.Error) as error:
+        sinew.load({**scene, **change})
+    assert error.value.kind == kind
+
+
+def test_the_example_comes_to_rest():
+    sim = sinew.load("examples/rigid/bounce.yaml")
+    impacts = 0
+    for _ in range(200):
+        sim.step()
+        impacts += sim.report.impacts
+    assert impacts > 10
+    assert sim.body("ball").position[2] == pytest.approx(0.03, abs=1e-8)
+    assert sim.contact("floor").normal_force == pytest.approx(0.1 * GRAVITY, rel=1e-6)

@@ -1,0 +1,150 @@
+#include "sinew/sim/event_stepper.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/core/error.hpp"
+#include "sinew/sim/run.hpp"
+#include "sinew/sim/step_failure.hpp"
+
+namespace sinew::sim {
+
+namespace {
+
+// Bounds that no step of a sound scene comes near: impacts at one moment, parts of a step, and
+// times that a part is made.
+constexpr int kMaxImpacts = 1000;
+constexpr int kMaxParts = 100000;
+constexpr int kMaxTrials = 200;
+// The smallest part that is tried after a failure, of what is left of the step.
+constexpr double kSmallest = 1.0 / 64.0;
+// Of the robot's size: motions in a part that are none.
+constexpr double kStill = 1e-9;
+
+bool stops(const step::ActuatorBlock& block) {
+  return std::isfinite(block.motion_min) || std::isfinite(block.motion_max);
+}
+
+}  // namespace
+
+EventStepper::EventStepper(Run& run)
+    : run_(run), substep_(run), midpoint_(run), impact_(run), points_(*run.model, run.world) {}
+
+void EventStepper::step(double begin, double time_step) {
+  StepReport& report = run_.report;
+  report.substeps = 0;
+  report.error = 0.0;
+  points_.forget_rest();
+  substep_.read_commands(begin + time_step, time_step);
+  collide(begin);
+  for (double done = 0.0; done < time_step;) {
+    if (++report.substeps > kMaxParts) give_up("impacts follow each other too fast");
+    const double left = time_step - done, length = advance(begin + done, left);
+    done = length < left ? done + length : time_step;
+    points_.forget_rest();
+    collide(begin + done);
+  }
+}
+
+// Impacts of the present moment, until no point approaches.
+void EventStepper::collide(double time) {
+  for (strikes_ = 0;; ++strikes_) {
+    points_.look(time);
+    if (!points_.strike()) break;
+    if (strikes_ == kMaxImpacts) give_up("impacts of one moment do not end");
+    if (strikes_ == 0) run_.keep(struck_);
+    impact_.solve(points_.restitution());
+  }
+  run_.report.impacts += strikes_;
+  points_.close();
+}
+
+// The longest part up to which no gap closes.
+double EventStepper::advance(double time, double left) {
+  run_.keep(start_);
+  double length = left;
+  for (int trial = 0; trial < kMaxTrials; ++trial) {
+    try {
+      length = move(time, length);
+    } catch (const Error& failure) {
+      if (!failure.is_run_failure() || 0.5 * length < kSmallest * left) throw;
+      length *= 0.5;
+      ++run_.report.retries;
+      run_.restore(start_);
+      continue;
+    }
+    const double free = points_.free_length(length);
+    if (free >= length && !points_.found_rest()) {
+      if (!run_.world.problem().bilaterals.empty() || points_.drift(run_.effort)) impact_.hold();
+      return length;
+    }
+    ++run_.report.retries;
+    run_.restore(start_);
+    length = free;
+    if (!points_.found_rest()) continue;
+    rest(time);
+    length = left;
+  }
+  give_up("the moment of an impact is not found");
+}
+
+// Points that rebounded next to nothing stay closed: the impact was an inelastic one.
+void EventStepper::rest(double time) {
+  if (strikes_ > 0) run_.restore(struck_);
+  run_.report.impacts -= strikes_;
+  collide(time);
+  run_.keep(start_);
+}
+
+// A part of this length, or half of it. @return its length.
+double EventStepper::move(double time, double length) {
+  const bool smooth = is_smooth(time + length, length);
+  const double solved = smooth ? 0.5 * length : length;
+  substep_.read_commands(time + solved, solved);
+  effort_before_ = run_.effort;
+  substep_.begin(solved);
+  substep_.solve(solved);
+  if (smooth && stays_smooth()) {
+    midpoint_.carry_on(substep_, solved);
+    substep_.end_as_midpoint(length);
+    return length;
+  }
+  substep_.end(solved);
+  return solved;
+}
+
+// Whether the first half of a part may say what the second one does. A stop or a taut cable that
+// has just caught a body leaves it a velocity that a step of backward Euler takes away.
+bool EventStepper::is_smooth(double end, double length) {
+  World& world = run_.world;
+  if (run_.actuation.drive_numbers() > 0 || !run_.model->guides().empty()) return false;
+  if (!world.bodies().can_carry_on() || world.contacts().touches_softly(run_.effort)) return false;
+  substep_.read_commands(end, length);
+  return std::ranges::none_of(world.problem().actuators, [&](const step::ActuatorBlock& block) {
+    if (block.row < 0) return false;
+    if (block.kind == step::CommandKind::motion) return true;
+    if (!stops(block) || run_.effort[static_cast<std::size_t>(block.row)] == 0.0) return false;
+    const double way = length * block.motion_scale * world.row_velocity(block.row);
+    return std::abs(way) > kStill * run_.model->size();
+  });
+}
+
+// Whether nothing has caught a body in the first half: joints' limits, cables with a limit of their
+// motion, points of deformable bodies, friction.
+bool EventStepper::stays_smooth() const {
+  const World& world = run_.world;
+  if (!world.bodies().can_carry_on() || world.contacts().gap_closed(run_.effort)) return false;
+  if (points_.caught(run_.effort)) return false;
+  return std::ranges::none_of(world.problem().actuators, [&](const step::ActuatorBlock& block) {
+    if (block.row < 0) return false;
+    const auto row = static_cast<std::size_t>(block.row);
+    return stops(block) && effort_before_[row] == 0.0 && run_.effort[row] != 0.0;
+  });
+}
+
+void EventStepper::give_up(const char* what) {
+  fail(run_, ErrorKind::not_converged, what,
+       "take a smaller time step, lower the restitution, or choose bdf2");
+}
+
+}  // namespace sinew::sim

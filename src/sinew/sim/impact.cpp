@@ -1,0 +1,132 @@
+#include "sinew/sim/impact.hpp"
+
+#include <algorithm>
+
+#include "sinew/core/error.hpp"
+#include "sinew/sim/run.hpp"
+#include "sinew/sim/step_failure.hpp"
+
+namespace sinew::sim {
+
+namespace {
+
+// Within this time nothing but inertia counts: of a mesh whose fastest mode has w = 1e7 rad/s, the
+// stiffness is (w t)^2 = 1e-10 of M/t^2.
+constexpr double kInstant = 1e-12;
+// Energy from an impact, of |p.u-|, beyond rounding.
+constexpr double kGain = 1e-9;
+
+// A = M/t^2.
+mechanics::StepWeights weights_of_inertia() {
+  mechanics::StepWeights weights;
+  weights.velocity = {.velocity = 1.0};
+  weights.acceleration = {.motion = 1.0 / (kInstant * kInstant)};
+  weights.time_step = kInstant;
+  return weights;
+}
+
+}  // namespace
+
+void Impact::hold() {
+  run_.world.bodies().begin_query();
+  form();
+  for (const step::ContactBlock& block : law_.contacts) {
+    const int row = run_.world.numbering().row_of(block.row);
+    const bool pressed = run_.effort[static_cast<std::size_t>(row)] > 0.0;
+    if (pressed) law_.bilaterals.push_back({block.row, 0.0, 1.0});
+  }
+  law_.contacts.clear();
+  find_impulses({}, 0.0);
+  apply();
+}
+
+// Several coefficients at once may gain energy (Kane's paradox). Less of them for all gains less,
+// and none gains nothing.
+void Impact::solve(std::span<const double> restitution) {
+  form();
+  for (const double most : {1.0, smallest(restitution), 0.0}) {
+    find_impulses(restitution, most);
+    const Eigen::Map<const VectorX> p(impulse_.data(), before_.size());
+    if (gained_ <= kGain * std::abs(p.dot(before_))) break;
+  }
+  apply();
+}
+
+void Impact::form() {
+  World& world = run_.world;
+  world.take_closed_points();
+  mechanics::LinearisationRequest request = run_.request(kInstant);
+  request.weights = weights_of_inertia();
+  request.iterating = false;
+  world.linearise(request);
+  world.form_rows(run_.effort, {});
+  if (world.condense() == linalg::FactorStatus::singular) {
+    fail(run_, ErrorKind::singular_matrix, "the mass matrix is singular", "give all bodies mass");
+  }
+  const step::StepProblem& problem = world.problem();
+  law_.compliance = problem.compliance / (kInstant * kInstant);
+  law_.size = problem.size;
+  law_.contacts = problem.contacts;
+  law_.bilaterals = problem.bilaterals;
+  before_.setZero(law_.compliance.rows());
+  const auto measure = [&](int row) {
+    return before_[row] = world.row_velocity(world.numbering().row_of(row));
+  };
+  for (step::BilateralBlock& block : law_.bilaterals) {
+    measure(block.row);
+    block.motion = 0.0;
+  }
+  for (const step::ActuatorBlock& block : problem.actuators) {
+    if (block.row < 0 || !block.holds_motion()) continue;
+    law_.bilaterals.push_back({block.row, measure(block.row), block.motion_scale});
+  }
+  for (const step::ContactBlock& block : law_.contacts) {
+    for (int c = 0; c < 3; ++c) measure(block.row + c);
+  }
+}
+
+double Impact::smallest(std::span<const double> restitution) const {
+  double least = 1.0;
+  for (const step::ContactBlock& block : law_.contacts) {
+    if (!(before_[block.row] < 0.0)) continue;
+    const int row = run_.world.numbering().row_of(block.row);
+    least = std::min(least, restitution[static_cast<std::size_t>(row)]);
+  }
+  return least;
+}
+
+void Impact::find_impulses(std::span<const double> restitution, double most) {
+  law_.delta_free = before_;
+  for (const step::ContactBlock& block : law_.contacts) {
+    if (!(before_[block.row] < 0.0)) continue;
+    const int row = run_.world.numbering().row_of(block.row);
+    const double e = std::min(most, restitution[static_cast<std::size_t>(row)]);
+    law_.delta_free.segment<3>(block.row) *= 1.0 + e;
+  }
+  impulse_.assign(static_cast<std::size_t>(before_.size()), 0.0);
+  solver_.begin_step();
+  if (solver_.solve(law_, impulse_) == step::LawStatus::failed) {
+    fail(run_, ErrorKind::not_converged, "no impulses obey the law of an impact",
+         "look for a body that is squeezed between others, or choose bdf2");
+  }
+  const Eigen::Map<const VectorX> p(impulse_.data(), before_.size());
+  after_ = before_;
+  after_.noalias() += law_.compliance * p;
+  gained_ = 0.5 * p.dot(before_ + after_);
+}
+
+void Impact::apply() {
+  Bodies& bodies = run_.world.bodies();
+  all_.assign(run_.effort.size(), 0.0);
+  bodies.imbalance(all_, rest_);
+  run_.world.numbering().scatter(impulse_, all_);
+  bodies.imbalance(all_, force_);
+  force_ -= rest_;
+  bodies.solve(force_, change_);
+  change_ /= kInstant * kInstant;
+  bodies.add_velocity(change_);
+  bodies.residual(run_.effort);  // which bodies remember
+  run_.ledger.count_impact(-gained_);
+}
+
+}  // namespace sinew::sim

@@ -1,0 +1,56 @@
+/// @file
+/// Velocities that change at once.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sinew/core/types.hpp"
+#include "sinew/linalg/scratch.hpp"
+#include "sinew/step/direct_solver.hpp"
+
+namespace sinew::sim {
+
+struct Run;
+
+/// Newton's law of impact with friction in Moreau's form (Moreau 1988, sec. 10; Acary & Brogliato,
+/// Numerical Methods for Nonsmooth Dynamical Systems, 2008, sec. 4.2): with the impulses p (N s) of
+/// all closed points, joints and held motors, u+ = u- + W p, W = H M^-1 H^T,
+///   K contains p _|_ (u + mu |u_t| n) in K*,   u = u+ + e u-,   at each point,
+///   u+ = 0 of joints,   u+ = u- of motors that hold a motion.
+/// One e acts along and across the normal; a point that does not approach has e = 0. With one e for
+/// all points, the kinetic energy changes by
+///   p.(u+ + u-)/2 = (p.u - (1 - e)/2 p.W p)/(1 + e) <= 0,
+/// since the law has p.u <= 0. With several, it might grow: then the smallest holds for all, or
+/// none. Springs, commanded efforts and bodies' own stiffness are finite forces, which give no
+/// impulse.
+class Impact {
+ public:
+  /// @param run outlives it.
+  explicit Impact(Run& run) : run_(run) {}
+  /// Changes the velocities, and counts what the impact takes out. After World::begin_query(), and
+  /// with the points that take part marked as closed.
+  /// @param restitution (rows,) of each point, at its normal's row.
+  /// Throws Error(not-converged | singular-matrix).
+  void solve(std::span<const double> restitution);
+  /// After a part of a step, at its end: takes away the velocities of joints and of closed points
+  /// that were pressed. They are errors of second order.
+  void hold();
+
+ private:
+  void form();
+  void find_impulses(std::span<const double> restitution, double most);
+  double smallest(std::span<const double> restitution) const;
+  void apply();
+
+  Run& run_;
+  step::DirectSolver solver_{qp::ConeSettings{.tolerance = 1e-12}};
+  step::StepProblem law_;
+  VectorX before_, after_;          // (rows of the problem,) m/s, u- and u+
+  linalg::AlignedNumbers impulse_;  // (rows of the problem,) N s
+  std::vector<double> all_;         // (rows,) N s
+  VectorX force_, rest_, change_;   // (all bodies' size(),)
+  double gained_ = 0.0;             // J
+};
+
+}  // namespace sinew::sim

@@ -1,0 +1,66 @@
+#include "sinew/sim/midpoint.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/sim/run.hpp"
+#include "sinew/sim/substep.hpp"
+
+namespace sinew::sim {
+
+namespace {
+
+// Of the robot's size: how well motions are held at the end of a step.
+constexpr double kHeld = 1e-12;
+// A round leaves about the square of the step's turn.
+constexpr int kMaxRounds = 12;
+
+}  // namespace
+
+Midpoint::Midpoint(Run& run) : run_(run), widened_(run.effort.size(), 0.0) {}
+
+void Midpoint::carry_on(Substep& substep, double half) {
+  Bodies& bodies = run_.world.bodies();
+  bodies.scale_motion(2.0);
+  for (int round = 0; correct() > kHeld * run_.model->size() && round < kMaxRounds; ++round) {
+    bodies.scale_motion(0.5);
+    substep.solve(half);
+    bodies.scale_motion(2.0);
+  }
+  release();
+}
+
+// m: what the end lacks. With delta in the middle it is 2 delta and something of second order.
+double Midpoint::correct() {
+  World& world = run_.world;
+  const VectorX& delta = world.measure_delta();
+  double worst = 0.0;
+  for (step::BilateralBlock& block : world.problem().bilaterals) {
+    const double off = delta[world.numbering().row_of(block.row)];
+    block.motion -= 0.5 * off;
+    worst = std::max(worst, std::abs(off) * block.motion_scale);
+  }
+  for (const step::ContactBlock& block : world.problem().contacts) {
+    const int row = world.numbering().row_of(block.row);
+    const auto own = static_cast<std::size_t>(row);
+    if (!world.contacts().is_closed(row) || !(run_.effort[own] > 0.0)) continue;
+    const double off = delta[row] - widened_[own];
+    world.contacts().planes().widen(row, 0.5 * off);
+    widened_[own] += 0.5 * off;
+    worst = std::max(worst, std::abs(off));
+  }
+  return worst;
+}
+
+void Midpoint::release() {
+  World& world = run_.world;
+  for (step::BilateralBlock& block : world.problem().bilaterals) block.motion = 0.0;
+  for (const step::ContactBlock& block : world.problem().contacts) {
+    const int row = world.numbering().row_of(block.row);
+    double& widened = widened_[static_cast<std::size_t>(row)];
+    world.contacts().planes().widen(row, -widened);
+    widened = 0.0;
+  }
+}
+
+}  // namespace sinew::sim

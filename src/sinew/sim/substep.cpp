@@ -1,0 +1,73 @@
+#include "sinew/sim/substep.hpp"
+
+#include "sinew/core/error.hpp"
+#include "sinew/sim/linear_step.hpp"
+#include "sinew/sim/newton_step.hpp"
+#include "sinew/sim/run.hpp"
+#include "sinew/sim/step_failure.hpp"
+#include "sinew/step/controller.hpp"
+
+namespace sinew::sim {
+
+void Substep::read_commands(double end, double time_step) {
+  run_.now = end;
+  run_.read_commands(end, time_step);
+}
+
+void Substep::begin(double time_step) {
+  const double end = run_.now;
+  run_.keep(run_.before);
+  run_.surroundings.move_bases(end);
+  run_.surroundings.apply(end);
+  run_.world.begin_step(end - time_step, end, run_.effort);
+  run_.solver.begin_step();
+  if (run_.controller != nullptr) run_.controller->begin_step();
+}
+
+void Substep::solve(double time_step) {
+  try {
+    solve_equation(time_step);
+  } catch (...) {  // failures have gone back already; what a watcher throws has not
+    run_.go_back();
+    throw;
+  }
+}
+
+void Substep::solve_equation(double time_step) {
+  if (run_.model->step().method == Method::newton) {
+    NewtonStep(run_).solve(time_step);
+  } else {
+    LinearStep(run_).solve(time_step);
+  }
+  if (run_.model->contacts().empty()) return;
+  if (run_.world.contacts().passed()) {
+    fail(run_, ErrorKind::not_converged, "surfaces would pass through each other",
+         "take a smaller time step");
+  }
+  const qp::ConeResult& contacts = run_.solver.direct().contact_result();
+  run_.report.contact_residual = contacts.residual;
+  run_.report.contact_sweeps = contacts.sweeps;
+}
+
+double Substep::end(double time_step) {
+  const double error = run_.world.bodies().end_step(run_.step_weights(time_step));
+  // A gap that closes stops its point at once. A multistep formula that reaches back over such a
+  // jump would have the point rebound, and gain energy: it starts afresh behind it.
+  run_.last_step = run_.world.contacts().gap_closed(run_.effort) ? 0.0 : time_step;
+  count();
+  return error;
+}
+
+void Substep::end_as_midpoint(double time_step) {
+  run_.world.bodies().end_step(mechanics::midpoint_weights(time_step));
+  run_.last_step = time_step;
+  count();
+}
+
+void Substep::count() {
+  run_.finish_step();
+  run_.actuation.advance_drives(run_.world.problem().actuators);
+  run_.ledger.count(*run_.model, run_.world, run_.actuation, run_.effort);
+}
+
+}  // namespace sinew::sim

@@ -1,0 +1,34 @@
+/// @file
+/// One solution of a step's equation, over the whole time step or a part of it.
+#pragma once
+
+namespace sinew::sim {
+
+struct Run;
+
+/// What makers of steps share: begin, solve, end.
+class Substep {
+ public:
+  /// @param run outlives it.
+  explicit Substep(Run& run) : run_(run) {}
+
+  /// Reads the commands of a part that ends at a time. @param end,time_step s.
+  void read_commands(double end, double time_step);
+  /// Keeps the state in Run::before, and begins. After read_commands().
+  void begin(double time_step);
+  /// Throws Error, and what a watcher throws; the run is then as it was before begin().
+  void solve(double time_step);
+  /// Velocities follow, and what the part came to is counted. @return error estimate, m.
+  double end(double time_step);
+  /// The same where what was solved was the first half of a step of the midpoint rule, whose motion
+  /// was then doubled. @param time_step s, of the whole.
+  void end_as_midpoint(double time_step);
+
+ private:
+  void solve_equation(double time_step);
+  void count();
+
+  Run& run_;
+};
+
+}  // namespace sinew::sim

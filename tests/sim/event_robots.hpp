@@ -1,0 +1,71 @@
+// Rigid bodies that strike, and what they should do.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "sinew/collision/shape.hpp"
+#include "sinew/constraint/placement.hpp"
+#include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/capabilities.hpp"
+#include "sinew/rigid/rigid_settings.hpp"
+#include "sinew/sim/contact_settings.hpp"
+#include "sinew/sim/joint_settings.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/model_builder.hpp"
+#include "sinew/sim/simulation.hpp"
+
+#include "contact_robots.hpp"
+
+namespace sinew::testing {
+
+/// Event-driven, in steps of this length.
+inline sim::StepSettings events(double time_step, double restitution) {
+  return {.time_step = time_step,
+          .integrator = mechanics::Integrator::event_driven,
+          .restitution = restitution};
+}
+
+inline int add_ball(sim::ModelBuilder& builder, const std::string& name, const Vector3& at,
+                    const Vector3& velocity = Vector3::Zero(),
+                    const Vector3& gravity = Vector3(0.0, 0.0, -kGravity), double radius = 0.05,
+                    const Vector3& spin = Vector3::Zero()) {
+  rigid::RigidSettings ball;
+  ball.name = name;
+  ball.shape = rigid::Sphere{radius};
+  ball.mass = 2.0;
+  ball.position = at;
+  ball.velocity = velocity;
+  ball.spin = spin;
+  ball.gravity = gravity;
+  return builder.add_rigid_body(ball);
+}
+
+/// The plane through the origin.
+inline void add_floor(sim::ModelBuilder& builder, int body,
+                      const Vector3& normal = Vector3::UnitZ(), double friction = 0.0) {
+  sim::ContactSettings contact;
+  contact.name = "floor_" + std::to_string(body);
+  contact.body = body;
+  contact.surface = collision::Plane{Vector3::Zero(), normal};
+  contact.friction = friction;
+  builder.add_contact(contact);
+}
+
+inline void add_pair(sim::ModelBuilder& builder, int first, int second) {
+  sim::ContactSettings contact;
+  contact.name = "pair_" + std::to_string(first) + std::to_string(second);
+  contact.body = first;
+  contact.touched = second;
+  builder.add_contact(contact);
+}
+
+inline const mechanics::HasPose& pose(const sim::Simulation& simulation, int body) {
+  return *mechanics::as<const mechanics::HasPose>(simulation.body(body));
+}
+
+}  // namespace sinew::testing
