@@ -272,8 +272,9 @@ void bind_loads_of(py::class_<Body>& type) {
 --
 
 Whether the body reaches into itself now: None, or (node, element) of the first surface node that
-lies in an element it does not belong to. Nothing keeps it from doing so. What is nearer than `apart`
-(m) at rest is not looked at, such as the dent round a point load.
+lies in an element it does not belong to. Edges that cross are not seen; a contact
+`between: [body, body]` keeps both from happening. What is nearer than `apart` (m) at rest is not
+looked at, such as the dent round a point load.
 )")
       .def_property_readonly(
           "load_forces",
