@@ -46,6 +46,7 @@ TEST(Combination, TheCoverHasEveryPairOfLevels) {
   const std::set<std::pair<std::string, std::string>> refused{{"integrator", "contact"},
                                                               {"integrator", "method"},
                                                               {"integrator", "adaptive"},
+                                                              {"integrator", "contact_motion"},
                                                               {"integrator", "controller"}};
   EXPECT_EQ(missing, refused);
 }

@@ -172,7 +172,8 @@ int find_feature(std::string_view name) {
 }
 
 // Whether this version refuses two levels beside each other: generalized-alpha creates energy in
-// impacts, and event-driven integration makes parts of steps several times, by Newton's method.
+// impacts; event-driven integration makes parts of steps several times, by Newton's method, and has
+// no impacts on surfaces that move.
 bool is_refused(int first, int first_level, int second, int second_level) {
   const auto is = [&](int feature, int chosen, std::string_view name, std::string_view wanted) {
     const Feature& of = features()[static_cast<std::size_t>(feature)];
@@ -187,6 +188,7 @@ bool is_refused(int first, int first_level, int second, int second_level) {
   return both("contact", "", "integrator", "generalized-alpha") ||
          both("integrator", "event-driven", "adaptive", "yes") ||
          both("integrator", "event-driven", "method", "one-linearisation") ||
+         both("integrator", "event-driven", "contact_motion", "yes") ||
          both("integrator", "event-driven", "controller", "");
 }
 

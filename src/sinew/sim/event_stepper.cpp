@@ -16,7 +16,7 @@ namespace {
 constexpr int kMaxImpacts = 1000;
 constexpr int kMaxParts = 100000;
 constexpr int kMaxTrials = 200;
-// The smallest part that is tried after a failure, of what is left of the step.
+// The smallest part that is tried after a failure, of the step.
 constexpr double kSmallest = 1.0 / 64.0;
 // Of the robot's size: motions in a part that are none.
 constexpr double kStill = 1e-9;
@@ -34,12 +34,13 @@ void EventStepper::step(double begin, double time_step) {
   StepReport& report = run_.report;
   report.substeps = 0;
   report.error = 0.0;
+  longest_ = time_step;
   points_.forget_rest();
   substep_.read_commands(begin + time_step, time_step);
   collide(begin);
   for (double done = 0.0; done < time_step;) {
     if (++report.substeps > kMaxParts) give_up("impacts follow each other too fast");
-    const double left = time_step - done, length = advance(begin + done, left);
+    const double left = time_step - done, length = advance(begin + done, std::min(left, longest_));
     done = length < left ? done + length : time_step;
     points_.forget_rest();
     collide(begin + done);
@@ -67,15 +68,15 @@ double EventStepper::advance(double time, double left) {
     try {
       length = move(time, length);
     } catch (const Error& failure) {
-      if (!failure.is_run_failure() || 0.5 * length < kSmallest * left) throw;
-      length *= 0.5;
+      longest_ = length = 0.5 * length;
+      if (!failure.is_run_failure() || length < kSmallest * run_.model->step().time_step) throw;
       ++run_.report.retries;
       run_.restore(start_);
       continue;
     }
     const double free = points_.free_length(length);
     if (free >= length && !points_.found_rest()) {
-      if (!run_.world.problem().bilaterals.empty() || points_.drift(run_.effort)) impact_.hold();
+      hold();
       return length;
     }
     ++run_.report.retries;
@@ -86,6 +87,12 @@ double EventStepper::advance(double time, double left) {
     length = left;
   }
   give_up("the moment of an impact is not found");
+}
+
+// What the midpoint rule leaves of velocities along rows that are held.
+void EventStepper::hold() {
+  const bool joins = !run_.world.problem().bilaterals.empty();
+  if (carried_on_ && (joins || points_.drift(run_.effort))) impact_.hold();
 }
 
 // Points that rebounded next to nothing stay closed: the impact was an inelastic one.
@@ -104,7 +111,8 @@ double EventStepper::move(double time, double length) {
   effort_before_ = run_.effort;
   substep_.begin(solved);
   substep_.solve(solved);
-  if (smooth && stays_smooth()) {
+  carried_on_ = smooth && stays_smooth();
+  if (carried_on_) {
     midpoint_.carry_on(substep_, solved);
     substep_.end_as_midpoint(length);
     return length;

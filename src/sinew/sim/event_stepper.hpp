@@ -45,6 +45,7 @@ class EventStepper {
   bool is_smooth(double end, double length);
   bool stays_smooth() const;
   void rest(double time);
+  void hold();
   [[noreturn]] void give_up(const char* what);
 
   Run& run_;
@@ -54,6 +55,8 @@ class EventStepper {
   StrikingPoints points_;
   State start_, struck_;               // of a part; before the impact that it begins with
   int strikes_ = 0;                    // impacts since struck_
+  double longest_ = 0.0;               // s, part of the step in hand: others fail
+  bool carried_on_ = false;            // the last part, by the midpoint rule
   std::vector<double> effort_before_;  // (rows,) N
 };
 

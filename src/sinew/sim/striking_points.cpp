@@ -15,6 +15,8 @@ namespace {
 
 // Of the robot's size: gaps that are closed, and rebounds that are none.
 constexpr double kClosed = 1e-9;
+// Of that: how far inside a point may be at the moment that is found.
+constexpr double kFound = 1e-3;
 // Of the robot's size: an overlap that no watched point has seen coming.
 constexpr double kUnseen = 1e-6;
 // Of a body's speed: a point that slides less than this rolls.
@@ -92,18 +94,19 @@ double StrikingPoints::free_length(double length) {
 double StrikingPoints::closing_time(const Point& point, double end, double length) {
   constexpr double kNever = std::numeric_limits<double>::infinity();
   const double gap = point.gap, rate = point.velocity;
+  const double inside = -kFound * closed_;
   const double bend = (end - gap - rate * length) / (length * length);
   if (gap <= closed_ && rate > 0.0) {  // it rebounds
-    if (end >= -closed_) return kNever;
+    if (end >= inside) return kNever;
     if (rate * rate <= 4.0 * std::abs(bend) * closed_) {
       rests_[static_cast<std::size_t>(point.row)] = 1;
       found_rest_ = true;
     }
     return -rate / bend;
   }
-  if (end >= -closed_) {  // unless it dips in between
+  if (end >= inside) {  // unless it dips in between
     const bool dips = rate < 0.0 && -rate < 2.0 * bend * length;
-    if (!dips || gap - rate * rate / (4.0 * bend) >= -closed_) return kNever;
+    if (!dips || gap - rate * rate / (4.0 * bend) >= inside) return kNever;
   }
   const double root = std::sqrt(std::max(rate * rate - 4.0 * bend * gap, 0.0));
   return 2.0 * gap / (root - rate);
