@@ -125,8 +125,10 @@ std::unique_ptr<constraint::ShapeContact> make_contact(ModelData& data, mechanic
 // Whether impacts are events of the integrator: those of rigid bodies. Deformable ones rebound by
 // their elasticity.
 bool strikes(ModelData& data, const mechanics::BodyModel& on, const ContactSettings& settings) {
-  const bool rigid = is_rigid(on) && (!settings.touched ||
-                                      is_rigid(find_body(data, *settings.touched, settings.place)));
+  const mechanics::BodyModel* touched =
+      settings.touched ? &find_body(data, *settings.touched, settings.place) : nullptr;
+  const bool rigid =
+      shape_of(on) != nullptr && (touched == nullptr || shape_of(*touched) != nullptr);
   if (settings.restitution && !data.step.event_driven()) {
     throw Error(ErrorKind::conflicting_keys, settings.place,
                 "restitution is a law of event-driven integration",
@@ -146,6 +148,13 @@ bool strikes(ModelData& data, const mechanics::BodyModel& on, const ContactSetti
     throw Error(ErrorKind::not_in_this_version, settings.place,
                 "event-driven integration has no impacts on a surface that moves by itself",
                 "let a rigid body with a motor carry the surface, or choose bdf2");
+  }
+  if (data.step.event_driven() && rigid && touched != nullptr && touch_by_surfaces(on, *touched)) {
+    throw Error(ErrorKind::not_in_this_version, settings.place,
+                fmt::format("event-driven integration has no impacts of meshes, such as those of "
+                            "'{}' and '{}'",
+                            on.name(), touched->name()),
+                "give both a shape, or choose backward-euler or bdf2");
   }
   return data.step.event_driven() && rigid;
 }

@@ -101,7 +101,9 @@ std::unique_ptr<constraint::Contact> make_surface_contact(ModelData& data,
     if (surface == nullptr) {
       throw Error(ErrorKind::not_in_this_version, settings.place,
                   fmt::format("body '{}' has no surface that touches another one", model.name()),
-                  "give `points` of it, and the other body a shape or `use: convex`");
+                  settings.body == *settings.touched
+                      ? "leave the contact out, or make the arm of finite elements"
+                      : "give `points` of it, and the other body a shape or `use: convex`");
     }
     const mechanics::SurfaceSite site{{body, surface->attach_surface()}};
     std::vector<char> held;
