@@ -29,7 +29,8 @@ void ArmSensitivity::follow(const ArmSimulation& simulation, const MatrixX& by_p
   right_.noalias() -= last.linear->by_rate * velocity_;
   right_.noalias() -= last.linear->by_acceleration * acceleration_;
   decomposed_.compute(last.matrix);
-  decomposed_.solve(right_, motion_);
+  motion_.resize(right_.rows(), right_.cols());
+  decomposed_.solve_columns(right_, motion_);
   position_ += motion_;
   velocity_ += weights.velocity.motion * motion_;
   known(weights.first, acceleration_);
