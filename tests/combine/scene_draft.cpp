@@ -669,6 +669,11 @@ SceneDraft draft_scene(const Selection& selection, std::uint64_t seed) {
 
 std::string write_scene(const SceneDraft& draft, const Layout& layout) {
   std::string text = draft.settings;
+  constexpr std::string_view kNewton = "solver: {method: newton", kTight = ", tolerance: 1e-11";
+  const std::size_t newton = text.find(kNewton);
+  if (layout.converged && newton != std::string::npos && text.find(kTight) == std::string::npos) {
+    text.insert(newton + kNewton.size(), kTight);
+  }
   for (const auto& [section, items] : draft.sections) {
     text += section + ":\n";
     std::vector<Item> ordered = items;

@@ -32,6 +32,8 @@ SceneDraft draft_scene(const Selection& selection, std::uint64_t seed);
 struct Layout {
   bool renamed = false;   ///< other names, in the same order
   bool reversed = false;  ///< bodies and actuators in the opposite order
+  /// Newton's method leaves nothing to the next step, where the scene gives no tolerance.
+  bool converged = false;
 };
 
 /// The scene as a YAML file.
