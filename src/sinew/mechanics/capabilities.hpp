@@ -97,7 +97,7 @@ class HasOrientations {
   virtual Matrix3 rotation(int orientation) const = 0;
 };
 
-/// A body model with a surface of triangles. What nodes they join is the body's own matter.
+/// A body model with a surface of triangles. Their nodes need not be those of its mesh.
 class HasSurface {
  public:
   virtual ~HasSurface() = default;
@@ -137,8 +137,7 @@ class HasShape {
   virtual Matrix3 own_inertia() const = 0;
   virtual const char* shape_name() const = 0;  ///< "box", "sphere", ..., "mesh"
   virtual TouchingPart touching_part() const = 0;
-  /// m: what bends least sharply of a smooth shape, a ball or a capsule; of others 0, since edges
-  /// or corners of theirs touch.
+  /// m, of a ball or a capsule. 0 for shapes with edges or corners, and for meshes.
   virtual double touching_radius() const = 0;
   /// The shape or the hull, which touches, where it is at rest, in the world. Of a surface its
   /// hull, which touches planes as it does.
