@@ -106,9 +106,9 @@ std::unique_ptr<constraint::Contact> make_surface_contact(ModelData& data,
                       : "give `points` of it, and the other body a shape or `use: convex`");
     }
     const mechanics::SurfaceSite site{{body, surface->attach_surface()}};
-    std::vector<char> held;
-    for (NodeId node = 0; node < surface->rest_surface_nodes().rows(); ++node) {
-      held.push_back(surface->holds(node) ? 1 : 0);
+    std::vector<char> held(static_cast<std::size_t>(surface->rest_surface_nodes().rows()));
+    for (std::size_t node = 0; node < held.size(); ++node) {
+      held[node] = surface->holds(static_cast<NodeId>(node)) ? 1 : 0;
     }
     return constraint::SurfaceContact::Side{site, surface->surface(), std::move(held)};
   };
