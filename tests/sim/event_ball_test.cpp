@@ -36,10 +36,12 @@ struct Flights {
   Place at(double time) const {
     if (time < first) return {0.5 * fall * (first * first - time * time), -fall * time, 0.0};
     Place place{0.0, 0.0, first};
-    for (double speed = restitution * fall * first; speed > 1e-14; speed *= restitution) {
+    double speed = restitution * fall * first;
+    while (speed > 1e-14) {
       const double flight = 2.0 * speed / fall, t = time - place.begin;
       if (t < flight) return {speed * t - 0.5 * fall * t * t, speed - fall * t, place.begin};
       place.begin += flight;
+      speed *= restitution;
     }
     return place;
   }
