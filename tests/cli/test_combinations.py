@@ -81,7 +81,8 @@ def test_python_runs_copies_and_linearises_it(scene):
         except package.RunError as error:  # a link that swings has no stiffness
             assert error.kind == "singular-matrix" and "type: rigid" in scene.read_text()
             return
-        assert linear.W.shape == (len(sim.rows), len(sim.rows))
+        assert linear.W.shape == (len(linear.rows), len(linear.rows)) and set(linear.rows) <= set(sim.rows)
+        assert set(sim.rows) - set(linear.rows) <= {row for row in sim.rows if " point " in row}
         assert np.isfinite(linear.W).all()
         assert sim.state() == state
         sim.step()

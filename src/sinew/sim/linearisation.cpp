@@ -8,6 +8,7 @@
 #include "sinew/core/error.hpp"
 #include "sinew/linalg/dense_factor.hpp"
 #include "sinew/sim/model.hpp"
+#include "sinew/sim/row_numbering.hpp"
 #include "sinew/sim/simulation.hpp"
 #include "sinew/sim/state.hpp"
 #include "sinew/sim/world.hpp"
@@ -62,7 +63,10 @@ void take_joints_out(const step::StepProblem& problem, Linearisation& result) {
 
 }  // namespace
 
-std::vector<std::string> row_names(const Model& model) {
+namespace {
+
+// Of all rows; those that joints hold have none.
+std::vector<std::string> all_names(const Model& model) {
   std::vector<std::string> names(static_cast<std::size_t>(model.rows().rows()));
   const auto name = [&](int row) -> std::string& { return names[static_cast<std::size_t>(row)]; };
   for (const auto& actuator : model.actuators()) name(actuator.row) = actuator.name;
@@ -97,7 +101,14 @@ std::vector<std::string> row_names(const Model& model) {
     for (const int motion : joint.motions) name_motion(motion, "");
     name_motion(joint.brake, ".friction");
   }
-  std::erase(names, "");  // rows that joints hold
+  return names;
+}
+
+}  // namespace
+
+std::vector<std::string> row_names(const Model& model) {
+  std::vector<std::string> names = all_names(model);
+  std::erase(names, "");
   return names;
 }
 
@@ -122,11 +133,19 @@ Linearisation linearise_here(Simulation& simulation, const LinearisationChoice& 
                 "the stiffness matrix is singular at this state",
                 "fix a region of every body, or try tangent='rotated'");
   }
-  result.rows = row_names(model);
   result.compliance = world.compliance();
-  result.delta = world.delta();
   result.delta_free = world.delta_free();
-  result.effort = Eigen::Map<const VectorX>(simulation.efforts().data(), model.rows().rows());
+  const RowNumbering& numbering = world.numbering();
+  const std::vector<std::string> names = all_names(model);
+  const auto count = result.delta_free.size();
+  result.delta.resize(count);
+  result.effort.resize(count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const auto row = static_cast<std::size_t>(numbering.row_of(static_cast<int>(k)));
+    result.delta[k] = world.delta()[static_cast<Eigen::Index>(row)];
+    result.effort[k] = simulation.efforts()[row];
+    if (!names[row].empty()) result.rows.push_back(names[row]);
+  }
   result.negative_pivots = world.inertia().negative_pivots;
   const step::StepProblem& problem = world.problem();
   if (!problem.bilaterals.empty() || !problem.stiffness.empty()) take_joints_out(problem, result);

@@ -20,7 +20,7 @@ std::vector<std::string> row_names(const Model& model);
 /// W and what belongs to it, at one state, of the robot as its joints hold it together: their rows
 /// are taken out.
 struct Linearisation {
-  std::vector<std::string> rows;  ///< see row_names()
+  std::vector<std::string> rows;  ///< see row_names(); surfaces that touch nowhere have none
   MatrixX compliance;             ///< W (rows, rows), m/N
   VectorX delta;                  ///< (rows,) m, now
   VectorX delta_free;       ///< (rows,) m, with all efforts zero, as the linearisation sees it
