@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import sinew
 import solids
+from scipy.spatial.transform import Rotation
 
 G = 9.81
 TABLE = {"type": "rigid", "shape": {"box": "400 400 10 mm"}, "fixed": True, "pose": {"position": "0 0 -5 mm"}}
@@ -122,7 +123,8 @@ def momentum_lost(tmp_path, step):
             body = sim.body(name)
             linear += body.mass * body.velocity[:3]
             angular += np.cross(body.centre_of_mass, body.mass * body.velocity[:3])
-            turn = rotation(body.rotation)
+            w, *vector = body.rotation
+            turn = Rotation.from_quat([*vector, w]).as_matrix()
             angular += turn @ body.inertia @ turn.T @ body.velocity[3:]
         return linear, angular
 
@@ -133,13 +135,6 @@ def momentum_lost(tmp_path, step):
     after = momenta()
     assert most > 1.0
     return np.abs(after[0] - before[0]).max(), np.abs(after[1] - before[1]).max() / np.abs(before[1]).max()
-
-
-def rotation(quaternion):
-    w, x, y, z = quaternion
-    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-                     [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-                     [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])
 
 
 def test_states_and_clones_go_on_bit_for_bit(tmp_path):
@@ -168,6 +163,12 @@ def test_points_do_not_touch_the_surface_of_a_mesh(tmp_path):
     bodies = {"cup": part(cup(tmp_path), fixed=True), "soft": {**SOFT, "mesh": block(10, 10, 10, 5), "position": "0 0 0 mm"}}
     with pytest.raises(sinew.Error, match="whole of their surfaces|use: convex"):
         make(bodies, contacts={"touch": {"between": ["soft", "cup"], "nodes": {"set": "z_min"}}})
+
+
+def test_a_rigid_mesh_does_not_touch_itself(tmp_path):
+    with pytest.raises(sinew.Error, match="touch itself") as error:
+        make({"cup": part(cup(tmp_path))}, contacts={"self": {"between": ["cup", "cup"]}})
+    assert error.value.kind == "wrong-type"
 
 
 def test_an_overlap_is_named(tmp_path):

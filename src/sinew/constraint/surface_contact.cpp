@@ -26,14 +26,6 @@ std::size_t most_points(const SurfaceContact::Side& first, const SurfaceContact:
   return std::min(kMaxPoints, vertices_of(*first.surface) + vertices_of(*second.surface));
 }
 
-Vector3 weighted(const Points& nodes, const mechanics::Patch& patch) {
-  Vector3 sum = Vector3::Zero();
-  for (std::size_t k = 0; k < 3 && patch.nodes[k] >= 0; ++k) {
-    sum += patch.weights[static_cast<Eigen::Index>(k)] * nodes.row(patch.nodes[k]).transpose();
-  }
-  return sum;
-}
-
 }  // namespace
 
 bool SurfaceContact::Side::holds(const collision::SurfacePoint& place) const {
@@ -94,7 +86,7 @@ bool SurfaceContact::idle(std::size_t point, const mechanics::RowValues& values)
 Vector3 SurfaceContact::relative(const Points& first, const Points& second, std::size_t point,
                                  const mechanics::RowValues& values) const {
   const std::size_t at = entry(point);
-  return weighted(first, values.patch[at]) - weighted(second, values.patch[at + 1]);
+  return values.patch[at].mean(first) - values.patch[at + 1].mean(second);
 }
 
 void SurfaceContact::linearise(const Placement& placement, mechanics::RowValues& values) const {
@@ -123,8 +115,8 @@ Vector3 SurfaceContact::position_now(const Placement& placement, std::size_t poi
                                      const mechanics::RowValues& values) const {
   if (idle(point, values)) return placement.surface_nodes(body()).row(0).transpose();
   const std::size_t at = entry(point);
-  return 0.5 * (weighted(placement.surface_nodes(body()), values.patch[at]) +
-                weighted(placement.surface_nodes(other_body()), values.patch[at + 1]));
+  return 0.5 * (values.patch[at].mean(placement.surface_nodes(body())) +
+                values.patch[at + 1].mean(placement.surface_nodes(other_body())));
 }
 
 Vector3 SurfaceContact::velocity_beside(const Placement& placement, std::size_t point,

@@ -44,10 +44,10 @@ void BodyElements::begin_step() {
   if (active_->assembly.linearise_from(nullptr)) active_->present.reset();
 }
 
-// C = alpha M + beta K with K of rates of strain, half-way through the step as the velocity leads:
-// positive semi-definite, so that damping damps, and constant, so that Newton's derivative is
-// exact. Softening has no part in it: where a step ends at the largest strain so far its slope
-// jumps, and rounding would decide.
+// C = alpha M + beta K with K of rates of strain (see keep_damping_stiffness()): positive
+// semi-definite, so that damping damps, and constant, so that Newton's derivative is exact.
+// Softening has no part in it: where a step ends at the largest strain so far its slope jumps, and
+// rounding would decide.
 void BodyElements::linearise(const mechanics::LinearisationRequest& request, bool first) {
   SystemNumbers* const before = active_;
   active_ = &numbers(request.with_curvature);
@@ -121,7 +121,7 @@ mechanics::SmallestVolume BodyElements::smallest_volume() {
 }
 
 std::size_t BodyElements::bytes() const {
-  std::size_t total = 0;
+  std::size_t total = sizeof(double) * static_cast<std::size_t>(ahead_.size());
   for (const SystemNumbers* n : {plain_.get(), curved_.get()}) {
     if (n != nullptr) total += n->bytes();
   }

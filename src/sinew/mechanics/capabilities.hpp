@@ -102,7 +102,6 @@ class HasSurface {
  public:
   virtual ~HasSurface() = default;
   /// Attaches the whole surface as one site (SurfaceSite). Building only. @return its number.
-  /// Throws Error(not-in-this-version) for a shape that triangles do not bound.
   virtual int attach_surface() = 0;
   /// Its triangles, outwards; those of quadratic faces are split at the middles of their edges.
   /// After attach_surface().

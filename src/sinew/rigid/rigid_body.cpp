@@ -1,9 +1,9 @@
 #include "sinew/rigid/rigid_body.hpp"
 
 #include "sinew/rigid/rigid_body_model.hpp"
+#include "sinew/rigid/rigid_nodes.hpp"
 #include "sinew/rigid/rigid_state.hpp"
 #include "sinew/rigid/rigid_step.hpp"
-#include "sinew/rigid/rigid_surface.hpp"
 
 namespace sinew::rigid {
 
@@ -11,9 +11,8 @@ RigidBody::RigidBody(const RigidBodyModel& model, int histories)
     : model_(model),
       state_(std::make_unique<RigidState>(model, histories)),
       step_(std::make_unique<RigidStep>(*state_)),
-      surface_(std::make_unique<RigidSurface>(*state_)),
-      positions_(model.mesh().nodes),
-      velocities_(Points::Zero(positions_.rows(), 3)) {}
+      skin_(std::make_unique<RigidNodes>(*state_, model.mesh().nodes)),
+      surface_(std::make_unique<RigidNodes>(*state_, model.rest_surface_nodes())) {}
 
 RigidBody::~RigidBody() = default;
 
@@ -29,24 +28,9 @@ Vector3 RigidBody::velocity(int site) const {
   return linear_velocity() + angular_velocity().cross(state_->pose.rotation * at.arm);
 }
 
-const Points& RigidBody::positions() const {
-  const Matrix3 turn = state_->pose.rotation.toRotationMatrix();
-  positions_ = (model_.mesh().nodes.rowwise() - model_.centre().transpose()) * turn.transpose();
-  positions_.rowwise() += state_->pose.centre.transpose();
-  return positions_;
-}
-
-const Points& RigidBody::velocities() const {
-  const Vector3 spin = angular_velocity(), linear = linear_velocity();
-  positions();
-  for (Eigen::Index i = 0; i < positions_.rows(); ++i) {
-    const Vector3 arm = positions_.row(i).transpose() - state_->pose.centre;
-    velocities_.row(i) = (linear + spin.cross(arm)).transpose();
-  }
-  return velocities_;
-}
-
-const Points& RigidBody::surface_nodes() const { return surface_->nodes(); }
+const Points& RigidBody::positions() const { return skin_->positions(); }
+const Points& RigidBody::velocities() const { return skin_->velocities(); }
+const Points& RigidBody::surface_nodes() const { return surface_->positions(); }
 const Points& RigidBody::surface_node_velocities() const { return surface_->velocities(); }
 
 mechanics::Energies RigidBody::energies() {
@@ -68,9 +52,7 @@ mechanics::StepSystem& RigidBody::system() { return *step_; }
 const mechanics::StepSystem& RigidBody::system() const { return *step_; }
 
 std::size_t RigidBody::bytes() const {
-  return step_->bytes() +
-         sizeof(double) * (state_->size() + 6 * static_cast<std::size_t>(positions_.rows()) +
-                           6 * static_cast<std::size_t>(model_.rest_surface_nodes().rows()));
+  return step_->bytes() + sizeof(double) * state_->size() + skin_->bytes() + surface_->bytes();
 }
 
 Matrix3 RigidBody::rotation(int) const { return state_->pose.rotation.toRotationMatrix(); }

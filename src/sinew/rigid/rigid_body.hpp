@@ -12,8 +12,8 @@
 namespace sinew::rigid {
 
 class RigidBodyModel;
+class RigidNodes;
 class RigidStep;
-class RigidSurface;
 struct RigidState;
 
 /// Its state, and RigidStep for its steps.
@@ -55,8 +55,7 @@ class RigidBody : public mechanics::Body,
   const RigidBodyModel& model_;
   std::unique_ptr<RigidState> state_;
   std::unique_ptr<RigidStep> step_;
-  std::unique_ptr<RigidSurface> surface_;
-  mutable Points positions_, velocities_;  // of the skin, when last asked for
+  std::unique_ptr<RigidNodes> skin_, surface_;
 };
 
 }  // namespace sinew::rigid

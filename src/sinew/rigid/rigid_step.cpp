@@ -7,7 +7,7 @@
 
 #include "sinew/core/rotation.hpp"
 #include "sinew/rigid/rigid_body_model.hpp"
-#include "sinew/rigid/rigid_surface.hpp"
+#include "sinew/rigid/rigid_nodes.hpp"
 
 namespace sinew::rigid {
 
@@ -66,12 +66,7 @@ void RigidStep::add_inertia(const mechanics::StepWeights& weights, VectorX& righ
 
 // m, at rest, from the centre of mass.
 Vector3 RigidStep::arm_of(const mechanics::Patch& patch) const {
-  const Points& nodes = state_.model.rest_surface_nodes();
-  Vector3 sum = -state_.model.centre();
-  for (std::size_t k = 0; k < 3 && patch.nodes[k] >= 0; ++k) {
-    sum += patch.weights[static_cast<Eigen::Index>(k)] * nodes.row(patch.nodes[k]).transpose();
-  }
-  return sum;
+  return patch.mean(state_.model.rest_surface_nodes()) - state_.model.centre();
 }
 
 // A force f at r = R r_0 has the moment r x f, which changes by (w x r) x f = [f] [r] w. A moment
@@ -117,7 +112,8 @@ void RigidStep::patch_jacobian(const mechanics::Patch& patch, MatrixX& result) c
 void RigidStep::add_proposed_motion(Points& nodes) const {
   if (size() == 0) return;
   const Vector3 turn = motion().tail<3>() / state_.model.turning_radius();
-  place_surface(state_.model, from_.moved(motion().head<3>(), turn), nodes);
+  place_nodes(state_.model, state_.model.rest_surface_nodes(),
+              from_.moved(motion().head<3>(), turn), nodes);
 }
 
 // Positions are known to eps |x|, and turns to eps.

@@ -5,10 +5,8 @@
 #include <numbers>
 
 #include <Eigen/Geometry>
-#include <fmt/format.h>
 
 #include "sinew/collision/polyhedron.hpp"
-#include "sinew/core/error.hpp"
 #include "sinew/mesh/shapes.hpp"
 #include "sinew/mesh/solid.hpp"
 #include "sinew/mesh/topology.hpp"

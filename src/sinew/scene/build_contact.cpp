@@ -77,9 +77,9 @@ std::optional<Notice> add_contact(sim::ModelBuilder& builder, const ContactDescr
     other = body_of(contact.other);
     if (!is_rigid(other) && is_rigid(touching)) std::swap(touching, other);
   }
-  const bool deformable = other.model != nullptr && !is_rigid(touching) && !is_rigid(other);
-  const bool surfaces = other.model != nullptr && (deformable || !names_points(contact)) &&
-                        sim::touch_by_surfaces(*touching.model, *other.model);
+  const bool surfaces =
+      other.model != nullptr &&
+      sim::touch_by_surfaces(*touching.model, *other.model, names_points(contact));
   const auto [body, model] = touching;
   sim::ContactSettings settings;
   settings.name = contact.name;

@@ -104,10 +104,6 @@ std::unique_ptr<constraint::ShapeContact> make_contact(ModelData& data, mechanic
                                                        const ContactSettings& settings) {
   std::optional<constraint::RigidSide> carrier;
   if (settings.touched) {
-    if (*settings.touched == settings.body) {
-      throw Error(ErrorKind::wrong_type, settings.place,
-                  fmt::format("body '{}' is to touch itself", on.name()), "name two bodies");
-    }
     carrier = attach_side(data, *settings.touched, settings);
   }
   const collision::Shape& surface = carrier ? carrier->shape : settings.surface;
@@ -149,7 +145,8 @@ bool strikes(ModelData& data, const mechanics::BodyModel& on, const ContactSetti
                 "event-driven integration has no impacts on a surface that moves by itself",
                 "let a rigid body with a motor carry the surface, or choose bdf2");
   }
-  if (data.step.event_driven() && rigid && touched != nullptr && touch_by_surfaces(on, *touched)) {
+  if (data.step.event_driven() && rigid && touched != nullptr &&
+      touch_by_surfaces(on, *touched, false)) {
     throw Error(ErrorKind::not_in_this_version, settings.place,
                 fmt::format("event-driven integration has no impacts of meshes, such as those of "
                             "'{}' and '{}'",
@@ -161,10 +158,12 @@ bool strikes(ModelData& data, const mechanics::BodyModel& on, const ContactSetti
 
 }  // namespace
 
-bool touch_by_surfaces(const mechanics::BodyModel& one, const mechanics::BodyModel& other) {
+bool touch_by_surfaces(const mechanics::BodyModel& one, const mechanics::BodyModel& other,
+                       bool named) {
   using enum mechanics::TouchingPart;
   const auto *first = shape_of(one), *second = shape_of(other);
   if (first == nullptr && second == nullptr) return true;
+  if (named) return false;
   if (first != nullptr && second != nullptr) {
     return first->touching_part() != shape || second->touching_part() != shape;
   }
@@ -174,18 +173,6 @@ bool touch_by_surfaces(const mechanics::BodyModel& one, const mechanics::BodyMod
   return radius == 0.0 ||
          mesh::longest_edge(mesh::boundary_surface(deformable.mesh())) > kFineEdge * radius;
 }
-
-namespace {
-
-// Named points of a body touch the shape of a rigid one.
-bool uses_surfaces(ModelData& data, const mechanics::BodyModel& on,
-                   const ContactSettings& settings) {
-  const mechanics::BodyModel& touched = find_body(data, *settings.touched, settings.place);
-  const bool named = !settings.nodes.empty() || settings.points.rows() > 0;
-  return touch_by_surfaces(on, touched) && !(named && shape_of(touched) != nullptr);
-}
-
-}  // namespace
 
 int add_contact(ModelData& data, const ContactSettings& settings) {
   mechanics::BodyModel& on = find_body(data, settings.body, settings.place);
@@ -197,6 +184,10 @@ int add_contact(ModelData& data, const ContactSettings& settings) {
                 "use backward-euler (impacts without rebound) or bdf2");
   }
   check_new_name(data.contacts, &ContactModel::name, "contacts", settings.name, settings.place);
+  if (settings.touched == settings.body && shape_of(on) != nullptr) {
+    throw Error(ErrorKind::wrong_type, settings.place,
+                fmt::format("rigid body '{}' is to touch itself", on.name()), "name two bodies");
+  }
   try {
     ContactModel entry{settings.name, static_cast<int>(data.constraints.size()), settings.motion};
     entry.strikes = strikes(data, on, settings);
@@ -204,7 +195,9 @@ int add_contact(ModelData& data, const ContactSettings& settings) {
       entry.restitution = settings.restitution.value_or(data.step.restitution);
     }
     if (entry.motion) entry.motion->axis = checked_axis(entry.motion->axis, settings.place);
-    if (settings.touched && uses_surfaces(data, on, settings)) {
+    const bool named = !settings.nodes.empty() || settings.points.rows() > 0;
+    if (settings.touched &&
+        touch_by_surfaces(on, find_body(data, *settings.touched, settings.place), named)) {
       data.constraints.push_back(make_surface_contact(data, settings));
     } else {
       auto contact = make_contact(data, on, settings);
