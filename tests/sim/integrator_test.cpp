@@ -174,6 +174,34 @@ TEST(Adaptive, RetriesWhereAStepFails) {
   EXPECT_NEAR(simulation->actuator(0).motion, 0.01, 1e-9);
 }
 
+// The next step does not try again what has just failed, and a saved state knows of it.
+TEST(Parts, TheNextStepBeginsWithPartsOfTheLastOnes) {
+  BeamOptions options = falling(Integrator::backward_euler, 0.05);
+  options.cables = 4;
+  options.step.max_iterations = 4;
+  Simulation simulation(beam(options));
+  simulation.command(0, {CommandKind::motion, Signal::ramp({0.0, 0.02, 0.0, 0.1})});
+  const StepReport first = simulation.step();
+  EXPECT_GT(first.retries, 0);
+  EXPECT_EQ(first.substeps, 3);  // a half, and two quarters where the second half failed
+  const State saved = simulation.state();
+  const StepReport second = simulation.step();
+  EXPECT_EQ(second.retries, 0);
+  EXPECT_EQ(second.substeps, 4);
+  EXPECT_NEAR(simulation.actuator(0).motion, 0.02, 1e-9);
+
+  Simulation other(simulation.shared_model());
+  other.command(0, {CommandKind::motion, Signal::ramp({0.0, 0.02, 0.0, 0.1})});
+  other.restore(saved);
+  EXPECT_EQ(other.step().substeps, second.substeps);
+  EXPECT_EQ(other.state().hash(), simulation.state().hash());
+
+  // The robot comes to rest, where whole steps succeed.
+  int substeps = 0;
+  for (int k = 0; k < 40; ++k) substeps = simulation.step().substeps;
+  EXPECT_EQ(substeps, 1);
+}
+
 TEST(Adaptive, StopsAtTheSmallestStepAndRestoresTheState) {
   BeamOptions options = falling(Integrator::backward_euler, 0.05);
   options.cables = 4;

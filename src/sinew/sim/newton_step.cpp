@@ -32,6 +32,9 @@ constexpr int kIndefinite = 25;
 // its efforts are held. It has to keep up with a clock, too: a quasi-static step that it steers
 // takes no parts, and as many iterations with held efforts, with either tangent.
 constexpr int kSteeredIterations = 8;
+// A dynamic step that can be halved is given up after so many: a crawling robot's steps of 40 ms
+// end within 15 or not within 50 (docs/performance.md).
+constexpr int kIterationsBeforeHalving = 16;
 
 bool converged(const NewtonReport& result) { return result.status == NewtonStatus::converged; }
 
@@ -47,10 +50,11 @@ NewtonSettings NewtonStep::settings(double time_step) const {
   const bool lags = !lasts && !step.tolerance;
   const double tolerance =
       step.tolerance.value_or(lasts ? kLastingTolerance : kQuasiStaticTolerance);
+  const int most = divisible_ && step.dynamic() ? kIterationsBeforeHalving : step.max_iterations;
   return {run_.request(time_step),
           tolerance,
           std::min(tolerance, kMotionTolerance),
-          step.max_iterations,
+          std::min(most, step.max_iterations),
           run_.model->stiffening_constraints(),
           lags ? kLag : Lag{},
           0};

@@ -15,7 +15,8 @@ struct Run;
 class NewtonStep {
  public:
   /// @param run outlives it; its step has begun when solve() is called.
-  explicit NewtonStep(Run& run) : run_(run) {}
+  /// @param divisible smaller steps are tried where this one finds no end.
+  NewtonStep(Run& run, bool divisible) : run_(run), divisible_(divisible) {}
   /// Moves the bodies and reports. Throws Error(not-converged), the run then being as before the
   /// step. @param time_step s.
   void solve(double time_step);
@@ -34,6 +35,7 @@ class NewtonStep {
   void begin_again(double time_step);
 
   Run& run_;
+  bool divisible_;
 };
 
 }  // namespace sinew::sim

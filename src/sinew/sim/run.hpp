@@ -67,7 +67,7 @@ struct Run {
   WorkLedger ledger;
   std::int64_t steps = 0;  ///< since the start
   double last_step = 0.0;  ///< s, the last substep; 0: the integrator starts afresh
-  double next_step = 0.0;  ///< s, with adaptive steps: what the next substep tries
+  double next_step = 0.0;  ///< s, what the next substep tries; 0: the whole step
   double volume_ratio = 1.0;
   double now = 0.0;  ///< s, end of the substep in hand
   State before;      ///< before that, or before the search in hand

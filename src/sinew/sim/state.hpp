@@ -43,7 +43,7 @@ struct State {
   double volume_ratio = 1.0;  ///< min det F
   double residual = 0.0;      ///< that the last step left, relative: controllers judge rest by it
   double last_step = 0.0;     ///< s, the last substep; 0: the integrator starts afresh
-  double next_step = 0.0;     ///< s, with adaptive steps: what the next substep tries
+  double next_step = 0.0;     ///< s, what the next substep tries; 0: the whole step
   std::int64_t steps = 0;     ///< since the start
 
   bool operator==(const State&) const = default;

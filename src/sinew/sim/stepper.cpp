@@ -14,6 +14,10 @@ namespace {
 
 // A step that fails is made in parts, the smallest of which is the inverse of this.
 constexpr double kMaxParts = 16.0;
+// After a step in parts the next one begins with parts of the same length, and each that needed no
+// shorter ones lets the following one try parts longer by this factor. What failed at 40 ms, as a
+// sole that creeps over its floor, mostly fails there again.
+constexpr double kLonger = 1.25;
 // A command that is missed by more than this of the robot's size was not reached.
 constexpr double kReached = 1e-3;
 // Energy that came out of nothing, of the work of all forces over the robot's size: less is
@@ -59,33 +63,56 @@ void Stepper::step() {
 // The whole step, or, where Newton finds no end, halves of it and of those: commands that jump and
 // loads that come at once are then approached.
 void Stepper::step_in_parts() {
-  StepReport& report = run_.report;
-  const double whole = run_.model->step().time_step;
-  try {
-    report.error = substep(static_cast<double>(run_.steps + 1) * whole, whole);
-    return;
-  } catch (const Error& failure) {
-    const bool parts = run_.model->step().method == Method::newton && run_.model->step().dynamic();
-    if (!parts || !failure.is_run_failure()) throw;
+  const StepSettings& settings = run_.model->step();
+  const double whole = settings.time_step;
+  const bool parts = settings.method == Method::newton && settings.dynamic();
+  double length = parts ? first_part() : 1.0;
+  if (length == 1.0) {
+    try {
+      run_.report.error = substep(static_cast<double>(run_.steps + 1) * whole, whole, parts);
+      run_.next_step = 0.0;
+      return;
+    } catch (const Error& failure) {
+      if (!parts || !failure.is_run_failure()) throw;
+    }
+    length = 0.5;  // what failed is undone
+    run_.next_step = 0.0;
+    ++run_.report.retries;
   }
-  const double begin = run_.time();  // what failed is undone
-  start_ = run_.before;
+  go_on_in_parts(length);
+}
+
+// The fraction of the step that its first part takes: a power of two.
+double Stepper::first_part() const {
+  const double next = run_.next_step / run_.model->step().time_step;
+  double length = 1.0;
+  while (next > 0.0 && length > next && length * kMaxParts > 1.0) length *= 0.5;
+  return length;
+}
+
+void Stepper::go_on_in_parts(double length) {
+  StepReport& report = run_.report;
+  const double begin = run_.time(), whole = run_.model->step().time_step;
+  run_.keep(start_);
   divided_ = true;
   part_ = whole_step(begin);
-  double done = 0.0, length = 0.5;
+  double done = 0.0, next = std::max(kLonger * run_.next_step, length * whole);
   report.substeps = 0;
   while (done < 1.0) {
     try {
       part_->fraction = done + length;
-      report.error = substep(begin + (done + length) * whole, length * whole);
+      const bool divisible = length * kMaxParts > 1.0;
+      report.error = substep(begin + (done + length) * whole, length * whole, divisible);
       done += length;
       ++report.substeps;
     } catch (const Error& failure) {
       length *= 0.5;
+      next = length * whole;
       ++report.retries;
       if (length * kMaxParts < 1.0 || !failure.is_run_failure()) throw;
     }
   }
+  run_.next_step = next;
   part_.reset();
 }
 
@@ -133,7 +160,7 @@ void Stepper::step_adaptively() {
     const double left = whole - done;
     const double h = run_.next_step < 0.999 * left ? std::min(run_.next_step, 0.5 * left) : left;
     try {
-      const double error = substep(begin + done + h, h);
+      const double error = substep(begin + done + h, h, 0.5 * h >= smallest);
       const double aim =
           error > 0.0 ? std::clamp(0.9 * std::pow(tolerance / error, 1.0 / order), 0.2, 2.0) : 2.0;
       if (error > tolerance && 0.5 * h >= smallest) {
@@ -155,12 +182,12 @@ void Stepper::step_adaptively() {
 }
 
 // One solution of the step's equation; the error estimate, m.
-double Stepper::substep(double end, double time_step) {
+double Stepper::substep(double end, double time_step, bool divisible) {
   Substep part(run_);
   part.read_commands(end, time_step);
   if (part_) go_in_proportion();
   part.begin(time_step);
-  part.solve(time_step);
+  part.solve(time_step, divisible);
   return part.end(time_step);
 }
 

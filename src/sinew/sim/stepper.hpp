@@ -33,11 +33,13 @@ class Stepper {
   };
 
   void step_in_parts();
+  double first_part() const;
+  void go_on_in_parts(double length);
   Part whole_step(double begin);
   void go_in_proportion();
   void step_adaptively();
   void step_by_events();
-  double substep(double end, double time_step);
+  double substep(double end, double time_step, bool divisible);
   bool is_balanced() const;
   void judge();
   void watch_energy();

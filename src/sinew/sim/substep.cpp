@@ -24,18 +24,18 @@ void Substep::begin(double time_step) {
   if (run_.controller != nullptr) run_.controller->begin_step();
 }
 
-void Substep::solve(double time_step) {
+void Substep::solve(double time_step, bool divisible) {
   try {
-    solve_equation(time_step);
+    solve_equation(time_step, divisible);
   } catch (...) {  // failures have gone back already; what a watcher throws has not
     run_.go_back();
     throw;
   }
 }
 
-void Substep::solve_equation(double time_step) {
+void Substep::solve_equation(double time_step, bool divisible) {
   if (run_.model->step().method == Method::newton) {
-    NewtonStep(run_).solve(time_step);
+    NewtonStep(run_, divisible).solve(time_step);
   } else {
     LinearStep(run_).solve(time_step);
   }

@@ -17,7 +17,8 @@ class Substep {
   /// Keeps the state in Run::before, and begins. After read_commands().
   void begin(double time_step);
   /// Throws Error, and what a watcher throws; the run is then as it was before begin().
-  void solve(double time_step);
+  /// @param divisible smaller parts are tried where this one finds no end.
+  void solve(double time_step, bool divisible = false);
   /// Velocities follow, and what the part came to is counted. @return error estimate, m.
   double end(double time_step);
   /// The same where what was solved was the first half of a step of the midpoint rule, whose motion
@@ -25,7 +26,7 @@ class Substep {
   void end_as_midpoint(double time_step);
 
  private:
-  void solve_equation(double time_step);
+  void solve_equation(double time_step, bool divisible);
   void count();
 
   Run& run_;
