@@ -150,7 +150,8 @@ TEST(Passing, NothingGoesThroughASurface) {
             if (!touched && method == Method::one_linearisation) {
               EXPECT_LT(front(simulation), x - radius + 1e-4);
             }
-            touched |= sum.normal_force > 0.0;
+            // In a step that is made in parts it may touch and slip off.
+            touched |= sum.normal_force > 0.0 || mean_velocity(simulation)[0] < 0.9 * speed;
           }
           EXPECT_TRUE(touched);
           const mechanics::Energies energies = simulation.energies();
