@@ -17,8 +17,10 @@ namespace sinew::sim {
 
 namespace {
 
-// Points whose gap is under this part of the robot's size take part in a step at once.
-constexpr double kNear = 0.01;
+// Surfaces of bodies have points where they are nearer than this part of the robot's size, and
+// points nearer than the second part take part in a step at once. The others are looked at when a
+// motion is proposed: too many rows at once cost more than another solution (docs/performance.md).
+constexpr double kNear = 0.01, kTaken = 0.002;
 // Of this many times what the fastest node moves in a step, surfaces of bodies have points.
 constexpr double kAhead = 3.0;
 // Rounds of a step in which overlapping surfaces get points.
@@ -82,7 +84,7 @@ double ContactRows::reach(double time_step, double reach) const {
 void ContactRows::choose_present(std::span<const double> effort, double time_step, double reach) {
   left_out_ = false;
   rounds_left_ = kMaxRounds;
-  const double near = std::max(kNear * model_.size(), reach);
+  const double near = std::max(kTaken * model_.size(), reach);
   for_each_point(true, [&](const constraint::Contact& contact, std::size_t k) {
     const int row = contact.row(k);
     set_present(row, is_closed(row));
