@@ -152,7 +152,10 @@ NewtonReport NewtonStep::hold_choice(const NewtonReport& chosen, double time_ste
   return result;
 }
 
+// A state has the loads that acted in its own step, and the bases where they were then.
 void NewtonStep::begin_again(double time_step) {
+  run_.surroundings.move_bases(run_.now);
+  run_.surroundings.apply(run_.now);
   run_.world.begin_step(run_.now - time_step, run_.now, run_.effort);
 }
 

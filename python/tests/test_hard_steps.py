@@ -1,0 +1,66 @@
+"""Quasi-static steps that Newton's method does not solve at once: what acts on them is that of their own time."""
+
+import numpy as np
+import sinew
+
+
+def plate(young_modulus):
+    """A thin plate, held at its rim, under the pressure of a gas from below."""
+    return {
+        "sinew": 1, "gravity": "0 0 0 m/s^2", "time_step": "50 ms", "duration": "1 s", "solver": {"tolerance": 1e-8},
+        "bodies": {"plate": {
+            "type": "fem", "mesh": {"shape": "cylinder", "radius": "50 mm", "height": "2 mm", "element_size": "5 mm"},
+            "element": "hex8", "material": {"model": "neo-hookean", "young_modulus": young_modulus, "poisson_ratio": 0.0},
+            "fixed": {"set": "side"}}},
+        "loads": {"gas": {"type": "pressure", "body": "plate", "surface": {"set": "bottom"},
+                          "pressure": {"ramp": {"to": 1000.0, "duration": "1 s"}}}},
+    }  # fmt: skip
+
+
+def test_a_load_that_asks_for_parts_of_the_step_acts_in_full():
+    # The first steps are far from linear: the plate has no stiffness across before it is stretched.
+    sim = sinew.load(plate("10 kPa"))
+    iterations = []
+    for _ in range(2):
+        sim.step()
+        assert not sim.report.flagged
+        iterations.append(sim.report.iterations)
+    assert max(iterations) > 50  # a step was made in parts, or downhill
+    reached = sim.body("plate").positions.copy()
+    sim.solve_static()
+    assert np.abs(reached - sim.body("plate").positions).max() < 1e-6
+    assert np.ptp(reached[:, 2]) > 20e-3
+
+
+def hand():
+    """A finger on a hinge whose motor holds 0.03 N m; a force across it grows to 1 N."""
+    return {
+        "sinew": 1, "gravity": "0 0 0 m/s^2", "time_step": "50 ms", "duration": "1 s", "solver": {"tolerance": 1e-8},
+        "bodies": {
+            "palm": {"type": "rigid", "shape": {"box": "30 30 10 mm"}, "mass": "50 g"},
+            "finger": {"type": "fem", "mesh": {"shape": "block", "length": "15 mm", "width": "15 mm", "height": "60 mm",
+                                               "element_size": "7.5 mm"}, "position": "-7.5 -7.5 5 mm",
+                       "material": {"model": "neo-hookean", "young_modulus": "1 MPa", "poisson_ratio": 0.4}},
+        },
+        "joints": {"wrist": {"type": "hinge", "bodies": ["world", "palm"], "point": "0 0 0 mm", "axis": "y"},
+                   "root": {"type": "weld", "bodies": ["finger", "palm"]}},
+        "actuators": {"motor": {"type": "motor", "joint": "wrist", "command": {"angle": 0.0},
+                                "limits": {"torque": {"min": -0.03, "max": 0.03}}}},
+        "loads": {"push": {"type": "force", "body": "finger", "point": "0 0 60 mm", "force": "1 0 0 N",
+                           "factor": {"ramp": {"to": 1.0, "duration": "1 s"}}}},
+    }  # fmt: skip
+
+
+def test_a_motor_at_its_limit_gives_way_to_the_load_of_the_step():
+    sim = sinew.load(hand())
+    torques = []
+    for _ in range(20):
+        sim.step()
+        assert not sim.report.flagged
+        # Moments about the hinge: the force, with the arm of its point, against the motor.
+        torques.append(sim.actuator("motor").torque)
+    end = sim.clone()
+    end.solve_static()
+    turned = [2.0 * np.arctan2(np.abs(s.body("palm").rotation[2]), s.body("palm").rotation[0]) for s in (sim, end)]
+    assert abs(torques[-1]) > 0.03 - 1e-6 and turned[0] > 0.5
+    assert abs(turned[0] - turned[1]) < 1e-6
