@@ -17,6 +17,7 @@ DenseStep::DenseStep(Eigen::Index coordinates, const OwnRows& own, RowMemory& me
   for (VectorX* v : {&right_, &motion_, &scratch_, &lessening_}) v->setZero(n);
   for (MatrixX* m : {&matrix_, &symmetric_}) m->setZero(n, n);
   for (MatrixX* m : {&jacobian_, &second_jacobian_, &pulled_}) m->setZero(3, n);
+  for (MatrixX* m : {&rows_, &moved_rows_, &soft_rows_}) m->resize(n, 0);
   make_room(static_cast<Eigen::Index>(own.rows.size()));
   rows_.setZero();
   moved_rows_.setZero();
@@ -206,7 +207,7 @@ void DenseStep::add_compliance(std::span<const int> place, MatrixX& compliance,
 
 void DenseStep::solve_motion(std::span<const double> effort) {
   find_imbalance(effort);
-  decomposed_.solve(scratch_, motion_);
+  if (motion_.size() > 0) decomposed_.solve(scratch_, motion_);
   depart();
 }
 
@@ -217,6 +218,7 @@ Vector3 DenseStep::proposed_motion(int site) const {
 }
 
 void DenseStep::solve(std::span<const double> right, std::span<double> result) {
+  if (motion_.size() == 0) return;
   scratch_ = Eigen::Map<const VectorX>(right.data(), motion_.size());
   decomposed_.solve(scratch_, Eigen::Map<VectorX>(result.data(), motion_.size()));
 }
