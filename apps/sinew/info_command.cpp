@@ -17,7 +17,11 @@
 #include "sinew/constraint/tie.hpp"
 #include "sinew/core/file.hpp"
 #include "sinew/core/quantity.hpp"
+#include "sinew/fem/fem_body_settings.hpp"
+#include "sinew/fem/fem_model.hpp"
+#include "sinew/fem/has_elements.hpp"
 #include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 #include "sinew/mesh/read.hpp"
 #include "sinew/mesh/report.hpp"
 #include "sinew/mesh/surface.hpp"
@@ -163,6 +167,25 @@ void add_joint(Facts& facts, const sim::Model& model, int index) {
   facts.json["joints"].push_back(json);
 }
 
+void add_membranes(Facts& facts, const mechanics::BodyModel& body) {
+  const auto* own = mechanics::as<const fem::HasElements>(body);
+  if (own == nullptr) return;
+  const auto& layers = own->settings().elements.membranes;
+  for (std::size_t k = 0; k < layers.size(); ++k) {
+    const fem::MembraneLayer& layer = layers[k];
+    const double area = own->elements().membranes().area(k);
+    facts.json["membranes"].push_back({{"name", layer.name},
+                                       {"body", body.name()},
+                                       {"faces", layer.faces.size()},
+                                       {"area_m2", area},
+                                       {"thickness_m", layer.thickness}});
+    facts.text +=
+        fmt::format("  membrane {}: {} thick, {} in {} faces of {}\n", layer.name,
+                    mesh::format_length(layer.thickness), rounded_quantity(area, dimension::kArea),
+                    layer.faces.size(), body.name());
+  }
+}
+
 Facts scene_facts(const InfoOptions& options) {
   const scene::Robot robot = scene::load(options.file);
   const sim::Model& model = *robot.model;
@@ -205,6 +228,7 @@ Facts scene_facts(const InfoOptions& options) {
     facts.json["masses"].push_back({{"name", mass.name}, {"body", body}, {"mass_kg", mass.mass}});
     facts.text += fmt::format("  mass {}: {:.4g} g on {}\n", mass.name, 1e3 * mass.mass, body);
   }
+  for (const auto& body : model.bodies()) add_membranes(facts, body);
   for (const auto& effector : model.effectors()) {
     facts.json["effectors"].push_back(effector.name);
     facts.text += fmt::format("  effector {}\n", effector.name);

@@ -136,6 +136,8 @@ void Assembly::evaluate(const Points& positions, const AssemblyWeights& weights)
   reserve(weights.tangent);
   evaluate_elements(positions, weights.tangent, weights.softened);
   gather(weights);
+  work_->energy += model_->membranes().add(positions, weights.tangent, weights.stiffness,
+                                           work_->forces, matrix());
 }
 
 bool Assembly::linearise_from(const Points* positions) {

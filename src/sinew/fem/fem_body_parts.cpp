@@ -42,18 +42,25 @@ std::vector<NamedHash> FemBodyModel::parts() const {
   for (const PointMass& point : elements.point_masses) {
     points.add(point.nodes, point.weights, point.mass);
   }
+  ValueHash membranes;
+  for (const MembraneLayer& layer : elements.membranes) {
+    add(membranes, layer.faces);
+    membranes.add(layer.thickness, layer.constants.young_modulus, layer.constants.poisson_ratio);
+  }
   ValueHash held = ValueHash().add(elements.fixed_nodes);
   for (const HeldAxis& axis : elements.held_axes) held.add(axis.node, axis.axis);
   const ValueHash nodes =
       ValueHash().add(mesh.nodes, mesh.tetrahedra, mesh.quadratic, mesh.hexahedra);
   const ValueHash damping = ValueHash().add(settings_.damping.mass, settings_.damping.stiffness);
-  return {{"mesh", nodes.value()},
-          {"material", material.value()},
-          {"mass", mass.value()},
-          {"point masses", points.value()},
-          {"fixed nodes", held.value()},
-          {"damping", damping.value()},
-          {"gravity", ValueHash().add(settings_.gravity).value()}};
+  std::vector<NamedHash> result = {{"mesh", nodes.value()},
+                                   {"material", material.value()},
+                                   {"mass", mass.value()},
+                                   {"point masses", points.value()},
+                                   {"fixed nodes", held.value()},
+                                   {"damping", damping.value()},
+                                   {"gravity", ValueHash().add(settings_.gravity).value()}};
+  if (!elements.membranes.empty()) result.push_back({"membranes", membranes.value()});
+  return result;
 }
 
 // Where it is, and how far the nodes that it is the mean of stand from there: a ball is told from

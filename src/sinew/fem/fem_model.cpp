@@ -200,6 +200,7 @@ FemModel::FemModel(std::shared_ptr<const mesh::Mesh> mesh, const FemModelSetting
   list_held(settings.held_axes);
   gather_ = std::make_unique<const GatherLists>(
       make_gather_lists(*elements_, solids_, settings.regions, free_index_, rank, pattern_));
+  membranes_ = Membranes(*mesh_, settings.membranes, free_index_, pattern_);
 
   const std::vector<double> volumes = element_volumes(*mesh_, *elements_, solids_);
   volume_ = std::accumulate(volumes.begin(), volumes.end(), 0.0);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sinew/core/types.hpp"
+#include "sinew/fem/membrane.hpp"
 #include "sinew/linalg/block_pattern.hpp"
 #include "sinew/material/elastic_constants.hpp"
 #include "sinew/material/hyperelastic.hpp"
@@ -72,6 +73,7 @@ struct FemModelSettings {
   std::optional<double> total_mass;     ///< kg, > 0; scales the densities (by volume if all are 0)
   bool even_mass = false;               ///< total_mass / n at each of the n used nodes
   std::vector<PointMass> point_masses;  ///< beside the material's mass, whatever total_mass says
+  std::vector<MembraneLayer> membranes;
   /// Further groups of nodes that may couple (the nodes of a cable segment, for its geometric
   /// stiffness); mesh node numbers, fixed ones are skipped.
   std::vector<std::vector<NodeId>> couplings;
@@ -137,6 +139,7 @@ class FemModel {
   const ElementBatches& elements() const { return *elements_; }  ///< for Assembly
   std::span<const SolidGroup> solids() const;                    ///< for Assembly
   const GatherLists& gather() const { return *gather_; }         ///< for Assembly
+  const Membranes& membranes() const { return membranes_; }      ///< for Assembly
   /// (free,) kg: M where it has no blocks.
   std::span<const double> free_mass() const { return free_mass_; }
   /// (blocks,) kg: block b of M is mass_blocks[b] I. Empty where M is diagonal.
@@ -154,6 +157,7 @@ class FemModel {
   std::unique_ptr<const ElementBatches> elements_;
   std::vector<SolidGroup> solids_;
   std::unique_ptr<const GatherLists> gather_;
+  Membranes membranes_;
   VectorX lumped_mass_, load_mass_;
   std::vector<double> free_mass_, mass_blocks_;
   std::vector<SupportMass> support_mass_;

@@ -67,6 +67,11 @@ fem::FemBodySettings fem_settings(const SceneDescription& scene, const BodyDescr
   settings.elements.mass = body.mass_matrix == MassMatrix::consistent ? fem::MassMatrix::consistent
                                                                       : fem::MassMatrix::lumped;
   for (const FixedRegion& fixed : body.fixed) fix(fixed, *settings.mesh, settings.elements);
+  for (const MembraneDescription& layer : scene.membranes) {
+    if (layer.body != body.name) continue;
+    settings.elements.membranes.push_back(
+        {layer.name, faces_of(layer.surface, *settings.mesh), layer.thickness, layer.constants});
+  }
   return settings;
 }
 

@@ -21,6 +21,7 @@
 #include "sinew/core/types.hpp"
 #include "sinew/inverse/target.hpp"
 #include "sinew/linalg/factorisation.hpp"
+#include "sinew/material/elastic_constants.hpp"
 #include "sinew/material/hyperelastic.hpp"
 #include "sinew/mesh/embedding.hpp"
 #include "sinew/pcc/arm.hpp"
@@ -249,6 +250,17 @@ struct LoadDescription {
   sim::Signal factor = sim::Signal::constant(1.0);  ///< pressure: Pa
 };
 
+/// A thin layer on faces of a body.
+struct MembraneDescription {
+  std::string name;
+  Location place;
+  std::string body;
+  Location body_place;
+  SurfaceDescription surface;
+  double thickness = 0.0;  ///< m, > 0
+  material::ElasticConstants constants{.young_modulus = 0.0, .poisson_ratio = 0.3};
+};
+
 /// A mass that hangs on a point of a body.
 struct MassDescription {
   std::string name;
@@ -386,6 +398,7 @@ struct SceneDescription {
   std::vector<ActuatorDescription> actuators;
   std::vector<LoadDescription> loads;
   std::vector<MassDescription> masses;
+  std::vector<MembraneDescription> membranes;
   std::vector<EffectorDescription> effectors;
   std::vector<ProbeDescription> probes;
   std::vector<ContactDescription> contacts;

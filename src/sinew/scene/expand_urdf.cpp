@@ -94,6 +94,7 @@ void for_each_body_name(SceneDescription& scene, Rename&& rename) {
   }
   for (LoadDescription& load : scene.loads) rename(load.body, load.place);
   for (MassDescription& mass : scene.masses) rename(mass.body, mass.body_place);
+  for (MembraneDescription& layer : scene.membranes) rename(layer.body, layer.body_place);
   for (EffectorDescription& effector : scene.effectors) rename(effector.body, effector.body_place);
   for (ProbeDescription& probe : scene.probes) {
     for (ProbeDescription::Part& part : probe.parts) rename(part.body, part.place);

@@ -215,6 +215,12 @@ KeyTable scene_table() {
                         .forms = {names(mass_form())},
                         .example = "{hung: {body: trunk, point: 0 0 195 mm, mass: 52 g}}",
                         .description = "Point masses on finite-element bodies."});
+  scene.keys.push_back({.name = "membranes",
+                        .forms = {names(membrane_form())},
+                        .example =
+                            "{paper: {body: finger, surface: {set: bottom}, thickness: 0.1 mm, "
+                            "young_modulus: 2 GPa}}",
+                        .description = "Thin layers on faces of finite-element bodies."});
   scene.keys.push_back({.name = "effectors",
                         .forms = {names(effector_form())},
                         .example = "{tip: {body: trunk, point: 0 0 195 mm}}",

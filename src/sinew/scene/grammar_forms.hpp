@@ -3,6 +3,7 @@
 #pragma once
 
 #include <initializer_list>
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -51,6 +52,8 @@ Measure heat_loss();
 Range any();
 Range positive();
 Range non_negative();
+/// Of a material's constants: an open interval.
+Range material_range(double min, double max = std::numeric_limits<double>::infinity());
 
 Form quantity(const Measure& measure, Range range = any());
 /// `count` numbers with one unit.
@@ -131,6 +134,7 @@ Form body_form();
 Form actuator_form();
 Form load_form();
 Form mass_form();
+Form membrane_form();
 Form effector_form();
 Form contact_form();
 Form joint_form();

@@ -1,4 +1,4 @@
-// The tables of loads and hung masses: what the surroundings do to a body.
+// The tables of loads, hung masses and layers on faces: what is done to a body, and put on it.
 #include "sinew/scene/grammar_forms.hpp"
 
 namespace sinew::scene::forms {
@@ -148,6 +148,32 @@ Form mass_form() {
                  .description = "How much.",
                  .required = true},
                 outside_key()}}));
+}
+
+Form membrane_form() {
+  return table(make_table(
+      {.name = "membrane",
+       .description = "A thin layer on faces of a body, such as the paper in a bending actuator or "
+                      "fabric on silicone. It resists stretch in its plane, does not resist "
+                      "bending, and has no mass. Its law is linear in the Green strain (plane "
+                      "stress): for layers that stretch by a few per cent.",
+       .keys = {body_key(),
+                surface_key("The faces: a patch or a region of the body's surface.", true),
+                {.name = "thickness",
+                 .forms = {quantity(length(), positive())},
+                 .example = "0.1 mm",
+                 .description = "Thickness.",
+                 .required = true},
+                {.name = "young_modulus",
+                 .forms = {quantity(stress(), positive())},
+                 .example = "2 GPa",
+                 .description = "Young's modulus.",
+                 .required = true},
+                {.name = "poisson_ratio",
+                 .forms = {quantity(plain_number(), material_range(-1.0, 0.5))},
+                 .example = "0.3",
+                 .default_text = "0.3",
+                 .description = "Poisson's ratio, between -1 and 0.5."}}}));
 }
 
 }  // namespace sinew::scene::forms

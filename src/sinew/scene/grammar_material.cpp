@@ -1,5 +1,4 @@
 // The tables of materials: laws, their moduli, viscosity and softening.
-#include <limits>
 
 #include <fmt/format.h>
 
@@ -8,15 +7,15 @@
 
 namespace sinew::scene::forms {
 
-namespace {
-
-Range material_range(double min, double max = std::numeric_limits<double>::infinity()) {
+Range material_range(double min, double max) {
   return {.min = min,
           .max = max,
           .above_min = true,
           .below_max = true,
           .kind = ErrorKind::invalid_material};
 }
+
+namespace {
 
 Key modulus(const char* name, const char* example, const char* description, bool required = true,
             bool any_sign = false) {

@@ -72,4 +72,19 @@ MassDescription read_hung_mass(const Node::Entry& entry) {
   return mass;
 }
 
+MembraneDescription read_membrane(const Node::Entry& entry, const ReadContext& context) {
+  const Form form = forms::membrane_form();
+  const Fields fields(entry.value, form);
+  MembraneDescription membrane;
+  membrane.name = entry.key;
+  membrane.place = entry.key_place;
+  fields.read("body", membrane.body);
+  membrane.body_place = fields.place("body");
+  read_surface(fields.below("surface"), membrane.surface, context);
+  fields.read("thickness", membrane.thickness);
+  fields.read("young_modulus", membrane.constants.young_modulus);
+  fields.read("poisson_ratio", membrane.constants.poisson_ratio);
+  return membrane;
+}
+
 }  // namespace sinew::scene

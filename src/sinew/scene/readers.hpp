@@ -36,6 +36,7 @@ Matrix3 read_rotation(const Fields& pose);
 FixedRegion read_region(const Fields& fields);
 ActuatorDescription read_actuator(const Node::Entry& entry, const ReadContext& context);
 MassDescription read_hung_mass(const Node::Entry& entry);
+MembraneDescription read_membrane(const Node::Entry& entry, const ReadContext& context);
 LoadDescription read_load(const Node::Entry& entry, const ReadContext& context);
 /// The surface that the keys of the surface table give.
 void read_surface(const Fields& fields, SurfaceDescription& surface, const ReadContext& context);

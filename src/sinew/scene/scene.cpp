@@ -101,14 +101,25 @@ void check_mass(const SceneDescription& scene) {
   }
 }
 
+// Masses and membranes are of finite-element bodies.
 void check_carriers(const SceneDescription& scene) {
+  const auto check = [&](const std::string& name, const Location& place, const char* what,
+                         const char* of_arms, const char* of_rigid) {
+    const auto body = std::ranges::find(scene.bodies, name, &BodyDescription::name);
+    if (body == scene.bodies.end() || (!body->arm && !body->rigid)) return;
+    throw Error(ErrorKind::wrong_type, place,
+                fmt::format("'{}' is {}, which carries no {}", name,
+                            body->arm ? "an arm of constant curvature" : "a rigid body", what),
+                body->arm ? of_arms : of_rigid);
+  };
   for (const MassDescription& mass : scene.masses) {
-    const auto body = std::ranges::find(scene.bodies, mass.body, &BodyDescription::name);
-    if (body == scene.bodies.end() || !body->arm) continue;
-    throw Error(ErrorKind::wrong_type, mass.body_place,
-                fmt::format("'{}' is an arm of constant curvature, which carries no point masses",
-                            mass.body),
-                "add the mass to that of its last segment, or make the body of type fem");
+    check(mass.body, mass.body_place, "point masses",
+          "add the mass to that of its last segment, or make the body of type fem",
+          "weld a rigid body of that mass to it");
+  }
+  for (const MembraneDescription& layer : scene.membranes) {
+    constexpr const char* kRemedy = "make the body of type fem, or leave the membrane out";
+    check(layer.body, layer.body_place, "membranes", kRemedy, kRemedy);
   }
 }
 
@@ -163,6 +174,8 @@ SceneDescription read_scene(const Node& tree, const ReadContext& context) {
               [&](const auto& entry) { scene.loads.push_back(read_load(entry, context)); });
   for_entries(fields, "masses",
               [&](const auto& entry) { scene.masses.push_back(read_hung_mass(entry)); });
+  for_entries(fields, "membranes",
+              [&](const auto& entry) { scene.membranes.push_back(read_membrane(entry, context)); });
   for_entries(fields, "effectors",
               [&](const auto& entry) { scene.effectors.push_back(read_effector(entry, context)); });
   for_entries(fields, "probes",
