@@ -1,0 +1,124 @@
+"""Thin layers on faces: a stretched strip, a beam with a skin, a film that a gas inflates."""
+
+import numpy as np
+import sinew
+from scipy.integrate import solve_ivp, trapezoid
+from scipy.optimize import brentq
+
+from suite import plots
+
+TITLE = "Membranes: a stretched strip, a beam with a skin, an inflated film"
+SETUP = """(i) A film of 5 N/mm on a block of 40 x 10 x 4 mm that carries next to nothing (1 kPa, nu = 0), stretched by 5 %, free across. (ii) A
+cantilever of 100 x 10 x 6 mm (100 kPa, nu = 0) with a film on its lower side, a small force at its end: the stiffer the film, the nearer the
+neutral axis lies to it. (iii) A circular film, 0.1 mm of 1 GPa, nu = 0.3, on a disc of 1 kPa that carries nothing, held at its rim, under 100
+Pa, three meshes. Default tangent, quasi-static."""
+SOURCES = {"strip": "plane stress, Saint Venant-Kirchhoff: N = E h b (e + e^2/2)(1 + e)",
+           "composite": "S. P. Timoshenko, Strength of Materials I: a section of two materials, and the shear of the core (5/6)",
+           "Hencky": "H. Hencky, Z. Math. Phys. 63 (1915): N'' + 3 N'/r = -E h q^2/(8 N^2), w' = -q r/(2 N), N_theta = nu N at the rim; "
+                     "solved by scipy"}
+COST = 8
+NO_GRAVITY = {"sinew": 1, "gravity": [0.0, 0.0, 0.0], "time_step": 0.1}
+
+
+def film(stiffness, surface):
+    return {"film": {"body": "block", "surface": surface, "thickness": 1e-4, "young_modulus": stiffness / 1e-4, "poisson_ratio": 0.3}}
+
+
+def block(size, cell, young_modulus, fixed):
+    return {"block": {"type": "fem", "mesh": {"shape": "block", "length": size[0], "width": size[1], "height": size[2], "element_size": cell},
+                      "element": "hex8", "material": {"model": "neo-hookean", "young_modulus": young_modulus, "poisson_ratio": 0.0}, "fixed": fixed}}
+
+
+def strip(case):
+    strain, size, stiffness = 0.05, (0.04, 0.01, 0.004), 5e3
+    bodies = block(size, 0.002, 1e3, [{"set": "x_min", "axes": "x"}, {"set": "y_min", "axes": "y"}, {"set": "z_min", "axes": "z"}])
+    force = stiffness * size[1] * (strain + strain**2 / 2.0) * (1.0 + strain) + 1e3 * size[1] * size[2] * strain
+    # The force acts on the film's edge, not on the soft block above it.
+    edge = {"edge": {"type": "line", "body": "block", "points": [[size[0], 0.0, 0.0], [size[0], size[1], 0.0]],
+                     "force_per_length": [force / size[1], 0.0, 0.0]}}
+    sim = sinew.load({**NO_GRAVITY, "bodies": bodies, "membranes": film(stiffness, {"set": "z_min"}), "loads": edge})
+    sim.solve_static()
+    body = sim.body("block")
+    low = body.rest_positions[:, 2] < 1e-9
+    end = low & (body.rest_positions[:, 0] > size[0] - 1e-9)
+    side = low & (body.rest_positions[:, 1] > size[1] - 1e-9)
+    stretched = (body.positions - body.rest_positions)[end, 0].mean() / size[0]
+    narrowed = -(body.positions - body.rest_positions)[side, 1].mean() / size[1]
+    case.check("strip: stretch under the force of 5 %", stretched, strain, 2e-3, source="strip")
+    # S_yy = 0: E_yy = -nu E_xx.
+    lateral = 1.0 - np.sqrt(1.0 - 2.0 * 0.3 * (strain + strain**2 / 2.0))
+    case.check("strip: contraction across", narrowed, lateral, 2e-3, source="strip")
+
+
+def skin(case):
+    size, modulus, push = (0.1, 0.01, 0.006), 1e5, 1e-5
+    length, width, height = size
+    for stiffness in (0.0, 500.0, 5000.0):
+        bodies = block(size, 0.002, modulus, {"set": "x_min"})
+        load = {"push": {"type": "traction", "body": "block", "surface": {"set": "x_max"}, "traction": [0.0, 0.0, push / (width * height)]}}
+        more = {"membranes": film(stiffness, {"set": "z_min"})} if stiffness > 0.0 else {}
+        sim = sinew.load({**NO_GRAVITY, "bodies": bodies, "loads": load, **more})
+        sim.solve_static()
+        body = sim.body("block")
+        end = body.rest_positions[:, 0] > length - 1e-9
+        moved = (body.positions - body.rest_positions)[end, 2].mean()
+        core, layer = modulus * width * height, stiffness * width
+        neutral = core * height / 2.0 / (core + layer)  # above the film
+        bending = modulus * width * height**3 / 12.0 + core * (height / 2.0 - neutral) ** 2 + layer * neutral**2
+        shear = modulus / 2.0 * width * height * 5.0 / 6.0
+        exact = push * (length**3 / (3.0 * bending) + length / shear)
+        case.check(f"beam, film of {stiffness / 1e3:g} N/mm: deflection", moved, exact, 0.02, source="composite", unit="m")
+
+
+def hencky(ratio, load, tension, radius):
+    """The height of the middle, m. tension: E h, N/m. Scaled by (E h q^2 a^2)^(1/3) and a."""
+    start = 1e-3
+
+    def solve(middle):
+        force, slope = middle - start**2 / (64.0 * middle**2), -start / (32.0 * middle**2)
+        return solve_ivp(lambda r, y: [y[1], -3.0 * y[1] / r - 0.125 / y[0] ** 2], (start, 1.0), [force, slope], rtol=1e-11, atol=1e-13,
+                         dense_output=True)
+
+    def miss(middle):
+        force, slope = solve(middle).y[:, -1]
+        return (1.0 - ratio) * force + slope
+
+    found = solve(brentq(miss, 0.35, 0.6, xtol=1e-13)).sol
+    r = np.linspace(start, 1.0, 20001)
+    height = trapezoid(0.5 * r / found(r)[0], r) + 0.25 * start**2 / found(start)[0]
+    return height * radius * (load * radius / tension) ** (1.0 / 3.0)
+
+
+def inflated(case, axis):
+    radius, load, tension = 0.05, 100.0, 1e5
+    exact = hencky(0.3, load, tension, radius)
+    for size in (0.01, 0.005, 0.0025):
+        sim = sinew.load({
+            **NO_GRAVITY, "duration": 1.0,
+            "bodies": {"block": {"type": "fem", "mesh": {"shape": "cylinder", "radius": radius, "height": 0.002, "element_size": size},
+                                 "element": "hex8", "material": {"model": "neo-hookean", "young_modulus": 1e3, "poisson_ratio": 0.0},
+                                 "fixed": {"set": "side"}}},
+            "membranes": film(tension, {"set": "bottom"}),
+            "loads": {"gas": {"type": "pressure", "body": "block", "surface": {"set": "bottom"},
+                              "pressure": {"ramp": {"to": load, "duration": 0.9}}}}})
+        sim.run(duration=1.0)
+        sim.solve_static()
+        body = sim.body("block")
+        low = body.rest_positions[:, 2] < 1e-9
+        at = np.hypot(*body.rest_positions[low, :2].T)
+        height = (body.positions - body.rest_positions)[low, 2]
+        shown = f"inflated film, elements of {1e3 * size:g} mm: height of the middle"
+        case.check(shown, height[np.argmin(at)], exact, 5e-3 if size < 0.005 else 0.02, source="Hencky", unit="m")
+    order = np.argsort(at)
+    axis.plot(1e3 * at[order], 1e3 * height[order], ".", ms=2, color=plots.OURS, label="Sinew, 2.5 mm")
+    axis.plot([0.0], [1e3 * exact], "x", color=plots.REFERENCE, label="Hencky, middle")
+    axis.set(xlabel="radius (mm)", ylabel="height (mm)")
+    axis.legend(fontsize=7)
+
+
+def run(case):
+    figure, axis = plots.axes(1)
+    strip(case)
+    skin(case)
+    inflated(case, axis)
+    case.figure(figure, "The inflated film: nodes of the finest mesh, and the height of the middle by theory.")
