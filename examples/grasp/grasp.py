@@ -22,11 +22,11 @@ TAPERED, STRAIGHT = (18e-3, 35e-3), (26e-3, 26e-3)  # m: outer radii at the floo
 HEIGHT, WALL, FLOOR = 78.6e-3, 4e-3, 5e-3  # m
 FINGERS = 3
 APART, ABOVE, HELD = 50e-3, 220e-3, 20e-3  # m: feet from the middle and above the table; how much of a finger is held
-PULL, LIFT = 10e-3, 60e-3  # m: of a cable within the finger, of the feet
+PULL, LIFT = 8e-3, 60e-3  # m: of a cable within the finger, of the feet
 CLOSED, LIFTS, LIFTED, END = 1.0, 1.5, 2.5, 4.0  # s
 STEP, SHOWN = 0.01, 0.6  # s; coefficient of friction of the picture
-FRICTION = (0.0, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.6)
-PULLS = (6.0, 8.0, 10.0, 12.0, 14.0)  # mm
+FRICTION = (0.0, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6)
+PULLS = (4.0, 6.0, 7.0, 8.0, 9.0, 10.0)  # mm
 GRAVITY = 9.81
 
 
@@ -71,8 +71,8 @@ def scene(cup, friction=SHOWN, pull=PULL):
         outwards = np.array([np.cos(turn), np.sin(turn), 0.0])
         route = (APART - inwards)[:, None] * outwards + (ABOVE - depth)[:, None] * [0.0, 0.0, 1.0]
         bodies[f"finger_{k}"] = {
-            "type": "fem", "mesh": {"shape": "trunk"}, "element": "tet4", "mass": "42 g",
-            "material": {"model": "corotational", "young_modulus": "450 kPa", "poisson_ratio": 0.45},
+            "type": "fem", "mesh": {"shape": "trunk"}, "element": "tet4-patch", "mass": "42 g",
+            "material": {"model": "neo-hookean", "young_modulus": "600 kPa", "poisson_ratio": 0.45},
             "position": (APART * outwards + [0.0, 0.0, ABOVE]).tolist(),
             "rotation": [np.pi * np.cos(turn / 2), np.pi * np.sin(turn / 2), 0.0],  # upside down, then about z
             "fixed": {"box": [-0.2, -0.2, ABOVE - HELD - 1e-6, 0.2, 0.2, ABOVE + 1e-6]},
@@ -211,67 +211,62 @@ def boundary(body):
     return faces if faces.shape[1] == 3 else np.vstack([faces[:, [0, 1, 2]], faces[:, [0, 2, 3]]])
 
 
-def paint(axes, bodies, positions, elevation, azimuth, arrows=()):
+def paint(axes, bodies, positions, elevation=16.0, azimuth=60.0):
     """The surfaces of the bodies as seen from one side, lit from above, with their shadow on the table."""
     from matplotlib.colors import to_rgb
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
-    turn, rise = np.radians(azimuth), np.radians(elevation)
-    towards = np.array([np.cos(rise) * np.cos(turn), np.cos(rise) * np.sin(turn), np.sin(rise)])
-    light = np.array([np.cos(turn - 0.9), np.sin(turn - 0.9), 1.5])
-    light /= np.linalg.norm(light)
-    corners, colours, shadow = [], [], []
+    def direction(turn, rise):
+        turn, rise = np.radians([turn, rise])
+        return np.array([np.cos(rise) * np.cos(turn), np.cos(rise) * np.sin(turn), np.sin(rise)])
+
+    light, corners, colours = direction(azimuth + 50.0, 45.0), [], []
     for name, body in bodies.items():
         triangles, points = boundary(body), 1e3 * positions[name]
         at = points[triangles]
-        across = np.cross(at[:, 1] - at[:, 0], at[:, 2] - at[:, 0])
-        smooth = np.zeros_like(points)  # normals at the nodes: neighbouring triangles differ less in their shade
-        for corner in range(3):
-            np.add.at(smooth, triangles[:, corner], across)
-        normal = across / np.linalg.norm(across, axis=1)[:, None]
-        mean = smooth[triangles].sum(axis=1)
-        mean /= np.linalg.norm(mean, axis=1)[:, None]
-        shade = 0.45 + 0.55 * np.clip((0.5 * normal + 0.5 * mean) @ light, 0.0, 1.0)
-        seen = across @ towards > 0.0
-        colour = np.array(to_rgb("#e8a33d" if name == "cup" else "#6f9bc8"))
+        normal = np.cross(at[:, 1] - at[:, 0], at[:, 2] - at[:, 0])
+        seen = normal @ direction(azimuth, elevation) > 0.0  # matplotlib sorts triangles, and hides none of them
+        bright = np.clip((normal / np.linalg.norm(normal, axis=1)[:, None]) @ light, 0.0, 1.0)
+        colour = np.array(to_rgb("#ffb43c" if name == "cup" else "#7fb0e6"))
         corners.append(at[seen])
-        colours.append(np.clip(shade[seen, None] * colour * 1.08, 0.0, 1.0))
-        shadow.append(at[seen] * [1.0, 1.0, 0.0])
-    table = np.array([[np.cos(a), np.sin(a), 0.0] for a in np.linspace(0.0, 2.0 * np.pi, 60)]) * 105.0
+        colours.append((0.42 + 0.58 * bright[seen, None]) * colour)
+    corners, colours = np.concatenate(corners), np.concatenate(colours)
+    circle = np.linspace(0.0, 2.0 * np.pi, 60)
+    table = 95.0 * np.column_stack([np.cos(circle), np.sin(circle), 0.0 * circle])
     axes.computed_zorder = False
-    axes.add_collection3d(Poly3DCollection([table], facecolor="#f0efec", edgecolor="#d5d3cd", zorder=0))
-    axes.add_collection3d(Poly3DCollection(np.concatenate(shadow), facecolor="#d9d7d1", edgecolor="#d9d7d1", zorder=1))
-    colours = np.concatenate(colours)
-    axes.add_collection3d(Poly3DCollection(np.concatenate(corners), facecolors=colours, edgecolors=colours, linewidths=0.3,
-                                           zorder=2))  # fmt: skip
-    for foot, force in arrows:
-        axes.quiver(*foot, *force, color="#b02318", linewidth=1.6, arrow_length_ratio=0.25, zorder=3)
-    axes.set(xlim=(-75, 75), ylim=(-75, 75), zlim=(0, 285))
-    axes.set_box_aspect((150, 150, 285), zoom=1.35)
+    axes.add_collection3d(Poly3DCollection([table], facecolor="#efeeea", edgecolor="#d0cec8", zorder=0))
+    axes.add_collection3d(Poly3DCollection(corners * [1.0, 1.0, 0.0], facecolor="#d3d1ca", edgecolor="#d3d1ca", zorder=1))
+    axes.add_collection3d(Poly3DCollection(corners, facecolors=colours, edgecolors=0.9 * colours, linewidths=0.3, zorder=2))
+    axes.set(xlim=(-95, 95), ylim=(-95, 95), zlim=(0, 285))
+    axes.set_box_aspect((190, 190, 285), zoom=1.75)
     axes.set_proj_type("ortho")
     axes.view_init(elevation, azimuth)
     axes.set_axis_off()
+    axes.patch.set_visible(False)  # the axes overlap
 
 
 def draw(path, sim, frames, friction, heights, pulls, gripped):
     import matplotlib.pyplot as plt
 
-    figure = plt.figure(figsize=(12, 4.8))
-    for k, (moment, title) in enumerate(((0.0, "open"), (LIFTS, "closed, 1.5 s"), (END, "lifted, 4 s"))):
-        axes = figure.add_axes((0.17 * k - 0.01, 0.0, 0.19, 0.94), projection="3d")
-        paint(axes, sim.bodies, frames[moment], 14, 60)
-        figure.text(0.17 * k + 0.085, 0.93, title, ha="center", fontsize=10)
-    over = figure.add_axes((0.57, 0.14, 0.17, 0.76))
-    for (name, marker), rise in zip((("tapered", "o-"), ("straight", "s--")), heights):
+    figure = plt.figure(figsize=(13, 5.2))
+    for k, (moment, title) in enumerate(((0.0, "open"), (LIFTS, "closed"), (END, "lifted"))):
+        axes = figure.add_axes((0.165 * k - 0.06, -0.08, 0.29, 1.1), projection="3d")
+        paint(axes, sim.bodies, frames[moment])
+        figure.text(0.165 * k + 0.085, 0.93, f"{title}, {moment:.1f} s", ha="center", fontsize=11)
+    over = figure.add_axes((0.56, 0.13, 0.165, 0.77))
+    for name, marker, rise in zip(("tapered", "straight"), ("o-", "s--"), heights):
         over.plot(friction, 1e3 * np.array(rise), marker, label=f"{name} cup")
-    over.set(xlabel="coefficient of friction", ylabel="the cup has risen by (mm)", title="gripper lifted by 60 mm")
+    over.set(xlabel="coefficient of friction", ylabel="the cup has risen by (mm)", title="the feet have risen by 60 mm")
     over.legend(frameon=False)
-    pulled = figure.add_axes((0.81, 0.14, 0.17, 0.76))
-    pulled.plot(pulls, [10 * np.mean(g["normal"]) for g in gripped], "o-", color="tab:green", label="normal force (0.1 N)")
-    pulled.plot(pulls, [1e3 * g["sideways"] for g in gripped], "s--", color="tab:red", label="tips moved sideways (mm)")
-    pulled.set(xlabel="pull of the cables (mm)", title="grip of a finger", ylim=(0, None))
-    pulled.legend(frameon=False)
-    figure.savefig(path, dpi=90)
+    force = figure.add_axes((0.785, 0.13, 0.165, 0.77))
+    force.plot(pulls, [np.mean(grip["normal"]) for grip in gripped], "o-", color="tab:green")
+    force.set(xlabel="pull of the cables (mm)", title="a finger's grip", ylim=(0, None))
+    force.set_ylabel("normal force (N)", color="tab:green")
+    aside = force.twinx()
+    aside.plot(pulls, [1e3 * grip["sideways"] for grip in gripped], "s--", color="tab:red")
+    aside.set_ylim(0, None)
+    aside.set_ylabel("tip moved sideways (mm)", color="tab:red")
+    figure.savefig(path, dpi=85)
 
 
 def write_scene(folder):
