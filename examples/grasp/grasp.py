@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""A gripper of three soft trunks lifts a soft cup: its grip, and how high the cup comes over friction and over the pull.
+"""A gripper of three soft trunks lifts a soft cup: the forces of its grip, over the pull and over the friction.
 
-    PYTHONPATH=build/release/python /usr/bin/python3 examples/grasp/grasp.py [--out FOLDER] [--friction MU ...] [--pull MM ...]
+    PYTHONPATH=build/release/python /usr/bin/python3 examples/grasp/grasp.py [--out FOLDER]
 
-Every finger hangs from its foot and has a cable on its inner side. The cables close the fingers on the standing cup within
-a second, then the feet rise by 60 mm and rest. The same is done with a cup of straight walls, which nothing but friction
-holds (docs/grasping.md). FOLDER gets grasp.png, and grasp.yaml, which `sinew run` and `sinew view` take.
+Every finger hangs from its foot and has a cable on its inner side. The cables close the fingers on the standing cup
+within a second, then the feet rise by 60 mm and rest. A cup of straight walls, which friction alone can hold, is lifted
+for comparison (docs/grasping.md). `--friction MU ...` and `--pull MM ...` choose what is compared.
+FOLDER gets grasp.png, and grasp.yaml with cup.vtu, which `sinew run` and `sinew view` take.
 """
 
 import argparse
@@ -25,13 +26,13 @@ APART, ABOVE, HELD = 50e-3, 220e-3, 20e-3  # m: feet from the middle and above t
 PULL, LIFT = 8e-3, 60e-3  # m: of a cable within the finger, of the feet
 CLOSED, LIFTS, LIFTED, END = 1.0, 1.5, 2.5, 4.0  # s
 STEP, SHOWN = 0.01, 0.6  # s; coefficient of friction of the picture
-FRICTION = (0.0, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6)
+FRICTION = (0.0, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.55, 0.6)
 PULLS = (4.0, 6.0, 7.0, 8.0, 9.0, 10.0)  # mm
 GRAVITY = 9.81
 
 
 def disc():
-    """Points (n, 2) of a unit disc, its quadrilaterals, and the points of its rim in order: a square within a ring."""
+    """A square within a ring: points (n, 2) of a unit disc, its quadrilaterals, the points of its rim in order."""
     n, grid = QUARTER, np.linspace(-0.55, 0.55, QUARTER + 1)
     square = np.stack(np.meshgrid(grid, grid, indexing="ij"), axis=-1).reshape(-1, 2)
     at = np.arange((n + 1) ** 2).reshape(n + 1, n + 1)
@@ -60,8 +61,12 @@ def write_cup(path, radii=TAPERED):
 
 def scene(cup, friction=SHOWN, pull=PULL):
     """The scene as a dict; the fingers are meshed by Sinew."""
-    bodies = {"cup": {"type": "fem", "mesh": {"file": str(cup)}, "density": "1070 kg/m^3",
-                      "material": {"model": "neo-hookean", "young_modulus": "1 MPa", "poisson_ratio": 0.45}}}  # fmt: skip
+    bodies = {
+        "cup": {
+            "type": "fem", "mesh": {"file": str(cup)}, "density": "1070 kg/m^3",
+            "material": {"model": "neo-hookean", "young_modulus": "1 MPa", "poisson_ratio": 0.45},
+        }
+    }  # fmt: skip
     contacts = {"table": {"body": "cup", "surface": {"plane": {}}, "friction": friction}}
     cables = {}
     depth = np.append(0.0, np.linspace(21e-3, 190e-3, 20))  # of a cable's points below the foot
@@ -78,11 +83,14 @@ def scene(cup, friction=SHOWN, pull=PULL):
             "fixed": {"box": [-0.2, -0.2, ABOVE - HELD - 1e-6, 0.2, 0.2, ABOVE + 1e-6]},
             "base": {"z": {"ramp": {"to": LIFT, "start": LIFTS, "duration": LIFTED - LIFTS}}},
         }  # fmt: skip
-        cables[f"cable_{k}"] = {"type": "cable", "body": f"finger_{k}", "pull": "body", "points": route.tolist(),
-                                "command": {"displacement": {"ramp": {"to": pull, "duration": CLOSED}}}}  # fmt: skip
+        cables[f"cable_{k}"] = {
+            "type": "cable", "body": f"finger_{k}", "pull": "body", "points": route.tolist(),
+            "command": {"displacement": {"ramp": {"to": pull, "duration": CLOSED}}},
+        }  # fmt: skip
         contacts[f"grip_{k}"] = {"between": [f"finger_{k}", "cup"], "friction": friction}
     return {
-        "sinew": 1, "gravity": f"0 0 {-GRAVITY} m/s^2", "integrator": "backward-euler", "time_step": STEP, "duration": END,
+        "sinew": 1, "gravity": f"0 0 {-GRAVITY} m/s^2", "integrator": "backward-euler",
+        "time_step": STEP, "duration": END,
         "bodies": bodies, "actuators": cables, "contacts": contacts,
     }  # fmt: skip
 
@@ -124,7 +132,7 @@ def sideways(sim):
 
 
 def run(sim, until=END, moments=()):
-    """Steps until a time (s): per step the gaps (m) and the time taken (s); the positions of all nodes at some moments."""
+    """Steps until a time (s): per step the smallest gap (m) and the time taken (s); all nodes at some moments."""
     gaps, taken, frames = [], [], {}
     while sim.time < until - 0.5 * STEP:
         start = time.perf_counter()
@@ -143,6 +151,11 @@ def risen(sim):
     """How far the cup has risen (m)."""
     cup = sim.body("cup")
     return (cup.node_masses @ (cup.positions - cup.rest_positions)[:, 2]) / cup.mass
+
+
+def mm(length):
+    """In mm, to be printed without the sign of -0.0."""
+    return round(1e3 * length, 1) + 0.0
 
 
 def held(sim):
@@ -211,8 +224,8 @@ def boundary(body):
     return faces if faces.shape[1] == 3 else np.vstack([faces[:, [0, 1, 2]], faces[:, [0, 2, 3]]])
 
 
-def paint(axes, bodies, positions, elevation=16.0, azimuth=60.0):
-    """The surfaces of the bodies as seen from one side, lit from above, with their shadow on the table."""
+def paint(axes, bodies, positions, arrows=(), elevation=20.0, azimuth=60.0):
+    """The surfaces of the bodies as seen from one side, lit from above, with their shadow; arrows in mm."""
     from matplotlib.colors import to_rgb
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
@@ -232,33 +245,46 @@ def paint(axes, bodies, positions, elevation=16.0, azimuth=60.0):
         colours.append((0.42 + 0.58 * bright[seen, None]) * colour)
     corners, colours = np.concatenate(corners), np.concatenate(colours)
     circle = np.linspace(0.0, 2.0 * np.pi, 60)
-    table = 95.0 * np.column_stack([np.cos(circle), np.sin(circle), 0.0 * circle])
+    table = 78.0 * np.column_stack([np.cos(circle), np.sin(circle), 0.0 * circle])
     axes.computed_zorder = False
     axes.add_collection3d(Poly3DCollection([table], facecolor="#efeeea", edgecolor="#d0cec8", zorder=0))
-    axes.add_collection3d(Poly3DCollection(corners * [1.0, 1.0, 0.0], facecolor="#d3d1ca", edgecolor="#d3d1ca", zorder=1))
-    axes.add_collection3d(Poly3DCollection(corners, facecolors=colours, edgecolors=0.9 * colours, linewidths=0.3, zorder=2))
+    flat = corners * [1.0, 1.0, 0.0]
+    axes.add_collection3d(Poly3DCollection(flat, facecolor="#d3d1ca", edgecolor="#d3d1ca", zorder=1))
+    drawn = Poly3DCollection(corners, facecolors=colours, edgecolors=0.9 * colours, linewidths=0.3, zorder=2)
+    axes.add_collection3d(drawn)
+    for tail, way in arrows:
+        axes.quiver(*tail, *way, color="#c4161c", linewidth=2.0, arrow_length_ratio=0.3, zorder=3)
     axes.set(xlim=(-95, 95), ylim=(-95, 95), zlim=(0, 285))
-    axes.set_box_aspect((190, 190, 285), zoom=1.75)
+    axes.set_box_aspect((190, 190, 285), zoom=1.02)
     axes.set_proj_type("ortho")
     axes.view_init(elevation, azimuth)
     axes.set_axis_off()
     axes.patch.set_visible(False)  # the axes overlap
 
 
+def pushes(sim):
+    """Arrows (mm) that end where the fingers push the cup, 80 mm for a newton."""
+    arrows = []
+    for grip in grips(sim):
+        where = 1e3 * grip.normal_forces @ grip.positions / grip.normal_force
+        arrows.append((where + 80.0 * grip.force, -80.0 * grip.force))  # `force` is that on the finger
+    return arrows
+
+
 def draw(path, sim, frames, friction, heights, pulls, gripped):
     import matplotlib.pyplot as plt
 
-    figure = plt.figure(figsize=(13, 5.2))
+    figure = plt.figure(figsize=(14, 5.2))
     for k, (moment, title) in enumerate(((0.0, "open"), (LIFTS, "closed"), (END, "lifted"))):
-        axes = figure.add_axes((0.165 * k - 0.06, -0.08, 0.29, 1.1), projection="3d")
-        paint(axes, sim.bodies, frames[moment])
-        figure.text(0.165 * k + 0.085, 0.93, f"{title}, {moment:.1f} s", ha="center", fontsize=11)
-    over = figure.add_axes((0.56, 0.13, 0.165, 0.77))
+        axes = figure.add_axes((0.183 * k - 0.123, -0.05, 0.43, 1.1577), projection="3d")
+        paint(axes, sim.bodies, frames[moment], pushes(sim)[:2] if moment == END else ())  # the third finger is behind
+        figure.text(0.183 * k + 0.092, 0.02, f"{title}, {moment:.1f} s", ha="center", fontsize=11)
+    over = figure.add_axes((0.605, 0.13, 0.145, 0.77))
     for name, marker, rise in zip(("tapered", "straight"), ("o-", "s--"), heights):
         over.plot(friction, 1e3 * np.array(rise), marker, label=f"{name} cup")
     over.set(xlabel="coefficient of friction", ylabel="the cup has risen by (mm)", title="the feet have risen by 60 mm")
-    over.legend(frameon=False)
-    force = figure.add_axes((0.785, 0.13, 0.165, 0.77))
+    over.legend(frameon=False, loc="center left", bbox_to_anchor=(0.0, 0.3))
+    force = figure.add_axes((0.803, 0.13, 0.145, 0.77))
     force.plot(pulls, [np.mean(grip["normal"]) for grip in gripped], "o-", color="tab:green")
     force.set(xlabel="pull of the cables (mm)", title="a finger's grip", ylim=(0, None))
     force.set_ylabel("normal force (N)", color="tab:green")
@@ -288,13 +314,13 @@ def main():
     for friction in arguments.friction:
         for rise, radii in zip(heights, (TAPERED, STRAIGHT)):
             rise.append(lift(friction=friction, radii=radii)["risen"])
-        print(f"{friction:8.2f}  {1e3 * heights[0][-1]:22.1f}  {1e3 * heights[1][-1]:23.1f}", flush=True)
+        print(f"{friction:8.2f}  {mm(heights[0][-1]):22.1f}  {mm(heights[1][-1]):23.1f}", flush=True)
     gripped = []
     print("pull (mm)  tension (N)  normal force (N)  tips moved sideways (mm)  cup risen (mm)")
     for pull in arguments.pull:
         gripped.append(lift(pull=1e-3 * pull))
         print(f"{pull:9.1f}  {np.mean(gripped[-1]['tension']):11.2f}  {np.mean(gripped[-1]['normal']):16.3f}  "
-              f"{1e3 * gripped[-1]['sideways']:24.1f}  {1e3 * gripped[-1]['risen']:14.1f}", flush=True)  # fmt: skip
+              f"{1e3 * gripped[-1]['sideways']:24.1f}  {mm(gripped[-1]['risen']):14.1f}", flush=True)  # fmt: skip
     draw(arguments.out / "grasp.png", sim, frames, arguments.friction, heights, arguments.pull, gripped)
     print(arguments.out)
 
