@@ -28,7 +28,7 @@ def test_a_soft_gripper_lifts_a_soft_cup(grasp):
     assert cup.mass == pytest.approx(54.4e-3, rel=1e-3)
     assert held["risen"] - grasp.LIFT == pytest.approx(2.45e-3, abs=0.2e-3)
     assert held["normal"] == pytest.approx([0.41, 0.40, 0.40], rel=0.04)
-    assert held["along"] == pytest.approx([0.097, 0.101, 0.091], rel=0.15)
+    assert held["along"] == pytest.approx([0.097, 0.101, 0.091], rel=0.05)
     assert abs(held["imbalance"]) < 1e-4
     assert np.degrees(held["tilt"]) < 0.3
     assert held["sideways"] < 1e-3
@@ -45,3 +45,10 @@ def test_walls_that_widen_upwards_need_less_friction(grasp):
     assert grasp.risen(tapered) > grasp.LIFT - 0.5e-3
     assert abs(grasp.risen(straight)) < 0.5e-3
     assert straight.contact("table").normal_force > 0.0
+
+
+def test_fingers_that_pull_too_hard_slide_around_the_cup(grasp):
+    grasp.STEP = 0.02  # s
+    sim = grasp.make(pull=10e-3)
+    grasp.run(sim, 1.1)
+    assert grasp.sideways(sim) > 10e-3  # 0.3 mm at 8 mm of pull
