@@ -3,9 +3,9 @@
 
     PYTHONPATH=build/release/python /usr/bin/python3 examples/crawl/crawl.py [--out FOLDER] [--friction MU ...]
 
-The chambers are rows of bellows on a sole that threads keep from lengthening: pressure bends the strip upwards in the
+The chambers are rows of bellows on a sole that fabric keeps from lengthening: pressure bends the strip upwards in the
 middle, so that it stands on its two ends. The chambers fill one after the other, front, centre, rear, and empty in the
-same order. The strip then moves towards its front, by 10 mm of its 115 mm in a cycle; the opposite order moves it as far
+same order. The strip then moves towards its front, by 15 mm of its 115 mm in a cycle; the opposite order moves it as far
 the other way (docs/locomotion.md says why). FOLDER gets crawl.png, and crawl.yaml, which `sinew run` and `sinew view` take.
 """
 
@@ -21,6 +21,7 @@ CELL = np.array([2.5, 5.0, 3.0]) * 1e-3  # m: a hexahedron
 BELLOWS, PITCH = 3, 5  # of a chamber; cells from one bellow to the next
 SILICONE = {"model": "neo-hookean", "young_modulus": "264 kPa", "poisson_ratio": 0.49,  # Dragon Skin 10, and viscous
             "viscosity": [{"relative_modulus": 0.2, "relaxation_time": "50 ms"}]}  # assumed
+FABRIC = {"thickness": "0.1 mm", "young_modulus": "100 MPa", "poisson_ratio": 0.3}  # of the sole's lower side
 CHAMBERS = ("front", "centre", "rear")  # in the order of the gait
 PRESSURE, PERIOD, STEP = 25e3, 4.0, 0.02  # Pa, s, s
 RISE, HOLD, LAG = 0.2, 0.4, 0.1  # of the period: filling or emptying, full, between two chambers
@@ -55,17 +56,15 @@ def inside(chamber):
 
 def scene(mesh, friction):
     """The scene as a dict, its commands still missing."""
-    columns, rows = np.arange(len(cells()) + 1) * CELL[0], np.arange(0, 7, 2) * CELL[1]
-    sole = [[x, y, 0.0] for x in columns[::2] for y in rows]
+    sole = [[2 * i * CELL[0], 2 * j * CELL[1], 0.0] for i in range(len(cells()) // 2 + 1) for j in range(4)]
     chambers = {name: {"type": "pressure", "body": "strip", "surface": {"inside": inside(2 - k)}}
                 for k, name in enumerate(CHAMBERS)}  # fmt: skip
-    threads = {f"thread_{k}": {"type": "cable", "body": "strip", "pull": "body", "points": [[x, y, 0.0] for x in columns],
-                               "command": {"displacement": 0.0}} for k, y in enumerate(rows)}  # fmt: skip
     return {
         "sinew": 1, "gravity": "0 0 -9.81 m/s^2", "integrator": "backward-euler", "time_step": STEP, "duration": 3 * PERIOD,
         "bodies": {"strip": {"type": "fem", "mesh": {"file": str(mesh)}, "material": SILICONE, "density": "1070 kg/m^3"}},
         "contacts": {"floor": {"body": "strip", "surface": {"plane": {}}, "points": sole, "friction": friction}},
-        "actuators": {**chambers, **threads},
+        "membranes": {"fabric": {"body": "strip", "surface": {"plane": {"point": [0, 0, 0], "normal": [0, 0, 1]}}, **FABRIC}},
+        "actuators": chambers,
     }  # fmt: skip
 
 
