@@ -160,6 +160,7 @@ std::vector<Feature> list_features() {
       {"probe", or_none(without(alternatives(probe, "point"), "points"))},
       {"controller", or_none(words(variants(items("controllers"), "type")))},
       {"regularisation", words(map_of(controller, "regularisation"), "of")},
+      {"membrane", switched},
   };
 }
 

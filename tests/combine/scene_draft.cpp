@@ -108,13 +108,14 @@ class Drafter {
     add_torque();
     add_load();
     add_mass();
+    add_membrane();
     add_contact();
     add_effector();
     add_probe();
     add_controller();
     SceneDraft draft{settings_, {}};
-    for (const char* section : {"bodies", "actuators", "loads", "masses", "effectors", "probes",
-                                "contacts", "joints", "controllers"}) {
+    for (const char* section : {"bodies", "actuators", "loads", "masses", "membranes", "effectors",
+                                "probes", "contacts", "joints", "controllers"}) {
       if (!sections_[section].empty()) draft.sections.emplace_back(section, sections_[section]);
     }
     return draft;
@@ -492,6 +493,15 @@ class Drafter {
     add("masses", "hung",
         fmt::format("{{body: <{}>, point: {}, mass: 2 g, outside: nearest}}", on->id,
                     vector_text(on->shape.at(0.95, 0.2, 0.2))));
+  }
+
+  void add_membrane() {
+    const Body* on = body(true);
+    if (!has("membrane") || on == nullptr) return;
+    add("membranes", "skin",
+        fmt::format(
+            "{{body: <{}>, surface: {{set: {}}}, thickness: 0.1 mm, young_modulus: 10 MPa}}",
+            on->id, on->shape.side));
   }
 
   // A box on its way along an axis; in statics it stands still.
