@@ -3,9 +3,9 @@
 
     PYTHONPATH=build/release/python /usr/bin/python3 examples/hybrid/pick.py [--out FOLDER] [--write-motion]
 
-Runs pick.yaml, prints its figures (docs/grasping.md explains them), and draws FOLDER/pick.png. The scene's motors and cables
-follow pick.csv, which --write-motion writes anew: straight lines of the wrist, from which the angles of shoulder and elbow
-follow; the wrist keeps the palm level.
+Runs pick.yaml, prints its figures (docs/grasping.md explains them), and draws FOLDER/pick.png. The scene's motors and
+cables follow pick.csv, which --write-motion writes anew: straight lines of the wrist, from which the angles of shoulder
+and elbow follow; the wrist keeps the palm level.
 """
 
 import argparse
@@ -22,7 +22,7 @@ REACH, HIGH, LOW = 0.26, 0.183, 0.113  # m: of the wrist from the axis of yaw, i
 LIFTED = 1.5e-3  # m: closing lifts the box by 1.4 mm, so the hand puts it down by this much deeper than it took it
 TAKE, PUT = np.radians([25.0, -45.0])  # yaw at the box, and where it is to stand
 PULL = 5e-3  # m of cable
-STILL = (0.48, 0.85, 3.25, 5.25)  # s: above the box, closed, at the end of the hold, of all
+LIFT_ENDS, HOLD_ENDS, END = 1.45, 3.25, 5.25  # s
 SHOWN = {0.5: "around the box", 1.25: "lifted", 1.95: "swung round", 4.5: "put down"}  # s: the moments of the picture
 FINGERS = ("left", "right", "thumb")
 LINKS = {"upper": (0.4, 0.1), "forearm": (0.25, 0.09)}  # kg, m from the joint; of arm.urdf
@@ -61,8 +61,12 @@ def write_motion(path):
     np.savetxt(path, motion() + 0.0, fmt=form, delimiter=",", header=heading, comments="")
 
 
+def is_at(sim, moment):
+    return abs(sim.time - moment) < 0.5 * sim.time_step
+
+
 def in_palm(sim):
-    """Where the box is in the frame of the palm (m), and how far it has turned there (rad)."""
+    """Where the box is in the frame of the palm (m), and by how much it is turned there (rad)."""
     palm, box = sim.body("arm.palm"), sim.body("box")
     back = Rotation.from_quat(np.roll(palm.rotation, -1)).inv()
     turn = back * Rotation.from_quat(np.roll(box.rotation, -1))
@@ -81,40 +85,33 @@ def torques(box):
     return -bends  # gravity turns them forwards
 
 
-def pick(moments=(), watch=None, **changes):
-    """Runs the scene. (figures, shapes at the moments); raises where a step is not solved."""
+def pick(moments=(), **changes):
+    """Runs the scene: (figures in SI units, what it looks like at the moments). Raises where a step is not solved."""
     sim = sinew.load(HERE / "pick.yaml", **changes)
-    grips = [sim.contact(f"{name}_grip") for name in FINGERS]
-    stand, box = sim.contact("stand"), sim.body("box")
-    found, shapes, pending = {"deepest": 0.0, "slipping": 0, "contacts": 0, "steps": 0}, [], sorted(moments)
-    while sim.time < STILL[-1] - 0.5 * sim.time_step:
+    contacts = [sim.contact(name) for name in (*(f"{name}_grip" for name in FINGERS), "stand")]
+    motors = [sim.actuator(name) for name in ("shoulder", "elbow", "wrist")]
+    found, shapes = {"gap": 0.0, "carrying": 0}, []
+    while sim.time < END - 0.5 * sim.time_step:
         sim.step()
-        if sim.report.flagged or sim.report.status != "solved":
+        if sim.report.status != "solved":
             raise RuntimeError(f"the step to {sim.time:.3f} s is {sim.report.status}")
-        found["deepest"] = min(found["deepest"], *(contact.gap for contact in [*grips, stand]))
-        states = [state for grip in grips for state in grip.states]
-        if STILL[1] < sim.time < STILL[2]:
-            found["slipping"] += states.count("slip")
-            found["contacts"] = max(found["contacts"], sum(state != "open" for state in states))
-        before = sim.time - 0.5 * sim.time_step
-        if before < STILL[1] <= sim.time + 0.5 * sim.time_step:
-            found["taken"] = in_palm(sim)
-        if before < STILL[2] <= sim.time + 0.5 * sim.time_step:
+        found["gap"] = min(found["gap"], *(contact.gap for contact in contacts))
+        carrying = sum(np.count_nonzero(contact.normal_forces) for contact in contacts)
+        found["carrying"] = max(found["carrying"], carrying)
+        if is_at(sim, LIFT_ENDS):
+            found["lifted"] = in_palm(sim)
+        if is_at(sim, HOLD_ENDS):
             found["held"] = in_palm(sim)
-            found["normal"] = np.array([grip.normal_force for grip in grips])
-            found["lift"] = np.array([grip.force[2] for grip in grips])  # on the fingers
+            found["normal"] = np.array([contact.normal_force for contact in contacts[:-1]])
+            found["borne"] = -np.array([contact.force[2] for contact in contacts[:-1]])  # of the box's weight
             found["tension"] = np.array([sim.actuator(f"{name}_cable").tension for name in FINGERS])
-            found["loaded"] = np.array([sim.actuator(name).torque for name in ("shoulder", "elbow", "wrist")])
-        if pending and sim.time > pending[0] - 0.5 * sim.time_step:
-            shapes.append((pending.pop(0), triangles(sim)))
-        if watch:
-            watch(sim)
-    found["empty"] = np.array([sim.actuator(name).torque for name in ("shoulder", "elbow", "wrist")])
-    found["mass"] = box.mass
-    found["steps"] = sim.steps
-    meant = np.array([REACH * np.cos(PUT), REACH * np.sin(PUT), 0.0225])
-    found["off"] = box.position - meant
-    found["turned"] = (Rotation.from_quat(np.roll(box.rotation, -1)) * Rotation.from_rotvec([0, 0, -PUT])).magnitude()
+            found["loaded"] = np.array([motor.torque for motor in motors])
+        if any(is_at(sim, moment) for moment in moments):
+            shapes.append((sim.time, triangles(sim)))
+    box = sim.body("box")
+    found["empty"] = np.array([motor.torque for motor in motors])
+    found["weight"] = G * box.mass
+    found["off"] = Rotation.from_euler("z", -PUT).apply(box.position) - [REACH, 0.0, 0.0225]  # outwards, sideways, up
     return found, shapes
 
 
@@ -195,7 +192,8 @@ def draw(path, shapes):
     colours = {**dict.fromkeys(FINGERS, "#e8913a"), "box": "#3f7fbf", "arm.palm": "#5b6470"}
     table = np.array([[-0.1, -0.28, 0], [0.36, -0.28, 0], [0.36, 0.22, 0], [-0.1, 0.22, 0]])
     foot = np.array([[-0.018, -0.022, 0], [0.018, -0.022, 0], [0.018, 0.022, 0], [-0.018, 0.022, 0]])
-    figure, axes = plt.subplots(2, 2, figsize=(9, 6), gridspec_kw=dict.fromkeys(("left", "bottom", "wspace", "hspace"), 0.0) | {"right": 1.0, "top": 1.0})
+    frame = {"left": 0.0, "right": 1.0, "bottom": 0.0, "top": 1.0, "wspace": 0.0, "hspace": 0.0}
+    figure, axes = plt.subplots(2, 2, figsize=(9, 6), gridspec_kw=frame)
     for axis, (time, bodies), does in zip(axes.flat, shapes, SHOWN.values()):
         ground = PolyCollection([table @ screen], facecolors="#eceae4", edgecolors="#c9c5ba", zorder=1)
         axis.add_collection(ground)
@@ -209,15 +207,15 @@ def draw(path, shapes):
             at = turn.apply(foot + [REACH, 0.0, 0.0]) @ screen
             axis.plot(*np.vstack([at, at[:1]]).T, style, color="#9a3b3b", linewidth=1.2, zorder=3)
         faces = np.concatenate(list(bodies.values()))
-        base = np.concatenate([np.tile(to_rgb(colours.get(name, "#a9b1bb")), (len(part), 1)) for name, part in bodies.items()])
+        base = [np.tile(to_rgb(colours.get(name, "#a9b1bb")), (len(part), 1)) for name, part in bodies.items()]
         normals = np.cross(faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 0])
         normals /= np.linalg.norm(normals, axis=1, keepdims=True) + 1e-30
         normals *= np.where(normals @ away < 0.0, -1.0, 1.0)[:, None]
-        shade = np.clip(base * (0.62 + 0.42 * np.clip(normals @ light, 0.0, 1.0))[:, None], 0.0, 1.0)
+        shade = np.clip(np.concatenate(base) * (0.62 + 0.42 * np.clip(normals @ light, 0.0, 1.0))[:, None], 0.0, 1.0)
         order = np.argsort((faces @ away).mean(axis=1))
         drawn = {"facecolors": shade[order], "edgecolors": shade[order], "linewidths": 0.3, "zorder": 4}
         axis.add_collection(PolyCollection((faces @ screen)[order], **drawn))
-        axis.set(aspect="equal", xlim=(-0.3, 0.33), ylim=(-0.12, 0.30))
+        axis.set(aspect="equal", xlim=(-0.27, 0.39), ylim=(-0.125, 0.315))
         axis.axis("off")
         axis.text(0.03, 0.93, f"{time:.2f} s", fontsize=12, weight="bold", transform=axis.transAxes, va="top")
         axis.text(0.03, 0.84, does, fontsize=12, transform=axis.transAxes, va="top")
@@ -233,8 +231,18 @@ def main():
         write_motion(HERE / "pick.csv")
     arguments.out.mkdir(parents=True, exist_ok=True)
     found, shapes = pick(SHOWN)
-    for key, value in found.items():
-        print(key, value)
+    slid, turned = 1e3 * (found["held"][0] - found["lifted"][0]), np.degrees(found["held"][1] - found["lifted"][1])
+    print(f"deepest overlap            {-found['gap']:.1e} m, up to {found['carrying']} points that carry force")
+    print(f"{'finger':26s} {'normal':>7s} {'borne':>7s} {'cable':>7s}  (N)")
+    for name, *forces in zip(FINGERS, found["normal"], found["borne"], found["tension"]):
+        print(f"  {name:24s} {forces[0]:7.4f} {forces[1]:7.4f} {forces[2]:7.3f}")
+    print(f"  sum, weight of the box           {found['borne'].sum():7.4f} {found['weight']:7.4f}")
+    print(f"the box in the palm, through the swing: moved {np.round(slid, 3)} mm, turned {turned:.2f} deg")
+    print(f"put down beside its place: {np.round(1e3 * found['off'], 3)} mm (outwards, sideways, up)")
+    for case in ("loaded", "empty"):
+        both = zip(("shoulder", "elbow", "wrist"), found[case], torques(case == "loaded"))
+        text = "; ".join(f"{name} {value:.4f} ({by_hand:.4f})" for name, value, by_hand in both)
+        print(f"torques, {case}, in N m (by hand): {text}")
     draw(arguments.out / "pick.png", shapes)
     print(arguments.out)
 
