@@ -80,9 +80,9 @@ def torques(box):
     at_elbow = UPPER * np.sin(shoulder)
     (upper, near), (forearm, far) = LINKS.values()
     lever = at_elbow + far * np.sin(shoulder + elbow)
-    bends = G * np.array([forearm * lever + hand * REACH, forearm * (lever - at_elbow) + hand * (REACH - at_elbow), 0.0])
-    bends[0] += G * upper * near * np.sin(shoulder)
-    return -bends  # gravity turns them forwards
+    about_elbow = forearm * (lever - at_elbow) + hand * (REACH - at_elbow)
+    about_shoulder = upper * near * np.sin(shoulder) + forearm * lever + hand * REACH
+    return -G * np.array([about_shoulder, about_elbow, 0.0])  # gravity turns them forwards
 
 
 def pick(moments=(), **changes):
