@@ -97,8 +97,8 @@ void Membranes::find_blocks(std::span<const NodeId> free_index, const linalg::Bl
   for (std::size_t a = 0; a < 3; ++a) {
     for (std::size_t b = 0; b <= a; ++b, ++block) {
       const bool ordered = triangle.free[a] >= triangle.free[b];
-      block->a = static_cast<std::int8_t>(ordered ? a : b);
-      block->b = static_cast<std::int8_t>(ordered ? b : a);
+      block->a = static_cast<std::uint8_t>(ordered ? a : b);
+      block->b = static_cast<std::uint8_t>(ordered ? b : a);
       if (triangle.free[a] < 0 || triangle.free[b] < 0) continue;
       block->position = pattern.find(triangle.free[a], triangle.free[b]);
     }
@@ -141,8 +141,8 @@ void Membranes::add_stiffness(const Triangle& triangle, const Strained& now, Tan
   const Matrix3 left = f * f.transpose();
   for (const Block& block : triangle.blocks) {
     if (block.position < 0) continue;
-    const Vector2d& a = triangle.gradient[static_cast<std::size_t>(block.a)];
-    const Vector2d& b = triangle.gradient[static_cast<std::size_t>(block.b)];
+    const Vector2d& a = triangle.gradient[block.a];
+    const Vector2d& b = triangle.gradient[block.b];
     const Vector3 fa = f * a, fb = f * b;
     const Matrix3 k =
         stiffness * triangle.volume *

@@ -63,7 +63,7 @@ class Membranes {
  private:
   struct Block {
     std::int32_t position = -1;  // -1: a node of the pair is fixed
-    std::int8_t a = 0, b = 0;    // the local nodes of its row and column
+    std::uint8_t a = 0, b = 0;   // the local nodes of its row and column
   };
   struct Triangle {
     std::array<NodeId, 3> node;
