@@ -45,6 +45,13 @@ def test_examples(example, tmp_path):
     assert len(result.stdout.splitlines()) >= 3
 
 
+def test_no_page_has_marks_of_an_unfinished_merge():
+    pages = [ROOT / "README.md", ROOT / "CHANGELOG.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").glob("*.md")]
+    assert len(pages) > 20
+    marked = [page.name for page in pages if re.search(r"^(<{7}|>{7}|={7})( |$)", page.read_text(encoding="utf-8"), re.MULTILINE)]
+    assert not marked
+
+
 @pytest.mark.parametrize("scene", SCENES, ids=lambda scene: str(scene.relative_to(ROOT)))
 def test_example_scenes(scene):
     sim = sinew.load(scene)
