@@ -23,7 +23,6 @@ namespace sinew::sim {
 namespace {
 
 using mechanics::Integrator;
-using sinew::testing::block_on_plane;
 using sinew::testing::BlockOptions;
 using sinew::testing::mean_velocity;
 

@@ -53,7 +53,10 @@ sim::StepSettings step_settings(const SceneDescription& scene) {
 // takes ten iterations for one of the exact tangent's; the robot takes that.
 std::optional<Notice> replace_tangent(const SceneDescription& scene, sim::StepSettings& step) {
   const auto rubber = std::ranges::find_if(scene.bodies, [](const BodyDescription& body) {
-    return !body.arm && body.material.model == MaterialModel::hyperelastic;
+    const auto is_rubber = [](const auto& of) {
+      return of.material.model == MaterialModel::hyperelastic;
+    };
+    return !body.arm && (is_rubber(body) || std::ranges::any_of(body.parts, is_rubber));
   });
   if (scene.solver.tangent != Tangent::rotated || rubber == scene.bodies.end()) return std::nullopt;
   step.tangent = mechanics::Tangent::exact;

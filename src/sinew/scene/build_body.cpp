@@ -3,31 +3,97 @@
 #include <memory>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "sinew/core/error.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
+#include "sinew/fem/solid_elements.hpp"
 #include "sinew/mesh/selection.hpp"
 #include "sinew/pcc/arm.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/scene/build_parts.hpp"
+#include "sinew/scene/readers.hpp"
 #include "sinew/sim/model_builder.hpp"
 
 namespace sinew::scene {
 
 namespace {
 
-// All of the body, of its material.
-fem::Region whole(const BodyDescription& body) {
+// All of the body, of one material.
+fem::Region whole(const BodyDescription& body, const MaterialDescription& material) {
   fem::Region region;
-  if (body.material.model == MaterialModel::hyperelastic) {
-    region.hyperelastic = body.material.energy;
+  if (material.model == MaterialModel::hyperelastic) {
+    region.hyperelastic = material.energy;
   } else {
-    region.constants = {body.material.young_modulus, body.material.poisson_ratio};
-    region.law = body.material.model == MaterialModel::linear ? material::Law::linear
-                                                              : material::Law::corotational;
+    region.constants = {material.young_modulus, material.poisson_ratio};
+    region.law = material.model == MaterialModel::linear ? material::Law::linear
+                                                         : material::Law::corotational;
   }
   region.patches = body.element == Element::tet4_patch;
-  region.density = body.density.value_or(body.mass ? 0.0 : body.material.density);
   return region;
+}
+
+double density_of(const BodyDescription& body) {
+  return body.density.value_or(body.mass ? 0.0 : body.material.density);
+}
+
+double density_of(const PartDescription& part, const BodyDescription& body) {
+  if (part.density && body.mass) {
+    throw Error(ErrorKind::conflicting_keys, part.place,
+                "the part has a density, and the body a mass, which spreads over its volume",
+                "give the body a density in place of `mass`");
+  }
+  if (part.density) return *part.density;
+  return body.mass || !(part.material.density > 0.0) ? density_of(body) : part.material.density;
+}
+
+// Those with all of their nodes in the part's region.
+std::vector<NodeId> elements_of(const PartDescription& part, const mesh::Mesh& mesh) {
+  std::vector<char> picked(static_cast<std::size_t>(mesh.node_count()), 0);
+  const auto nodes = at_place(part.place, [&] {
+    return mesh::select_nodes(mesh, region_of(part.region), part.region.place.item);
+  });
+  for (const NodeId node : nodes) picked[static_cast<std::size_t>(node)] = 1;
+  const fem::ElementList list(mesh);
+  std::vector<NodeId> elements;
+  for (int e = 0; e < list.count(); ++e) {
+    const auto is_picked = [&](NodeId node) { return picked[static_cast<std::size_t>(node)] != 0; };
+    if (std::ranges::all_of(list.nodes(e), is_picked)) elements.push_back(e);
+  }
+  if (!elements.empty()) return elements;
+  throw Error(ErrorKind::empty_region, part.place,
+              fmt::format("the region has {} nodes, and no element with all of its nodes there",
+                          nodes.size()),
+              "widen it to the bounds of the elements, or refine the mesh");
+}
+
+// The body's own material for what is in no part, then the parts.
+std::vector<fem::Region> regions_of(const BodyDescription& body, const mesh::Mesh& mesh) {
+  fem::Region rest = whole(body, body.material);
+  rest.density = density_of(body);
+  if (body.parts.empty()) return {rest};
+  std::vector<fem::Region> regions;
+  std::vector<const PartDescription*> owner(
+      static_cast<std::size_t>(fem::ElementList(mesh).count()), nullptr);
+  for (const PartDescription& part : body.parts) {
+    fem::Region& region = regions.emplace_back(whole(body, part.material));
+    region.density = density_of(part, body);
+    region.elements = elements_of(part, mesh);
+    for (const NodeId e : region.elements) {
+      const PartDescription*& own = owner[static_cast<std::size_t>(e)];
+      if (own != nullptr) {
+        throw Error(ErrorKind::conflicting_keys, part.place,
+                    fmt::format("elements of '{}' are in '{}' already", part.name, own->name),
+                    "let regions not overlap by an element");
+      }
+      own = &part;
+    }
+  }
+  for (std::size_t e = 0; e < owner.size(); ++e) {
+    if (owner[e] == nullptr) rest.elements.push_back(static_cast<NodeId>(e));
+  }
+  if (!rest.elements.empty()) regions.insert(regions.begin(), std::move(rest));
+  return regions;
 }
 
 void fix(const FixedRegion& fixed, const mesh::Mesh& mesh, fem::FemModelSettings& elements) {
@@ -61,7 +127,7 @@ fem::FemBodySettings fem_settings(const SceneDescription& scene, const BodyDescr
   if (const auto& start = body.initial_velocity) {
     settings.initial_velocity = {start->linear, start->angular};
   }
-  settings.elements.regions.push_back(whole(body));
+  settings.elements.regions = regions_of(body, *settings.mesh);
   settings.elements.total_mass = body.mass;
   settings.elements.even_mass = body.mass_distribution == MassDistribution::even;
   settings.elements.mass = body.mass_matrix == MassMatrix::consistent ? fem::MassMatrix::consistent

@@ -1,4 +1,6 @@
 // Which finite element a body is made of, and what there is to say about it.
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "sinew/core/rotation.hpp"
@@ -20,13 +22,32 @@ double poisson_ratio(const MaterialDescription& material) {
                                                        : material.poisson_ratio;
 }
 
+template <typename Visit>
+void each_material(const BodyDescription& body, Visit visit) {
+  visit(body.material);
+  for (const PartDescription& part : body.parts) visit(part.material);
+}
+
+// Of its materials, the largest.
+double poisson_ratio(const BodyDescription& body) {
+  double largest = -1.0;
+  each_material(body, [&](const MaterialDescription& one) {
+    largest = std::max(largest, poisson_ratio(one));
+  });
+  return largest;
+}
+
 /// A written 0.4 may come back from bulk and shear modulus with an error of rounding.
-bool locks(const MaterialDescription& material) {
-  return poisson_ratio(material) > kLargestLinearRatio + 1e-9;
+bool locks(const BodyDescription& body) { return poisson_ratio(body) > kLargestLinearRatio + 1e-9; }
+
+bool is_hyperelastic(const MaterialDescription& material) {
+  return material.model == MaterialModel::hyperelastic;
 }
 
 bool is_hyperelastic(const BodyDescription& body) {
-  return body.material.model == MaterialModel::hyperelastic;
+  bool all = true;
+  each_material(body, [&](const MaterialDescription& one) { all = all && is_hyperelastic(one); });
+  return all;
 }
 
 void check_kind(const BodyDescription& body, const mesh::Mesh& mesh) {
@@ -43,17 +64,18 @@ void check_kind(const BodyDescription& body, const mesh::Mesh& mesh) {
               "leave `element` out, or give another mesh");
 }
 
-void check_law(const BodyDescription& body, const mesh::Mesh& mesh) {
-  const bool split = is_hyperelastic(body) && body.material.energy.saint_venant_shear == 0.0;
+void check_law(const BodyDescription& body, const MaterialDescription& material,
+               const mesh::Mesh& mesh) {
+  const bool split = is_hyperelastic(material) && material.energy.saint_venant_shear == 0.0;
   if (body.element == Element::tet4_patch && !split) {
-    throw Error(ErrorKind::unsupported_element, body.material.place,
+    throw Error(ErrorKind::unsupported_element, material.place,
                 "tet4-patch needs a law whose volumetric part stands apart",
                 "give it a hyperelastic one other than saint-venant-kirchhoff, for instance model: "
                 "neo-hookean, or take tet4");
   }
   const bool hexahedra = !mesh.hexahedra.empty();
-  if ((hexahedra || !mesh.quadratic.empty()) && !is_hyperelastic(body)) {
-    throw Error(ErrorKind::unsupported_element, body.material.place,
+  if ((hexahedra || !mesh.quadratic.empty()) && !is_hyperelastic(material)) {
+    throw Error(ErrorKind::unsupported_element, material.place,
                 fmt::format("the mesh has {}, and the material is linear or corotational",
                             hexahedra ? "hexahedra" : "quadratic tetrahedra"),
                 "give them a hyperelastic one, for instance model: neo-hookean");
@@ -70,7 +92,7 @@ std::string remedy(const BodyDescription& body, bool only_tetrahedra) {
 // Where it is made, in the element that the body names.
 mesh::Mesh make_own_mesh(const BodyDescription& body) {
   const bool chosen = body.element != Element::any;
-  if (chosen || !is_hyperelastic(body) || !locks(body.material)) {
+  if (chosen || !is_hyperelastic(body) || !locks(body)) {
     return make_mesh(body.mesh, body.element);
   }
   if (!body.mesh.shape.empty()) return make_mesh(body.mesh, Element::tet10);
@@ -92,13 +114,13 @@ mesh::Mesh make_body_mesh(const BodyDescription& body) {
 
 void check_element(const BodyDescription& body, const mesh::Mesh& mesh) {
   check_kind(body, mesh);
-  check_law(body, mesh);
+  each_material(body, [&](const MaterialDescription& one) { check_law(body, one, mesh); });
 }
 
 std::optional<Notice> locking_notice(const BodyDescription& body, const mesh::Mesh& mesh) {
   const bool linear = !mesh.tetrahedra.empty() && mesh.quadratic.empty();
-  if (!linear || body.element == Element::tet4_patch || !locks(body.material)) return std::nullopt;
-  const double ratio = poisson_ratio(body.material);
+  if (!linear || body.element == Element::tet4_patch || !locks(body)) return std::nullopt;
+  const double ratio = poisson_ratio(body);
   const bool chosen = body.element == Element::tet4;
   return Notice{
       chosen ? NoticeLevel::remark : NoticeLevel::warning, NoticeKind::locking_element,

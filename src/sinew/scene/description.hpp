@@ -133,6 +133,15 @@ struct UrdfDescription {
   std::vector<Start> starts;
 };
 
+/// Elements of a body that are of another material.
+struct PartDescription {
+  std::string name;
+  Location place;
+  FixedRegion region;  ///< that has all their nodes
+  MaterialDescription material;
+  std::optional<double> density;  ///< kg/m^3; none: of the material, or of the body
+};
+
 struct BodyDescription {
   std::string name;
   Location place;
@@ -146,6 +155,7 @@ struct BodyDescription {
   Element element = Element::any;
   Location element_place;
   MaterialDescription material;
+  std::vector<PartDescription> parts;
   std::optional<double> mass;     ///< kg, total; not together with density
   std::optional<double> density;  ///< kg/m^3
   Location mass_place;            ///< of whichever is given

@@ -259,6 +259,31 @@ std::vector<Key> mass_keys() {
        .description = "The mass matrix."}};
 }
 
+std::shared_ptr<const KeyTable> part_table() {
+  return make_table(
+      {.name = "part",
+       .description = "Elements of a body that are of another material.",
+       .keys = {{.name = "region",
+                 .forms = {table(make_table(
+                     {.name = "region of a part",
+                      .description = "Elements with all of their nodes there: one of these.",
+                      .keys = region_keys("Nodes"),
+                      .alternatives = {{{"box", "sphere", "plane", "set"}, true}}}))},
+                 .example = "{box: -20 -20 80 20 20 100 mm}",
+                 .description = "Where the part is, in the mesh at rest.",
+                 .required = true},
+                {.name = "material",
+                 .forms = material_forms(),
+                 .example = "smooth-sil-950",
+                 .description = "Its material, as of a body.",
+                 .required = true},
+                {.name = "density",
+                 .forms = {quantity(density(), positive())},
+                 .example = "1200 kg/m^3",
+                 .description = "Without: that of the library's material, or of the body. Not "
+                                "together with the body's `mass`."}}});
+}
+
 std::shared_ptr<const KeyTable> fem_table() {
   KeyTable fem{.name = "body: type fem",
                .description = "A deformable body of finite elements.",
@@ -302,7 +327,11 @@ std::shared_ptr<const KeyTable> fem_table() {
        .forms = material_forms(),
        .example = "{young_modulus: 450 kPa, poisson_ratio: 0.45}",
        .description = "Material: a constitutive law, or a library name such as ecoflex-00-30.",
-       .required = true}};
+       .required = true},
+      {.name = "parts",
+       .forms = {names(table(part_table()))},
+       .example = "{tip: {region: {box: -20 -20 80 20 20 100 mm}, material: smooth-sil-950}}",
+       .description = "Parts of other materials. All other elements are of `material`."}};
   for (Key& key : mass_keys()) fem.keys.push_back(std::move(key));
   fem.keys.push_back({.name = "damping",
                       .forms = {table(damping_table())},

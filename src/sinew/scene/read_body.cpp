@@ -177,6 +177,23 @@ MaterialDescription read_material_file(const Fields& body, const ReadContext& co
   return read_material(fields, context);
 }
 
+void read_parts(const Fields& fields, const ReadContext& context, BodyDescription& body) {
+  const Node* parts = fields.find("parts");
+  if (parts == nullptr) return;
+  const Form& form = fields.form("parts").items.front();
+  for (const Node::Entry& entry : parts->entries()) {
+    const Fields own(entry.value, form);
+    PartDescription part;
+    part.name = entry.key;
+    part.place = entry.key_place;
+    part.region = read_region(own.below("region"));
+    part.material = read_material(own, context);
+    double density = 0.0;
+    if (own.read("density", density)) part.density = density;
+    body.parts.push_back(std::move(part));
+  }
+}
+
 void read_mass(const Fields& fields, BodyDescription& body) {
   double value = 0.0;
   body.mass_place = body.place;
@@ -327,6 +344,7 @@ BodyDescription read_body(const Node::Entry& entry, const ReadContext& context) 
                       {"hex8", Element::hex8}});
   body.element_place = fields.place("element");
   body.material = read_material(fields, context);
+  read_parts(fields, context, body);
   read_mass(fields, body);
   const Fields damping = fields.below("damping");
   damping.read("mass", body.mass_damping);
