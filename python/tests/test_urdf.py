@@ -129,7 +129,7 @@ def test_motors_drive_an_arm_within_the_limits_of_the_file(tmp_path):
     weight, centres = 0.1 * 9.81, [sim.body(b).centre_of_mass for b in ("robot.upper", "robot.lower")]
     moment = sum(np.cross(c - [0, 0, 0.5], [0, 0, weight]) for c in centres)
     assert sim.actuator("shoulder").torque == pytest.approx(
-        Rotation.from_rotvec([0.2, 0, 0]).apply([0, 1, 0]) @ moment, rel=1e-9)
+        Rotation.from_rotvec([0.2, 0, 0]).apply([0, 1, 0]) @ moment, rel=1e-8)  # as far as a step is solved
     weak = make(pendulum(tmp_path, '<limit lower="-1" upper="2" effort="0.2" velocity="30"/>'), integrator="bdf2",
                 actuators=motors)
     weak.run(duration=0.3)

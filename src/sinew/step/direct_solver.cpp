@@ -211,6 +211,8 @@ LawStatus DirectSolver::solve_blocks(const StepProblem& problem) {
   return LawStatus::failed;
 }
 
+// Efforts that are given stand on the right side: the compliance of their rows, which may be that
+// of a cable that moves nothing, decides nothing.
 LawStatus DirectSolver::solve_boxes(const Eigen::Map<const MatrixX>& compliance) {
   const auto count = static_cast<Eigen::Index>(boxes_.size());
   if (count == 0) return LawStatus::solved;
@@ -220,16 +222,24 @@ LawStatus DirectSolver::solve_boxes(const Eigen::Map<const MatrixX>& compliance)
     scale_.resize(count);
   }
   const auto motion = motion_.view();
+  const auto is_given = [&](Eigen::Index k) {
+    const Box& box = boxes_[static_cast<std::size_t>(k)];
+    return box.lower == box.upper;
+  };
   for (Eigen::Index i = 0; i < count; ++i) {
-    scale_[i] = compliance(i, i) > 0.0 ? 1.0 / std::sqrt(compliance(i, i)) : 1.0;
+    const bool scaled = !is_given(i) && compliance(i, i) > 0.0;
+    scale_[i] = scaled ? 1.0 / std::sqrt(compliance(i, i)) : 1.0;
   }
   for (Eigen::Index j = 0; j < count; ++j) {
-    for (Eigen::Index i = 0; i < count; ++i) {
-      program_.hessian(i, j) = scale_[i] * scale_[j] * compliance(i, j);
-    }
-    program_.hessian(j, j) += kRedundancy;
     const Box& box = boxes_[static_cast<std::size_t>(j)];
-    program_.gradient[j] = scale_[j] * (motion(j, 0) - box.motion);
+    double moved = motion(j, 0) - box.motion;
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const bool apart = is_given(i) || is_given(j);
+      program_.hessian(i, j) = apart ? 0.0 : scale_[i] * scale_[j] * compliance(i, j);
+      if (is_given(i)) moved += compliance(j, i) * boxes_[static_cast<std::size_t>(i)].lower;
+    }
+    program_.hessian(j, j) += is_given(j) ? 1.0 : kRedundancy;
+    program_.gradient[j] = is_given(j) ? -box.lower : scale_[j] * moved;
     program_.lower[j] = box.lower / scale_[j];
     program_.upper[j] = box.upper / scale_[j];
   }
