@@ -205,20 +205,23 @@ def test_redundant_robots_come_to_rest(walls):
 def test_cables_that_move_nothing_do_not_disturb_others_in_any_order(first):
     # A cable within a rigid body: its compliance is rounding. It once sent a chamber that is named before it to its limit.
     points = [[0.003, 0.014, -0.049], [0.03, 0.014, -0.0489], [0.057, 0.0128, -0.049]]
-    idle = {"type": "cable", "body": "link", "pull": "body", "points": points, "outside": "nearest"}
-    chamber = {"type": "pressure", "body": "tube", "surface": {"set": "inner"}, "cap": True, "limits": {"pressure": {"max": "20 kPa"}},
+    idle = {"type": "cable", "body": "link", "pull": "body", "points": points, "outside": "nearest",
+            "limits": {"tension": {"max": "5 N"}, "displacement": {"min": "-10 mm", "max": "8 mm"}}}
+    chamber = {"type": "pressure", "body": "tube", "surface": {"set": "inner"}, "cap": True, "limits": {"pressure": {"min": "-10 kPa", "max": "20 kPa"}},
                "command": {"volume_growth": {"ramp": {"to": "0.08 ml", "duration": "40 ms"}}}}
     cables = {"cable_0": idle, "cable_1": {**idle, "command": {"tension": {"ramp": {"to": 0.4, "duration": "40 ms"}}}}}
+    segment = {"length": "30 mm", "mass": "10 g", "stiffness": "0.02 N m", "damping": "2e-4 N m s"}
     actuators = {"chamber": chamber, **cables} if first == "chamber" else {**cables, "chamber": chamber}
     sim = sinew.load({
         "sinew": 1, "time_step": "5 ms", "integrator": "backward-euler", "gravity": "0 0 0 m/s^2",
         "bodies": {
+            "arm": {"type": "pcc", "segments": [segment, segment]},
             "link": {"type": "rigid", "shape": {"box": "60 20 10 mm"}, "density": 1000.0, "pose": {"position": "30 8 -48 mm"}},
             "tube": {"type": "fem", "mesh": {"shape": "hollow-cylinder", "inner_radius": "5 mm", "outer_radius": "11 mm", "height": "60 mm",
                                              "element_size": "20 mm"}, "element": "tet4", "density": 1000.0, "fixed": {"set": "bottom"},
                      "material": {"model": "corotational", "young_modulus": "120 kPa", "poisson_ratio": 0.35}},
         },
-        "joints": {"pin": {"type": "hinge", "bodies": ["world", "link"], "point": "0 8 -48 mm", "axis": "y"}},
+        "joints": {"pin": {"type": "cylindrical", "bodies": ["arm", "link"], "point": "0 8 -48 mm", "axis": "x"}},
         "actuators": actuators,
     })  # fmt: skip
     sim.step(4)
