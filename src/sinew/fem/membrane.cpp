@@ -1,10 +1,10 @@
 #include "sinew/fem/membrane.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
 #include "sinew/fem/assembly.hpp"
+#include "sinew/linalg/positive_part.hpp"
 #include "sinew/mesh/mesh.hpp"
 
 namespace sinew::fem {
@@ -13,21 +13,18 @@ namespace {
 
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
-using Triple = std::array<NodeId, 3>;
 
 // Calls visit(triangle, share of the thickness).
 template <typename Visit>
 void each_triangle(const mesh::Face& face, Visit visit) {
   const auto& [a, b, c, d] = face.node;
   if (d >= 0) {
-    for (const Triple& one : {Triple{a, b, c}, {a, c, d}, {a, b, d}, {b, c, d}}) visit(one, 0.5);
+    for (const mesh::Triangle& one : {mesh::Triangle{a, b, c}, {a, c, d}, {a, b, d}, {b, c, d}})
+      visit(one, 0.5);
     return;
   }
-  if (!face.is_quadratic()) return visit(Triple{a, b, c}, 1.0);
-  const auto& [ab, bc, ca] = face.middle;
-  for (const Triple& one : {Triple{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}}) {
-    visit(one, 1.0);
-  }
+  if (!face.is_quadratic()) return visit(mesh::Triangle{a, b, c}, 1.0);
+  for (const mesh::Triangle& one : mesh::quarters(face)) visit(one, 1.0);
 }
 
 void check(const MembraneLayer& layer) {
@@ -35,13 +32,6 @@ void check(const MembraneLayer& layer) {
   if (layer.thickness > 0.0) return;
   throw Error(ErrorKind::out_of_range, {.item = layer.name},
               fmt::format("the thickness is {} m", layer.thickness), "give one above zero");
-}
-
-Matrix2d positive_part(const Matrix2d& symmetric) {
-  Eigen::SelfAdjointEigenSolver<Matrix2d> solver;
-  solver.computeDirect(symmetric);
-  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).asDiagonal() *
-         solver.eigenvectors().transpose();
 }
 
 }  // namespace
@@ -58,7 +48,7 @@ Membranes::Membranes(const mesh::Mesh& mesh, std::span<const MembraneLayer> laye
     check(layer);
     areas_.push_back(0.0);
     for (const mesh::Face& face : layer.faces) {
-      each_triangle(face, [&](const Triple& node, double share) {
+      each_triangle(face, [&](const mesh::Triangle& node, double share) {
         Triangle triangle = at_rest(mesh.nodes, node);
         areas_.back() += share * triangle.volume;
         triangle.volume *= share * layer.thickness;
@@ -73,7 +63,7 @@ Membranes::Membranes(const mesh::Mesh& mesh, std::span<const MembraneLayer> laye
 }
 
 // Its volume is the area as yet.
-Membranes::Triangle Membranes::at_rest(const Points& nodes, const Triple& node) {
+Membranes::Triangle Membranes::at_rest(const Points& nodes, const mesh::Triangle& node) {
   Triangle triangle;
   triangle.node = node;
   const Vector3 first = (nodes.row(node[1]) - nodes.row(node[0])).transpose();
@@ -135,7 +125,7 @@ void Membranes::add_stiffness(const Triangle& triangle, const Strained& now, Tan
   Matrix2d stress = Matrix2d::Zero();  // of the geometric stiffness
   if (tangent == Tangent::exact) stress = now.stress;
   if (tangent == Tangent::projected || tangent == Tangent::rotated) {
-    stress = positive_part(now.stress);
+    stress = linalg::positive_part(now.stress);
   }
   const auto& f = now.gradient;
   const Matrix3 left = f * f.transpose();

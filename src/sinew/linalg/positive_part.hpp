@@ -1,5 +1,5 @@
 /// @file
-/// The nearest positive semi-definite matrix of a symmetric 3x3 one.
+/// The nearest positive semi-definite matrix of a small symmetric one.
 #pragma once
 
 #include "sinew/core/types.hpp"
@@ -8,7 +8,8 @@ namespace sinew::linalg {
 
 /// sum max(l_i, 0) v_i v_i^T over the eigenpairs (l_i, v_i): the nearest positive semi-definite
 /// matrix in the Frobenius norm (Higham, Linear Algebra Appl. 103, 1988, theorem 2.1).
-/// @param matrix (3, 3), taken as symmetric: its lower half is read.
+/// @param matrix taken as symmetric: its lower half is read.
 Matrix3 positive_part(const Matrix3& matrix);
+Eigen::Matrix2d positive_part(const Eigen::Matrix2d& matrix);
 
 }  // namespace sinew::linalg

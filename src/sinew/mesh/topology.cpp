@@ -148,15 +148,18 @@ std::vector<NodeId> outer_nodes(const Mesh& mesh) {
   return nodes;
 }
 
+std::array<Triangle, 4> quarters(const Face& face) {
+  const auto& n = face.node;
+  const auto& m = face.middle;
+  return {{{n[0], m[0], m[2]}, {m[0], n[1], m[1]}, {m[2], m[1], n[2]}, {m[0], m[1], m[2]}}};
+}
+
 Surface boundary_surface(const Mesh& mesh) {
   Surface surface{.name = mesh.name, .nodes = mesh.nodes, .triangles = {}};
   for (Face face : boundary_faces(mesh)) {
     auto& n = face.node;
     if (face.is_quadratic()) {
-      const auto& m = face.middle;
-      surface.triangles.insert(
-          surface.triangles.end(),
-          {{n[0], m[0], m[2]}, {m[0], n[1], m[1]}, {m[2], m[1], n[2]}, {m[0], m[1], m[2]}});
+      std::ranges::copy(quarters(face), std::back_inserter(surface.triangles));
       continue;
     }
     if (face.corners() == 4) {  // split at the lowest node

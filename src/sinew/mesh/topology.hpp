@@ -39,6 +39,10 @@ struct Face {
   }
 };
 
+/// The four flat triangles of a quadratic one, turned as it is: at its corners, then the middle
+/// one.
+std::array<Triangle, 4> quarters(const Face& face);
+
 /// The faces that belong to one element only: triangles of tetrahedra, then quadrilaterals of
 /// hexahedra. Of a mesh without volume elements its triangles.
 std::vector<Face> boundary_faces(const Mesh& mesh);

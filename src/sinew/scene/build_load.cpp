@@ -35,7 +35,7 @@ std::vector<mesh::Face> faces_of(const SurfaceDescription& surface, const mesh::
         return mesh::select_faces(mesh, region_of(surface.region), what);
       case SurfaceDescription::Kind::file:
         throw Error(ErrorKind::conflicting_keys, surface.place,
-                    "a load acts on faces of the body's own mesh, not on a surface in a file",
+                    "faces of the body's own mesh are asked for, not a surface in a file",
                     "name them by a point inside, a patch or a region");
     }
   } catch (const Error& error) {

@@ -70,11 +70,9 @@ std::shared_ptr<const KeyTable> solid_table() {
 }
 
 std::shared_ptr<const KeyTable> nodes_table() {
-  return make_table({.name = "nodes of a contact",
-                     .description = "Surface nodes that may make contact, selected in the mesh at "
-                                    "rest. Exactly one of box, sphere, plane and set.",
-                     .keys = region_keys("Nodes"),
-                     .alternatives = {{{"box", "sphere", "plane", "set"}, true}}});
+  return region_table("nodes of a contact",
+                      "Surface nodes that may make contact, selected in the mesh at "
+                      "rest. Exactly one of box, sphere, plane and set.");
 }
 
 }  // namespace

@@ -112,6 +112,8 @@ Key file_unit_key(const char* only_with = "");
 std::vector<Form> axis_forms();
 /// box, sphere, plane and set, of which one must stand.
 std::vector<Key> region_keys(const char* whose);
+/// A table of them.
+std::shared_ptr<const KeyTable> region_table(const char* name, const char* description);
 /// x, y, z, angle, axis and centre of a motion over time.
 std::vector<Key> motion_keys();
 

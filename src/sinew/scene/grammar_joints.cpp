@@ -9,11 +9,9 @@ namespace {
 using constraint::JointType;
 
 std::shared_ptr<const KeyTable> weld_region_table() {
-  return make_table({.name = "region of a weld",
-                     .description = "Nodes of the first body, selected in the mesh at rest. "
-                                    "Exactly one of box, sphere, plane and set.",
-                     .keys = region_keys("Nodes"),
-                     .alternatives = {{{"box", "sphere", "plane", "set"}, true}}});
+  return region_table("region of a weld",
+                      "Nodes of the first body, selected in the mesh at rest. "
+                      "Exactly one of box, sphere, plane and set.");
 }
 
 Key bodies_key(const char* example, const char* description) {

@@ -143,6 +143,13 @@ std::vector<Key> region_keys(const char* whose) {
            .description = what + " of a named set of the mesh; `sinew info` lists them."}};
 }
 
+std::shared_ptr<const KeyTable> region_table(const char* name, const char* description) {
+  return make_table({.name = name,
+                     .description = description,
+                     .keys = region_keys("Nodes"),
+                     .alternatives = {{{"box", "sphere", "plane", "set"}, true}}});
+}
+
 namespace {
 
 Form fixed_region() {
@@ -264,11 +271,8 @@ std::shared_ptr<const KeyTable> part_table() {
       {.name = "part",
        .description = "Elements of a body that are of another material.",
        .keys = {{.name = "region",
-                 .forms = {table(make_table(
-                     {.name = "region of a part",
-                      .description = "Elements with all of their nodes there: one of these.",
-                      .keys = region_keys("Nodes"),
-                      .alternatives = {{{"box", "sphere", "plane", "set"}, true}}}))},
+                 .forms = {table(region_table(
+                     "region of a part", "Elements with all of their nodes there: one of these."))},
                  .example = "{box: -20 -20 80 20 20 100 mm}",
                  .description = "Where the part is, in the mesh at rest.",
                  .required = true},

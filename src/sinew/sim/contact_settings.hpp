@@ -42,9 +42,9 @@ struct ContactSettings {
 inline constexpr double kFineEdge = 0.5;
 
 /// Whether two bodies touch with the triangles of their surfaces. Deformable ones do, with others,
-/// too. But a ball or a capsule touches a deformable surface of
-/// edges up to kFineEdge of its radius at the nodes of that, exactly round. Of rigid bodies, meshes
-/// do; others touch as shapes. An arm touches with points alone.
+/// too. But a ball or a capsule touches a deformable surface of edges up to kFineEdge of its radius
+/// at the nodes of that, exactly round. Of rigid bodies, meshes do; others touch as shapes. An arm
+/// touches with points alone.
 /// @param named nodes or points of one are named: they touch a rigid body's shape or hull.
 bool touch_by_surfaces(const mechanics::BodyModel& one, const mechanics::BodyModel& other,
                        bool named);

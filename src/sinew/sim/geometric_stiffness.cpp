@@ -100,7 +100,7 @@ void GeometricStiffness::couple(const mechanics::RowCurvature& pair) {
 // positive part. All stays on points' own blocks.
 void GeometricStiffness::add_majorant(const mechanics::RowCurvature& pair) {
   if (pair.first == pair.second) {
-    return add_to(pair.first, -linalg::positive_part(-pair.curvature));
+    return add_to(pair.first, -linalg::positive_part(Matrix3(-pair.curvature)));
   }
   const Matrix3 bound = pair.curvature.norm() * Matrix3::Identity();
   add_to(pair.first, -bound);

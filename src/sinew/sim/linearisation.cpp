@@ -61,10 +61,6 @@ void take_joints_out(const step::StepProblem& problem, Linearisation& result) {
   result.effort = std::move(effort);
 }
 
-}  // namespace
-
-namespace {
-
 // Of all rows; those that joints hold have none.
 std::vector<std::string> all_names(const Model& model) {
   std::vector<std::string> names(static_cast<std::size_t>(model.rows().rows()));

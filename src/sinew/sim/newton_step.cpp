@@ -98,7 +98,7 @@ NewtonReport NewtonStep::search(double time_step) {
   if (result.iterations > 0 && result.tangent_fallbacks == result.iterations) {
     // What is unstable from the start on is unstable in parts, too.
     run_.restore(run_.before);
-    begin_again(time_step);
+    run_.begin_world(time_step);
   } else {
     result = approach(time_step);
     tried += result.iterations;
@@ -121,7 +121,7 @@ std::optional<NewtonReport> NewtonStep::hold_motors(double time_step) {
   blocks = limited;
   if (converged(result) && keeps_motor_limits(*run_.model, blocks, run_.effort)) return result;
   run_.restore(run_.before);
-  begin_again(time_step);
+  run_.begin_world(time_step);
   return {};
 }
 
@@ -152,13 +152,6 @@ NewtonReport NewtonStep::hold_choice(const NewtonReport& chosen, double time_ste
   return result;
 }
 
-// A state has the loads that acted in its own step, and the bases where they were then.
-void NewtonStep::begin_again(double time_step) {
-  run_.surroundings.move_bases(run_.now);
-  run_.surroundings.apply(run_.now);
-  run_.world.begin_step(run_.now - time_step, run_.now, run_.effort);
-}
-
 // Where a controller's choice leads nowhere its actuators keep the efforts of the last step. It
 // remembers what it foresaw, and trusts its next choice less (see inverse::StepDamping).
 NewtonReport NewtonStep::stay(double time_step) {
@@ -171,7 +164,7 @@ NewtonReport NewtonStep::stay(double time_step) {
     if (actuators[i].owner == nullptr) continue;
     run_.world.problem().actuators[i].hold_effort(actuators[i].effort);
   }
-  begin_again(time_step);
+  run_.begin_world(time_step);
   NewtonReport result = run_.newton(nullptr, settings(time_step));
   if (!converged(result)) result = approach(time_step);
   if (!converged(result)) result = descend(time_step, kMaxDescents);
@@ -191,7 +184,7 @@ NewtonReport NewtonStep::approach(double time_step) {
   State sound = run_.before;
   const auto go_back = [&] {
     run_.restore(sound);
-    begin_again(time_step);
+    run_.begin_world(time_step);
   };
   go_back();
   world.linearise(part.request);

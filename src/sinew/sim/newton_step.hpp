@@ -32,7 +32,6 @@ class NewtonStep {
   NewtonReport descend(double time_step, int iterations);
   bool is_usable(const NewtonReport& result) const;
   void take_report(const NewtonReport& result);
-  void begin_again(double time_step);
 
   Run& run_;
   bool divisible_;

@@ -38,6 +38,12 @@ void Run::read_commands(double time, double time_step) {
   world.hold_friction();
 }
 
+void Run::begin_world(double time_step) {
+  surroundings.move_bases(now);
+  surroundings.apply(now);
+  world.begin_step(now - time_step, now, effort);
+}
+
 NewtonReport Run::newton(step::Controller* chooser, const NewtonSettings& settings) {
   return solve_newton(world, solver, chooser, effort, settings, clock, watch);
 }

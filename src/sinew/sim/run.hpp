@@ -38,6 +38,9 @@ struct Run {
   /// What actuators may do in a step, into its problem. @param time s, its end. @param time_step s;
   /// infinity lifts the limits on rates.
   void read_commands(double time, double time_step);
+  /// Bases and loads as at `now`, and the world begins a step that ends there. Also after
+  /// restore(), since a state has the loads of its own step. @param time_step s.
+  void begin_world(double time_step);
   /// From where the world is. @param chooser see solve_newton().
   NewtonReport newton(step::Controller* chooser, const NewtonSettings& settings);
   /// Reads off the state what actuators did.

@@ -66,7 +66,7 @@ void Stepper::step_in_parts() {
   const StepSettings& settings = run_.model->step();
   const double whole = settings.time_step;
   const bool parts = settings.method == Method::newton && settings.dynamic();
-  double length = parts ? first_part() : 1.0;
+  double length = parts ? first_part() : 1.0, next = kLonger * run_.next_step;
   if (length == 1.0) {
     try {
       run_.report.error = substep(static_cast<double>(run_.steps + 1) * whole, whole, parts);
@@ -76,10 +76,10 @@ void Stepper::step_in_parts() {
       if (!parts || !failure.is_run_failure()) throw;
     }
     length = 0.5;  // what failed is undone
-    run_.next_step = 0.0;
+    next = length * whole;
     ++run_.report.retries;
   }
-  go_on_in_parts(length);
+  go_on_in_parts(length, next);
 }
 
 // The fraction of the step that its first part takes: a power of two.
@@ -90,13 +90,14 @@ double Stepper::first_part() const {
   return length;
 }
 
-void Stepper::go_on_in_parts(double length) {
+// next: what the next step tries where none of these parts fails, s.
+void Stepper::go_on_in_parts(double length, double next) {
   StepReport& report = run_.report;
   const double begin = run_.time(), whole = run_.model->step().time_step;
   run_.keep(start_);
   divided_ = true;
   part_ = whole_step(begin);
-  double done = 0.0, next = std::max(kLonger * run_.next_step, length * whole);
+  double done = 0.0;
   report.substeps = 0;
   while (done < 1.0) {
     try {

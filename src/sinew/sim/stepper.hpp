@@ -34,7 +34,7 @@ class Stepper {
 
   void step_in_parts();
   double first_part() const;
-  void go_on_in_parts(double length);
+  void go_on_in_parts(double length, double next);
   Part whole_step(double begin);
   void go_in_proportion();
   void step_adaptively();

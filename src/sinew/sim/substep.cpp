@@ -15,11 +15,8 @@ void Substep::read_commands(double end, double time_step) {
 }
 
 void Substep::begin(double time_step) {
-  const double end = run_.now;
   run_.keep(run_.before);
-  run_.surroundings.move_bases(end);
-  run_.surroundings.apply(end);
-  run_.world.begin_step(end - time_step, end, run_.effort);
+  run_.begin_world(time_step);
   run_.solver.begin_step();
   if (run_.controller != nullptr) run_.controller->begin_step();
 }
