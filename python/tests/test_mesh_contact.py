@@ -175,3 +175,29 @@ def test_an_overlap_is_named(tmp_path):
     with pytest.raises(sinew.Error, match="overlap by 0.00[0-9]+ m"):
         make({"cup": part(cup(tmp_path), fixed=True),
               "part": part(box(tmp_path, (20, 16, 12)), pose={"position": "0 0 -10 mm"})})
+
+
+@pytest.mark.parametrize("first", ["beam", "pillow"])
+def test_a_law_with_more_points_than_coordinates_is_solved(first):
+    # 50 points between 31 nodes, at 1 m/s: laws whose forces are not unique. Proximal iterations go in circles here.
+    rubber = {"model": "yeoh", "c10": "20 kPa", "c20": "1 kPa", "c30": "0.1 kPa", "poisson_ratio": 0.45,
+              "viscosity": [{"relative_modulus": 0.2, "relaxation_time": "20 ms"}]}  # fmt: skip
+    bodies = {
+        "beam": {"type": "fem", "mesh": {"shape": "block", "length": "60 mm", "width": "20 mm", "height": "10 mm", "element_size": "10 mm"},
+                 "material": rubber, "density": 1000.0, "mass_matrix": "consistent", "fixed": {"set": "x_min"}},
+        "pillow": {"type": "fem", "mesh": {"shape": "block", "length": "30 mm", "width": "30 mm", "height": "30 mm", "element_size": "15 mm"},
+                   "position": "45 -5 -32.2387 mm", "density": 1000.0, "material": {"young_modulus": "100 kPa", "poisson_ratio": 0.3},
+                   "initial_velocity": {"linear": "0 0 1 m/s"}},
+    }  # fmt: skip
+    sim = sinew.load({
+        "sinew": 1, "time_step": "5 ms", "integrator": "backward-euler",
+        "solver": {"method": "newton", "adaptive": {"tolerance": 1e-3, "smallest": "2.5 ms"}},
+        "bodies": {first: bodies[first], **bodies},
+        "actuators": {"push": {"type": "force", "body": "beam", "point": "54 10 5 mm", "direction": "1 1 0", "outside": "nearest",
+                               "command": {"displacement": {"ramp": {"to": "0.3284 mm", "duration": "40 ms"}}}, "limits": {"force": {"min": "-2 N", "max": "2 N"}}}},
+        "contacts": {"floor": {"between": ["beam", "pillow"], "friction": 0.5}},
+    })  # fmt: skip
+    for _ in range(3):
+        sim.step()
+        assert not sim.report.flagged
+    assert abs(sim.contact("floor").gaps).min() < 1e-9

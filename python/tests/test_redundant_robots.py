@@ -229,3 +229,53 @@ def test_cables_that_move_nothing_do_not_disturb_others_in_any_order(first):
     assert sim.actuator("chamber").volume_growth == pytest.approx(0.04e-6, rel=1e-6)
     assert 10.0 < sim.actuator("chamber").pressure < 5e3
     assert sim.actuator("cable_1").tension == pytest.approx(0.2)
+
+
+def resting_link(command):
+    """A finger of rubber on a pad, with a link on a hinge at its end, along which a cable runs that moves nothing."""
+    points = [[0.051, 0.016, 0.008], [0.078, 0.016, 0.0081], [0.105, 0.0148, 0.008]]
+    return {
+        "sinew": 1, "time_step": "10 ms", "solver": {"method": "newton"},
+        "bodies": {
+            "finger": {"type": "fem", "mesh": {"shape": "block", "length": "60 mm", "width": "20 mm", "height": "10 mm", "element_size": "10 mm"},
+                       "material": {"model": "neo-hookean", "young_modulus": "120 kPa", "poisson_ratio": 0.45},
+                       "density": 1000.0, "fixed": {"set": "x_min"}},
+            "bracket": {"type": "rigid", "shape": {"box": "8 8 8 mm"}, "density": 1200.0, "pose": {"position": "48 10 9 mm"}},
+            "link": {"type": "rigid", "shape": {"capsule": {"radius": "8 mm", "length": "44 mm"}}, "density": 1000.0,
+                     "pose": {"position": "78 10 9 mm", "rotation": {"axis": "y", "angle": "90 deg"}}},
+            "pad": {"type": "fem", "mesh": {"shape": "block", "length": "30 mm", "width": "30 mm", "height": "30 mm", "element_size": "15 mm"},
+                    "position": "45 -5 -31.9 mm", "density": 1000.0, "fixed": {"set": "z_min"},
+                    "material": {"young_modulus": "100 kPa", "poisson_ratio": 0.3}},
+        },
+        "joints": {"bond": {"type": "weld", "bodies": ["finger", "bracket"], "points": ["45 10 9 mm", "51 13 9 mm", "48 7 8.5 mm"], "outside": "nearest"},
+                   "seam": {"type": "hinge", "bodies": ["bracket", "link"], "point": "48 10 9 mm", "axis": "0 1 0"}},
+        "actuators": {"motor": {"type": "motor", "joint": "seam", "command": {"angle": {"ramp": {"to": "0 deg", "duration": "20 ms"}}}},
+                      "idle": {"type": "cable", "body": "link", "outside": "nearest", "pull": "body", "points": points, **command}},
+        "contacts": {"rest": {"between": ["finger", "pad"]}},
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("command", "tension"),
+    [
+        ({"command": {"tension": "0.4 N"}}, 0.4),
+        ({"command": {"displacement": "0 mm"}}, 0.0),
+        ({"command": {"tension": "0.4 N"}, "limits": {"displacement": {"max": "8 mm"}}}, 0.4),
+        ({"command": {"displacement": "1 mm"}, "limits": {"tension": {"max": "5 N"}}}, 5.0),
+    ],
+)
+def test_cables_that_move_nothing_do_not_disturb_contacts(command, tension):
+    # Rounding once gave the cable a compliance of 1e-34 m/N, and Newton needed hundreds of iterations, each to other forces.
+    sim = sinew.load(resting_link(command))
+    for _ in range(4):
+        sim.step()
+        assert not sim.report.flagged
+        assert sim.report.iterations < 15
+    assert sim.actuator("idle").tension == pytest.approx(tension)
+    assert sim.linearise().W.diagonal().min() == 0.0
+
+
+def test_a_motion_that_nothing_can_bring_about_is_named():
+    sim = sinew.load(resting_link({"command": {"displacement": "1 mm"}}))
+    with pytest.raises(sinew.RunError, match="idle moves nothing, so that the motion commanded of it is out of its reach"):
+        sim.step()

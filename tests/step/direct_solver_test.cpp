@@ -273,29 +273,30 @@ TEST(Stabilised, CountsWithoutAnchors) {
   }
 }
 
-// What moves nothing takes the least effort that its limits allow, or the one commanded.
+// What moves nothing takes the effort commanded or, where its motion is as commanded, the least
+// that its limits allow; where it is not, that of the limit on its side. Without one there is none.
 TEST(DirectSolver, WhatMovesNothingTakesLeastEffort) {
   StepProblem problem;
-  problem.compliance = MatrixX::Zero(3, 3);
-  problem.delta_free = VectorX::Constant(3, -1.0);
+  problem.compliance = MatrixX::Zero(4, 4);
+  problem.delta_free = VectorX::Constant(4, -1.0);
   problem.delta = problem.delta_free;
-  for (int row = 0; row < 3; ++row) {
+  for (int row = 0; row < 4; ++row) {
     ActuatorBlock block;
     block.row = row;
-    block.effort_max = kInfinity;
+    block.effort_max = 9.0;
     block.motion_min = -kInfinity;
     block.motion_max = kInfinity;
     block.kind = row == 0 ? CommandKind::effort : CommandKind::motion;
-    block.value = 2.0;
+    block.value = row == 0 || row == 3 ? 2.0 : -1.0;
     if (row == 2) block.effort_min = 0.5;
     problem.actuators.push_back(block);
   }
-  std::vector<double> effort(3, 7.0);
+  std::vector<double> effort(4, 7.0);
   DirectSolver solver;
   ASSERT_EQ(solver.solve(problem, effort), LawStatus::solved);
-  EXPECT_EQ(effort[0], 2.0);
-  EXPECT_EQ(effort[1], 0.0);
-  EXPECT_EQ(effort[2], 0.5);
+  EXPECT_EQ(effort, (std::vector<double>{2.0, 0.0, 0.5, 9.0}));
+  problem.actuators[3].effort_max = kInfinity;
+  EXPECT_EQ(solver.solve(problem, effort), LawStatus::failed);
 }
 
 }  // namespace

@@ -1,10 +1,18 @@
 #include "sinew/mechanics/dense_step.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "sinew/core/error.hpp"
 
 namespace sinew::mechanics {
+
+namespace {
+
+// Of what a row's entries add up from: a few roundings.
+constexpr double kRowRounding = 16.0 * kEpsilon;
+
+}  // namespace
 
 DenseStep::DenseStep(Eigen::Index coordinates, const OwnRows& own, RowMemory& memory)
     : own_(own),
@@ -14,7 +22,7 @@ DenseStep::DenseStep(Eigen::Index coordinates, const OwnRows& own, RowMemory& me
       pivots_(coordinates),
       spectrum_(coordinates) {
   const Eigen::Index n = coordinates;
-  for (VectorX* v : {&right_, &motion_, &scratch_, &lessening_}) v->setZero(n);
+  for (VectorX* v : {&right_, &motion_, &scratch_, &lessening_, &gross_}) v->setZero(n);
   for (MatrixX* m : {&matrix_, &symmetric_}) m->setZero(n, n);
   for (MatrixX* m : {&jacobian_, &second_jacobian_, &pulled_}) m->setZero(3, n);
   for (MatrixX* m : {&rows_, &moved_rows_, &soft_rows_}) m->resize(n, 0);
@@ -67,20 +75,33 @@ void DenseStep::take_surface_rows(const RowValues& rows) {
   }
 }
 
-void DenseStep::take_rows(const RowValues& rows) {
-  take_surface_rows(rows);
-  const auto lasting = static_cast<Eigen::Index>(own_.rows.size());
-  make_room(lasting + static_cast<Eigen::Index>(surface_rows_.size()));
-  rows_.leftCols(lasting).setZero();
-  for (std::size_t e = 0; e < own_.entries.size(); ++e) {
+// A cable along one rigid body pulls with forces that cancel. What rounding leaves of them would
+// pose as a compliance, by which laws scale the row's effort: it is taken away.
+void DenseStep::take_lasting_rows(const RowValues& rows) {
+  const std::size_t count = own_.entries.size();
+  rows_.leftCols(static_cast<Eigen::Index>(own_.rows.size())).setZero();
+  for (std::size_t e = 0; e < count; ++e) {
     const auto& entry = own_.entries[e];
     const Vector3& direction = rows.direction[static_cast<std::size_t>(entry.entry)];
     memory_.directions[e] = direction;
     site_jacobian(entry.site, jacobian_);
+    if (e == 0 || own_.entries[e - 1].row != entry.row) gross_.setZero();
     for (Eigen::Index i = 0; i < rows_.rows(); ++i) {
       rows_(i, entry.row) += direction.dot(jacobian_.col(i));
+      gross_[i] += direction.norm() * jacobian_.col(i).norm();
+    }
+    if (e + 1 < count && own_.entries[e + 1].row == entry.row) continue;
+    for (Eigen::Index i = 0; i < rows_.rows(); ++i) {
+      if (std::abs(rows_(i, entry.row)) <= kRowRounding * gross_[i]) rows_(i, entry.row) = 0.0;
     }
   }
+}
+
+void DenseStep::take_rows(const RowValues& rows) {
+  take_surface_rows(rows);
+  const auto lasting = static_cast<Eigen::Index>(own_.rows.size());
+  make_room(lasting + static_cast<Eigen::Index>(surface_rows_.size()));
+  take_lasting_rows(rows);
   for (std::size_t k = 0; k < surface_rows_.size(); ++k) {
     patch_jacobian(surface_rows_[k].patch, jacobian_);
     rows_.col(lasting + static_cast<Eigen::Index>(k)).noalias() =

@@ -75,6 +75,7 @@ class DenseStep : public StepSystem {
   void forget_surface_rows() { surface_rows_.clear(); }
 
  private:
+  void take_lasting_rows(const RowValues& rows);
   void take_surface_rows(const RowValues& rows);
   void make_room(Eigen::Index columns);
   std::int32_t world_row(Eigen::Index column) const;
@@ -87,6 +88,7 @@ class DenseStep : public StepSystem {
   RowMemory& memory_;
   VectorX right_, motion_, scratch_;
   VectorX lessening_;
+  VectorX gross_;  // of a row: the sum of what its entries could be at most
   bool lessens_ = false;
   MatrixX matrix_, symmetric_;
   mutable MatrixX jacobian_;          // (3, n), of sites: scratch

@@ -45,6 +45,7 @@ ConeStatus ConeIsland::solve(const ConePart& part, std::span<double> start) {
   reserve(part.problem);
   result_.sweeps = result_.newton_steps = 0;
   newton_tries_ = 0;
+  shift_ = 0.0;
   result_.states.assign(part.problem.cones.size(), ContactState::open);
   x_ = Eigen::Map<const VectorX>(start.data(), x_.size());
   if (!x_.allFinite()) x_.setZero();
@@ -115,6 +116,7 @@ void ConeIsland::settle_into_blocks(const ConeProblem& problem) {
 
 void ConeIsland::measure_motion(const ConePart& part) {
   motion_ = part.problem.offset;
+  if (shift_ > 0.0) add_shifted(part);
   if (part.blocks == nullptr) {
     for (Eigen::Index j = 0; j < x_.size(); ++j) {
       if (x_[j] != 0.0) motion_ += x_[j] * part.problem.matrix.col(j);

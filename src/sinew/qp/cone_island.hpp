@@ -75,7 +75,9 @@ class ConeIsland {
   bool newton_pays(const ConePart& part) const;
   bool newton(const ConePart& part);
   bool newton_step(const ConePart& part, double proximal);
-  bool newton_steps(const ConePart& part, int most, auto&& proximal);
+  bool newton_steps(const ConePart& part, int most, double tolerance, auto&& proximal);
+  bool follow_regularised(const ConePart& part);
+  void add_shifted(const ConePart& part);
   int choose_unknowns(const ConeProblem& problem);
   bool solve_dense(const ConePart& part, int count, double proximal);
   bool solve_sparse(const ConePart& part, int count, double proximal);
@@ -90,7 +92,7 @@ class ConeIsland {
     Eigen::Vector2d direction;  // e
     double weight = 0.0;
     double friction = 0.0;
-    Vector3 right;
+    Vector3 right, motion;                 // motion: u, where it is linearised
     bool slips = false;                    // else A = 1, B = 0
     Vector3 act(const Vector3& du) const;  // A du
     Matrix3 own() const;                   // B
@@ -112,6 +114,8 @@ class ConeIsland {
   std::size_t newton_tries_ = 0;
   VectorX right_;                 // (unknowns,) and more
   linalg::AlignedNumbers best_;   // (n,)
+  linalg::AlignedNumbers start_;  // (n,) of follow_regularised()
+  double shift_ = 0.0;            // of the regularised problem, in parts of the diagonal
   VectorX step_, dual_;           // (n,) of a sparse matrix
   VectorX row_scale_;             // (unknowns,) 1/sqrt(w), by which rows and columns are scaled
   std::vector<int> unknown_row_;  // (count,) row of every unknown

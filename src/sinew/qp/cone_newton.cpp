@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include "sinew/qp/cone_island.hpp"
 
@@ -34,26 +35,93 @@ constexpr Proximal kProximal[] = {
 constexpr int kPlainRows = 96, kPlainSteps = 12;
 // Rows whose diagonal is under this part of w take the proximal term from w.
 constexpr double kStiff = 1e-12;
+// Regularised problems: the term, from this part of the diagonal on, goes down to kLastShift by
+// kNextShift each, less where Newton does not follow. What each may miss, in parts of it.
+constexpr double kLastShift = 1e-12, kNextShift = 0.1, kLeastProgress = 0.8;
+constexpr double kShiftTolerance = 1e-3;
+constexpr int kMaxShiftedSteps = 20;
 
-// @param row_scale 1/sqrt(w).
-double with_proximal(double own, double row_scale, double proximal) {
+// What is added to a diagonal entry. @param row_scale 1/sqrt(w).
+double proximal_term(double own, double row_scale, double proximal) {
   const double square = row_scale * row_scale;
-  return own * square > kStiff ? own * (1.0 + proximal) : own + proximal / square;
+  return own * square > kStiff ? own * proximal : proximal / square;
 }
 
 }  // namespace
 
 bool ConeIsland::newton(const ConePart& part) {
   const std::size_t tries = newton_tries_++;
+  const double tolerance = settings_.tolerance;
   if (tries == 0 && x_.size() <= kPlainRows) {
-    if (newton_steps(part, kPlainSteps, [](double) { return kMinSmoothing; })) return true;
+    if (newton_steps(part, kPlainSteps, tolerance, [](double) { return kMinSmoothing; })) {
+      return true;
+    }
   }
-  return newton_steps(part, kMaxNewtonSteps, kProximal[tries % std::size(kProximal)]);
+  if (tries == std::size(kProximal)) return follow_regularised(part);
+  return newton_steps(part, kMaxNewtonSteps, tolerance, kProximal[tries % std::size(kProximal)]);
+}
+
+// Tikhonov's way: the problems with W + a D have one solution each, which Newton finds from that
+// of the larger a; with a -> 0 they lead to a solution of least size, whatever the order of the
+// contacts. It takes more steps than the proximal way, and succeeds where that goes in circles.
+bool ConeIsland::follow_regularised(const ConePart& part) {
+  linalg::grow(start_, best_.size());
+  std::copy_n(x_.data(), x_.size(), start_.data());
+  const double least = result_.residual;
+  x_.setZero();
+  settle_into_blocks(part.problem);
+  double reached = 1.0, factor = kNextShift;
+  while (reached > kLastShift && factor < kLeastProgress) {
+    shift_ = reached * factor;
+    measure_motion(part);
+    judge(part);
+    const double tolerance = std::max(settings_.tolerance, kShiftTolerance * shift_);
+    if (!newton_steps(part, kMaxShiftedSteps, tolerance, [&](double) { return shift_; })) {
+      factor = std::sqrt(factor);
+      continue;
+    }
+    reached = std::exchange(shift_, 0.0);
+    measure_motion(part);
+    if (judge(part) <= settings_.tolerance) return true;
+    factor = std::max(factor * factor, kNextShift);
+  }
+  shift_ = 0.0;
+  measure_motion(part);
+  judge(part);
+  if (!(result_.residual < least)) {
+    std::copy_n(start_.data(), x_.size(), x_.data());
+    measure_motion(part);
+    judge(part);
+  }
+  return false;
+}
+
+// (W + a D) x in place of W x, for the iterate of follow_regularised().
+void ConeIsland::add_shifted(const ConePart& part) {
+  const auto add = [&](int row, double own, double scale) {
+    motion_[row] += proximal_term(own, 1.0 / std::sqrt(scale), shift_) * x_[row];
+  };
+  const auto& w = part.problem.matrix;
+  const std::size_t boxes = part.problem.boxes.size();
+  for (std::size_t k = 0; k < boxes; ++k) {
+    const int row = part.problem.boxes[k].row;
+    if (box_scale_[k] > 0.0) add(row, box_scale_[k], box_scale_[k]);
+  }
+  for (std::size_t k = 0; k < part.problem.cones.size(); ++k) {
+    const int row = part.problem.cones[k].row;
+    if (!usable(k)) continue;
+    for (int c = 0; c < 3; ++c) {
+      const double own = part.blocks == nullptr
+                             ? w(row + c, row + c)
+                             : part.blocks->diagonal(static_cast<int>(boxes + k))(c, c);
+      add(row + c, own, scale_[k]);
+    }
+  }
 }
 
 // At most so many steps; without success the iterate is the best of them. @param proximal its size
 // for a relative residual.
-bool ConeIsland::newton_steps(const ConePart& part, int most, auto&& proximal) {
+bool ConeIsland::newton_steps(const ConePart& part, int most, double tolerance, auto&& proximal) {
   const auto keep = [&] { std::copy_n(x_.data(), x_.size(), best_.data()); };
   keep();
   double least = result_.residual;
@@ -67,10 +135,10 @@ bool ConeIsland::newton_steps(const ConePart& part, int most, auto&& proximal) {
       vain = 0;
       keep();
     }
-    if (residual <= settings_.tolerance) {
+    if (residual <= tolerance) {
       settle_into_blocks(part.problem);
       measure_motion(part);
-      if (judge(part) <= settings_.tolerance) return true;
+      if (judge(part) <= tolerance) return true;
     }
     if (!std::isfinite(residual)) break;
   }
@@ -117,13 +185,14 @@ int ConeIsland::choose_unknowns(const ConeProblem& problem) {
   for (std::size_t k = 0; k < problem.cones.size(); ++k) {
     const int row = problem.cones[k].row;
     cone_at_[k] = -1;
-    if (!usable(k) || x_[row] - motion_[row] / scale_[k] <= 0.0) {
-      x_.segment<3>(row).setZero();
-      continue;
-    }
+    if (!usable(k) || x_[row] - motion_[row] / scale_[k] <= 0.0) continue;
     cone_at_[k] = count;
+    branches_[k] = branch(problem, k);
     row_scale_.segment<3>(count).setConstant(1.0 / std::sqrt(scale_[k]));
     for (int c = 0; c < 3; ++c) unknown_row_[static_cast<std::size_t>(count++)] = row + c;
+  }
+  for (std::size_t k = 0; k < problem.cones.size(); ++k) {
+    if (cone_at_[k] < 0) x_.segment<3>(problem.cones[k].row).setZero();
   }
   return count;
 }
@@ -136,6 +205,7 @@ ConeIsland::Branch ConeIsland::branch(const ConeProblem& problem, std::size_t nu
   const Vector3 r = x_.segment<3>(row), u = motion_.segment<3>(row);
   const Vector3 s = r - u / w;
   Branch result;
+  result.motion = u;
   result.right = -u;
   const double far = s.tail<2>().norm();
   if (far <= mu * s[0] && mu > 0.0) return result;
@@ -172,8 +242,9 @@ void ConeIsland::form_right(const ConeProblem& problem) {
   }
   for (std::size_t k = 0; k < problem.cones.size(); ++k) {
     if (cone_at_[k] < 0) continue;
-    branches_[k] = branch(problem, k);
-    right_.segment<3>(cone_at_[k]) = branches_[k].right;
+    const Branch& own = branches_[k];
+    const Vector3 du = motion_.segment<3>(problem.cones[k].row) - own.motion;
+    right_.segment<3>(cone_at_[k]) = own.right - (own.slips ? own.act(du) : du);
   }
 }
 
@@ -185,7 +256,7 @@ bool ConeIsland::solve_dense(const ConePart& part, int count, double proximal) {
     for (int i = 0; i < count; ++i) {
       system(i, j) = column[unknown_row_[static_cast<std::size_t>(i)]];
     }
-    system(j, j) = with_proximal(system(j, j), row_scale_[j], proximal);
+    system(j, j) += proximal_term(system(j, j), row_scale_[j], proximal);
   }
   for (std::size_t k = 0; k < part.problem.cones.size(); ++k) {
     const int at = cone_at_[k];
@@ -226,7 +297,7 @@ bool ConeIsland::solve_sparse(const ConePart& part, int count, double proximal) 
       const bool own = static_cast<int>(i) == j;
       const double scale = row_scale_[row] * row_scale_[column];
       for (int c = 0; own && c < 3; ++c) {
-        block(c, c) = with_proximal(block(c, c), row_scale_[row], proximal);
+        block(c, c) += proximal_term(block(c, c), row_scale_[row], proximal);
       }
       if (i >= boxes && branches_[i - boxes].slips) {
         for (int c = 0; c < 3; ++c) block.col(c) = branches_[i - boxes].act(block.col(c));

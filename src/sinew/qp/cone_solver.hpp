@@ -99,7 +99,10 @@ struct ConeResult {
 /// a Levenberg-Marquardt method. With a in proportion to the residual its convergence stays
 /// quadratic where the distance from the solutions is bounded by the residual (Yamashita &
 /// Fukushima 2001; Fan & Yuan 2005), also where solutions are many. In small problems a few steps
-/// with a next to nothing are tried first: they take the shortest way where W is regular.
+/// with a next to nothing are tried first: they take the shortest way where W is regular. Where the
+/// branches still change for ever, the problems with W + a D, without x_k, are solved one after the
+/// other with a from 0.1 to nothing (Tikhonov & Arsenin 1977), each from the last one's solution:
+/// many more steps, and the solution of least size whatever the order of the contacts.
 ///
 /// **Sparse matrices.** From 96 rows on, what has no block of W in common is solved apart, and a
 /// part with few blocks by sparse factorisations (BlockLu), first for a few iterations by

@@ -11,8 +11,6 @@ namespace {
 
 // Relative size of the term that shares tension among redundant cables.
 constexpr double kRedundancy = 1e-12;
-// Motions that agree within this (m) agree.
-constexpr double kMotionTolerance = 1e-12;
 // A solution of contacts that misses the tolerance by rounding or slow convergence is one up to
 // here.
 constexpr double kUsable = 1e-6;
@@ -39,6 +37,7 @@ void DirectSolver::begin_step() {
 
 LawStatus DirectSolver::solve(const StepProblem& problem, std::span<double> effort) {
   sort(problem, effort);
+  if (unreachable_) return LawStatus::failed;
   return problem.capstans.empty() ? solve_with_drives(problem, effort)
                                   : solve_with_friction(problem, effort);
 }
@@ -50,6 +49,7 @@ void DirectSolver::sort(const StepProblem& problem, std::span<double> effort) {
   boxes_.clear();
   cones_.clear();
   unknown_.clear();
+  unreachable_ = false;
   free_ = problem.delta_free;
   branch_.resize(problem.actuators.size(), Branch::pull);
   for (std::size_t i = 0; i < problem.actuators.size(); ++i) {
@@ -92,10 +92,19 @@ void DirectSolver::sort_actuator(const StepProblem& problem, int index, std::spa
     const bool stops = block.kind != CommandKind::motion &&
                        (std::isfinite(block.motion_min) || std::isfinite(block.motion_max));
     if (moves && (box.lower < box.upper || stops)) return boxes_.push_back(box);
-    own = block.kind == CommandKind::effort ? block.value : 0.0;
-    own = std::clamp(own, box.lower, box.upper);
+    const double gap = problem.delta_free[block.row] - block.value;
+    own = block.kind == CommandKind::effort ? std::clamp(block.value, box.lower, box.upper)
+                                            : idle_effort(box, gap * block.motion_scale);
+    unreachable_ = unreachable_ || !std::isfinite(own);
   }
   if (own != 0.0) free_ += own * problem.compliance.col(block.row);
+}
+
+// Of a row whose motion no effort changes: at a limit on either side of the motion asked for, the
+// least there. Infinite where no limit stands on its side. @param gap m, beyond what is asked for.
+double DirectSolver::idle_effort(const Box& box, double gap) {
+  const bool stays = std::abs(gap) <= kMotionTolerance;
+  return std::clamp(stays ? 0.0 : gap > 0.0 ? box.lower : box.upper, box.lower, box.upper);
 }
 
 // lambda in [lower, upper]; delta = motion strictly between, >= motion at `lower`, <= motion at
@@ -184,14 +193,13 @@ void DirectSolver::settle_decided(const StepProblem& problem, Eigen::Map<MatrixX
     box.decided = compliance(k, k) <= kDecided * alone;
     if (!box.decided) continue;
     const double gap = motion(k, 0) - box.motion;
-    const bool stays = std::abs(gap) <= kMotionTolerance;
-    double effort = stays ? 0.0 : gap > 0.0 ? box.lower : box.upper;
-    effort = std::clamp(effort, box.lower, box.upper);
+    const double effort = idle_effort(box, gap);
     if (!std::isfinite(effort)) {  // nothing can be done: what is held is beyond a stop
       box.decided = false;
       continue;
     }
     // A problem of its own, whose solution that is, well beyond a limit where it is one.
+    const bool stays = std::abs(gap) <= kMotionTolerance;
     const double beyond = stays ? 0.0 : std::copysign(problem.size, gap);
     compliance.row(k).setZero();
     compliance.col(k).setZero();

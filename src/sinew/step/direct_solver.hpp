@@ -17,6 +17,9 @@
 
 namespace sinew::step {
 
+/// m: motions that agree within this agree.
+inline constexpr double kMotionTolerance = 1e-12;
+
 /// Solves all blocks of a StepProblem together, from the last efforts, by three nested iterations
 /// of which each runs only where a block asks for it:
 ///
@@ -34,7 +37,8 @@ namespace sinew::step {
 ///    limits of its motion is one of two boxes, at or below the command and above it; branches are
 ///    switched until the motions agree.
 ///
-/// Owned actuators keep the efforts that they have. What moves nothing gets the least effort.
+/// Owned actuators keep the efforts that they have. What moves nothing gets the least effort, or,
+/// where its motion is asked to be another, the effort at its limit.
 /// Blocks of stiffness are followers.
 class DirectSolver {
  public:
@@ -63,6 +67,7 @@ class DirectSolver {
   void sort(const StepProblem& problem, std::span<double> effort);
   void sort_actuator(const StepProblem& problem, int index, std::span<double> effort);
   Box box_of(const ActuatorBlock& block, int index) const;
+  static double idle_effort(const Box& box, double gap);
   LawStatus solve_with_friction(const StepProblem& problem, std::span<double> effort);
   bool follow_tensions(const StepProblem& problem, std::span<const double> effort, double share);
   LawStatus solve_with_drives(const StepProblem& problem, std::span<double> effort);
@@ -79,6 +84,7 @@ class DirectSolver {
   std::vector<qp::ConeBlock> cones_;  // rows among the unknowns
   std::vector<int> unknown_;          // rows of boxes, then of cones
   std::vector<Branch> branch_;        // (actuators,)
+  bool unreachable_ = false;          // a motion that no effort changes is asked to be another
   VectorX free_;                      // (rows,) delta where unknowns and followers are zero
   linalg::ScratchMatrix compliance_;  // (unknowns, unknowns)
   linalg::ScratchMatrix motion_;      // (unknowns, 1)
