@@ -64,3 +64,24 @@ def test_a_motor_at_its_limit_gives_way_to_the_load_of_the_step():
     turned = [2.0 * np.arctan2(np.abs(s.body("palm").rotation[2]), s.body("palm").rotation[0]) for s in (sim, end)]
     assert abs(torques[-1]) > 0.03 - 1e-6 and turned[0] > 0.5
     assert abs(turned[0] - turned[1]) < 1e-6
+
+
+def test_a_slack_cable_cannot_keep_the_limit_of_its_displacement():
+    # A force shortens the cable's way beyond the limit: its tension is at the least, and nothing else can be done about it.
+    sim = sinew.load({
+        "sinew": 1, "gravity": "0 0 0 m/s^2", "time_step": "5 ms", "integrator": "bdf2",
+        "bodies": {"beam": {
+            "type": "fem", "mesh": {"shape": "block", "length": "60 mm", "width": "10 mm", "height": "10 mm", "element_size": "10 mm"},
+            "material": {"young_modulus": "100 kPa", "poisson_ratio": 0.3}, "density": 1000.0, "fixed": {"set": "x_min"}}},
+        "actuators": {
+            "cable": {"type": "cable", "body": "beam", "pull": "world", "outside": "nearest", "points": ["58 5 8 mm", "-10 5 8 mm"],
+                      "limits": {"displacement": {"max": "0.5 mm"}}, "command": {"tension": "0 N"}},
+            "push": {"type": "force", "body": "beam", "point": "58 5 5 mm", "direction": "-1 0 0", "outside": "nearest",
+                     "command": {"force": {"ramp": {"to": 2.0, "duration": "20 ms"}}}}},
+    })  # fmt: skip
+    for _ in range(8):
+        sim.step()
+        assert not sim.report.flagged
+        assert sim.report.iterations < 10
+        assert sim.actuator("cable").tension == 0.0
+    assert sim.actuator("cable").displacement > 1e-3

@@ -33,7 +33,8 @@ double miss(const ActuatorBlock& block, double effort, double motion) {
     return box_miss(motion - block.motion_min, false, at_upper);
   }
   if (block.effort_min == block.effort_max) return 0.0;
-  return std::max({0.0, motion - block.motion_max, block.motion_min - motion});
+  return std::max({0.0, at_lower ? 0.0 : motion - block.motion_max,
+                   at_upper ? 0.0 : block.motion_min - motion});
 }
 
 // How far a motion that somebody chose the effort of is beyond its limits.
