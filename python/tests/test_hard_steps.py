@@ -79,9 +79,11 @@ def test_a_slack_cable_cannot_keep_the_limit_of_its_displacement():
             "push": {"type": "force", "body": "beam", "point": "58 5 5 mm", "direction": "-1 0 0", "outside": "nearest",
                      "command": {"force": {"ramp": {"to": 2.0, "duration": "20 ms"}}}}},
     })  # fmt: skip
-    for _ in range(8):
+    reached = []
+    for _ in range(6):
         sim.step()
         assert not sim.report.flagged
         assert sim.report.iterations < 10
         assert sim.actuator("cable").tension == 0.0
-    assert sim.actuator("cable").displacement > 1e-3
+        reached.append(sim.actuator("cable").displacement)
+    assert max(reached) > 1.5e-3
