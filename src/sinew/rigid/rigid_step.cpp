@@ -32,6 +32,7 @@ void RigidStep::begin_step() {
 double RigidStep::form(const mechanics::LinearisationRequest& request, VectorX& right,
                        MatrixX& matrix) {
   const RigidBodyModel& model = state_.model;
+  iterating_ = request.iterating;
   if (!model.is_free()) return 1.0;
   const Vector3 weight = model.mass() * model.settings().gravity;
   right.setZero();
@@ -71,6 +72,13 @@ Vector3 RigidStep::arm_of(const mechanics::Patch& patch) const {
 
 // A force f at r = R r_0 has the moment r x f, which changes by (w x r) x f = [f] [r] w. A moment
 // keeps its axis.
+//
+// The derivative of the moment M of a potential by a turn is symmetric but for [M]/2 (Simo, Comput.
+// Methods Appl. Mech. Eng. 96, 1992, 189). Those halves of all forces, moments and the inertia add
+// up to that of the residual, which vanishes; the moments' own are not in A. What is left of skew
+// parts would only lag an iteration behind, since W takes symmetric ones (add_compliance): a
+// bracket of a gram under newtons took tens of them. A single linearisation keeps the derivative,
+// on which its order hangs, and so does a body that nothing loads, for its gyroscopic moment.
 void RigidStep::add_row_stiffness(MatrixX& matrix) {
   const RigidBodyModel& model = state_.model;
   if (!model.is_free()) return;
@@ -80,15 +88,19 @@ void RigidStep::add_row_stiffness(MatrixX& matrix) {
   };
   auto block = matrix.bottomRightCorner<3, 3>();
   const auto& entries = model.own_rows().entries;
+  bool loaded = false;
   for (std::size_t e = 0; e < entries.size(); ++e) {
     const double effort = state_.memory.effort[entries[e].row];
+    loaded = loaded || effort != 0.0;
     const auto& site = model.attachment(entries[e].site);
     if (effort == 0.0 || site.kind == RigidBodyModel::Attachment::Kind::orientation) continue;
     block -= turned(effort * state_.memory.directions[e], site.arm);
   }
   for (const SurfaceRow& row : surface_rows()) {
+    loaded = loaded || row.effort != 0.0;
     if (row.effort != 0.0) block -= turned(row.effort * row.direction, arm_of(row.patch));
   }
+  if (loaded && iterating_) block = (0.5 * (block + block.transpose())).eval();
 }
 
 void RigidStep::site_jacobian(int site, MatrixX& result) const {
