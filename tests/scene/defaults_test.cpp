@@ -99,7 +99,7 @@ class Dump {
     for (const auto* limit : {&actuator.effort, &actuator.motion}) {
       add(limit->min, limit->max, limit->rate);
     }
-    for (const double time : {0.0, 0.3, 1.7}) add(actuator.command->signal.value(time));
+    for (const double time : {0.0, 0.3, 1.7}) add(actuator.command.signal.value(time));
   }
   template <typename... Values>
   void add(const Values&... values) {

@@ -17,19 +17,6 @@ namespace sinew::scene {
 
 namespace {
 
-sim::Command command(const ActuatorDescription& actuator) {
-  if (!actuator.command) return {};
-  switch (actuator.command->kind) {
-    case CommandDescription::Kind::motion:
-      return {sim::CommandKind::motion, actuator.command->signal};
-    case CommandDescription::Kind::effort:
-      return {sim::CommandKind::effort, actuator.command->signal};
-    case CommandDescription::Kind::input:
-      return {sim::CommandKind::input, actuator.command->signal};
-  }
-  return {};
-}
-
 void add_cable(sim::ModelBuilder& builder, const ActuatorDescription& actuator, int body,
                const BodyOf& body_of) {
   sim::CableSettings cable;
@@ -43,10 +30,10 @@ void add_cable(sim::ModelBuilder& builder, const ActuatorDescription& actuator, 
   }
   cable.pull_from_world = actuator.pull == PullPoint::world;
   cable.outside = actuator.outside;
-  cable.tension = limits_of(actuator.effort);
+  cable.tension = actuator.effort;
   cable.tension.min = std::max(cable.tension.min, 0.0);
-  cable.displacement = limits_of(actuator.motion);
-  cable.command = command(actuator);
+  cable.displacement = actuator.motion;
+  cable.command = actuator.command;
   cable.geometric_stiffness = actuator.geometric_stiffness;
   cable.friction = actuator.friction;
   cable.guide_radius = actuator.guide_radius.value_or(0.0);
@@ -62,9 +49,9 @@ void add_force(sim::ModelBuilder& builder, const ActuatorDescription& actuator, 
   force.point = actuator.point;
   force.direction = actuator.direction;
   force.outside = actuator.outside;
-  force.force = limits_of(actuator.effort);
-  force.displacement = limits_of(actuator.motion);
-  force.command = command(actuator);
+  force.force = actuator.effort;
+  force.displacement = actuator.motion;
+  force.command = actuator.command;
   builder.add_force(force);
 }
 
@@ -79,7 +66,7 @@ void add_spring(sim::ModelBuilder& builder, const ActuatorDescription& actuator,
   line.outside = actuator.outside;
   line.spring = actuator.spring;
   line.free_at_rest = actuator.free_at_rest;
-  line.command = command(actuator);
+  line.command = actuator.command;
   builder.add_spring(line);
 }
 
@@ -106,9 +93,9 @@ void add_chamber(sim::ModelBuilder& builder, const ActuatorDescription& actuator
   chamber.outside = actuator.outside;
   chamber.cap = actuator.cap;
   chamber.load_stiffness = actuator.load_stiffness;
-  chamber.pressure = limits_of(actuator.effort);
-  chamber.volume_growth = limits_of(actuator.motion);
-  chamber.command = command(actuator);
+  chamber.pressure = actuator.effort;
+  chamber.volume_growth = actuator.motion;
+  chamber.command = actuator.command;
   chamber.gas = actuator.gas;
   chamber.liquid = actuator.liquid;
   builder.add_chamber(chamber);
@@ -120,9 +107,9 @@ void add_motor(sim::ModelBuilder& builder, const ActuatorDescription& actuator, 
   motor.place = actuator.place;
   motor.joint = joint;
   motor.linear = actuator.type == ActuatorDescription::Type::linear_motor;
-  motor.effort = limits_of(actuator.effort);
-  motor.motion = limits_of(actuator.motion);
-  motor.command = command(actuator);
+  motor.effort = actuator.effort;
+  motor.motion = actuator.motion;
+  motor.command = actuator.command;
   builder.add_motor(motor);
 }
 
@@ -133,17 +120,13 @@ void add_torque(sim::ModelBuilder& builder, const ActuatorDescription& actuator,
   torque.body = body;
   torque.segment = actuator.segment;
   torque.towards = actuator.towards;
-  torque.torque = limits_of(actuator.effort);
-  torque.angle = limits_of(actuator.motion);
-  torque.command = command(actuator);
+  torque.torque = actuator.effort;
+  torque.angle = actuator.motion;
+  torque.command = actuator.command;
   builder.add_torque(torque);
 }
 
 }  // namespace
-
-sim::Limits limits_of(const LimitDescription& description) {
-  return {description.min, description.max, description.rate};
-}
 
 void add_actuator(sim::ModelBuilder& builder, const ActuatorDescription& actuator,
                   const BodyOf& body_of, const JointOf& joint_of) {

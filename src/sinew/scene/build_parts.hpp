@@ -17,7 +17,6 @@ class BodyModel;
 }
 namespace sinew::sim {
 class ModelBuilder;
-struct Limits;
 }  // namespace sinew::sim
 
 namespace sinew::scene {
@@ -55,8 +54,6 @@ std::optional<Notice> bare_points_notice(const ActuatorDescription& cable,
 
 /// The region as the mesh's selections know it.
 mesh::Region region_of(const FixedRegion& region);
-
-sim::Limits limits_of(const LimitDescription& description);
 
 /// The faces of the mesh that a surface names, whatever but a file. Throws Error at its place.
 std::vector<mesh::Face> faces_of(const SurfaceDescription& surface, const mesh::Mesh& mesh);

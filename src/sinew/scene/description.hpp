@@ -7,7 +7,6 @@
 
 #include <array>
 #include <filesystem>
-#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -19,6 +18,8 @@
 #include "sinew/constraint/surface.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/core/types.hpp"
+#include "sinew/fem/mass_matrix.hpp"
+#include "sinew/inverse/inverse_settings.hpp"
 #include "sinew/inverse/target.hpp"
 #include "sinew/linalg/factorisation.hpp"
 #include "sinew/material/elastic_constants.hpp"
@@ -28,6 +29,7 @@
 #include "sinew/rigid/rigid_settings.hpp"
 #include "sinew/scene/node.hpp"
 #include "sinew/sim/actuator.hpp"
+#include "sinew/sim/base_motion.hpp"
 #include "sinew/sim/fluid_drive.hpp"
 #include "sinew/sim/load_settings.hpp"
 #include "sinew/sim/signal.hpp"
@@ -37,15 +39,14 @@
 
 namespace sinew::scene {
 
-inline constexpr double kUnlimited = std::numeric_limits<double>::infinity();
-
+using fem::MassMatrix;
+using inverse::Regularisation;
 using mechanics::Integrator;
 using mechanics::Tangent;
-enum class Method { one_linearisation, newton };
+using sim::Method;
 enum class MaterialModel { linear, corotational, hyperelastic };
 enum class Element { any, tet4, tet4_patch, tet10, hex8 };
 enum class MassDistribution { volume, even };
-enum class MassMatrix { lumped, consistent };
 enum class PullPoint { world, body };
 
 /// How each step is solved.
@@ -97,15 +98,6 @@ struct FixedRegion {
   double within = 1e-6;                        ///< plane: m, nodes no farther from it are fixed
   std::string set;                             ///< set: its name in the mesh
   std::array<bool, 3> axes{true, true, true};  ///< held along x, y, z
-};
-
-/// How the fixed nodes of a body, or a surface, move.
-struct BaseDescription {
-  Location place;
-  std::array<sim::Signal, 3> translation;  ///< m
-  sim::Signal angle;                       ///< rad
-  Vector3 axis = Vector3::UnitZ();         ///< unit length
-  Vector3 centre = Vector3::Zero();        ///< m
 };
 
 /// How the free nodes of a body move at the start.
@@ -164,7 +156,8 @@ struct BodyDescription {
   double mass_damping = 0.0;       ///< 1/s, Rayleigh: damping matrix = mass_damping M + ...
   double stiffness_damping = 0.0;  ///< s, ... + stiffness_damping K
   std::vector<FixedRegion> fixed;
-  std::optional<BaseDescription> base;
+  std::optional<sim::BaseMotion> base;  ///< of the fixed nodes; its body's number is not yet known
+  Location base_place;
   std::optional<InitialVelocityDescription> initial_velocity;
 };
 
@@ -174,23 +167,6 @@ struct PointList {
   Points points = Points(0, 3);
   std::vector<Location> places;
   std::vector<std::string> bodies;  ///< (n,) empty: that of the whole; or none at all
-};
-
-/// Limits of an effort (N) or a motion (m).
-struct LimitDescription {
-  Location place;
-  double min = -kUnlimited;
-  double max = kUnlimited;
-  double rate = kUnlimited;  ///< largest change per second, >= 0
-};
-
-/// What an actuator is told: an effort (tension, force: N; pressure: Pa), a motion (displacement:
-/// m; volume_growth: m^3) or a drive's input over time.
-struct CommandDescription {
-  enum class Kind { motion, effort, input };
-  Location place;
-  Kind kind = Kind::motion;
-  sim::Signal signal;
 };
 
 /// Where a pressure acts.
@@ -213,9 +189,9 @@ struct ActuatorDescription {
   std::string body;
   Location body_place;
   mesh::Outside outside = mesh::Outside::error;
-  LimitDescription effort;  ///< cable: tension, min >= 0 (0 when not given); force; pressure
-  LimitDescription motion;  ///< displacement or volume_growth
-  std::optional<CommandDescription> command;  ///< none: slack (zero effort) until told
+  sim::Limits effort;    ///< cable: tension, min >= 0 (0 when not given); force; pressure
+  sim::Limits motion;    ///< displacement or volume_growth
+  sim::Command command;  ///< left out: zero effort (slack) until told
   // cable
   PointList points;  ///< the first is the pull point
   PullPoint pull = PullPoint::world;
@@ -333,9 +309,9 @@ struct ContactDescription {
   std::optional<FixedRegion> nodes;  ///< of the outside; none, and no points: all of it
   PointList points;
   mesh::Outside outside = mesh::Outside::error;
-  double friction = 0.0;              ///< Coulomb's coefficient, >= 0
-  std::optional<double> restitution;  ///< 0 to 1; none: the integrator's
-  std::optional<BaseDescription> motion;
+  double friction = 0.0;                  ///< Coulomb's coefficient, >= 0
+  std::optional<double> restitution;      ///< 0 to 1; none: the integrator's
+  std::optional<sim::BaseMotion> motion;  ///< of the surface
 };
 
 /// What holds two bodies together, or a body to the world.
@@ -349,7 +325,7 @@ struct JointDescription {
   Vector3 point = Vector3::Zero();         ///< m
   Vector3 axis = Vector3::UnitZ();         ///< unit length
   Vector3 second_axis = Vector3::UnitX();  ///< of a universal joint
-  LimitDescription angle, displacement;    ///< rad, m
+  sim::Limits angle, displacement;         ///< rad, m
   double friction = 0.0;                   ///< N m, N
   // weld
   std::optional<FixedRegion> region;  ///< of the first; none, and no points: where they touch
@@ -364,15 +340,8 @@ inline constexpr std::string_view kWorldName = "world";
 struct TaskDescription {
   std::string effector;
   Location place;
-  inverse::Target target;  ///< m; for an orientation effector a rotation vector (rad)
-  Location target_place;
+  inverse::Target target;               ///< m; for an orientation effector a rotation vector (rad)
   std::vector<double> weights = {1.0};  ///< one for all, or one per direction of the effector; >= 0
-};
-
-/// What the efforts are drawn to where several serve equally well.
-enum class Regularisation {
-  change,  ///< the efforts of the step before: no bias of the tip at rest
-  effort,  ///< zero, as published: biases the tip
 };
 
 struct ControllerDescription {

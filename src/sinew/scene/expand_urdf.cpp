@@ -40,8 +40,7 @@ JointDescription joint_of(const UrdfJoint& from, int number, const UrdfBodies& b
       from.type == Type::prismatic ? constraint::JointType::slider : constraint::JointType::hinge;
   joint.point = bodies.frame(from.child).translation();
   joint.axis = bodies.frame(from.child).linear() * from.axis;
-  LimitDescription& limits = from.type == Type::prismatic ? joint.displacement : joint.angle;
-  limits.place = from.place;
+  sim::Limits& limits = from.type == Type::prismatic ? joint.displacement : joint.angle;
   limits.min = from.lower - bodies.start(number);
   limits.max = from.upper - bodies.start(number);
   joint.friction = from.friction;
@@ -137,7 +136,7 @@ void resolve_joints(SceneDescription& scene, const Names& names) {
       throw_unknown(actuator.joint, actuator.joint_place, "joint", keys_of(names.joints));
     }
     const UrdfJoint& joint = found->second;
-    LimitDescription &effort = actuator.effort, &motion = actuator.motion;
+    sim::Limits &effort = actuator.effort, &motion = actuator.motion;
     if (std::isinf(effort.min) && std::isinf(effort.max)) {
       effort.min = -joint.effort;
       effort.max = joint.effort;

@@ -8,8 +8,7 @@ namespace sinew::scene {
 
 namespace {
 
-void read_limit(const Fields& fields, std::string_view key, LimitDescription& limit) {
-  limit.place = fields.place(key);
+void read_limit(const Fields& fields, std::string_view key, sim::Limits& limit) {
   const Fields values = fields.below(key);
   values.read("min", limit.min);
   values.read("max", limit.max);
@@ -36,18 +35,15 @@ void read_command(const Fields& fields, ActuatorDescription& actuator, const Rea
   const Fields command = fields.below("command");
   const std::string& key = command.map().entries().front().key;
   const sim::ActuatorWords& words = sim::actuator_words(actuator.type);
-  using Kind = CommandDescription::Kind;
-  CommandDescription result;
-  result.kind = key == words.effort.name   ? Kind::effort
-                : key == words.motion.name ? Kind::motion
-                                           : Kind::input;
-  result.place = command.place(key);
-  if (result.kind == Kind::input) check_input(actuator, key, result.place);
+  using Kind = sim::CommandKind;
+  actuator.command.kind = key == words.effort.name   ? Kind::effort
+                          : key == words.motion.name ? Kind::motion
+                                                     : Kind::input;
+  if (actuator.command.kind == Kind::input) check_input(actuator, key, command.place(key));
   if (auto* wire = std::get_if<sim::SmaSettings>(&actuator.spring)) {
     wire->by_phase = key == sim::SmaDrive::kPhase.name;
   }
-  result.signal = read_signal(command, key, context);
-  actuator.command = std::move(result);
+  actuator.command.signal = read_signal(command, key, context);
 }
 
 void read_line(const Fields& fields, ActuatorDescription& cable, const ReadContext& context) {
