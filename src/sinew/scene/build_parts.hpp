@@ -48,8 +48,8 @@ std::optional<Notice> locking_notice(const BodyDescription& body, const mesh::Me
 
 /// What to say of a cable that pulls at bare points of quadratic elements so that they dent by a
 /// hundredth of the body's size: a remark where the scene asks for it, else a warning.
-/// @param cable of type cable. @param body that it runs through.
-std::optional<Notice> bare_points_notice(const ActuatorDescription& cable,
+/// @param actuator of type cable. @param body that it runs through.
+std::optional<Notice> bare_points_notice(const ActuatorDescription& actuator,
                                          const mechanics::BodyModel& body);
 
 /// The region as the mesh's selections know it.

@@ -30,10 +30,13 @@
 #include "sinew/scene/node.hpp"
 #include "sinew/sim/actuator.hpp"
 #include "sinew/sim/base_motion.hpp"
-#include "sinew/sim/fluid_drive.hpp"
+#include "sinew/sim/cable_settings.hpp"
+#include "sinew/sim/chamber_settings.hpp"
+#include "sinew/sim/force_settings.hpp"
 #include "sinew/sim/load_settings.hpp"
+#include "sinew/sim/motor_settings.hpp"
 #include "sinew/sim/signal.hpp"
-#include "sinew/sim/spring_drive.hpp"
+#include "sinew/sim/spring_line_settings.hpp"
 #include "sinew/sim/step_settings.hpp"
 #include "sinew/sim/torque_settings.hpp"
 
@@ -47,7 +50,6 @@ using sim::Method;
 enum class MaterialModel { linear, corotational, hyperelastic };
 enum class Element { any, tet4, tet4_patch, tet10, hex8 };
 enum class MassDistribution { volume, even };
-enum class PullPoint { world, body };
 
 /// How each step is solved.
 struct SolverDescription {
@@ -181,43 +183,40 @@ struct SurfaceDescription {
   FixedRegion region;                  ///< region
 };
 
+/// A cable, whose points' bodies are not yet numbered.
+struct CableDescription {
+  sim::CableSettings settings;
+  Location points_place;
+  std::vector<std::string> point_bodies;  ///< (n,) empty: the actuator's; or none at all
+  bool guide_radius_given = false;
+};
+
+/// A chamber, whose surface is not yet known.
+struct ChamberDescription {
+  sim::ChamberSettings settings;
+  SurfaceDescription surface;
+};
+
+/// A motor, whose joint is not yet numbered.
+struct MotorDescription {
+  sim::MotorSettings settings;
+  std::string joint;
+  Location joint_place;
+};
+
 struct ActuatorDescription {
   using Type = sim::ActuatorType;
   std::string name;
   Location place;
   Type type = Type::cable;
-  std::string body;
+  std::string body;  ///< none: of a motor, which acts on a joint
   Location body_place;
-  mesh::Outside outside = mesh::Outside::error;
-  sim::Limits effort;    ///< cable: tension, min >= 0 (0 when not given); force; pressure
-  sim::Limits motion;    ///< displacement or volume_growth
   sim::Command command;  ///< left out: zero effort (slack) until told
-  // cable
-  PointList points;  ///< the first is the pull point
-  PullPoint pull = PullPoint::world;
-  bool geometric_stiffness = true;
-  double friction = 0.0;               ///< Coulomb's coefficient, >= 0
-  std::optional<double> guide_radius;  ///< m, >= 0
-  double guide_spacing = 0.0;          ///< m, >= 0
-  // force
-  Vector3 point = Vector3::Zero();  ///< m
-  Location point_place;
-  Vector3 direction = Vector3::UnitZ();  ///< unit length
-  // motor
-  std::string joint;
-  Location joint_place;
-  // torque
-  int segment = 0;
-  sim::TorqueSettings::Towards towards = sim::TorqueSettings::Towards::side;
-  // pressure
-  SurfaceDescription surface;
-  bool cap = false;
-  bool load_stiffness = true;
-  std::optional<sim::GasSettings> gas;
-  std::optional<sim::LiquidSettings> liquid;
-  // spring: points and pull as a cable's
-  std::variant<sim::SpringSettings, sim::SmaSettings> spring;
-  bool free_at_rest = true;
+  /// What is the type's own. The builder adds to its settings what all types have: name, place,
+  /// body and command.
+  std::variant<CableDescription, sim::ForceSettings, ChamberDescription, sim::SpringLineSettings,
+               sim::TorqueSettings, MotorDescription>
+      own;
 };
 
 /// What the surroundings do to a body.
