@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "sinew/fem/element_fields.hpp"
 #include "sinew/inverse/controller_observables.hpp"
 #include "sinew/inverse/inverse_controller.hpp"
 #include "sinew/scene/build.hpp"
@@ -20,7 +19,9 @@
 
 #include "describe.hpp"
 #include "frame.hpp"
+#include "frame_maker.hpp"
 #include "message.hpp"
+#include "playback.hpp"
 
 namespace sinew::viewer {
 
@@ -28,17 +29,6 @@ namespace sinew::viewer {
 struct StoppedRun {
   std::int64_t step = 0;
   std::string kind, message, remedy;
-};
-
-/// A moment of a recorded run.
-struct RecordedState {
-  /// What was recorded of an observable.
-  struct Value {
-    std::size_t observable;       ///< of RobotState::observables()
-    std::vector<double> numbers;  ///< as many as it has
-  };
-  std::vector<Value> values;  ///< at least positions, or an arm's coordinates, efforts and motions
-  std::int64_t step = 0;
 };
 
 class RobotState {
@@ -80,8 +70,7 @@ class RobotState {
   void command(const SetCommand& command);
   void choose_controller(const std::optional<std::string>& name);
   void set_target(const SetTarget& target);
-  /// Puts a recorded moment in place of the present one. What was not recorded is computed anew,
-  /// with velocities of zero. Throws Error(malformed-file) for numbers of another robot.
+  /// Playback::show().
   void show(const RecordedState& recorded);
   void pull(const Pull& pull);
   void release();
@@ -98,27 +87,19 @@ class RobotState {
   void detach();
   int task_of(int effector) const { return inverse::task_of(controller_, effector); }
   sim::Observables list_observables();
-  void check(const RecordedState& recorded) const;
-  void put_body(const sim::Observable& what, const std::vector<double>& numbers,
-                sim::State& state) const;
-  void put_poses(const RecordedState& recorded, sim::State& state) const;
-  void put_actuator(const sim::Observable& what, double number, sim::State& state);
-  void fill_signals(Frame& frame);
-  void fill_body(std::size_t index, const FieldChoice& wanted, BodyFrame& frame);
-  void fill_points(Frame& frame);
-  void fill_contacts(Frame& frame);
 
   scene::Robot robot_;
   std::shared_ptr<sim::Simulation> simulation_;
   sim::Observables observables_;
   Description description_;
+  Playback playback_;
+  FrameMaker frames_;
   double real_time_factor_ = 0.0;
   std::unique_ptr<inverse::InverseController> own_;
   inverse::InverseController* controller_ = nullptr;  ///< own_, or one that others look after
   std::string controller_name_;
   std::optional<scene::SceneController> first_;
   bool observing_ = false;
-  std::vector<std::unique_ptr<fem::NodalMean>> means_;  ///< one a body; none of an arm
   std::map<std::string, Vector3> targets_;
   std::optional<int> pulled_;  ///< body
   std::optional<StoppedRun> stopped_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 
@@ -97,16 +98,17 @@ void take_inputs(ArmScene& scene, pcc::ArmSettings settings,
   scene.angle_lower = VectorX::Constant(n, -kInfinity);
   scene.angle_upper = scene.rate = VectorX::Constant(n, kInfinity);
   for (Eigen::Index u = 0; u < inputs; ++u) {
-    const ActuatorDescription& torque = *torques[static_cast<std::size_t>(u)];
+    const ActuatorDescription& actuator = *torques[static_cast<std::size_t>(u)];
+    const auto& torque = std::get<sim::TorqueSettings>(actuator.own);
     const Eigen::Index bend = plain.first(torque.segment) + static_cast<int>(torque.towards);
     settings.actuation(bend, u) = 1.0;
-    scene.inputs.push_back(torque.name);
-    scene.torque_lower[u] = torque.effort.min;
-    scene.torque_upper[u] = torque.effort.max;
-    scene.torque_rate[u] = torque.effort.rate;
-    scene.angle_lower[bend] = std::max(scene.angle_lower[bend], torque.motion.min);
-    scene.angle_upper[bend] = std::min(scene.angle_upper[bend], torque.motion.max);
-    scene.rate[bend] = std::min(scene.rate[bend], torque.motion.rate);
+    scene.inputs.push_back(actuator.name);
+    scene.torque_lower[u] = torque.torque.min;
+    scene.torque_upper[u] = torque.torque.max;
+    scene.torque_rate[u] = torque.torque.rate;
+    scene.angle_lower[bend] = std::max(scene.angle_lower[bend], torque.angle.min);
+    scene.angle_upper[bend] = std::min(scene.angle_upper[bend], torque.angle.max);
+    scene.rate[bend] = std::min(scene.rate[bend], torque.angle.rate);
   }
   scene.arm = std::make_shared<const pcc::Arm>(std::move(settings));
 }

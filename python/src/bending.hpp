@@ -19,6 +19,8 @@ using BendingActuatorClass =
     py::class_<pcc::BendingActuator, std::shared_ptr<pcc::BendingActuator>>;
 
 void bind_bending_modulus(py::module_& module);
+/// Its equations. @param type the actuator's.
+void bind_bending_model(BendingActuatorClass& type);
 /// simulate(). @param type the actuator's.
 void bind_bending_history(BendingActuatorClass& type);
 void bind_bending_motion(py::module_& module);

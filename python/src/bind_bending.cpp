@@ -77,40 +77,7 @@ py::dict parameters(const BendingActuator& self) {
   return result;
 }
 
-py::object energies(const BendingActuator& self, const py::object& theta, const py::object& rate,
-                    const py::object& pressure) {
-  py::dict result;
-  const auto part = [&](const char* name, double pcc::BendingEnergy::*member) {
-    result[name] =
-        for_each<3>("energies()", {theta, rate, pressure},
-                    [&](double q, double v, double p) { return self.energy(q, v, p).*member; });
-  };
-  part("strain", &pcc::BendingEnergy::strain);
-  part("gravity", &pcc::BendingEnergy::gravity);
-  part("kinetic", &pcc::BendingEnergy::kinetic);
-  return result;
-}
-
-py::object point(const BendingActuator& self, const py::object& theta, const py::object& fraction) {
-  const auto axis = [&](int k) {
-    return for_each<2>("point()", {theta, fraction},
-                       [&](double q, double u) { return self.point(q, u)[k]; });
-  };
-  return py::module_::import("numpy").attr("stack")(py::make_tuple(axis(0), axis(1)),
-                                                    py::arg("axis") = -1);
-}
-
-py::dict taylor_error(const BendingActuator& self, double lowest, double highest, double pressure) {
-  const pcc::BendingError error = self.taylor_error(lowest, highest, pressure);
-  py::dict result;
-  result["strain"] = error.strain;
-  result["gravity"] = error.gravity;
-  result["inertia"] = error.inertia;
-  result["torque"] = error.torque;
-  return result;
-}
-
-void bind_model(BendingActuatorClass& type) {
+void bind_constants(BendingActuatorClass& type) {
   type.def_property_readonly("parameters", &parameters,
                              "dict: what it was made from; BendingActuator(**parameters) is the "
                              "same again.")
@@ -127,225 +94,11 @@ void bind_model(BendingActuatorClass& type) {
           [](const BendingActuator& self) {
             return py::make_tuple(self.energies().lowest_angle(), self.energies().highest_angle());
           },
-          "tuple of float: angles that the model holds for, rad.")
-      .def(
-          "energy",
-          [](const BendingActuator& self, const py::object& theta, const py::object& rate,
-             const py::object& pressure) {
-            return for_each<3>(
-                "energy()", {theta, rate, pressure},
-                [&](double q, double v, double p) { return self.energy(q, v, p).total(); });
-          },
-          py::arg("theta"), py::arg("theta_dot"), py::arg("pressure"),
-          R"(energy($self, theta, theta_dot, pressure)
---
-
-Strain, gravity's and kinetic energy together. Arguments broadcast.
-
-Parameters
-----------
-theta, theta_dot, pressure : float or array_like
-    rad, rad/s, Pa.
-
-Returns
--------
-float or ndarray
-    J.
-)")
-      .def("energies", &energies, py::arg("theta"), py::arg("theta_dot"), py::arg("pressure"),
-           R"(energies($self, theta, theta_dot, pressure)
---
-
-The energies by themselves. Arguments broadcast.
-
-Parameters
-----------
-theta, theta_dot, pressure : float or array_like
-    rad, rad/s, Pa.
-
-Returns
--------
-dict
-    'strain', 'gravity' (0 for a centre as high as the base) and 'kinetic', J.
-)")
-      .def(
-          "acceleration",
-          [](const BendingActuator& self, const py::object& theta, const py::object& rate,
-             const py::object& pressure) {
-            return for_each<3>(
-                "acceleration()", {theta, rate, pressure},
-                [&](double q, double v, double p) { return self.acceleration(q, v, p); });
-          },
-          py::arg("theta"), py::arg("theta_dot"), py::arg("pressure"),
-          R"(acceleration($self, theta, theta_dot, pressure)
---
-
-Second derivative of the angle. Arguments broadcast.
-
-Parameters
-----------
-theta, theta_dot, pressure : float or array_like
-    rad, rad/s, Pa.
-
-Returns
--------
-float or ndarray
-    rad/s^2.
-)")
-      .def(
-          "inertia",
-          [](const BendingActuator& self, const py::object& theta) {
-            return for_each<1>("inertia(theta)", {theta},
-                               [&](double q) { return self.terms(q).inertia.value; });
-          },
-          py::arg("theta"), R"(inertia($self, theta)
---
-
-I of the kinetic energy I theta'^2/2.
-
-Parameters
-----------
-theta : float or array_like
-    rad.
-
-Returns
--------
-float or ndarray
-    kg m^2.
-)")
-      .def(
-          "stiffness",
-          [](const BendingActuator& self, const py::object& theta, const py::object& pressure) {
-            return for_each<2>("stiffness()", {theta, pressure},
-                               [&](double q, double p) { return self.stiffness(q, p); });
-          },
-          py::arg("theta"), py::arg("pressure"), R"(stiffness($self, theta, pressure)
---
-
-Second derivative of strain and gravity energy by the angle. Arguments broadcast.
-
-Parameters
-----------
-theta, pressure : float or array_like
-    rad, Pa.
-
-Returns
--------
-float or ndarray
-    N m/rad.
-)")
-      .def(
-          "equilibrium",
-          [](const BendingActuator& self, const py::object& pressure, double start) {
-            return for_each<1>("equilibrium(pressure)", {pressure},
-                               [&](double p) { return self.equilibrium(p, start); });
-          },
-          py::arg("pressure"), py::arg("start") = 0.0, R"(equilibrium($self, pressure, start=0.0)
---
-
-The stable angle at rest.
-
-Parameters
-----------
-pressure : float or array_like
-    Pa.
-start : float
-    Where Newton's method begins, rad.
-
-Returns
--------
-float or ndarray
-    rad.
-
-Raises
-------
-RunError
-    not-converged when there is none within a full turn.
-)")
-      .def(
-          "linear_angle",
-          [](const BendingActuator& self, const py::object& pressure) {
-            return for_each<1>("linear_angle(pressure)", {pressure},
-                               [&](double p) { return self.linear_angle(p); });
-          },
-          py::arg("pressure"), R"(linear_angle($self, pressure)
---
-
-theta = M L/(E I) with E = 4 G: small angles, no weight.
-
-Parameters
-----------
-pressure : float or array_like
-    Pa.
-
-Returns
--------
-float or ndarray
-    rad.
-)")
-      .def(
-          "chamber_volume",
-          [](const BendingActuator& self, const py::object& theta) {
-            return for_each<1>("chamber_volume(theta)", {theta},
-                               [&](double q) { return self.chamber_volume(q); });
-          },
-          py::arg("theta"), R"(chamber_volume($self, theta)
---
-
-pi r^2 (L + (r + r_t) theta).
-
-Parameters
-----------
-theta : float or array_like
-    rad.
-
-Returns
--------
-float or ndarray
-    m^3.
-)")
-      .def("point", &point, py::arg("theta"), py::arg("fraction") = 1.0,
-           R"(point($self, theta, fraction=1.0)
---
-
-A point of the inextensible layer, the tip by default. Arguments broadcast.
-
-Parameters
-----------
-theta : float or array_like
-    rad.
-fraction : float or array_like
-    Of the arc length, 0 to 1.
-
-Returns
--------
-(..., 2) ndarray
-    x aside and height, m from the base. At the inclination 0 the straight actuator's tip is (0, -L).
-)")
-      .def("taylor_error", &taylor_error, py::arg("lowest"), py::arg("highest"),
-           py::arg("pressure"), R"(taylor_error($self, lowest, highest, pressure)
---
-
-Bounds of what the Taylor polynomials leave out over a range of angles; zeros for an exact model.
-
-Parameters
-----------
-lowest, highest : float
-    rad.
-pressure : float
-    Pa, for the modulus.
-
-Returns
--------
-dict
-    'strain' and 'gravity' energy, J; 'inertia', kg m^2; 'torque' of both energies, N m.
-)");
+          "tuple of float: angles that the model holds for, rad.");
 }
 
-void bind_actuator_type(py::module_& module) {
-  BendingActuatorClass type(
-      module, "BendingActuator",
-      R"(BendingActuator(length, chamber_radius, wall_thickness, modulus, *, outer_radius=None, silicone_density=1070.0, filling_density=1.2, surroundings_density=1.2, inclination=0.0, gravity=9.81, mass_damping=0.0, stiffness_damping=0.0, order=5, mass_line='layer')
+constexpr const char* kActuatorDoc =
+    R"(BendingActuator(length, chamber_radius, wall_thickness, modulus, *, outer_radius=None, silicone_density=1070.0, filling_density=1.2, surroundings_density=1.2, inclination=0.0, gravity=9.81, mass_damping=0.0, stiffness_damping=0.0, order=5, mass_line='layer')
 --
 
 A fibre-reinforced silicone tube with an inextensible layer, bent by pressure: one angle.
@@ -378,7 +131,10 @@ Raises
 ------
 Error
     out-of-range or not-finite, naming the parameter.
-)");
+)";
+
+void bind_actuator_type(py::module_& module) {
+  BendingActuatorClass type(module, "BendingActuator", kActuatorDoc);
   type.def(py::init(&make_actuator), py::arg("length"), py::arg("chamber_radius"),
            py::arg("wall_thickness"), py::arg("modulus"), py::kw_only(),
            py::arg("outer_radius") = py::none(), py::arg("silicone_density") = 1070.0,
@@ -386,7 +142,8 @@ Error
            py::arg("inclination") = 0.0, py::arg("gravity") = 9.81, py::arg("mass_damping") = 0.0,
            py::arg("stiffness_damping") = 0.0, py::arg("order") = 5,
            py::arg("mass_line") = "layer");
-  bind_model(type);
+  bind_constants(type);
+  bind_bending_model(type);
   bind_bending_history(type);
   type.def("__repr__", [](const BendingActuator& self) {
     const BendingParameters& p = self.parameters();

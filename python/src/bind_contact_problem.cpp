@@ -10,8 +10,7 @@
 #include "sinew/step/contact_problem.hpp"
 
 #include "arrays.hpp"
-#include "bindings.hpp"
-#include "session.hpp"
+#include "simulation_type.hpp"
 
 namespace sinew::python {
 
@@ -128,8 +127,7 @@ Error
 
 }  // namespace
 
-void bind_contact_problem(py::module_& module,
-                          py::class_<Session, std::shared_ptr<Session>>& simulation) {
+void bind_contact_problem(py::module_& module, SimulationType& type) {
   py::class_<ContactProblem>(
       module, "ContactProblem",
       "Contacts by themselves: u = W r + q with Signorini's and Coulomb's laws. From "
@@ -140,7 +138,7 @@ void bind_contact_problem(py::module_& module,
       .def_readonly("friction", &ContactProblem::friction, "(n,) ndarray: mu of each contact.")
       .def_readonly("r", &ContactProblem::r,
                     "(3n,) ndarray: a solution; None where there is none.");
-  simulation.def("contact_problem", problem_of, R"(contact_problem($self)
+  type.def("contact_problem", problem_of, R"(contact_problem($self)
 --
 
 The problem that the contact forces of the last step, or equilibrium, solve.

@@ -77,18 +77,13 @@ struct Body : Part {};
 /// @param module,type where it goes.
 void bind_fields(py::module_& module, py::class_<Body>& type);
 
-/// Problems of contacts by themselves: their files, and Simulation.contact_problem().
-/// @param module,simulation where they go.
-void bind_contact_problem(py::module_& module,
-                          py::class_<Session, std::shared_ptr<Session>>& simulation);
-
 /// A controller with the simulation that it steers, which it keeps alive.
 struct Controller {
   std::shared_ptr<Session> session;
   std::shared_ptr<AttachedController> attached;
 };
 
-/// Runs and records; see Simulation.run in bind_simulation.cpp.
+/// Runs and records; see Simulation.run in bind_simulation_stepping.cpp.
 py::dict run(const std::shared_ptr<Session>& session, const py::object& duration,
              const py::object& record, const py::object& every, const py::object& progress);
 

@@ -45,6 +45,7 @@
 #include "sinew/sim/load_settings.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/model_builder.hpp"
+#include "sinew/sim/motor_settings.hpp"
 #include "sinew/sim/observables.hpp"
 #include "sinew/sim/probe_settings.hpp"
 #include "sinew/sim/signal.hpp"

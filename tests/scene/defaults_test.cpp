@@ -2,6 +2,7 @@
 // every documented default into a scene changes nothing of its description.
 #include <sstream>
 #include <string>
+#include <variant>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -95,11 +96,20 @@ class Dump {
     add(start.linear, start.angular);
   }
   void add_actuator(const ActuatorDescription& actuator) {
-    add(actuator.outside, actuator.pull, actuator.geometric_stiffness);
-    for (const auto* limit : {&actuator.effort, &actuator.motion}) {
-      add(limit->min, limit->max, limit->rate);
+    if (const auto* cable = std::get_if<CableDescription>(&actuator.own)) {
+      const sim::CableSettings& settings = cable->settings;
+      add(settings.outside, settings.pull_from_world, settings.geometric_stiffness);
+      add(settings.friction, settings.guide_radius, settings.guide_spacing);
+      add_limits(settings.tension, settings.displacement);
+    } else {
+      const auto& force = std::get<sim::ForceSettings>(actuator.own);
+      add(force.outside);
+      add_limits(force.force, force.displacement);
     }
-    for (const double time : {0.0, 0.3, 1.7}) add(actuator.command->signal.value(time));
+    for (const double time : {0.0, 0.3, 1.7}) add(actuator.command.signal.value(time));
+  }
+  void add_limits(const sim::Limits& effort, const sim::Limits& motion) {
+    for (const sim::Limits& limits : {effort, motion}) add(limits.min, limits.max, limits.rate);
   }
   template <typename... Values>
   void add(const Values&... values) {

@@ -20,7 +20,7 @@ TEST(Override, SetsAValue) {
   const SceneDescription scene =
       with({"actuators.long_0.command.displacement=10mm", "time_step=5 ms",
             "bodies.trunk.material.young_modulus=1MPa", "record.states=false"});
-  EXPECT_DOUBLE_EQ(scene.actuators[0].command->signal.value(0), 0.01);
+  EXPECT_DOUBLE_EQ(scene.actuators[0].command.signal.value(0), 0.01);
   EXPECT_DOUBLE_EQ(scene.time_step, 0.005);
   EXPECT_DOUBLE_EQ(scene.bodies[0].material.young_modulus, 1e6);
   EXPECT_FALSE(scene.record.states);
@@ -36,14 +36,14 @@ TEST(Override, TakesAnyYaml) {
   const SceneDescription scene =
       with({"actuators.long_0.command.displacement={ramp: {to: 10 mm, duration: 2 s}}",
             "effectors.tip.point=[0, 0, 0.1]"});
-  EXPECT_DOUBLE_EQ(scene.actuators[0].command->signal.end_time(), 2.0);
+  EXPECT_DOUBLE_EQ(scene.actuators[0].command.signal.end_time(), 2.0);
   EXPECT_EQ(scene.effectors[0].points.points(0, 2), 0.1);
 }
 
 TEST(Override, ReplacesAlternatives) {
   const SceneDescription scene =
       with({"actuators.long_0.command.tension=2N", "bodies.trunk.density=1000"});
-  EXPECT_EQ(scene.actuators[0].command->kind, CommandDescription::Kind::effort);
+  EXPECT_EQ(scene.actuators[0].command.kind, sim::CommandKind::effort);
   EXPECT_FALSE(scene.bodies[0].mass.has_value());
   EXPECT_EQ(scene.bodies[0].density.value(), 1000.0);
 }
@@ -52,7 +52,7 @@ TEST(Override, RemovesWhatBelongedToTheAlternative) {
   const Edits file = {{"{displacement: 0 mm}", "{displacement: {file: a.csv, unit: mm}}"}};
   const SceneDescription scene =
       with({"actuators.long_0.command.displacement.sine={amplitude: 1 mm, period: 1 s}"}, file);
-  EXPECT_DOUBLE_EQ(scene.actuators[0].command->signal.value(0.25), 0.001);
+  EXPECT_DOUBLE_EQ(scene.actuators[0].command.signal.value(0.25), 0.001);
   EXPECT_EQ(with({"bodies.trunk.density=1000"},
                  {{"mass: 42 g", "mass: 42 g\n    mass_distribution: even"}})
                 .bodies[0]

@@ -44,25 +44,25 @@ TEST(Scene, TheDocumentedExampleParsesAsWritten) {
   EXPECT_LT((body.fixed[0].upper - Vector3(0.02, 0.02, 0.02)).norm(), 1e-15);
 
   ASSERT_EQ(scene.actuators.size(), 1u);
-  const ActuatorDescription& cable = scene.actuators[0];
-  EXPECT_EQ(cable.name, "long_0");
-  EXPECT_EQ(cable.type, ActuatorDescription::Type::cable);
-  EXPECT_EQ(cable.body, "trunk");
-  ASSERT_EQ(cable.points.points.rows(), 3);
-  EXPECT_LT((cable.points.points.row(2) - Vector3(0, 0.011, 0.027).transpose()).norm(), 1e-15);
-  EXPECT_EQ(cable.points.places[1].line, 2);
-  EXPECT_THAT(cable.points.places[1].file, testing::EndsWith("long_0.csv"));
-  EXPECT_EQ(cable.pull, PullPoint::world);
+  const ActuatorDescription& actuator = scene.actuators[0];
+  EXPECT_EQ(actuator.name, "long_0");
+  EXPECT_EQ(actuator.type, ActuatorDescription::Type::cable);
+  EXPECT_EQ(actuator.body, "trunk");
+  const auto& cable = std::get<CableDescription>(actuator.own).settings;
+  ASSERT_EQ(cable.points.rows(), 3);
+  EXPECT_LT((cable.points.row(2) - Vector3(0, 0.011, 0.027).transpose()).norm(), 1e-15);
+  EXPECT_EQ(cable.point_places[1].line, 2);
+  EXPECT_THAT(cable.point_places[1].file, testing::EndsWith("long_0.csv"));
+  EXPECT_TRUE(cable.pull_from_world);
   EXPECT_EQ(cable.outside, mesh::Outside::nearest);
-  EXPECT_EQ(cable.effort.min, 0.0);
-  EXPECT_EQ(cable.effort.max, 20.0);
-  EXPECT_EQ(cable.effort.rate, kUnlimited);
-  EXPECT_EQ(cable.motion.min, 0.0);
-  EXPECT_DOUBLE_EQ(cable.motion.max, 0.07);
-  EXPECT_DOUBLE_EQ(cable.motion.rate, 0.1);
-  ASSERT_TRUE(cable.command.has_value());
-  EXPECT_EQ(cable.command->kind, CommandDescription::Kind::motion);
-  EXPECT_EQ(cable.command->signal.value(1.0), 0.0);
+  EXPECT_EQ(cable.tension.min, 0.0);
+  EXPECT_EQ(cable.tension.max, 20.0);
+  EXPECT_EQ(cable.tension.rate, kInfinity);
+  EXPECT_EQ(cable.displacement.min, 0.0);
+  EXPECT_DOUBLE_EQ(cable.displacement.max, 0.07);
+  EXPECT_DOUBLE_EQ(cable.displacement.rate, 0.1);
+  EXPECT_EQ(actuator.command.kind, sim::CommandKind::motion);
+  EXPECT_EQ(actuator.command.signal.value(1.0), 0.0);
 
   ASSERT_EQ(scene.effectors.size(), 1u);
   EXPECT_EQ(scene.effectors[0].kind, EffectorDescription::Kind::point);
@@ -141,10 +141,10 @@ TEST(Scene, EverySignalIsRead) {
   const auto signal = [](const std::string& command) {
     return parse_edited({{"command: {displacement: 0 mm}", "command: {" + command + "}"}})
         .actuators[0]
-        .command.value();
+        .command;
   };
   EXPECT_DOUBLE_EQ(signal("tension: 2 N").signal.value(0), 2.0);
-  EXPECT_EQ(signal("tension: 2 N").kind, CommandDescription::Kind::effort);
+  EXPECT_EQ(signal("tension: 2 N").kind, sim::CommandKind::effort);
   const auto ramp = signal("displacement: {ramp: {to: 10 mm, start: 1 s, duration: 2 s}}").signal;
   EXPECT_DOUBLE_EQ(ramp.value(2.0), 0.005);
   EXPECT_DOUBLE_EQ(ramp.end_time(), 3.0);
@@ -166,7 +166,7 @@ TEST(Scene, SignalsAndTargetsComeFromTables) {
               {"{circle: {centre: 0 0 190 mm, radius: 30 mm, normal: 0 0 1, period: 10 s}}",
                "{file: path.csv, unit: mm}"}});
   const SceneDescription scene = parse_scene_text(text, "s.yaml", folder.path());
-  EXPECT_DOUBLE_EQ(scene.actuators[0].command->signal.value(0.5), 0.005);
+  EXPECT_DOUBLE_EQ(scene.actuators[0].command.signal.value(0.5), 0.005);
   EXPECT_LT((scene.controllers[0].tasks[0].target.at(1.0) - Vector3(0.005, 0, 0.19)).norm(), 1e-15);
   EXPECT_DOUBLE_EQ(scene.run_duration(), 2.0);
 }
@@ -179,7 +179,7 @@ TEST(Scene, SignalsTakeAColumnByItsHeading) {
   const auto at_half = [&](const std::string& file) {
     const std::string text =
         edited({{"{displacement: 0 mm}", "{displacement: {file: pull.csv, " + file + "}}"}});
-    return parse_scene_text(text, "s.yaml", folder.path()).actuators[0].command->signal.value(0.5);
+    return parse_scene_text(text, "s.yaml", folder.path()).actuators[0].command.signal.value(0.5);
   };
   EXPECT_DOUBLE_EQ(at_half("column: second"), 0.005);
   EXPECT_DOUBLE_EQ(at_half("column: 'second [mm]'"), 0.005);
@@ -221,11 +221,12 @@ TEST(Scene, ForceActuatorsAreRead) {
         "  push: {type: force, body: trunk, point: 0 0 195 mm, direction: 2 0 0, limits: {force: "
         "{min: -1 N}}, command: {force: 0.5 N}}\neffectors:\n"}});
   ASSERT_EQ(scene.actuators.size(), 2u);
-  const ActuatorDescription& force = scene.actuators[1];
-  EXPECT_EQ(force.type, ActuatorDescription::Type::force);
+  const ActuatorDescription& actuator = scene.actuators[1];
+  EXPECT_EQ(actuator.type, ActuatorDescription::Type::force);
+  const auto& force = std::get<sim::ForceSettings>(actuator.own);
   EXPECT_EQ(force.direction, Vector3::UnitX().eval());
-  EXPECT_EQ(force.effort.min, -1.0);
-  EXPECT_EQ(force.command->signal.value(0), 0.5);
+  EXPECT_EQ(force.force.min, -1.0);
+  EXPECT_EQ(actuator.command.signal.value(0), 0.5);
 }
 
 TEST(Scene, SolverMayBeAWordOrAMap) {

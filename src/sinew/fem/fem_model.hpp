@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sinew/core/types.hpp"
+#include "sinew/fem/mass_matrix.hpp"
 #include "sinew/fem/membrane.hpp"
 #include "sinew/linalg/block_pattern.hpp"
 #include "sinew/material/elastic_constants.hpp"
@@ -20,11 +21,6 @@ namespace sinew::fem {
 struct ElementBatches;
 struct GatherLists;
 struct SolidGroup;
-
-enum class MassMatrix {
-  lumped,      ///< diagonal: integral of rho N_i, a quarter of a tetrahedron's mass at each node
-  consistent,  ///< integral of rho N_i N_j: m/20 (1 + delta_ij) a tetrahedron
-};
 
 /// A part of the mesh made of one material.
 struct Region {

@@ -9,16 +9,11 @@
 #include <vector>
 
 #include "sinew/core/types.hpp"
+#include "sinew/inverse/effort_program.hpp"
 #include "sinew/inverse/inverse_settings.hpp"
 #include "sinew/inverse/inverse_status.hpp"
 #include "sinew/inverse/step_damping.hpp"
-#include "sinew/qp/elastic.hpp"
-#include "sinew/qp/quadratic_program.hpp"
 #include "sinew/step/controller.hpp"
-
-namespace sinew::step {
-struct ActuatorBlock;
-}
 
 namespace sinew::inverse {
 
@@ -61,7 +56,7 @@ class InverseController : public step::Controller {
   /// What the last step's linearisation left, m or rad, all tasks together; NaN before a step.
   double predicted_error() const { return predicted_error_; }
   /// With limits-conflict: which limits of which actuators contradict each other. Else empty.
-  const std::string& conflict() const { return conflict_; }
+  const std::string& conflict() const { return program_.conflict(); }
 
   step::LawStatus choose(const step::StepProblem& problem, const step::Response& response,
                          std::span<double> effort) override;
@@ -80,22 +75,14 @@ class InverseController : public step::Controller {
   void review_choice(const step::StepProblem& problem);
   template <class Self, class Visitor>
   static void visit_memory(Self& self, Visitor&& visitor);
-  static const step::ActuatorBlock& block(const step::StepProblem& problem,
-                                          const step::Response& response, Eigen::Index k);
   void measure_gap(const step::StepProblem& problem);
   double objective(const VectorX& gap) const;
   double negligible_objective() const;
   void form_residual(const step::StepProblem& problem, const step::Response& response);
-  void form_scales(const step::StepProblem& problem, const step::Response& response);
-  void form_objective(const step::StepProblem& problem, const step::Response& response);
-  void regularise(const step::StepProblem& problem, const step::Response& response);
-  void form_limits(const step::StepProblem& problem, const step::Response& response);
-  step::LawStatus solve_program(const step::StepProblem& problem, const step::Response& response);
   double foresee(const step::StepProblem& problem, const step::Response& response,
                  const VectorX& motion);
   bool rate_binds(const step::StepProblem& problem, const step::Response& response,
                   const VectorX& motion, std::span<const double> effort) const;
-  bool limit_holds() const;
   InverseStatus judge(const step::StepProblem& problem, const step::Response& response,
                       const VectorX& motion, std::span<const double> effort, double moved) const;
 
@@ -105,20 +92,14 @@ class InverseController : public step::Controller {
 
   std::vector<int> effector_rows_;  // rows of H, all tasks one after the other
   VectorX row_weights_;             // Q, as many
-  MatrixX jacobian_;                // W_ea, scaled columns
-  MatrixX weighted_;                // Q W_ea
   VectorX residual_;                // delta_free_e - target, shortened to largest_step
   VectorX gap_;                     // of the tasks' rows: what delta should be, less delta
-  VectorX scale_;                   // (controlled,) of each effort
-  VectorX scaled_effort_;
   StepDamping damping_;
   StepDamping inner_damping_;  // of the choices of one step
   VectorX last_choice_;        // (controlled,) efforts
   bool tried_ = false;         // whether the robot has followed it
   VectorX gap_linearised_;     // where it was linearised for that choice
-  qp::QuadraticProgram program_;
-  qp::QpSolver solver_;
-  qp::ElasticSolver elastic_{0, 0};  // for steps in which limits contradict each other
+  EffortProgram program_;
   VectorX efforts_;
   double predicted_error_ = std::numeric_limits<double>::quiet_NaN();
   InverseStatus status_ = InverseStatus::not_started;
@@ -129,8 +110,6 @@ class InverseController : public step::Controller {
   VectorX for_later_;  // of that, what the step leaves to the next ones
   VectorX foreseen_;   // the gap after the step, by the linearisation
   double surprise_ = std::numeric_limits<double>::infinity();  // how far it was off last time, m
-  VectorX bound_multiplier_, row_multiplier_;                  // of the program
-  std::string conflict_;
 };
 
 }  // namespace sinew::inverse

@@ -1,5 +1,6 @@
 // What to say of cables whose points dent the material.
 #include <cmath>
+#include <variant>
 
 #include <fmt/format.h>
 
@@ -22,10 +23,11 @@ constexpr double kDent = 0.01;
 // A force F at a point of a medium of modulus E has a displacement without bound (Kelvin); on a
 // mesh of edge h it is about F/(E h). Where the tension has no limit, F is what strains the section
 // of the body by a tenth.
-std::optional<Notice> bare_points_notice(const ActuatorDescription& cable,
+std::optional<Notice> bare_points_notice(const ActuatorDescription& actuator,
                                          const mechanics::BodyModel& body) {
+  const auto& cable = std::get<CableDescription>(actuator.own);
   const auto* own = mechanics::as<const fem::HasElements>(body);
-  if (own == nullptr || body.mesh().quadratic.empty() || cable.guide_radius.value_or(0.0) > 0.0) {
+  if (own == nullptr || body.mesh().quadratic.empty() || cable.settings.guide_radius > 0.0) {
     return std::nullopt;
   }
   const mesh::Mesh& mesh = body.mesh();
@@ -35,16 +37,16 @@ std::optional<Notice> bare_points_notice(const ActuatorDescription& cable,
       std::cbrt(6.0 * std::sqrt(2.0) * volume / static_cast<double>(mesh.quadratic.size()));
   const Vector3 extent = mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff();
   const double size = extent.norm();
-  const double force =
-      std::isfinite(cable.effort.max) ? cable.effort.max : 0.1 * modulus * volume / size;
+  const double most = cable.settings.tension.max;
+  const double force = std::isfinite(most) ? most : 0.1 * modulus * volume / size;
   const double dent = force / (modulus * edge);
   if (dent < kDent * size) return std::nullopt;
   return Notice{
-      cable.guide_radius ? NoticeLevel::remark : NoticeLevel::warning, NoticeKind::bare_points,
-      cable.place,
+      cable.guide_radius_given ? NoticeLevel::remark : NoticeLevel::warning,
+      NoticeKind::bare_points, actuator.place,
       fmt::format("cable '{}' pulls at single points of quadratic elements: {:.2g} N dent "
                   "the material by about {:.2g} mm at each, and more on a finer mesh",
-                  cable.name, force, 1e3 * dent),
+                  actuator.name, force, 1e3 * dent),
       fmt::format("write the radius of its tube, for instance guide_radius: {:.1g} mm",
                   1e3 * 0.5 * edge)};
 }

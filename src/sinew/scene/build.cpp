@@ -26,9 +26,7 @@ SceneController controller_of(const ControllerDescription& description, const si
   for (const std::string& name : description.actuators) {
     settings.actuators.push_back(model.actuator_index(name));
   }
-  settings.regularisation = description.regularisation == Regularisation::effort
-                                ? inverse::Regularisation::effort
-                                : inverse::Regularisation::change;
+  settings.regularisation = description.regularisation;
   if (description.epsilon) settings.epsilon = *description.epsilon;
   return controller;
 }
@@ -40,8 +38,7 @@ sim::StepSettings step_settings(const SceneDescription& scene) {
   step.spectral_radius = scene.spectral_radius;
   step.restitution = scene.restitution;
   step.adaptive = scene.solver.adaptive;
-  step.method =
-      scene.solver.method == Method::newton ? sim::Method::newton : sim::Method::one_linearisation;
+  step.method = scene.solver.method;
   step.tangent = scene.solver.tangent;
   step.tolerance = scene.solver.tolerance;
   step.max_iterations = scene.solver.max_iterations;

@@ -1,169 +1,91 @@
-#include <algorithm>
+#include <variant>
 
 #include "sinew/core/error.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mesh/surface.hpp"
 #include "sinew/scene/build_parts.hpp"
-#include "sinew/sim/actuator.hpp"
-#include "sinew/sim/cable_settings.hpp"
-#include "sinew/sim/chamber_settings.hpp"
-#include "sinew/sim/force_settings.hpp"
-#include "sinew/sim/joint_settings.hpp"
 #include "sinew/sim/model_builder.hpp"
-#include "sinew/sim/spring_line_settings.hpp"
-#include "sinew/sim/torque_settings.hpp"
 
 namespace sinew::scene {
 
 namespace {
 
-sim::Command command(const ActuatorDescription& actuator) {
-  if (!actuator.command) return {};
-  switch (actuator.command->kind) {
-    case CommandDescription::Kind::motion:
-      return {sim::CommandKind::motion, actuator.command->signal};
-    case CommandDescription::Kind::effort:
-      return {sim::CommandKind::effort, actuator.command->signal};
-    case CommandDescription::Kind::input:
-      return {sim::CommandKind::input, actuator.command->signal};
+mesh::Surface read_closed(const SurfaceDescription& surface) {
+  try {
+    mesh::SurfaceOptions options;
+    options.unit = surface.unit;
+    mesh::Surface read = mesh::read_surface(surface.file, options);
+    mesh::require_closed(read);
+    return read;
+  } catch (const Error& error) {
+    throw error.at(surface.place);
   }
-  return {};
 }
 
-void add_cable(sim::ModelBuilder& builder, const ActuatorDescription& actuator, int body,
-               const BodyOf& body_of) {
-  sim::CableSettings cable;
-  cable.name = actuator.name;
-  cable.place = actuator.place;
-  cable.body = body;
-  cable.points = actuator.points.points;
-  cable.point_places = actuator.points.places;
-  for (const std::string& name : actuator.points.bodies) {
-    cable.point_bodies.push_back(name.empty() ? body : body_of(name).number);
-  }
-  cable.pull_from_world = actuator.pull == PullPoint::world;
-  cable.outside = actuator.outside;
-  cable.tension = limits_of(actuator.effort);
-  cable.tension.min = std::max(cable.tension.min, 0.0);
-  cable.displacement = limits_of(actuator.motion);
-  cable.command = command(actuator);
-  cable.geometric_stiffness = actuator.geometric_stiffness;
-  cable.friction = actuator.friction;
-  cable.guide_radius = actuator.guide_radius.value_or(0.0);
-  cable.guide_spacing = actuator.guide_spacing;
-  builder.add_cable(cable);
-}
+// Adds an actuator by what its type has of its own.
+class Adder {
+ public:
+  Adder(sim::ModelBuilder& builder, const ActuatorDescription& actuator, const BodyOf& body_of,
+        const JointOf& joint_of)
+      : builder_(builder), actuator_(actuator), body_of_(body_of), joint_of_(joint_of) {}
 
-void add_force(sim::ModelBuilder& builder, const ActuatorDescription& actuator, int body) {
-  sim::ForceSettings force;
-  force.name = actuator.name;
-  force.place = actuator.place;
-  force.body = body;
-  force.point = actuator.point;
-  force.direction = actuator.direction;
-  force.outside = actuator.outside;
-  force.force = limits_of(actuator.effort);
-  force.displacement = limits_of(actuator.motion);
-  force.command = command(actuator);
-  builder.add_force(force);
-}
-
-void add_spring(sim::ModelBuilder& builder, const ActuatorDescription& actuator, int body) {
-  sim::SpringLineSettings line;
-  line.name = actuator.name;
-  line.place = actuator.place;
-  line.body = body;
-  line.points = actuator.points.points;
-  line.point_places = actuator.points.places;
-  line.pull_from_world = actuator.pull == PullPoint::world;
-  line.outside = actuator.outside;
-  line.spring = actuator.spring;
-  line.free_at_rest = actuator.free_at_rest;
-  line.command = command(actuator);
-  builder.add_spring(line);
-}
-
-void add_chamber(sim::ModelBuilder& builder, const ActuatorDescription& actuator, int body,
-                 const mesh::Mesh& mesh) {
-  sim::ChamberSettings chamber;
-  chamber.name = actuator.name;
-  chamber.place = actuator.place;
-  chamber.body = body;
-  const SurfaceDescription& surface = actuator.surface;
-  if (surface.kind == SurfaceDescription::Kind::file) {
-    try {
-      mesh::SurfaceOptions options;
-      options.unit = surface.unit;
-      const mesh::Surface read = mesh::read_surface(surface.file, options);
-      mesh::require_closed(read);
-      chamber.surface = read;
-    } catch (const Error& error) {
-      throw error.at(surface.place);
+  void operator()(const CableDescription& cable) const {
+    sim::CableSettings settings = on_body(cable.settings);
+    for (const std::string& name : cable.point_bodies) {
+      settings.point_bodies.push_back(name.empty() ? settings.body : body_of_(name).number);
     }
-  } else {
-    chamber.surface = faces_of(surface, mesh);
+    builder_.add_cable(settings);
   }
-  chamber.outside = actuator.outside;
-  chamber.cap = actuator.cap;
-  chamber.load_stiffness = actuator.load_stiffness;
-  chamber.pressure = limits_of(actuator.effort);
-  chamber.volume_growth = limits_of(actuator.motion);
-  chamber.command = command(actuator);
-  chamber.gas = actuator.gas;
-  chamber.liquid = actuator.liquid;
-  builder.add_chamber(chamber);
-}
 
-void add_motor(sim::ModelBuilder& builder, const ActuatorDescription& actuator, int joint) {
-  sim::MotorSettings motor;
-  motor.name = actuator.name;
-  motor.place = actuator.place;
-  motor.joint = joint;
-  motor.linear = actuator.type == ActuatorDescription::Type::linear_motor;
-  motor.effort = limits_of(actuator.effort);
-  motor.motion = limits_of(actuator.motion);
-  motor.command = command(actuator);
-  builder.add_motor(motor);
-}
+  void operator()(const sim::ForceSettings& force) const { builder_.add_force(on_body(force)); }
 
-void add_torque(sim::ModelBuilder& builder, const ActuatorDescription& actuator, int body) {
-  sim::TorqueSettings torque;
-  torque.name = actuator.name;
-  torque.place = actuator.place;
-  torque.body = body;
-  torque.segment = actuator.segment;
-  torque.towards = actuator.towards;
-  torque.torque = limits_of(actuator.effort);
-  torque.angle = limits_of(actuator.motion);
-  torque.command = command(actuator);
-  builder.add_torque(torque);
-}
+  void operator()(const ChamberDescription& chamber) const {
+    sim::ChamberSettings settings = on_body(chamber.settings);
+    if (chamber.surface.kind == SurfaceDescription::Kind::file) {
+      settings.surface = read_closed(chamber.surface);
+    } else {
+      settings.surface = faces_of(chamber.surface, body_of_(actuator_.body).model->mesh());
+    }
+    builder_.add_chamber(settings);
+  }
+
+  void operator()(const sim::SpringLineSettings& line) const { builder_.add_spring(on_body(line)); }
+
+  void operator()(const sim::TorqueSettings& torque) const { builder_.add_torque(on_body(torque)); }
+
+  void operator()(const MotorDescription& motor) const {
+    sim::MotorSettings settings = complete(motor.settings);
+    settings.joint = joint_of_(motor.joint);
+    builder_.add_motor(settings);
+  }
+
+ private:
+  template <class Settings>
+  Settings complete(Settings settings) const {
+    settings.name = actuator_.name;
+    settings.place = actuator_.place;
+    settings.command = actuator_.command;
+    return settings;
+  }
+
+  template <class Settings>
+  Settings on_body(const Settings& own) const {
+    Settings settings = complete(own);
+    settings.body = body_of_(actuator_.body).number;
+    return settings;
+  }
+
+  sim::ModelBuilder& builder_;
+  const ActuatorDescription& actuator_;
+  const BodyOf& body_of_;
+  const JointOf& joint_of_;
+};
 
 }  // namespace
 
-sim::Limits limits_of(const LimitDescription& description) {
-  return {description.min, description.max, description.rate};
-}
-
 void add_actuator(sim::ModelBuilder& builder, const ActuatorDescription& actuator,
                   const BodyOf& body_of, const JointOf& joint_of) {
-  if (!actuator.joint.empty()) return add_motor(builder, actuator, joint_of(actuator.joint));
-  const auto [body, model] = body_of(actuator.body);
-  switch (actuator.type) {
-    case ActuatorDescription::Type::cable:
-      return add_cable(builder, actuator, body, body_of);
-    case ActuatorDescription::Type::force:
-      return add_force(builder, actuator, body);
-    case ActuatorDescription::Type::pressure:
-      return add_chamber(builder, actuator, body, model->mesh());
-    case ActuatorDescription::Type::spring:
-      return add_spring(builder, actuator, body);
-    case ActuatorDescription::Type::torque:
-      return add_torque(builder, actuator, body);
-    case ActuatorDescription::Type::motor:
-    case ActuatorDescription::Type::linear_motor:
-      break;  // of joints, above
-  }
+  std::visit(Adder(builder, actuator, body_of, joint_of), actuator.own);
 }
 
 }  // namespace sinew::scene

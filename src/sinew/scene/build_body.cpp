@@ -130,8 +130,7 @@ fem::FemBodySettings fem_settings(const SceneDescription& scene, const BodyDescr
   settings.elements.regions = regions_of(body, *settings.mesh);
   settings.elements.total_mass = body.mass;
   settings.elements.even_mass = body.mass_distribution == MassDistribution::even;
-  settings.elements.mass = body.mass_matrix == MassMatrix::consistent ? fem::MassMatrix::consistent
-                                                                      : fem::MassMatrix::lumped;
+  settings.elements.mass = body.mass_matrix;
   for (const FixedRegion& fixed : body.fixed) fix(fixed, *settings.mesh, settings.elements);
   for (const MembraneDescription& layer : scene.membranes) {
     if (layer.body != body.name) continue;
@@ -181,9 +180,9 @@ std::optional<Notice> add_body(sim::ModelBuilder& builder, const SceneDescriptio
     notice = locking_notice(body, *settings.mesh);
     const int number = builder.add_fem_body(std::move(settings), body.place);
     if (body.base) {
-      builder.add_base_motion(
-          {number, body.base->translation, body.base->angle, body.base->axis, body.base->centre},
-          body.base->place);
+      sim::BaseMotion motion = *body.base;
+      motion.body = number;
+      builder.add_base_motion(motion, body.base_place);
     }
   } catch (const Error& error) {
     throw error.at(body.place);

@@ -92,13 +92,10 @@ std::optional<Notice> add_contact(sim::ModelBuilder& builder, const ContactDescr
   settings.outside = contact.outside;
   settings.friction = contact.friction;
   settings.restitution = contact.restitution;
+  settings.motion = contact.motion;
   const bool whole = is_rigid(touching) && !contact.nodes;
   if (settings.points.rows() == 0 && !whole && !surfaces) {
     settings.nodes = nodes_of(contact, model->mesh());
-  }
-  if (contact.motion) {
-    const BaseDescription& motion = *contact.motion;
-    settings.motion = {-1, motion.translation, motion.angle, motion.axis, motion.centre};
   }
   builder.add_contact(settings);
   if (settings.touched || settings.nodes.empty() || is_rigid(touching)) return std::nullopt;

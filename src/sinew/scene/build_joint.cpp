@@ -56,8 +56,8 @@ int add_rigid_joint(sim::ModelBuilder& builder, const JointDescription& joint,
   settings.point = joint.point;
   settings.axis = joint.axis;
   settings.second_axis = joint.second_axis;
-  settings.angle = limits_of(joint.angle);
-  settings.displacement = limits_of(joint.displacement);
+  settings.angle = joint.angle;
+  settings.displacement = joint.displacement;
   settings.friction = joint.friction;
   if (joint.type == constraint::JointType::weld) {
     const BuiltBody& at = first.model != nullptr ? first : second;

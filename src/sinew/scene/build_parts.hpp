@@ -17,7 +17,6 @@ class BodyModel;
 }
 namespace sinew::sim {
 class ModelBuilder;
-struct Limits;
 }  // namespace sinew::sim
 
 namespace sinew::scene {
@@ -49,14 +48,12 @@ std::optional<Notice> locking_notice(const BodyDescription& body, const mesh::Me
 
 /// What to say of a cable that pulls at bare points of quadratic elements so that they dent by a
 /// hundredth of the body's size: a remark where the scene asks for it, else a warning.
-/// @param cable of type cable. @param body that it runs through.
-std::optional<Notice> bare_points_notice(const ActuatorDescription& cable,
+/// @param actuator of type cable. @param body that it runs through.
+std::optional<Notice> bare_points_notice(const ActuatorDescription& actuator,
                                          const mechanics::BodyModel& body);
 
 /// The region as the mesh's selections know it.
 mesh::Region region_of(const FixedRegion& region);
-
-sim::Limits limits_of(const LimitDescription& description);
 
 /// The faces of the mesh that a surface names, whatever but a file. Throws Error at its place.
 std::vector<mesh::Face> faces_of(const SurfaceDescription& surface, const mesh::Mesh& mesh);

@@ -7,7 +7,6 @@
 
 #include <array>
 #include <filesystem>
-#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -19,6 +18,8 @@
 #include "sinew/constraint/surface.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/core/types.hpp"
+#include "sinew/fem/mass_matrix.hpp"
+#include "sinew/inverse/inverse_settings.hpp"
 #include "sinew/inverse/target.hpp"
 #include "sinew/linalg/factorisation.hpp"
 #include "sinew/material/elastic_constants.hpp"
@@ -28,25 +29,27 @@
 #include "sinew/rigid/rigid_settings.hpp"
 #include "sinew/scene/node.hpp"
 #include "sinew/sim/actuator.hpp"
-#include "sinew/sim/fluid_drive.hpp"
+#include "sinew/sim/base_motion.hpp"
+#include "sinew/sim/cable_settings.hpp"
+#include "sinew/sim/chamber_settings.hpp"
+#include "sinew/sim/force_settings.hpp"
 #include "sinew/sim/load_settings.hpp"
+#include "sinew/sim/motor_settings.hpp"
 #include "sinew/sim/signal.hpp"
-#include "sinew/sim/spring_drive.hpp"
+#include "sinew/sim/spring_line_settings.hpp"
 #include "sinew/sim/step_settings.hpp"
 #include "sinew/sim/torque_settings.hpp"
 
 namespace sinew::scene {
 
-inline constexpr double kUnlimited = std::numeric_limits<double>::infinity();
-
+using fem::MassMatrix;
+using inverse::Regularisation;
 using mechanics::Integrator;
 using mechanics::Tangent;
-enum class Method { one_linearisation, newton };
+using sim::Method;
 enum class MaterialModel { linear, corotational, hyperelastic };
 enum class Element { any, tet4, tet4_patch, tet10, hex8 };
 enum class MassDistribution { volume, even };
-enum class MassMatrix { lumped, consistent };
-enum class PullPoint { world, body };
 
 /// How each step is solved.
 struct SolverDescription {
@@ -97,15 +100,6 @@ struct FixedRegion {
   double within = 1e-6;                        ///< plane: m, nodes no farther from it are fixed
   std::string set;                             ///< set: its name in the mesh
   std::array<bool, 3> axes{true, true, true};  ///< held along x, y, z
-};
-
-/// How the fixed nodes of a body, or a surface, move.
-struct BaseDescription {
-  Location place;
-  std::array<sim::Signal, 3> translation;  ///< m
-  sim::Signal angle;                       ///< rad
-  Vector3 axis = Vector3::UnitZ();         ///< unit length
-  Vector3 centre = Vector3::Zero();        ///< m
 };
 
 /// How the free nodes of a body move at the start.
@@ -164,7 +158,8 @@ struct BodyDescription {
   double mass_damping = 0.0;       ///< 1/s, Rayleigh: damping matrix = mass_damping M + ...
   double stiffness_damping = 0.0;  ///< s, ... + stiffness_damping K
   std::vector<FixedRegion> fixed;
-  std::optional<BaseDescription> base;
+  std::optional<sim::BaseMotion> base;  ///< of the fixed nodes; its body's number is not yet known
+  Location base_place;
   std::optional<InitialVelocityDescription> initial_velocity;
 };
 
@@ -174,23 +169,6 @@ struct PointList {
   Points points = Points(0, 3);
   std::vector<Location> places;
   std::vector<std::string> bodies;  ///< (n,) empty: that of the whole; or none at all
-};
-
-/// Limits of an effort (N) or a motion (m).
-struct LimitDescription {
-  Location place;
-  double min = -kUnlimited;
-  double max = kUnlimited;
-  double rate = kUnlimited;  ///< largest change per second, >= 0
-};
-
-/// What an actuator is told: an effort (tension, force: N; pressure: Pa), a motion (displacement:
-/// m; volume_growth: m^3) or a drive's input over time.
-struct CommandDescription {
-  enum class Kind { motion, effort, input };
-  Location place;
-  Kind kind = Kind::motion;
-  sim::Signal signal;
 };
 
 /// Where a pressure acts.
@@ -205,43 +183,40 @@ struct SurfaceDescription {
   FixedRegion region;                  ///< region
 };
 
+/// A cable, whose points' bodies are not yet numbered.
+struct CableDescription {
+  sim::CableSettings settings;
+  Location points_place;
+  std::vector<std::string> point_bodies;  ///< (n,) empty: the actuator's; or none at all
+  bool guide_radius_given = false;
+};
+
+/// A chamber, whose surface is not yet known.
+struct ChamberDescription {
+  sim::ChamberSettings settings;
+  SurfaceDescription surface;
+};
+
+/// A motor, whose joint is not yet numbered.
+struct MotorDescription {
+  sim::MotorSettings settings;
+  std::string joint;
+  Location joint_place;
+};
+
 struct ActuatorDescription {
   using Type = sim::ActuatorType;
   std::string name;
   Location place;
   Type type = Type::cable;
-  std::string body;
+  std::string body;  ///< none: of a motor, which acts on a joint
   Location body_place;
-  mesh::Outside outside = mesh::Outside::error;
-  LimitDescription effort;  ///< cable: tension, min >= 0 (0 when not given); force; pressure
-  LimitDescription motion;  ///< displacement or volume_growth
-  std::optional<CommandDescription> command;  ///< none: slack (zero effort) until told
-  // cable
-  PointList points;  ///< the first is the pull point
-  PullPoint pull = PullPoint::world;
-  bool geometric_stiffness = true;
-  double friction = 0.0;               ///< Coulomb's coefficient, >= 0
-  std::optional<double> guide_radius;  ///< m, >= 0
-  double guide_spacing = 0.0;          ///< m, >= 0
-  // force
-  Vector3 point = Vector3::Zero();  ///< m
-  Location point_place;
-  Vector3 direction = Vector3::UnitZ();  ///< unit length
-  // motor
-  std::string joint;
-  Location joint_place;
-  // torque
-  int segment = 0;
-  sim::TorqueSettings::Towards towards = sim::TorqueSettings::Towards::side;
-  // pressure
-  SurfaceDescription surface;
-  bool cap = false;
-  bool load_stiffness = true;
-  std::optional<sim::GasSettings> gas;
-  std::optional<sim::LiquidSettings> liquid;
-  // spring: points and pull as a cable's
-  std::variant<sim::SpringSettings, sim::SmaSettings> spring;
-  bool free_at_rest = true;
+  sim::Command command;  ///< left out: zero effort (slack) until told
+  /// What is the type's own. The builder adds to its settings what all types have: name, place,
+  /// body and command.
+  std::variant<CableDescription, sim::ForceSettings, ChamberDescription, sim::SpringLineSettings,
+               sim::TorqueSettings, MotorDescription>
+      own;
 };
 
 /// What the surroundings do to a body.
@@ -333,9 +308,9 @@ struct ContactDescription {
   std::optional<FixedRegion> nodes;  ///< of the outside; none, and no points: all of it
   PointList points;
   mesh::Outside outside = mesh::Outside::error;
-  double friction = 0.0;              ///< Coulomb's coefficient, >= 0
-  std::optional<double> restitution;  ///< 0 to 1; none: the integrator's
-  std::optional<BaseDescription> motion;
+  double friction = 0.0;                  ///< Coulomb's coefficient, >= 0
+  std::optional<double> restitution;      ///< 0 to 1; none: the integrator's
+  std::optional<sim::BaseMotion> motion;  ///< of the surface
 };
 
 /// What holds two bodies together, or a body to the world.
@@ -349,7 +324,7 @@ struct JointDescription {
   Vector3 point = Vector3::Zero();         ///< m
   Vector3 axis = Vector3::UnitZ();         ///< unit length
   Vector3 second_axis = Vector3::UnitX();  ///< of a universal joint
-  LimitDescription angle, displacement;    ///< rad, m
+  sim::Limits angle, displacement;         ///< rad, m
   double friction = 0.0;                   ///< N m, N
   // weld
   std::optional<FixedRegion> region;  ///< of the first; none, and no points: where they touch
@@ -364,15 +339,8 @@ inline constexpr std::string_view kWorldName = "world";
 struct TaskDescription {
   std::string effector;
   Location place;
-  inverse::Target target;  ///< m; for an orientation effector a rotation vector (rad)
-  Location target_place;
+  inverse::Target target;               ///< m; for an orientation effector a rotation vector (rad)
   std::vector<double> weights = {1.0};  ///< one for all, or one per direction of the effector; >= 0
-};
-
-/// What the efforts are drawn to where several serve equally well.
-enum class Regularisation {
-  change,  ///< the efforts of the step before: no bias of the tip at rest
-  effort,  ///< zero, as published: biases the tip
 };
 
 struct ControllerDescription {

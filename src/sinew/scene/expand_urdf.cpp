@@ -5,6 +5,7 @@
 #include <iterator>
 #include <map>
 #include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 
@@ -40,8 +41,7 @@ JointDescription joint_of(const UrdfJoint& from, int number, const UrdfBodies& b
       from.type == Type::prismatic ? constraint::JointType::slider : constraint::JointType::hinge;
   joint.point = bodies.frame(from.child).translation();
   joint.axis = bodies.frame(from.child).linear() * from.axis;
-  LimitDescription& limits = from.type == Type::prismatic ? joint.displacement : joint.angle;
-  limits.place = from.place;
+  sim::Limits& limits = from.type == Type::prismatic ? joint.displacement : joint.angle;
   limits.min = from.lower - bodies.start(number);
   limits.max = from.upper - bodies.start(number);
   joint.friction = from.friction;
@@ -90,7 +90,9 @@ template <class Rename>
 void for_each_body_name(SceneDescription& scene, Rename&& rename) {
   for (ActuatorDescription& actuator : scene.actuators) {
     rename(actuator.body, actuator.body_place);
-    for (std::string& name : actuator.points.bodies) rename(name, actuator.points.place);
+    if (auto* cable = std::get_if<CableDescription>(&actuator.own)) {
+      for (std::string& name : cable->point_bodies) rename(name, cable->points_place);
+    }
   }
   for (LoadDescription& load : scene.loads) rename(load.body, load.place);
   for (MassDescription& mass : scene.masses) rename(mass.body, mass.body_place);
@@ -131,13 +133,14 @@ void resolve_bodies(SceneDescription& scene, const Names& names,
 // Motors without limits of their own get the file's.
 void resolve_joints(SceneDescription& scene, const Names& names) {
   for (ActuatorDescription& actuator : scene.actuators) {
-    if (actuator.joint.find('.') == std::string::npos) continue;
-    const auto found = names.joints.find(actuator.joint);
+    auto* motor = std::get_if<MotorDescription>(&actuator.own);
+    if (motor == nullptr || motor->joint.find('.') == std::string::npos) continue;
+    const auto found = names.joints.find(motor->joint);
     if (found == names.joints.end()) {
-      throw_unknown(actuator.joint, actuator.joint_place, "joint", keys_of(names.joints));
+      throw_unknown(motor->joint, motor->joint_place, "joint", keys_of(names.joints));
     }
     const UrdfJoint& joint = found->second;
-    LimitDescription &effort = actuator.effort, &motion = actuator.motion;
+    sim::Limits &effort = motor->settings.effort, &motion = motor->settings.motion;
     if (std::isinf(effort.min) && std::isinf(effort.max)) {
       effort.min = -joint.effort;
       effort.max = joint.effort;

@@ -1,15 +1,14 @@
+#include <variant>
+
 #include <fmt/format.h>
 
-#include "sinew/mesh/embedding.hpp"
 #include "sinew/scene/readers.hpp"
-#include "sinew/sim/torque_settings.hpp"
 
 namespace sinew::scene {
 
 namespace {
 
-void read_limit(const Fields& fields, std::string_view key, LimitDescription& limit) {
-  limit.place = fields.place(key);
+void read_limit(const Fields& fields, std::string_view key, sim::Limits& limit) {
   const Fields values = fields.below(key);
   values.read("min", limit.min);
   values.read("max", limit.max);
@@ -20,10 +19,23 @@ void read_limit(const Fields& fields, std::string_view key, LimitDescription& li
               "give a max that is at least min");
 }
 
+void read_limits(const Fields& fields, sim::ActuatorType type, sim::Limits& effort,
+                 sim::Limits& motion) {
+  const sim::ActuatorWords& words = sim::actuator_words(type);
+  const Fields limits = fields.below("limits");
+  read_limit(limits, words.effort.name, effort);
+  read_limit(limits, words.motion.name, motion);
+}
+
+void read_outside(const Fields& fields, mesh::Outside& outside) {
+  fields.read_choice("outside", outside,
+                     {{"error", mesh::Outside::error}, {"nearest", mesh::Outside::nearest}});
+}
+
 // An input belongs to what fills a chamber.
-void check_input(const ActuatorDescription& actuator, std::string_view input,
+void check_input(const sim::ChamberSettings& chamber, std::string_view input,
                  const Location& place) {
-  const bool has = (input != "gas" || actuator.gas) && (input != "liquid" || actuator.liquid);
+  const bool has = (input != "gas" || chamber.gas) && (input != "liquid" || chamber.liquid);
   if (has) return;
   throw Error(ErrorKind::conflicting_keys, place,
               fmt::format("the chamber has no {} to add to", show(std::string(input))),
@@ -36,41 +48,68 @@ void read_command(const Fields& fields, ActuatorDescription& actuator, const Rea
   const Fields command = fields.below("command");
   const std::string& key = command.map().entries().front().key;
   const sim::ActuatorWords& words = sim::actuator_words(actuator.type);
-  using Kind = CommandDescription::Kind;
-  CommandDescription result;
-  result.kind = key == words.effort.name   ? Kind::effort
-                : key == words.motion.name ? Kind::motion
-                                           : Kind::input;
-  result.place = command.place(key);
-  if (result.kind == Kind::input) check_input(actuator, key, result.place);
-  if (auto* wire = std::get_if<sim::SmaSettings>(&actuator.spring)) {
-    wire->by_phase = key == sim::SmaDrive::kPhase.name;
+  using Kind = sim::CommandKind;
+  actuator.command.kind = key == words.effort.name   ? Kind::effort
+                          : key == words.motion.name ? Kind::motion
+                                                     : Kind::input;
+  if (const auto* chamber = std::get_if<ChamberDescription>(&actuator.own)) {
+    check_input(chamber->settings, key, command.place(key));
   }
-  result.signal = read_signal(command, key, context);
-  actuator.command = std::move(result);
+  if (auto* line = std::get_if<sim::SpringLineSettings>(&actuator.own)) {
+    auto* wire = std::get_if<sim::SmaSettings>(&line->spring);
+    if (wire != nullptr) wire->by_phase = key == sim::SmaDrive::kPhase.name;
+  }
+  actuator.command.signal = read_signal(command, key, context);
 }
 
-void read_line(const Fields& fields, ActuatorDescription& cable, const ReadContext& context) {
-  cable.points = read_points(fields, "points", context);
-  fields.read_choice("pull", cable.pull, {{"world", PullPoint::world}, {"body", PullPoint::body}});
-  const Points& points = cable.points.points;
+PointList read_line_points(const Fields& fields, const ReadContext& context) {
+  PointList line = read_points(fields, "points", context);
+  const Points& points = line.points;
   if (points.rows() < 2 && !(points.rows() == 0 && context.files == Files::ignore)) {
-    throw Error(ErrorKind::too_few_points, cable.points.place,
+    throw Error(ErrorKind::too_few_points, line.place,
                 fmt::format("the line has {} point", points.rows()),
                 "give its first point and at least one more");
   }
   for (Eigen::Index i = 1; i < points.rows(); ++i) {
     if (points.row(i) != points.row(i - 1)) continue;
-    throw Error(ErrorKind::degenerate_cable, cable.points.places[static_cast<std::size_t>(i)],
+    throw Error(ErrorKind::degenerate_cable, line.places[static_cast<std::size_t>(i)],
                 fmt::format("points {} and {} of the line are the same", i, i + 1),
                 "remove one of the two");
   }
+  return line;
 }
 
-void read_force(const Fields& fields, ActuatorDescription& force) {
+// What cables and springs have alike.
+template <class Settings>
+void set_line(const Fields& fields, const PointList& points, Settings& line) {
+  line.points = points.points;
+  line.point_places = points.places;
+  fields.read_choice("pull", line.pull_from_world, {{"world", true}, {"body", false}});
+  read_outside(fields, line.outside);
+}
+
+CableDescription read_cable(const Fields& fields, const ReadContext& context) {
+  CableDescription cable;
+  const PointList points = read_line_points(fields, context);
+  cable.points_place = points.place;
+  cable.point_bodies = points.bodies;
+  sim::CableSettings& settings = cable.settings;
+  set_line(fields, points, settings);
+  fields.read("geometric_stiffness", settings.geometric_stiffness);
+  fields.read("friction", settings.friction);
+  cable.guide_radius_given = fields.read("guide_radius", settings.guide_radius);
+  fields.read("guide_spacing", settings.guide_spacing);
+  read_limits(fields, sim::ActuatorType::cable, settings.tension, settings.displacement);
+  return cable;
+}
+
+sim::ForceSettings read_force(const Fields& fields) {
+  sim::ForceSettings force;
   fields.read("point", force.point);
-  force.point_place = fields.place("point");
   fields.read_direction("direction", force.direction);
+  read_outside(fields, force.outside);
+  read_limits(fields, sim::ActuatorType::force, force.force, force.displacement);
+  return force;
 }
 
 std::optional<sim::Supply> read_supply(const Fields& fields) {
@@ -82,10 +121,7 @@ std::optional<sim::Supply> read_supply(const Fields& fields) {
   return supply;
 }
 
-void read_pressure(const Fields& fields, ActuatorDescription& chamber, const ReadContext& context) {
-  read_surface(fields.below("surface"), chamber.surface, context);
-  fields.read("cap", chamber.cap);
-  fields.read("load_stiffness", chamber.load_stiffness);
+void read_filling(const Fields& fields, sim::ChamberSettings& chamber) {
   if (fields.find("gas") != nullptr) {
     const Fields values = fields.below("gas");
     sim::GasSettings& gas = chamber.gas.emplace();
@@ -105,6 +141,18 @@ void read_pressure(const Fields& fields, ActuatorDescription& chamber, const Rea
   }
 }
 
+ChamberDescription read_chamber(const Fields& fields, const ReadContext& context) {
+  ChamberDescription chamber;
+  read_surface(fields.below("surface"), chamber.surface, context);
+  sim::ChamberSettings& settings = chamber.settings;
+  fields.read("cap", settings.cap);
+  fields.read("load_stiffness", settings.load_stiffness);
+  read_outside(fields, settings.outside);
+  read_filling(fields, settings);
+  read_limits(fields, sim::ActuatorType::pressure, settings.pressure, settings.volume_growth);
+  return chamber;
+}
+
 double read_stiffness(const Fields& fields) {
   double stiffness = 0.0;
   if (fields.form("stiffness").shape == Shape::quantity) {
@@ -120,23 +168,8 @@ double read_stiffness(const Fields& fields) {
   return sim::coil_stiffness(modulus, wire, diameter, coils);
 }
 
-void read_spring(const Fields& fields, ActuatorDescription& line) {
-  double free_length = 0.0, damping = 0.0;
-  line.free_at_rest = !fields.read("free_length", free_length);
-  fields.read("damping", damping);
-  if (fields.find("stiffness") != nullptr) {
-    sim::SpringSettings spring;
-    spring.stiffness = read_stiffness(fields);
-    spring.free_length = free_length;
-    spring.damping = damping;
-    fields.read("tension_only", spring.tension_only);
-    line.spring = spring;
-    return;
-  }
-  const Fields values = fields.below("shape_memory");
+sim::SmaSettings read_wire(const Fields& values) {
   sim::SmaSettings wire;
-  wire.free_length = free_length;
-  wire.damping = damping;
   values.read("wire_diameter", wire.wire);
   values.read("mean_diameter", wire.mean_diameter);
   values.read("coils", wire.coils);
@@ -149,7 +182,66 @@ void read_spring(const Fields& fields, ActuatorDescription& line) {
   values.read("austenite_end", wire.austenite_end);
   values.read("martensite_start", wire.martensite_start);
   values.read("martensite_end", wire.martensite_end);
-  line.spring = wire;
+  return wire;
+}
+
+sim::SpringLineSettings read_spring(const Fields& fields, const ReadContext& context) {
+  sim::SpringLineSettings line;
+  set_line(fields, read_line_points(fields, context), line);
+  if (fields.find("stiffness") != nullptr) {
+    auto& spring = line.spring.emplace<sim::SpringSettings>();
+    spring.stiffness = read_stiffness(fields);
+    fields.read("tension_only", spring.tension_only);
+  } else {
+    line.spring = read_wire(fields.below("shape_memory"));
+  }
+  std::visit(
+      [&](auto& spring) {
+        line.free_at_rest = !fields.read("free_length", spring.free_length);
+        fields.read("damping", spring.damping);
+      },
+      line.spring);
+  return line;
+}
+
+sim::TorqueSettings read_torque(const Fields& fields) {
+  using Towards = sim::TorqueSettings::Towards;
+  sim::TorqueSettings torque;
+  fields.read("segment", torque.segment);
+  fields.read_choice("towards", torque.towards,
+                     {{"side", Towards::side}, {"across", Towards::across}});
+  read_limits(fields, sim::ActuatorType::torque, torque.torque, torque.angle);
+  return torque;
+}
+
+MotorDescription read_motor(const Fields& fields, sim::ActuatorType type) {
+  MotorDescription motor;
+  fields.read("joint", motor.joint);
+  motor.joint_place = fields.place("joint");
+  motor.settings.linear = type == sim::ActuatorType::linear_motor;
+  read_limits(fields, type, motor.settings.effort, motor.settings.motion);
+  return motor;
+}
+
+decltype(ActuatorDescription::own) read_own(const Fields& fields, sim::ActuatorType type,
+                                            const ReadContext& context) {
+  using sim::ActuatorType;
+  switch (type) {
+    case ActuatorType::cable:
+      return read_cable(fields, context);
+    case ActuatorType::force:
+      return read_force(fields);
+    case ActuatorType::pressure:
+      return read_chamber(fields, context);
+    case ActuatorType::spring:
+      return read_spring(fields, context);
+    case ActuatorType::torque:
+      return read_torque(fields);
+    case ActuatorType::motor:
+    case ActuatorType::linear_motor:
+      return read_motor(fields, type);
+  }
+  return {};
 }
 
 }  // namespace
@@ -175,75 +267,18 @@ void read_surface(const Fields& fields, SurfaceDescription& surface, const ReadC
   }
 }
 
-namespace {
-
-bool moves_joint(ActuatorDescription::Type type) {
-  return type == ActuatorDescription::Type::motor ||
-         type == ActuatorDescription::Type::linear_motor;
-}
-
-bool has_points(ActuatorDescription::Type type) {
-  return type != ActuatorDescription::Type::torque && !moves_joint(type);
-}
-
-}  // namespace
-
 ActuatorDescription read_actuator(const Node::Entry& entry, const ReadContext& context) {
   ActuatorDescription actuator;
   actuator.name = entry.key;
   actuator.place = entry.key_place;
   const Form& form = form_of(grammar(), "actuators", Shape::names).items.front();
   const Fields fields(entry.value, form);
-  using Type = ActuatorDescription::Type;
   // The grammar lets no other word through.
   actuator.type = sim::actuator_type(read_text(*entry.value.find(form.telltale))).value();
-  if (has_points(actuator.type)) {
-    fields.read_choice("outside", actuator.outside,
-                       {{"error", mesh::Outside::error}, {"nearest", mesh::Outside::nearest}});
-  }
-  if (!moves_joint(actuator.type)) {
+  actuator.own = read_own(fields, actuator.type, context);
+  if (!std::holds_alternative<MotorDescription>(actuator.own)) {
     fields.read("body", actuator.body);
     actuator.body_place = fields.place("body");
-  }
-  switch (actuator.type) {
-    case Type::cable:
-      actuator.effort.min = 0.0;
-      read_line(fields, actuator, context);
-      fields.read("geometric_stiffness", actuator.geometric_stiffness);
-      fields.read("friction", actuator.friction);
-      if (double radius = 0.0; fields.read("guide_radius", radius)) {
-        actuator.guide_radius = radius;
-      }
-      fields.read("guide_spacing", actuator.guide_spacing);
-      break;
-    case Type::force:
-      read_force(fields, actuator);
-      break;
-    case Type::pressure:
-      read_pressure(fields, actuator, context);
-      break;
-    case Type::motor:
-    case Type::linear_motor:
-      fields.read("joint", actuator.joint);
-      actuator.joint_place = fields.place("joint");
-      break;
-    case Type::torque:
-      fields.read("segment", actuator.segment);
-      fields.read_choice("towards", actuator.towards,
-                         {{"side", sim::TorqueSettings::Towards::side},
-                          {"across", sim::TorqueSettings::Towards::across}});
-      break;
-    case Type::spring:
-      actuator.pull = PullPoint::body;
-      read_line(fields, actuator, context);
-      read_spring(fields, actuator);
-      break;
-  }
-  if (actuator.type != Type::spring) {
-    const sim::ActuatorWords& words = sim::actuator_words(actuator.type);
-    const Fields limits = fields.below("limits");
-    read_limit(limits, words.effort.name, actuator.effort);
-    read_limit(limits, words.motion.name, actuator.motion);
   }
   read_command(fields, actuator, context);
   return actuator;

@@ -292,10 +292,8 @@ void read_fixed(const Fields& fields, BodyDescription& body) {
 
 }  // namespace
 
-BaseDescription read_motion(const Fields& fields, const Location& place,
-                            const ReadContext& context) {
-  BaseDescription motion;
-  motion.place = place;
+sim::BaseMotion read_motion(const Fields& fields, const ReadContext& context) {
+  sim::BaseMotion motion;
   constexpr std::array kAxes = {"x", "y", "z"};
   for (std::size_t c = 0; c < 3; ++c) {
     if (fields.find(kAxes[c]) != nullptr) {
@@ -358,7 +356,8 @@ BodyDescription read_body(const Node::Entry& entry, const ReadContext& context) 
     start.read("angular", velocity.angular);
   }
   if (fields.find("base") != nullptr) {
-    body.base = read_motion(fields.below("base"), fields.place("base"), context);
+    body.base = read_motion(fields.below("base"), context);
+    body.base_place = fields.place("base");
   }
   return body;
 }

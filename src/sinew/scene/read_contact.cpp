@@ -89,7 +89,7 @@ ContactDescription read_contact(const Node::Entry& entry, const ReadContext& con
   if (fields.find("restitution") != nullptr)
     fields.read("restitution", contact.restitution.emplace());
   if (fields.find("motion") != nullptr) {
-    contact.motion = read_motion(fields.below("motion"), fields.place("motion"), context);
+    contact.motion = read_motion(fields.below("motion"), context);
   }
   return contact;
 }

@@ -83,7 +83,6 @@ TaskDescription read_task(const Node::Entry& entry, const Form& form, const Read
                                      [&](const auto& e) { return e.name == entry.key; });
   const char* key = target_key(fields, *effector);
   task.target = read_target(fields, key, context);
-  task.target_place = fields.place(key);
   fields.read_numbers("weight", task.weights);
   const auto directions = static_cast<std::size_t>(effector->directions.rows());
   if (task.weights.size() != 1 && task.weights.size() != directions) {

@@ -43,9 +43,8 @@ void read_surface(const Fields& fields, SurfaceDescription& surface, const ReadC
 EffectorDescription read_effector(const Node::Entry& entry, const ReadContext& context);
 ContactDescription read_contact(const Node::Entry& entry, const ReadContext& context);
 JointDescription read_joint(const Node::Entry& entry, const ReadContext& context);
-/// A motion over time. @param fields of its map. @param place of it. @param context of the scene.
-BaseDescription read_motion(const Fields& fields, const Location& place,
-                            const ReadContext& context);
+/// A motion over time. @param fields of its map. @param context of the scene.
+sim::BaseMotion read_motion(const Fields& fields, const ReadContext& context);
 ProbeDescription read_probe(const Node::Entry& entry, const ReadContext& context);
 /// A unit vector, or the axis that x, y or z names. @param node,forms what is read, as one of
 /// these.

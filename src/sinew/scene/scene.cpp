@@ -200,9 +200,9 @@ double SceneDescription::run_duration() const {
   if (duration) return *duration;
   double end = 0.0;
   for (const ActuatorDescription& actuator : actuators) {
-    if (actuator.command) end = std::max(end, actuator.command->signal.end_time());
+    end = std::max(end, actuator.command.signal.end_time());
   }
-  const auto include = [&](const std::optional<BaseDescription>& motion) {
+  const auto include = [&](const std::optional<sim::BaseMotion>& motion) {
     if (!motion) return;
     for (const sim::Signal& signal : motion->translation) end = std::max(end, signal.end_time());
     end = std::max(end, motion->angle.end_time());

@@ -14,6 +14,7 @@
 #include "sinew/sim/find_body.hpp"
 #include "sinew/sim/joint_settings.hpp"
 #include "sinew/sim/model_data.hpp"
+#include "sinew/sim/motor_settings.hpp"
 #include "sinew/sim/new_name.hpp"
 
 namespace sinew::sim {

@@ -38,14 +38,4 @@ struct JointSettings {
   double friction = 0.0;                   ///< N m of a hinge, N of a slider, >= 0
 };
 
-/// What moves a hinge or slider.
-struct MotorSettings {
-  std::string name;
-  Location place;
-  int joint = 0;          ///< as add_joint() returned it
-  bool linear = false;    ///< of a slider
-  Limits effort, motion;  ///< N m and rad; N and m
-  Command command;
-};
-
 }  // namespace sinew::sim

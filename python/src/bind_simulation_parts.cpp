@@ -1,0 +1,121 @@
+// The parts of a simulation by their names.
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "sinew/constraint/probe.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/sim/model.hpp"
+
+#include "simulation_type.hpp"
+
+namespace sinew::python {
+
+namespace {
+
+// The part of a name, whose number the model knows.
+template <class One>
+auto named(int (sim::Model::*index)(std::string_view) const) {
+  return [index](const std::shared_ptr<Session>& self, const std::string& name) {
+    return One{{self, (self->model().*index)(name)}};
+  };
+}
+
+// All parts of a kind by name, in the order of the model's list.
+template <class One, class List>
+auto all(List list) {
+  return [list](const std::shared_ptr<Session>& self) {
+    py::dict result;
+    int index = 0;
+    for (const auto& part : std::invoke(list, self->model())) {
+      One one{{self, index++}};
+      if constexpr (requires { part.name(); }) {
+        result[part.name().c_str()] = std::move(one);
+      } else {
+        result[part.name.c_str()] = std::move(one);
+      }
+    }
+    return result;
+  };
+}
+
+void bind_devices(SimulationType& type) {
+  type.def("actuator", named<Actuator>(&sim::Model::actuator_index), py::arg("name"),
+           R"(actuator($self, name)
+--
+
+An actuator by its name. Raises Error (unknown-name) with a suggestion.
+)")
+      .def("effector", named<Effector>(&sim::Model::effector_index), py::arg("name"),
+           R"(effector($self, name)
+--
+
+An effector by its name. Raises Error (unknown-name) with a suggestion.
+)")
+      .def("probe", named<Probe>(&sim::Model::probe_index), py::arg("name"),
+           R"(probe($self, name)
+--
+
+A probe by its name. Raises Error (unknown-name) with a suggestion.
+)")
+      .def("load", named<Load>(&sim::Model::load_index), py::arg("name"),
+           R"(load($self, name)
+--
+
+A load by its name. Raises Error (unknown-name) with a suggestion.
+)");
+}
+
+void bind_bodies(SimulationType& type) {
+  type.def("body", named<Body>(&sim::Model::body_index), py::arg("name"),
+           R"(body($self, name)
+--
+
+A body by its name. Raises Error (unknown-name) with a suggestion.
+)")
+      .def("mass", named<PointMass>(&sim::Model::mass_index), py::arg("name"),
+           R"(mass($self, name)
+--
+
+A mass that hangs on a body, by its name. Raises Error (unknown-name) with a suggestion.
+)")
+      .def("contact", named<Contact>(&sim::Model::contact_index), py::arg("name"),
+           R"(contact($self, name)
+--
+
+A contact by its name. Raises Error (unknown-name) with a suggestion.
+)")
+      .def("joint", named<Joint>(&sim::Model::joint_index), py::arg("name"),
+           R"(joint($self, name)
+--
+
+A joint by its name. Raises Error (unknown-name) with a suggestion.
+)");
+}
+
+void bind_lists(SimulationType& type) {
+  type.def_property_readonly("actuators", all<Actuator>(&sim::Model::actuators),
+                             "dict: all actuators by name, in the scene's order.")
+      .def_property_readonly("effectors", all<Effector>(&sim::Model::effectors),
+                             "dict: all effectors by name, in the scene's order.")
+      .def_property_readonly("probes", all<Probe>(&sim::Model::probes),
+                             "dict: all probes by name, in the scene's order.")
+      .def_property_readonly("masses", all<PointMass>(&sim::Model::masses),
+                             "dict: all masses that hang on bodies by name, body by body.")
+      .def_property_readonly("contacts", all<Contact>(&sim::Model::contacts),
+                             "dict: all contacts by name, in the scene's order.")
+      .def_property_readonly("joints", all<Joint>(&sim::Model::joints),
+                             "dict: all joints by name, in the scene's order.")
+      .def_property_readonly("bodies", all<Body>(&sim::Model::bodies),
+                             "dict: all bodies by name, in the scene's order.");
+}
+
+}  // namespace
+
+void bind_simulation_parts(SimulationType& type) {
+  bind_devices(type);
+  bind_bodies(type);
+  bind_lists(type);
+}
+
+}  // namespace sinew::python

@@ -1,0 +1,110 @@
+// What a simulation tells of itself.
+#include <string>
+
+#include "sinew/scene/scene.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/simulation.hpp"
+#include "sinew/sim/state.hpp"
+
+#include "errors.hpp"
+#include "simulation_type.hpp"
+
+namespace sinew::python {
+
+namespace {
+
+std::string to_yaml(const Session& self) {
+  scene::Node tree = self.robot().robot.description.tree;
+  scene::resolve_paths(tree, self.robot().folder);
+  return scene::to_yaml(tree);
+}
+
+py::dict ledger(Session& self) {
+  const Session::Use use(self);
+  sim::Simulation& simulation = self.simulation();
+  const mechanics::Energies energies = simulation.energies();
+  py::dict result;
+  result["strain"] = energies.strain;
+  result["kinetic"] = energies.kinetic;
+  result["gravity"] = energies.gravity;
+  result["actuator_work"] = simulation.ledger().actuators;
+  result["outside_work"] = simulation.ledger().outside;
+  result["dissipation"] = simulation.ledger().dissipated;
+  return result;
+}
+
+py::list notices(const Session& self) {
+  py::list result;
+  for (const Notice& notice : self.robot().robot.notices) {
+    result.append(to_python(notice));
+  }
+  return result;
+}
+
+template <typename Get>
+auto guarded(Get get) {
+  return [get](const Session& self) {
+    const Session::Use use(self);
+    return get(self.simulation());
+  };
+}
+
+void bind_progress(SimulationType& type) {
+  type.def_property_readonly("time", &Session::time, "float: s.")
+      .def_property_readonly("steps", &Session::steps, "int: steps taken since the start.")
+      .def_property_readonly(
+          "time_step", [](const Session& self) { return self.model().step().time_step; },
+          "float: s.")
+      .def_property_readonly(
+          "threads", [](const Session& self) { return self.simulation().threads(); },
+          "int: threads inside a step.")
+      .def_property_readonly("busy", &Session::busy,
+                             "bool: whether a step is under way in some thread.")
+      .def_property_readonly("report", guarded([](const sim::Simulation& s) { return s.report(); }),
+                             "StepReport: what the last step did.")
+      .def_property_readonly(
+          "state_hash", guarded([](const sim::Simulation& s) { return s.state().hash(); }),
+          "int: of positions, velocities, efforts and drives; equal runs have equal hashes, bit "
+          "for bit.");
+}
+
+void bind_balance(SimulationType& type) {
+  type.def_property_readonly(
+          "ledger", &ledger,
+          "dict: energies of all bodies now (J; gravity's from the height at rest), and since the "
+          "start the work of actuators, that of loads and outside forces, and what damping, drag "
+          "the friction of cables and contacts took. Work less dissipation less what the energies "
+          "gained is "
+          "the integrator's loss.")
+      .def_property_readonly("memory", guarded([](const sim::Simulation& s) { return s.bytes(); }),
+                             "int: bytes of this simulation without the model that it shares.");
+}
+
+void bind_scene(SimulationType& type) {
+  type.def_property_readonly(
+          "name", [](const Session& self) { return self.robot().robot.description.name; },
+          "str: of the scene.")
+      .def_property_readonly(
+          "notices", &notices,
+          "list of Notice: what a user should know of the scene, warnings and remarks.")
+      .def("to_yaml", &to_yaml,
+           R"(to_yaml($self)
+--
+
+The scene as YAML, overrides included and paths absolute. Loaded again it gives the same robot.
+
+Returns
+-------
+str
+)");
+}
+
+}  // namespace
+
+void bind_simulation_reports(SimulationType& type) {
+  bind_progress(type);
+  bind_balance(type);
+  bind_scene(type);
+}
+
+}  // namespace sinew::python

@@ -1,0 +1,224 @@
+// What moves a simulation: steps, static equilibria, paths of equilibria, runs.
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/simulation.hpp"
+
+#include "arrays.hpp"
+#include "simulation_type.hpp"
+
+namespace sinew::python {
+
+namespace {
+
+sim::StabilityChoice stability_choice(const std::string& name) {
+  if (name == "stable") return sim::StabilityChoice::stable;
+  if (name == "any") return sim::StabilityChoice::any;
+  throw Error(ErrorKind::unknown_choice, {.item = "solve_static(stability)"},
+              fmt::format("there is no stability '{}'", name), "use 'stable' or 'any'");
+}
+
+sim::StaticReport solve_static(Session& self, double tolerance, int max_iterations,
+                               int max_load_steps, int max_relaxation_steps,
+                               const std::string& stability) {
+  if (!(tolerance > 0.0) || max_iterations < 1 || max_load_steps < 1 || max_relaxation_steps < 0) {
+    throw Error(ErrorKind::out_of_range, {.item = "solve_static()"},
+                fmt::format("tolerance {:g}, max_iterations {} and max_load_steps {} must be "
+                            "positive, max_relaxation_steps {} not negative",
+                            tolerance, max_iterations, max_load_steps, max_relaxation_steps),
+                "leave them out for the defaults");
+  }
+  return self.solve_static({tolerance, max_iterations, max_load_steps, max_relaxation_steps,
+                            stability_choice(stability)});
+}
+
+// What follow_path() returns. @param values of every effector at every point.
+py::dict path_table(const std::vector<sim::PathPoint>& path,
+                    const std::vector<sim::EffectorModel>& effectors,
+                    const std::vector<std::vector<Vector3>>& values) {
+  VectorX share(static_cast<Eigen::Index>(path.size())), unstable(share.size());
+  for (Eigen::Index k = 0; k < share.size(); ++k) {
+    share[k] = path[static_cast<std::size_t>(k)].share;
+    unstable[k] = path[static_cast<std::size_t>(k)].negative_pivots;
+  }
+  py::dict result;
+  result["share"] = copy(share);
+  result["negative_pivots"] = copy(unstable);
+  for (std::size_t i = 0; i < effectors.size(); ++i) {
+    Points points(share.size(), 3);
+    for (Eigen::Index k = 0; k < share.size(); ++k) {
+      points.row(k) = values[i][static_cast<std::size_t>(k)].transpose();
+    }
+    result[py::str(effectors[i].name)] = copy(points);
+  }
+  return result;
+}
+
+py::dict follow_path(Session& self, double first_step, double largest_step, double tolerance,
+                     int max_points) {
+  sim::Simulation& simulation = self.simulation();
+  const auto& effectors = simulation.model().effectors();
+  std::vector<std::vector<Vector3>> values(effectors.size());
+  const auto path = self.follow_path({first_step, largest_step, tolerance, max_points}, [&] {
+    for (std::size_t i = 0; i < effectors.size(); ++i) {
+      values[i].push_back(simulation.effector_value(static_cast<int>(i)));
+    }
+  });
+  return path_table(path, effectors, values);
+}
+
+void bind_step(SimulationType& type) {
+  type.def(
+      "step", [](Session& self, const py::object& n) { self.advance(to_count(n, "step(n)")); },
+      py::arg("n") = 1,
+      R"(step($self, n=1)
+--
+
+Advances n time steps. Other Python threads run meanwhile; Ctrl-C ends it between steps.
+
+Parameters
+----------
+n : int
+    >= 0.
+
+Raises
+------
+RunError
+    diverged, inverted-in-run, singular-matrix or not-converged, with the step, the body and the
+    likely cause; the state is then that before the step that failed.
+)");
+}
+
+void bind_solve_static(SimulationType& type) {
+  type.def(
+      "solve_static", &solve_static, py::kw_only(), py::arg("tolerance") = 1e-10,
+      py::arg("max_iterations") = 60, py::arg("max_load_steps") = 256,
+      py::arg("max_relaxation_steps") = 200, py::arg("stability") = "stable",
+      R"(solve_static($self, *, tolerance=1e-10, max_iterations=60, max_load_steps=256, max_relaxation_steps=200, stability='stable')
+--
+
+A stable static equilibrium at the present inputs, by Newton with the exact tangent and the cables'
+geometric stiffness.
+
+Limits on rates are lifted and the actuators of a controller hold their efforts. Velocities become
+zero; time stands still. Where Newton fails in one go, the load comes in parts; where that ends
+before the full load, the robot moves on by overdamped motion. An unstable equilibrium (a column
+straight beyond its buckling load) is disturbed along the direction of its lowest curvature and left
+for a stable one.
+
+Parameters
+----------
+tolerance : float
+    Residual relative to the loads, and violation of the actuators' law relative to the size.
+max_iterations : int
+    Of Newton in one load step.
+max_load_steps : int
+    Where one go fails, the load comes in parts, the least of which is its inverse.
+max_relaxation_steps : int
+    Steps of overdamped motion.
+stability : str
+    'stable', or 'any' for the equilibrium that Newton finds, stable or not: to follow an unstable
+    branch. See StaticReport.negative_pivots.
+
+Returns
+-------
+StaticReport
+
+Raises
+------
+RunError
+    not-converged when no equilibrium is found, or none that is stable; the state is then as before.
+)");
+}
+
+void bind_follow_path(SimulationType& type) {
+  type.def(
+      "follow_path", &follow_path, py::kw_only(), py::arg("first_step") = 0.01,
+      py::arg("largest_step") = 0.05, py::arg("tolerance") = 1e-9, py::arg("max_points") = 500,
+      R"(follow_path($self, *, first_step=0.01, largest_step=0.05, tolerance=1e-09, max_points=500)
+--
+
+Equilibria while loads and commanded efforts grow in proportion, from what acted last (nothing, at
+the start) to what they are told to be now: by arc length, so through limit points and back, where
+solve_static() would jump or fail. The last one lies at the full load or just beyond it. Friction of
+contacts is that of one slow motion from each point to the next.
+
+Parameters
+----------
+first_step, largest_step : float
+    Largest motion of any coordinate in a step, as a part of the robot's size.
+tolerance : float
+    Residual relative to the loads.
+max_points : int
+
+Returns
+-------
+dict
+    'share' (k,): part of the load; 'negative_pivots' (k,): directions in which the point is
+    unstable; and by its name the value (k, 3) of every effector.
+
+Raises
+------
+Error
+    bad-argument where an actuator is told a motion or has a drive, or a cable has friction;
+    not-in-this-version beside curved surfaces with friction, and where contacts alone hold a body.
+RunError
+    not-converged; the state is then that of the start.
+)");
+}
+
+void bind_run(SimulationType& type) {
+  type.def("run", &run, py::arg("duration") = py::none(), py::kw_only(),
+           py::arg("record") = py::none(), py::arg("every") = 1, py::arg("progress") = py::none(),
+           R"(run($self, duration=None, *, record=None, every=1, progress=None)
+--
+
+Steps for a while and returns what happened, the start included.
+
+Parameters
+----------
+duration : float, optional
+    s; by default the scene's, or the length of its signals and targets.
+record : list of str, optional
+    Which keys to return beside 'time'; by default all but those named "on request" below.
+every : int
+    Steps between records; the last step is always recorded.
+progress : callable, optional
+    Called with (steps done, all steps) about ten times a second. It may read the simulation and
+    command it.
+
+Returns
+-------
+dict of ndarray
+    'time' (k,) s; for every actuator effort and motion, 'NAME.tension' (k,) N and
+    'NAME.displacement' (k,) m, and what is commanded of them, 'NAME.tension_command' and
+    'NAME.displacement_command', NaN while another quantity is (a controller commands efforts); for
+    every effector 'NAME.position' (k, 3) m or 'NAME.rotation' (k, 3) rad; for every probe
+    'NAME.value'; for every contact 'NAME.force' (k, 3) N, 'NAME.normal_force', 'NAME.gap' and so
+    on; 'residual' (k,) N and other numbers of the step's report; 'status' (k,) of str; with a
+    controller 'NAME.target' (k, 3), 'NAME.error' (k,), 'error' (k,) m and 'controller' (k,) of str.
+    On request for every body 'NAME.positions' (k, n, 3) m and 'NAME.velocities'; for the n points
+    of a contact 'NAME.points.gap' (k, n) m, 'NAME.points.normal_force' N and so on; 'strain_energy',
+    'actuator_work' and so on (k,) J, work from the first record on; 'time.step' (k,) s.
+
+Raises
+------
+RunError
+    As step(). What was recorded until then is in the exception's `recorded`, as it is in that of
+    a KeyboardInterrupt.
+)");
+}
+
+}  // namespace
+
+void bind_simulation_stepping(SimulationType& type) {
+  bind_step(type);
+  bind_solve_static(type);
+  bind_follow_path(type);
+  bind_run(type);
+}
+
+}  // namespace sinew::python

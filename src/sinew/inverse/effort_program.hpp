@@ -1,0 +1,93 @@
+/// @file
+/// The quadratic program of a controller's step: its assembly and its solution.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sinew/core/types.hpp"
+#include "sinew/qp/elastic.hpp"
+#include "sinew/qp/quadratic_program.hpp"
+#include "sinew/step/law_status.hpp"
+
+namespace sinew::sim {
+class Model;
+}
+namespace sinew::step {
+struct ActuatorBlock;
+class Response;
+struct StepProblem;
+}  // namespace sinew::step
+
+namespace sinew::inverse {
+
+/// The block of a controlled actuator. @param problem,response of the step. @param k its position
+/// among those of the response.
+const step::ActuatorBlock& controlled_block(const step::StepProblem& problem,
+                                            const step::Response& response, Eigen::Index k);
+
+/// What efforts are drawn to. With p the pull to zero efforts, d the damping, and c that within the
+/// step, the objective gets
+///   eps/2 (d lambda^T R lambda - 2 (d - p) lambda^T R lambda_0
+///          + (c - 1) (lambda - lambda_1)^T R (lambda - lambda_1)),
+/// with lambda_0 the efforts of the step before and lambda_1 the step's last choice. At lambda =
+/// lambda_0 and lambda = lambda_1 the derivative is that of p eps/2 lambda^T R lambda: neither d
+/// nor c moves a fixed point.
+struct EffortPull {
+  double epsilon = 0.0;         ///< InverseSettings::epsilon
+  double to_zero = 1.0;         ///< p
+  double damping = 1.0;         ///< d
+  double damping_within = 1.0;  ///< c
+  const VectorX& last_choice;   ///< lambda_1, (controlled,)
+};
+
+/// The program of InverseController, in efforts over a scale of each.
+class EffortProgram {
+ public:
+  EffortProgram() = default;
+  /// @param rows of H, those of all effectors. @param weights Q, as many. @param actuators how many
+  ///   the controller has.
+  EffortProgram(std::vector<int> rows, VectorX weights, int actuators);
+
+  /// The objective. @param problem,response of the step. @param residual (rows,) motion without
+  ///   efforts, less the one that is asked. @param pull what efforts are drawn to.
+  void form(const step::StepProblem& problem, const step::Response& response,
+            const VectorX& residual, const EffortPull& pull);
+  /// After form(), within the limits. @param model of the robot. @param problem,response as there.
+  ///   @param effort (controlled,) N, gets the solution, unless it failed.
+  step::LawStatus solve(const sim::Model& model, const step::StepProblem& problem,
+                        const step::Response& response, std::span<double> effort);
+
+  /// Which limits of which actuators contradict each other in the last solve(); else empty.
+  const std::string& conflict() const { return conflict_; }
+  /// Whether a limit resists, by the multipliers of the last solve(). @param gap what is left of
+  ///   the way to the targets, m.
+  bool limit_holds(double gap) const;
+
+  /// Forgets the active sets of the last solve().
+  void reset();
+  /// And its conflict.
+  void forget();
+
+ private:
+  void form_scales(const step::StepProblem& problem, const step::Response& response);
+  void regularise(const step::StepProblem& problem, const step::Response& response,
+                  const EffortPull& pull);
+  void form_limits(const step::StepProblem& problem, const step::Response& response);
+  void write(std::span<double> effort) const;
+
+  std::vector<int> rows_;
+  VectorX weights_;
+  MatrixX jacobian_;  // W_ea, scaled columns
+  MatrixX weighted_;  // Q W_ea
+  VectorX scale_;     // (controlled,) of each effort
+  VectorX scaled_effort_;
+  qp::QuadraticProgram program_;
+  qp::QpSolver solver_;
+  qp::ElasticSolver elastic_{0, 0};            // for steps in which limits contradict each other
+  VectorX bound_multiplier_, row_multiplier_;  // of the program
+  std::string conflict_;
+};
+
+}  // namespace sinew::inverse

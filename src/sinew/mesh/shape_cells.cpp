@@ -1,0 +1,92 @@
+#include "sinew/mesh/shape_cells.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <Eigen/LU>
+
+#include "sinew/mesh/quadratic.hpp"
+
+namespace sinew::mesh {
+
+namespace {
+
+/// Least determinant of an element's map at its corners and points of integration, over that of its
+/// corners alone.
+double least_jacobian(const Mesh& mesh, const QuadraticTetrahedron& element) {
+  Eigen::Matrix<double, 10, 3> x;
+  for (std::size_t a = 0; a < 10; ++a) {
+    x.row(static_cast<Eigen::Index>(a)) = mesh.nodes.row(element[a]);
+  }
+  const Matrix3 straight = (x.middleRows<3>(1).rowwise() - x.row(0)).transpose();
+  double least = std::numeric_limits<double>::infinity();
+  const auto see = [&](const std::array<double, 4>& point) {
+    least = std::min(least, (x.transpose() * quadratic_gradients(point)).determinant());
+  };
+  for (const auto& point : quadratic_points()) see(point);
+  for (std::size_t a = 0; a < 4; ++a) {
+    std::array<double, 4> corner{};
+    corner[a] = 1.0;
+    see(corner);
+  }
+  return least / straight.determinant();
+}
+
+/// Where cells are flat beside their circle's curve, arcs would fold elements: these get straight
+/// edges again.
+void straighten_folded(Mesh& mesh) {
+  constexpr double kMinJacobian = 0.1;
+  for (bool folded = true; folded;) {
+    folded = false;
+    for (const QuadraticTetrahedron& element : mesh.quadratic) {
+      if (least_jacobian(mesh, element) >= kMinJacobian) continue;
+      folded = true;
+      for (std::size_t e = 0; e < kEdges.size(); ++e) {
+        mesh.nodes.row(element[4 + e]) =
+            0.5 * (mesh.nodes.row(element[kEdges[e][0]]) + mesh.nodes.row(element[kEdges[e][1]]));
+      }
+    }
+  }
+}
+
+}  // namespace
+
+double rounding(int corners, Cells cells) {
+  if (cells == Cells::quadratic) return 1.0;
+  const double angle = 2.0 * std::numbers::pi / corners;
+  return std::sqrt(angle / std::sin(angle));
+}
+
+int outside_corners(const Section& section) {
+  return static_cast<int>(std::ranges::count(section.radius, 1.0));
+}
+
+Mesh finished(Mesh mesh, Cells cells, const std::vector<Circle>& circles) {
+  if (cells != Cells::quadratic) return mesh;
+  Mesh result = with_middle_nodes(mesh);
+  constexpr double kOn = 1e-9;
+  for (const QuadraticTetrahedron& element : result.quadratic) {
+    for (std::size_t e = 0; e < kEdges.size(); ++e) {
+      const Vector3 a = result.nodes.row(element[kEdges[e][0]]).transpose();
+      const Vector3 b = result.nodes.row(element[kEdges[e][1]]).transpose();
+      for (const Circle& circle : circles) {
+        const Vector3 axis(circle.x, 0.0, 0.0);
+        const Eigen::Vector2d p = (a - axis).head<2>(), q = (b - axis).head<2>();
+        const double ra = circle.radius(a.z()), rb = circle.radius(b.z());
+        const bool on = std::abs(p.norm() - ra) < kOn * ra && std::abs(q.norm() - rb) < kOn * rb;
+        const Eigen::Vector2d middle = p.normalized() + q.normalized();
+        if (!on || middle.norm() < 1.0) continue;  // a chord across is none along
+        const double z = 0.5 * (a.z() + b.z());
+        const Eigen::Vector2d at = circle.radius(z) * middle.normalized();
+        result.nodes.row(element[4 + e]) << circle.x + at.x(), at.y(), z;
+      }
+    }
+  }
+  straighten_folded(result);
+  return result;
+}
+
+}  // namespace sinew::mesh

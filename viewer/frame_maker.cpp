@@ -1,0 +1,127 @@
+#include "frame_maker.hpp"
+
+#include <limits>
+#include <span>
+
+#include "sinew/constraint/cable.hpp"
+#include "sinew/constraint/probe.hpp"
+#include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/state.hpp"
+
+namespace sinew::viewer {
+
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
+
+FrameMaker::FrameMaker(const sim::Simulation& simulation, sim::Observables& observables,
+                       const Description& description)
+    : simulation_(simulation), observables_(observables), description_(description) {
+  for (const auto& body : simulation.model().bodies()) means_.push_back(fem::nodal_mean(body));
+}
+
+void FrameMaker::fill_signals(Frame& frame) {
+  frame.signals.reserve(description_.signals.size());
+  for (std::size_t k = 0; k < observables_.list().size(); ++k) {
+    if (!is_signal(observables_.list()[k])) continue;
+    const std::span<const double> numbers = observables_.read(k);
+    frame.signals.insert(frame.signals.end(), numbers.begin(), numbers.end());
+  }
+}
+
+void FrameMaker::fill_body(std::size_t index, const FieldChoice& wanted, BodyFrame& frame) {
+  const mechanics::Body& body = simulation_.body(static_cast<int>(index));
+  const Surface& surface = description_.surfaces[index];
+  frame.positions.reserve(3 * surface.nodes.size());
+  for (const NodeId node : surface.nodes) {
+    for (int c = 0; c < 3; ++c) {
+      frame.positions.push_back(static_cast<float>(body.positions()(node, c)));
+    }
+  }
+  frame.fields.resize(wanted.size());
+  for (std::size_t f = 0; f < wanted.size(); ++f) {
+    if (!wanted[f]) continue;
+    const std::vector<double> nodal =
+        list_fields()[f].values(body, simulation_, means_[index].get());
+    for (const NodeId node : surface.nodes) {
+      frame.fields[f].push_back(static_cast<float>(nodal[static_cast<std::size_t>(node)]));
+    }
+  }
+}
+
+void FrameMaker::fill_points(Frame& frame) {
+  const sim::Model& model = simulation_.model();
+  const auto put = [](std::vector<float>& list, const Vector3& point) {
+    for (int c = 0; c < 3; ++c) list.push_back(static_cast<float>(point[c]));
+  };
+  for (std::size_t i = 0; i < model.actuators().size(); ++i) {
+    const constraint::Cable* cable = model.cable(static_cast<int>(i));
+    if (cable == nullptr) continue;
+    const Points points = cable->points(simulation_.placement());
+    for (Eigen::Index k = 0; k < points.rows(); ++k) put(frame.cables, points.row(k).transpose());
+  }
+  for (const auto& probe : model.probes()) {
+    const Points marks = probe.marks(simulation_.placement());
+    for (Eigen::Index k = 0; k < marks.rows(); ++k) put(frame.probes, marks.row(k).transpose());
+  }
+  // Rotations are no points.
+  const auto put_numbers = [&](std::vector<float>& list, std::size_t observable) {
+    const bool point = observables_.list()[observable].unit == "m";
+    const std::span<const double> numbers = observables_.read(observable);
+    put(list, point ? Vector3(numbers[0], numbers[1], numbers[2]) : Vector3::Constant(kNone));
+  };
+  for (std::size_t k = 0; k < observables_.list().size(); ++k) {
+    const sim::Observable& one = observables_.list()[k];
+    if (one.kind == sim::ObservableKind::effector) put_numbers(frame.effectors, k);
+    const bool target = one.kind == sim::ObservableKind::controller && one.quantity == "target";
+    if (target) put_numbers(frame.targets, k);
+  }
+}
+
+void FrameMaker::fill_contacts(Frame& frame) {
+  for (const sim::ContactModel& contact : simulation_.model().contacts()) {
+    std::vector<float>& values = frame.contacts.emplace_back();
+    const auto put = [&](const auto& numbers) {
+      for (Eigen::Index k = 0; k < numbers.size(); ++k) {
+        values.push_back(static_cast<float>(numbers[k]));
+      }
+    };
+    const auto numbers = [&](const char* name) {
+      return observables_.read(observables_.find(contact.name + name));
+    };
+    using Pose = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
+    const Eigen::Map<const Pose> pose(numbers(".pose").data());
+    put(pose.col(3));
+    put(Eigen::Quaterniond(Matrix3(pose.leftCols<3>())).coeffs());  // x, y, z, w
+    const auto position = numbers(".points.position"), normal = numbers(".points.normal"),
+               normal_force = numbers(".points.normal_force"),
+               friction_force = numbers(".points.friction_force"), state = numbers(".points.state");
+    values.reserve(7 * (1 + state.size()));
+    for (std::size_t k = 0; k < state.size(); ++k) {
+      using Vector = Eigen::Map<const Vector3>;
+      put(Vector(&position[3 * k]));
+      put(Vector3(normal_force[k] * Vector(&normal[3 * k]) + Vector(&friction_force[3 * k])));
+      values.push_back(static_cast<float>(state[k]));
+    }
+  }
+}
+
+std::shared_ptr<Frame> FrameMaker::make(const FieldChoice& wanted) {
+  observables_.refresh();
+  auto frame = std::make_shared<Frame>();
+  frame->step = static_cast<std::uint64_t>(simulation_.steps());
+  frame->time = simulation_.time();
+  frame->hash = simulation_.state().hash();
+  fill_signals(*frame);
+  frame->bodies.resize(description_.surfaces.size());
+  for (std::size_t b = 0; b < frame->bodies.size(); ++b) fill_body(b, wanted, frame->bodies[b]);
+  fill_points(*frame);
+  fill_contacts(*frame);
+  return frame;
+}
+
+}  // namespace sinew::viewer

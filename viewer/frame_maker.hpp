@@ -1,0 +1,39 @@
+/// @file
+/// Frames of a simulation.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "sinew/fem/element_fields.hpp"
+#include "sinew/sim/observables.hpp"
+#include "sinew/sim/simulation.hpp"
+
+#include "describe.hpp"
+#include "frame.hpp"
+
+namespace sinew::viewer {
+
+class FrameMaker {
+ public:
+  /// @param simulation,observables,description of one robot; must outlive this.
+  FrameMaker(const sim::Simulation& simulation, sim::Observables& observables,
+             const Description& description);
+
+  /// What is to be seen of the robot now. @param wanted which fields are.
+  std::shared_ptr<Frame> make(const FieldChoice& wanted);
+
+ private:
+  void fill_signals(Frame& frame);
+  void fill_body(std::size_t index, const FieldChoice& wanted, BodyFrame& frame);
+  void fill_points(Frame& frame);
+  void fill_contacts(Frame& frame);
+
+  const sim::Simulation& simulation_;
+  sim::Observables& observables_;
+  const Description& description_;
+  std::vector<std::unique_ptr<fem::NodalMean>> means_;  ///< one a body; none of an arm
+};
+
+}  // namespace sinew::viewer

@@ -1,0 +1,101 @@
+#include "playback.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "sinew/mechanics/body.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
+#include "sinew/sim/actuator.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/signal.hpp"
+#include "sinew/sim/state.hpp"
+
+namespace sinew::viewer {
+
+void Playback::check(const RecordedState& recorded) const {
+  for (const auto& [index, numbers] : recorded.values) {
+    const sim::Observable& one = observables_.list().at(index);
+    const auto refuse = [&](const std::string& what) {
+      throw Error(ErrorKind::malformed_file, {.item = one.name}, what,
+                  "record the run again with this version");
+    };
+    if (numbers.size() != one.size()) {
+      refuse(fmt::format("{} numbers are recorded, its scene has {}", numbers.size(), one.size()));
+    }
+    if (one.words.empty()) continue;
+    for (const double number : numbers) {
+      if (one.word(number).empty()) refuse(fmt::format("{} is recorded, which is no word", number));
+    }
+  }
+}
+
+void Playback::put_body(const sim::Observable& what, const std::vector<double>& numbers,
+                        sim::State& state) const {
+  const int body = simulation_.model().body_index(what.owner);
+  if (mechanics::as<const mechanics::HasPose>(simulation_.body(body)) != nullptr) return;
+  const bool of_coordinates =
+      mechanics::as<const mechanics::HasCoordinates>(simulation_.body(body)) != nullptr;
+  if (what.quantity != (of_coordinates ? "coordinates" : "positions")) return;
+  std::vector<double>& own = state.bodies[static_cast<std::size_t>(body)];
+  std::ranges::fill(own, 0.0);  // a moment at rest
+  std::ranges::copy(numbers, own.begin());
+}
+
+// A rigid body is recorded by its position and rotation.
+void Playback::put_poses(const RecordedState& recorded, sim::State& state) const {
+  for (int body = 0; body < simulation_.bodies(); ++body) {
+    const auto* rigid = mechanics::as<const mechanics::HasPose>(simulation_.body(body));
+    if (rigid == nullptr) continue;
+    const std::string& name = simulation_.body(body).model().name();
+    const std::vector<double>* position = nullptr;
+    const std::vector<double>* rotation = nullptr;
+    for (const auto& [index, numbers] : recorded.values) {
+      const sim::Observable& one = observables_.list()[index];
+      if (one.kind != sim::ObservableKind::body || one.owner != name) continue;
+      if (one.quantity == "position") position = &numbers;
+      if (one.quantity == "rotation") rotation = &numbers;
+    }
+    if (position == nullptr || rotation == nullptr) continue;
+    const std::vector<double>& q = *rotation;
+    rigid->put_pose(Vector3(position->data()), Eigen::Quaterniond(q[0], q[1], q[2], q[3]),
+                    state.bodies[static_cast<std::size_t>(body)]);
+  }
+}
+
+// An actuator of a replay has the command that it had, whether a controller or the scene gave it.
+void Playback::put_actuator(const sim::Observable& what, double number, sim::State& state) {
+  const int index = simulation_.model().actuator_index(what.owner);
+  const auto place = static_cast<std::size_t>(index);
+  const sim::ActuatorModel& actuator = simulation_.model().actuators()[place];
+  if (what.quantity == "effort") state.efforts[static_cast<std::size_t>(actuator.row)] = number;
+  if (what.quantity == "motion") state.motions[place] = state.setpoints[place] = number;
+  for (const sim::CommandKind kind : sim::command_kinds(actuator)) {
+    if (what.name != sim::command_name(actuator, kind) || !std::isfinite(number)) continue;
+    simulation_.command(index, {kind, sim::Signal::constant(number)});
+  }
+}
+
+void Playback::show(const RecordedState& recorded) {
+  check(recorded);
+  observables_.release();
+  sim::State state = simulation_.state();
+  for (const auto& [index, numbers] : recorded.values) {
+    const sim::Observable& one = observables_.list()[index];
+    if (one.kind == sim::ObservableKind::body) {
+      put_body(one, numbers, state);
+      continue;
+    }
+    observables_.hold(index, numbers);
+    if (one.kind == sim::ObservableKind::actuator) put_actuator(one, numbers.front(), state);
+  }
+  put_poses(recorded, state);
+  state.volume_ratio = 1.0;  // not recorded
+  state.steps = recorded.step;
+  simulation_.restore(state);
+}
+
+}  // namespace sinew::viewer

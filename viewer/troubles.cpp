@@ -1,0 +1,98 @@
+#include "troubles.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "sinew/inverse/inverse_controller.hpp"
+#include "sinew/sim/actuator.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/simulation.hpp"
+
+namespace sinew::viewer {
+
+namespace {
+
+using Json = nlohmann::json;
+
+/// A limit counts as reached within this part of the range.
+constexpr double kAtLimit = 1e-6;
+
+bool at(double value, double limit, double scale) {
+  return std::isfinite(limit) &&
+         std::abs(value - limit) <= kAtLimit * std::max(scale, std::abs(limit));
+}
+
+Json trouble(const char* level, const char* kind, const std::string& subject,
+             const std::string& text) {
+  return {{"level", level}, {"kind", kind}, {"subject", subject}, {"text", text}};
+}
+
+void add_limits(const sim::ActuatorModel& model, const sim::ActuatorState& state, Json& list) {
+  const bool most = state.effort > 0.0 && at(state.effort, model.effort.max, 1e-3);
+  if (most) {
+    list.push_back(trouble("warning", "effort-limit", model.name,
+                           fmt::format("{} is at its limit, {:.3g} {}", model.words().effort.name,
+                                       model.effort.max, model.words().effort.unit)));
+  }
+  const double travel = state.motion * model.motion_scale;
+  const bool far = at(travel, model.motion.max * model.motion_scale, 1e-4) ||
+                   at(travel, model.motion.min * model.motion_scale, 1e-4);
+  if (far && state.motion != 0.0) {
+    list.push_back(trouble("warning", "motion-limit", model.name,
+                           fmt::format("{} is at its limit, {:.3g} {}", model.words().motion.name,
+                                       state.motion, model.words().motion.unit)));
+  }
+  if (state.slack) list.push_back(trouble("info", "slack", model.name, "the cable is slack"));
+}
+
+void add_controller(const inverse::InverseController& controller, const std::string& name,
+                    Json& list) {
+  const std::string kind(inverse::inverse_status_name(controller.status()));
+  switch (controller.status()) {
+    case inverse::InverseStatus::not_started:
+    case inverse::InverseStatus::on_target:
+    case inverse::InverseStatus::moving:
+      break;
+    case inverse::InverseStatus::rate_limited:
+      list.push_back(trouble("info", "rate-limited", name, "on the way; rates are limited"));
+      break;
+    case inverse::InverseStatus::out_of_reach:
+      list.push_back(trouble(
+          "warning", "out-of-reach", name,
+          fmt::format("the target is out of reach by {:.3g} mm", 1e3 * controller.error())));
+      break;
+    case inverse::InverseStatus::local_optimum:
+      list.push_back(trouble("warning", "local-optimum", name,
+                             fmt::format("no small change of efforts comes nearer than {:.3g} mm",
+                                         1e3 * controller.error())));
+      break;
+    case inverse::InverseStatus::limits_conflict:
+      list.push_back(trouble("error", "limits-conflict", name,
+                             "limits contradict each other: " + controller.conflict()));
+      break;
+  }
+}
+
+}  // namespace
+
+nlohmann::json list_troubles(const sim::Simulation& simulation,
+                             const inverse::InverseController* controller,
+                             const std::string& name) {
+  Json troubles = Json::array();
+  const auto& actuators = simulation.model().actuators();
+  for (std::size_t i = 0; i < actuators.size(); ++i) {
+    add_limits(actuators[i], simulation.actuator(static_cast<int>(i)), troubles);
+  }
+  if (controller != nullptr) add_controller(*controller, name, troubles);
+  if (const sim::StepStatus step = simulation.report().status; sim::is_flagged(step)) {
+    troubles.push_back(trouble("warning", std::string(sim::step_status_name(step)).c_str(), "step",
+                               fmt::format("this step is {}; {}", sim::step_status_name(step),
+                                           sim::step_status_remedy(step))));
+  }
+  return troubles;
+}
+
+}  // namespace sinew::viewer
