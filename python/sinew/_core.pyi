@@ -19,7 +19,7 @@ _Integers = NDArray[np.int32]
 _Command = Union[float, "Signal", ArrayLike]
 _Goal = Union["Target", ArrayLike]
 _Path = Union[str, os.PathLike[str]]
-_Tangent = Literal["exact", "rotated"]
+_Tangent = Literal["exact", "projected", "rotated"]
 
 class Signal:
     def value(self, time: float) -> float: ...

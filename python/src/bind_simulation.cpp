@@ -124,12 +124,7 @@ py::dict all_bodies(const std::shared_ptr<Session>& self) {
 
 sim::LinearisationChoice choice(const std::string& tangent, bool geometric_stiffness,
                                 bool statics) {
-  if (tangent != "exact" && tangent != "rotated") {
-    throw Error(ErrorKind::unknown_choice, {.item = "linearise(tangent)"},
-                fmt::format("there is no tangent '{}'", tangent), "use 'exact' or 'rotated'");
-  }
-  return {tangent == "exact" ? mechanics::Tangent::exact : mechanics::Tangent::rotated,
-          geometric_stiffness, statics};
+  return {to_tangent(tangent, "linearise(tangent)"), geometric_stiffness, statics};
 }
 
 sim::StabilityChoice stability_choice(const std::string& name) {
@@ -609,8 +604,9 @@ How motions follow from efforts near the present state, which is not changed.
 
 Parameters
 ----------
-tangent : {'exact', 'rotated'}
-    The elements' stiffness: the derivative of the forces, or R K0 R^T with rotations held fixed.
+tangent : {'exact', 'projected', 'rotated'}
+    The elements' stiffness: the derivative of the forces, the same made positive semi-definite
+    element by element, or R K0 R^T with rotations held fixed.
 geometric_stiffness : bool
     Whether loaded cables add theirs.
 statics : bool

@@ -36,6 +36,13 @@ sim::Watched look_for_signals(sim::Simulation& simulation) {
 
 }  // namespace
 
+mechanics::Tangent to_tangent(const std::string& word, const std::string& argument) {
+  if (const auto tangent = mechanics::tangent_of(word)) return *tangent;
+  throw Error(ErrorKind::unknown_choice, {.item = argument},
+              fmt::format("there is no tangent '{}'", word),
+              "use 'exact', 'projected' or 'rotated'");
+}
+
 Session::Use::Use(const Session& session) : session_(session) {
   if (session_.busy_.exchange(true, std::memory_order_acquire)) throw SimulationBusy{};
 }

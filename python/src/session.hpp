@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "sinew/inverse/inverse_controller.hpp"
+#include "sinew/mechanics/tangent.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/sim/linearisation.hpp"
 #include "sinew/sim/simulation.hpp"
@@ -33,6 +34,10 @@ struct LoadedRobot {
   scene::Robot robot;
   std::filesystem::path folder;
 };
+
+/// The tangent of that name. Throws Error(unknown-choice) for any other word.
+/// @param argument as "linearise(tangent)".
+mechanics::Tangent to_tangent(const std::string& word, const std::string& argument);
 
 /// A state as bytes, see sim/state_io.hpp.
 struct SavedState {

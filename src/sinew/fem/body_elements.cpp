@@ -2,8 +2,6 @@
 
 namespace sinew::fem {
 
-namespace {
-
 Tangent element_tangent(mechanics::Tangent tangent) {
   switch (tangent) {
     case mechanics::Tangent::rotated:
@@ -15,8 +13,6 @@ Tangent element_tangent(mechanics::Tangent tangent) {
   }
   return Tangent::exact;
 }
-
-}  // namespace
 
 BodyElements::BodyElements(FemState& state, ThreadPool& pool, bool with_curvature)
     : state_(state), pool_(pool), active_(&numbers(with_curvature)) {}
