@@ -281,10 +281,9 @@ RunError
             return result;
           },
           "dict: energies of all bodies now (J; gravity's from the height at rest), and since the "
-          "start the work of actuators, that of loads and outside forces, and what damping, drag "
-          "the friction of cables and contacts took. Work less dissipation less what the energies "
-          "gained is "
-          "the integrator's loss.")
+          "start the work of actuators, that of loads and outside forces, and what damping, drag, "
+          "and the friction of cables and contacts took. Work less dissipation less what the "
+          "energies gained is the integrator's loss.")
       .def(
           "probe",
           [](const std::shared_ptr<Session>& self, const std::string& name) {

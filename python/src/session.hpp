@@ -117,8 +117,6 @@ class Session {
   /// After others have stepped.
   void count_steps() { steps_ = simulation_.steps(); }
 
-  /// "long_0", "tip.x", ...: what every row of H and W belongs to.
-
  private:
   void check_loads() const;
   void note_status();
