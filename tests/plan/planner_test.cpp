@@ -78,7 +78,7 @@ TEST(Planner, CorrectsWhatCoarseKnotsMiss) {
   const Plan plan = Planner(arm, task).plan(1);
   ASSERT_TRUE(plan.found());
   EXPECT_GT(plan.corrections, 0);
-  EXPECT_NEAR(plan.shares().sum(), 1.0, 1e-12);
+  EXPECT_NEAR(plan.fractions().sum(), 1.0, 1e-12);
   // A plan made anew keeps the knots.
   task.goal.position.x() += 0.005;
   const Plan next = Planner(arm, task).replan(plan);
@@ -246,7 +246,7 @@ TEST(Planner, RefusesTasksThatMakeNoSense) {
   task.grid.most_duration = 1.0;
   EXPECT_EQ(kind_of(task), ErrorKind::contradictory_limits);
   task = grab();
-  task.grid.shares = VectorX::Constant(50, 0.01);
+  task.grid.fractions = VectorX::Constant(50, 0.01);
   EXPECT_EQ(kind_of(task), ErrorKind::out_of_range);
   task = grab();
   task.obstacles = {{.radius = -0.1}};

@@ -80,9 +80,9 @@ class Sines {
 };
 
 /// From 0 to 1 without a jump of speed.
-double smooth(double share) {
-  share = std::clamp(share, 0.0, 1.0);
-  return share * share * (3.0 - 2.0 * share);
+double smooth(double fraction) {
+  fraction = std::clamp(fraction, 0.0, 1.0);
+  return fraction * fraction * (3.0 - 2.0 * fraction);
 }
 
 /// The arm in its surroundings, driven and watched.
@@ -288,8 +288,8 @@ BraceRun run_brace(const std::shared_ptr<const pcc::Arm>& arm, const BraceTask& 
   };
   const long approach = steps_in(settings.approach, settings);
   for (long k = 1; k <= approach; ++k) {
-    const double share = smooth(static_cast<double>(k) / static_cast<double>(approach));
-    bench.step(share * brace.torque, start + share * (brace.position - start), false);
+    const double fraction = smooth(static_cast<double>(k) / static_cast<double>(approach));
+    bench.step(fraction * brace.torque, start + fraction * (brace.position - start), false);
     touch();
   }
   for (long k = steps_in(settings.press, settings); k > 0; --k) {
@@ -313,12 +313,13 @@ BraceRun run_brace(const std::shared_ptr<const pcc::Arm>& arm, const BraceTask& 
   const VectorX pressing = bench.torque();
   const long move = steps_in(settings.move, settings);
   for (long k = 1; k <= move; ++k) {
-    const double share = smooth(static_cast<double>(k) / static_cast<double>(move));
-    const VectorX angles = run.measured + share * (run.after.position - run.measured);
-    const VectorX torque = pressing + share * (run.after.torque - pressing);
+    const double fraction = smooth(static_cast<double>(k) / static_cast<double>(move));
+    const VectorX angles = run.measured + fraction * (run.after.position - run.measured);
+    const VectorX torque = pressing + fraction * (run.after.torque - pressing);
     bench.step(torque,
-               share < 1.0 ? VectorX(bench.angles() + (1.0 - share) * (angles - bench.angles()))
-                           : VectorX(),
+               fraction < 1.0
+                   ? VectorX(bench.angles() + (1.0 - fraction) * (angles - bench.angles()))
+                   : VectorX(),
                false);
   }
   for (long k = steps_in(settings.settle, settings); k > 0; --k) {

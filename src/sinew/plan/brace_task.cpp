@@ -47,8 +47,9 @@ BraceTask completed(const pcc::Arm& arm, BraceTask task) {
                      : 2;
   }
   if (task.sides < 2) refuse("sides", fmt::format("{}", task.sides), "give 2 or more, or 0");
-  if (!(task.friction_share > 0.0) || task.friction_share > 1.0) {
-    refuse("friction_share", fmt::format("{:g}", task.friction_share), "give above 0, up to 1");
+  if (!(task.friction_fraction > 0.0) || task.friction_fraction > 1.0) {
+    refuse("friction_fraction", fmt::format("{:g}", task.friction_fraction),
+           "give above 0, up to 1");
   }
   if (!(task.clearance >= 0.0)) {
     refuse("clearance", fmt::format("{:g} m", task.clearance), "give zero or more");

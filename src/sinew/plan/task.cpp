@@ -93,11 +93,11 @@ void check_grid(Grid& grid) {
     throw Error(ErrorKind::out_of_range, {.item = "grid.intervals"},
                 fmt::format("{}", grid.intervals), "give 2 or more");
   }
-  fill(grid.shares, grid.intervals, 1.0 / grid.intervals, "grid.shares");
-  if (!(grid.shares.minCoeff() > 0.0) || std::abs(grid.shares.sum() - 1.0) > 1e-9) {
-    throw Error(ErrorKind::out_of_range, {.item = "grid.shares"},
-                fmt::format("the least is {:g} and they add up to {:.12g}", grid.shares.minCoeff(),
-                            grid.shares.sum()),
+  fill(grid.fractions, grid.intervals, 1.0 / grid.intervals, "grid.fractions");
+  if (!(grid.fractions.minCoeff() > 0.0) || std::abs(grid.fractions.sum() - 1.0) > 1e-9) {
+    throw Error(ErrorKind::out_of_range, {.item = "grid.fractions"},
+                fmt::format("the least is {:g} and they add up to {:.12g}",
+                            grid.fractions.minCoeff(), grid.fractions.sum()),
                 "give positive ones that add up to 1");
   }
   if (!grid.free()) return;

@@ -66,7 +66,7 @@ struct Grid {
   Method method = Method::radau;
   double duration = 1.6;  ///< s, > 0; where it is free, the first guess
   int intervals = 50;     ///< >= 2
-  VectorX shares;         ///< (intervals,) of the duration, > 0, that add up to 1; empty: equal
+  VectorX fractions;      ///< (intervals,) of the duration, > 0, that add up to 1; empty: equal
   double least_duration = 0.0, most_duration = 0.0;  ///< s; both 0: the duration is fixed
   bool free() const { return most_duration > 0.0; }
 };
