@@ -79,12 +79,12 @@ ordered_json mesh_json(const mesh::MeshReport& report) {
     json["edge_m"] = {{"shortest", report.shortest_edge},
                       {"mean", report.mean_edge},
                       {"longest", report.longest_edge}};
-    json["radius_ratio"] = {{"least", report.least_radius_ratio},
+    json["radius_ratio"] = {{"least", report.min_radius_ratio},
                             {"mean", report.mean_radius_ratio},
                             {"worst_tetrahedron", report.worst_tetrahedron},
                             {"histogram", histogram(report.radius_ratio)}};
-    json["dihedral_degrees"] = {{"least", report.least_dihedral},
-                                {"largest", report.largest_dihedral},
+    json["dihedral_degrees"] = {{"least", report.min_dihedral},
+                                {"largest", report.max_dihedral},
                                 {"histogram", histogram(report.dihedral)}};
   }
   json["sets"] = ordered_json::array();

@@ -60,8 +60,8 @@ PlanTask make_task(const PccArm& of, const py::object& goal, const py::object& t
       throw Error(ErrorKind::wrong_shape, {.item = "Task(duration_range)"},
                   fmt::format("{} values are given", range.size()), "give two, in s");
     }
-    task.grid.least_duration = range[0];
-    task.grid.most_duration = range[1];
+    task.grid.min_duration = range[0];
+    task.grid.max_duration = range[1];
   }
   if (method == plan::method_name(plan::Method::backward_euler)) {
     task.grid.method = plan::Method::backward_euler;

@@ -30,8 +30,8 @@ class Derivatives : public ::testing::TestWithParam<Kind> {
     task.grid.fractions = VectorX{{0.3, 0.5, 0.2}};
     task.grid.duration = 0.3;
     if (GetParam().free) {
-      task.grid.least_duration = 0.1;
-      task.grid.most_duration = 1.0;
+      task.grid.min_duration = 0.1;
+      task.grid.max_duration = 1.0;
     }
     task.objective = {0.7, 1.3, 0.4};
     task.limits.torque_rate = VectorX::Constant(mixed ? 6 : 4, 2.0);

@@ -70,13 +70,13 @@ void BodyElements::linearise(const mechanics::LinearisationRequest& request, boo
 // is a spin about where it is half-way between them, and other formulas stand at the step's end.
 // There a spin costs nothing. A fast body would be inverted; it is taken where it is.
 void BodyElements::keep_damping_stiffness(const mechanics::StepWeights& weights) {
-  constexpr double kLeastVolume = 0.5;
+  constexpr double kMinVolume = 0.5;
   const AssemblyWeights wanted{Tangent::rates, 1.0, 0.0, false};
   const bool chord = weights.velocity.velocity == 0.0 && weights.velocity.first == 0.0;
   const double ahead = (chord ? 0.5 : 1.0) * weights.time_step;
   ahead_ = state_.start_positions + ahead * state_.velocities;
   active_->assembly.evaluate(ahead_, wanted);
-  if (!(active_->assembly.minimum_volume_ratio() > kLeastVolume)) {
+  if (!(active_->assembly.minimum_volume_ratio() > kMinVolume)) {
     active_->assembly.evaluate(state_.start_positions, wanted);
   }
   const auto matrix = active_->assembly.matrix();

@@ -57,9 +57,9 @@ BraceProblem problem_of(const pcc::Arm& arm, const BraceTask& task, int object,
   problem.tolerance = kPlanFraction * task.tolerance;
   problem.point = point;
   problem.patch = patch;
-  problem.friction = task.friction_fraction * on.friction.least;
-  problem.least_force = task.least_force;
-  problem.most_force = task.most_force;
+  problem.friction = task.friction_fraction * on.friction.min;
+  problem.min_force = task.min_force;
+  problem.max_force = task.max_force;
   problem.force_weight = task.force_weight;
   for (const pcc::ArmPoint& other : skin_points(arm, task)) {
     if (!same_point(other, point)) problem.clear_points.push_back(other);
@@ -162,7 +162,7 @@ Brace replan_brace(const std::shared_ptr<const pcc::Arm>& arm, const BraceTask& 
   task.turn_lower = task.turn_upper = before.turn;
   // What lay in reserve for the way there may be used now.
   task.friction_fraction = std::max(task.friction_fraction, kReplanFraction);
-  task.least_force *= kReplanForce;
+  task.min_force *= kReplanForce;
   // The normal at the braced point: of the piece that it is nearest to being on.
   const auto& surface = task.objects[static_cast<std::size_t>(before.object)].surface;
   const auto patches = patches_of(surface);

@@ -43,11 +43,11 @@ void check(const BraceRunSettings& settings) {
   positive(settings.settle, "settle");
   positive(settings.hold, "hold");
   const Disturbance& of = settings.disturbance;
-  if (!(of.force >= 0.0) || !(of.least_frequency > 0.0) ||
-      !(of.most_frequency >= of.least_frequency) || of.sines < 1) {
+  if (!(of.force >= 0.0) || !(of.min_frequency > 0.0) || !(of.max_frequency >= of.min_frequency) ||
+      of.sines < 1) {
     throw Error(ErrorKind::out_of_range, {.item = "disturbance"},
-                fmt::format("{:g} N, {:g} to {:g} Hz, {} sines", of.force, of.least_frequency,
-                            of.most_frequency, of.sines),
+                fmt::format("{:g} N, {:g} to {:g} Hz, {} sines", of.force, of.min_frequency,
+                            of.max_frequency, of.sines),
                 "give a force of zero or more, positive frequencies, the least first, and a sine");
   }
   if (!(settings.proportional >= 0.0) || !(settings.derivative >= 0.0)) {
@@ -63,7 +63,7 @@ class Sines {
     for (auto& axis : sines_) {
       for (int k = 0; k < settings.sines; ++k) {
         axis.push_back(
-            {2.0 * std::numbers::pi * draw(settings.least_frequency, settings.most_frequency),
+            {2.0 * std::numbers::pi * draw(settings.min_frequency, settings.max_frequency),
              draw(0.0, 2.0 * std::numbers::pi)});
       }
     }
@@ -133,7 +133,7 @@ class Bench {
                    task.objects[k].surface);
         contact.points = rest;
         contact.outside = mesh::Outside::nearest;
-        contact.friction = settings.friction.value_or(task.objects[k].friction.least);
+        contact.friction = settings.friction.value_or(task.objects[k].friction.min);
         builder.add_contact(contact);
       }
     }
@@ -230,7 +230,7 @@ class Bench {
     friction_.push_back(touch.friction_force.norm());
     const auto contacts = object_ >= 0 ? task_.objects.size() : 0;
     for (std::size_t k = 0; k < contacts; ++k) {
-      const double friction = settings_.friction.value_or(task_.objects[k].friction.least);
+      const double friction = settings_.friction.value_or(task_.objects[k].friction.min);
       for (const auto& point : simulation_->contacts().points(static_cast<int>(k))) {
         cone_ = std::max(cone_, point.friction_force.norm() - friction * point.normal_force);
       }

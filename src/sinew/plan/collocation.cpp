@@ -77,8 +77,8 @@ void Collocation::set_bounds() {
     if (!drive_) bound->segment(torque_at(0), inputs_) = task_.start.torque;
   }
   if (grid_.free()) {
-    variable_bounds_.lower[time_at()] = grid_.least_duration;
-    variable_bounds_.upper[time_at()] = grid_.most_duration;
+    variable_bounds_.lower[time_at()] = grid_.min_duration;
+    variable_bounds_.upper[time_at()] = grid_.max_duration;
   }
   const int rows = drive_row() + (drive_ ? drive_->rows() : 0);
   constraint_bounds_ = {VectorX::Zero(rows), VectorX::Zero(rows)};

@@ -101,11 +101,11 @@ void check_grid(Grid& grid) {
                 "give positive ones that add up to 1");
   }
   if (!grid.free()) return;
-  check_positive(grid.least_duration, "grid.least_duration", "s");
-  if (grid.least_duration > grid.most_duration) {
+  check_positive(grid.min_duration, "grid.min_duration", "s");
+  if (grid.min_duration > grid.max_duration) {
     throw Error(
-        ErrorKind::contradictory_limits, {.item = "grid.least_duration"},
-        fmt::format("{:g} s is above the most, {:g} s", grid.least_duration, grid.most_duration),
+        ErrorKind::contradictory_limits, {.item = "grid.min_duration"},
+        fmt::format("{:g} s is above the most, {:g} s", grid.min_duration, grid.max_duration),
         "swap them");
   }
 }
@@ -137,7 +137,7 @@ void complete_drive(Task& task) {
   check_channels(drive.channels, task.start.torque.size(), drive.lead, "drive");
   check_positive(task.objective.command, "objective.command", "s/(N m)^2");
   if (task.grid.free()) {
-    throw Error(ErrorKind::contradictory_limits, {.item = "grid.most_duration"},
+    throw Error(ErrorKind::contradictory_limits, {.item = "grid.max_duration"},
                 "with a drive the duration is not free, as its cylinders are sampled",
                 "give the duration alone");
   }

@@ -11,7 +11,7 @@ double take_load_steps(const LoadSteps& steps, const std::function<bool(double)>
   int wanted = 1, successes = 0;  // before the step is doubled, and since the last change
   bool doubled = false;
   const auto is_long_enough = [&] {
-    return step >= (fraction == 1.0 ? std::max(steps.least, steps.least_at_first) : steps.least);
+    return step >= (fraction == 1.0 ? std::max(steps.min, steps.min_at_first) : steps.min);
   };
   while (fraction > 0.0 && is_long_enough()) {
     const double next = std::max(0.0, fraction - step);

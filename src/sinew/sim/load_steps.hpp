@@ -9,9 +9,9 @@ namespace sinew::sim {
 /// How to go along the path r(q, lambda) = s r_start, from s = 1 to 0 (Allgower & Georg, Numerical
 /// Continuation Methods, 1990, 1.3).
 struct LoadSteps {
-  double first = 0.25;          ///< step of s
-  double least = 1.0 / 256;     ///< steps shorter than this end the search
-  double least_at_first = 0.0;  ///< the same, before any step has succeeded
+  double first = 0.25;        ///< step of s
+  double min = 1.0 / 256;     ///< steps shorter than this end the search
+  double min_at_first = 0.0;  ///< the same, before any step has succeeded
 };
 
 /// Halves the step after each failure, and doubles it after a success: where that fails at once,

@@ -203,7 +203,7 @@ NewtonReport NewtonStep::approach(double time_step) {
     return converged(result);
   };
   take_load_steps(
-      {.first = 0.5, .least = kMinPart, .least_at_first = kMinFirstPart}, solve,
+      {.first = 0.5, .min = kMinPart, .min_at_first = kMinFirstPart}, solve,
       [&] { run_.keep(sound); }, go_back);
   world.set_homotopy_fraction(0.0);
   commands = goal;

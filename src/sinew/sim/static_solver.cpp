@@ -140,7 +140,7 @@ double StaticSolver::step_load() {
     ++report_.load_steps;
     run_.keep(sound);
   };
-  return take_load_steps({.least = 1.0 / settings_.max_load_steps}, solve, keep,
+  return take_load_steps({.min = 1.0 / settings_.max_load_steps}, solve, keep,
                          [&] { run_.restore(sound); });
 }
 
