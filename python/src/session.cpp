@@ -50,7 +50,10 @@ Session::Use::Use(const Session& session) : session_(session) {
 Session::Use::~Use() { session_.busy_.store(false, std::memory_order_release); }
 
 Session::Session(std::shared_ptr<const LoadedRobot> robot, int threads)
-    : robot_(std::move(robot)), simulation_(robot_->robot.model, threads) {
+    : robot_(std::move(robot)),
+      simulation_(robot_->robot.model, threads),
+      observables_(simulation_) {
+  observables_.number(observables_.find("numerical_loss"));  // counts from the first reading on
   if (const auto* first = robot_->robot.first_controller()) attach(first->settings, first->name);
 }
 

@@ -17,6 +17,7 @@
 #include "sinew/mechanics/tangent.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/sim/linearisation.hpp"
+#include "sinew/sim/observables.hpp"
 #include "sinew/sim/simulation.hpp"
 #include "sinew/sim/state_io.hpp"
 
@@ -74,6 +75,8 @@ class Session {
   /// Only while a Use is held.
   sim::Simulation& simulation() { return simulation_; }
   const sim::Simulation& simulation() const { return simulation_; }
+  /// Their ledger counts from the start. Only while a Use is held.
+  sim::Observables& observables() { return observables_; }
 
   /// May be asked at any time, from any thread.
   bool busy() const { return busy_.load(std::memory_order_acquire); }
@@ -124,6 +127,7 @@ class Session {
 
   std::shared_ptr<const LoadedRobot> robot_;
   sim::Simulation simulation_;
+  sim::Observables observables_;
   std::shared_ptr<AttachedController> controller_;
   struct Flagged {
     std::int64_t steps = 0;
