@@ -61,7 +61,7 @@ Followed follow(Simulation& simulation, const PathSettings& settings) {
   const double top = simulation.effector_value(0).z();
   result.path = simulation.follow_path(settings, [&] {
     result.visits.push_back(
-        {top - simulation.effector_value(0).z(), simulation.contacts().sum(0).normal_force,
+        {top - simulation.effector_value(0).z(), simulation.contacts().resultant(0).normal_force,
          simulation.body(0).positions(), simulation.contacts().points(0), simulation.state()});
   });
   return result;
@@ -81,7 +81,8 @@ TEST(PathContact, ASnapThatAFloorEndsAgreesWithControlByMotion) {
     moved.solve_static();
     const double load = 0.4 * all.path[k].load_fraction;
     EXPECT_NEAR(moved.actuator(0).effort, load, kAgrees * std::max(load, 0.02)) << k;
-    EXPECT_NEAR(moved.contacts().sum(0).normal_force, visit.normal, kAgrees * std::max(load, 0.02));
+    EXPECT_NEAR(moved.contacts().resultant(0).normal_force, visit.normal,
+                kAgrees * std::max(load, 0.02));
     EXPECT_LT((moved.body(0).positions() - visit.positions).cwiseAbs().maxCoeff(), kAgrees * size);
     const bool touches = Followed::touching(visit) > 0;
     falling += all.path[k].negative_pivots;
@@ -105,7 +106,7 @@ TEST(PathContact, WeldsHoldBesideAFloor) {
     whole.solve_static();
     const double load = 0.4 * all.path[k].load_fraction;
     EXPECT_NEAR(whole.actuator(0).effort, load, kAgrees * std::max(load, 0.02)) << k;
-    EXPECT_NEAR(whole.contacts().sum(0).normal_force, all.visits[k].normal,
+    EXPECT_NEAR(whole.contacts().resultant(0).normal_force, all.visits[k].normal,
                 kAgrees * std::max(load, 0.02));
   }
   EXPECT_GT(all.visits.back().normal, 0.1);
@@ -134,7 +135,7 @@ TEST(PathContact, ABeamIsLaidDownAndLifted) {
       EXPECT_LT((fresh.body(0).positions() - all.visits[k].positions).cwiseAbs().maxCoeff(),
                 kAgrees * size)
           << k;
-      EXPECT_NEAR(fresh.contacts().sum(0).normal_force, all.visits[k].normal, kAgrees) << k;
+      EXPECT_NEAR(fresh.contacts().resultant(0).normal_force, all.visits[k].normal, kAgrees) << k;
     }
     for (const Visit& visit : all.visits) touching.push_back(Followed::touching(visit));
     down += all.path.back().load_fraction * (next_down - down);
@@ -162,7 +163,8 @@ TEST(PathContact, SymmetricPointsCloseTogether) {
     fresh.solve_static();
     EXPECT_LT((fresh.body(0).positions() - all.visits[k].positions).cwiseAbs().maxCoeff(),
               kAgrees * model->size());
-    EXPECT_NEAR(fresh.contacts().sum(0).normal_force, all.visits[k].normal, 100.0 * kAgrees) << k;
+    EXPECT_NEAR(fresh.contacts().resultant(0).normal_force, all.visits[k].normal, 100.0 * kAgrees)
+        << k;
     touching.push_back(Followed::touching(all.visits[k]));
   }
   EXPECT_GE(touching.back(), 5);
@@ -240,8 +242,8 @@ TEST(PathContact, FrictionTurnsWithTheMotion) {
     const Followed all =
         follow(path, {.first_step = 1e-3, .largest_step = 5e-3, .tolerance = 1e-11});
     check_friction(all, friction, path.model().size(), stuck, slid);
-    const ContactSum sum = path.contacts().sum(0);
-    held.push_back(sum.force.x() / (friction * sum.normal_force));
+    const ContactResultant resultant = path.contacts().resultant(0);
+    held.push_back(resultant.force.x() / (friction * resultant.normal_force));
   }
   EXPECT_NEAR(held[0], -1.0, 0.05);
   EXPECT_NEAR(held[1], 1.0, 0.05);
@@ -286,7 +288,7 @@ TEST(PathContact, CurvedSurfacesEndASnap) {
       for (int again = 0; again < 6; ++again) moved.solve_static();
       const double load = 0.2 * all.path[k].load_fraction;
       EXPECT_NEAR(moved.actuator(0).effort, load, kAgrees * std::max(load, 0.02)) << k;
-      EXPECT_NEAR(moved.contacts().sum(0).normal_force, all.visits[k].normal,
+      EXPECT_NEAR(moved.contacts().resultant(0).normal_force, all.visits[k].normal,
                   kAgrees * std::max(load, 0.02));
     }
     EXPECT_GT(all.visits.back().normal, 0.1);

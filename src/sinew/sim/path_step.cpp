@@ -160,7 +160,7 @@ bool PathStep::is_path_point() {
   const double nothing = settings_.tolerance * run_.model->size();
   if (!run_.world.contacts().empty() && load_fraction_ > 1.0 + kFarBeyond) return false;
   const double slack = settings_.tolerance * run_.world.bodies().force_scale();
-  bool obeyed = run_.world.contacts().deepest_left_out() <= nothing;
+  bool obeyed = run_.world.contacts().max_penetration_left_out() <= nothing;
   for (const step::ContactBlock& block : problem.contacts) {
     const int row = run_.world.numbering().row_of(block.row);
     Eigen::Map<Vector3> force(&run_.effort[static_cast<std::size_t>(row)]);

@@ -211,7 +211,7 @@ void World::form_compliance() {
 
 double World::violation(std::span<const double> effort, step::LawStatus law) {
   numbering_.gather(effort, scratch_);
-  return std::max(step::violation(problem_, scratch_, law), contacts_.deepest_left_out());
+  return std::max(step::violation(problem_, scratch_, law), contacts_.max_penetration_left_out());
 }
 
 void World::restart() {
