@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sinew/constraint/cable.hpp"
+#include "sinew/constraint/effector.hpp"
 #include "sinew/constraint/probe.hpp"
 #include "sinew/fem/of_elements.hpp"
 #include "sinew/inverse/inverse_controller.hpp"
@@ -391,7 +392,8 @@ void RobotState::fill_points(Frame& frame) {
   }
   // Rotations are no points.
   const auto put_numbers = [&](std::vector<float>& list, std::size_t observable) {
-    const bool point = observables_.list()[observable].unit == "m";
+    const int effector = model.effector_index(observables_.list()[observable].owner);
+    const bool point = model.effector(effector).kind() == constraint::EffectorKind::point;
     const std::span<const double> numbers = observables_.read(observable);
     put(list, point ? Vector3(numbers[0], numbers[1], numbers[2]) : Vector3::Constant(kNone));
   };
