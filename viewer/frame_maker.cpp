@@ -4,6 +4,7 @@
 #include <span>
 
 #include "sinew/constraint/cable.hpp"
+#include "sinew/constraint/effector.hpp"
 #include "sinew/constraint/probe.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/body_model.hpp"
@@ -70,7 +71,8 @@ void FrameMaker::fill_points(Frame& frame) {
   }
   // Rotations are no points.
   const auto put_numbers = [&](std::vector<float>& list, std::size_t observable) {
-    const bool point = observables_.list()[observable].unit == "m";
+    const int effector = model.effector_index(observables_.list()[observable].owner);
+    const bool point = model.effector(effector).kind() == constraint::EffectorKind::point;
     const std::span<const double> numbers = observables_.read(observable);
     put(list, point ? Vector3(numbers[0], numbers[1], numbers[2]) : Vector3::Constant(kNone));
   };

@@ -194,7 +194,7 @@ Request read_request(const std::string& type, Fields& fields) {
   if (type == "hello") return Hello{static_cast<int>(fields.whole("protocol", 0, 1e6))};
   if (type == "play") return Play{};
   if (type == "pause") return Pause{};
-  if (type == "step") return Step{fields.whole("count", 1, static_cast<double>(kMostSteps))};
+  if (type == "step") return Step{fields.whole("count", 1, static_cast<double>(kMaxSteps))};
   if (type == "reset") return Reset{};
   if (type == "settle") return Settle{};
   if (type == "speed") return Speed{read_speed(fields)};

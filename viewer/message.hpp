@@ -20,7 +20,7 @@ inline constexpr int kProtocolVersion = 1;
 /// Longest message of a browser, bytes.
 inline constexpr std::size_t kLongestMessage = 4096;
 /// Most steps that one `step` may ask for.
-inline constexpr std::int64_t kMostSteps = 10000;
+inline constexpr std::int64_t kMaxSteps = 10000;
 
 /// First message of every connection.
 struct Hello {
@@ -30,7 +30,7 @@ struct Play {};
 struct Pause {};
 /// Pauses, then advances exactly `count` steps.
 struct Step {
-  std::int64_t count = 1;  ///< 1 .. kMostSteps
+  std::int64_t count = 1;  ///< 1 .. kMaxSteps
 };
 struct Reset {};
 /// Newton to the static equilibrium at the present inputs.

@@ -13,7 +13,7 @@ namespace sinew::viewer {
 namespace {
 
 constexpr double kMotionInterval = 1.0 / 30.0;  // s
-constexpr std::size_t kLeastFrames = 8;
+constexpr std::size_t kMinFrames = 8;
 /// Beyond a step's rounding.
 constexpr double kTimeTolerance = 1e-9;
 
@@ -30,8 +30,8 @@ Recording::Recording(const Description& shown, std::string name)
     motion_.lines.push_back({cable.actuator, {}});
     frame_bytes_ += 3 * cable.points * sizeof(float);
   }
-  most_frames_ = std::clamp(limits::kRecordedMotion / std::max<std::size_t>(frame_bytes_, 1),
-                            kLeastFrames, limits::kMotionFrames);
+  max_frames_ = std::clamp(limits::kRecordedMotion / std::max<std::size_t>(frame_bytes_, 1),
+                           kMinFrames, limits::kMotionFrames);
   columns_ = 2 + shown.signals.size() + 3 * shown.effectors.size() + 1;
 }
 
@@ -67,7 +67,7 @@ void Recording::add_moment(const Frame& frame) {
     from = to;
   }
   next_moment_ = frame.time + interval_;
-  if (motion_.times.size() >= most_frames_) thin_out();
+  if (motion_.times.size() >= max_frames_) thin_out();
 }
 
 void Recording::thin_out() {

@@ -41,7 +41,7 @@ class Recording {
   const Description& shown_;
   record::Motion motion_;
   std::vector<double> values_;
-  std::size_t columns_ = 0, rows_ = 0, most_frames_ = 0, frame_bytes_ = 0;
+  std::size_t columns_ = 0, rows_ = 0, max_frames_ = 0, frame_bytes_ = 0;
   double first_time_ = 0.0, last_time_ = 0.0, interval_, next_moment_ = 0.0;
   bool full_ = false;
 };

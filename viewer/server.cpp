@@ -27,7 +27,7 @@ using Json = nlohmann::json;
 
 namespace {
 
-constexpr int kMostFields = 16;
+constexpr int kMaxFields = 16;
 constexpr int kUsualPort = 8080;
 constexpr int kPortsToTry = 20;  // after it
 
@@ -120,7 +120,7 @@ class Server::Hub final : public Publisher,
     });
   }
   bool wants_field(int field) const override {
-    return field >= 0 && field < kMostFields && wishes_[static_cast<std::size_t>(field)] > 0;
+    return field >= 0 && field < kMaxFields && wishes_[static_cast<std::size_t>(field)] > 0;
   }
   void replace(std::function<std::unique_ptr<Source>()> next) override {
     asio::post(*io_, [self = weak_from_this(), next = std::move(next)] {
@@ -196,7 +196,7 @@ class Server::Hub final : public Publisher,
   void change_source(const std::function<std::unique_ptr<Source>()>& next);
   void choose_field(ViewConnection& view, const std::optional<std::string>& name);
   void wish(int field, int change) {
-    if (field >= 0 && field < kMostFields) wishes_[static_cast<std::size_t>(field)] += change;
+    if (field >= 0 && field < kMaxFields) wishes_[static_cast<std::size_t>(field)] += change;
   }
 
   std::unique_ptr<asio::io_context> io_;
@@ -216,7 +216,7 @@ class Server::Hub final : public Publisher,
   std::uint16_t generation_ = 1;
   std::chrono::steady_clock::time_point last_status_;
   bool status_waits_ = false;
-  std::array<std::atomic<int>, kMostFields> wishes_;
+  std::array<std::atomic<int>, kMaxFields> wishes_;
 
   mutable std::mutex mutex_;  // of what follows
   std::shared_ptr<const Frame> latest_;

@@ -15,6 +15,7 @@
 #include "sinew/core/build_info.hpp"
 #include "sinew/core/file.hpp"
 #include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/tangent.hpp"
 #include "sinew/sim/actuator.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/simulation.hpp"
@@ -134,7 +135,7 @@ nlohmann::ordered_json to_json(const Samples& samples, Session& session, int war
       {"compiler", compiler()},
       {"sinew_version", version()},
       {"date", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))},
-      {"tangent", model.step().tangent == mechanics::Tangent::exact ? "exact" : "rotated"}};
+      {"tangent", mechanics::tangent_name(model.step().tangent)}};
   for (const auto& body : model.bodies()) {
     const mesh::Mesh& mesh = body.mesh();
     json["bodies"].push_back({{"name", body.name()},
@@ -199,10 +200,10 @@ void print_report(const nlohmann::ordered_json& json) {
 void check_options(const BenchOptions& options) {
   require_range("--steps", options.steps, 1, kMaxSteps);
   if (options.warm_up) require_range("--warm-up", *options.warm_up, 0, kMaxSteps);
-  if (options.tangent && *options.tangent != "exact" && *options.tangent != "rotated") {
+  if (options.tangent && !mechanics::tangent_of(*options.tangent)) {
     throw Error(ErrorKind::unknown_choice, {.item = "--tangent"},
                 fmt::format("there is no tangent '{}'", *options.tangent),
-                "write exact or rotated");
+                "write exact, projected or rotated");
   }
 }
 
@@ -237,7 +238,9 @@ void add_bench(CommandLine& line) {
                   "Steps before those (default: the targets' first turn, or 20)")
       .type_name("N");
   command.add_option("--json", options->json, "Also write the figures to a file").type_name("FILE");
-  command.add_option("--tangent", options->tangent, "exact or rotated (default: the scene's)")
+  command
+      .add_option("--tangent", options->tangent,
+                  "exact, projected or rotated (default: the scene's)")
       .type_name("NAME");
   command.add_flag("--compare-eigen", options->compare_eigen,
                    "Also time Eigen's SimplicialLDLT on the same matrix, on one thread");

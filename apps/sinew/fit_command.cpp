@@ -47,7 +47,7 @@ RubberTest read_test(const std::string& word) {
 void print_header(const std::vector<RubberTest>& tests, const identify::FitSettings& settings) {
   for (const RubberTest& test : tests) {
     const auto counts = std::ranges::count_if(test.stretch, [&](double stretch) {
-      return stretch >= settings.least_stretch && stretch <= settings.most_stretch;
+      return stretch >= settings.min_stretch && stretch <= settings.max_stretch;
     });
     fmt::print("{}: {}, {} points, stretch {:.4g} to {:.4g}, up to {:.4g} kPa{}\n", test.name,
                identify::mode_name(test.mode), test.stretch.size(),
@@ -191,9 +191,9 @@ void add_fit(CommandLine& line) {
                      "neo-hookean, mooney-rivlin, yeoh1 to yeoh3, ogden1 to ogden6, arruda-boyce "
                      "(default: ogden3; with --all the best supported)");
   command.add_flag("--all", options->all, "Compare all models in one table");
-  command.add_option("--min-stretch", options->settings.least_stretch,
+  command.add_option("--min-stretch", options->settings.min_stretch,
                      "Leave out rows of a smaller stretch (default: 0)");
-  command.add_option("--max-stretch", options->settings.most_stretch,
+  command.add_option("--max-stretch", options->settings.max_stretch,
                      "Leave out rows of a larger stretch (default: none)");
   command.add_option("--starts", options->settings.starts, "Random starts (default: 5)");
   command.add_option("--seed", options->settings.seed, "Of the random starts");

@@ -305,7 +305,7 @@ void add_identify(CommandLine& line) {
       .type_name("TIME");
   command
       .add_option("--mass-spread", options->mass_spread,
-                  "How far masses may go from the scene's, as a share (default: 0.38)")
+                  "How far masses may go from the scene's, as a fraction (default: 0.38)")
       .type_name("X");
   command
       .add_option("--stiffness-spread", options->stiffness_spread,

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "sinew/core/error.hpp"
 #include "sinew/fem/element_count.hpp"
@@ -26,15 +27,15 @@ ordered_json square(const Matrix3& m) {
   return {triple(m.row(0)), triple(m.row(1)), triple(m.row(2))};
 }
 
-void add_arm(Facts& facts, const pcc::Arm& arm) {
+void add_arm(ordered_json& json, std::string& text, const pcc::Arm& arm) {
   double mass = 0.0;
   for (const pcc::Segment& segment : arm.settings().segments) mass += segment.mass;
-  facts.json["bodies"].push_back({{"name", arm.settings().name},
-                                  {"segments", arm.segments()},
-                                  {"coordinates", arm.coordinates()},
-                                  {"length_m", arm.length()},
-                                  {"mass_kg", mass}});
-  facts.text += fmt::format(
+  json["bodies"].push_back({{"name", arm.settings().name},
+                            {"segments", arm.segments()},
+                            {"coordinates", arm.coordinates()},
+                            {"length_m", arm.length()},
+                            {"mass_kg", mass}});
+  text += fmt::format(
       "  body {}: {} segments of constant curvature, {} coordinates, "
       "{:.4g} mm, {:.4g} g\n",
       arm.settings().name, arm.segments(), arm.coordinates(), 1e3 * arm.length(), 1e3 * mass);
@@ -64,32 +65,31 @@ void add_triangles(ordered_json& json, std::string& text, const mesh::Mesh& mesh
   text += "\n";
 }
 
-void add_rigid(Facts& facts, const mechanics::BodyModel& body, const mechanics::HasShape& shape) {
+void add_rigid(ordered_json& json, std::string& text, const mechanics::BodyModel& body,
+               const mechanics::HasShape& shape) {
   constexpr double kRounding = 1e-12;  // m
   const Vector3 centre =
       shape.own_centre().unaryExpr([](double x) { return std::abs(x) < kRounding ? 0.0 : x; });
   const Matrix3 inertia = shape.own_inertia();
-  ordered_json json = {{"name", body.name()},
-                       {"shape", shape.shape_name()},
-                       {"mass_kg", shape.mass()},
-                       {"centre_of_mass_m", triple(centre)},
-                       {"inertia_kg_m2", square(inertia)}};
-  facts.text += fmt::format(
+  ordered_json entry = {{"name", body.name()},
+                        {"shape", shape.shape_name()},
+                        {"mass_kg", shape.mass()},
+                        {"centre_of_mass_m", triple(centre)},
+                        {"inertia_kg_m2", square(inertia)}};
+  text += fmt::format(
       "  body {}: rigid {}, {:.4g} g, centre of mass {:.4g} {:.4g} {:.4g} mm, moments of inertia "
       "{:.4g} {:.4g} {:.4g} kg m^2\n",
       body.name(), shape.shape_name(), 1e3 * shape.mass(), 1e3 * centre.x(), 1e3 * centre.y(),
       1e3 * centre.z(), inertia(0, 0), inertia(1, 1), inertia(2, 2));
-  if (body.mesh().hexahedra.empty()) add_triangles(json, facts.text, body.mesh());
-  facts.json["bodies"].push_back(json);
+  if (body.mesh().hexahedra.empty()) add_triangles(entry, text, body.mesh());
+  json["bodies"].push_back(entry);
 }
 
 }  // namespace
 
 ordered_json triple(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 
-void add_solid(Facts& facts, const mesh::Surface& surface) {
-  ordered_json& json = facts.json;
-  std::string& text = facts.text;
+void add_solid(ordered_json& json, std::string& text, const mesh::Surface& surface) {
   if (const auto open = defect(surface, mesh::require_closed)) {
     json["closed"] = false;
     json["defect"] = open->message();
@@ -114,10 +114,11 @@ void add_solid(Facts& facts, const mesh::Surface& surface) {
   }
 }
 
-void add_body(Facts& facts, const mechanics::BodyModel& body) {
-  if (const auto* arm = mechanics::as<const pcc::HasArm>(body)) return add_arm(facts, arm->arm());
+void add_body(ordered_json& json, std::string& text, const mechanics::BodyModel& body) {
+  if (const auto* arm = mechanics::as<const pcc::HasArm>(body))
+    return add_arm(json, text, arm->arm());
   if (const auto* shape = mechanics::as<const mechanics::HasShape>(body)) {
-    return add_rigid(facts, body, *shape);
+    return add_rigid(json, text, body, *shape);
   }
   const auto* material = mechanics::as<const fem::HasElements>(body);
   if (material == nullptr) return;
@@ -126,18 +127,17 @@ void add_body(Facts& facts, const mechanics::BodyModel& body) {
   for (const auto& [element, count] : fem::count_elements(model)) {
     elements[std::string(element)] = count;
   }
-  facts.json["bodies"].push_back({{"name", body.name()},
-                                  {"elements", elements},
-                                  {"nodes", body.mesh().node_count()},
-                                  {"free_nodes", model.free_count()},
-                                  {"tetrahedra", body.mesh().tetrahedra.size()},
-                                  {"hexahedra", body.mesh().hexahedra.size()},
-                                  {"mass_kg", model.total_mass()},
-                                  {"volume_m3", model.volume()}});
-  facts.text +=
-      fmt::format("  body {}: {} nodes ({} free), {}, {:.4g} g, {:.4g} cm^3\n", body.name(),
-                  body.mesh().node_count(), model.free_count(), fem::describe_elements(model),
-                  1e3 * model.total_mass(), 1e6 * model.volume());
+  json["bodies"].push_back({{"name", body.name()},
+                            {"elements", elements},
+                            {"nodes", body.mesh().node_count()},
+                            {"free_nodes", model.free_count()},
+                            {"tetrahedra", body.mesh().tetrahedra.size()},
+                            {"hexahedra", body.mesh().hexahedra.size()},
+                            {"mass_kg", model.total_mass()},
+                            {"volume_m3", model.volume()}});
+  text += fmt::format("  body {}: {} nodes ({} free), {}, {:.4g} g, {:.4g} cm^3\n", body.name(),
+                      body.mesh().node_count(), model.free_count(), fem::describe_elements(model),
+                      1e3 * model.total_mass(), 1e6 * model.volume());
 }
 
 }  // namespace sinew::cli

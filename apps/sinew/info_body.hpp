@@ -4,26 +4,21 @@
 
 #include <string>
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mesh/mesh.hpp"
 
 namespace sinew::cli {
 
-/// The same facts for people and for programs. (The JSON type's move asserts what cannot fail.)
-struct Facts {  // NOLINT(bugprone-exception-escape)
-  nlohmann::ordered_json json;
-  std::string text;
-};
-
 /// The three numbers as a list.
 nlohmann::ordered_json triple(const Vector3& v);
 
 /// Adds what a surface encloses, or why it encloses nothing.
-void add_solid(Facts& facts, const mesh::Surface& surface);
+/// @param json,text the same facts for programs and for people.
+void add_solid(nlohmann::ordered_json& json, std::string& text, const mesh::Surface& surface);
 
-/// Adds an entry to `bodies`, and its lines.
-void add_body(Facts& facts, const mechanics::BodyModel& body);
+/// Adds an entry to `bodies`, and its lines. @param json,text as for add_solid().
+void add_body(nlohmann::ordered_json& json, std::string& text, const mechanics::BodyModel& body);
 
 }  // namespace sinew::cli

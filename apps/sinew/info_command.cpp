@@ -44,6 +44,12 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
+// The same facts for people and for programs. (The JSON type's move asserts what cannot fail.)
+struct Facts {  // NOLINT(bugprone-exception-escape)
+  ordered_json json;
+  std::string text;
+};
+
 struct InfoOptions {
   std::string file;
   std::optional<std::string> unit;
@@ -79,12 +85,12 @@ ordered_json mesh_json(const mesh::MeshReport& report) {
     json["edge_m"] = {{"shortest", report.shortest_edge},
                       {"mean", report.mean_edge},
                       {"longest", report.longest_edge}};
-    json["radius_ratio"] = {{"least", report.least_radius_ratio},
+    json["radius_ratio"] = {{"least", report.min_radius_ratio},
                             {"mean", report.mean_radius_ratio},
                             {"worst_tetrahedron", report.worst_tetrahedron},
                             {"histogram", histogram(report.radius_ratio)}};
-    json["dihedral_degrees"] = {{"least", report.least_dihedral},
-                                {"largest", report.largest_dihedral},
+    json["dihedral_degrees"] = {{"least", report.min_dihedral},
+                                {"largest", report.max_dihedral},
                                 {"histogram", histogram(report.dihedral)}};
   }
   json["sets"] = ordered_json::array();
@@ -133,7 +139,7 @@ Facts surface_facts(const InfoOptions& options) {
                 {"size_m", triple(size)}};
   facts.text = fmt::format("{}: surface\n  {} nodes, {} triangles\n  size {}\n", surface.name,
                            surface.nodes.rows(), surface.triangles.size(), size_text(size));
-  add_solid(facts, surface);
+  add_solid(facts.json, facts.text, surface);
   return facts;
 }
 
@@ -201,7 +207,7 @@ Facts scene_facts(const InfoOptions& options) {
       mechanics::integrator_name(model.step().integrator),
       format_quantity(model.step().time_step, dimension::kTime),
       duration > 0.0 ? rounded_quantity(duration, dimension::kTime) : "without a duration");
-  for (const auto& body : model.bodies()) add_body(facts, body);
+  for (const auto& body : model.bodies()) add_body(facts.json, facts.text, body);
   for (const Notice& notice : robot.notices) add_notice(facts, notice);
   for (std::size_t a = 0; a < model.actuators().size(); ++a) {
     const sim::ActuatorModel& actuator = model.actuators()[a];

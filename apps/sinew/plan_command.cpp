@@ -99,8 +99,8 @@ Task task_of(const PlanOptions& options, const ArmScene& scene) {
     task.grid.duration = positive_quantity("--duration", *options.duration, dimension::kTime);
   }
   if (options.free_duration) {
-    task.grid.least_duration = kMinShare * task.grid.duration;
-    task.grid.most_duration = kMaxShare * task.grid.duration;
+    task.grid.min_duration = kMinShare * task.grid.duration;
+    task.grid.max_duration = kMaxShare * task.grid.duration;
   }
   return plan::completed(*scene.arm, std::move(task));
 }

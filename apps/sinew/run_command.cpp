@@ -43,7 +43,7 @@ struct RunOptions {
 struct Tally {
   std::int64_t steps = 0;
   double wall = 0.0;  ///< s
-  double least_volume_ratio = 1.0;
+  double min_volume_ratio = 1.0;
   struct Flagged {
     std::int64_t steps = 0;
     double first = 0.0;  ///< s
@@ -58,7 +58,7 @@ struct Tally {
 void count(Tally& tally, Session& session) {
   const sim::StepReport& report = session.simulation().report();
   ++tally.steps;
-  tally.least_volume_ratio = std::min(tally.least_volume_ratio, report.smallest_volume_ratio);
+  tally.min_volume_ratio = std::min(tally.min_volume_ratio, report.smallest_volume_ratio);
   if (sim::is_flagged(report.status)) {
     Tally::Flagged& flagged = tally.flagged[report.status];
     if (flagged.steps++ == 0) flagged.first = session.simulation().time();
@@ -126,7 +126,7 @@ std::vector<std::vector<std::string>> summary(const Tally& tally, Session& sessi
   for (const auto& [status, times] : tally.statuses) {
     rows.push_back({"steps " + status, fmt::format("{}", times)});
   }
-  rows.push_back({"smallest volume ratio", fmt::format("{:.3f}", tally.least_volume_ratio)});
+  rows.push_back({"smallest volume ratio", fmt::format("{:.3f}", tally.min_volume_ratio)});
   return rows;
 }
 

@@ -25,7 +25,7 @@ IDENTIFIED = {
 
 def experiment(seed, goal, attempts, identified="rehearsed", centre="arc"):
     """True distance (m) of the tip from the goal at the end of each attempt, and its paths. Before the first attempt
-    the arm is `identified` as IDENTIFIED says; a rehearsal is the planned motion at a share of its volumes. `centre`:
+    the arm is `identified` as IDENTIFIED says; a rehearsal is the planned motion at a fraction of its volumes. `centre`:
     where the model has its masses."""
     at, model = np.array(ilc_plant.GOALS[goal]), ilc_plant.MODEL
     learner = learn.Learner(*ilc_plant.model(centre), at, model["torque_limits"], duration=model["duration"],
@@ -35,7 +35,7 @@ def experiment(seed, goal, attempts, identified="rehearsed", centre="arc"):
         command = ilc_plant.excitation()
         learner.learn_from(command, plant(command))
     if identified == "rehearsed":
-        command = learner.rehearsal(ilc_plant.SETUP["rehearsal_share"])
+        command = learner.rehearsal(ilc_plant.SETUP["rehearsal_fraction"])
         learner.learn_from(command, plant(command))
     distances, paths = [], []
     for k in range(attempts):

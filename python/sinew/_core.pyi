@@ -19,7 +19,7 @@ _Integers = NDArray[np.int32]
 _Command = Union[float, "Signal", ArrayLike]
 _Goal = Union["Target", ArrayLike]
 _Path = Union[str, os.PathLike[str]]
-_Tangent = Literal["exact", "rotated"]
+_Tangent = Literal["exact", "projected", "rotated"]
 
 class Signal:
     def value(self, time: float) -> float: ...
@@ -989,7 +989,7 @@ class PlanTracker:
         time_step: float = 5e-3,
         angle: float = 0.5,
         rate: float = 5.0,
-        torque_share: float = 0.5,
+        torque_fraction: float = 0.5,
         tip_position: float = 5e-3,
         tip_speed: float = 5e-2,
     ) -> None: ...
@@ -1147,9 +1147,9 @@ def plan_brace(
     clearance: float = 0.001,
     hold_force: float = 0.04,
     hold_frequency: float = 2.0,
-    friction_share: float = 0.9,
-    least_force: float = 0.05,
-    most_force: float = 20.0,
+    friction_fraction: float = 0.9,
+    min_force: float = 0.05,
+    max_force: float = 20.0,
     stiffness_ratio: float = 10.0,
     starts: int = 2,
     seed: int = 1,

@@ -182,26 +182,26 @@ class Learner:
         self._motions.append((command, record))
         return self._identify()
 
-    def rehearsal(self, share: float = 0.9) -> np.ndarray:
-        """Commands (samples, inputs) of the next attempt at a share of its volumes, to be run and learned from
+    def rehearsal(self, fraction: float = 0.9) -> np.ndarray:
+        """Commands (samples, inputs) of the next attempt at a fraction of its volumes, to be run and learned from
         (learn_from) before it.
 
         Parameters
         ----------
-        share : float
+        fraction : float
             Above 0, below 1; torque goes with its cube.
 
         Raises
         ------
         Error
-            out-of-range: the share.
+            out-of-range: the fraction.
         RunError
             not-converged: no plan could be simulated.
         """
-        if not 0.0 < share < 1.0:
-            raise errors.Error("out-of-range", errors.Location(item="share"), f"it is {share}",
+        if not 0.0 < fraction < 1.0:
+            raise errors.Error("out-of-range", errors.Location(item="fraction"), f"it is {fraction}",
                                "give a number between 0 and 1")
-        return share * self._next().command
+        return fraction * self._next().command
 
     def propose(self) -> Proposal:
         """The next attempt's commands.

@@ -2,6 +2,7 @@
 
 #include "sinew/core/rotation.hpp"
 #include "sinew/fem/assembly.hpp"
+#include "sinew/fem/body_elements.hpp"
 #include "sinew/fem/element_count.hpp"
 #include "sinew/fem/fem_model.hpp"
 #include "sinew/fem/has_elements.hpp"
@@ -97,16 +98,12 @@ Array internal_forces(const Body& self, const py::object& positions) {
 
 // The stored lower blocks as a whole matrix in block compressed rows of scipy.
 py::object stiffness(const Body& self, const py::object& positions, const std::string& tangent) {
-  if (tangent != "exact" && tangent != "rotated") {
-    throw Error(ErrorKind::unknown_choice, {.item = "stiffness(tangent)"},
-                fmt::format("there is no tangent '{}'", tangent), "use 'exact' or 'rotated'");
-  }
+  const fem::Tangent chosen = fem::element_tangent(to_tangent(tangent, "stiffness(tangent)"));
   const Session::Use use(*self.session);
   const Points at = positions_from(self, positions, "stiffness");
   ThreadPool pool;
   fem::Assembly assembly(model(self).shared_elements(), pool);
-  assembly.evaluate(at,
-                    {tangent == "exact" ? fem::Tangent::exact : fem::Tangent::rotated, 1.0, 0.0});
+  assembly.evaluate(at, {chosen, 1.0, 0.0});
   const auto& pattern = elements(self).pattern();
   const auto matrix = std::as_const(assembly).matrix();
   std::vector<double> values;
@@ -391,8 +388,9 @@ Parameters
 ----------
 positions : (n, 3) array_like, optional
     m; the present ones by default. The simulation is not changed.
-tangent : {'exact', 'rotated'}
-    The derivative of the forces, or R K0 R^T with the rotations held fixed.
+tangent : {'exact', 'projected', 'rotated'}
+    The derivative of the forces, the same made positive semi-definite element by element, or
+    R K0 R^T with the rotations held fixed.
 
 Returns
 -------

@@ -97,7 +97,7 @@ BraceOf find(const PccArm& arm, const py::object& goal, const py::object& torque
              const std::vector<plan::BraceObject>& objects, double tolerance,
              const py::object& angle_limits, const py::object& turn, const py::object& segments,
              const py::object& fractions, int along, int sides, double clearance, double hold_force,
-             double hold_frequency, double friction_share, double least_force, double most_force,
+             double hold_frequency, double friction_fraction, double min_force, double max_force,
              double stiffness_ratio, int starts, std::uint64_t seed) {
   plan::BraceTask task;
   task.goal = to_vector3(goal, "brace(goal)", "m");
@@ -115,9 +115,9 @@ BraceOf find(const PccArm& arm, const py::object& goal, const py::object& torque
   task.clearance = clearance;
   task.hold_force = hold_force;
   task.hold_frequency = hold_frequency;
-  task.friction_share = friction_share;
-  task.least_force = least_force;
-  task.most_force = most_force;
+  task.friction_fraction = friction_fraction;
+  task.min_force = min_force;
+  task.max_force = max_force;
   task.stiffness_ratio = stiffness_ratio;
   task.starts = starts;
   task.seed = seed;
@@ -321,10 +321,10 @@ void bind_brace(py::module_& module) {
       py::arg("along") = task.along, py::arg("sides") = task.sides,
       py::arg("clearance") = task.clearance, py::arg("hold_force") = task.hold_force,
       py::arg("hold_frequency") = task.hold_frequency,
-      py::arg("friction_share") = task.friction_share, py::arg("least_force") = task.least_force,
-      py::arg("most_force") = task.most_force, py::arg("stiffness_ratio") = task.stiffness_ratio,
+      py::arg("friction_fraction") = task.friction_fraction, py::arg("min_force") = task.min_force,
+      py::arg("max_force") = task.max_force, py::arg("stiffness_ratio") = task.stiffness_ratio,
       py::arg("starts") = task.starts, py::arg("seed") = task.seed,
-      R"(plan_brace(arm, goal, torque_limits, objects, *, tolerance=0.005, angle_limits=None, turn=None, segments=None, fractions=(0.25, 0.5, 0.75, 1.0), along=8, sides=0, clearance=0.001, hold_force=0.04, hold_frequency=2.0, friction_share=0.9, least_force=0.05, most_force=20.0, stiffness_ratio=10.0, starts=2, seed=1)
+      R"(plan_brace(arm, goal, torque_limits, objects, *, tolerance=0.005, angle_limits=None, turn=None, segments=None, fractions=(0.25, 0.5, 0.75, 1.0), along=8, sides=0, clearance=0.001, hold_force=0.04, hold_frequency=2.0, friction_fraction=0.9, min_force=0.05, max_force=20.0, stiffness_ratio=10.0, starts=2, seed=1)
 --
 
 Where an arm leans against its surroundings so that its tip is held steadier: a Brace.
@@ -355,9 +355,9 @@ clearance : float
 hold_force, hold_frequency : float
     N and Hz: the braced point is to stick under any force on the tip that is a sum of sines up to this
     frequency whose amplitudes add up to this force.
-friction_share : float
+friction_fraction : float
     Of the least friction, that the brace may need for it.
-least_force, most_force : float
+min_force, max_force : float
     N, of the normal force.
 stiffness_ratio : float
     From which on an object is much stiffer than the arm (1 N/mm, 0.2 N m/rad).

@@ -23,9 +23,9 @@ std::vector<sim::ContactPoint> points(const Contact& self) {
   return self.session->simulation().contacts().points(self.index);
 }
 
-sim::ContactSum sum(const Contact& self) {
+sim::ContactResultant resultant(const Contact& self) {
   const Session::Use use(*self.session);
-  return self.session->simulation().contacts().sum(self.index);
+  return self.session->simulation().contacts().resultant(self.index);
 }
 
 /// (n, 3) of one vector of every point.
@@ -58,16 +58,16 @@ py::list states(const Contact& self) {
 
 void bind_sums(py::class_<Contact>& type) {
   type.def_property_readonly(
-          "force", [](const Contact& self) { return copy(sum(self).force); },
+          "force", [](const Contact& self) { return copy(resultant(self).force); },
           "(3,) ndarray: the force on the body in the last step (N), of all points together.")
       .def_property_readonly(
-          "normal_force", [](const Contact& self) { return sum(self).normal_force; },
+          "normal_force", [](const Contact& self) { return resultant(self).normal_force; },
           "float: sum of the points' normal forces (N), >= 0.")
       .def_property_readonly(
-          "friction_force", [](const Contact& self) { return sum(self).friction_force; },
+          "friction_force", [](const Contact& self) { return resultant(self).friction_force; },
           "float: sum of the magnitudes of the points' friction forces (N).")
       .def_property_readonly(
-          "gap", [](const Contact& self) { return sum(self).smallest_gap; },
+          "gap", [](const Contact& self) { return resultant(self).smallest_gap; },
           "float: the smallest gap of any point (m), negative inside the surface; between "
           "deformable bodies that are not near each other, how far was looked.");
 }

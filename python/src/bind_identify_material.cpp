@@ -78,8 +78,8 @@ std::vector<MaterialFit> fit_materials(const py::object& tests,
       .seed = seed,
       .mullins = mullins,
       .poisson_ratio = poisson_ratio,
-      .least_stretch = min_stretch,
-      .most_stretch = max_stretch.value_or(std::numeric_limits<double>::infinity())};
+      .min_stretch = min_stretch,
+      .max_stretch = max_stretch.value_or(std::numeric_limits<double>::infinity())};
   const py::gil_scoped_release release;
   const std::vector<FitResult> fits =
       identify::fit_materials(given, models.empty() ? fit_models() : models, settings);

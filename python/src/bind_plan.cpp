@@ -60,8 +60,8 @@ PlanTask make_task(const PccArm& of, const py::object& goal, const py::object& t
       throw Error(ErrorKind::wrong_shape, {.item = "Task(duration_range)"},
                   fmt::format("{} values are given", range.size()), "give two, in s");
     }
-    task.grid.least_duration = range[0];
-    task.grid.most_duration = range[1];
+    task.grid.min_duration = range[0];
+    task.grid.max_duration = range[1];
   }
   if (method == plan::method_name(plan::Method::backward_euler)) {
     task.grid.method = plan::Method::backward_euler;
@@ -360,7 +360,7 @@ time_step : float
     s, for which a torque is held.
 angle, rate : float
     Errors (rad, rad/s) on the way that are as bad as ...
-torque_share : float
+torque_fraction : float
     ... this part of an input's range, and as bad as ...
 tip_position, tip_speed : float
     ... these of the tip at the end (m, m/s).
@@ -370,13 +370,13 @@ Raises
 Error
     out-of-range.)")
       .def(py::init([](const PlanTask& task, const plan::Plan& of, double time_step, double angle,
-                       double rate, double torque_share, double tip_position, double tip_speed) {
+                       double rate, double torque_fraction, double tip_position, double tip_speed) {
              return TrackerOf{task.arm, plan::Tracker(task.arm, task.task, of,
-                                                      {time_step, angle, rate, torque_share,
+                                                      {time_step, angle, rate, torque_fraction,
                                                        tip_position, tip_speed})};
            }),
            py::arg("task"), py::arg("plan"), py::kw_only(), py::arg("time_step") = 5e-3,
-           py::arg("angle") = 0.5, py::arg("rate") = 5.0, py::arg("torque_share") = 0.5,
+           py::arg("angle") = 0.5, py::arg("rate") = 5.0, py::arg("torque_fraction") = 0.5,
            py::arg("tip_position") = 5e-3, py::arg("tip_speed") = 5e-2)
       .def_property_readonly(
           "steps", [](const TrackerOf& self) { return self.tracker.steps(); }, "int.")

@@ -1,8 +1,6 @@
 // How motions of a simulation follow from efforts.
 #include <string>
 
-#include <fmt/format.h>
-
 #include "sinew/sim/model.hpp"
 
 #include "arrays.hpp"
@@ -14,12 +12,7 @@ namespace {
 
 sim::LinearisationChoice choice(const std::string& tangent, bool geometric_stiffness,
                                 bool statics) {
-  if (tangent != "exact" && tangent != "rotated") {
-    throw Error(ErrorKind::unknown_choice, {.item = "linearise(tangent)"},
-                fmt::format("there is no tangent '{}'", tangent), "use 'exact' or 'rotated'");
-  }
-  return {tangent == "exact" ? mechanics::Tangent::exact : mechanics::Tangent::rotated,
-          geometric_stiffness, statics};
+  return {to_tangent(tangent, "linearise(tangent)"), geometric_stiffness, statics};
 }
 
 }  // namespace
@@ -43,8 +36,9 @@ How motions follow from efforts near the present state, which is not changed.
 
 Parameters
 ----------
-tangent : {'exact', 'rotated'}
-    The elements' stiffness: the derivative of the forces, or R K0 R^T with rotations held fixed.
+tangent : {'exact', 'projected', 'rotated'}
+    The elements' stiffness: the derivative of the forces, the same made positive semi-definite
+    element by element, or R K0 R^T with rotations held fixed.
 geometric_stiffness : bool
     Whether loaded cables add theirs.
 statics : bool

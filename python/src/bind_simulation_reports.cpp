@@ -3,6 +3,7 @@
 
 #include "sinew/scene/scene.hpp"
 #include "sinew/sim/model.hpp"
+#include "sinew/sim/observables.hpp"
 #include "sinew/sim/simulation.hpp"
 #include "sinew/sim/state.hpp"
 
@@ -21,15 +22,15 @@ std::string to_yaml(const Session& self) {
 
 py::dict ledger(Session& self) {
   const Session::Use use(self);
-  sim::Simulation& simulation = self.simulation();
-  const mechanics::Energies energies = simulation.energies();
+  sim::Observables& observables = self.observables();
+  observables.refresh();
   py::dict result;
-  result["strain"] = energies.strain;
-  result["kinetic"] = energies.kinetic;
-  result["gravity"] = energies.gravity;
-  result["actuator_work"] = simulation.ledger().actuators;
-  result["outside_work"] = simulation.ledger().outside;
-  result["dissipation"] = simulation.ledger().dissipated;
+  for (std::size_t k = 0; k < observables.list().size(); ++k) {
+    const sim::Observable& one = observables.list()[k];
+    const bool counts =
+        one.kind == sim::ObservableKind::energy || one.kind == sim::ObservableKind::ledger;
+    if (counts) result[one.name.c_str()] = observables.number(k);
+  }
   return result;
 }
 
@@ -71,11 +72,12 @@ void bind_progress(SimulationType& type) {
 void bind_balance(SimulationType& type) {
   type.def_property_readonly(
           "ledger", &ledger,
-          "dict: energies of all bodies now (J; gravity's from the height at rest), and since the "
-          "start the work of actuators, that of loads and outside forces, and what damping, drag "
-          "the friction of cables and contacts took. Work less dissipation less what the energies "
-          "gained is "
-          "the integrator's loss.")
+          "dict: J, as in run.csv. Of all bodies now: `strain_energy`, `kinetic_energy` and "
+          "`gravity_energy` (from the height at rest). Since the start: `actuator_work`; "
+          "`outside_work` of loads and outside forces; `dissipation` by damping, drag, and the "
+          "friction of cables and contacts; `numerical_loss`, work less dissipation less what the "
+          "energies gained: the integrator's, and what solve_static(), follow_path() and a moved "
+          "base put in.")
       .def_property_readonly("memory", guarded([](const sim::Simulation& s) { return s.bytes(); }),
                              "int: bytes of this simulation without the model that it shares.");
 }

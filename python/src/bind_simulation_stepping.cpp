@@ -39,17 +39,17 @@ sim::StaticReport solve_static(Session& self, double tolerance, int max_iteratio
 py::dict path_table(const std::vector<sim::PathPoint>& path,
                     const std::vector<sim::EffectorModel>& effectors,
                     const std::vector<std::vector<Vector3>>& values) {
-  VectorX share(static_cast<Eigen::Index>(path.size())), unstable(share.size());
-  for (Eigen::Index k = 0; k < share.size(); ++k) {
-    share[k] = path[static_cast<std::size_t>(k)].share;
+  VectorX load_fraction(static_cast<Eigen::Index>(path.size())), unstable(load_fraction.size());
+  for (Eigen::Index k = 0; k < load_fraction.size(); ++k) {
+    load_fraction[k] = path[static_cast<std::size_t>(k)].load_fraction;
     unstable[k] = path[static_cast<std::size_t>(k)].negative_pivots;
   }
   py::dict result;
-  result["share"] = copy(share);
+  result["load_fraction"] = copy(load_fraction);
   result["negative_pivots"] = copy(unstable);
   for (std::size_t i = 0; i < effectors.size(); ++i) {
-    Points points(share.size(), 3);
-    for (Eigen::Index k = 0; k < share.size(); ++k) {
+    Points points(load_fraction.size(), 3);
+    for (Eigen::Index k = 0; k < load_fraction.size(); ++k) {
       points.row(k) = values[i][static_cast<std::size_t>(k)].transpose();
     }
     result[py::str(effectors[i].name)] = copy(points);
@@ -157,7 +157,7 @@ max_points : int
 Returns
 -------
 dict
-    'share' (k,): part of the load; 'negative_pivots' (k,): directions in which the point is
+    'load_fraction' (k,): part of the load; 'negative_pivots' (k,): directions in which the point is
     unstable; and by its name the value (k, 3) of every effector.
 
 Raises

@@ -36,6 +36,13 @@ sim::Watched look_for_signals(sim::Simulation& simulation) {
 
 }  // namespace
 
+mechanics::Tangent to_tangent(const std::string& word, const std::string& argument) {
+  if (const auto tangent = mechanics::tangent_of(word)) return *tangent;
+  throw Error(ErrorKind::unknown_choice, {.item = argument},
+              fmt::format("there is no tangent '{}'", word),
+              "use 'exact', 'projected' or 'rotated'");
+}
+
 Session::Use::Use(const Session& session) : session_(session) {
   if (session_.busy_.exchange(true, std::memory_order_acquire)) throw SimulationBusy{};
 }
@@ -43,7 +50,10 @@ Session::Use::Use(const Session& session) : session_(session) {
 Session::Use::~Use() { session_.busy_.store(false, std::memory_order_release); }
 
 Session::Session(std::shared_ptr<const LoadedRobot> robot, int threads)
-    : robot_(std::move(robot)), simulation_(robot_->robot.model, threads) {
+    : robot_(std::move(robot)),
+      simulation_(robot_->robot.model, threads),
+      observables_(simulation_) {
+  observables_.number(observables_.find("numerical_loss"));  // counts from the first reading on
   if (const auto* first = robot_->robot.first_controller()) attach(first->settings, first->name);
 }
 

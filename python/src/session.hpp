@@ -14,8 +14,10 @@
 #include <vector>
 
 #include "sinew/inverse/inverse_controller.hpp"
+#include "sinew/mechanics/tangent.hpp"
 #include "sinew/scene/build.hpp"
 #include "sinew/sim/linearisation.hpp"
+#include "sinew/sim/observables.hpp"
 #include "sinew/sim/simulation.hpp"
 #include "sinew/sim/state_io.hpp"
 
@@ -33,6 +35,10 @@ struct LoadedRobot {
   scene::Robot robot;
   std::filesystem::path folder;
 };
+
+/// The tangent of that name. Throws Error(unknown-choice) for any other word.
+/// @param argument as "linearise(tangent)".
+mechanics::Tangent to_tangent(const std::string& word, const std::string& argument);
 
 /// A state as bytes, see sim/state_io.hpp.
 struct SavedState {
@@ -69,6 +75,8 @@ class Session {
   /// Only while a Use is held.
   sim::Simulation& simulation() { return simulation_; }
   const sim::Simulation& simulation() const { return simulation_; }
+  /// Their ledger counts from the start. Only while a Use is held.
+  sim::Observables& observables() { return observables_; }
 
   /// May be asked at any time, from any thread.
   bool busy() const { return busy_.load(std::memory_order_acquire); }
@@ -112,8 +120,6 @@ class Session {
   /// After others have stepped.
   void count_steps() { steps_ = simulation_.steps(); }
 
-  /// "long_0", "tip.x", ...: what every row of H and W belongs to.
-
  private:
   void check_loads() const;
   void note_status();
@@ -121,6 +127,7 @@ class Session {
 
   std::shared_ptr<const LoadedRobot> robot_;
   sim::Simulation simulation_;
+  sim::Observables observables_;
   std::shared_ptr<AttachedController> controller_;
   struct Flagged {
     std::int64_t steps = 0;

@@ -66,14 +66,14 @@ def test_path_onto_a_floor(friction):
     sim = block(friction=friction, floor=-2e-5, held={"fixed": {"set": "z_max"}}, loads={
         "draw": {"type": "acceleration", "body": "block", "acceleration": [0.0, 0.0, -2000.0]}})
     path = sim.follow_path(first_step=1e-4, largest_step=1e-3)
-    assert 1.0 <= path["share"][-1] <= 1.1
+    assert 1.0 <= path["load_fraction"][-1] <= 1.1
     assert not path["negative_pivots"].any()
     floor = sim.contact("floor")
     pressed, states = floor.normal_forces, floor.states
     assert floor.gaps.min() > -1e-9 and floor.normal_force > 1.0
     assert np.all(np.linalg.norm(floor.friction_forces, axis=1) <= friction * pressed * (1.0 + 1e-9))
     assert all((state == "open") == (force == 0.0) for state, force in zip(states, pressed))
-    sim.load("draw").factor = float(path["share"][-1])
+    sim.load("draw").factor = float(path["load_fraction"][-1])
     sim.solve_static()
     assert sim.contact("floor").normal_forces == pytest.approx(pressed, abs=1e-6 * pressed.sum())
 

@@ -121,9 +121,9 @@ def test_a_rehearsal_makes_the_first_attempt_better():
     assert np.linalg.norm(record.positions[-1, -1] - GOAL) > 0.02
     student.learn_from(command, record)
     assert next(student.run(plant, 1)).tip_error < 0.5 * next(learner().run(plant, 1)).tip_error
-    for share in (0.0, 1.0):
+    for fraction in (0.0, 1.0):
         with pytest.raises(sinew.Error, match="between 0 and 1"):
-            student.rehearsal(share)
+            student.rehearsal(fraction)
 
 
 def test_a_cylinder_is_told_what_gives_the_volumes():

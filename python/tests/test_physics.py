@@ -98,6 +98,12 @@ def test_stiffness_against_differences(loaded, tangent):
     assert error < 1e-6 if tangent == "exact" else 1e-6 < error < 0.5
 
 
+def test_the_projected_stiffness_is_never_below_the_exact_one(loaded):
+    pytest.importorskip("scipy.sparse")
+    exact, projected = (loaded.body("finger").stiffness(tangent=word).toarray() for word in ("exact", "projected"))
+    assert np.linalg.eigvalsh(projected - exact).min() > -1e-9 * np.abs(exact).max()
+
+
 def test_compliance_against_differences_of_statics(loaded):
     # All rows by effort: W is d(delta)/d(effort).
     loaded.actuator("north").tension = loaded.actuator("north").tension

@@ -352,7 +352,7 @@ WRONG_ARGUMENTS = [
     (["run", "{scene}", "--out", "/proc/nothing/here"], "file-unwritable", "--out"),
     (["bench", "{scene}", "--steps", "0"], "out-of-range", "--steps"),
     (["bench", "{scene}", "--steps", "many"], "bad-argument", "--steps"),
-    (["bench", "{scene}", "--tangent", "best"], "unknown-choice", "exact or rotated"),
+    (["bench", "{scene}", "--tangent", "best"], "unknown-choice", "exact, projected or rotated"),
     (["validate", "patch", "--json"], "unknown-option", "there is no option '--json'"),
     (["validate", "patch", "--lst"], "unknown-option", "did you mean --list?"),
     (["validate", "--jobs", "two"], "bad-argument", "--jobs"),
@@ -481,10 +481,11 @@ def test_bench_writes_its_figures(scene, tmp_path):
     path = scene()
     path.write_text(path.read_text() + CONTROL)
     result = sinew("bench", path, "--steps", "25", "--threads", "2", "--json", tmp_path / "b.json",
-                   "--compare-eigen", "--tangent", "rotated", cwd=tmp_path)
+                   "--compare-eigen", "--tangent", "projected", cwd=tmp_path)
     assert result.returncode == DONE, result.stderr
     figures = json.loads((tmp_path / "b.json").read_text())
     assert figures["steps"] == 25 and figures["threads"] == 2 and figures["machine"]
+    assert figures["tangent"] == "projected"
     assert list(figures["stages"]) == STAGES
     for stage in figures["stages"].values():
         assert 0 <= stage["median_us"] <= stage["p95_us"]

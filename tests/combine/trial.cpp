@@ -123,7 +123,6 @@ bool is_finite(const sim::State& state) {
                              [](const auto& number) { return std::isfinite(number.second); });
 }
 
-// m, between the nodes of two runs whose bodies stand in opposite orders.
 // Of the robot's size.
 double order_tolerance(const sim::Model& model) {
   if (model.step().event_driven()) return kEventTolerance;
@@ -131,6 +130,7 @@ double order_tolerance(const sim::Model& model) {
   return adaptive ? kPartOfError * adaptive->tolerance : kOrderTolerance;
 }
 
+// m, between the nodes of two runs whose bodies stand in opposite orders.
 double largest_distance(const sim::Simulation& one, const sim::Simulation& other) {
   double largest = 0.0;
   const auto count = static_cast<int>(one.model().bodies().size());

@@ -114,14 +114,14 @@ TEST(MaterialFit, RowsOutsideTheRangeDoNotCount) {
   }
   const FitResult all = fit_material(tests, {.model = "neo-hookean"});
   const FitResult part =
-      fit_material(tests, {.model = "neo-hookean", .least_stretch = 1.1, .most_stretch = 2.0});
+      fit_material(tests, {.model = "neo-hookean", .min_stretch = 1.1, .max_stretch = 2.0});
   EXPECT_GT(all.energy.shear_modulus(), 40e3);
   EXPECT_NEAR(part.energy.shear_modulus(), 30e3, 1e-3);
   EXPECT_LT(part.tests[0].rows, tests[0].stretch.size());
   EXPECT_LT(part.tests[0].relative, 1e-8);
-  EXPECT_EQ(kind_of([&] { fit_material(tests, {.most_stretch = 1.01}); }),
+  EXPECT_EQ(kind_of([&] { fit_material(tests, {.max_stretch = 1.01}); }),
             ErrorKind::too_few_points);
-  EXPECT_EQ(kind_of([&] { fit_material(tests, {.least_stretch = 3.0, .most_stretch = 2.0}); }),
+  EXPECT_EQ(kind_of([&] { fit_material(tests, {.min_stretch = 3.0, .max_stretch = 2.0}); }),
             ErrorKind::contradictory_limits);
 }
 

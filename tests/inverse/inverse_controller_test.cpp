@@ -268,7 +268,7 @@ Vector3 reachable_on_the_wall(std::shared_ptr<const sim::Model> model) {
   pull(1, 1.0);
   pull(2, 2.5);
   for (int i = 0; i < 100; ++i) simulation.step();
-  EXPECT_GT(simulation.contacts().sum(0).normal_force, 0.05);
+  EXPECT_GT(simulation.contacts().resultant(0).normal_force, 0.05);
   return simulation.effector_value(0);
 }
 
@@ -293,7 +293,7 @@ TEST_P(OnAWall, ReachesWhatIsReachedByTouching) {
   for (int i = 0; i < 300; ++i) controller.step();
   EXPECT_EQ(controller.status(), InverseStatus::on_target);
   EXPECT_LT(controller.error(), 5e-5);
-  EXPECT_GT(simulation.contacts().sum(0).normal_force, 0.01);
+  EXPECT_GT(simulation.contacts().resultant(0).normal_force, 0.01);
   EXPECT_LT(simulation.report().violation, 1e-7);
 }
 

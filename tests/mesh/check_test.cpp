@@ -244,8 +244,8 @@ TEST(Report, TellsWhatAUserWantsToKnow) {
   EXPECT_EQ(report.tetrahedra, 162);
   EXPECT_NEAR(report.volume, 1e-3, 1e-15);
   EXPECT_NEAR(report.surface_area, 0.06, 1e-14);
-  EXPECT_NEAR(report.least_dihedral, 45.0, 1e-9);
-  EXPECT_NEAR(report.largest_dihedral, 90.0, 1e-9);
+  EXPECT_NEAR(report.min_dihedral, 45.0, 1e-9);
+  EXPECT_NEAR(report.max_dihedral, 90.0, 1e-9);
   EXPECT_EQ(std::accumulate(report.dihedral.counts.begin(), report.dihedral.counts.end(), 0),
             6 * 162);
   EXPECT_EQ(report.components.element_count, std::vector<int>{162});

@@ -138,9 +138,9 @@ TEST(Shapes, RoundSolidsOfHexahedraHaveTheirVolume) {
 }
 
 TEST(Shapes, AreOfGoodQuality) {
-  EXPECT_GT(require_sound(cylinder({})).least_radius_ratio, 0.3);
-  EXPECT_GT(require_sound(cone({})).least_radius_ratio, 0.3);
-  EXPECT_GT(require_sound(hollow_cylinder({})).least_radius_ratio, 0.3);
+  EXPECT_GT(require_sound(cylinder({})).min_radius_ratio, 0.3);
+  EXPECT_GT(require_sound(cone({})).min_radius_ratio, 0.3);
+  EXPECT_GT(require_sound(hollow_cylinder({})).min_radius_ratio, 0.3);
 }
 
 TEST(Shapes, TrunkHasBellowsAndRoomForCables) {
@@ -150,9 +150,9 @@ TEST(Shapes, TrunkHasBellowsAndRoomForCables) {
   EXPECT_EQ(report.tetrahedra, 2592);
   EXPECT_NEAR(report.high.z(), 0.195, 1e-15);
   EXPECT_NEAR(report.high.x(), 0.020, 1e-4);
-  EXPECT_GT(report.least_radius_ratio, 0.45);
-  EXPECT_GT(report.least_dihedral, 20.0);
-  EXPECT_LT(report.largest_dihedral, 140.0);
+  EXPECT_GT(report.min_radius_ratio, 0.45);
+  EXPECT_GT(report.min_dihedral, 20.0);
+  EXPECT_LT(report.max_dihedral, 140.0);
   const Embedder embedder(mesh);
   EXPECT_EQ(embedder.locate({0, 0, 0.195}, Outside::error, "tip").distance, 0.0);
   // Eight cables: the lines from 10 mm beside the axis to 2 mm, all inside.
@@ -182,10 +182,10 @@ TEST(Refine, KeepsVolumeOrientationAndQuality) {
   EXPECT_EQ(fine.tetrahedra.size(), 8 * coarse.tetrahedra.size());
   EXPECT_EQ(fine.nodes.topRows(coarse.node_count()), coarse.nodes);
   EXPECT_NEAR(volume(fine) / volume(coarse), 1.0, 1e-12);
-  const double before = describe(coarse).least_radius_ratio;
+  const double before = describe(coarse).min_radius_ratio;
   const MeshReport first = require_sound(fine), second = require_sound(refine(fine));
-  EXPECT_GT(first.least_radius_ratio, 0.4 * before);
-  EXPECT_GT(second.least_radius_ratio, 0.4 * before) << "repeated refinement goes on as it began";
+  EXPECT_GT(first.min_radius_ratio, 0.4 * before);
+  EXPECT_GT(second.min_radius_ratio, 0.4 * before) << "repeated refinement goes on as it began";
 }
 
 TEST(Refine, CarriesSets) {

@@ -77,7 +77,7 @@ TEST(AdaptiveMotion, GoesOnInPieces) {
 }
 
 TEST(AdaptiveMotion, GivesUpWithAReason) {
-  AdaptiveMotion motion(make(testing::fluidic()), {.most_steps = 3});
+  AdaptiveMotion motion(make(testing::fluidic()), {.max_steps = 3});
   try {
     motion.advance(1.0, swing);
     FAIL();

@@ -151,7 +151,7 @@ TEST(Brace, IsAnEquilibriumWithinItsCone) {
                 .norm(),
             1e-8);
   EXPECT_LT(std::abs(constraint::distance(task.objects[0].surface, brace.place).gap), 1e-8);
-  EXPECT_GE(brace.normal_force, task.least_force - 1e-8);
+  EXPECT_GE(brace.normal_force, task.min_force - 1e-8);
   EXPECT_GE(brace.hold_force, task.hold_force);
   EXPECT_LE(brace.conditions[0].value, 0.9 * 0.6 + 1e-3) << "as much of friction as may be needed";
   EXPECT_LE(brace.tip_error, task.tolerance);
@@ -287,10 +287,10 @@ TEST(Brace, RefusesWhatMakesNoSense) {
   };
   refused([](BraceTask& task) { task.goal = {1.0, 0.0, 0.0}; });
   refused([](BraceTask& task) { task.fractions = {0.0}; });
-  refused([](BraceTask& task) { task.least_force = 0.0; });
+  refused([](BraceTask& task) { task.min_force = 0.0; });
   refused([](BraceTask& task) { task.hold_force = -0.01; });
   refused([](BraceTask& task) { task.along = 0; });
-  refused([](BraceTask& task) { task.most_force = 0.01; });
+  refused([](BraceTask& task) { task.max_force = 0.01; });
   refused([](BraceTask& task) { task.turn_lower = 1.0; });
   refused([](BraceTask& task) { task.objects[0].friction = {"given", 0.5, 0.2}; });
   refused([](BraceTask& task) { task.objects[0].surface = constraint::Sphere{}; });

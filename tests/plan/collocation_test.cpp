@@ -27,11 +27,11 @@ class Derivatives : public ::testing::TestWithParam<Kind> {
     task.goal.position = {0.1, 0.05, -0.2};
     task.grid.method = GetParam().method;
     task.grid.intervals = 3;
-    task.grid.shares = VectorX{{0.3, 0.5, 0.2}};
+    task.grid.fractions = VectorX{{0.3, 0.5, 0.2}};
     task.grid.duration = 0.3;
     if (GetParam().free) {
-      task.grid.least_duration = 0.1;
-      task.grid.most_duration = 1.0;
+      task.grid.min_duration = 0.1;
+      task.grid.max_duration = 1.0;
     }
     task.objective = {0.7, 1.3, 0.4};
     task.limits.torque_rate = VectorX::Constant(mixed ? 6 : 4, 2.0);
@@ -193,7 +193,7 @@ TEST(Transcription, IsExactOnPolynomials) {
       for (int b = fourth == 0.0 || stage.time == 1.0 ? 0 : 1; b < 3; ++b) {
         EXPECT_NEAR(motion[b], expected[static_cast<std::size_t>(b)], 1e-12) << b;
       }
-      area += h * stage.share * expected[1];
+      area += h * stage.fraction * expected[1];
     }
     EXPECT_NEAR(area, knots[3] - knots[0], 1e-14);
   }

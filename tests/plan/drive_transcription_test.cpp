@@ -151,7 +151,7 @@ TEST(DriveTranscription, RefusesWhatCannotBe) {
             ErrorKind::out_of_range);
   EXPECT_EQ(kind([](Task& t) { t.drive->channels[1].cylinder.c.setZero(); }),
             ErrorKind::out_of_range);
-  EXPECT_EQ(kind([](Task& t) { t.grid.least_duration = t.grid.most_duration = 2.0; }),
+  EXPECT_EQ(kind([](Task& t) { t.grid.min_duration = t.grid.max_duration = 2.0; }),
             ErrorKind::contradictory_limits);
   EXPECT_EQ(kind([](Task& t) { t.objective.command = 0.0; }), ErrorKind::out_of_range);
   EXPECT_EQ(kind([](Task& t) { t.limits.command_rate.setZero(); }), ErrorKind::out_of_range);

@@ -7,13 +7,13 @@ namespace sinew::plan {
 namespace {
 
 TEST(Mesh, CutsWhereTheDefectIs) {
-  const VectorX shares{{0.25, 0.5, 0.25}};
+  const VectorX fractions{{0.25, 0.5, 0.25}};
   // 3 d / 0.1 to the power 1/4: 0.4, 2.3, and more than four.
-  const VectorX cut = refined(shares, VectorX{{1e-3, 1.0, 1e6}});
+  const VectorX cut = refined(fractions, VectorX{{1e-3, 1.0, 1e6}});
   EXPECT_TRUE(cut.isApprox(
       VectorX{{0.25, 0.5 / 3, 0.5 / 3, 0.5 / 3, 0.0625, 0.0625, 0.0625, 0.0625}}, 1e-15));
   // None that would do alone: all.
-  EXPECT_TRUE(refined(shares, VectorX::Zero(3))
+  EXPECT_TRUE(refined(fractions, VectorX::Zero(3))
                   .isApprox(VectorX{{0.125, 0.125, 0.25, 0.25, 0.125, 0.125}}, 1e-15));
 }
 

@@ -78,7 +78,7 @@ TEST(Planner, CorrectsWhatCoarseKnotsMiss) {
   const Plan plan = Planner(arm, task).plan(1);
   ASSERT_TRUE(plan.found());
   EXPECT_GT(plan.corrections, 0);
-  EXPECT_NEAR(plan.shares().sum(), 1.0, 1e-12);
+  EXPECT_NEAR(plan.fractions().sum(), 1.0, 1e-12);
   // A plan made anew keeps the knots.
   task.goal.position.x() += 0.005;
   const Plan next = Planner(arm, task).replan(plan);
@@ -179,8 +179,8 @@ TEST(Planner, AFreeDurationDoesNotCostMore) {
   const auto arm = fluidic();
   Task task = grab(kGoals[2]);
   const Plan fixed = Planner(arm, task).plan(1);
-  task.grid.least_duration = 1.0;
-  task.grid.most_duration = 2.0;
+  task.grid.min_duration = 1.0;
+  task.grid.max_duration = 2.0;
   const Plan free = Planner(arm, task).plan(1);
   ASSERT_TRUE(free.found());
   // Each to its own correction.
@@ -242,11 +242,11 @@ TEST(Planner, RefusesTasksThatMakeNoSense) {
   task.goal.tolerance = 0.0;
   EXPECT_EQ(kind_of(task), ErrorKind::out_of_range);
   task = grab();
-  task.grid.least_duration = 2.0;
-  task.grid.most_duration = 1.0;
+  task.grid.min_duration = 2.0;
+  task.grid.max_duration = 1.0;
   EXPECT_EQ(kind_of(task), ErrorKind::contradictory_limits);
   task = grab();
-  task.grid.shares = VectorX::Constant(50, 0.01);
+  task.grid.fractions = VectorX::Constant(50, 0.01);
   EXPECT_EQ(kind_of(task), ErrorKind::out_of_range);
   task = grab();
   task.obstacles = {{.radius = -0.1}};

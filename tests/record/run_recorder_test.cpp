@@ -246,7 +246,7 @@ TEST_F(RunRecorderTest, ContactsReadBackBitForBit) {
       const Eigen::Matrix<double, 3, 4> pose = was.pose.affine();
       EXPECT_TRUE(std::ranges::equal(read("pose"), pose.reshaped<Eigen::RowMajor>()));
       ASSERT_EQ(read("gap").size(), was.points.size());
-      sim::ContactSum sum;
+      sim::ContactResultant resultant;
       for (std::size_t k = 0; k < was.points.size(); ++k) {
         const sim::ContactPoint& point = was.points[k];
         const auto vector = [&](const char* what) {
@@ -260,9 +260,10 @@ TEST_F(RunRecorderTest, ContactsReadBackBitForBit) {
         EXPECT_EQ(vector("friction_force"), point.friction_force);
         EXPECT_EQ(read("state")[k], static_cast<double>(point.state));
         touching += point.state == qp::ContactState::open ? 0 : 1;
-        sum.add(point);
+        resultant.add(point);
       }
-      EXPECT_EQ(numbers("/contact_resultants/" + name + "/normal_force").front(), sum.normal_force);
+      EXPECT_EQ(numbers("/contact_resultants/" + name + "/normal_force").front(),
+                resultant.normal_force);
     }
   }
   EXPECT_GT(touching, 100);

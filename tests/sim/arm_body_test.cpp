@@ -139,7 +139,7 @@ TEST(ArmBody, HeldBendsAreNoHindranceToOpenContacts) {
       Simulation simulation(commanded(step, 0.1, 1.0, friction));
       for (int k = 0; k < 5; ++k) simulation.step();
       EXPECT_NEAR(simulation.actuator(0).motion, 0.1, 1e-9);
-      EXPECT_EQ(simulation.contacts().sum(0).normal_force, 0.0);
+      EXPECT_EQ(simulation.contacts().resultant(0).normal_force, 0.0);
       // Where they lead into the wall, no force can help.
       Simulation blocked(commanded(step, 0.5, 0.05, friction));
       Simulation mirrored(commanded(step, -0.5, 0.05, friction));

@@ -87,7 +87,7 @@ Outcome impact(const Throw& options) {
     const mechanics::Energies now = simulation.energies();
     energy = now.kinetic + now.strain;
     outcome.growth = std::max(outcome.growth, energy / start - 1.0);
-    const double force = simulation.contacts().sum(0).normal_force;
+    const double force = simulation.contacts().resultant(0).normal_force;
     outcome.impulse += force * options.time_step / momentum;
     if (!(force > 0.0)) continue;
     if (first < 0.0) first = simulation.time() - options.time_step;
@@ -149,7 +149,7 @@ TEST(Impact, SmoothPhasesKeepTheSecondOrder) {
     const auto steps = std::lround(eighth / time_step);
     for (long k = 0; k < steps; ++k) {
       simulation.step();
-      EXPECT_GT(simulation.contacts().sum(0).normal_force, 0.0);
+      EXPECT_GT(simulation.contacts().resultant(0).normal_force, 0.0);
     }
     return simulation.body(0).positions().col(2).maxCoeff();  // of the free end
   };

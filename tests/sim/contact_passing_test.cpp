@@ -89,7 +89,7 @@ TEST(Passing, BodiesThatMissFeelNothing) {
           const auto steps = std::lround(0.16 / c.speed / c.time_step) + 1;
           for (long k = 0; k < steps; ++k) {
             simulation.step();
-            ASSERT_EQ(simulation.contacts().sum(0).normal_force, 0.0)
+            ASSERT_EQ(simulation.contacts().resultant(0).normal_force, 0.0)
                 << c.speed << " m/s, " << c.time_step << " s, surface " << surface.index();
           }
           EXPECT_LT((mean_velocity(simulation) - c.speed * Vector3::UnitX()).norm(),
@@ -109,7 +109,7 @@ TEST(Passing, SurfacesThatMissAreNotFelt) {
     Simulation& simulation = *flown;
     for (int k = 0; k < 13; ++k) {
       simulation.step();
-      EXPECT_EQ(simulation.contacts().sum(0).normal_force, 0.0);
+      EXPECT_EQ(simulation.contacts().resultant(0).normal_force, 0.0);
     }
     EXPECT_LT(mean_velocity(simulation).norm(), 1e-15);
   }
@@ -142,15 +142,15 @@ TEST(Passing, NothingGoesThroughASurface) {
           bool touched = false;
           for (int k = 0; k < 4; ++k) {
             simulation.step();
-            const ContactSum sum = simulation.contacts().sum(0);
-            EXPECT_GE(sum.smallest_gap, -1e-9);
+            const ContactResultant resultant = simulation.contacts().resultant(0);
+            EXPECT_GE(resultant.smallest_gap, -1e-9);
             // A fraction of a millimetre is slip. Later on, or in Newton's later iterates, the
             // front may slip off sideways: a ball before its middle is no rest.
             if (!touched && method == Method::one_linearisation) {
               EXPECT_LT(front(simulation), x - radius + 1e-4);
             }
             // In a step that is made in parts it may touch and slip off.
-            touched |= sum.normal_force > 0.0 || mean_velocity(simulation)[0] < 0.9 * speed;
+            touched |= resultant.normal_force > 0.0 || mean_velocity(simulation)[0] < 0.9 * speed;
           }
           EXPECT_TRUE(touched);
           const mechanics::Energies energies = simulation.energies();
@@ -171,7 +171,7 @@ TEST(Passing, ImpactsAreThoseOfThePlaceWhereTheyHappen) {
       const auto flown =
           flying({.surface = ball, .speed = 1.0, .time_step = time_step, .method = method});
       Simulation& simulation = *flown;
-      while (!(simulation.contacts().sum(0).normal_force > 0.0)) {
+      while (!(simulation.contacts().resultant(0).normal_force > 0.0)) {
         ASSERT_LT(simulation.time(), 0.05);
         simulation.step();
       }

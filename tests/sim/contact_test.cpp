@@ -47,9 +47,11 @@ TEST(Contact, BlockSticksBelowTheFrictionAngle) {
     for (int k = 0; k < 500; ++k) simulation.step();
     const Vector3 after = simulation.body(0).positions().colwise().mean();
     EXPECT_LT((after - before).norm(), 1e-9) << share;
-    const ContactSum sum = simulation.contacts().sum(0);
-    EXPECT_NEAR(sum.normal_force, kBlockWeight * std::cos(share * critical), 1e-6 * kBlockWeight);
-    EXPECT_NEAR(sum.force[0], -kBlockWeight * std::sin(share * critical), 1e-6 * kBlockWeight);
+    const ContactResultant resultant = simulation.contacts().resultant(0);
+    EXPECT_NEAR(resultant.normal_force, kBlockWeight * std::cos(share * critical),
+                1e-6 * kBlockWeight);
+    EXPECT_NEAR(resultant.force[0], -kBlockWeight * std::sin(share * critical),
+                1e-6 * kBlockWeight);
     EXPECT_LT(simulation.report().contact_residual, 1e-9);
   }
 }
@@ -64,9 +66,9 @@ TEST(Contact, BlockSlidesAsCoulombSaysAboveIt) {
     const double acceleration = (mean_velocity(simulation)[0] - before) / 0.4;
     const double expected = kGravity * (std::sin(angle) - 0.5 * std::cos(angle));
     EXPECT_NEAR(acceleration, expected, 1e-3 * expected) << angle;
-    const ContactSum sum = simulation.contacts().sum(0);
-    EXPECT_EQ(sum.sticking, 0);
-    EXPECT_NEAR(sum.friction_force, 0.5 * sum.normal_force, 1e-9 * kBlockWeight);
+    const ContactResultant resultant = simulation.contacts().resultant(0);
+    EXPECT_EQ(resultant.sticking, 0);
+    EXPECT_NEAR(resultant.friction_force, 0.5 * resultant.normal_force, 1e-9 * kBlockWeight);
   }
 }
 
@@ -114,7 +116,7 @@ TEST(Contact, ImpactTakesEnergyAndNeverGivesAny) {
         const double after = total(simulation);
         EXPECT_LE(after, before + 1e-9 * fall) << k;
         before = after;
-        touched |= simulation.contacts().sum(0).normal_force > 0.0;
+        touched |= simulation.contacts().resultant(0).normal_force > 0.0;
       }
       EXPECT_TRUE(touched);
       EXPECT_LT(before, -0.9 * fall);  // it no longer bounces
@@ -166,7 +168,7 @@ TEST(Contact, LedgerOfACarriedBlock) {
   }
   // The belt runs at 0.2 m/s; the block slips until it has its speed, then it sticks.
   EXPECT_NEAR(mean_velocity(simulation)[0], 0.2, 1e-6);
-  EXPECT_GT(simulation.contacts().sum(0).sticking, 20);
+  EXPECT_GT(simulation.contacts().resultant(0).sticking, 20);
   const double kinetic = simulation.energies().kinetic;
   EXPECT_NEAR(simulation.ledger().outside, 2.0 * kinetic,
               0.05 * kinetic);  // half of it became heat
@@ -217,7 +219,7 @@ TEST(Contact, BallPressedIntoABlockIsNotPenetrated) {
         }
       }
       EXPECT_GT(closed, 8);
-      EXPECT_LT(simulation.contacts().sum(0).force[2], -0.1);
+      EXPECT_LT(simulation.contacts().resultant(0).force[2], -0.1);
     }
   }
 }
@@ -230,8 +232,8 @@ TEST(Contact, FrictionlessStaticsDoNotDependOnTheWay) {
   Simulation fast(pressed_by_a_ball(Method::one_linearisation, 0.0, 0.004));
   for (int k = 0; k < 10; ++k) fast.step();
   fast.solve_static();
-  const Vector3 expected = slow.contacts().sum(0).force;
-  EXPECT_LT((fast.contacts().sum(0).force - expected).norm(), 1e-6 * expected.norm());
+  const Vector3 expected = slow.contacts().resultant(0).force;
+  EXPECT_LT((fast.contacts().resultant(0).force - expected).norm(), 1e-6 * expected.norm());
 }
 
 /// Two capsules along y that close on a block from both sides and hold it by friction.
@@ -259,7 +261,8 @@ TEST(Contact, TwoCapsulesHoldABlockByFriction) {
     Simulation simulation(builder.build());
     for (int k = 0; k < 300; ++k) simulation.step();
     const double fallen = -mean_velocity(simulation)[2];
-    const ContactSum left = simulation.contacts().sum(0), right = simulation.contacts().sum(1);
+    const ContactResultant left = simulation.contacts().resultant(0),
+                           right = simulation.contacts().resultant(1);
     if (friction > 0.5) {
       EXPECT_NEAR(left.force[2] + right.force[2], kBlockWeight, 1e-3 * kBlockWeight);
       EXPECT_NEAR(left.force[0], -right.force[0], 1e-3 * left.normal_force);
@@ -300,10 +303,10 @@ TEST(Contact, ActuatorsAndContactsShareOneProblem) {
     Simulation simulation(builder.build());
     for (int k = 0; k < 5; ++k) simulation.step();
     EXPECT_LT(simulation.report().violation, 1e-9);
-    const ContactSum sum = simulation.contacts().sum(0);
+    const ContactResultant resultant = simulation.contacts().resultant(0);
     const ActuatorState& state = simulation.actuator(0);
-    EXPECT_GE(sum.smallest_gap, -1e-12);
-    EXPECT_GT(sum.normal_force, 0.0);
+    EXPECT_GE(resultant.smallest_gap, -1e-12);
+    EXPECT_GT(resultant.normal_force, 0.0);
     if (pushed < 1.0) {
       EXPECT_NEAR(state.effort, pushed, 1e-12);
       EXPECT_LT(state.motion, 0.004);
@@ -357,10 +360,10 @@ TEST(Contact, CablesWithFrictionAndContactsShareOneProblem) {
     }
     EXPECT_LT((far.body(0).positions() - free.body(0).positions()).cwiseAbs().maxCoeff(), 1e-9);
     EXPECT_LT(far.body(0).positions().col(2).minCoeff(), -0.004);
-    EXPECT_EQ(far.contacts().sum(0).normal_force, 0.0);
-    const ContactSum sum = near.contacts().sum(0);
-    EXPECT_GE(sum.smallest_gap, -1e-9);
-    EXPECT_GT(sum.normal_force, 0.01);
+    EXPECT_EQ(far.contacts().resultant(0).normal_force, 0.0);
+    const ContactResultant resultant = near.contacts().resultant(0);
+    EXPECT_GE(resultant.smallest_gap, -1e-9);
+    EXPECT_GT(resultant.normal_force, 0.01);
     // Along the cable the tension falls by no more than friction takes.
     const auto tensions = near.model().cable(0)->tensions(near.efforts());
     for (int via = 0; via + 1 < static_cast<int>(tensions.size()); ++via) {
@@ -405,11 +408,11 @@ TEST(Contact, PointsThatStayAwayChangeNothing) {
       left_out += whole.world().contacts().leave_points_out() ? 1 : 0;
     }
     EXPECT_EQ(left_out, 150);
-    EXPECT_GT(bottom.contacts().sum(0).normal_force, 0.0);
+    EXPECT_GT(bottom.contacts().resultant(0).normal_force, 0.0);
     EXPECT_LT((whole.body(0).positions() - bottom.body(0).positions()).cwiseAbs().maxCoeff(),
               1e-9 * 0.06);
-    EXPECT_NEAR(whole.contacts().sum(0).normal_force, bottom.contacts().sum(0).normal_force,
-                1e-6 * kBlockWeight);
+    EXPECT_NEAR(whole.contacts().resultant(0).normal_force,
+                bottom.contacts().resultant(0).normal_force, 1e-6 * kBlockWeight);
   }
 }
 
@@ -439,14 +442,14 @@ TEST(Contact, PointsThatArriveUnexpectedlyAreTakenIn) {
       builder.add_force(push);
       Simulation simulation(builder.build());
       simulation.step();
-      const ContactSum sum = simulation.contacts().sum(0);
-      EXPECT_GE(sum.smallest_gap, -1e-9 * 0.06);
+      const ContactResultant resultant = simulation.contacts().resultant(0);
+      EXPECT_GE(resultant.smallest_gap, -1e-9 * 0.06);
       if (pushed < 1.0) {
-        EXPECT_EQ(sum.normal_force, 0.0);
-        EXPECT_GT(sum.smallest_gap, 1e-3);
+        EXPECT_EQ(resultant.normal_force, 0.0);
+        EXPECT_GT(resultant.smallest_gap, 1e-3);
       } else {
-        EXPECT_GT(sum.normal_force, 0.1);
-        EXPECT_LT(sum.smallest_gap, 1e-9);
+        EXPECT_GT(resultant.normal_force, 0.1);
+        EXPECT_LT(resultant.smallest_gap, 1e-9);
       }
     }
   }

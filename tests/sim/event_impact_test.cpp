@@ -273,8 +273,8 @@ TEST(EventDriven, ADeformableBodyFallsBesideABall) {
     EXPECT_LT(std::abs(error), flies ? 1e-12 : 0.5 * kGravity * options.step.time_step * time);
   }
   EXPECT_NEAR(pose(simulation, ball).origin()[2], 0.05, 1e-9);
-  EXPECT_NEAR(simulation.contacts().sum(0).normal_force, kBlockWeight, 1e-3 * kBlockWeight);
-  EXPECT_NEAR(simulation.contacts().sum(1).normal_force, 2.0 * kGravity, 1e-6);
+  EXPECT_NEAR(simulation.contacts().resultant(0).normal_force, kBlockWeight, 1e-3 * kBlockWeight);
+  EXPECT_NEAR(simulation.contacts().resultant(1).normal_force, 2.0 * kGravity, 1e-6);
 }
 
 // A ball that falls on soft ground rebounds by the ground's elasticity.

@@ -49,12 +49,12 @@ TEST(LoadSteps, FailuresGrowRarer) {
 }
 
 TEST(LoadSteps, TheFirstMayHaveToBeLongerThanTheOthers) {
-  const LoadSteps steps{.first = 0.5, .least = 1.0 / 64, .least_at_first = 1.0 / 16};
+  const LoadSteps steps{.first = 0.5, .min = 1.0 / 64, .min_at_first = 1.0 / 16};
   EXPECT_EQ(go(steps, 1.0 / 16).left, 0.0);
   const Way stuck = go(steps, 1.0 / 32);
   EXPECT_EQ(stuck.left, 1.0);
   EXPECT_EQ(stuck.failures, 4);
-  EXPECT_EQ(go({.first = 0.5, .least = 1.0 / 64}, 1.0 / 32).left, 0.0);
+  EXPECT_EQ(go({.first = 0.5, .min = 1.0 / 64}, 1.0 / 32).left, 0.0);
 }
 
 }  // namespace

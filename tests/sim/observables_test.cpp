@@ -206,14 +206,14 @@ TEST(Observables, ContactsArmsAndTwoBodies) {
   for (int k = 0; k < 40; ++k) {
     simulation.step();
     list.refresh();
-    const ContactSum sum = simulation.contacts().sum(0);
-    EXPECT_EQ(values(list, "floor.force"), numbers(sum.force));
-    EXPECT_EQ(value(list, "floor.normal_force"), sum.normal_force);
-    EXPECT_EQ(value(list, "floor.friction_force"), sum.friction_force);
-    EXPECT_EQ(value(list, "floor.gap"), sum.smallest_gap);
-    EXPECT_EQ(value(list, "floor.sticking"), sum.sticking);
-    EXPECT_EQ(value(list, "floor.slipping"), sum.slipping);
-    friction = std::max(friction, sum.friction_force);
+    const ContactResultant resultant = simulation.contacts().resultant(0);
+    EXPECT_EQ(values(list, "floor.force"), numbers(resultant.force));
+    EXPECT_EQ(value(list, "floor.normal_force"), resultant.normal_force);
+    EXPECT_EQ(value(list, "floor.friction_force"), resultant.friction_force);
+    EXPECT_EQ(value(list, "floor.gap"), resultant.smallest_gap);
+    EXPECT_EQ(value(list, "floor.sticking"), resultant.sticking);
+    EXPECT_EQ(value(list, "floor.slipping"), resultant.slipping);
+    friction = std::max(friction, resultant.friction_force);
     const ContactSnapshot snapshot = simulation.contacts().snapshot(0);
     const Eigen::Matrix<double, 3, 4> pose = snapshot.pose.affine();
     EXPECT_TRUE(std::ranges::equal(values(list, "floor.pose"), pose.reshaped<Eigen::RowMajor>()));

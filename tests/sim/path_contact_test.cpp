@@ -44,8 +44,8 @@ struct Followed {
   int turns() const {
     int count = 0;
     for (std::size_t k = 2; k < path.size(); ++k) {
-      const double now = path[k].share - path[k - 1].share;
-      const double before = path[k - 1].share - path[k - 2].share;
+      const double now = path[k].load_fraction - path[k - 1].load_fraction;
+      const double before = path[k - 1].load_fraction - path[k - 2].load_fraction;
       count += now * before < 0.0 ? 1 : 0;
     }
     return count;
@@ -61,7 +61,7 @@ Followed follow(Simulation& simulation, const PathSettings& settings) {
   const double top = simulation.effector_value(0).z();
   result.path = simulation.follow_path(settings, [&] {
     result.visits.push_back(
-        {top - simulation.effector_value(0).z(), simulation.contacts().sum(0).normal_force,
+        {top - simulation.effector_value(0).z(), simulation.contacts().resultant(0).normal_force,
          simulation.body(0).positions(), simulation.contacts().points(0), simulation.state()});
   });
   return result;
@@ -79,9 +79,10 @@ TEST(PathContact, ASnapThatAFloorEndsAgreesWithControlByMotion) {
     const Visit& visit = all.visits[k];
     moved.command(0, pull(visit.depth));
     moved.solve_static();
-    const double load = 0.4 * all.path[k].share;
+    const double load = 0.4 * all.path[k].load_fraction;
     EXPECT_NEAR(moved.actuator(0).effort, load, kAgrees * std::max(load, 0.02)) << k;
-    EXPECT_NEAR(moved.contacts().sum(0).normal_force, visit.normal, kAgrees * std::max(load, 0.02));
+    EXPECT_NEAR(moved.contacts().resultant(0).normal_force, visit.normal,
+                kAgrees * std::max(load, 0.02));
     EXPECT_LT((moved.body(0).positions() - visit.positions).cwiseAbs().maxCoeff(), kAgrees * size);
     const bool touches = Followed::touching(visit) > 0;
     falling += all.path[k].negative_pivots;
@@ -91,8 +92,8 @@ TEST(PathContact, ASnapThatAFloorEndsAgreesWithControlByMotion) {
   EXPECT_GE(falling, 3);
   EXPECT_GE(touched, 3);
   EXPECT_EQ(all.turns(), 2);  // at the peak, and at the floor
-  EXPECT_GE(all.path.back().share, 1.0);
-  EXPECT_LE(all.path.back().share, 1.1);
+  EXPECT_GE(all.path.back().load_fraction, 1.0);
+  EXPECT_LE(all.path.back().load_fraction, 1.1);
 }
 
 TEST(PathContact, WeldsHoldBesideAFloor) {
@@ -103,9 +104,9 @@ TEST(PathContact, WeldsHoldBesideAFloor) {
   for (std::size_t k = 0; k < all.path.size(); ++k) {
     whole.command(0, pull(all.visits[k].depth));
     whole.solve_static();
-    const double load = 0.4 * all.path[k].share;
+    const double load = 0.4 * all.path[k].load_fraction;
     EXPECT_NEAR(whole.actuator(0).effort, load, kAgrees * std::max(load, 0.02)) << k;
-    EXPECT_NEAR(whole.contacts().sum(0).normal_force, all.visits[k].normal,
+    EXPECT_NEAR(whole.contacts().resultant(0).normal_force, all.visits[k].normal,
                 kAgrees * std::max(load, 0.02));
   }
   EXPECT_GT(all.visits.back().normal, 0.1);
@@ -126,19 +127,19 @@ TEST(PathContact, ABeamIsLaidDownAndLifted) {
     const Followed all = follow(path, {});
     for (std::size_t k = 0; k < all.path.size(); ++k) {
       Simulation fresh(model);
-      const double share = all.path[k].share;
-      if (share > 1.0) continue;  // the cable that loosens would push
-      fresh.command(2, tension(down + share * (next_down - down)));
-      fresh.command(0, tension(up + share * (next_up - up)));
+      const double load_fraction = all.path[k].load_fraction;
+      if (load_fraction > 1.0) continue;  // the cable that loosens would push
+      fresh.command(2, tension(down + load_fraction * (next_down - down)));
+      fresh.command(0, tension(up + load_fraction * (next_up - up)));
       fresh.solve_static();
       EXPECT_LT((fresh.body(0).positions() - all.visits[k].positions).cwiseAbs().maxCoeff(),
                 kAgrees * size)
           << k;
-      EXPECT_NEAR(fresh.contacts().sum(0).normal_force, all.visits[k].normal, kAgrees) << k;
+      EXPECT_NEAR(fresh.contacts().resultant(0).normal_force, all.visits[k].normal, kAgrees) << k;
     }
     for (const Visit& visit : all.visits) touching.push_back(Followed::touching(visit));
-    down += all.path.back().share * (next_down - down);
-    up += all.path.back().share * (next_up - up);
+    down += all.path.back().load_fraction * (next_down - down);
+    up += all.path.back().load_fraction * (next_up - up);
   }
   EXPECT_GE(*std::ranges::max_element(touching), 6);
   EXPECT_EQ(touching.back(), 0);
@@ -158,11 +159,12 @@ TEST(PathContact, SymmetricPointsCloseTogether) {
   std::vector<int> touching;
   for (std::size_t k = 0; k < all.path.size(); ++k) {
     Simulation fresh(model);
-    fresh.set_load(0, Signal::constant(all.path[k].share));
+    fresh.set_load(0, Signal::constant(all.path[k].load_fraction));
     fresh.solve_static();
     EXPECT_LT((fresh.body(0).positions() - all.visits[k].positions).cwiseAbs().maxCoeff(),
               kAgrees * model->size());
-    EXPECT_NEAR(fresh.contacts().sum(0).normal_force, all.visits[k].normal, 100.0 * kAgrees) << k;
+    EXPECT_NEAR(fresh.contacts().resultant(0).normal_force, all.visits[k].normal, 100.0 * kAgrees)
+        << k;
     touching.push_back(Followed::touching(all.visits[k]));
   }
   EXPECT_GE(touching.back(), 5);
@@ -240,8 +242,8 @@ TEST(PathContact, FrictionTurnsWithTheMotion) {
     const Followed all =
         follow(path, {.first_step = 1e-3, .largest_step = 5e-3, .tolerance = 1e-11});
     check_friction(all, friction, path.model().size(), stuck, slid);
-    const ContactSum sum = path.contacts().sum(0);
-    held.push_back(sum.force.x() / (friction * sum.normal_force));
+    const ContactResultant resultant = path.contacts().resultant(0);
+    held.push_back(resultant.force.x() / (friction * resultant.normal_force));
   }
   EXPECT_NEAR(held[0], -1.0, 0.05);
   EXPECT_NEAR(held[1], 1.0, 0.05);
@@ -256,7 +258,7 @@ TEST(PathContact, FrictionIsThatOfSlowMotionsFromPointToPoint) {
   const Followed all = follow(path, {.first_step = 1e-3, .largest_step = 5e-3, .tolerance = 1e-11});
   for (std::size_t k = 1; k < all.path.size(); ++k) {
     still.restore(all.visits[k - 1].state);
-    still.set_load(0, Signal::constant(all.path[k].share));
+    still.set_load(0, Signal::constant(all.path[k].load_fraction));
     still.solve_static();
     EXPECT_LT((still.body(0).positions() - all.visits[k].positions).cwiseAbs().maxCoeff(),
               kAgrees * model->size())
@@ -284,9 +286,9 @@ TEST(PathContact, CurvedSurfacesEndASnap) {
       moved.command(0, pull(all.visits[k].depth));
       // It ends where gaps are right to 1e-9, and normals to the root of that: again, then.
       for (int again = 0; again < 6; ++again) moved.solve_static();
-      const double load = 0.2 * all.path[k].share;
+      const double load = 0.2 * all.path[k].load_fraction;
       EXPECT_NEAR(moved.actuator(0).effort, load, kAgrees * std::max(load, 0.02)) << k;
-      EXPECT_NEAR(moved.contacts().sum(0).normal_force, all.visits[k].normal,
+      EXPECT_NEAR(moved.contacts().resultant(0).normal_force, all.visits[k].normal,
                   kAgrees * std::max(load, 0.02));
     }
     EXPECT_GT(all.visits.back().normal, 0.1);
@@ -385,7 +387,7 @@ TEST(PathContact, BeginsWithTheWeightOnTheFloor) {
   Simulation path(model), fresh(model);
   path.command(0, tension(2.0));
   const auto points = path.follow_path({});
-  fresh.command(0, tension(2.0 * points.back().share));
+  fresh.command(0, tension(2.0 * points.back().load_fraction));
   fresh.solve_static();
   EXPECT_LT((fresh.body(0).positions() - path.body(0).positions()).cwiseAbs().maxCoeff(),
             kAgrees * model->size());

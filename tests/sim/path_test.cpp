@@ -18,24 +18,24 @@ using sinew::testing::arch;
 // The path of the load is that which a commanded motion passes point by point.
 TEST(Path, SnapThroughAgreesWithControlByMotion) {
   Simulation loaded(arch({})), moved(arch({.by_load = false}));
-  std::vector<double> depth, share;
+  std::vector<double> depth, load_fraction;
   const double top = loaded.effector_value(0).z();
   const auto path = loaded.follow_path({.first_step = 2e-3, .largest_step = 5e-3}, [&] {
     depth.push_back(top - loaded.effector_value(0).z());
   });
   ASSERT_EQ(path.size(), depth.size());
   ASSERT_GT(path.size(), 10u);
-  EXPECT_GE(path.back().share, 1.0);
+  EXPECT_GE(path.back().load_fraction, 1.0);
   double largest = 0.0, least = 1.0;
   bool past_peak = false;
   for (std::size_t k = 1; k < path.size(); ++k) {
-    past_peak = past_peak || path[k].share < path[k - 1].share;
-    if (!past_peak) largest = std::max(largest, path[k].share);
-    if (past_peak) least = std::min(least, path[k].share);
+    past_peak = past_peak || path[k].load_fraction < path[k - 1].load_fraction;
+    if (!past_peak) largest = std::max(largest, path[k].load_fraction);
+    if (past_peak) least = std::min(least, path[k].load_fraction);
     if (k % 4 != 0 && k + 1 != path.size()) continue;
     moved.command(0, sinew::testing::pull(depth[k]));
     moved.solve_static();
-    EXPECT_NEAR(moved.actuator(0).effort, 0.02 * path[k].share, 1e-6 * 0.02) << k;
+    EXPECT_NEAR(moved.actuator(0).effort, 0.02 * path[k].load_fraction, 1e-6 * 0.02) << k;
   }
   EXPECT_TRUE(past_peak);
   EXPECT_LT(least, 0.8 * largest);
@@ -53,13 +53,13 @@ TEST(Path, OfAnArchThatIsCutAndWelded) {
   const auto path = cut.follow_path({.first_step = 5e-3, .largest_step = 1.5e-2},
                                     [&] { depth.push_back(top - cut.effector_value(0).z()); });
   ASSERT_GT(path.size(), 10u);
-  EXPECT_GE(path.back().share, 1.0);
+  EXPECT_GE(path.back().load_fraction, 1.0);
   int turned = 0;
   for (std::size_t k = 1; k < path.size(); ++k) {
-    turned += path[k].share < path[k - 1].share ? 1 : 0;
+    turned += path[k].load_fraction < path[k - 1].load_fraction ? 1 : 0;
     whole.command(0, sinew::testing::pull(depth[k]));
     whole.solve_static();
-    EXPECT_NEAR(whole.actuator(0).effort, 0.02 * path[k].share, 1e-6 * 0.02) << k;
+    EXPECT_NEAR(whole.actuator(0).effort, 0.02 * path[k].load_fraction, 1e-6 * 0.02) << k;
   }
   EXPECT_GT(turned, 3);
   EXPECT_TRUE(std::ranges::any_of(path, [](const auto& p) { return p.negative_pivots == 1; }));
@@ -81,7 +81,7 @@ TEST(Path, EffortsGrowAlongIt) {
   Simulation pressed(arch({.by_load = false}));
   pressed.command(0, sinew::testing::tension(0.002));
   const auto path = pressed.follow_path({.first_step = 1e-3, .largest_step = 1e-3});
-  EXPECT_NEAR(pressed.actuator(0).effort, 0.002 * path.back().share, 1e-15);
+  EXPECT_NEAR(pressed.actuator(0).effort, 0.002 * path.back().load_fraction, 1e-15);
   EXPECT_LT(pressed.effector_value(0).z(), 0.009 - 1e-4);
 }
 

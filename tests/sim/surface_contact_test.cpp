@@ -99,7 +99,7 @@ TEST_P(Steady, StepsAllocateNothing) {
   const long before = sinew::testing::allocations();
   for (int k = 0; k < 20; ++k) simulation.step();
   EXPECT_EQ(sinew::testing::allocations(), before);
-  EXPECT_GT(simulation.contacts().sum(0).normal_force, 0.0);
+  EXPECT_GT(simulation.contacts().resultant(0).normal_force, 0.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Threads, Steady, ::testing::Values(1, 2));

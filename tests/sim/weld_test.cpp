@@ -157,9 +157,9 @@ TEST(Weld, StandsBesideContactAndFrictionOfCables) {
     }
     EXPECT_LT((tip_of(cut) - tip_of(whole)).norm(), 1e-6 * kBeamLength) << k;
   }
-  EXPECT_GT(whole.contacts().sum(0).normal_force, 0.0);
-  EXPECT_NEAR(cut.contacts().sum(0).normal_force, whole.contacts().sum(0).normal_force,
-              1e-4 * whole.contacts().sum(0).normal_force);
+  EXPECT_GT(whole.contacts().resultant(0).normal_force, 0.0);
+  EXPECT_NEAR(cut.contacts().resultant(0).normal_force, whole.contacts().resultant(0).normal_force,
+              1e-4 * whole.contacts().resultant(0).normal_force);
 }
 
 TEST(Weld, IsNoActuator) {

@@ -104,7 +104,7 @@ def drops(case, axis):
     for _ in range(400):
         sim.step()
         ledger = sim.ledger
-        energies.append(ledger["strain"] + ledger["kinetic"] + ledger["gravity"])
+        energies.append(ledger["strain_energy"] + ledger["kinetic_energy"] + ledger["gravity_energy"])
     fall = MASS * G * 0.005
     case.bound("largest gain of energy in a step of an impact, over m g h", max(0.0, float(np.max(np.diff(energies)))) / fall, 1e-9,
                source="Moreau")

@@ -2,8 +2,6 @@
 
 namespace sinew::fem {
 
-namespace {
-
 Tangent element_tangent(mechanics::Tangent tangent) {
   switch (tangent) {
     case mechanics::Tangent::rotated:
@@ -15,8 +13,6 @@ Tangent element_tangent(mechanics::Tangent tangent) {
   }
   return Tangent::exact;
 }
-
-}  // namespace
 
 BodyElements::BodyElements(FemState& state, ThreadPool& pool, bool with_curvature)
     : state_(state), pool_(pool), active_(&numbers(with_curvature)) {}
@@ -74,13 +70,13 @@ void BodyElements::linearise(const mechanics::LinearisationRequest& request, boo
 // is a spin about where it is half-way between them, and other formulas stand at the step's end.
 // There a spin costs nothing. A fast body would be inverted; it is taken where it is.
 void BodyElements::keep_damping_stiffness(const mechanics::StepWeights& weights) {
-  constexpr double kLeastVolume = 0.5;
+  constexpr double kMinVolume = 0.5;
   const AssemblyWeights wanted{Tangent::rates, 1.0, 0.0, false};
   const bool chord = weights.velocity.velocity == 0.0 && weights.velocity.first == 0.0;
   const double ahead = (chord ? 0.5 : 1.0) * weights.time_step;
   ahead_ = state_.start_positions + ahead * state_.velocities;
   active_->assembly.evaluate(ahead_, wanted);
-  if (!(active_->assembly.minimum_volume_ratio() > kLeastVolume)) {
+  if (!(active_->assembly.minimum_volume_ratio() > kMinVolume)) {
     active_->assembly.evaluate(state_.start_positions, wanted);
   }
   const auto matrix = active_->assembly.matrix();

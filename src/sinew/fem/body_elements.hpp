@@ -7,11 +7,16 @@
 #include <optional>
 
 #include "sinew/core/thread_pool.hpp"
+#include "sinew/fem/assembly.hpp"
 #include "sinew/fem/fem_state.hpp"
 #include "sinew/fem/system_numbers.hpp"
 #include "sinew/mechanics/step_system.hpp"
+#include "sinew/mechanics/tangent.hpp"
 
 namespace sinew::fem {
+
+/// What elements evaluate for a step's tangent.
+Tangent element_tangent(mechanics::Tangent tangent);
 
 /// Over the plain pattern or the wider one, as each linearisation asks for it.
 class BodyElements {

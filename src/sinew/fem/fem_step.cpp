@@ -32,7 +32,7 @@ FemStep::FemStep(FemState& state, ThreadPool& pool, bool with_curvature)
   const auto size = 3 * static_cast<Eigen::Index>(nodes.size());
   for (VectorX* v : {&right_, &motion_, &from_, &imbalance_}) v->setZero(size);
   const double modulus = stiffest_modulus(model.settings().elements);
-  least_force_ = kMinStrain * modulus * std::pow(model.elements().volume(), 2.0 / 3.0);
+  min_force_ = kMinStrain * modulus * std::pow(model.elements().volume(), 2.0 / 3.0);
   const Points& positions = state.positions;
   const Vector3 extent = positions.colwise().maxCoeff() - positions.colwise().minCoeff();
   const auto count = static_cast<double>(nodes.size());
@@ -80,7 +80,7 @@ void FemStep::form_right_side(const mechanics::StepWeights& weights) {
     internal += f.squaredNorm();
     outside += p.squaredNorm();
   }
-  force_scale_ = least_force_ + std::sqrt(internal) + std::sqrt(outside);
+  force_scale_ = min_force_ + std::sqrt(internal) + std::sqrt(outside);
   if (state_.tether) force_scale_ += pull(*state_.tether, state_.positions, elements, right_);
   if (lessens_) right_ -= lessening_;
   if (weights.dynamic()) {

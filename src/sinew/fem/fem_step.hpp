@@ -79,7 +79,7 @@ class FemStep : public mechanics::StepSystem {
   VectorX lessening_;  // N
   bool lessens_ = false;
   double force_scale_ = 0.0;  // N
-  double least_force_ = 0.0;  // N
+  double min_force_ = 0.0;    // N
   double blow_up_ = 0.0;  // sum of squared positions, m^2, beyond which the state is taken as lost
 };
 

@@ -124,9 +124,9 @@ std::string material_yaml(const FitResult& fit, std::span<const RubberTest> test
     text += fmt::format("{} {} ({}, RMS {:.2g} % of its largest stress)", k == 0 ? "" : ",",
                         tests[k].name, mode_name(tests[k].mode), 100.0 * fit.tests[k].relative);
   }
-  if (settings.least_stretch > 0.0 || std::isfinite(settings.most_stretch)) {
-    text += fmt::format("\n# Rows of a stretch from {:g} to {:g}.", settings.least_stretch,
-                        settings.most_stretch);
+  if (settings.min_stretch > 0.0 || std::isfinite(settings.max_stretch)) {
+    text += fmt::format("\n# Rows of a stretch from {:g} to {:g}.", settings.min_stretch,
+                        settings.max_stretch);
   }
   text += fmt::format("\n# Stable in uniaxial stretches from {:.3g} to {:.3g}.\n",
                       fit.uniaxial_range.first, fit.uniaxial_range.second);

@@ -25,7 +25,7 @@ struct FitSettings {
   bool mullins = false;
   double poisson_ratio = 0.49;  ///< of the material that is written; tests are taken incompressible
   /// Rows outside do not count; softening knows of them.
-  double least_stretch = 0.0, most_stretch = std::numeric_limits<double>::infinity();
+  double min_stretch = 0.0, max_stretch = std::numeric_limits<double>::infinity();
 };
 
 /// One coefficient by the name that scenes use.

@@ -14,10 +14,10 @@ std::vector<CountedTest> count_rows(std::span<const RubberTest> tests,
   if (tests.empty()) {
     throw Error(ErrorKind::empty_list, {.item = "tests"}, "there is no test", "give a table");
   }
-  if (!(settings.least_stretch < settings.most_stretch)) {
+  if (!(settings.min_stretch < settings.max_stretch)) {
     throw Error(ErrorKind::contradictory_limits, {.item = "stretch"},
-                fmt::format("no stretch lies between {:g} and {:g}", settings.least_stretch,
-                            settings.most_stretch),
+                fmt::format("no stretch lies between {:g} and {:g}", settings.min_stretch,
+                            settings.max_stretch),
                 "give the smaller one first, for instance 1 and 4");
   }
   std::vector<CountedTest> result;
@@ -26,7 +26,7 @@ std::vector<CountedTest> count_rows(std::span<const RubberTest> tests,
     counted.test = &test;
     for (std::size_t i = 0; i < test.stretch.size(); ++i) {
       const double stretch = test.stretch[i];
-      const bool counts = stretch >= settings.least_stretch && stretch <= settings.most_stretch;
+      const bool counts = stretch >= settings.min_stretch && stretch <= settings.max_stretch;
       counted.counts.push_back(counts ? 1 : 0);
       if (!counts) continue;
       ++counted.rows;
@@ -36,7 +36,7 @@ std::vector<CountedTest> count_rows(std::span<const RubberTest> tests,
     if (counted.rows < 3) {
       throw Error(ErrorKind::too_few_points, {.item = test.name},
                   fmt::format("{} rows lie at a stretch of {:g} to {:g}", counted.rows,
-                              settings.least_stretch, settings.most_stretch),
+                              settings.min_stretch, settings.max_stretch),
                   "a fit needs three or more; widen the range");
     }
     if (counted.largest > 0.0) continue;

@@ -18,9 +18,9 @@
 namespace sinew::inverse {
 
 /// Owns its actuators from construction to detach() or destruction. In each step of the simulation,
-/// with e the rows of effectors, a those of actuators and Q the weights,
-///   min 1/2 |W_ea lambda + delta_e - target|_Q^2 + eps/2 (lambda - lambda_0)^T R (lambda -
-///   lambda_0) s.t. limits on lambda, and on delta_a = delta_free + W_aa lambda, rates folded in,
+/// with e the rows of effectors, a those of actuators, Q the weights and |x|_Q^2 = x^T Q x,
+///   min  1/2 |W_ea lambda + delta_e - target|_Q^2 + eps/2 |lambda - lambda_0|_R^2
+///   s.t. limits on lambda, and on delta_a = delta_free + W_aa lambda, rates folded in,
 /// where lambda_0 is the last step's effort (Regularisation::change) or zero, and R is W_aa with a
 /// millionth of its diagonal added: cables on one path, which W_aa cannot tell apart, share their
 /// changes evenly. StepDamping adds a term that keeps lambda near the last step's where the robot

@@ -5,7 +5,7 @@
 /// One step, in the order of the calls:
 ///   begin_step   remembers q_start and v_start
 ///   linearise    A and b = p - f(q) - inertia - damping at the current q       (assembly)
-///   take_rows    its part of H                                                 (compliance)
+///   take_rows    its part of H                                                 (rows)
 ///   condense     factorises A bordered by H: W and H A^-1 b                    (factorisation)
 ///   solve_motion dq = A^-1 (b + H^T lambda)                                    (correction)
 ///   apply_motion q <- q_before (+) scale dq, and says how well that went

@@ -26,12 +26,12 @@ char byte_of(std::uint32_t bits) { return static_cast<char>(bits & 0xff); }
 
 }  // namespace
 
-std::optional<std::string> decode_base64(std::string_view text, std::size_t most) {
+std::optional<std::string> decode_base64(std::string_view text, std::size_t max_bytes) {
   std::string bytes;
   std::uint32_t quad = 0;
   int characters = 0, padding = 0;
   for (const char c : text) {
-    if (bytes.size() >= most) break;
+    if (bytes.size() >= max_bytes) break;
     if (c == ' ' || c == '\n' || c == '\r' || c == '\t') continue;
     const int value = c == '=' ? 0 : kValues[static_cast<unsigned char>(c)];
     if (value < 0 || (padding > 0 && c != '=')) return std::nullopt;
@@ -46,7 +46,7 @@ std::optional<std::string> decode_base64(std::string_view text, std::size_t most
     characters = padding = 0;
   }
   if (characters != 0) return std::nullopt;
-  if (bytes.size() > most) bytes.resize(most);
+  if (bytes.size() > max_bytes) bytes.resize(max_bytes);
   return bytes;
 }
 

@@ -9,12 +9,12 @@
 
 namespace sinew::mesh {
 
-/// Decodes base64 until `most` bytes are there or the text ends. White space is passed over, and
+/// Decodes base64 until `max_bytes` are there or the text ends. White space is passed over, and
 /// padding in the middle ends one run and starts the next, as VTK writes it. Nothing when a
 /// character is no base64.
 /// @param text the encoded text.
-/// @param most bytes wanted at most.
-std::optional<std::string> decode_base64(std::string_view text, std::size_t most);
+/// @param max_bytes how many are wanted.
+std::optional<std::string> decode_base64(std::string_view text, std::size_t max_bytes);
 
 /// Encodes with padding and without line breaks.
 /// @param bytes to encode.

@@ -49,22 +49,22 @@ void describe_quality(const Mesh& mesh, MeshReport& report) {
   report.radius_ratio = {.low = 0.0, .high = 1.0, .counts = std::vector<int>(kRatioBins)};
   report.dihedral = {.low = 0.0, .high = 180.0, .counts = std::vector<int>(kAngleBins)};
   if (mesh.tetrahedra.empty()) return;
-  report.least_radius_ratio = std::numeric_limits<double>::infinity();
-  report.least_dihedral = 180.0;
+  report.min_radius_ratio = std::numeric_limits<double>::infinity();
+  report.min_dihedral = 180.0;
   for (int e = 0; e < report.tetrahedra; ++e) {
     const Corners corners = corners_of(mesh, e);
     const double ratio = radius_ratio(corners);
     count_value(report.radius_ratio, ratio);
     report.mean_radius_ratio += ratio / report.tetrahedra;
-    if (ratio < report.least_radius_ratio) {
-      report.least_radius_ratio = ratio;
+    if (ratio < report.min_radius_ratio) {
+      report.min_radius_ratio = ratio;
       report.worst_tetrahedron = e;
     }
     for (const double angle : dihedral_angles(corners)) {
       const double degrees = angle * 180.0 / std::numbers::pi;
       count_value(report.dihedral, degrees);
-      report.least_dihedral = std::min(report.least_dihedral, degrees);
-      report.largest_dihedral = std::max(report.largest_dihedral, degrees);
+      report.min_dihedral = std::min(report.min_dihedral, degrees);
+      report.max_dihedral = std::max(report.max_dihedral, degrees);
     }
   }
 }
@@ -129,9 +129,9 @@ void print_quality(const MeshReport& report, std::string& text) {
   text += fmt::format(
       "quality      radius ratio at least {:.3f} (1 is best), mean {:.3f}; worst is tetrahedron "
       "{}\n",
-      report.least_radius_ratio, report.mean_radius_ratio, report.worst_tetrahedron);
+      report.min_radius_ratio, report.mean_radius_ratio, report.worst_tetrahedron);
   text += fmt::format("             dihedral angles {:.1f} to {:.1f} degrees\n",
-                      report.least_dihedral, report.largest_dihedral);
+                      report.min_dihedral, report.max_dihedral);
   print_histogram(report.radius_ratio, "radius ratio (tetrahedra)", 1, text);
   print_histogram(report.dihedral, "dihedral angle in degrees (six a tetrahedron)", 0, text);
 }

@@ -38,10 +38,10 @@ struct MeshReport {
 
   // Tetrahedra only; 0 and empty without them.
   double shortest_edge = 0.0, mean_edge = 0.0, longest_edge = 0.0;
-  double least_radius_ratio = 0.0, mean_radius_ratio = 0.0;
+  double min_radius_ratio = 0.0, mean_radius_ratio = 0.0;
   int worst_tetrahedron = -1;  ///< the one with the least radius ratio
   Histogram radius_ratio;      ///< 10 bins from 0 to 1
-  double least_dihedral = 0.0, largest_dihedral = 0.0;
+  double min_dihedral = 0.0, max_dihedral = 0.0;
   Histogram dihedral;  ///< 9 bins from 0 to 180 degrees, six angles a tetrahedron
 
   std::vector<SetSummary> sets;

@@ -131,8 +131,9 @@ bool VtuFile::is_ascii(pugi::xml_node array) const {
   return format == "ascii";
 }
 
-/// Up to `most` bytes of the array's stored form, after its first `skip` bytes.
-std::string VtuFile::raw_bytes(pugi::xml_node array, std::size_t skip, std::size_t most) const {
+/// Up to `max_bytes` of the array's stored form, after its first `skip` bytes.
+std::string VtuFile::raw_bytes(pugi::xml_node array, std::size_t skip,
+                               std::size_t max_bytes) const {
   std::string_view source = array.text().get();
   bool base64 = true;
   if (std::string_view(array.attribute("format").as_string()) == "appended") {
@@ -146,14 +147,14 @@ std::string VtuFile::raw_bytes(pugi::xml_node array, std::size_t skip, std::size
     source = appended_.substr(offset);
     base64 = appended_is_base64_;
   }
-  if (!base64) return std::string(source.substr(std::min(skip, source.size()), most));
-  const auto decoded =
-      decode_base64(source, most > std::string::npos - skip ? std::string::npos : skip + most);
+  if (!base64) return std::string(source.substr(std::min(skip, source.size()), max_bytes));
+  const auto decoded = decode_base64(
+      source, max_bytes > std::string::npos - skip ? std::string::npos : skip + max_bytes);
   if (!decoded) {
     fail(ErrorKind::bad_encoding, array, fmt::format("{} is not valid base64", described(array)),
          "write the file again");
   }
-  return decoded->substr(std::min(skip, decoded->size()), most);
+  return decoded->substr(std::min(skip, decoded->size()), max_bytes);
 }
 
 std::size_t VtuFile::header_item(pugi::xml_node array, std::string_view header,

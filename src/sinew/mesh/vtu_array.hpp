@@ -51,7 +51,7 @@ class VtuFile {
   int line_of(pugi::xml_node node) const;
   bool is_ascii(pugi::xml_node array) const;
   std::string block(pugi::xml_node array) const;
-  std::string raw_bytes(pugi::xml_node array, std::size_t skip, std::size_t most) const;
+  std::string raw_bytes(pugi::xml_node array, std::size_t skip, std::size_t max_bytes) const;
   std::string plain_block(pugi::xml_node array) const;
   std::string compressed_block(pugi::xml_node array) const;
   std::size_t header_item(pugi::xml_node array, std::string_view header, std::size_t item) const;

@@ -138,7 +138,7 @@ void AdaptiveMotion::advance(double end, const Torque& torque) {
       ++steps_;
     }
     const bool too_short = next_ < 1e-13 * std::max(std::abs(end), 1e-3);
-    if (too_short || steps_ > accuracy_.most_steps) {
+    if (too_short || steps_ > accuracy_.max_steps) {
       throw Error(
           ErrorKind::not_converged, {.item = equations_.arm().settings().name},
           fmt::format("{} at {:.6g} s, after {} steps",

@@ -19,7 +19,7 @@ struct Accuracy {
   double relative = 1e-6;  ///< >= 0
   double angle = 1e-8;     ///< rad (extension: m), > 0
   double rate = 1e-6;      ///< rad/s, > 0
-  long most_steps = 100000;
+  long max_steps = 100000;
 };
 
 /// Integrates r(q, q', q'') = B tau by the singly diagonally implicit Runge-Kutta method of five

@@ -26,7 +26,7 @@ ArmStep::ArmStep(const ArmBodyModel& model, ArmState& state, ArmPose& pose)
       row_stiffness_(model) {
   const Eigen::Index n = model.arm().coordinates();
   for (VectorX* v : {&from_, &scratch_, &kept_, &new_rate_, &acceleration_}) v->setZero(n);
-  least_force_ = kMinAngle * std::max(model.arm().stiffness().maxCoeff(), 1e-9);
+  min_force_ = kMinAngle * std::max(model.arm().stiffness().maxCoeff(), 1e-9);
   equations_.linearise(state.q, state.rate, acceleration_);  // takes its workspace now
 }
 
@@ -51,7 +51,7 @@ double ArmStep::form(const mechanics::LinearisationRequest& request, VectorX& ri
   }
   const Arm& arm = model_.arm();
   scratch_.noalias() = linear.by_acceleration * acceleration_;
-  double scale = least_force_ + linear.residual.norm() + scratch_.norm();
+  double scale = min_force_ + linear.residual.norm() + scratch_.norm();
   scratch_ = arm.stiffness().cwiseProduct(state_.q);
   scale += scratch_.norm();
   return scale;

@@ -40,7 +40,7 @@ class ArmStep : public mechanics::DenseStep {
   RowStiffness row_stiffness_;
   VectorX scratch_, kept_, new_rate_, acceleration_;
   VectorX from_;  // q that the motion starts from
-  double least_force_ = 1e-12;
+  double min_force_ = 1e-12;
 };
 
 }  // namespace sinew::pcc

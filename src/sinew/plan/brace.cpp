@@ -24,10 +24,10 @@ namespace sinew::plan {
 
 namespace {
 
-constexpr double kPlanShare = 0.4;  // of the tip's tolerance
-constexpr double kReplanShare = 0.95, kReplanForce = 0.5;
+constexpr double kPlanFraction = 0.4;  // of the tip's tolerance
+constexpr double kReplanFraction = 0.95, kReplanForce = 0.5;
 
-// Relative: a point that moves less in a direction than this share of its most is not held in it.
+// Relative: a point is not held in a direction in which it moves less than this part of its most.
 constexpr double kMinMotion = 1e-6;
 
 bool same_point(const pcc::ArmPoint& a, const pcc::ArmPoint& b) {
@@ -54,12 +54,12 @@ BraceProblem problem_of(const pcc::Arm& arm, const BraceTask& task, int object,
   problem.turn_lower = task.turn_lower;
   problem.turn_upper = task.turn_upper;
   problem.goal = task.goal;
-  problem.tolerance = kPlanShare * task.tolerance;
+  problem.tolerance = kPlanFraction * task.tolerance;
   problem.point = point;
   problem.patch = patch;
-  problem.friction = task.friction_share * on.friction.least;
-  problem.least_force = task.least_force;
-  problem.most_force = task.most_force;
+  problem.friction = task.friction_fraction * on.friction.min;
+  problem.min_force = task.min_force;
+  problem.max_force = task.max_force;
   problem.force_weight = task.force_weight;
   for (const pcc::ArmPoint& other : skin_points(arm, task)) {
     if (!same_point(other, point)) problem.clear_points.push_back(other);
@@ -161,8 +161,8 @@ Brace replan_brace(const std::shared_ptr<const pcc::Arm>& arm, const BraceTask& 
   }
   task.turn_lower = task.turn_upper = before.turn;
   // What lay in reserve for the way there may be used now.
-  task.friction_share = std::max(task.friction_share, kReplanShare);
-  task.least_force *= kReplanForce;
+  task.friction_fraction = std::max(task.friction_fraction, kReplanFraction);
+  task.min_force *= kReplanForce;
   // The normal at the braced point: of the piece that it is nearest to being on.
   const auto& surface = task.objects[static_cast<std::size_t>(before.object)].surface;
   const auto patches = patches_of(surface);

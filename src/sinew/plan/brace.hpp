@@ -40,10 +40,11 @@ struct BraceTask {
   /// hold_frequency (Hz, >= 0) and amplitudes that add up to hold_force (N, >= 0): see
   /// tip_response().
   double hold_force = 0.04, hold_frequency = 2.0;
-  double friction_share = 0.9;  ///< 0 to 1: of the friction's least, that a brace may need for it
-  double least_force = 0.05;    ///< N, > 0, of the normal force
-  double most_force = 20.0;     ///< N
-  double force_weight = 1e-3;   ///< 1/N^2, > 0, see BraceProgram
+  /// 0 to 1: of the friction's least, that a brace may need for it.
+  double friction_fraction = 0.9;
+  double min_force = 0.05;     ///< N, > 0, of the normal force
+  double max_force = 20.0;     ///< N
+  double force_weight = 1e-3;  ///< 1/N^2, > 0, see BraceProgram
   TouchStiffness arm = kSoftArm;
   double stiffness_ratio = 10.0;  ///< > 0, what k_O >> k_R means
   int starts = 2;                 ///< >= 1, a candidate

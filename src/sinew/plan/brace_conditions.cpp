@@ -35,12 +35,12 @@ std::string_view verdict_name(Verdict verdict) {
 
 BraceCondition check_friction(double normal_force, double friction_force,
                               const FrictionRange& friction) {
-  BraceCondition result{"friction", Verdict::violated, 0.0, friction.least};
+  BraceCondition result{"friction", Verdict::violated, 0.0, friction.min};
   result.value =
       normal_force > 0.0 ? friction_force / normal_force : std::numeric_limits<double>::infinity();
-  if (result.value < friction.least) {
+  if (result.value < friction.min) {
     result.verdict = Verdict::holds;
-  } else if (result.value < friction.most) {
+  } else if (result.value < friction.max) {
     result.verdict = Verdict::uncertain;
   }
   return result;

@@ -13,7 +13,7 @@ namespace sinew::plan {
 /// Coulomb's coefficient of static friction of a pair of surfaces, as a range.
 struct FrictionRange {
   std::string_view name;
-  double least = 0.0, most = 0.0;
+  double min = 0.0, max = 0.0;
 };
 inline constexpr FrictionRange kCoatedRigid{"coated-rigid", 0.05, 0.20};
 inline constexpr FrictionRange kSiliconeOnSteel{"silicone-on-steel", 0.6, 0.9};

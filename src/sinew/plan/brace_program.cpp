@@ -126,8 +126,8 @@ BraceProgram::BraceProgram(const std::shared_ptr<const pcc::Arm>& arm, BraceProb
   if (!touches) constraint_bounds_.lower[n_] = -kNoBound, constraint_bounds_.upper[n_] = kNoBound;
   constraint_bounds_.lower[n_ + 1] = touches ? problem_.patch.lower : -kNoBound;
   constraint_bounds_.upper[n_ + 1] = touches ? problem_.patch.upper : kNoBound;
-  constraint_bounds_.lower[n_ + 2] = problem_.least_force;
-  constraint_bounds_.upper[n_ + 2] = problem_.most_force;
+  constraint_bounds_.lower[n_ + 2] = problem_.min_force;
+  constraint_bounds_.upper[n_ + 2] = problem_.max_force;
   constraint_scale_[n_ + 2] = constraint_scale_[n_ + 3] = 1.0;
   constraint_bounds_.upper[n_ + 3] = kNoBound;
   constraint_bounds_.lower[n_ + 4] = -kNoBound;

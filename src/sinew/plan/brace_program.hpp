@@ -47,13 +47,13 @@ struct BraceProblem {
   /// anywhere on the patch.
   MatrixX held = MatrixX(3, 0);
   Vector3 place = Vector3::Zero();
-  double friction = 0.0;                            ///< mu
-  double reserve = 0.0;                             ///< r, N, >= 0, see BraceProgram
-  double least_force = 0.0, most_force = kNoBound;  ///< N
-  double force_weight = 0.0;                        ///< w_f, 1/N^2
-  double tip_weight = 10.0, hold_weight = 10.0;     ///< w_e, w_h
-  std::vector<pcc::ArmPoint> clear_points;          ///< that keep ...
-  double clearance = 0.0;                           ///< m, away from ...
+  double friction = 0.0;                         ///< mu
+  double reserve = 0.0;                          ///< r, N, >= 0, see BraceProgram
+  double min_force = 0.0, max_force = kNoBound;  ///< N
+  double force_weight = 0.0;                     ///< w_f, 1/N^2
+  double tip_weight = 10.0, hold_weight = 10.0;  ///< w_e, w_h
+  std::vector<pcc::ArmPoint> clear_points;       ///< that keep ...
+  double clearance = 0.0;                        ///< m, away from ...
   std::vector<constraint::Surface> surfaces;
 };
 

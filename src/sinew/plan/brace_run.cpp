@@ -43,11 +43,11 @@ void check(const BraceRunSettings& settings) {
   positive(settings.settle, "settle");
   positive(settings.hold, "hold");
   const Disturbance& of = settings.disturbance;
-  if (!(of.force >= 0.0) || !(of.least_frequency > 0.0) ||
-      !(of.most_frequency >= of.least_frequency) || of.sines < 1) {
+  if (!(of.force >= 0.0) || !(of.min_frequency > 0.0) || !(of.max_frequency >= of.min_frequency) ||
+      of.sines < 1) {
     throw Error(ErrorKind::out_of_range, {.item = "disturbance"},
-                fmt::format("{:g} N, {:g} to {:g} Hz, {} sines", of.force, of.least_frequency,
-                            of.most_frequency, of.sines),
+                fmt::format("{:g} N, {:g} to {:g} Hz, {} sines", of.force, of.min_frequency,
+                            of.max_frequency, of.sines),
                 "give a force of zero or more, positive frequencies, the least first, and a sine");
   }
   if (!(settings.proportional >= 0.0) || !(settings.derivative >= 0.0)) {
@@ -63,7 +63,7 @@ class Sines {
     for (auto& axis : sines_) {
       for (int k = 0; k < settings.sines; ++k) {
         axis.push_back(
-            {2.0 * std::numbers::pi * draw(settings.least_frequency, settings.most_frequency),
+            {2.0 * std::numbers::pi * draw(settings.min_frequency, settings.max_frequency),
              draw(0.0, 2.0 * std::numbers::pi)});
       }
     }
@@ -80,9 +80,9 @@ class Sines {
 };
 
 /// From 0 to 1 without a jump of speed.
-double smooth(double share) {
-  share = std::clamp(share, 0.0, 1.0);
-  return share * share * (3.0 - 2.0 * share);
+double smooth(double fraction) {
+  fraction = std::clamp(fraction, 0.0, 1.0);
+  return fraction * fraction * (3.0 - 2.0 * fraction);
 }
 
 /// The arm in its surroundings, driven and watched.
@@ -133,7 +133,7 @@ class Bench {
                    task.objects[k].surface);
         contact.points = rest;
         contact.outside = mesh::Outside::nearest;
-        contact.friction = settings.friction.value_or(task.objects[k].friction.least);
+        contact.friction = settings.friction.value_or(task.objects[k].friction.min);
         builder.add_contact(contact);
       }
     }
@@ -230,7 +230,7 @@ class Bench {
     friction_.push_back(touch.friction_force.norm());
     const auto contacts = object_ >= 0 ? task_.objects.size() : 0;
     for (std::size_t k = 0; k < contacts; ++k) {
-      const double friction = settings_.friction.value_or(task_.objects[k].friction.least);
+      const double friction = settings_.friction.value_or(task_.objects[k].friction.min);
       for (const auto& point : simulation_->contacts().points(static_cast<int>(k))) {
         cone_ = std::max(cone_, point.friction_force.norm() - friction * point.normal_force);
       }
@@ -288,8 +288,8 @@ BraceRun run_brace(const std::shared_ptr<const pcc::Arm>& arm, const BraceTask& 
   };
   const long approach = steps_in(settings.approach, settings);
   for (long k = 1; k <= approach; ++k) {
-    const double share = smooth(static_cast<double>(k) / static_cast<double>(approach));
-    bench.step(share * brace.torque, start + share * (brace.position - start), false);
+    const double fraction = smooth(static_cast<double>(k) / static_cast<double>(approach));
+    bench.step(fraction * brace.torque, start + fraction * (brace.position - start), false);
     touch();
   }
   for (long k = steps_in(settings.press, settings); k > 0; --k) {
@@ -313,12 +313,13 @@ BraceRun run_brace(const std::shared_ptr<const pcc::Arm>& arm, const BraceTask& 
   const VectorX pressing = bench.torque();
   const long move = steps_in(settings.move, settings);
   for (long k = 1; k <= move; ++k) {
-    const double share = smooth(static_cast<double>(k) / static_cast<double>(move));
-    const VectorX angles = run.measured + share * (run.after.position - run.measured);
-    const VectorX torque = pressing + share * (run.after.torque - pressing);
+    const double fraction = smooth(static_cast<double>(k) / static_cast<double>(move));
+    const VectorX angles = run.measured + fraction * (run.after.position - run.measured);
+    const VectorX torque = pressing + fraction * (run.after.torque - pressing);
     bench.step(torque,
-               share < 1.0 ? VectorX(bench.angles() + (1.0 - share) * (angles - bench.angles()))
-                           : VectorX(),
+               fraction < 1.0
+                   ? VectorX(bench.angles() + (1.0 - fraction) * (angles - bench.angles()))
+                   : VectorX(),
                false);
   }
   for (long k = steps_in(settings.settle, settings); k > 0; --k) {

@@ -17,8 +17,8 @@ namespace sinew::plan {
 /// frequencies and phases, of equal amplitudes.
 struct Disturbance {
   double force = 0.01;  ///< N, root mean square along each axis over long times, >= 0
-  double least_frequency = 0.2, most_frequency = 2.0;  ///< Hz, > 0
-  int sines = 4;                                       ///< >= 1
+  double min_frequency = 0.2, max_frequency = 2.0;  ///< Hz, > 0
+  int sines = 4;                                    ///< >= 1
   std::uint64_t seed = 1;
 };
 

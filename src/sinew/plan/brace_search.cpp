@@ -49,7 +49,7 @@ void BraceSearch::attempt(BraceProblem problem, int object, const VectorX& start
       const Points ends = equations_.endpoints(start.head(arm_->coordinates()));
       const Vector3 near = ends.row(problem.point.segment);
       const auto& surface = task_.objects[static_cast<std::size_t>(object)].surface;
-      x.tail<3>() = 2.0 * problem.least_force * constraint::distance(surface, near).normal;
+      x.tail<3>() = 2.0 * problem.min_force * constraint::distance(surface, near).normal;
     }
     const ProgramResult found = solve(program, {x, {}, {}, {}}, kSolver);
     if (!is_equilibrium(found)) {
@@ -135,13 +135,13 @@ BraceSearch::Judged BraceSearch::judge(BraceProgram& program, int object, const 
     about.stiffness -= force[static_cast<Eigen::Index>(k)] * at[1].hessian[k];
   }
   const TipResponse response =
-      tip_response(about, task_.hold_frequency, turn.transpose() * brace.normal, on.friction.least);
+      tip_response(about, task_.hold_frequency, turn.transpose() * brace.normal, on.friction.min);
   if (!response.stable) return result;
   brace.object = object;
   brace.tip_compliance = response.compliance;
   brace.peak_compliance = response.peak_compliance;
   brace.mobility = response.mobility;
-  const double spare = on.friction.least * brace.normal_force - brace.friction_force;
+  const double spare = on.friction.min * brace.normal_force - brace.friction_force;
   brace.hold_force = std::max(0.0, spare) / response.friction_gain;
   result.reserve = response.friction_gain * task_.hold_force;
   // A held point is where it was measured to be.

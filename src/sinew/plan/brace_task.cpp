@@ -21,9 +21,9 @@ BraceTask completed(const pcc::Arm& arm, BraceTask task) {
   task.limits = completed_limits(arm, task.limits);
   for (BraceObject& object : task.objects) {
     object.surface = collision::checked(object.surface);
-    if (!(object.friction.least >= 0.0) || !(object.friction.most >= object.friction.least)) {
+    if (!(object.friction.min >= 0.0) || !(object.friction.max >= object.friction.min)) {
       refuse("object.friction",
-             fmt::format("{:g} to {:g}", object.friction.least, object.friction.most),
+             fmt::format("{:g} to {:g}", object.friction.min, object.friction.max),
              "give coefficients of zero or more, the least first");
     }
     if (!(object.stiffness.radial > 0.0) || !(object.stiffness.torsional > 0.0)) {
@@ -47,18 +47,19 @@ BraceTask completed(const pcc::Arm& arm, BraceTask task) {
                      : 2;
   }
   if (task.sides < 2) refuse("sides", fmt::format("{}", task.sides), "give 2 or more, or 0");
-  if (!(task.friction_share > 0.0) || task.friction_share > 1.0) {
-    refuse("friction_share", fmt::format("{:g}", task.friction_share), "give above 0, up to 1");
+  if (!(task.friction_fraction > 0.0) || task.friction_fraction > 1.0) {
+    refuse("friction_fraction", fmt::format("{:g}", task.friction_fraction),
+           "give above 0, up to 1");
   }
   if (!(task.clearance >= 0.0)) {
     refuse("clearance", fmt::format("{:g} m", task.clearance), "give zero or more");
   }
-  if (!(task.least_force > 0.0)) {
-    refuse("least_force", fmt::format("{:g} N", task.least_force), "give a positive force");
+  if (!(task.min_force > 0.0)) {
+    refuse("min_force", fmt::format("{:g} N", task.min_force), "give a positive force");
   }
-  if (!(task.most_force >= task.least_force)) {
-    throw Error(ErrorKind::contradictory_limits, {.item = "most_force"},
-                fmt::format("{:g} N is below the least, {:g} N", task.most_force, task.least_force),
+  if (!(task.max_force >= task.min_force)) {
+    throw Error(ErrorKind::contradictory_limits, {.item = "max_force"},
+                fmt::format("{:g} N is below the least, {:g} N", task.max_force, task.min_force),
                 "swap them");
   }
   if (!(task.hold_force >= 0.0) || !(task.hold_frequency >= 0.0)) {

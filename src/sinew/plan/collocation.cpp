@@ -33,7 +33,7 @@ Collocation::Collocation(std::shared_ptr<const pcc::Arm> arm, Task task)
       tip_{arm_->segments() - 1},
       n_(arm_->coordinates()),
       inputs_(arm_->inputs()) {
-  for (int k = 0; k < grid_.intervals; ++k) begins_[k + 1] = begins_[k] + grid_.shares[k];
+  for (int k = 0; k < grid_.intervals; ++k) begins_[k + 1] = begins_[k] + grid_.fractions[k];
   const Transcription unit(grid_.method, 1.0);
   blocks_ = unit.blocks;
   stages_ = static_cast<int>(unit.stages.size());
@@ -77,8 +77,8 @@ void Collocation::set_bounds() {
     if (!drive_) bound->segment(torque_at(0), inputs_) = task_.start.torque;
   }
   if (grid_.free()) {
-    variable_bounds_.lower[time_at()] = grid_.least_duration;
-    variable_bounds_.upper[time_at()] = grid_.most_duration;
+    variable_bounds_.lower[time_at()] = grid_.min_duration;
+    variable_bounds_.upper[time_at()] = grid_.max_duration;
   }
   const int rows = drive_row() + (drive_ ? drive_->rows() : 0);
   constraint_bounds_ = {VectorX::Zero(rows), VectorX::Zero(rows)};
@@ -151,7 +151,7 @@ void Collocation::set_scales(double torque) {
   constraint_scale_ = VectorX::Ones(constraints());
   for (int k = 0; k < grid_.intervals; ++k) {
     constraint_scale_.segment(row(k), n_ * defects_)
-        .setConstant(grid_.duration * grid_.shares[k] / own);
+        .setConstant(grid_.duration * grid_.fractions[k] / own);
     constraint_scale_.segment(stage_row(k, 0), rate_row(k) - stage_row(k, 0)).setConstant(torque);
     constraint_scale_.segment(rate_row(k), clearance_row(k) - rate_row(k))
         .setConstant(torque / own);
@@ -190,7 +190,7 @@ double Collocation::duration(const VectorX& x) const {
 const std::vector<Transcription>& Collocation::rules(const VectorX& x) const {
   if (const double now = duration(x); now != rules_duration_) {
     rules_.clear();
-    for (const double share : grid_.shares) rules_.emplace_back(grid_.method, share * now);
+    for (const double fraction : grid_.fractions) rules_.emplace_back(grid_.method, fraction * now);
     rules_duration_ = now;
   }
   return rules_;
@@ -204,9 +204,10 @@ const VectorDerivatives& Collocation::tip_velocity(const VectorX& x) {
   return points_.velocity(state(x, grid_.intervals, 0), state(x, grid_.intervals, 1), tip_);
 }
 
-LinearForm Collocation::input(int k, double share, int u) const {
-  if (drive_) return drive_->volume(u, (begins_[k] + share * grid_.shares[k]) * grid_.duration);
-  return {{torque_at(k) + u, torque_at(k + 1) + u}, {1.0 - share, share}, 2};
+LinearForm Collocation::input(int k, double fraction, int u) const {
+  if (drive_)
+    return drive_->volume(u, (begins_[k] + fraction * grid_.fractions[k]) * grid_.duration);
+  return {{torque_at(k) + u, torque_at(k + 1) + u}, {1.0 - fraction, fraction}, 2};
 }
 
 Collocation::Response Collocation::response(const VectorX& x, const LinearForm& form, int u) const {
@@ -216,9 +217,9 @@ Collocation::Response Collocation::response(const VectorX& x, const LinearForm& 
   return {actuator.torque(value), actuator.slope(value), actuator.curvature(value)};
 }
 
-VectorX Collocation::torque(const VectorX& x, int k, double share) const {
+VectorX Collocation::torque(const VectorX& x, int k, double fraction) const {
   VectorX result(inputs_);
-  for (int u = 0; u < inputs_; ++u) result[u] = response(x, input(k, share, u), u).torque;
+  for (int u = 0; u < inputs_; ++u) result[u] = response(x, input(k, fraction, u), u).torque;
   return result;
 }
 
@@ -228,8 +229,8 @@ VectorX Collocation::torque(const VectorX& x, int k) const {
 
 double Collocation::objective(const VectorX& x) {
   double effort = 0.0;
-  each_effort_point(x, [&](int k, double share, double weight) {
-    effort += weight * torque(x, k, share).squaredNorm();
+  each_effort_point(x, [&](int k, double fraction, double weight) {
+    effort += weight * torque(x, k, fraction).squaredNorm();
   });
   const Objective& cost = task_.objective;
   double result = cost.effort * duration(x) * effort;
@@ -245,10 +246,10 @@ double Collocation::objective(const VectorX& x) {
 void Collocation::gradient(const VectorX& x, VectorX& result) {
   const Objective& cost = task_.objective;
   result.setZero(variables_);
-  each_effort_point(x, [&](int k, double share, double weight) {
+  each_effort_point(x, [&](int k, double fraction, double weight) {
     const double per = cost.effort * weight;
     for (int u = 0; u < inputs_; ++u) {
-      const LinearForm form = input(k, share, u);
+      const LinearForm form = input(k, fraction, u);
       const Response of = response(x, form, u);
       for (std::size_t i = 0; i < static_cast<std::size_t>(form.count); ++i) {
         result[form.at[i]] += 2.0 * per * duration(x) * of.torque * of.slope * form.weight[i];
@@ -287,7 +288,7 @@ void Collocation::constraints(const VectorX& x, VectorX& result) {
     }
     if (rate_limited_) {
       result.segment(rate_row(k), inputs_) =
-          (torque(x, k + 1) - torque(x, k)) / (grid_.shares[k] * duration(x));
+          (torque(x, k + 1) - torque(x, k)) / (grid_.fractions[k] * duration(x));
     }
     if (task_.obstacles.empty()) continue;
     const auto& where = points_.positions(state(x, k + 1, 0), backbone_);

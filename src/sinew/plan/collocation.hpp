@@ -31,7 +31,7 @@ struct Aim {
   Vector3 position = Vector3::Zero();  ///< m, the tip at the end of the motion less the program's
   Vector3 velocity = Vector3::Zero();  ///< m/s, likewise
   VectorX clearance;                   ///< (obstacles,) m, >= 0, added to what is asked for
-  double reserve = 0.02;               ///< share of the tolerances that the program leaves, 0 to 1
+  double reserve = 0.02;  ///< fraction of the tolerances that the program leaves, 0 to 1
 };
 
 /// Variables, with b = 2 (q, v) or 3 (q, v, a) blocks a knot:
@@ -103,19 +103,19 @@ class Collocation final : public NonlinearProgram {
   MatrixX pair(const VectorX& x, int k) const;
   VectorX state(const VectorX& x, int k, int block) const;
   int drive_row() const { return speed_row() + (speed_limited_ ? 1 : 0); }
-  /// What an input's torque follows from at a share of interval k: the knots' torques or, with a
+  /// What an input's torque follows from at a fraction of interval k: the knots' torques or, with a
   /// drive, volumes.
-  LinearForm input(int k, double share, int u) const;
+  LinearForm input(int k, double fraction, int u) const;
   /// Torque of such a value and its derivatives by it.
   struct Response {
     double torque, slope, curvature;
   };
   Response response(const VectorX& x, const LinearForm& form, int u) const;
-  VectorX torque(const VectorX& x, int k, double share) const;
+  VectorX torque(const VectorX& x, int k, double fraction) const;
   /// At knot k.
   VectorX torque(const VectorX& x, int k) const;
-  /// of(k, share of the interval, weight) for the points of the effort's quadrature; weights add up
-  /// to 1.
+  /// of(k, fraction of the interval, weight) for the points of the effort's quadrature; weights add
+  /// up to 1.
   template <typename Do>
   void each_effort_point(const VectorX& x, const Do& of) const;
   template <typename Emit>
@@ -131,7 +131,7 @@ class Collocation final : public NonlinearProgram {
   Task task_;
   Grid grid_;
   Aim aim_;
-  VectorX begins_;  // (intervals + 1,) shares of the duration at which intervals begin
+  VectorX begins_;  // (intervals + 1,) fractions of the duration at which intervals begin
   mutable std::vector<Transcription> rules_;
   mutable double rules_duration_ = 0.0;  // s, that they are of
   int blocks_, stages_, defects_;
@@ -149,7 +149,7 @@ void Collocation::each_effort_point(const VectorX& x, const Do& of) const {
   const std::vector<Transcription>& all = rules(x);
   for (int k = 0; k < grid_.intervals; ++k) {
     for (const Stage& stage : all[static_cast<std::size_t>(k)].stages) {
-      of(k, stage.time, stage.share * grid_.shares[k]);
+      of(k, stage.time, stage.fraction * grid_.fractions[k]);
     }
   }
 }

@@ -53,7 +53,7 @@ void Collocation::each_jacobian_entry(const VectorX& x, const Emit& emit) {
   };
   for (int k = 0; k < grid_.intervals; ++k) {
     const Transcription& rules = all[static_cast<std::size_t>(k)];
-    const double share = grid_.shares[k];  // dh/dt_f
+    const double fraction = grid_.fractions[k];  // dh/dt_f
     const MatrixX knots = pair(x, k);
     for (int i = 0; i < n_ * defects_; ++i) {
       for (int b = 0; b < 2 * blocks; ++b) {
@@ -62,7 +62,7 @@ void Collocation::each_jacobian_entry(const VectorX& x, const Emit& emit) {
         }
       }
       if (grid_.free()) {
-        emit(row(k) + i, time_at(), share * knots.row(i).dot(rules.defect.slope.row(0)));
+        emit(row(k) + i, time_at(), fraction * knots.row(i).dot(rules.defect.slope.row(0)));
       }
     }
     for (std::size_t s = 0; s < rules.stages.size(); ++s) {
@@ -83,14 +83,14 @@ void Collocation::each_jacobian_entry(const VectorX& x, const Emit& emit) {
         }
       }
       if (grid_.free()) {
-        const MatrixX slope = share * knots * stage.state.slope.transpose();
+        const MatrixX slope = fraction * knots * stage.state.slope.transpose();
         const VectorX total = *by[0] * slope.col(0) + *by[1] * slope.col(1) + *by[2] * slope.col(2);
         for (int i = 0; i < n_; ++i) emit(first + i, time_at(), total[i]);
       }
       torque_entries(first, k, stage.time);
     }
     if (rate_limited_) {
-      const double per = 1.0 / (share * duration(x));
+      const double per = 1.0 / (fraction * duration(x));
       for (int u = 0; u < inputs_; ++u) {
         double change = 0.0;
         for (const double when : {0.0, 1.0}) {
@@ -137,9 +137,9 @@ void Collocation::jacobian(const VectorX& x, double* values) {
 template <typename Emit>
 void Collocation::effort_hessian(const VectorX& x, double factor, const Emit& emit) {
   const double effort = 2.0 * factor * task_.objective.effort;
-  each_effort_point(x, [&](int k, double share, double weight) {
+  each_effort_point(x, [&](int k, double fraction, double weight) {
     for (int u = 0; u < inputs_; ++u) {
-      const LinearForm form = input(k, share, u);
+      const LinearForm form = input(k, fraction, u);
       const Response of = response(x, form, u);
       const double second = of.slope * of.slope + of.torque * of.curvature;
       emit_square(form, effort * weight * duration(x) * second, emit);
@@ -155,8 +155,8 @@ void Collocation::effort_hessian(const VectorX& x, double factor, const Emit& em
 template <typename Emit>
 void Collocation::torque_hessian(const VectorX& x, int k, const Transcription& rules,
                                  const VectorX& multipliers, const Emit& emit) {
-  const auto add = [&](double share, int u, double multiplier) {
-    const LinearForm form = input(k, share, u);
+  const auto add = [&](double fraction, int u, double multiplier) {
+    const LinearForm form = input(k, fraction, u);
     emit_square(form, multiplier * response(x, form, u).curvature, emit);
   };
   for (std::size_t s = 0; s < rules.stages.size(); ++s) {
@@ -165,7 +165,7 @@ void Collocation::torque_hessian(const VectorX& x, int k, const Transcription& r
     for (int u = 0; u < inputs_; ++u) add(rules.stages[s].time, u, weight[u]);
   }
   if (!rate_limited_) return;
-  const double per = 1.0 / (grid_.shares[k] * duration(x));
+  const double per = 1.0 / (grid_.fractions[k] * duration(x));
   for (int u = 0; u < inputs_; ++u) {
     add(0.0, u, -per * multipliers[rate_row(k) + u]);
     add(1.0, u, per * multipliers[rate_row(k) + u]);
@@ -179,7 +179,7 @@ void Collocation::interval_hessian(const VectorX& x, int k, const VectorX& multi
   const Transcription& rules = this->rules(x)[static_cast<std::size_t>(k)];
   const int blocks = 2 * blocks_, size = blocks * n_;
   const MatrixX knots = pair(x, k);
-  const double share = grid_.shares[k];
+  const double fraction = grid_.fractions[k];
   MatrixX sum = MatrixX::Zero(size, size);
   VectorX cross = VectorX::Zero(size);
   double by_time = 0.0;
@@ -237,13 +237,13 @@ void Collocation::interval_hessian(const VectorX& x, int k, const VectorX& multi
       by_time += weight.dot(knots * rules.defect.bend.row(0).transpose());
     }
     for (int i = 0; i < size; ++i) {
-      if (takes_part(i)) emit(time_at(), column(i), share * cross[i]);
+      if (takes_part(i)) emit(time_at(), column(i), fraction * cross[i]);
     }
-    emit(time_at(), time_at(), share * share * by_time);
+    emit(time_at(), time_at(), fraction * fraction * by_time);
   }
   if (drive_) torque_hessian(x, k, rules, multipliers, emit);
   if (rate_limited_ && grid_.free()) {
-    const double t = duration(x), per = 1.0 / (share * t * t);
+    const double t = duration(x), per = 1.0 / (fraction * t * t);
     for (int u = 0; u < inputs_; ++u) {
       const double weight = multipliers[rate_row(k) + u];
       const int before = torque_at(k) + u, after = torque_at(k + 1) + u;

@@ -11,8 +11,8 @@
 
 namespace sinew::plan {
 
-std::array<double, 4> sample_weights(double share) {
-  const double s = share, left = 1.0 - s;
+std::array<double, 4> sample_weights(double fraction) {
+  const double s = fraction, left = 1.0 - s;
   return {-0.5 * s * left * left, 1.0 + s * s * (1.5 * s - 2.5),
           1.0 + left * left * (1.5 * left - 2.5), -0.5 * left * s * s};
 }

@@ -10,10 +10,10 @@
 
 namespace sinew::plan {
 
-/// Weights of four equally spaced samples for a value at `share` of the way from the second to the
-/// third: cubic Hermite with the slopes of parabolas through three neighbours (Catmull & Rom 1974),
-/// which is how records of volumes are read.
-std::array<double, 4> sample_weights(double share);
+/// Weights of four equally spaced samples for a value at `fraction` of the way from the second to
+/// the third: cubic Hermite with the slopes of parabolas through three neighbours (Catmull & Rom
+/// 1974), which is how records of volumes are read.
+std::array<double, 4> sample_weights(double fraction);
 
 /// Commands begin at time 0, torques are wanted from `lead` on. Columns are inputs.
 struct DriveRun {

@@ -113,8 +113,8 @@ class Solver {
   void step(double barrier);
   /// Mean of distance times multiplier after a part of the step.
   double complementarity_after(double barrier, double along, double along_multipliers) const;
-  /// Longest steps that keep a share of the distance, of values and multipliers.
-  std::pair<double, double> longest(double barrier, double share) const;
+  /// Longest steps that keep a fraction of the distance, of values and multipliers.
+  std::pair<double, double> longest(double barrier, double fraction) const;
 
   NonlinearProgram& program_;
   VectorX all_;                            // unscaled, with the fixed ones
@@ -321,11 +321,11 @@ double Solver::complementarity_after(double barrier, double along, double along_
   return count > 0.0 ? sum / count : 0.0;
 }
 
-std::pair<double, double> Solver::longest(double barrier, double share) const {
+std::pair<double, double> Solver::longest(double barrier, double fraction) const {
   double along = 1.0, along_multipliers = 1.0;
   const auto visit = [&](double distance, double z, double d_distance, double dz) {
-    if (d_distance < 0.0) along = std::min(along, -share * distance / d_distance);
-    if (dz < 0.0) along_multipliers = std::min(along_multipliers, -share * z / dz);
+    if (d_distance < 0.0) along = std::min(along, -fraction * distance / d_distance);
+    if (dz < 0.0) along_multipliers = std::min(along_multipliers, -fraction * z / dz);
   };
   x_.each_bound(dx_, barrier, visit);
   s_.each_bound(ds_, barrier, visit);

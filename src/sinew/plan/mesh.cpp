@@ -6,9 +6,9 @@
 
 namespace sinew::plan {
 
-VectorX refined(const VectorX& shares, const VectorX& defects, double left) {
+VectorX refined(const VectorX& fractions, const VectorX& defects, double left) {
   constexpr double kMaxParts = 4.0;
-  const auto count = static_cast<double>(shares.size());
+  const auto count = static_cast<double>(fractions.size());
   std::vector<int> parts;
   for (const double defect : defects) {
     const double wanted = std::ceil(std::pow(count * defect / left, 0.25));
@@ -18,7 +18,7 @@ VectorX refined(const VectorX& shares, const VectorX& defects, double left) {
   std::vector<double> cut;
   for (std::size_t k = 0; k < parts.size(); ++k) {
     cut.insert(cut.end(), static_cast<std::size_t>(parts[k]),
-               shares[static_cast<Eigen::Index>(k)] / parts[k]);
+               fractions[static_cast<Eigen::Index>(k)] / parts[k]);
   }
   return VectorX::Map(cut.data(), static_cast<Eigen::Index>(cut.size()));
 }

@@ -11,10 +11,11 @@ namespace sinew::plan {
 /// leave p = 3 to count on, so that an interval with defect d of N becomes ceil((N d/left)^(1/4))
 /// parts for all of them to leave `left` (Betts, Practical Methods for Optimal Control, 2010, sec.
 /// 4.7, cuts by the order so too). Where none would be cut all are halved.
-/// @param shares (intervals,) of the duration. @param defects (intervals,) >= 0, of what matters.
+/// @param fractions (intervals,) of the duration. @param defects (intervals,) >= 0, of what
+/// matters.
 /// @param left > 0, what the defects may add up to.
-/// Returns the new intervals' shares.
-VectorX refined(const VectorX& shares, const VectorX& defects, double left = 0.1);
+/// Returns the new intervals' fractions.
+VectorX refined(const VectorX& fractions, const VectorX& defects, double left = 0.1);
 
 /// d/dt of values at times, by the line through the neighbours on both sides. (times, columns).
 /// @param times (times,) s, increasing. @param values (times, columns).

@@ -107,7 +107,7 @@ std::string_view status_name(PlanStatus status) {
   return "failed";
 }
 
-VectorX Plan::shares() const {
+VectorX Plan::fractions() const {
   const Eigen::Index count = knots.times.size() - 1;
   return (knots.times.tail(count) - knots.times.head(count)) / duration();
 }
@@ -120,8 +120,8 @@ VectorX Plan::torque(double time) const {
   const auto after = std::lower_bound(times.begin() + 1, times.end() - 1, time - rounding);
   const Eigen::Index k = after - times.begin();
   if (method == Method::backward_euler) return knots.torque.row(k);
-  const double share = std::clamp((time - times[k - 1]) / (times[k] - times[k - 1]), 0.0, 1.0);
-  return (1.0 - share) * knots.torque.row(k - 1) + share * knots.torque.row(k);
+  const double fraction = std::clamp((time - times[k - 1]) / (times[k] - times[k - 1]), 0.0, 1.0);
+  return (1.0 - fraction) * knots.torque.row(k - 1) + fraction * knots.torque.row(k);
 }
 
 Planner::Planner(std::shared_ptr<const pcc::Arm> arm, const Task& task,
@@ -160,7 +160,7 @@ Knots Planner::guess(std::uint64_t seed) const {
               {}};
   for (Eigen::Index k = 0; k < count; ++k) {
     if (k > 0) {
-      knots.times[k] = knots.times[k - 1] + grid.shares[k - 1] * grid.duration;
+      knots.times[k] = knots.times[k - 1] + grid.fractions[k - 1] * grid.duration;
       motion.advance(knots.times[k], excitation);
     }
     knots.position.row(k) = motion.position();
@@ -171,13 +171,13 @@ Knots Planner::guess(std::uint64_t seed) const {
   return knots;
 }
 
-void Planner::set_mesh(const VectorX& shares) {
-  if (shares.size() == task_.grid.shares.size() &&
-      (shares - task_.grid.shares).lpNorm<Eigen::Infinity>() < 1e-12) {
+void Planner::set_mesh(const VectorX& fractions) {
+  if (fractions.size() == task_.grid.fractions.size() &&
+      (fractions - task_.grid.fractions).lpNorm<Eigen::Infinity>() < 1e-12) {
     return;
   }
-  task_.grid.shares = shares;
-  task_.grid.intervals = static_cast<int>(shares.size());
+  task_.grid.fractions = fractions;
+  task_.grid.intervals = static_cast<int>(fractions.size());
   program_ = std::make_unique<Collocation>(arm_, task_);
 }
 
@@ -227,7 +227,7 @@ ProgramPoint Planner::drive_start(std::uint64_t seed) {
 
 Plan Planner::plan(std::uint64_t seed) {
   begun_ = std::clock();
-  set_mesh(asked_.grid.shares);
+  set_mesh(asked_.grid.fractions);
   program_->set_aim({.clearance = VectorX::Zero(obstacles())});
   return solve_verified(task_.drive ? drive_start(seed) : cold_start(seed));
 }
@@ -243,14 +243,14 @@ Plan Planner::plan(const Knots& guess) {
                 fmt::format("give {}, one more than intervals", asked_.grid.intervals + 1));
   }
   begun_ = std::clock();
-  set_mesh(asked_.grid.shares);
+  set_mesh(asked_.grid.fractions);
   program_->set_aim({.clearance = VectorX::Zero(obstacles())});
   return solve_verified({program_->pack(guess), {}, {}, {}});
 }
 
 Plan Planner::replan(const Plan& before) {
   begun_ = std::clock();
-  if (before.knots.times.size() > 1) set_mesh(before.shares());
+  if (before.knots.times.size() > 1) set_mesh(before.fractions());
   if (before.point.x.size() != program_->variables() ||
       before.point.constraint_multipliers.size() != program_->constraints() ||
       before.aim.clearance.size() != obstacles()) {

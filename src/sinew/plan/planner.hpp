@@ -47,7 +47,7 @@ struct Plan {
   bool found() const { return status == PlanStatus::solved || status == PlanStatus::acceptable; }
   double duration() const { return knots.times[knots.times.size() - 1]; }
   /// (intervals,) of the duration.
-  VectorX shares() const;
+  VectorX fractions() const;
   /// (inputs,) N m, as the method means it: constant over an interval or linear; with a drive what
   /// its commands cause.
   /// @param time s; before the plan its first, after it its last.
@@ -75,7 +75,7 @@ class Planner {
   Plan plan(std::uint64_t seed);
   /// From a guess at the task's knots, with its drive where the task has one: Error(wrong-length).
   Plan plan(const Knots& guess);
-  /// From a plan for another start, goal or limits, on its knots' shares of the duration.
+  /// From a plan for another start, goal or limits, on its knots' fractions of the duration.
   /// Throws Error(wrong-length).
   Plan replan(const Plan& before);
 
@@ -87,7 +87,7 @@ class Planner {
   struct Verdict;
 
   Eigen::Index obstacles() const { return static_cast<Eigen::Index>(asked_.obstacles.size()); }
-  void set_mesh(const VectorX& shares);
+  void set_mesh(const VectorX& fractions);
   ProgramPoint cold_start(std::uint64_t seed);
   ProgramPoint drive_start(std::uint64_t seed);
   /// The program's plan, not yet replayed, within the processor time that is left.

@@ -74,7 +74,7 @@ std::string_view verdict_name(ReachProof::Verdict verdict);
 /// bounds on second derivatives gives
 ///   |p(q) - p(c) - J (q - c)| <= 1/2 sum_jk w_j w_k D_jk,   D_jk = integral of f_j f_k ds,
 ///   |r_i(q) - r_i(c) - dr_i/dq (q - c)| <= 1/2 sum_jk w_j w_k sum_m |m g| integral f_i f_j f_k ds,
-/// since the axis' direction t turns by f_i dq_i, f_i(s) the share of segment i's bend that lies
+/// since the axis' direction t turns by f_i dq_i, f_i(s) the fraction of segment i's bend that lies
 /// before s, so that every derivative of t by q_i is at most f_i long, whatever the turns gamma. A
 /// box goes when these enclosures miss the goal or the torques' limits; the linear constraints also
 /// shrink it (Hansen & Walster, Global Optimization Using Interval Analysis, 2004, ch. 10-11).

@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kRounding = 1e-9;
 
-/// integral of f_a f_b ... ds along the axis up to a point; f_i(s) is the share of segment i's bend
-/// before s. `times` counts how often each segment stands in the product.
+/// integral of f_a f_b ... ds along the axis up to a point; f_i(s) is the fraction of segment i's
+/// bend before s. `times` counts how often each segment stands in the product.
 double bend_moment(const pcc::Arm& arm, const std::vector<int>& times, int segment, double fraction,
                    double scale) {
   int last = -1;

@@ -93,19 +93,19 @@ void check_grid(Grid& grid) {
     throw Error(ErrorKind::out_of_range, {.item = "grid.intervals"},
                 fmt::format("{}", grid.intervals), "give 2 or more");
   }
-  fill(grid.shares, grid.intervals, 1.0 / grid.intervals, "grid.shares");
-  if (!(grid.shares.minCoeff() > 0.0) || std::abs(grid.shares.sum() - 1.0) > 1e-9) {
-    throw Error(ErrorKind::out_of_range, {.item = "grid.shares"},
-                fmt::format("the least is {:g} and they add up to {:.12g}", grid.shares.minCoeff(),
-                            grid.shares.sum()),
+  fill(grid.fractions, grid.intervals, 1.0 / grid.intervals, "grid.fractions");
+  if (!(grid.fractions.minCoeff() > 0.0) || std::abs(grid.fractions.sum() - 1.0) > 1e-9) {
+    throw Error(ErrorKind::out_of_range, {.item = "grid.fractions"},
+                fmt::format("the least is {:g} and they add up to {:.12g}",
+                            grid.fractions.minCoeff(), grid.fractions.sum()),
                 "give positive ones that add up to 1");
   }
   if (!grid.free()) return;
-  check_positive(grid.least_duration, "grid.least_duration", "s");
-  if (grid.least_duration > grid.most_duration) {
+  check_positive(grid.min_duration, "grid.min_duration", "s");
+  if (grid.min_duration > grid.max_duration) {
     throw Error(
-        ErrorKind::contradictory_limits, {.item = "grid.least_duration"},
-        fmt::format("{:g} s is above the most, {:g} s", grid.least_duration, grid.most_duration),
+        ErrorKind::contradictory_limits, {.item = "grid.min_duration"},
+        fmt::format("{:g} s is above the most, {:g} s", grid.min_duration, grid.max_duration),
         "swap them");
   }
 }
@@ -137,7 +137,7 @@ void complete_drive(Task& task) {
   check_channels(drive.channels, task.start.torque.size(), drive.lead, "drive");
   check_positive(task.objective.command, "objective.command", "s/(N m)^2");
   if (task.grid.free()) {
-    throw Error(ErrorKind::contradictory_limits, {.item = "grid.most_duration"},
+    throw Error(ErrorKind::contradictory_limits, {.item = "grid.max_duration"},
                 "with a drive the duration is not free, as its cylinders are sampled",
                 "give the duration alone");
   }

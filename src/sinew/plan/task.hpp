@@ -66,9 +66,9 @@ struct Grid {
   Method method = Method::radau;
   double duration = 1.6;  ///< s, > 0; where it is free, the first guess
   int intervals = 50;     ///< >= 2
-  VectorX shares;         ///< (intervals,) of the duration, > 0, that add up to 1; empty: equal
-  double least_duration = 0.0, most_duration = 0.0;  ///< s; both 0: the duration is fixed
-  bool free() const { return most_duration > 0.0; }
+  VectorX fractions;      ///< (intervals,) of the duration, > 0, that add up to 1; empty: equal
+  double min_duration = 0.0, max_duration = 0.0;  ///< s; both 0: the duration is fixed
+  bool free() const { return max_duration > 0.0; }
 };
 
 /// What the plan is made for, instead of torques that come as told: a plan of commands.

@@ -19,7 +19,7 @@ void check(const TrackingSettings& settings) {
   const std::pair<const char*, double> all[] = {{"time_step", settings.time_step},
                                                 {"angle", settings.angle},
                                                 {"rate", settings.rate},
-                                                {"torque_share", settings.torque_share},
+                                                {"torque_fraction", settings.torque_fraction},
                                                 {"tip_position", settings.tip_position},
                                                 {"tip_speed", settings.tip_speed}};
   for (const auto& [name, value] : all) {
@@ -95,7 +95,7 @@ Tracker::Tracker(std::shared_ptr<const pcc::Arm> arm, const Task& task, const Pl
     const double range = limited ? 0.5 * (upper - lower) : arm->stiffness().maxCoeff();
     // An input without range does not take part.
     driven[u] = range > 0.0 ? 1.0 : 0.0;
-    input_cost[u] = range > 0.0 ? time_step_ / squared(settings.torque_share * range) : 1.0;
+    input_cost[u] = range > 0.0 ? time_step_ / squared(settings.torque_fraction * range) : 1.0;
   }
   const VectorX q = states_.row(count).head(n), rate = states_.row(count).tail(n);
   const auto tip = equations.point({arm->segments() - 1}, q, rate);

@@ -37,12 +37,12 @@ RiccatiStep riccati_step(const StepLinearisation& step, const MatrixX& state_cos
 
 /// What errors are as bad as each other (Bryson's rule: costs are their inverse squares), all > 0.
 struct TrackingSettings {
-  double time_step = 5e-3;     ///< s, of control: the torque is held that long
-  double angle = 0.5;          ///< rad, on the way
-  double rate = 5.0;           ///< rad/s, on the way
-  double torque_share = 0.5;   ///< of an input's range of torque, on the way
-  double tip_position = 5e-3;  ///< m, at the end
-  double tip_speed = 5e-2;     ///< m/s, at the end
+  double time_step = 5e-3;       ///< s, of control: the torque is held that long
+  double angle = 0.5;            ///< rad, on the way
+  double rate = 5.0;             ///< rad/s, on the way
+  double torque_fraction = 0.5;  ///< of an input's range of torque, on the way
+  double tip_position = 5e-3;    ///< m, at the end
+  double tip_speed = 5e-2;       ///< m/s, at the end
 };
 
 /// The plan's nominal motion and its gains. Immutable.

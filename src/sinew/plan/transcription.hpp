@@ -42,9 +42,9 @@ struct Weights {
 };
 
 struct Stage {
-  Weights state;       ///< rows: position, rate, acceleration
-  double time = 0.0;   ///< where in the interval it is, 0 to 1
-  double share = 0.0;  ///< of the interval in integrals over it
+  Weights state;          ///< rows: position, rate, acceleration
+  double time = 0.0;      ///< where in the interval it is, 0 to 1
+  double fraction = 0.0;  ///< of the interval in integrals over it
 };
 
 struct Transcription {

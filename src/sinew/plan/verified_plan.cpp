@@ -21,8 +21,8 @@ VectorX sample_times(const VectorX& knots, Eigen::Index between) {
   VectorX times(per * intervals + 1);
   for (Eigen::Index k = 0; k < intervals; ++k) {
     for (Eigen::Index i = 0; i < per; ++i) {
-      const double share = static_cast<double>(i) / static_cast<double>(per);
-      times[per * k + i] = knots[k] + share * (knots[k + 1] - knots[k]);
+      const double fraction = static_cast<double>(i) / static_cast<double>(per);
+      times[per * k + i] = knots[k] + fraction * (knots[k + 1] - knots[k]);
     }
   }
   times[per * intervals] = knots[intervals];
@@ -93,14 +93,14 @@ Plan Planner::corrected(const Plan& plan, const Verdict& verdict) {
 
 Plan Planner::refined_plan(const Plan& plan) {
   const auto begin = std::chrono::steady_clock::now();
-  const VectorX shares = refined(plan.shares(), interval_defects(arm_, task_, plan));
+  const VectorX fractions = refined(plan.fractions(), interval_defects(arm_, task_, plan));
   const Aim aim{.clearance = program_->aim().clearance};
-  set_mesh(shares);
+  set_mesh(fractions);
   program_->set_aim(aim);
   Knots guess = plan.knots;
-  guess.times = VectorX::Zero(shares.size() + 1);
-  for (Eigen::Index k = 0; k < shares.size(); ++k) {
-    guess.times[k + 1] = guess.times[k] + shares[k] * plan.duration();
+  guess.times = VectorX::Zero(fractions.size() + 1);
+  for (Eigen::Index k = 0; k < fractions.size(); ++k) {
+    guess.times[k + 1] = guess.times[k] + fractions[k] * plan.duration();
   }
   const Replay run = replay(arm_, task_, plan, guess.times);
   guess.position = run.position;

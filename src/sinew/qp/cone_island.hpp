@@ -75,7 +75,7 @@ class ConeIsland {
   bool newton_pays(const ConePart& part) const;
   bool newton(const ConePart& part);
   bool newton_step(const ConePart& part, double proximal);
-  bool newton_steps(const ConePart& part, int most, double tolerance, auto&& proximal);
+  bool newton_steps(const ConePart& part, int max_steps, double tolerance, auto&& proximal);
   bool follow_regularised(const ConePart& part);
   void add_shifted(const ConePart& part);
   int choose_unknowns(const ConeProblem& problem);

@@ -121,11 +121,12 @@ void ConeIsland::add_shifted(const ConePart& part) {
 
 // At most so many steps; without success the iterate is the best of them. @param proximal its size
 // for a relative residual.
-bool ConeIsland::newton_steps(const ConePart& part, int most, double tolerance, auto&& proximal) {
+bool ConeIsland::newton_steps(const ConePart& part, int max_steps, double tolerance,
+                              auto&& proximal) {
   const auto keep = [&] { std::copy_n(x_.data(), x_.size(), best_.data()); };
   keep();
   double least = result_.residual;
-  for (int step = 0, vain = 0; step < most && vain < kMaxVainSteps; ++step, ++vain) {
+  for (int step = 0, vain = 0; step < max_steps && vain < kMaxVainSteps; ++step, ++vain) {
     poll();
     const double relative = miss_.distance / std::max(miss_.effort, 1e-300);
     if (!newton_step(part, proximal(relative))) break;

@@ -6,14 +6,14 @@ namespace sinew::scene::forms {
 namespace {
 
 std::shared_ptr<const KeyTable> limit_table(const Measure& measure, const Measure& rate,
-                                            const char* name, Range range, const char* least,
+                                            const char* name, Range range, const char* min_default,
                                             const char* example, const char* rate_example) {
   return make_table({.name = std::string("limits of ") + name,
                      .description = "Omitted keys mean no limit.",
                      .keys = {{.name = "min",
                                .forms = {quantity(measure, range)},
                                .example = std::string("0 ") + measure.unit,
-                               .default_text = least,
+                               .default_text = min_default,
                                .description = "Least value."},
                               {.name = "max",
                                .forms = {quantity(measure, range)},
@@ -31,7 +31,7 @@ std::vector<Key> drive_keys(const DriveWords& w) {
   const sim::ActuatorWords& words = sim::actuator_words(w.type);
   const std::string effort = words.effort.name, motion = words.motion.name, kind = w.kind;
   const auto effort_limits =
-      limit_table(w.effort_measure, w.effort_rate, words.effort.name, w.effort_range, w.least,
+      limit_table(w.effort_measure, w.effort_rate, words.effort.name, w.effort_range, w.min_default,
                   w.effort_example, w.effort_rate_example);
   const auto motion_limits = limit_table(w.motion_measure, w.motion_rate, words.motion.name, any(),
                                          "", w.motion_example, w.motion_rate_example);
@@ -98,13 +98,13 @@ Key outside_key() {
 namespace {
 
 // Words of an actuator that pulls or pushes along a line.
-DriveWords line_words(sim::ActuatorType type, Range range, const char* least,
+DriveWords line_words(sim::ActuatorType type, Range range, const char* min_default,
                       const char* motion_text, const char* undriven) {
   DriveWords words{.kind = sim::actuator_words(type).type, .type = type};
   words.effort_measure = force();
   words.effort_rate = force_rate();
   words.effort_range = range;
-  words.least = least;
+  words.min_default = min_default;
   words.effort_example = "20 N";
   words.effort_rate_example = "100 N/s";
   words.effort_value = "2 N";

@@ -133,10 +133,10 @@ Form variants(const char* telltale, std::vector<Choice> choices) {
   return form;
 }
 
-Form names(Form item, int least, const char* refers_to) {
+Form names(Form item, int min_count, const char* refers_to) {
   Form form;
   form.shape = Shape::names;
-  form.min_count = least;
+  form.min_count = min_count;
   form.refers_to = refers_to;
   form.items.push_back(std::move(item));
   return form;

@@ -72,9 +72,9 @@ Form list(std::vector<Form> items, int min_count = 1, int max_count = kAnyNumber
 Form samples(const Measure& measure);
 Form table(std::shared_ptr<const KeyTable> table, const char* telltale = "");
 Form variants(const char* telltale, std::vector<Choice> choices);
-/// At least `least` entries, whose names are free or, with `refers_to`, those of that top-level
+/// At least `min_count` entries, whose names are free or, with `refers_to`, those of that top-level
 /// key.
-Form names(Form item, int least = 0, const char* refers_to = "");
+Form names(Form item, int min_count = 0, const char* refers_to = "");
 /// The same form, refused as belonging to a later version.
 Form later(Form form);
 
@@ -86,7 +86,7 @@ struct DriveWords {
   sim::ActuatorType type = sim::ActuatorType::cable;  ///< whose words effort and motion have
   Measure effort_measure{}, effort_rate{};
   Range effort_range;
-  const char* least = "";
+  const char* min_default = "";
   const char* effort_example = "";
   const char* effort_rate_example = "";
   const char* effort_value = "";

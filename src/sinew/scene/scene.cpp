@@ -43,10 +43,10 @@ void read_solver(const Fields& fields, SolverDescription& solver) {
   }
   const Fields values = fields.below("solver");
   values.read_choice("method", solver.method, methods);
-  values.read_choice("tangent", solver.tangent,
-                     {{"rotated", Tangent::rotated},
-                      {"projected", Tangent::projected},
-                      {"exact", Tangent::exact}});
+  std::string tangent;
+  if (values.read_word("tangent", tangent)) {
+    solver.tangent = mechanics::tangent_of(tangent).value();
+  }
   if (values.find("adaptive") != nullptr) {
     auto& adaptive = solver.adaptive.emplace();
     values.below("adaptive").read("tolerance", adaptive.tolerance);

@@ -44,13 +44,13 @@ std::vector<ContactPoint> ContactReader::points(int contact) const {
   return snapshot(contact).points;
 }
 
-ContactSum ContactReader::sum(int contact) const {
+ContactResultant ContactReader::resultant(int contact) const {
   const Eigen::Isometry3d stands = pose(contact);
-  ContactSum sum;
+  ContactResultant resultant;
   for (std::size_t k = 0; k < run_.model->contact(contact).size(); ++k) {
-    sum.add(point(contact, k, stands));
+    resultant.add(point(contact, k, stands));
   }
-  return sum;
+  return resultant;
 }
 
 ContactSnapshot ContactReader::snapshot(int contact) const {

@@ -26,7 +26,7 @@ class ContactReader {
   /// @param contact of Model::contacts(). @param point below constraint::Contact::size().
   ContactPoint point(int contact, std::size_t point) const;
   std::vector<ContactPoint> points(int contact) const;
-  ContactSum sum(int contact) const;
+  ContactResultant resultant(int contact) const;
   /// Where the surface stands now, from where the scene puts it.
   Eigen::Isometry3d pose(int contact) const;
   /// The same as point(), of a pose that is known.

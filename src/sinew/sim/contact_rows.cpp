@@ -225,7 +225,7 @@ bool ContactRows::passed() const {
                              [](const auto& touching) { return touching->passed(); });
 }
 
-double ContactRows::deepest_free_point(std::span<const double> effort) const {
+double ContactRows::max_penetration_without_force(std::span<const double> effort) const {
   double deepest = 0.0;
   for_each_point([&](const constraint::Contact& contact, std::size_t k) {
     const int row = contact.row(k);
@@ -236,7 +236,7 @@ double ContactRows::deepest_free_point(std::span<const double> effort) const {
   return deepest;
 }
 
-double ContactRows::deepest_left_out() const {
+double ContactRows::max_penetration_left_out() const {
   double deepest = 0.0;
   if (!left_out_) return deepest;
   for_each_point(false, [&](const constraint::Contact& contact, std::size_t k) {

@@ -75,11 +75,11 @@ class ContactRows {
   bool gap_closed(std::span<const double> effort) const;
   /// Whether surfaces have passed through each other in the step.
   bool passed() const;
-  /// m, >= 0: how deep the deepest point without a normal force is in its surface's tangent plane.
+  /// m, >= 0: how deep a point without a normal force is in its surface's tangent plane, at most.
   /// @param effort (rows,) N.
-  double deepest_free_point(std::span<const double> effort) const;
+  double max_penetration_without_force(std::span<const double> effort) const;
   /// The same of points that were left out, by delta.
-  double deepest_left_out() const;
+  double max_penetration_left_out() const;
 
  private:
   template <class Visit>

@@ -32,7 +32,7 @@ struct ContactPoint {
 };
 
 /// All points of one contact together.
-struct ContactSum {
+struct ContactResultant {
   Vector3 force = Vector3::Zero();  ///< (3,) N, on the body
   double normal_force = 0.0;        ///< N, sum over the points
   double friction_force = 0.0;      ///< N, sum of the points' magnitudes

@@ -44,8 +44,8 @@ void Impact::hold() {
 // and none gains nothing.
 void Impact::solve(std::span<const double> restitution) {
   form();
-  for (const double most : {1.0, smallest(restitution), 0.0}) {
-    find_impulses(restitution, most);
+  for (const double max_restitution : {1.0, smallest(restitution), 0.0}) {
+    find_impulses(restitution, max_restitution);
     const Eigen::Map<const VectorX> p(impulse_.data(), before_.size());
     if (gained_ <= kGain * std::abs(p.dot(before_))) break;
   }
@@ -95,12 +95,12 @@ double Impact::smallest(std::span<const double> restitution) const {
   return least;
 }
 
-void Impact::find_impulses(std::span<const double> restitution, double most) {
+void Impact::find_impulses(std::span<const double> restitution, double max_restitution) {
   law_.delta_free = before_;
   for (const step::ContactBlock& block : law_.contacts) {
     if (!(before_[block.row] < 0.0)) continue;
     const int row = run_.world.numbering().row_of(block.row);
-    const double e = std::min(most, restitution[static_cast<std::size_t>(row)]);
+    const double e = std::min(max_restitution, restitution[static_cast<std::size_t>(row)]);
     law_.delta_free.segment<3>(block.row) *= 1.0 + e;
   }
   impulse_.assign(static_cast<std::size_t>(before_.size()), 0.0);

@@ -39,7 +39,7 @@ class Impact {
 
  private:
   void form();
-  void find_impulses(std::span<const double> restitution, double most);
+  void find_impulses(std::span<const double> restitution, double max_restitution);
   double smallest(std::span<const double> restitution) const;
   void apply();
 

@@ -84,7 +84,7 @@ void LinearStep::move_soundly() {
 // Points that commanded motions leave nothing to give way are beyond any contact force.
 void LinearStep::require_outside() {
   if (run_.model->contacts().empty()) return;
-  const double depth = run_.world.contacts().deepest_free_point(run_.effort);
+  const double depth = run_.world.contacts().max_penetration_without_force(run_.effort);
   if (depth <= kMaxDepth * run_.model->size()) return;
   fail(run_, ErrorKind::not_converged,
        fmt::format("a point would be {:.3g} m inside a surface, and no contact force can move it",

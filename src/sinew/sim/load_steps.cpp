@@ -6,17 +6,17 @@ namespace sinew::sim {
 
 double take_load_steps(const LoadSteps& steps, const std::function<bool(double)>& solve,
                        const std::function<void()>& keep, const std::function<void()>& go_back) {
-  double share = 1.0;
+  double fraction = 1.0;
   double step = steps.first;
   int wanted = 1, successes = 0;  // before the step is doubled, and since the last change
   bool doubled = false;
   const auto is_long_enough = [&] {
-    return step >= (share == 1.0 ? std::max(steps.least, steps.least_at_first) : steps.least);
+    return step >= (fraction == 1.0 ? std::max(steps.min, steps.min_at_first) : steps.min);
   };
-  while (share > 0.0 && is_long_enough()) {
-    const double next = std::max(0.0, share - step);
+  while (fraction > 0.0 && is_long_enough()) {
+    const double next = std::max(0.0, fraction - step);
     if (solve(next)) {
-      share = next;
+      fraction = next;
       keep();
       doubled = ++successes >= wanted;
       if (!doubled) continue;
@@ -29,7 +29,7 @@ double take_load_steps(const LoadSteps& steps, const std::function<bool(double)>
     }
     successes = 0;
   }
-  return share;
+  return fraction;
 }
 
 }  // namespace sinew::sim

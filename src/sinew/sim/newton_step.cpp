@@ -189,23 +189,23 @@ NewtonReport NewtonStep::approach(double time_step) {
   go_back();
   world.linearise(part.request);
   world.form_rows(run_.effort, part.curved);
-  world.hold_imbalance(run_.effort);
+  world.keep_homotopy_residual(run_.effort);
   NewtonReport result;
   int iterations = 0;
-  const auto solve = [&](double share) {
+  const auto solve = [&](double fraction) {
     if (iterations == kIterationsInParts) return false;
     part.max_iterations = std::min(part.max_iterations, kIterationsInParts - iterations);
     commands = goal;
-    blend(commands, start, 1.0 - share);
-    world.set_imbalance_share(share);
+    blend(commands, start, 1.0 - fraction);
+    world.set_homotopy_fraction(fraction);
     result = run_.newton(nullptr, part);
     iterations += result.iterations;
     return converged(result);
   };
   take_load_steps(
-      {.first = 0.5, .least = kMinPart, .least_at_first = kMinFirstPart}, solve,
+      {.first = 0.5, .min = kMinPart, .min_at_first = kMinFirstPart}, solve,
       [&] { run_.keep(sound); }, go_back);
-  world.set_imbalance_share(0.0);
+  world.set_homotopy_fraction(0.0);
   commands = goal;
   result.iterations = iterations;
   return result;

@@ -52,7 +52,7 @@ void PathFollower::check() const {
 // A path beside contacts begins at an equilibrium: it needs to know what touches there.
 void PathFollower::settle(PathLoads& loads) {
   if (run_.world.contacts().empty()) return;
-  loads.set_share(0.0);
+  loads.set_fraction(0.0);
   std::vector<step::ActuatorBlock>& blocks = run_.world.problem().actuators;
   const std::vector<step::ActuatorBlock> goal = blocks;
   for (step::ActuatorBlock& block : blocks) {
@@ -104,7 +104,7 @@ std::vector<PathPoint> PathFollower::follow(const std::function<void()>& visit) 
   std::vector<PathPoint> path;
   double length = settings_.first_step * run_.model->size();
   const double longest = settings_.largest_step * run_.model->size();
-  while (step.point().share < 1.0 && static_cast<int>(path.size()) < settings_.max_points) {
+  while (step.point().load_fraction < 1.0 && static_cast<int>(path.size()) < settings_.max_points) {
     int iterations = from_before([&] { return step.take(length); });
     for (int halving = 0; iterations == 0; ++halving) {
       if (halving == kMaxPathHalvings) {
@@ -113,7 +113,7 @@ std::vector<PathPoint> PathFollower::follow(const std::function<void()>& visit) 
             ErrorKind::not_converged, {.item = "path"},
             fmt::format("after {} points, at {:.4g} of the load, even a step of {:.2g} m "
                         "finds no equilibrium",
-                        path.size(), step.point().share, length),
+                        path.size(), step.point().load_fraction, length),
             "begin with a smaller first_step, or disturb the symmetry before a bifurcation");
       }
       length *= 0.5;

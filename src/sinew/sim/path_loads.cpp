@@ -31,15 +31,15 @@ PathLoads::PathLoads(Run& run) : run_(run) {
   }
 }
 
-void PathLoads::set_share(double share) {
+void PathLoads::set_fraction(double fraction) {
   for (std::size_t k = 0; k < loads_.size(); ++k) {
     const auto [from, to] = loads_[k];
-    run_.surroundings.apply(k, from + share * (to - from));
+    run_.surroundings.apply(k, from + fraction * (to - from));
   }
   for (std::size_t i = 0; i < efforts_.size(); ++i) {
     const auto [from, to] = efforts_[i];
     const int row = run_.model->actuators()[i].row;
-    run_.effort[static_cast<std::size_t>(row)] = from + share * (to - from);
+    run_.effort[static_cast<std::size_t>(row)] = from + fraction * (to - from);
   }
 }
 

@@ -14,8 +14,8 @@ class PathLoads {
   /// Reads commands. @param run outlives it. Throws Error(bad-argument) where an actuator is told a
   /// motion or has a drive.
   explicit PathLoads(Run& run);
-  /// Where loads and efforts stand at a share of the way.
-  void set_share(double share);
+  /// Where loads and efforts stand at a fraction of the way.
+  void set_fraction(double fraction);
 
  private:
   struct Stretch {

@@ -76,7 +76,7 @@ HeldAnswer PathPredictor::answer_along(const qp::ComplementaryPath& path,
 }
 
 bool PathPredictor::predict(const HeldAnswer& by_rest, const HeldAnswer& by_load,
-                            const VectorX& before, double length, double most_share,
+                            const VectorX& before, double length, double max_load_fraction,
                             std::span<const double> effort, PathPrediction& result) {
   list(effort);
   qp::ComplementaryPath path = begin(by_load);
@@ -89,14 +89,15 @@ bool PathPredictor::predict(const HeldAnswer& by_rest, const HeldAnswer& by_load
   result = {.answer = by_rest};
   for (std::size_t corners = 0; corners <= kMaxCorners * held_.size(); ++corners) {
     const double left = path.look_ahead();
-    const double full = path.direction() > 0.0 ? most_share - result.share : kInfinity;
+    const double full =
+        path.direction() > 0.0 ? max_load_fraction - result.load_fraction : kInfinity;
     const double by = std::min({left, full, way_until(moved, edge.motion, length)});
     if (!(by < kInfinity)) return false;
     const double whole = length / edge.motion.cwiseAbs().maxCoeff();
     result.origin = moved - (whole - by) * edge.motion;
     path.advance(by);
     moved += by * edge.motion;
-    result.share += by * path.direction();
+    result.load_fraction += by * path.direction();
     result.answer.motion += by * edge.motion;
     result.answer.efforts += by * edge.efforts;
     if (by < left) {

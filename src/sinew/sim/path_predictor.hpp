@@ -13,9 +13,9 @@ namespace sinew::sim {
 
 /// What a step along a path begins with.
 struct PathPrediction {
-  HeldAnswer answer;   ///< of the robot and what holds it
-  VectorX origin;      ///< where a step of this length and direction would have begun
-  double share = 0.0;  ///< of the load, more than before
+  HeldAnswer answer;           ///< of the robot and what holds it
+  VectorX origin;              ///< where a step of this length and direction would have begun
+  double load_fraction = 0.0;  ///< of the load, more than before
 };
 
 /// The robot as it is linearised, T its inverse where joints hold it (HeldMotions), answers a load
@@ -38,10 +38,10 @@ class PathPredictor {
 
   /// @param by_rest,by_load T r and T dr/ds. @param before motion of the last step, the path going
   ///   on there; empty: the path begins as the load grows. @param length m, of the largest motion,
-  ///   and @param most_share of the load, which end a step. @param effort (rows,) N.
+  ///   and @param max_load_fraction of the load, which end a step. @param effort (rows,) N.
   ///   False where the path leads nowhere.
   bool predict(const HeldAnswer& by_rest, const HeldAnswer& by_load, const VectorX& before,
-               double length, double most_share, std::span<const double> effort,
+               double length, double max_load_fraction, std::span<const double> effort,
                PathPrediction& result);
   /// The points that touch where the prediction ends, blocks of the problem, and their forces;
   /// those of the others become zero. @param effort (rows,) N, already moved by the prediction.

@@ -13,8 +13,8 @@ struct PathSettings {
 
 /// An equilibrium on the way to the full load.
 struct PathPoint {
-  double share = 0.0;       ///< of the loads and efforts, 0 at the start, 1 at the end
-  int negative_pivots = 0;  ///< directions in which it is unstable
+  double load_fraction = 0.0;  ///< of the loads and efforts, 0 at the start, 1 at the end
+  int negative_pivots = 0;     ///< directions in which it is unstable
 };
 
 }  // namespace sinew::sim

@@ -25,9 +25,9 @@ constexpr double kDiagonal = 1.75;  // more than the largest coordinate's part o
 
 }  // namespace
 
-// r at a share of the way; the bodies stay linearised there.
-void PathStep::imbalance_at(double share, VectorX& imbalance) {
-  loads_.set_share(share);
+// r at a fraction of the way; the bodies stay linearised there.
+void PathStep::imbalance_at(double load_fraction, VectorX& imbalance) {
+  loads_.set_fraction(load_fraction);
   run_.world.linearise({{}, mechanics::Tangent::exact, true, true});
   run_.world.form_rows(run_.effort, run_.model->curved_constraints());
   run_.world.bodies().imbalance(run_.effort, imbalance);
@@ -93,13 +93,13 @@ bool PathStep::predict(const VectorX& here, const VectorX& ahead, double length)
   motions.solve(ahead - here, still, by_load);
   PathPrediction prediction;
   PathPredictor predictor(run_.world, motions);
-  const double most = run_.world.contacts().empty() ? kInfinity : 1.0 + kBeyond - share_;
+  const double most = run_.world.contacts().empty() ? kInfinity : 1.0 + kBeyond - load_fraction_;
   if (!predictor.predict(by_rest, by_load, direction_, length, most, run_.effort, prediction)) {
     return false;
   }
   moved_.setZero(by_load.motion.size());
   origin_ = prediction.origin;
-  move(prediction.answer.motion, prediction.share);
+  move(prediction.answer.motion, prediction.load_fraction);
   push(motions.rows(), prediction.answer.efforts);
   touching_ = predictor.touch(run_.effort);
   return true;
@@ -125,8 +125,8 @@ bool PathStep::correct(const VectorX& here, const VectorX& ahead) {
   return true;
 }
 
-void PathStep::move(const VectorX& motion, double share) {
-  share_ += share;
+void PathStep::move(const VectorX& motion, double load_fraction) {
+  load_fraction_ += load_fraction;
   moved_ += motion;
   run_.world.bodies().propose_motion(motion);
 }
@@ -158,9 +158,9 @@ bool PathStep::is_sound(double length) {
 bool PathStep::is_path_point() {
   const step::StepProblem& problem = run_.world.problem();
   const double nothing = settings_.tolerance * run_.model->size();
-  if (!run_.world.contacts().empty() && share_ > 1.0 + kFarBeyond) return false;
+  if (!run_.world.contacts().empty() && load_fraction_ > 1.0 + kFarBeyond) return false;
   const double slack = settings_.tolerance * run_.world.bodies().force_scale();
-  bool obeyed = run_.world.contacts().deepest_left_out() <= nothing;
+  bool obeyed = run_.world.contacts().max_penetration_left_out() <= nothing;
   for (const step::ContactBlock& block : problem.contacts) {
     const int row = run_.world.numbering().row_of(block.row);
     Eigen::Map<Vector3> force(&run_.effort[static_cast<std::size_t>(row)]);
@@ -188,8 +188,8 @@ int PathStep::try_length(double length) {
   VectorX here, ahead;
   for (int iteration = 0; iteration <= kMaxIterations; ++iteration) {
     run_.world.contacts().planes().follow_points();
-    imbalance_at(share_ + 1.0, ahead);
-    imbalance_at(share_, here);
+    imbalance_at(load_fraction_ + 1.0, ahead);
+    imbalance_at(load_fraction_, here);
     run_.report.relative_residual = here.norm() / (run_.world.bodies().force_scale() + 1e-300);
     if (iteration > 0) run_.watch.count(run_.report.relative_residual);
     const bool arrived = run_.report.relative_residual <= settings_.tolerance &&
@@ -208,13 +208,13 @@ int PathStep::try_length(double length) {
 // The same, taken back where it failed.
 int PathStep::take(double length) {
   run_.keep(run_.before);
-  const double share_before = share_;
+  const double load_fraction_before = load_fraction_;
   const int iterations = try_length(length);
   if (iterations > 0) {
     direction_ = moved_ - origin_;
   } else {
     run_.restore(run_.before);
-    share_ = share_before;
+    load_fraction_ = load_fraction_before;
   }
   return iterations;
 }

@@ -43,18 +43,18 @@ class PathStep {
   /// 0: it failed, and nothing has moved.
   int take(double length);
   /// Where it stands.
-  PathPoint point() const { return {share_, negative_pivots_}; }
+  PathPoint point() const { return {load_fraction_, negative_pivots_}; }
 
  private:
   int try_length(double length);
   bool predict(const VectorX& here, const VectorX& ahead, double length);
   bool correct(const VectorX& here, const VectorX& ahead);
-  void imbalance_at(double share, VectorX& imbalance);
+  void imbalance_at(double load_fraction, VectorX& imbalance);
   double gap() const;
   std::vector<step::ContactBlock> pressed() const;
   std::vector<step::HeldRow> joints(std::span<const step::ContactBlock> touching) const;
   std::vector<step::HeldRow> joints_and_sticking() const;
-  void move(const VectorX& motion, double share);
+  void move(const VectorX& motion, double load_fraction);
   void push(std::span<const step::HeldRow> held, const VectorX& efforts);
   bool is_sound(double length);
   bool is_path_point();
@@ -63,7 +63,7 @@ class PathStep {
   Run& run_;
   const PathSettings& settings_;
   PathLoads& loads_;
-  double share_ = 0.0;                        // of the way
+  double load_fraction_ = 0.0;                // of the way
   std::vector<step::ContactBlock> touching_;  // of the problem
   VectorX moved_;                             // since the step began
   VectorX origin_;                            // of D, likewise

@@ -199,7 +199,7 @@ void put_contact(const Simulation& simulation, int index, std::span<double> all)
   part(12);
   Numbers position = part(3 * n), gap = part(n), normal = part(3 * n), normal_force = part(n),
           friction_force = part(3 * n), state = part(n), sums = part(8);
-  ContactSum sum;
+  ContactResultant resultant;
   for (std::size_t k = 0; k < n; ++k) {
     const ContactPoint point = simulation.contacts().point(index, k, pose);
     position.put(point.position);
@@ -208,14 +208,14 @@ void put_contact(const Simulation& simulation, int index, std::span<double> all)
     normal_force.put(point.normal_force);
     friction_force.put(point.friction_force);
     state.put(static_cast<double>(point.state));
-    sum.add(point);
+    resultant.add(point);
   }
-  sums.put(sum.force);
-  sums.put(sum.normal_force);
-  sums.put(sum.friction_force);
-  sums.put(sum.smallest_gap);
-  sums.put(sum.sticking);
-  sums.put(sum.slipping);
+  sums.put(resultant.force);
+  sums.put(resultant.normal_force);
+  sums.put(resultant.friction_force);
+  sums.put(resultant.smallest_gap);
+  sums.put(resultant.sticking);
+  sums.put(resultant.slipping);
 }
 
 void add_contacts(Observables& list) {

@@ -19,8 +19,8 @@ void StaticSearch::linearise(const mechanics::StepWeights& weights) {
   run_.world.form_rows(run_.effort, run_.model->curved_constraints());
 }
 
-bool StaticSearch::equilibrate(double share) {
-  run_.world.set_imbalance_share(share);
+bool StaticSearch::equilibrate(double fraction) {
+  run_.world.set_homotopy_fraction(fraction);
   return step({}, settings_.tolerance, settings_.max_iterations);
 }
 

@@ -26,8 +26,8 @@ class StaticSearch {
   void begin();
   /// There. @param weights of inertia; none at rest.
   void linearise(const mechanics::StepWeights& weights);
-  /// Whether Newton ends in an equilibrium. @param share of the imbalance that the world holds.
-  bool equilibrate(double share);
+  /// Whether Newton ends in an equilibrium. @param fraction of the residual that the world keeps.
+  bool equilibrate(double fraction);
   /// Whether it ends an overdamped step. @param weights of inertia. @param tolerance of residual
   /// and motion. @param max_iterations of Newton.
   bool step(const mechanics::StepWeights& weights, double tolerance, int max_iterations);

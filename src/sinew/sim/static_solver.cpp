@@ -107,55 +107,55 @@ void StaticSolver::read_goal() {
   run_.solver.begin_step();
 }
 
-// Commands on the way from where the actuators stand (share 1) to where they are told to be (0).
-void StaticSolver::blend(double share) {
+// Commands on the way from where the actuators stand (fraction 1) to where they are told to be (0).
+void StaticSolver::blend(double fraction) {
   run_.world.problem().actuators = goal_;
-  sim::blend(run_.world.problem().actuators, start_, 1.0 - share);
+  sim::blend(run_.world.problem().actuators, start_, 1.0 - fraction);
 }
 
 // Load steps, then overdamped motion.
 void StaticSolver::approach() {
-  const double share = step_load();
-  if (share == 0.0) return;
-  const std::string known = describe(share);
+  const double fraction = step_load();
+  if (fraction == 0.0) return;
+  const std::string known = describe(fraction);
   blend(0.0);
-  run_.world.set_imbalance_share(0.0);
+  run_.world.set_homotopy_fraction(0.0);
   if (!limit_point_ && motion_.relax_from_here()) return;
   fail_to_find(known);
 }
 
-// The share of the imbalance that is left at the end.
+// The fraction of the imbalance that is left at the end.
 double StaticSolver::step_load() {
   run_.watch.enter(SearchStage::parts);
   run_.restore(run_.before);
   search_.linearise({});
-  run_.world.hold_imbalance(run_.effort);
+  run_.world.keep_homotopy_residual(run_.effort);
   State sound = run_.before;  // of the last equilibrium
   report_.load_steps = 0;
-  const auto solve = [&](double share) {
-    blend(share);
-    return search_.equilibrate(share);
+  const auto solve = [&](double fraction) {
+    blend(fraction);
+    return search_.equilibrate(fraction);
   };
   const auto keep = [&] {
     ++report_.load_steps;
     run_.keep(sound);
   };
-  return take_load_steps({.least = 1.0 / settings_.max_load_steps}, solve, keep,
+  return take_load_steps({.min = 1.0 / settings_.max_load_steps}, solve, keep,
                          [&] { run_.restore(sound); });
 }
 
 // What is known of the last equilibrium on the way, where the world is.
-std::string StaticSolver::describe(double share) {
+std::string StaticSolver::describe(double fraction) {
   search_.begin();
-  run_.world.set_imbalance_share(share);
+  run_.world.set_homotopy_fraction(fraction);
   search_.linearise({});
   if (run_.world.condense() == linalg::FactorStatus::singular) {
     return "the exact tangent of the last equilibrium on the way is singular";
   }
   std::string limit = describe_limit_point();
-  if (!limit.empty() || share == 1.0) return limit;
+  if (!limit.empty() || fraction == 1.0) return limit;
   const int negative = Stability(run_.world, run_.effort).negative_pivots();
-  const double percent = 100.0 * (1.0 - share);
+  const double percent = 100.0 * (1.0 - fraction);
   if (negative == 0) {
     return fmt::format("the last equilibrium on the way, at {:.3g} % of the load, is stable",
                        percent);

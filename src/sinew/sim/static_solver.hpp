@@ -38,8 +38,8 @@ class StaticSolver {
   void read_goal();
   void approach();
   double step_load();
-  void blend(double share);
-  std::string describe(double share);
+  void blend(double fraction);
+  std::string describe(double fraction);
   std::string describe_limit_point();
   [[noreturn]] void fail_to_find(const std::string& known);
   void follow_surfaces();

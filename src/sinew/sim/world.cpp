@@ -140,13 +140,13 @@ void World::hold_friction() {
   joints_.form_blocks(delta, std::span(problem_.actuators).subspan(model_->actuators().size()));
 }
 
-void World::hold_imbalance(std::span<const double> effort) {
-  bodies_.imbalance(effort, imbalance_);
+void World::keep_homotopy_residual(std::span<const double> effort) {
+  bodies_.imbalance(effort, homotopy_residual_);
 }
 
-void World::set_imbalance_share(double share) {
-  if (share == 0.0) return bodies_.lessen({});
-  lessened_ = share * imbalance_;
+void World::set_homotopy_fraction(double fraction) {
+  if (fraction == 0.0) return bodies_.lessen({});
+  lessened_ = fraction * homotopy_residual_;
   bodies_.lessen({lessened_.data(), static_cast<std::size_t>(lessened_.size())});
 }
 
@@ -211,7 +211,7 @@ void World::form_compliance() {
 
 double World::violation(std::span<const double> effort, step::LawStatus law) {
   numbering_.gather(effort, scratch_);
-  return std::max(step::violation(problem_, scratch_, law), contacts_.deepest_left_out());
+  return std::max(step::violation(problem_, scratch_, law), contacts_.max_penetration_left_out());
 }
 
 void World::restart() {

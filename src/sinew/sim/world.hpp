@@ -61,10 +61,10 @@ class World {
   step::LawStatus solve_step(step::StepSolver& solver, step::Controller* controller,
                              std::span<double> effort, StageClock& clock);
 
-  /// For load stepping: remembers b + H^T effort of the current linearisation. From the next one
-  /// on, b is lessened by `share` of it; 0 ends that.
-  void hold_imbalance(std::span<const double> effort);
-  void set_imbalance_share(double share);
+  /// For load stepping: keeps b + H^T effort of the current linearisation.
+  void keep_homotopy_residual(std::span<const double> effort);
+  /// From the next linearisation on, b is lessened by this fraction of what was kept; 0 ends that.
+  void set_homotopy_fraction(double fraction);
   /// Of all bodies, at the last condensation.
   const mechanics::Inertia& inertia() const { return inertia_; }
   /// Whether the robot is stable with its drives and held rows, as far as its linearisation tells.
@@ -123,7 +123,7 @@ class World {
   ContactRows contacts_;
   GeometricStiffness stiffness_;
   mechanics::Inertia inertia_;
-  VectorX imbalance_, lessened_;           // (all bodies' size(),) N, of load stepping
+  VectorX homotopy_residual_, lessened_;   // (all bodies' size(),) N, of load stepping
   std::vector<double> effort_before_;      // (rows,) N, of the last step or iteration
   linalg::AlignedNumbers problem_effort_;  // (rows of the problem,) N, of the last solution
   linalg::AlignedNumbers scratch_;         // (rows of the problem,)
