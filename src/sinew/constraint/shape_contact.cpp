@@ -294,7 +294,7 @@ void ShapeContact::prepare(mechanics::RowValues& values) {
   for (auto* numbers : {&values.arm, &values.lever, &values.watched_start}) {
     numbers->resize(values.direction.size(), Vector3::Zero());
   }
-  values.start.resize(values.present.size(), Vector3::Zero());
+  values.start.resize(values.active.size(), Vector3::Zero());
 }
 
 namespace {

@@ -66,7 +66,7 @@ void DenseStep::take_surface_rows(const RowValues& rows) {
   surface_rows_.clear();
   auto before = surface_rows_before_.begin();
   for (const OwnRows::SurfaceEntry& entry : own_.surface) {
-    if (rows.present[static_cast<std::size_t>(entry.row)] == 0) continue;
+    if (rows.active[static_cast<std::size_t>(entry.row)] == 0) continue;
     const auto at = static_cast<std::size_t>(entry.entry);
     while (before != surface_rows_before_.end() && before->row < entry.row) ++before;
     const bool known = before != surface_rows_before_.end() && before->row == entry.row;

@@ -12,9 +12,8 @@
 namespace sinew::mechanics {
 
 /// A is dense and may be unsymmetric. Rows on sites that stay are all taken, also those that are
-/// left out elsewhere; of those on the body's surface, the ones that are present. What the body's
-/// equation is, how its sites move, and what a motion does to its state is said by those who derive
-/// from it.
+/// left out elsewhere; of those on the body's surface, the active ones. What the body's equation
+/// is, how its sites move, and what a motion does to its state is said by those who derive from it.
 class DenseStep : public StepSystem {
  public:
   void linearise(const LinearisationRequest& request) final;
@@ -69,7 +68,7 @@ class DenseStep : public StepSystem {
     Patch patch;
     double effort = 0.0;  // N, as known last in this step
   };
-  /// Those present, ascending.
+  /// The active ones, ascending.
   const std::vector<SurfaceRow>& surface_rows() const { return surface_rows_; }
   /// When a step begins, since their points are found anew.
   void forget_surface_rows() { surface_rows_.clear(); }

@@ -81,26 +81,26 @@ double ContactRows::reach(double time_step, double reach) const {
 }
 
 // A function of the state alone, so that a run goes on from a saved one bit for bit.
-void ContactRows::choose_present(std::span<const double> effort, double time_step, double reach) {
+void ContactRows::choose_active(std::span<const double> effort, double time_step, double reach) {
   left_out_ = false;
   rounds_left_ = kMaxRounds;
   const double near = std::max(kTaken * model_.size(), reach);
   for_each_point(true, [&](const constraint::Contact& contact, std::size_t k) {
     const int row = contact.row(k);
-    set_present(row, is_closed(row));
+    set_active(row, is_closed(row));
     if (is_closed(row)) planes_.keep_gap(row);
   });
   for_each_point(false, [&](const constraint::Contact& contact, std::size_t k) {
     const mechanics::BodyModel& body = model_.body(contact.body());
     const int row = contact.row(k);
-    if (contact.idle(k, rows_)) return set_present(row, false);
+    if (contact.idle(k, rows_)) return set_active(row, false);
     const Vector3 velocity = contact.velocity_beside(placement_, k, rows_);
     const double arrives =
         planes_.start()[row] + time_step * rows_.direction[contact.entry(k)].dot(velocity);
-    const bool present = !body.leaves_rows_out() || effort[static_cast<std::size_t>(row)] > 0.0 ||
-                         std::min(rows_.reference[row], arrives) <= near;
-    set_present(row, present);
-    left_out_ |= !present;
+    const bool active = !body.leaves_rows_out() || effort[static_cast<std::size_t>(row)] > 0.0 ||
+                        std::min(rows_.reference[row], arrives) <= near;
+    set_active(row, active);
+    left_out_ |= !active;
   });
   std::ranges::transform(effort, touched_.begin(), [](double r) { return r > 0.0 ? 1 : 0; });
 }
@@ -108,19 +108,19 @@ void ContactRows::choose_present(std::span<const double> effort, double time_ste
 void ContactRows::take_all() {
   left_out_ = false;
   for_each_point([&](const constraint::Contact& contact, std::size_t k) {
-    set_present(contact.row(k), !contact.idle(k, rows_));
+    set_active(contact.row(k), !contact.idle(k, rows_));
   });
 }
 
 void ContactRows::take_closed() {
   left_out_ = false;
   for_each_point([&](const constraint::Contact& contact, std::size_t k) {
-    set_present(contact.row(k), is_closed(contact.row(k)));
+    set_active(contact.row(k), is_closed(contact.row(k)));
   });
 }
 
-void ContactRows::set_present(int row, bool present) {
-  std::fill_n(rows_.present.begin() + row, 3, static_cast<char>(present));
+void ContactRows::set_active(int row, bool active) {
+  std::fill_n(rows_.active.begin() + row, 3, static_cast<char>(active));
 }
 
 void ContactRows::list(const RowNumbering& numbering,
@@ -152,7 +152,7 @@ bool ContactRows::correct_shape(std::size_t number, const step::StepProblem& pro
   bool found = false;
   for (std::size_t k = 0; k < contact.size(); ++k) {
     const int row = contact.row(k), place = numbering.place_of(row);
-    if (rows_.present[static_cast<std::size_t>(row)] == 0) {
+    if (rows_.active[static_cast<std::size_t>(row)] == 0) {
       found = (!strikes(number) && take_in(contact, k, pose)) || found;
     } else if (may_turn && effort[static_cast<std::size_t>(place)] > 0.0) {
       found = planes_.follow_way(contact, k, free_motion(problem, effort, place), pose) || found;
@@ -175,7 +175,7 @@ bool ContactRows::take_in(const constraint::ShapeContact& contact, std::size_t p
   if (contact.curved() && planes_.may_turn() && !planes_.turn_to(contact, point, end, pose)) {
     return false;
   }
-  set_present(contact.row(point), true);
+  set_active(contact.row(point), true);
   return true;
 }
 
@@ -186,15 +186,15 @@ bool ContactRows::correct_surfaces(TouchingSurfaces& touching) {
   touching.propose(systems_);
   for (std::size_t k = 0; k < touching.count(); ++k) {
     const int row = touching.contact().row(k);
-    if (rows_.present[static_cast<std::size_t>(row)] != 0) continue;
+    if (rows_.active[static_cast<std::size_t>(row)] != 0) continue;
     if (!(touching.proposed_gap(k) < 0.0)) continue;
-    set_present(row, true);
+    set_active(row, true);
     found = true;
   }
   const std::size_t known = touching.count();
   if (!found && touching.add_overlaps()) {
     for (std::size_t k = known; k < touching.count(); ++k) {
-      set_present(touching.contact().row(k), true);
+      set_active(touching.contact().row(k), true);
       planes_.begin_point(touching.contact().row(k));
     }
     found = true;
@@ -241,7 +241,7 @@ double ContactRows::deepest_left_out() const {
   if (!left_out_) return deepest;
   for_each_point(false, [&](const constraint::Contact& contact, std::size_t k) {
     const int row = contact.row(k);
-    if (rows_.present[static_cast<std::size_t>(row)] != 0) return;
+    if (rows_.active[static_cast<std::size_t>(row)] != 0) return;
     deepest = std::max(deepest, -rows_.delta[row]);
   });
   return deepest;

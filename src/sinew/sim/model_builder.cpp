@@ -118,7 +118,7 @@ int ModelBuilder::add_probe(const ProbeSettings& settings) {
 std::shared_ptr<const Model> ModelBuilder::build(const linalg::FactorisationSettings& settings) {
   hold_bodies(data_, places_);
   add_couplings(data_);
-  // Rows that come and go stand behind all others, which keep their numbers in a step's problem.
+  // Transient rows stand behind all others, which keep their numbers in a step's problem.
   for (const ContactModel& contact : data_.contacts) {
     data_.constraint(contact.constraint).declare(data_.rows, data_.curvatures);
   }

@@ -4,11 +4,11 @@
 
 namespace sinew::sim {
 
-void RowNumbering::number(std::span<const char> present) {
+void RowNumbering::number(std::span<const char> active) {
   rows_.clear();
-  places_.assign(present.size(), -1);
+  places_.assign(active.size(), -1);
   for (std::size_t row = 0; row < places_.size(); ++row) {
-    if (present[row] == 0) continue;
+    if (active[row] == 0) continue;
     places_[row] = static_cast<int>(rows_.size());
     rows_.push_back(static_cast<int>(row));
   }

@@ -14,8 +14,8 @@ namespace sinew::sim {
 /// out of the step. Contacts stand behind all others, whose numbers are therefore the same in both.
 class RowNumbering {
  public:
-  /// @param present (rows,) see mechanics::RowValues.
-  void number(std::span<const char> present);
+  /// @param active (rows,) see mechanics::RowValues.
+  void number(std::span<const char> active);
 
   /// The model's row that a row of the problem is.
   int row_of(int row) const { return rows_[static_cast<std::size_t>(row)]; }

@@ -65,7 +65,7 @@ void World::begin_step(double from, double to, std::span<double> effort, double 
   if (!contacts_.empty()) {
     contacts_.planes().find_points(contacts_.reach(to - from, reach), effort);
     place_contacts(from, to);
-    contacts_.choose_present(effort, to - from, reach);
+    contacts_.choose_active(effort, to - from, reach);
     number_rows();
   }
   bodies_.begin_step();
@@ -197,7 +197,7 @@ bool World::correct_contacts() {
 
 // The problem's rows and its contacts: points that are left out have none.
 void World::number_rows() {
-  numbering_.number(rows_.present);
+  numbering_.number(rows_.active);
   problem_.contacts.clear();
   contacts_.list(numbering_, problem_.contacts);
   numbering_.gather(rows_.delta, problem_.delta);
