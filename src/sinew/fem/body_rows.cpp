@@ -129,26 +129,30 @@ void BodyRows::add_forces(std::span<const double> effort, const SystemNumbers& n
   });
 }
 
-void BodyRows::add_compliance(std::span<const int> place, const SystemNumbers& numbers,
+void BodyRows::add_compliance(std::span<const int> problem_row, const SystemNumbers& numbers,
                               MatrixX& compliance, VectorX& free_motion) const {
   const MatrixX& own = numbers.factorisation->compliance();
   const VectorX& motion = numbers.factorisation->free_motion();
   const std::span<const std::int32_t> rows(model_.rows());
   const std::size_t fixed = model_.fixed_rows();
-  const auto place_of = [&](std::size_t i) { return place[static_cast<std::size_t>(rows[i])]; };
+  const auto problem_row_of = [&](std::size_t i) {
+    return problem_row[static_cast<std::size_t>(rows[i])];
+  };
   for (std::size_t j = 0; j < fixed; ++j) {
     const auto column = static_cast<Eigen::Index>(j);
-    const int to = place_of(j);
+    const int to = problem_row_of(j);
     free_motion[to] += motion[column];
     for (std::size_t i = 0; i < fixed; ++i) {
-      compliance(place_of(i), to) += own(static_cast<Eigen::Index>(i), column);
+      compliance(problem_row_of(i), to) += own(static_cast<Eigen::Index>(i), column);
     }
   }
-  if (!transient_world_.empty()) add_transient_compliance(place, numbers, compliance, free_motion);
+  if (!transient_world_.empty())
+    add_transient_compliance(problem_row, numbers, compliance, free_motion);
 }
 
-void BodyRows::add_transient_compliance(std::span<const int> place, const SystemNumbers& numbers,
-                                        MatrixX& compliance, VectorX& free_motion) const {
+void BodyRows::add_transient_compliance(std::span<const int> problem_row,
+                                        const SystemNumbers& numbers, MatrixX& compliance,
+                                        VectorX& free_motion) const {
   linalg::Factorisation& factor = *numbers.factorisation;
   factor.condense_transient(transient_, transient_values_);
   const MatrixX& own = factor.transient_compliance();
@@ -157,7 +161,7 @@ void BodyRows::add_transient_compliance(std::span<const int> place, const System
   const std::size_t fixed = model_.fixed_rows();
   const auto row_of = [&](Eigen::Index k) {
     const std::int32_t first = transient_world_[static_cast<std::size_t>(k / 3)];
-    return place[static_cast<std::size_t>(first + k % 3)];
+    return problem_row[static_cast<std::size_t>(first + k % 3)];
   };
   const auto count = 3 * static_cast<Eigen::Index>(transient_world_.size());
   for (Eigen::Index j = 0; j < count; ++j) {
@@ -165,7 +169,7 @@ void BodyRows::add_transient_compliance(std::span<const int> place, const System
     free_motion[column] += coupling(j, static_cast<Eigen::Index>(fixed));
     for (std::size_t i = 0; i < fixed; ++i) {
       const double value = coupling(j, static_cast<Eigen::Index>(i));
-      const int to = place[static_cast<std::size_t>(rows[i])];
+      const int to = problem_row[static_cast<std::size_t>(rows[i])];
       compliance(to, column) += value;
       compliance(column, to) += value;
     }

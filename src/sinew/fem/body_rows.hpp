@@ -30,8 +30,8 @@ class BodyRows {
   void add_forces(std::span<const double> effort, const SystemNumbers& numbers,
                   Points& forces) const;
   /// See mechanics::StepSystem.
-  void add_compliance(std::span<const int> place, const SystemNumbers& numbers, MatrixX& compliance,
-                      VectorX& free_motion) const;
+  void add_compliance(std::span<const int> problem_row, const SystemNumbers& numbers,
+                      MatrixX& compliance, VectorX& free_motion) const;
   /// Of the rows that are always there, as the factorisation counts them.
   std::span<const double> fixed_effort(std::span<const double> effort);
 
@@ -40,7 +40,7 @@ class BodyRows {
   void each_entry(std::span<const double> effort, const SystemNumbers& numbers, Add add) const;
   template <typename Visit>
   void each_node(std::int32_t entry, const mechanics::RowValues& rows, Visit visit) const;
-  void add_transient_compliance(std::span<const int> place, const SystemNumbers& numbers,
+  void add_transient_compliance(std::span<const int> problem_row, const SystemNumbers& numbers,
                                 MatrixX& compliance, VectorX& free_motion) const;
   void take_transient(const mechanics::RowValues& rows);
   void add_group(std::int32_t row, const mechanics::RowValues& rows);

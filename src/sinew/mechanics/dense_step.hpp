@@ -21,7 +21,7 @@ class DenseStep : public StepSystem {
   void take_rows(const RowValues& rows) final;
   void retake_rows(const RowValues& rows) final;
   Inertia condense() final;
-  void add_compliance(std::span<const int> place, MatrixX& compliance,
+  void add_compliance(std::span<const int> problem_row, MatrixX& compliance,
                       VectorX& free_motion) const final;
 
   std::size_t size() const final { return static_cast<std::size_t>(motion_.size()); }
@@ -105,11 +105,11 @@ class DenseStep : public StepSystem {
   MatrixX soft_rows_;          // the same of the symmetric part of A
   VectorX free_motion_, effort_;
   // Of the columns that are in a step's problem: which, and where there.
-  struct Place {
+  struct ProblemRow {
     Eigen::Index column;
-    int place;
+    int row;
   };
-  mutable std::vector<Place> places_;
+  mutable std::vector<ProblemRow> problem_rows_;
   double force_scale_ = 1.0;
 };
 

@@ -74,9 +74,9 @@ mechanics::Inertia Bodies::condense() {
   return whole;
 }
 
-void Bodies::add_compliance(std::span<const int> place, MatrixX& compliance,
+void Bodies::add_compliance(std::span<const int> problem_row, MatrixX& compliance,
                             VectorX& free_motion) const {
-  for (const auto* system : systems_) system->add_compliance(place, compliance, free_motion);
+  for (const auto* system : systems_) system->add_compliance(problem_row, compliance, free_motion);
 }
 
 double Bodies::residual(std::span<const double> effort) {

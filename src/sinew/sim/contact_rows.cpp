@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sinew/constraint/placement.hpp"
+#include "sinew/constraint/configuration.hpp"
 #include "sinew/constraint/shape_contact.hpp"
 #include "sinew/constraint/surface_contact.hpp"
 #include "sinew/mechanics/body_model.hpp"
@@ -28,23 +28,24 @@ constexpr int kMaxRounds = 20;
 
 // The rows of a point without its own force.
 Vector3 free_motion(const step::StepProblem& problem, const linalg::AlignedNumbers& effort,
-                    int place) {
+                    int problem_row) {
   const Eigen::Map<const VectorX, Eigen::AlignedMax> lambda(
       effort.data(), static_cast<Eigen::Index>(effort.size()));
-  return problem.delta_free.segment<3>(place) + problem.compliance.middleRows<3>(place) * lambda -
-         problem.compliance.block<3, 3>(place, place) * lambda.segment<3>(place);
+  return problem.delta_free.segment<3>(problem_row) +
+         problem.compliance.middleRows<3>(problem_row) * lambda -
+         problem.compliance.block<3, 3>(problem_row, problem_row) * lambda.segment<3>(problem_row);
 }
 
 }  // namespace
 
-ContactRows::ContactRows(const Model& model, const constraint::Placement& placement,
+ContactRows::ContactRows(const Model& model, const constraint::Configuration& configuration,
                          std::span<mechanics::StepSystem* const> systems,
                          mechanics::RowValues& rows, ThreadPool& pool)
     : model_(model),
-      placement_(placement),
+      configuration_(configuration),
       systems_(systems),
       rows_(rows),
-      planes_(model, placement, rows, pool),
+      planes_(model, configuration, rows, pool),
       touched_(static_cast<std::size_t>(model.rows().rows()), 0),
       closed_(touched_) {
   for (const ContactModel& contact : model.contacts()) strikes_.push_back(contact.strikes ? 1 : 0);
@@ -72,7 +73,7 @@ double ContactRows::reach(double time_step, double reach) const {
   double fastest = 0.0;
   for (const auto& touching : planes_.surfaces()) {
     for (const int body : {touching->contact().body(), touching->contact().other_body()}) {
-      const Points& rates = placement_.surface_node_velocities(body);
+      const Points& rates = configuration_.surface_node_velocities(body);
       fastest = std::max(fastest, rates.rowwise().squaredNorm().maxCoeff());
     }
   }
@@ -94,7 +95,7 @@ void ContactRows::choose_active(std::span<const double> effort, double time_step
     const mechanics::BodyModel& body = model_.body(contact.body());
     const int row = contact.row(k);
     if (contact.idle(k, rows_)) return set_active(row, false);
-    const Vector3 velocity = contact.velocity_beside(placement_, k, rows_);
+    const Vector3 velocity = contact.velocity_beside(configuration_, k, rows_);
     const double arrives =
         planes_.start()[row] + time_step * rows_.direction[contact.entry(k)].dot(velocity);
     const bool active = !body.leaves_rows_out() || effort[static_cast<std::size_t>(row)] > 0.0 ||
@@ -126,8 +127,8 @@ void ContactRows::set_active(int row, bool active) {
 void ContactRows::list(const RowNumbering& numbering,
                        std::vector<step::ContactBlock>& blocks) const {
   for_each_point([&](const constraint::Contact& contact, std::size_t k) {
-    const int place = numbering.place_of(contact.row(k));
-    if (place >= 0) blocks.push_back({place, contact.friction()});
+    const int problem_row = numbering.problem_row_of(contact.row(k));
+    if (problem_row >= 0) blocks.push_back({problem_row, contact.friction()});
   });
 }
 
@@ -151,11 +152,12 @@ bool ContactRows::correct_shape(std::size_t number, const step::StepProblem& pro
   const bool may_turn = contact.curved() && planes_.may_turn();
   bool found = false;
   for (std::size_t k = 0; k < contact.size(); ++k) {
-    const int row = contact.row(k), place = numbering.place_of(row);
+    const int row = contact.row(k), problem_row = numbering.problem_row_of(row);
     if (rows_.active[static_cast<std::size_t>(row)] == 0) {
       found = (!strikes(number) && take_in(contact, k, pose)) || found;
-    } else if (may_turn && effort[static_cast<std::size_t>(place)] > 0.0) {
-      found = planes_.follow_way(contact, k, free_motion(problem, effort, place), pose) || found;
+    } else if (may_turn && effort[static_cast<std::size_t>(problem_row)] > 0.0) {
+      found =
+          planes_.follow_way(contact, k, free_motion(problem, effort, problem_row), pose) || found;
     }
   }
   return found;
@@ -169,7 +171,7 @@ bool ContactRows::take_in(const constraint::ShapeContact& contact, std::size_t p
   const auto motion = [&](const mechanics::Site& site) {
     return systems_[static_cast<std::size_t>(site.body)]->proposed_motion(site.number);
   };
-  const Vector3 end = contact.position_beside(placement_, point, rows_) +
+  const Vector3 end = contact.position_beside(configuration_, point, rows_) +
                       contact.relative_motion(point, rows_, motion);
   if (contact.row_values(point, end, rows_)[0] >= 0.0) return false;
   if (contact.curved() && planes_.may_turn() && !planes_.turn_to(contact, point, end, pose)) {
@@ -231,7 +233,7 @@ double ContactRows::deepest_free_point(std::span<const double> effort) const {
     const int row = contact.row(k);
     if (effort[static_cast<std::size_t>(row)] > 0.0) return;
     if (contact.idle(k, rows_)) return;
-    deepest = std::max(deepest, -contact.linear_gap(placement_, k, rows_));
+    deepest = std::max(deepest, -contact.linear_gap(configuration_, k, rows_));
   });
   return deepest;
 }

@@ -27,7 +27,7 @@ class RowNumbering;
 class ContactRows {
  public:
   /// All must outlive it. @param systems of the bodies. @param rows whose contacts it looks after.
-  ContactRows(const Model& model, const constraint::Placement& placement,
+  ContactRows(const Model& model, const constraint::Configuration& configuration,
               std::span<mechanics::StepSystem* const> systems, mechanics::RowValues& rows,
               ThreadPool& pool);
 
@@ -94,7 +94,7 @@ class ContactRows {
   bool correct_surfaces(TouchingSurfaces& touching);
 
   const Model& model_;
-  const constraint::Placement& placement_;
+  const constraint::Configuration& configuration_;
   std::span<mechanics::StepSystem* const> systems_;
   mechanics::RowValues& rows_;
   ContactPlanes planes_;

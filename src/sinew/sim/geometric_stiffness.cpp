@@ -10,11 +10,12 @@
 
 namespace sinew::sim {
 
-GeometricStiffness::GeometricStiffness(const Model& model, const constraint::Placement& placement,
+GeometricStiffness::GeometricStiffness(const Model& model,
+                                       const constraint::Configuration& configuration,
                                        std::span<mechanics::StepSystem* const> systems,
                                        step::StepProblem& problem)
     : model_(model),
-      placement_(placement),
+      configuration_(configuration),
       systems_(systems),
       problem_(problem),
       curvatures_(model.curvatures()),
@@ -62,7 +63,7 @@ void GeometricStiffness::add_curvature(const constraint::Constraint& constraint)
   const auto own = effort.subspan(static_cast<std::size_t>(constraint.first_row()),
                                   static_cast<std::size_t>(constraint.row_count()));
   if (std::ranges::all_of(own, [](double lambda) { return lambda == 0.0; })) return;
-  constraint.curve(placement_, effort, pairs);
+  constraint.curve(configuration_, effort, pairs);
   const bool exact = tangent_ == mechanics::Tangent::exact || constraint.stiffens(effort);
   for (const auto& pair : pairs) {
     if (exact && pair.first.body == pair.second.body) {

@@ -11,7 +11,7 @@
 
 namespace sinew::constraint {
 class Constraint;
-class Placement;
+class Configuration;
 }  // namespace sinew::constraint
 namespace sinew::mechanics {
 struct LinearisationRequest;
@@ -32,7 +32,7 @@ class GeometricStiffness {
  public:
   /// All must outlive it. @param systems of the bodies. @param problem gets the blocks of stiffness
   /// of anchors and couplings.
-  GeometricStiffness(const Model& model, const constraint::Placement& placement,
+  GeometricStiffness(const Model& model, const constraint::Configuration& configuration,
                      std::span<mechanics::StepSystem* const> systems, step::StepProblem& problem);
 
   /// Before the bodies linearise: anchors stand in statics alone.
@@ -54,7 +54,7 @@ class GeometricStiffness {
   void add_anchors();
 
   const Model& model_;
-  const constraint::Placement& placement_;
+  const constraint::Configuration& configuration_;
   std::span<mechanics::StepSystem* const> systems_;
   step::StepProblem& problem_;
   std::vector<mechanics::RowCurvature> curvatures_;

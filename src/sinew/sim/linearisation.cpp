@@ -137,7 +137,7 @@ Linearisation linearise_here(Simulation& simulation, const LinearisationChoice& 
   result.delta.resize(count);
   result.effort.resize(count);
   for (Eigen::Index k = 0; k < count; ++k) {
-    const auto row = static_cast<std::size_t>(numbering.row_of(static_cast<int>(k)));
+    const auto row = static_cast<std::size_t>(numbering.model_row_of(static_cast<int>(k)));
     result.delta[k] = world.delta()[static_cast<Eigen::Index>(row)];
     result.effort[k] = simulation.efforts()[row];
     if (!names[row].empty()) result.rows.push_back(names[row]);

@@ -72,7 +72,7 @@ void NewtonStep::solve(double time_step) {
   if (converged(result) || (!run_.model->step().dynamic() && is_usable(result))) return;
   if (result.status == NewtonStatus::law_failed) fail_law(run_);
   const std::string folded =
-      describe_folded_cable(*run_.model, run_.world.placement(), run_.effort);
+      describe_folded_cable(*run_.model, run_.world.configuration(), run_.effort);
   fail(run_, ErrorKind::not_converged,
        fmt::format("Newton ended as '{}' after {} iterations, relative residual {:.3g}{}",
                    newton_status_name(result.status), result.iterations, result.relative_residual,
