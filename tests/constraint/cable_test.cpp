@@ -77,7 +77,7 @@ TEST_F(BentCable, CurvatureIsTheDerivativeOfTheDirections) {
   std::vector<mechanics::RowCurvature> pairs(
       model_->curvatures().begin(), model_->curvatures().begin() + cable().curvature_count());
   const std::vector<double> effort{1.0};
-  cable().curve(simulation_.configuration(), effort, pairs);
+  cable().geometric_stiffness(simulation_.configuration(), effort, pairs);
   const Points middle = cable().points(simulation_.configuration());
   shift(t);
   const Points after = cable().points(simulation_.configuration());
@@ -151,7 +151,7 @@ TEST(CableFriction, RowsAndCurvatureAgreeWithDifferences) {
   }
   std::vector<mechanics::RowCurvature> pairs(model->curvatures().begin(),
                                              model->curvatures().begin() + cable.curvature_count());
-  cable.curve(simulation.configuration(), effort, pairs);
+  cable.geometric_stiffness(simulation.configuration(), effort, pairs);
   for (const auto& pair : pairs) {
     const int a = pair.first.number - first_point, b = pair.second.number - first_point;
     expected.row(a) += (pair.curvature * rates.row(b).transpose()).transpose();

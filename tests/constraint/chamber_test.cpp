@@ -110,7 +110,7 @@ TEST_P(ChamberTest, CurvatureIsTheDerivativeOfTheDirections) {
   distort(1e-3);
   auto pairs = simulation_.model().curvatures();
   const std::vector<double> effort{1.0};
-  held_chamber().curve(simulation_.configuration(), effort, pairs);
+  held_chamber().geometric_stiffness(simulation_.configuration(), effort, pairs);
   const auto& points = held_chamber().material_points();
   const auto index = [&](const mechanics::MaterialPoint& wanted) {
     std::size_t k = 0;
@@ -137,8 +137,8 @@ TEST_P(ChamberTest, CurvatureIsTheDerivativeOfTheDirections) {
 }
 
 TEST_P(ChamberTest, LoadStiffnessOfAClosedSurfaceNeedsNoWiderPattern) {
-  EXPECT_FALSE(simulation_.model().stiffening_widens());
-  EXPECT_EQ(simulation_.model().stiffening_constraints().size(), 1U);
+  EXPECT_FALSE(simulation_.model().geometric_stiffness().extends_pattern);
+  EXPECT_EQ(simulation_.model().geometric_stiffness().in_steps.size(), 1U);
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, ChamberTest,

@@ -129,8 +129,8 @@ void Cable::linearise_friction(const Configuration& configuration,
   }
 }
 
-void Cable::curve(const Configuration& configuration, std::span<const double> effort,
-                  std::span<mechanics::RowCurvature> curvatures) const {
+void Cable::geometric_stiffness(const Configuration& configuration, std::span<const double> effort,
+                                std::span<mechanics::RowCurvature> curvatures) const {
   const int skip = pull_point_ ? 1 : 0;
   for (auto& entry : curvatures) entry.curvature.setZero();
   const double* lambda = effort.data() + first_row_;

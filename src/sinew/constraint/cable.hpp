@@ -40,8 +40,8 @@ class Cable : public Constraint {
   void declare(mechanics::RowPattern& rows,
                std::vector<mechanics::RowCurvature>& curvatures) override;
   void linearise(const Configuration& configuration, mechanics::RowValues& values) const override;
-  void curve(const Configuration& configuration, std::span<const double> effort,
-             std::span<mechanics::RowCurvature> curvatures) const override;
+  void geometric_stiffness(const Configuration& configuration, std::span<const double> effort,
+                           std::span<mechanics::RowCurvature> curvatures) const override;
 
   /// While every segment is under tension.
   void add_to(ValueHash& hash) const override { hash.add(pull_point_, rest_length_, friction_); }

@@ -188,8 +188,9 @@ void Chamber::linearise(const Configuration& configuration, mechanics::RowValues
   values.delta[first_row_] = volume - rest_volume_;
 }
 
-void Chamber::curve(const Configuration& configuration, std::span<const double> effort,
-                    std::span<mechanics::RowCurvature> curvatures) const {
+void Chamber::geometric_stiffness(const Configuration& configuration,
+                                  std::span<const double> effort,
+                                  std::span<mechanics::RowCurvature> curvatures) const {
   for (auto& entry : curvatures) entry.curvature.setZero();
   const double pressure = effort[static_cast<std::size_t>(first_row_)];
   const Vector3 origin = configuration.position(points_.front());

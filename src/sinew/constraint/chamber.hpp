@@ -39,8 +39,8 @@ class Chamber : public Constraint {
   void declare(mechanics::RowPattern& rows,
                std::vector<mechanics::RowCurvature>& curvatures) override;
   void linearise(const Configuration& configuration, mechanics::RowValues& values) const override;
-  void curve(const Configuration& configuration, std::span<const double> effort,
-             std::span<mechanics::RowCurvature> curvatures) const override;
+  void geometric_stiffness(const Configuration& configuration, std::span<const double> effort,
+                           std::span<mechanics::RowCurvature> curvatures) const override;
 
   void add_to(ValueHash& hash) const override;
 

@@ -28,11 +28,13 @@ class Constraint {
   /// Writes directions and delta of its rows for the current configuration.
   virtual void linearise(const Configuration& configuration,
                          mechanics::RowValues& values) const = 0;
-  /// Writes the curvature of its declared pairs for the current configuration.
-  /// @param configuration of all bodies. @param effort (rows,) N or Pa, of all rows of the world.
+  /// Writes its geometric stiffness for the current configuration: the curvature of its declared
+  /// pairs. @param configuration of all bodies. @param effort (rows,) N or Pa, of all rows of the
+  /// world.
   /// @param curvatures its own, first_curvature() on.
-  virtual void curve(const Configuration& configuration, std::span<const double> effort,
-                     std::span<mechanics::RowCurvature> curvatures) const;
+  virtual void geometric_stiffness(const Configuration& configuration,
+                                   std::span<const double> effort,
+                                   std::span<mechanics::RowCurvature> curvatures) const;
 
   /// Whether its curvature at these efforts can only stiffen: a taut cable's is of one sign.
   /// @param effort (rows,) N or Pa, of all rows of the world.

@@ -75,7 +75,7 @@ int add_cable(ModelData& data, const CableSettings& settings) {
       data.guides.push_back({index, via, actuator.row + 1 + via, settings.friction});
     }
     if (settings.geometric_stiffness || data.step.tangent == mechanics::Tangent::exact) {
-      data.stiffening.push_back(actuator.constraint);
+      data.geometric_stiffness.in_steps.push_back(actuator.constraint);
     }
     return index;
   } catch (const Error& error) {

@@ -69,7 +69,8 @@ int add_chamber(ModelData& data, const ChamberSettings& settings) {
     actuator.drive = drive_of(settings, chamber->rest_volume());
     const int index = add_actuator(data, std::move(actuator), std::move(chamber));
     if (settings.liquid && settings.liquid->density > 0.0) add_liquid_weight(data, settings);
-    if (settings.load_stiffness) data.stiffening.push_back(data.actuators.back().constraint);
+    if (settings.load_stiffness)
+      data.geometric_stiffness.in_steps.push_back(data.actuators.back().constraint);
     return index;
   } catch (const Error& error) {
     throw error.at(settings.place);

@@ -39,7 +39,7 @@ int add_spring(ModelData& data, const SpringLineSettings& settings) {
         settings.spring);
     const int index = add_actuator(data, std::move(actuator), std::move(line));
     // A stretched spring is as stiff across as along: without that a slack robot would swing.
-    data.stiffening.push_back(data.actuators.back().constraint);
+    data.geometric_stiffness.in_steps.push_back(data.actuators.back().constraint);
     return index;
   } catch (const Error& error) {
     throw error.at(settings.place);

@@ -37,8 +37,8 @@ class GeometricStiffness {
 
   /// Before the bodies linearise: anchors stand in statics alone.
   void begin(const mechanics::LinearisationRequest& request);
-  /// Which constraints curve in the next add(). @param effort (rows,) N, at which they do.
-  void choose(std::span<const double> effort, std::span<const int> curved);
+  /// Of which constraints the next add() takes it. @param effort (rows,) N, at which it does.
+  void choose(std::span<const double> effort, std::span<const int> constraints);
   /// Adds the curvature to the bodies: as it is, or, where the linearisation's tangent is not
   /// exact, what is never less and positive semi-definite; and the anchors.
   void add();
@@ -47,7 +47,7 @@ class GeometricStiffness {
   std::size_t bytes() const { return curvatures_.size() * sizeof(mechanics::RowCurvature); }
 
  private:
-  void add_curvature(const constraint::Constraint& constraint);
+  void add_constraint(const constraint::Constraint& constraint);
   void add_to(const mechanics::MaterialPoint& point, const Matrix3& curvature);
   void couple(const mechanics::RowCurvature& pair);
   void add_majorant(const mechanics::RowCurvature& pair);
@@ -58,8 +58,8 @@ class GeometricStiffness {
   std::span<mechanics::StepSystem* const> systems_;
   step::StepProblem& problem_;
   std::vector<mechanics::RowCurvature> curvatures_;
-  std::vector<double> effort_;    // (rows,) N, at which constraints curve
-  std::span<const int> curving_;  // whose curvature add() adds
+  std::vector<double> effort_;   // (rows,) N, of the chosen
+  std::span<const int> chosen_;  // constraints whose curvature add() adds
   mechanics::Tangent tangent_ = mechanics::Tangent::rotated;
   bool majorant_ = false;
   std::size_t anchor_rows_ = 0;  // of problem_.stiffness; behind them those of couplings

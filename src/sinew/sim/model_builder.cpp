@@ -125,7 +125,7 @@ std::shared_ptr<const Model> ModelBuilder::build(const linalg::FactorisationSett
   for (std::size_t i = 0; i < data_.bodies.size(); ++i) {
     data_.bodies[i]->finish(static_cast<int>(i), data_.rows, data_.curvatures, settings);
   }
-  list_curved(data_);
+  list_geometric_stiffness(data_);
   auto model = std::make_shared<const Model>(std::move(data_));
   data_ = {};
   places_.clear();

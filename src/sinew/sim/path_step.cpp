@@ -29,7 +29,7 @@ constexpr double kDiagonal = 1.75;  // more than the largest coordinate's part o
 void PathStep::imbalance_at(double share, VectorX& imbalance) {
   loads_.set_share(share);
   run_.world.linearise({{}, mechanics::Tangent::exact, true, true});
-  run_.world.form_rows(run_.effort, run_.model->curved_constraints());
+  run_.world.form_rows(run_.effort, run_.model->geometric_stiffness().all);
   run_.world.bodies().imbalance(run_.effort, imbalance);
 }
 

@@ -107,7 +107,7 @@ const VectorX& World::measure_delta() {
   return rows_.delta;
 }
 
-void World::form_rows(std::span<const double> effort, std::span<const int> curved) {
+void World::form_rows(std::span<const double> effort, std::span<const int> geometric) {
   numbering_.gather(measure_delta(), problem_.delta);
   for (std::size_t k = 0; k < problem_.capstans.size(); ++k) {
     const GuideModel& guide = model_->guides()[k];
@@ -115,7 +115,7 @@ void World::form_rows(std::span<const double> effort, std::span<const int> curve
     problem_.capstans[k].grip = -std::expm1(-guide.friction * turn);
   }
   bodies_.take_rows(rows_);
-  stiffness_.choose(effort, curved);
+  stiffness_.choose(effort, geometric);
 }
 
 MatrixX World::row_forces(std::span<const int> rows) {

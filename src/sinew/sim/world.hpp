@@ -48,9 +48,9 @@ class World {
   void take_closed_points();
   /// Assembly: every body at its current state.
   void linearise(const mechanics::LinearisationRequest& request);
-  /// H and delta at the current configuration, handed to the bodies. condense() adds the curvature
-  /// of `curved` constraints at `effort`, see GeometricStiffness.
-  void form_rows(std::span<const double> effort, std::span<const int> curved);
+  /// H and delta at the current configuration, handed to the bodies. condense() adds the geometric
+  /// stiffness of the constraints `geometric` at `effort`, see GeometricStiffness.
+  void form_rows(std::span<const double> effort, std::span<const int> geometric);
   /// W and delta_free of the step's problem. The worst status of any body.
   linalg::FactorStatus condense();
   /// Efforts that obey all blocks, and dq of all bodies, which Bodies::apply_motion() takes. As
