@@ -25,7 +25,8 @@ class Constraint {
   /// and remembers where they start. Called once, when the model is built.
   virtual void declare(mechanics::RowPattern& rows,
                        std::vector<mechanics::RowCurvature>& curvatures) = 0;
-  /// Writes directions and delta of its rows for the current configuration.
+  /// Writes delta of its rows for the current configuration, and the directions that follow it: all
+  /// but the frames of a contact, which its step sets (see Contact).
   virtual void linearise(const Configuration& configuration,
                          mechanics::RowValues& values) const = 0;
   /// Writes its geometric stiffness for the current configuration: the curvature of its declared

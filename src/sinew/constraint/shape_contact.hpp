@@ -54,7 +54,8 @@ class ShapeContact : public Contact {
   void begin_step(const Configuration& configuration, const Eigen::Isometry3d& start,
                   const Eigen::Isometry3d& end, double time_step,
                   mechanics::RowValues& values) const;
-  /// Writes delta alone; directions are those of begin_step() and place().
+  /// Frames are those of begin_step() and place(). What they do to a rigid body, whose centre lies
+  /// elsewhere, follows the configuration.
   void linearise(const Configuration& configuration, mechanics::RowValues& values) const override;
 
   /// @param from,to (3,) m, a way at the step's end. @param pose of the surface there.
