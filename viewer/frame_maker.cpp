@@ -62,11 +62,11 @@ void FrameMaker::fill_points(Frame& frame) {
   for (std::size_t i = 0; i < model.actuators().size(); ++i) {
     const constraint::Cable* cable = model.cable(static_cast<int>(i));
     if (cable == nullptr) continue;
-    const Points points = cable->points(simulation_.placement());
+    const Points points = cable->points(simulation_.configuration());
     for (Eigen::Index k = 0; k < points.rows(); ++k) put(frame.cables, points.row(k).transpose());
   }
   for (const auto& probe : model.probes()) {
-    const Points marks = probe.marks(simulation_.placement());
+    const Points marks = probe.marks(simulation_.configuration());
     for (Eigen::Index k = 0; k < marks.rows(); ++k) put(frame.probes, marks.row(k).transpose());
   }
   // Rotations are no points.

@@ -6,7 +6,7 @@
 
 #include "sinew/constraint/cable.hpp"
 #include "sinew/constraint/chamber.hpp"
-#include "sinew/constraint/placement.hpp"
+#include "sinew/constraint/configuration.hpp"
 #include "sinew/sim/actuator.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/signal.hpp"
@@ -138,7 +138,7 @@ auto of_cable(const char* what, Measure measure) {
   return [what, measure](const Actuator& self) {
     const constraint::Cable& found = cable(self, what);
     const Session::Use use(*self.session);
-    return measure(found, self.session->simulation().placement());
+    return measure(found, self.session->simulation().configuration());
   };
 }
 
@@ -230,7 +230,7 @@ Reading gives what it is; assigning commands it: a number (m), a signal such as 
 
 void bind_measures(py::class_<Actuator>& type) {
   using constraint::Cable;
-  using constraint::Placement;
+  using constraint::Configuration;
   type.def_property_readonly(
           "slack",
           [](const Actuator& self) {
@@ -239,14 +239,17 @@ void bind_measures(py::class_<Actuator>& type) {
           "bool: a cable without tension.")
       .def_property_readonly(
           "length",
-          of_cable("length", [](const Cable& c, const Placement& p) { return c.length(p); }),
+          of_cable("length",
+                   [](const Cable& c, const Configuration& now) { return c.length(now); }),
           "float: length of a cable from its pull point to its end now (m).")
       .def_property_readonly(
           "rest_length",
-          of_cable("rest_length", [](const Cable& c, const Placement&) { return c.rest_length(); }),
+          of_cable("rest_length",
+                   [](const Cable& c, const Configuration&) { return c.rest_length(); }),
           "float: length of a cable at rest (m); displacement = rest_length - length.")
       .def_property_readonly(
-          "wrap", of_cable("wrap", [](const Cable& c, const Placement& p) { return c.wrap(p); }),
+          "wrap",
+          of_cable("wrap", [](const Cable& c, const Configuration& now) { return c.wrap(now); }),
           "float: sum of the angles by which a cable turns at its via points (rad).")
       .def_property_readonly(
           "tensions",
@@ -260,7 +263,8 @@ void bind_measures(py::class_<Actuator>& type) {
           "differ by the friction at the points between; the last one is what its end is tied by.")
       .def_property_readonly(
           "points",
-          of_cable("points", [](const Cable& c, const Placement& p) { return copy(c.points(p)); }),
+          of_cable("points",
+                   [](const Cable& c, const Configuration& now) { return copy(c.points(now)); }),
           "(n, 3) ndarray: a cable's points now, pull point first (m).")
       .def_property_readonly("limits", &limits,
                              "dict: Limits of the effort ('tension', 'force' or 'pressure') and of "

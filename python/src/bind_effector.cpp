@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
+#include "sinew/constraint/configuration.hpp"
 #include "sinew/constraint/effector.hpp"
-#include "sinew/constraint/placement.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/simulation.hpp"
 #include "sinew/sim/world.hpp"
@@ -43,7 +43,7 @@ Array velocity(const Effector& self) {
   const Session::Use use(*self.session);
   const sim::Simulation& simulation = self.session->simulation();
   if (const auto* point = dynamic_cast<const constraint::PointEffector*>(&model(self))) {
-    return copy(simulation.placement().velocity(point->point()));
+    return copy(simulation.configuration().velocity(point->point()));
   }
   const auto& pattern = self.session->model().rows();
   Vector3 turn = Vector3::Zero();
@@ -52,7 +52,7 @@ Array velocity(const Effector& self) {
     for (auto e = pattern.row_start[row]; e < pattern.row_start[row + 1]; ++e) {
       const auto entry = static_cast<std::size_t>(e);
       turn[k] += simulation.world().rows().direction[entry].dot(
-          simulation.placement().velocity(pattern.site[entry]));
+          simulation.configuration().velocity(pattern.site[entry]));
     }
   }
   return copy(turn);

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "sinew/constraint/placement.hpp"
+#include "sinew/constraint/configuration.hpp"
 #include "sinew/constraint/probe.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/simulation.hpp"
@@ -31,7 +31,7 @@ py::object value(const Probe& self) {
 
 Array positions(const Probe& self) {
   const Session::Use use(*self.session);
-  return copy(model(self).marks(self.session->simulation().placement()));
+  return copy(model(self).marks(self.session->simulation().configuration()));
 }
 
 }  // namespace

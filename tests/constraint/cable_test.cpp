@@ -6,7 +6,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include "sinew/constraint/placement.hpp"
+#include "sinew/constraint/configuration.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
 #include "sinew/mechanics/body.hpp"
@@ -59,12 +59,12 @@ class BentCable : public ::testing::Test {
 TEST_F(BentCable, DirectionsAreTheDerivativeOfTheMotion) {
   const double t = 1e-6;
   auto& world = simulation_.world();
-  const Points middle = cable().points(simulation_.placement());
+  const Points middle = cable().points(simulation_.configuration());
   world.measure_delta();
   const mechanics::RowValues rows = world.rows();
   shift(t);
   const double ahead = world.measure_delta()[0];
-  const Points after = cable().points(simulation_.placement());
+  const Points after = cable().points(simulation_.configuration());
   shift(-2 * t);
   const double behind = world.measure_delta()[0];
   const double difference = (ahead - behind) / (2 * t);
@@ -77,10 +77,10 @@ TEST_F(BentCable, CurvatureIsTheDerivativeOfTheDirections) {
   std::vector<mechanics::RowCurvature> pairs(
       model_->curvatures().begin(), model_->curvatures().begin() + cable().curvature_count());
   const std::vector<double> effort{1.0};
-  cable().curve(simulation_.placement(), effort, pairs);
-  const Points middle = cable().points(simulation_.placement());
+  cable().geometric_stiffness(simulation_.configuration(), effort, pairs);
+  const Points middle = cable().points(simulation_.configuration());
   shift(t);
-  const Points after = cable().points(simulation_.placement());
+  const Points after = cable().points(simulation_.configuration());
   world.measure_delta();
   const auto ahead = world.rows().direction;
   shift(-2 * t);
@@ -124,7 +124,7 @@ TEST(CableFriction, RowsAndCurvatureAgreeWithDifferences) {
     for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += t * velocity[i];
     body.load_state(moved);
     world.measure_delta();
-    return std::pair(world.rows(), cable.points(simulation.placement()));
+    return std::pair(world.rows(), cable.points(simulation.configuration()));
   };
   const double t = 1e-6;
   const auto [ahead, after] = at(t);
@@ -151,7 +151,7 @@ TEST(CableFriction, RowsAndCurvatureAgreeWithDifferences) {
   }
   std::vector<mechanics::RowCurvature> pairs(model->curvatures().begin(),
                                              model->curvatures().begin() + cable.curvature_count());
-  cable.curve(simulation.placement(), effort, pairs);
+  cable.geometric_stiffness(simulation.configuration(), effort, pairs);
   for (const auto& pair : pairs) {
     const int a = pair.first.number - first_point, b = pair.second.number - first_point;
     expected.row(a) += (pair.curvature * rates.row(b).transpose()).transpose();
@@ -162,15 +162,15 @@ TEST(CableFriction, RowsAndCurvatureAgreeWithDifferences) {
 }
 
 TEST_F(BentCable, MotionIsTheLengthPulledOut) {
-  const auto& placement = simulation_.placement();
+  const auto& configuration = simulation_.configuration();
   EXPECT_NEAR(simulation_.world().measure_delta()[0],
-              cable().rest_length() - cable().length(placement), 1e-15);
+              cable().rest_length() - cable().length(configuration), 1e-15);
 }
 
 TEST(Cable, StraightCableHasNoWrapAndARightAngleHasOne) {
   const auto model = sinew::testing::beam();
   sim::Simulation simulation(model);
-  EXPECT_NEAR(model->cable(0)->wrap(simulation.placement()), 0.0, 1e-12);
+  EXPECT_NEAR(model->cable(0)->wrap(simulation.configuration()), 0.0, 1e-12);
 
   sim::ModelBuilder builder;
   fem::FemBodySettings body;
@@ -188,7 +188,7 @@ TEST(Cable, StraightCableHasNoWrapAndARightAngleHasOne) {
   builder.add_cable(cable);
   const auto corner = builder.build();
   sim::Simulation bent(corner);
-  EXPECT_NEAR(corner->cable(0)->wrap(bent.placement()), sinew::testing::kRightAngle, 1e-12);
+  EXPECT_NEAR(corner->cable(0)->wrap(bent.configuration()), sinew::testing::kRightAngle, 1e-12);
   EXPECT_NEAR(corner->cable(0)->rest_length(), 0.08, 1e-15);
 }
 

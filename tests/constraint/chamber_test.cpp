@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sinew/constraint/placement.hpp"
+#include "sinew/constraint/configuration.hpp"
 #include "sinew/fem/has_elements.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/body_model.hpp"
@@ -40,7 +40,7 @@ class ChamberTest : public ::testing::TestWithParam<Kind> {
   mechanics::RowValues rows() {
     mechanics::RowValues values;
     values.resize(simulation_.model().rows());
-    held_chamber().linearise(simulation_.placement(), values);
+    held_chamber().linearise(simulation_.configuration(), values);
     return values;
   }
   /// Moves every node by a smooth field of this size (m).
@@ -79,7 +79,7 @@ TEST_P(ChamberTest, PressurePutsNoForceAndNoMomentOnTheWhole) {
   Vector3 force = Vector3::Zero(), moment = Vector3::Zero();
   double size = 0.0;
   for (std::size_t k = 0; k < held_chamber().material_points().size(); ++k) {
-    const Vector3 x = simulation_.placement().position(held_chamber().material_points()[k]);
+    const Vector3 x = simulation_.configuration().position(held_chamber().material_points()[k]);
     force += values.direction[k];
     moment += x.cross(values.direction[k]);
     size += values.direction[k].norm();
@@ -110,7 +110,7 @@ TEST_P(ChamberTest, CurvatureIsTheDerivativeOfTheDirections) {
   distort(1e-3);
   auto pairs = simulation_.model().curvatures();
   const std::vector<double> effort{1.0};
-  held_chamber().curve(simulation_.placement(), effort, pairs);
+  held_chamber().geometric_stiffness(simulation_.configuration(), effort, pairs);
   const auto& points = held_chamber().material_points();
   const auto index = [&](const mechanics::MaterialPoint& wanted) {
     std::size_t k = 0;
@@ -137,8 +137,8 @@ TEST_P(ChamberTest, CurvatureIsTheDerivativeOfTheDirections) {
 }
 
 TEST_P(ChamberTest, LoadStiffnessOfAClosedSurfaceNeedsNoWiderPattern) {
-  EXPECT_FALSE(simulation_.model().stiffening_widens());
-  EXPECT_EQ(simulation_.model().stiffening_constraints().size(), 1U);
+  EXPECT_FALSE(simulation_.model().geometric_stiffness().extends_pattern);
+  EXPECT_EQ(simulation_.model().geometric_stiffness().in_steps.size(), 1U);
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, ChamberTest,
@@ -152,7 +152,7 @@ TEST(Chamber, PressureOnFlatQuadraticFacesIsConsistent) {
   const Chamber& chamber = *simulation.model().chamber(0);
   mechanics::RowValues values;
   values.resize(simulation.model().rows());
-  chamber.linearise(simulation.placement(), values);
+  chamber.linearise(simulation.configuration(), values);
   std::vector<double> share(chamber.material_points().size(), 0.0);
   double area = 0.0;
   for (const ChamberFace& face : chamber.faces()) {
@@ -184,7 +184,7 @@ TEST_P(ChamberTest, ACapPassesItsForceToTheRim) {
   simulation.restore(state);
   mechanics::RowValues values;
   values.resize(simulation.model().rows());
-  simulation.model().chamber(0)->linearise(simulation.placement(), values);
+  simulation.model().chamber(0)->linearise(simulation.configuration(), values);
   Vector3 force = Vector3::Zero();
   double size = 0.0;
   for (const Vector3& direction : values.direction) {  // the effector's are not formed

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/constraint/configuration.hpp"
 #include "sinew/constraint/effector.hpp"
-#include "sinew/constraint/placement.hpp"
 #include "sinew/constraint/shape_contact.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/sim/simulation.hpp"
@@ -53,16 +53,16 @@ TEST_F(ContactRows, AreTheDerivativeOfGapAndSlip) {
     contact.declare(pattern, curvatures);
     mechanics::RowValues values;
     values.resize(pattern);
-    const Placement& placement = simulation_.placement();
-    contact.begin_step(placement, pose(1.0), pose(1.5), 0.0, values);
-    contact.linearise(placement, values);
+    const Configuration& configuration = simulation_.configuration();
+    contact.begin_step(configuration, pose(1.0), pose(1.5), 0.0, values);
+    contact.linearise(configuration, values);
     const VectorX before = values.delta;
-    const Vector3 at = placement.position(effector.point());
-    const double gap = contact.gap_now(placement, pose(1.5), 0, values);
+    const Vector3 at = configuration.position(effector.point());
+    const double gap = contact.gap_now(configuration, pose(1.5), 0, values);
     const double t = 1e-6;
     shift(t);
-    contact.linearise(placement, values);
-    const Vector3 moved = placement.position(effector.point()) - at;
+    contact.linearise(configuration, values);
+    const Vector3 moved = configuration.position(effector.point()) - at;
     for (int k = 0; k < 3; ++k) {
       EXPECT_NEAR((values.delta[k] - before[k]) / t,
                   values.direction[static_cast<std::size_t>(k)].dot(moved) / t, 1e-8);
@@ -78,13 +78,13 @@ TEST_F(ContactRows, AreTheDerivativeOfGapAndSlip) {
 // The frame of a step is that of the way at the point's velocity; rows and positions agree in it.
 TEST_F(ContactRows, FrameIsThatOfTheWay) {
   const auto& effector = dynamic_cast<const PointEffector&>(model_->effector(0));
-  const Placement& placement = simulation_.placement();
+  const Configuration& configuration = simulation_.configuration();
   auto& body = simulation_.body(0);
   std::vector<double> state(body.state_size());
   body.save_state(state);
   for (std::size_t i = state.size() / 2; i < state.size(); i += 3) state[i] = 1.0;  // along x
   body.load_state(state);
-  const Vector3 at = placement.position(effector.point());
+  const Vector3 at = configuration.position(effector.point());
   const Sphere ball{at + Vector3(0.05, 0.0, -0.0051), 0.005};
   ShapeContact contact("contact", std::vector{effector.point()}, ball, 0.5);
   mechanics::RowPattern pattern;
@@ -93,14 +93,14 @@ TEST_F(ContactRows, FrameIsThatOfTheWay) {
   mechanics::RowValues values;
   values.resize(pattern);
   const Eigen::Isometry3d rest = Eigen::Isometry3d::Identity();
-  contact.begin_step(placement, rest, rest, 0.1, values);
+  contact.begin_step(configuration, rest, rest, 0.1, values);
   EXPECT_LT((values.direction[0] - Vector3::UnitZ()).norm(), 1e-9);  // where it passes
   EXPECT_NEAR(values.reference[0], 1e-4, 1e-12);
   for (const Vector3& point : {at, Vector3(0.3, -0.2, 0.1)}) {
     const Vector3 rows = contact.row_values(0, point, values);
     EXPECT_LT((contact.position(0, rows, values) - point).norm(), 1e-15);
   }
-  contact.begin_step(placement, rest, rest, 0.0, values);  // stays
+  contact.begin_step(configuration, rest, rest, 0.0, values);  // stays
   EXPECT_LT(values.direction[0][0], -0.9);
 }
 
@@ -114,8 +114,8 @@ TEST_F(ContactRows, PointThatTheSurfaceCarriesDoesNotSlip) {
   mechanics::RowValues values;
   values.resize(pattern);
   auto& body = simulation_.body(0);
-  const Placement& placement = simulation_.placement();
-  contact.begin_step(placement, pose(0.0), pose(2.0), 0.0, values);
+  const Configuration& configuration = simulation_.configuration();
+  contact.begin_step(configuration, pose(0.0), pose(2.0), 0.0, values);
   std::vector<double> state(body.state_size());
   body.save_state(state);
   const Eigen::Isometry3d carry = pose(2.0) * pose(0.0).inverse();
@@ -124,7 +124,7 @@ TEST_F(ContactRows, PointThatTheSurfaceCarriesDoesNotSlip) {
     for (std::size_t c = 0; c < 3; ++c) state[i + c] = moved[static_cast<int>(c)];
   }
   body.load_state(state);
-  contact.linearise(placement, values);
+  contact.linearise(configuration, values);
   EXPECT_NEAR(values.delta[0], values.reference[0], 1e-14);
   EXPECT_NEAR(values.delta[1], 0.0, 1e-14);
   EXPECT_NEAR(values.delta[2], 0.0, 1e-14);

@@ -59,7 +59,7 @@ TEST_F(Effectors, OrientationIsTheRotationVectorOfARigidTurn) {
   const Vector3 turn(0.3, -0.7, 0.5);
   const Matrix3 rotation = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
   place(rest() * rotation.transpose());
-  EXPECT_LT((effector().value(simulation_->placement()) - turn).norm(), 1e-12);
+  EXPECT_LT((effector().value(simulation_->configuration()) - turn).norm(), 1e-12);
 }
 
 TEST_F(Effectors, OrientationRowsAreTheSpin) {
@@ -74,7 +74,7 @@ TEST_F(Effectors, OrientationRowsAreTheSpin) {
   const double t = 1e-6;
   const auto rotation = [&](double s) {
     place(bent + s * direction);
-    const Vector3 v = effector().value(simulation_->placement());
+    const Vector3 v = effector().value(simulation_->configuration());
     return Matrix3(Eigen::AngleAxisd(v.norm(), v.normalized()));
   };
   const Eigen::AngleAxisd spin(rotation(t) * rotation(-t).transpose());
@@ -106,7 +106,7 @@ TEST_F(Effectors, OrientationTargetIsReachedByTheRemainingTurn) {
   place(rest() * Matrix3(Eigen::AngleAxisd(0.4, Vector3::UnitZ())).transpose());
   simulation_->world().measure_delta();
   VectorX goal(3);
-  effector().target_delta(simulation_->placement(), Vector3(0.0, 0.0, 1.0), goal);
+  effector().target_delta(simulation_->configuration(), Vector3(0.0, 0.0, 1.0), goal);
   EXPECT_LT((goal - simulation_->world().delta() - Vector3(0.0, 0.0, 0.6)).norm(), 1e-12);
 }
 
@@ -124,7 +124,7 @@ TEST_F(Effectors, CollinearPointsHaveNoOrientation) {
 TEST_F(Effectors, SeveralPointsMeanTheirMean) {
   finish();
   const Vector3 mean = settings_.points.colwise().mean().transpose();
-  EXPECT_LT((effector().value(simulation_->placement()) - mean).norm(), 1e-15);
+  EXPECT_LT((effector().value(simulation_->configuration()) - mean).norm(), 1e-15);
 }
 
 TEST_F(Effectors, ChosenDirectionsGiveOneRowEach) {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sinew/constraint/placement.hpp"
+#include "sinew/constraint/configuration.hpp"
 #include "sinew/constraint/shape_contact.hpp"
 #include "sinew/core/rotation.hpp"
 #include "sinew/mechanics/body.hpp"
@@ -70,14 +70,14 @@ TEST(RigidContact, RowsAreTheDerivativeOfGapAndSlip) {
   for (const Pair& pair : pairs()) {
     const auto model = make(pair);
     sim::Simulation simulation(model);
-    const Placement& placement = simulation.placement();
+    const Configuration& configuration = simulation.configuration();
     move(simulation.body(0), Vector3(0.001, 0.0, 0.0), Vector3(0.01, 0.02, 0.3));
     const auto& contact = dynamic_cast<const ShapeContact&>(model->contact(0));
     mechanics::RowValues values;
     values.resize(model->rows());
-    const auto pose = contact.carrier()->pose(placement);
-    contact.begin_step(placement, pose, pose, 0.0, values);
-    contact.linearise(placement, values);
+    const auto pose = contact.carrier()->pose(configuration);
+    contact.begin_step(configuration, pose, pose, 0.0, values);
+    contact.linearise(configuration, values);
     const mechanics::RowValues before = values;
     const Vector3 v[] = {Vector3(0.3, -0.5, 0.2), Vector3(-0.1, 0.4, 0.6)};
     const Vector3 w[] = {Vector3(3.0, 7.0, -4.0), Vector3(-6.0, 2.0, 5.0)};
@@ -85,7 +85,7 @@ TEST(RigidContact, RowsAreTheDerivativeOfGapAndSlip) {
     for (int body = 0; body < 2; ++body) {
       move(simulation.body(body), kSmall * v[body], kSmall * w[body]);
     }
-    contact.linearise(placement, values);
+    contact.linearise(configuration, values);
     ASSERT_FALSE(contact.idle(0, values));
     for (std::size_t k = 0; k < contact.size(); ++k) {
       if (contact.idle(k, values)) continue;
@@ -106,14 +106,14 @@ TEST(RigidContact, ForcesCancel) {
   for (const Pair& pair : pairs()) {
     const auto model = make(pair);
     sim::Simulation simulation(model);
-    const Placement& placement = simulation.placement();
+    const Configuration& configuration = simulation.configuration();
     const auto& contact = dynamic_cast<const ShapeContact&>(model->contact(0));
     mechanics::RowValues values;
     values.resize(model->rows());
-    const auto pose = contact.carrier()->pose(placement);
-    contact.begin_step(placement, pose, pose, 0.0, values);
-    const Vector3 centre[] = {placement.position(contact.own()->centre),
-                              placement.position(contact.carrier()->centre)};
+    const auto pose = contact.carrier()->pose(configuration);
+    contact.begin_step(configuration, pose, pose, 0.0, values);
+    const Vector3 centre[] = {configuration.position(contact.own()->centre),
+                              configuration.position(contact.carrier()->centre)};
     for (std::size_t k = 0; k < contact.size(); ++k) {
       for (int j = 0; j < 3; ++j) {
         const Vector3* direction = &values.direction[contact.entry(k, j)];
@@ -133,10 +133,10 @@ TEST(RigidContact, RollingKeepsTheGap) {
   const auto& contact = dynamic_cast<const ShapeContact&>(model->contact(0));
   mechanics::RowValues values;
   values.resize(model->rows());
-  const auto pose = contact.carrier()->pose(simulation.placement());
-  contact.begin_step(simulation.placement(), pose, pose, 0.0, values);
+  const auto pose = contact.carrier()->pose(simulation.configuration());
+  contact.begin_step(simulation.configuration(), pose, pose, 0.0, values);
   move(simulation.body(0), Vector3(0.005, 0.0, 0.0), Vector3(0.0, 0.5, 0.0));
-  contact.linearise(simulation.placement(), values);
+  contact.linearise(simulation.configuration(), values);
   EXPECT_NEAR(values.delta[contact.row(0)], 0.0002, 1e-15);
 }
 

@@ -24,7 +24,7 @@ VectorX decay(const VectorX& p) {
   return kTimes.unaryExpr([&](double t) { return p[0] * std::exp(-p[1] * t) + p[2]; });
 }
 
-Model decay_model() {
+ForwardModel decay_model() {
   return {kTimes.size(), [](const VectorX& p, VectorX& prediction, MatrixX* jacobian) {
             prediction = decay(p);
             if (jacobian == nullptr) return;
@@ -118,7 +118,7 @@ TEST(ParameterFit, ManyStartsFindTheDeeperMinimum) {
     return kTimes.unaryExpr([&](double t) { return std::sin(p[0] * t); });
   };
   const VectorX data = predict(VectorX{{8.0}});
-  const Model model = with_differences(kTimes.size(), predict, VectorX::Ones(1));
+  const ForwardModel model = with_differences(kTimes.size(), predict, VectorX::Ones(1));
   const std::vector<Parameter> parameters = {{"frequency", 1.0, 0.5, 12.0}};
   EXPECT_GT(fit_parameters(model, data, parameters).cost, 1.0);
   const ParameterFit fit = fit_parameters(model, data, parameters, {.starts = 30});

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "sinew/constraint/cable.hpp"
-#include "sinew/constraint/placement.hpp"
+#include "sinew/constraint/configuration.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/sim/actuator.hpp"
 #include "sinew/sim/contact_reader.hpp"
@@ -247,8 +247,8 @@ TEST(InverseController, ReachesItsTargetThroughFriction) {
     const auto tensions = model->cable(cable)->tensions(simulation.efforts());
     for (int via = 0; via < model->cable(cable)->via_count(); ++via) {
       const auto k = static_cast<std::size_t>(via);
-      const double turn = model->cable(cable)->turn(simulation.placement(), via);
-      // The limits are those of the placement in which the step was linearised.
+      const double turn = model->cable(cable)->turn(simulation.configuration(), via);
+      // The limits are those of the configuration in which the step was linearised.
       const double slope = std::exp(kFriction * turn) * (1.0 + 1e-4);
       EXPECT_LE(tensions[k], tensions[k + 1] * slope + 1e-9) << cable << ' ' << via;
       EXPECT_LE(tensions[k + 1], tensions[k] * slope + 1e-9) << cable << ' ' << via;

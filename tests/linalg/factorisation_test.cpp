@@ -118,14 +118,14 @@ TEST_P(RandomSystems, IndefiniteOnesHaveTheRightInertia) {
   EXPECT_GT(indefinite, 0);
 }
 
-/// Of the passing rows all, none, and some groups, against the inverse.
-void expect_passing_agrees(Factorisation& factorisation, const BlockSystem& system,
-                           const BorderPattern& passing, const std::vector<double>& values) {
+/// Of the transient rows all, none, and some groups, against the inverse.
+void expect_transient_agrees(Factorisation& factorisation, const BlockSystem& system,
+                             const BorderPattern& transient, const std::vector<double>& values) {
   const Eigen::PartialPivLU<MatrixX> lu(system.dense_matrix());
   const MatrixX border = system.dense_rows();
   const Eigen::Map<const VectorX> right(system.right.data(),
                                         static_cast<Eigen::Index>(system.right.size()));
-  const int most = passing.rows() / 3;
+  const int most = transient.rows() / 3;
   for (const int stride : {1, 3, 2, most + 1}) {
     std::vector<std::int32_t> groups;
     for (int g = stride > most ? most : 0; g < most; g += stride) groups.push_back(g);
@@ -134,10 +134,10 @@ void expect_passing_agrees(Factorisation& factorisation, const BlockSystem& syst
     for (Eigen::Index k = 0; k < count; ++k) {
       const auto row =
           static_cast<std::size_t>(3 * groups[static_cast<std::size_t>(k / 3)] + k % 3);
-      for (int e = passing.row_start[row]; e < passing.row_start[row + 1]; ++e) {
+      for (int e = transient.row_start[row]; e < transient.row_start[row + 1]; ++e) {
         const auto entry = static_cast<std::size_t>(e);
         for (int c = 0; c < 3; ++c) {
-          rows(k, 3 * passing.node[entry] + c) = values[3 * entry + static_cast<std::size_t>(c)];
+          rows(k, 3 * transient.node[entry] + c) = values[3 * entry + static_cast<std::size_t>(c)];
         }
       }
     }
@@ -146,32 +146,32 @@ void expect_passing_agrees(Factorisation& factorisation, const BlockSystem& syst
     for (const std::int32_t group : groups) {
       for (auto row = static_cast<std::size_t>(3 * group);
            row < 3 * (static_cast<std::size_t>(group) + 1); ++row) {
-        for (int e = passing.row_start[row]; e < passing.row_start[row + 1]; ++e) {
-          chosen.node.push_back(passing.node[static_cast<std::size_t>(e)]);
+        for (int e = transient.row_start[row]; e < transient.row_start[row + 1]; ++e) {
+          chosen.node.push_back(transient.node[static_cast<std::size_t>(e)]);
           for (int c = 0; c < 3; ++c) own.push_back(values[static_cast<std::size_t>(3 * e + c)]);
         }
         chosen.row_start.push_back(chosen.entries());
       }
     }
-    factorisation.pass(chosen, own);
+    factorisation.condense_transient(chosen, own);
     if (count == 0) continue;  // none may come; Eigen's dense solution is not for nothing
     const MatrixX solved = lu.solve(rows.transpose());
     MatrixX coupling(count, border.rows() + 1);
     coupling << solved.transpose() * border.transpose(), solved.transpose() * right;
     const MatrixX compliance = rows * solved;
-    const MatrixX found = MatrixX(factorisation.passing_compliance().topLeftCorner(count, count))
+    const MatrixX found = MatrixX(factorisation.transient_compliance().topLeftCorner(count, count))
                               .selfadjointView<Eigen::Lower>();
     const double scale = lu.inverse().cwiseAbs().maxCoeff();
     EXPECT_LE((found - compliance).cwiseAbs().sum(),
               1e-8 * scale * (1.0 + static_cast<double>(count)));
-    EXPECT_LE((factorisation.passing_coupling().topLeftCorner(count, coupling.cols()) - coupling)
+    EXPECT_LE((factorisation.transient_coupling().topLeftCorner(count, coupling.cols()) - coupling)
                   .cwiseAbs()
                   .sum(),
               1e-8 * scale * (1.0 + static_cast<double>(coupling.size())));
   }
 }
 
-TEST_P(RandomSystems, PassingRowsAgreeWithDense) {
+TEST_P(RandomSystems, TransientRowsAgreeWithDense) {
   const int nodes = GetParam();
   ThreadPool pool(1);
   for (unsigned seed = 1; seed <= 12; ++seed) {
@@ -184,7 +184,7 @@ TEST_P(RandomSystems, PassingRowsAgreeWithDense) {
     random.seed = seed * 100 + static_cast<unsigned>(nodes);
     const BlockSystem system = testing::random_system(random);
     // Points on one node, or on several.
-    BorderPattern passing;
+    BorderPattern transient;
     std::vector<double> values;
     for (int g = 0; g < std::min(nodes, 20); ++g) {
       std::vector<int> on = {(7 * g + 3) % nodes};
@@ -194,12 +194,12 @@ TEST_P(RandomSystems, PassingRowsAgreeWithDense) {
       on.erase(std::unique(on.begin(), on.end()), on.end());
       for (int r = 0; r < 3; ++r) {
         for (const int node : on) {
-          passing.node.push_back(node);
+          transient.node.push_back(node);
           for (int c = 0; c < 3; ++c) {
             values.push_back(std::sin(1.0 + static_cast<double>(values.size())));
           }
         }
-        passing.row_start.push_back(passing.entries());
+        transient.row_start.push_back(transient.entries());
       }
     }
     for (const char* backend : {"block", "eigen-ldlt"}) {
@@ -207,7 +207,7 @@ TEST_P(RandomSystems, PassingRowsAgreeWithDense) {
       const auto factorisation =
           analyse(system.pattern, system.border, settings_of(backend))->create(pool);
       ASSERT_NE(factorise(*factorisation, system), FactorStatus::singular);
-      expect_passing_agrees(*factorisation, system, passing, values);
+      expect_transient_agrees(*factorisation, system, transient, values);
     }
   }
 }

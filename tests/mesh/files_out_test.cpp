@@ -9,8 +9,8 @@
 #include <gmock/gmock.h>
 
 #include "sinew/core/file.hpp"
+#include "sinew/core/process.hpp"
 #include "sinew/mesh/check.hpp"
-#include "sinew/mesh/process.hpp"
 #include "sinew/mesh/quadratic.hpp"
 #include "sinew/mesh/quality.hpp"
 #include "sinew/mesh/read.hpp"
@@ -236,18 +236,6 @@ TEST(Surfaces, SayWhereTheyAreOpenAndWhenTheUnitIsSuspicious) {
   error_text(ErrorKind::suspicious_unit, [&] { read_surface(scratch / "large.stl"); });
   const Surface scaled = read_surface(scratch / "large.stl", {.unit = 1e-3});
   EXPECT_NEAR(solid_moments(scaled).volume, 1e-3, 1e-9);
-}
-
-TEST(Process, ReportsCodeOutputAndMissingPrograms) {
-  const ProcessResult result = run_program({"/bin/sh", "-c", "echo out; echo err >&2; exit 3"});
-  EXPECT_EQ(result.exit_code, 3);
-  EXPECT_EQ(result.output, "out\nerr\n");
-  error_text(ErrorKind::tool_missing, [] { run_program({"no-such-program-of-ours"}); });
-  EXPECT_FALSE(program_exists("no-such-program-of-ours"));
-  EXPECT_TRUE(program_exists("sh"));
-  EXPECT_EQ(last_lines("a\nb\nc\n\n", 2), "b\nc");
-  EXPECT_EQ(last_lines("a", 5), "a");
-  EXPECT_EQ(last_lines("\n", 5), "");
 }
 
 TEST(Tetrahedralise, SaysHowToInstallGmshAndWhatItComplains) {

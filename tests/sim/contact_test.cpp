@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "sinew/constraint/cable.hpp"
-#include "sinew/constraint/placement.hpp"
+#include "sinew/constraint/configuration.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
@@ -368,7 +368,7 @@ TEST(Contact, CablesWithFrictionAndContactsShareOneProblem) {
     const auto tensions = near.model().cable(0)->tensions(near.efforts());
     for (int via = 0; via + 1 < static_cast<int>(tensions.size()); ++via) {
       const auto i = static_cast<std::size_t>(via);
-      const double most = std::exp(0.3 * near.model().cable(0)->turn(near.placement(), via));
+      const double most = std::exp(0.3 * near.model().cable(0)->turn(near.configuration(), via));
       EXPECT_LE(tensions[i], most * tensions[i + 1] * (1.0 + 1e-6)) << via;
       EXPECT_LE(tensions[i + 1], most * tensions[i] * (1.0 + 1e-6)) << via;
     }

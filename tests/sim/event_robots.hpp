@@ -9,7 +9,7 @@
 #include <Eigen/Geometry>
 
 #include "sinew/collision/shape.hpp"
-#include "sinew/constraint/placement.hpp"
+#include "sinew/constraint/configuration.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/rigid/rigid_settings.hpp"

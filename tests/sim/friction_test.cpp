@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "sinew/constraint/cable.hpp"
-#include "sinew/constraint/placement.hpp"
+#include "sinew/constraint/configuration.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/fem/fem_body_model.hpp"
 #include "sinew/fem/fem_body_settings.hpp"
@@ -65,11 +65,11 @@ std::vector<double> tensions(const Simulation& simulation, int actuator = 0) {
 // Every ratio of neighbouring tensions within Coulomb's limits; whether all are at one of them.
 void expect_friction(const Simulation& simulation, double sign) {
   const auto& model = simulation.model();
-  const auto& placement = simulation.placement();
+  const auto& configuration = simulation.configuration();
   const auto own = tensions(simulation);
   for (int via = 0; via < model.cable(0)->via_count(); ++via) {
     const auto k = static_cast<std::size_t>(via);
-    const double most = std::exp(kFriction * model.cable(0)->turn(placement, via));
+    const double most = std::exp(kFriction * model.cable(0)->turn(configuration, via));
     const double ratio = own[k] / own[k + 1];
     EXPECT_LE(ratio, most * (1.0 + 1e-8)) << via;
     EXPECT_GE(ratio, (1.0 - 1e-8) / most) << via;
@@ -86,7 +86,7 @@ TEST(Friction, RopeOverABollardFollowsEuler) {
     simulation.command(0, tension(3.0));
     simulation.step();
     const auto own = tensions(simulation);
-    const double wrap = model->cable(0)->wrap(simulation.placement());
+    const double wrap = model->cable(0)->wrap(simulation.configuration());
     EXPECT_GT(wrap, 1.0);
     EXPECT_NEAR(own.front() / own.back(), std::exp(kFriction * wrap), 1e-7);
     expect_friction(simulation, 1.0);
@@ -121,7 +121,7 @@ TEST(Friction, ForcesOfRowsAreThoseOfTheSegments) {
   body.add_row_forces(simulation.efforts(), forces);
   // What the straight ends pull at the block, but for the world's pull point.
   const auto own = tensions(simulation);
-  const Points points = model->cable(0)->points(simulation.placement());
+  const Points points = model->cable(0)->points(simulation.configuration());
   const Vector3 first = (points.row(1) - points.row(0)).transpose().normalized();
   // Forces on fixed nodes are not listed: the cable stays away from them but for the sum along y.
   const Vector3 sum = forces.colwise().sum().transpose();

@@ -7,7 +7,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-#include "sinew/constraint/placement.hpp"
+#include "sinew/constraint/configuration.hpp"
 #include "sinew/core/error.hpp"
 
 namespace sinew::constraint {
@@ -33,8 +33,7 @@ Segment segment(const Vector3& from, const Vector3& to) {
 }  // namespace
 
 Cable::Cable(std::string name, std::vector<mechanics::MaterialPoint> points,
-             std::optional<Vector3> world_pull_point, const Points& placement_at_rest,
-             bool friction)
+             std::optional<Vector3> world_pull_point, const Points& points_at_rest, bool friction)
     : Constraint(std::move(name)),
       points_(std::move(points)),
       pull_point_(std::move(world_pull_point)),
@@ -44,12 +43,11 @@ Cable::Cable(std::string name, std::vector<mechanics::MaterialPoint> points,
                 fmt::format("a cable needs at least two points, got {}", point_count()),
                 "give the pull point and every via point");
   }
-  const Vector3 extent =
-      placement_at_rest.colwise().maxCoeff() - placement_at_rest.colwise().minCoeff();
+  const Vector3 extent = points_at_rest.colwise().maxCoeff() - points_at_rest.colwise().minCoeff();
   const double shortest = std::max(1e-6 * extent.norm(), kShortestSegment);
   for (int i = 0; i + 1 < point_count(); ++i) {
-    const Vector3 a = placement_at_rest.row(i);
-    const Vector3 b = placement_at_rest.row(i + 1);
+    const Vector3 a = points_at_rest.row(i);
+    const Vector3 b = points_at_rest.row(i + 1);
     const double length = (b - a).norm();
     if (length < shortest) {
       throw Error(ErrorKind::degenerate_cable, {.item = "cable '" + this->name() + "'"},
@@ -61,9 +59,9 @@ Cable::Cable(std::string name, std::vector<mechanics::MaterialPoint> points,
   }
 }
 
-Vector3 Cable::point(const Placement& placement, int i) const {
-  if (!pull_point_) return placement.position(points_[static_cast<std::size_t>(i)]);
-  return i == 0 ? *pull_point_ : placement.position(points_[static_cast<std::size_t>(i - 1)]);
+Vector3 Cable::point(const Configuration& configuration, int i) const {
+  if (!pull_point_) return configuration.position(points_[static_cast<std::size_t>(i)]);
+  return i == 0 ? *pull_point_ : configuration.position(points_[static_cast<std::size_t>(i - 1)]);
 }
 
 void Cable::declare(mechanics::RowPattern& rows, std::vector<mechanics::RowCurvature>& curvatures) {
@@ -84,16 +82,16 @@ void Cable::declare(mechanics::RowPattern& rows, std::vector<mechanics::RowCurva
   curvature_count_ = static_cast<int>(curvatures.size()) - first_curvature_;
 }
 
-void Cable::linearise(const Placement& placement, mechanics::RowValues& values) const {
+void Cable::linearise(const Configuration& configuration, mechanics::RowValues& values) const {
   const int count = point_count();
   const int skip = pull_point_ ? 1 : 0;
   Vector3 before = Vector3::Zero();
-  Vector3 here = point(placement, 0);
+  Vector3 here = point(configuration, 0);
   double length = 0.0;
   for (int i = 0; i < count; ++i) {
     Segment next;
     if (i + 1 < count) {
-      const Vector3 there = point(placement, i + 1);
+      const Vector3 there = point(configuration, i + 1);
       next = segment(here, there);
       here = there;
     }
@@ -104,19 +102,20 @@ void Cable::linearise(const Placement& placement, mechanics::RowValues& values) 
     before = next.direction;
   }
   values.delta[first_row_] = rest_length_ - length;
-  if (friction_) linearise_friction(placement, values);
+  if (friction_) linearise_friction(configuration, values);
 }
 
 // Row of via point i: minus the direction of the whole cable at all points behind it; at the point
 // itself only the segment behind it counts. Its motion is counted from rest, whose segments are not
 // kept one by one: laws look at differences.
-void Cable::linearise_friction(const Placement& placement, mechanics::RowValues& values) const {
+void Cable::linearise_friction(const Configuration& configuration,
+                               mechanics::RowValues& values) const {
   const int skip = pull_point_ ? 1 : 0;
   const int count = point_count();
   auto entry = static_cast<std::size_t>(first_entry_) + points_.size();
   for (int via = 0; via < via_count(); ++via) {
     const int first = via + 1;
-    const Segment behind = segment(point(placement, first), point(placement, first + 1));
+    const Segment behind = segment(point(configuration, first), point(configuration, first + 1));
     values.direction[entry++] = -behind.direction;
     for (int i = first + 1; i < count; ++i) {
       values.direction[entry++] =
@@ -125,13 +124,13 @@ void Cable::linearise_friction(const Placement& placement, mechanics::RowValues&
   }
   double length = 0.0;  // behind the point
   for (int via = via_count(); via-- > 0;) {
-    length += segment(point(placement, via + 1), point(placement, via + 2)).length;
+    length += segment(point(configuration, via + 1), point(configuration, via + 2)).length;
     values.delta[friction_row(via)] = length;
   }
 }
 
-void Cable::curve(const Placement& placement, std::span<const double> effort,
-                  std::span<mechanics::RowCurvature> curvatures) const {
+void Cable::geometric_stiffness(const Configuration& configuration, std::span<const double> effort,
+                                std::span<mechanics::RowCurvature> curvatures) const {
   const int skip = pull_point_ ? 1 : 0;
   for (auto& entry : curvatures) entry.curvature.setZero();
   const double* lambda = effort.data() + first_row_;
@@ -139,7 +138,7 @@ void Cable::curve(const Placement& placement, std::span<const double> effort,
   // Diagonal pairs of sliding point k stand at 2 k, its pair with the next one at 2 k + 1.
   for (int i = 0; i + 1 < point_count(); ++i) {
     if (friction_ && i > 0) tension -= lambda[i];
-    const Segment s = segment(point(placement, i), point(placement, i + 1));
+    const Segment s = segment(point(configuration, i), point(configuration, i + 1));
     if (s.length <= kShortestSegment) continue;
     const Matrix3 bend =
         tension * (Matrix3::Identity() - s.direction * s.direction.transpose()) / s.length;
@@ -152,24 +151,24 @@ void Cable::curve(const Placement& placement, std::span<const double> effort,
   }
 }
 
-double Cable::length(const Placement& placement) const {
+double Cable::length(const Configuration& configuration) const {
   double length = 0.0;
   for (int i = 0; i + 1 < point_count(); ++i) {
-    length += segment(point(placement, i), point(placement, i + 1)).length;
+    length += segment(point(configuration, i), point(configuration, i + 1)).length;
   }
   return length;
 }
 
-double Cable::turn(const Placement& placement, int via) const {
-  const Vector3 here = point(placement, via + 1);
-  const Vector3 a = segment(point(placement, via), here).direction;
-  const Vector3 b = segment(here, point(placement, via + 2)).direction;
+double Cable::turn(const Configuration& configuration, int via) const {
+  const Vector3 here = point(configuration, via + 1);
+  const Vector3 a = segment(point(configuration, via), here).direction;
+  const Vector3 b = segment(here, point(configuration, via + 2)).direction;
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-double Cable::wrap(const Placement& placement) const {
+double Cable::wrap(const Configuration& configuration) const {
   double angle = 0.0;
-  for (int via = 0; via < via_count(); ++via) angle += turn(placement, via);
+  for (int via = 0; via < via_count(); ++via) angle += turn(configuration, via);
   return angle;
 }
 
@@ -192,9 +191,9 @@ std::vector<double> Cable::tensions(std::span<const double> effort) const {
   return result;
 }
 
-Points Cable::points(const Placement& placement) const {
+Points Cable::points(const Configuration& configuration) const {
   Points result(point_count(), 3);
-  for (int i = 0; i < point_count(); ++i) result.row(i) = point(placement, i);
+  for (int i = 0; i < point_count(); ++i) result.row(i) = point(configuration, i);
   return result;
 }
 

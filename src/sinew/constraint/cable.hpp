@@ -30,18 +30,18 @@ class Cable : public Constraint {
   ///   to the body, the others slide.
   /// @param world_pull_point where the cable enters when that is fixed to the world, (3,) m; absent
   ///   when points.front() is the pull point itself.
-  /// @param placement_at_rest positions of all points at rest, pull point first: (n, 3) m.
+  /// @param points_at_rest positions of all points at rest, pull point first: (n, 3) m.
   /// @param friction whether the points that it slides through have rows.
   /// Throws Error(too_few_points) under two points, Error(degenerate_cable) for coincident ones.
   Cable(std::string name, std::vector<mechanics::MaterialPoint> points,
-        std::optional<Vector3> world_pull_point, const Points& placement_at_rest,
+        std::optional<Vector3> world_pull_point, const Points& points_at_rest,
         bool friction = false);
 
   void declare(mechanics::RowPattern& rows,
                std::vector<mechanics::RowCurvature>& curvatures) override;
-  void linearise(const Placement& placement, mechanics::RowValues& values) const override;
-  void curve(const Placement& placement, std::span<const double> effort,
-             std::span<mechanics::RowCurvature> curvatures) const override;
+  void linearise(const Configuration& configuration, mechanics::RowValues& values) const override;
+  void geometric_stiffness(const Configuration& configuration, std::span<const double> effort,
+                           std::span<mechanics::RowCurvature> curvatures) const override;
 
   /// While every segment is under tension.
   void add_to(ValueHash& hash) const override { hash.add(pull_point_, rest_length_, friction_); }
@@ -51,25 +51,25 @@ class Cable : public Constraint {
   /// L_0, m.
   double rest_length() const { return rest_length_; }
   /// L now, m.
-  double length(const Placement& placement) const;
+  double length(const Configuration& configuration) const;
   /// Points between its ends.
   int via_count() const { return point_count() - 2; }
   /// The angle by which it turns at one of them, 0 .. via_count() - 1 from the pull point on, rad.
-  double turn(const Placement& placement, int via) const;
+  double turn(const Configuration& configuration, int via) const;
   /// Sum of those angles, rad (its wrap).
-  double wrap(const Placement& placement) const;
+  double wrap(const Configuration& configuration) const;
   /// Row of the friction at a point between its ends. Only with friction.
   int friction_row(int via) const { return first_row_ + 1 + via; }
   /// Tension of every segment, pull point first, (via_count() + 1,) N.
   /// @param effort (rows,) of the world.
   std::vector<double> tensions(std::span<const double> effort) const;
   /// All points now, pull point first; (n, 3) m.
-  Points points(const Placement& placement) const;
+  Points points(const Configuration& configuration) const;
 
  private:
   int point_count() const { return static_cast<int>(points_.size()) + (pull_point_ ? 1 : 0); }
-  Vector3 point(const Placement& placement, int i) const;
-  void linearise_friction(const Placement& placement, mechanics::RowValues& values) const;
+  Vector3 point(const Configuration& configuration, int i) const;
+  void linearise_friction(const Configuration& configuration, mechanics::RowValues& values) const;
 
   std::vector<mechanics::MaterialPoint> points_;
   std::optional<Vector3> pull_point_;

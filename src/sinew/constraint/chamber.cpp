@@ -8,7 +8,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-#include "sinew/constraint/placement.hpp"
+#include "sinew/constraint/configuration.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/core/rotation.hpp"
 
@@ -64,14 +64,14 @@ std::vector<Weighted> quadratic_weights() {
 }  // namespace
 
 Chamber::Chamber(std::string name, std::vector<mechanics::MaterialPoint> points,
-                 std::vector<ChamberFace> faces, const Points& placement_at_rest)
+                 std::vector<ChamberFace> faces, const Points& points_at_rest)
     : Constraint(std::move(name)), points_(std::move(points)), faces_(std::move(faces)) {
   if (points_.size() < 4) {
     throw Error(ErrorKind::too_few_points, {.item = "chamber '" + this->name() + "'"},
                 fmt::format("the surface has {} nodes", points_.size()),
                 "choose a surface that encloses a volume");
   }
-  check_closed(placement_at_rest);
+  check_closed(points_at_rest);
   for (const ChamberFace& face : faces_) {
     const auto [a, b, c, d] = face.corner;
     if (face.middle[0] >= 0) {
@@ -91,17 +91,17 @@ Chamber::Chamber(std::string name, std::vector<mechanics::MaterialPoint> points,
     }
   }
   list_edges();
-  const Vector3 origin = placement_at_rest.row(0).transpose();
+  const Vector3 origin = points_at_rest.row(0).transpose();
   for (const Triangle& t : triangles_) {
     std::array<Vector3, 3> x;
     for (std::size_t k = 0; k < 3; ++k) {
-      x[k] = placement_at_rest.row(t.corner[k]).transpose() - origin;
+      x[k] = points_at_rest.row(t.corner[k]).transpose() - origin;
     }
     rest_volume_ += t.weight / 6.0 * x[0].dot(x[1].cross(x[2]));
   }
   for (const ChamberFace& face : faces_) {
     const auto at = [&](std::size_t k) -> Vector3 {
-      return placement_at_rest.row(face.corner[k]).transpose();
+      return points_at_rest.row(face.corner[k]).transpose();
     };
     const bool quad = face.corner[3] >= 0;
     rest_area_ += 0.5 * (quad ? (at(2) - at(0)).cross(at(3) - at(1)).norm()
@@ -165,12 +165,12 @@ void Chamber::declare(mechanics::RowPattern& rows,
   curvature_count_ = static_cast<int>(pairs_.size());
 }
 
-void Chamber::linearise(const Placement& placement, mechanics::RowValues& values) const {
+void Chamber::linearise(const Configuration& configuration, mechanics::RowValues& values) const {
   const auto direction = [&](int corner) -> Vector3& {
     return values.direction[static_cast<std::size_t>(first_entry_ + corner)];
   };
   const auto position = [&](int corner) {
-    return placement.position(points_[static_cast<std::size_t>(corner)]);
+    return configuration.position(points_[static_cast<std::size_t>(corner)]);
   };
   for (std::size_t k = 0; k < points_.size(); ++k) direction(static_cast<int>(k)).setZero();
   const Vector3 origin = position(0);
@@ -188,13 +188,15 @@ void Chamber::linearise(const Placement& placement, mechanics::RowValues& values
   values.delta[first_row_] = volume - rest_volume_;
 }
 
-void Chamber::curve(const Placement& placement, std::span<const double> effort,
-                    std::span<mechanics::RowCurvature> curvatures) const {
+void Chamber::geometric_stiffness(const Configuration& configuration,
+                                  std::span<const double> effort,
+                                  std::span<mechanics::RowCurvature> curvatures) const {
   for (auto& entry : curvatures) entry.curvature.setZero();
   const double pressure = effort[static_cast<std::size_t>(first_row_)];
-  const Vector3 origin = placement.position(points_.front());
+  const Vector3 origin = configuration.position(points_.front());
   for (const Edge& edge : edges_) {
-    const Vector3 c = placement.position(points_[static_cast<std::size_t>(edge.third)]) - origin;
+    const Vector3 c =
+        configuration.position(points_[static_cast<std::size_t>(edge.third)]) - origin;
     curvatures[static_cast<std::size_t>(edge.pair)].curvature +=
         pressure * edge.weight * cross_matrix(c);
   }

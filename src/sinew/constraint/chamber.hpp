@@ -31,16 +31,16 @@ class Chamber : public Constraint {
  public:
   /// @param name for messages.
   /// @param points corners of the faces. @param faces closed: every edge twice, once each way.
-  /// @param placement_at_rest positions of the points at rest, (n, 3) m.
+  /// @param points_at_rest positions of the points at rest, (n, 3) m.
   /// Throws Error: too-few-points, surface-not-closed, zero-volume.
   Chamber(std::string name, std::vector<mechanics::MaterialPoint> points,
-          std::vector<ChamberFace> faces, const Points& placement_at_rest);
+          std::vector<ChamberFace> faces, const Points& points_at_rest);
 
   void declare(mechanics::RowPattern& rows,
                std::vector<mechanics::RowCurvature>& curvatures) override;
-  void linearise(const Placement& placement, mechanics::RowValues& values) const override;
-  void curve(const Placement& placement, std::span<const double> effort,
-             std::span<mechanics::RowCurvature> curvatures) const override;
+  void linearise(const Configuration& configuration, mechanics::RowValues& values) const override;
+  void geometric_stiffness(const Configuration& configuration, std::span<const double> effort,
+                           std::span<mechanics::RowCurvature> curvatures) const override;
 
   void add_to(ValueHash& hash) const override;
 

@@ -2,7 +2,7 @@
 
 namespace sinew::constraint {
 
-void Constraint::curve(const Placement&, std::span<const double>,
-                       std::span<mechanics::RowCurvature>) const {}
+void Constraint::geometric_stiffness(const Configuration&, std::span<const double>,
+                                     std::span<mechanics::RowCurvature>) const {}
 
 }  // namespace sinew::constraint

@@ -14,7 +14,7 @@
 
 namespace sinew::constraint {
 
-class Placement;
+class Configuration;
 
 /// Immutable once declared; the numbers of a simulation live in its RowValues.
 class Constraint {
@@ -25,13 +25,17 @@ class Constraint {
   /// and remembers where they start. Called once, when the model is built.
   virtual void declare(mechanics::RowPattern& rows,
                        std::vector<mechanics::RowCurvature>& curvatures) = 0;
-  /// Writes directions and delta of its rows for the current placement.
-  virtual void linearise(const Placement& placement, mechanics::RowValues& values) const = 0;
-  /// Writes the curvature of its declared pairs for the current placement.
-  /// @param placement of all bodies. @param effort (rows,) N or Pa, of all rows of the world.
+  /// Writes delta of its rows for the current configuration, and the directions that follow it: all
+  /// but the frames of a contact, which its step sets (see Contact).
+  virtual void linearise(const Configuration& configuration,
+                         mechanics::RowValues& values) const = 0;
+  /// Writes its geometric stiffness for the current configuration: the curvature of its declared
+  /// pairs. @param configuration of all bodies. @param effort (rows,) N or Pa, of all rows of the
+  /// world.
   /// @param curvatures its own, first_curvature() on.
-  virtual void curve(const Placement& placement, std::span<const double> effort,
-                     std::span<mechanics::RowCurvature> curvatures) const;
+  virtual void geometric_stiffness(const Configuration& configuration,
+                                   std::span<const double> effort,
+                                   std::span<mechanics::RowCurvature> curvatures) const;
 
   /// Whether its curvature at these efforts can only stiffen: a taut cable's is of one sign.
   /// @param effort (rows,) N or Pa, of all rows of the world.

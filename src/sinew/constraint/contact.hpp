@@ -29,17 +29,17 @@ class Contact : public Constraint {
   virtual bool idle(std::size_t point, const mechanics::RowValues& values) const = 0;
 
   /// (3,) m: where a point is now. @param values of the step.
-  virtual Vector3 position_now(const Placement& placement, std::size_t point,
+  virtual Vector3 position_now(const Configuration& configuration, std::size_t point,
                                const mechanics::RowValues& values) const = 0;
   /// (3,) m/s, relative to what it may touch. @param values of the step.
-  virtual Vector3 velocity_beside(const Placement& placement, std::size_t point,
+  virtual Vector3 velocity_beside(const Configuration& configuration, std::size_t point,
                                   const mechanics::RowValues& values) const = 0;
   /// m: the gap's row now. @param values of the step.
-  virtual double linear_gap(const Placement& placement, std::size_t point,
+  virtual double linear_gap(const Configuration& configuration, std::size_t point,
                             const mechanics::RowValues& values) const = 0;
-  /// m: the gap now. @param placement of the bodies. @param pose of a surface of the world.
+  /// m: the gap now. @param configuration of the bodies. @param pose of a surface of the world.
   /// @param values of the step.
-  virtual double gap_now(const Placement& placement, const Eigen::Isometry3d& pose,
+  virtual double gap_now(const Configuration& configuration, const Eigen::Isometry3d& pose,
                          std::size_t point, const mechanics::RowValues& values) const = 0;
 
   int row(std::size_t point) const { return first_row_ + 3 * static_cast<int>(point); }

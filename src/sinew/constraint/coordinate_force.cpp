@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "sinew/constraint/placement.hpp"
+#include "sinew/constraint/configuration.hpp"
 
 namespace sinew::constraint {
 
@@ -15,9 +15,10 @@ void CoordinateForce::declare(mechanics::RowPattern& rows, std::vector<mechanics
   row_count_ = 1;
 }
 
-void CoordinateForce::linearise(const Placement& placement, mechanics::RowValues& values) const {
+void CoordinateForce::linearise(const Configuration& configuration,
+                                mechanics::RowValues& values) const {
   values.direction[static_cast<std::size_t>(first_entry_)] = Vector3::UnitX();
-  values.delta[first_row_] = placement.coordinate(coordinate_);
+  values.delta[first_row_] = configuration.coordinate(coordinate_);
 }
 
 }  // namespace sinew::constraint

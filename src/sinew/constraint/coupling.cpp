@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "sinew/constraint/placement.hpp"
+#include "sinew/constraint/configuration.hpp"
 
 namespace sinew::constraint {
 
@@ -16,8 +16,8 @@ void Coupling::declare(mechanics::RowPattern& rows, std::vector<mechanics::RowCu
   for (int k = 0; k < 2; ++k) rows.add_row({first_, second_});
 }
 
-void Coupling::linearise(const Placement& placement, mechanics::RowValues& values) const {
-  const Vector3 line = placement.position(second_) - placement.position(first_);
+void Coupling::linearise(const Configuration& configuration, mechanics::RowValues& values) const {
+  const Vector3 line = configuration.position(second_) - configuration.position(first_);
   const Vector3 across = line.squaredNorm() > 0.0 ? line.unitOrthogonal() : Vector3::UnitX();
   const Vector3 directions[2] = {across, line.cross(across).normalized()};
   auto* direction = values.direction.data() + first_entry_;

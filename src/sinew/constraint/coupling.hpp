@@ -16,7 +16,7 @@ class Coupling : public Constraint {
 
   void declare(mechanics::RowPattern& rows,
                std::vector<mechanics::RowCurvature>& curvatures) override;
-  void linearise(const Placement& placement, mechanics::RowValues& values) const override;
+  void linearise(const Configuration& configuration, mechanics::RowValues& values) const override;
   void add_to(ValueHash&) const override {}
 
  private:

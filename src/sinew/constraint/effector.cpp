@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-#include "sinew/constraint/placement.hpp"
+#include "sinew/constraint/configuration.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/core/rotation.hpp"
 
@@ -57,8 +57,9 @@ void PointEffector::declare(mechanics::RowPattern& rows, std::vector<mechanics::
   for (int k = 0; k < row_count_; ++k) rows.add_row({point_});
 }
 
-void PointEffector::linearise(const Placement& placement, mechanics::RowValues& values) const {
-  const Vector3 position = placement.position(point_);
+void PointEffector::linearise(const Configuration& configuration,
+                              mechanics::RowValues& values) const {
+  const Vector3 position = configuration.position(point_);
   for (int k = 0; k < row_count_; ++k) {
     const Vector3& direction = directions_[static_cast<std::size_t>(k)];
     values.direction[static_cast<std::size_t>(first_entry_ + k)] = direction;
@@ -66,26 +67,26 @@ void PointEffector::linearise(const Placement& placement, mechanics::RowValues& 
   }
 }
 
-Vector3 PointEffector::value(const Placement& placement) const {
-  return placement.position(point_);
+Vector3 PointEffector::value(const Configuration& configuration) const {
+  return configuration.position(point_);
 }
 
-void PointEffector::target_delta(const Placement&, const Vector3& target,
+void PointEffector::target_delta(const Configuration&, const Vector3& target,
                                  Eigen::Ref<VectorX> delta) const {
   for (int k = 0; k < row_count_; ++k) {
     delta[k] = directions_[static_cast<std::size_t>(k)].dot(target);
   }
 }
 
-Vector3 OrientationEffector::value(const Placement& placement) const {
-  return rotation_vector(rotation(placement));
+Vector3 OrientationEffector::value(const Configuration& configuration) const {
+  return rotation_vector(rotation(configuration));
 }
 
-void OrientationEffector::target_delta(const Placement& placement, const Vector3& target,
+void OrientationEffector::target_delta(const Configuration& configuration, const Vector3& target,
                                        Eigen::Ref<VectorX> delta) const {
   // The rows measure the spin from here on, so the target is "now plus the rotation still to go".
-  const Matrix3 now = rotation(placement);
-  delta = value(placement) + rotation_vector(rotation_matrix(target) * now.transpose());
+  const Matrix3 now = rotation(configuration);
+  delta = value(configuration) + rotation_vector(rotation_matrix(target) * now.transpose());
 }
 
 SectionOrientation::SectionOrientation(std::string name, mechanics::Orientation section)
@@ -99,16 +100,17 @@ void SectionOrientation::declare(mechanics::RowPattern& rows,
   for (int k = 0; k < 3; ++k) rows.add_row({section_});
 }
 
-void SectionOrientation::linearise(const Placement& placement, mechanics::RowValues& values) const {
-  const Vector3 now = value(placement);
+void SectionOrientation::linearise(const Configuration& configuration,
+                                   mechanics::RowValues& values) const {
+  const Vector3 now = value(configuration);
   for (int k = 0; k < 3; ++k) {
     values.direction[static_cast<std::size_t>(first_entry_ + k)] = Vector3::Unit(k);
     values.delta[first_row_ + k] = now[k];
   }
 }
 
-Matrix3 SectionOrientation::rotation(const Placement& placement) const {
-  return placement.rotation(section_);
+Matrix3 SectionOrientation::rotation(const Configuration& configuration) const {
+  return configuration.rotation(section_);
 }
 
 TriangleOrientation::TriangleOrientation(std::string name,
@@ -133,11 +135,11 @@ void TriangleOrientation::declare(mechanics::RowPattern& rows,
   for (int k = 0; k < 3; ++k) rows.add_row({points_[0], points_[1], points_[2]});
 }
 
-void TriangleOrientation::linearise(const Placement& placement,
+void TriangleOrientation::linearise(const Configuration& configuration,
                                     mechanics::RowValues& values) const {
-  const Vector3 a = placement.position(points_[0]);
-  const Vector3 b = placement.position(points_[1]);
-  const Vector3 c = placement.position(points_[2]);
+  const Vector3 a = configuration.position(points_[0]);
+  const Vector3 b = configuration.position(points_[1]);
+  const Vector3 c = configuration.position(points_[2]);
   const Matrix3 frame = triangle_frame(a, b, c);
   const double length = (b - a).norm();
   const double alpha = frame.col(0).dot(c - a);
@@ -151,7 +153,7 @@ void TriangleOrientation::linearise(const Placement& placement,
   by_c.row(0) = frame.col(2).transpose() / beta;
   const Matrix3 world_b = frame * by_b;
   const Matrix3 world_c = frame * by_c;
-  const Vector3 now = value(placement);
+  const Vector3 now = value(configuration);
   for (int k = 0; k < 3; ++k) {
     const auto entry = static_cast<std::size_t>(first_entry_ + 3 * k);
     values.direction[entry + 1] = world_b.row(k);
@@ -161,9 +163,9 @@ void TriangleOrientation::linearise(const Placement& placement,
   }
 }
 
-Matrix3 TriangleOrientation::rotation(const Placement& placement) const {
-  return triangle_frame(placement.position(points_[0]), placement.position(points_[1]),
-                        placement.position(points_[2])) *
+Matrix3 TriangleOrientation::rotation(const Configuration& configuration) const {
+  return triangle_frame(configuration.position(points_[0]), configuration.position(points_[1]),
+                        configuration.position(points_[2])) *
          rest_frame_.transpose();
 }
 

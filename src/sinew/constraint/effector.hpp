@@ -23,11 +23,11 @@ const char* effector_kind_name(EffectorKind kind);
 class Effector : public Constraint {
  public:
   /// Where it is: (3,) m for positions; the rotation vector since rest, rad, for orientations.
-  virtual Vector3 value(const Placement& placement) const = 0;
+  virtual Vector3 value(const Configuration& configuration) const = 0;
   /// Unit directions of its rows in the world (rows, each (3,)).
   const std::vector<Vector3>& directions() const { return directions_; }
   /// What delta must become for the effector to meet `target` (given as value() is): (rows,).
-  virtual void target_delta(const Placement& placement, const Vector3& target,
+  virtual void target_delta(const Configuration& configuration, const Vector3& target,
                             Eigen::Ref<VectorX> delta) const = 0;
   virtual EffectorKind kind() const = 0;
   /// Of value(): "m" or "rad".
@@ -51,9 +51,9 @@ class PointEffector : public Effector {
 
   void declare(mechanics::RowPattern& rows,
                std::vector<mechanics::RowCurvature>& curvatures) override;
-  void linearise(const Placement& placement, mechanics::RowValues& values) const override;
-  Vector3 value(const Placement& placement) const override;
-  void target_delta(const Placement& placement, const Vector3& target,
+  void linearise(const Configuration& configuration, mechanics::RowValues& values) const override;
+  Vector3 value(const Configuration& configuration) const override;
+  void target_delta(const Configuration& configuration, const Vector3& target,
                     Eigen::Ref<VectorX> delta) const override;
   EffectorKind kind() const override { return EffectorKind::point; }
   const mechanics::MaterialPoint& point() const { return point_; }
@@ -66,8 +66,8 @@ class PointEffector : public Effector {
 /// axes; value() is the rotation vector of R, the rotation since rest.
 class OrientationEffector : public Effector {
  public:
-  Vector3 value(const Placement& placement) const override;
-  void target_delta(const Placement& placement, const Vector3& target,
+  Vector3 value(const Configuration& configuration) const override;
+  void target_delta(const Configuration& configuration, const Vector3& target,
                     Eigen::Ref<VectorX> delta) const override;
   EffectorKind kind() const override { return EffectorKind::orientation; }
 
@@ -75,7 +75,7 @@ class OrientationEffector : public Effector {
   explicit OrientationEffector(std::string name) : Effector(std::move(name), {}) {}
 
  private:
-  virtual Matrix3 rotation(const Placement& placement) const = 0;
+  virtual Matrix3 rotation(const Configuration& configuration) const = 0;
 };
 
 /// A part that stays rigid, such as a section of an arm.
@@ -86,10 +86,10 @@ class SectionOrientation : public OrientationEffector {
 
   void declare(mechanics::RowPattern& rows,
                std::vector<mechanics::RowCurvature>& curvatures) override;
-  void linearise(const Placement& placement, mechanics::RowValues& values) const override;
+  void linearise(const Configuration& configuration, mechanics::RowValues& values) const override;
 
  private:
-  Matrix3 rotation(const Placement& placement) const override;
+  Matrix3 rotation(const Configuration& configuration) const override;
 
   mechanics::Orientation section_;
 };
@@ -109,11 +109,11 @@ class TriangleOrientation : public OrientationEffector {
 
   void declare(mechanics::RowPattern& rows,
                std::vector<mechanics::RowCurvature>& curvatures) override;
-  void linearise(const Placement& placement, mechanics::RowValues& values) const override;
+  void linearise(const Configuration& configuration, mechanics::RowValues& values) const override;
   void add_to(ValueHash& hash) const override { hash.add(directions_, rest_frame_); }
 
  private:
-  Matrix3 rotation(const Placement& placement) const override;
+  Matrix3 rotation(const Configuration& configuration) const override;
 
   std::array<mechanics::MaterialPoint, 3> points_;
   Matrix3 rest_frame_;

@@ -5,7 +5,7 @@
 
 #include <Eigen/Geometry>
 
-#include "sinew/constraint/placement.hpp"
+#include "sinew/constraint/configuration.hpp"
 
 namespace sinew::constraint {
 
@@ -59,13 +59,14 @@ double JointFrames::angle() const {
 JointPlace::JointPlace(const JointSide& first, const JointSide& second, const Matrix3& axes)
     : sides_{first, second}, axes_(axes) {}
 
-JointFrames JointPlace::frames(const Placement& placement) const {
+JointFrames JointPlace::frames(const Configuration& configuration) const {
   JointFrames frames;
   for (std::size_t s = 0; s < 2; ++s) {
     const JointSide& side = sides_[s];
-    frames.origin[s] = is_body(side.point) ? placement.position(side.point) : side.rest;
+    frames.origin[s] = is_body(side.point) ? configuration.position(side.point) : side.rest;
     frames.axes[s] = axes_;
-    if (is_body(side.orientation)) frames.axes[s] = placement.rotation(side.orientation) * axes_;
+    if (is_body(side.orientation))
+      frames.axes[s] = configuration.rotation(side.orientation) * axes_;
   }
   return frames;
 }
@@ -118,8 +119,8 @@ Vector3 Joint::direction(const JointFrames& frames, int row) const {
   return b.col(j).cross(a.col(i));
 }
 
-void Joint::linearise(const Placement& placement, mechanics::RowValues& values) const {
-  const JointFrames frames = place_.frames(placement);
+void Joint::linearise(const Configuration& configuration, mechanics::RowValues& values) const {
+  const JointFrames frames = place_.frames(configuration);
   const auto& [a, b] = frames.axes;
   const Vector3 offset = frames.offset();
   Vector3* entry = values.direction.data() + first_entry_;
@@ -151,8 +152,8 @@ void Joint::add_to(ValueHash& hash) const {
   place_.add_to(hash);
 }
 
-Joint::Load Joint::load(const Placement& placement, std::span<const double> effort) const {
-  const JointFrames frames = place_.frames(placement);
+Joint::Load Joint::load(const Configuration& configuration, std::span<const double> effort) const {
+  const JointFrames frames = place_.frames(configuration);
   Load load;
   for (int row = 0; row < row_count_; ++row) {
     Vector3& sum = row < displacements_ ? load.force : load.moment;
@@ -161,8 +162,8 @@ Joint::Load Joint::load(const Placement& placement, std::span<const double> effo
   return load;
 }
 
-double Joint::gap(const Placement& placement) const {
-  const JointFrames frames = place_.frames(placement);
+double Joint::gap(const Configuration& configuration) const {
+  const JointFrames frames = place_.frames(configuration);
   const Vector3 offset = frames.offset();
   return (slides_along_axis(type_) ? Vector3(offset - frames.slide() * frames.axes[0].col(2))
                                    : offset)
@@ -178,8 +179,9 @@ void JointMotion::declare(mechanics::RowPattern& rows, std::vector<mechanics::Ro
   row_count_ = 1;
 }
 
-void JointMotion::linearise(const Placement& placement, mechanics::RowValues& values) const {
-  const JointFrames frames = place_.frames(placement);
+void JointMotion::linearise(const Configuration& configuration,
+                            mechanics::RowValues& values) const {
+  const JointFrames frames = place_.frames(configuration);
   const Vector3 axis = frames.axes[0].col(2);
   Vector3* entry = values.direction.data() + first_entry_;
   if (kind_ == Kind::angle) {

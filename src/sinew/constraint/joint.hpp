@@ -37,7 +37,7 @@ class JointPlace {
  public:
   /// @param axes (3, 3) orthonormal, at rest.
   JointPlace(const JointSide& first, const JointSide& second, const Matrix3& axes);
-  JointFrames frames(const Placement& placement) const;
+  JointFrames frames(const Configuration& configuration) const;
 
   const std::array<JointSide, 2>& sides() const { return sides_; }
   /// Adds a row that touches points, orientations or both, of the sides that are bodies: the
@@ -70,7 +70,7 @@ class Joint : public Constraint {
 
   void declare(mechanics::RowPattern& rows,
                std::vector<mechanics::RowCurvature>& curvatures) override;
-  void linearise(const Placement& placement, mechanics::RowValues& values) const override;
+  void linearise(const Configuration& configuration, mechanics::RowValues& values) const override;
   void add_to(ValueHash& hash) const override;
 
   JointType type() const { return type_; }
@@ -85,9 +85,9 @@ class Joint : public Constraint {
     Vector3 force = Vector3::Zero();   ///< N
     Vector3 moment = Vector3::Zero();  ///< N m
   };
-  Load load(const Placement& placement, std::span<const double> effort) const;
+  Load load(const Configuration& configuration, std::span<const double> effort) const;
   /// m: how far apart the two points are, of what slides across the axis.
-  double gap(const Placement& placement) const;
+  double gap(const Configuration& configuration) const;
 
  private:
   // Of a displacement, or the axis of a turn. row: of its own, from 0.
@@ -109,7 +109,7 @@ class JointMotion : public Constraint {
 
   void declare(mechanics::RowPattern& rows,
                std::vector<mechanics::RowCurvature>& curvatures) override;
-  void linearise(const Placement& placement, mechanics::RowValues& values) const override;
+  void linearise(const Configuration& configuration, mechanics::RowValues& values) const override;
   void add_to(ValueHash& hash) const override;
   Kind kind() const { return kind_; }
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "sinew/constraint/placement.hpp"
+#include "sinew/constraint/configuration.hpp"
 #include "sinew/core/error.hpp"
 
 namespace sinew::constraint {
@@ -24,9 +24,9 @@ void PointForce::declare(mechanics::RowPattern& rows, std::vector<mechanics::Row
   row_count_ = 1;
 }
 
-void PointForce::linearise(const Placement& placement, mechanics::RowValues& values) const {
+void PointForce::linearise(const Configuration& configuration, mechanics::RowValues& values) const {
   values.direction[static_cast<std::size_t>(first_entry_)] = direction_;
-  values.delta[first_row_] = direction_.dot(placement.position(point_) - rest_position_);
+  values.delta[first_row_] = direction_.dot(configuration.position(point_) - rest_position_);
 }
 
 }  // namespace sinew::constraint

@@ -19,7 +19,7 @@ class PointForce : public Constraint {
 
   void declare(mechanics::RowPattern& rows,
                std::vector<mechanics::RowCurvature>& curvatures) override;
-  void linearise(const Placement& placement, mechanics::RowValues& values) const override;
+  void linearise(const Configuration& configuration, mechanics::RowValues& values) const override;
 
   void add_to(ValueHash& hash) const override { hash.add(direction_, rest_position_); }
 

@@ -10,7 +10,7 @@
 #include <Eigen/SVD>
 #include <fmt/format.h>
 
-#include "sinew/constraint/placement.hpp"
+#include "sinew/constraint/configuration.hpp"
 #include "sinew/core/error.hpp"
 
 namespace sinew::constraint {
@@ -25,10 +25,11 @@ constexpr double kAcross = 0.1;
 // Part of a hull's size below which one of its edges is rounding: two nodes one behind the other.
 constexpr double kShortestEdge = 1e-9;
 
-Points positions(const Placement& placement, std::span<const mechanics::MaterialPoint> points) {
+Points positions(const Configuration& configuration,
+                 std::span<const mechanics::MaterialPoint> points) {
   Points result(static_cast<Eigen::Index>(points.size()), 3);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    result.row(static_cast<Eigen::Index>(i)) = placement.position(points[i]).transpose();
+    result.row(static_cast<Eigen::Index>(i)) = configuration.position(points[i]).transpose();
   }
   return result;
 }
@@ -98,40 +99,42 @@ std::vector<std::size_t> convex_hull(const std::vector<Eigen::Vector2d>& points)
 PointProbe::PointProbe(std::string name, mechanics::MaterialPoint point)
     : Probe(std::move(name), {{"x", "m"}, {"y", "m"}, {"z", "m"}}), point_(point) {}
 
-void PointProbe::measure(const Placement& placement, std::span<double> values) const {
-  const Vector3 position = placement.position(point_);
+void PointProbe::measure(const Configuration& configuration, std::span<double> values) const {
+  const Vector3 position = configuration.position(point_);
   std::copy_n(position.data(), 3, values.begin());
 }
 
-Points PointProbe::marks(const Placement& placement) const {
-  return positions(placement, {&point_, 1});
+Points PointProbe::marks(const Configuration& configuration) const {
+  return positions(configuration, {&point_, 1});
 }
 
 LineProbe::LineProbe(std::string name, std::vector<mechanics::MaterialPoint> points)
     : Probe(std::move(name), line_components(points.size())), points_(std::move(points)) {}
 
-void LineProbe::measure(const Placement& placement, std::span<double> values) const {
-  Vector3 before = placement.position(points_.front());
+void LineProbe::measure(const Configuration& configuration, std::span<double> values) const {
+  Vector3 before = configuration.position(points_.front());
   values[0] = 0.0;
   for (std::size_t k = 0; k < points_.size(); ++k) {
-    const Vector3 position = placement.position(points_[k]);
+    const Vector3 position = configuration.position(points_[k]);
     values[0] += (position - before).norm();
     std::copy_n(position.data(), 3, values.begin() + static_cast<std::ptrdiff_t>(1 + 3 * k));
     before = position;
   }
 }
 
-Points LineProbe::marks(const Placement& placement) const { return positions(placement, points_); }
+Points LineProbe::marks(const Configuration& configuration) const {
+  return positions(configuration, points_);
+}
 
 DistanceProbe::DistanceProbe(std::string name, std::array<mechanics::MaterialPoint, 2> points)
     : Probe(std::move(name), {{"", "m"}}), points_(points) {}
 
-void DistanceProbe::measure(const Placement& placement, std::span<double> values) const {
-  values[0] = (placement.position(points_[1]) - placement.position(points_[0])).norm();
+void DistanceProbe::measure(const Configuration& configuration, std::span<double> values) const {
+  values[0] = (configuration.position(points_[1]) - configuration.position(points_[0])).norm();
 }
 
-Points DistanceProbe::marks(const Placement& placement) const {
-  return positions(placement, points_);
+Points DistanceProbe::marks(const Configuration& configuration) const {
+  return positions(configuration, points_);
 }
 
 BendProbe::BendProbe(std::string name, std::array<ProbeFace, 2> faces,
@@ -153,8 +156,8 @@ BendProbe::BendProbe(std::string name, std::array<ProbeFace, 2> faces,
   }
 }
 
-BendProbe::Pose BendProbe::pose(const Placement& placement, std::size_t face) const {
-  const Points now = positions(placement, faces_[face].points);
+BendProbe::Pose BendProbe::pose(const Configuration& configuration, std::size_t face) const {
+  const Points now = positions(configuration, faces_[face].points);
   const Matrix3 covariance = centred(now).transpose() * centred(faces_[face].rest);
   const Eigen::JacobiSVD<Matrix3> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
@@ -163,8 +166,8 @@ BendProbe::Pose BendProbe::pose(const Placement& placement, std::size_t face) co
   return {now.colwise().mean().transpose(), rotation * normals_[face]};
 }
 
-void BendProbe::measure(const Placement& placement, std::span<double> values) const {
-  Vector3 a = pose(placement, 0).normal, b = pose(placement, 1).normal;
+void BendProbe::measure(const Configuration& configuration, std::span<double> values) const {
+  Vector3 a = pose(configuration, 0).normal, b = pose(configuration, 1).normal;
   if (!about_) {
     values[0] = std::atan2(a.cross(b).norm(), a.dot(b));
     return;
@@ -174,10 +177,10 @@ void BendProbe::measure(const Placement& placement, std::span<double> values) co
   values[0] = std::atan2(about_->dot(a.cross(b)), a.dot(b));
 }
 
-Points BendProbe::marks(const Placement& placement) const {
+Points BendProbe::marks(const Configuration& configuration) const {
   Points result(2, 3);
   for (std::size_t k = 0; k < 2; ++k) {
-    result.row(static_cast<Eigen::Index>(k)) = pose(placement, k).middle.transpose();
+    result.row(static_cast<Eigen::Index>(k)) = pose(configuration, k).middle.transpose();
   }
   return result;
 }
@@ -218,8 +221,8 @@ ExtentProbe::Span ExtentProbe::smallest_span(const Points2& points,
   return best;
 }
 
-ExtentProbe::Span ExtentProbe::span_of(const Placement& placement) const {
-  const Points now = positions(placement, points_);
+ExtentProbe::Span ExtentProbe::span_of(const Configuration& configuration) const {
+  const Points now = positions(configuration, points_);
   if (way_ == Way::along) {
     const VectorX height = now * axis_;
     Eigen::Index low = 0, high = 0;
@@ -234,13 +237,13 @@ ExtentProbe::Span ExtentProbe::span_of(const Placement& placement) const {
   return way_ == Way::largest_across ? largest : smallest_span(flat, hull, largest);
 }
 
-void ExtentProbe::measure(const Placement& placement, std::span<double> values) const {
-  values[0] = span_of(placement).reach;
+void ExtentProbe::measure(const Configuration& configuration, std::span<double> values) const {
+  values[0] = span_of(configuration).reach;
 }
 
-Points ExtentProbe::marks(const Placement& placement) const {
-  const Span span = span_of(placement);
-  return positions(placement, std::array{points_[span.ends[0]], points_[span.ends[1]]});
+Points ExtentProbe::marks(const Configuration& configuration) const {
+  const Span span = span_of(configuration);
+  return positions(configuration, std::array{points_[span.ends[0]], points_[span.ends[1]]});
 }
 
 }  // namespace sinew::constraint

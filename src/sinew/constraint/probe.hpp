@@ -29,11 +29,11 @@ class Probe {
   virtual const char* kind() const = 0;
   /// What measure() writes.
   const std::vector<ProbeComponent>& components() const { return components_; }
-  /// @param placement of the bodies now. @param values (components,), replaced.
-  virtual void measure(const Placement& placement, std::span<double> values) const = 0;
+  /// @param configuration of the bodies now. @param values (components,), replaced.
+  virtual void measure(const Configuration& configuration, std::span<double> values) const = 0;
   /// (k, 3) m: points that show where it measures; joined by lines where it is a line or a
   /// distance.
-  virtual Points marks(const Placement& placement) const = 0;
+  virtual Points marks(const Configuration& configuration) const = 0;
   /// Rows of marks().
   virtual std::size_t mark_count() const { return 2; }
 
@@ -53,8 +53,8 @@ class PointProbe : public Probe {
   /// @param name for headings. @param point what is measured.
   PointProbe(std::string name, mechanics::MaterialPoint point);
   const char* kind() const override { return "point"; }
-  void measure(const Placement& placement, std::span<double> values) const override;
-  Points marks(const Placement& placement) const override;
+  void measure(const Configuration& configuration, std::span<double> values) const override;
+  Points marks(const Configuration& configuration) const override;
   std::size_t mark_count() const override { return 1; }
 
  private:
@@ -68,8 +68,8 @@ class LineProbe : public Probe {
   /// @param name for headings. @param points in order, two or more.
   LineProbe(std::string name, std::vector<mechanics::MaterialPoint> points);
   const char* kind() const override { return "line"; }
-  void measure(const Placement& placement, std::span<double> values) const override;
-  Points marks(const Placement& placement) const override;
+  void measure(const Configuration& configuration, std::span<double> values) const override;
+  Points marks(const Configuration& configuration) const override;
   std::size_t mark_count() const override { return points_.size(); }
 
  private:
@@ -82,8 +82,8 @@ class DistanceProbe : public Probe {
   /// @param name for headings. @param points both.
   DistanceProbe(std::string name, std::array<mechanics::MaterialPoint, 2> points);
   const char* kind() const override { return "distance"; }
-  void measure(const Placement& placement, std::span<double> values) const override;
-  Points marks(const Placement& placement) const override;
+  void measure(const Configuration& configuration, std::span<double> values) const override;
+  Points marks(const Configuration& configuration) const override;
 
  private:
   std::array<mechanics::MaterialPoint, 2> points_;
@@ -112,14 +112,14 @@ class BendProbe : public Probe {
   /// for a normal along the axis.
   BendProbe(std::string name, std::array<ProbeFace, 2> faces, const std::optional<Vector3>& about);
   const char* kind() const override { return "bend"; }
-  void measure(const Placement& placement, std::span<double> values) const override;
-  Points marks(const Placement& placement) const override;
+  void measure(const Configuration& configuration, std::span<double> values) const override;
+  Points marks(const Configuration& configuration) const override;
 
  private:
   struct Pose {
     Vector3 middle, normal;
   };
-  Pose pose(const Placement& placement, std::size_t face) const;
+  Pose pose(const Configuration& configuration, std::size_t face) const;
 
   std::array<ProbeFace, 2> faces_;
   std::array<Vector3, 2> normals_;  // at rest
@@ -137,8 +137,8 @@ class ExtentProbe : public Probe {
   ExtentProbe(std::string name, std::vector<mechanics::MaterialPoint> points, const Vector3& axis,
               Way way);
   const char* kind() const override { return "extent"; }
-  void measure(const Placement& placement, std::span<double> values) const override;
-  Points marks(const Placement& placement) const override;
+  void measure(const Configuration& configuration, std::span<double> values) const override;
+  Points marks(const Configuration& configuration) const override;
 
  private:
   // Two nodes between which it was measured, and the reach.
@@ -150,7 +150,7 @@ class ExtentProbe : public Probe {
   static Span largest_span(const Points2& points, const std::vector<std::size_t>& hull);
   static Span smallest_span(const Points2& points, const std::vector<std::size_t>& hull,
                             const Span& largest);
-  Span span_of(const Placement& placement) const;
+  Span span_of(const Configuration& configuration) const;
 
   std::vector<mechanics::MaterialPoint> points_;
   Vector3 axis_;

@@ -13,7 +13,7 @@
 
 namespace sinew::constraint {
 
-class Placement;
+class Configuration;
 
 /// It has two entries in each row, of its centre and of its orientation. A row with direction n
 /// watches one of the body's points, at the lever r from the centre: a motion v of the centre and
@@ -26,20 +26,20 @@ struct RigidSide {
   collision::Shape shape;                 ///< at rest, in the world
 
   /// Where it is now, from rest.
-  Eigen::Isometry3d pose(const Placement& placement) const;
+  Eigen::Isometry3d pose(const Configuration& configuration) const;
   /// Watches the body's point that is at (3,) m now.
-  void watch(const Placement& placement, std::size_t entry, const Vector3& at,
+  void watch(const Configuration& configuration, std::size_t entry, const Vector3& at,
              mechanics::RowValues& values) const;
   /// (3,) m: how far that point has moved since.
-  Vector3 displacement(const Placement& placement, std::size_t entry,
+  Vector3 displacement(const Configuration& configuration, std::size_t entry,
                        const mechanics::RowValues& values) const;
   /// (3,) m: where that point is now.
-  Vector3 watched(const Placement& placement, std::size_t entry,
+  Vector3 watched(const Configuration& configuration, std::size_t entry,
                   const mechanics::RowValues& values) const;
   /// (3,) m/s of the body's point that is at (3,) m now.
-  Vector3 velocity(const Placement& placement, const Vector3& at) const;
+  Vector3 velocity(const Configuration& configuration, const Vector3& at) const;
   /// Levers as they are now, and the entries of a row in (3,) `direction`.
-  void write(const Placement& placement, std::size_t entry, const Vector3& direction,
+  void write(const Configuration& configuration, std::size_t entry, const Vector3& direction,
              mechanics::RowValues& values) const;
 };
 

@@ -9,7 +9,7 @@
 
 #include "sinew/collision/principal_frame.hpp"
 #include "sinew/collision/touching_points.hpp"
-#include "sinew/constraint/placement.hpp"
+#include "sinew/constraint/configuration.hpp"
 #include "sinew/core/error.hpp"
 
 namespace sinew::constraint {
@@ -54,38 +54,38 @@ void ShapeContact::declare(mechanics::RowPattern& rows, std::vector<mechanics::R
   }
 }
 
-void ShapeContact::begin_step(const Placement& placement, const Eigen::Isometry3d& start,
+void ShapeContact::begin_step(const Configuration& configuration, const Eigen::Isometry3d& start,
                               const Eigen::Isometry3d& end, double time_step,
                               mechanics::RowValues& values) const {
   if (own_ || carrier_) prepare(values);
   const Eigen::Isometry3d carry = end * start.inverse();
-  if (own_) return find_points(placement, start, carry, values);
+  if (own_) return find_points(configuration, start, carry, values);
   const bool rests = start.isApprox(end, 0.0);
   for (std::size_t i = 0; i < size(); ++i) {
-    const Vector3 at = placement.position(points_[i]);
+    const Vector3 at = configuration.position(points_[i]);
     const Vector3 carried = rests ? at : Vector3(carry * at);
-    Vector3 velocity = placement.velocity(points_[i]);
-    if (carrier_) velocity -= carrier_->velocity(placement, at);
+    Vector3 velocity = configuration.velocity(points_[i]);
+    if (carrier_) velocity -= carrier_->velocity(configuration, at);
     const Vector3 towards = curved() ? Vector3(at + time_step * velocity)
                                      : carried;  // a plane is its own tangent plane anywhere
     place(i, carried, approach(carried, towards, end), values);
-    if (carrier_) watch(placement, i, at, values);
+    if (carrier_) watch(configuration, i, at, values);
   }
 }
 
 // Where the surface moves of itself, the points' frames go with it.
-void ShapeContact::find_points(const Placement& placement, const Eigen::Isometry3d& start,
+void ShapeContact::find_points(const Configuration& configuration, const Eigen::Isometry3d& start,
                                const Eigen::Isometry3d& carry, mechanics::RowValues& values) const {
   const collision::TouchingPoints found = collision::touching_points(
-      collision::moved(own_->shape, own_->pose(placement)), collision::moved(surface_, start),
+      collision::moved(own_->shape, own_->pose(configuration)), collision::moved(surface_, start),
       std::numeric_limits<double>::infinity());
-  const Vector3 centre = placement.position(own_->centre);
+  const Vector3 centre = configuration.position(own_->centre);
   for (std::size_t k = 0; k < size(); ++k) {
     const bool used = k < found.size();
     const Vector3 at = used ? found[k].on_first : centre;
     const Vector3 normal = used ? Vector3(carry.linear() * found[k].normal) : Vector3::UnitZ();
     set_frame(k, carry * at, collision::tangent_frame(normal), used ? found[k].gap : kIdle, values);
-    watch(placement, k, at, values);
+    watch(configuration, k, at, values);
   }
 }
 
@@ -94,23 +94,23 @@ bool ShapeContact::idle(std::size_t point, const mechanics::RowValues& values) c
 }
 
 // The gap's row watches the centres of roundness, which lie on the normal through the point.
-void ShapeContact::watch(const Placement& placement, std::size_t point, const Vector3& at,
+void ShapeContact::watch(const Configuration& configuration, std::size_t point, const Vector3& at,
                          mechanics::RowValues& values) const {
   const Vector3 normal = values.direction[entry(point)];
   const double gap = values.reference[row(point)];
   values.start[static_cast<std::size_t>(row(point))] = at;
   const auto hold = [&](const RigidSide& side, const collision::Shape& shape, double sense,
                         double below, std::size_t first) {
-    const Matrix3 turn = placement.rotation(side.turn);
+    const Matrix3 turn = configuration.rotation(side.turn);
     const double radius = collision::rounding_radius(shape, turn.transpose() * normal);
     const Vector3 core = radius > 0.0 ? Vector3(at + sense * (radius + below) * normal) : at;
     for (int j = 0; j < 3; ++j) {
-      side.watch(placement, entry(point, j) + first, j == 0 ? core : at, values);
+      side.watch(configuration, entry(point, j) + first, j == 0 ? core : at, values);
     }
   };
   if (own_) hold(*own_, own_->shape, 1.0, 0.0, 0);
   if (carrier_) hold(*carrier_, surface_, -1.0, idle(point, values) ? 0.0 : gap, own_entries());
-  write_sides(placement, point, values);
+  write_sides(configuration, point, values);
 }
 
 collision::ShapeApproach ShapeContact::approach(const Vector3& from, const Vector3& to,
@@ -130,22 +130,22 @@ void ShapeContact::place(std::size_t point, const Vector3& carried,
   set_frame(point, carried, frame, gap, values);
 }
 
-Vector3 ShapeContact::position_now(const Placement& placement, std::size_t point,
+Vector3 ShapeContact::position_now(const Configuration& configuration, std::size_t point,
                                    const mechanics::RowValues& values) const {
-  if (!own_) return placement.position(points_[point]);
-  if (values.arm.empty()) return placement.position(own_->centre);
-  return own_->watched(placement, entry(point, 1), values);
+  if (!own_) return configuration.position(points_[point]);
+  if (values.arm.empty()) return configuration.position(own_->centre);
+  return own_->watched(configuration, entry(point, 1), values);
 }
 
-Vector3 ShapeContact::position_beside(const Placement& placement, std::size_t point,
+Vector3 ShapeContact::position_beside(const Configuration& configuration, std::size_t point,
                                       const mechanics::RowValues& values) const {
-  if ((!own_ && !carrier_) || values.arm.empty()) return position_now(placement, point, values);
+  if ((!own_ && !carrier_) || values.arm.empty()) return position_now(configuration, point, values);
   const Vector3& start = values.start[static_cast<std::size_t>(row(point))];
   const auto moved = [&](int row) {
     const std::size_t at = entry(point, row);
-    Vector3 result = own_ ? own_->displacement(placement, at, values)
-                          : Vector3(placement.position(points_[point]) - start);
-    if (carrier_) result -= carrier_->displacement(placement, at + own_entries(), values);
+    Vector3 result = own_ ? own_->displacement(configuration, at, values)
+                          : Vector3(configuration.position(points_[point]) - start);
+    if (carrier_) result -= carrier_->displacement(configuration, at + own_entries(), values);
     return result;
   };
   const Vector3 along = moved(1);
@@ -153,23 +153,23 @@ Vector3 ShapeContact::position_beside(const Placement& placement, std::size_t po
   return start + along + normal.dot(moved(0) - along) * normal;
 }
 
-Vector3 ShapeContact::velocity_beside(const Placement& placement, std::size_t point,
+Vector3 ShapeContact::velocity_beside(const Configuration& configuration, std::size_t point,
                                       const mechanics::RowValues& values) const {
-  const Vector3 at = position_now(placement, point, values);
+  const Vector3 at = position_now(configuration, point, values);
   Vector3 result =
-      own_ ? own_->velocity(placement, at) : Vector3(placement.velocity(points_[point]));
-  if (carrier_) result -= carrier_->velocity(placement, at);
+      own_ ? own_->velocity(configuration, at) : Vector3(configuration.velocity(points_[point]));
+  if (carrier_) result -= carrier_->velocity(configuration, at);
   return result;
 }
 
 // What rows' efforts do to the bodies: on the carrier, the opposite of what they do to the point.
-void ShapeContact::write_sides(const Placement& placement, std::size_t point,
+void ShapeContact::write_sides(const Configuration& configuration, std::size_t point,
                                mechanics::RowValues& values) const {
   for (int j = 0; j < 3; ++j) {
     const std::size_t at = entry(point, j);
     const Vector3 direction = values.direction[at];
-    if (own_) own_->write(placement, at, direction, values);
-    if (carrier_) carrier_->write(placement, at + own_entries(), -direction, values);
+    if (own_) own_->write(configuration, at, direction, values);
+    if (carrier_) carrier_->write(configuration, at + own_entries(), -direction, values);
   }
 }
 
@@ -227,43 +227,45 @@ Vector3 ShapeContact::position(std::size_t point, const Vector3& row_values,
   return result;
 }
 
-void ShapeContact::linearise(const Placement& placement, mechanics::RowValues& values) const {
+void ShapeContact::linearise(const Configuration& configuration,
+                             mechanics::RowValues& values) const {
   const bool begun = !values.arm.empty();
   for (std::size_t i = 0; i < size(); ++i) {
-    if ((own_ || carrier_) && begun) write_sides(placement, i, values);
-    values.delta.segment<3>(row(i)) = row_values(i, position_beside(placement, i, values), values);
+    if ((own_ || carrier_) && begun) write_sides(configuration, i, values);
+    values.delta.segment<3>(row(i)) =
+        row_values(i, position_beside(configuration, i, values), values);
   }
 }
 
-double ShapeContact::linear_gap(const Placement& placement, std::size_t point,
+double ShapeContact::linear_gap(const Configuration& configuration, std::size_t point,
                                 const mechanics::RowValues& values) const {
-  return row_values(point, position_beside(placement, point, values), values)[0];
+  return row_values(point, position_beside(configuration, point, values), values)[0];
 }
 
-double ShapeContact::gap_now(const Placement& placement, const Eigen::Isometry3d& pose,
+double ShapeContact::gap_now(const Configuration& configuration, const Eigen::Isometry3d& pose,
                              std::size_t point, const mechanics::RowValues& values) const {
-  return distance(surface_, pose.inverse() * position_now(placement, point, values)).gap;
+  return distance(surface_, pose.inverse() * position_now(configuration, point, values)).gap;
 }
 
-double ShapeContact::speed(const Placement& placement, std::size_t point) const {
+double ShapeContact::speed(const Configuration& configuration, std::size_t point) const {
   const mechanics::MaterialPoint& own = own_ ? own_->centre : points_[point];
-  Vector3 velocity = placement.velocity(own);
-  if (carrier_) velocity -= placement.velocity(carrier_->centre);
+  Vector3 velocity = configuration.velocity(own);
+  if (carrier_) velocity -= configuration.velocity(carrier_->centre);
   return velocity.norm();
 }
 
-double ShapeContact::deepest(const Placement& placement, const Eigen::Isometry3d& pose,
+double ShapeContact::deepest(const Configuration& configuration, const Eigen::Isometry3d& pose,
                              const mechanics::RowValues& values) const {
   double least = std::numeric_limits<double>::infinity();
   if (own_) {
     const auto found =
-        collision::touching_points(collision::moved(own_->shape, own_->pose(placement)),
+        collision::touching_points(collision::moved(own_->shape, own_->pose(configuration)),
                                    collision::moved(surface_, pose), 0.0);
     for (const collision::TouchingPoint& point : found) least = std::min(least, point.gap);
     return least;
   }
   for (std::size_t k = 0; k < size(); ++k) {
-    least = std::min(least, gap_now(placement, pose, k, values));
+    least = std::min(least, gap_now(configuration, pose, k, values));
   }
   return least;
 }
@@ -294,7 +296,7 @@ void ShapeContact::prepare(mechanics::RowValues& values) {
   for (auto* numbers : {&values.arm, &values.lever, &values.watched_start}) {
     numbers->resize(values.direction.size(), Vector3::Zero());
   }
-  values.start.resize(values.present.size(), Vector3::Zero());
+  values.start.resize(values.active.size(), Vector3::Zero());
 }
 
 namespace {

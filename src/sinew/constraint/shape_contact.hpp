@@ -48,14 +48,15 @@ class ShapeContact : public Contact {
 
   void declare(mechanics::RowPattern& rows,
                std::vector<mechanics::RowCurvature>& curvatures) override;
-  /// Sets the frames of a step. @param placement at its start. @param start,end the surface's
+  /// Sets the frames of a step. @param configuration at its start. @param start,end the surface's
   /// poses. @param time_step s; 0: points are taken to stay.
   /// @param values gets directions, offset, and reference: the rows' values at x_s.
-  void begin_step(const Placement& placement, const Eigen::Isometry3d& start,
+  void begin_step(const Configuration& configuration, const Eigen::Isometry3d& start,
                   const Eigen::Isometry3d& end, double time_step,
                   mechanics::RowValues& values) const;
-  /// Writes delta alone; directions are those of begin_step() and place().
-  void linearise(const Placement& placement, mechanics::RowValues& values) const override;
+  /// Frames are those of begin_step() and place(). What they do to a rigid body, whose centre lies
+  /// elsewhere, follows the configuration.
+  void linearise(const Configuration& configuration, mechanics::RowValues& values) const override;
 
   /// @param from,to (3,) m, a way at the step's end. @param pose of the surface there.
   collision::ShapeApproach approach(const Vector3& from, const Vector3& to,
@@ -86,21 +87,21 @@ class ShapeContact : public Contact {
   const collision::Shape& surface() const { return surface_; }
   const std::optional<RigidSide>& carrier() const { return carrier_; }
   bool idle(std::size_t point, const mechanics::RowValues& values) const override;
-  Vector3 position_now(const Placement& placement, std::size_t point,
+  Vector3 position_now(const Configuration& configuration, std::size_t point,
                        const mechanics::RowValues& values) const override;
   /// (3,) m: where a point is now beside its surface as the step began it. @param values of the
   /// step.
-  Vector3 position_beside(const Placement& placement, std::size_t point,
+  Vector3 position_beside(const Configuration& configuration, std::size_t point,
                           const mechanics::RowValues& values) const;
-  Vector3 velocity_beside(const Placement& placement, std::size_t point,
+  Vector3 velocity_beside(const Configuration& configuration, std::size_t point,
                           const mechanics::RowValues& values) const override;
   /// m/s: of the body that a point belongs to, relative to what it may touch.
-  double speed(const Placement& placement, std::size_t point) const;
+  double speed(const Configuration& configuration, std::size_t point) const;
   /// m: the least gap now, of points that a step has found or not; negative where they overlap.
-  /// @param placement,pose,values see gap_now().
-  double deepest(const Placement& placement, const Eigen::Isometry3d& pose,
+  /// @param configuration,pose,values see gap_now().
+  double deepest(const Configuration& configuration, const Eigen::Isometry3d& pose,
                  const mechanics::RowValues& values) const;
-  double linear_gap(const Placement& placement, std::size_t point,
+  double linear_gap(const Configuration& configuration, std::size_t point,
                     const mechanics::RowValues& values) const override;
   /// (3,) m: a point's motion relative to its surface. @param motion of a site: (3,) m or rad.
   template <class Motion>
@@ -121,18 +122,18 @@ class ShapeContact : public Contact {
 
   /// Whether tangent planes follow the points in a step.
   bool curved() const { return !own_ && !std::holds_alternative<Plane>(surface_); }
-  double gap_now(const Placement& placement, const Eigen::Isometry3d& pose, std::size_t point,
-                 const mechanics::RowValues& values) const override;
+  double gap_now(const Configuration& configuration, const Eigen::Isometry3d& pose,
+                 std::size_t point, const mechanics::RowValues& values) const override;
 
  private:
   void set_frame(std::size_t point, const Vector3& carried, const Matrix3& frame, double gap,
                  mechanics::RowValues& values) const;
   static void prepare(mechanics::RowValues& values);
-  void find_points(const Placement& placement, const Eigen::Isometry3d& start,
+  void find_points(const Configuration& configuration, const Eigen::Isometry3d& start,
                    const Eigen::Isometry3d& carry, mechanics::RowValues& values) const;
-  void watch(const Placement& placement, std::size_t point, const Vector3& at,
+  void watch(const Configuration& configuration, std::size_t point, const Vector3& at,
              mechanics::RowValues& values) const;
-  void write_sides(const Placement& placement, std::size_t point,
+  void write_sides(const Configuration& configuration, std::size_t point,
                    mechanics::RowValues& values) const;
   std::size_t own_entries() const { return own_ ? 2 : 1; }
 

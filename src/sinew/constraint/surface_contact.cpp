@@ -5,7 +5,7 @@
 
 #include "sinew/collision/principal_frame.hpp"
 #include "sinew/collision/surface_topology.hpp"
-#include "sinew/constraint/placement.hpp"
+#include "sinew/constraint/configuration.hpp"
 
 namespace sinew::constraint {
 
@@ -89,18 +89,19 @@ Vector3 SurfaceContact::relative(const Points& first, const Points& second, std:
   return values.patch[at].mean(first) - values.patch[at + 1].mean(second);
 }
 
-void SurfaceContact::linearise(const Placement& placement, mechanics::RowValues& values) const {
+void SurfaceContact::linearise(const Configuration& configuration,
+                               mechanics::RowValues& values) const {
   for (std::size_t k = 0; k < size(); ++k) {
-    if (!idle(k, values)) measure(placement, k, values);
+    if (!idle(k, values)) measure(configuration, k, values);
   }
 }
 
-void SurfaceContact::measure(const Placement& placement, std::size_t point,
+void SurfaceContact::measure(const Configuration& configuration, std::size_t point,
                              mechanics::RowValues& values) const {
   values.delta.segment<3>(row(point)) =
       values.offset.segment<3>(row(point)) +
-      frame(point, values).transpose() * relative(placement.surface_nodes(body()),
-                                                  placement.surface_nodes(other_body()), point,
+      frame(point, values).transpose() * relative(configuration.surface_nodes(body()),
+                                                  configuration.surface_nodes(other_body()), point,
                                                   values);
 }
 
@@ -111,29 +112,30 @@ double SurfaceContact::gap_at(const Points& first, const Points& second, std::si
 }
 
 // Half-way between the surfaces. A point that is none stays out of the way, on the body.
-Vector3 SurfaceContact::position_now(const Placement& placement, std::size_t point,
+Vector3 SurfaceContact::position_now(const Configuration& configuration, std::size_t point,
                                      const mechanics::RowValues& values) const {
-  if (idle(point, values)) return placement.surface_nodes(body()).row(0).transpose();
+  if (idle(point, values)) return configuration.surface_nodes(body()).row(0).transpose();
   const std::size_t at = entry(point);
-  return 0.5 * (values.patch[at].mean(placement.surface_nodes(body())) +
-                values.patch[at + 1].mean(placement.surface_nodes(other_body())));
+  return 0.5 * (values.patch[at].mean(configuration.surface_nodes(body())) +
+                values.patch[at + 1].mean(configuration.surface_nodes(other_body())));
 }
 
-Vector3 SurfaceContact::velocity_beside(const Placement& placement, std::size_t point,
+Vector3 SurfaceContact::velocity_beside(const Configuration& configuration, std::size_t point,
                                         const mechanics::RowValues& values) const {
-  return relative(placement.surface_node_velocities(body()),
-                  placement.surface_node_velocities(other_body()), point, values);
+  return relative(configuration.surface_node_velocities(body()),
+                  configuration.surface_node_velocities(other_body()), point, values);
 }
 
-double SurfaceContact::linear_gap(const Placement& placement, std::size_t point,
+double SurfaceContact::linear_gap(const Configuration& configuration, std::size_t point,
                                   const mechanics::RowValues& values) const {
-  return gap_at(placement.surface_nodes(body()), placement.surface_nodes(other_body()), point,
-                values);
+  return gap_at(configuration.surface_nodes(body()), configuration.surface_nodes(other_body()),
+                point, values);
 }
 
-double SurfaceContact::gap_now(const Placement& placement, const Eigen::Isometry3d&,
+double SurfaceContact::gap_now(const Configuration& configuration, const Eigen::Isometry3d&,
                                std::size_t point, const mechanics::RowValues& values) const {
-  return idle(point, values) ? values.reference[row(point)] : linear_gap(placement, point, values);
+  return idle(point, values) ? values.reference[row(point)]
+                             : linear_gap(configuration, point, values);
 }
 
 void SurfaceContact::save(std::size_t point, const mechanics::RowValues& values, double* to) const {

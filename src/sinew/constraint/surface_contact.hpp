@@ -44,23 +44,23 @@ class SurfaceContact : public Contact {
 
   void declare(mechanics::RowPattern& rows,
                std::vector<mechanics::RowCurvature>& curvatures) override;
-  void linearise(const Placement& placement, mechanics::RowValues& values) const override;
+  void linearise(const Configuration& configuration, mechanics::RowValues& values) const override;
   void add_to(ValueHash& hash) const override;
 
   int body() const override { return first_.site.body; }
   int other_body() const override { return second_.site.body; }
   bool is_found_anew() const override { return true; }
   bool idle(std::size_t point, const mechanics::RowValues& values) const override;
-  Vector3 position_now(const Placement& placement, std::size_t point,
+  Vector3 position_now(const Configuration& configuration, std::size_t point,
                        const mechanics::RowValues& values) const override;
-  Vector3 velocity_beside(const Placement& placement, std::size_t point,
+  Vector3 velocity_beside(const Configuration& configuration, std::size_t point,
                           const mechanics::RowValues& values) const override;
-  double linear_gap(const Placement& placement, std::size_t point,
+  double linear_gap(const Configuration& configuration, std::size_t point,
                     const mechanics::RowValues& values) const override;
   /// That of its row: places and normal stay through a step. Of a point that is none, its
   /// reference: how far points were looked for.
-  double gap_now(const Placement& placement, const Eigen::Isometry3d& pose, std::size_t point,
-                 const mechanics::RowValues& values) const override;
+  double gap_now(const Configuration& configuration, const Eigen::Isometry3d& pose,
+                 std::size_t point, const mechanics::RowValues& values) const override;
 
   /// Makes room in `values`.
   void prepare(mechanics::RowValues& values) const;
@@ -68,8 +68,9 @@ class SurfaceContact : public Contact {
   /// the step began. @param values gets directions, offset, reference, patches.
   void put(std::size_t point, const collision::ProximityPair& pair, const Points& first_nodes,
            const Points& second_nodes, mechanics::RowValues& values) const;
-  /// Writes delta of a point. @param placement now.
-  void measure(const Placement& placement, std::size_t point, mechanics::RowValues& values) const;
+  /// Writes delta of a point. @param configuration now.
+  void measure(const Configuration& configuration, std::size_t point,
+               mechanics::RowValues& values) const;
   /// m: the gap's row with the bodies' nodes there. @param first,second (n, 3) m.
   double gap_at(const Points& first, const Points& second, std::size_t point,
                 const mechanics::RowValues& values) const;

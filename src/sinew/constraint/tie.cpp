@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "sinew/constraint/placement.hpp"
+#include "sinew/constraint/configuration.hpp"
 
 namespace sinew::constraint {
 
@@ -19,11 +19,11 @@ void Tie::declare(mechanics::RowPattern& rows, std::vector<mechanics::RowCurvatu
   }
 }
 
-void Tie::linearise(const Placement& placement, mechanics::RowValues& values) const {
+void Tie::linearise(const Configuration& configuration, mechanics::RowValues& values) const {
   auto* direction = values.direction.data() + first_entry_;
   int row = first_row_;
   for (const Pair& pair : pairs_) {
-    const Vector3 gap = placement.position(pair.second) - placement.position(pair.first);
+    const Vector3 gap = configuration.position(pair.second) - configuration.position(pair.first);
     for (int axis = 0; axis < 3; ++axis) {
       *direction++ = -Vector3::Unit(axis);
       *direction++ = Vector3::Unit(axis);
@@ -32,10 +32,10 @@ void Tie::linearise(const Placement& placement, mechanics::RowValues& values) co
   }
 }
 
-double Tie::largest_gap(const Placement& placement) const {
+double Tie::largest_gap(const Configuration& configuration) const {
   double largest = 0.0;
   for (const Pair& pair : pairs_) {
-    const Vector3 gap = placement.position(pair.second) - placement.position(pair.first);
+    const Vector3 gap = configuration.position(pair.second) - configuration.position(pair.first);
     largest = std::max(largest, gap.norm());
   }
   return largest;

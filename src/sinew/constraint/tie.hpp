@@ -28,14 +28,14 @@ class Tie : public Constraint {
 
   void declare(mechanics::RowPattern& rows,
                std::vector<mechanics::RowCurvature>& curvatures) override;
-  void linearise(const Placement& placement, mechanics::RowValues& values) const override;
+  void linearise(const Configuration& configuration, mechanics::RowValues& values) const override;
   void add_to(ValueHash&) const override {}
 
   const std::vector<Pair>& pairs() const { return pairs_; }
   /// First of the three rows of a pair.
   int row(std::size_t pair) const { return first_row_ + 3 * static_cast<int>(pair); }
   /// Largest distance of any pair now, m.
-  double largest_gap(const Placement& placement) const;
+  double largest_gap(const Configuration& configuration) const;
 
  private:
   std::vector<Pair> pairs_;

@@ -14,18 +14,18 @@ void BodyRows::take(const mechanics::RowValues& rows, SystemNumbers& numbers) {
     for (int c = 0; c < 3; ++c) value[c] += s.weight * direction[c];
   }
   hold(numbers.system.border, numbers.border);
-  take_passing(rows);
-  hold(passing_, passing_values_);
+  take_transient(rows);
+  hold(transient_, transient_values_);
 }
 
-void BodyRows::take_passing(const mechanics::RowValues& rows) {
-  passing_.row_start.assign(1, 0);
-  passing_.node.clear();
-  passing_values_.clear();
-  passing_world_.clear();
+void BodyRows::take_transient(const mechanics::RowValues& rows) {
+  transient_.row_start.assign(1, 0);
+  transient_.node.clear();
+  transient_values_.clear();
+  transient_world_.clear();
   const auto& own = model_.rows();
   for (std::size_t k = model_.fixed_rows(); k < own.size(); k += 3) {
-    if (rows.present[static_cast<std::size_t>(own[k])] != 0) add_group(own[k], rows);
+    if (rows.active[static_cast<std::size_t>(own[k])] != 0) add_group(own[k], rows);
   }
 }
 
@@ -61,20 +61,20 @@ void BodyRows::add_group(std::int32_t row, const mechanics::RowValues& rows) {
   std::ranges::sort(nodes_);
   nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
   for (int r = 0; r < 3; ++r) {
-    const std::size_t first = passing_values_.size();
-    passing_.node.insert(passing_.node.end(), nodes_.begin(), nodes_.end());
-    passing_.row_start.push_back(passing_.entries());
-    passing_values_.resize(first + 3 * nodes_.size(), 0.0);
+    const std::size_t first = transient_values_.size();
+    transient_.node.insert(transient_.node.end(), nodes_.begin(), nodes_.end());
+    transient_.row_start.push_back(transient_.entries());
+    transient_values_.resize(first + 3 * nodes_.size(), 0.0);
     for (std::int32_t entry = start(r); entry < start(r + 1); ++entry) {
       const Vector3& direction = rows.direction[static_cast<std::size_t>(entry)];
       each_node(entry, rows, [&](std::int32_t node, double weight) {
         const auto at = std::ranges::lower_bound(nodes_, node) - nodes_.begin();
-        double* value = passing_values_.data() + first + 3 * static_cast<std::size_t>(at);
+        double* value = transient_values_.data() + first + 3 * static_cast<std::size_t>(at);
         for (int c = 0; c < 3; ++c) value[c] += weight * direction[c];
       });
     }
   }
-  passing_world_.push_back(row);
+  transient_world_.push_back(row);
 }
 
 // Takes held coordinates out of rows.
@@ -106,8 +106,9 @@ void BodyRows::each_entry(std::span<const double> effort, const SystemNumbers& n
   for (std::size_t k = 0; k < model_.fixed_rows(); ++k) {
     each(numbers.system.border, numbers.border, k, model_.rows()[k]);
   }
-  for (std::size_t k = 0; k < 3 * passing_world_.size(); ++k) {
-    each(passing_, passing_values_, k, passing_world_[k / 3] + static_cast<std::int32_t>(k % 3));
+  for (std::size_t k = 0; k < 3 * transient_world_.size(); ++k) {
+    each(transient_, transient_values_, k,
+         transient_world_[k / 3] + static_cast<std::int32_t>(k % 3));
   }
 }
 
@@ -128,43 +129,47 @@ void BodyRows::add_forces(std::span<const double> effort, const SystemNumbers& n
   });
 }
 
-void BodyRows::add_compliance(std::span<const int> place, const SystemNumbers& numbers,
+void BodyRows::add_compliance(std::span<const int> problem_row, const SystemNumbers& numbers,
                               MatrixX& compliance, VectorX& free_motion) const {
   const MatrixX& own = numbers.factorisation->compliance();
   const VectorX& motion = numbers.factorisation->free_motion();
   const std::span<const std::int32_t> rows(model_.rows());
   const std::size_t fixed = model_.fixed_rows();
-  const auto place_of = [&](std::size_t i) { return place[static_cast<std::size_t>(rows[i])]; };
+  const auto problem_row_of = [&](std::size_t i) {
+    return problem_row[static_cast<std::size_t>(rows[i])];
+  };
   for (std::size_t j = 0; j < fixed; ++j) {
     const auto column = static_cast<Eigen::Index>(j);
-    const int to = place_of(j);
+    const int to = problem_row_of(j);
     free_motion[to] += motion[column];
     for (std::size_t i = 0; i < fixed; ++i) {
-      compliance(place_of(i), to) += own(static_cast<Eigen::Index>(i), column);
+      compliance(problem_row_of(i), to) += own(static_cast<Eigen::Index>(i), column);
     }
   }
-  if (!passing_world_.empty()) add_passing_compliance(place, numbers, compliance, free_motion);
+  if (!transient_world_.empty())
+    add_transient_compliance(problem_row, numbers, compliance, free_motion);
 }
 
-void BodyRows::add_passing_compliance(std::span<const int> place, const SystemNumbers& numbers,
-                                      MatrixX& compliance, VectorX& free_motion) const {
+void BodyRows::add_transient_compliance(std::span<const int> problem_row,
+                                        const SystemNumbers& numbers, MatrixX& compliance,
+                                        VectorX& free_motion) const {
   linalg::Factorisation& factor = *numbers.factorisation;
-  factor.pass(passing_, passing_values_);
-  const MatrixX& own = factor.passing_compliance();
-  const MatrixX& coupling = factor.passing_coupling();
+  factor.condense_transient(transient_, transient_values_);
+  const MatrixX& own = factor.transient_compliance();
+  const MatrixX& coupling = factor.transient_coupling();
   const std::span<const std::int32_t> rows(model_.rows());
   const std::size_t fixed = model_.fixed_rows();
   const auto row_of = [&](Eigen::Index k) {
-    const std::int32_t first = passing_world_[static_cast<std::size_t>(k / 3)];
-    return place[static_cast<std::size_t>(first + k % 3)];
+    const std::int32_t first = transient_world_[static_cast<std::size_t>(k / 3)];
+    return problem_row[static_cast<std::size_t>(first + k % 3)];
   };
-  const auto count = 3 * static_cast<Eigen::Index>(passing_world_.size());
+  const auto count = 3 * static_cast<Eigen::Index>(transient_world_.size());
   for (Eigen::Index j = 0; j < count; ++j) {
     const int column = row_of(j);
     free_motion[column] += coupling(j, static_cast<Eigen::Index>(fixed));
     for (std::size_t i = 0; i < fixed; ++i) {
       const double value = coupling(j, static_cast<Eigen::Index>(i));
-      const int to = place[static_cast<std::size_t>(rows[i])];
+      const int to = problem_row[static_cast<std::size_t>(rows[i])];
       compliance(to, column) += value;
       compliance(column, to) += value;
     }

@@ -15,14 +15,14 @@
 namespace sinew::fem {
 
 /// Numbers are those of the last linearisation's system; efforts are (rows,) N of the world's rows.
-/// Rows that are always there stand in the factorisation's border. Those that come and go have
-/// their nodes listed anew whenever they are taken, those that are present alone.
+/// Rows that are always there stand in the factorisation's border. Of transient rows the
+/// active ones alone have their nodes listed, anew whenever they are taken.
 class BodyRows {
  public:
   /// @param model must outlive this.
   explicit BodyRows(const FemBodyModel& model);
 
-  /// Takes directions, and which of the rows that come and go are present.
+  /// Takes directions, and which of the transient rows are active.
   void take(const mechanics::RowValues& rows, SystemNumbers& numbers);
   /// Adds H^T effort. @param sum (3 free,) N.
   void add_forces(std::span<const double> effort, const SystemNumbers& numbers, VectorX& sum) const;
@@ -30,8 +30,8 @@ class BodyRows {
   void add_forces(std::span<const double> effort, const SystemNumbers& numbers,
                   Points& forces) const;
   /// See mechanics::StepSystem.
-  void add_compliance(std::span<const int> place, const SystemNumbers& numbers, MatrixX& compliance,
-                      VectorX& free_motion) const;
+  void add_compliance(std::span<const int> problem_row, const SystemNumbers& numbers,
+                      MatrixX& compliance, VectorX& free_motion) const;
   /// Of the rows that are always there, as the factorisation counts them.
   std::span<const double> fixed_effort(std::span<const double> effort);
 
@@ -40,18 +40,18 @@ class BodyRows {
   void each_entry(std::span<const double> effort, const SystemNumbers& numbers, Add add) const;
   template <typename Visit>
   void each_node(std::int32_t entry, const mechanics::RowValues& rows, Visit visit) const;
-  void add_passing_compliance(std::span<const int> place, const SystemNumbers& numbers,
-                              MatrixX& compliance, VectorX& free_motion) const;
-  void take_passing(const mechanics::RowValues& rows);
+  void add_transient_compliance(std::span<const int> problem_row, const SystemNumbers& numbers,
+                                MatrixX& compliance, VectorX& free_motion) const;
+  void take_transient(const mechanics::RowValues& rows);
   void add_group(std::int32_t row, const mechanics::RowValues& rows);
   void hold(const linalg::BorderPattern& pattern, std::vector<double>& values) const;
 
   const FemBodyModel& model_;
   std::vector<double> fixed_effort_;
-  linalg::BorderPattern passing_;            // groups of three rows that are present
-  std::vector<double> passing_values_;       // of them
-  std::vector<std::int32_t> passing_world_;  // by group: the first of its rows in the world
-  std::vector<std::int32_t> nodes_;          // of a group, ascending: scratch
+  linalg::BorderPattern transient_;            // groups of three active rows
+  std::vector<double> transient_values_;       // of them
+  std::vector<std::int32_t> transient_world_;  // by group: the first of its rows in the world
+  std::vector<std::int32_t> nodes_;            // of a group, ascending: scratch
 };
 
 }  // namespace sinew::fem

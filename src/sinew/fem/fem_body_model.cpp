@@ -121,10 +121,10 @@ void FemBodyModel::finish(int body, const mechanics::RowPattern& rows,
                                   [&](const auto& point) { return point.body == body; });
     if (mine) rows_.push_back(row);
   }
-  const auto passing = std::stable_partition(rows_.begin(), rows_.end(), [&](std::int32_t row) {
-    return rows.passing[static_cast<std::size_t>(row)] == 0;
+  const auto transient = std::stable_partition(rows_.begin(), rows_.end(), [&](std::int32_t row) {
+    return rows.transient[static_cast<std::size_t>(row)] == 0;
   });
-  fixed_rows_ = static_cast<std::size_t>(passing - rows_.begin());
+  fixed_rows_ = static_cast<std::size_t>(transient - rows_.begin());
   plain_ = make_system(settings_.elements);
   for (const auto& curvature : curvatures) {
     const bool mine = curvature.first.body == body && curvature.second.body == body;

@@ -126,9 +126,9 @@ mechanics::Inertia FemStep::condense() {
   return inertia;
 }
 
-void FemStep::add_compliance(std::span<const int> place, MatrixX& compliance,
+void FemStep::add_compliance(std::span<const int> problem_row, MatrixX& compliance,
                              VectorX& free_motion) const {
-  rows_.add_compliance(place, elements_.active(), compliance, free_motion);
+  rows_.add_compliance(problem_row, elements_.active(), compliance, free_motion);
 }
 
 void FemStep::find_imbalance(std::span<const double> effort) {

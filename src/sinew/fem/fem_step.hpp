@@ -24,7 +24,7 @@ class FemStep : public mechanics::StepSystem {
   void take_rows(const mechanics::RowValues& rows) override;
   void retake_rows(const mechanics::RowValues& rows) override { take_rows(rows); }
   mechanics::Inertia condense() override;
-  void add_compliance(std::span<const int> place, MatrixX& compliance,
+  void add_compliance(std::span<const int> problem_row, MatrixX& compliance,
                       VectorX& free_motion) const override;
 
   std::size_t size() const override { return static_cast<std::size_t>(motion_.size()); }

@@ -51,7 +51,7 @@ ActuatorFit fit_actuator(std::span<const ActuatorRecord> records, bool linear, d
                          const ParameterFitSettings& settings) {
   check(records);
   std::vector<InputSignal> signals;
-  Model model;
+  ForwardModel model;
   for (const ActuatorRecord& record : records) {
     signals.push_back(signal_of(record));
     model.observations += record.time.size();

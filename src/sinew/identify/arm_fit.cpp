@@ -224,7 +224,7 @@ ArmFit fit_arm(const ArmModel& model, std::span<const MotionRecord> records,
   check(model, records);
   const ArmParameters parameters(model, records, settings);
   const Eigen::Index wide = 3 * model.arm->segments();
-  Model predicting;
+  ForwardModel predicting;
   for (const MotionRecord& record : records) {
     predicting.observations += record.samples() * wide;
   }

@@ -201,7 +201,7 @@ CylinderFit fit_cylinder(std::span<const DriveRecord> records,
   std::vector<Parameter> parameters = {parameter("a1", a1, 1.0), parameter("a2", a2, 1.0),
                                        parameter("b1", b1, size), parameter("b2", b2, size),
                                        parameter("d", found.d, size, !settings.feedthrough)};
-  Model model;
+  ForwardModel model;
   for (std::size_t k = 0; k < records.size(); ++k) {
     const Eigen::Vector2d x = starts.col(static_cast<Index>(k));
     parameters.push_back(parameter(records[k].name + ".start_0", found.c.dot(x), reach));

@@ -28,8 +28,8 @@ double scale_of(const Parameter& p) {
   return std::isfinite(p.upper - p.lower) && p.upper > p.lower ? p.upper - p.lower : 1.0;
 }
 
-void check(const Model& model, const VectorX& measured, const std::vector<Parameter>& parameters,
-           const ParameterFitSettings& settings) {
+void check(const ForwardModel& model, const VectorX& measured,
+           const std::vector<Parameter>& parameters, const ParameterFitSettings& settings) {
   if (parameters.empty() || std::ranges::all_of(parameters, &Parameter::fixed)) {
     refuse(ErrorKind::empty_list, "parameters", "there is nothing to fit",
            "give a parameter that is not fixed");
@@ -70,7 +70,7 @@ void check(const Model& model, const VectorX& measured, const std::vector<Parame
 
 /// The problem in units of scales, of free parameters and measured observations alone.
 struct Problem {
-  const Model& model;
+  const ForwardModel& model;
   const VectorX& measured;
   const std::vector<Parameter>& parameters;
   std::vector<Eigen::Index> free, seen;
@@ -82,7 +82,8 @@ struct Problem {
   mutable MatrixX jacobian;
   mutable std::exception_ptr failure;
 
-  Problem(const Model& model_, const VectorX& measured_, const std::vector<Parameter>& parameters_)
+  Problem(const ForwardModel& model_, const VectorX& measured_,
+          const std::vector<Parameter>& parameters_)
       : model(model_), measured(measured_), parameters(parameters_) {
     scale.resize(static_cast<Eigen::Index>(parameters.size()));
     for (std::size_t k = 0; k < parameters.size(); ++k) {
@@ -301,8 +302,9 @@ void judge(const Problem& problem, const ParameterFitSettings& settings, Paramet
 
 }  // namespace
 
-Model with_differences(Eigen::Index observations, std::function<VectorX(const VectorX&)> predict,
-                       VectorX scales, double step) {
+ForwardModel with_differences(Eigen::Index observations,
+                              std::function<VectorX(const VectorX&)> predict, VectorX scales,
+                              double step) {
   const auto checked = [predict = std::move(predict), observations](const VectorX& parameters) {
     VectorX result = predict(parameters);
     if (result.size() != observations) {
@@ -332,7 +334,7 @@ Model with_differences(Eigen::Index observations, std::function<VectorX(const Ve
           }};
 }
 
-ParameterFit fit_parameters(const Model& model, const VectorX& measured,
+ParameterFit fit_parameters(const ForwardModel& model, const VectorX& measured,
                             const std::vector<Parameter>& parameters,
                             const ParameterFitSettings& settings) {
   check(model, measured, parameters, settings);

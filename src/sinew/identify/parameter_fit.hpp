@@ -24,7 +24,7 @@ struct Parameter {
 };
 
 /// What a simulation predicts.
-struct Model {
+struct ForwardModel {
   Eigen::Index observations = 0;
   /// Fills prediction (observations,) and, unless null, its derivative (observations, parameters).
   /// May throw Error: a failed run (diverged, not-converged) rejects these parameters, anything
@@ -36,8 +36,9 @@ struct Model {
 /// @param observations how many. @param predict parameters -> (observations,).
 /// @param scales (parameters,) typical sizes; 0 for those fixed. @param step relative; truncation
 /// goes with its square, the run's rounding and iteration errors with its inverse.
-Model with_differences(Eigen::Index observations, std::function<VectorX(const VectorX&)> predict,
-                       VectorX scales, double step = 1e-5);
+ForwardModel with_differences(Eigen::Index observations,
+                              std::function<VectorX(const VectorX&)> predict, VectorX scales,
+                              double step = 1e-5);
 
 struct ParameterFitSettings {
   int starts = 1;  ///< the first as given, others at random between the bounds
@@ -101,7 +102,7 @@ struct ParameterFit {
 /// Throws Error: empty-list, wrong-length, contradictory-limits, out-of-range, not-finite,
 /// too-few-points (fewer measurements than parameters), not-converged when no start can be run,
 /// and what the model throws.
-ParameterFit fit_parameters(const Model& model, const VectorX& measured,
+ParameterFit fit_parameters(const ForwardModel& model, const VectorX& measured,
                             const std::vector<Parameter>& parameters,
                             const ParameterFitSettings& settings = {});
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "sinew/constraint/configuration.hpp"
 #include "sinew/constraint/effector.hpp"
-#include "sinew/constraint/placement.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/sim/actuator.hpp"
 #include "sinew/sim/model.hpp"
@@ -121,7 +121,7 @@ void InverseController::measure_gap(const StepProblem& problem) {
   Eigen::Index at = 0;
   for (std::size_t t = 0; t < asked_.size(); ++t) {
     const auto& effector = simulation_.model().effector(settings_.tasks[t].effector);
-    effector.target_delta(simulation_.placement(), asked_[t],
+    effector.target_delta(simulation_.configuration(), asked_[t],
                           gap_.segment(at, effector.row_count()));
     at += effector.row_count();
   }
@@ -249,14 +249,14 @@ bool InverseController::rate_binds(const StepProblem& problem, const Response& r
 
 void InverseController::begin_step() { program_.reset(); }
 
-// Of the present placement, which may be a restored one whose rows no step has formed yet.
+// Of the present configuration, which may be a restored one whose rows no step has formed yet.
 double InverseController::error(int task) const {
   const Task& asked = settings_.tasks.at(static_cast<std::size_t>(task));
   const auto& effector = simulation_.model().effector(asked.effector);
-  const auto& placement = simulation_.placement();
+  const auto& configuration = simulation_.configuration();
   VectorX goal(effector.row_count()), now(effector.row_count());
-  effector.target_delta(placement, asked.target.at(simulation_.time()), goal);
-  effector.target_delta(placement, effector.value(placement), now);
+  effector.target_delta(configuration, asked.target.at(simulation_.time()), goal);
+  effector.target_delta(configuration, effector.value(configuration), now);
   for (Eigen::Index k = 0; k < goal.size(); ++k) {
     if (!(asked.weight(k) > 0.0)) goal[k] = now[k];
   }

@@ -6,7 +6,7 @@
 #include "sinew/linalg/block_numeric.hpp"
 #include "sinew/linalg/block_schedule.hpp"
 #include "sinew/linalg/block_symbolic.hpp"
-#include "sinew/linalg/passing_rows.hpp"
+#include "sinew/linalg/transient_rows.hpp"
 
 namespace sinew::linalg {
 
@@ -23,7 +23,7 @@ class BlockFactorisation final : public Factorisation {
         pool_(pool),
         numeric_(*symbolic_, pool.size()),
         schedule_(*symbolic_, pool.size()),
-        passing_(*symbolic_),
+        transient_(*symbolic_),
         unknowns_(3 * static_cast<std::size_t>(symbolic_->nodes)),
         weights_(3 * static_cast<std::size_t>(symbolic_->border_nodes)),
         compliance_(symbolic_->border_rows, symbolic_->border_rows),
@@ -61,11 +61,11 @@ class BlockFactorisation final : public Factorisation {
     }
   }
 
-  void pass(const BorderPattern& rows, std::span<const double> values) override {
-    passing_.condense(numeric_, rows, values);
+  void condense_transient(const BorderPattern& rows, std::span<const double> values) override {
+    transient_.condense(numeric_, rows, values);
   }
-  const MatrixX& passing_compliance() const override { return passing_.compliance(); }
-  const MatrixX& passing_coupling() const override { return passing_.coupling(); }
+  const MatrixX& transient_compliance() const override { return transient_.compliance(); }
+  const MatrixX& transient_coupling() const override { return transient_.coupling(); }
 
   std::span<double> spare_memory() override { return numeric_.panels(); }
 
@@ -73,7 +73,7 @@ class BlockFactorisation final : public Factorisation {
 
   std::size_t bytes() const override {
     const Eigen::Index rows = symbolic_->border_rows;
-    return numeric_.bytes() + schedule_.bytes() + passing_.bytes() + unknowns_.bytes() +
+    return numeric_.bytes() + schedule_.bytes() + transient_.bytes() + unknowns_.bytes() +
            weights_.bytes() + static_cast<std::size_t>(rows * (rows + 1)) * sizeof(double);
   }
 
@@ -106,7 +106,7 @@ class BlockFactorisation final : public Factorisation {
   ThreadPool& pool_;
   BlockNumeric numeric_;
   BlockSchedule schedule_;
-  PassingRows passing_;
+  TransientRows transient_;
   AlignedBuffer unknowns_;
   AlignedBuffer weights_;
   MatrixX compliance_;

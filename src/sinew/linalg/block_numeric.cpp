@@ -63,16 +63,16 @@ void BlockNumeric::assemble(int p, const BlockInput& input) {
   const long leading = panel.leading;
   std::fill_n(values, 3 * panel.width * leading, 0.0);
   for (int e = panel.straight_begin; e < panel.straight_end; ++e) {
-    const Placement& place = s.straight[at(e)];
-    place_straight(input.matrix + place.source, values + place.target, leading);
+    const BlockScatter& block = s.straight[at(e)];
+    place_straight(input.matrix + block.source, values + block.target, leading);
   }
   for (int e = panel.transposed_begin; e < panel.transposed_end; ++e) {
-    const Placement& place = s.transposed[at(e)];
-    place_transposed(input.matrix + place.source, values + place.target, leading);
+    const BlockScatter& block = s.transposed[at(e)];
+    place_transposed(input.matrix + block.source, values + block.target, leading);
   }
   for (int e = panel.border_begin; e < panel.border_end; ++e) {
-    const Placement& place = s.border[at(e)];
-    for (int c = 0; c < 3; ++c) values[place.target + c * leading] = input.border[place.source + c];
+    const BlockScatter& block = s.border[at(e)];
+    for (int c = 0; c < 3; ++c) values[block.target + c * leading] = input.border[block.source + c];
   }
   double* right = values + panel.right_row;
   for (int i = 0; i < panel.width; ++i) {

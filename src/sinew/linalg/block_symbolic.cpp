@@ -223,7 +223,7 @@ class PanelBuilder {
 
   void add_blocks(Panel& panel, const std::vector<Block>& blocks) {
     place_rows(panel);
-    const auto add = [&](bool transposed, std::vector<Placement>& list) {
+    const auto add = [&](bool transposed, std::vector<BlockScatter>& list) {
       const auto begin = static_cast<Index>(list.size());
       for (const Block& block : blocks) {
         if (block.transposed != transposed) continue;

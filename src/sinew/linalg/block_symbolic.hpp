@@ -50,7 +50,7 @@ struct Update {
 };
 
 /// One 3x3 block, or one 3-vector of a border row: where its numbers come from and go to.
-struct Placement {
+struct BlockScatter {
   std::int32_t source;  ///< first double in the caller's array
   std::int32_t target;  ///< first double in the panel
 };
@@ -87,7 +87,7 @@ struct BlockSymbolic {
   std::vector<Update> updates;
   std::vector<RowRun> runs;        ///< of the updates
   std::vector<RowWindow> windows;  ///< the same rows once more, for vectors of 8
-  std::vector<Placement> straight, transposed, border;
+  std::vector<BlockScatter> straight, transposed, border;
   /// The border's updates are summed in this many groups of panels, then the groups in order, so
   /// that the result does not depend on the number of threads. Group c has the panels
   /// group_start[c] .. group_start[c+1]-1.

@@ -96,18 +96,18 @@ class EigenFactorisation final : public Factorisation {
     Eigen::Map<MatrixX>(x.data(), matrix_.rows(), count) = solver_.solve(b).eval();
   }
 
-  void pass(const BorderPattern& pattern, std::span<const double> values) override {
+  void condense_transient(const BorderPattern& pattern, std::span<const double> values) override {
     MatrixX rows = MatrixX::Zero(matrix_.rows(), pattern.rows());
     for (Eigen::Index k = 0; k < rows.cols(); ++k) {
       fill_row(pattern, static_cast<std::size_t>(k), values, rows.col(k));
     }
     const MatrixX solved = solver_.solve(rows);
-    passing_compliance_ = rows.transpose() * solved;
-    passing_coupling_.resize(rows.cols(), rows_.cols() + 1);
-    passing_coupling_ << solved.transpose() * rows_, rows.transpose() * solved_right_;
+    transient_compliance_ = rows.transpose() * solved;
+    transient_coupling_.resize(rows.cols(), rows_.cols() + 1);
+    transient_coupling_ << solved.transpose() * rows_, rows.transpose() * solved_right_;
   }
-  const MatrixX& passing_compliance() const override { return passing_compliance_; }
-  const MatrixX& passing_coupling() const override { return passing_coupling_; }
+  const MatrixX& transient_compliance() const override { return transient_compliance_; }
+  const MatrixX& transient_coupling() const override { return transient_coupling_; }
 
   int negative_pivots() const override { return negatives_; }
 
@@ -150,7 +150,7 @@ class EigenFactorisation final : public Factorisation {
   MatrixX rows_;
   MatrixX solved_rows_;
   VectorX solved_right_;
-  MatrixX compliance_, passing_compliance_, passing_coupling_;
+  MatrixX compliance_, transient_compliance_, transient_coupling_;
   VectorX free_motion_;
   double free_energy_ = 0;
   int negatives_ = 0;

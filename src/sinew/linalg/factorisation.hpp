@@ -56,15 +56,15 @@ class Factorisation {
   /// `count` right sides stand one behind the other. In place allowed.
   virtual void solve(std::span<const double> right, std::span<double> x, int count = 1) = 0;
 
-  /// Forward substitution of rows H_p that come and go beside the border. Valid until the next
-  /// factorise() or pass().
+  /// Forward substitution of transient rows H_t, which come and go beside the border. Valid until
+  /// the next factorise() or condense_transient().
   /// @param rows k groups of three on the same nodes.
   /// @param values 3 * rows.entries() doubles, layout of BorderPattern.
-  virtual void pass(const BorderPattern& rows, std::span<const double> values) = 0;
-  /// (3 k, 3 k) leading block: H_p A^-1 H_p^T, the lower triangle alone.
-  virtual const MatrixX& passing_compliance() const = 0;
-  /// (3 k, m + 1) leading block: H_p A^-1 H^T, then H_p A^-1 b.
-  virtual const MatrixX& passing_coupling() const = 0;
+  virtual void condense_transient(const BorderPattern& rows, std::span<const double> values) = 0;
+  /// (3 k, 3 k) leading block: H_t A^-1 H_t^T, the lower triangle alone.
+  virtual const MatrixX& transient_compliance() const = 0;
+  /// (3 k, m + 1) leading block: H_t A^-1 H^T, then H_t A^-1 b.
+  virtual const MatrixX& transient_coupling() const = 0;
 
   /// Memory for the caller to work in until it calls factorise(), which takes it back: the place
   /// where the factor will stand. Writing to it ends what solve() and solve_with_effort() know. On

@@ -23,7 +23,12 @@ struct Spread {
   long leading;
 };
 
-/// Does it; see Spread.
+/// Does it in the way that is faster on the processor built for; see Spread.
 void spread_rows(const Spread& spread);
+
+/// By stretches of rows, on any processor.
+void spread_runs(const Spread& spread);
+/// By windows of eight rows, which a mask expands: AVX-512 alone.
+void spread_windows(const Spread& spread);
 
 }  // namespace sinew::linalg

@@ -61,7 +61,7 @@ class BodyModel {
   /// points of one element it does. After finish().
   virtual bool couples(int first, int second) const = 0;
 
-  /// Whether rows that come and go are worth leaving out (see RowValues::present).
+  /// Whether transient rows are worth leaving out (see RowValues::active).
   virtual bool leaves_rows_out() const { return false; }
 
   /// Whether nothing of it is held: it has all rigid motions. Of bodies of elements, what is fixed

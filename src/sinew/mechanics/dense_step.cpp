@@ -36,7 +36,7 @@ void DenseStep::make_room(Eigen::Index columns) {
   if (columns <= effort_.size()) return;
   for (MatrixX* m : {&rows_, &moved_rows_, &soft_rows_}) m->resize(right_.size(), columns);
   for (VectorX* v : {&free_motion_, &effort_}) v->resize(columns);
-  places_.reserve(static_cast<std::size_t>(columns));
+  problem_rows_.reserve(static_cast<std::size_t>(columns));
 }
 
 void DenseStep::linearise(const LinearisationRequest& request) {
@@ -66,7 +66,7 @@ void DenseStep::take_surface_rows(const RowValues& rows) {
   surface_rows_.clear();
   auto before = surface_rows_before_.begin();
   for (const OwnRows::SurfaceEntry& entry : own_.surface) {
-    if (rows.present[static_cast<std::size_t>(entry.row)] == 0) continue;
+    if (rows.active[static_cast<std::size_t>(entry.row)] == 0) continue;
     const auto at = static_cast<std::size_t>(entry.entry);
     while (before != surface_rows_before_.end() && before->row < entry.row) ++before;
     const bool known = before != surface_rows_before_.end() && before->row == entry.row;
@@ -203,16 +203,16 @@ void DenseStep::make_definite() {
 // compression of (I + S)^-1 with S skew, whose numerical range lies in |z - 1/2| <= 1/2. The
 // symmetric part of W itself is no such bound: it is softer than W_s by S^2, and near the rank of
 // redundant joints the iteration then diverges.
-void DenseStep::add_compliance(std::span<const int> place, MatrixX& compliance,
+void DenseStep::add_compliance(std::span<const int> problem_row, MatrixX& compliance,
                                VectorX& free_motion) const {
   if (motion_.size() == 0) return;
-  places_.clear();
+  problem_rows_.clear();
   for (Eigen::Index j = 0; j < columns_; ++j) {
-    const int at = place[static_cast<std::size_t>(world_row(j))];
-    if (at >= 0) places_.push_back({j, at});
+    const int at = problem_row[static_cast<std::size_t>(world_row(j))];
+    if (at >= 0) problem_rows_.push_back({j, at});
   }
-  for (const auto& [j, across] : places_) {
-    for (const auto& [i, down] : places_) {
+  for (const auto& [j, across] : problem_rows_) {
+    for (const auto& [i, down] : problem_rows_) {
       if (i > j) break;
       const double soft = rows_.col(i).dot(soft_rows_.col(j));
       compliance(down, across) += soft;

@@ -12,9 +12,8 @@
 namespace sinew::mechanics {
 
 /// A is dense and may be unsymmetric. Rows on sites that stay are all taken, also those that are
-/// left out elsewhere; of those on the body's surface, the ones that are present. What the body's
-/// equation is, how its sites move, and what a motion does to its state is said by those who derive
-/// from it.
+/// left out elsewhere; of those on the body's surface, the active ones. What the body's equation
+/// is, how its sites move, and what a motion does to its state is said by those who derive from it.
 class DenseStep : public StepSystem {
  public:
   void linearise(const LinearisationRequest& request) final;
@@ -22,7 +21,7 @@ class DenseStep : public StepSystem {
   void take_rows(const RowValues& rows) final;
   void retake_rows(const RowValues& rows) final;
   Inertia condense() final;
-  void add_compliance(std::span<const int> place, MatrixX& compliance,
+  void add_compliance(std::span<const int> problem_row, MatrixX& compliance,
                       VectorX& free_motion) const final;
 
   std::size_t size() const final { return static_cast<std::size_t>(motion_.size()); }
@@ -69,7 +68,7 @@ class DenseStep : public StepSystem {
     Patch patch;
     double effort = 0.0;  // N, as known last in this step
   };
-  /// Those present, ascending.
+  /// The active ones, ascending.
   const std::vector<SurfaceRow>& surface_rows() const { return surface_rows_; }
   /// When a step begins, since their points are found anew.
   void forget_surface_rows() { surface_rows_.clear(); }
@@ -106,11 +105,11 @@ class DenseStep : public StepSystem {
   MatrixX soft_rows_;          // the same of the symmetric part of A
   VectorX free_motion_, effort_;
   // Of the columns that are in a step's problem: which, and where there.
-  struct Place {
+  struct ProblemRow {
     Eigen::Index column;
-    int place;
+    int row;
   };
-  mutable std::vector<Place> places_;
+  mutable std::vector<ProblemRow> problem_rows_;
   double force_scale_ = 1.0;
 };
 

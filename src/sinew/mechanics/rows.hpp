@@ -19,14 +19,14 @@ namespace sinew::mechanics {
 struct RowPattern {
   std::vector<std::int32_t> row_start{0};
   std::vector<Site> site;
-  std::vector<char> passing;  ///< (rows,) 1: rows that come and go, three by three, on one point
+  std::vector<char> transient;  ///< (rows,) 1: rows that come and go, three by three, on one point
 
   int rows() const { return static_cast<int>(row_start.size()) - 1; }
   int entries() const { return static_cast<int>(site.size()); }
   /// Closes a row that touches `sites`, a range of any kind of them; returns its number.
   template <class Sites = std::initializer_list<Site>>
-  int add_row(const Sites& sites, bool passes = false) {
-    passing.push_back(passes ? 1 : 0);
+  int add_row(const Sites& sites, bool is_transient = false) {
+    transient.push_back(is_transient ? 1 : 0);
     site.insert(site.end(), sites.begin(), sites.end());
     row_start.push_back(entries());
     return rows() - 1;
@@ -64,8 +64,8 @@ struct RowValues {
   /// (rows,) m, of contacts alone, whose rows are delta = direction . x + offset through a step,
   /// and `reference` where the point would be carried by the surface (see constraint::Contact).
   VectorX offset, reference;
-  /// (rows,) 0: a passing row that is left out; its motion and compliance are not computed.
-  std::vector<char> present;
+  /// (rows,) 0: a transient row that is left out; its motion and compliance are not computed.
+  std::vector<char> active;
   /// (entries,) of contacts of rigid bodies, at the entry of such a body's centre; empty where
   /// there are none. See constraint::RigidSide.
   std::vector<Vector3> arm;            ///< m, of the watched point from the centre, in axes at rest
@@ -81,7 +81,7 @@ struct RowValues {
     delta.setZero(pattern.rows());
     offset.setZero(pattern.rows());
     reference.setZero(pattern.rows());
-    present.assign(static_cast<std::size_t>(pattern.rows()), 1);
+    active.assign(static_cast<std::size_t>(pattern.rows()), 1);
   }
 };
 

@@ -80,15 +80,15 @@ class StepSystem {
   virtual void add_curvature(const RowCurvature& curvature) = 0;
   /// Takes this body's part of H for what follows.
   virtual void take_rows(const RowValues& rows) = 0;
-  /// Takes which passing rows are present, and their directions, anew after condense(): what
+  /// Takes which transient rows are active, and their directions, anew after condense(): what
   /// follows is as if take_rows() had done so before it.
   virtual void retake_rows(const RowValues& rows) = 0;
   /// Factorises A bordered by the rows taken.
   virtual Inertia condense() = 0;
-  /// Adds this body's W and H A^-1 b to those of a step's problem. @param place (all rows,) of each
-  /// row in the problem; its rows that are not present have none. @param compliance (rows of the
-  /// problem, rows of the problem). @param free_motion (rows of the problem,).
-  virtual void add_compliance(std::span<const int> place, MatrixX& compliance,
+  /// Adds this body's W and H A^-1 b to those of a step's problem. @param problem_row (all rows,)
+  /// which each row is in the problem; rows that are not active have none. @param compliance (rows
+  /// of the problem, rows of the problem). @param free_motion (rows of the problem,).
+  virtual void add_compliance(std::span<const int> problem_row, MatrixX& compliance,
                               VectorX& free_motion) const = 0;
 
   /// How many numbers dq has.

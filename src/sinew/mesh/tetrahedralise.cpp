@@ -8,9 +8,9 @@
 
 #include "sinew/core/error.hpp"
 #include "sinew/core/file.hpp"
+#include "sinew/core/process.hpp"
 #include "sinew/mesh/check.hpp"
 #include "sinew/mesh/gmsh.hpp"
-#include "sinew/mesh/process.hpp"
 #include "sinew/mesh/solid.hpp"
 #include "sinew/mesh/write.hpp"
 

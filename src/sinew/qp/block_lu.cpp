@@ -98,7 +98,7 @@ void BlockLu::make_fronts(const BlockMatrix& pattern) {
 // A block belongs to the front that eliminates the first of its two nodes.
 void BlockLu::place_blocks(const BlockMatrix& pattern, std::span<const int> position,
                            std::span<const int> front_of) {
-  std::vector<std::vector<Placement>> of_front(fronts_.size());
+  std::vector<std::vector<BlockScatter>> of_front(fronts_.size());
   for (int j = 0; j < pattern.nodes(); ++j) {
     for (int e = start_[at(j)]; e < start_[at(j) + 1]; ++e) {
       const int i = pattern_row_[at(e)];
@@ -107,18 +107,18 @@ void BlockLu::place_blocks(const BlockMatrix& pattern, std::span<const int> posi
           {e, i, j, pattern.node(i).size, pattern.node(j).size});
     }
   }
-  placements_.clear();
+  scatters_.clear();
   std::vector<int> place(nodes_.empty() ? 0 : row_.size());
   for (std::size_t f = 0; f < fronts_.size(); ++f) {
     Front& front = fronts_[f];
     for (int k = 0; k < front.size; ++k) place[at(row_[front.row + at(k)])] = k;
-    front.block_begin = placements_.size();
-    for (Placement& p : of_front[f]) {
+    front.block_begin = scatters_.size();
+    for (BlockScatter& p : of_front[f]) {
       p.row = place[at(pattern.node(p.row).row)];
       p.column = place[at(pattern.node(p.column).row)];
-      placements_.push_back(p);
+      scatters_.push_back(p);
     }
-    front.block_end = placements_.size();
+    front.block_end = scatters_.size();
   }
 }
 
@@ -151,7 +151,7 @@ void BlockLu::assemble(const Front& front) {
   auto a = matrix(front);
   a.setZero();
   for (std::size_t k = front.block_begin; k < front.block_end; ++k) {
-    const Placement& p = placements_[k];
+    const BlockScatter& p = scatters_[k];
     const double* from = block(p.entry);
     for (int c = 0; c < p.columns; ++c) {
       for (int r = 0; r < p.rows; ++r) a(p.row + r, p.column + c) = from[3 * c + r];

@@ -38,9 +38,9 @@ class BlockLu {
     std::size_t pivot = 0;                       // into pivot_
     int parent = -1;                             // front that takes the rest
     std::size_t in_parent = 0;                   // into in_parent_: rows of the rest there
-    std::size_t block_begin = 0, block_end = 0;  // of placements_
+    std::size_t block_begin = 0, block_end = 0;  // of scatters_
   };
-  struct Placement {
+  struct BlockScatter {
     int entry, row, column;  // of the pattern; in the front
     int rows, columns;
   };
@@ -58,7 +58,7 @@ class BlockLu {
   std::vector<Front> fronts_;  // children before parents
   std::vector<int> children_begin_, children_;
   std::vector<int> row_, in_parent_, pivot_;
-  std::vector<Placement> placements_;
+  std::vector<BlockScatter> scatters_;
   linalg::AlignedNumbers storage_, values_;
   VectorX part_;  // a front's rows of a vector
   double flops_ = 0.0;

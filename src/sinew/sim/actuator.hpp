@@ -12,7 +12,6 @@
 #include <string_view>
 #include <vector>
 
-#include "sinew/core/error.hpp"
 #include "sinew/sim/signal.hpp"
 #include "sinew/step/drive.hpp"
 
@@ -54,7 +53,6 @@ struct Command {
 /// Immutable part of an actuator.
 struct ActuatorModel {
   std::string name;
-  Location place;
   ActuatorType type = ActuatorType::cable;
   int constraint = -1;  ///< in Model::constraints
   int row = -1;         ///< of H

@@ -12,9 +12,7 @@ namespace sinew::sim {
 
 namespace {
 
-void check_limits(const Limits& limits, const char* what, const ActuatorModel& actuator) {
-  Location place = actuator.place;
-  if (place.item.empty()) place.item = "actuator '" + actuator.name + "'";
+void check_limits(const Limits& limits, const char* what, const Location& place) {
   if (limits.min > limits.max) {
     throw Error(ErrorKind::contradictory_limits, place,
                 fmt::format("{}: min {:g} is above max {:g}", what, limits.min, limits.max),
@@ -30,10 +28,11 @@ void check_limits(const Limits& limits, const char* what, const ActuatorModel& a
 }  // namespace
 
 int add_actuator(ModelData& data, ActuatorModel actuator,
-                 std::unique_ptr<constraint::Constraint> constraint) {
-  check_new_name(data.actuators, &ActuatorModel::name, "actuators", actuator.name, actuator.place);
-  check_limits(actuator.effort, actuator.words().effort.name, actuator);
-  check_limits(actuator.motion, actuator.words().motion.name, actuator);
+                 std::unique_ptr<constraint::Constraint> constraint, Location place) {
+  check_new_name(data.actuators, &ActuatorModel::name, "actuators", actuator.name, place);
+  if (place.item.empty()) place.item = "actuator '" + actuator.name + "'";
+  check_limits(actuator.effort, actuator.words().effort.name, place);
+  check_limits(actuator.motion, actuator.words().motion.name, place);
   if (actuator.drive) {
     actuator.first_state = data.drive_states;
     data.drive_states += actuator.drive->state_size();

@@ -67,15 +67,15 @@ int add_cable(ModelData& data, const CableSettings& settings) {
                                     .guide_radius = settings.guide_radius});
     const int vias = friction ? cable->via_count() : 0;
     const int index = add_actuator(data,
-                                   {settings.name, settings.place, ActuatorType::cable, -1, -1,
-                                    settings.tension, settings.displacement, settings.command},
-                                   std::move(cable));
+                                   {settings.name, ActuatorType::cable, -1, -1, settings.tension,
+                                    settings.displacement, settings.command},
+                                   std::move(cable), settings.place);
     const ActuatorModel& actuator = data.actuators.back();
     for (int via = 0; via < vias; ++via) {
       data.guides.push_back({index, via, actuator.row + 1 + via, settings.friction});
     }
     if (settings.geometric_stiffness || data.step.tangent == mechanics::Tangent::exact) {
-      data.stiffening.push_back(actuator.constraint);
+      data.geometric_stiffness.in_steps.push_back(actuator.constraint);
     }
     return index;
   } catch (const Error& error) {

@@ -63,13 +63,14 @@ int add_chamber(ModelData& data, const ChamberSettings& settings) {
     }
     auto chamber = attach_surface(data, settings);
     ActuatorModel actuator{
-        settings.name,     settings.place,         ActuatorType::pressure, -1, -1,
-        settings.pressure, settings.volume_growth, settings.command};
+        settings.name,          ActuatorType::pressure, -1, -1, settings.pressure,
+        settings.volume_growth, settings.command};
     actuator.motion_scale = 1.0 / chamber->rest_area();
     actuator.drive = drive_of(settings, chamber->rest_volume());
-    const int index = add_actuator(data, std::move(actuator), std::move(chamber));
+    const int index = add_actuator(data, std::move(actuator), std::move(chamber), settings.place);
     if (settings.liquid && settings.liquid->density > 0.0) add_liquid_weight(data, settings);
-    if (settings.load_stiffness) data.stiffening.push_back(data.actuators.back().constraint);
+    if (settings.load_stiffness)
+      data.geometric_stiffness.in_steps.push_back(data.actuators.back().constraint);
     return index;
   } catch (const Error& error) {
     throw error.at(settings.place);

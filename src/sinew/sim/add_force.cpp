@@ -22,9 +22,9 @@ int add_force(ModelData& data, const ForceSettings& settings) {
         settings.name, mechanics::MaterialPoint{settings.body, point}, settings.direction,
         on.rest_position(point));
     return add_actuator(data,
-                        {settings.name, settings.place, ActuatorType::force, -1, -1, settings.force,
+                        {settings.name, ActuatorType::force, -1, -1, settings.force,
                          settings.displacement, settings.command},
-                        std::move(force));
+                        std::move(force), settings.place);
   } catch (const Error& error) {
     throw error.at(settings.place);
   }

@@ -158,8 +158,7 @@ int add_motor(ModelData& data, const MotorSettings& settings) {
                 turns ? "a motor moves a hinge; a linear-motor moves a slider"
                       : "a linear-motor moves a slider; a motor moves a hinge");
   }
-  ActuatorModel motor{settings.name, settings.place,
-                      turns ? ActuatorType::motor : ActuatorType::linear_motor};
+  ActuatorModel motor{settings.name, turns ? ActuatorType::motor : ActuatorType::linear_motor};
   motor.effort = settings.effort;
   motor.motion = settings.motion;
   motor.command = settings.command;
@@ -167,7 +166,8 @@ int add_motor(ModelData& data, const MotorSettings& settings) {
   motor.joint = settings.joint;
   const auto kind = turns ? JointMotion::Kind::angle : JointMotion::Kind::displacement;
   return add_actuator(data, std::move(motor),
-                      std::make_unique<JointMotion>(settings.name, kind, held->place()));
+                      std::make_unique<JointMotion>(settings.name, kind, held->place()),
+                      settings.place);
 }
 
 }  // namespace sinew::sim

@@ -45,10 +45,10 @@ int add_arm(ModelData& data, pcc::ArmSettings settings);
 int add_rigid_body(ModelData& data, rigid::RigidSettings settings);
 
 /// @param actuator without the numbers of its constraint, row and state, which it gets here.
-/// @param constraint whose first row is the actuator's. Throws Error: duplicate-key,
-/// contradictory-limits, out-of-range (rate).
+/// @param constraint whose first row is the actuator's. @param place where it was written. Throws
+/// Error: duplicate-key, contradictory-limits, out-of-range (rate).
 int add_actuator(ModelData& data, ActuatorModel actuator,
-                 std::unique_ptr<constraint::Constraint> constraint);
+                 std::unique_ptr<constraint::Constraint> constraint, Location place);
 int add_cable(ModelData& data, const CableSettings& settings);
 int add_spring(ModelData& data, const SpringLineSettings& settings);
 int add_force(ModelData& data, const ForceSettings& settings);

@@ -26,8 +26,7 @@ int add_spring(ModelData& data, const SpringLineSettings& settings) {
                                             std::vector<int>(count, settings.body)},
                                    .from_world = settings.pull_from_world,
                                    .outside = settings.outside});
-    ActuatorModel actuator{settings.name,   settings.place, ActuatorType::spring, -1, -1, {}, {},
-                           settings.command};
+    ActuatorModel actuator{settings.name, ActuatorType::spring, -1, -1, {}, {}, settings.command};
     const double length = line->rest_length();
     std::visit(
         [&](auto spring) {
@@ -37,9 +36,9 @@ int add_spring(ModelData& data, const SpringLineSettings& settings) {
           actuator.drive = std::make_shared<const Kind>(spring, length);
         },
         settings.spring);
-    const int index = add_actuator(data, std::move(actuator), std::move(line));
+    const int index = add_actuator(data, std::move(actuator), std::move(line), settings.place);
     // A stretched spring is as stiff across as along: without that a slack robot would swing.
-    data.stiffening.push_back(data.actuators.back().constraint);
+    data.geometric_stiffness.in_steps.push_back(data.actuators.back().constraint);
     return index;
   } catch (const Error& error) {
     throw error.at(settings.place);

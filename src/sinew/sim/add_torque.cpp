@@ -53,10 +53,9 @@ int add_torque(ModelData& data, const TorqueSettings& settings) {
         settings.name, mechanics::Coordinate{{settings.body, site}});
     const auto type = settings.towards == TorqueSettings::Towards::along ? ActuatorType::force
                                                                          : ActuatorType::torque;
-    return add_actuator(data,
-                        {settings.name, settings.place, type, -1, -1, settings.torque,
-                         settings.angle, settings.command},
-                        std::move(torque));
+    return add_actuator(
+        data, {settings.name, type, -1, -1, settings.torque, settings.angle, settings.command},
+        std::move(torque), settings.place);
   } catch (const Error& error) {
     throw error.at(settings.place);
   }

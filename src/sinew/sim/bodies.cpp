@@ -28,10 +28,10 @@ std::span<const double> numbers(const VectorX& all) {
 }  // namespace
 
 Bodies::Bodies(const Model& model, ThreadPool& pool) {
-  const bool curved = model.stiffening_widens();
+  const bool with_curvature = model.geometric_stiffness().extends_pattern;
   const int histories = mechanics::history_count(model.step().integrator);
   for (const auto& body : model.bodies()) {
-    bodies_.push_back(body.create(pool, curved, histories));
+    bodies_.push_back(body.create(pool, with_curvature, histories));
     systems_.push_back(&bodies_.back()->system());
   }
   ends_.resize(bodies_.size());
@@ -74,9 +74,9 @@ mechanics::Inertia Bodies::condense() {
   return whole;
 }
 
-void Bodies::add_compliance(std::span<const int> place, MatrixX& compliance,
+void Bodies::add_compliance(std::span<const int> problem_row, MatrixX& compliance,
                             VectorX& free_motion) const {
-  for (const auto* system : systems_) system->add_compliance(place, compliance, free_motion);
+  for (const auto* system : systems_) system->add_compliance(problem_row, compliance, free_motion);
 }
 
 double Bodies::residual(std::span<const double> effort) {

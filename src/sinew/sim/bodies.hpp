@@ -42,7 +42,8 @@ class Bodies {
   /// The worst status, the sum of pivots, and whether any is unsymmetric.
   mechanics::Inertia condense();
   /// Adds all bodies' parts, see mechanics::StepSystem.
-  void add_compliance(std::span<const int> place, MatrixX& compliance, VectorX& free_motion) const;
+  void add_compliance(std::span<const int> problem_row, MatrixX& compliance,
+                      VectorX& free_motion) const;
 
   /// |b + H^T effort|, N. @param effort (rows,) N.
   double residual(std::span<const double> effort);

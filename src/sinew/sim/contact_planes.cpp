@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sinew/constraint/placement.hpp"
+#include "sinew/constraint/configuration.hpp"
 #include "sinew/constraint/shape_contact.hpp"
 #include "sinew/constraint/surface_contact.hpp"
 #include "sinew/sim/model.hpp"
@@ -20,10 +20,10 @@ constexpr int kMaxTurns = 20;
 
 }  // namespace
 
-ContactPlanes::ContactPlanes(const Model& model, const constraint::Placement& placement,
+ContactPlanes::ContactPlanes(const Model& model, const constraint::Configuration& configuration,
                              mechanics::RowValues& rows, ThreadPool& pool)
     : model_(model),
-      placement_(placement),
+      configuration_(configuration),
       rows_(rows),
       start_(VectorX::Zero(model.rows().rows())),
       curvature_(VectorX::Zero(model.rows().rows())) {
@@ -33,7 +33,7 @@ ContactPlanes::ContactPlanes(const Model& model, const constraint::Placement& pl
     shapes_.push_back(dynamic_cast<const constraint::ShapeContact*>(&contact));
     const auto* touching = dynamic_cast<const constraint::SurfaceContact*>(&contact);
     if (touching == nullptr) continue;
-    surfaces_.push_back(std::make_unique<TouchingSurfaces>(*touching, placement, rows, pool));
+    surfaces_.push_back(std::make_unique<TouchingSurfaces>(*touching, configuration, rows, pool));
   }
   poses_.resize(contacts_.size(), Eigen::Isometry3d::Identity());
 }
@@ -49,7 +49,7 @@ void ContactPlanes::place(double from, double to) {
     curved_ |= contact.curved();
     poses_[i] = pose_now(i, to);
     const Eigen::Isometry3d start = contact.carrier() ? poses_[i] : model_.contacts()[i].pose(from);
-    contact.begin_step(placement_, start, poses_[i], to - from, rows_);
+    contact.begin_step(configuration_, start, poses_[i], to - from, rows_);
   }
 }
 
@@ -77,7 +77,7 @@ void ContactPlanes::widen(int row, double more) {
 Eigen::Isometry3d ContactPlanes::pose_now(std::size_t contact, double time) const {
   if (shapes_[contact] == nullptr) return Eigen::Isometry3d::Identity();
   const auto& carrier = shapes_[contact]->carrier();
-  return carrier ? carrier->pose(placement_) : model_.contacts()[contact].pose(time);
+  return carrier ? carrier->pose(configuration_) : model_.contacts()[contact].pose(time);
 }
 
 bool ContactPlanes::turn_to(const constraint::ShapeContact& contact, std::size_t point,
@@ -108,7 +108,7 @@ void ContactPlanes::turn(const constraint::ShapeContact& contact, std::size_t po
     return contact.position(point, rows.segment<3>(row), rows_);
   };
   const Vector3 start = position(start_), carried = position(rows_.reference);
-  const Vector3 now = contact.position_beside(placement_, point, rows_);
+  const Vector3 now = contact.position_beside(configuration_, point, rows_);
   contact.place(point, carried, plane, rows_);
   start_.segment<3>(row) = contact.row_values(point, start, rows_);
   rows_.delta.segment<3>(row) = contact.row_values(point, now, rows_);
@@ -119,7 +119,7 @@ void ContactPlanes::follow_points() {
     if (shapes_[i] == nullptr || !shapes_[i]->curved()) continue;
     const constraint::ShapeContact& contact = *shapes_[i];
     for (std::size_t k = 0; k < contact.size(); ++k) {
-      const Vector3 at = contact.position_beside(placement_, k, rows_);
+      const Vector3 at = contact.position_beside(configuration_, k, rows_);
       curvature_.segment<3>(contact.row(k)) = contact.place_nearest(k, at, pose(i), rows_);
     }
   }
@@ -134,7 +134,7 @@ double ContactPlanes::drift(std::span<const double> effort, double time) {
     const Eigen::Isometry3d pose = pose_now(i, time);
     for (std::size_t k = 0; k < contact.size(); ++k) {
       if (effort[static_cast<std::size_t>(contact.row(k))] == 0.0) continue;
-      const double gap = contact.gap_now(placement_, pose, k, rows_);
+      const double gap = contact.gap_now(configuration_, pose, k, rows_);
       worst = std::max(worst, std::abs(gap - rows_.delta[contact.row(k)]));
     }
   }

@@ -20,7 +20,7 @@ struct ShapeApproach;
 }
 namespace sinew::constraint {
 class Contact;
-class Placement;
+class Configuration;
 class ShapeContact;
 }  // namespace sinew::constraint
 
@@ -35,7 +35,7 @@ class ContactPlanes {
  public:
   /// All must outlive it. @param rows gets the frames of contacts.
   /// @param pool see TouchingSurfaces.
-  ContactPlanes(const Model& model, const constraint::Placement& placement,
+  ContactPlanes(const Model& model, const constraint::Configuration& configuration,
                 mechanics::RowValues& rows, ThreadPool& pool);
   ~ContactPlanes();
   ContactPlanes(const ContactPlanes&) = delete;
@@ -110,7 +110,7 @@ class ContactPlanes {
             const collision::ShapeApproach& plane);
 
   const Model& model_;
-  const constraint::Placement& placement_;
+  const constraint::Configuration& configuration_;
   mechanics::RowValues& rows_;
   std::vector<const constraint::Contact*> contacts_;
   std::vector<const constraint::ShapeContact*> shapes_;

@@ -28,8 +28,8 @@ ContactPoint ContactReader::point(int contact, std::size_t point,
   const auto row = static_cast<std::size_t>(touching.row(point));
   const Matrix3 frame = touching.frame(point, run_.world.rows());
   ContactPoint result;
-  result.position = touching.position_now(run_.world.placement(), point, run_.world.rows());
-  result.gap = touching.gap_now(run_.world.placement(), pose, point, run_.world.rows());
+  result.position = touching.position_now(run_.world.configuration(), point, run_.world.rows());
+  result.gap = touching.gap_now(run_.world.configuration(), pose, point, run_.world.rows());
   result.normal = frame.col(0);
   result.normal_force = run_.effort[row];
   result.friction_force = run_.effort[row + 1] * frame.col(1) + run_.effort[row + 2] * frame.col(2);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sinew/constraint/placement.hpp"
+#include "sinew/constraint/configuration.hpp"
 #include "sinew/constraint/shape_contact.hpp"
 #include "sinew/constraint/surface_contact.hpp"
 #include "sinew/mechanics/body_model.hpp"
@@ -28,23 +28,24 @@ constexpr int kMaxRounds = 20;
 
 // The rows of a point without its own force.
 Vector3 free_motion(const step::StepProblem& problem, const linalg::AlignedNumbers& effort,
-                    int place) {
+                    int problem_row) {
   const Eigen::Map<const VectorX, Eigen::AlignedMax> lambda(
       effort.data(), static_cast<Eigen::Index>(effort.size()));
-  return problem.delta_free.segment<3>(place) + problem.compliance.middleRows<3>(place) * lambda -
-         problem.compliance.block<3, 3>(place, place) * lambda.segment<3>(place);
+  return problem.delta_free.segment<3>(problem_row) +
+         problem.compliance.middleRows<3>(problem_row) * lambda -
+         problem.compliance.block<3, 3>(problem_row, problem_row) * lambda.segment<3>(problem_row);
 }
 
 }  // namespace
 
-ContactRows::ContactRows(const Model& model, const constraint::Placement& placement,
+ContactRows::ContactRows(const Model& model, const constraint::Configuration& configuration,
                          std::span<mechanics::StepSystem* const> systems,
                          mechanics::RowValues& rows, ThreadPool& pool)
     : model_(model),
-      placement_(placement),
+      configuration_(configuration),
       systems_(systems),
       rows_(rows),
-      planes_(model, placement, rows, pool),
+      planes_(model, configuration, rows, pool),
       touched_(static_cast<std::size_t>(model.rows().rows()), 0),
       closed_(touched_) {
   for (const ContactModel& contact : model.contacts()) strikes_.push_back(contact.strikes ? 1 : 0);
@@ -72,7 +73,7 @@ double ContactRows::reach(double time_step, double reach) const {
   double fastest = 0.0;
   for (const auto& touching : planes_.surfaces()) {
     for (const int body : {touching->contact().body(), touching->contact().other_body()}) {
-      const Points& rates = placement_.surface_node_velocities(body);
+      const Points& rates = configuration_.surface_node_velocities(body);
       fastest = std::max(fastest, rates.rowwise().squaredNorm().maxCoeff());
     }
   }
@@ -81,26 +82,26 @@ double ContactRows::reach(double time_step, double reach) const {
 }
 
 // A function of the state alone, so that a run goes on from a saved one bit for bit.
-void ContactRows::choose_present(std::span<const double> effort, double time_step, double reach) {
+void ContactRows::choose_active(std::span<const double> effort, double time_step, double reach) {
   left_out_ = false;
   rounds_left_ = kMaxRounds;
   const double near = std::max(kTaken * model_.size(), reach);
   for_each_point(true, [&](const constraint::Contact& contact, std::size_t k) {
     const int row = contact.row(k);
-    set_present(row, is_closed(row));
+    set_active(row, is_closed(row));
     if (is_closed(row)) planes_.keep_gap(row);
   });
   for_each_point(false, [&](const constraint::Contact& contact, std::size_t k) {
     const mechanics::BodyModel& body = model_.body(contact.body());
     const int row = contact.row(k);
-    if (contact.idle(k, rows_)) return set_present(row, false);
-    const Vector3 velocity = contact.velocity_beside(placement_, k, rows_);
+    if (contact.idle(k, rows_)) return set_active(row, false);
+    const Vector3 velocity = contact.velocity_beside(configuration_, k, rows_);
     const double arrives =
         planes_.start()[row] + time_step * rows_.direction[contact.entry(k)].dot(velocity);
-    const bool present = !body.leaves_rows_out() || effort[static_cast<std::size_t>(row)] > 0.0 ||
-                         std::min(rows_.reference[row], arrives) <= near;
-    set_present(row, present);
-    left_out_ |= !present;
+    const bool active = !body.leaves_rows_out() || effort[static_cast<std::size_t>(row)] > 0.0 ||
+                        std::min(rows_.reference[row], arrives) <= near;
+    set_active(row, active);
+    left_out_ |= !active;
   });
   std::ranges::transform(effort, touched_.begin(), [](double r) { return r > 0.0 ? 1 : 0; });
 }
@@ -108,26 +109,26 @@ void ContactRows::choose_present(std::span<const double> effort, double time_ste
 void ContactRows::take_all() {
   left_out_ = false;
   for_each_point([&](const constraint::Contact& contact, std::size_t k) {
-    set_present(contact.row(k), !contact.idle(k, rows_));
+    set_active(contact.row(k), !contact.idle(k, rows_));
   });
 }
 
 void ContactRows::take_closed() {
   left_out_ = false;
   for_each_point([&](const constraint::Contact& contact, std::size_t k) {
-    set_present(contact.row(k), is_closed(contact.row(k)));
+    set_active(contact.row(k), is_closed(contact.row(k)));
   });
 }
 
-void ContactRows::set_present(int row, bool present) {
-  std::fill_n(rows_.present.begin() + row, 3, static_cast<char>(present));
+void ContactRows::set_active(int row, bool active) {
+  std::fill_n(rows_.active.begin() + row, 3, static_cast<char>(active));
 }
 
 void ContactRows::list(const RowNumbering& numbering,
                        std::vector<step::ContactBlock>& blocks) const {
   for_each_point([&](const constraint::Contact& contact, std::size_t k) {
-    const int place = numbering.place_of(contact.row(k));
-    if (place >= 0) blocks.push_back({place, contact.friction()});
+    const int problem_row = numbering.problem_row_of(contact.row(k));
+    if (problem_row >= 0) blocks.push_back({problem_row, contact.friction()});
   });
 }
 
@@ -151,11 +152,12 @@ bool ContactRows::correct_shape(std::size_t number, const step::StepProblem& pro
   const bool may_turn = contact.curved() && planes_.may_turn();
   bool found = false;
   for (std::size_t k = 0; k < contact.size(); ++k) {
-    const int row = contact.row(k), place = numbering.place_of(row);
-    if (rows_.present[static_cast<std::size_t>(row)] == 0) {
+    const int row = contact.row(k), problem_row = numbering.problem_row_of(row);
+    if (rows_.active[static_cast<std::size_t>(row)] == 0) {
       found = (!strikes(number) && take_in(contact, k, pose)) || found;
-    } else if (may_turn && effort[static_cast<std::size_t>(place)] > 0.0) {
-      found = planes_.follow_way(contact, k, free_motion(problem, effort, place), pose) || found;
+    } else if (may_turn && effort[static_cast<std::size_t>(problem_row)] > 0.0) {
+      found =
+          planes_.follow_way(contact, k, free_motion(problem, effort, problem_row), pose) || found;
     }
   }
   return found;
@@ -169,13 +171,13 @@ bool ContactRows::take_in(const constraint::ShapeContact& contact, std::size_t p
   const auto motion = [&](const mechanics::Site& site) {
     return systems_[static_cast<std::size_t>(site.body)]->proposed_motion(site.number);
   };
-  const Vector3 end = contact.position_beside(placement_, point, rows_) +
+  const Vector3 end = contact.position_beside(configuration_, point, rows_) +
                       contact.relative_motion(point, rows_, motion);
   if (contact.row_values(point, end, rows_)[0] >= 0.0) return false;
   if (contact.curved() && planes_.may_turn() && !planes_.turn_to(contact, point, end, pose)) {
     return false;
   }
-  set_present(contact.row(point), true);
+  set_active(contact.row(point), true);
   return true;
 }
 
@@ -186,15 +188,15 @@ bool ContactRows::correct_surfaces(TouchingSurfaces& touching) {
   touching.propose(systems_);
   for (std::size_t k = 0; k < touching.count(); ++k) {
     const int row = touching.contact().row(k);
-    if (rows_.present[static_cast<std::size_t>(row)] != 0) continue;
+    if (rows_.active[static_cast<std::size_t>(row)] != 0) continue;
     if (!(touching.proposed_gap(k) < 0.0)) continue;
-    set_present(row, true);
+    set_active(row, true);
     found = true;
   }
   const std::size_t known = touching.count();
   if (!found && touching.add_overlaps()) {
     for (std::size_t k = known; k < touching.count(); ++k) {
-      set_present(touching.contact().row(k), true);
+      set_active(touching.contact().row(k), true);
       planes_.begin_point(touching.contact().row(k));
     }
     found = true;
@@ -231,7 +233,7 @@ double ContactRows::max_penetration_without_force(std::span<const double> effort
     const int row = contact.row(k);
     if (effort[static_cast<std::size_t>(row)] > 0.0) return;
     if (contact.idle(k, rows_)) return;
-    deepest = std::max(deepest, -contact.linear_gap(placement_, k, rows_));
+    deepest = std::max(deepest, -contact.linear_gap(configuration_, k, rows_));
   });
   return deepest;
 }
@@ -241,7 +243,7 @@ double ContactRows::max_penetration_left_out() const {
   if (!left_out_) return deepest;
   for_each_point(false, [&](const constraint::Contact& contact, std::size_t k) {
     const int row = contact.row(k);
-    if (rows_.present[static_cast<std::size_t>(row)] != 0) return;
+    if (rows_.active[static_cast<std::size_t>(row)] != 0) return;
     deepest = std::max(deepest, -rows_.delta[row]);
   });
   return deepest;

@@ -27,7 +27,7 @@ class RowNumbering;
 class ContactRows {
  public:
   /// All must outlive it. @param systems of the bodies. @param rows whose contacts it looks after.
-  ContactRows(const Model& model, const constraint::Placement& placement,
+  ContactRows(const Model& model, const constraint::Configuration& configuration,
               std::span<mechanics::StepSystem* const> systems, mechanics::RowValues& rows,
               ThreadPool& pool);
 
@@ -41,7 +41,7 @@ class ContactRows {
   /// After planes were placed and begun: which points take part in the step.
   /// @param effort (rows,) N of the last step: points with a force are near, whatever their gap.
   /// @param time_step s. @param reach m: points that are nearer than this are near, too.
-  void choose_present(std::span<const double> effort, double time_step, double reach);
+  void choose_active(std::span<const double> effort, double time_step, double reach);
   /// For a look at the present state: every point that a step has a use for takes part.
   void take_all();
   /// For an impact at the present state: the closed points of contacts that strike.
@@ -86,7 +86,7 @@ class ContactRows {
   void for_each_point(Visit&& visit) const;
   template <class Visit>
   void for_each_point(bool striking, Visit&& visit) const;
-  void set_present(int row, bool present);
+  void set_active(int row, bool active);
   bool correct_shape(std::size_t contact, const step::StepProblem& problem,
                      const RowNumbering& numbering, const linalg::AlignedNumbers& effort);
   bool take_in(const constraint::ShapeContact& contact, std::size_t point,
@@ -94,7 +94,7 @@ class ContactRows {
   bool correct_surfaces(TouchingSurfaces& touching);
 
   const Model& model_;
-  const constraint::Placement& placement_;
+  const constraint::Configuration& configuration_;
   std::span<mechanics::StepSystem* const> systems_;
   mechanics::RowValues& rows_;
   ContactPlanes planes_;

@@ -18,17 +18,18 @@ void add_couplings(ModelData& data) {
   }
 }
 
-void list_curved(ModelData& data) {
+void list_geometric_stiffness(ModelData& data) {
   for (std::size_t i = 0; i < data.constraints.size(); ++i) {
-    if (data.constraints[i]->curvature_count() > 0) data.curved.push_back(static_cast<int>(i));
+    if (data.constraints[i]->curvature_count() == 0) continue;
+    data.geometric_stiffness.all.push_back(static_cast<int>(i));
   }
-  for (const int index : data.stiffening) {
+  for (const int index : data.geometric_stiffness.in_steps) {
     const constraint::Constraint& constraint = data.constraint(index);
     for (int k = 0; k < constraint.curvature_count(); ++k) {
       const mechanics::RowCurvature& pair =
           data.curvatures[static_cast<std::size_t>(constraint.first_curvature() + k)];
       if (pair.first.body != pair.second.body) continue;  // see add_couplings()
-      data.stiffening_widens |=
+      data.geometric_stiffness.extends_pattern |=
           !data.body(pair.first.body).couples(pair.first.number, pair.second.number);
     }
   }

@@ -9,8 +9,8 @@ struct ModelData;
 /// Rows for the curvatures between two bodies: no body has room for what couples it to another.
 void add_couplings(ModelData& data);
 
-/// Which constraints have curvature, and whether that which joins A in every step widens the
-/// pattern of a body. After BodyModel::finish().
-void list_curved(ModelData& data);
+/// Which constraints have a geometric stiffness, and whether that which joins A in every step
+/// extends the pattern of a body. After BodyModel::finish().
+void list_geometric_stiffness(ModelData& data);
 
 }  // namespace sinew::sim

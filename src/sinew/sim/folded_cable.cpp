@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "sinew/constraint/cable.hpp"
-#include "sinew/constraint/placement.hpp"
+#include "sinew/constraint/configuration.hpp"
 #include "sinew/core/types.hpp"
 #include "sinew/sim/model.hpp"
 
@@ -15,7 +15,8 @@ constexpr double kFolded = 0.1;  // of the mean piece at rest
 
 }  // namespace
 
-std::string describe_folded_cable(const Model& model, const constraint::Placement& placement,
+std::string describe_folded_cable(const Model& model,
+                                  const constraint::Configuration& configuration,
                                   std::span<const double> effort) {
   std::string text;
   double least = kFolded;
@@ -23,7 +24,7 @@ std::string describe_folded_cable(const Model& model, const constraint::Placemen
     const constraint::Cable* cable = model.cable(i);
     const int row = model.actuators()[static_cast<std::size_t>(i)].row;
     if (cable == nullptr || !(effort[static_cast<std::size_t>(row)] > 0.0)) continue;
-    const Points points = cable->points(placement);
+    const Points points = cable->points(configuration);
     const double mean = cable->rest_length() / static_cast<double>(points.rows() - 1);
     for (Eigen::Index k = 0; k + 1 < points.rows(); ++k) {
       const double length = (points.row(k + 1) - points.row(k)).norm();

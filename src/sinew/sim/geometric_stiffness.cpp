@@ -10,11 +10,12 @@
 
 namespace sinew::sim {
 
-GeometricStiffness::GeometricStiffness(const Model& model, const constraint::Placement& placement,
+GeometricStiffness::GeometricStiffness(const Model& model,
+                                       const constraint::Configuration& configuration,
                                        std::span<mechanics::StepSystem* const> systems,
                                        step::StepProblem& problem)
     : model_(model),
-      placement_(placement),
+      configuration_(configuration),
       systems_(systems),
       problem_(problem),
       curvatures_(model.curvatures()),
@@ -37,9 +38,9 @@ void GeometricStiffness::begin(const mechanics::LinearisationRequest& request) {
   }
 }
 
-void GeometricStiffness::choose(std::span<const double> effort, std::span<const int> curved) {
-  curving_ = curved;
-  if (!curved.empty()) std::ranges::copy(effort, effort_.begin());
+void GeometricStiffness::choose(std::span<const double> effort, std::span<const int> constraints) {
+  chosen_ = constraints;
+  if (!constraints.empty()) std::ranges::copy(effort, effort_.begin());
 }
 
 void GeometricStiffness::add() {
@@ -47,14 +48,14 @@ void GeometricStiffness::add() {
   for (std::size_t k = anchor_rows_; k < problem_.stiffness.size(); ++k) {
     problem_.stiffness[k].stiffness = 0.0;
   }
-  for (const int index : curving_) {
-    add_curvature(model_.constraint(index));
+  for (const int index : chosen_) {
+    add_constraint(model_.constraint(index));
   }
-  curving_ = {};
+  chosen_ = {};
   add_anchors();
 }
 
-void GeometricStiffness::add_curvature(const constraint::Constraint& constraint) {
+void GeometricStiffness::add_constraint(const constraint::Constraint& constraint) {
   const std::span<const double> effort(effort_);
   const std::span<mechanics::RowCurvature> pairs(
       curvatures_.data() + constraint.first_curvature(),
@@ -62,7 +63,7 @@ void GeometricStiffness::add_curvature(const constraint::Constraint& constraint)
   const auto own = effort.subspan(static_cast<std::size_t>(constraint.first_row()),
                                   static_cast<std::size_t>(constraint.row_count()));
   if (std::ranges::all_of(own, [](double lambda) { return lambda == 0.0; })) return;
-  constraint.curve(placement_, effort, pairs);
+  constraint.geometric_stiffness(configuration_, effort, pairs);
   const bool exact = tangent_ == mechanics::Tangent::exact || constraint.stiffens(effort);
   for (const auto& pair : pairs) {
     if (exact && pair.first.body == pair.second.body) {

@@ -11,7 +11,7 @@
 
 namespace sinew::constraint {
 class Constraint;
-class Placement;
+class Configuration;
 }  // namespace sinew::constraint
 namespace sinew::mechanics {
 struct LinearisationRequest;
@@ -32,13 +32,13 @@ class GeometricStiffness {
  public:
   /// All must outlive it. @param systems of the bodies. @param problem gets the blocks of stiffness
   /// of anchors and couplings.
-  GeometricStiffness(const Model& model, const constraint::Placement& placement,
+  GeometricStiffness(const Model& model, const constraint::Configuration& configuration,
                      std::span<mechanics::StepSystem* const> systems, step::StepProblem& problem);
 
   /// Before the bodies linearise: anchors stand in statics alone.
   void begin(const mechanics::LinearisationRequest& request);
-  /// Which constraints curve in the next add(). @param effort (rows,) N, at which they do.
-  void choose(std::span<const double> effort, std::span<const int> curved);
+  /// Of which constraints the next add() takes it. @param effort (rows,) N, at which it does.
+  void choose(std::span<const double> effort, std::span<const int> constraints);
   /// Adds the curvature to the bodies: as it is, or, where the linearisation's tangent is not
   /// exact, what is never less and positive semi-definite; and the anchors.
   void add();
@@ -47,19 +47,19 @@ class GeometricStiffness {
   std::size_t bytes() const { return curvatures_.size() * sizeof(mechanics::RowCurvature); }
 
  private:
-  void add_curvature(const constraint::Constraint& constraint);
+  void add_constraint(const constraint::Constraint& constraint);
   void add_to(const mechanics::MaterialPoint& point, const Matrix3& curvature);
   void couple(const mechanics::RowCurvature& pair);
   void add_majorant(const mechanics::RowCurvature& pair);
   void add_anchors();
 
   const Model& model_;
-  const constraint::Placement& placement_;
+  const constraint::Configuration& configuration_;
   std::span<mechanics::StepSystem* const> systems_;
   step::StepProblem& problem_;
   std::vector<mechanics::RowCurvature> curvatures_;
-  std::vector<double> effort_;    // (rows,) N, at which constraints curve
-  std::span<const int> curving_;  // whose curvature add() adds
+  std::vector<double> effort_;   // (rows,) N, of the chosen
+  std::span<const int> chosen_;  // constraints whose curvature add() adds
   mechanics::Tangent tangent_ = mechanics::Tangent::rotated;
   bool majorant_ = false;
   std::size_t anchor_rows_ = 0;  // of problem_.stiffness; behind them those of couplings

@@ -31,7 +31,7 @@ void Impact::hold() {
   run_.world.bodies().begin_query();
   form();
   for (const step::ContactBlock& block : law_.contacts) {
-    const int row = run_.world.numbering().row_of(block.row);
+    const int row = run_.world.numbering().model_row_of(block.row);
     const bool pressed = run_.effort[static_cast<std::size_t>(row)] > 0.0;
     if (pressed) law_.bilaterals.push_back({block.row, 0.0, 1.0});
   }
@@ -70,7 +70,7 @@ void Impact::form() {
   law_.bilaterals = problem.bilaterals;
   before_.setZero(law_.compliance.rows());
   const auto measure = [&](int row) {
-    return before_[row] = world.row_velocity(world.numbering().row_of(row));
+    return before_[row] = world.row_velocity(world.numbering().model_row_of(row));
   };
   for (step::BilateralBlock& block : law_.bilaterals) {
     measure(block.row);
@@ -89,7 +89,7 @@ double Impact::smallest(std::span<const double> restitution) const {
   double least = 1.0;
   for (const step::ContactBlock& block : law_.contacts) {
     if (!(before_[block.row] < 0.0)) continue;
-    const int row = run_.world.numbering().row_of(block.row);
+    const int row = run_.world.numbering().model_row_of(block.row);
     least = std::min(least, restitution[static_cast<std::size_t>(row)]);
   }
   return least;
@@ -99,7 +99,7 @@ void Impact::find_impulses(std::span<const double> restitution, double max_resti
   law_.delta_free = before_;
   for (const step::ContactBlock& block : law_.contacts) {
     if (!(before_[block.row] < 0.0)) continue;
-    const int row = run_.world.numbering().row_of(block.row);
+    const int row = run_.world.numbering().model_row_of(block.row);
     const double e = std::min(max_restitution, restitution[static_cast<std::size_t>(row)]);
     law_.delta_free.segment<3>(block.row) *= 1.0 + e;
   }

@@ -2,8 +2,8 @@
 
 #include <Eigen/Geometry>
 
+#include "sinew/constraint/configuration.hpp"
 #include "sinew/constraint/joint.hpp"
-#include "sinew/constraint/placement.hpp"
 #include "sinew/constraint/tie.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/simulation.hpp"
@@ -14,26 +14,27 @@ namespace sinew::sim {
 namespace {
 
 JointLoad load_of(const Simulation& simulation, const constraint::Tie& tie) {
-  const constraint::Placement& placement = simulation.placement();
+  const constraint::Configuration& configuration = simulation.configuration();
   JointLoad load;
-  load.gap = tie.largest_gap(placement);
-  for (const auto& pair : tie.pairs()) load.centre += placement.position(pair.first);
+  load.gap = tie.largest_gap(configuration);
+  for (const auto& pair : tie.pairs()) load.centre += configuration.position(pair.first);
   load.centre /= static_cast<double>(tie.pairs().size());
   for (std::size_t k = 0; k < tie.pairs().size(); ++k) {
     const Eigen::Map<const Vector3> force(simulation.efforts().data() + tie.row(k));
     load.force += force;
-    load.moment += (placement.position(tie.pairs()[k].first) - load.centre).cross(Vector3(force));
+    load.moment +=
+        (configuration.position(tie.pairs()[k].first) - load.centre).cross(Vector3(force));
   }
   return load;
 }
 
 JointLoad load_of(const Simulation& simulation, const constraint::Joint& joint) {
-  const constraint::Placement& placement = simulation.placement();
+  const constraint::Configuration& configuration = simulation.configuration();
   const auto own = joint.load(
-      placement, simulation.efforts().subspan(static_cast<std::size_t>(joint.first_row()),
-                                              static_cast<std::size_t>(joint.row_count())));
-  const constraint::JointFrames frames = joint.place().frames(placement);
-  return {frames.origin[1], own.force, own.moment, joint.gap(placement)};
+      configuration, simulation.efforts().subspan(static_cast<std::size_t>(joint.first_row()),
+                                                  static_cast<std::size_t>(joint.row_count())));
+  const constraint::JointFrames frames = joint.place().frames(configuration);
+  return {frames.origin[1], own.force, own.moment, joint.gap(configuration)};
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ void LinearStep::solve(double time_step) {
 void LinearStep::linearise(const mechanics::LinearisationRequest& request) {
   run_.world.linearise(request);
   run_.clock.mark(Stage::assembly);
-  run_.world.form_rows(run_.effort, run_.model->stiffening_constraints());
+  run_.world.form_rows(run_.effort, run_.model->geometric_stiffness().in_steps);
   run_.clock.mark(Stage::rows);
 }
 

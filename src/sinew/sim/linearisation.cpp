@@ -113,15 +113,15 @@ namespace {
 // Leaves the simulation's state changed.
 Linearisation linearise_here(Simulation& simulation, const LinearisationChoice& choice) {
   const Model& model = simulation.model();
-  const std::vector<int> curved =
-      choice.geometric_stiffness ? model.curved_constraints() : std::vector<int>{};
+  const std::vector<int> geometric =
+      choice.geometric_stiffness ? model.geometric_stiffness().all : std::vector<int>{};
   const auto weights =
       choice.of_statics ? mechanics::StepWeights{}
                         : mechanics::step_weights(model.step().integrator, model.step().time_step);
   World& world = simulation.world();
   world.begin_query(simulation.time());
-  world.linearise({weights, choice.tangent, !curved.empty(), false});
-  world.form_rows(simulation.efforts(), curved);
+  world.linearise({weights, choice.tangent, !geometric.empty(), false});
+  world.form_rows(simulation.efforts(), geometric);
   Linearisation result;
   result.residual = world.bodies().residual(simulation.efforts());
   if (world.condense() == linalg::FactorStatus::singular) {
@@ -137,7 +137,7 @@ Linearisation linearise_here(Simulation& simulation, const LinearisationChoice& 
   result.delta.resize(count);
   result.effort.resize(count);
   for (Eigen::Index k = 0; k < count; ++k) {
-    const auto row = static_cast<std::size_t>(numbering.row_of(static_cast<int>(k)));
+    const auto row = static_cast<std::size_t>(numbering.model_row_of(static_cast<int>(k)));
     result.delta[k] = world.delta()[static_cast<Eigen::Index>(row)];
     result.effort[k] = simulation.efforts()[row];
     if (!names[row].empty()) result.rows.push_back(names[row]);

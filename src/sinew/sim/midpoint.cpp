@@ -36,12 +36,12 @@ double Midpoint::correct() {
   const VectorX& delta = world.measure_delta();
   double worst = 0.0;
   for (step::BilateralBlock& block : world.problem().bilaterals) {
-    const double off = delta[world.numbering().row_of(block.row)];
+    const double off = delta[world.numbering().model_row_of(block.row)];
     block.motion -= 0.5 * off;
     worst = std::max(worst, std::abs(off) * block.motion_scale);
   }
   for (const step::ContactBlock& block : world.problem().contacts) {
-    const int row = world.numbering().row_of(block.row);
+    const int row = world.numbering().model_row_of(block.row);
     const auto own = static_cast<std::size_t>(row);
     if (!world.contacts().is_closed(row) || !(run_.effort[own] > 0.0)) continue;
     const double off = delta[row] - widened_[own];
@@ -56,7 +56,7 @@ void Midpoint::release() {
   World& world = run_.world;
   for (step::BilateralBlock& block : world.problem().bilaterals) block.motion = 0.0;
   for (const step::ContactBlock& block : world.problem().contacts) {
-    const int row = world.numbering().row_of(block.row);
+    const int row = world.numbering().model_row_of(block.row);
     double& widened = widened_[static_cast<std::size_t>(row)];
     world.contacts().planes().widen(row, -widened);
     widened = 0.0;

@@ -49,12 +49,7 @@ class Model {
   const std::vector<BaseMotion>& base_motions() const { return data_.base_motions; }
   const std::vector<LoadModel>& loads() const { return data_.loads; }
   const std::vector<MassModel>& masses() const { return data_.masses; }
-  /// Constraints whose curvature joins A in every step.
-  const std::vector<int>& stiffening_constraints() const { return data_.stiffening; }
-  /// Whether that needs blocks that the elements' pattern has not.
-  bool stiffening_widens() const { return data_.stiffening_widens; }
-  /// All constraints with curvature.
-  const std::vector<int>& curved_constraints() const { return data_.curved; }
+  const GeometricStiffnessModel& geometric_stiffness() const { return data_.geometric_stiffness; }
 
   /// Positions in the lists above. Throw Error(unknown-name) with a suggestion.
   int body_index(std::string_view name) const;

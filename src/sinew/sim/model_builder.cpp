@@ -118,14 +118,14 @@ int ModelBuilder::add_probe(const ProbeSettings& settings) {
 std::shared_ptr<const Model> ModelBuilder::build(const linalg::FactorisationSettings& settings) {
   hold_bodies(data_, places_);
   add_couplings(data_);
-  // Rows that come and go stand behind all others, which keep their numbers in a step's problem.
+  // Transient rows stand behind all others, which keep their numbers in a step's problem.
   for (const ContactModel& contact : data_.contacts) {
     data_.constraint(contact.constraint).declare(data_.rows, data_.curvatures);
   }
   for (std::size_t i = 0; i < data_.bodies.size(); ++i) {
     data_.bodies[i]->finish(static_cast<int>(i), data_.rows, data_.curvatures, settings);
   }
-  list_curved(data_);
+  list_geometric_stiffness(data_);
   auto model = std::make_shared<const Model>(std::move(data_));
   data_ = {};
   places_.clear();

@@ -81,6 +81,13 @@ struct CouplingModel {
   int constraint = -1;  ///< a constraint::Coupling
 };
 
+/// Which constraints have a geometric stiffness.
+struct GeometricStiffnessModel {
+  std::vector<int> all;
+  std::vector<int> in_steps;     ///< those of which it joins A in every step
+  bool extends_pattern = false;  ///< that of in_steps needs blocks that the elements' has not
+};
+
 /// A mass that hangs on a point of a body.
 struct MassModel {
   std::string name;
@@ -133,8 +140,7 @@ struct ModelData {
   std::vector<MassModel> masses;
   mechanics::RowPattern rows;
   std::vector<mechanics::RowCurvature> curvatures;
-  std::vector<int> stiffening, curved;  ///< constraints
-  bool stiffening_widens = false;
+  GeometricStiffnessModel geometric_stiffness;
   int drive_states = 0;
   double size = 0.0;  ///< m
   StepSettings step;

@@ -65,7 +65,7 @@ class NewtonSolver {
     request.tangent = tangent;
     world_.linearise(request);
     clock_.mark(Stage::assembly);
-    world_.form_rows(effort_, settings_.curved);
+    world_.form_rows(effort_, settings_.geometric);
     clock_.mark(Stage::rows);
   }
 

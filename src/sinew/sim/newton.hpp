@@ -33,7 +33,7 @@ struct NewtonSettings {
   double tolerance = 1e-8;         ///< on the residual relative to the loads
   double motion_tolerance = 1e-8;  ///< on the law's violation relative to the robot's size
   int max_iterations = 50;
-  std::span<const int> curved = {};  ///< constraints whose curvature joins A
+  std::span<const int> geometric = {};  ///< constraints whose geometric stiffness joins A
   Lag lag = {};
   /// As many first iterations of which each found the exact tangent indefinite are the last; 0: any
   /// number.

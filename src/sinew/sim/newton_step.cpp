@@ -55,7 +55,7 @@ NewtonSettings NewtonStep::settings(double time_step) const {
           tolerance,
           std::min(tolerance, kMotionTolerance),
           std::min(most, step.max_iterations),
-          run_.model->stiffening_constraints(),
+          run_.model->geometric_stiffness().in_steps,
           lags ? kLag : Lag{},
           0};
 }
@@ -72,7 +72,7 @@ void NewtonStep::solve(double time_step) {
   if (converged(result) || (!run_.model->step().dynamic() && is_usable(result))) return;
   if (result.status == NewtonStatus::law_failed) fail_law(run_);
   const std::string folded =
-      describe_folded_cable(*run_.model, run_.world.placement(), run_.effort);
+      describe_folded_cable(*run_.model, run_.world.configuration(), run_.effort);
   fail(run_, ErrorKind::not_converged,
        fmt::format("Newton ended as '{}' after {} iterations, relative residual {:.3g}{}",
                    newton_status_name(result.status), result.iterations, result.relative_residual,
@@ -188,7 +188,7 @@ NewtonReport NewtonStep::approach(double time_step) {
   };
   go_back();
   world.linearise(part.request);
-  world.form_rows(run_.effort, part.curved);
+  world.form_rows(run_.effort, part.geometric);
   world.keep_homotopy_residual(run_.effort);
   NewtonReport result;
   int iterations = 0;
@@ -220,7 +220,7 @@ NewtonReport NewtonStep::descend(double time_step, int iterations) {
   downhill.request.tangent = mechanics::Tangent::projected;
   // A matrix that is never less has the stiffness of all cables, whatever the scene leaves out.
   downhill.request.with_curvature = true;
-  downhill.curved = run_.model->curved_constraints();
+  downhill.geometric = run_.model->geometric_stiffness().all;
   downhill.max_iterations = iterations;
   NewtonReport result = run_.newton(nullptr, downhill);
   if (converged(result) || run_.controller != nullptr) return result;

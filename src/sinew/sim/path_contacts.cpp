@@ -38,7 +38,7 @@ PointLaw law_of(const World& world, const step::ContactBlock& block,
   const step::StepProblem& problem = world.problem();
   law.miss = problem.delta.segment<3>(block.row);
   if (!rubs(problem, block)) return law;
-  const int row = world.numbering().row_of(block.row);
+  const int row = world.numbering().model_row_of(block.row);
   const Eigen::Map<const Vector3> force(&effort[static_cast<std::size_t>(row)]);
   const double along = compliance_along(problem, block);
   const double limit = block.friction * std::max(force[0], 0.0);

@@ -31,7 +31,7 @@ void PathPredictor::list(std::span<const double> effort) {
   const step::StepProblem& problem = world_.problem();
   value_.resize(static_cast<Eigen::Index>(problem.contacts.size()));
   for (const step::ContactBlock& block : problem.contacts) {
-    const int row = world_.numbering().row_of(block.row);
+    const int row = world_.numbering().model_row_of(block.row);
     const Eigen::Map<const Vector3> force(&effort[static_cast<std::size_t>(row)]);
     const bool touches = force[0] > 0.0;
     const bool slips = touches && block.friction > 0.0 && qp::slides(force, block.friction);
@@ -121,7 +121,7 @@ std::vector<step::ContactBlock> PathPredictor::touch(std::span<double> effort) c
   std::vector<step::ContactBlock> touching;
   for (std::size_t k = 0; k < held_.size(); ++k) {
     const step::ContactBlock& block = world_.problem().contacts[k];
-    const int row = world_.numbering().row_of(block.row);
+    const int row = world_.numbering().model_row_of(block.row);
     Eigen::Map<Vector3> force(&effort[static_cast<std::size_t>(row)]);
     const double normal = value_[static_cast<Eigen::Index>(k)];
     if (held_[k] == 0) {

@@ -29,7 +29,7 @@ constexpr double kDiagonal = 1.75;  // more than the largest coordinate's part o
 void PathStep::imbalance_at(double load_fraction, VectorX& imbalance) {
   loads_.set_fraction(load_fraction);
   run_.world.linearise({{}, mechanics::Tangent::exact, true, true});
-  run_.world.form_rows(run_.effort, run_.model->curved_constraints());
+  run_.world.form_rows(run_.effort, run_.model->geometric_stiffness().all);
   run_.world.bodies().imbalance(run_.effort, imbalance);
 }
 
@@ -46,7 +46,7 @@ double PathStep::gap() const {
 std::vector<step::ContactBlock> PathStep::pressed() const {
   std::vector<step::ContactBlock> result;
   for (const step::ContactBlock& block : run_.world.problem().contacts) {
-    const int row = run_.world.numbering().row_of(block.row);
+    const int row = run_.world.numbering().model_row_of(block.row);
     if (run_.effort[static_cast<std::size_t>(row)] > 0.0) result.push_back(block);
   }
   return result;
@@ -59,7 +59,7 @@ std::vector<step::HeldRow> PathStep::joints(std::span<const step::ContactBlock> 
   step::append_joints(run_.world.problem(), held);
   const VectorX& curvature = run_.world.contacts().planes().curvature();
   for (const step::ContactBlock& block : touching) {
-    const int row = run_.world.numbering().row_of(block.row);
+    const int row = run_.world.numbering().model_row_of(block.row);
     const double force = run_.effort[static_cast<std::size_t>(row)];
     for (int k = 1; k < 3; ++k) {
       const double turns = force * curvature[row + k];
@@ -74,7 +74,7 @@ std::vector<step::HeldRow> PathStep::joints_and_sticking() const {
   const std::vector<step::ContactBlock> touching = pressed();
   std::vector<step::HeldRow> held = joints(touching);
   for (const step::ContactBlock& block : touching) {
-    const int row = run_.world.numbering().row_of(block.row);
+    const int row = run_.world.numbering().model_row_of(block.row);
     const Eigen::Map<const Vector3> force(&run_.effort[static_cast<std::size_t>(row)]);
     if (qp::slides(force, block.friction)) continue;
     held.push_back({block.row + 1, 0.0});
@@ -135,7 +135,7 @@ void PathStep::move(const VectorX& motion, double load_fraction) {
 void PathStep::push(std::span<const step::HeldRow> held, const VectorX& efforts) {
   for (std::size_t k = 0; k < held.size(); ++k) {
     if (held[k].compliance != 0.0) continue;
-    const int row = run_.world.numbering().row_of(held[k].row);
+    const int row = run_.world.numbering().model_row_of(held[k].row);
     run_.effort[static_cast<std::size_t>(row)] += efforts[static_cast<Eigen::Index>(k)];
   }
 }
@@ -162,7 +162,7 @@ bool PathStep::is_path_point() {
   const double slack = settings_.tolerance * run_.world.bodies().force_scale();
   bool obeyed = run_.world.contacts().max_penetration_left_out() <= nothing;
   for (const step::ContactBlock& block : problem.contacts) {
-    const int row = run_.world.numbering().row_of(block.row);
+    const int row = run_.world.numbering().model_row_of(block.row);
     Eigen::Map<Vector3> force(&run_.effort[static_cast<std::size_t>(row)]);
     obeyed = obeyed && force[0] >= -slack && problem.delta[block.row] >= -nothing;
     force = qp::project_on_cone(force, block.friction);

@@ -14,15 +14,15 @@ namespace sinew::sim {
 /// out of the step. Contacts stand behind all others, whose numbers are therefore the same in both.
 class RowNumbering {
  public:
-  /// @param present (rows,) see mechanics::RowValues.
-  void number(std::span<const char> present);
+  /// @param active (rows,) see mechanics::RowValues.
+  void number(std::span<const char> active);
 
   /// The model's row that a row of the problem is.
-  int row_of(int row) const { return rows_[static_cast<std::size_t>(row)]; }
+  int model_row_of(int row) const { return model_rows_[static_cast<std::size_t>(row)]; }
   /// Where a row of the model is in the problem; -1: nowhere.
-  int place_of(int row) const { return places_[static_cast<std::size_t>(row)]; }
+  int problem_row_of(int row) const { return problem_rows_[static_cast<std::size_t>(row)]; }
   /// (rows,) of each.
-  std::span<const int> places() const { return places_; }
+  std::span<const int> problem_rows() const { return problem_rows_; }
 
   /// Of numbers of all rows, those of the problem.
   void gather(const VectorX& all, VectorX& result) const;
@@ -31,8 +31,8 @@ class RowNumbering {
   void scatter(const linalg::AlignedNumbers& numbers, std::span<double> all) const;
 
  private:
-  std::vector<int> places_;  // (rows,) in the problem, -1: left out
-  std::vector<int> rows_;    // (rows of the problem,) of the model
+  std::vector<int> problem_rows_;  // (rows,) in the problem, -1: left out
+  std::vector<int> model_rows_;    // (rows of the problem,) of the model
 };
 
 }  // namespace sinew::sim

@@ -27,7 +27,8 @@ mechanics::StepWeights Run::step_weights(double time_step) const {
 }
 
 mechanics::LinearisationRequest Run::request(double time_step) const {
-  return {step_weights(time_step), model->step().tangent, model->stiffening_widens(), true};
+  return {step_weights(time_step), model->step().tangent,
+          model->geometric_stiffness().extends_pattern, true};
 }
 
 void Run::read_commands(double time, double time_step) {

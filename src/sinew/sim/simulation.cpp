@@ -70,13 +70,13 @@ const Signal& Simulation::load_factor(int load) const {
 }
 
 Vector3 Simulation::effector_value(int index) const {
-  return model().effector(index).value(placement());
+  return model().effector(index).value(configuration());
 }
 
 std::vector<double> Simulation::probe_values(int index) const {
   const constraint::Probe& probe = model().probe(index);
   std::vector<double> values(probe.components().size());
-  probe.measure(placement(), values);
+  probe.measure(configuration(), values);
   return values;
 }
 
@@ -117,7 +117,9 @@ const mechanics::Body& Simulation::body(int index) const {
   return *run_->world.bodies().all()[static_cast<std::size_t>(index)];
 }
 
-const constraint::Placement& Simulation::placement() const { return run_->world.placement(); }
+const constraint::Configuration& Simulation::configuration() const {
+  return run_->world.configuration();
+}
 std::span<const double> Simulation::efforts() const { return run_->effort; }
 
 std::span<const double> Simulation::drive_state(int actuator) const {

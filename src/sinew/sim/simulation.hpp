@@ -17,7 +17,7 @@
 #include "sinew/sim/step_report.hpp"
 
 namespace sinew::constraint {
-class Placement;
+class Configuration;
 }
 namespace sinew::mechanics {
 class Body;
@@ -130,7 +130,7 @@ class Simulation {
   mechanics::Body& body(int index);
   const mechanics::Body& body(int index) const;
   /// Where the points of all bodies are now.
-  const constraint::Placement& placement() const;
+  const constraint::Configuration& configuration() const;
   std::span<const double> efforts() const;  ///< (rows,) N or Pa
   /// The numbers of an actuator's drive (see Drive); empty without one.
   std::span<const double> drive_state(int actuator) const;

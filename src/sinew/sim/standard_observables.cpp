@@ -181,7 +181,7 @@ void add_probes(Observables& list) {
                          0, first));
     if (line) parts.push_back(part("positions", {probe.mark_count(), 3}, 1, numbers.size()));
     list.add(std::move(parts), [&simulation, &probe](std::span<double> to) {
-      probe.measure(simulation.placement(), to);
+      probe.measure(simulation.configuration(), to);
     });
   }
 }

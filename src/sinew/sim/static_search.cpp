@@ -16,7 +16,7 @@ void StaticSearch::begin() { run_.world.begin_step(run_.time(), run_.time(), run
 
 void StaticSearch::linearise(const mechanics::StepWeights& weights) {
   run_.world.linearise(request(weights));
-  run_.world.form_rows(run_.effort, run_.model->curved_constraints());
+  run_.world.form_rows(run_.effort, run_.model->geometric_stiffness().all);
 }
 
 bool StaticSearch::equilibrate(double fraction) {
@@ -28,7 +28,7 @@ bool StaticSearch::step(const mechanics::StepWeights& weights, double tolerance,
                         int max_iterations) {
   begin();
   last_ = run_.newton(nullptr, {request(weights), tolerance, tolerance, max_iterations,
-                                run_.model->curved_constraints()});
+                                run_.model->geometric_stiffness().all});
   report_.iterations += last_.iterations;
   return last_.status == NewtonStatus::converged;
 }

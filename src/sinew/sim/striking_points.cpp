@@ -50,9 +50,9 @@ void StrikingPoints::look(double time) {
       if (contact.idle(k, world_.rows())) continue;
       const Matrix3 frame = contact.frame(k, world_.rows());
       const Vector3 velocity =
-          frame.transpose() * contact.velocity_beside(world_.placement(), k, world_.rows());
+          frame.transpose() * contact.velocity_beside(world_.configuration(), k, world_.rows());
       Point point{row,         contact.friction(),        world_.delta()[row],
-                  velocity[0], velocity.tail<2>().norm(), contact.speed(world_.placement(), k)};
+                  velocity[0], velocity.tail<2>().norm(), contact.speed(world_.configuration(), k)};
       world_.contacts().set_closed(row, point.gap <= closed_);
       const bool rests = rests_[static_cast<std::size_t>(row)] != 0;
       restitution_[static_cast<std::size_t>(row)] =
@@ -137,7 +137,7 @@ double StrikingPoints::deepest() const {
     const auto& contact = static_cast<const constraint::ShapeContact&>(model_.contact(index));
     const Eigen::Isometry3d pose =
         world_.contacts().planes().pose_now(static_cast<std::size_t>(index), time_);
-    least = std::min(least, contact.deepest(world_.placement(), pose, world_.rows()));
+    least = std::min(least, contact.deepest(world_.configuration(), pose, world_.rows()));
   }
   return least;
 }

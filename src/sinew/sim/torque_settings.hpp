@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "sinew/core/error.hpp"
 #include "sinew/sim/actuator.hpp"
 
 namespace sinew::sim {

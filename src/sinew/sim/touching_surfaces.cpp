@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "sinew/collision/surface_topology.hpp"
-#include "sinew/constraint/placement.hpp"
+#include "sinew/constraint/configuration.hpp"
 #include "sinew/constraint/surface_contact.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/mechanics/step_system.hpp"
@@ -25,10 +25,10 @@ constexpr std::size_t kKeyMemory = 3;
 }  // namespace
 
 TouchingSurfaces::TouchingSurfaces(const constraint::SurfaceContact& contact,
-                                   const constraint::Placement& placement,
+                                   const constraint::Configuration& configuration,
                                    mechanics::RowValues& rows, ThreadPool& pool)
     : contact_(contact),
-      placement_(placement),
+      configuration_(configuration),
       rows_(rows),
       pool_(pool),
       proximity_(pool),
@@ -81,8 +81,8 @@ void TouchingSurfaces::find(double reach) {
 }
 
 void TouchingSurfaces::begin_step(double reach, std::span<double> effort) {
-  first_start_ = placement_.surface_nodes(contact_.body());
-  second_start_ = placement_.surface_nodes(contact_.other_body());
+  first_start_ = configuration_.surface_nodes(contact_.body());
+  second_start_ = configuration_.surface_nodes(contact_.other_body());
   move_trees(first_start_, second_start_);
   find(reach);
   keep_forces(effort);
@@ -128,7 +128,7 @@ void TouchingSurfaces::pass_forces_on(std::span<double> effort) const {
 
 void TouchingSurfaces::propose(std::span<mechanics::StepSystem* const> systems) {
   const auto look = [&](int body, Points& nodes) {
-    nodes = placement_.surface_nodes(body);
+    nodes = configuration_.surface_nodes(body);
     systems[static_cast<std::size_t>(body)]->add_proposed_motion(nodes);
   };
   look(contact_.body(), first_end_);
@@ -149,7 +149,7 @@ bool TouchingSurfaces::add_overlaps() {
     if (one.pair.distance >= -allowed || keys_.size() == contact_.size()) continue;
     if (std::ranges::find(keys_, one.key) != keys_.end()) continue;
     contact_.put(keys_.size(), one.pair, first_start_, second_start_, rows_);
-    contact_.measure(placement_, keys_.size(), rows_);
+    contact_.measure(configuration_, keys_.size(), rows_);
     keys_.push_back(one.key);
   }
   return keys_.size() > points;
@@ -158,9 +158,9 @@ bool TouchingSurfaces::add_overlaps() {
 // What moved by less than the depth up to which overlaps are found is found (add_overlaps()).
 bool TouchingSurfaces::passed() {
   if (farthest_way() < contact_.depth()) return false;
-  first_.sweep(first_start_, placement_.surface_nodes(contact_.body()), pool_);
+  first_.sweep(first_start_, configuration_.surface_nodes(contact_.body()), pool_);
   if (!contact_.is_within()) {
-    second_.sweep(second_start_, placement_.surface_nodes(contact_.other_body()), pool_);
+    second_.sweep(second_start_, configuration_.surface_nodes(contact_.other_body()), pool_);
   }
   const auto impacts =
       contact_.is_within() ? impacts_.within(first_, 0.0) : impacts_.between(first_, second_, 0.0);
@@ -169,7 +169,7 @@ bool TouchingSurfaces::passed() {
 
 double TouchingSurfaces::farthest_way() const {
   const auto farthest = [&](int body, const Points& start) {
-    return (placement_.surface_nodes(body) - start).rowwise().norm().maxCoeff();
+    return (configuration_.surface_nodes(body) - start).rowwise().norm().maxCoeff();
   };
   return farthest(contact_.body(), first_start_) + farthest(contact_.other_body(), second_start_);
 }
@@ -217,13 +217,13 @@ void TouchingSurfaces::restart() {
 }
 
 double TouchingSurfaces::drift(std::span<const double> effort) {
-  move_trees(placement_.surface_nodes(contact_.body()),
-             placement_.surface_nodes(contact_.other_body()));
+  move_trees(configuration_.surface_nodes(contact_.body()),
+             configuration_.surface_nodes(contact_.other_body()));
   find(1e3 * contact_.separation());
   double worst = 0.0;
   for (std::size_t k = 0; k < keys_.size(); ++k) {
     if (effort[static_cast<std::size_t>(contact_.row(k))] == 0.0) continue;
-    const double gap = contact_.linear_gap(placement_, k, rows_);
+    const double gap = contact_.linear_gap(configuration_, k, rows_);
     double nearest = kInfinity;
     for (const Named& one : found_) {
       if (one.key != keys_[k]) continue;

@@ -14,7 +14,7 @@
 #include "sinew/core/types.hpp"
 
 namespace sinew::constraint {
-class Placement;
+class Configuration;
 class SurfaceContact;
 }  // namespace sinew::constraint
 namespace sinew::mechanics {
@@ -31,7 +31,7 @@ class TouchingSurfaces {
  public:
   /// All must outlive it. @param rows gets the points.
   TouchingSurfaces(const constraint::SurfaceContact& contact,
-                   const constraint::Placement& placement, mechanics::RowValues& rows,
+                   const constraint::Configuration& configuration, mechanics::RowValues& rows,
                    ThreadPool& pool);
 
   const constraint::SurfaceContact& contact() const { return contact_; }
@@ -89,7 +89,7 @@ class TouchingSurfaces {
   void pass_forces_on(std::span<double> effort) const;
 
   const constraint::SurfaceContact& contact_;
-  const constraint::Placement& placement_;
+  const constraint::Configuration& configuration_;
   mechanics::RowValues& rows_;
   ThreadPool& pool_;
   collision::Proximity proximity_;

@@ -43,12 +43,12 @@ step::StepProblem problem_of(const Model& model) {
 World::World(std::shared_ptr<const Model> model, ThreadPool& pool)
     : model_(std::move(model)),
       bodies_(*model_, pool),
-      placement_(bodies_.all()),
+      configuration_(bodies_.all()),
       rows_(rows_of(*model_)),
       problem_(problem_of(*model_)),
       joints_(*model_),
-      contacts_(*model_, placement_, bodies_.systems(), rows_, pool),
-      stiffness_(*model_, placement_, bodies_.systems(), problem_) {
+      contacts_(*model_, configuration_, bodies_.systems(), rows_, pool),
+      stiffness_(*model_, configuration_, bodies_.systems(), problem_) {
   problem_.actuators.resize(model_->actuators().size() + joints_.block_count());
   number_rows();
   contacts_.planes().find_points(contacts_.reach(0.0, 0.0), {});
@@ -65,7 +65,7 @@ void World::begin_step(double from, double to, std::span<double> effort, double 
   if (!contacts_.empty()) {
     contacts_.planes().find_points(contacts_.reach(to - from, reach), effort);
     place_contacts(from, to);
-    contacts_.choose_present(effort, to - from, reach);
+    contacts_.choose_active(effort, to - from, reach);
     number_rows();
   }
   bodies_.begin_step();
@@ -91,7 +91,7 @@ double World::row_velocity(int row) const {
   const auto end = static_cast<std::size_t>(pattern.row_start[static_cast<std::size_t>(row) + 1]);
   double rate = 0.0;
   for (std::size_t e = first; e < end; ++e) {
-    rate += rows_.direction[e].dot(placement_.velocity(pattern.site[e]));
+    rate += rows_.direction[e].dot(configuration_.velocity(pattern.site[e]));
   }
   return rate;
 }
@@ -102,29 +102,29 @@ void World::linearise(const mechanics::LinearisationRequest& request) {
 }
 
 const VectorX& World::measure_delta() {
-  for (const auto& constraint : model_->constraints()) constraint.linearise(placement_, rows_);
+  for (const auto& constraint : model_->constraints()) constraint.linearise(configuration_, rows_);
   joints_.unwrap(rows_.delta);
   return rows_.delta;
 }
 
-void World::form_rows(std::span<const double> effort, std::span<const int> curved) {
+void World::form_rows(std::span<const double> effort, std::span<const int> geometric) {
   numbering_.gather(measure_delta(), problem_.delta);
   for (std::size_t k = 0; k < problem_.capstans.size(); ++k) {
     const GuideModel& guide = model_->guides()[k];
-    const double turn = model_->cable(guide.actuator)->turn(placement_, guide.via);
+    const double turn = model_->cable(guide.actuator)->turn(configuration_, guide.via);
     problem_.capstans[k].grip = -std::expm1(-guide.friction * turn);
   }
   bodies_.take_rows(rows_);
-  stiffness_.choose(effort, curved);
+  stiffness_.choose(effort, geometric);
 }
 
 MatrixX World::row_forces(std::span<const int> rows) {
-  std::vector<double> unit(numbering_.places().size(), 0.0);
+  std::vector<double> unit(numbering_.problem_rows().size(), 0.0);
   VectorX rest, row;
   bodies_.imbalance(unit, rest);
   MatrixX result(rest.size(), static_cast<Eigen::Index>(rows.size()));
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    double& own = unit[static_cast<std::size_t>(numbering_.row_of(rows[k]))];
+    double& own = unit[static_cast<std::size_t>(numbering_.model_row_of(rows[k]))];
     own = 1.0;
     bodies_.imbalance(unit, row);
     own = 0.0;
@@ -197,7 +197,7 @@ bool World::correct_contacts() {
 
 // The problem's rows and its contacts: points that are left out have none.
 void World::number_rows() {
-  numbering_.number(rows_.present);
+  numbering_.number(rows_.active);
   problem_.contacts.clear();
   contacts_.list(numbering_, problem_.contacts);
   numbering_.gather(rows_.delta, problem_.delta);
@@ -206,7 +206,7 @@ void World::number_rows() {
 void World::form_compliance() {
   numbering_.gather(rows_.delta, problem_.delta_free);
   problem_.compliance.setZero(problem_.delta_free.size(), problem_.delta_free.size());
-  bodies_.add_compliance(numbering_.places(), problem_.compliance, problem_.delta_free);
+  bodies_.add_compliance(numbering_.problem_rows(), problem_.compliance, problem_.delta_free);
 }
 
 double World::violation(std::span<const double> effort, step::LawStatus law) {

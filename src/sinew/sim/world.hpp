@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "sinew/constraint/placement.hpp"
+#include "sinew/constraint/configuration.hpp"
 #include "sinew/linalg/scratch.hpp"
 #include "sinew/mechanics/rows.hpp"
 #include "sinew/sim/bodies.hpp"
@@ -48,9 +48,9 @@ class World {
   void take_closed_points();
   /// Assembly: every body at its current state.
   void linearise(const mechanics::LinearisationRequest& request);
-  /// H and delta at the current placement, handed to the bodies. condense() adds the curvature of
-  /// `curved` constraints at `effort`, see GeometricStiffness.
-  void form_rows(std::span<const double> effort, std::span<const int> curved);
+  /// H and delta at the current configuration, handed to the bodies. condense() adds the geometric
+  /// stiffness of the constraints `geometric` at `effort`, see GeometricStiffness.
+  void form_rows(std::span<const double> effort, std::span<const int> geometric);
   /// W and delta_free of the step's problem. The worst status of any body.
   linalg::FactorStatus condense();
   /// Efforts that obey all blocks, and dq of all bodies, which Bodies::apply_motion() takes. As
@@ -72,8 +72,9 @@ class World {
   /// Whether a majorant of curvature stands in A, which is then no derivative.
   bool has_majorant() const { return stiffness_.has_majorant(); }
 
-  /// m: how far `effort` and the present placement are from obeying all laws, points that are left
-  /// out included; see step::violation(). @param effort (rows,) N. @param law how it was found.
+  /// m: how far `effort` and the present configuration are from obeying all laws, points that are
+  /// left out included; see step::violation(). @param effort (rows,) N. @param law how it was
+  /// found.
   double violation(std::span<const double> effort, step::LawStatus law);
 
   /// The step's problem, see RowNumbering for its rows. Actuators are the caller's to write;
@@ -86,7 +87,7 @@ class World {
   const MatrixX& compliance() const { return problem_.compliance; }  ///< W of the problem, m/N
   const VectorX& delta_free() const { return problem_.delta_free; }  ///< of the problem, m
   const VectorX& delta() const { return rows_.delta; }               ///< (rows,) m, as last formed
-  /// delta at the current placement, without forming the rows anew for the bodies.
+  /// delta at the current configuration, without forming the rows anew for the bodies.
   const VectorX& measure_delta();
   const mechanics::RowValues& rows() const { return rows_; }
   /// Rate of a row's motion, H v, m/s. @param row of the model, neither of a contact between
@@ -99,7 +100,7 @@ class World {
   ContactRows& contacts() { return contacts_; }
   const JointRows& joints() const { return joints_; }
   JointRows& joints() { return joints_; }
-  const constraint::Placement& placement() const { return placement_; }
+  const constraint::Configuration& configuration() const { return configuration_; }
   Bodies& bodies() { return bodies_; }
   const Bodies& bodies() const { return bodies_; }
 
@@ -115,7 +116,7 @@ class World {
 
   std::shared_ptr<const Model> model_;
   Bodies bodies_;
-  constraint::Placement placement_;
+  constraint::Configuration configuration_;
   mechanics::RowValues rows_;
   step::StepProblem problem_;
   RowNumbering numbering_;

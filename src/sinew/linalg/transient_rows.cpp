@@ -1,4 +1,4 @@
-#include "sinew/linalg/passing_rows.hpp"
+#include "sinew/linalg/transient_rows.hpp"
 
 #include <algorithm>
 
@@ -13,10 +13,10 @@ std::int32_t leading_of(std::int32_t groups) { return (3 * groups + kOverrun + 7
 
 }  // namespace
 
-PassingRows::PassingRows(const BlockSymbolic& symbolic) : symbolic_(&symbolic) {}
+TransientRows::TransientRows(const BlockSymbolic& symbolic) : symbolic_(&symbolic) {}
 
 // Most bodies never have such rows: no memory is taken before.
-void PassingRows::prepare() {
+void TransientRows::prepare() {
   if (!stores_.empty()) return;
   panel_of_.resize(at(symbolic_->nodes));
   stamp_.resize(symbolic_->panels.size());
@@ -30,7 +30,7 @@ void PassingRows::prepare() {
 
 // The panels on the ways from a group's nodes to the root, each once.
 template <typename Visit>
-void PassingRows::for_panels(const BorderPattern& rows, std::int32_t group, Visit&& visit) {
+void TransientRows::for_panels(const BorderPattern& rows, std::int32_t group, Visit&& visit) {
   const auto root = static_cast<std::int32_t>(symbolic_->panels.size()) - 1;
   for (int row = 3 * group; row < 3 * group + 3; ++row) {
     for (int e = rows.row_start[at(row)]; e < rows.row_start[at(row) + 1]; ++e) {
@@ -43,7 +43,7 @@ void PassingRows::for_panels(const BorderPattern& rows, std::int32_t group, Visi
   }
 }
 
-void PassingRows::list(const BorderPattern& rows) {
+void TransientRows::list(const BorderPattern& rows) {
   const std::int32_t groups = rows.rows() / 3;
   for (Store& store : stores_) store.count = 0;
   std::ranges::fill(stamp_, -1);
@@ -72,7 +72,7 @@ void PassingRows::list(const BorderPattern& rows) {
 }
 
 // Memory grows with the rows that are there; it is never given back.
-void PassingRows::make_room(std::int32_t groups, std::size_t doubles, std::size_t entries) {
+void TransientRows::make_room(std::int32_t groups, std::size_t doubles, std::size_t entries) {
   const auto grow = [](AlignedBuffer& buffer, std::size_t count) {
     if (buffer.size() < count + kOverrun) buffer = AlignedBuffer(count + kOverrun);
   };
@@ -95,14 +95,14 @@ void PassingRows::make_room(std::int32_t groups, std::size_t doubles, std::size_
   coupling_.resize(3 * room_, 3 * symbolic_->border_nodes);
 }
 
-void PassingRows::fill(int p, const BorderPattern& rows, std::span<const double> values) {
+void TransientRows::fill(int p, const BorderPattern& rows, std::span<const double> values) {
   const Panel& panel = symbolic_->panels[at(p)];
   const Store& store = stores_[at(p)];
   double* const x = values_.data() + store.offset;
   std::fill_n(x, std::int64_t{store.leading} * 3 * panel.width, 0.0);
-  const auto present = members(p);
-  for (std::size_t slot = 0; slot < present.size(); ++slot) {
-    const int first = 3 * present[slot];
+  const auto groups = members(p);
+  for (std::size_t slot = 0; slot < groups.size(); ++slot) {
+    const int first = 3 * groups[slot];
     for (int r = 0; r < 3; ++r) {
       for (int e = rows.row_start[at(first + r)]; e < rows.row_start[at(first + r) + 1]; ++e) {
         const int column = symbolic_->position[at(rows.node[at(e)])] - panel.first;
@@ -117,8 +117,8 @@ void PassingRows::fill(int p, const BorderPattern& rows, std::span<const double>
 }
 
 // Rows times S, where S is not the identity.
-const double* PassingRows::with_signs(const BlockNumeric& numeric, int p, const double* rows,
-                                      long leading, int count) {
+const double* TransientRows::with_signs(const BlockNumeric& numeric, int p, const double* rows,
+                                        long leading, int count) {
   if (numeric.positive(p)) return rows;
   const Panel& panel = symbolic_->panels[at(p)];
   for (int k = 0; k < 3 * panel.width; ++k) {
@@ -129,12 +129,12 @@ const double* PassingRows::with_signs(const BlockNumeric& numeric, int p, const 
 }
 
 // X_p -= X_d S L_d(p)^T of every descendant d.
-void PassingRows::update(BlockNumeric& numeric, int p) {
+void TransientRows::update(BlockNumeric& numeric, int p) {
   const BlockSymbolic& s = *symbolic_;
   const Panel& panel = s.panels[at(p)];
   const Store& store = stores_[at(p)];
   double* const x = values_.data() + store.offset;
-  const auto present = members(p);
+  const auto groups = members(p);
   for (int u = panel.update_begin; u < panel.update_end; ++u) {
     const Update& update = s.updates[at(u)];
     const Store& from = stores_[at(update.descendant)];
@@ -148,7 +148,7 @@ void PassingRows::update(BlockNumeric& numeric, int p) {
     }
     const auto moved = members(update.descendant);
     for (std::size_t k = 0, slot = 0; k < moved.size(); ++k) {
-      while (present[slot] != moved[k]) ++slot;
+      while (groups[slot] != moved[k]) ++slot;
       place_[k] = static_cast<std::int32_t>(3 * slot);
     }
     const double* const rows =
@@ -167,21 +167,21 @@ void PassingRows::update(BlockNumeric& numeric, int p) {
   }
 }
 
-void PassingRows::add_compliance(const BlockNumeric& numeric, int p) {
+void TransientRows::add_compliance(const BlockNumeric& numeric, int p) {
   const BlockSymbolic& s = *symbolic_;
   const Panel& panel = s.panels[at(p)];
   const Store& store = stores_[at(p)];
-  const auto present = members(p);
+  const auto groups = members(p);
   const int count = 3 * store.count;
   const double* const x = values_.data() + store.offset;
   const double* const own = with_signs(numeric, p, x, store.leading, count);
   const Product square{x, store.leading, own, store.leading, 3 * panel.width, count};
   multiply(square, 0, count, product_.data(), store.leading);
   for (int j = 0; j < count; ++j) {
-    double* const to = compliance_.col(3 * present[at(j / 3)] + j % 3).data();
+    double* const to = compliance_.col(3 * groups[at(j / 3)] + j % 3).data();
     const double* const w = product_.data() + j * long{store.leading};
-    for (std::size_t k = at(j / 3); k < present.size(); ++k) {
-      for (int r = 0; r < 3; ++r) to[3 * present[k] + r] += w[3 * k + at(r)];
+    for (std::size_t k = at(j / 3); k < groups.size(); ++k) {
+      for (int r = 0; r < 3; ++r) to[3 * groups[k] + r] += w[3 * k + at(r)];
     }
   }
   const int nodes = panel.row_end - panel.border_row;
@@ -194,14 +194,14 @@ void PassingRows::add_compliance(const BlockNumeric& numeric, int p) {
     const int column = 3 * (s.rows[at(panel.border_row + j / 3)] - s.nodes) + j % 3;
     double* const to = coupling_.col(column).data();
     const double* const w = product_.data() + j * long{store.leading};
-    for (std::size_t k = 0; k < present.size(); ++k) {
-      for (int r = 0; r < 3; ++r) to[3 * present[k] + r] += w[3 * k + at(r)];
+    for (std::size_t k = 0; k < groups.size(); ++k) {
+      for (int r = 0; r < 3; ++r) to[3 * groups[k] + r] += w[3 * k + at(r)];
     }
   }
 }
 
-void PassingRows::condense(BlockNumeric& numeric, const BorderPattern& rows,
-                           std::span<const double> values) {
+void TransientRows::condense(BlockNumeric& numeric, const BorderPattern& rows,
+                             std::span<const double> values) {
   prepare();
   list(rows);
   const auto count = static_cast<Eigen::Index>(rows.rows());
@@ -219,7 +219,7 @@ void PassingRows::condense(BlockNumeric& numeric, const BorderPattern& rows,
   }
 }
 
-std::size_t PassingRows::bytes() const {
+std::size_t TransientRows::bytes() const {
   return values_.bytes() + product_.bytes() + signed_.bytes() +
          sizeof(double) * static_cast<std::size_t>(compliance_.size() + coupling_.size()) +
          sizeof(std::int32_t) * (members_.size() + panel_of_.size());

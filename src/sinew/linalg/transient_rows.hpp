@@ -12,22 +12,22 @@
 
 namespace sinew::linalg {
 
-/// For rows H_p, given anew at every call, X = H_p L^-T S, by panels: a row is zero but in the
+/// For rows H_t, given anew at every call, X = H_t L^-T S, by panels: a row is zero but in the
 /// panels on the way from its nodes to the root of the elimination tree, so that as much is
-/// computed as if these rows alone were in the border. Then H_p A^-1 H_p^T = X S X^T, and with the
+/// computed as if these rows alone were in the border. Then H_t A^-1 H_t^T = X S X^T, and with the
 /// border's rows of L, which are the same of H and b, the columns between. Allocates only for more
 /// rows than ever before.
-class PassingRows {
+class TransientRows {
  public:
   /// @param symbolic must outlive this.
-  explicit PassingRows(const BlockSymbolic& symbolic);
+  explicit TransientRows(const BlockSymbolic& symbolic);
 
   /// @param numeric factorised. @param rows k groups of three on the same nodes (a point).
   /// @param values of them, layout of BorderPattern.
   void condense(BlockNumeric& numeric, const BorderPattern& rows, std::span<const double> values);
-  /// (3 k, 3 k) leading block of H_p A^-1 H_p^T. Only the lower triangle.
+  /// (3 k, 3 k) leading block of H_t A^-1 H_t^T. Only the lower triangle.
   const MatrixX& compliance() const { return compliance_; }
-  /// (3 k, border rows + 1) leading rows of H_p A^-1 (H^T, b).
+  /// (3 k, border rows + 1) leading rows of H_t A^-1 (H^T, b).
   const MatrixX& coupling() const { return coupling_; }
   std::size_t bytes() const;
 

@@ -1,4 +1,4 @@
-#include "sinew/constraint/placement.hpp"
+#include "sinew/constraint/configuration.hpp"
 
 #include <cstddef>
 
@@ -16,30 +16,30 @@ const mechanics::Body& body_of(std::span<const std::unique_ptr<mechanics::Body>>
 
 }  // namespace
 
-Vector3 Placement::position(const mechanics::MaterialPoint& point) const {
+Vector3 Configuration::position(const mechanics::MaterialPoint& point) const {
   return body_of(bodies_, point).position(point.number);
 }
 
-Matrix3 Placement::rotation(const mechanics::Orientation& section) const {
+Matrix3 Configuration::rotation(const mechanics::Orientation& section) const {
   return mechanics::as<const mechanics::HasOrientations>(body_of(bodies_, section))
       ->rotation(section.number);
 }
 
-double Placement::coordinate(const mechanics::Coordinate& coordinate) const {
+double Configuration::coordinate(const mechanics::Coordinate& coordinate) const {
   return mechanics::as<const mechanics::HasCoordinates>(body_of(bodies_, coordinate))
       ->coordinate(coordinate.number);
 }
 
-Vector3 Placement::velocity(const mechanics::Site& site) const {
+Vector3 Configuration::velocity(const mechanics::Site& site) const {
   return body_of(bodies_, site).velocity(site.number);
 }
 
-const Points& Placement::surface_nodes(int body) const {
+const Points& Configuration::surface_nodes(int body) const {
   return mechanics::as<const mechanics::HasSurfaceNodes>(*bodies_[static_cast<std::size_t>(body)])
       ->surface_nodes();
 }
 
-const Points& Placement::surface_node_velocities(int body) const {
+const Points& Configuration::surface_node_velocities(int body) const {
   return mechanics::as<const mechanics::HasSurfaceNodes>(*bodies_[static_cast<std::size_t>(body)])
       ->surface_node_velocities();
 }

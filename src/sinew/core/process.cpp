@@ -1,4 +1,4 @@
-#include "sinew/mesh/process.hpp"
+#include "sinew/core/process.hpp"
 
 #include <array>
 #include <cerrno>
@@ -15,7 +15,7 @@
 
 #include "sinew/core/error.hpp"
 
-namespace sinew::mesh {
+namespace sinew {
 
 namespace {
 
@@ -107,4 +107,4 @@ std::string last_lines(const std::string& text, int count) {
   return text.substr(begin, end + 1 - begin);
 }
 
-}  // namespace sinew::mesh
+}  // namespace sinew

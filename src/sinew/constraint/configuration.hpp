@@ -15,9 +15,10 @@ class Body;
 namespace sinew::constraint {
 
 /// Where the sites of all bodies are now.
-class Placement {
+class Configuration {
  public:
-  explicit Placement(std::span<const std::unique_ptr<mechanics::Body>> bodies) : bodies_(bodies) {}
+  explicit Configuration(std::span<const std::unique_ptr<mechanics::Body>> bodies)
+      : bodies_(bodies) {}
   /// (3,) m.
   Vector3 position(const mechanics::MaterialPoint& point) const;
   /// Rotation since rest.

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace sinew::mesh {
+namespace sinew {
 
 /// How a program ended and what it said.
 struct ProcessResult {
@@ -27,4 +27,4 @@ ProcessResult run_program(const std::vector<std::string>& arguments);
 /// @param count of lines.
 std::string last_lines(const std::string& text, int count);
 
-}  // namespace sinew::mesh
+}  // namespace sinew
