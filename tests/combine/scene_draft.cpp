@@ -504,12 +504,17 @@ class Drafter {
             on->id, on->shape.side));
   }
 
-  // A box on its way along an axis; in statics it stands still.
-  void add_stone(const std::array<double, 3>& centre, const char* axis) {
-    const std::string moves =
-        dynamic()
-            ? fmt::format("mass: 20 g, velocity: {{linear: {} m/s, angular: 3 1 2 rad/s}}", axis)
-            : "fixed: true";
+  // A box on its way along an axis; in statics it stands still, or goes where bases go, too.
+  void add_stone(const std::array<double, 3>& centre, std::size_t along, const char* axis) {
+    std::string moves = "fixed: true";
+    if (dynamic()) {
+      moves = fmt::format("mass: 20 g, velocity: {{linear: {} m/s, angular: 3 1 2 rad/s}}", axis);
+    } else if (has("base")) {
+      moves = fmt::format(
+          "motion: {{{}: {{ramp: {{to: 0.4 mm, duration: 60 ms}}}}, angle: {{ramp: {{to: 2 deg, "
+          "duration: 60 ms}}}}, axis: {}, centre: {}}}",
+          "xyz"[along], axis, vector_text(centre));
+    }
     add("bodies", "stone",
         fmt::format("{{type: rigid, shape: {{box: 30 30 30 mm}}, pose: {{position: {}}}, {}}}",
                     vector_text(centre), moves));
@@ -537,7 +542,7 @@ class Drafter {
       add_pillow(centre, below, axes[below]);
       return fmt::format("between: [<{}>, <pillow>]", on.id);
     }
-    add_stone(centre, axes[below]);
+    add_stone(centre, below, axes[below]);
     return fmt::format("between: [<{}>, <stone>]", on.id);
   }
 

@@ -86,9 +86,7 @@ Vector3 FemBody::tether_point() const {
   return fem::tether_point(*state_->tether, state_->positions);
 }
 
-bool FemBody::base_can_move() const {
-  return !state_->model.settings().elements.fixed_nodes.empty();
-}
+bool FemBody::base_can_move() const { return state_->model.has_base(); }
 
 void FemBody::move_base(const std::optional<mechanics::AffineField>& displacement) {
   state_->base.ask(displacement);

@@ -35,6 +35,7 @@ struct FemSystem {
 
 class FemBodyModel final : public mechanics::BodyModel,
                            public mechanics::HasSurface,
+                           public mechanics::MayHaveBase,
                            public HasElements {
  public:
   /// Throws what FemModel does, and Error: out-of-range for negative damping or a mass that is not
@@ -43,6 +44,7 @@ class FemBodyModel final : public mechanics::BodyModel,
   ~FemBodyModel() override;
 
   const std::string& name() const override { return settings_.name; }
+  bool has_base() const override { return !settings_.elements.fixed_nodes.empty(); }
   int attach(const Vector3& rest_position, mesh::Outside outside, const std::string& what) override;
   int attach_ball(const Vector3& centre, double radius, mesh::Outside outside,
                   const std::string& what) override;

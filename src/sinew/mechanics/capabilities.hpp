@@ -60,12 +60,20 @@ class TakesForces {
 class HasBase {
  public:
   virtual ~HasBase() = default;
-  /// Whether there is a fixed node to move.
+  /// Whether something is fixed that can be moved: nodes, or all of a rigid body.
   virtual bool base_can_move() const = 0;
   /// Where the base goes when the next step begins: a displacement from rest. None: it stays. An
   /// input.
   virtual void move_base(const std::optional<AffineField>& displacement) = 0;
   virtual const std::optional<AffineField>& base_input() const = 0;
+};
+
+/// A body model that may have a base.
+class MayHaveBase {
+ public:
+  virtual ~MayHaveBase() = default;
+  /// Whether something of it is fixed, and stands where a base motion puts it.
+  virtual bool has_base() const = 0;
 };
 
 /// A body that carries loads declared with it.

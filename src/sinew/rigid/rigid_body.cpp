@@ -55,6 +55,14 @@ std::size_t RigidBody::bytes() const {
   return step_->bytes() + sizeof(double) * state_->size() + skin_->bytes() + surface_->bytes();
 }
 
+bool RigidBody::base_can_move() const { return model_.has_base(); }
+
+void RigidBody::move_base(const std::optional<mechanics::AffineField>& displacement) {
+  state_->asked = displacement;
+}
+
+const std::optional<mechanics::AffineField>& RigidBody::base_input() const { return state_->asked; }
+
 Matrix3 RigidBody::rotation(int) const { return state_->pose.rotation.toRotationMatrix(); }
 
 Vector3 RigidBody::origin() const {

@@ -19,6 +19,7 @@ struct RigidState;
 /// Its state, and RigidStep for its steps.
 class RigidBody : public mechanics::Body,
                   public mechanics::HasOrientations,
+                  public mechanics::HasBase,
                   public mechanics::HasPose,
                   public mechanics::HasSurfaceNodes {
  public:
@@ -41,6 +42,10 @@ class RigidBody : public mechanics::Body,
   mechanics::StepSystem& system() override;
   const mechanics::StepSystem& system() const override;
   std::size_t bytes() const override;
+
+  bool base_can_move() const override;
+  void move_base(const std::optional<mechanics::AffineField>& displacement) override;
+  const std::optional<mechanics::AffineField>& base_input() const override;
 
   Matrix3 rotation(int orientation) const override;
   Vector3 origin() const override;

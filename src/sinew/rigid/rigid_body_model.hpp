@@ -18,7 +18,8 @@ namespace sinew::rigid {
 class RigidBodyModel final : public mechanics::BodyModel,
                              public mechanics::AttachesOrientations,
                              public mechanics::HasShape,
-                             public mechanics::HasSurface {
+                             public mechanics::HasSurface,
+                             public mechanics::MayHaveBase {
  public:
   struct Attachment {
     enum class Kind { point, orientation, surface };
@@ -47,6 +48,7 @@ class RigidBodyModel final : public mechanics::BodyModel,
               const linalg::FactorisationSettings& settings) override;
   bool couples(int, int) const override { return true; }
   bool is_free() const override { return !settings_.fixed; }
+  bool has_base() const override { return settings_.fixed; }
   std::vector<NamedHash> parts() const override;
   std::uint64_t site_hash(int site) const override;
   const mesh::Mesh& mesh() const override { return skin_; }

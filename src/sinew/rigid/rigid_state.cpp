@@ -27,7 +27,15 @@ void RigidState::restart() {
   pose = start = {model.centre(), Eigen::Quaterniond::Identity()};
   rate << model.settings().velocity, model.turning_radius() * model.settings().spin;
   for (Vector6& kept : history) kept.setZero();
+  asked.reset();
   memory.restart();
+}
+
+void RigidState::follow_base() {
+  if (!asked) return;
+  const Matrix3 turn = Matrix3::Identity() + asked->leftCols<3>();
+  pose.centre = model.centre() + mechanics::value_at(*asked, model.centre());
+  pose.rotation = Eigen::Quaterniond(turn).normalized();
 }
 
 std::size_t RigidState::size() const { return 3 + 4 + 6 * (1 + history.size()) + memory.size(); }

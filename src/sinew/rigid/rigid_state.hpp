@@ -3,12 +3,14 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include <Eigen/Geometry>
 
 #include "sinew/core/types.hpp"
+#include "sinew/mechanics/affine_field.hpp"
 #include "sinew/mechanics/integrator.hpp"
 #include "sinew/mechanics/own_rows.hpp"
 
@@ -44,6 +46,11 @@ struct RigidState {
   Vector6 motion() const;
   /// A combination of that motion and of what was before it.
   Vector6 combine(const mechanics::Combination& weights) const;
+
+  /// Where a fixed body goes when the next step begins: a displacement from rest. An input.
+  std::optional<mechanics::AffineField> asked;
+  /// Goes there.
+  void follow_base();
 
   RigidPose pose, start;
   Vector6 rate;

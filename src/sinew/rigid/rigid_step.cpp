@@ -25,6 +25,11 @@ RigidStep::RigidStep(RigidState& state)
       from_(state.pose) {}
 
 void RigidStep::begin_step() {
+  begin_query();
+  state_.follow_base();
+}
+
+void RigidStep::begin_query() {
   state_.start = state_.pose;
   forget_surface_rows();
 }
@@ -149,7 +154,7 @@ mechanics::MotionReport RigidStep::apply_motion(double scale) {
 mechanics::StepEnd RigidStep::end_step(const mechanics::StepWeights& weights) {
   using Jump = mechanics::StepWeights::Jump;
   mechanics::StepEnd end;
-  if (size() == 0) return end;
+  end.moved_from_outside = size() == 0 && !(state_.motion().isZero(0.0) && state_.rate.isZero(0.0));
   if (!weights.dynamic()) {
     state_.rate.setZero();
     for (Vector6& kept : state_.history) kept.setZero();
@@ -170,6 +175,7 @@ mechanics::StepEnd RigidStep::end_step(const mechanics::StepWeights& weights) {
     state_.history[1] = second;
   }
   state_.rate = rate;
+  if (size() == 0) return end;  // it goes where it is put
   end.error = weights.error_jump * jump;
   return end;
 }

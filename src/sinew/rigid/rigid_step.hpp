@@ -19,6 +19,7 @@ class RigidStep : public mechanics::DenseStep {
   explicit RigidStep(RigidState& state);
 
   void begin_step() override;
+  void begin_query() override;
   void add_proposed_motion(Points& nodes) const override;
   double rounding_floor() const override;
   mechanics::MotionReport apply_motion(double scale) override;

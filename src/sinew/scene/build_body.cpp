@@ -147,12 +147,19 @@ void add_arm(sim::ModelBuilder& builder, const SceneDescription& scene,
   builder.add_arm(std::move(settings));
 }
 
+void add_base(sim::ModelBuilder& builder, int number, const BodyDescription& body) {
+  if (!body.base) return;
+  sim::BaseMotion motion = *body.base;
+  motion.body = number;
+  builder.add_base_motion(motion, body.base_place);
+}
+
 void add_rigid(sim::ModelBuilder& builder, const SceneDescription& scene,
                const BodyDescription& body) {
   rigid::RigidSettings settings = *body.rigid;
   settings.gravity = scene.gravity;
   if (!body.mesh.file.empty()) settings.shape = make_solid(make_surface(body.mesh), body.convex);
-  builder.add_rigid_body(std::move(settings), body.place);
+  add_base(builder, builder.add_rigid_body(std::move(settings), body.place), body);
 }
 
 }  // namespace
@@ -179,11 +186,7 @@ std::optional<Notice> add_body(sim::ModelBuilder& builder, const SceneDescriptio
     fem::FemBodySettings settings = fem_settings(scene, body);
     notice = locking_notice(body, *settings.mesh);
     const int number = builder.add_fem_body(std::move(settings), body.place);
-    if (body.base) {
-      sim::BaseMotion motion = *body.base;
-      motion.body = number;
-      builder.add_base_motion(motion, body.base_place);
-    }
+    add_base(builder, number, body);
   } catch (const Error& error) {
     throw error.at(body.place);
   }

@@ -167,7 +167,16 @@ std::shared_ptr<const KeyTable> rigid_table() {
                  .forms = {boolean()},
                  .example = "true",
                  .default_text = "false",
-                 .description = "Whether the body stays where it is; it then needs no mass."}},
+                 .description = "Whether the body stays where it is; it then needs no mass."},
+                {.name = "motion",
+                 .forms = {table(make_table(
+                     {.name = "motion of a rigid body",
+                      .description = "A rotation about an axis, then a translation, from where the "
+                                     "body is at the start.",
+                      .keys = motion_keys()}))},
+                 .example = "{z: {ramp: {to: 10 mm, duration: 1 s}}}",
+                 .description = "The body goes where this says, whatever acts on it; it then needs "
+                                "no mass. Without: it moves freely, or is fixed."}},
        .alternatives = {{{"shape", "mesh"}, true}, {{"density", "mass"}, false}}});
 }
 

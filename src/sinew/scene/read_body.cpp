@@ -290,6 +290,19 @@ void read_fixed(const Fields& fields, BodyDescription& body) {
   }
 }
 
+// A rigid body with a motion of its own goes nowhere else.
+void refuse_free(const Fields& fields) {
+  bool fixed = true;
+  fields.read("fixed", fixed);
+  if (!fixed) {
+    throw Error(ErrorKind::conflicting_keys, fields.place("fixed"),
+                "the body has a motion, and is to be free", "leave one of the two out");
+  }
+  if (fields.find("velocity") == nullptr) return;
+  throw Error(ErrorKind::conflicting_keys, fields.place("velocity"),
+              "the body has a motion, which says how fast it is", "leave `velocity` out");
+}
+
 }  // namespace
 
 sim::BaseMotion read_motion(const Fields& fields, const ReadContext& context) {
@@ -329,6 +342,12 @@ BodyDescription read_body(const Node::Entry& entry, const ReadContext& context) 
     if (fields.find("mesh") != nullptr) {
       body.mesh = read_mesh_file(fields.below("mesh"), context);
       fields.below("mesh").read_choice("use", body.convex, {{"surface", false}, {"convex", true}});
+    }
+    if (fields.find("motion") != nullptr) {
+      refuse_free(fields);
+      body.rigid->fixed = true;
+      body.base = read_motion(fields.below("motion"), context);
+      body.base_place = fields.place("motion");
     }
     return body;
   }

@@ -1,6 +1,6 @@
 #include "sinew/core/error.hpp"
-#include "sinew/fem/fem_body_settings.hpp"
-#include "sinew/fem/has_elements.hpp"
+#include "sinew/mechanics/body_model.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 #include "sinew/sim/add_parts.hpp"
 #include "sinew/sim/base_motion.hpp"
 #include "sinew/sim/find_body.hpp"
@@ -9,8 +9,9 @@
 namespace sinew::sim {
 
 void add_base_motion(ModelData& data, const BaseMotion& motion, const Location& place) {
-  const fem::HasElements& moved = find_elements(data, motion.body, place, "motion of its base");
-  if (moved.settings().elements.fixed_nodes.empty()) {
+  const auto* moved =
+      mechanics::as<const mechanics::MayHaveBase>(find_body(data, motion.body, place));
+  if (moved == nullptr || !moved->has_base()) {
     throw Error(ErrorKind::nothing_fixed, place, "the body has a base motion but no fixed node",
                 "fix the region that moves");
   }

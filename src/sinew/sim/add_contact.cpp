@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -140,7 +141,10 @@ bool strikes(ModelData& data, const mechanics::BodyModel& on, const ContactSetti
                 "a deformable body rebounds by its elasticity, and has no restitution",
                 "leave `restitution` out, or make both bodies rigid");
   }
-  if (data.step.event_driven() && rigid && settings.motion) {
+  const bool moved = std::ranges::any_of(data.base_motions, [&](const BaseMotion& motion) {
+    return motion.body == settings.body || motion.body == settings.touched;
+  });
+  if (data.step.event_driven() && rigid && (settings.motion || moved)) {
     throw Error(ErrorKind::not_in_this_version, settings.place,
                 "event-driven integration has no impacts on a surface that moves by itself",
                 "let a rigid body with a motor carry the surface, or choose bdf2");

@@ -74,9 +74,11 @@ void NewtonStep::solve(double time_step) {
   const std::string folded =
       describe_folded_cable(*run_.model, run_.world.configuration(), run_.effort);
   fail(run_, ErrorKind::not_converged,
-       fmt::format("Newton ended as '{}' after {} iterations, relative residual {:.3g}{}",
-                   newton_status_name(result.status), result.iterations, result.relative_residual,
-                   folded),
+       fmt::format(
+           "Newton ended as '{}' after {} iterations, relative residual {:.3g}, commands and "
+           "limits missed by {:.2g} m{}",
+           newton_status_name(result.status), result.iterations, result.relative_residual,
+           result.violation, folded),
        folded.empty() ? "take a smaller time step, or change commands more slowly"
                       : "lessen its tension, or place its points so that they stay apart");
 }

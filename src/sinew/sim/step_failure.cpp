@@ -55,6 +55,12 @@ void fail_law(Run& run) {
   }
   const qp::ConeResult& result = run.solver.direct().contact_result();
   const std::size_t points = result.states.size();
+  if (result.status == qp::ConeStatus::not_convex) {
+    fail(run, ErrorKind::not_converged,
+         "the robot gives way against a force on it: it is beyond a stable equilibrium, where one "
+         "linearisation leads nowhere",
+         "use solver: newton with tangent: exact, smaller time steps, or inertia");
+  }
   fail(
       run, ErrorKind::not_converged,
       fmt::format("no contact forces obey this step: residual {:.3g} after {} sweeps, with {} "

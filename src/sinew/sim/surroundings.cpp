@@ -33,15 +33,15 @@ void Surroundings::set_factor(int load, Signal factor) {
 
 void Surroundings::move_bases(double time) {
   for (const BaseMotion& motion : model_.base_motions()) {
-    fem::of_elements<mechanics::HasBase>(body_of(bodies_, motion.body))
-        .move_base(mechanics::rigid_displacement(motion.translation_at(time),
-                                                 motion.rotation_at(time), motion.centre));
+    mechanics::as<mechanics::HasBase>(body_of(bodies_, motion.body))
+        ->move_base(mechanics::rigid_displacement(motion.translation_at(time),
+                                                  motion.rotation_at(time), motion.centre));
   }
 }
 
 void Surroundings::move_base(int body, const Vector3& translation, const Vector3& rotation,
                              const Vector3& centre) {
-  auto& base = fem::of_elements<mechanics::HasBase>(body_of(bodies_, body));
+  auto* base = mechanics::as<mechanics::HasBase>(body_of(bodies_, body));
   const std::string& name = model_.body(body).name();
   const Location place{.item = fmt::format("base of body '{}'", name)};
   if (std::ranges::any_of(model_.base_motions(),
@@ -50,11 +50,12 @@ void Surroundings::move_base(int body, const Vector3& translation, const Vector3
                 "leave `base` out of the scene to move it from a script, or write the motion there "
                 "as signals");
   }
-  if (!base.base_can_move()) {
+  if (base == nullptr) fem::throw_not_of_elements(name);
+  if (!base->base_can_move()) {
     throw Error(ErrorKind::nothing_fixed, place, "the body has no fixed node to move",
                 "fix the region that moves");
   }
-  base.move_base(mechanics::rigid_displacement(translation, rotation, centre));
+  base->move_base(mechanics::rigid_displacement(translation, rotation, centre));
 }
 
 void Surroundings::apply(double time) {
