@@ -37,7 +37,7 @@ constexpr int kPlainRows = 96, kPlainSteps = 12;
 constexpr double kStiff = 1e-12;
 // Regularised problems: the term, from this part of the diagonal on, goes down to kLastShift by
 // kNextShift each, less where Newton does not follow. What each may miss, in parts of it.
-constexpr double kLastShift = 1e-12, kNextShift = 0.1, kLeastProgress = 0.8;
+constexpr double kLastShift = 1e-12, kNextShift = 0.1, kMaxFactor = 0.8;
 constexpr double kShiftTolerance = 1e-3;
 constexpr int kMaxShiftedSteps = 20;
 
@@ -71,7 +71,7 @@ bool ConeIsland::follow_regularised(const ConePart& part) {
   x_.setZero();
   settle_into_blocks(part.problem);
   double reached = 1.0, factor = kNextShift;
-  while (reached > kLastShift && factor < kLeastProgress) {
+  while (reached > kLastShift && factor < kMaxFactor) {
     shift_ = reached * factor;
     measure_motion(part);
     judge(part);
