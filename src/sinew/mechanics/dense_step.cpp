@@ -86,9 +86,10 @@ void DenseStep::take_lasting_rows(const RowValues& rows) {
     memory_.directions[e] = direction;
     site_jacobian(entry.site, jacobian_);
     if (e == 0 || own_.entries[e - 1].row != entry.row) gross_.setZero();
+    const double size = direction.norm();
     for (Eigen::Index i = 0; i < rows_.rows(); ++i) {
       rows_(i, entry.row) += direction.dot(jacobian_.col(i));
-      gross_[i] += direction.norm() * jacobian_.col(i).norm();
+      gross_[i] += size * jacobian_.col(i).norm();
     }
     if (e + 1 < count && own_.entries[e + 1].row == entry.row) continue;
     for (Eigen::Index i = 0; i < rows_.rows(); ++i) {

@@ -61,6 +61,8 @@ class DenseStep : public StepSystem {
 
   const VectorX& motion() const { return motion_; }
   const MatrixX& matrix() const { return matrix_; }
+  /// Whether further linearisations of this step may follow.
+  bool iterating() const { return iterating_; }
   /// A row on the surface as it was taken last.
   struct SurfaceRow {
     std::int32_t row = 0;  // of the world's
@@ -97,7 +99,7 @@ class DenseStep : public StepSystem {
   linalg::SymmetricSpectrum spectrum_;
   bool definite_wanted_ = true;
   bool is_symmetric_ = true;  // A, of the last condensation
-  bool iterating_ = false;    // further linearisations of this step may follow
+  bool iterating_ = false;
   std::vector<SurfaceRow> surface_rows_, surface_rows_before_;
   // Columns in use: those of the own rows that stay, then of surface_rows_. There is room for more.
   Eigen::Index columns_ = 0;

@@ -37,7 +37,6 @@ void RigidStep::begin_query() {
 double RigidStep::form(const mechanics::LinearisationRequest& request, VectorX& right,
                        MatrixX& matrix) {
   const RigidBodyModel& model = state_.model;
-  iterating_ = request.iterating;
   if (!model.is_free()) return 1.0;
   const Vector3 weight = model.mass() * model.settings().gravity;
   right.setZero();
@@ -105,7 +104,7 @@ void RigidStep::add_row_stiffness(MatrixX& matrix) {
     loaded = loaded || row.effort != 0.0;
     if (row.effort != 0.0) block -= turned(row.effort * row.direction, arm_of(row.patch));
   }
-  if (loaded && iterating_) block = (0.5 * (block + block.transpose())).eval();
+  if (loaded && iterating()) block = (0.5 * (block + block.transpose())).eval();
 }
 
 void RigidStep::site_jacobian(int site, MatrixX& result) const {

@@ -40,8 +40,7 @@ class RigidStep : public mechanics::DenseStep {
   void add_inertia(const mechanics::StepWeights& weights, VectorX& right, MatrixX& matrix) const;
 
   RigidState& state_;
-  bool iterating_ = false;  // further linearisations of this step may follow
-  RigidPose from_;          // that the motion starts from
+  RigidPose from_;  // that the motion starts from
 };
 
 }  // namespace sinew::rigid

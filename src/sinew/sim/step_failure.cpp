@@ -1,7 +1,5 @@
 #include "sinew/sim/step_failure.hpp"
 
-#include <cmath>
-
 #include <fmt/format.h>
 
 #include "sinew/mechanics/body_model.hpp"
@@ -13,23 +11,6 @@ namespace {
 
 // More points than this are beyond the solver's Newton method, and slow.
 constexpr std::size_t kManyPoints = static_cast<std::size_t>(qp::ConeSettings{}.newton_limit) / 3;
-
-// An actuator that is asked for a motion which no effort of its own changes.
-const ActuatorModel* idle_actuator(const Run& run) {
-  const step::StepProblem& problem = run.world.problem();
-  for (std::size_t i = 0; i < problem.actuators.size(); ++i) {
-    const step::ActuatorBlock& block = problem.actuators[i];
-    if (block.row < 0 || block.owned || block.drive != nullptr) continue;
-    if (block.kind != CommandKind::motion) continue;
-    const bool moves = problem.compliance(block.row, block.row) != 0.0;
-    const double gap = problem.delta_free[block.row] - block.value;
-    const bool asked = std::abs(gap) * block.motion_scale > step::kMotionTolerance;
-    if (!moves && asked && std::isinf(gap > 0.0 ? block.effort_min : block.effort_max)) {
-      return &run.model->actuators()[i];
-    }
-  }
-  return nullptr;
-}
 
 }  // namespace
 
@@ -43,10 +24,10 @@ void fail(Run& run, ErrorKind kind, const std::string& message, const std::strin
 }
 
 void fail_law(Run& run) {
-  if (const ActuatorModel* idle = idle_actuator(run)) {
+  if (const int idle = run.solver.direct().unreachable(); idle >= 0) {
     fail(run, ErrorKind::not_converged,
          fmt::format("{} moves nothing, so that the motion commanded of it is out of its reach",
-                     idle->name),
+                     run.model->actuators()[static_cast<std::size_t>(idle)].name),
          "let it act between parts that move against each other, or command its effort");
   }
   if (run.model->contacts().empty()) {

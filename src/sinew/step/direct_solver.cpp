@@ -11,6 +11,8 @@ namespace {
 
 // Relative size of the term that shares tension among redundant cables.
 constexpr double kRedundancy = 1e-12;
+// Motions that agree within this (m) agree.
+constexpr double kMotionTolerance = 1e-12;
 // A solution of contacts that misses the tolerance by rounding or slow convergence is one up to
 // here.
 constexpr double kUsable = 1e-6;
@@ -37,7 +39,7 @@ void DirectSolver::begin_step() {
 
 LawStatus DirectSolver::solve(const StepProblem& problem, std::span<double> effort) {
   sort(problem, effort);
-  if (unreachable_) return LawStatus::failed;
+  if (unreachable_ >= 0) return LawStatus::failed;
   return problem.capstans.empty() ? solve_with_drives(problem, effort)
                                   : solve_with_friction(problem, effort);
 }
@@ -49,7 +51,7 @@ void DirectSolver::sort(const StepProblem& problem, std::span<double> effort) {
   boxes_.clear();
   cones_.clear();
   unknown_.clear();
-  unreachable_ = false;
+  unreachable_ = -1;
   free_ = problem.delta_free;
   branch_.resize(problem.actuators.size(), Branch::pull);
   for (std::size_t i = 0; i < problem.actuators.size(); ++i) {
@@ -95,7 +97,7 @@ void DirectSolver::sort_actuator(const StepProblem& problem, int index, std::spa
     const double gap = problem.delta_free[block.row] - block.value;
     own = block.kind == CommandKind::effort ? std::clamp(block.value, box.lower, box.upper)
                                             : idle_effort(box, gap * block.motion_scale);
-    unreachable_ = unreachable_ || !std::isfinite(own);
+    if (!std::isfinite(own)) unreachable_ = index;
   }
   if (own != 0.0) free_ += own * problem.compliance.col(block.row);
 }

@@ -17,9 +17,6 @@
 
 namespace sinew::step {
 
-/// m: motions that agree within this agree.
-inline constexpr double kMotionTolerance = 1e-12;
-
 /// Solves all blocks of a StepProblem together, from the last efforts, by three nested iterations
 /// of which each runs only where a block asks for it:
 ///
@@ -52,6 +49,9 @@ class DirectSolver {
   LawStatus solve(const StepProblem& problem, std::span<double> effort);
   /// The contacts of the last problem. Drives that it has are linearised where they came out.
   ContactProblem contact_problem() const;
+  /// The actuator of the last problem that is asked for another motion than it has, which no effort
+  /// of its own changes and no limit ends; -1: none.
+  int unreachable() const { return unreachable_; }
   /// Of the last problem with contacts.
   const qp::ConeResult& contact_result() const { return cone_solver_.result(); }
 
@@ -84,7 +84,7 @@ class DirectSolver {
   std::vector<qp::ConeBlock> cones_;  // rows among the unknowns
   std::vector<int> unknown_;          // rows of boxes, then of cones
   std::vector<Branch> branch_;        // (actuators,)
-  bool unreachable_ = false;          // a motion that no effort changes is asked to be another
+  int unreachable_ = -1;              // see unreachable()
   VectorX free_;                      // (rows,) delta where unknowns and followers are zero
   linalg::ScratchMatrix compliance_;  // (unknowns, unknowns)
   linalg::ScratchMatrix motion_;      // (unknowns, 1)
