@@ -22,7 +22,7 @@ command -v npm >/dev/null || build="$build npm"
 demo="python3-matplotlib"
 wheel="python3-pip python3-venv python3-setuptools python3-wheel"
 test="libgtest-dev libgmock-dev gmsh chromium python3-pytest python3-scipy python3-meshio
-  python3-h5py python3-yaml python3-cvxopt python3-jsonschema"
+  python3-h5py python3-yaml python3-cvxopt python3-jsonschema doxygen"
 validate="calculix-ccx gmsh python3-scipy python3-meshio"
 bench="libbenchmark-dev chromium"
 docs="doxygen graphviz"

@@ -16,7 +16,8 @@ class Simulation;
 namespace sinew::viewer {
 
 /// Limits that are reached, slack cables, what the controller cannot do, and a flagged step: each
-/// with level, kind, subject and text. @param controller,name what steers, null: nothing.
+/// with level, kind, subject and text. @param simulation of the robot, as it is now.
+/// @param controller,name what steers, null: nothing.
 nlohmann::json list_troubles(const sim::Simulation& simulation,
                              const inverse::InverseController* controller, const std::string& name);
 

@@ -339,7 +339,7 @@ TEST(Simulation, ComplianceIsTheDerivativeOfTheStatics) {
   world.linearise({{}, mechanics::Tangent::exact, true, false});
   world.form_rows(simulation.efforts(), cables);
   ASSERT_EQ(world.condense(), linalg::FactorStatus::positive_definite);
-  const MatrixX w = world.compliance();
+  const MatrixX w = world.problem().compliance;
   const double h = 1e-4;
   for (int k = 0; k < 4; ++k) {
     const VectorX column = (settle(k, h) - settle(k, -h)) / (2 * h);

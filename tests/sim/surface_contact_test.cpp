@@ -15,6 +15,7 @@
 #include "sinew/sim/contact_state.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/model_builder.hpp"
+#include "sinew/sim/row_motions.hpp"
 #include "sinew/sim/simulation.hpp"
 #include "sinew/sim/world.hpp"
 
@@ -72,7 +73,7 @@ TEST(SurfaceContact, RowsPushEquallyAndOppositely) {
       problem_rows.push_back(world.numbering().problem_row_of(contact.row(k) + c));
   }
   ASSERT_GT(problem_rows.size(), 60U);
-  const MatrixX forces = simulation.world().row_forces(problem_rows);
+  const MatrixX forces = row_forces(simulation.world(), problem_rows);
   Eigen::Index at = 0;
   MatrixX force = MatrixX::Zero(3, forces.cols()), moment = force;
   for (const int body : {0, 1}) {

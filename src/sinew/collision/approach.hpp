@@ -18,6 +18,7 @@ struct ShapeApproach {
 /// from the beginning finds its first zero from the near side, never beyond, and a zero that does
 /// not exist shows in a rising gap, before which the least gap lies. The tangent plane at the
 /// result has the way's beginning on its outer side, and where the way misses the shape, all of it.
+/// @param plane the shape, checked().
 /// @param from (3,) m, outside; a way that begins inside meets the shape there, unless it leads
 ///   out. @param to (3,) m.
 ShapeApproach approach(const Plane& plane, const Vector3& from, const Vector3& to);
@@ -26,7 +27,7 @@ ShapeApproach approach(const Capsule& capsule, const Vector3& from, const Vector
 ShapeApproach approach(const Cylinder& cylinder, const Vector3& from, const Vector3& to);
 ShapeApproach approach(const OrientedBox& box, const Vector3& from, const Vector3& to);
 ShapeApproach approach(const ConvexSolid& solid, const Vector3& from, const Vector3& to);
-/// @param shape see distance().
+/// @param shape see distance(). @param from,to (3,) m, ends of the way.
 template <class... Kinds>
 ShapeApproach approach(const std::variant<Kinds...>& shape, const Vector3& from,
                        const Vector3& to) {

@@ -18,6 +18,7 @@ struct MovingVector {
 /// triangle with edges y and z only where p = 0; of edges y and z, x joins two ends.
 class Coplanarity {
  public:
+  /// @param x,y,z the vectors of p.
   /// @param separation m, >= 0: |p| <= separation |y x z| counts as p = 0.
   Coplanarity(const MovingVector& x, const MovingVector& y, const MovingVector& z,
               double separation);

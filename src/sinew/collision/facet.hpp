@@ -30,7 +30,8 @@ struct Facet {
 class Facets {
  public:
   /// Of a box its faces; of a cylinder an end and the line of its side that is farthest out; of a
-  /// capsule that line; of a sphere none. @param direction (3,) unit length.
+  /// capsule that line; of a sphere none. @param solid of such a shape.
+  /// @param direction (3,) unit length.
   Facets(const SymmetricSolid& solid, const Vector3& direction);
   explicit Facets(const Plane& plane);
 

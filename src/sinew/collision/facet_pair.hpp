@@ -10,7 +10,9 @@ namespace sinew::collision {
 /// Two facets that look at each other along a normal.
 class FacetPair {
  public:
-  /// All outlive this. @param normal (3,) unit length, from the second towards the first.
+  /// All outlive this. @param first,second of the two shapes; flat ones are not seen edge-on.
+  /// @param normal (3,) unit length, from the second towards the first.
+  /// @param candidates what clip_both() adds to.
   FacetPair(const Facet& first, const Facet& second, const Vector3& normal,
             TouchingCandidates& candidates)
       : first_(first), second_(second), normal_(normal), candidates_(candidates) {}

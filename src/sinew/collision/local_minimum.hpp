@@ -37,9 +37,11 @@ class LocalMinimum {
   bool over_vertex(NodeId node, const Vector3& point) const;
 
   /// Whether a node is, up to the slack, the nearest point of its neighbourhood.
+  /// @param node of the surface.
   /// @param point (3,) m, on the other surface. @param away (3,) unit length, towards it.
   bool vertex_is_nearest(NodeId node, const Vector3& point, const Vector3& away) const;
-  /// The same for the triangles of an edge. @param own (3,) m, on it. @param point,away as above.
+  /// The same for the triangles of an edge. @param edge its number. @param own (3,) m, on it.
+  /// @param point,away as above.
   bool edge_is_nearest(int edge, const Vector3& own, const Vector3& point,
                        const Vector3& away) const;
 

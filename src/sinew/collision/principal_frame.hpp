@@ -21,11 +21,11 @@ struct PrincipalFrame {
 /// Of shapes without edges. With r the distance from the nearest point of the centre or the axis,
 /// the gap curves by 1/r across the way from there: both tangents' for a ball, the one across the
 /// axis beside a rod.
-/// @param point (3,) m.
+/// @param plane the shape, checked(). @param point (3,) m.
 PrincipalFrame principal_frame(const Plane& plane, const Vector3& point);
 PrincipalFrame principal_frame(const Sphere& sphere, const Vector3& point);
 PrincipalFrame principal_frame(const Capsule& capsule, const Vector3& point);
-/// @param shape see distance().
+/// @param shape see distance(). @param point (3,) m.
 template <class... Kinds>
 PrincipalFrame principal_frame(const std::variant<Kinds...>& shape, const Vector3& point) {
   return std::visit([&](const auto& own) { return principal_frame(own, point); }, shape);

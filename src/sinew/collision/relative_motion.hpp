@@ -23,7 +23,8 @@ class RelativeMotion {
   /// @param separation m, >= 0: the distance that counts as a meeting.
   explicit RelativeMotion(double separation) : separation_(separation) {}
 
-  /// Sets d_j. @param start,end (3,) m, each the rounded difference of two exact points.
+  /// Sets d_j. @param j 0 to 3.
+  /// @param start,end (3,) m, each the rounded difference of two exact points.
   void set(int j, const Vector3& start, const Vector3& end) {
     for (std::size_t k = 0; k < 3; ++k) {
       start_[k][j] = start[static_cast<Eigen::Index>(k)];

@@ -14,7 +14,8 @@ struct Separation {
   Vector3 on_first = Vector3::Zero(), on_second = Vector3::Zero();
 };
 /// Thickness of the slab normal to `direction`, m: never more than the signed distance, so that the
-/// first, moved by -gap along the normal, is free. @param direction (3,) unit length.
+/// first, moved by -gap along the normal, is free. @param first,second the two solids.
+/// @param direction (3,) unit length, from the second towards the first.
 double slab(const SymmetricSolid& first, const SymmetricSolid& second, const Vector3& direction);
 
 /// The greatest slab. It is the distance where the solids are apart, found by nearest_cores().
@@ -27,6 +28,7 @@ double slab(const SymmetricSolid& first, const SymmetricSolid& second, const Vec
 ///
 /// The points of overlapping round solids have about half the digits of the gap, and fewer where
 /// the overlap is of the solids' own size.
+/// @param first,second the two solids.
 /// @param margin m: above it only its excess is promised, and no points.
 Separation separation(const SymmetricSolid& first, const SymmetricSolid& second, double margin);
 

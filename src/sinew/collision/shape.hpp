@@ -54,7 +54,7 @@ struct ShapeDistance {
 };
 /// Exact but for rounding. Where several points are nearest (centres, axes, middle planes, the
 /// inner side of corners), one of them is taken.
-/// @param point (3,) m.
+/// @param plane the shape, checked(). @param point (3,) m.
 ShapeDistance distance(const Plane& plane, const Vector3& point);
 ShapeDistance distance(const Sphere& sphere, const Vector3& point);
 ShapeDistance distance(const Capsule& capsule, const Vector3& point);
@@ -63,13 +63,14 @@ ShapeDistance distance(const OrientedBox& box, const Vector3& point);
 /// Inside, the nearest face's plane is as far as the surface; outside, the nearest of the faces
 /// that the point sees (all of them, in turn).
 ShapeDistance distance(const ConvexSolid& solid, const Vector3& point);
-/// @param shape Shape, or a variant of some of its kinds.
+/// @param shape Shape, or a variant of some of its kinds. @param point (3,) m.
 template <class... Kinds>
 ShapeDistance distance(const std::variant<Kinds...>& shape, const Vector3& point) {
   return std::visit([&](const auto& own) { return distance(own, point); }, shape);
 }
 
-/// The shape where a pose takes it. @param pose a rotation and a translation.
+/// The shape where a pose takes it. @param shape of any kind.
+/// @param pose a rotation and a translation.
 Shape moved(const Shape& shape, const Eigen::Isometry3d& pose);
 
 /// How far below its surface the centres of a shape's roundness lie, m, along the normal: a
@@ -77,6 +78,7 @@ Shape moved(const Shape& shape, const Eigen::Isometry3d& pose);
 /// on its side and on its rims; 0 on what is flat, and on a rim that leans by less than 17 degrees.
 /// A body that turns about such a centre, or about the axis through it, keeps its gaps along the
 /// normal.
+/// @param shape of any kind.
 /// @param normal (3,) unit length, of the surface, out of the shape or into it.
 double rounding_radius(const Shape& shape, const Vector3& normal);
 

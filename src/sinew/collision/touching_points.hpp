@@ -53,6 +53,7 @@ class TouchingPoints {
 /// along the plane. With any other shape: Error(not-in-this-version).
 ///
 /// Two planes have no points. Shapes are taken to be checked().
+/// @param first,second the two shapes, where they are.
 /// @param margin m; also a negative one.
 TouchingPoints touching_points(const Shape& first, const Shape& second, double margin);
 

@@ -43,9 +43,9 @@ class Cable : public Constraint {
   void geometric_stiffness(const Configuration& configuration, std::span<const double> effort,
                            std::span<mechanics::RowCurvature> curvatures) const override;
 
-  /// While every segment is under tension.
   void add_to(ValueHash& hash) const override { hash.add(pull_point_, rest_length_, friction_); }
 
+  /// While every segment is under tension.
   bool stiffens(std::span<const double> effort) const override;
 
   /// L_0, m.

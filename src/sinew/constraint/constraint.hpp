@@ -37,8 +37,8 @@ class Constraint {
                                    std::span<const double> effort,
                                    std::span<mechanics::RowCurvature> curvatures) const;
 
-  /// Whether its curvature at these efforts can only stiffen: a taut cable's is of one sign.
-  /// @param effort (rows,) N or Pa, of all rows of the world.
+  /// Whether its curvature can only stiffen: a taut cable's is of one sign. Asked at the efforts of
+  /// all rows of the world, (rows,) N or Pa.
   virtual bool stiffens(std::span<const double>) const { return false; }
 
   /// Adds what its rows depend on beside the points that they touch.

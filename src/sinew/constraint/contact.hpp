@@ -25,20 +25,24 @@ class Contact : public Constraint {
   virtual int other_body() const = 0;
   /// Whether points are found anew in every step.
   virtual bool is_found_anew() const = 0;
-  /// Whether a step has no use for a point. @param values of the step.
+  /// Whether a step has no use for a point. @param point below size().
+  /// @param values of the step.
   virtual bool idle(std::size_t point, const mechanics::RowValues& values) const = 0;
 
-  /// (3,) m: where a point is now. @param values of the step.
+  /// (3,) m: where a point is now. @param configuration of the bodies. @param point below size().
+  /// @param values of the step.
   virtual Vector3 position_now(const Configuration& configuration, std::size_t point,
                                const mechanics::RowValues& values) const = 0;
-  /// (3,) m/s, relative to what it may touch. @param values of the step.
+  /// (3,) m/s, relative to what it may touch. @param configuration of the bodies.
+  /// @param point below size(). @param values of the step.
   virtual Vector3 velocity_beside(const Configuration& configuration, std::size_t point,
                                   const mechanics::RowValues& values) const = 0;
-  /// m: the gap's row now. @param values of the step.
+  /// m: the gap's row now. @param configuration of the bodies. @param point below size().
+  /// @param values of the step.
   virtual double linear_gap(const Configuration& configuration, std::size_t point,
                             const mechanics::RowValues& values) const = 0;
   /// m: the gap now. @param configuration of the bodies. @param pose of a surface of the world.
-  /// @param values of the step.
+  /// @param point below size(). @param values of the step.
   virtual double gap_now(const Configuration& configuration, const Eigen::Isometry3d& pose,
                          std::size_t point, const mechanics::RowValues& values) const = 0;
 

@@ -35,6 +35,7 @@ struct JointFrames {
 /// What both of a joint's constraints stand on.
 class JointPlace {
  public:
+  /// @param first,second its two sides: motions of the second are measured in the first.
   /// @param axes (3, 3) orthonormal, at rest.
   JointPlace(const JointSide& first, const JointSide& second, const Matrix3& axes);
   JointFrames frames(const Configuration& configuration) const;
@@ -43,8 +44,9 @@ class JointPlace {
   /// Adds a row that touches points, orientations or both, of the sides that are bodies: the
   /// second's point, the first's, the second's orientation, the first's.
   int add_row(mechanics::RowPattern& rows, bool points, bool orientations) const;
-  /// Writes directions of such a row: on the second side's point and orientation; on the first's
-  /// its opposites, and `also` on its orientation. @return the next entry.
+  /// Writes directions of such a row, of the sides that are bodies: on the second's point and its
+  /// opposite on the first's; on the second's orientation, and `first` on the first's as it stands.
+  /// @return the next entry.
   Vector3* write_points(Vector3* entry, const Vector3& direction) const;
   Vector3* write_turns(Vector3* entry, const Vector3& second, const Vector3& first) const;
   void add_to(ValueHash& hash) const { hash.add(axes_, sides_[0].rest); }
@@ -64,8 +66,8 @@ class JointPlace {
 /// axis is b_1.
 class Joint : public Constraint {
  public:
-  /// @param name for messages. @param place whose sides have orientations where the type holds a
-  /// turn or slides.
+  /// @param name for messages. @param type what it holds.
+  /// @param place whose sides have orientations where the type holds a turn or slides.
   Joint(std::string name, JointType type, const JointPlace& place);
 
   void declare(mechanics::RowPattern& rows,
@@ -80,11 +82,12 @@ class Joint : public Constraint {
   int displacements() const { return displacements_; }
   /// Whether a row holds a turn: its motion is in rad, its effort in N m.
   bool is_turn(int row) const { return row - first_row_ >= displacements_; }
-  /// On the second body, at its point, by the efforts of its rows. @param effort (row_count(),).
   struct Load {
     Vector3 force = Vector3::Zero();   ///< N
     Vector3 moment = Vector3::Zero();  ///< N m
   };
+  /// On the second body, at its point, by the efforts of its rows.
+  /// @param configuration of now. @param effort (row_count(),) N and N m.
   Load load(const Configuration& configuration, std::span<const double> effort) const;
   /// m: how far apart the two points are, of what slides across the axis.
   double gap(const Configuration& configuration) const;

@@ -312,6 +312,10 @@ void hash_shape(const collision::Shape& shape, ValueHash& hash) {
   if (const auto* box = std::get_if<collision::OrientedBox>(&shape)) {
     hash.add(box->centre, box->axes, box->half_size);
   }
+  if (const auto* solid = std::get_if<collision::ConvexSolid>(&shape)) {
+    for (const Vector3& corner : solid->hull->corners()) hash.add(corner);
+    hash.add(solid->origin, solid->axes);
+  }
 }
 
 }  // namespace

@@ -43,6 +43,7 @@ class ShapeContact : public Contact {
   ShapeContact(std::string name, std::vector<mechanics::MaterialPoint> points,
                collision::Shape surface, double friction, std::optional<RigidSide> carrier = {});
   /// @param own the rigid body whose shape touches the surface.
+  /// @param name,surface,friction,carrier as above.
   ShapeContact(std::string name, RigidSide own, collision::Shape surface, double friction,
                std::optional<RigidSide> carrier = {});
 
@@ -89,8 +90,8 @@ class ShapeContact : public Contact {
   bool idle(std::size_t point, const mechanics::RowValues& values) const override;
   Vector3 position_now(const Configuration& configuration, std::size_t point,
                        const mechanics::RowValues& values) const override;
-  /// (3,) m: where a point is now beside its surface as the step began it. @param values of the
-  /// step.
+  /// (3,) m: where a point is now beside its surface as the step began it.
+  /// @param configuration of the bodies. @param point below size(). @param values of the step.
   Vector3 position_beside(const Configuration& configuration, std::size_t point,
                           const mechanics::RowValues& values) const;
   Vector3 velocity_beside(const Configuration& configuration, std::size_t point,
@@ -103,7 +104,8 @@ class ShapeContact : public Contact {
                  const mechanics::RowValues& values) const;
   double linear_gap(const Configuration& configuration, std::size_t point,
                     const mechanics::RowValues& values) const override;
-  /// (3,) m: a point's motion relative to its surface. @param motion of a site: (3,) m or rad.
+  /// (3,) m: a point's motion relative to its surface. @param point below size().
+  /// @param values of the step. @param motion of a site: (3,) m or rad.
   template <class Motion>
   Vector3 relative_motion(std::size_t point, const mechanics::RowValues& values,
                           Motion&& motion) const {
@@ -115,9 +117,11 @@ class ShapeContact : public Contact {
     if (carrier_) result -= of(*carrier_, at + own_entries());
     return result;
   }
-  /// What a state remembers of a step's frames. @param to,from memory_size() numbers.
+  /// How many numbers a state remembers of a step's frames.
   std::size_t memory_size() const { return size() * (own_ ? 12 : 9); }
+  /// @param values of the step. @param to (memory_size(),).
   void save(const mechanics::RowValues& values, double* to) const;
+  /// @param from (memory_size(),), as saved. @param values of the step.
   void load(const double* from, mechanics::RowValues& values) const;
 
   /// Whether tangent planes follow the points in a step.

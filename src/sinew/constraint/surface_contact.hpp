@@ -64,21 +64,25 @@ class SurfaceContact : public Contact {
 
   /// Makes room in `values`.
   void prepare(mechanics::RowValues& values) const;
-  /// Makes a pair one of the points. @param first_nodes,second_nodes (n, 3) m: of the bodies when
-  /// the step began. @param values gets directions, offset, reference, patches.
+  /// Makes a pair one of the points. @param point below size(). @param pair of the two surfaces.
+  /// @param first_nodes,second_nodes (n, 3) m: of the bodies when the step began.
+  /// @param values gets directions, offset, reference, patches.
   void put(std::size_t point, const collision::ProximityPair& pair, const Points& first_nodes,
            const Points& second_nodes, mechanics::RowValues& values) const;
-  /// Writes delta of a point. @param configuration now.
+  /// Writes delta of a point. @param configuration now. @param point not idle().
+  /// @param values of the step.
   void measure(const Configuration& configuration, std::size_t point,
                mechanics::RowValues& values) const;
   /// m: the gap's row with the bodies' nodes there. @param first,second (n, 3) m.
+  /// @param point not idle(). @param values of the step.
   double gap_at(const Points& first, const Points& second, std::size_t point,
                 const mechanics::RowValues& values) const;
   /// A point that is none.
   void clear(std::size_t point, mechanics::RowValues& values) const;
   /// What a state remembers of a point.
   static constexpr std::size_t kMemory = 21;
-  /// @param to,from kMemory numbers.
+  /// Writes that, for load(). @param point not idle(). @param values of the step.
+  /// @param to kMemory numbers.
   void save(std::size_t point, const mechanics::RowValues& values, double* to) const;
   void load(std::size_t point, const double* from, mechanics::RowValues& values) const;
 

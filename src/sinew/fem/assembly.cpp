@@ -12,6 +12,7 @@
 #include "sinew/fem/element_kernel.hpp"
 #include "sinew/fem/solid_kernel.hpp"
 #include "sinew/linalg/aligned_buffer.hpp"
+#include "sinew/linalg/thread_scratch.hpp"
 
 namespace sinew::fem {
 
@@ -44,19 +45,11 @@ std::size_t bytes_of(const auto& vector) { return vector.capacity() * sizeof(vec
 
 }  // namespace
 
-// Records are written and gathered within one evaluate(): they may stand in memory that is
-// somebody else's between two calls.
 struct Assembly::Workspace {
-  double* force_records = nullptr;
-  double* rotated_records = nullptr;
-  double* exact_records = nullptr;  // in the place of rotated_records where that is lent
-  double* solid_blocks = nullptr;   // null without hyperelastic elements
-  std::span<double> lent;           // behind force_records
-  linalg::AlignedBuffer own_records, own_exact_records, own_solid_blocks;
-  std::vector<double> slot_ratios, patch_ratios;   // det F of members, Jm of patches
-  linalg::AlignedBuffer patch_spread, patch_rows;  // see sum_rows()
-  linalg::AlignedBuffer points, start_points;      // (n, 4) m
-  bool started = false;                            // start_points are those that count
+  std::size_t force_records = 0, solid_blocks = 0;  // doubles, of the records below
+  std::size_t patch_slots = 0, patches = 0, patch_rows = 0;
+  linalg::AlignedBuffer points, start_points;  // (n, 4) m
+  bool started = false;                        // start_points are those that count
   linalg::AlignedBuffer matrix;
   std::vector<double> forces;
   std::vector<double> batch_energy;          // one a batch, groups of solids behind the others
@@ -64,44 +57,54 @@ struct Assembly::Workspace {
   std::vector<int> column_splits;
   double energy = 0.0;
   SmallestRatio smallest{1.0, 0};
-
-  double* records(Tangent tangent) {
-    if (tangent == Tangent::none) return nullptr;
-    const bool rotated = tangent == Tangent::rotated || tangent == Tangent::rates;
-    return rotated ? rotated_records : exact_records;
-  }
 };
 
-Assembly::Assembly(std::shared_ptr<const FemModel> model, ThreadPool& pool, std::span<double> lent)
+// What elements and patches write and gather() sums, in scratch memory: of one evaluate().
+struct Assembly::Records {
+  Records(const Workspace& work, int batches, Tangent tangent)
+      : element_records(record_size(tangent) * kLanes * static_cast<std::size_t>(batches)),
+        scratch(work.force_records + element_records + work.solid_blocks + work.patch_slots +
+                work.patches + 16 * work.patch_slots + 4 * work.patch_rows + kPadding),
+        forces(scratch.take(work.force_records)),
+        elements(scratch.take(element_records)),
+        solids(scratch.take(work.solid_blocks)),
+        slot_ratios(scratch.take(work.patch_slots)),
+        patch_ratios(scratch.take(work.patches)),
+        spread(scratch.take(16 * work.patch_slots)),
+        rows(scratch.take(4 * work.patch_rows)) {}
+
+  static std::size_t record_size(Tangent tangent) {
+    if (tangent == Tangent::none) return 0;
+    const bool rotated = tangent == Tangent::rotated || tangent == Tangent::rates;
+    return static_cast<std::size_t>(rotated ? kRotatedRecord : kExactRecord);
+  }
+
+  static constexpr std::size_t kPadding = 7 * 7;  // between the arrays, see ThreadScratch
+  std::size_t element_records;
+  linalg::ThreadScratch scratch;
+  double* forces;
+  double* elements;      // of tetrahedra
+  double* solids;        // blocks of hyperelastic elements
+  double* slot_ratios;   // det F of members of patches
+  double* patch_ratios;  // Jm
+  double* spread;        // see sum_rows()
+  double* rows;
+};
+
+Assembly::Assembly(std::shared_ptr<const FemModel> model, ThreadPool& pool)
     : model_(std::move(model)), pool_(&pool), work_(std::make_unique<Workspace>()) {
   const auto batches = static_cast<std::size_t>(model_->elements().batches());
-  std::size_t forces = kLanes * kForceRecord * batches, solid_batches = 0, solid_blocks = 0;
-  std::size_t patch_slots = 0, patches = 0, patch_rows = 0;
+  std::size_t solid_batches = 0;
+  work_->force_records = kLanes * kForceRecord * batches;
   for (const SolidGroup& group : model_->solids()) {
     const std::size_t slots = group.element.size();
-    forces += 4 * static_cast<std::size_t>(group.nodes) * slots;
-    solid_blocks += kSolidBlock * static_cast<std::size_t>(group.pairs()) * slots;
+    work_->force_records += 4 * static_cast<std::size_t>(group.nodes) * slots;
+    work_->solid_blocks += kSolidBlock * static_cast<std::size_t>(group.pairs()) * slots;
     solid_batches += static_cast<std::size_t>(group.batches());
     if (group.patches.empty()) continue;
-    patch_slots += slots;
-    patches += group.patches.volume.size();
-    patch_rows += group.patches.row_node.size();
-  }
-  work_->slot_ratios.resize(patch_slots);
-  work_->patch_ratios.resize(patches);
-  work_->patch_spread = linalg::AlignedBuffer(std::size_t{16} * patch_slots);
-  work_->patch_rows = linalg::AlignedBuffer(4 * patch_rows);
-  const std::size_t rotated = kLanes * kRotatedRecord * batches;
-  if (lent.size() < forces + rotated) {
-    work_->own_records = linalg::AlignedBuffer(forces + rotated);
-    lent = {work_->own_records.data(), forces + rotated};
-  }
-  work_->force_records = lent.data();
-  work_->rotated_records = lent.data() + forces;
-  work_->lent = lent.subspan(forces);
-  if (solid_blocks > 0) {
-    work_->own_solid_blocks = linalg::AlignedBuffer(solid_blocks);
-    work_->solid_blocks = work_->own_solid_blocks.data();
+    work_->patch_slots += slots;
+    work_->patches += group.patches.volume.size();
+    work_->patch_rows += group.patches.row_node.size();
   }
   work_->points = linalg::AlignedBuffer(4 * static_cast<std::size_t>(model_->mesh().node_count()));
   work_->forces.resize(3 * static_cast<std::size_t>(model_->free_count()));
@@ -116,16 +119,6 @@ Assembly::Assembly(std::shared_ptr<const FemModel> model, ThreadPool& pool, std:
 Assembly::~Assembly() = default;
 Assembly::Assembly(Assembly&&) noexcept = default;
 
-void Assembly::reserve(Tangent tangent) {
-  const bool whole = tangent == Tangent::exact || tangent == Tangent::projected;
-  if (!whole || work_->exact_records != nullptr) return;
-  const std::size_t size =
-      kLanes * kExactRecord * static_cast<std::size_t>(model_->elements().batches());
-  if (work_->lent.size() < size) work_->own_exact_records = linalg::AlignedBuffer(size);
-  const bool lent = work_->own_exact_records.size() == 0;
-  work_->exact_records = lent ? work_->lent.data() : work_->own_exact_records.data();
-}
-
 void Assembly::evaluate(const Points& positions, const AssemblyWeights& weights) {
   if (positions.rows() != model_->mesh().node_count()) {
     throw Error(ErrorKind::wrong_shape, {.file = {}, .item = "positions"},
@@ -133,9 +126,9 @@ void Assembly::evaluate(const Points& positions, const AssemblyWeights& weights)
                             model_->mesh().node_count()),
                 "give one row for every node of the mesh");
   }
-  reserve(weights.tangent);
-  evaluate_elements(positions, weights.tangent, weights.softened);
-  gather(weights);
+  const Records records(*work_, model_->elements().batches(), weights.tangent);
+  evaluate_elements(positions, weights.tangent, weights.softened, records);
+  gather(weights, records);
   work_->energy += model_->membranes().add(positions, weights.tangent, weights.stiffness,
                                            work_->forces, matrix());
 }
@@ -164,13 +157,14 @@ void Assembly::pad(const Points& positions, double* to) {
   });
 }
 
-void Assembly::evaluate_elements(const Points& positions, Tangent tangent, bool softened) {
+void Assembly::evaluate_elements(const Points& positions, Tangent tangent, bool softened,
+                                 const Records& records) {
   Workspace& work = *work_;
   load_positions(positions);
   const SmallestRatio none{std::numeric_limits<double>::infinity(), -1};
   std::ranges::fill(work.thread_ratios, none);
   const ElementBatches& elements = model_->elements();
-  const ElementOutput output{work.force_records, work.records(tangent), work.batch_energy.data()};
+  const ElementOutput output{records.forces, records.elements, work.batch_energy.data()};
   if (elements.batches() > 0) {
     pool_->for_range(elements.batches(), 1, [&](int begin, int end, int thread) {
       work.thread_ratios[static_cast<std::size_t>(thread)] =
@@ -178,19 +172,18 @@ void Assembly::evaluate_elements(const Points& positions, Tangent tangent, bool 
     });
   }
   SmallestRatio* ratios = work.thread_ratios.data();
-  SolidOutput solids{work.force_records, work.solid_blocks,
-                     work.batch_energy.data() + elements.batches(), work.patch_ratios.data(),
-                     work.patch_spread.data()};
+  SolidOutput solids{records.forces, records.solids, work.batch_energy.data() + elements.batches(),
+                     records.patch_ratios, records.spread};
   if (work.started) solids.start = work.start_points.data();
   for (std::size_t g = 0; g < model_->solids().size(); ++g) {
     const SolidGroup& group = model_->solids()[g];
     if (history_ != nullptr) solids.history = history_->of_step(g, softened);
     ratios += pool_->size();
-    average_patches(group);
+    average_patches(group, records);
     pool_->for_range(group.batches(), 1, [&](int begin, int end, int thread) {
       ratios[thread] = evaluate_solids(group, begin, end, work.points.data(), tangent, solids);
     });
-    if (tangent != Tangent::none) spread_patches(group);
+    if (tangent != Tangent::none) spread_patches(group, records);
     solids.energy += group.batches();
   }
   work.energy = 0.0;
@@ -198,15 +191,11 @@ void Assembly::evaluate_elements(const Points& positions, Tangent tangent, bool 
   find_smallest();
 }
 
-void Assembly::average_patches(const SolidGroup& group) {
+void Assembly::average_patches(const SolidGroup& group, const Records& records) {
   const ElementPatches& patches = group.patches;
   if (patches.empty()) return;
-  const auto ratios =
-      std::span(work_->slot_ratios)
-          .subspan(static_cast<std::size_t>(patches.slots_before), group.element.size());
-  const auto means =
-      std::span(work_->patch_ratios)
-          .subspan(static_cast<std::size_t>(patches.patches_before), patches.volume.size());
+  const std::span ratios(records.slot_ratios + patches.slots_before, group.element.size());
+  const std::span means(records.patch_ratios + patches.patches_before, patches.volume.size());
   pool_->for_range(group.batches(), 1, [&](int begin, int end, int) {
     volume_ratios(group, begin, end, work_->points.data(), ratios.data());
   });
@@ -215,11 +204,11 @@ void Assembly::average_patches(const SolidGroup& group) {
   });
 }
 
-void Assembly::spread_patches(const SolidGroup& group) {
+void Assembly::spread_patches(const SolidGroup& group, const Records& records) {
   const ElementPatches& patches = group.patches;
   if (patches.empty()) return;
-  const double* spread = work_->patch_spread.data() + 16 * patches.slots_before;
-  double* rows = work_->patch_rows.data() + 4 * patches.rows_before;
+  const double* spread = records.spread + 16 * patches.slots_before;
+  double* rows = records.rows + 4 * patches.rows_before;
   pool_->for_range(patches.count(), kPatchGrain,
                    [&](int begin, int end, int) { sum_rows(group, begin, end, spread, rows); });
 }
@@ -262,19 +251,16 @@ VolumeMeasure Assembly::measure_volume(const Points& positions) {
   return {minimum_volume_ratio(), worst_element()};
 }
 
-void Assembly::gather(const AssemblyWeights& weights) {
+void Assembly::gather(const AssemblyWeights& weights, const Records& records) {
   Workspace& work = *work_;
   const FemModel& model = *model_;
   const bool blocks = model.has_mass_blocks();
-  const double* records = work.records(weights.tangent);
-  const double* solids = work.solid_blocks;
-  const double* patch_rows = work.patch_ratios.empty() ? nullptr : work.patch_rows.data();
   pool_->run([&](int thread) {
     const int begin = work.column_splits[static_cast<std::size_t>(thread)];
     const int end = work.column_splits[static_cast<std::size_t>(thread) + 1];
-    gather_forces(model.gather(), begin, end, work.force_records, work.forces.data());
-    gather_blocks(model.gather(), model.pattern(), begin, end, records, solids, patch_rows, weights,
-                  blocks ? nullptr : model.free_mass().data(),
+    gather_forces(model.gather(), begin, end, records.forces, work.forces.data());
+    gather_blocks(model.gather(), model.pattern(), begin, end, records.elements, records.solids,
+                  records.rows, weights, blocks ? nullptr : model.free_mass().data(),
                   blocks ? model.mass_blocks().data() : nullptr, work.matrix.data());
   });
 }
@@ -327,12 +313,9 @@ int Assembly::worst_element() const {
 
 std::size_t Assembly::bytes() const {
   const Workspace& work = *work_;
-  return sizeof(Assembly) + sizeof(Workspace) + work.own_records.bytes() +
-         work.own_exact_records.bytes() + work.own_solid_blocks.bytes() + work.points.bytes() +
-         work.start_points.bytes() + work.patch_spread.bytes() + work.patch_rows.bytes() +
-         bytes_of(work.slot_ratios) + bytes_of(work.patch_ratios) + bytes_of(work.forces) +
-         work.matrix.bytes() + bytes_of(work.batch_energy) + bytes_of(work.thread_ratios) +
-         bytes_of(work.column_splits);
+  return sizeof(Assembly) + sizeof(Workspace) + work.points.bytes() + work.start_points.bytes() +
+         bytes_of(work.forces) + work.matrix.bytes() + bytes_of(work.batch_energy) +
+         bytes_of(work.thread_ratios) + bytes_of(work.column_splits);
 }
 
 }  // namespace sinew::fem

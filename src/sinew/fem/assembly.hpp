@@ -49,22 +49,17 @@ struct VolumeMeasure {
 };
 
 /// Data of one simulation. Results are the same bit for bit for any number of threads. Nothing
-/// allocates after construction, save that the first exact tangent takes its workspace (384 bytes
-/// an element, where none was lent) unless `reserve` has.
+/// allocates after construction but the first evaluate() on a thread, which takes the elements'
+/// records there (linalg::ThreadScratch; 512 bytes a corotational tetrahedron).
 class Assembly {
  public:
   /// @param model what is assembled.
   /// @param pool runs the loops; must outlive this object.
-  /// @param lent memory on cache-line bounds for what is of no use after evaluate() (the elements'
-  ///   parts); must outlive this object. Where it is too small, the object takes its own.
-  Assembly(std::shared_ptr<const FemModel> model, ThreadPool& pool, std::span<double> lent = {});
+  Assembly(std::shared_ptr<const FemModel> model, ThreadPool& pool);
   ~Assembly();
   Assembly(Assembly&&) noexcept;
 
   const FemModel& model() const { return *model_; }
-
-  /// Takes the workspace that `tangent` needs, so that evaluate() does not.
-  void reserve(Tangent tangent);
 
   /// Forces, energy, volume ratios and (unless tangent is none) the matrix, at `positions`.
   /// @param positions (n, 3) m, all mesh nodes, fixed ones included.
@@ -113,13 +108,15 @@ class Assembly {
 
  private:
   struct Workspace;
+  struct Records;
   void load_positions(const Points& positions);
   void pad(const Points& positions, double* to);
   void find_smallest();
-  void evaluate_elements(const Points& positions, Tangent tangent, bool softened);
-  void average_patches(const SolidGroup& group);
-  void spread_patches(const SolidGroup& group);
-  void gather(const AssemblyWeights& weights);
+  void evaluate_elements(const Points& positions, Tangent tangent, bool softened,
+                         const Records& records);
+  void average_patches(const SolidGroup& group, const Records& records);
+  void spread_patches(const SolidGroup& group, const Records& records);
+  void gather(const AssemblyWeights& weights, const Records& records);
 
   std::shared_ptr<const FemModel> model_;
   ThreadPool* pool_;

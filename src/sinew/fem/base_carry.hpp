@@ -24,9 +24,10 @@ class BaseCarry {
   /// Takes the base's velocity from that of free nodes. @param velocity (3 free,) m/s.
   void subtract_velocity(VectorX& velocity) const;
   /// M_fb times a combination of the base nodes' motion, added to forces on free nodes.
-  /// @param forces (3 free,).
+  /// @param weights of the combination. @param forces (3 free,) N, added to.
   void add_momentum(const mechanics::Combination& weights, VectorX& forces) const;
-  /// (3,) m: a free node's motion in the step, beside the base's. @param moved all of it.
+  /// (3,) m: a free node's motion in the step, beside the base's. @param free its number among free
+  /// nodes. @param moved (3,) m: all of its motion.
   Vector3 strayed(std::int32_t free, const Vector3& moved) const {
     return carried_ ? Vector3(moved - carry_.segment<3>(3 * free)) : moved;
   }

@@ -30,7 +30,8 @@ class BodyElements {
   const SystemNumbers& active() const { return *active_; }
 
   void begin_step();
-  /// Forces and matrix at the present positions. @param first whether none of this step was before.
+  /// Forces and matrix at the present positions. @param request what the matrix is to be.
+  /// @param first whether none of this step was before.
   void linearise(const mechanics::LinearisationRequest& request, bool first);
   /// A motion is about to be taken from here: what follows in the same step begins with it.
   void leave_from_here();

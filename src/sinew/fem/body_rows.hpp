@@ -24,9 +24,9 @@ class BodyRows {
 
   /// Takes directions, and which of the transient rows are active.
   void take(const mechanics::RowValues& rows, SystemNumbers& numbers);
-  /// Adds H^T effort. @param sum (3 free,) N.
+  /// Adds H^T effort. @param effort,numbers as the class says. @param sum (3 free,) N.
   void add_forces(std::span<const double> effort, const SystemNumbers& numbers, VectorX& sum) const;
-  /// The same on mesh nodes. @param forces (n, 3) N.
+  /// The same on mesh nodes. @param effort,numbers as before. @param forces (n, 3) N.
   void add_forces(std::span<const double> effort, const SystemNumbers& numbers,
                   Points& forces) const;
   /// See mechanics::StepSystem.

@@ -19,7 +19,7 @@ class FemBodyModel;
 
 /// One for a body, which its parts look at.
 struct FemState {
-  /// At rest. @param histories see mechanics::history_count().
+  /// At rest. @param model_in must outlive this. @param histories see mechanics::history_count().
   FemState(const FemBodyModel& model_in, int histories);
   FemState(const FemState&) = delete;
   FemState& operator=(const FemState&) = delete;

@@ -16,13 +16,14 @@ class InertiaForces {
 
   BaseCarry& base() { return base_; }
 
-  /// Adds -(M a + C v) at the end of the step. @param numbers of the linearisation.
+  /// Adds -(M a + C v) at the end of the step. @param weights of the step, which a and v follow
+  /// from. @param numbers of the linearisation.
   /// @param first whether none of this step was before. @param right (3 free,) N, added to.
   /// @return the norm of what masses take part with, N.
   double add(const mechanics::StepWeights& weights, const SystemNumbers& numbers, bool first,
              VectorX& right);
-  /// J taken out by damping in the step, which is at its end. @param numbers of its last
-  ///   linearisation.
+  /// J taken out by damping in the step, which is at its end. @param weights of the step.
+  /// @param numbers of its last linearisation.
   double damped_work(const mechanics::StepWeights& weights, const SystemNumbers& numbers);
   double kinetic_energy();  ///< J, now
 

@@ -37,19 +37,22 @@ std::vector<double> consistent_mass_blocks(const mesh::Mesh& mesh,
                                            const linalg::BlockPattern& pattern,
                                            std::span<const double> masses);
 
-/// (blocks,) kg: a diagonal mass matrix in the pattern's blocks. @param diagonal (free,) kg.
+/// (blocks,) kg: a diagonal mass matrix in the pattern's blocks. @param pattern over free nodes.
+/// @param diagonal (free,) kg.
 std::vector<double> diagonal_mass_blocks(const linalg::BlockPattern& pattern,
                                          std::span<const double> diagonal);
 
 /// M += m N^T N over free nodes. Throws Error(bad-argument) where two of its nodes are not of one
 /// element.
-/// @param blocks (blocks,) kg, added to.
+/// @param point of mass m and weights N. @param free_index mesh node -> free or -1.
+/// @param pattern over free nodes. @param blocks (blocks,) kg, added to.
 void add_point_mass(const PointMass& point, std::span<const NodeId> free_index,
                     const linalg::BlockPattern& pattern, std::vector<double>& blocks);
 
 /// Entries of the mass matrix in the columns of fixed nodes that elements use, ascending.
+/// @param mesh of n nodes. @param free_index mesh node -> free or -1.
 /// @param masses (elements,) kg for the consistent matrix; empty: the lumped one.
-/// @param lumped (n,) kg.
+/// @param lumped (n,) kg. @param points masses that come on top of either.
 std::vector<SupportMass> support_masses(const mesh::Mesh& mesh, std::span<const NodeId> free_index,
                                         std::span<const double> masses, const VectorX& lumped,
                                         const std::vector<PointMass>& points);

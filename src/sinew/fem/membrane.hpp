@@ -47,6 +47,7 @@ struct MembraneLayer {
 class Membranes {
  public:
   Membranes() = default;
+  /// @param mesh whose nodes are at rest. @param layers with faces of its elements.
   /// @param free_index mesh node -> free or -1. @param pattern has every pair of nodes of a volume
   /// element. Throws Error: out-of-range (thickness), invalid-material.
   Membranes(const mesh::Mesh& mesh, std::span<const MembraneLayer> layers,
@@ -55,8 +56,8 @@ class Membranes {
   bool empty() const { return triangles_.empty(); }
   double area(std::size_t layer) const { return areas_[layer]; }  ///< m^2, at rest
   /// Adds to forces and, unless the tangent is none, stiffness times K to the matrix.
-  /// @param positions (n, 3) m. @param forces (3 free,) N. @param matrix layout of
-  /// linalg::BlockPattern. @return U, J.
+  /// @param positions (n, 3) m. @param tangent what K is. @param stiffness K's factor.
+  /// @param forces (3 free,) N. @param matrix layout of linalg::BlockPattern. @return U, J.
   double add(const Points& positions, Tangent tangent, double stiffness, std::span<double> forces,
              std::span<double> matrix) const;
 

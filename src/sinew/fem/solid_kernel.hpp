@@ -15,7 +15,7 @@ struct PointHistory {
   const LaneRow* peak = nullptr;     ///< (batch, point): largest energy so far, Pa
 };
 
-/// Where a group's batches write. Record arrays are 64-byte aligned and are those of the body.
+/// Where a group's batches write. Record arrays are 64-byte aligned.
 struct SolidOutput {
   double* forces;  ///< four doubles a node of an element
   double* blocks;  ///< kSolidBlock doubles a pair of nodes; not touched for Tangent::none

@@ -17,7 +17,7 @@ struct SystemNumbers {
   SystemNumbers(const FemSystem& system_in, ThreadPool& pool)
       : system(system_in),
         factorisation(system.plan->create(pool)),
-        assembly(system.elements, pool, factorisation->spare_memory()),
+        assembly(system.elements, pool),
         border(3 * static_cast<std::size_t>(system.border.entries()), 0.0) {}
 
   std::size_t bytes() const {
@@ -27,7 +27,7 @@ struct SystemNumbers {
 
   const FemSystem& system;
   std::unique_ptr<linalg::Factorisation> factorisation;
-  Assembly assembly;  ///< works where the factor will stand: a linearisation ends the last factor
+  Assembly assembly;
   std::vector<double> border;
   std::vector<double> damping_stiffness;  ///< K of rates of strain (Tangent::rates)
   bool damped = false;

@@ -13,10 +13,11 @@ class FemModel;
 /// Throws what mechanics::TakesForces::set_tether() does.
 void check_tether(const mechanics::Tether& tether, const FemModel& elements);
 
-/// Where it holds the body, (3,) m. @param positions (n, 3) m.
+/// Where it holds the body, (3,) m. @param tether checked. @param positions (n, 3) m, of all nodes.
 Vector3 tether_point(const mechanics::Tether& tether, const Points& positions);
 
-/// Adds its force. @param right (3 free,) N, added to.
+/// Adds its force. @param tether,positions see tether_point(). @param elements of the body.
+/// @param right (3 free,) N, added to.
 /// @return the norm of the force, N.
 double pull(const mechanics::Tether& tether, const Points& positions, const FemModel& elements,
             VectorX& right);

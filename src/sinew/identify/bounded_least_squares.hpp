@@ -38,10 +38,12 @@ using BoundedResiduals =
 
 /// Lessens |residuals|^2 within the values' bounds.
 /// @param residuals with derivatives. @param rows how many residuals. @param values in and out.
+/// @param settings when it ends.
 BoundedResult solve_bounded(const BoundedResiduals& residuals, std::size_t rows,
                             std::vector<BoundedValue>& values, const BoundedSettings& settings);
 
 /// The same by central differences. @param residuals (values, residuals) -> bool.
+/// @param rows,values,settings as above.
 BoundedResult solve_bounded_by_differences(
     const std::function<bool(const double* values, double* residuals)>& residuals, std::size_t rows,
     std::vector<BoundedValue>& values, const BoundedSettings& settings);

@@ -73,9 +73,9 @@ std::vector<std::string> fit_models();
 /// stresses), contradictory-limits (stretches), too-few-points (in the range), not-converged.
 FitResult fit_material(std::span<const RubberTest> tests, const FitSettings& settings);
 
-/// Several models, in the order given. @param models names of fit_models(). @param progress called
-/// with the starts that are done, with all that there are, and with the model at work; may be
-/// empty.
+/// Several models, in the order given. @param tests,settings as for fit_material(); the settings'
+/// model does not count. @param models names of fit_models(). @param progress called with the
+/// starts that are done, with all that there are, and with the model at work; may be empty.
 std::vector<FitResult> fit_materials(
     std::span<const RubberTest> tests, std::span<const std::string> models,
     const FitSettings& settings,

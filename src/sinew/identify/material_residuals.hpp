@@ -20,7 +20,7 @@ struct CountedTest {
 };
 
 /// Throws Error: empty-list (no tests), too-few-points (fewer than three rows count), out-of-range
-/// (all stresses are zero, or the range of stretches is empty).
+/// (all stresses are zero), contradictory-limits (the range of stretches is empty).
 std::vector<CountedTest> count_rows(std::span<const RubberTest> tests, const FitSettings& settings);
 
 /// Nominal stress along a test, with softening where `mullins` is not null; zero in rows that do
@@ -50,8 +50,9 @@ struct OgdenResiduals {
   double scale;       ///< Pa
   std::size_t terms;  ///< of two parameters each
 
-  /// False where a residual is not finite. @param derivatives (rows, parameters), row-major; null:
-  /// not wanted.
+  /// False where a residual is not finite. @param parameters (2 terms,) see FittedLaw.
+  /// @param residuals (rows,), of the rows that count.
+  /// @param derivatives (rows, parameters), row-major; null: not wanted.
   bool operator()(const double* parameters, double* residuals, double* derivatives) const;
 };
 

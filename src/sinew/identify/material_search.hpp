@@ -28,6 +28,7 @@ class MaterialSearch {
   using Progress = std::function<void(const std::string& model)>;
 
   /// @param tests kept by reference. @param settings whose model is not used.
+  /// @param progress may be empty.
   MaterialSearch(const std::vector<CountedTest>& tests, FitSettings settings, Progress progress);
 
   /// Of Ogden's law without terms that coincide or carry nothing. Throws Error(not-converged).

@@ -34,7 +34,8 @@ std::vector<int> steered_effectors(const InverseController* controller);
 void add_controller(sim::Observables& list, AttachedController controller,
                     std::span<const int> effectors);
 /// The same of a controller that stays as it is, and of the effectors that it steers.
-/// @param controller outlives the list; null: the status alone is added.
+/// @param list of its simulation. @param controller outlives the list; null: the status alone is
+/// added.
 void add_controller(sim::Observables& list, const InverseController* controller);
 
 }  // namespace sinew::inverse

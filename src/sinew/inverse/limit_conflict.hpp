@@ -19,11 +19,12 @@ class Response;
 
 namespace sinew::inverse {
 
-/// "displacement of 'east' leaves -0.01..0.01 m by 0.003 m; tension of 'east' is at 3 N".
+/// "displacement of 'east' leaves -0.01..0.01 m by 0.003 m; tension of 'east' is at its
+/// limit, 3 N".
 /// @param model of the robot. @param response of the actuators that have the program's variables
 /// and
 ///   rows, one each.
-/// @param program with efforts over `scale` (controlled,) as variables.
+/// @param program with efforts over `scale` as variables. @param scale (controlled,) N or Pa, > 0.
 /// @param nearest its solution: rows that are relaxed, and the bounds that stand against them.
 std::string describe_conflict(const sim::Model& model, const step::Response& response,
                               const qp::QuadraticProgram& program, const VectorX& scale,

@@ -67,8 +67,6 @@ class BlockFactorisation final : public Factorisation {
   const MatrixX& transient_compliance() const override { return transient_.compliance(); }
   const MatrixX& transient_coupling() const override { return transient_.coupling(); }
 
-  std::span<double> spare_memory() override { return numeric_.panels(); }
-
   int negative_pivots() const override { return numeric_.negative_pivots(); }
 
   std::size_t bytes() const override {

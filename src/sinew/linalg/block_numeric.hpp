@@ -51,11 +51,6 @@ class BlockNumeric {
   /// x := L^-T (x + L_border^T weights), in elimination order. weights (3 border nodes,).
   void backward(double* x, const double* weights, Scratch& scratch) const;
 
-  /// Where the panels stand; assemble() clears them before it writes.
-  std::span<double> panels() {
-    return {factor_.data(), static_cast<std::size_t>(symbolic_->doubles)};
-  }
-
   /// Of a factorised panel: its values, S of its own columns, whether all of them are positive, and
   /// its diagonal block to substitute with.
   const double* values(const Panel& panel) const { return factor_.data() + panel.offset; }

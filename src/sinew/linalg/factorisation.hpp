@@ -66,11 +66,6 @@ class Factorisation {
   /// (3 k, m + 1) leading block: H_t A^-1 H^T, then H_t A^-1 b.
   virtual const MatrixX& transient_coupling() const = 0;
 
-  /// Memory for the caller to work in until it calls factorise(), which takes it back: the place
-  /// where the factor will stand. Writing to it ends what solve() and solve_with_effort() know. On
-  /// cache-line bounds; empty where a backend has none to lend.
-  virtual std::span<double> spare_memory() { return {}; }
-
   /// The number of negative pivots (inertia of A) of the last factorisation.
   virtual int negative_pivots() const = 0;
   /// Bytes held by this object alone (the plan not counted).

@@ -81,6 +81,7 @@ class TakesLoads {
  public:
   virtual ~TakesLoads() = default;
   /// 1 unless set. An input. @param load number of the body's own.
+  /// @param factor times the load as declared, of either sign.
   virtual void set_load_factor(int load, double factor) = 0;
   /// (n, 3) N: what the loads put on all nodes, as of the last linearisation.
   virtual Points load_forces() const = 0;

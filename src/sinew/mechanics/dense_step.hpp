@@ -41,13 +41,15 @@ class DenseStep : public StepSystem {
   /// @param coordinates n. @param own,memory must outlive this.
   DenseStep(Eigen::Index coordinates, const OwnRows& own, RowMemory& memory);
 
-  /// Writes b and A of the present state. @param right (n,). @param matrix (n, n).
+  /// Writes b and A of the present state. @param request which A, for what step.
+  /// @param right (n,). @param matrix (n, n).
   /// @return force_scale().
   virtual double form(const LinearisationRequest& request, VectorX& right, MatrixX& matrix) = 0;
   /// A -= sum over entries of effort direction . d2(motion of the site)/dq2, at the efforts and
   /// directions remembered, and those of surface_rows().
   virtual void add_row_stiffness(MatrixX& matrix) = 0;
-  /// The motion of a site for each coordinate. @param result (3, n).
+  /// The motion of a site for each coordinate. @param site its number on the body.
+  /// @param result (3, n).
   virtual void site_jacobian(int site, MatrixX& result) const = 0;
   /// The same of a point of the surface. Asked of bodies that have one; others throw
   /// Error(internal).

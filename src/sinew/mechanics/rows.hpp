@@ -59,6 +59,9 @@ struct Patch {
 
 /// The numbers of one linearisation, in the layout of RowPattern. Allocated once.
 struct RowValues {
+  RowValues() = default;
+  explicit RowValues(const RowPattern& pattern) { resize(pattern); }
+
   std::vector<Vector3> direction;  ///< one per entry; see site.hpp
   VectorX delta;                   ///< (rows,) value of the row's motion at the current state, m
   /// (rows,) m, of contacts alone, whose rows are delta = direction . x + offset through a step,

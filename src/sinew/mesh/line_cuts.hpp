@@ -12,7 +12,7 @@ namespace sinew::mesh {
 /// elements: between two of them it stays in one element, or in none. Faces of hexahedra are
 /// bilinear; those of quadratic tetrahedra are taken as those of their corners, as the Embedder
 /// takes them. A line within a face is cut where it meets the face's edges.
-/// @param from,to (3,) m, at rest.
+/// @param mesh at rest. @param from,to (3,) m, at rest.
 /// @return ascending, from 0 to 1, both included.
 std::vector<double> line_cuts(const Mesh& mesh, const Vector3& from, const Vector3& to);
 

@@ -32,7 +32,7 @@ class AdaptiveMotion {
   /// (inputs,) N m at a time in s.
   using Torque = std::function<VectorX(double)>;
 
-  /// At rest and straight. @param arm that moves.
+  /// At rest and straight. @param arm that moves. @param accuracy of every step.
   explicit AdaptiveMotion(std::shared_ptr<const Arm> arm, const Accuracy& accuracy = {});
 
   double time() const { return time_; }                          ///< s

@@ -20,7 +20,7 @@ class RowStiffness {
   explicit RowStiffness(const ArmBodyModel& model);
 
   /// A -= sum over entries of effort direction . d2x/dq2, at the efforts and directions known last.
-  /// @param matrix (coordinates, coordinates).
+  /// @param state of the arm now. @param matrix A, (coordinates, coordinates).
   void add(const ArmState& state, MatrixX& matrix);
 
  private:

@@ -27,15 +27,16 @@ class BlockMatrix {
   /// Allocates only for more nodes or blocks than ever before.
   /// @param nodes disjoint, in the order that blocks get. @param a (n, n).
   void assign(std::span<const BlockNode> nodes, const Eigen::Ref<const MatrixX>& a);
-  /// @param a (n, n), compressed.
+  /// @param nodes as above. @param a (n, n), compressed.
   void assign(std::span<const BlockNode> nodes, const Eigen::SparseMatrix<double>& a);
   /// The blocks between some nodes of another matrix, with rows 0, 1, .. of its own.
+  /// @param whole the other matrix.
   /// @param members ascending; all neighbours of each are among them.
   /// @param number (whole.nodes(),) of each member its place in `members`.
   void assign(const BlockMatrix& whole, std::span<const int> members, std::span<const int> number);
 
-  /// Fills a dense matrix with the blocks between some nodes. @param own (members,) their rows in
-  /// it. @param a (k, k).
+  /// Fills a dense matrix with the blocks between some nodes. @param members,number as above,
+  /// of this matrix. @param own (members,) their rows in the dense one. @param a (k, k).
   void gather(std::span<const int> members, std::span<const int> number,
               std::span<const BlockNode> own, Eigen::Map<MatrixX> a) const;
 
@@ -52,8 +53,8 @@ class BlockMatrix {
     return block(diagonal_[static_cast<std::size_t>(j)]);
   }
   bool all_finite() const;
-  /// y += A(:, columns of node j) by, on rows as the nodes give them. @param by (3,), as many as
-  /// the node has. @param y (n,).
+  /// y += A(:, columns of node j) by, on rows as the nodes give them. @param j below nodes().
+  /// @param by (3,), as many as the node has. @param y (n,).
   void add_column(int j, const Vector3& by, Eigen::Ref<VectorX> y) const;
 
  private:

@@ -23,6 +23,7 @@ class SemidefiniteSolver {
   SemidefiniteSolver(int variables, int constraints, const QpSettings& settings);
 
   /// Solves a problem with finite data whose Hessian is not positive definite.
+  /// @param problem of the solver's size.
   /// @param result is written: optimal, infeasible, unbounded (with the ray), not-convex,
   ///   iteration-limit. Allocates nothing.
   void solve(const QuadraticProgram& problem, QpResult* result);

@@ -9,7 +9,7 @@
 namespace sinew::rigid {
 
 /// Points of a body in a pose. @param model of it. @param rest (n, 3) m, at rest, in the world.
-/// @param nodes (n, 3) m, written.
+/// @param pose of the body now. @param nodes (n, 3) m, written.
 void place_nodes(const RigidBodyModel& model, const Points& rest, const RigidPose& pose,
                  Points& nodes);
 

@@ -41,13 +41,15 @@ struct MassProperties {
   Matrix3 inertia = Matrix3::Identity() * 0;  ///< kg m^2, about the centre
 };
 
-/// Of a homogeneous solid. @param density kg/m^3. Throws what mesh::require_solid() does.
+/// Of a homogeneous solid. @param shape m, in its own frame. @param density kg/m^3. Throws what
+/// mesh::require_solid() does.
 MassProperties mass_properties(const Shape& shape, double density);
 
 /// The same as a shape of collision, in its own frame; of a Solid its hull. Throws
 /// Error(zero-volume) where that has none.
 collision::Shape solid(const Shape& shape);
-/// That shape elsewhere. @param position (3,) m, of its origin. @param rotation of its axes.
+/// That shape elsewhere. @param shape see solid(). @param position (3,) m, of its origin.
+/// @param rotation (3, 3), of its axes.
 collision::Shape placed(const Shape& shape, const Vector3& position, const Matrix3& rotation);
 
 /// The triangles that bound it, a Solid's hull's where it touches with that; in its own frame.

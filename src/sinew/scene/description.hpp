@@ -123,7 +123,7 @@ struct UrdfDescription {
   Vector3 position = Vector3::Zero();      ///< m, of the root link
   Matrix3 rotation = Matrix3::Identity();  ///< of its axes
   bool fixed = true;                       ///< the root link
-  std::optional<double> density;           ///< kg/m^3, of links without <inertial>
+  std::optional<double> density;           ///< kg/m^3, of links without `<inertial>`
   std::vector<Start> starts;
 };
 

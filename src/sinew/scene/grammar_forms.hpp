@@ -64,7 +64,8 @@ Form integer(int min, int max);
 Form boolean();
 Form text();
 Form file();
-/// @param words that may stand in place of a name.
+/// @param top_level_key of the list that has the name: "bodies". @param words that may stand in
+/// place of a name.
 Form reference(const char* top_level_key, std::vector<Choice> words = {});
 /// `short_for`: the key of the map form of the same value that a lone word stands for.
 Form choice(std::vector<Choice> choices, const char* short_for = "");

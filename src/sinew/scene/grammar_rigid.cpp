@@ -220,7 +220,7 @@ std::shared_ptr<const KeyTable> urdf_table() {
                  .forms = {quantity(density(), positive())},
                  .example = "1200 kg/m^3",
                  .description = "Of the collision geometry of moving links that have no "
-                                "<inertial>. Without: an error names them."}}});
+                                "`<inertial>`. Without: an error names them."}}});
 }
 
 std::shared_ptr<const KeyTable> motor_table() {

@@ -70,8 +70,11 @@ class Page {
         return linked_variants(form);
       case Shape::list:
         return fmt::format("list of {}", linked(form.items));
-      case Shape::names:
-        return fmt::format("names, each a {}", linked(form.items));
+      case Shape::names: {
+        const std::string each = linked(form.items);  // "map: ...", "a path", "an angle"
+        const bool has_article = each.starts_with("a ") || each.starts_with("an ");
+        return fmt::format("names, each {}{}", has_article ? "" : "a ", each);
+      }
       case Shape::choice:
         return words(form);
       default:

@@ -15,7 +15,7 @@
 
 namespace sinew::scene {
 
-/// A link that has no <inertial> and hangs on a fixed joint is part of its parent, as a file's
+/// A link that has no `<inertial>` and hangs on a fixed joint is part of its parent, as a file's
 /// frames and decorations are; what hangs on a fixed root by fixed joints is fixed; any other link
 /// is a body of its own.
 class UrdfBodies {

@@ -21,7 +21,7 @@ class UrdfTree {
   /// Throws what parse_urdf() does but for values. @param text,name see there.
   UrdfTree(std::string_view text, std::string name);
 
-  /// Elements <link> and <joint>, a link after its parent: joint k leads to link k + 1.
+  /// Elements `<link>` and `<joint>`, a link after its parent: joint k leads to link k + 1.
   const std::vector<pugi::xml_node>& links() const { return links_; }
   const std::vector<pugi::xml_node>& joints() const { return joints_; }
   /// Position of a link's name among links(), or -1.

@@ -36,7 +36,8 @@ class Actuation {
   void command(int actuator, Command command);
   /// @param commands (actuators,) those of owned ones wait for their release.
   void set_commands(const std::vector<Command>& commands);
-  /// @param owner chooses the efforts of these actuators until release().
+  /// @param owner chooses the efforts of these actuators until release(). @param actuators indices
+  /// of Model::actuators().
   void own(const void* owner, std::span<const int> actuators);
   /// They stay where they stand until they are told otherwise.
   void release(const void* owner);
@@ -72,15 +73,15 @@ void blend(std::span<step::ActuatorBlock> blocks, std::span<const ActuatorState>
            double fraction);
 
 /// Whether motors of joints are told where to go, and may not do so whatever it takes.
-/// @param blocks (actuators,) of a step.
+/// @param model of them. @param blocks (actuators,) of a step.
 bool limits_motors(const Model& model, std::span<const step::ActuatorBlock> blocks);
 /// Lets them do so. In statics nothing else may hold a chain of links: while it is on its way, the
 /// torques of an iteration say nothing about those of the equilibrium, and limits would let go of
 /// the chain. So the way is made without them first, which counts where they are kept in the end.
-/// @param blocks (actuators,) of a step.
+/// @param model of them. @param blocks (actuators,) of a step.
 void lift_motor_limits(const Model& model, std::span<step::ActuatorBlock> blocks);
-/// Whether motors' efforts are within limits. @param blocks (actuators,), with their limits.
-/// @param effort (rows,) N or Pa.
+/// Whether motors' efforts are within limits. @param model of them. @param blocks (actuators,),
+/// with their limits. @param effort (rows,) N or Pa.
 bool keeps_motor_limits(const Model& model, std::span<const step::ActuatorBlock> blocks,
                         std::span<const double> effort);
 

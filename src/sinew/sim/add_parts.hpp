@@ -44,6 +44,7 @@ int add_fem_body(ModelData& data, fem::FemBodySettings settings);
 int add_arm(ModelData& data, pcc::ArmSettings settings);
 int add_rigid_body(ModelData& data, rigid::RigidSettings settings);
 
+/// @param data gets both.
 /// @param actuator without the numbers of its constraint, row and state, which it gets here.
 /// @param constraint whose first row is the actuator's. @param place where it was written. Throws
 /// Error: duplicate-key, contradictory-limits, out-of-range (rate).

@@ -6,7 +6,7 @@ namespace sinew::sim {
 
 struct ModelData;
 
-/// Anchors three nodes of a body. @param body its number.
+/// Anchors three nodes of a body. @param data gets the anchors. @param body its number.
 void add_anchors(ModelData& data, int body);
 
 }  // namespace sinew::sim

@@ -50,7 +50,7 @@ class Bodies {
   /// Of |b + H^T effort|: the scale (N) to judge it by, and what rounding leaves of it, N.
   double force_scale() const;
   double rounding_floor() const;
-  /// b + H^T effort. @param result (all bodies' size(),) N.
+  /// b + H^T effort. @param effort (rows,) N. @param result (all bodies' size(),) N.
   void imbalance(std::span<const double> effort, VectorX& result);
   /// Takes a force away from b, see mechanics::StepSystem::lessen(). @param force (all bodies'
   /// size(),) N; empty: nothing any more.

@@ -12,6 +12,7 @@ namespace sinew::sim {
 struct ModelData;
 
 /// Anchors the bodies of a finished list that need joints to be held.
+/// @param data gets the anchors.
 /// @param places (bodies,) where each is written. Throws Error(nothing-fixed) in statics for a body
 /// that keeps a rigid motion.
 void hold_bodies(ModelData& data, const std::vector<Location>& places);

@@ -30,8 +30,9 @@ class ChamberSurface {
   void take(const std::vector<mesh::Face>& patch);
   /// Closes the openings of a patch that was taken in: each by a fan about the mean of its rim.
   void close(const std::vector<mesh::Face>& patch);
-  /// A surface of its own, whose vertices are attached; either orientation. @param outside for
-  /// vertices in no element. @param name of the chamber, for messages.
+  /// A surface of its own, whose vertices are attached; either orientation. @param surface
+  /// closed, m, at rest. @param outside for vertices in no element. @param name of the chamber, for
+  /// messages.
   void take(const mesh::Surface& surface, mesh::Outside outside, const std::string& name);
 
   const std::vector<mechanics::MaterialPoint>& points() const { return points_; }

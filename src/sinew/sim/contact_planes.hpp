@@ -33,8 +33,8 @@ class TouchingSurfaces;
 /// velocity leads to, and may follow the way that a solution finds (constraint::Contact).
 class ContactPlanes {
  public:
-  /// All must outlive it. @param rows gets the frames of contacts.
-  /// @param pool see TouchingSurfaces.
+  /// All must outlive it. @param model whose contacts they are. @param configuration of its bodies.
+  /// @param rows gets the frames of contacts. @param pool see TouchingSurfaces.
   ContactPlanes(const Model& model, const constraint::Configuration& configuration,
                 mechanics::RowValues& rows, ThreadPool& pool);
   ~ContactPlanes();
@@ -75,11 +75,12 @@ class ContactPlanes {
   bool may_turn() const { return turns_left_ > 0; }
   void end_round() { --turns_left_; }
   /// Turns a point's plane to that of the way to where the point will be. Whether that way meets
-  /// the surface. @param end (3,) m. @param pose of the surface.
+  /// the surface. @param contact,point which. @param end (3,) m. @param pose of the surface.
   bool turn_to(const constraint::ShapeContact& contact, std::size_t point, const Vector3& end,
                const Eigen::Isometry3d& pose);
   /// Turns a pushed point's plane to that of the way that it would go without its own force, where
-  /// that is another one. Whether it is. @param free (3,) m, the point's rows without its force.
+  /// that is another one. Whether it is. @param contact,point,pose as for turn_to(). @param free
+  /// (3,) m, the point's rows without its force.
   bool follow_way(const constraint::ShapeContact& contact, std::size_t point, const Vector3& free,
                   const Eigen::Isometry3d& pose);
 

@@ -26,7 +26,8 @@ class RowNumbering;
 /// part. After a motion was solved, correct() mends what was guessed wrong.
 class ContactRows {
  public:
-  /// All must outlive it. @param systems of the bodies. @param rows whose contacts it looks after.
+  /// All must outlive it. @param model,configuration,pool see ContactPlanes. @param systems of the
+  /// bodies. @param rows whose contacts it looks after.
   ContactRows(const Model& model, const constraint::Configuration& configuration,
               std::span<mechanics::StepSystem* const> systems, mechanics::RowValues& rows,
               ThreadPool& pool);

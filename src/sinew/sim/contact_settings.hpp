@@ -45,6 +45,7 @@ inline constexpr double kFineEdge = 0.5;
 /// too. But a ball or a capsule touches a deformable surface of edges up to kFineEdge of its radius
 /// at the nodes of that, exactly round. Of rigid bodies, meshes do; others touch as shapes. An arm
 /// touches with points alone.
+/// @param one,other the bodies, in either order.
 /// @param named nodes or points of one are named: they touch a rigid body's shape or hull.
 bool touch_by_surfaces(const mechanics::BodyModel& one, const mechanics::BodyModel& other,
                        bool named);

@@ -17,7 +17,7 @@ namespace sinew::sim {
 class Model;
 
 /// The body whose points may touch, and the body that they may touch; of a surface of the world the
-/// first alone. @param contact of Model::contacts().
+/// first alone. @param model of both. @param contact of Model::contacts().
 std::vector<std::string> touching_bodies(const Model& model, int contact);
 
 /// One point that may touch, after the last step.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sinew/core/error.hpp"
+#include "sinew/sim/row_motions.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/step_failure.hpp"
 
@@ -132,7 +133,7 @@ bool EventStepper::is_smooth(double end, double length) {
     if (block.row < 0) return false;
     if (block.kind == step::CommandKind::motion) return true;
     if (!stops(block) || run_.effort[static_cast<std::size_t>(block.row)] == 0.0) return false;
-    const double way = length * block.motion_scale * world.row_velocity(block.row);
+    const double way = length * block.motion_scale * row_velocity(world, block.row);
     return std::abs(way) > kStill * run_.model->size();
   });
 }

@@ -30,14 +30,16 @@ class Model;
 /// what anchors must not add to the robot, goes into the step's problem as blocks of stiffness.
 class GeometricStiffness {
  public:
-  /// All must outlive it. @param systems of the bodies. @param problem gets the blocks of stiffness
-  /// of anchors and couplings.
+  /// All must outlive it. @param model whose constraints they are. @param configuration of its
+  /// bodies. @param systems of the bodies. @param problem gets the blocks of stiffness of anchors
+  /// and couplings.
   GeometricStiffness(const Model& model, const constraint::Configuration& configuration,
                      std::span<mechanics::StepSystem* const> systems, step::StepProblem& problem);
 
   /// Before the bodies linearise: anchors stand in statics alone.
   void begin(const mechanics::LinearisationRequest& request);
-  /// Of which constraints the next add() takes it. @param effort (rows,) N, at which it does.
+  /// Of which constraints the next add() takes it. @param effort (rows,) N, at which it does; is
+  /// copied. @param constraints indices; must last until then.
   void choose(std::span<const double> effort, std::span<const int> constraints);
   /// Adds the curvature to the bodies: as it is, or, where the linearisation's tangent is not
   /// exact, what is never less and positive semi-definite; and the anchors.

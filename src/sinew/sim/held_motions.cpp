@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "sinew/linalg/dense_factor.hpp"
+#include "sinew/sim/row_motions.hpp"
 #include "sinew/sim/world.hpp"
 
 namespace sinew::sim {
@@ -30,7 +31,7 @@ int HeldMotions::invert() {
 void HeldMotions::move_rows() {
   std::vector<int> rows;
   for (const step::HeldRow& row : held_) rows.push_back(row.row);
-  const MatrixX forces = world_.row_forces(rows);
+  const MatrixX forces = row_forces(world_, rows);
   moved_.resize(forces.rows(), forces.cols());
   VectorX solved;
   for (Eigen::Index k = 0; k < forces.cols(); ++k) {
@@ -49,7 +50,7 @@ VectorX HeldMotions::gaps() const {
 }
 
 MatrixX HeldMotions::compliance(const std::vector<int>& rows) {
-  const MatrixX& whole = world_.compliance();
+  const MatrixX& whole = world_.problem().compliance;
   MatrixX result = whole(rows, rows);
   if (held_.empty()) return result;
   if (inverse_.size() == 0) invert();

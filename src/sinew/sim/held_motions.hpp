@@ -27,6 +27,7 @@ struct HeldAnswer {
 class HeldMotions {
  public:
   /// @param world linearised with the exact tangent, rows formed, and condensed. It must stay so.
+  /// @param held rows of its problem.
   HeldMotions(World& world, std::vector<step::HeldRow> held);
 
   std::span<const step::HeldRow> rows() const { return held_; }
@@ -39,7 +40,8 @@ class HeldMotions {
   MatrixX compliance(const std::vector<int>& rows);
   /// The motion T right. @param right,motion (all bodies' size(),) N and m.
   void solve(const VectorX& right, VectorX& motion);
-  /// The motion that also closes gaps, H motion + C efforts = -gap. @param gap (held,) m.
+  /// The motion that also closes gaps, H motion + C efforts = -gap. @param right (all bodies'
+  /// size(),) N. @param gap (held,) m. @param answer overwritten.
   void solve(const VectorX& right, const VectorX& gap, HeldAnswer& answer);
 
  private:

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sinew/core/error.hpp"
+#include "sinew/sim/row_motions.hpp"
 #include "sinew/sim/run.hpp"
 #include "sinew/sim/step_failure.hpp"
 
@@ -70,7 +71,7 @@ void Impact::form() {
   law_.bilaterals = problem.bilaterals;
   before_.setZero(law_.compliance.rows());
   const auto measure = [&](int row) {
-    return before_[row] = world.row_velocity(world.numbering().model_row_of(row));
+    return before_[row] = row_velocity(world, world.numbering().model_row_of(row));
   };
   for (step::BilateralBlock& block : law_.bilaterals) {
     measure(block.row);

@@ -18,11 +18,12 @@ struct JointLoad {
   double gap = 0.0;                  ///< m, largest distance of two points that should be one
 };
 
-/// After the last step. @param joint of Model::joints().
+/// After the last step. @param simulation of the model. @param joint of Model::joints().
 JointLoad joint_load(const Simulation& simulation, int joint);
 
 /// Of the second body in the first one's frame, 0 at rest; whole turns count.
-/// @param joint of Model::joints(). @param motion of JointModel::motions. @return rad or m.
+/// @param simulation,joint as for joint_load(). @param motion of JointModel::motions.
+/// @return rad or m.
 double joint_motion(const Simulation& simulation, int joint, std::size_t motion);
 
 }  // namespace sinew::sim

@@ -129,8 +129,8 @@ Linearisation linearise_here(Simulation& simulation, const LinearisationChoice& 
                 "the stiffness matrix is singular at this state",
                 "fix a region of every body, or try tangent='rotated'");
   }
-  result.compliance = world.compliance();
-  result.delta_free = world.delta_free();
+  result.compliance = world.problem().compliance;
+  result.delta_free = world.problem().delta_free;
   const RowNumbering& numbering = world.numbering();
   const std::vector<std::string> names = all_names(model);
   const auto count = result.delta_free.size();

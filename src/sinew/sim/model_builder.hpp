@@ -43,11 +43,12 @@ class ModelBuilder {
 
   /// All return the new part's position. Names are unique among their kind: Error(duplicate-key).
   /// Throws what fem::FemBodyModel does, and Error(missing-mass).
-  /// @param place where it is written.
+  /// @param settings of the body. @param place where it is written.
   int add_fem_body(fem::FemBodySettings settings, const Location& place = {});
   /// A constant-curvature arm. Throws what pcc::Arm does.
   int add_arm(pcc::ArmSettings settings);
-  /// Throws what rigid::RigidBodyModel does. @param place where it is written.
+  /// Throws what rigid::RigidBodyModel does. @param settings of the body. @param place where it is
+  /// written.
   int add_rigid_body(rigid::RigidSettings settings, const Location& place = {});
   /// Throws Error: too-few-points, degenerate-cable, point-outside-mesh, contradictory-limits,
   /// out-of-range (friction, tension).

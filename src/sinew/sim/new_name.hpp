@@ -11,7 +11,8 @@ struct Location;
 
 namespace sinew::sim {
 
-/// Throws Error(duplicate-key). @param kind of the parts, in the plural: "loads".
+/// Throws Error(duplicate-key). @param kind of the parts, in the plural: "loads". @param name,place
+///   of the part that has a name again, and where it is written.
 [[noreturn]] void throw_same_name(const char* kind, const std::string& name, const Location& place);
 
 /// Throws Error(duplicate-key) where a part has the name already.

@@ -191,7 +191,7 @@ NewtonReport NewtonStep::approach(double time_step) {
   go_back();
   world.linearise(part.request);
   world.form_rows(run_.effort, part.geometric);
-  world.keep_homotopy_residual(run_.effort);
+  world.homotopy().keep_residual(run_.effort);
   NewtonReport result;
   int iterations = 0;
   const auto solve = [&](double fraction) {
@@ -199,7 +199,7 @@ NewtonReport NewtonStep::approach(double time_step) {
     part.max_iterations = std::min(part.max_iterations, kIterationsInParts - iterations);
     commands = goal;
     blend(commands, start, 1.0 - fraction);
-    world.set_homotopy_fraction(fraction);
+    world.homotopy().set_fraction(fraction);
     result = run_.newton(nullptr, part);
     iterations += result.iterations;
     return converged(result);
@@ -207,7 +207,7 @@ NewtonReport NewtonStep::approach(double time_step) {
   take_load_steps(
       {.first = 0.5, .min = kMinPart, .min_at_first = kMinFirstPart}, solve,
       [&] { run_.keep(sound); }, go_back);
-  world.set_homotopy_fraction(0.0);
+  world.homotopy().set_fraction(0.0);
   commands = goal;
   result.iterations = iterations;
   return result;

@@ -108,7 +108,8 @@ class Observables {
   /// move.
   /// @param parts in the order in which `fill` writes them. @param fill writes their numbers.
   void add(std::vector<Observable> parts, Fill fill);
-  /// The same of numbers that are kept elsewhere. @param read returns where they are.
+  /// The same of numbers that are kept elsewhere. @param parts in the order in which these stand.
+  /// @param read returns where they are.
   void add_view(std::vector<Observable> parts, Read read);
 
   /// Where an observable is in list(): the first of that name, where an actuator and a contact have

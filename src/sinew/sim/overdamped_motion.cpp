@@ -126,7 +126,7 @@ bool OverdampedMotion::relax_from_here() {
 // @param sigma of the first step, 1/s^2. @param near m: nearer than this to what was left is back.
 OverdampedMotion::End OverdampedMotion::relax(double sigma, double near) {
   run_.watch.enter(SearchStage::overdamped);
-  run_.world.set_homotopy_fraction(0.0);
+  run_.world.homotopy().set_fraction(0.0);
   int& steps = search_.report().relaxation_steps;
   double settled = kSettling * run_.model->size();
   double moved_before = 0.0;

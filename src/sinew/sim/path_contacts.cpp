@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sinew/sim/row_motions.hpp"
 #include "sinew/sim/world.hpp"
 
 namespace sinew::sim {
@@ -67,7 +68,7 @@ PathContacts::PathContacts(World& world, HeldMotions& joints,
   }
   if (rows.empty()) return;
   for (const int row : rows) held_.push_back({row, 0.0});
-  forces_ = world.row_forces(rows);
+  forces_ = row_forces(world, rows);
   compliance_ = joints.compliance(rows);
   ask(touching, effort);
   factorise();

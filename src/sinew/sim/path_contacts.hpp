@@ -33,7 +33,8 @@ class PathContacts {
   /// (k,) of the problem, that the points have efforts in.
   std::span<const step::HeldRow> rows() const { return held_; }
   /// The robot's answer to a force. @param right (all bodies' size(),) N. @param closes whether
-  ///   joints and points also make good what they miss. @param efforts (k,) N.
+  ///   joints and points also make good what they miss. @param answer with the joints' efforts,
+  ///   overwritten. @param efforts (k,) N, of the points, overwritten.
   void solve(const VectorX& right, bool closes, HeldAnswer& answer, VectorX& efforts);
   /// Whether the points' forces do not follow from the motion.
   bool is_singular() const { return !held_.empty() && factor_.is_singular(); }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sinew/qp/friction_cone.hpp"
+#include "sinew/sim/row_motions.hpp"
 #include "sinew/sim/world.hpp"
 
 namespace sinew::sim {
@@ -56,7 +57,7 @@ qp::ComplementaryPath PathPredictor::begin(const HeldAnswer& by_load) {
     pushes.conservativeResizeLike(MatrixX::Zero(pushes.rows() + 2, points));
     pushes.bottomRows<2>().col(k) = push.tail<2>();
   }
-  const MatrixX forces = world_.row_forces(rows);
+  const MatrixX forces = row_forces(world_, rows);
   forces_.noalias() = forces * pushes;
   return {joints_.compliance(rows).topRows(points) * pushes,
           forces.leftCols(points).transpose() * by_load.motion, held_, value_,

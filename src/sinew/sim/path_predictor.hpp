@@ -39,7 +39,7 @@ class PathPredictor {
   /// @param by_rest,by_load T r and T dr/ds. @param before motion of the last step, the path going
   ///   on there; empty: the path begins as the load grows. @param length m, of the largest motion,
   ///   and @param max_load_fraction of the load, which end a step. @param effort (rows,) N.
-  ///   False where the path leads nowhere.
+  ///   @param result overwritten. False where the path leads nowhere; the result is then of no use.
   bool predict(const HeldAnswer& by_rest, const HeldAnswer& by_load, const VectorX& before,
                double length, double max_load_fraction, std::span<const double> effort,
                PathPrediction& result);

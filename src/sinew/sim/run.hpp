@@ -41,7 +41,7 @@ struct Run {
   /// Bases and loads as at `now`, and the world begins a step that ends there. Also after
   /// restore(), since a state has the loads of its own step. @param time_step s.
   void begin_world(double time_step);
-  /// From where the world is. @param chooser see solve_newton().
+  /// From where the world is. @param chooser,settings see solve_newton().
   NewtonReport newton(step::Controller* chooser, const NewtonSettings& settings);
   /// Reads off the state what actuators did.
   void finish_step();

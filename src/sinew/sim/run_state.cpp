@@ -90,7 +90,7 @@ void Run::restore(const State& state) {
 
 void Run::go_back() {
   restore(before);
-  world.set_homotopy_fraction(0.0);
+  world.homotopy().set_fraction(0.0);
 }
 
 Inputs Run::inputs() const {

@@ -100,7 +100,8 @@ class Simulation {
   const ActuatorState& actuator(int index) const;
   /// Moves a body's fixed nodes in the next step: turned about `centre` by a rotation vector and
   /// then shifted, from rest. An input, as commands are: where the nodes then are is state.
-  /// @param translation (3,) m. @param rotation (3,) rad. @param centre (3,) m, at rest.
+  /// @param body its number. @param translation (3,) m. @param rotation (3,) rad.
+  /// @param centre (3,) m, at rest.
   /// Throws Error: wrong-type (no finite elements), nothing-fixed, not-finite, bad-argument where
   /// the model moves this base.
   void move_base(int body, const Vector3& translation, const Vector3& rotation,

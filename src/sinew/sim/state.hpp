@@ -50,6 +50,7 @@ struct State {
 
   /// Calls visitor(name, numbers) for every list of numbers (std::vector<double>) and every single
   /// one (double), in an order that stays; `steps` alone is neither. @param state const or not.
+  /// @param visitor takes both kinds.
   template <class Self, class Visitor>
   static void visit(Self& state, Visitor&& visitor) {
     for (auto& body : state.bodies) visitor("body", body);

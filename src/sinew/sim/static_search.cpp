@@ -20,7 +20,7 @@ void StaticSearch::linearise(const mechanics::StepWeights& weights) {
 }
 
 bool StaticSearch::equilibrate(double fraction) {
-  run_.world.set_homotopy_fraction(fraction);
+  run_.world.homotopy().set_fraction(fraction);
   return step({}, settings_.tolerance, settings_.max_iterations);
 }
 

@@ -119,7 +119,7 @@ void StaticSolver::approach() {
   if (fraction == 0.0) return;
   const std::string known = describe(fraction);
   blend(0.0);
-  run_.world.set_homotopy_fraction(0.0);
+  run_.world.homotopy().set_fraction(0.0);
   if (!limit_point_ && motion_.relax_from_here()) return;
   fail_to_find(known);
 }
@@ -129,7 +129,7 @@ double StaticSolver::step_load() {
   run_.watch.enter(SearchStage::parts);
   run_.restore(run_.before);
   search_.linearise({});
-  run_.world.keep_homotopy_residual(run_.effort);
+  run_.world.homotopy().keep_residual(run_.effort);
   State sound = run_.before;  // of the last equilibrium
   report_.load_steps = 0;
   const auto solve = [&](double fraction) {
@@ -147,7 +147,7 @@ double StaticSolver::step_load() {
 // What is known of the last equilibrium on the way, where the world is.
 std::string StaticSolver::describe(double fraction) {
   search_.begin();
-  run_.world.set_homotopy_fraction(fraction);
+  run_.world.homotopy().set_fraction(fraction);
   search_.linearise({});
   if (run_.world.condense() == linalg::FactorStatus::singular) {
     return "the exact tangent of the last equilibrium on the way is singular";
@@ -175,7 +175,7 @@ std::string StaticSolver::describe_limit_point() {
     if (model.type != ActuatorType::pressure || goal.kind != CommandKind::effort) continue;
     const double reached = run_.effort[static_cast<std::size_t>(model.row)];
     const double grown = run_.world.delta()[model.row];
-    const double compliance = run_.world.compliance()(model.row, model.row);
+    const double compliance = run_.world.problem().compliance(model.row, model.row);
     const bool flat = compliance < 0.0 || compliance * reached > kFlat * grown;
     const bool short_of = std::abs(reached) < std::abs(goal.value);
     if (!(reached * grown > 0.0) || !flat || !short_of) continue;

@@ -7,6 +7,7 @@
 #include "sinew/constraint/shape_contact.hpp"
 #include "sinew/qp/friction_cone.hpp"
 #include "sinew/sim/model.hpp"
+#include "sinew/sim/row_motions.hpp"
 #include "sinew/sim/world.hpp"
 
 namespace sinew::sim {
@@ -127,7 +128,7 @@ bool StrikingPoints::drift(std::span<const double> effort) const {
   return std::ranges::any_of(points_, [&](const Point& point) {
     const bool pressed =
         world_.contacts().is_closed(point.row) && effort[static_cast<std::size_t>(point.row)] > 0.0;
-    return pressed && std::abs(world_.row_velocity(point.row)) > still_;
+    return pressed && std::abs(row_velocity(world_, point.row)) > still_;
   });
 }
 

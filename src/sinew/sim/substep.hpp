@@ -17,6 +17,7 @@ class Substep {
   /// Keeps the state in Run::before, and begins. After read_commands().
   void begin(double time_step);
   /// Throws Error, and what a watcher throws; the run is then as it was before begin().
+  /// @param time_step s, as for begin().
   /// @param divisible smaller parts are tried where this one finds no end.
   void solve(double time_step, bool divisible = false);
   /// Velocities follow, and what the part came to is counted. @return error estimate, m.

@@ -17,7 +17,7 @@ class Model;
 /// The factors of loads, and where bases are asked to be.
 class Surroundings {
  public:
-  /// Both outlive it. @param bodies of the model.
+  /// Both outlive it. @param model with the loads and motions of bases. @param bodies of the model.
   Surroundings(const Model& model, Bodies& bodies);
 
   /// (loads,) over time.

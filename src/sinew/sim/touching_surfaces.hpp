@@ -29,14 +29,15 @@ namespace sinew::sim {
 /// forces alone.
 class TouchingSurfaces {
  public:
-  /// All must outlive it. @param rows gets the points.
+  /// All must outlive it. @param contact of the surfaces. @param configuration of the bodies.
+  /// @param rows gets the points. @param pool shares the work of the search.
   TouchingSurfaces(const constraint::SurfaceContact& contact,
                    const constraint::Configuration& configuration, mechanics::RowValues& rows,
                    ThreadPool& pool);
 
   const constraint::SurfaceContact& contact() const { return contact_; }
-  /// Takes the pairs nearer than `reach` (m) for the step's points. Forces of the last step go to
-  /// those that are the same. @param effort (rows,) N, in and out.
+  /// Takes the pairs nearer than `reach` for the step's points. Forces of the last step go to those
+  /// that are the same. @param reach m. @param effort (rows,) N, in and out.
   void begin_step(double reach, std::span<double> effort);
   /// Looks at where a proposed motion leads. @param systems of the bodies.
   void propose(std::span<mechanics::StepSystem* const> systems);

@@ -12,7 +12,7 @@ namespace sinew::sim {
 /// While it lives, steps and searches tell the watcher how far they are (Simulation::watch()).
 class Watched {
  public:
-  /// @param simulation outlives it.
+  /// @param simulation outlives it. @param watcher see Simulation::watch().
   Watched(Simulation& simulation, StepWatcher watcher) : simulation_(simulation) {
     simulation_.watch(std::move(watcher));
   }

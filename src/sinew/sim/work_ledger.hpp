@@ -24,6 +24,7 @@ class WorkLedger {
   const EnergyLedger& sums() const { return sums_; }
   void set(const EnergyLedger& sums) { sums_ = sums; }
   /// After the actuators of a step were read: what it came to.
+  /// @param model,world,actuation of the run, as the step left them.
   /// @param effort (rows,) N or Pa, that acted through it.
   void count(const Model& model, const World& world, const Actuation& actuation,
              std::span<const double> effort);

@@ -5,51 +5,23 @@
 #include <utility>
 
 #include "sinew/constraint/cable.hpp"
-#include "sinew/constraint/joint.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/stage_clock.hpp"
+#include "sinew/sim/standing_blocks.hpp"
 #include "sinew/step/step_solver.hpp"
 
 namespace sinew::sim {
 
-namespace {
-
-mechanics::RowValues rows_of(const Model& model) {
-  mechanics::RowValues rows;
-  rows.resize(model.rows());
-  return rows;
-}
-
-// With the blocks that stay for all steps, but for those of stiffness.
-step::StepProblem problem_of(const Model& model) {
-  step::StepProblem problem;
-  problem.size = model.size();
-  for (const GuideModel& guide : model.guides()) {
-    problem.capstans.push_back({guide.row, guide.actuator, 0.0, 0.0});
-  }
-  for (std::size_t j = 0; j < model.joints().size(); ++j) {
-    const constraint::Constraint& held = model.constraint(model.joints()[j].constraint);
-    const constraint::Joint* joint = model.joint(static_cast<int>(j));
-    for (int row = held.first_row(); row < held.first_row() + held.row_count(); ++row) {
-      const bool turn = joint != nullptr && joint->is_turn(row);
-      problem.bilaterals.push_back({row, 0.0, turn ? model.size() : 1.0});
-    }
-  }
-  return problem;
-}
-
-}  // namespace
-
 World::World(std::shared_ptr<const Model> model, ThreadPool& pool)
     : model_(std::move(model)),
       bodies_(*model_, pool),
+      homotopy_(bodies_),
       configuration_(bodies_.all()),
-      rows_(rows_of(*model_)),
-      problem_(problem_of(*model_)),
+      rows_(model_->rows()),
       joints_(*model_),
+      problem_(standing_blocks(*model_, joints_.block_count())),
       contacts_(*model_, configuration_, bodies_.systems(), rows_, pool),
       stiffness_(*model_, configuration_, bodies_.systems(), problem_) {
-  problem_.actuators.resize(model_->actuators().size() + joints_.block_count());
   number_rows();
   contacts_.planes().find_points(contacts_.reach(0.0, 0.0), {});
   place_contacts(0.0, 0.0);
@@ -85,17 +57,6 @@ void World::take_closed_points() {
   number_rows();
 }
 
-double World::row_velocity(int row) const {
-  const mechanics::RowPattern& pattern = model_->rows();
-  const auto first = static_cast<std::size_t>(pattern.row_start[static_cast<std::size_t>(row)]);
-  const auto end = static_cast<std::size_t>(pattern.row_start[static_cast<std::size_t>(row) + 1]);
-  double rate = 0.0;
-  for (std::size_t e = first; e < end; ++e) {
-    rate += rows_.direction[e].dot(configuration_.velocity(pattern.site[e]));
-  }
-  return rate;
-}
-
 void World::linearise(const mechanics::LinearisationRequest& request) {
   stiffness_.begin(request);
   bodies_.linearise(request);
@@ -118,36 +79,11 @@ void World::form_rows(std::span<const double> effort, std::span<const int> geome
   stiffness_.choose(effort, geometric);
 }
 
-MatrixX World::row_forces(std::span<const int> rows) {
-  std::vector<double> unit(numbering_.problem_rows().size(), 0.0);
-  VectorX rest, row;
-  bodies_.imbalance(unit, rest);
-  MatrixX result(rest.size(), static_cast<Eigen::Index>(rows.size()));
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    double& own = unit[static_cast<std::size_t>(numbering_.model_row_of(rows[k]))];
-    own = 1.0;
-    bodies_.imbalance(unit, row);
-    own = 0.0;
-    result.col(static_cast<Eigen::Index>(k)) = row - rest;
-  }
-  return result;
-}
-
 void World::hold_friction() {
   if (problem_.capstans.empty() && joints_.block_count() == 0) return;
   const VectorX& delta = measure_delta();
   for (step::CapstanBlock& block : problem_.capstans) block.held = delta[block.row];
   joints_.form_blocks(delta, std::span(problem_.actuators).subspan(model_->actuators().size()));
-}
-
-void World::keep_homotopy_residual(std::span<const double> effort) {
-  bodies_.imbalance(effort, homotopy_residual_);
-}
-
-void World::set_homotopy_fraction(double fraction) {
-  if (fraction == 0.0) return bodies_.lessen({});
-  lessened_ = fraction * homotopy_residual_;
-  bodies_.lessen({lessened_.data(), static_cast<std::size_t>(lessened_.size())});
 }
 
 bool World::is_stable() const {

@@ -12,6 +12,7 @@
 #include "sinew/sim/bodies.hpp"
 #include "sinew/sim/contact_rows.hpp"
 #include "sinew/sim/geometric_stiffness.hpp"
+#include "sinew/sim/homotopy.hpp"
 #include "sinew/sim/joint_rows.hpp"
 #include "sinew/sim/row_numbering.hpp"
 #include "sinew/step/law_status.hpp"
@@ -61,10 +62,6 @@ class World {
   step::LawStatus solve_step(step::StepSolver& solver, step::Controller* controller,
                              std::span<double> effort, StageClock& clock);
 
-  /// For load stepping: keeps b + H^T effort of the current linearisation.
-  void keep_homotopy_residual(std::span<const double> effort);
-  /// From the next linearisation on, b is lessened by this fraction of what was kept; 0 ends that.
-  void set_homotopy_fraction(double fraction);
   /// Of all bodies, at the last condensation.
   const mechanics::Inertia& inertia() const { return inertia_; }
   /// Whether the robot is stable with its drives and held rows, as far as its linearisation tells.
@@ -84,23 +81,18 @@ class World {
   const RowNumbering& numbering() const { return numbering_; }
   /// From where cables stick to their guides in this step, and joints to their friction.
   void hold_friction();
-  const MatrixX& compliance() const { return problem_.compliance; }  ///< W of the problem, m/N
-  const VectorX& delta_free() const { return problem_.delta_free; }  ///< of the problem, m
-  const VectorX& delta() const { return rows_.delta; }               ///< (rows,) m, as last formed
+  const VectorX& delta() const { return rows_.delta; }  ///< (rows,) m, as last formed
   /// delta at the current configuration, without forming the rows anew for the bodies.
   const VectorX& measure_delta();
   const mechanics::RowValues& rows() const { return rows_; }
-  /// Rate of a row's motion, H v, m/s. @param row of the model, neither of a contact between
-  /// surfaces; formed.
-  double row_velocity(int row) const;
-  /// (all bodies' size(), k) columns of H^T. @param rows (k,) of the problem; formed.
-  MatrixX row_forces(std::span<const int> rows);
 
   const ContactRows& contacts() const { return contacts_; }
   ContactRows& contacts() { return contacts_; }
   const JointRows& joints() const { return joints_; }
   JointRows& joints() { return joints_; }
   const constraint::Configuration& configuration() const { return configuration_; }
+  Homotopy& homotopy() { return homotopy_; }
+  const Model& model() const { return *model_; }
   Bodies& bodies() { return bodies_; }
   const Bodies& bodies() const { return bodies_; }
 
@@ -116,15 +108,15 @@ class World {
 
   std::shared_ptr<const Model> model_;
   Bodies bodies_;
+  Homotopy homotopy_;
   constraint::Configuration configuration_;
   mechanics::RowValues rows_;
+  JointRows joints_;
   step::StepProblem problem_;
   RowNumbering numbering_;
-  JointRows joints_;
   ContactRows contacts_;
   GeometricStiffness stiffness_;
   mechanics::Inertia inertia_;
-  VectorX homotopy_residual_, lessened_;   // (all bodies' size(),) N, of load stepping
   std::vector<double> effort_before_;      // (rows,) N, of the last step or iteration
   linalg::AlignedNumbers problem_effort_;  // (rows of the problem,) N, of the last solution
   linalg::AlignedNumbers scratch_;         // (rows of the problem,)

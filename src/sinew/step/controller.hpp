@@ -22,12 +22,12 @@ class Controller {
   virtual LawStatus choose(const StepProblem& problem, const Response& response,
                            std::span<double> effort) = 0;
   /// How far the motions at the end of the step are from what the controller wants, m.
-  /// @param motion (rows,) delta.
+  /// @param problem of the step. @param motion (rows,) delta.
   virtual double miss(const StepProblem& problem, const VectorX& motion) const = 0;
   /// A lesser miss is not worth a change of efforts, m.
   virtual double negligible_miss() const { return 0.0; }
   /// What came of choose(). @param motion (rows,) delta, as everything on the robot obeys its law.
-  /// @param response,effort as for choose(); efforts may differ from those chosen.
+  /// @param problem,response,effort as for choose(); efforts may differ from those chosen.
   virtual void accept(const StepProblem& problem, const Response& response, const VectorX& motion,
                       std::span<const double> effort) = 0;
   /// Called before each step: what helped to solve the last one is forgotten, so that a step
@@ -36,7 +36,7 @@ class Controller {
 
   /// What it remembers from one step to the next, as numbers: part of the simulation's state.
   virtual std::size_t memory_size() const { return 0; }
-  /// @param memory (memory_size(),).
+  /// Into and from (memory_size(),) numbers.
   virtual void save_memory(std::span<double>) const {}
   virtual void load_memory(std::span<const double>) {}
   /// Remembers nothing, as at the start.

@@ -1,7 +1,6 @@
 /// @file
 /// Rows whose efforts follow from those of all others, by linear equations: held rows, drives'
-/// curves and blocks of
-/// stiffness.
+/// curves and blocks of stiffness.
 #pragma once
 
 #include <span>
@@ -44,7 +43,7 @@ class Followers {
   void take_out(const StepProblem& problem, const VectorX& free, std::span<const int> others,
                 Eigen::Ref<MatrixX> compliance, Eigen::Ref<VectorX> motion);
   /// Efforts of the rows from those of the others; curves are linearised there next.
-  /// @param problem,others as for take_out(). @param effort (rows,) N, those of the rows are
+  /// @param problem,free,others as for take_out(). @param effort (rows,) N, those of the rows are
   /// written. @return the farthest that a curve was left, relative to the effort.
   double close(const StepProblem& problem, const VectorX& free, std::span<const int> others,
                std::span<double> effort);

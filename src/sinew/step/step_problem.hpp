@@ -114,7 +114,8 @@ struct StepProblem {
 };
 
 /// Calls visit(block, tension) for all capstans, cable after cable from its pull point on.
-/// @param effort (rows,) N.
+/// @param problem of the step. @param effort (rows,) N.
+/// @param visit takes a CapstanBlock and its GuideTension.
 template <class Visit>
 void for_each_guide(const StepProblem& problem, std::span<const double> effort, Visit&& visit) {
   int cable = -1;

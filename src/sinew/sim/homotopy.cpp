@@ -1,0 +1,17 @@
+#include "sinew/sim/homotopy.hpp"
+
+#include "sinew/sim/bodies.hpp"
+
+namespace sinew::sim {
+
+void Homotopy::keep_residual(std::span<const double> effort) {
+  bodies_.imbalance(effort, residual_);
+}
+
+void Homotopy::set_fraction(double fraction) {
+  if (fraction == 0.0) return bodies_.lessen({});
+  lessened_ = fraction * residual_;
+  bodies_.lessen({lessened_.data(), static_cast<std::size_t>(lessened_.size())});
+}
+
+}  // namespace sinew::sim

@@ -1,0 +1,36 @@
+#include "sinew/sim/row_motions.hpp"
+
+#include <vector>
+
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/world.hpp"
+
+namespace sinew::sim {
+
+double row_velocity(const World& world, int row) {
+  const mechanics::RowPattern& pattern = world.model().rows();
+  const auto first = static_cast<std::size_t>(pattern.row_start[static_cast<std::size_t>(row)]);
+  const auto end = static_cast<std::size_t>(pattern.row_start[static_cast<std::size_t>(row) + 1]);
+  double rate = 0.0;
+  for (std::size_t e = first; e < end; ++e) {
+    rate += world.rows().direction[e].dot(world.configuration().velocity(pattern.site[e]));
+  }
+  return rate;
+}
+
+MatrixX row_forces(World& world, std::span<const int> rows) {
+  std::vector<double> unit(world.numbering().problem_rows().size(), 0.0);
+  VectorX rest, row;
+  world.bodies().imbalance(unit, rest);
+  MatrixX result(rest.size(), static_cast<Eigen::Index>(rows.size()));
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    double& own = unit[static_cast<std::size_t>(world.numbering().model_row_of(rows[k]))];
+    own = 1.0;
+    world.bodies().imbalance(unit, row);
+    own = 0.0;
+    result.col(static_cast<Eigen::Index>(k)) = row - rest;
+  }
+  return result;
+}
+
+}  // namespace sinew::sim

@@ -1,0 +1,21 @@
+/// @file
+/// What rows do to bodies, and bodies to rows, one row at a time.
+#pragma once
+
+#include <span>
+
+#include "sinew/core/types.hpp"
+
+namespace sinew::sim {
+
+class World;
+
+/// Rate of a row's motion, H v, m/s.
+/// @param world its rows formed. @param row of the model, neither of a contact between surfaces.
+double row_velocity(const World& world, int row);
+
+/// (all bodies' size(), k) columns of H^T.
+/// @param world its rows formed. @param rows (k,) of the problem.
+MatrixX row_forces(World& world, std::span<const int> rows);
+
+}  // namespace sinew::sim
