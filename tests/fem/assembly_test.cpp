@@ -244,7 +244,7 @@ TEST(Assembly, ForcesAndMatrixTurnWithTheBody) {
   Assembly assembly(model, pool);
   const Points positions = moved(*mesh, kEdge, 0.1);
   const Matrix3 turn = Eigen::AngleAxisd(2.0, Vector3(1, 2, 3).normalized()).toRotationMatrix();
-  for (const Tangent tangent : {Tangent::rotated, Tangent::exact}) {
+  for (const Tangent tangent : {Tangent::rotated, Tangent::exact, Tangent::rates}) {
     assembly.evaluate(positions, {.tangent = tangent});
     const MatrixX before = dense_matrix(assembly);
     MatrixX turns = MatrixX::Zero(before.rows(), before.cols());
@@ -257,6 +257,51 @@ TEST(Assembly, ForcesAndMatrixTurnWithTheBody) {
     EXPECT_LT((dense_matrix(assembly) - turns * before * turns.transpose()).norm(),
               1e-12 * before.norm());
   }
+}
+
+/// v . K v = V (2 mu D : D + lambda (tr D)^2) with D the rate of strain of the present shape, of a
+/// body that is far from its shape at rest; a spin has none.
+TEST(Assembly, RatesOfStrainAreResistedAndSpinsAreNot) {
+  const auto mesh = block_mesh(1, 1, 1, kEdge, 0.1);
+  FemModelSettings settings = law_settings(*mesh);
+  settings.fixed_nodes.clear();
+  const auto model = std::make_shared<const FemModel>(mesh, settings);
+  ThreadPool pool(1);
+  Assembly assembly(model, pool);
+  const Points x = moved(*mesh, kEdge, 0.2);
+  assembly.evaluate(x, {.tangent = Tangent::rates});
+  ASSERT_GT(assembly.minimum_volume_ratio(), 0.1);
+  const MatrixX matrix = dense_matrix(assembly);
+  const auto on_nodes = [&](const Points& v) {
+    VectorX numbers(3 * v.rows());
+    for (Eigen::Index i = 0; i < v.rows(); ++i) numbers.segment<3>(3 * i) = v.row(i).transpose();
+    return numbers;
+  };
+  Points spin = x;
+  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+    spin.row(i) = Vector3(1, -2, 3).cross(Vector3(x.row(i).transpose())).transpose();
+  }
+  EXPECT_LT((matrix * on_nodes(spin)).norm(), 1e-13 * matrix.norm() * on_nodes(spin).norm());
+
+  const Points v = moved(*mesh, kEdge, 0.3) - mesh->nodes;
+  const double mu = 450e3 / (2 * 1.45), lambda = 450e3 * 0.45 / (1.45 * 0.1);
+  double power = 0.0;
+  for (const auto& t : mesh->tetrahedra) {
+    Matrix3 rest, present, rate;
+    for (int a = 0; a < 3; ++a) {
+      const auto edge = [&](const Points& of) {
+        return Vector3((of.row(t[static_cast<std::size_t>(a) + 1]) - of.row(t[0])).transpose());
+      };
+      rest.col(a) = edge(mesh->nodes);
+      present.col(a) = edge(x);
+      rate.col(a) = edge(v);
+    }
+    const Matrix3 l = rate * present.inverse();
+    const Matrix3 d = 0.5 * (l + l.transpose());
+    const double trace = d.trace();
+    power += rest.determinant() / 6.0 * (2 * mu * d.squaredNorm() + lambda * trace * trace);
+  }
+  EXPECT_NEAR(on_nodes(v).dot(matrix * on_nodes(v)), power, 1e-12 * power);
 }
 
 /// Affine patch test: in a body of one material under a homogeneous deformation, interior nodes of

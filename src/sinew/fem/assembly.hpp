@@ -23,8 +23,8 @@ enum class Tangent {
   /// The exact derivative of each element (of hyperelastic laws: of each point) projected onto the
   /// positive semi-definite matrices: never less than the exact one.
   projected,
-  /// What rates of strain are resisted with: as rotated, but of hyperelastic laws blind to spins of
-  /// each point (material::Projection::rates).
+  /// What rates of strain are resisted with: blind to spins of each point, of hyperelastic laws
+  /// otherwise as rotated (material::Projection::rates).
   rates,
   exact,  ///< second derivative of the energy, rotation's derivative included; may be indefinite
 };

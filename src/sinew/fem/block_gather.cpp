@@ -18,6 +18,11 @@ struct Block {
   SINEW_INLINE void add(double scale, const Block& other) {
     for (int c = 0; c < 3; ++c) column[c] += scale * other.column[c];
   }
+  /// += (trace of other) I: of sum h_a h_b^T, the sum of h_a . h_b.
+  SINEW_INLINE void add_trace(const Block& other) {
+    const double trace = (other.column[0][0] + other.column[1][1]) + other.column[2][2];
+    for (int c = 0; c < 3; ++c) column[c][c] += trace;
+  }
   SINEW_INLINE void add_transposed(const Block& other) {
     const Quad &c0 = other.column[0], &c1 = other.column[1], &c2 = other.column[2], zero = {};
     const Quad even = __builtin_shufflevector(c0, c1, 0, 4, 2, 6);
@@ -65,14 +70,14 @@ SINEW_INLINE Block rotation_terms(const GatherLists& lists, std::int32_t begin, 
   return sum;
 }
 
-/// K without its constant diagonal.
+/// K without its constant diagonal, which that of rates does not have.
 template <Tangent tangent>
 SINEW_INLINE Block gather_block(const GatherLists& lists, std::size_t visit,
                                 const double* records) {
-  constexpr int kRecord = tangent == Tangent::rotated ? kRotatedRecord : kExactRecord;
+  constexpr int kRecord = tangent == Tangent::exact ? kExactRecord : kRotatedRecord;
   const std::int32_t first = lists.contribution_start[visit];
   Block result;
-  if constexpr (tangent != Tangent::rotated) {
+  if constexpr (tangent == Tangent::exact) {
     result = rotation_terms(lists, first, lists.contribution_start[visit + 1], records);
   }
   std::int32_t begin = first;
@@ -80,7 +85,8 @@ SINEW_INLINE Block gather_block(const GatherLists& lists, std::size_t visit,
     const ContributionRun& run = lists.runs[static_cast<std::size_t>(r)];
     const Block products = outer_products<kRecord>(lists, begin, run.end, records);
     result.add(run.ratio, products);
-    if constexpr (tangent == Tangent::rotated) result.add_transposed(products);
+    if constexpr (tangent != Tangent::exact) result.add_transposed(products);
+    if constexpr (tangent == Tangent::rates) result.add_trace(products);
     begin = run.end;
   }
   return result;
@@ -116,7 +122,9 @@ void gather_columns(const GatherLists& lists, const linalg::BlockPattern& patter
                     int end, const double* records, const double* solids, const double* patch_rows,
                     const AssemblyWeights& weights, const double* node_mass,
                     const double* block_mass, double* matrix) {
-  const double diagonal = weights.stiffness * (tangent == Tangent::rotated ? 1.0 : 2.0);
+  constexpr double kDiagonal =
+      tangent == Tangent::exact ? 2.0 : (tangent == Tangent::rotated ? 1.0 : 0.0);
+  const double diagonal = weights.stiffness * kDiagonal;
   for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
     const auto j = static_cast<std::size_t>(lists.column[k]);
     const auto first = static_cast<std::size_t>(pattern.column_start[j]);
@@ -144,9 +152,12 @@ void gather_blocks(const GatherLists& lists, const linalg::BlockPattern& pattern
   if (weights.tangent == Tangent::exact || weights.tangent == Tangent::projected) {
     gather_columns<Tangent::exact>(lists, pattern, begin, end, records, solids, patch_rows, weights,
                                    node_mass, block_mass, matrix);
-  } else if (weights.tangent == Tangent::rotated || weights.tangent == Tangent::rates) {
+  } else if (weights.tangent == Tangent::rotated) {
     gather_columns<Tangent::rotated>(lists, pattern, begin, end, records, solids, patch_rows,
                                      weights, node_mass, block_mass, matrix);
+  } else if (weights.tangent == Tangent::rates) {
+    gather_columns<Tangent::rates>(lists, pattern, begin, end, records, solids, patch_rows, weights,
+                                   node_mass, block_mass, matrix);
   }
 }
 

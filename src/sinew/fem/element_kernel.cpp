@@ -106,6 +106,19 @@ SINEW_INLINE double sum(const Lanes& value) {
          ((value[4] + value[5]) + (value[6] + value[7]));
 }
 
+/// F^-T, which takes gradients to the present shape; F of an element that is crushed to less than a
+/// tenth of its volume counts as of that.
+SINEW_INLINE Lanes3x3 to_present(const Lanes3x3& f) {
+  constexpr double kMinRatio = 0.1;
+  const Lanes3x3 cof = material::cofactor(f);
+  const Lanes ratio = material::maximum(material::determinant(f, cof), lanes(kMinRatio));
+  Lanes3x3 result;
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) result[r][c] = cof[r][c] / ratio;
+  }
+  return result;
+}
+
 template <Law law, Tangent tangent>
 void evaluate(const ElementBatches& elements, int begin, int end, const double* points,
               const ElementOutput& output, LaneMinimum& minimum) {
@@ -119,9 +132,12 @@ void evaluate(const ElementBatches& elements, int begin, int end, const double* 
         .store(output.forces + kForceRecord * kLanes * b, kForceRecord);
     output.energy[b] = sum(volume * response.energy);
     minimum.see(response.determinant, b);
-    if constexpr (tangent != Tangent::none) {
+    if constexpr (tangent == Tangent::rates && law == Law::corotational) {
+      on_gradients(to_present(f), batch, row(batch.root))
+          .store(output.records + kRotatedRecord * kLanes * b, kRotatedRecord);
+    } else if constexpr (tangent != Tangent::none) {
       const NodeVectors h = on_gradients(response.rotation, batch, row(batch.root));
-      if constexpr (tangent == Tangent::rotated) {
+      if constexpr (tangent == Tangent::rotated || tangent == Tangent::rates) {
         h.store(output.records + kRotatedRecord * kLanes * b, kRotatedRecord);
       } else {
         const material::ExactTangent full =
@@ -152,8 +168,10 @@ SmallestRatio evaluate_batches(const ElementBatches& elements, int begin, int en
       evaluate_laws<Tangent::none>(elements, begin, end, points, output, minimum);
       break;
     case Tangent::rotated:
-    case Tangent::rates:  // turns of the material by small strains are left
       evaluate_laws<Tangent::rotated>(elements, begin, end, points, output, minimum);
+      break;
+    case Tangent::rates:
+      evaluate_laws<Tangent::rates>(elements, begin, end, points, output, minimum);
       break;
     case Tangent::projected:
       evaluate_laws<Tangent::projected>(elements, begin, end, points, output, minimum);

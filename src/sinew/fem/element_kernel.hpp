@@ -4,7 +4,11 @@
 ///   K_ab = V mu (g_a . g_b) I + h_b h_a^T + (lambda/mu) h_a h_b^T,
 /// and the exact one, with p_a = G h_a, G and kappa as in material/response.hpp,
 ///   K_ab = 2 V mu (g_a . g_b) I + (lambda/mu) h_a h_b^T + (kappa/mu) ((h_a . p_b) G - p_b p_a^T).
-/// The first term does not change, so that an element's record holds a few vectors alone.
+/// The first term does not change, so that an element's record holds a few vectors alone. What
+/// rates of strain D = sym(sum v_a (F^-T g_a)^T) of corotational elements are resisted with is
+///   K_ab = (h_a . h_b) I + h_b h_a^T + (lambda/mu) h_a h_b^T,   h_a = sqrt(V mu) F^-T g_a:
+/// v_b . K_ba v_a sums to V (2 mu D : D + lambda (tr D)^2), which no spin of any shape changes
+/// (Kelvin-Voigt: Malvern, Introduction to the Mechanics of a Continuous Medium, 1969, sec. 6.4).
 #pragma once
 
 #include <cstdint>
