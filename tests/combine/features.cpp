@@ -161,6 +161,7 @@ std::vector<Feature> list_features() {
       {"controller", or_none(words(variants(items("controllers"), "type")))},
       {"regularisation", words(map_of(controller, "regularisation"), "of")},
       {"membrane", switched},
+      {"contact_zones", switched},
   };
 }
 

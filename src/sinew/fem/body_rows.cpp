@@ -22,10 +22,13 @@ void BodyRows::take_transient(const mechanics::RowValues& rows) {
   transient_.row_start.assign(1, 0);
   transient_.node.clear();
   transient_values_.clear();
-  transient_world_.clear();
+  members_.clear();
+  member_start_.assign(1, 0);
   const auto& own = model_.rows();
   for (std::size_t k = model_.fixed_rows(); k < own.size(); k += 3) {
-    if (rows.active[static_cast<std::size_t>(own[k])] != 0) add_group(own[k], rows);
+    const std::int32_t row = own[k];
+    if (rows.active[static_cast<std::size_t>(row)] == 0 || !rows.groups.leads(row)) continue;
+    add_triple(row, rows);
   }
 }
 
@@ -50,31 +53,51 @@ void BodyRows::each_node(std::int32_t entry, const mechanics::RowValues& rows, V
   for (std::size_t k = 0; k < at.nodes.size(); ++k) see(at.nodes[k], at.weights[k]);
 }
 
-// The three rows of a group are on the same sites.
-void BodyRows::add_group(std::int32_t row, const mechanics::RowValues& rows) {
+// The free nodes of a row and of those that share with it, ascending.
+void BodyRows::list_nodes(std::int32_t row, const mechanics::RowValues& rows) {
   const auto& starts = model_.world_rows().row_start;
-  const auto start = [&](int k) { return starts[static_cast<std::size_t>(row + k)]; };
   nodes_.clear();
-  for (std::int32_t entry = start(0); entry < start(1); ++entry) {
-    each_node(entry, rows, [&](std::int32_t node, double) { nodes_.push_back(node); });
-  }
+  rows.groups.for_each_member(row, [&](int member, double) {
+    for (std::int32_t entry = starts[static_cast<std::size_t>(member)];
+         entry < starts[static_cast<std::size_t>(member) + 1]; ++entry) {
+      each_node(entry, rows, [&](std::int32_t node, double) { nodes_.push_back(node); });
+    }
+  });
   std::ranges::sort(nodes_);
   nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
+}
+
+// The three rows of a point are on the same sites.
+void BodyRows::add_triple(std::int32_t row, const mechanics::RowValues& rows) {
+  const auto& starts = model_.world_rows().row_start;
+  list_nodes(row, rows);
   for (int r = 0; r < 3; ++r) {
     const std::size_t first = transient_values_.size();
     transient_.node.insert(transient_.node.end(), nodes_.begin(), nodes_.end());
     transient_.row_start.push_back(transient_.entries());
     transient_values_.resize(first + 3 * nodes_.size(), 0.0);
-    for (std::int32_t entry = start(r); entry < start(r + 1); ++entry) {
-      const Vector3& direction = rows.direction[static_cast<std::size_t>(entry)];
-      each_node(entry, rows, [&](std::int32_t node, double weight) {
-        const auto at = std::ranges::lower_bound(nodes_, node) - nodes_.begin();
-        double* value = transient_values_.data() + first + 3 * static_cast<std::size_t>(at);
-        for (int c = 0; c < 3; ++c) value[c] += weight * direction[c];
-      });
-    }
+    rows.groups.for_each_member(row + r, [&](int member, double share) {
+      for (std::int32_t entry = starts[static_cast<std::size_t>(member)];
+           entry < starts[static_cast<std::size_t>(member) + 1]; ++entry) {
+        const Vector3& direction = rows.direction[static_cast<std::size_t>(entry)];
+        each_node(entry, rows, [&](std::int32_t node, double weight) {
+          const auto at = std::ranges::lower_bound(nodes_, node) - nodes_.begin();
+          double* value = transient_values_.data() + first + 3 * static_cast<std::size_t>(at);
+          for (int c = 0; c < 3; ++c) value[c] += share * weight * direction[c];
+        });
+      }
+    });
   }
-  transient_world_.push_back(row);
+  rows.groups.for_each_member(row, [&](int member, double) { members_.push_back(member); });
+  member_start_.push_back(static_cast<std::int32_t>(members_.size()));
+}
+
+double BodyRows::effort_of(std::size_t triple, int row, std::span<const double> effort) const {
+  double sum = 0.0;
+  for (auto m = member_start_[triple]; m < member_start_[triple + 1]; ++m) {
+    sum += effort[static_cast<std::size_t>(members_[static_cast<std::size_t>(m)] + row)];
+  }
+  return sum;
 }
 
 // Takes held coordinates out of rows.
@@ -95,8 +118,7 @@ template <typename Add>
 void BodyRows::each_entry(std::span<const double> effort, const SystemNumbers& numbers,
                           Add add) const {
   const auto each = [&](const linalg::BorderPattern& pattern, std::span<const double> values,
-                        std::size_t k, std::int32_t row) {
-    const double lambda = effort[static_cast<std::size_t>(row)];
+                        std::size_t k, double lambda) {
     if (lambda == 0.0) return;
     for (auto e = pattern.row_start[k]; e < pattern.row_start[k + 1]; ++e) {
       const double* value = values.data() + 3 * static_cast<std::size_t>(e);
@@ -104,11 +126,11 @@ void BodyRows::each_entry(std::span<const double> effort, const SystemNumbers& n
     }
   };
   for (std::size_t k = 0; k < model_.fixed_rows(); ++k) {
-    each(numbers.system.border, numbers.border, k, model_.rows()[k]);
+    each(numbers.system.border, numbers.border, k,
+         effort[static_cast<std::size_t>(model_.rows()[k])]);
   }
-  for (std::size_t k = 0; k < 3 * transient_world_.size(); ++k) {
-    each(transient_, transient_values_, k,
-         transient_world_[k / 3] + static_cast<std::int32_t>(k % 3));
+  for (std::size_t k = 0; k < static_cast<std::size_t>(transient_.rows()); ++k) {
+    each(transient_, transient_values_, k, effort_of(k / 3, static_cast<int>(k % 3), effort));
   }
 }
 
@@ -146,8 +168,9 @@ void BodyRows::add_compliance(std::span<const int> problem_row, const SystemNumb
       compliance(problem_row_of(i), to) += own(static_cast<Eigen::Index>(i), column);
     }
   }
-  if (!transient_world_.empty())
+  if (transient_.rows() > 0) {
     add_transient_compliance(problem_row, numbers, compliance, free_motion);
+  }
 }
 
 void BodyRows::add_transient_compliance(std::span<const int> problem_row,
@@ -160,10 +183,10 @@ void BodyRows::add_transient_compliance(std::span<const int> problem_row,
   const std::span<const std::int32_t> rows(model_.rows());
   const std::size_t fixed = model_.fixed_rows();
   const auto row_of = [&](Eigen::Index k) {
-    const std::int32_t first = transient_world_[static_cast<std::size_t>(k / 3)];
-    return problem_row[static_cast<std::size_t>(first + k % 3)];
+    const auto leader = static_cast<std::size_t>(member_start_[static_cast<std::size_t>(k / 3)]);
+    return problem_row[static_cast<std::size_t>(members_[leader] + k % 3)];
   };
-  const auto count = 3 * static_cast<Eigen::Index>(transient_world_.size());
+  const auto count = static_cast<Eigen::Index>(transient_.rows());
   for (Eigen::Index j = 0; j < count; ++j) {
     const int column = row_of(j);
     free_motion[column] += coupling(j, static_cast<Eigen::Index>(fixed));

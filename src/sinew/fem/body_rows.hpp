@@ -16,7 +16,8 @@ namespace sinew::fem {
 
 /// Numbers are those of the last linearisation's system; efforts are (rows,) N of the world's rows.
 /// Rows that are always there stand in the factorisation's border. Of transient rows the
-/// active ones alone have their nodes listed, anew whenever they are taken.
+/// active ones alone have their nodes listed, anew whenever they are taken; those that share a row
+/// of the problem (mechanics::RowGroups) are one, with efforts in the parts of their shares.
 class BodyRows {
  public:
   /// @param model must outlive this.
@@ -43,15 +44,18 @@ class BodyRows {
   void add_transient_compliance(std::span<const int> problem_row, const SystemNumbers& numbers,
                                 MatrixX& compliance, VectorX& free_motion) const;
   void take_transient(const mechanics::RowValues& rows);
-  void add_group(std::int32_t row, const mechanics::RowValues& rows);
+  void add_triple(std::int32_t row, const mechanics::RowValues& rows);
+  void list_nodes(std::int32_t row, const mechanics::RowValues& rows);
+  double effort_of(std::size_t triple, int row, std::span<const double> effort) const;
   void hold(const linalg::BorderPattern& pattern, std::vector<double>& values) const;
 
   const FemBodyModel& model_;
   std::vector<double> fixed_effort_;
-  linalg::BorderPattern transient_;            // groups of three active rows
+  linalg::BorderPattern transient_;            // triples of active rows
   std::vector<double> transient_values_;       // of them
-  std::vector<std::int32_t> transient_world_;  // by group: the first of its rows in the world
-  std::vector<std::int32_t> nodes_;            // of a group, ascending: scratch
+  std::vector<std::int32_t> members_;          // the world's first rows of all triples' points
+  std::vector<std::int32_t> member_start_{0};  // by triple: where its points begin; the first leads
+  std::vector<std::int32_t> nodes_;            // of a triple, ascending: scratch
 };
 
 }  // namespace sinew::fem

@@ -108,6 +108,13 @@ void DenseStep::take_rows(const RowValues& rows) {
     rows_.col(lasting + static_cast<Eigen::Index>(k)).noalias() =
         jacobian_.transpose() * surface_rows_[k].direction;
   }
+  take_shares(rows.groups);
+}
+
+void DenseStep::take_shares(const RowGroups& groups) {
+  shares_.clear();
+  if (groups.empty()) return;
+  for (Eigen::Index j = 0; j < columns_; ++j) shares_.push_back(groups.share_of(world_row(j)));
 }
 
 std::int32_t DenseStep::world_row(Eigen::Index column) const {
@@ -210,20 +217,21 @@ void DenseStep::add_compliance(std::span<const int> problem_row, MatrixX& compli
   problem_rows_.clear();
   for (Eigen::Index j = 0; j < columns_; ++j) {
     const int at = problem_row[static_cast<std::size_t>(world_row(j))];
-    if (at >= 0) problem_rows_.push_back({j, at});
+    if (at < 0) continue;
+    problem_rows_.push_back({j, at, shares_.empty() ? 1.0 : shares_[static_cast<std::size_t>(j)]});
   }
-  for (const auto& [j, across] : problem_rows_) {
-    for (const auto& [i, down] : problem_rows_) {
+  for (const auto& [j, across, part] : problem_rows_) {
+    for (const auto& [i, down, other] : problem_rows_) {
       if (i > j) break;
       const double soft = rows_.col(i).dot(soft_rows_.col(j));
-      compliance(down, across) += soft;
-      if (i != j) compliance(across, down) += soft;
+      compliance(down, across) += other * soft * part;
+      if (i != j) compliance(across, down) += other * soft * part;
       if (!iterating_) continue;
-      free_motion[down] += (rows_.col(i).dot(moved_rows_.col(j)) - soft) * known_effort(j);
+      free_motion[down] += other * (rows_.col(i).dot(moved_rows_.col(j)) - soft) * known_effort(j);
       if (i == j) continue;
-      free_motion[across] += (rows_.col(j).dot(moved_rows_.col(i)) - soft) * known_effort(i);
+      free_motion[across] += part * (rows_.col(j).dot(moved_rows_.col(i)) - soft) * known_effort(i);
     }
-    free_motion[across] += free_motion_[j];
+    free_motion[across] += part * free_motion_[j];
   }
 }
 

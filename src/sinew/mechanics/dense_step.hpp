@@ -80,6 +80,7 @@ class DenseStep : public StepSystem {
  private:
   void take_lasting_rows(const RowValues& rows);
   void take_surface_rows(const RowValues& rows);
+  void take_shares(const RowGroups& groups);
   void make_room(Eigen::Index columns);
   std::int32_t world_row(Eigen::Index column) const;
   double known_effort(Eigen::Index column) const;  // N
@@ -103,6 +104,7 @@ class DenseStep : public StepSystem {
   bool is_symmetric_ = true;  // A, of the last condensation
   bool iterating_ = false;
   std::vector<SurfaceRow> surface_rows_, surface_rows_before_;
+  std::vector<double> shares_;  // (columns,) of their efforts in groups; empty: all are 1
   // Columns in use: those of the own rows that stay, then of surface_rows_. There is room for more.
   Eigen::Index columns_ = 0;
   MatrixX rows_, moved_rows_;  // (n, columns): H^T, A^-1 H^T
@@ -112,6 +114,7 @@ class DenseStep : public StepSystem {
   struct ProblemRow {
     Eigen::Index column;
     int row;
+    double share;
   };
   mutable std::vector<ProblemRow> problem_rows_;
   double force_scale_ = 1.0;

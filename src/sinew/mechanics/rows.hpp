@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <initializer_list>
+#include <numeric>
 #include <vector>
 
 #include "sinew/core/types.hpp"
@@ -57,6 +58,40 @@ struct Patch {
   }
 };
 
+/// Active transient rows that act as one row of a step's problem: its motion is the mean of theirs
+/// by their shares, and its effort is spread among them in these parts. All members of a group
+/// touch the same sites in the same order.
+struct RowGroups {
+  std::vector<int> leader;    ///< (rows,) the first row of the group; itself for rows on their own
+  std::vector<int> next;      ///< (rows,) the next row of the group; -1 for the last
+  std::vector<double> share;  ///< (rows,) >= 0, sum 1 in a group
+
+  /// Where no row shares, all are empty.
+  bool empty() const { return leader.empty(); }
+  /// Makes every row one on its own. @param rows how many there are.
+  void begin(std::size_t rows) {
+    leader.resize(rows);
+    std::iota(leader.begin(), leader.end(), 0);
+    next.assign(rows, -1);
+    share.assign(rows, 1.0);
+  }
+  void clear() {
+    leader.clear();
+    next.clear();
+    share.clear();
+  }
+  bool leads(int row) const { return empty() || leader[static_cast<std::size_t>(row)] == row; }
+  double share_of(int row) const { return empty() ? 1.0 : share[static_cast<std::size_t>(row)]; }
+  /// Calls visit(row, share) for a leader and its group.
+  template <class Visit>
+  void for_each_member(int first, Visit&& visit) const {
+    if (empty()) return visit(first, 1.0);
+    for (int row = first; row >= 0; row = next[static_cast<std::size_t>(row)]) {
+      visit(row, share[static_cast<std::size_t>(row)]);
+    }
+  }
+};
+
 /// The numbers of one linearisation, in the layout of RowPattern. Allocated once.
 struct RowValues {
   RowValues() = default;
@@ -78,6 +113,7 @@ struct RowValues {
   /// (entries,) of contacts between surfaces, where an entry's site is a SurfaceSite; empty where
   /// there are none.
   std::vector<Patch> patch;
+  RowGroups groups;
 
   void resize(const RowPattern& pattern) {
     direction.assign(static_cast<std::size_t>(pattern.entries()), Vector3::Zero());

@@ -92,6 +92,7 @@ std::optional<Notice> add_contact(sim::ModelBuilder& builder, const ContactDescr
   settings.outside = contact.outside;
   settings.friction = contact.friction;
   settings.restitution = contact.restitution;
+  settings.aggregate = contact.aggregate;
   settings.motion = contact.motion;
   const bool whole = is_rigid(touching) && !contact.nodes;
   if (settings.points.rows() == 0 && !whole && !surfaces) {

@@ -71,6 +71,7 @@ std::vector<ContactDescription> pairs_of(const ContactDescription& contact,
       added.body = one->name;
       added.other = other->name;
       if (!one->rigid || !other->rigid) added.restitution.reset();  // of rigid pairs alone
+      if (one->rigid && other->rigid) added.aggregate = 0.0;        // of deformable bodies
     }
   }
   refuse_pairs(refused, contact.between_place);

@@ -310,6 +310,7 @@ struct ContactDescription {
   mesh::Outside outside = mesh::Outside::error;
   double friction = 0.0;                  ///< Coulomb's coefficient, >= 0
   std::optional<double> restitution;      ///< 0 to 1; none: the integrator's
+  double aggregate = 0.0;                 ///< m, of zones; 0: single points
   std::optional<sim::BaseMotion> motion;  ///< of the surface
 };
 

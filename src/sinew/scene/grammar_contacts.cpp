@@ -132,6 +132,14 @@ Form contact_form() {
                               "event-driven. Only between rigid bodies; deformable ones "
                               "rebound by their elasticity. Without: the integrator's."});
   contact.keys.push_back(
+      {.name = "aggregate",
+       .forms = {quantity(length(), positive())},
+       .example = "5 mm",
+       .description =
+           "Size of zones whose points act as one: fewer unknowns, the same total force. "
+           "Some edges of the mesh; for deformable bodies. Without: every point by "
+           "itself."});
+  contact.keys.push_back(
       {.name = "motion",
        .forms = {table(make_table({.name = "motion of a surface",
                                    .description = "Motion of the surface from its declared pose: a "

@@ -88,6 +88,7 @@ ContactDescription read_contact(const Node::Entry& entry, const ReadContext& con
   fields.read("friction", contact.friction);
   if (fields.find("restitution") != nullptr)
     fields.read("restitution", contact.restitution.emplace());
+  fields.read("aggregate", contact.aggregate);
   if (fields.find("motion") != nullptr) {
     contact.motion = read_motion(fields.below("motion"), context);
   }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -160,6 +161,26 @@ bool strikes(ModelData& data, const mechanics::BodyModel& on, const ContactSetti
   return data.step.event_driven() && rigid;
 }
 
+// m; of a deformable body, whose points are many.
+double checked_aggregate(ModelData& data, const mechanics::BodyModel& on,
+                         const ContactSettings& settings) {
+  if (settings.aggregate == 0.0) return 0.0;
+  if (!(settings.aggregate > 0.0) || !std::isfinite(settings.aggregate)) {
+    throw Error(ErrorKind::out_of_range, settings.place,
+                fmt::format("zones of {:g} m are asked for", settings.aggregate),
+                "give the size of a zone, some edges of the mesh; or leave `aggregate` out");
+  }
+  const auto deformable = [](const mechanics::BodyModel& body) {
+    return mechanics::as<const fem::HasElements>(body) != nullptr;
+  };
+  const bool other =
+      settings.touched && deformable(find_body(data, *settings.touched, settings.place));
+  if (deformable(on) || other) return settings.aggregate;
+  throw Error(ErrorKind::conflicting_keys, settings.place,
+              "`aggregate` is for deformable bodies: others touch in few points",
+              "leave `aggregate` out");
+}
+
 }  // namespace
 
 bool touch_by_surfaces(const mechanics::BodyModel& one, const mechanics::BodyModel& other,
@@ -198,6 +219,7 @@ int add_contact(ModelData& data, const ContactSettings& settings) {
     if (entry.strikes) {
       entry.restitution = settings.restitution.value_or(data.step.restitution);
     }
+    entry.aggregate = checked_aggregate(data, on, settings);
     if (entry.motion) entry.motion->axis = checked_axis(entry.motion->axis, settings.place);
     const bool named = !settings.nodes.empty() || settings.points.rows() > 0;
     if (settings.touched &&

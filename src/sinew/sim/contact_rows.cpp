@@ -23,7 +23,7 @@ namespace {
 constexpr double kNear = 0.01, kTaken = 0.002;
 // Of this many times what the fastest node moves in a step, surfaces of bodies have points.
 constexpr double kAhead = 3.0;
-// Rounds of a step in which overlapping surfaces get points.
+// Rounds of a step in which overlapping surfaces get points, and zones spread their forces anew.
 constexpr int kMaxRounds = 20;
 
 // The rows of a point without its own force.
@@ -48,7 +48,28 @@ ContactRows::ContactRows(const Model& model, const constraint::Configuration& co
       planes_(model, configuration, rows, pool),
       touched_(static_cast<std::size_t>(model.rows().rows()), 0),
       closed_(touched_) {
-  for (const ContactModel& contact : model.contacts()) strikes_.push_back(contact.strikes ? 1 : 0);
+  for (std::size_t i = 0; i < model.contacts().size(); ++i) {
+    const ContactModel& contact = model.contacts()[i];
+    strikes_.push_back(contact.strikes ? 1 : 0);
+    auto& zones = zones_.emplace_back();
+    if (contact.aggregate == 0.0) continue;
+    zones =
+        std::make_unique<ContactZones>(*planes_.contacts()[i], contact.aggregate, configuration);
+  }
+}
+
+bool ContactRows::has_zones() const {
+  return std::ranges::any_of(zones_, [](const auto& zones) { return zones != nullptr; });
+}
+
+// m: the gap when the step ends, at the speed of its start.
+double ContactRows::arrival(const constraint::Contact& contact, std::size_t point,
+                            double time_step) const {
+  const int row = contact.row(point);
+  const Vector3 velocity = contact.velocity_beside(configuration_, point, rows_);
+  const double arrives =
+      planes_.start()[row] + time_step * rows_.direction[contact.entry(point)].dot(velocity);
+  return std::min(rows_.reference[row], arrives);
 }
 
 // Calls visit(contact, point) for every point of every contact.
@@ -84,30 +105,47 @@ double ContactRows::reach(double time_step, double reach) const {
 // A function of the state alone, so that a run goes on from a saved one bit for bit.
 void ContactRows::choose_active(std::span<const double> effort, double time_step, double reach) {
   left_out_ = false;
-  rounds_left_ = kMaxRounds;
+  rounds_left_ = zone_rounds_left_ = kMaxRounds;
+  if (has_zones()) rows_.groups.begin(rows_.active.size());
   const double near = std::max(kTaken * model_.size(), reach);
   for_each_point(true, [&](const constraint::Contact& contact, std::size_t k) {
     const int row = contact.row(k);
     set_active(row, is_closed(row));
     if (is_closed(row)) planes_.keep_gap(row);
   });
-  for_each_point(false, [&](const constraint::Contact& contact, std::size_t k) {
-    const mechanics::BodyModel& body = model_.body(contact.body());
-    const int row = contact.row(k);
-    if (contact.idle(k, rows_)) return set_active(row, false);
-    const Vector3 velocity = contact.velocity_beside(configuration_, k, rows_);
-    const double arrives =
-        planes_.start()[row] + time_step * rows_.direction[contact.entry(k)].dot(velocity);
-    const bool active = !body.leaves_rows_out() || effort[static_cast<std::size_t>(row)] > 0.0 ||
-                        std::min(rows_.reference[row], arrives) <= near;
-    set_active(row, active);
-    left_out_ |= !active;
-  });
+  for (std::size_t i = 0; i < zones_.size(); ++i) {
+    const constraint::Contact& contact = *planes_.contacts()[i];
+    if (strikes(i)) continue;
+    if (zones_[i]) {
+      zones_[i]->begin(
+          effort, [&](std::size_t k) { return arrival(contact, k, time_step); }, near, rows_);
+      continue;
+    }
+    const bool always = !model_.body(contact.body()).leaves_rows_out();
+    for (std::size_t k = 0; k < contact.size(); ++k) {
+      const int row = contact.row(k);
+      if (contact.idle(k, rows_)) {
+        set_active(row, false);
+        continue;
+      }
+      const bool active = always || effort[static_cast<std::size_t>(row)] > 0.0 ||
+                          arrival(contact, k, time_step) <= near;
+      set_active(row, active);
+      left_out_ |= !active;
+    }
+  }
   std::ranges::transform(effort, touched_.begin(), [](double r) { return r > 0.0 ? 1 : 0; });
+}
+
+void ContactRows::spread_forces(std::span<double> effort) const {
+  for (const auto& zones : zones_) {
+    if (zones) zones->spread(effort, rows_);
+  }
 }
 
 void ContactRows::take_all() {
   left_out_ = false;
+  rows_.groups.clear();
   for_each_point([&](const constraint::Contact& contact, std::size_t k) {
     set_active(contact.row(k), !contact.idle(k, rows_));
   });
@@ -115,6 +153,7 @@ void ContactRows::take_all() {
 
 void ContactRows::take_closed() {
   left_out_ = false;
+  rows_.groups.clear();
   for_each_point([&](const constraint::Contact& contact, std::size_t k) {
     set_active(contact.row(k), is_closed(contact.row(k)));
   });
@@ -127,8 +166,9 @@ void ContactRows::set_active(int row, bool active) {
 void ContactRows::list(const RowNumbering& numbering,
                        std::vector<step::ContactBlock>& blocks) const {
   for_each_point([&](const constraint::Contact& contact, std::size_t k) {
-    const int problem_row = numbering.problem_row_of(contact.row(k));
-    if (problem_row >= 0) blocks.push_back({problem_row, contact.friction()});
+    const int row = contact.row(k), problem_row = numbering.problem_row_of(row);
+    if (problem_row < 0 || !rows_.groups.leads(row)) return;
+    blocks.push_back({problem_row, contact.friction()});
   });
 }
 
@@ -136,12 +176,53 @@ bool ContactRows::correct(const step::StepProblem& problem, const RowNumbering& 
                           const linalg::AlignedNumbers& effort) {
   bool found = false;
   for (std::size_t i = 0; i < planes_.contacts().size(); ++i) {
-    if (planes_.shape(i) == nullptr) continue;
+    if (planes_.shape(i) == nullptr || zones_[i]) continue;
     found = correct_shape(i, problem, numbering, effort) || found;
   }
   if (found) planes_.end_round();
-  for (const auto& touching : planes_.surfaces()) found = correct_surfaces(*touching) || found;
-  return found;
+  bool spread = false;
+  auto touching = planes_.surfaces().begin();
+  for (std::size_t i = 0; i < planes_.contacts().size(); ++i) {
+    TouchingSurfaces* const surfaces = planes_.shape(i) == nullptr ? (touching++)->get() : nullptr;
+    if (zones_[i]) {
+      spread = correct_zones(*zones_[i], surfaces, problem, numbering, effort) || spread;
+    } else if (surfaces != nullptr) {
+      found = correct_surfaces(*surfaces) || found;
+    }
+  }
+  if (spread) --zone_rounds_left_;
+  return found || spread;
+}
+
+// (3,) m: where the proposed motion leads.
+Vector3 ContactRows::proposed_position(const constraint::ShapeContact& contact,
+                                       std::size_t point) const {
+  const auto motion = [&](const mechanics::Site& site) {
+    return systems_[static_cast<std::size_t>(site.body)]->proposed_motion(site.number);
+  };
+  return contact.position_beside(configuration_, point, rows_) +
+         contact.relative_motion(point, rows_, motion);
+}
+
+bool ContactRows::correct_zones(ContactZones& zones, TouchingSurfaces* touching,
+                                const step::StepProblem& problem, const RowNumbering& numbering,
+                                const linalg::AlignedNumbers& effort) {
+  if (zone_rounds_left_ == 0) return false;
+  if (touching != nullptr) {
+    touching->propose(systems_);
+    const std::size_t known = touching->count();
+    touching->add_overlaps();
+    for (std::size_t k = known; k < touching->count(); ++k) {
+      planes_.begin_point(touching->contact().row(k));
+    }
+    const auto gap = [&](std::size_t k) { return touching->proposed_gap(k); };
+    return zones.refine(gap, problem, numbering, effort, rows_);
+  }
+  const auto& contact = static_cast<const constraint::ShapeContact&>(zones.contact());
+  const auto gap = [&](std::size_t k) {
+    return contact.row_values(k, proposed_position(contact, k), rows_)[0];
+  };
+  return zones.refine(gap, problem, numbering, effort, rows_);
 }
 
 bool ContactRows::correct_shape(std::size_t number, const step::StepProblem& problem,
@@ -168,11 +249,7 @@ bool ContactRows::correct_shape(std::size_t number, const step::StepProblem& pro
 bool ContactRows::take_in(const constraint::ShapeContact& contact, std::size_t point,
                           const Eigen::Isometry3d& pose) {
   if (contact.idle(point, rows_)) return false;
-  const auto motion = [&](const mechanics::Site& site) {
-    return systems_[static_cast<std::size_t>(site.body)]->proposed_motion(site.number);
-  };
-  const Vector3 end = contact.position_beside(configuration_, point, rows_) +
-                      contact.relative_motion(point, rows_, motion);
+  const Vector3 end = proposed_position(contact, point);
   if (contact.row_values(point, end, rows_)[0] >= 0.0) return false;
   if (contact.curved() && planes_.may_turn() && !planes_.turn_to(contact, point, end, pose)) {
     return false;
@@ -206,12 +283,16 @@ bool ContactRows::correct_surfaces(TouchingSurfaces& touching) {
 }
 
 bool ContactRows::gap_closed(std::span<const double> effort) const {
-  bool closed = false;
-  for_each_point(false, [&](const constraint::Contact& contact, std::size_t k) {
-    const auto row = static_cast<std::size_t>(contact.row(k));
-    closed = closed || (effort[row] > 0.0 && touched_[row] == 0);
-  });
-  return closed;
+  for (std::size_t i = 0; i < zones_.size(); ++i) {
+    const constraint::Contact& contact = *planes_.contacts()[i];
+    if (zones_[i] && zones_[i]->gap_closed(effort, rows_)) return true;
+    if (zones_[i] || strikes(i)) continue;
+    for (std::size_t k = 0; k < contact.size(); ++k) {
+      const auto row = static_cast<std::size_t>(contact.row(k));
+      if (effort[row] > 0.0 && touched_[row] == 0) return true;
+    }
+  }
+  return false;
 }
 
 bool ContactRows::touches_softly(std::span<const double> effort) const {
@@ -229,23 +310,30 @@ bool ContactRows::passed() const {
 
 double ContactRows::max_penetration_without_force(std::span<const double> effort) const {
   double deepest = 0.0;
-  for_each_point([&](const constraint::Contact& contact, std::size_t k) {
-    const int row = contact.row(k);
-    if (effort[static_cast<std::size_t>(row)] > 0.0) return;
-    if (contact.idle(k, rows_)) return;
-    deepest = std::max(deepest, -contact.linear_gap(configuration_, k, rows_));
-  });
+  for (std::size_t i = 0; i < zones_.size(); ++i) {
+    const constraint::Contact& contact = *planes_.contacts()[i];
+    const double left = zones_[i] ? zones_[i]->tolerance() : 0.0;
+    for (std::size_t k = 0; k < contact.size(); ++k) {
+      if (effort[static_cast<std::size_t>(contact.row(k))] > 0.0) continue;
+      if (contact.idle(k, rows_)) continue;
+      deepest = std::max(deepest, -contact.linear_gap(configuration_, k, rows_) - left);
+    }
+  }
   return deepest;
 }
 
 double ContactRows::max_penetration_left_out() const {
   double deepest = 0.0;
   if (!left_out_) return deepest;
-  for_each_point(false, [&](const constraint::Contact& contact, std::size_t k) {
-    const int row = contact.row(k);
-    if (rows_.active[static_cast<std::size_t>(row)] != 0) return;
-    deepest = std::max(deepest, -rows_.delta[row]);
-  });
+  for (std::size_t i = 0; i < zones_.size(); ++i) {
+    const constraint::Contact& contact = *planes_.contacts()[i];
+    if (zones_[i] || strikes(i)) continue;
+    for (std::size_t k = 0; k < contact.size(); ++k) {
+      const int row = contact.row(k);
+      if (rows_.active[static_cast<std::size_t>(row)] != 0) continue;
+      deepest = std::max(deepest, -rows_.delta[row]);
+    }
+  }
   return deepest;
 }
 

@@ -3,12 +3,14 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "sinew/core/types.hpp"
 #include "sinew/linalg/scratch.hpp"
 #include "sinew/sim/contact_planes.hpp"
+#include "sinew/sim/contact_zones.hpp"
 
 namespace sinew::mechanics {
 class StepSystem;
@@ -47,6 +49,9 @@ class ContactRows {
   void take_all();
   /// For an impact at the present state: the closed points of contacts that strike.
   void take_closed();
+  /// Efforts of points that share a row become those of its sum (ContactZones).
+  /// @param effort (rows,) N, in and out.
+  void spread_forces(std::span<double> effort) const;
   /// Appends the blocks of the points that take part.
   void list(const RowNumbering& numbering, std::vector<step::ContactBlock>& blocks) const;
 
@@ -60,7 +65,9 @@ class ContactRows {
   bool correct(const step::StepProblem& problem, const RowNumbering& numbering,
                const linalg::AlignedNumbers& effort);
   /// Whether correct() could find anything.
-  bool are_guessed() const { return left_out_ || planes_.curved() || !planes_.surfaces().empty(); }
+  bool are_guessed() const {
+    return left_out_ || planes_.curved() || !planes_.surfaces().empty() || has_zones();
+  }
   bool leave_points_out() const { return left_out_; }
 
   /// Of event-driven integration: whether impacts of a contact are events. Of its points, those
@@ -93,14 +100,22 @@ class ContactRows {
   bool take_in(const constraint::ShapeContact& contact, std::size_t point,
                const Eigen::Isometry3d& pose);
   bool correct_surfaces(TouchingSurfaces& touching);
+  bool correct_zones(ContactZones& zones, TouchingSurfaces* touching,
+                     const step::StepProblem& problem, const RowNumbering& numbering,
+                     const linalg::AlignedNumbers& effort);
+  Vector3 proposed_position(const constraint::ShapeContact& contact, std::size_t point) const;
+  double arrival(const constraint::Contact& contact, std::size_t point, double time_step) const;
+  bool has_zones() const;
 
   const Model& model_;
   const constraint::Configuration& configuration_;
   std::span<mechanics::StepSystem* const> systems_;
   mechanics::RowValues& rows_;
   ContactPlanes planes_;
-  bool left_out_ = false;      // some point
+  std::vector<std::unique_ptr<ContactZones>> zones_;  // (contacts,) null: single points
+  bool left_out_ = false;                             // some point
   int rounds_left_ = 0;        // of a step, in which overlapping surfaces get points
+  int zone_rounds_left_ = 0;   // of a step, in which zones spread their forces anew
   std::vector<char> touched_;  // (rows,) normal rows with a force when the step began
   std::vector<char> strikes_;  // (contacts,)
   std::vector<char> closed_;   // (rows,) normal rows of contacts that strike

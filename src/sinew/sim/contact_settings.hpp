@@ -35,6 +35,9 @@ struct ContactSettings {
   /// Newton's, 0 to 1; none: StepSettings::restitution. Of rigid bodies in event-driven
   /// integration.
   std::optional<double> restitution;
+  /// m, the size of zones whose points act as one (ContactZones); 0: all points by themselves. Of
+  /// deformable bodies.
+  double aggregate = 0.0;
 };
 
 /// Of a ball's radius: a triangle of such edges goes up to 1/24 of the radius into a ball that its

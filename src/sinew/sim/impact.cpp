@@ -120,7 +120,7 @@ void Impact::apply() {
   Bodies& bodies = run_.world.bodies();
   all_.assign(run_.effort.size(), 0.0);
   bodies.imbalance(all_, rest_);
-  run_.world.numbering().scatter(impulse_, all_);
+  run_.world.numbering().scatter_efforts(impulse_, all_);
   bodies.imbalance(all_, force_);
   force_ -= rest_;
   bodies.solve(force_, change_);

@@ -49,6 +49,7 @@ struct ContactModel {
   std::optional<BaseMotion> motion;  ///< of the surface; none: it stands still
   bool strikes = false;              ///< its impacts are events: of rigid bodies alone
   double restitution = 0.0;          ///< of these, 0 to 1
+  double aggregate = 0.0;            ///< m, of zones whose points act as one; 0: single points
 
   /// Of the surface at a time.
   Eigen::Isometry3d pose(double time) const;

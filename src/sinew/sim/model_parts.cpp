@@ -66,6 +66,7 @@ std::uint64_t contact_hash(const ModelData& data, const ContactModel& contact) {
   add_constraint(hash, data, contact.constraint);
   if (contact.motion) add_motion(hash, *contact.motion);
   if (contact.strikes) hash.add(contact.restitution);
+  if (contact.aggregate > 0.0) hash.add(contact.aggregate);
   return hash.value();
 }
 

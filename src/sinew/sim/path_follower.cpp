@@ -32,6 +32,12 @@ void PathFollower::check() const {
                 "paths along curved surfaces with friction are not followed yet",
                 "step through the load in time");
   }
+  for (const ContactModel& contact : run_.model->contacts()) {
+    if (contact.aggregate == 0.0) continue;
+    throw Error(ErrorKind::not_in_this_version, {.item = fmt::format("contact '{}'", contact.name)},
+                "paths with aggregated contact are not followed yet",
+                "leave `aggregate` out, or step through the load in time");
+  }
   for (std::size_t i = 0; i < run_.model->contacts().size(); ++i) {
     const constraint::Contact& contact = run_.model->contact(static_cast<int>(i));
     if (contact.other_body() < 0 && !contact.is_found_anew()) continue;

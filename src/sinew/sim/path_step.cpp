@@ -175,7 +175,7 @@ void PathStep::count() {
   if (run_.world.contacts().empty()) return;
   if (run_.world.condense() == linalg::FactorStatus::singular) return;
   linalg::AlignedNumbers effort;
-  run_.world.numbering().gather(run_.effort, effort);
+  run_.world.numbering().gather_efforts(run_.effort, effort);
   std::vector<step::HeldRow> held = joints(pressed());
   append_touching(run_.world.problem(), effort, held);
   negative_pivots_ = HeldMotions(run_.world, std::move(held)).negative_pivots();

@@ -24,10 +24,9 @@ MatrixX row_forces(World& world, std::span<const int> rows) {
   world.bodies().imbalance(unit, rest);
   MatrixX result(rest.size(), static_cast<Eigen::Index>(rows.size()));
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    double& own = unit[static_cast<std::size_t>(world.numbering().model_row_of(rows[k]))];
-    own = 1.0;
+    world.numbering().spread(rows[k], 1.0, unit);
     world.bodies().imbalance(unit, row);
-    own = 0.0;
+    world.numbering().spread(rows[k], 0.0, unit);
     result.col(static_cast<Eigen::Index>(k)) = row - rest;
   }
   return result;

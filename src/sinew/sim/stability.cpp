@@ -36,7 +36,7 @@ bool holds(const step::ActuatorBlock& range, double effort) {
 
 linalg::AlignedNumbers gathered(const RowNumbering& numbering, std::span<const double> effort) {
   linalg::AlignedNumbers result;
-  numbering.gather(effort, result);
+  numbering.gather_efforts(effort, result);
   return result;
 }
 

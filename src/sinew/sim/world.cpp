@@ -39,6 +39,7 @@ void World::begin_step(double from, double to, std::span<double> effort, double 
     place_contacts(from, to);
     contacts_.choose_active(effort, to - from, reach);
     number_rows();
+    contacts_.spread_forces(effort);
   }
   bodies_.begin_step();
 }
@@ -69,7 +70,7 @@ const VectorX& World::measure_delta() {
 }
 
 void World::form_rows(std::span<const double> effort, std::span<const int> geometric) {
-  numbering_.gather(measure_delta(), problem_.delta);
+  numbering_.gather_motions(measure_delta(), problem_.delta);
   for (std::size_t k = 0; k < problem_.capstans.size(); ++k) {
     const GuideModel& guide = model_->guides()[k];
     const double turn = model_->cable(guide.actuator)->turn(configuration_, guide.via);
@@ -107,12 +108,12 @@ step::LawStatus World::solve_step(step::StepSolver& solver, step::Controller* co
   step::LawStatus status = step::LawStatus::solved;
   bool mended = true;
   while (mended) {
-    numbering_.gather(effort_before_, problem_.effort_before);
-    numbering_.gather(effort, problem_effort_);
+    numbering_.gather_efforts(effort_before_, problem_.effort_before);
+    numbering_.gather_efforts(effort, problem_effort_);
     status = solver.solve(problem_, controller, problem_effort_);
     clock.mark(Stage::law);
     if (status == step::LawStatus::failed) return status;
-    numbering_.scatter(problem_effort_, effort);
+    numbering_.scatter_efforts(problem_effort_, effort);
     bodies_.solve_motion(effort);
     mended = contacts_.are_guessed() && correct_contacts();
     clock.mark(Stage::correction);
@@ -133,20 +134,20 @@ bool World::correct_contacts() {
 
 // The problem's rows and its contacts: points that are left out have none.
 void World::number_rows() {
-  numbering_.number(rows_.active);
+  numbering_.number(rows_);
   problem_.contacts.clear();
   contacts_.list(numbering_, problem_.contacts);
-  numbering_.gather(rows_.delta, problem_.delta);
+  numbering_.gather_motions(rows_.delta, problem_.delta);
 }
 
 void World::form_compliance() {
-  numbering_.gather(rows_.delta, problem_.delta_free);
+  numbering_.gather_motions(rows_.delta, problem_.delta_free);
   problem_.compliance.setZero(problem_.delta_free.size(), problem_.delta_free.size());
   bodies_.add_compliance(numbering_.problem_rows(), problem_.compliance, problem_.delta_free);
 }
 
 double World::violation(std::span<const double> effort, step::LawStatus law) {
-  numbering_.gather(effort, scratch_);
+  numbering_.gather_efforts(effort, scratch_);
   return std::max(step::violation(problem_, scratch_, law), contacts_.max_penetration_left_out());
 }
 

@@ -1,0 +1,266 @@
+#include "sinew/sim/contact_zones.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/constraint/configuration.hpp"
+#include "sinew/constraint/contact.hpp"
+#include "sinew/sim/row_numbering.hpp"
+#include "sinew/step/step_problem.hpp"
+
+namespace sinew::sim {
+
+namespace {
+
+// Of a zone's size: overlaps up to this are left.
+constexpr double kTolerance = 2e-4;
+// w at first, and what becomes of it where overlaps grow by the second factor.
+constexpr double kRelaxation = 0.7, kLess = 0.5, kGrows = 1.1;
+// a, of the distance of neighbouring points. Larger ones make neighbours too alike.
+constexpr double kSpread = 0.2;
+constexpr int kSweeps = 10;
+
+}  // namespace
+
+ContactZones::ContactZones(const constraint::Contact& contact, double size,
+                           const constraint::Configuration& configuration)
+    : contact_(contact),
+      configuration_(configuration),
+      size_(size),
+      weight_(contact.size(), 0.0),
+      gap_(contact.size(), 0.0),
+      next_(contact.size(), -1) {
+  if (contact.is_found_anew()) {
+    make_zones(configuration.surface_nodes(contact.body()));
+  } else {
+    const mechanics::RowValues none;
+    Points at(static_cast<Eigen::Index>(contact.size()), 3);
+    for (std::size_t k = 0; k < contact.size(); ++k) {
+      at.row(static_cast<Eigen::Index>(k)) =
+          contact.position_now(configuration, k, none).transpose();
+    }
+    make_zones(at);
+  }
+}
+
+double ContactZones::tolerance() const { return kTolerance * size_; }
+
+// Seeds, each half a zone from all before it; every place belongs to the nearest one.
+void ContactZones::make_zones(const Points& at) {
+  std::vector<Vector3> seeds;
+  const auto nearest = [&](const Vector3& place) {
+    double least = kInfinity;
+    int seed = -1;
+    for (std::size_t s = 0; s < seeds.size(); ++s) {
+      const double distance = (seeds[s] - place).squaredNorm();
+      if (distance >= least) continue;
+      least = distance;
+      seed = static_cast<int>(s);
+    }
+    return std::pair(seed, std::sqrt(least));
+  };
+  for (Eigen::Index i = 0; i < at.rows(); ++i) {
+    const Vector3 place = at.row(i).transpose();
+    if (nearest(place).second > 0.5 * size_) seeds.push_back(place);
+  }
+  for (Eigen::Index i = 0; i < at.rows(); ++i) {
+    zone_of_place_.push_back(nearest(at.row(i).transpose()).first);
+  }
+  zones_.resize(seeds.size());
+  measure_spacing(at);
+}
+
+// The mean distance to the nearest neighbour in the same zone.
+void ContactZones::measure_spacing(const Points& at) {
+  std::vector<std::vector<Eigen::Index>> places(zones_.size());
+  for (Eigen::Index i = 0; i < at.rows(); ++i) {
+    places[static_cast<std::size_t>(zone_of_place_[static_cast<std::size_t>(i)])].push_back(i);
+  }
+  double sum = 0.0;
+  int count = 0;
+  for (const auto& own : places) {
+    for (const Eigen::Index i : own) {
+      double least = kInfinity;
+      for (const Eigen::Index j : own) {
+        if (i != j) least = std::min(least, (at.row(i) - at.row(j)).norm());
+      }
+      if (!(least > 0.0) || least == kInfinity) continue;
+      sum += least;
+      ++count;
+    }
+  }
+  spread_ = kSpread * (count > 0 ? sum / count : size_);
+}
+
+int ContactZones::zone_of(std::size_t point, const mechanics::RowValues& rows) const {
+  if (!contact_.is_found_anew()) return zone_of_place_[point];
+  const mechanics::Patch& patch = rows.patch[contact_.entry(point)];
+  Eigen::Index most = 0;
+  patch.weights.maxCoeff(&most);
+  return zone_of_place_[static_cast<std::size_t>(patch.nodes[static_cast<std::size_t>(most)])];
+}
+
+double ContactZones::normal_effort(std::size_t point, std::span<const double> effort) const {
+  return std::max(0.0, effort[static_cast<std::size_t>(contact_.row(point))]);
+}
+
+void ContactZones::begin(std::span<const double> effort,
+                         const std::function<double(std::size_t)>& arrives, double near,
+                         mechanics::RowValues& rows) {
+  for (Zone& zone : zones_) {
+    zone = {};
+    zone.nearest = kInfinity;
+    zone.relaxation = kRelaxation;
+  }
+  for (std::size_t k = 0; k < contact_.size(); ++k) {
+    weight_[k] = 0.0;
+    if (contact_.idle(k, rows)) continue;
+    Zone& zone = zones_[static_cast<std::size_t>(zone_of(k, rows))];
+    weight_[k] = normal_effort(k, effort);
+    zone.force += weight_[k];
+    const double gap = arrives(k);
+    if (gap >= zone.nearest) continue;
+    zone.nearest = gap;
+    zone.nearest_point = static_cast<int>(k);
+  }
+  for (Zone& zone : zones_) {
+    zone.touched = zone.force > 0.0;
+    if (zone.touched || zone.nearest_point < 0 || zone.nearest > near) continue;
+    weight_[static_cast<std::size_t>(zone.nearest_point)] = 1.0;
+  }
+  group(rows);
+}
+
+// Of weight_.
+void ContactZones::group(mechanics::RowValues& rows) {
+  mechanics::RowGroups& groups = rows.groups;
+  std::vector<double>& share = groups.share;
+  for (Zone& zone : zones_) {
+    zone.first = zone.last = -1;
+    zone.force = 0.0;
+  }
+  for (std::size_t k = 0; k < contact_.size(); ++k) {
+    if (weight_[k] > 0.0) zones_[static_cast<std::size_t>(zone_of(k, rows))].force += weight_[k];
+  }
+  for (std::size_t k = 0; k < contact_.size(); ++k) {
+    const int row = contact_.row(k);
+    const bool takes_part = weight_[k] > 0.0;
+    std::fill_n(rows.active.begin() + row, 3, static_cast<char>(takes_part));
+    std::fill_n(groups.next.begin() + row, 3, -1);
+    if (!takes_part) continue;
+    Zone& zone = zones_[static_cast<std::size_t>(zone_of(k, rows))];
+    if (zone.first < 0) zone.first = row;
+    for (int j = 0; j < 3; ++j) {
+      const auto own = static_cast<std::size_t>(row + j);
+      groups.leader[own] = zone.first + j;
+      share[own] = weight_[k] / zone.force;
+      if (zone.last >= 0) groups.next[static_cast<std::size_t>(zone.last + j)] = row + j;
+    }
+    zone.last = row;
+  }
+}
+
+void ContactZones::spread(std::span<double> effort, const mechanics::RowValues& rows) const {
+  for (std::size_t k = 0; k < contact_.size(); ++k) {
+    for (int row = contact_.row(k); row < contact_.row(k) + 3; ++row) {
+      if (rows.active[static_cast<std::size_t>(row)] == 0 || !rows.groups.leads(row)) continue;
+      double sum = 0.0;
+      rows.groups.for_each_member(
+          row, [&](int member, double) { sum += effort[static_cast<std::size_t>(member)]; });
+      rows.groups.for_each_member(row, [&](int member, double share) {
+        effort[static_cast<std::size_t>(member)] = share * sum;
+      });
+    }
+  }
+}
+
+// And lists the points of each zone that have a force or overlap.
+void ContactZones::measure_overlaps(const mechanics::RowValues& rows) {
+  for (Zone& zone : zones_) {
+    zone.overlap_before = zone.overlap;
+    zone.overlap = 0.0;
+    zone.begin = -1;
+  }
+  for (std::size_t k = contact_.size(); k-- > 0;) {
+    if (contact_.idle(k, rows) || !(weight_[k] > 0.0 || gap_[k] < 0.0)) continue;
+    Zone& zone = zones_[static_cast<std::size_t>(zone_of(k, rows))];
+    zone.overlap = std::max(zone.overlap, -gap_[k]);
+    next_[k] = zone.begin;
+    zone.begin = static_cast<int>(k);
+  }
+}
+
+// By projected Gauss-Seidel sweeps.
+void ContactZones::smooth(const Zone& zone, double force, double compliance,
+                          const mechanics::RowValues& rows) {
+  const std::size_t n = points_.size();
+  places_.clear();
+  force_.clear();
+  for (const std::size_t k : points_) {
+    places_.push_back(contact_.position_now(configuration_, k, rows));
+    force_.push_back(weight_[k] > 0.0 ? rows.groups.share_of(contact_.row(k)) * force : 0.0);
+  }
+  compliance_.resize(n * n);
+  double own = 0.0;  // force^T B force
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = 0; j < n; ++j) {
+      const double distance = (places_[i] - places_[j]).squaredNorm();
+      compliance_[i * n + j] = 1.0 / std::sqrt(distance + spread_ * spread_);
+      own += force_[i] * compliance_[i * n + j] * force_[j];
+    }
+  }
+  const double scale = own > 0.0 ? compliance * force * force / own : 1.0;
+  const auto motion = [&](std::size_t i) {
+    double sum = 0.0;
+    for (std::size_t j = 0; j < n; ++j) sum += compliance_[i * n + j] * force_[j];
+    return scale * sum;
+  };
+  goal_.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    goal_[i] = motion(i) - zone.relaxation * gap_[points_[i]];
+  }
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    for (std::size_t i = 0; i < n; ++i) {
+      const double missing = goal_[i] - motion(i);
+      force_[i] = std::max(0.0, force_[i] + missing / (scale * compliance_[i * n + i]));
+    }
+  }
+  for (std::size_t i = 0; i < n; ++i) weight_[points_[i]] = force_[i];
+}
+
+bool ContactZones::refine(const std::function<double(std::size_t)>& gap,
+                          const step::StepProblem& problem, const RowNumbering& numbering,
+                          const linalg::AlignedNumbers& effort, mechanics::RowValues& rows) {
+  for (std::size_t k = 0; k < contact_.size(); ++k) {
+    gap_[k] = contact_.idle(k, rows) ? 0.0 : gap(k);
+  }
+  measure_overlaps(rows);
+  bool found = false;
+  for (Zone& zone : zones_) {
+    if (!(zone.overlap > tolerance())) continue;
+    found = true;
+    if (zone.overlap_before > 0.0 && zone.overlap > kGrows * zone.overlap_before) {
+      zone.relaxation *= kLess;
+    }
+    points_.clear();
+    for (int k = zone.begin; k >= 0; k = next_[static_cast<std::size_t>(k)]) {
+      points_.push_back(static_cast<std::size_t>(k));
+    }
+    const int row = zone.first < 0 ? -1 : numbering.problem_row_of(zone.first);
+    smooth(zone, row < 0 ? 0.0 : effort[static_cast<std::size_t>(row)],
+           row < 0 ? 0.0 : problem.compliance(row, row), rows);
+  }
+  if (found) group(rows);
+  return found;
+}
+
+bool ContactZones::gap_closed(std::span<const double> effort,
+                              const mechanics::RowValues& rows) const {
+  for (std::size_t k = 0; k < contact_.size(); ++k) {
+    if (!(normal_effort(k, effort) > 0.0)) continue;
+    if (!zones_[static_cast<std::size_t>(zone_of(k, rows))].touched) return true;
+  }
+  return false;
+}
+
+}  // namespace sinew::sim
