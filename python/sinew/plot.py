@@ -1,4 +1,4 @@
-"""Pictures of runs and fits, by matplotlib: `python3 -m sinew.plot run DIR OUT.png`."""
+"""Pictures of runs, sweeps and fits, by matplotlib: `python3 -m sinew.plot run DIR OUT.png`."""
 
 from __future__ import annotations
 
@@ -328,8 +328,30 @@ def identify(data, out) -> pathlib.Path:
     return pathlib.Path(out)
 
 
+def sweep(folder, out=None, kind=None) -> list[pathlib.Path]:
+    """Draws a sweep's table: see sinew.sweep.plots.draw()."""
+    from sinew.sweep import plots
+
+    return plots.draw(folder, out, kind)
+
+
+def _main_sweep(words: list[str]) -> int:
+    """`DIR [OUT [KIND]]`; an empty word is none."""
+    from sinew.errors import Error
+
+    try:
+        for path in sweep(*(word or None for word in words)):
+            print(f"drew {path}")
+    except Error as error:
+        print(f"sinew: error: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
 def main(words: list[str]) -> int:
-    """`run DIR OUT.png`, or `brace|fit|identify|plan|reach DATA.json OUT.png`."""
+    """`run DIR OUT.png`, `sweep DIR [OUT [KIND]]`, or `brace|fit|identify|plan|reach DATA.json OUT.png`."""
+    if words[:1] == ["sweep"] and 2 <= len(words) <= 4:
+        return _main_sweep(words[1:])
     kinds = {"run": run, "brace": brace, "fit": fit, "identify": identify, "plan": plan, "reach": reach}
     if len(words) != 3 or words[0] not in kinds:
         print(f"usage: python3 -m sinew.plot {'|'.join(kinds)} SOURCE OUT.png", file=sys.stderr)

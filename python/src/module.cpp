@@ -40,6 +40,7 @@ PYBIND11_MODULE(_core, module) {
   python::bind_bending_fit(module);
   python::bind_drive(module);
   python::bind_qp(module);
+  python::bind_quantity(module);
   python::bind_collision(module);
 #ifdef SINEW_HAS_PLAN
   python::bind_plan(module);

@@ -1,0 +1,245 @@
+"""Runs the samples of a sweep on Dask's workers and writes what comes back."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import logging
+import queue
+import signal
+import threading
+import time
+from collections import deque
+from collections.abc import Iterator, Sequence
+from multiprocessing import resource_tracker
+from typing import Any, Optional
+
+from ..errors import Error, RunError
+from .progress import Progress
+from .samples import Design
+from .store import Store
+from .worker import Row, run_batch
+
+_BATCH = 0.5  # s that a batch is to take
+_LARGEST = 10_000
+_GROWTH = 8
+_POLL = 0.1  # s
+_NO_ANSWER = 10.0  # s without a scheduler
+_CONNECT, _FIRST_WORKER = 20.0, 120.0  # s
+
+
+class Batches:
+    """How many samples go together, by the time that they took so far."""
+
+    def __init__(self) -> None:
+        self._recent: deque[float] = deque(maxlen=9)  # s a sample
+        self._largest = 1
+
+    def add(self, rows: Sequence[Row]) -> None:
+        """A batch that was done."""
+        self._recent.append(sum(row.seconds for row in rows) / len(rows))
+        self._largest = max(self._largest, len(rows))
+
+    def size(self, left: int, workers: int) -> int:
+        """Of the next batch. At the end batches become smaller, so that no worker waits long for the last one."""
+        if not self._recent:
+            return 1
+        typical = sorted(self._recent)[len(self._recent) // 2]
+        wanted = min(int(_BATCH / max(typical, 1e-6)), _GROWTH * self._largest, _LARGEST)
+        return max(1, min(wanted, -(-left // (2 * max(workers, 1)))))
+
+
+@contextlib.contextmanager
+def connect(scheduler: Any, workers: Optional[int]) -> Iterator[Any]:
+    """A Dask client: of a scheduler that runs, of its address, or of a cluster of processes on this machine.
+
+    Raises
+    ------
+    Error
+        tool-missing without Dask; bad-argument where nobody answers at the address.
+    """
+    try:
+        import distributed
+    except ImportError as missing:
+        raise Error("tool-missing", "sinew.sweep", f"sweeps need Dask: {missing}", "apt-get install python3-distributed") from None
+    if isinstance(scheduler, distributed.Client):
+        yield scheduler
+        return
+    with contextlib.ExitStack() as stack:
+        stack.enter_context(_quiet())
+        if scheduler is None:
+            with _without_interrupts():
+                cluster = distributed.LocalCluster(n_workers=workers, threads_per_worker=1, processes=True, dashboard_address="127.0.0.1:0",
+                                                   silence_logs=logging.CRITICAL)
+                stack.callback(cluster.close, timeout=5)
+                client = distributed.Client(cluster)
+                stack.callback(client.close, timeout=2)
+        else:
+            try:
+                client = distributed.Client(str(scheduler), timeout=_CONNECT)
+            except (OSError, ValueError, TimeoutError) as problem:
+                raise Error("bad-argument", "sweep(scheduler)", f"no scheduler answers at '{scheduler}': {problem}",
+                            "start one with dask-scheduler, and give its address such as tcp://127.0.0.1:8786") from None
+            stack.callback(client.close, timeout=2)
+        yield client
+
+
+@contextlib.contextmanager
+def _without_interrupts() -> Iterator[None]:
+    """While processes are started: Ctrl-C waits for the end of it. The threads and processes that are started inherit the
+    mask, so that Ctrl-C on a terminal, which goes to all of its processes, reaches the client alone."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    resource_tracker.ensure_running()  # it would unblock the signal in the thread that starts it
+    waiting: list[int] = []
+    before = signal.signal(signal.SIGINT, lambda number, _: waiting.append(number))
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+        signal.signal(signal.SIGINT, before)
+        if waiting:
+            signal.raise_signal(signal.SIGINT)
+
+
+@contextlib.contextmanager
+def _quiet() -> Iterator[None]:
+    """Dask tells of lost workers and connections; a sweep tells what they mean."""
+    names = [name for name in logging.root.manager.loggerDict if name.split(".")[0] in ("distributed", "tornado", "asyncio")]
+    loggers = [logging.getLogger(name) for name in names]
+    before = [logger.level for logger in loggers]
+    try:
+        for logger in loggers:
+            logger.setLevel(logging.CRITICAL)
+        yield
+    finally:
+        for logger, level in zip(loggers, before):
+            logger.setLevel(level)
+
+
+class Engine:
+    """Keeps the workers of a client busy with the samples that are left.
+
+    Parameters
+    ----------
+    client : distributed.Client
+    packed : bytes
+        The job.
+    design : Design
+    order : list of int
+        Samples to do.
+    store : Store
+    progress : Progress
+    """
+
+    def __init__(self, client: Any, packed: bytes, design: Design, order: Sequence[int], store: Store, progress: Progress) -> None:
+        self._client, self._packed, self._design = client, packed, design
+        self._digest = hashlib.sha256(packed).hexdigest()
+        self._left, self._store, self._progress = deque(order), store, progress
+        self._batches = Batches()
+        self._done: queue.SimpleQueue = queue.SimpleQueue()
+        self._flying: dict[Any, list[int]] = {}
+        self._workers, self._counted = 0, 0.0
+        self._answered = time.monotonic()
+
+    def run(self) -> None:
+        """Until all samples are rows.
+
+        Raises
+        ------
+        RunError
+            scheduler-lost; rows that are written stay.
+        Error
+            Where the workers cannot run samples at all.
+        """
+        self._await_workers()
+        try:
+            while self._left or self._flying:
+                self._fill()
+                try:
+                    self._take(self._done.get(timeout=_POLL))
+                except queue.Empty:
+                    self._check_scheduler()
+                self._progress.draw(self._workers)
+        finally:
+            if self._flying and self._client.status == "running":
+                self._client.cancel(list(self._flying), force=True)
+
+    def _await_workers(self) -> None:
+        begin = time.monotonic()
+        while self._count_workers() == 0:
+            if time.monotonic() - begin > _FIRST_WORKER:
+                raise RunError("scheduler-lost", "sweep(scheduler)", f"the scheduler had no worker for {_FIRST_WORKER:g} s",
+                               "start workers: dask-worker ADDRESS --nthreads 1")
+            time.sleep(_POLL)
+
+    def _count_workers(self) -> int:
+        """Threads of all workers, asked for about once a second."""
+        if time.monotonic() - self._counted > 1.0 or self._workers == 0:
+            try:
+                self._workers = sum(self._client.nthreads().values())
+            except (OSError, RuntimeError, TimeoutError) as problem:
+                self._lost(problem)
+            self._counted = time.monotonic()
+        return self._workers
+
+    def _fill(self) -> None:
+        workers = self._count_workers()
+        while self._left and len(self._flying) < 2 * workers:
+            size = self._batches.size(len(self._left), workers)
+            self._submit([self._left.popleft() for _ in range(min(size, len(self._left)))])
+
+    def _submit(self, samples: list[int]) -> None:
+        batch = [(index, self._design.values(index)) for index in samples]
+        future = self._client.submit(run_batch, self._digest, self._packed, batch, pure=False)
+        self._flying[future] = samples
+        future.add_done_callback(self._done.put)
+
+    def _take(self, future: Any) -> None:
+        from distributed import KilledWorker
+
+        samples = self._flying.get(future)
+        if samples is None:
+            return
+        if future.status in ("cancelled", "lost"):
+            self._lost("it forgot the samples that it had")
+        try:
+            by, rows = future.result(timeout=60)
+        except KilledWorker:
+            self._died(samples)
+        except (OSError, TimeoutError) as problem:
+            self._lost(problem)
+        except Exception as problem:  # of Dask or of the worker's installation: samples do not raise
+            if type(problem).__name__ == "CancelledError":
+                self._lost("it forgot the samples that it had")
+            raise RunError("worker-failed", "sweep", f"a worker could not run samples: {type(problem).__name__}: {problem}",
+                           "its Python needs this version of sinew, h5py and NumPy") from problem
+        else:
+            self._batches.add(rows)
+            self._write(rows, by)
+        self._flying.pop(future).clear()
+
+    def _died(self, samples: list[int]) -> None:
+        """Workers died of a batch, several times: sample by sample it shows of which one."""
+        if len(samples) > 1:
+            for index in samples:
+                self._submit([index])
+            return
+        error = "the worker's process died of it, each time again; look at its memory, or give a timeout to run it apart [process-died]"
+        self._write([Row(samples[0], "failed", error, float("nan"), {})], {"version": "", "instruction_set": "", "worker": ""})
+
+    def _write(self, rows: Sequence[Row], by: dict[str, str]) -> None:
+        self._store.append(rows, [self._design.values(row.index) for row in rows], by)
+        self._progress.add(len(rows), sum(row.status == "failed" for row in rows))
+
+    def _check_scheduler(self) -> None:
+        if self._client.status == "running":
+            self._answered = time.monotonic()
+        elif time.monotonic() - self._answered > _NO_ANSWER:
+            self._lost("it does not answer")
+
+    def _lost(self, why: Any) -> None:
+        raise RunError("scheduler-lost", "sweep", f"the scheduler is gone ({why}); {self._store.count} of {self._design.size} samples are "
+                       f"in {self._store.path}", "go on with resume=True (--resume)") from None

@@ -1,0 +1,232 @@
+"""The table of a sweep: DIR/sweep.h5, written by one process.
+
+    /sample (rows,)            number of the sample; -1: the row is not complete
+    /inputs/KEY (rows,)        SI numbers, or text
+    /outputs/NAME (rows, ...)  SI; NaN where the sample failed
+    /status, /error, /seconds, /version, /instruction_set, /worker (rows,)
+    /scene                     text
+
+Rows stand in the order in which samples were done. The file is written in HDF5's mode of one writer and many readers
+(SWMR), and /sample after all else of a row: a process that is killed leaves a table that can be read.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import pathlib
+from collections.abc import Mapping, Sequence
+from typing import Any, Optional, Union
+
+import numpy as np
+
+from ..errors import Error
+from .worker import Row
+
+FORMAT, FORMAT_VERSION, NAME = "sinew-sweep", 1, "sweep.h5"
+_TEXTS = {"status": 8, "error": 1000, "version": 16, "instruction_set": 16, "worker": 80}
+_CHUNK_BYTES = 1 << 16
+_Path = Union[str, "os.PathLike[str]"]
+
+
+def _h5py():
+    try:
+        import h5py
+    except ImportError as missing:
+        raise Error("tool-missing", "sinew.sweep", f"tables need h5py: {missing}", "apt-get install python3-h5py") from None
+    return h5py
+
+
+def table_path(folder: _Path) -> pathlib.Path:
+    """The file of a sweep's folder."""
+    return pathlib.Path(folder) / NAME
+
+
+class Store:
+    """Writes rows.
+
+    Parameters
+    ----------
+    folder : path-like
+        Made where it is missing.
+    about : dict
+        What the sweep is: text, numbers and what JSON can hold; kept as attributes.
+    scene : str
+        Kept as text.
+    inputs : dict
+        Of every varied key the length of its text; 0: numbers.
+    outputs : dict
+        Shape of every output; None until the first good sample tells.
+    rows : Rows, optional
+        To go on from: they are copied into the new file, which takes the place of the old one.
+    """
+
+    def __init__(self, folder: _Path, about: Mapping[str, Any], scene: str, inputs: Mapping[str, int],
+                 outputs: Optional[Mapping[str, tuple[int, ...]]], rows: Optional[Rows] = None) -> None:
+        self.path = table_path(folder)
+        self._about, self._scene, self._inputs, self.outputs = dict(about), scene, dict(inputs), outputs
+        self._file: Any = None
+        self.count = 0
+        pathlib.Path(folder).mkdir(parents=True, exist_ok=True)
+        self._open(rows)
+
+    def _open(self, rows: Optional[Rows]) -> None:
+        """A new file beside the old one, with the rows that are there; then it takes its place."""
+        beside = self.path.with_suffix(".h5.new")
+        file = _h5py().File(beside, "w", libver="latest")
+        file.attrs.update({"format": FORMAT, "format_version": FORMAT_VERSION, "outputs_known": self.outputs is not None})
+        file.attrs.update({name: value if isinstance(value, (str, int, float)) else json.dumps(value) for name, value in self._about.items()})
+        file.attrs["inputs"] = json.dumps(list(self._inputs))
+        file.attrs["outputs"] = json.dumps({name: list(shape) for name, shape in (self.outputs or {}).items()})
+        file.create_dataset("scene", data=np.frombuffer(self._scene.encode() or b"\n", dtype=np.uint8))
+        columns = {"sample": ((), "i8", -1), "seconds": ((), "f8", np.nan)}
+        columns.update({name: ((), f"S{length}", b"") for name, length in _TEXTS.items()})
+        columns.update({f"inputs/{_slot(name)}": ((), f"S{length}" if length else "f8", b"" if length else np.nan)
+                        for name, length in self._inputs.items()})
+        columns.update({f"outputs/{_slot(name)}": (tuple(shape), "f8", np.nan) for name, shape in (self.outputs or {}).items()})
+        for name, (shape, kind, fill) in columns.items():
+            size = max(1, int(np.prod(shape, dtype=int)) * np.dtype(kind).itemsize)
+            packed = {"compression": "gzip", "compression_opts": 1} if size > 8 and kind != "f8" else {}
+            file.create_dataset(name, shape=(0, *shape), maxshape=(None, *shape), dtype=kind, fillvalue=fill,
+                                chunks=(max(1, _CHUNK_BYTES // size), *shape), **packed)
+        file.swmr_mode = True
+        self._file, self.count = file, 0
+        if rows is not None:
+            self._extend({name: rows.column(name) for name in columns if name in rows.columns or name == "sample"}, len(rows))
+        os.replace(beside, self.path)
+
+    def append(self, rows: Sequence[Row], inputs: Sequence[Sequence[Any]], by: Mapping[str, str]) -> None:
+        """Adds rows and flushes them.
+
+        Parameters
+        ----------
+        rows : list of Row
+            Those whose outputs are not those of the table become failed ones.
+        inputs : list
+            Values of the varied keys for each.
+        by : dict
+            "version", "instruction_set" and "worker".
+        """
+        if not rows:
+            return
+        if self.outputs is None:
+            good = next((row for row in rows if row.outputs), None)
+            if good is not None:
+                self.outputs = {name: np.shape(value) for name, value in good.outputs.items()}
+                before = Rows(self.path)
+                self.close()
+                self._open(before)
+        outputs = self.outputs or {}
+        rows = [_checked(row, outputs) for row in rows]
+        table: dict[str, np.ndarray] = {
+            "sample": np.array([row.index for row in rows], dtype="i8"), "seconds": np.array([row.seconds for row in rows])}
+        for name in ("status", "error"):
+            table[name] = _texts([getattr(row, name) for row in rows], _TEXTS[name])
+        for name, value in by.items():
+            table[name] = _texts([value] * len(rows), _TEXTS[name])
+        for k, (name, length) in enumerate(self._inputs.items()):
+            column = [values[k] for values in inputs]
+            table[f"inputs/{_slot(name)}"] = _texts(column, length) if length else np.array(column, dtype=float)
+        for name, shape in outputs.items():
+            missing = np.full(shape, np.nan)
+            table[f"outputs/{_slot(name)}"] = np.array([row.outputs.get(name, missing) for row in rows], dtype=float).reshape(-1, *shape)
+        self._extend(table, len(rows))
+
+    def _extend(self, table: Mapping[str, np.ndarray], count: int) -> None:
+        end = self.count + count
+        for name, values in table.items():
+            if name != "sample":
+                self._file[name].resize(end, axis=0)
+                self._file[name][self.count:end] = values
+        self._file.flush()
+        # A row counts from here on.
+        self._file["sample"].resize(end, axis=0)
+        self._file["sample"][self.count:end] = table["sample"]
+        self._file.flush()
+        self.count = end
+
+    def close(self) -> None:
+        """Closes the file."""
+        if self._file is not None:
+            self._file.close()
+            self._file = None
+
+
+class Rows:
+    """The complete rows of a table, also of one that is being written or whose writer was killed.
+
+    Parameters
+    ----------
+    path : path-like
+        The folder, or the file.
+
+    Raises
+    ------
+    Error
+        file-not-found; malformed-file where it is none of a sweep.
+    """
+
+    def __init__(self, path: _Path) -> None:
+        path = pathlib.Path(path)
+        path = table_path(path) if path.is_dir() else path
+        if not path.exists():
+            raise Error("file-not-found", (str(path), 0, 0, ""), "there is no table of a sweep", "name the folder that `sinew sweep --out` was given")
+        try:
+            file = _h5py().File(path, "r", libver="latest", swmr=True)
+        except OSError as problem:
+            raise Error("malformed-file", (str(path), 0, 0, ""), f"it cannot be read: {problem}", "name a folder of `sinew sweep`") from None
+        with file:
+            if file.attrs.get("format") != FORMAT or file.attrs["format_version"] != FORMAT_VERSION:
+                raise Error("malformed-file", (str(path), 0, 0, ""), "this HDF5 file does not hold a sweep of this version",
+                            "name a folder of `sinew sweep`")
+            self.about: dict[str, Any] = dict(file.attrs)
+            self.scene = bytes(file["scene"][:]).decode()
+            self.inputs: list[str] = json.loads(self.about["inputs"])
+            self.outputs = {name: tuple(shape) for name, shape in json.loads(self.about["outputs"]).items()}
+            self.outputs_known = bool(self.about["outputs_known"])
+            self.columns = [*_TEXTS, "seconds", *(f"inputs/{_slot(name)}" for name in self.inputs),
+                            *(f"outputs/{_slot(name)}" for name in self.outputs)]
+            sample = file["sample"][:]
+            self._kept = np.flatnonzero(sample >= 0)
+            self._table = {name: file[name][: len(sample)][self._kept] for name in self.columns}
+            self.samples: np.ndarray = sample[self._kept]
+
+    def __len__(self) -> int:
+        return len(self.samples)
+
+    def column(self, name: str) -> np.ndarray:
+        """As it is in the file."""
+        return self.samples if name == "sample" else self._table[name]
+
+    def values(self, name: str) -> np.ndarray:
+        """(rows,) or (rows, ...) of a varied key, an output, or one of the rest; text as str."""
+        for kind, names in (("inputs", self.inputs), ("outputs", self.outputs)):
+            if name in names:
+                return _decoded(self.column(f"{kind}/{_slot(name)}"))
+        return _decoded(self.column(name))
+
+
+def _slot(name: str) -> str:
+    """A name as HDF5 may have it: "/" would make a group, and "." is the group itself."""
+    return name.replace("%", "%25").replace("/", "%2F") if name != "." else "%2E"
+
+
+def _texts(values: Sequence[Any], length: int) -> np.ndarray:
+    encoded = [str(value).encode()[:length].decode(errors="ignore").encode() for value in values]
+    return np.array(encoded, dtype=f"S{length}")
+
+
+def _decoded(column: np.ndarray) -> np.ndarray:
+    return np.char.decode(column, "utf-8") if column.dtype.kind == "S" else column
+
+
+def _checked(row: Row, outputs: Mapping[str, tuple[int, ...]]) -> Row:
+    shapes = {name: np.shape(value) for name, value in row.outputs.items()}
+    if row.status == "failed" or shapes == dict(outputs):
+        return row
+    error = f"its outputs {_shapes(shapes)} are not {_shapes(outputs)}, those of the first good sample; return the same from every sample [wrong-shape]"
+    return row._replace(status="failed", error=error, outputs={})
+
+
+def _shapes(shapes: Mapping[str, tuple[int, ...]]) -> str:
+    return "{" + ", ".join(f"{name}: {tuple(shape)}" for name, shape in sorted(shapes.items())) + "}"

@@ -1,0 +1,272 @@
+"""A sweep from its description to its table."""
+
+from __future__ import annotations
+
+import hashlib
+import inspect
+import json
+import multiprocessing
+import pathlib
+import re
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Optional, Union
+
+import numpy as np
+
+from .. import _core
+from .. import scene as scenes
+from ..errors import Error
+from .engine import Engine, connect
+from .progress import Progress
+from .samples import Axis, Design, design
+from .store import Rows, Store, table_path
+from .worker import Job, Sample, check_measures
+
+if TYPE_CHECKING:
+    import os
+
+    import pandas
+
+_COMMAND = re.compile(r"actuators\.[^.]+\.command\.[a-z_]+")
+
+
+def run(
+    scene: Union[str, os.PathLike[str], Mapping[str, Any], None] = None,
+    *,
+    vary: Mapping[str, Any],
+    measure: Sequence[str] = (),
+    out: Union[str, os.PathLike[str]],
+    function: Optional[Callable[[Sample], Mapping[str, Any]]] = None,
+    sample: Optional[str] = None,
+    seed: int = 1,
+    workers: Optional[int] = None,
+    scheduler: Any = None,
+    duration: Optional[float] = None,
+    static: bool = False,
+    set: scenes.Overrides = None,  # noqa: A002 - the command line's --set
+    timeout: Optional[float] = None,
+    resume: bool = False,
+    progress: Union[bool, Callable[[int, int], object], None] = None,
+) -> pandas.DataFrame:
+    """Runs a scene, or a function, for many values of its parameters, on the processes of a Dask cluster.
+
+    Each sample loads the scene with its values, runs it, and measures the state at the end. A sample that fails is a row
+    of the table. The table grows while the sweep runs and outlives whatever ends it.
+
+    Parameters
+    ----------
+    scene : path-like or dict, optional
+        As of sinew.load(). Files that it names must be where the workers can read them.
+    vary : dict
+        For each key of the scene, as in `set`: text as on the command line, "300kPa:600kPa:7" (grid, both ends
+        included), "300kPa:600kPa" (range) or "1mm,2mm,5mm"; a list or array of numbers in SI or of text; a tuple
+        (low, high), a range. A grid has all combinations, the last key changing fastest.
+    measure : list of str
+        Observables of the simulation, as of Simulation.run(record=...): "tip.position" (m), "strain_energy" (J); and
+        of a body "trunk.strain_energy", kinetic_energy, gravity_energy (J), mass (kg), volume (m^3).
+    out : path-like
+        Folder of the table, sweep.h5.
+    function : callable, optional
+        Takes a Sample and returns a dict of numbers and arrays, the same names and shapes from each sample, in place of
+        running the scene. Its keys in `vary` need not be those of a scene.
+    sample : str, optional
+        "sobol:512" (scrambled), "halton:500" (scrambled) or "random:500" over the ranges; "saltelli:256" for Sobol
+        indices, 256 (keys + 2) samples. Of a list each value has an equal share.
+    seed : int
+        Of the sample.
+    workers : int, optional
+        Processes on this machine, one thread each; by default one a core.
+    scheduler : str or distributed.Client, optional
+        Address of a Dask scheduler, as "tcp://127.0.0.1:8786", or a client, in place of `workers`.
+    duration : float, optional
+        s; by default the scene's.
+    static : bool
+        A stable equilibrium (Simulation.solve_static()) in place of a run.
+    set : list of str or dict, optional
+        As of sinew.load(), for all samples.
+    timeout : float, optional
+        s, of each sample: it then runs in a process of its own, which is ended with all that it started.
+    resume : bool
+        Goes on where a sweep of the same scene, variation and function stopped; starts it where there is none.
+    progress : bool or callable, optional
+        By default a line on standard error if that is a terminal. A function is called with (rows, samples) after each
+        batch.
+
+    Returns
+    -------
+    pandas.DataFrame
+        As sinew.sweep.load(out).
+
+    Raises
+    ------
+    Error
+        bad-argument, unknown-name (with a suggestion) and what sinew.load() raises, before any work; file-exists where
+        `out` has a table and `resume` is not asked for, or that of another sweep.
+    RunError
+        scheduler-lost, worker-failed: rows that are there stay.
+    KeyboardInterrupt
+        After Ctrl-C: rows that are there stay.
+
+    Examples
+    --------
+    >>> table = sinew.sweep.run("trunk.yaml", vary={"bodies.trunk.material.young_modulus": "300kPa:600kPa:7"},
+    ...                         measure=["tip.position"], out="out/modulus", workers=2)
+    """
+    _refuse_import_by_workers()
+    samples = design(vary, sample, seed)
+    job = _job(scene, samples, list(measure), function, duration, static, set, timeout, seed)
+    what = _identity(job, samples)
+    store, there = _open_store(out, job, samples, what, resume)
+    with_rows = frozenset(there)
+    order = [index for index in _order(job, samples) if index not in with_rows]
+    shown = Progress(samples.size, len(with_rows), progress)
+    shown.failed = 0
+    try:
+        if order:
+            with connect(scheduler, workers) as client:
+                Engine(client, _packed(job), samples, order, store, shown).run()
+    finally:
+        shown.end()
+        store.close()
+    from .table import load
+
+    return load(out)
+
+
+def _refuse_import_by_workers() -> None:
+    """Workers import the main script; one that starts a sweep when imported would start others without end."""
+    if getattr(multiprocessing.current_process(), "_inheriting", False):
+        raise Error("bad-argument", "sweep.run()", "the script starts a sweep when a worker imports it",
+                    'call it under `if __name__ == "__main__":`')
+
+
+def _packed(job: Job) -> bytes:
+    try:
+        import cloudpickle
+    except ImportError as missing:
+        raise Error("tool-missing", "sinew.sweep", f"sweeps need cloudpickle: {missing}", "apt-get install python3-distributed") from None
+    return cloudpickle.dumps(job)
+
+
+def _job(scene: Any, samples: Design, measure: list[str], function: Any, duration: Optional[float], static: bool, given: scenes.Overrides,
+         timeout: Optional[float], seed: int) -> Job:
+    """Checks all that can be checked before any work."""
+    if function is None and scene is None:
+        raise Error("bad-argument", "sweep.run()", "there is neither a scene nor a function", "give one of them")
+    if function is None and not measure:
+        raise Error("bad-argument", "sweep(measure)", "nothing is measured", "name observables such as 'tip.position' (--measure)")
+    if len({*measure}) != len(measure):
+        raise Error("duplicate-name", "sweep(measure)", f"a name comes twice in {measure}", "measure each once")
+    if static and duration is not None:
+        raise Error("bad-argument", "sweep(duration)", "an equilibrium has no duration", "leave out duration, or static")
+    if function is not None and (static or duration is not None):
+        raise Error("bad-argument", "sweep(function)", "a function runs its samples itself", "leave out duration and static")
+    if function is not None and not callable(function):
+        raise Error("wrong-type", "sweep(function)", f"{function!r} cannot be called", "give a function of a Sample")
+    if timeout is not None and not timeout > 0.0:
+        raise Error("out-of-range", "sweep(timeout)", f"the timeout is {timeout:g} s", "give more than zero")
+    common = dict(axes=tuple(samples.axes), measures=tuple(measure), duration=duration, static=static, function=function, timeout=timeout,
+                  seed=seed)
+    if scene is None:
+        return Job(scene="", **common)
+    with warnings.catch_warnings():
+        if function is None:
+            warnings.simplefilter("ignore")  # told of the first sample, below
+        base = scenes.load(scene, set=given, threads=1)
+    if function is not None:
+        return Job(scene=base.to_yaml(), **common)
+    first = [f"{axis.key}={axis.spell(value)}" for axis, value in zip(samples.axes, samples.values(0))]
+    sim = scenes.load(scene, set=[*scenes._assignments(given), *first], threads=1)
+    shapes = check_measures(sim, measure, static)
+    if not static:
+        _check_duration(sim, duration)
+    commands = () if sim.controller is not None else tuple(k for k, axis in enumerate(samples.axes) if _is_command(sim, axis))
+    return Job(scene=base.to_yaml(), commands=commands, shapes=shapes, **common)
+
+
+def _check_duration(sim: _core.Simulation, duration: Optional[float]) -> None:
+    """Raises what run() raises for a duration, after few steps at most."""
+
+    class Enough(Exception):
+        pass
+
+    def stop(*_: int) -> None:
+        raise Enough
+
+    if duration is not None and not (np.isfinite(duration) and duration >= 0.0):
+        raise Error("out-of-range", "sweep(duration)", f"the duration is {duration:g} s", "give zero or more")
+    if duration is None and "\nduration:" not in "\n" + sim.to_yaml():
+        try:
+            sim.run(record=[], every=1, progress=stop)
+        except Enough:
+            pass
+
+
+def _is_command(sim: _core.Simulation, axis: Axis) -> bool:
+    """Whether a loaded simulation takes it: the number that an actuator is told."""
+    return axis.is_number and bool(_COMMAND.fullmatch(axis.key)) and axis.key.split(".")[1] in sim.actuators
+
+
+def _order(job: Job, samples: Design) -> Sequence[int]:
+    """Samples between which only commands change stand together, since they share a simulation."""
+    fixed = [k for k in range(len(samples.axes)) if k not in job.commands]
+    if not job.commands or not fixed or samples.method != "grid":
+        return range(samples.size)
+    shape = [len(axis.values) for axis in samples.axes]
+    numbers = np.arange(samples.size).reshape(shape)
+    return numbers.transpose(fixed + list(job.commands)).ravel().tolist()
+
+
+def _identity(job: Job, samples: Design) -> dict[str, Any]:
+    """What makes it this sweep and no other."""
+    how = "function" if job.function else "static" if job.static else "run"
+    return {"scene": _scene_hash(job.scene), **samples.describe(), "measure": list(job.measures), "how": how, "duration": job.duration,
+            "function": _spell_function(job.function)}
+
+
+def _scene_hash(text: str) -> str:
+    """Of the scene and the files that it names, wherever they lie."""
+
+    def content(found: re.Match) -> str:
+        path = pathlib.Path(found[1].strip("\"'"))
+        return "file: " + (hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else found[1])
+
+    return hashlib.sha256(re.sub(r"file: ([^,}\n]+)", content, text).encode()).hexdigest()
+
+
+def _spell_function(function: Any) -> str:
+    if function is None:
+        return ""
+    name = getattr(function, "__qualname__", type(function).__name__)
+    try:
+        return f"{name} {hashlib.sha256(inspect.getsource(function).encode()).hexdigest()}"
+    except (OSError, TypeError):
+        return name
+
+
+def _open_store(out: Any, job: Job, samples: Design, what: dict[str, Any], resume: bool) -> tuple[Store, Sequence[int]]:
+    """The table, and the samples that it has."""
+    path = table_path(out)
+    before = None
+    if path.exists():
+        if not resume:
+            raise Error("file-exists", (str(path), 0, 0, ""), "the folder has a sweep already", "go on with resume=True (--resume), or name another folder")
+        before = Rows(path)
+        there = json.loads(before.about["identity"])
+        for name in what:
+            if there.get(name) != json.loads(json.dumps(what[name])):
+                raise Error("file-exists", (str(path), 0, 0, ""), f"it is of another sweep: {name} is {_short(there.get(name))} there and "
+                            f"{_short(what[name])} here", "repeat what the folder has, or name another folder")
+    about = {"sinew_version": _core.__version__, "instruction_set": _core.instruction_set, "samples": samples.size, "seed": samples.seed,
+             "sample": f"{samples.method}:{samples.count}", "identity": json.dumps(what),
+             "hash": hashlib.sha256(json.dumps(what).encode()).hexdigest(), "units": {axis.key: axis.unit for axis in samples.axes}}
+    outputs = before.outputs if before is not None and before.outputs_known else dict(job.shapes) if job.shapes else None
+    inputs = {axis.key: 0 if axis.is_number else max(len(str(value).encode()) for value in axis.values) for axis in samples.axes}
+    store = Store(out, about, job.scene, inputs, outputs, before)
+    return store, [] if before is None else before.samples.tolist()
+
+
+def _short(value: Any) -> str:
+    text = json.dumps(value)
+    return text if len(text) < 200 else text[:200] + " ..."

@@ -1,0 +1,299 @@
+"""What a worker does: samples of one job, in batches."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import socket
+import threading
+import time
+import traceback
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple, Optional
+
+import numpy as np
+
+from .. import _core, scene
+from ..errors import Error, SinewWarning
+from .child import Child
+from .samples import Axis, Value
+
+#: Work and losses since the start, which an equilibrium without steps has none of.
+LEDGER = ("actuator_work", "outside_work", "dissipation", "numerical_loss")
+#: What a body is measured by beside the observables of its simulation: "trunk.strain_energy".
+OF_BODY = ("strain_energy", "kinetic_energy", "gravity_energy", "mass", "volume")
+_ALL_STEPS = 1_000_000_000
+
+
+class Row(NamedTuple):
+    """What came of a sample."""
+
+    index: int
+    status: str  # "done", "flagged", "failed"
+    error: str
+    seconds: float
+    outputs: dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Job:
+    """All that a worker needs to know of a sweep.
+
+    Attributes
+    ----------
+    scene : str
+        YAML with absolute paths; empty where a function needs none.
+    axes : tuple of Axis
+    commands : tuple of int
+        Which axes are commands of actuators, which a loaded simulation takes.
+    measures : tuple of str
+    shapes : dict
+        Of each measure.
+    duration : float, optional
+        s.
+    static : bool
+        An equilibrium in place of a run.
+    function : callable, optional
+        Of a Sample, in place of both.
+    timeout : float, optional
+        s, of each sample.
+    seed : int
+    """
+
+    scene: str
+    axes: tuple[Axis, ...]
+    commands: tuple[int, ...] = ()
+    measures: tuple[str, ...] = ()
+    shapes: Mapping[str, tuple[int, ...]] = ()  # type: ignore[assignment]
+    duration: Optional[float] = None
+    static: bool = False
+    function: Optional[Callable[["Sample"], Mapping[str, Any]]] = None
+    timeout: Optional[float] = None
+    seed: int = 1
+
+
+class Sample(Mapping[str, Value]):
+    """One sample, as a function of a sweep gets it: a mapping of varied keys to values in SI, or text.
+
+    Attributes
+    ----------
+    index : int
+        Number of the sample, from 0.
+    seed : int
+        For random numbers of this sample: it depends on the sweep's seed and on the index alone.
+    """
+
+    def __init__(self, index: int, seed: int, values: Mapping[str, Value], load: Callable[..., _core.Simulation]) -> None:
+        self.index, self.seed = index, seed
+        self._values, self._load = dict(values), load
+
+    def __getitem__(self, key: str) -> Value:
+        return self._values[key]
+
+    def __iter__(self):
+        return iter(self._values)
+
+    def __len__(self) -> int:
+        return len(self._values)
+
+    def load(self, *, set: scene.Overrides = None) -> _core.Simulation:  # noqa: A002
+        """The sweep's scene with this sample's values, at its start, on one thread.
+
+        Parameters
+        ----------
+        set : list of str or dict, optional
+            As of sinew.load(), in place of the varied keys: where these are none of the scene's.
+
+        Raises
+        ------
+        Error
+            bad-argument where the sweep has no scene; what sinew.load() raises.
+        """
+        return self._load(set)
+
+
+def check_measures(sim: _core.Simulation, measures: Sequence[str], static: bool) -> dict[str, tuple[int, ...]]:
+    """Shapes of measures of a simulation.
+
+    Raises
+    ------
+    Error
+        unknown-name with a suggestion; bad-argument for words, and for works where no step is made.
+    """
+    shapes = {}
+    for name in measures:
+        if static and name in LEDGER:
+            raise Error("bad-argument", "sweep(measure)", f"'{name}' counts over steps, and an equilibrium has none",
+                        "run for a while, or measure 'strain_energy'")
+        try:
+            value = measure(sim, [name])[name]
+        except Error as error:
+            raise Error(error.kind, "sweep(measure)", error.message, error.remedy) from None
+        if value.dtype.kind != "f":
+            raise Error("bad-argument", "sweep(measure)", f"'{name}' is a word",
+                        "measure numbers; the status of every sample is in the table anyway")
+        shapes[name] = value.shape
+    return shapes
+
+
+def measure(sim: _core.Simulation, names: Sequence[str]) -> dict[str, np.ndarray]:
+    """Values of measures now, by their names. Raises Error (unknown-name) with a suggestion."""
+    found, observed = {}, []
+    for name in names:
+        body, _, quantity = name.rpartition(".")
+        if name in LEDGER:
+            found[name] = np.asarray(sim.ledger[name])
+        elif quantity in OF_BODY and body in sim.bodies:
+            found[name] = np.asarray(getattr(sim.body(body), quantity), float)
+        else:
+            observed.append(name)
+    if observed:
+        recorded = sim.run(0.0, record=observed)
+        found.update((name, recorded[name][-1]) for name in observed)
+    return found
+
+
+class Runner:
+    """Runs samples of a job in this process. Keeps a simulation while only commands change."""
+
+    def __init__(self, job: Job) -> None:
+        self.job = job
+        self._sim: Optional[_core.Simulation] = None
+        self._of: tuple[Value, ...] = ()  # what else was varied of it
+        self._reusable: Optional[bool] = None if job.commands else False
+
+    def row(self, index: int, values: Sequence[Value]) -> Row:
+        """What comes of a sample; whatever fails in it is told in the row."""
+        begin = time.perf_counter()
+        try:
+            with warnings.catch_warnings(record=True) as told:
+                warnings.simplefilter("always")
+                outputs = self._called(index, values) if self.job.function else self._simulated(values)
+            remarks = [str(one.message) for one in told if issubclass(one.category, SinewWarning)]
+            remarks = [] if self.job.function else remarks
+            status, error = ("flagged", "; ".join(remarks)) if remarks else ("done", "")
+        except (Exception, SystemExit) as problem:  # a script may end by sys.exit()
+            self._sim = None
+            status, error, outputs = "failed", describe(problem), {}
+        return Row(index, status, error, time.perf_counter() - begin, outputs)
+
+    def _simulated(self, values: Sequence[Value]) -> dict[str, Any]:
+        sim = self._simulation(values, keep=True)
+        if self.job.static:
+            sim.solve_static()
+        else:
+            sim.run(self.job.duration, record=[], every=_ALL_STEPS)
+        found = measure(sim, self.job.measures)
+        for name, value in found.items():
+            if value.shape != self.job.shapes[name]:
+                raise Error("wrong-shape", name, f"it has the shape {value.shape}, and {self.job.shapes[name]} in the first sample",
+                            "measure what has one shape in all samples")
+        return found
+
+    def _called(self, index: int, values: Sequence[Value]) -> dict[str, Any]:
+        job = self.job
+        named = {axis.key: value for axis, value in zip(job.axes, values)}
+        seed = int(np.random.SeedSequence([job.seed, index]).generate_state(1, np.uint64)[0])
+        found = job.function(Sample(index, seed, named, lambda given: self._for_function(values, given)))
+        if not isinstance(found, Mapping):
+            raise Error("wrong-type", "sweep(function)", f"the function returned {type(found).__name__}", "return a dict of numbers and arrays")
+        outputs = {str(name): np.asarray(value, float) for name, value in found.items()}
+        if job.measures and set(outputs) != set(job.measures):
+            raise Error("unknown-name", "sweep(function)", f"the function returned {sorted(outputs)}, not {sorted(job.measures)}",
+                        "return the same names from every sample, those of `measure` where it is given")
+        return outputs
+
+    def _for_function(self, values: Sequence[Value], given: scene.Overrides) -> _core.Simulation:
+        if not self.job.scene:
+            raise Error("bad-argument", "Sample.load()", "this sweep has no scene", "give one: sinew.sweep.run(scene, ...)")
+        return self._simulation(values, keep=False) if given is None else self._load(given)
+
+    def _simulation(self, values: Sequence[Value], keep: bool) -> _core.Simulation:
+        """At its start. With `keep` it is not handed out, so that reset() gives it back."""
+        job = self.job
+        fixed = tuple(value for k, value in enumerate(values) if k not in job.commands)
+        if self._sim is None or self._of != fixed or self._reusable is False:
+            self._sim, self._of = self._load(self._overrides(values)), fixed
+            return self._sim if keep or self._reusable is False else self._sim.clone()
+        if keep:
+            self._sim.reset()
+            sim = self._sim
+        else:
+            sim = self._sim.clone()
+        if self._reusable and self._command(sim, values):
+            return sim
+        return self._compared(sim, values, keep)
+
+    def _overrides(self, values: Sequence[Value]) -> list[str]:
+        return [f"{axis.key}={axis.spell(value)}" for axis, value in zip(self.job.axes, values)]
+
+    def _load(self, overrides: scene.Overrides) -> _core.Simulation:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # told of once, by who started the sweep
+            return scene.loads(self.job.scene, set=overrides, threads=1)
+
+    def _command(self, sim: _core.Simulation, values: Sequence[Value]) -> bool:
+        for k in self.job.commands:
+            _, name, _, quantity = self.job.axes[k].key.split(".")
+            setattr(sim.actuator(name), quantity, float(values[k]))
+        return True
+
+    def _compared(self, sim: _core.Simulation, values: Sequence[Value], keep: bool) -> _core.Simulation:
+        """The first time, a kept simulation must stand as one that is loaded anew, or none is kept."""
+        fresh = self._load(self._overrides(values))
+        try:
+            self._command(sim, values)
+            same = sim.state() == fresh.state() and all(
+                sim.actuator(name).command == fresh.actuator(name).command
+                for name in {self.job.axes[k].key.split(".")[1] for k in self.job.commands})
+        except Error:
+            same = False
+        self._reusable = same
+        if same:
+            return sim
+        self._sim = fresh
+        return fresh
+
+
+def describe(problem: BaseException) -> str:
+    """An exception in a line: what and, where it is none of sinew, in which line of which file."""
+    if isinstance(problem, Error):
+        return str(problem)
+    where = traceback.extract_tb(problem.__traceback__)
+    at = f" ({os.path.basename(where[-1].filename)}, line {where[-1].lineno})" if where else ""
+    return f"{type(problem).__name__}: {problem}{at}"
+
+
+_turn = threading.Lock()
+_known: dict[str, Any] = {}  # the last job's digest, and what runs its samples
+
+
+def run_batch(digest: str, packed: bytes, samples: Sequence[tuple[int, Sequence[Value]]]) -> tuple[dict[str, str], list[Row]]:
+    """Rows of some samples, and who made them. The task that Dask sends.
+
+    Parameters
+    ----------
+    digest : str
+        Of `packed`: a worker unpacks a job once.
+    packed : bytes
+        The Job.
+    samples : list of (index, values)
+    """
+    with _turn:  # one simulation, one sample at a time, whatever the number of a worker's threads
+        if _known.get("digest") != digest:
+            _forget()
+            job = pickle.loads(packed)
+            _known.update(digest=digest, runner=Child(packed, job.timeout) if job.timeout else Runner(job))
+        runner = _known["runner"]
+        rows = [runner.row(index, values) for index, values in samples]
+    me = {"version": _core.__version__, "instruction_set": _core.instruction_set, "worker": f"{socket.gethostname()}:{os.getpid()}"}
+    return me, rows
+
+
+def _forget() -> None:
+    runner = _known.pop("runner", None)
+    if isinstance(runner, Child):
+        runner.close()
+    _known.clear()

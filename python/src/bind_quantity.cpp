@@ -1,0 +1,56 @@
+// Quantities as text, read as scenes read them.
+#include <array>
+
+#include <fmt/format.h>
+
+#include "sinew/core/quantity.hpp"
+
+#include "bindings.hpp"
+
+namespace sinew::python {
+
+namespace {
+
+constexpr std::array kDimensions = {
+    dimension::kNone,         dimension::kLength,      dimension::kArea,
+    dimension::kVolume,       dimension::kMass,        dimension::kTime,
+    dimension::kFrequency,    dimension::kVelocity,    dimension::kAcceleration,
+    dimension::kForce,        dimension::kPressure,    dimension::kEnergy,
+    dimension::kPower,        dimension::kDensity,     dimension::kStiffness,
+    dimension::kDamping,      dimension::kViscosity,   dimension::kVolumeRate,
+    dimension::kPressureRate, dimension::kConductance, dimension::kTemperature,
+    dimension::kHeatCapacity, dimension::kHeatLoss};
+
+// Of any dimension that scenes use.
+py::tuple quantity(const std::string& text) {
+  for (const Dimension& one : kDimensions) {
+    try {
+      const double value = parse_quantity(text, one, {.item = text});
+      return py::make_tuple(value, py::make_tuple(one.length, one.mass, one.time, one.temperature));
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::wrong_dimension) throw;
+    }
+  }
+  throw Error(ErrorKind::wrong_dimension, {.item = text}, "no key of a scene has this unit",
+              "give a unit of the key, such as 'kPa' for a modulus");
+}
+
+}  // namespace
+
+void bind_quantity(py::module_& module) {
+  module.def("_quantity", &quantity, py::arg("text"),
+             R"(_quantity(text)
+--
+
+A quantity such as '300 kPa', in SI, and the exponents of its dimension: (300000.0, (-1, 1, -2, 0))
+for length, mass, time and temperature. A bare number is SI and has none.
+
+Raises
+------
+Error
+    not-a-number, not-finite, unknown-unit, wrong-length; wrong-dimension where no key of a scene has
+    such a dimension.
+)");
+}
+
+}  // namespace sinew::python
