@@ -3,11 +3,11 @@
 #   scripts/setup.sh [NEED...]      packages for what is named; for everything when nothing is
 #   scripts/setup.sh --minimal      what the library, the program and the Python package need: build wheel
 #   scripts/setup.sh --list [...]   prints the packages of the same, one a line, and ends
-# NEED is one or more of: build demo wheel test validate bench docs format lint fuzz.
+# NEED is one or more of: build demo sweep wheel test validate bench docs format lint fuzz.
 # Runs as root or with sudo. SINEW_SKIP_SETUP=1 leaves the machine as it is.
 set -eu
 
-needs_known="build demo wheel test validate bench docs format lint fuzz"
+needs_known="build demo sweep wheel test validate bench docs format lint fuzz"
 
 # What a need adds to those that it rests on (packages_for).
 build="build-essential cmake ninja-build
@@ -20,9 +20,10 @@ build="build-essential cmake ninja-build
 command -v node >/dev/null || build="$build nodejs"
 command -v npm >/dev/null || build="$build npm"
 demo="python3-matplotlib"
+sweep="python3-distributed python3-pandas python3-h5py python3-scipy python3-matplotlib"
 wheel="python3-pip python3-venv python3-setuptools python3-wheel"
 test="libgtest-dev libgmock-dev gmsh chromium python3-pytest python3-scipy python3-meshio
-  python3-h5py python3-yaml python3-cvxopt python3-jsonschema doxygen"
+  python3-h5py python3-distributed python3-pandas python3-yaml python3-cvxopt python3-jsonschema doxygen"
 validate="calculix-ccx gmsh python3-scipy python3-meshio"
 bench="libbenchmark-dev chromium"
 docs="doxygen graphviz"
@@ -34,6 +35,7 @@ packages_for() {
   case $1 in
     build)    echo $build ;;
     demo)     echo $build $demo ;;
+    sweep)    echo $build $sweep ;;
     wheel)    echo $build $wheel ;;
     test)     echo $build $demo $test ;;
     validate) echo $build $demo $validate ;;

@@ -23,6 +23,7 @@ void add_plan(CommandLine& line);
 void add_brace(CommandLine& line);
 void add_identify(CommandLine& line);
 void add_plot(CommandLine& line);
+void add_sweep(CommandLine& line);
 /// @}
 
 }  // namespace sinew::cli

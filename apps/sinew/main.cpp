@@ -27,6 +27,9 @@ constexpr const char* kExamples =
     "  sinew info trunk.vtk --unit mm\n"
     "  sinew mesh finger.stl -o finger.vtu --size 5mm --unit mm\n"
     "  sinew plot out/circle\n"
+    "  sinew sweep examples/trunk/trunk.yaml --vary bodies.trunk.mass=30g:60g:7 --measure "
+    "tip.position "
+    "--out out/mass\n"
     "  sinew fit tensile.csv --model ogden3 -o rubber.yaml --plot rubber.png\n"
     "  sinew plan examples/fluidic_arm/arm.yaml --goal \"20 0 -40 cm\" -o plan.csv\n"
     "  sinew bench examples/trunk/circle.yaml --steps 400 --json bench.json\n"
@@ -55,6 +58,7 @@ int run(int argc, const char* const* argv) {
   cli::add_plan(line);
   cli::add_brace(line);
   cli::add_plot(line);
+  cli::add_sweep(line);
   cli::add_schema(line);
   return line.run(argc, argv);
 }

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <filesystem>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 #include <sys/wait.h>
@@ -40,15 +41,31 @@ std::filesystem::path plot_script() {
               "the script that draws plots is not there", "install the Python package");
 }
 
-}  // namespace
-
-int draw_plot(const std::vector<std::string>& arguments) {
-  std::vector<std::string> words = {kInterpreter, plot_script().string()};
-  words.insert(words.end(), arguments.begin(), arguments.end());
+// As execv() takes them.
+std::vector<char*> pointers_to(std::vector<std::string>& words) {
   std::vector<char*> pointers;
   pointers.reserve(words.size() + 1);
   for (std::string& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
+  return pointers;
+}
+
+std::vector<std::string> module_call(const std::string& module,
+                                     const std::vector<std::string>& arguments) {
+  std::vector<std::string> words = {kInterpreter, "-m", module};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  return words;
+}
+
+[[noreturn]] void throw_missing_interpreter(const std::string& what) {
+  throw Error(ErrorKind::tool_missing, {.file = kInterpreter},
+              fmt::format("{}, and Python cannot be started", what),
+              "apt-get install python3 python3-numpy python3-matplotlib");
+}
+
+int run_interpreter(std::vector<std::string> words) {
+  std::vector<char*> pointers = pointers_to(words);
+  std::fflush(stdout);
   const pid_t child = fork();
   if (child == 0) {
     execv(kInterpreter, pointers.data());
@@ -57,11 +74,31 @@ int draw_plot(const std::vector<std::string>& arguments) {
   int status = 0;
   if (child < 0 || waitpid(child, &status, 0) < 0 || !WIFEXITED(status) ||
       WEXITSTATUS(status) == 127) {
-    throw Error(ErrorKind::tool_missing, {.file = kInterpreter},
-                "plots are drawn by Python, which cannot be started",
-                "apt-get install python3 python3-numpy python3-matplotlib");
+    throw_missing_interpreter("plots are drawn by the Python package");
   }
   return WEXITSTATUS(status);
+}
+
+}  // namespace
+
+int draw_plot(const std::vector<std::string>& arguments) {
+  std::vector<std::string> words = {kInterpreter, plot_script().string()};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  return run_interpreter(std::move(words));
+}
+
+int run_python_module(const std::string& module, const std::vector<std::string>& arguments) {
+  use_own_python_package();
+  return run_interpreter(module_call(module, arguments));
+}
+
+int become_python_module(const std::string& module, const std::vector<std::string>& arguments) {
+  use_own_python_package();
+  std::vector<std::string> words = module_call(module, arguments);
+  std::vector<char*> pointers = pointers_to(words);
+  std::fflush(stdout);
+  execv(kInterpreter, pointers.data());
+  throw_missing_interpreter(fmt::format("'{}' is a part of the Python package", module));
 }
 
 int draw_json(const std::string& kind, const std::string& json, const std::string& out) {

@@ -18,6 +18,16 @@ void use_own_python_package();
 ///   not there.
 int draw_plot(const std::vector<std::string>& arguments);
 
+/// Runs a module of the package in place of this program: signals and the terminal are its own, and
+/// its exit code is the program's.
+/// @param module "sinew.sweep". @param arguments of it. Throws Error(tool-missing) when the
+///   interpreter is not there.
+int become_python_module(const std::string& module, const std::vector<std::string>& arguments);
+
+/// Runs a module of the package and waits; its exit code.
+/// @param module,arguments,throws as become_python_module().
+int run_python_module(const std::string& module, const std::vector<std::string>& arguments);
+
 /// Draws figures of a command; the exit code of draw_plot().
 /// @param kind what plot.py is to draw: "fit". @param json the figures. @param out PNG file.
 /// Throws what draw_plot() and write_file() do.

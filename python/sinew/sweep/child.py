@@ -16,6 +16,7 @@ from typing import Any, Optional
 
 _LENGTH = struct.Struct("<Q")
 _PR_SET_PDEATHSIG = 1
+_LONGEST_WAIT = 3600.0  # s; select() takes no infinity
 
 
 class Child:
@@ -89,8 +90,10 @@ class Child:
         handle, data = self._process.stdout.fileno(), b""
         while len(data) < count:
             left = end - time.perf_counter()
-            if left <= 0.0 or not select.select([handle], [], [], left)[0]:
+            if left <= 0.0:
                 raise TimeoutError
+            if not select.select([handle], [], [], min(left, _LONGEST_WAIT))[0]:
+                continue
             part = os.read(handle, count - len(data))
             if not part:
                 raise EOFError

@@ -24,7 +24,7 @@ _BATCH = 0.5  # s that a batch is to take
 _LARGEST = 10_000
 _GROWTH = 8
 _POLL = 0.1  # s
-_NO_ANSWER = 10.0  # s without a scheduler
+_ANSWER, _NO_ANSWER = 3.0, 10.0  # s for a question to the scheduler, and without a connection to it
 _CONNECT, _FIRST_WORKER = 20.0, 120.0  # s
 
 
@@ -45,7 +45,7 @@ class Batches:
         if not self._recent:
             return 1
         typical = sorted(self._recent)[len(self._recent) // 2]
-        wanted = min(int(_BATCH / max(typical, 1e-6)), _GROWTH * self._largest, _LARGEST)
+        wanted = min(round(_BATCH / max(typical, 1e-6)), _GROWTH * self._largest, _LARGEST)
         return max(1, min(wanted, -(-left // (2 * max(workers, 1)))))
 
 
@@ -71,17 +71,23 @@ def connect(scheduler: Any, workers: Optional[int]) -> Iterator[Any]:
             with _without_interrupts():
                 cluster = distributed.LocalCluster(n_workers=workers, threads_per_worker=1, processes=True, dashboard_address="127.0.0.1:0",
                                                    silence_logs=logging.CRITICAL)
-                stack.callback(cluster.close, timeout=5)
+                stack.callback(_close, cluster, 5)
                 client = distributed.Client(cluster)
-                stack.callback(client.close, timeout=2)
+                stack.callback(_close, client, 2)
         else:
             try:
                 client = distributed.Client(str(scheduler), timeout=_CONNECT)
             except (OSError, ValueError, TimeoutError) as problem:
                 raise Error("bad-argument", "sweep(scheduler)", f"no scheduler answers at '{scheduler}': {problem}",
                             "start one with dask-scheduler, and give its address such as tcp://127.0.0.1:8786") from None
-            stack.callback(client.close, timeout=2)
+            stack.callback(_close, client, 2)
         yield client
+
+
+def _close(what: Any, timeout: int) -> None:
+    """A client or a cluster; one that does not answer any more hides nothing of what happened."""
+    with contextlib.suppress(OSError, TimeoutError):
+        what.close(timeout=timeout)
 
 
 @contextlib.contextmanager
@@ -140,7 +146,7 @@ class Engine:
         self._left, self._store, self._progress = deque(order), store, progress
         self._batches = Batches()
         self._done: queue.SimpleQueue = queue.SimpleQueue()
-        self._flying: dict[Any, list[int]] = {}
+        self._flying: dict[Any, tuple[list[int], bool]] = {}
         self._workers, self._counted = 0, 0.0
         self._answered = time.monotonic()
 
@@ -179,9 +185,11 @@ class Engine:
         """Threads of all workers, asked for about once a second."""
         if time.monotonic() - self._counted > 1.0 or self._workers == 0:
             try:
-                self._workers = sum(self._client.nthreads().values())
+                # As Client.nthreads(), which waits long for a scheduler that has gone.
+                self._workers = sum(self._client.sync(self._client.scheduler.ncores, callback_timeout=_ANSWER).values())
             except (OSError, RuntimeError, TimeoutError) as problem:
-                self._lost(problem)
+                if self._client.status != "running" or self._workers == 0:
+                    self._lost(problem)
             self._counted = time.monotonic()
         return self._workers
 
@@ -191,44 +199,57 @@ class Engine:
             size = self._batches.size(len(self._left), workers)
             self._submit([self._left.popleft() for _ in range(min(size, len(self._left)))])
 
-    def _submit(self, samples: list[int]) -> None:
+    def _submit(self, samples: list[int], apart: bool = False) -> None:
         batch = [(index, self._design.values(index)) for index in samples]
-        future = self._client.submit(run_batch, self._digest, self._packed, batch, pure=False)
-        self._flying[future] = samples
+        future = self._client.submit(run_batch, self._digest, self._packed, batch, apart, pure=False)
+        self._flying[future] = samples, apart
         future.add_done_callback(self._done.put)
 
     def _take(self, future: Any) -> None:
         from distributed import KilledWorker
 
-        samples = self._flying.get(future)
-        if samples is None:
+        if future not in self._flying:
             return
-        if future.status in ("cancelled", "lost"):
-            self._lost("it forgot the samples that it had")
+        samples, apart = self._flying[future]
+        if future.status in ("pending", "lost"):  # its worker died before the rows were here; Dask repeats it
+            future.add_done_callback(self._done.put)
+            return
+        if future.status == "cancelled":
+            self._forgotten(future)
+            return
         try:
             by, rows = future.result(timeout=60)
         except KilledWorker:
-            self._died(samples)
+            self._died(samples, apart)
         except (OSError, TimeoutError) as problem:
             self._lost(problem)
         except Exception as problem:  # of Dask or of the worker's installation: samples do not raise
             if type(problem).__name__ == "CancelledError":
-                self._lost("it forgot the samples that it had")
+                self._forgotten(future)
+                return
             raise RunError("worker-failed", "sweep", f"a worker could not run samples: {type(problem).__name__}: {problem}",
                            "its Python needs this version of sinew, h5py and NumPy") from problem
         else:
             self._batches.add(rows)
             self._write(rows, by)
-        self._flying.pop(future).clear()
+        del self._flying[future]
 
-    def _died(self, samples: list[int]) -> None:
-        """Workers died of a batch, several times: sample by sample it shows of which one."""
-        if len(samples) > 1:
+    def _forgotten(self, future: Any) -> None:
+        """The scheduler has lost a batch: it is another one at the same address, or gone."""
+        if self._client.status != "running":
+            self._lost("the connection broke")
+        self._submit(*self._flying.pop(future))
+
+    def _died(self, samples: list[int], apart: bool) -> None:
+        """Workers died with a batch, several times, perhaps of another one that waited beside it: apart from the worker
+        it shows which sample ends its process."""
+        if not apart:
             for index in samples:
-                self._submit([index])
+                self._submit([index], apart=True)
             return
-        error = "the worker's process died of it, each time again; look at its memory, or give a timeout to run it apart [process-died]"
-        self._write([Row(samples[0], "failed", error, float("nan"), {})], {"version": "", "instruction_set": "", "worker": ""})
+        error = "workers died of it, each time again; give their processes more memory [process-died]"
+        nobody = {"version": "", "instruction_set": "", "worker": ""}
+        self._write([Row(index, "failed", error, float("nan"), {}) for index in samples], nobody)
 
     def _write(self, rows: Sequence[Row], by: dict[str, str]) -> None:
         self._store.append(rows, [self._design.values(row.index) for row in rows], by)

@@ -56,16 +56,17 @@ class Store:
     inputs : dict
         Of every varied key the length of its text; 0: numbers.
     outputs : dict
-        Shape of every output; None until the first good sample tells.
+        Shape of every output known so far; functions may return others.
     rows : Rows, optional
         To go on from: they are copied into the new file, which takes the place of the old one.
     """
 
     def __init__(self, folder: _Path, about: Mapping[str, Any], scene: str, inputs: Mapping[str, int],
-                 outputs: Optional[Mapping[str, tuple[int, ...]]], rows: Optional[Rows] = None) -> None:
+                 outputs: Mapping[str, tuple[int, ...]], rows: Optional[Rows] = None) -> None:
         self.path = table_path(folder)
-        self._about, self._scene, self._inputs, self.outputs = dict(about), scene, dict(inputs), outputs
+        self._about, self._scene, self._inputs, self.outputs = dict(about), scene, dict(inputs), dict(outputs)
         self._file: Any = None
+        self._columns: list[str] = []
         self.count = 0
         pathlib.Path(folder).mkdir(parents=True, exist_ok=True)
         self._open(rows)
@@ -74,23 +75,23 @@ class Store:
         """A new file beside the old one, with the rows that are there; then it takes its place."""
         beside = self.path.with_suffix(".h5.new")
         file = _h5py().File(beside, "w", libver="latest")
-        file.attrs.update({"format": FORMAT, "format_version": FORMAT_VERSION, "outputs_known": self.outputs is not None})
-        file.attrs.update({name: value if isinstance(value, (str, int, float)) else json.dumps(value) for name, value in self._about.items()})
+        about = {name: value if isinstance(value, (str, int, float)) else json.dumps(value) for name, value in self._about.items()}
+        file.attrs.update({"format": FORMAT, "format_version": FORMAT_VERSION, **about})
         file.attrs["inputs"] = json.dumps(list(self._inputs))
-        file.attrs["outputs"] = json.dumps({name: list(shape) for name, shape in (self.outputs or {}).items()})
+        file.attrs["outputs"] = json.dumps({name: list(shape) for name, shape in self.outputs.items()})
         file.create_dataset("scene", data=np.frombuffer(self._scene.encode() or b"\n", dtype=np.uint8))
         columns = {"sample": ((), "i8", -1), "seconds": ((), "f8", np.nan)}
         columns.update({name: ((), f"S{length}", b"") for name, length in _TEXTS.items()})
         columns.update({f"inputs/{_slot(name)}": ((), f"S{length}" if length else "f8", b"" if length else np.nan)
                         for name, length in self._inputs.items()})
-        columns.update({f"outputs/{_slot(name)}": (tuple(shape), "f8", np.nan) for name, shape in (self.outputs or {}).items()})
+        columns.update({f"outputs/{_slot(name)}": (tuple(shape), "f8", np.nan) for name, shape in self.outputs.items()})
         for name, (shape, kind, fill) in columns.items():
             size = max(1, int(np.prod(shape, dtype=int)) * np.dtype(kind).itemsize)
             packed = {"compression": "gzip", "compression_opts": 1} if size > 8 and kind != "f8" else {}
             file.create_dataset(name, shape=(0, *shape), maxshape=(None, *shape), dtype=kind, fillvalue=fill,
                                 chunks=(max(1, _CHUNK_BYTES // size), *shape), **packed)
         file.swmr_mode = True
-        self._file, self.count = file, 0
+        self._file, self._columns, self.count = file, list(columns), 0
         if rows is not None:
             self._extend({name: rows.column(name) for name in columns if name in rows.columns or name == "sample"}, len(rows))
         os.replace(beside, self.path)
@@ -101,7 +102,7 @@ class Store:
         Parameters
         ----------
         rows : list of Row
-            Those whose outputs are not those of the table become failed ones.
+            Outputs with new names become columns; rows with another shape than the table's become failed ones.
         inputs : list
             Values of the varied keys for each.
         by : dict
@@ -109,14 +110,16 @@ class Store:
         """
         if not rows:
             return
-        if self.outputs is None:
-            good = next((row for row in rows if row.outputs), None)
-            if good is not None:
-                self.outputs = {name: np.shape(value) for name, value in good.outputs.items()}
-                before = Rows(self.path)
-                self.close()
-                self._open(before)
-        outputs = self.outputs or {}
+        known = dict(self.outputs)
+        for row in rows:
+            for name, value in row.outputs.items():
+                known.setdefault(name, np.shape(value))
+        if len(known) > len(self.outputs):
+            self.outputs = known
+            before = Rows(self.path)
+            self.close()
+            self._open(before)
+        outputs = self.outputs
         rows = [_checked(row, outputs) for row in rows]
         table: dict[str, np.ndarray] = {
             "sample": np.array([row.index for row in rows], dtype="i8"), "seconds": np.array([row.seconds for row in rows])}
@@ -134,10 +137,11 @@ class Store:
 
     def _extend(self, table: Mapping[str, np.ndarray], count: int) -> None:
         end = self.count + count
-        for name, values in table.items():
+        for name in self._columns:
             if name != "sample":
                 self._file[name].resize(end, axis=0)
-                self._file[name][self.count:end] = values
+                if name in table:
+                    self._file[name][self.count:end] = table[name]
         self._file.flush()
         # A row counts from here on.
         self._file["sample"].resize(end, axis=0)
@@ -170,11 +174,12 @@ class Rows:
         path = pathlib.Path(path)
         path = table_path(path) if path.is_dir() else path
         if not path.exists():
-            raise Error("file-not-found", (str(path), 0, 0, ""), "there is no table of a sweep", "name the folder that `sinew sweep --out` was given")
+            raise Error("file-not-found", (str(path), 0, 0, ""), "there is no table of a sweep", "name a folder of `sinew sweep --out`")
         try:
             file = _h5py().File(path, "r", libver="latest", swmr=True)
         except OSError as problem:
-            raise Error("malformed-file", (str(path), 0, 0, ""), f"it cannot be read: {problem}", "name a folder of `sinew sweep`") from None
+            raise Error("malformed-file", (str(path), 0, 0, ""), f"it cannot be read: {problem}",
+                        "name a folder of `sinew sweep`") from None
         with file:
             if file.attrs.get("format") != FORMAT or file.attrs["format_version"] != FORMAT_VERSION:
                 raise Error("malformed-file", (str(path), 0, 0, ""), "this HDF5 file does not hold a sweep of this version",
@@ -183,7 +188,6 @@ class Rows:
             self.scene = bytes(file["scene"][:]).decode()
             self.inputs: list[str] = json.loads(self.about["inputs"])
             self.outputs = {name: tuple(shape) for name, shape in json.loads(self.about["outputs"]).items()}
-            self.outputs_known = bool(self.about["outputs_known"])
             self.columns = [*_TEXTS, "seconds", *(f"inputs/{_slot(name)}" for name in self.inputs),
                             *(f"outputs/{_slot(name)}" for name in self.outputs)]
             sample = file["sample"][:]
@@ -221,12 +225,10 @@ def _decoded(column: np.ndarray) -> np.ndarray:
 
 
 def _checked(row: Row, outputs: Mapping[str, tuple[int, ...]]) -> Row:
-    shapes = {name: np.shape(value) for name, value in row.outputs.items()}
-    if row.status == "failed" or shapes == dict(outputs):
-        return row
-    error = f"its outputs {_shapes(shapes)} are not {_shapes(outputs)}, those of the first good sample; return the same from every sample [wrong-shape]"
-    return row._replace(status="failed", error=error, outputs={})
-
-
-def _shapes(shapes: Mapping[str, tuple[int, ...]]) -> str:
-    return "{" + ", ".join(f"{name}: {tuple(shape)}" for name, shape in sorted(shapes.items())) + "}"
+    """As failed where an output has another shape than the table's."""
+    for name, value in row.outputs.items():
+        if np.shape(value) != tuple(outputs[name]):
+            error = (f"'{name}' has the shape {np.shape(value)}, and {tuple(outputs[name])} in a sample before; return one shape from all "
+                     "samples [wrong-shape]")
+            return row._replace(status="failed", error=error, outputs={})
+    return row

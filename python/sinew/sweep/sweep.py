@@ -64,12 +64,13 @@ def run(
         (low, high), a range. A grid has all combinations, the last key changing fastest.
     measure : list of str
         Observables of the simulation, as of Simulation.run(record=...): "tip.position" (m), "strain_energy" (J); and
-        of a body "trunk.strain_energy", kinetic_energy, gravity_energy (J), mass (kg), volume (m^3).
+        of a body "trunk.strain_energy", kinetic_energy, gravity_energy (J), mass (kg), volume (m^3). With a function,
+        the names that it must return; by default any.
     out : path-like
         Folder of the table, sweep.h5.
     function : callable, optional
-        Takes a Sample and returns a dict of numbers and arrays, the same names and shapes from each sample, in place of
-        running the scene. Its keys in `vary` need not be those of a scene.
+        Takes a Sample and returns a dict of numbers and arrays, in place of running the scene. An output has one shape in
+        all samples. Its keys in `vary` need not be those of a scene.
     sample : str, optional
         "sobol:512" (scrambled), "halton:500" (scrambled) or "random:500" over the ranges; "saltelli:256" for Sobol
         indices, 256 (keys + 2) samples. Of a list each value has an equal share.
@@ -121,7 +122,6 @@ def run(
     with_rows = frozenset(there)
     order = [index for index in _order(job, samples) if index not in with_rows]
     shown = Progress(samples.size, len(with_rows), progress)
-    shown.failed = 0
     try:
         if order:
             with connect(scheduler, workers) as client:
@@ -251,7 +251,8 @@ def _open_store(out: Any, job: Job, samples: Design, what: dict[str, Any], resum
     before = None
     if path.exists():
         if not resume:
-            raise Error("file-exists", (str(path), 0, 0, ""), "the folder has a sweep already", "go on with resume=True (--resume), or name another folder")
+            raise Error("file-exists", (str(path), 0, 0, ""), "the folder has a sweep already",
+                        "go on with resume=True (--resume), or name another folder")
         before = Rows(path)
         there = json.loads(before.about["identity"])
         for name in what:
@@ -261,7 +262,7 @@ def _open_store(out: Any, job: Job, samples: Design, what: dict[str, Any], resum
     about = {"sinew_version": _core.__version__, "instruction_set": _core.instruction_set, "samples": samples.size, "seed": samples.seed,
              "sample": f"{samples.method}:{samples.count}", "identity": json.dumps(what),
              "hash": hashlib.sha256(json.dumps(what).encode()).hexdigest(), "units": {axis.key: axis.unit for axis in samples.axes}}
-    outputs = before.outputs if before is not None and before.outputs_known else dict(job.shapes) if job.shapes else None
+    outputs = before.outputs if before is not None else dict(job.shapes)
     inputs = {axis.key: 0 if axis.is_number else max(len(str(value).encode()) for value in axis.values) for axis in samples.axes}
     store = Store(out, about, job.scene, inputs, outputs, before)
     return store, [] if before is None else before.samples.tolist()

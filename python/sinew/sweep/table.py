@@ -114,7 +114,8 @@ def indices(folder: _Path, column: str, *, confidence: float = 0.95, resamples: 
     method, _, count = table.attrs["sample"].partition(":")
     keys = table.attrs["inputs"]
     if method != "saltelli":
-        raise Error("bad-argument", "sweep.indices(folder)", f"the sweep was sampled by {table.attrs['sample']}", "sample it by saltelli:256")
+        raise Error("bad-argument", "sweep.indices(folder)", f"the sweep was sampled by {table.attrs['sample']}",
+                    "sample it by saltelli:256")
     if column not in table or table[column].dtype.kind != "f":
         raise Error("unknown-name", "sweep.indices(column)", f"the table has no numbers '{column}'",
                     f"it has {', '.join(name for name in table if table[name].dtype.kind == 'f')}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import pickle
 import socket
@@ -10,7 +11,7 @@ import time
 import traceback
 import warnings
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple, Optional
 
 import numpy as np
@@ -66,7 +67,7 @@ class Job:
     axes: tuple[Axis, ...]
     commands: tuple[int, ...] = ()
     measures: tuple[str, ...] = ()
-    shapes: Mapping[str, tuple[int, ...]] = ()  # type: ignore[assignment]
+    shapes: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
     duration: Optional[float] = None
     static: bool = False
     function: Optional[Callable[["Sample"], Mapping[str, Any]]] = None
@@ -198,11 +199,12 @@ class Runner:
         seed = int(np.random.SeedSequence([job.seed, index]).generate_state(1, np.uint64)[0])
         found = job.function(Sample(index, seed, named, lambda given: self._for_function(values, given)))
         if not isinstance(found, Mapping):
-            raise Error("wrong-type", "sweep(function)", f"the function returned {type(found).__name__}", "return a dict of numbers and arrays")
+            raise Error("wrong-type", "sweep(function)", f"the function returned {type(found).__name__}",
+                        "return a dict of numbers and arrays")
         outputs = {str(name): np.asarray(value, float) for name, value in found.items()}
         if job.measures and set(outputs) != set(job.measures):
             raise Error("unknown-name", "sweep(function)", f"the function returned {sorted(outputs)}, not {sorted(job.measures)}",
-                        "return the same names from every sample, those of `measure` where it is given")
+                        "return the names of `measure`")
         return outputs
 
     def _for_function(self, values: Sequence[Value], given: scene.Overrides) -> _core.Simulation:
@@ -270,7 +272,8 @@ _turn = threading.Lock()
 _known: dict[str, Any] = {}  # the last job's digest, and what runs its samples
 
 
-def run_batch(digest: str, packed: bytes, samples: Sequence[tuple[int, Sequence[Value]]]) -> tuple[dict[str, str], list[Row]]:
+def run_batch(digest: str, packed: bytes, samples: Sequence[tuple[int, Sequence[Value]]],
+              apart: bool = False) -> tuple[dict[str, str], list[Row]]:
     """Rows of some samples, and who made them. The task that Dask sends.
 
     Parameters
@@ -280,6 +283,8 @@ def run_batch(digest: str, packed: bytes, samples: Sequence[tuple[int, Sequence[
     packed : bytes
         The Job.
     samples : list of (index, values)
+    apart : bool
+        In a process of their own, also without a time limit: one of them may end its process.
     """
     with _turn:  # one simulation, one sample at a time, whatever the number of a worker's threads
         if _known.get("digest") != digest:
@@ -287,13 +292,15 @@ def run_batch(digest: str, packed: bytes, samples: Sequence[tuple[int, Sequence[
             job = pickle.loads(packed)
             _known.update(digest=digest, runner=Child(packed, job.timeout) if job.timeout else Runner(job))
         runner = _known["runner"]
+        if apart and isinstance(runner, Runner):
+            runner = _known.setdefault("apart", Child(packed, math.inf))
         rows = [runner.row(index, values) for index, values in samples]
     me = {"version": _core.__version__, "instruction_set": _core.instruction_set, "worker": f"{socket.gethostname()}:{os.getpid()}"}
     return me, rows
 
 
 def _forget() -> None:
-    runner = _known.pop("runner", None)
-    if isinstance(runner, Child):
-        runner.close()
+    for runner in _known.values():
+        if isinstance(runner, Child):
+            runner.close()
     _known.clear()

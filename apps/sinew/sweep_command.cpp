@@ -1,0 +1,117 @@
+// sinew sweep: a scene for many values of its parameters, on Dask's workers, from Python.
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "commands.hpp"
+#include "python_tool.hpp"
+
+namespace sinew::cli {
+
+namespace {
+
+struct SweepOptions {
+  std::string scene, out;
+  std::vector<std::string> vary, measures, overrides;
+  std::optional<std::string> sample, scheduler, duration, timeout;
+  std::optional<int> workers, seed;
+  bool fixed = false, resume = false, quiet = false;
+};
+
+int sweep(const SweepOptions& options) {
+  std::vector<std::string> words;
+  const auto add = [&words](const char* option, const std::string& value) {
+    words.push_back(fmt::format("--{}={}", option, value));
+  };
+  for (const std::string& keys : options.vary) add("vary", keys);
+  for (const std::string& name : options.measures) add("measure", name);
+  for (const std::string& assignment : options.overrides) add("set", assignment);
+  add("out", options.out);
+  if (options.sample) add("sample", *options.sample);
+  if (options.scheduler) add("scheduler", *options.scheduler);
+  if (options.duration) add("duration", *options.duration);
+  if (options.timeout) add("timeout", *options.timeout);
+  if (options.workers) add("workers", fmt::format("{}", *options.workers));
+  if (options.seed) add("seed", fmt::format("{}", *options.seed));
+  if (options.fixed) words.emplace_back("--static");
+  if (options.resume) words.emplace_back("--resume");
+  if (options.quiet) words.emplace_back("--quiet");
+  words.emplace_back("--");
+  words.push_back(options.scene);
+  return become_python_module("sinew.sweep", words);
+}
+
+void add_samples(Command& command, SweepOptions& options) {
+  command
+      .add_option("--vary", options.vary,
+                  "What to vary: KEY=FROM:TO:N (grid), KEY=FROM:TO (range, with --sample) or "
+                  "KEY=A,B,C; may be repeated")
+      .type_name("KEY=VALUES")
+      .allow_extra_args(false)
+      .required();
+  command
+      .add_option("--sample", options.sample,
+                  "Samples of the ranges: sobol:N, halton:N, random:N, or saltelli:N for Sobol "
+                  "indices")
+      .type_name("METHOD:N");
+  command.add_option("--seed", options.seed, "Of the sample (default: 1)").type_name("S");
+  command
+      .add_option("--set", options.overrides,
+                  "Set a value of the scene for all samples; may be repeated")
+      .type_name("PATH=VALUE")
+      .allow_extra_args(false);
+}
+
+void add_runs(Command& command, SweepOptions& options) {
+  command
+      .add_option(
+          "--measure", options.measures,
+          "What to keep of the end of each sample: tip.position, trunk.strain_energy; may be "
+          "repeated")
+      .type_name("NAME")
+      .allow_extra_args(false)
+      .required();
+  command.add_option("--duration", options.duration, "How long to simulate (default: the scene's)")
+      .type_name("TIME");
+  command.add_flag("--static", options.fixed, "A static equilibrium in place of a run");
+  command.add_option("--timeout", options.timeout, "Limit of wall time for each sample")
+      .type_name("TIME");
+}
+
+void add_workers(Command& command, SweepOptions& options) {
+  command
+      .add_option("--workers", options.workers, "Processes on this machine (default: one a core)")
+      .type_name("N");
+  command
+      .add_option("--scheduler", options.scheduler,
+                  "Address of a Dask scheduler whose workers to use instead: tcp://HOST:PORT")
+      .type_name("ADDRESS");
+  command.add_option("--out", options.out, "Folder of the table, sweep.h5").required();
+  command.add_flag("--resume", options.resume, "Go on where the sweep in the folder stopped");
+  command.add_flag("--quiet", options.quiet, "No progress bar and no summary");
+}
+
+}  // namespace
+
+void add_sweep(CommandLine& line) {
+  Command command =
+      line.add_command("sweep", "Run a scene for many values of its parameters: docs/sweeps.md");
+  const auto options = std::make_shared<SweepOptions>();
+  command.add_option("SCENE", options->scene, "Scene file (YAML)").required();
+  add_samples(command, *options);
+  add_runs(command, *options);
+  add_workers(command, *options);
+  command.footer(
+      "Example:\n"
+      "  sinew sweep examples/trunk/trunk.yaml --vary "
+      "bodies.trunk.material.young_modulus=300kPa:600kPa:7\n"
+      "      --vary actuators.long_0.command.displacement=0mm:20mm:5 --measure tip.position --out "
+      "out/sweep\n"
+      "  sinew plot out/sweep");
+  command.set_action([options] { return sweep(*options); });
+}
+
+}  // namespace sinew::cli
