@@ -379,6 +379,8 @@ def test_a_table_is_read_while_it_is_written_and_after_its_writer_was_killed(tmp
     process = writer_that_is_killed(tmp_path)
     try:
         assert len(sinew.sweep.load(tmp_path)) == 6
+        with pytest.raises(sinew.Error, match="another sweep is writing it"):
+            store.Store(tmp_path, ABOUT, "", {"k/%": 0}, {}, store.Rows(tmp_path))
     finally:
         process.kill()
         process.communicate()

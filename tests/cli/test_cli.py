@@ -389,7 +389,7 @@ def test_wrong_arguments(arguments, kind, words, scene, tmp_path):
     assert sorted(tmp_path.rglob("*")) == before
 
 
-@pytest.mark.parametrize("command", [[], ["run"], ["bench"], ["info"], ["mesh"], ["validate"], ["schema"], ["plot"]],
+@pytest.mark.parametrize("command", [[], ["run"], ["bench"], ["info"], ["mesh"], ["validate"], ["schema"], ["plot"], ["sweep"]],
                          ids=lambda c: " ".join(c) or "sinew")
 def test_help(command):
     result = sinew(*command, "--help")
@@ -581,6 +581,31 @@ def test_plot_draws_a_run(scene, tmp_path):
     assert sinew("run", scene(), "--out", out, "--quiet").returncode == DONE
     assert not (out / "run.png").exists()  # it was of the former run
     assert (out / "mine.png").read_bytes() == b"a picture"
+
+
+def test_a_sweep_is_run_resumed_and_plotted(scene, tmp_path):
+    pytest.importorskip("distributed")
+    pytest.importorskip("pandas")
+    out = tmp_path / "out"
+    words = ["sweep", scene(), "--vary", "bodies.beam.material.young_modulus=200kPa:300kPa:3", "--vary",
+             "actuators.up.command.displacement=-1mm,0mm,1mm", "--measure", "tip.position", "--measure", "beam.strain_energy",
+             "--duration", "50ms", "--workers", "1", "--out", out]
+    wrong = sinew(*words[:-2], "--out", out, "--measure", "tip.positon")
+    assert wrong.returncode == WRONG and "did you mean 'tip.position'" in wrong.stderr and not out.exists()
+    done = sinew(*words)
+    assert done.returncode == DONE and not done.stderr, done.stderr
+    assert re.search(r"done +9\n", done.stdout)
+    with h5py.File(out / "sweep.h5") as table:
+        assert sorted(table["sample"]) == list(range(9))
+        assert np.isfinite(table["outputs/tip.position"][:]).all()
+    refused = sinew(*words)
+    assert refused.returncode == WRONG and "--resume" in refused.stderr
+    assert sinew(*words, "--resume").returncode == DONE
+    drawn = sinew("plot", out)
+    assert drawn.returncode == DONE and not drawn.stderr, drawn.stderr
+    assert sorted(path.name for path in out.glob("*.png")) == ["parallel.png", "scatter.png", "surface.png", "workspace.png"]
+    assert sinew("plot", out, "--kind", "surface", "-o", tmp_path / "one.png").returncode == DONE
+    assert (tmp_path / "one.png").read_bytes().startswith(b"\x89PNG")
 
 
 def test_probes_are_recorded_and_plotted(scene, tmp_path):

@@ -49,7 +49,7 @@ def _pairs(vary: list[str]) -> dict[str, str]:
         if not separator or not key or not values:
             raise Error("bad-argument", "--vary", f"'{text}' is no KEY=VALUES", "write --vary bodies.trunk.mass=30g:60g:4")
         if key in found:
-            raise Error("duplicate-name", "--vary", f"'{key}' is varied twice", "give each key once, several values as A,B,C")
+            raise Error("duplicate-key", "--vary", f"'{key}' is varied twice", "give each key once, several values as A,B,C")
         found[key] = values
     return found
 

@@ -12,6 +12,7 @@ Rows stand in the order in which samples were done. The file is written in HDF5'
 
 from __future__ import annotations
 
+import fcntl
 import json
 import os
 import pathlib
@@ -69,6 +70,7 @@ class Store:
         self._columns: list[str] = []
         self.count = 0
         pathlib.Path(folder).mkdir(parents=True, exist_ok=True)
+        self._lock = _locked(self.path)
         self._open(rows)
 
     def _open(self, rows: Optional[Rows]) -> None:
@@ -117,7 +119,7 @@ class Store:
         if len(known) > len(self.outputs):
             self.outputs = known
             before = Rows(self.path)
-            self.close()
+            self._close_file()
             self._open(before)
         outputs = self.outputs
         rows = [_checked(row, outputs) for row in rows]
@@ -150,7 +152,11 @@ class Store:
         self.count = end
 
     def close(self) -> None:
-        """Closes the file."""
+        """Closes the file; others may go on with it."""
+        self._close_file()
+        self._lock.close()
+
+    def _close_file(self) -> None:
         if self._file is not None:
             self._file.close()
             self._file = None
@@ -208,6 +214,17 @@ class Rows:
             if name in names:
                 return _decoded(self.column(f"{kind}/{_slot(name)}"))
         return _decoded(self.column(name))
+
+
+def _locked(path: pathlib.Path) -> Any:
+    """Keeps other sweeps from the table for as long as the file that is returned is open."""
+    lock = open(path.with_suffix(".lock"), "w", encoding="utf-8")
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        lock.close()
+        raise Error("file-exists", (str(path), 0, 0, ""), "another sweep is writing it", "wait for it, or name another folder") from None
+    return lock
 
 
 def _slot(name: str) -> str:

@@ -157,7 +157,7 @@ def _job(scene: Any, samples: Design, measure: list[str], function: Any, duratio
     if function is None and not measure:
         raise Error("bad-argument", "sweep(measure)", "nothing is measured", "name observables such as 'tip.position' (--measure)")
     if len({*measure}) != len(measure):
-        raise Error("duplicate-name", "sweep(measure)", f"a name comes twice in {measure}", "measure each once")
+        raise Error("duplicate-key", "sweep(measure)", f"a name comes twice in {measure}", "measure each once")
     if static and duration is not None:
         raise Error("bad-argument", "sweep(duration)", "an equilibrium has no duration", "leave out duration, or static")
     if function is not None and (static or duration is not None):
@@ -248,7 +248,7 @@ def _spell_function(function: Any) -> str:
 def _open_store(out: Any, job: Job, samples: Design, what: dict[str, Any], resume: bool) -> tuple[Store, Sequence[int]]:
     """The table, and the samples that it has."""
     path = table_path(out)
-    before = None
+    before: Optional[Rows] = None
     if path.exists():
         if not resume:
             raise Error("file-exists", (str(path), 0, 0, ""), "the folder has a sweep already",
