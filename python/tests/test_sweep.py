@@ -472,6 +472,15 @@ def test_a_saltelli_sweep_gives_indices_by_key(cluster, tmp_path):
     assert list(found.index) == ["a", "b", "c"]
 
 
+def test_a_script_that_starts_sweeps_in_its_workers_is_refused(tmp_path):
+    script = tmp_path / "script.py"
+    script.write_text("import sinew.sweep\nsinew.sweep.run(function=abs, vary={'x': '0:1:5'}, out='out', workers=2)\n")
+    result = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, env=ENVIRONMENT, cwd=tmp_path, timeout=60,
+                            check=False)
+    assert result.returncode == 1 and 'call it under `if __name__ == "__main__":`' in result.stderr
+    assert not (tmp_path / "out").exists()
+
+
 # The command line
 
 

@@ -8,6 +8,7 @@ import json
 import multiprocessing
 import pathlib
 import re
+import sys
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Optional, Union
@@ -114,7 +115,8 @@ def run(
     >>> table = sinew.sweep.run("trunk.yaml", vary={"bodies.trunk.material.young_modulus": "300kPa:600kPa:7"},
     ...                         measure=["tip.position"], out="out/modulus", workers=2)
     """
-    _refuse_import_by_workers()
+    if scheduler is None:
+        _refuse_import_by_workers()
     samples = design(vary, sample, seed)
     job = _job(scene, samples, list(measure), function, duration, static, set, timeout, seed)
     what = _identity(job, samples)
@@ -135,10 +137,20 @@ def run(
 
 
 def _refuse_import_by_workers() -> None:
-    """Workers import the main script; one that starts a sweep when imported would start others without end."""
-    if getattr(multiprocessing.current_process(), "_inheriting", False):
+    """Workers of this machine import the main script; one that starts a sweep when imported would start others without
+    end, so a script that never asks for its name is refused before it starts any."""
+    script = getattr(sys.modules["__main__"], "__file__", None)
+    unguarded = script is not None and pathlib.Path(script).suffix == ".py" and "__name__" not in _source(pathlib.Path(script))
+    if unguarded or getattr(multiprocessing.current_process(), "_inheriting", False):
         raise Error("bad-argument", "sweep.run()", "the script starts a sweep when a worker imports it",
                     'call it under `if __name__ == "__main__":`')
+
+
+def _source(path: pathlib.Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8", errors="ignore")
+    except OSError:
+        return "__name__"  # not there any more: nobody imports it
 
 
 def _packed(job: Job) -> bytes:
