@@ -62,6 +62,15 @@ bool ContactRows::has_zones() const {
   return std::ranges::any_of(zones_, [](const auto& zones) { return zones != nullptr; });
 }
 
+// Of the points that a step has a use for.
+template <class Gap>
+void ContactRows::measure_gaps(const constraint::Contact& contact, Gap&& gap) {
+  gaps_.assign(contact.size(), 0.0);
+  for (std::size_t k = 0; k < contact.size(); ++k) {
+    if (!contact.idle(k, rows_)) gaps_[k] = gap(k);
+  }
+}
+
 // m: the gap when the step ends, at the speed of its start.
 double ContactRows::arrival(const constraint::Contact& contact, std::size_t point,
                             double time_step) const {
@@ -117,8 +126,8 @@ void ContactRows::choose_active(std::span<const double> effort, double time_step
     const constraint::Contact& contact = *planes_.contacts()[i];
     if (strikes(i)) continue;
     if (zones_[i]) {
-      zones_[i]->begin(
-          effort, [&](std::size_t k) { return arrival(contact, k, time_step); }, near, rows_);
+      measure_gaps(contact, [&](std::size_t k) { return arrival(contact, k, time_step); });
+      zones_[i]->begin(effort, gaps_, near, rows_);
       continue;
     }
     const bool always = !model_.body(contact.body()).leaves_rows_out();
@@ -215,14 +224,14 @@ bool ContactRows::correct_zones(ContactZones& zones, TouchingSurfaces* touching,
     for (std::size_t k = known; k < touching->count(); ++k) {
       planes_.begin_point(touching->contact().row(k));
     }
-    const auto gap = [&](std::size_t k) { return touching->proposed_gap(k); };
-    return zones.refine(gap, problem, numbering, effort, rows_);
+    measure_gaps(zones.contact(), [&](std::size_t k) { return touching->proposed_gap(k); });
+  } else {
+    const auto& contact = static_cast<const constraint::ShapeContact&>(zones.contact());
+    measure_gaps(contact, [&](std::size_t k) {
+      return contact.row_values(k, proposed_position(contact, k), rows_)[0];
+    });
   }
-  const auto& contact = static_cast<const constraint::ShapeContact&>(zones.contact());
-  const auto gap = [&](std::size_t k) {
-    return contact.row_values(k, proposed_position(contact, k), rows_)[0];
-  };
-  return zones.refine(gap, problem, numbering, effort, rows_);
+  return zones.refine(gaps_, problem, numbering, effort, rows_);
 }
 
 bool ContactRows::correct_shape(std::size_t number, const step::StepProblem& problem,

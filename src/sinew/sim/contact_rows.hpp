@@ -106,6 +106,8 @@ class ContactRows {
   Vector3 proposed_position(const constraint::ShapeContact& contact, std::size_t point) const;
   double arrival(const constraint::Contact& contact, std::size_t point, double time_step) const;
   bool has_zones() const;
+  template <class Gap>
+  void measure_gaps(const constraint::Contact& contact, Gap&& gap);
 
   const Model& model_;
   const constraint::Configuration& configuration_;
@@ -115,6 +117,7 @@ class ContactRows {
   std::vector<std::unique_ptr<ContactZones>> zones_;  // (contacts,) null: single points
   bool left_out_ = false;                             // some point
   int rounds_left_ = 0;        // of a step, in which overlapping surfaces get points
+  std::vector<double> gaps_;   // (points,) m, of one contact
   int zone_rounds_left_ = 0;   // of a step, in which zones spread their forces anew
   std::vector<char> touched_;  // (rows,) normal rows with a force when the step began
   std::vector<char> strikes_;  // (contacts,)
