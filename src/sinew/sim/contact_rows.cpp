@@ -8,6 +8,7 @@
 #include "sinew/constraint/surface_contact.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/step_system.hpp"
+#include "sinew/qp/friction_cone.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/row_numbering.hpp"
 #include "sinew/sim/touching_surfaces.hpp"
@@ -23,6 +24,9 @@ namespace {
 constexpr double kNear = 0.01, kTaken = 0.002;
 // Of this many times what the fastest node moves in a step, surfaces of bodies have points.
 constexpr double kAhead = 3.0;
+// A point that a step holds moved at its start where it was faster than this part of the fastest
+// point, and than this part of the size in a step.
+constexpr double kStill = 1e-3, kNoMotion = 1e-9;
 // Rounds of a step in which overlapping surfaces get points, and zones spread their forces anew.
 constexpr int kMaxRounds = 20;
 
@@ -302,6 +306,35 @@ bool ContactRows::gap_closed(std::span<const double> effort) const {
     }
   }
   return false;
+}
+
+bool ContactRows::stops_points(std::span<const double> effort, double time_step) const {
+  const double still = std::max(kStill * fastest_node(), kNoMotion * model_.size() / time_step);
+  for (const constraint::Contact* contact : planes_.contacts()) {
+    for (std::size_t k = 0; k < contact->size(); ++k) {
+      const Eigen::Map<const Vector3> force(effort.data() + contact->row(k));
+      if (!(force[0] > 0.0)) continue;
+      const Vector3 velocity =
+          contact->frame(k, rows_).transpose() * contact->velocity_beside(configuration_, k, rows_);
+      const bool sticks = contact->friction() > 0.0 && !qp::slides(force, contact->friction());
+      if (std::abs(velocity[0]) > still || (sticks && velocity.tail<2>().norm() > still)) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+// m/s, of all bodies that touch.
+double ContactRows::fastest_node() const {
+  double fastest = 0.0;
+  for (const constraint::Contact* contact : planes_.contacts()) {
+    for (std::size_t k = 0; k < contact->size(); ++k) {
+      if (contact->idle(k, rows_)) continue;
+      fastest = std::max(fastest, contact->velocity_beside(configuration_, k, rows_).norm());
+    }
+  }
+  return fastest;
 }
 
 bool ContactRows::touches_softly(std::span<const double> effort) const {

@@ -81,6 +81,10 @@ class ContactRows {
 
   /// Whether a point has a force that had none when the step began. @param effort (rows,) N.
   bool gap_closed(std::span<const double> effort) const;
+  /// Whether the step holds a point that moved when it began: an impact along the normal, or one
+  /// that slid and sticks. Before bodies' velocities follow. @param effort (rows,) N.
+  /// @param time_step s.
+  bool stops_points(std::span<const double> effort, double time_step) const;
   /// Whether surfaces have passed through each other in the step.
   bool passed() const;
   /// m, >= 0: how deep a point without a normal force is in its surface's tangent plane, at most.
@@ -106,6 +110,7 @@ class ContactRows {
   Vector3 proposed_position(const constraint::ShapeContact& contact, std::size_t point) const;
   double arrival(const constraint::Contact& contact, std::size_t point, double time_step) const;
   bool has_zones() const;
+  double fastest_node() const;
   template <class Gap>
   void measure_gaps(const constraint::Contact& contact, Gap&& gap);
 
