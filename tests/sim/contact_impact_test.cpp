@@ -45,8 +45,8 @@ struct Outcome {
 std::unique_ptr<Simulation> thrown(const Throw& options) {
   ModelBuilder builder(StepSettings{.time_step = options.time_step,
                                     .integrator = options.integrator,
-                                    .method = Method::newton,
-                                    .spectral_radius = options.spectral_radius});
+                                    .spectral_radius = options.spectral_radius,
+                                    .method = Method::newton});
   fem::FemBodySettings body;
   body.name = "bar";
   const double side = kLength / options.cells;

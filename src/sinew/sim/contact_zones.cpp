@@ -12,8 +12,9 @@ namespace sinew::sim {
 
 namespace {
 
-// Of a zone's size: overlaps up to this are left.
-constexpr double kTolerance = 2e-4;
+// Overlaps that are left: of a zone's size, and of how far its force presses it in, so that a stiff
+// body's forces are spread as well. Below the last part of the size, rounding matters.
+constexpr double kTolerance = 2e-4, kOfDeflection = 0.01, kFloor = 1e-7;
 // w at first, and what becomes of it where overlaps grow by the second factor.
 constexpr double kRelaxation = 0.7, kLess = 0.5, kGrows = 1.1;
 // a, of the distance of neighbouring points. Larger ones make neighbours too alike.
@@ -232,7 +233,11 @@ bool ContactZones::refine(std::span<const double> gaps, const step::StepProblem&
   measure_overlaps(gaps, rows);
   bool found = false;
   for (Zone& zone : zones_) {
-    if (!(zone.overlap > tolerance())) continue;
+    const int row = zone.first < 0 ? -1 : numbering.problem_row_of(zone.first);
+    const double force = row < 0 ? 0.0 : effort[static_cast<std::size_t>(row)];
+    const double compliance = row < 0 ? 0.0 : problem.compliance(row, row);
+    const double allowed = std::min(kTolerance * size_, kOfDeflection * compliance * force);
+    if (!(zone.overlap > std::max(allowed, kFloor * size_))) continue;
     found = true;
     if (zone.overlap_before > 0.0 && zone.overlap > kGrows * zone.overlap_before) {
       zone.relaxation *= kLess;
@@ -241,9 +246,7 @@ bool ContactZones::refine(std::span<const double> gaps, const step::StepProblem&
     for (int k = zone.begin; k >= 0; k = next_[static_cast<std::size_t>(k)]) {
       points_.push_back(static_cast<std::size_t>(k));
     }
-    const int row = zone.first < 0 ? -1 : numbering.problem_row_of(zone.first);
-    smooth(zone, gaps, row < 0 ? 0.0 : effort[static_cast<std::size_t>(row)],
-           row < 0 ? 0.0 : problem.compliance(row, row), rows);
+    smooth(zone, gaps, force, compliance, rows);
   }
   if (found) group(rows);
   return found;

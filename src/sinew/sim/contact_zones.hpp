@@ -43,7 +43,7 @@ class ContactZones {
 
   const constraint::Contact& contact() const { return contact_; }
   std::size_t count() const { return zones_.size(); }
-  /// m: overlaps up to this are left.
+  /// m: overlaps up to this may be left; smaller ones where forces press a zone in by little.
   double tolerance() const;
 
   /// When a step begins: points share as their forces are, and a zone without forces is its point
@@ -62,6 +62,7 @@ class ContactZones {
               const RowNumbering& numbering, const linalg::AlignedNumbers& effort,
               mechanics::RowValues& rows);
   /// Whether a zone has a force that had none when the step began. @param effort (rows,) N.
+  /// @param rows of the step.
   bool gap_closed(std::span<const double> effort, const mechanics::RowValues& rows) const;
 
  private:
