@@ -53,9 +53,6 @@ def test_errors():
         sim.contact("flor")
     assert error.value.kind == "unknown-name"
     with pytest.raises(sinew.Error) as error:
-        block(integrator="generalized-alpha")
-    assert error.value.kind == "not-in-this-version"
-    with pytest.raises(sinew.Error) as error:
         sim.follow_path()
     assert error.value.kind == "not-in-this-version"
 

@@ -198,3 +198,26 @@ def test_a_part_of_a_surface_is_refused():
         make({"low": base(), "top": block((20, 20, 20), (7, 9, 21), 4)},
              {"floor": {"between": ["low", "top"], "nodes": {"set": "z_max"}}})
     assert error.value.kind == "conflicting-keys"
+
+
+@pytest.mark.parametrize("edges", [("5 mm", "5 mm"), ("5 mm", "4 mm")])
+def test_flush_blocks_press_on_each_other_at_their_rims_and_corners(edges):
+    """One block in two halves, whose rims lie on each other at the start, is as stiff as in one piece."""
+    def half(edge, height, face, moved=None):
+        body = {"type": "fem", "element": "hex8", "density": "1000 kg/m^3", "position": f"0 0 {height} mm", "fixed": {"set": face},
+                "material": {"model": "neo-hookean", "young_modulus": "100 kPa", "poisson_ratio": 0.0},
+                "mesh": {"shape": "block", "length": "20 mm", "width": "20 mm", "height": "10 mm", "element_size": edge}}
+        return body if moved is None else {**body, "base": {"z": {"ramp": {"to": moved, "duration": "0.3 s"}}}}
+
+    sim = sinew.load({"sinew": 1, "time_step": "0.1 s", "gravity": "0 0 0 m/s^2", "solver": {"tolerance": 1e-10},
+                      "bodies": {"low": half(edges[0], 0, "z_min"), "up": half(edges[1], 10, "z_max", "-1 mm")},
+                      "contacts": {"cut": {"between": ["low", "up"]}}})
+    sim.step(5)
+    stretch = 0.95
+    uniform = 100e3 / 2 * (stretch - 1 / stretch) * 4e-4  # without lateral strain, about
+    assert sim.contact("cut").force[2] == pytest.approx(uniform, rel=0.02)
+    for name, z in (("low", 9.5e-3), ("up", 9.5e-3)):
+        body = sim.body(name)
+        touching = np.isclose(body.rest_positions[:, 2], 0.01)
+        # Point forces cannot be uniform on both of two meshes that do not match.
+        assert np.abs(body.positions[touching, 2] - z).max() < (1e-6 if edges[0] == edges[1] else 1.2e-5)

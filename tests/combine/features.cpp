@@ -173,9 +173,8 @@ int find_feature(std::string_view name) {
   return static_cast<int>(found - all.begin());
 }
 
-// Whether this version refuses two levels beside each other: generalized-alpha creates energy in
-// impacts; event-driven integration makes parts of steps several times, by Newton's method, and has
-// no impacts on surfaces that move.
+// Whether this version refuses two levels beside each other: event-driven integration makes parts
+// of steps several times, by Newton's method, and has no impacts on surfaces that move.
 bool is_refused(int first, int first_level, int second, int second_level) {
   const auto is = [&](int feature, int chosen, std::string_view name, std::string_view wanted) {
     const Feature& of = features()[static_cast<std::size_t>(feature)];
@@ -187,8 +186,7 @@ bool is_refused(int first, int first_level, int second, int second_level) {
     return (is(first, first_level, a, a_level) && is(second, second_level, b, b_level)) ||
            (is(first, first_level, b, b_level) && is(second, second_level, a, a_level));
   };
-  return both("contact", "", "integrator", "generalized-alpha") ||
-         both("integrator", "event-driven", "adaptive", "yes") ||
+  return both("integrator", "event-driven", "adaptive", "yes") ||
          both("integrator", "event-driven", "method", "one-linearisation") ||
          both("integrator", "event-driven", "contact_motion", "yes") ||
          both("integrator", "event-driven", "controller", "");

@@ -104,16 +104,5 @@ TEST(Contacts, StandBesideControllers) {
   EXPECT_EQ(robot.controllers.size(), 1);
 }
 
-TEST(Contacts, RefuseGeneralizedAlpha) {
-  std::string text = kBlock + "  c: {body: block, surface: {plane: {}}}\n";
-  text.replace(text.find("backward-euler"), 14, "generalized-alpha");
-  try {
-    build(parse_scene_text(text, "scene.yaml", {}));
-    ADD_FAILURE();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::not_in_this_version);
-  }
-}
-
 }  // namespace
 }  // namespace sinew::scene

@@ -29,6 +29,7 @@ struct BlockOptions {
   std::array<int, 3> cells{4, 4, 2};
   fem::RayleighDamping damping{.mass = 0.0, .stiffness = 0.002};
   bool floor = true;
+  double aggregate = 0.0;  ///< m, of zones
   bool top_fixed = false;
 };
 
@@ -57,6 +58,7 @@ inline sim::ModelBuilder block_on_plane(const BlockOptions& options) {
     floor.surface = collision::Plane{};
     floor.nodes = mesh->node_sets.at("z_min");
     floor.friction = options.friction;
+    floor.aggregate = options.aggregate;
     builder.add_contact(floor);
   }
   return builder;

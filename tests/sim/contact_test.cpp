@@ -128,15 +128,16 @@ TEST(Contact, ImpactTakesEnergyAndNeverGivesAny) {
 TEST(Contact, SecondOrderStepsDoNotGainEnergyInAnImpact) {
   BlockOptions options{.angle = 0.3, .height = 0.005, .modulus = 1e5};
   options.damping = {};
-  options.step.integrator = mechanics::Integrator::bdf2;
-  Simulation simulation(block_on_plane(options).build());
-  const double start = total(simulation);
-  for (int k = 0; k < 300; ++k) {
-    simulation.step();
-    EXPECT_LE(total(simulation), start);
+  for (const auto integrator :
+       {mechanics::Integrator::bdf2, mechanics::Integrator::generalized_alpha}) {
+    options.step.integrator = integrator;
+    Simulation simulation(block_on_plane(options).build());
+    const double start = total(simulation);
+    for (int k = 0; k < 300; ++k) {
+      simulation.step();
+      EXPECT_LE(total(simulation), start);
+    }
   }
-  options.step.integrator = mechanics::Integrator::generalized_alpha;
-  EXPECT_THROW(block_on_plane(options), Error);
 }
 
 // strain + kinetic + gravity + what friction, impacts and damping took never exceeds what was there

@@ -17,6 +17,9 @@ constexpr int kProximityGrain = 64;
 // features on ridges.
 constexpr double kSameWay = 1.0 - 1e-6;
 constexpr double kBelowRidge = 0.3;
+// Of how far pairs are looked for: points this near to each other are at one place. Of unit normals
+// whose sum is shorter, neither says which way is out.
+constexpr double kSamePlace = 1e-6, kOpposite = 1e-6;
 
 SurfacePoint on_vertex(const SurfaceTree& surface, NodeId node) {
   return {FeatureKind::vertex, node, {node, -1, -1}, {1.0, 0.0, 0.0}, surface.at(node)};
@@ -113,8 +116,8 @@ class PairSearch {
     if (!LocalMinimum::inside_edge(share, 1.0) || !other.over_edge(edge, x)) return;
     const SurfacePoint p = on_vertex(own.surface(), node);
     const SurfacePoint q = on_edge(other.surface(), edge, share);
-    const Vector3 outward = other.edge_normal(edge);
-    consider({own, node}, p, q, outward, direction(x - q.point, outward), swapped);
+    const Vector3 outward = other.edge_normal(edge), inward = -own.vertex_normal(node);
+    consider({own, node}, p, q, outward, direction(x - q.point, inward, outward), swapped);
   }
 
   // A vertex over a face or an edge. @param away (3,) from the nearest point to it.
@@ -141,7 +144,8 @@ class PairSearch {
     const SurfacePoint p = on_vertex(first_.surface(), v), q = on_vertex(second_.surface(), w);
     if (!is_near(p, q)) return;
     const Vector3 outward = second_.vertex_normal(w), inward = -first_.vertex_normal(v);
-    const Vector3 normal = signed_normal(direction(p.point - q.point, outward), inward, outward);
+    const Vector3 away = direction(p.point - q.point, inward, outward);
+    const Vector3 normal = signed_normal(away, inward, outward);
     if (!is_pair(p, q, normal)) return;
     const bool nearest =
         (second_.over_vertex(w, p.point) && first_.vertex_is_nearest(v, q.point, -normal)) ||
@@ -169,7 +173,7 @@ class PairSearch {
     const double height = -w.dot(c) / std::sqrt(across2);
     if (!is_near(p, q)) return;
     const Vector3 outward = second_.edge_normal(f), inward = -first_.edge_normal(e);
-    const double side = height != 0.0 ? height : outward.dot(c);
+    const double side = height != 0.0 ? height : between(inward, outward).dot(c);
     const Vector3 normal =
         signed_normal(c.normalized() * (side < 0.0 ? -1.0 : 1.0), inward, outward);
     if (!is_pair(p, q, normal)) return;
@@ -201,10 +205,17 @@ class PairSearch {
            !(same_ && share_node(p, q));
   }
 
-  // From a point to another one; of points at one place outwards.
-  static Vector3 direction(const Vector3& gap, const Vector3& outward) {
+  // From a point to another one; of points at one place, half-way between what both surfaces call
+  // outwards: where the rims of two blocks lie on each other, across their faces and not along.
+  Vector3 direction(const Vector3& gap, const Vector3& inward, const Vector3& outward) const {
     const double length = gap.norm();
-    return length > 0.0 ? (gap / length).eval() : outward.normalized();
+    return length > kSamePlace * reach(settings_) ? (gap / length).eval()
+                                                  : between(inward, outward);
+  }
+  static Vector3 between(const Vector3& inward, const Vector3& outward) {
+    const Vector3 sum = inward.normalized() + outward.normalized();
+    const double length = sum.norm();
+    return length > kOpposite ? (sum / length).eval() : outward.normalized();
   }
 
   bool is_seen(const Vector3& inward, const Vector3& outward, const Vector3& normal) const {

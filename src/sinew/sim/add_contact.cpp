@@ -201,13 +201,6 @@ bool touch_by_surfaces(const mechanics::BodyModel& one, const mechanics::BodyMod
 
 int add_contact(ModelData& data, const ContactSettings& settings) {
   mechanics::BodyModel& on = find_body(data, settings.body, settings.place);
-  // Its velocity after an impact is about the opposite of that before, node by node, on top of what
-  // the body's elasticity gives back: measured, twice the energy.
-  if (data.step.integrator == mechanics::Integrator::generalized_alpha) {
-    throw Error(ErrorKind::not_in_this_version, settings.place,
-                "generalized-alpha creates energy in impacts",
-                "use backward-euler (impacts without rebound) or bdf2");
-  }
   check_new_name(data.contacts, &ContactModel::name, "contacts", settings.name, settings.place);
   if (settings.touched == settings.body && shape_of(on) != nullptr) {
     throw Error(ErrorKind::wrong_type, settings.place,

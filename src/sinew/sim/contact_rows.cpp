@@ -8,6 +8,7 @@
 #include "sinew/constraint/surface_contact.hpp"
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/mechanics/step_system.hpp"
+#include "sinew/qp/friction_cone.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/row_numbering.hpp"
 #include "sinew/sim/touching_surfaces.hpp"
@@ -23,6 +24,9 @@ namespace {
 constexpr double kNear = 0.01, kTaken = 0.002;
 // Of this many times what the fastest node moves in a step, surfaces of bodies have points.
 constexpr double kAhead = 3.0;
+// A point that a step holds moved at its start where it was faster than this part of the fastest
+// point, and than this part of the size in a step.
+constexpr double kStill = 1e-3, kNoMotion = 1e-9;
 // Rounds of a step in which overlapping surfaces get points, and zones spread their forces anew.
 constexpr int kMaxRounds = 20;
 
@@ -60,6 +64,15 @@ ContactRows::ContactRows(const Model& model, const constraint::Configuration& co
 
 bool ContactRows::has_zones() const {
   return std::ranges::any_of(zones_, [](const auto& zones) { return zones != nullptr; });
+}
+
+// Of the points that a step has a use for.
+template <class Gap>
+void ContactRows::measure_gaps(const constraint::Contact& contact, Gap&& gap) {
+  gaps_.assign(contact.size(), 0.0);
+  for (std::size_t k = 0; k < contact.size(); ++k) {
+    if (!contact.idle(k, rows_)) gaps_[k] = gap(k);
+  }
 }
 
 // m: the gap when the step ends, at the speed of its start.
@@ -117,8 +130,8 @@ void ContactRows::choose_active(std::span<const double> effort, double time_step
     const constraint::Contact& contact = *planes_.contacts()[i];
     if (strikes(i)) continue;
     if (zones_[i]) {
-      zones_[i]->begin(
-          effort, [&](std::size_t k) { return arrival(contact, k, time_step); }, near, rows_);
+      measure_gaps(contact, [&](std::size_t k) { return arrival(contact, k, time_step); });
+      zones_[i]->begin(effort, gaps_, near, rows_);
       continue;
     }
     const bool always = !model_.body(contact.body()).leaves_rows_out();
@@ -215,14 +228,14 @@ bool ContactRows::correct_zones(ContactZones& zones, TouchingSurfaces* touching,
     for (std::size_t k = known; k < touching->count(); ++k) {
       planes_.begin_point(touching->contact().row(k));
     }
-    const auto gap = [&](std::size_t k) { return touching->proposed_gap(k); };
-    return zones.refine(gap, problem, numbering, effort, rows_);
+    measure_gaps(zones.contact(), [&](std::size_t k) { return touching->proposed_gap(k); });
+  } else {
+    const auto& contact = static_cast<const constraint::ShapeContact&>(zones.contact());
+    measure_gaps(contact, [&](std::size_t k) {
+      return contact.row_values(k, proposed_position(contact, k), rows_)[0];
+    });
   }
-  const auto& contact = static_cast<const constraint::ShapeContact&>(zones.contact());
-  const auto gap = [&](std::size_t k) {
-    return contact.row_values(k, proposed_position(contact, k), rows_)[0];
-  };
-  return zones.refine(gap, problem, numbering, effort, rows_);
+  return zones.refine(gaps_, problem, numbering, effort, rows_);
 }
 
 bool ContactRows::correct_shape(std::size_t number, const step::StepProblem& problem,
@@ -293,6 +306,35 @@ bool ContactRows::gap_closed(std::span<const double> effort) const {
     }
   }
   return false;
+}
+
+bool ContactRows::stops_points(std::span<const double> effort, double time_step) const {
+  const double still = std::max(kStill * fastest_node(), kNoMotion * model_.size() / time_step);
+  for (const constraint::Contact* contact : planes_.contacts()) {
+    for (std::size_t k = 0; k < contact->size(); ++k) {
+      const Eigen::Map<const Vector3> force(effort.data() + contact->row(k));
+      if (!(force[0] > 0.0)) continue;
+      const Vector3 velocity =
+          contact->frame(k, rows_).transpose() * contact->velocity_beside(configuration_, k, rows_);
+      const bool sticks = contact->friction() > 0.0 && !qp::slides(force, contact->friction());
+      if (std::abs(velocity[0]) > still || (sticks && velocity.tail<2>().norm() > still)) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+// m/s, of all bodies that touch.
+double ContactRows::fastest_node() const {
+  double fastest = 0.0;
+  for (const constraint::Contact* contact : planes_.contacts()) {
+    for (std::size_t k = 0; k < contact->size(); ++k) {
+      if (contact->idle(k, rows_)) continue;
+      fastest = std::max(fastest, contact->velocity_beside(configuration_, k, rows_).norm());
+    }
+  }
+  return fastest;
 }
 
 bool ContactRows::touches_softly(std::span<const double> effort) const {

@@ -81,6 +81,10 @@ class ContactRows {
 
   /// Whether a point has a force that had none when the step began. @param effort (rows,) N.
   bool gap_closed(std::span<const double> effort) const;
+  /// Whether the step holds a point that moved when it began: an impact along the normal, or one
+  /// that slid and sticks. Before bodies' velocities follow. @param effort (rows,) N.
+  /// @param time_step s.
+  bool stops_points(std::span<const double> effort, double time_step) const;
   /// Whether surfaces have passed through each other in the step.
   bool passed() const;
   /// m, >= 0: how deep a point without a normal force is in its surface's tangent plane, at most.
@@ -106,6 +110,9 @@ class ContactRows {
   Vector3 proposed_position(const constraint::ShapeContact& contact, std::size_t point) const;
   double arrival(const constraint::Contact& contact, std::size_t point, double time_step) const;
   bool has_zones() const;
+  double fastest_node() const;
+  template <class Gap>
+  void measure_gaps(const constraint::Contact& contact, Gap&& gap);
 
   const Model& model_;
   const constraint::Configuration& configuration_;
@@ -115,6 +122,7 @@ class ContactRows {
   std::vector<std::unique_ptr<ContactZones>> zones_;  // (contacts,) null: single points
   bool left_out_ = false;                             // some point
   int rounds_left_ = 0;        // of a step, in which overlapping surfaces get points
+  std::vector<double> gaps_;   // (points,) m, of one contact
   int zone_rounds_left_ = 0;   // of a step, in which zones spread their forces anew
   std::vector<char> touched_;  // (rows,) normal rows with a force when the step began
   std::vector<char> strikes_;  // (contacts,)

@@ -12,8 +12,9 @@ namespace sinew::sim {
 
 namespace {
 
-// Of a zone's size: overlaps up to this are left.
-constexpr double kTolerance = 2e-4;
+// Overlaps that are left: of a zone's size, and of how far its force presses it in, so that a stiff
+// body's forces are spread as well. Below the last part of the size, rounding matters.
+constexpr double kTolerance = 2e-4, kOfDeflection = 0.01, kFloor = 1e-7;
 // w at first, and what becomes of it where overlaps grow by the second factor.
 constexpr double kRelaxation = 0.7, kLess = 0.5, kGrows = 1.1;
 // a, of the distance of neighbouring points. Larger ones make neighbours too alike.
@@ -28,7 +29,6 @@ ContactZones::ContactZones(const constraint::Contact& contact, double size,
       configuration_(configuration),
       size_(size),
       weight_(contact.size(), 0.0),
-      gap_(contact.size(), 0.0),
       next_(contact.size(), -1) {
   if (contact.is_found_anew()) {
     make_zones(configuration.surface_nodes(contact.body()));
@@ -104,9 +104,8 @@ double ContactZones::normal_effort(std::size_t point, std::span<const double> ef
   return std::max(0.0, effort[static_cast<std::size_t>(contact_.row(point))]);
 }
 
-void ContactZones::begin(std::span<const double> effort,
-                         const std::function<double(std::size_t)>& arrives, double near,
-                         mechanics::RowValues& rows) {
+void ContactZones::begin(std::span<const double> effort, std::span<const double> arrivals,
+                         double near, mechanics::RowValues& rows) {
   for (Zone& zone : zones_) {
     zone = {};
     zone.nearest = kInfinity;
@@ -118,9 +117,8 @@ void ContactZones::begin(std::span<const double> effort,
     Zone& zone = zones_[static_cast<std::size_t>(zone_of(k, rows))];
     weight_[k] = normal_effort(k, effort);
     zone.force += weight_[k];
-    const double gap = arrives(k);
-    if (gap >= zone.nearest) continue;
-    zone.nearest = gap;
+    if (arrivals[k] >= zone.nearest) continue;
+    zone.nearest = arrivals[k];
     zone.nearest_point = static_cast<int>(k);
   }
   for (Zone& zone : zones_) {
@@ -175,24 +173,25 @@ void ContactZones::spread(std::span<double> effort, const mechanics::RowValues& 
 }
 
 // And lists the points of each zone that have a force or overlap.
-void ContactZones::measure_overlaps(const mechanics::RowValues& rows) {
+void ContactZones::measure_overlaps(std::span<const double> gaps,
+                                    const mechanics::RowValues& rows) {
   for (Zone& zone : zones_) {
     zone.overlap_before = zone.overlap;
     zone.overlap = 0.0;
     zone.begin = -1;
   }
   for (std::size_t k = contact_.size(); k-- > 0;) {
-    if (contact_.idle(k, rows) || !(weight_[k] > 0.0 || gap_[k] < 0.0)) continue;
+    if (contact_.idle(k, rows) || !(weight_[k] > 0.0 || gaps[k] < 0.0)) continue;
     Zone& zone = zones_[static_cast<std::size_t>(zone_of(k, rows))];
-    zone.overlap = std::max(zone.overlap, -gap_[k]);
+    zone.overlap = std::max(zone.overlap, -gaps[k]);
     next_[k] = zone.begin;
     zone.begin = static_cast<int>(k);
   }
 }
 
 // By projected Gauss-Seidel sweeps.
-void ContactZones::smooth(const Zone& zone, double force, double compliance,
-                          const mechanics::RowValues& rows) {
+void ContactZones::smooth(const Zone& zone, std::span<const double> gaps, double force,
+                          double compliance, const mechanics::RowValues& rows) {
   const std::size_t n = points_.size();
   places_.clear();
   force_.clear();
@@ -217,7 +216,7 @@ void ContactZones::smooth(const Zone& zone, double force, double compliance,
   };
   goal_.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
-    goal_[i] = motion(i) - zone.relaxation * gap_[points_[i]];
+    goal_[i] = motion(i) - zone.relaxation * gaps[points_[i]];
   }
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     for (std::size_t i = 0; i < n; ++i) {
@@ -228,16 +227,17 @@ void ContactZones::smooth(const Zone& zone, double force, double compliance,
   for (std::size_t i = 0; i < n; ++i) weight_[points_[i]] = force_[i];
 }
 
-bool ContactZones::refine(const std::function<double(std::size_t)>& gap,
-                          const step::StepProblem& problem, const RowNumbering& numbering,
-                          const linalg::AlignedNumbers& effort, mechanics::RowValues& rows) {
-  for (std::size_t k = 0; k < contact_.size(); ++k) {
-    gap_[k] = contact_.idle(k, rows) ? 0.0 : gap(k);
-  }
-  measure_overlaps(rows);
+bool ContactZones::refine(std::span<const double> gaps, const step::StepProblem& problem,
+                          const RowNumbering& numbering, const linalg::AlignedNumbers& effort,
+                          mechanics::RowValues& rows) {
+  measure_overlaps(gaps, rows);
   bool found = false;
   for (Zone& zone : zones_) {
-    if (!(zone.overlap > tolerance())) continue;
+    const int row = zone.first < 0 ? -1 : numbering.problem_row_of(zone.first);
+    const double force = row < 0 ? 0.0 : effort[static_cast<std::size_t>(row)];
+    const double compliance = row < 0 ? 0.0 : problem.compliance(row, row);
+    const double allowed = std::min(kTolerance * size_, kOfDeflection * compliance * force);
+    if (!(zone.overlap > std::max(allowed, kFloor * size_))) continue;
     found = true;
     if (zone.overlap_before > 0.0 && zone.overlap > kGrows * zone.overlap_before) {
       zone.relaxation *= kLess;
@@ -246,9 +246,7 @@ bool ContactZones::refine(const std::function<double(std::size_t)>& gap,
     for (int k = zone.begin; k >= 0; k = next_[static_cast<std::size_t>(k)]) {
       points_.push_back(static_cast<std::size_t>(k));
     }
-    const int row = zone.first < 0 ? -1 : numbering.problem_row_of(zone.first);
-    smooth(zone, row < 0 ? 0.0 : effort[static_cast<std::size_t>(row)],
-           row < 0 ? 0.0 : problem.compliance(row, row), rows);
+    smooth(zone, gaps, force, compliance, rows);
   }
   if (found) group(rows);
   return found;

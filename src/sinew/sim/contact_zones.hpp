@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -44,25 +43,26 @@ class ContactZones {
 
   const constraint::Contact& contact() const { return contact_; }
   std::size_t count() const { return zones_.size(); }
-  /// m: overlaps up to this are left.
+  /// m: overlaps up to this may be left; smaller ones where forces press a zone in by little.
   double tolerance() const;
 
   /// When a step begins: points share as their forces are, and a zone without forces is its point
-  /// that comes nearest. @param effort (rows,) N of the last step. @param arrives m, of a point:
-  /// its gap when the step ends as it begins. @param near m: points that stay farther have no part.
+  /// that comes nearest. @param effort (rows,) N of the last step. @param arrivals (points,) m:
+  /// gaps when the step ends as it begins. @param near m: points that stay farther have no part.
   /// @param rows gets groups and who is active.
-  void begin(std::span<const double> effort, const std::function<double(std::size_t)>& arrives,
-             double near, mechanics::RowValues& rows);
+  void begin(std::span<const double> effort, std::span<const double> arrivals, double near,
+             mechanics::RowValues& rows);
   /// Makes all efforts of a group those of its sum, in the parts of its shares. @param effort
   /// (rows,) N, in and out. @param rows with groups.
   void spread(std::span<double> effort, const mechanics::RowValues& rows) const;
   /// After a solution: spreads the forces of zones with overlaps anew. Whether there were any.
-  /// @param gap m, of a point, where the proposed motion leads. @param problem,numbering of the
+  /// @param gaps (points,) m, where the proposed motion leads. @param problem,numbering of the
   /// step. @param effort (rows of the problem,) N, the solution. @param rows groups, in and out.
-  bool refine(const std::function<double(std::size_t)>& gap, const step::StepProblem& problem,
+  bool refine(std::span<const double> gaps, const step::StepProblem& problem,
               const RowNumbering& numbering, const linalg::AlignedNumbers& effort,
               mechanics::RowValues& rows);
   /// Whether a zone has a force that had none when the step began. @param effort (rows,) N.
+  /// @param rows of the step.
   bool gap_closed(std::span<const double> effort, const mechanics::RowValues& rows) const;
 
  private:
@@ -82,8 +82,9 @@ class ContactZones {
   int zone_of(std::size_t point, const mechanics::RowValues& rows) const;
   double normal_effort(std::size_t point, std::span<const double> effort) const;
   void group(mechanics::RowValues& rows);
-  void measure_overlaps(const mechanics::RowValues& rows);
-  void smooth(const Zone& zone, double force, double compliance, const mechanics::RowValues& rows);
+  void measure_overlaps(std::span<const double> gaps, const mechanics::RowValues& rows);
+  void smooth(const Zone& zone, std::span<const double> gaps, double force, double compliance,
+              const mechanics::RowValues& rows);
 
   const constraint::Contact& contact_;
   const constraint::Configuration& configuration_;
@@ -92,7 +93,6 @@ class ContactZones {
   std::vector<int> zone_of_place_;  // of each point, or of each node of the first surface
   std::vector<Zone> zones_;
   std::vector<double> weight_;  // (points,) of their zone's force; 0: no part in the step
-  std::vector<double> gap_;     // (points,) m
   std::vector<int> next_;       // (points,) of the same zone, see Zone::begin
   // Of the zone that is smoothed: its points, their places, and numbers of its problem.
   std::vector<std::size_t> points_;

@@ -68,7 +68,7 @@ class ModelBuilder {
   int add_effector(const EffectorSettings& settings);
   /// Throws Error: too-few-points, point-outside-mesh, out-of-range (friction, radius, normal, a
   /// point inside the surface at the start), wrong-type (nodes of a body without),
-  /// not-in-this-version (generalized-alpha).
+  /// conflicting-keys (restitution or zones where there are none).
   int add_contact(const ContactSettings& settings);
   /// Throws Error: too-few-points, point-outside-mesh, bad-argument (a body and itself), wrong-type
   /// (nodes of a body without).

@@ -42,6 +42,11 @@ void fail_law(Run& run) {
          "linearisation leads nowhere",
          "use solver: newton with tangent: exact, smaller time steps, or inertia");
   }
+  if (result.status == qp::ConeStatus::solved) {
+    fail(run, ErrorKind::not_converged,
+         "no efforts obey the laws of this step's actuators, joints and contacts together",
+         "take a smaller time step, or loosen limits of actuators and joints");
+  }
   fail(
       run, ErrorKind::not_converged,
       fmt::format("no contact forces obey this step: residual {:.3g} after {} sweeps, with {} "

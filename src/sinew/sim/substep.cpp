@@ -16,6 +16,10 @@ void Substep::read_commands(double end, double time_step) {
 
 void Substep::begin(double time_step) {
   run_.keep(run_.before);
+  begin_world(time_step);
+}
+
+void Substep::begin_world(double time_step) {
   run_.begin_world(time_step);
   run_.solver.begin_step();
   if (run_.controller != nullptr) run_.controller->begin_step();
@@ -24,10 +28,29 @@ void Substep::begin(double time_step) {
 void Substep::solve(double time_step, bool divisible) {
   try {
     solve_equation(time_step, divisible);
+    if (!reaches_back()) return;
+    stops_points_ = run_.world.contacts().stops_points(run_.effort, time_step);
+    if (stops_points_ && run_.last_step > 0.0) solve_afresh(time_step, divisible);
   } catch (...) {  // failures have gone back already; what a watcher throws has not
     run_.go_back();
     throw;
   }
+}
+
+bool Substep::reaches_back() const {
+  return run_.model->step().integrator == mechanics::Integrator::generalized_alpha &&
+         !run_.model->contacts().empty();
+}
+
+// Generalized-alpha carries on from the acceleration of the step before. Where a point is stopped
+// there is none, but an impulse, and the point would rebound with twice the energy. Such a step is
+// made again by backward Euler, v = d/h, and so is the next one, whose acceleration is the first to
+// go on from.
+void Substep::solve_afresh(double time_step, bool divisible) {
+  run_.go_back();
+  run_.last_step = 0.0;
+  begin_world(time_step);
+  solve_equation(time_step, divisible);
 }
 
 void Substep::solve_equation(double time_step, bool divisible) {
@@ -50,7 +73,8 @@ double Substep::end(double time_step) {
   const double error = run_.world.bodies().end_step(run_.step_weights(time_step));
   // A gap that closes stops its point at once. A multistep formula that reaches back over such a
   // jump would have the point rebound, and gain energy: it starts afresh behind it.
-  run_.last_step = run_.world.contacts().gap_closed(run_.effort) ? 0.0 : time_step;
+  const bool stops = stops_points_ || run_.world.contacts().gap_closed(run_.effort);
+  run_.last_step = stops ? 0.0 : time_step;
   count();
   return error;
 }

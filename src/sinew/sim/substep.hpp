@@ -27,10 +27,14 @@ class Substep {
   void end_as_midpoint(double time_step);
 
  private:
+  void begin_world(double time_step);
   void solve_equation(double time_step, bool divisible);
+  void solve_afresh(double time_step, bool divisible);
+  bool reaches_back() const;
   void count();
 
   Run& run_;
+  bool stops_points_ = false;  // of contacts, which moved when the part began
 };
 
 }  // namespace sinew::sim

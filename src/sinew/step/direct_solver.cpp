@@ -117,12 +117,14 @@ DirectSolver::Box DirectSolver::box_of(const ActuatorBlock& block, int index) co
     if (branch_[static_cast<std::size_t>(index)] == Branch::hold) {
       box.lower = block.value;
       box.motion = block.motion_min;
+      box.stop = -1;
     } else {
       // Without a limit of its motion nothing but the command itself is possible.
       const bool stops = !std::isinf(block.motion_max);
       if (!stops) box.lower = block.value;
       box.upper = block.value;
       box.motion = stops ? block.motion_max : 0.0;
+      box.stop = stops ? 1 : 0;
     }
   }
   box.upper = std::max(box.lower, box.upper);
@@ -221,11 +223,34 @@ LawStatus DirectSolver::solve_blocks(const StepProblem& problem) {
   return LawStatus::failed;
 }
 
+// A commanded effort whose motion is limited is given until the motion passes the limit: a stop far
+// away on a row that something else moves as well (a brake, a motor of the same joint) would leave
+// the program nearly singular, with a gradient beside which the others are rounding.
+LawStatus DirectSolver::solve_boxes(const Eigen::Map<const MatrixX>& compliance) {
+  if (boxes_.empty()) return LawStatus::solved;
+  for (Box& box : boxes_) box.waits = box.stop != 0 && box.lower < box.upper;
+  bool settled = false;
+  while (!settled) {
+    if (solve_program(compliance) == LawStatus::failed) return LawStatus::failed;
+    settled = true;
+    const auto motion = motion_.view();
+    const Eigen::Map<const VectorX> x(x_.data(), static_cast<Eigen::Index>(x_.size()));
+    for (std::size_t i = 0; i < boxes_.size(); ++i) {
+      Box& box = boxes_[i];
+      if (!box.waits) continue;
+      const auto k = static_cast<Eigen::Index>(i);
+      const double beyond = motion(k, 0) + compliance.row(k).dot(x) - box.motion;
+      box.waits = box.stop * beyond <= 0.0;
+      settled = settled && box.waits;
+    }
+  }
+  return LawStatus::solved;
+}
+
 // Efforts that are given stand on the right side: the compliance of their rows, which may be that
 // of a cable that moves nothing, decides nothing.
-LawStatus DirectSolver::solve_boxes(const Eigen::Map<const MatrixX>& compliance) {
+LawStatus DirectSolver::solve_program(const Eigen::Map<const MatrixX>& compliance) {
   const auto count = static_cast<Eigen::Index>(boxes_.size());
-  if (count == 0) return LawStatus::solved;
   if (program_.gradient.size() != count) {
     program_ = qp::QuadraticProgram::sized(static_cast<int>(count), 0);
     qp_solver_ = qp::QpSolver(static_cast<int>(count), 0);
@@ -234,8 +259,9 @@ LawStatus DirectSolver::solve_boxes(const Eigen::Map<const MatrixX>& compliance)
   const auto motion = motion_.view();
   const auto is_given = [&](Eigen::Index k) {
     const Box& box = boxes_[static_cast<std::size_t>(k)];
-    return box.lower == box.upper;
+    return box.lower == box.upper || box.waits;
   };
+  const auto given = [&](const Box& box) { return box.stop < 0 ? box.lower : box.upper; };
   for (Eigen::Index i = 0; i < count; ++i) {
     const bool scaled = !is_given(i) && compliance(i, i) > 0.0;
     scale_[i] = scaled ? 1.0 / std::sqrt(compliance(i, i)) : 1.0;
@@ -246,12 +272,12 @@ LawStatus DirectSolver::solve_boxes(const Eigen::Map<const MatrixX>& compliance)
     for (Eigen::Index i = 0; i < count; ++i) {
       const bool apart = is_given(i) || is_given(j);
       program_.hessian(i, j) = apart ? 0.0 : scale_[i] * scale_[j] * compliance(i, j);
-      if (is_given(i)) moved += compliance(j, i) * boxes_[static_cast<std::size_t>(i)].lower;
+      if (is_given(i)) moved += compliance(j, i) * given(boxes_[static_cast<std::size_t>(i)]);
     }
     program_.hessian(j, j) += is_given(j) ? 1.0 : kRedundancy;
-    program_.gradient[j] = is_given(j) ? -box.lower : scale_[j] * moved;
-    program_.lower[j] = box.lower / scale_[j];
-    program_.upper[j] = box.upper / scale_[j];
+    program_.gradient[j] = is_given(j) ? -given(box) : scale_[j] * moved;
+    program_.lower[j] = (is_given(j) ? given(box) : box.lower) / scale_[j];
+    program_.upper[j] = (is_given(j) ? given(box) : box.upper) / scale_[j];
   }
   const qp::QpResult& result = qp_solver_.solve(program_);
   if (result.status != qp::QpStatus::optimal) return LawStatus::failed;
@@ -259,8 +285,13 @@ LawStatus DirectSolver::solve_boxes(const Eigen::Map<const MatrixX>& compliance)
     const auto k = static_cast<Eigen::Index>(i);
     // Scaling must not blur a limit: a slack cable's tension is zero, not nearly so.
     x_[i] = scale_[k] * result.x[k];
-    if (result.x[k] <= program_.lower[k]) x_[i] = boxes_[i].lower;
-    if (result.x[k] >= program_.upper[k]) x_[i] = boxes_[i].upper;
+    if (is_given(k)) {
+      x_[i] = given(boxes_[i]);
+    } else if (result.x[k] <= program_.lower[k]) {
+      x_[i] = boxes_[i].lower;
+    } else if (result.x[k] >= program_.upper[k]) {
+      x_[i] = boxes_[i].upper;
+    }
   }
   return LawStatus::solved;
 }

@@ -60,7 +60,11 @@ class DirectSolver {
     int row;
     int actuator;  // -1: a capstan
     double lower, upper, motion;
+    // Of a commanded effort: the motion may not go beyond `motion` upwards (1: the command is
+    // `upper`) or downwards (-1: it is `lower`).
+    int stop = 0;
     bool decided = false;  // by what is held, see settle_decided()
+    bool waits = false;    // it has its command, since its stop is not reached
   };
   enum class Branch : char { pull, hold };  // an effort at or below its command, or above it
 
@@ -75,6 +79,7 @@ class DirectSolver {
                       Eigen::Map<MatrixX> motion);
   LawStatus solve_blocks(const StepProblem& problem);
   LawStatus solve_boxes(const Eigen::Map<const MatrixX>& compliance);
+  LawStatus solve_program(const Eigen::Map<const MatrixX>& compliance);
   LawStatus solve_cones(const Eigen::Map<const MatrixX>& compliance);
   bool switch_branches(const StepProblem& problem, const Eigen::Map<const MatrixX>& compliance);
 
