@@ -57,7 +57,7 @@ setup(
     version=version(),
     package_dir={"": "python"},
     packages=find_packages("python", include=["sinew", "sinew.*"]),
-    package_data={"sinew": ["*.pyi", "py.typed"]},
+    package_data={"sinew": ["*.pyi", "py.typed"], "sinew.gym": ["scenes/*.yaml"]},
     ext_modules=[Extension("sinew._core", sources=[])],
     cmdclass={"build_ext": CMakeBuild},
     zip_safe=False,

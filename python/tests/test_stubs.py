@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 import sinew
+import sinew.gym
 import sinew.sweep
 from sinew import _core
 
@@ -129,7 +130,7 @@ def split_arguments(signature):
     return parts
 
 
-@pytest.mark.parametrize("module", [sinew, sinew.collision, sinew.pcc, sinew.qp, sinew.sweep], ids=lambda module: module.__name__)
+@pytest.mark.parametrize("module", [sinew, sinew.collision, sinew.gym, sinew.pcc, sinew.qp, sinew.sweep], ids=lambda module: module.__name__)
 def test_everything_public_has_a_docstring(module):
     for name in module.__all__:
         member = getattr(module, name)

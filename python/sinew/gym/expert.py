@@ -1,0 +1,114 @@
+"""The inverse controller as a policy."""
+
+from __future__ import annotations
+
+from typing import Any, Union
+
+import numpy as np
+
+from .._core import InverseController
+from ..errors import Error
+from .env import Env
+from .models import Robot
+from .tasks import TrunkFollow, TrunkHold, TrunkReach
+from .vector_env import VectorEnv
+
+__all__ = ["Expert", "expert"]
+
+_CORRECTION = 0.5  # share of what the twin's tip misses that is corrected at each step
+
+
+class _Twin:
+    """A copy of the nominal robot that a controller steers, for one environment."""
+
+    def __init__(self, episode: Any) -> None:
+        self.episode = episode
+        self.robot = Robot(episode.model.first.sim.clone())
+        self.controller: Any = None
+        self.count = 0
+
+    def action(self) -> np.ndarray:
+        """The increments of tension that the twin makes, in [-1, 1]."""
+        episode, robot = self.episode, self.robot
+        if self.count != episode.count:
+            self.count, self.missed = episode.count, np.zeros(3)
+            robot.sim.restore(episode.model.starts[0])
+        else:
+            self.missed += _CORRECTION * (robot.tip.position - episode.robot.tip.position - self.missed)
+        goal = episode.task.goal_at(episode, (episode.steps + 1) * episode.task.time_step) if self.moving else episode.goal
+        target = (goal + self.missed).tolist()
+        if self.controller is None:
+            self.controller = InverseController(robot.sim, targets={next(iter(robot.sim.effectors)): target})
+        else:
+            self.controller.targets["tip"] = target
+        self.controller.step()
+        wanted = np.array([actuator.tension for actuator in robot.actuators])
+        return np.clip((wanted - episode.commands) / episode.task.increment, -1.0, 1.0)
+
+    @property
+    def moving(self) -> bool:
+        """Whether the goal moves."""
+        return isinstance(self.episode.task, TrunkFollow)
+
+
+class Expert:
+    """Actions by the inverse controller; made by `expert`.
+
+    Every environment has a twin: a simulation of its robot without pushes and delays, whose inverse controller steers the
+    tip to the goal. The action is the change of tensions that the twin makes. What the environment's tip misses of the
+    twin's shifts the twin's target, half of it a step: so pushes are answered, though the twin does not know them.
+    """
+
+    def __init__(self, env: Union[Env, VectorEnv]) -> None:
+        self._single = isinstance(env, Env)
+        episodes = [env.episode] if self._single else env.episodes
+        self._twins = [_Twin(episode) for episode in episodes]
+
+    def __call__(self, observation: Any = None) -> np.ndarray:
+        """Actions for the environment as it is now.
+
+        Parameters
+        ----------
+        observation : array, optional
+            Not used: the expert knows the environment.
+
+        Returns
+        -------
+        (actions,) or (num_envs, actions) float32 in [-1, 1]
+        """
+        actions = np.array([twin.action() for twin in self._twins], dtype=np.float32)
+        return actions[0] if self._single else actions
+
+
+def expert(env: Union[Env, VectorEnv]) -> Expert:
+    """A policy that solves a task by the inverse controller.
+
+    Parameters
+    ----------
+    env : Env or VectorEnv
+        Of trunk-reach, trunk-follow or trunk-hold, with the action "tension-increment" and without randomised models.
+
+    Returns
+    -------
+    Expert
+
+    Raises
+    ------
+    Error
+        bad-argument for another task, action, or randomised models.
+
+    Examples
+    --------
+    >>> env = sinew.gym.make("trunk-reach")
+    >>> observation, info = env.reset(seed=1)
+    >>> policy = sinew.gym.expert(env)
+    >>> observation, reward, terminated, truncated, info = env.step(policy(observation))
+    """
+    env = env.unwrapped
+    task = env.task
+    if not isinstance(task, (TrunkReach, TrunkFollow, TrunkHold)):
+        raise Error("bad-argument", "expert(env)", f"there is no expert of {task.name}", "give trunk-reach, trunk-follow or trunk-hold")
+    if task.action != "tension-increment" or task.is_randomised:
+        raise Error("bad-argument", "expert(env)", f"the action is {task.action}, randomised models: {task.is_randomised}",
+                    'make it with action="tension-increment" and without ranges of material_scale and payload')
+    return Expert(env)

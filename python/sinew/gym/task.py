@@ -1,0 +1,194 @@
+"""What tasks have in common: a scene, actions, observations, rewards and what is drawn for an episode."""
+
+from __future__ import annotations
+
+import difflib
+import inspect
+from pathlib import Path
+from typing import Any, Mapping, Optional, Sequence, Union
+
+import numpy as np
+
+from .._core import State
+from ..errors import Error
+from .models import Robot
+from .spaces import Box
+
+__all__ = ["SCENES", "Task", "unknown"]
+
+SCENES = Path(__file__).parent / "scenes"
+
+Range = Union[float, Sequence[float]]
+
+
+def unknown(place: str, what: str, name: Any, known: Sequence[str]) -> Error:
+    """An error of kind unknown-name that suggests the nearest of the known names."""
+    near = difflib.get_close_matches(str(name), known, n=1, cutoff=0.5)
+    remedy = f"did you mean {near[0]!r}? " if near else ""
+    return Error("unknown-name", place, f"there is no {what} {name!r}", f"{remedy}there are: {', '.join(known)}")
+
+
+def _range(item: str, value: Range, least: float, greatest: float, unit: str) -> tuple[float, float]:
+    """(low, high) of a number or a pair, within bounds."""
+    try:
+        low, high = (float(v) for v in (value if np.ndim(value) else (value, value)))
+    except (TypeError, ValueError):
+        raise Error("wrong-type", item, f"{value!r} is no range", "give a number, or (low, high)") from None
+    if not least <= low <= high <= greatest:
+        raise Error("out-of-range", item, f"the range is ({low:g}, {high:g}){unit}", f"give {least:g} <= low <= high <= {greatest:g}{unit}")
+    return low, high
+
+
+class Task:
+    """A robot, what it may do, what it senses and what it is rewarded for.
+
+    A task never changes while environments use it; what belongs to one environment is in its Episode. A subclass sets the
+    class attributes and defines `sense`, `reward`, and what else it needs of the methods below.
+
+    Parameters
+    ----------
+    time_limit : float, optional
+        s of an episode, after which it is truncated; by default the task's own.
+    observe : str
+        "sensors", or "state", which appends the hidden state: see the task.
+    action : str, optional
+        What actions mean, one of `actions`; by default the first.
+    material_scale : float or (low, high)
+        Factor of the stiffness of all material, 0.5 to 2, drawn for each episode.
+    payload : float or (low, high)
+        kg fixed to the tip, 0 to 0.05, drawn for each episode.
+    models : int
+        How many models are built to draw material and payload from, 1 to 64; 1 without either.
+    action_delay : int or (low, high)
+        Steps by which actions act late, 0 to 10, drawn for each episode.
+    set : dict, optional
+        Values of the scene to change, as of sinew.load: {"solver": "one-linearisation"}.
+
+    Raises
+    ------
+    Error
+        out-of-range, unknown-name, wrong-type, and what sinew.load raises.
+    """
+
+    name = ""
+    summary = ""
+    scene: Path = SCENES
+    settings: dict[str, Any] = {}  # of the scene, where the task differs from the file
+    actions: tuple[str, ...] = ()
+    substeps = 1  # simulated steps to an action
+    default_time_limit = 1.0
+    failure_reward = -100.0  # of a step that the simulation cannot take; the episode then ends
+
+    def __init__(
+        self,
+        *,
+        time_limit: Optional[float] = None,
+        observe: str = "sensors",
+        action: Optional[str] = None,
+        material_scale: Range = 1.0,
+        payload: Range = 0.0,
+        models: int = 8,
+        action_delay: Union[int, Sequence[int]] = 0,
+        set: Optional[Mapping[str, Any]] = None,  # noqa: A002 - as of sinew.load
+    ) -> None:
+        self.observe = observe
+        if observe not in ("sensors", "state"):
+            raise unknown("observe", "observation", observe, ("sensors", "state"))
+        self.action = self.actions[0] if action is None else action
+        if self.action not in self.actions:
+            raise unknown("action", f"action of {self.name}", action, self.actions)
+        self.material_scale = _range("material_scale", material_scale, 0.5, 2.0, "")
+        self.payload = _range("payload", payload, 0.0, 0.05, " kg")
+        delay = _range("action_delay", action_delay, 0, 10, " steps")
+        if delay != (int(delay[0]), int(delay[1])):
+            raise Error("wrong-type", "action_delay", f"{action_delay!r} is no number of steps", "give whole numbers")
+        self.action_delay = (int(delay[0]), int(delay[1]))
+        if not 1 <= models <= 64:
+            raise Error("out-of-range", "models", f"it is {models}", "give 1 to 64")
+        self.models = int(models)
+        self.set = dict(set or {})
+        self._time_limit = self.default_time_limit if time_limit is None else float(time_limit)
+
+    @property
+    def is_randomised(self) -> bool:
+        """Whether episodes draw from several models."""
+        return self.material_scale[0] < self.material_scale[1] or self.payload[0] < self.payload[1]
+
+    @staticmethod
+    def bounded(item: str, value: float, least: float, greatest: float, unit: str = "") -> float:
+        """A number between two bounds; raises out-of-range and wrong-type."""
+        if np.ndim(value):
+            raise Error("wrong-type", item, f"{value!r} is no number", "give a number")
+        return _range(item, value, least, greatest, unit)[0]
+
+    def bind(self, robot: Robot) -> None:
+        """Takes what is the same for all models from the first: time step, limits, spaces."""
+        self.time_step = self.substeps * robot.sim.time_step
+        if not self._time_limit >= self.time_step:
+            raise Error("out-of-range", "time_limit", f"it is {self._time_limit} s",
+                        f"give {self.time_step:g} s, the time of a step, or more")
+        self.time_limit = self._time_limit
+        self.episode_steps = round(self._time_limit / self.time_step)
+        kind = self.action.split("-")[0]
+        limits = [actuator.limits[kind] for actuator in robot.actuators]
+        self.low, self.high = (np.array([getattr(limit, end) for limit in limits]) for end in ("min", "max"))
+        rates = np.array([limit.rate for limit in limits])
+        self.increment = np.minimum(rates * self.time_step, self.high - self.low)  # the greatest change in a step
+        self.kind, self.is_increment = kind, self.action.endswith("-increment")
+        self.action_space = Box(low=-1.0, high=1.0, shape=(len(limits),), dtype=np.float32)
+        self.observation_space = Box(low=-np.inf, high=np.inf, shape=(self.observation_size(robot),), dtype=np.float32)
+
+    # What a subclass may define.
+
+    def randomised(self, material_scale: float, payload: float) -> dict[str, Any]:
+        """Values of the scene for a material and a payload (kg)."""
+        raise NotImplementedError
+
+    def prepare(self, robot: Robot) -> list[State]:
+        """States that episodes begin with; the simulation is as loaded."""
+        robot.sim.solve_static()
+        return [robot.sim.state()]
+
+    def measure_rest(self, robot: Robot) -> dict[str, Any]:
+        """What the task keeps of a model; the simulation is in the first of its starts."""
+        return {"tip": robot.tip.position}
+
+    def begin(self, episode: Any, options: Mapping[str, Any]) -> None:
+        """Draws what is random in an episode, from `episode.random`; the robot is in its start."""
+
+    def disturb(self, episode: Any) -> None:
+        """Changes the world just before a step."""
+
+    def observation_names(self, robot: Robot) -> list[str]:
+        """What every number of an observation is."""
+        raise NotImplementedError
+
+    def sense(self, episode: Any, out: np.ndarray) -> None:
+        """Writes an observation into out, (observation size,)."""
+        raise NotImplementedError
+
+    def reward(self, episode: Any) -> tuple[float, bool, dict[str, Any]]:
+        """Reward of the step just taken, whether the task is over, and info."""
+        raise NotImplementedError
+
+    #: Names that reset(options=...) takes for an environment.
+    options: tuple[str, ...] = ()
+
+    def observation_size(self, robot: Robot) -> int:
+        """Numbers of an observation."""
+        return len(self.observation_names(robot))
+
+    def commands(self, episode: Any, action: np.ndarray) -> np.ndarray:
+        """Commands of the actuators (N, m or N m) for an action in [-1, 1], (actuators,) each."""
+        if self.is_increment:  # np.clip takes four times as long
+            return np.minimum(np.maximum(episode.commands + action * self.increment, self.low), self.high)
+        return self.low + 0.5 * (action + 1.0) * (self.high - self.low)
+
+    @classmethod
+    def keywords(cls) -> list[str]:
+        """Names of all keyword arguments of the task."""
+        found: list[str] = []
+        for base in cls.__mro__:
+            if "__init__" in vars(base) and base is not object:
+                found += [p.name for p in inspect.signature(base.__init__).parameters.values() if p.kind is p.KEYWORD_ONLY]
+        return found

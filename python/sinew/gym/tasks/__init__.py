@@ -1,0 +1,10 @@
+"""The tasks, one class each."""
+
+from .arm_swing_up import ArmSwingUp
+from .trunk import TrunkTask
+from .trunk_damp import TrunkDamp
+from .trunk_follow import TrunkFollow
+from .trunk_hold import TrunkHold
+from .trunk_reach import TrunkReach
+
+__all__ = ["ArmSwingUp", "TrunkDamp", "TrunkFollow", "TrunkHold", "TrunkReach", "TrunkTask"]

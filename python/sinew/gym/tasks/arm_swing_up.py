@@ -1,0 +1,84 @@
+"""An arm above what it can hold."""
+
+from __future__ import annotations
+
+from typing import Any, Mapping
+
+import numpy as np
+
+from ..._core import State
+from ..models import Robot
+from ..task import SCENES, Task
+
+__all__ = ["ArmSwingUp"]
+
+_LENGTHS, _MASSES, _STIFFNESS, _DAMPING = (0.14,) * 4, (0.190, 0.146, 0.090, 0.090), 0.108, 4.2e-3  # m, kg, N m, N m s
+
+
+class ArmSwingUp(Task):
+    """Swing the tip of a hanging arm of constant curvature as high as possible; 2 ms a step, 20 ms an action, 4 s.
+
+    The torques on the lower three of four segments are weak: held at their limits, they raise the tip by less than a swing
+    does. Episodes begin with the arm hanging, a little bent and at rest or moving, drawn from eight states.
+
+    Action: torques, from -limit to limit (0.12, 0.13, 0.18 N m).
+    Observation: bending angles of the segments (4, over 1 rad), their rates (4, over 10 rad/s), torques (3, over their
+    limits), position of the tip (x and z, over 0.56 m, the arm's length). There is no other state: `observe="state"` is the
+    same.
+    Reward of a step: (height of the tip over where it hangs) / 0.56 m - 0.01 (mean square of the actions). It never
+    terminates.
+    Info: `height` (m).
+    """
+
+    name = "arm-swing-up"
+    summary = "swing the tip of a fluidic arm up"
+    scene = SCENES / "arm.yaml"
+    actions = ("torque",)
+    substeps = 10
+    default_time_limit = 4.0
+
+    def randomised(self, material_scale: float, payload: float) -> dict[str, Any]:
+        """Stiffness of all segments; the payload adds to the mass of the last one."""
+        if material_scale == 1.0 and payload == 0.0:
+            return {}
+        masses = [*_MASSES[:-1], _MASSES[-1] + payload]
+        return {"bodies.arm.segments": [
+            {"length": length, "mass": mass, "stiffness": _STIFFNESS * material_scale, "damping": _DAMPING}
+            for length, mass in zip(_LENGTHS, masses)
+        ]}  # fmt: skip
+
+    def prepare(self, robot: Robot) -> list[State]:
+        """Eight states: at rest, and 0.1 to 0.5 s after torques of up to 30 % of the limits began to act."""
+        start, states, random = robot.sim.state(), [robot.sim.state()], np.random.default_rng(0)
+        for _ in range(7):
+            robot.sim.restore(start)
+            for actuator in robot.actuators:
+                actuator.torque = float(random.uniform(-0.3, 0.3)) * actuator.limits["torque"].max
+            robot.sim.step(int(random.integers(50, 250)))
+            states.append(robot.sim.state())
+        for actuator in robot.actuators:
+            actuator.torque = 0.0
+        return states
+
+    def begin(self, episode: Any, options: Mapping[str, Any]) -> None:
+        """Nothing more is drawn."""
+        episode.commands = np.zeros(3)
+
+    def observation_names(self, robot: Robot) -> list[str]:
+        """What every number of an observation is."""
+        return ([f"angle {k} / 1 rad" for k in range(4)] + [f"rate {k} / 10 rad/s" for k in range(4)]
+                + [f"{name} torque / limit" for name in robot.sim.actuators] + ["tip x / 0.56 m", "tip z / 0.56 m"])  # fmt: skip
+
+    def sense(self, episode: Any, out: np.ndarray) -> None:
+        """Writes an observation."""
+        robot = episode.robot
+        out[:4] = robot.body.coordinates
+        out[4:8] = robot.body.rates / 10.0
+        out[8:11] = [actuator.torque for actuator in robot.actuators] / self.high
+        out[11:] = robot.tip.position[::2] / 0.56
+
+    def reward(self, episode: Any) -> tuple[float, bool, dict[str, Any]]:
+        """Height over length, less a little effort."""
+        height = float(episode.robot.tip.position[2] - episode.model.rest["tip"][2])
+        effort = float(np.mean(episode.action**2))
+        return height / 0.56 - 0.01 * effort, False, {"height": height}

@@ -1,0 +1,59 @@
+"""Vibration to rest."""
+
+from __future__ import annotations
+
+from typing import Any, Mapping
+
+import numpy as np
+
+from .trunk import TrunkTask
+
+__all__ = ["TrunkDamp"]
+
+
+class TrunkDamp(TrunkTask):
+    """Bring a trunk to rest that has been struck; dynamic (generalized-alpha), 10 ms a step, 1 s an episode.
+
+    A blow acts on the end of the trunk during the first 60 ms: 0.2 to 0.4 N across the axis, in a random direction. The
+    passive trunk swings at about 4 Hz and loses half of its energy in 0.1 s (stiffness damping, 2 ms). The default action
+    is the tension itself: an action of -1 is a slack cable.
+
+    Observation: the sensors of the trunk, then rates of the cables (8, over 0.1 m/s).
+    Reward of a step: -E / 1 mJ with E = kinetic energy + strain energy + gravity energy, less what it is at rest. Cables
+    that are pulled without need store energy, too. It never terminates.
+    Info: `energy` (J).
+    """
+
+    name = "trunk-damp"
+    summary = "bring a struck trunk to rest"
+    dynamic = True
+    actions = ("tension", "tension-increment", "displacement", "displacement-increment")
+    settings = {"integrator": {"type": "generalized-alpha", "spectral_radius": 0.8}, "solver": {"tolerance": 1e-4},
+                "bodies.trunk.damping": {"stiffness": 0.002}}  # fmt: skip
+    BLOW = 0.06  # s
+
+    def begin(self, episode: Any, options: Mapping[str, Any]) -> None:
+        """Draws the blow."""
+        random = episode.random
+        turn, size = random.uniform(0.0, 2.0 * np.pi), random.uniform(0.2, 0.4)
+        self.push(episode, size * np.array([np.cos(turn), np.sin(turn), 0.0]))
+        episode.memory.update(displacements=None)
+
+    def disturb(self, episode: Any) -> None:
+        """Ends the blow."""
+        if episode.steps == round(self.BLOW / self.time_step):
+            self.push(episode, np.zeros(3))
+
+    def further_names(self, cables: list[str]) -> list[str]:
+        """Rates of the cables."""
+        return [f"{cable} rate / 0.1 m/s" for cable in cables]
+
+    def sense_further(self, episode: Any) -> np.ndarray:
+        """Rates of the cables."""
+        return self.cable_rates(episode)
+
+    def reward(self, episode: Any) -> tuple[float, bool, dict[str, Any]]:
+        """Minus the energy in mJ."""
+        body = episode.robot.body
+        energy = body.kinetic_energy + body.strain_energy + body.gravity_energy - episode.model.rest["energy"]
+        return -1e3 * energy, False, {"energy": energy}

@@ -1,0 +1,53 @@
+"""The tip to a point."""
+
+from __future__ import annotations
+
+from typing import Any, Mapping
+
+import numpy as np
+
+from .trunk import TrunkTask, surface
+
+__all__ = ["TrunkReach"]
+
+
+def random_goal(random: np.random.Generator, radius: float = 0.06, depth: float = 0.004) -> np.ndarray:
+    """A goal that the tip reaches, (3,) m: uniform on a disc across the axis and within +-depth of the tip's surface."""
+    turn, part, off = random.uniform(0.0, 2.0 * np.pi), np.sqrt(random.uniform()), random.uniform(-depth, depth)
+    return surface(radius * part * np.array([np.cos(turn), np.sin(turn)])) + [0.0, 0.0, off]
+
+
+class TrunkReach(TrunkTask):
+    """Bring the tip to a goal and keep it there; quasi-static, 10 ms a step, 0.5 s an episode.
+
+    Goals: x and y uniform on a disc of 60 mm around the axis, z within 4 mm of the surface on which the tip moves; all are
+    within reach of the nominal trunk. `reset(options={"goal": (3,) m})` sets one.
+
+    Observation: the sensors of the trunk, then from tip to goal (3, over 0.1 m).
+    Reward of a step: -(distance of the tip from the goal) / 50 mm. It never terminates.
+    Info: `distance` (m), `success` (within 5 mm).
+    """
+
+    name = "trunk-reach"
+    summary = "bring the tip to a random goal"
+    default_time_limit = 0.5
+    options = ("goal",)
+
+    def begin(self, episode: Any, options: Mapping[str, Any]) -> None:
+        """Draws the goal."""
+        goal = random_goal(episode.random)
+        if not self.goal_given(episode, options):
+            episode.goal = goal
+
+    def further_names(self, cables: list[str]) -> list[str]:
+        """From tip to goal."""
+        return [f"goal - tip {axis} / 0.1 m" for axis in "xyz"]
+
+    def sense_further(self, episode: Any) -> np.ndarray:
+        """From tip to goal."""
+        return self.toward_goal(episode)
+
+    def reward(self, episode: Any) -> tuple[float, bool, dict[str, Any]]:
+        """Minus the distance over 50 mm."""
+        distance = self.distance(episode)
+        return -distance / 0.05, False, {"distance": distance, "success": distance < 0.005}

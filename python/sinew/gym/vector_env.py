@@ -1,0 +1,305 @@
+"""Many environments of one task in one process."""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any, Callable, Mapping, Optional, Sequence, Union
+
+import numpy as np
+
+from ..errors import Error
+from . import render
+from .episode import Episode, checked_actions
+from .models import Models
+from .spaces import AutoresetMode, VectorEnvBase, batched, mode_named
+from .task import Task
+
+__all__ = ["VectorEnv"]
+
+Arrays = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]
+
+
+class VectorEnv(VectorEnvBase):
+    """Steps many environments of a task, in threads; Gymnasium's vector interface.
+
+    The environments share the models of the task (mesh, material, factorisation plan); each has a simulation of its own. A
+    step of the simulation runs without the interpreter lock, so that threads share the work: each has a contiguous block of
+    environments. Results are the same, bit for bit, for any number of threads, and an environment does the same alone and
+    among others: environment i has a generator of its own, seeded with s + i.
+
+    Parameters
+    ----------
+    task : Task
+    num_envs : int
+        1 or more.
+    threads : int
+        1 or more.
+    autoreset_mode : AutoresetMode or str
+        What happens when the episode of an environment ends in step k.
+        NEXT_STEP: step k + 1 resets it instead of acting, with reward 0.
+        SAME_STEP: step k resets it; the last observation and info are in infos["final_obs"] and infos["final_info"].
+        DISABLED: nothing; reset(options={"reset_mask": mask}) must follow.
+    render_mode : str, optional
+        "rgb_array" or "human": see `render`.
+
+    Attributes
+    ----------
+    num_envs : int
+    single_observation_space, single_action_space : Box
+        Of an environment, float32.
+    observation_space, action_space : Box
+        Of all, stacked: (num_envs, size).
+    metadata : dict
+        "render_modes" and "autoreset_mode".
+
+    Raises
+    ------
+    Error
+        out-of-range, unknown-name.
+    """
+
+    metadata: dict[str, Any] = {"render_modes": list(render.MODES)}
+
+    def __init__(
+        self,
+        task: Task,
+        num_envs: int = 1,
+        *,
+        threads: int = 1,
+        autoreset_mode: Union[str, Any] = AutoresetMode.NEXT_STEP,
+        render_mode: Optional[str] = None,
+    ) -> None:
+        for item, value in (("num_envs", num_envs), ("threads", threads)):
+            if value != int(value) or value < 1:
+                raise Error("out-of-range", item, f"it is {value}", "give a whole number, 1 or more")
+        self.task, self.num_envs, self.threads = task, int(num_envs), min(int(threads), int(num_envs))
+        self.render_mode = render.mode_checked(render_mode)
+        self.autoreset_mode = mode_named(autoreset_mode)
+        models = Models(task)
+        task.bind(models[0].first)
+        self.metadata = {"render_modes": list(render.MODES), "render_fps": round(1.0 / task.time_step),
+                         "autoreset_mode": self.autoreset_mode}  # fmt: skip
+        self.single_observation_space, self.single_action_space = task.observation_space, task.action_space
+        self.observation_space, self.action_space = (batched(s, self.num_envs) for s in (task.observation_space, task.action_space))
+        self.episodes = [Episode(task, models) for _ in range(self.num_envs)]
+        edges = np.linspace(0, self.num_envs, self.threads + 1).astype(int)
+        self._blocks = [range(first, last) for first, last in zip(edges[:-1], edges[1:])]
+        self._executor = ThreadPoolExecutor(self.threads - 1) if self.threads > 1 else None
+        self._observations = np.zeros((self.num_envs, *self.single_observation_space.shape), dtype=np.float32)
+        self._begun, self._ended = np.zeros(self.num_envs, dtype=bool), np.zeros(self.num_envs, dtype=bool)
+        self._picture = render.Picture(self.render_mode)
+        self._open = True
+
+    def reset(
+        self, *, seed: Union[int, Sequence[Optional[int]], None] = None, options: Optional[Mapping[str, Any]] = None
+    ) -> tuple[np.ndarray, dict[str, Any]]:
+        """Begins episodes.
+
+        Parameters
+        ----------
+        seed : int or list of int, optional
+            s seeds environment i with s + i; a list has a seed, or None, for each. Without a seed, the generators continue.
+        options : dict, optional
+            "reset_mask": (num_envs,) of bool, which environments to reset; all by default. The task's own, such as "goal":
+            a value for all environments, or an array with one more axis, a row for each.
+
+        Returns
+        -------
+        observations : (num_envs, size) float32
+            Of all environments, also those that were not reset.
+        infos : dict of arrays
+
+        Raises
+        ------
+        Error
+            wrong-length, wrong-shape, wrong-type, unknown-name, out-of-range.
+        """
+        self._check_open("reset")
+        options = dict(options or {})
+        mask = self._mask(options.pop("reset_mask", None))
+        seeds = self._seeds(seed)
+        infos: list[dict[str, Any]] = [{} for _ in self.episodes]
+
+        def work(i: int) -> None:
+            if mask[i]:
+                infos[i] = self.episodes[i].reset(seeds[i], self._options_of(i, options))
+                self.task.sense(self.episodes[i], self._observations[i])
+
+        self._begun[mask], self._ended[mask] = False, False  # an error leaves them not begun
+        self._each(work)
+        self._begun |= mask
+        self._picture.after_reset(self.episodes[0])
+        return self._observations.copy(), self._gather(infos)
+
+    def step(self, actions: Any) -> Arrays:
+        """Takes an action in every environment.
+
+        Parameters
+        ----------
+        actions : (num_envs, actions) in [-1, 1]
+            What lies outside is clipped.
+
+        Returns
+        -------
+        observations : (num_envs, size) float32
+        rewards : (num_envs,) float64
+        terminations : (num_envs,) bool
+            Where the task, or the simulation, is over; infos["failure"] then says what stopped a simulation.
+        truncations : (num_envs,) bool
+            Where the time limit is reached.
+        infos : dict of arrays
+            infos["x"][i] is of environment i where infos["_x"][i].
+
+        Raises
+        ------
+        Error
+            wrong-shape, wrong-type, not-finite; not-reset before a reset, and in the mode DISABLED where an episode has
+            ended.
+        """
+        self._check_open("step")
+        actions = checked_actions(actions, self.action_space.shape, "step(actions)")
+        self._check_begun()
+        count = self.num_envs
+        rewards, terminations, truncations = np.zeros(count), np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
+        infos: list[dict[str, Any]] = [{} for _ in range(count)]
+        same_step, sense = self.autoreset_mode is AutoresetMode.SAME_STEP, self.task.sense
+
+        def work(i: int) -> None:
+            episode, seen = self.episodes[i], self._observations[i]
+            if self._ended[i]:  # of the mode NEXT_STEP; the others have none here
+                infos[i] = episode.reset(None, {})
+                sense(episode, seen)
+                return
+            rewards[i], terminations[i], truncations[i], infos[i] = episode.step(actions[i])
+            if "failure" not in infos[i]:
+                sense(episode, seen)
+            if same_step and (terminations[i] or truncations[i]):
+                last = {"final_obs": seen.copy(), "final_info": infos[i]}
+                infos[i] = {**last, **episode.reset(None, {})}
+                sense(episode, seen)
+
+        self._each(work)
+        if not same_step:
+            self._ended = terminations | truncations
+        self._picture.after_step(self.episodes[0])
+        return self._observations.copy(), rewards, terminations, truncations, self._gather(infos)
+
+    def render(self) -> Any:
+        """Pictures of all environments, (height, width, 3) of uint8 each, if the render mode is "rgb_array"; else None."""
+        self._check_open("render")
+        self._check_begun(ended=True)
+        return tuple(self._picture.frame(episode) for episode in self.episodes) if self.render_mode == "rgb_array" else None
+
+    def close(self, **kwargs: Any) -> None:
+        """Ends the threads and lets go of the simulations; may be called again."""
+        if getattr(self, "_open", False):
+            self._open = False
+            if self._executor is not None:
+                self._executor.shutdown()
+            self._picture.close()
+            self.episodes = []
+        self.closed = True
+
+    @property
+    def memory(self) -> int:
+        """Bytes of an environment's simulation, without the shared model."""
+        return self.episodes[0].model.first.sim.memory
+
+    def __repr__(self) -> str:
+        return f"VectorEnv({self.task.name!r}, num_envs={self.num_envs}, threads={self.threads}, {self.autoreset_mode.name})"
+
+    def _each(self, work: Callable[[int], None]) -> None:
+        """Calls work(i) for every environment, each block in a thread; the first in this one."""
+
+        def block(indices: range) -> None:
+            for i in indices:
+                work(i)
+
+        others = [self._executor.submit(block, indices) for indices in self._blocks[1:]] if self._executor else []
+        try:
+            block(self._blocks[0])
+        finally:  # no thread may still be at work when an error leaves this function
+            raised = [future.exception() for future in others]
+        for error in raised:
+            if error is not None:
+                raise error
+
+    def _gather(self, infos: list[dict[str, Any]]) -> dict[str, Any]:
+        """Infos of the environments as a dict of arrays, with a mask "_x" for every "x"."""
+        gathered: dict[str, Any] = {}
+        for i, info in enumerate(infos):
+            self._add(gathered, info, i)
+        return gathered
+
+    def _add(self, gathered: dict[str, Any], info: Mapping[str, Any], i: int) -> None:
+        for key, value in info.items():
+            if f"_{key}" not in gathered:
+                gathered[key], gathered[f"_{key}"] = self._empty(key, value), np.zeros(self.num_envs, dtype=bool)
+            if isinstance(value, dict):
+                self._add(gathered[key], value, i)
+            else:
+                gathered[key][i] = value
+            gathered[f"_{key}"][i] = True
+
+    def _empty(self, key: str, value: Any) -> Any:
+        """What takes up the values of all environments, as in Gymnasium: numbers in arrays, arrays stacked, the rest as objects."""
+        if isinstance(value, dict):
+            return {}
+        if isinstance(value, np.ndarray) and key != "final_obs":
+            return np.zeros((self.num_envs, *value.shape), dtype=value.dtype)
+        if isinstance(value, (bool, int, float, np.number)):
+            return np.zeros(self.num_envs, dtype=type(value))
+        return np.full(self.num_envs, None, dtype=object)
+
+    def _seeds(self, seed: Any) -> list[Optional[int]]:
+        if seed is None:
+            return [None] * self.num_envs
+        if isinstance(seed, (int, np.integer)):
+            seeds: list[Any] = [int(seed) + i for i in range(self.num_envs)]
+        else:
+            seeds = list(seed)
+        if len(seeds) != self.num_envs:
+            raise Error("wrong-length", "reset(seed)", f"{len(seeds)} seeds for {self.num_envs} environments",
+                        "give one for each, or one integer")
+        for one in seeds:
+            if one is not None and (not isinstance(one, (int, np.integer)) or one < 0):
+                raise Error("out-of-range", "reset(seed)", f"{one!r} is no seed", "give integers, 0 or more, or None")
+        return [None if one is None else int(one) for one in seeds]
+
+    def _mask(self, mask: Any) -> np.ndarray:
+        if mask is None:
+            return np.ones(self.num_envs, dtype=bool)
+        given = np.asarray(mask)
+        if given.dtype != bool or given.shape != (self.num_envs,):
+            raise Error("wrong-shape", "reset(options)", f"the reset_mask has shape {given.shape} and type {given.dtype}",
+                        f"give an array of {self.num_envs} bools")
+        if not given.any():
+            raise Error("out-of-range", "reset(options)", "the reset_mask chooses no environment", "give at least one True")
+        return given
+
+    def _options_of(self, i: int, options: Mapping[str, Any]) -> dict[str, Any]:
+        """Options of one environment: rows of arrays of two axes, other values as they are."""
+        rows = {}
+        for name, value in options.items():
+            if np.ndim(value) == 2:
+                if len(value) != self.num_envs:
+                    raise Error("wrong-length", "reset(options)", f"{name} has {len(value)} rows for {self.num_envs} environments",
+                                "give a row for each")
+                value = value[i]
+            rows[name] = value
+        return rows
+
+    def _check_open(self, what: str) -> None:
+        if not self._open:
+            raise Error("closed", what, "the environment is closed", "make a new one")
+
+    def _check_begun(self, ended: bool = False) -> None:
+        """Raises not-reset where an environment has not begun, or, in the mode DISABLED, has ended."""
+        waiting = ~self._begun
+        if self.autoreset_mode is AutoresetMode.DISABLED and not ended:
+            waiting = waiting | self._ended
+        if waiting.any():
+            which = np.flatnonzero(waiting)
+            shown = ", ".join(str(i) for i in which[:8]) + (", ..." if len(which) > 8 else "")
+            raise Error("not-reset", "step", f"these environments have not begun an episode: {shown}",
+                        'call reset(), or reset(options={"reset_mask": mask}) for these')
