@@ -1,5 +1,8 @@
 #include "sinew/linalg/factorisation.hpp"
 
+#include <array>
+#include <thread>
+
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
@@ -357,6 +360,39 @@ TEST(Factorisation, PlanTellsWhatItCosts) {
     ThreadPool pool(1);
     EXPECT_GE(plan->create(pool)->bytes(), plan->factor_entries() * sizeof(double));
   }
+}
+
+TEST(Factorisation, PlanInUseIsShared) {
+  const BlockSystem system = testing::elastic_block(2, 2, 6, 4);
+  std::weak_ptr<const FactorisationPlan> watched;
+  {
+    std::array<std::shared_ptr<const FactorisationPlan>, 4> plans;
+    std::vector<std::thread> threads;
+    for (auto& plan : plans) {
+      threads.emplace_back([&] { plan = analyse(system.pattern, system.border); });
+    }
+    for (auto& thread : threads) thread.join();
+    for (const auto& plan : plans) EXPECT_EQ(plan, plans[0]);
+
+    BorderPattern fewer;
+    fewer.row_start.push_back(0);  // a row that touches nothing
+    EXPECT_NE(analyse(system.pattern, fewer), plans[0]);
+    EXPECT_NE(analyse(system.pattern, system.border, settings_of("eigen-ldlt")), plans[0]);
+    FactorisationSettings two_threads;
+    two_threads.threads = 2;
+    EXPECT_NE(analyse(system.pattern, system.border, two_threads), plans[0]);
+
+    ThreadPool pool(1);
+    const auto one = plans[0]->create(pool), other = plans[1]->create(pool);
+    BlockSystem stiffer = system;
+    for (double& entry : stiffer.matrix) entry *= 3.0;
+    factorise(*one, system);
+    factorise(*other, stiffer);
+    expect_agrees_with_dense(*one, system, 1e-10);
+    expect_agrees_with_dense(*other, stiffer, 1e-10);
+    watched = plans[0];
+  }
+  EXPECT_TRUE(watched.expired()) << "a plan that nobody uses is kept";
 }
 
 TEST(Factorisation, RejectsWhatDoesNotFit) {

@@ -310,6 +310,38 @@ TEST(ConeSolver, SolvesStiffBodies) {
   }
 }
 
+// Two flat surfaces all over each other: what a point does is felt by all, and Gauss-Seidel crawls
+// (a residual of 5e-3 after 2000 sweeps). 529 points are 1587 unknowns with friction.
+TEST(ConeSolver, SolvesSurfacesThatTouchAllOver) {
+  constexpr int kSide = 23;
+  const int points = kSide * kSide;
+  const auto at = [](int k) -> Eigen::Vector2d {
+    return Eigen::Vector2d(k % kSide, k / kSide) / (kSide - 1.0);
+  };
+  Contacts contacts;
+  contacts.matrix.setZero(3 * points, 3 * points);
+  for (int i = 0; i < points; ++i) {
+    for (int j = 0; j < points; ++j) {
+      contacts.matrix.block<3, 3>(3 * i, 3 * j) =
+          std::exp(-(at(i) - at(j)).norm()) * Vector3(1.0, 0.7, 0.7).asDiagonal();
+    }
+  }
+  for (const double friction : {0.3, 0.0}) {
+    const Vector3 each(1.0, friction > 0.0 ? 0.2 : 0.0, friction > 0.0 ? 0.1 : 0.0);
+    const VectorX expected = each.replicate(points, 1);
+    contacts.offset = -contacts.matrix * expected;
+    contacts.cones.clear();
+    for (int i = 0; i < points; ++i) contacts.cones.push_back({3 * i, friction});
+    ConeSolver solver({.tolerance = 1e-10});
+    VectorX x = VectorX::Zero(3 * points);
+    const auto& result =
+        solver.solve(contacts.problem(), {x.data(), static_cast<std::size_t>(x.size())});
+    EXPECT_EQ(result.status, ConeStatus::solved) << friction << ": " << result.residual;
+    EXPECT_LT((x - expected).cwiseAbs().maxCoeff(), 1e-5) << friction;  // condition 2e4
+    expect_laws(contacts, x, 1e-8);
+  }
+}
+
 TEST(ConeSolver, TakesOffWhereNothingPresses) {
   RigidBlock block(4, 0.0, 0.5);
   block.contacts.offset *= -1.0;

@@ -20,7 +20,7 @@ BodyElements::BodyElements(FemState& state, ThreadPool& pool, bool with_curvatur
 SystemNumbers& BodyElements::numbers(bool with_curvature) {
   const FemBodyModel& model = state_.model;
   const FemSystem& system = model.system(with_curvature);
-  auto& own = &system == &model.system(false) ? plain_ : curved_;
+  auto& own = model.is_plain(system) ? plain_ : curved_;
   if (!own) {
     own = std::make_unique<SystemNumbers>(system, pool_);
     if (!state_.element_history.empty()) own->assembly.set_history(&state_.element_history);

@@ -24,7 +24,7 @@ FemBodyModel::FemBodyModel(FemBodySettings settings) : settings_(std::move(setti
   check_mesh(*settings_.mesh);
   embedder_ = std::make_unique<mesh::Embedder>(*settings_.mesh);
   for (const PointMassSettings& mass : settings_.masses) attach_mass(mass);
-  plain_.elements = std::make_shared<const FemModel>(settings_.mesh, settings_.elements);
+  elements_ = std::make_shared<const FemModel>(settings_.mesh, settings_.elements);
 }
 
 FemBodyModel::~FemBodyModel() = default;
@@ -125,7 +125,6 @@ void FemBodyModel::finish(int body, const mechanics::RowPattern& rows,
     return rows.transient[static_cast<std::size_t>(row)] == 0;
   });
   fixed_rows_ = static_cast<std::size_t>(transient - rows_.begin());
-  plain_ = make_system(settings_.elements);
   for (const auto& curvature : curvatures) {
     const bool mine = curvature.first.body == body && curvature.second.body == body;
     if (mine && !couples(curvature.first.number, curvature.second.number)) {
@@ -135,8 +134,8 @@ void FemBodyModel::finish(int body, const mechanics::RowPattern& rows,
 }
 
 bool FemBodyModel::couples(int first, int second) const {
-  const auto free = plain_.elements->free_index();
-  const auto& pattern = plain_.elements->pattern();
+  const auto free = elements_->free_index();
+  const auto& pattern = elements_->pattern();
   for (const NodeId a : attachment(first).nodes) {
     const auto i = free[static_cast<std::size_t>(a)];
     for (const NodeId b : attachment(second).nodes) {
@@ -148,7 +147,10 @@ bool FemBodyModel::couples(int first, int second) const {
 }
 
 const FemSystem& FemBodyModel::system(bool with_curvature) const {
-  if (!with_curvature || coupled_points_.empty()) return plain_;
+  if (!with_curvature || coupled_points_.empty()) {
+    std::call_once(plain_once_, [this] { plain_ = make_system(settings_.elements); });
+    return plain_;
+  }
   std::call_once(curved_once_, [this] {
     FemModelSettings elements = settings_.elements;
     for (const auto& pair : coupled_points_) {
@@ -167,7 +169,7 @@ const FemSystem& FemBodyModel::system(bool with_curvature) const {
 FemSystem FemBodyModel::make_system(const FemModelSettings& elements) const {
   FemSystem system;
   system.elements = elements.couplings.empty()
-                        ? plain_.elements
+                        ? elements_
                         : std::make_shared<const FemModel>(settings_.mesh, elements);
   const auto free = system.elements->free_index();
   for (const auto row : std::span(rows_).first(fixed_rows_)) {

@@ -30,7 +30,7 @@ struct FemSystem {
   std::shared_ptr<const FemModel> elements;
   linalg::BorderPattern border;  ///< of the rows that are always there
   std::vector<Scatter> scatter;
-  std::shared_ptr<const linalg::FactorisationPlan> plan;
+  std::shared_ptr<const linalg::FactorisationPlan> plan;  ///< made at first use
 };
 
 class FemBodyModel final : public mechanics::BodyModel,
@@ -70,8 +70,8 @@ class FemBodyModel final : public mechanics::BodyModel,
                                           int histories) const override;
 
   const mesh::Mesh& mesh() const override { return *settings_.mesh; }
-  const FemModel& elements() const override { return *plain_.elements; }
-  std::shared_ptr<const FemModel> shared_elements() const override { return plain_.elements; }
+  const FemModel& elements() const override { return *elements_; }
+  std::shared_ptr<const FemModel> shared_elements() const override { return elements_; }
   const FemBodySettings& settings() const override { return settings_; }
   /// (n, 3) m/s: of all nodes at the start; zero at fixed nodes and along held axes.
   Points start_velocities() const;
@@ -93,9 +93,10 @@ class FemBodyModel final : public mechanics::BodyModel,
   /// What attach_surface() returned; -1: nothing touches the body's surface.
   int surface_site() const { return surface_site_; }
   bool leaves_rows_out() const override { return true; }
-  /// The plain system, or the one whose pattern holds the rows' curvature (made at first use; safe
-  /// from several threads).
+  /// The plain system, or the one whose pattern holds the rows' curvature. Made at first use, since
+  /// most robots need one of them; safe from several threads.
   const FemSystem& system(bool with_curvature) const;
+  bool is_plain(const FemSystem& system) const { return &system == &plain_; }
 
  private:
   FemSystem make_system(const FemModelSettings& elements) const;
@@ -116,9 +117,9 @@ class FemBodyModel final : public mechanics::BodyModel,
   mechanics::RowPattern world_rows_;
   std::vector<std::array<std::int32_t, 2>> coupled_points_;
   linalg::FactorisationSettings factorisation_;
-  FemSystem plain_;
-  mutable std::once_flag curved_once_;
-  mutable FemSystem curved_;
+  std::shared_ptr<const FemModel> elements_;
+  mutable std::once_flag plain_once_, curved_once_;
+  mutable FemSystem plain_, curved_;
 };
 
 }  // namespace sinew::fem

@@ -32,6 +32,8 @@ struct BlockPattern {
   /// `starts`.
   static BlockPattern from_cliques(int nodes, std::span<const std::int32_t> starts,
                                    std::span<const std::int32_t> members);
+
+  bool operator==(const BlockPattern&) const = default;
 };
 
 /// Rows of H with fixed patterns: entry e in row_start[k] .. row_start[k+1]-1 is row k's 3-vector
@@ -43,6 +45,8 @@ struct BorderPattern {
 
   int rows() const { return static_cast<int>(row_start.size()) - 1; }
   int entries() const { return static_cast<int>(node.size()); }
+
+  bool operator==(const BorderPattern&) const = default;
 };
 
 }  // namespace sinew::linalg

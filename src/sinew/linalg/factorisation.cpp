@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <mutex>
 
 #include "sinew/core/error.hpp"
 #include "sinew/linalg/backends.hpp"
@@ -67,6 +68,56 @@ void check_border_pattern(const BorderPattern& border, int nodes) {
   }
 }
 
+/// The plans in use, each with what it was made of. A plan is a function of that alone, so that no
+/// number depends on who shares one.
+class PlansInUse {
+ public:
+  PlanPointer find(const BlockPattern& pattern, const BorderPattern& border,
+                   const FactorisationSettings& settings) {
+    const std::scoped_lock lock(mutex_);
+    return find_locked(pattern, border, settings);
+  }
+
+  /// The plan, or that of another thread that was earlier.
+  PlanPointer add(const BlockPattern& pattern, const BorderPattern& border,
+                  const FactorisationSettings& settings, PlanPointer plan) {
+    auto made = std::make_shared<const Made>(Made{pattern, border, settings, std::move(plan)});
+    const std::scoped_lock lock(mutex_);
+    if (auto earlier = find_locked(pattern, border, settings)) return earlier;
+    std::erase_if(made_, [](const auto& one) { return one.expired(); });
+    made_.push_back(made);
+    return {made, made->plan.get()};
+  }
+
+ private:
+  struct Made {
+    BlockPattern pattern;
+    BorderPattern border;
+    FactorisationSettings settings;
+    PlanPointer plan;
+  };
+
+  PlanPointer find_locked(const BlockPattern& pattern, const BorderPattern& border,
+                          const FactorisationSettings& settings) const {
+    for (const auto& one : made_) {
+      const auto made = one.lock();
+      if (made && made->settings == settings && made->border == border &&
+          made->pattern == pattern) {
+        return {made, made->plan.get()};
+      }
+    }
+    return nullptr;
+  }
+
+  std::mutex mutex_;
+  std::vector<std::weak_ptr<const Made>> made_;
+};
+
+PlansInUse& plans_in_use() {
+  static PlansInUse plans;
+  return plans;
+}
+
 }  // namespace
 
 std::shared_ptr<const FactorisationPlan> analyse(const BlockPattern& pattern,
@@ -79,9 +130,10 @@ std::shared_ptr<const FactorisationPlan> analyse(const BlockPattern& pattern,
          "the number of threads is " + std::to_string(settings.threads), "give at least 1");
   }
   for (const Backend& backend : kBackends) {
-    if (backend.name == settings.backend) {
-      return backend.make(pattern, border, settings);
-    }
+    if (backend.name != settings.backend) continue;
+    PlansInUse& plans = plans_in_use();
+    if (auto plan = plans.find(pattern, border, settings)) return plan;
+    return plans.add(pattern, border, settings, backend.make(pattern, border, settings));
   }
   const std::string near = nearest_word(settings.backend, backends());
   fail(ErrorKind::unknown_choice, "backend", "unknown backend '" + settings.backend + "'",

@@ -30,6 +30,8 @@ struct FactorisationSettings {
   std::string backend = "block";  ///< "block" (ours), "eigen-ldlt", "eigen-llt": see backends()
   Ordering ordering = Ordering::fastest;
   int threads = 1;  ///< size of the pool that numeric phases will be given
+
+  bool operator==(const FactorisationSettings&) const = default;
 };
 
 /// Numeric phase, one per simulation. After construction nothing allocates.
@@ -86,7 +88,9 @@ class FactorisationPlan {
   virtual std::unique_ptr<Factorisation> create(ThreadPool& pool) const = 0;
 };
 
-/// Makes a plan. Throws Error(unknown-choice) for an unknown backend.
+/// Makes a plan, or finds it: whoever asks for the same patterns and settings while a plan of them
+/// is in use gets that plan, so that robots which differ in their materials share one. Safe from
+/// several threads. Throws Error(unknown-choice) for an unknown backend.
 /// @param pattern,border,settings see there.
 std::shared_ptr<const FactorisationPlan> analyse(const BlockPattern& pattern,
                                                  const BorderPattern& border,

@@ -79,7 +79,9 @@ ConeStatus ConeIsland::solve(const ConePart& part, std::span<double> start) {
 bool ConeIsland::newton_pays(const ConePart& part) const {
   if (part.blocks != nullptr) return true;
   double count = static_cast<double>(part.problem.boxes.size());
-  for (const ConeBlock& cone : part.problem.cones) count += x_[cone.row] > 0.0 ? 3.0 : 0.0;
+  for (const ConeBlock& cone : part.problem.cones) {
+    if (x_[cone.row] > 0.0) count += unknowns_of(part, cone);
+  }
   const double rows = static_cast<double>(x_.size());
   return count <= settings_.newton_limit &&
          result_.sweeps * 3.0 * rows >= kNewtonShare * count * count;

@@ -78,13 +78,18 @@ class ConeIsland {
   bool newton_steps(const ConePart& part, int max_steps, double tolerance, auto&& proximal);
   bool follow_regularised(const ConePart& part);
   void add_shifted(const ConePart& part);
-  int choose_unknowns(const ConeProblem& problem);
+  int choose_unknowns(const ConePart& part);
   bool solve_dense(const ConePart& part, int count, double proximal);
   bool solve_sparse(const ConePart& part, int count, double proximal);
-  void form_right(const ConeProblem& problem);
+  void form_right(const ConePart& part);
   void move_unknowns(int count);
 
   bool usable(std::size_t cone) const { return scale_[cone] > 0.0; }
+  // Of a cone among Newton's unknowns. Without friction its tangential efforts are zero; the
+  // pattern of a sparse matrix keeps them.
+  static int unknowns_of(const ConePart& part, const ConeBlock& cone) {
+    return part.blocks == nullptr && cone.friction == 0.0 ? 1 : 3;
+  }
 
   /// The equations of a cone that is not open, linearised: A du + B dr = right.
   struct Branch {

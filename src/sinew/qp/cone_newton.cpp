@@ -151,10 +151,10 @@ bool ConeIsland::newton_steps(const ConePart& part, int max_steps, double tolera
 }
 
 bool ConeIsland::newton_step(const ConePart& part, double proximal) {
-  const int count = choose_unknowns(part.problem);
+  const int count = choose_unknowns(part);
   if (part.blocks == nullptr && count > settings_.newton_limit) return false;
   measure_motion(part);
-  form_right(part.problem);
+  form_right(part);
   right_.head(count).array() *= row_scale_.head(count).array();
   if (count > 0) {
     const bool solved = part.blocks != nullptr ? solve_sparse(part, count, proximal)
@@ -168,7 +168,8 @@ bool ConeIsland::newton_step(const ConePart& part, double proximal) {
 }
 
 // Puts blocks with a given x there; the others' rows are the unknowns.
-int ConeIsland::choose_unknowns(const ConeProblem& problem) {
+int ConeIsland::choose_unknowns(const ConePart& part) {
+  const ConeProblem& problem = part.problem;
   int count = 0;
   for (std::size_t k = 0; k < problem.boxes.size(); ++k) {
     const BoxBlock& box = problem.boxes[k];
@@ -189,8 +190,10 @@ int ConeIsland::choose_unknowns(const ConeProblem& problem) {
     if (!usable(k) || x_[row] - motion_[row] / scale_[k] <= 0.0) continue;
     cone_at_[k] = count;
     branches_[k] = branch(problem, k);
-    row_scale_.segment<3>(count).setConstant(1.0 / std::sqrt(scale_[k]));
-    for (int c = 0; c < 3; ++c) unknown_row_[static_cast<std::size_t>(count++)] = row + c;
+    const int own = unknowns_of(part, problem.cones[k]);
+    if (own == 1) x_.segment<2>(row + 1).setZero();
+    row_scale_.segment(count, own).setConstant(1.0 / std::sqrt(scale_[k]));
+    for (int c = 0; c < own; ++c) unknown_row_[static_cast<std::size_t>(count++)] = row + c;
   }
   for (std::size_t k = 0; k < problem.cones.size(); ++k) {
     if (cone_at_[k] < 0) x_.segment<3>(problem.cones[k].row).setZero();
@@ -236,7 +239,8 @@ Matrix3 ConeIsland::Branch::own() const {
   return result;
 }
 
-void ConeIsland::form_right(const ConeProblem& problem) {
+void ConeIsland::form_right(const ConePart& part) {
+  const ConeProblem& problem = part.problem;
   for (std::size_t k = 0; k < problem.boxes.size(); ++k) {
     const BoxBlock& box = problem.boxes[k];
     if (box_at_[k] >= 0) right_[box_at_[k]] = box.target - motion_[box.row];
@@ -244,6 +248,10 @@ void ConeIsland::form_right(const ConeProblem& problem) {
   for (std::size_t k = 0; k < problem.cones.size(); ++k) {
     if (cone_at_[k] < 0) continue;
     const Branch& own = branches_[k];
+    if (unknowns_of(part, problem.cones[k]) == 1) {
+      right_[cone_at_[k]] = -motion_[problem.cones[k].row];
+      continue;
+    }
     const Vector3 du = motion_.segment<3>(problem.cones[k].row) - own.motion;
     right_.segment<3>(cone_at_[k]) = own.right - (own.slips ? own.act(du) : du);
   }
@@ -261,7 +269,7 @@ bool ConeIsland::solve_dense(const ConePart& part, int count, double proximal) {
   }
   for (std::size_t k = 0; k < part.problem.cones.size(); ++k) {
     const int at = cone_at_[k];
-    if (at < 0 || !branches_[k].slips) continue;
+    if (at < 0 || !branches_[k].slips || unknowns_of(part, part.problem.cones[k]) == 1) continue;
     for (int j = 0; j < count; ++j) {
       system.block<3, 1>(at, j) = branches_[k].act(system.block<3, 1>(at, j));
     }

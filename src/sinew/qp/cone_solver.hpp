@@ -61,7 +61,10 @@ struct ConeSettings {
   double tolerance = 1e-10;  ///< of `residual`
   int max_sweeps = 2000;     ///< of Gauss-Seidel
   int first_sweeps = 4;      ///< before Newton's method is tried; doubled at every further try
-  int newton_limit = 1500;   ///< unknowns of a dense matrix; more are left to Gauss-Seidel
+  /// Unknowns of a dense matrix (three of a contact with friction, one without); more are left to
+  /// Gauss-Seidel, which surfaces that touch all over on fine meshes can make crawl. 6000 take
+  /// 290 MB and some seconds a step.
+  int newton_limit = 6000;
   ConeMeasure measure = ConeMeasure::per_block;
   const Poll* poll = nullptr;  ///< called in every sweep and step of Newton's; outlives the solver
 };

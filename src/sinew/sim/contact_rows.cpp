@@ -52,9 +52,11 @@ ContactRows::ContactRows(const Model& model, const constraint::Configuration& co
       planes_(model, configuration, rows, pool),
       touched_(static_cast<std::size_t>(model.rows().rows()), 0),
       closed_(touched_) {
+  auto touching = planes_.surfaces().begin();
   for (std::size_t i = 0; i < model.contacts().size(); ++i) {
     const ContactModel& contact = model.contacts()[i];
     strikes_.push_back(contact.strikes ? 1 : 0);
+    surfaces_.push_back(planes_.shape(i) == nullptr ? (touching++)->get() : nullptr);
     auto& zones = zones_.emplace_back();
     if (contact.aggregate == 0.0) continue;
     zones =
@@ -141,8 +143,9 @@ void ContactRows::choose_active(std::span<const double> effort, double time_step
         set_active(row, false);
         continue;
       }
+      const bool waits = surfaces(i) != nullptr && surfaces(i)->waits(k);
       const bool active = always || effort[static_cast<std::size_t>(row)] > 0.0 ||
-                          arrival(contact, k, time_step) <= near;
+                          (!waits && arrival(contact, k, time_step) <= near);
       set_active(row, active);
       left_out_ |= !active;
     }
@@ -279,7 +282,7 @@ bool ContactRows::correct_surfaces(TouchingSurfaces& touching) {
   for (std::size_t k = 0; k < touching.count(); ++k) {
     const int row = touching.contact().row(k);
     if (rows_.active[static_cast<std::size_t>(row)] != 0) continue;
-    if (!(touching.proposed_gap(k) < 0.0)) continue;
+    if (!(touching.proposed_gap(k) < -touching.slack(k))) continue;
     set_active(row, true);
     found = true;
   }
@@ -373,7 +376,8 @@ double ContactRows::max_penetration_left_out() const {
     for (std::size_t k = 0; k < contact.size(); ++k) {
       const int row = contact.row(k);
       if (rows_.active[static_cast<std::size_t>(row)] != 0) continue;
-      deepest = std::max(deepest, -rows_.delta[row]);
+      const double slack = surfaces(i) != nullptr ? surfaces(i)->slack(k) : 0.0;
+      deepest = std::max(deepest, -rows_.delta[row] - slack);
     }
   }
   return deepest;

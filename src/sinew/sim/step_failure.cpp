@@ -47,17 +47,17 @@ void fail_law(Run& run) {
          "no efforts obey the laws of this step's actuators, joints and contacts together",
          "take a smaller time step, or loosen limits of actuators and joints");
   }
-  fail(
-      run, ErrorKind::not_converged,
-      fmt::format("no contact forces obey this step: residual {:.3g} after {} sweeps, with {} "
-                  "points near their surfaces",
-                  result.residual, result.sweeps, points),
-      points > kManyPoints
-          ? fmt::format("let fewer points touch (`nodes` or `points` of the contact): up to {} are "
-                        "solved best; or take a smaller time step",
-                        kManyPoints)
-          : "take a smaller time step, or look for a body that is squeezed where it cannot give "
-            "way");
+  fail(run, ErrorKind::not_converged,
+       fmt::format("no contact forces obey this step: residual {:.3g} after {} sweeps, with {} "
+                   "points near their surfaces",
+                   result.residual, result.sweeps, points),
+       points > kManyPoints
+           ? fmt::format("let points share their rows (`aggregate` of the contact), or let fewer "
+                         "touch (`nodes` or `points`): up to {} are solved best; or take a smaller "
+                         "time step",
+                         kManyPoints)
+           : "take a smaller time step, or look for a body that is squeezed where it cannot give "
+             "way");
 }
 
 }  // namespace sinew::sim

@@ -21,6 +21,23 @@ constexpr double kSlack = 0.5, kEdgeSlack = 1e-9;
 // flat meshes lie on each other their edges cross, and overlap at second order in the motion.
 constexpr double kOverlap = 10.0;
 constexpr std::size_t kKeyMemory = 3;
+// Cosine of the angle by which a surface that is nearly flat turns at an edge: 30 degrees.
+constexpr double kNearlyFlat = 0.866;
+
+Vector3 normal_of(const Points& nodes, const collision::Triangle& triangle) {
+  const Vector3 corner = nodes.row(triangle[0]).transpose();
+  const Vector3 one = nodes.row(triangle[1]).transpose() - corner;
+  const Vector3 other = nodes.row(triangle[2]).transpose() - corner;
+  return one.cross(other).normalized();
+}
+
+bool nearly_flat(const collision::SurfaceTopology& surface, const Points& nodes, int edge) {
+  const auto faces = surface.triangles_of_edge(edge);
+  if (faces.size() != 2) return false;
+  const auto& triangles = surface.triangles();
+  return normal_of(nodes, triangles[static_cast<std::size_t>(faces[0])])
+             .dot(normal_of(nodes, triangles[static_cast<std::size_t>(faces[1])])) > kNearlyFlat;
+}
 
 }  // namespace
 
@@ -51,8 +68,7 @@ void TouchingSurfaces::move_trees(const Points& first, const Points& second) {
 }
 
 // In an order that does not depend on how the trees came about. Places that both are held touch
-// without a force. Of more pairs than there is room
-// for, the nearest.
+// without a force. Of more pairs than there is room for, those that do not wait, and the nearest.
 void TouchingSurfaces::find(double reach) {
   const collision::ProximitySettings settings{
       .distance = reach, .depth = contact_.depth(), .slack = kSlack, .edge_slack = kEdgeSlack};
@@ -61,7 +77,7 @@ void TouchingSurfaces::find(double reach) {
   found_.clear();
   for (const collision::ProximityPair& pair : pairs) {
     const bool held = contact_.first().holds(pair.first) && contact_.second().holds(pair.second);
-    if (!held) found_.push_back({name(pair), pair});
+    if (!held) found_.push_back({name(pair), pair, crosses_flat_parts(pair)});
   }
   const auto order = [](const Named& a, const Named& b) {
     if (a.key != b.key) return a.key < b.key;
@@ -70,6 +86,7 @@ void TouchingSurfaces::find(double reach) {
   };
   if (found_.size() > contact_.size()) {
     const auto nearer = [&](const Named& a, const Named& b) {
+      if (a.waits != b.waits) return b.waits;
       if (a.pair.distance != b.pair.distance) return a.pair.distance < b.pair.distance;
       return order(a, b);
     };
@@ -88,12 +105,28 @@ void TouchingSurfaces::begin_step(double reach, std::span<double> effort) {
   keep_forces(effort);
   reach_ = reach;
   keys_.clear();
+  waits_.clear();
   for (const Named& one : found_) {
     contact_.put(keys_.size(), one.pair, first_start_, second_start_, rows_);
     keys_.push_back(one.key);
+    waits_.push_back(one.waits ? 1 : 0);
   }
   clear_rest();
   pass_forces_on(effort);
+}
+
+// Where the trees are.
+bool TouchingSurfaces::crosses_flat_parts(const collision::ProximityPair& pair) const {
+  using enum collision::FeatureKind;
+  if (pair.first.kind != edge || pair.second.kind != edge) return false;
+  const Points& first = first_.positions();
+  const Points& second = contact_.is_within() ? first : second_.positions();
+  return nearly_flat(*contact_.first().surface, first, pair.first.number) &&
+         nearly_flat(*contact_.second().surface, second, pair.second.number);
+}
+
+double TouchingSurfaces::slack(std::size_t point) const {
+  return waits(point) ? contact_.separation() : 0.0;
 }
 
 void TouchingSurfaces::clear_rest() {
@@ -151,6 +184,7 @@ bool TouchingSurfaces::add_overlaps() {
     contact_.put(keys_.size(), one.pair, first_start_, second_start_, rows_);
     contact_.measure(configuration_, keys_.size(), rows_);
     keys_.push_back(one.key);
+    waits_.push_back(0);
   }
   return keys_.size() > points;
 }
@@ -213,6 +247,7 @@ bool TouchingSurfaces::has_passed(const collision::SurfaceImpact& impact) const 
 
 void TouchingSurfaces::restart() {
   keys_.clear();
+  waits_.clear();
   clear_rest();
 }
 
@@ -259,6 +294,7 @@ std::span<const double> TouchingSurfaces::load(std::span<const double> from) {
   const auto count = static_cast<std::size_t>(told);
   reach_ = from[1];
   keys_.resize(count);
+  waits_.assign(count, 0);  // until the next step, which says so
   clear_rest();
   const double* at = from.data() + kHead;
   for (std::size_t k = 0; k < count; ++k, at += kEach) {

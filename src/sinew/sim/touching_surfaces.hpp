@@ -52,6 +52,13 @@ class TouchingSurfaces {
   /// N.
   double drift(std::span<const double> effort);
   std::size_t count() const { return keys_.size(); }
+  /// Whether a point waits until a motion leads into it: edges that cross where both surfaces are
+  /// nearly flat. Vertices keep such parts apart, all but for overlaps at second order. Flat meshes
+  /// on each other have more crossings than vertices, and forces of all would not be unique.
+  bool waits(std::size_t point) const { return point < waits_.size() && waits_[point] != 0; }
+  /// m: how far the gap of a point may be below zero before it is one. Surfaces rest at the
+  /// separation, so that edges which wait do not overlap before they have used it up.
+  double slack(std::size_t point) const;
   /// No point, and no force to remember.
   void restart();
 
@@ -72,6 +79,7 @@ class TouchingSurfaces {
   struct Named {
     Key key;
     collision::ProximityPair pair;
+    bool waits = false;
   };
   struct Force {
     Key key;
@@ -85,6 +93,7 @@ class TouchingSurfaces {
   double height(const collision::SurfaceImpact& impact, const Points& first,
                 const Points& second) const;
   bool has_passed(const collision::SurfaceImpact& impact) const;
+  bool crosses_flat_parts(const collision::ProximityPair& pair) const;
   void clear_rest();
   void keep_forces(std::span<double> effort);
   void pass_forces_on(std::span<double> effort) const;
@@ -98,6 +107,7 @@ class TouchingSurfaces {
   collision::SurfaceTree first_, second_;  // the second one stands still within one surface
   std::vector<Named> found_;               // by name
   std::vector<Key> keys_;                  // of the points
+  std::vector<char> waits_;                // (points,)
   double reach_ = 0.0;                     // m, of the step
   std::vector<Force> before_;              // of the last step, by name
   Points first_start_, second_start_;      // m, when the step began
