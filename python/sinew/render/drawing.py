@@ -19,7 +19,7 @@ _SUN = _SUN / np.linalg.norm(_SUN)
 _HIDDEN = 0.30  # opacity of marks behind or inside bodies
 _EDGE = (0.10, 0.12, 0.15, 0.45)
 _INK, _TINT = (0.35, 0.40, 0.46), (0.80, 0.83, 0.86)
-_SHADE = 0.42  # darkest shadow
+_SHADE = 0.34  # darkest shadow
 
 
 class Triangles:

@@ -9,7 +9,7 @@ import numpy as np
 
 __all__ = ["Skin", "boundary_of"]
 
-_CREASE = math.radians(38.0)  # neighbouring faces whose normals differ by more at rest meet in an edge
+_CREASE = math.radians(50.0)  # neighbouring faces whose normals differ by more at rest meet in an edge
 
 # Faces from outside, counter-clockwise, in VTK's order of nodes; of quadratic tetrahedra corners, then middles.
 _TETRAHEDRON = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])

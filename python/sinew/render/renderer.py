@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any, Optional, Union
 
 import numpy as np
@@ -156,17 +156,43 @@ class Renderer:
         low, high = self._write(moment)
         solids, marks = Marks(), Marks()
         self._add_marks(moment, marks)
-        surfaces = {name: _moved(s, moment.poses.get(name)) for name, s in self.outline.surfaces.items()} if self._contacts else {}
-        for surface in surfaces.values():
-            if surface.kind != "plane":
-                _add_solid(solids, surface)
-        self.camera = camera_of(self.camera, self._extent(moment, solids), self.outline.up, self.size)
+        surfaces = self._surfaces(moment)
+        for surface in surfaces:
+            _add_solid(solids, surface)
+        if not isinstance(self.camera, Camera):
+            self.see(self.extent(moment))
         stage = Stage(self._background, self.outline.up, self._triangles, self._context.palette(self.colour_map, self._palette),
                       solids, marks, self._patches(surfaces), self._lit, self._edges)
         picture = draw(self._context, stage, self.camera, self.size)
         if self.field is not None and self._bar and moment.values:
             self._put_bar(picture, low, high)
         return picture
+
+    def see(self, points: ArrayLike) -> None:
+        """Fits the camera to points (n, 3) m, such as all places where a robot will be, unless it is a Camera already."""
+        self.camera = camera_of(self.camera, np.asarray(points, dtype=float), self.outline.up, self.size)
+
+    def extent(self, moment: Moment) -> np.ndarray:
+        """(n, 3) m: points of all that is drawn at a moment but planes, for see()."""
+        solids = Marks()
+        for surface in self._surfaces(moment):
+            _add_solid(solids, surface)
+        parts = [*moment.positions.values(), *moment.effectors.values(), *moment.goals.values(), *_points(self.goals), solids.vertices[:, :3]]
+        parts += list(moment.cables.values()) if self._cables else []
+        everything = np.concatenate([np.atleast_2d(part) for part in parts])
+        return everything[np.isfinite(everything).all(axis=1)]
+
+    def restart(self, camera: Union[Camera, str, None] = None) -> None:
+        """Forgets the camera, the scale of forces and the range of colours, as if nothing had been drawn."""
+        self.camera, self._largest_force = camera, 0.0
+        if not self._fixed_range:
+            self._range = None
+
+    def widen(self, moments: Iterable[Moment]) -> None:
+        """Widens the range of the colours to the values of moments, unless it was given."""
+        for values in (v for moment in moments for v in moment.values.values() if len(v) and not self._fixed_range):
+            low, high = float(values.min()), float(values.max())
+            self._range = (low, high) if self._range is None else (min(self._range[0], low), max(self._range[1], high))
 
     def close(self) -> None:
         """Frees the memory of the graphics card; may be called again."""
@@ -182,10 +208,7 @@ class Renderer:
 
     def _write(self, moment: Moment) -> tuple[float, float]:
         """Moves the surfaces; the range of the colours."""
-        for values in moment.values.values() if not self._fixed_range else ():
-            if len(values):
-                low, high = float(values.min()), float(values.max())
-                self._range = (low, high) if self._range is None else (min(self._range[0], low), max(self._range[1], high))
+        self.widen([moment])
         low, high = self._range or (0.0, 0.0)
         count = self._triangles.points.shape[0]
         points, normals, amounts = np.zeros((count, 3), "f4"), np.zeros((count, 3), "f4"), np.full(count, -1.0, "f4")
@@ -225,17 +248,12 @@ class Renderer:
         marks.rod(first, neck, (radius, radius), _FORCE)
         marks.rod(neck, first + arrows, (0.42 * heads, 0.0), _FORCE)
 
-    def _extent(self, moment: Moment, solids: Marks) -> np.ndarray:
-        """(n, 3): what a camera that is fitted should see."""
-        parts = [*moment.positions.values(), *moment.effectors.values(), *moment.goals.values(), *_points(self.goals)]
-        parts += list(moment.cables.values()) if self._cables else []
-        points = [np.atleast_2d(part) for part in parts]
-        points.append(solids.vertices[:, :3])
-        everything = np.concatenate(points)
-        return everything[np.isfinite(everything).all(axis=1)]
+    def _surfaces(self, moment: Moment) -> list[Surface]:
+        found = self.outline.surfaces.items() if self._contacts else ()
+        return [_moved(surface, moment.poses.get(name)) for name, surface in found]
 
-    def _patches(self, surfaces: Mapping[str, Surface]) -> list[Patch]:
-        planes = [surface for surface in surfaces.values() if surface.kind == "plane"]
+    def _patches(self, surfaces: list[Surface]) -> list[Patch]:
+        planes = [surface for surface in surfaces if surface.kind == "plane"]
         # Planes of several contacts are often one floor.
         found: list[Patch] = []
         for plane in planes:
@@ -273,7 +291,9 @@ def _moved(surface: Surface, pose: Optional[np.ndarray]) -> Surface:
 
 
 def _add_solid(solids: Marks, surface: Surface) -> None:
-    """A ball or a capsule."""
+    """A ball or a capsule; planes are patches."""
+    if surface.kind == "plane":
+        return
     solids.ball(surface.points, surface.radius, _SURFACE)
     if len(surface.points) > 1:
         solids.rod(surface.points[:1], surface.points[1:], (surface.radius, surface.radius), _SURFACE)
