@@ -13,6 +13,8 @@ from . import Recording, Renderer, png, video
 from .camera import VIEWS
 from .colours import MAPS
 from .context import context
+from .recording import need_h5py
+from .scene import parsed
 from .video import check_path
 
 _FAILED, _WRONG_INPUT = 1, 2
@@ -59,9 +61,7 @@ def _is_run(source: str) -> bool:
 
 def _scene_duration(sim: Any) -> float:
     """s: the scene's own."""
-    import yaml
-
-    told = yaml.load(sim.to_yaml(), Loader=yaml.BaseLoader).get("duration")
+    told = parsed(sim.to_yaml()).get("duration")
     if told is None:
         raise Error("bad-argument", "--duration", "the scene does not say how long to simulate", "add --duration 5s")
     return _seconds("duration", told)
@@ -105,6 +105,8 @@ def main(words: list[str]) -> int:
         if options.check:
             check_path(options.video or ".")
             context()
+            need_h5py()
+            parsed("")
             return 0
         if options.source is None or (options.video is None and options.picture is None):
             raise Error("bad-argument", "python3 -m sinew.render", "nothing is to be drawn", "name a run or a scene, and --video or --picture")

@@ -13,9 +13,19 @@ from ..scene import loads
 from .moment import Moment, between, moment_of
 from .scene import outline_of
 
-__all__ = ["Recording"]
+__all__ = ["Recording", "need_h5py"]
 
 _FORMAT = "sinew-run"
+
+
+def need_h5py() -> Any:
+    """The module h5py; raises tool-missing."""
+    try:
+        import h5py
+    except ImportError:
+        raise Error("tool-missing", "render", "recorded runs need h5py, which is not installed",
+                    "install python3-h5py, or pip install sinew[render]") from None
+    return h5py
 
 
 class Recording:
@@ -40,11 +50,7 @@ class Recording:
     """
 
     def __init__(self, path: Union[str, os.PathLike[str]]) -> None:
-        try:
-            import h5py
-        except ImportError:
-            raise Error("tool-missing", "render", "recorded runs need h5py, which is not installed",
-                        "install python3-h5py, or pip install sinew[render]") from None
+        h5py = need_h5py()
         self.path = pathlib.Path(path)
         if self.path.is_dir():
             self.path = self.path / "run.h5"

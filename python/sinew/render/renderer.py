@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from ..errors import Error
 from . import colours
+from .arguments import checked_range, checked_size, goal_points
 from .camera import Camera, axes_of_view, camera_of
 from .context import context
 from .drawing import Patch, Stage, Triangles, draw
@@ -102,8 +103,8 @@ class Renderer:
         contacts: bool = True,
         effectors: bool = True,
     ) -> None:
-        self.sim, self.camera, self.size = sim, camera, _size(size)
-        self.field, self._range = field, _range(field_range)
+        self.sim, self.camera, self.size = sim, camera, checked_size(size)
+        self.field, self._range = field, checked_range(field_range)
         self._fixed_range = field_range is not None
         if field is not None:
             colours.unit_of(field)  # or an error
@@ -177,7 +178,7 @@ class Renderer:
         solids = Marks()
         for surface in self._surfaces(moment):
             _add_solid(solids, surface)
-        parts = [*moment.positions.values(), *moment.effectors.values(), *moment.goals.values(), *_points(self.goals), solids.vertices[:, :3]]
+        parts = [*moment.positions.values(), *moment.effectors.values(), *moment.goals.values(), *goal_points(self.goals), solids.vertices[:, :3]]
         parts += list(moment.cables.values()) if self._cables else []
         everything = np.concatenate([np.atleast_2d(part) for part in parts])
         return everything[np.isfinite(everything).all(axis=1)]
@@ -228,7 +229,7 @@ class Renderer:
         if self._effectors:
             for point in moment.effectors.values():
                 marks.ball(point[None], _BALL * size, _EFFECTOR)
-            for point in [*moment.goals.values(), *_points(self.goals)]:
+            for point in [*moment.goals.values(), *goal_points(self.goals)]:
                 marks.ball(point[None], 1.25 * _BALL * size, _GOAL)
         if self._contacts and len(moment.forces):
             self._add_forces(moment, marks)
@@ -250,7 +251,7 @@ class Renderer:
 
     def _surfaces(self, moment: Moment) -> list[Surface]:
         found = self.outline.surfaces.items() if self._contacts else ()
-        return [_moved(surface, moment.poses.get(name)) for name, surface in found]
+        return [surface.moved(moment.poses.get(name)) for name, surface in found]
 
     def _patches(self, surfaces: list[Surface]) -> list[Patch]:
         planes = [surface for surface in surfaces if surface.kind == "plane"]
@@ -283,13 +284,6 @@ class Renderer:
         below[:] = (opacity * 255.0 * shown[:height, :width] + (1.0 - opacity) * below).round()
 
 
-def _moved(surface: Surface, pose: Optional[np.ndarray]) -> Surface:
-    if pose is None:
-        return surface
-    turn, shift = pose[:, :3], pose[:, 3]
-    return Surface(surface.kind, surface.points @ turn.T + shift, turn @ surface.normal, surface.radius, True)
-
-
 def _add_solid(solids: Marks, surface: Surface) -> None:
     """A ball or a capsule; planes are patches."""
     if surface.kind == "plane":
@@ -297,37 +291,3 @@ def _add_solid(solids: Marks, surface: Surface) -> None:
     solids.ball(surface.points, surface.radius, _SURFACE)
     if len(surface.points) > 1:
         solids.rod(surface.points[:1], surface.points[1:], (surface.radius, surface.radius), _SURFACE)
-
-
-def _points(goals: Any) -> list[np.ndarray]:
-    """(3,) m each."""
-    if goals is None:
-        return []
-    points = np.asarray(list(goals.values()) if isinstance(goals, Mapping) else goals, dtype=float)
-    if points.size == 0:
-        return []
-    points = np.atleast_2d(points)
-    if points.ndim != 2 or points.shape[1] != 3:
-        raise Error("wrong-shape", "goals", f"they have shape {points.shape}", "give (n, 3) m, or a mapping of names to (3,)")
-    if not np.isfinite(points).all():
-        raise Error("not-finite", "goals", "a goal is not finite", "leave it out")
-    return list(points)
-
-
-def _size(size: Any) -> tuple[int, int]:
-    try:
-        width, height = (int(part) for part in size)
-    except (TypeError, ValueError):
-        raise Error("wrong-shape", "size", f"{size!r} is no size", "give width and height in pixels") from None
-    if width < 1 or height < 1:
-        raise Error("out-of-range", "size", f"it is {width} x {height}", "give width and height in pixels, 1 or more")
-    return width, height
-
-
-def _range(given: Any) -> Optional[tuple[float, float]]:
-    if given is None:
-        return None
-    low, high = (float(part) for part in given)
-    if not (math.isfinite(low) and math.isfinite(high) and low < high):
-        raise Error("out-of-range", "field_range", f"it is {low:g} to {high:g}", "give the lower value and then the higher one")
-    return low, high

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import dataclasses
 import re
-from typing import Any
+from typing import Any, Optional
 
 import numpy as np
 
 from .. import _core
 from ..errors import Error
 
-__all__ = ["Outline", "Surface", "outline_of"]
+__all__ = ["Outline", "Surface", "outline_of", "parsed"]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -37,6 +37,13 @@ class Surface:
     radius: float
     moves: bool
 
+    def moved(self, pose: Optional[np.ndarray]) -> Surface:
+        """The surface after a rotation and shift (3, 4), m, from where the scene puts it; None for none."""
+        if pose is None:
+            return self
+        turn, shift = pose[:, :3], pose[:, 3]
+        return Surface(self.kind, self.points @ turn.T + shift, turn @ self.normal, self.radius, self.moves)
+
 
 @dataclasses.dataclass(frozen=True)
 class Outline:
@@ -57,15 +64,20 @@ class Outline:
     held: set[str]
 
 
-def outline_of(text: str) -> Outline:
-    """Reads the text of Simulation.to_yaml(). Raises tool-missing without PyYAML."""
+def parsed(text: str) -> dict[str, Any]:
+    """A scene's text as dicts and lists of text. Raises tool-missing without PyYAML."""
     try:
         import yaml
     except ImportError:
         raise Error("tool-missing", "render", "pictures need PyYAML, which is not installed",
                     "install python3-yaml, or pip install sinew[render]") from None
-    # As text: "1e-3" and "yes" are no numbers and truths of YAML 1.1 here.
-    tree = yaml.load(text, Loader=yaml.BaseLoader)
+    # As text: "1e-3" and "yes" are no number and no truth of YAML 1.1 here.
+    return yaml.load(text, Loader=yaml.BaseLoader)
+
+
+def outline_of(text: str) -> Outline:
+    """Reads the text of Simulation.to_yaml(). Raises tool-missing without PyYAML."""
+    tree = parsed(text)
     gravity = _vector(tree.get("gravity", "0 0 0"))
     length = np.linalg.norm(gravity)
     up = -gravity / length if length > 0.0 else np.array([0.0, 0.0, 1.0])
