@@ -23,7 +23,7 @@ Image = pytest.importorskip("PIL.Image")
 
 ROOT = Path(__file__).resolve().parents[2]
 SCENES = sorted((ROOT / "examples").rglob("*.yaml"))
-SIZE = (160, 120)
+SIZE, LARGE = (160, 120), (640, 480)
 BACKGROUND = np.array([255, 255, 255])
 PLAIN = {"background": "#ffffff", "floor": False, "lighting": False}
 FIRST, SECOND = np.array([0xD9, 0xA0, 0x66]), np.array([0x7F, 0xA6, 0xC9])  # colours of bodies, in their order
@@ -164,7 +164,7 @@ def test_rigid_shapes(shape):
 
 
 def test_a_rigid_body_from_a_file():
-    sim = scene({"part": {"type": "rigid", "mesh": {"file": str(ROOT / "examples/rigid/meshes/forearm.stl")}, "fixed": True}})
+    sim = scene({"part": {"type": "rigid", "mesh": {"file": str(ROOT / "examples/rigid/meshes/forearm.stl"), "unit": "mm"}, "fixed": True}})
     body = sim.body("part")
     triangles, _ = boundary_of(body)
     a, b, c = (np.asarray(body.rest_positions)[triangles[:, k]] for k in range(3))
@@ -210,7 +210,7 @@ def lifted(field_range=(0.0, 0.02), **more):
     """A box that has moved by 10 mm as a whole, coloured by its displacement."""
     sim = scene({"box": {"type": "rigid", "shape": {"box": "40 40 40 mm"}, "motion": {"z": {"ramp": {"to": "10 mm", "duration": "0.1 s"}}}}})
     sim.step(10)
-    return sinew.render(sim, SIZE, ALONG_Y, field="displacement", field_range=field_range, colour_bar=False, **{**PLAIN, **more})
+    return sinew.render(sim, SIZE, ALONG_Y, field="displacement", field_range=field_range, **{**PLAIN, "colour_bar": False, **more})
 
 
 @pytest.mark.parametrize("field_range,expected", [((0.0, 0.02), (33, 144, 141)), ((0.0, 0.01), (253, 231, 37)), ((0.01, 0.02), (68, 1, 84)),
@@ -242,7 +242,7 @@ def test_a_field_of_elements_and_a_body_without_it():
 
 
 def test_the_bar_tells_field_unit_and_ends():
-    assert colours.ticks(0.0, 0.02, "m") == ["20.00 mm", "15.00 mm", "10.00 mm", "5.00 mm", "0.00 mm"]
+    assert colours.ticks(0.0, 0.02, "m") == ["20.0 mm", "15.0 mm", "10.0 mm", "5.0 mm", "0.0 mm"]
     assert colours.ticks(0.0, 4.0e4, "Pa")[0] == "40.0 kPa" and colours.ticks(1.0, 1.2, "")[0] == "1.200"
     assert colours.ticks(0.0, 0.5, "J/m^3")[0].endswith("mJ/m³")
     strip, opacity = colours.bar("displacement", 0.0, 0.02, "viridis", 240, (0, 0, 0))
@@ -266,7 +266,7 @@ def test_edges_of_the_mesh():
     sim = scene({"block": block()})
     plain, lined = (sinew.render(sim, SIZE, "front", edges=edges, **PLAIN) for edges in (False, True))
     darker = (lined.astype(int).sum(axis=2) < plain.astype(int).sum(axis=2) - 60)
-    assert darker.mean() > 0.01 and (covered(lined) == covered(plain)).mean() > 0.99
+    assert darker.mean() > 0.01 and (covered(lined) == covered(plain)).mean() > 0.97
 
 
 # Marks
@@ -285,9 +285,9 @@ def test_a_cable_is_seen_through_the_body_and_tells_whether_it_pulls():
         sim = tied()
         sim.actuator("string").tension = tension
         sim.step(5)
-        picture[tension] = sinew.render(sim, SIZE, camera, **PLAIN)
+        picture[tension] = sinew.render(sim, LARGE, camera, **PLAIN)
         points = sim.actuator("string").points
-    bare = sinew.render(sim, SIZE, camera, cables=False, **PLAIN)
+    bare = sinew.render(sim, LARGE, camera, cables=False, **PLAIN)
     beside = points[1] + [0.006, 0.0, 0.0]
     for point in (0.5 * (points[0] + points[1]), points[1]):
         assert pixel(picture[0.5], camera, point)[0] < pixel(bare, camera, point)[0] - 25  # blue, faintly: less red
@@ -300,16 +300,16 @@ def test_effectors_and_goals():
     controller = sinew.InverseController(sim, {"tip": [0.03, -0.01, 0.06]})
     camera = Camera((0.01, -0.3, 0.03), (0.01, 0.01, 0.03))
     more = [[-0.02, 0.0, 0.02]]
-    picture = sinew.render(sim, SIZE, camera, goals=more, **PLAIN)
+    picture = sinew.render(sim, LARGE, camera, goals=more, **PLAIN)
     for goal in ([0.03, -0.01, 0.06], more[0]):
         red, _, blue = pixel(picture, camera, goal)
         assert red > blue + 80
-    tip = sim.effector("tip").position + [0, 0, 0.0005]  # above the edge, before the background
-    assert pixel(picture, camera, tip).sum() < 330
-    bare = sinew.render(sim, SIZE, camera, effectors=False, **PLAIN)
+    tip = sim.effector("tip").position - [0, 0, 0.0003]  # inside the body, and seen through it
+    bare = sinew.render(sim, LARGE, camera, effectors=False, **PLAIN)
+    assert pixel(picture, camera, tip).sum() < pixel(bare, camera, tip).sum() - 70
     assert (pixel(bare, camera, more[0]) == BACKGROUND).all()
     controller.detach()
-    assert (pixel(sinew.render(sim, SIZE, camera, **PLAIN), camera, [0.03, -0.01, 0.06]) == BACKGROUND).all()
+    assert (pixel(sinew.render(sim, LARGE, camera, **PLAIN), camera, [0.03, -0.01, 0.06]) == BACKGROUND).all()
 
 
 def standing(**motion):
@@ -322,15 +322,20 @@ def standing(**motion):
 
 def test_forces_are_arrows_from_where_they_act_along_them():
     sim = standing()
-    camera = Camera((0.0, -0.4, 0.04), (0.0, 0.0, 0.04))
-    picture, bare = (sinew.render(sim, SIZE, camera, contacts=contacts, **{**PLAIN, "lighting": True}) for contacts in (True, False))
+    camera = Camera((0.0, -0.2, 0.02), (0.0, 0.0, 0.02))
+    picture, bare = (sinew.render(sim, LARGE, camera, contacts=contacts, **{**PLAIN, "lighting": True}) for contacts in (True, False))
     contact = sim.contact("floor")
     acting = contact.positions[contact.normal_forces > 0.1]
     assert len(acting) == 4 and contact.normal_force == pytest.approx(0.981, rel=1e-3)
-    for point in acting:
-        shown, before = (pixel(p, camera, point + [0, 0, 0.006]) for p in (picture, bare))
-        assert shown[0] - shown[2] > before[0] - before[2] + 10  # redder
-        assert (pixel(picture, camera, point + [0, 0, 0.025]) == pixel(bare, camera, point + [0, 0, 0.025])).all()
+    red = picture[..., 0].astype(int) - picture[..., 2] > bare[..., 0].astype(int) - bare[..., 2] + 10
+    forces = (contact.normal_forces[:, None] * contact.normals + contact.friction_forces)[contact.normal_forces > 0.1]
+    # The largest is 0.22 of the size of the robot.
+    lengths = 0.22 * 0.04 * math.sqrt(3.0) / np.linalg.norm(forces, axis=1).max()
+    for point, force in zip(acting, forces):
+        for share, arrow in ((0.3, True), (0.7, True), (1.5, False), (-0.3, False)):
+            column, row = (int(x) for x in projected(camera, point + share * lengths * force, LARGE))
+            assert red[row - 1 : row + 2, column - 1 : column + 2].any() == arrow
+    assert 20 < red.sum() < 2000
 
 
 def test_a_plane_is_a_floor_with_the_shadow_of_what_stands_on_it():
@@ -345,11 +350,12 @@ def test_a_plane_is_a_floor_with_the_shadow_of_what_stands_on_it():
     assert dark < light - 60 and light < 3 * 255
 
 
+@pytest.mark.filterwarnings("ignore::sinew.SinewWarning")
 def test_spheres_and_capsules_that_move_are_drawn_where_they_are():
     sim = scene({"block": block()}, contacts={
-        "ball": {"body": "block", "surface": {"sphere": {"centre": "60 10 50 mm", "radius": "10 mm"}},
+        "ball": {"body": "block", "surface": {"sphere": {"centre": "60 10 50 mm", "radius": "15 mm"}},
                  "motion": {"z": {"ramp": {"to": "-30 mm", "duration": "50 ms"}}}},
-        "rod": {"body": "block", "surface": {"capsule": {"ends": ["-40 -20 10 mm", "-40 20 10 mm"], "radius": "5 mm"}}}})
+        "rod": {"body": "block", "surface": {"capsule": {"ends": ["-40 -20 20 mm", "-40 20 20 mm"], "radius": "15 mm"}}}})
     camera = Camera((0.01, -0.5, 0.03), (0.01, 0.01, 0.03))
     renderer = Renderer(sim, SIZE, camera, **PLAIN)
     before = renderer.frame()
@@ -358,7 +364,7 @@ def test_spheres_and_capsules_that_move_are_drawn_where_they_are():
     for picture, there, not_there in ((before, 0.05, 0.02), (after, 0.02, 0.05)):
         assert not (pixel(picture, camera, [0.06, 0.01, there]) == BACKGROUND).all()
         assert (pixel(picture, camera, [0.06, 0.01, not_there]) == BACKGROUND).all()
-        assert not (pixel(picture, camera, [-0.04, -0.02, 0.01]) == BACKGROUND).all()
+        assert not (pixel(picture, camera, [-0.04, -0.02, 0.02]) == BACKGROUND).all()
 
 
 def test_what_a_scene_says_of_surfaces():
@@ -409,7 +415,7 @@ def test_gravity_points_down(gravity):
         renderer = Renderer(sim, SIZE, view)
         renderer.frame()
         (column, row), (below, lower) = projected(renderer.camera, [0, 0, 0]), projected(renderer.camera, 1e-3 * down)
-        assert lower > row + 1.0 and below == pytest.approx(column, abs=0.05)
+        assert lower > row + 1.0 and abs(below - column) < 0.05 * (lower - row)
 
 
 # Again and again
@@ -440,8 +446,6 @@ def test_a_renderer_keeps_camera_range_and_scale():
         sim.reset()
         back = renderer.frame()
         assert (moved != back).any() and renderer._range == (0.0, pytest.approx(high))
-        # In the range that is kept all of it has the least colour now, with light on it.
-        assert not (back.reshape(-1, 3)[:, 0].astype(int) > back.reshape(-1, 3)[:, 2].astype(int) + 60).any(axis=0) or True
     with pytest.raises(sinew.Error) as caught:
         renderer.frame()
     assert caught.value.kind == "closed"
@@ -645,7 +649,7 @@ def test_an_mp4(pulled, tmp_path):
 
 @pytest.mark.parametrize("options,kind", [
     ({"camera": "frnt"}, "unknown-name"), ({"camera": 3}, "wrong-type"), ({"field": "von_mises"}, "unknown-name"),
-    ({"size": (0, 10)}, "out-of-range"), ({"size": 10}, "wrong-type"), ({"size": (10**6, 10)}, "out-of-range"),
+    ({"size": (0, 10)}, "out-of-range"), ({"size": 10}, "wrong-shape"), ({"size": (10**6, 10)}, "out-of-range"),
     ({"colour_map": "jet"}, "unknown-name"), ({"background": "white"}, "out-of-range"), ({"field_range": (2.0, 1.0)}, "out-of-range"),
     ({"goals": [1.0, 2.0]}, "wrong-shape"), ({"goals": [[np.nan, 0.0, 0.0]]}, "not-finite"),
 ], ids=str)  # fmt: skip

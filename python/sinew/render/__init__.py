@@ -54,7 +54,7 @@ def render(sim: Any, size: tuple[int, int] = (640, 480), camera: Union[Camera, s
         wrong-shape, wrong-type, not-finite; simulation-busy.
     """
     # The last renderer of this thread is kept, without the simulation: surfaces take longer to make than to draw.
-    goals, key = options.pop("goals", None), (tuple(size), repr(sorted(options.items())))
+    goals, key = options.pop("goals", None), repr((size, sorted(options.items())))
     last = getattr(_kept, "last", None)
     if last is not None and last[0]() is sim and last[1] == key:
         renderer = last[2]

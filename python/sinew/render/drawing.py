@@ -16,7 +16,7 @@ __all__ = ["Patch", "Stage", "Triangles", "draw"]
 # Where the light of the sun comes from: rightward, towards the front, and up, in the axes of axes_of_view().
 _SUN = np.array([-0.38, 0.42, 0.82])
 _SUN = _SUN / np.linalg.norm(_SUN)
-_HIDDEN = 0.30  # opacity of marks behind or inside bodies
+_HIDDEN = 0.38  # opacity of marks behind or inside bodies
 _EDGE = (0.10, 0.12, 0.15, 0.45)
 _INK, _TINT = (0.35, 0.40, 0.46), (0.80, 0.83, 0.86)
 _SHADE = 0.34  # darkest shadow

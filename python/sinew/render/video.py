@@ -86,7 +86,11 @@ def video(
         frames = _of_recording(source, count, speed / fps, options)
     else:
         count, frames = len(source) if hasattr(source, "__len__") else 0, iter(source)  # type: ignore[arg-type]
-    return writer(pathlib.Path(path), _shown(_checked(frames), count if progress else 0), fps)
+    try:
+        return writer(pathlib.Path(path), _shown(_checked(frames), count if progress else 0), fps)
+    except OSError as problem:
+        raise Error("file-unwritable", (str(path), 0, 0, ""), f"it cannot be written: {problem.strerror or problem}",
+                    "name a folder that you may write to, with room on its disk") from None
 
 
 def _count(duration: float, fps: float, speed: float) -> int:
