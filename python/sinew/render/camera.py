@@ -118,7 +118,7 @@ def axes_of_view(up: np.ndarray) -> np.ndarray:
     return np.stack([right, np.cross(right, up), up])
 
 
-def fit(points: np.ndarray, up: np.ndarray, view: str, size: tuple[int, int], margin: float = 1.2) -> Camera:
+def fit(points: np.ndarray, up: np.ndarray, view: str, size: tuple[int, int], left: float = 0.0, margin: float = 1.2) -> Camera:
     """The camera that sees all points, as near as it can be.
 
     Parameters
@@ -131,6 +131,8 @@ def fit(points: np.ndarray, up: np.ndarray, view: str, size: tuple[int, int], ma
         One of VIEWS.
     size : (int, int)
         Width and height of the picture, pixels.
+    left : float
+        The share of the picture at its left edge that stays free.
     margin : float
         How much larger the picture is than what it shows.
     """
@@ -141,12 +143,13 @@ def fit(points: np.ndarray, up: np.ndarray, view: str, size: tuple[int, int], ma
     frame = np.stack([right, np.cross(back, right), back])
     seen = points @ frame.T
     tangent = math.tan(0.5 * _FIELD_OF_VIEW) / margin
-    slope = np.array([tangent * size[0] / size[1], tangent])
-    # Each side of the picture is a plane; the two of a pair that touch the points give the middle and the distance.
+    above = np.array([tangent * size[0] / size[1], tangent])  # slopes of the right and of the upper side of the picture
+    below = above * [1.0 - 2.0 * left, 1.0]
+    # Each side is a plane through the camera; the two of a pair that touch the points give the distance and the middle.
     depth = seen[:, 2:]
-    low, high = (seen[:, :2] + slope * depth).max(axis=0), (seen[:, :2] - slope * depth).min(axis=0)
-    middle, distance = 0.5 * (low + high), ((low - high) / (2.0 * slope)).max()
-    distance = max(distance, depth.max() + _LEAST_SIZE, _LEAST_SIZE)
+    high, low = (seen[:, :2] + above * depth).max(axis=0), (seen[:, :2] - below * depth).min(axis=0)
+    distance = max(((high - low) / (above + below)).max(), depth.max() + _LEAST_SIZE, _LEAST_SIZE)
+    middle = 0.5 * (high - above * distance + low + below * distance)
     position = np.array([*middle, distance]) @ frame
     target = np.array([*middle, 0.5 * (depth.max() + depth.min())]) @ frame
     if np.linalg.norm(position - target) < _LEAST_SIZE:
@@ -154,7 +157,7 @@ def fit(points: np.ndarray, up: np.ndarray, view: str, size: tuple[int, int], ma
     return Camera(tuple(position), tuple(target), tuple(lifted))
 
 
-def camera_of(camera: Union[Camera, str, None], points: np.ndarray, up: np.ndarray, size: tuple[int, int]) -> Camera:
+def camera_of(camera: Union[Camera, str, None], points: np.ndarray, up: np.ndarray, size: tuple[int, int], left: float = 0.0) -> Camera:
     """A Camera as it is, and one that fits the points for the name of a view or None. Raises unknown-name, wrong-type."""
     if isinstance(camera, Camera):
         return camera
@@ -167,7 +170,7 @@ def camera_of(camera: Union[Camera, str, None], points: np.ndarray, up: np.ndarr
         near = difflib.get_close_matches(camera, VIEWS, 1)
         raise Error("unknown-name", "camera", f"there is no view {camera!r}",
                     f"did you mean {near[0]!r}?" if near else f"use one of {', '.join(VIEWS)}")
-    return fit(points, up, camera, size)
+    return fit(points, up, camera, size, left)
 
 
 def _unit(vector: np.ndarray) -> np.ndarray:

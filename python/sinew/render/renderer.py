@@ -28,6 +28,7 @@ _TAUT, _SLACK, _SPRING = (colours.parse(c, "") for c in ("#0072b2", "#8a8f98", "
 _GOAL, _EFFECTOR, _FORCE, _SURFACE = (colours.parse(c, "") for c in ("#d55e00", "#262b33", "#cc3311", "#8796a5"))
 # Sizes, of the size of the scene.
 _CABLE, _BALL, _SHAFT, _ARROW = 0.0045, 0.011, 0.0042, 0.22
+_FAR = 10.0  # planes that are farther away, in sizes of the robot, need not be in the picture
 _LEAST = 0.01  # forces under this share of the largest are not drawn
 
 
@@ -134,9 +135,8 @@ class Renderer:
         rest = np.concatenate([np.asarray(body.rest_positions) for body in bodies.values()])
         self._scale = max(float(np.linalg.norm(np.ptp(rest, axis=0))), 1e-6)
         self._axes = axes_of_view(self.outline.up)
-        low = (rest @ self._axes.T).min(axis=0)
-        middle = 0.5 * (low + (rest @ self._axes.T).max(axis=0))
-        self._ground = np.array([middle[0], middle[1], low[2]]) @ self._axes
+        self._rest = rest
+        self._ground, self._reach = None, 0.0
 
     def frame(self, moment: Optional[Moment] = None) -> np.ndarray:
         """A picture of the simulation as it is now, or of a moment of a recorded run: (height, width, 3) uint8.
@@ -160,7 +160,7 @@ class Renderer:
         surfaces = self._surfaces(moment)
         for surface in surfaces:
             _add_solid(solids, surface)
-        if not isinstance(self.camera, Camera):
+        if self._ground is None or not isinstance(self.camera, Camera):
             self.see(self.extent(moment))
         stage = Stage(self._background, self.outline.up, self._triangles, self._context.palette(self.colour_map, self._palette),
                       solids, marks, self._patches(surfaces), self._lit, self._edges)
@@ -170,22 +170,34 @@ class Renderer:
         return picture
 
     def see(self, points: ArrayLike) -> None:
-        """Fits the camera to points (n, 3) m, such as all places where a robot will be, unless it is a Camera already."""
-        self.camera = camera_of(self.camera, np.asarray(points, dtype=float), self.outline.up, self.size)
+        """Fits the camera to points (n, 3) m, such as all places where a robot will be, unless it is a Camera already.
+
+        The grid lies below them and below the robot at rest.
+        """
+        points = np.asarray(points, dtype=float)
+        left = min(0.3, 0.2 * self.size[1] / self.size[0]) if self._bar and self.field is not None else 0.0
+        self.camera = camera_of(self.camera, points, self.outline.up, self.size, left)
+        self._reach = 1.5 * max(self._scale, 0.6 * float(np.linalg.norm(np.ptp(points, axis=0))))
+        # Lines of the grid pass through the origin.
+        self._ground = min(float((part @ self.outline.up).min()) for part in (points, self._rest)) * self.outline.up
 
     def extent(self, moment: Moment) -> np.ndarray:
-        """(n, 3) m: points of all that is drawn at a moment but planes, for see()."""
+        """(n, 3) m: points of all that is drawn at a moment, of a plane the one that is nearest to the robot; for see()."""
         solids = Marks()
         for surface in self._surfaces(moment):
             _add_solid(solids, surface)
         parts = [*moment.positions.values(), *moment.effectors.values(), *moment.goals.values(), *goal_points(self.goals), solids.vertices[:, :3]]
         parts += list(moment.cables.values()) if self._cables else []
+        middle = np.concatenate(list(moment.positions.values())).mean(axis=0)
+        for plane in (surface for surface in self._surfaces(moment) if surface.kind == "plane"):
+            height = float((middle - plane.points[0]) @ plane.normal)
+            parts.append(middle - height * plane.normal if height < _FAR * self._scale else middle)
         everything = np.concatenate([np.atleast_2d(part) for part in parts])
         return everything[np.isfinite(everything).all(axis=1)]
 
     def restart(self, camera: Union[Camera, str, None] = None) -> None:
         """Forgets the camera, the scale of forces and the range of colours, as if nothing had been drawn."""
-        self.camera, self._largest_force = camera, 0.0
+        self.camera, self._largest_force, self._ground = camera, 0.0, None
         if not self._fixed_range:
             self._range = None
 
@@ -265,14 +277,15 @@ class Renderer:
         return found
 
     def _patch(self, origin: np.ndarray, normal: np.ndarray, solid: float) -> Patch:
-        cell = 10.0 ** math.floor(math.log10(0.25 * self._scale))
-        cell *= next(k for k in (5.0, 2.0, 1.0) if k * cell <= 0.25 * self._scale or k == 1.0)
+        about = self._reach / 12.0
+        cell = 10.0 ** math.floor(math.log10(about))
+        cell *= next(k for k in (5.0, 2.0, 1.0) if k * cell <= about)
         first = self._axes[0] if abs(normal @ self._axes[0]) < 0.9 else self._axes[2]
         first = first - normal * (first @ normal)
         points = self._triangles.points
         middle = points.mean(axis=0).astype(float) if len(points) else self._ground
         middle = middle - normal * ((middle - origin) @ normal)
-        return Patch(origin, normal, middle, 1.5 * self._scale, 0.5 * cell, solid, first / np.linalg.norm(first))
+        return Patch(origin, normal, middle, self._reach, cell, solid, first / np.linalg.norm(first))
 
     def _put_bar(self, picture: np.ndarray, low: float, high: float) -> None:
         dark = 0.3 * self._background[0] + 0.6 * self._background[1] + 0.1 * self._background[2] < 0.45
