@@ -2,6 +2,7 @@
 
 import math
 import os
+import re
 import shutil
 import stat
 import subprocess
@@ -642,6 +643,17 @@ def test_an_mp4(pulled, tmp_path):
     probe = ["ffprobe", "-v", "error", "-count_frames", "-show_entries", "stream=nb_read_frames,width,height,r_frame_rate", "-of", "csv=p=0"]
     told = subprocess.run([*probe, str(tmp_path / "a.mp4")], capture_output=True, text=True, check=True).stdout.strip()
     assert told == "162,122,25/1,6"
+
+
+def test_the_page_about_it(tmp_path, monkeypatch):
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
+    monkeypatch.chdir(tmp_path)
+    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "docs" / "rendering.md").read_text(encoding="utf-8"), re.DOTALL)
+    names = {}
+    for number, block in enumerate(blocks):
+        exec(compile(block, f"docs/rendering.md, block {number}", "exec"), names)
+    assert len(blocks) == 3 and names["picture"].shape == (480, 640, 3)
+    assert [len(frames_of(name)[0]) for name in ("wheel.webp", "roll.webp")] == [10, 5] and Path("wheel.png").exists()
 
 
 # Errors
