@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -204,19 +205,19 @@ int run(const RunOptions& options) {
   settings.vtk = options.vtk;
   sim::Observables observables(session.simulation());
   inverse::add_controller(observables, session.controller());
-  record::RunRecorder recorder(std::move(observables), settings);
+  std::optional<record::RunRecorder> recorder(std::in_place, std::move(observables), settings);
 
   const auto begin = std::chrono::steady_clock::now();
   const auto finish = [&] {
     tally.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    recorder.finish();
+    recorder->finish();
     if (options.quiet) return;
     auto rows = summary(tally, session);
     rows.push_back({"recorded in", settings.folder.string()});
     fmt::print("{}", format_table(rows));
   };
   try {
-    advance(session, recorder, steps, options.quiet, tally);
+    advance(session, *recorder, steps, options.quiet, tally);
   } catch (const Interrupted&) {  // told of below
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::recording_failed) finish();
@@ -230,6 +231,7 @@ int run(const RunOptions& options) {
                session.simulation().time(), duration);
     return tally.flagged.empty() || options.keep_going ? 0 : 1;
   }
+  recorder.reset();  // closes run.h5, which others may then read
   if (const int problem = draw_video(options, settings.folder); problem != 0) return problem;
   return tally.flagged.empty() || options.keep_going ? 0 : 1;
 }
