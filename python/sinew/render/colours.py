@@ -12,7 +12,7 @@ import numpy as np
 from ..errors import Error
 from ..fields import FIELDS
 
-__all__ = ["MAPS", "bar", "parse", "table", "unit_of"]
+__all__ = ["MAPS", "bar", "parse", "put_bar", "table", "ticks", "unit_of"]
 
 # Samples of viridis and cividis (Smith and van der Walt 2015; Nunez et al. 2018), evenly spaced, as in the view.
 _SAMPLES = {
@@ -124,3 +124,13 @@ def bar(field: str, low: float, high: float, colour_map: str, height: int, ink: 
     opacity = opacity.copy()
     opacity[top : top + length, pad : pad + width] = 1.0
     return colours, opacity
+
+
+def put_bar(picture: np.ndarray, field: str, low: float, high: float, colour_map: str, background: tuple[float, float, float]) -> None:
+    """Draws the colour bar into the upper left of a picture (height, width, 3) uint8, in ink that is read on the background."""
+    dark = float(np.dot(background, (0.3, 0.6, 0.1))) < 0.45
+    shown, opacity = bar(field, low, high, colour_map, picture.shape[0], (228, 232, 236) if dark else (40, 48, 58))
+    below = picture[: shown.shape[0], : shown.shape[1]]
+    height, width = below.shape[:2]
+    opacity = opacity[:height, :width]
+    below[:] = (opacity * 255.0 * shown[:height, :width] + (1.0 - opacity) * below).round()

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import contextlib
+import ctypes
 import os
+import sys
 import threading
-from typing import Any
+from typing import Any, Optional
 
 import numpy as np
 
 from ..errors import Error
 from . import shaders
 
-__all__ = ["Context", "context"]
+__all__ = ["Context", "context", "current"]
 
 _SAMPLES = 4  # of each pixel, for smooth edges
 _SHADOW = 256  # pixels of the shadow's side
@@ -30,6 +33,7 @@ class Context:
     """
 
     def __init__(self) -> None:
+        self._owner = os.getpid(), threading.get_ident()
         try:
             import moderngl
         except ImportError:
@@ -74,6 +78,20 @@ class Context:
             self._palettes[name] = self.gl.texture((len(colours), 1), 3, np.ascontiguousarray(colours).tobytes(), alignment=1)
         return self._palettes[name]
 
+    def __del__(self) -> None:
+        # At the end of its thread. A context stays in memory for as long as it is a thread's current one.
+        gl = getattr(self, "gl", None)
+        if gl is None or sys.is_finalizing() or self._owner != (os.getpid(), threading.get_ident()):
+            return
+        gl.release()
+        with contextlib.suppress(OSError):
+            ctypes.CDLL("libEGL.so.1").eglReleaseThread()
+
+
+def current() -> Optional[Context]:
+    """The context of this thread and process, if there is one."""
+    return getattr(_own, "context", None) if getattr(_own, "process", None) == os.getpid() else None
+
 
 def context() -> Context:
     """The context of this thread and process, made when it is first asked for.
@@ -84,6 +102,6 @@ def context() -> Context:
         tool-missing: ModernGL is not installed, or the machine has neither a graphics driver nor Mesa's software renderer.
     """
     # A context does not outlive a fork.
-    if getattr(_own, "process", None) != os.getpid():
+    if current() is None:
         _own.context, _own.process = Context(), os.getpid()
     return _own.context

@@ -76,6 +76,15 @@ class Marks:
         fans = (np.arange(k)[:, None, None] * (_FINE + 1) + fan[None]).reshape(-1, 3)
         self._add(cap.reshape(-1, 3), np.repeat(-axis, _FINE + 1, axis=0), colour, fans)
 
+    def arrows(self, points: np.ndarray, vectors: np.ndarray, radius: float, colour: Any) -> None:
+        """Adds arrows from points (k, 3) along vectors (k, 3), m, with shafts of a radius, m, or thinner where they are short."""
+        lengths = np.linalg.norm(vectors, axis=1)
+        heads = np.minimum(5.0 * radius, 0.6 * lengths)
+        necks = points + vectors * (1.0 - heads / lengths)[:, None]
+        shafts = np.minimum(radius, 0.12 * lengths)
+        self.rod(points, necks, (shafts, shafts), colour)
+        self.rod(necks, points + vectors, (0.42 * heads, 0.0), colour)
+
     def ball(self, centres: np.ndarray, radius: float, colour: Any, sides: int = _FINE) -> None:
         """Adds balls at (k, 3), m."""
         unit, triangles = _ball(sides)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Iterable, Mapping
 from typing import Any, Optional, Union
 
@@ -13,7 +14,7 @@ from ..errors import Error
 from . import colours
 from .arguments import checked_range, checked_size, goal_points
 from .camera import Camera, axes_of_view, camera_of
-from .context import context
+from .context import context, current
 from .drawing import Patch, Stage, Triangles, draw
 from .geometry import Skin, boundary_of
 from .marks import Marks
@@ -166,7 +167,7 @@ class Renderer:
                       solids, marks, self._patches(surfaces), self._lit, self._edges)
         picture = draw(self._context, stage, self.camera, self.size)
         if self.field is not None and self._bar and moment.values:
-            self._put_bar(picture, low, high)
+            colours.put_bar(picture, str(self.field), low, high, self.colour_map, self._background)
         return picture
 
     def see(self, points: ArrayLike) -> None:
@@ -209,9 +210,14 @@ class Renderer:
 
     def close(self) -> None:
         """Frees the memory of the graphics card; may be called again."""
-        if getattr(self, "_triangles", None) is not None and context() is self._context:
+        # What another thread's context holds goes with that thread.
+        if getattr(self, "_triangles", None) is not None and current() is self._context:
             self._triangles.release()
         self._triangles = None
+
+    def __del__(self) -> None:
+        if not sys.is_finalizing():
+            self.close()
 
     def __enter__(self) -> Renderer:
         return self
@@ -252,14 +258,8 @@ class Renderer:
         drawn = lengths > max(_LEAST * self._largest_force, 1e-12)
         if not drawn.any():
             return
-        first = moment.touching[drawn]
         arrows = moment.forces[drawn] * (_ARROW * self._scale / self._largest_force)
-        spans = np.linalg.norm(arrows, axis=1)
-        heads = np.minimum(0.022 * self._scale, 0.6 * spans)
-        neck = first + arrows * (1.0 - heads / spans)[:, None]
-        radius = np.minimum(_SHAFT * self._scale, 0.12 * spans)
-        marks.rod(first, neck, (radius, radius), _FORCE)
-        marks.rod(neck, first + arrows, (0.42 * heads, 0.0), _FORCE)
+        marks.arrows(moment.touching[drawn], arrows, _SHAFT * self._scale, _FORCE)
 
     def _surfaces(self, moment: Moment) -> list[Surface]:
         found = self.outline.surfaces.items() if self._contacts else ()
@@ -286,15 +286,6 @@ class Renderer:
         middle = points.mean(axis=0).astype(float) if len(points) else self._ground
         middle = middle - normal * ((middle - origin) @ normal)
         return Patch(origin, normal, middle, self._reach, cell, solid, first / np.linalg.norm(first))
-
-    def _put_bar(self, picture: np.ndarray, low: float, high: float) -> None:
-        dark = 0.3 * self._background[0] + 0.6 * self._background[1] + 0.1 * self._background[2] < 0.45
-        ink = (228, 232, 236) if dark else (40, 48, 58)
-        shown, opacity = colours.bar(str(self.field), low, high, self.colour_map, self.size[1], ink)
-        below = picture[: shown.shape[0], : shown.shape[1]]
-        height, width = below.shape[:2]
-        opacity = opacity[:height, :width]
-        below[:] = (opacity * 255.0 * shown[:height, :width] + (1.0 - opacity) * below).round()
 
 
 def _add_solid(solids: Marks, surface: Surface) -> None:
