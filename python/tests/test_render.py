@@ -108,7 +108,8 @@ def test_edges_are_smooth():
 
 
 def test_a_body_that_moves_moves_on_the_picture():
-    sim = scene({"box": {"type": "rigid", "shape": {"box": "20 20 20 mm"}, "motion": {"x": {"ramp": {"to": "30 mm", "duration": "0.1 s"}}}}})
+    motion = {"x": {"ramp": {"to": "30 mm", "duration": "0.1 s"}}}
+    sim = scene({"box": {"type": "rigid", "shape": {"box": "20 20 20 mm"}, "motion": motion}})
     renderer = Renderer(sim, SIZE, ALONG_Y, **PLAIN)
     before = covered(renderer.frame())
     sim.step(10)
@@ -157,8 +158,8 @@ def test_the_surface_of_every_element_encloses_the_body(element):
     assert 0.05 < covered(picture).mean() < 0.6
 
 
-@pytest.mark.parametrize("shape", [{"box": "40 30 20 mm"}, {"sphere": {"radius": "20 mm"}}, {"capsule": {"radius": "10 mm", "length": "30 mm"}},
-                                   {"cylinder": {"radius": "15 mm", "height": "40 mm"}}], ids=lambda shape: next(iter(shape)))
+@pytest.mark.parametrize("shape", [{"box": "40 30 20 mm"}, {"sphere": {"radius": "20 mm"}},
+                                   {"capsule": {"radius": "10 mm", "length": "30 mm"}}, {"cylinder": {"radius": "15 mm", "height": "40 mm"}}], ids=lambda shape: next(iter(shape)))
 def test_rigid_shapes(shape):
     picture = sinew.render(scene({"one": rigid(shape)}), SIZE, **PLAIN)
     assert 0.1 < covered(picture).mean() < 0.8 and (picture[SIZE[1] // 2, SIZE[0] // 2] == FIRST).all()
@@ -209,7 +210,8 @@ def test_every_example(path):
 
 def lifted(field_range=(0.0, 0.02), **more):
     """A box that has moved by 10 mm as a whole, coloured by its displacement."""
-    sim = scene({"box": {"type": "rigid", "shape": {"box": "40 40 40 mm"}, "motion": {"z": {"ramp": {"to": "10 mm", "duration": "0.1 s"}}}}})
+    motion = {"z": {"ramp": {"to": "10 mm", "duration": "0.1 s"}}}
+    sim = scene({"box": {"type": "rigid", "shape": {"box": "40 40 40 mm"}, "motion": motion}})
     sim.step(10)
     return sinew.render(sim, SIZE, ALONG_Y, field="displacement", field_range=field_range, **{**PLAIN, "colour_bar": False, **more})
 
@@ -225,7 +227,8 @@ def test_another_colour_map():
 
 
 def test_a_field_of_elements_and_a_body_without_it():
-    sim = scene({"block": block(material={"young_modulus": "20 kPa", "poisson_ratio": 0.3}), "box": rigid({"box": "10 10 10 mm"}, pose={"position": "60 10 5 mm"})},
+    soft = {"young_modulus": "20 kPa", "poisson_ratio": 0.3}
+    sim = scene({"block": block(material=soft), "box": rigid({"box": "10 10 10 mm"}, pose={"position": "60 10 5 mm"})},
                 gravity="0 0 9.81 m/s^2", integrator="quasi-static")
     sim.solve_static()
     body = sim.body("block")
@@ -276,7 +279,8 @@ def test_edges_of_the_mesh():
 def tied(**more):
     """The block with a cable along a line, at its front."""
     cable = {"type": "cable", "body": "block", "points": ["10 3 5 mm", "10 3 30 mm", "10 3 55 mm"], **more}
-    return scene({"block": block()}, actuators={"string": cable}, effectors={"tip": {"body": "block", "point": "10 10 60 mm"}}, integrator="quasi-static")
+    tip = {"body": "block", "point": "10 10 60 mm"}
+    return scene({"block": block()}, actuators={"string": cable}, effectors={"tip": tip}, integrator="quasi-static")
 
 
 def test_a_cable_is_seen_through_the_body_and_tells_whether_it_pulls():
@@ -578,7 +582,8 @@ def test_a_recorded_run_with_contacts(tmp_path):
 def program(*words, cwd):
     """python3 -m sinew.render."""
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
-    return subprocess.run([sys.executable, "-m", "sinew.render", *map(str, words)], cwd=cwd, env=environment, capture_output=True, text=True, check=False)
+    command = [sys.executable, "-m", "sinew.render", *map(str, words)]
+    return subprocess.run(command, cwd=cwd, env=environment, capture_output=True, text=True, check=False)
 
 
 def test_the_program_draws_runs_and_scenes(pulled, tmp_path):
@@ -593,7 +598,8 @@ def test_the_program_draws_runs_and_scenes(pulled, tmp_path):
 
 
 @pytest.mark.parametrize("words,kind", [(["none", "--video", "a.webp"], "file-not-found"), (["--video", "a.webp"], "bad-argument"),
-                                        (["run", "--video", "a.avi"], "unknown-format"), (["run", "--video", "a.webp", "--size", "9"], "bad-argument"),
+                                        (["run", "--video", "a.avi"], "unknown-format"),
+                                        (["run", "--video", "a.webp", "--size", "9"], "bad-argument"),
                                         (["run", "--video", "a.webp", "--field", "pressure"], "not-in-this-version"),
                                         (["--check", "--video", "a.avi"], "unknown-format")], ids=str)
 def test_the_program_says_what_is_wrong(pulled, tmp_path, monkeypatch, capsys, words, kind):
@@ -640,7 +646,8 @@ def test_ffmpeg_that_fails(monkeypatch, tmp_path):
 @pytest.mark.skipif(shutil.which("ffprobe") is None, reason="ffmpeg and ffprobe are not installed")
 def test_an_mp4(pulled, tmp_path):
     sinew.render.video(tmp_path / "a.mp4", pulled, 25, duration=0.2, size=(161, 121))
-    probe = ["ffprobe", "-v", "error", "-count_frames", "-show_entries", "stream=nb_read_frames,width,height,r_frame_rate", "-of", "csv=p=0"]
+    shown = "stream=nb_read_frames,width,height,r_frame_rate"
+    probe = ["ffprobe", "-v", "error", "-count_frames", "-show_entries", shown, "-of", "csv=p=0"]
     told = subprocess.run([*probe, str(tmp_path / "a.mp4")], capture_output=True, text=True, check=True).stdout.strip()
     assert told == "162,122,25/1,6"
 

@@ -109,7 +109,8 @@ def main(words: list[str]) -> int:
             parsed("")
             return 0
         if options.source is None or (options.video is None and options.picture is None):
-            raise Error("bad-argument", "python3 -m sinew.render", "nothing is to be drawn", "name a run or a scene, and --video or --picture")
+            raise Error("bad-argument", "python3 -m sinew.render", "nothing is to be drawn",
+                        "name a run or a scene, and --video or --picture")
         drawn = {"size": _size(options.size), "camera": options.camera, "field": options.field, "colour_map": options.colour_map,
                  "edges": options.edges}  # fmt: skip
         if options.picture is not None:

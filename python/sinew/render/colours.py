@@ -32,7 +32,8 @@ def unknown(item: str, what: str, name: Any, known: Any) -> Error:
     """An error of the kind unknown-name, with a suggestion."""
     known = list(known)
     near = difflib.get_close_matches(str(name), known, 1, 0.5)
-    return Error("unknown-name", item, f"there is no {what} {name!r}", f"did you mean {near[0]!r}?" if near else f"use one of {', '.join(known)}")
+    remedy = f"did you mean {near[0]!r}?" if near else f"use one of {', '.join(known)}"
+    return Error("unknown-name", item, f"there is no {what} {name!r}", remedy)
 
 
 @functools.lru_cache(maxsize=None)

@@ -187,8 +187,8 @@ class Renderer:
         solids = Marks()
         for surface in self._surfaces(moment):
             _add_solid(solids, surface)
-        parts = [*moment.positions.values(), *moment.effectors.values(), *moment.goals.values(), *goal_points(self.goals), solids.vertices[:, :3]]
-        parts += list(moment.cables.values()) if self._cables else []
+        parts = [*moment.positions.values(), *moment.effectors.values(), *moment.goals.values(), *goal_points(self.goals)]
+        parts += [solids.vertices[:, :3], *(moment.cables.values() if self._cables else ())]
         middle = np.concatenate(list(moment.positions.values())).mean(axis=0)
         for plane in (surface for surface in self._surfaces(moment) if surface.kind == "plane"):
             height = float((middle - plane.points[0]) @ plane.normal)
@@ -270,7 +270,9 @@ class Renderer:
         # Planes of several contacts are often one floor.
         found: list[Patch] = []
         for plane in planes:
-            if not any(np.allclose(plane.normal, p.normal) and abs((plane.points[0] - p.origin) @ p.normal) < 1e-6 * self._scale for p in found):
+            point, normal = plane.points[0], plane.normal
+            same = [np.allclose(normal, p.normal) and abs((point - p.origin) @ normal) < 1e-6 * self._scale for p in found]
+            if not any(same):
                 found.append(self._patch(plane.points[0], plane.normal, 0.55))
         if not found and self._floor:
             found.append(self._patch(self._ground, self.outline.up, 0.0))

@@ -97,7 +97,8 @@ def _count(duration: float, fps: float, speed: float) -> int:
     """Frames of a duration, its two ends included."""
     frames = duration * fps / speed
     if not 0.0 <= frames < _MOST_FRAMES:
-        raise Error("out-of-range", "video(duration)", f"{duration:g} s are {frames:g} frames", "give a duration of less than a million frames")
+        raise Error("out-of-range", "video(duration)", f"{duration:g} s are {frames:g} frames",
+                    "give a duration of less than a million frames")
     return int(np.floor(frames + 1e-9)) + 1
 
 
