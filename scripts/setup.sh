@@ -3,11 +3,11 @@
 #   scripts/setup.sh [NEED...]      packages for what is named; for everything when nothing is
 #   scripts/setup.sh --minimal      what the library, the program and the Python package need: build wheel
 #   scripts/setup.sh --list [...]   prints the packages of the same, one a line, and ends
-# NEED is one or more of: build demo sweep wheel test validate bench docs format lint fuzz.
+# NEED is one or more of: build demo render sweep wheel test validate bench docs format lint fuzz.
 # Runs as root or with sudo. SINEW_SKIP_SETUP=1 leaves the machine as it is.
 set -eu
 
-needs_known="build demo sweep wheel test validate bench docs format lint fuzz"
+needs_known="build demo render sweep wheel test validate bench docs format lint fuzz"
 
 # What a need adds to those that it rests on (packages_for).
 build="build-essential cmake ninja-build
@@ -20,6 +20,7 @@ build="build-essential cmake ninja-build
 command -v node >/dev/null || build="$build nodejs"
 command -v npm >/dev/null || build="$build npm"
 demo="python3-matplotlib"
+render="python3-moderngl python3-pil python3-yaml python3-h5py libegl1 libgl1-mesa-dri fonts-dejavu-core"
 sweep="python3-distributed python3-pandas python3-h5py python3-scipy python3-matplotlib"
 wheel="python3-pip python3-venv python3-setuptools python3-wheel"
 test="libgtest-dev libgmock-dev gmsh chromium python3-pytest python3-scipy python3-meshio
@@ -34,15 +35,16 @@ fuzz="clang libclang-rt-dev"
 packages_for() {
   case $1 in
     build)    echo $build ;;
-    demo)     echo $build $demo ;;
+    demo)     echo $build $demo $render ;;
+    render)   echo $build $render ;;
     sweep)    echo $build $sweep ;;
     wheel)    echo $build $wheel ;;
-    test)     echo $build $demo $test ;;
+    test)     echo $build $demo $render $test ;;
     validate) echo $build $demo $validate ;;
     bench)    echo $build $demo $validate $bench ;;
     docs)     echo $docs ;;
     format)   echo $format ;;
-    lint)     echo $build $test $bench $format $lint ;;
+    lint)     echo $build $render $test $bench $format $lint ;;
     fuzz)     echo $build $fuzz ;;
     *) echo "setup: unknown need '$1'; known are: $needs_known" >&2; return 2 ;;
   esac

@@ -5,6 +5,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -21,6 +23,7 @@
 
 #include "arguments.hpp"
 #include "commands.hpp"
+#include "python_tool.hpp"
 #include "session.hpp"
 #include "terminal.hpp"
 
@@ -34,6 +37,7 @@ struct RunOptions {
   SceneOptions scene;
   std::optional<std::string> duration;
   std::string out;
+  std::string video;
   bool vtk = false;
   bool quiet = false;
   bool keep_going = false;
@@ -157,6 +161,24 @@ void advance(Session& session, record::RunRecorder& recorder, std::int64_t steps
   }
 }
 
+// Ends the program before a run whose video could not be written; the renderer says why.
+int check_video(const RunOptions& options, const scene::Robot& robot) {
+  if (options.video.empty()) return 0;
+  if (!robot.description.record.states) {
+    throw Error(ErrorKind::bad_argument, {.item = "--video"},
+                "the scene records no positions, which a video is drawn from",
+                "write record: {states: true}");
+  }
+  return run_python_module("sinew.render", {"--check", "--video", options.video});
+}
+
+int draw_video(const RunOptions& options, const std::filesystem::path& folder) {
+  if (options.video.empty()) return 0;
+  std::vector<std::string> words = {folder.string(), "--video", options.video};
+  if (options.quiet) words.emplace_back("--quiet");
+  return run_python_module("sinew.render", words);
+}
+
 int run(const RunOptions& options) {
   SceneOptions scene = options.scene;
   if (options.duration) {
@@ -164,6 +186,7 @@ int run(const RunOptions& options) {
     scene.overrides.push_back(fmt::format("duration={} s", seconds));
   }
   Session session(scene);
+  if (const int problem = check_video(options, session.robot()); problem != 0) return problem;
   const double duration = run_duration(session.robot());
   const std::int64_t steps = step_count(duration, session.robot().model->step().time_step);
 
@@ -182,19 +205,19 @@ int run(const RunOptions& options) {
   settings.vtk = options.vtk;
   sim::Observables observables(session.simulation());
   inverse::add_controller(observables, session.controller());
-  record::RunRecorder recorder(std::move(observables), settings);
+  std::optional<record::RunRecorder> recorder(std::in_place, std::move(observables), settings);
 
   const auto begin = std::chrono::steady_clock::now();
   const auto finish = [&] {
     tally.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    recorder.finish();
+    recorder->finish();
     if (options.quiet) return;
     auto rows = summary(tally, session);
     rows.push_back({"recorded in", settings.folder.string()});
     fmt::print("{}", format_table(rows));
   };
   try {
-    advance(session, recorder, steps, options.quiet, tally);
+    advance(session, *recorder, steps, options.quiet, tally);
   } catch (const Interrupted&) {  // told of below
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::recording_failed) finish();
@@ -206,7 +229,10 @@ int run(const RunOptions& options) {
     fmt::print(stderr,
                "sinew: interrupted at t = {:g} s of {:g} s; what was recorded is complete\n",
                session.simulation().time(), duration);
+    return tally.flagged.empty() || options.keep_going ? 0 : 1;
   }
+  recorder.reset();  // closes run.h5, which others may then read
+  if (const int problem = draw_video(options, settings.folder); problem != 0) return problem;
   return tally.flagged.empty() || options.keep_going ? 0 : 1;
 }
 
@@ -224,6 +250,11 @@ void add_run(CommandLine& line) {
   command.add_option("--out", options->out, "Folder for the record (default: out/<scene name>)")
       .type_name("DIR");
   command.add_flag("--vtk", options->vtk, "Also write a series for ParaView, run.pvd");
+  command
+      .add_option("--video", options->video,
+                  "Also draw the run: NAME.mp4 (needs ffmpeg), NAME.webp, NAME.gif, NAME_%04d.png "
+                  "or a folder")
+      .type_name("FILE");
   command.add_flag("--keep-going", options->keep_going,
                    "End with 0 although steps were flagged: out of equilibrium, gaining energy, "
                    "cut back, or short of their commands");
@@ -235,7 +266,8 @@ void add_run(CommandLine& line) {
       "Examples:\n"
       "  sinew run trunk.yaml\n"
       "  sinew run trunk.yaml --duration 5s --set actuators.long_0.command.displacement=10mm\n"
-      "  sinew run trunk.yaml --out results/first --vtk");
+      "  sinew run trunk.yaml --out results/first --vtk\n"
+      "  sinew run trunk.yaml --video trunk.webp");
   command.set_action([options] { return run(*options); });
 }
 

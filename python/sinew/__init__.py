@@ -9,7 +9,7 @@
 SI units everywhere. docs/python.md is the guide.
 """
 
-from . import collision, errors, fields, mesh, pcc, qp
+from . import collision, errors, fields, mesh, pcc, qp, render
 from ._core import (
     Actuator,
     Body,
@@ -88,8 +88,12 @@ __all__ = [
     "mesh",
     "pcc",
     "qp",
+    "render",
     "view",
 ]
+
+# A notebook shows a picture.
+Simulation._repr_png_ = render._repr_png_
 
 # Names by which users know them, whatever module compiled them.
 for _name in __all__:

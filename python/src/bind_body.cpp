@@ -315,6 +315,15 @@ void bind_mesh_of(py::class_<Body>& type) {
           },
           "(m, 8) ndarray of int32: the nodes of every hexahedron, in VTK's order. Read-only.")
       .def_property_readonly(
+          "triangles",
+          [](const Body& self) {
+            const auto& list = body(self).model().mesh().triangles;
+            return view<NodeId>(list.empty() ? nullptr : list.front().data(),
+                                static_cast<py::ssize_t>(list.size()), 3, py::cast(self.session));
+          },
+          "(m, 3) ndarray of int32: nodes of the triangles of its mesh, if it has any: the whole "
+          "surface of a rigid body that a file describes. Read-only.")
+      .def_property_readonly(
           "elements",
           [](const Body& self) {
             py::dict result;

@@ -382,7 +382,7 @@ def test_the_expert_follows_and_holds(name, close):
 
 
 def test_pictures():
-    pytest.importorskip("matplotlib")
+    pytest.importorskip("moderngl")
     for name in ("trunk-reach", "arm-swing-up"):
         env = sinew.gym.make(name, render_mode="rgb_array")
         env.reset(seed=0)
@@ -392,8 +392,10 @@ def test_pictures():
         assert before.shape == (400, 400, 3) and before.dtype == np.uint8
         assert np.any(before != env.render()) and np.ptp(before) > 100
     frames = sinew.gym.make_vec("trunk-reach", 2, render_mode="rgb_array")
-    frames.reset()
-    assert len(frames.render()) == 2
+    frames.reset(options={"goal": [[0.03, 0.0, 0.19], [-0.03, 0.0, 0.19]]})
+    first, second = (frame.astype(int) for frame in frames.render())
+    goal = [(frame[..., 0] > frame[..., 2] + 100) & (frame[..., 1] < 110) for frame in (first, second)]  # the orange of a goal
+    assert goal[0].sum() > 10 and goal[1].sum() > 10 and not (goal[0] & goal[1]).any()
 
 
 # Errors

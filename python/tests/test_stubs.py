@@ -130,7 +130,7 @@ def split_arguments(signature):
     return parts
 
 
-@pytest.mark.parametrize("module", [sinew, sinew.collision, sinew.gym, sinew.pcc, sinew.qp, sinew.sweep], ids=lambda module: module.__name__)
+@pytest.mark.parametrize("module", [sinew, sinew.collision, sinew.gym, sinew.pcc, sinew.qp, sinew.render, sinew.sweep], ids=lambda module: module.__name__)
 def test_everything_public_has_a_docstring(module):
     for name in module.__all__:
         member = getattr(module, name)

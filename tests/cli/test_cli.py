@@ -152,6 +152,20 @@ def test_vtk_series(scene, tmp_path):
     assert np.abs(last.point_data["reaction"]).max() > 0
 
 
+def test_a_run_is_drawn(scene, tmp_path):
+    done = sinew("run", scene(), "--duration", "0.2s", "--video", tmp_path / "film", "--quiet", "--out", tmp_path / "o")
+    assert done.returncode == DONE, done.stderr
+    assert done.stdout == "" and len(list((tmp_path / "film").glob("*.png"))) == 7
+    assert sorted(p.name for p in (tmp_path / "o").iterdir()) == ["run.csv", "run.h5", "scene.yaml"]
+
+
+def test_a_video_that_cannot_be_written_is_noticed_before_the_run(scene, tmp_path):
+    for name, more, kind in (("a.avi", "", "unknown-format"), ("film", "record: {states: false}", "bad-argument")):
+        done = sinew("run", scene(more=more), "--video", tmp_path / name, "--out", tmp_path / "o")
+        assert done.returncode == WRONG and f"[{kind}]" in done.stderr
+        assert not (tmp_path / "o").exists() and not (tmp_path / name).exists()
+
+
 def test_threads_give_the_same_bits(scene, tmp_path):
     for threads in (1, 3):
         done = sinew("run", scene(), "--threads", threads, "--out", tmp_path / str(threads))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import inspect
+import itertools
 from pathlib import Path
 from typing import Any, Mapping, Optional, Sequence, Union
 
@@ -77,6 +78,7 @@ class Task:
     actions: tuple[str, ...] = ()
     substeps = 1  # simulated steps to an action
     default_time_limit = 1.0
+    camera = "corner"  # of pictures
     failure_reward = -100.0  # of a step that the simulation cannot take; the episode then ends
 
     def __init__(
@@ -148,6 +150,13 @@ class Task:
         """States that episodes begin with; the simulation is as loaded."""
         robot.sim.solve_static()
         return [robot.sim.state()]
+
+    def picture_points(self, robot: Robot) -> np.ndarray:
+        """(n, 3) m: what a picture shows. By default room round the robot at rest."""
+        rest = np.asarray(robot.body.rest_positions)
+        low, high = rest.min(axis=0), rest.max(axis=0)
+        room = np.where(high - low < np.max(high - low), 0.22, 0.04) * np.max(high - low)
+        return np.array(list(itertools.product(*zip(low - room, high + room))))
 
     def measure_rest(self, robot: Robot) -> dict[str, Any]:
         """What the task keeps of a model; the simulation is in the first of its starts."""

@@ -36,6 +36,7 @@ class ArmSwingUp(Task):
     actions = ("torque",)
     substeps = 10
     default_time_limit = 4.0
+    camera = "front"
 
     def randomised(self, material_scale: float, payload: float) -> dict[str, Any]:
         """Stiffness of all segments; the payload adds to the mass of the last one."""
@@ -46,6 +47,11 @@ class ArmSwingUp(Task):
             {"length": length, "mass": mass, "stiffness": _STIFFNESS * material_scale, "damping": _DAMPING}
             for length, mass in zip(_LENGTHS, masses)
         ]}  # fmt: skip
+
+    def picture_points(self, robot: Robot) -> np.ndarray:
+        """All that the tip can reach, across the line of sight."""
+        reach = sum(_LENGTHS)
+        return reach * np.array([[-1.0, 0.0, -1.0], [-1.0, 0.0, 1.0], [1.0, 0.0, -1.0], [1.0, 0.0, 1.0]])
 
     def prepare(self, robot: Robot) -> list[State]:
         """Eight states: at rest, and 0.1 to 0.5 s after torques of up to 30 % of the limits began to act."""

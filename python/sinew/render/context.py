@@ -1,0 +1,107 @@
+"""The graphics context of a thread: kept and used again, without a window."""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import os
+import sys
+import threading
+from typing import Any, Optional
+
+import numpy as np
+
+from ..errors import Error
+from . import shaders
+
+__all__ = ["Context", "context", "current"]
+
+_SAMPLES = 4  # of each pixel, for smooth edges
+_SHADOW = 256  # pixels of the shadow's side
+_KEPT = 8  # sizes of pictures whose buffers are kept
+
+_own = threading.local()
+
+
+class Context:
+    """Programs and buffers that all pictures of a thread share.
+
+    Attributes
+    ----------
+    gl : moderngl.Context
+    body, plain, mark, plane : moderngl.Program
+    """
+
+    def __init__(self) -> None:
+        self._owner = os.getpid(), threading.get_ident()
+        try:
+            import moderngl
+        except ImportError:
+            raise Error("tool-missing", "render", "pictures need ModernGL, which is not installed",
+                        "install python3-moderngl, or pip install sinew[render]") from None
+        try:
+            self.gl = moderngl.create_context(standalone=True, backend="egl", require=330)
+        except Exception as problem:  # of many kinds, whatever the driver is
+            raise Error("tool-missing", "render", f"no graphics context could be made: {problem}",
+                        "install libegl1 and libgl1-mesa-dri, whose software renderer needs no graphics card") from None
+        self.body, self.plain, self.mark, self.plane = (
+            self.gl.program(vertex_shader=vertex.strip(), fragment_shader=fragment.strip())
+            for vertex, fragment in (shaders.BODY, shaders.PLAIN, shaders.MARK, shaders.PLANE)
+        )
+        self.samples = min(_SAMPLES, self.gl.max_samples)
+        self._pictures: dict[tuple[int, int], tuple[Any, Any]] = {}
+        self._palettes: dict[str, Any] = {}
+        self.shadow = self.gl.texture((_SHADOW, _SHADOW), 1)
+        self.shadow_frame = self.gl.framebuffer(color_attachments=[self.shadow])
+        self.corners = self.gl.buffer(np.array([[-1, -1], [1, -1], [-1, 1], [1, 1]], dtype="f4").tobytes())
+        self.patch = self.gl.vertex_array(self.plane, [(self.corners, "2f", "corner")])
+
+    def frames(self, size: tuple[int, int]) -> tuple[Any, Any]:
+        """Framebuffers of a size: one that is drawn to, and one of single samples that is read. Raises out-of-range."""
+        if size not in self._pictures:
+            most = self.gl.info["GL_MAX_RENDERBUFFER_SIZE"]
+            if max(size) > most:
+                raise Error("out-of-range", "size", f"it is {size}", f"give at most {most} pixels a side")
+            while len(self._pictures) >= _KEPT:
+                for frame in self._pictures.pop(next(iter(self._pictures))):
+                    frame.release()
+            gl = self.gl
+            self._pictures[size] = (
+                gl.framebuffer([gl.renderbuffer(size, 4, samples=self.samples)], gl.depth_renderbuffer(size, samples=self.samples)),
+                gl.framebuffer([gl.renderbuffer(size, 4)]),
+            )
+        return self._pictures[size]
+
+    def palette(self, name: str, colours: np.ndarray) -> Any:
+        """A colour map (256, 3) uint8 as a texture."""
+        if name not in self._palettes:
+            self._palettes[name] = self.gl.texture((len(colours), 1), 3, np.ascontiguousarray(colours).tobytes(), alignment=1)
+        return self._palettes[name]
+
+    def __del__(self) -> None:
+        # At the end of its thread. A context stays in memory for as long as it is a thread's current one.
+        gl = getattr(self, "gl", None)
+        if gl is None or sys.is_finalizing() or self._owner != (os.getpid(), threading.get_ident()):
+            return
+        gl.release()
+        with contextlib.suppress(OSError):
+            ctypes.CDLL("libEGL.so.1").eglReleaseThread()
+
+
+def current() -> Optional[Context]:
+    """The context of this thread and process, if there is one."""
+    return getattr(_own, "context", None) if getattr(_own, "process", None) == os.getpid() else None
+
+
+def context() -> Context:
+    """The context of this thread and process, made when it is first asked for.
+
+    Raises
+    ------
+    Error
+        tool-missing: ModernGL is not installed, or the machine has neither a graphics driver nor Mesa's software renderer.
+    """
+    # A context does not outlive a fork.
+    if current() is None:
+        _own.context, _own.process = Context(), os.getpid()
+    return _own.context

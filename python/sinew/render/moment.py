@@ -1,0 +1,129 @@
+"""What is seen of a robot at one moment, of a simulation or of a recorded run."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any, Optional
+
+import numpy as np
+
+from ..errors import Error
+from .colours import unit_of
+from .scene import Outline
+
+__all__ = ["Moment", "between", "moment_of"]
+
+
+@dataclasses.dataclass
+class Moment:
+    """See the file. All in the world's axes.
+
+    Attributes
+    ----------
+    time : float
+        s.
+    positions : dict of str to (n, 3) ndarray
+        Of the nodes of each body, m.
+    values : dict of str to (n,) ndarray
+        Of a field at the nodes of the bodies that have it.
+    cables : dict of str to (k, 3) ndarray
+        Points, the pull point first, m; of springs, too.
+    slack : set of str
+        Cables without tension.
+    poses : dict of str to (3, 4) ndarray
+        Rotation and shift (m) of the surfaces of contacts that move.
+    touching, forces : (m, 3) ndarrays
+        Points of contacts, m, and the forces on the bodies there, N.
+    effectors, goals : dict of str to (3,) ndarray
+        m.
+    """
+
+    time: float
+    positions: dict[str, np.ndarray]
+    values: dict[str, np.ndarray]
+    cables: dict[str, np.ndarray]
+    slack: set[str]
+    poses: dict[str, np.ndarray]
+    touching: np.ndarray
+    forces: np.ndarray
+    effectors: dict[str, np.ndarray]
+    goals: dict[str, np.ndarray]
+
+
+def moment_of(sim: Any, outline: Outline, field: Optional[str] = None) -> Moment:
+    """A simulation as it is now.
+
+    Parameters
+    ----------
+    sim : Simulation
+    outline : Outline
+        Of its scene.
+    field : str, optional
+        "displacement", or a name of sinew.fields.FIELDS.
+
+    Raises
+    ------
+    Error
+        unknown-name, simulation-busy.
+    """
+    positions = {name: np.array(body.positions) for name, body in sim.bodies.items()}
+    values = {} if field is None else {name: v for name, body in sim.bodies.items() if (v := _values(body, field)) is not None}
+    lines = {name: part for name, part in sim.actuators.items() if part.type in ("cable", "spring")}
+    slack = {name for name, part in lines.items() if part.type == "cable" and not part.tension > 0.0}
+    moving = [name for name, surface in outline.surfaces.items() if surface.moves]
+    # A run of no steps reads what a simulation tells only of a run.
+    told = sim.run(0.0, record=[f"{name}.pose" for name in moving]) if moving else {}
+    contacts = list(sim.contacts.values())
+    touching = [contact.positions for contact in contacts]
+    forces = [contact.normal_forces[:, None] * contact.normals + contact.friction_forces for contact in contacts]
+    return Moment(
+        time=sim.time,
+        positions=positions,
+        values=values,
+        cables={name: part.points for name, part in lines.items()},
+        slack=slack,
+        poses={name: told[f"{name}.pose"][0] for name in moving},
+        touching=np.concatenate([np.zeros((0, 3)), *touching]),
+        forces=np.concatenate([np.zeros((0, 3)), *forces]),
+        effectors={name: part.position for name, part in sim.effectors.items() if part.unit == "m"},
+        goals=_goals(sim),
+    )
+
+
+def _values(body: Any, field: str) -> Optional[np.ndarray]:
+    """(n,): a field at a body's nodes; None where the body has no such field."""
+    if field == "displacement":
+        return np.linalg.norm(np.asarray(body.positions) - np.asarray(body.rest_positions), axis=1)
+    unit_of(field)  # or an error
+    try:
+        return np.nan_to_num(body.nodal_field(field))
+    except Error as error:
+        if error.kind != "wrong-type":  # rigid bodies and arms have no elements
+            raise
+        return None
+
+
+def _goals(sim: Any) -> dict[str, np.ndarray]:
+    """(3,) m of each effector that the controller brings to a point."""
+    if sim.controller is None:
+        return {}
+    targets, found = sim.controller.targets, {}
+    for name in targets:
+        if sim.effector(name).unit == "m":
+            target = targets[name]
+            found[name] = np.asarray(target.at(sim.time) if hasattr(target, "at") else target, dtype=float)
+    return found
+
+
+def between(first: Moment, second: Moment, share: float) -> Moment:
+    """The moment at a share of the way from one to another of the same robot; what is no number is of the nearer one."""
+
+    def mixed(a: Any, b: Any) -> Any:
+        if isinstance(a, dict):
+            return {name: mixed(a[name], b[name]) for name in a}
+        return (1.0 - share) * a + share * b
+
+    nearer = first if share < 0.5 else second
+    parts = {part.name: mixed(getattr(first, part.name), getattr(second, part.name))
+             for part in dataclasses.fields(Moment) if part.name != "slack"}  # fmt: skip
+    return Moment(**parts, slack=nearer.slack)

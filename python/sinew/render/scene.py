@@ -1,0 +1,115 @@
+"""What a scene's text says of the picture: gravity, surfaces that are touched, and where cables end."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+from typing import Any, Optional
+
+import numpy as np
+
+from .. import _core
+from ..errors import Error
+
+__all__ = ["Outline", "Surface", "outline_of", "parsed"]
+
+
+@dataclasses.dataclass(frozen=True)
+class Surface:
+    """A surface of the world that a contact names.
+
+    Attributes
+    ----------
+    kind : str
+        "plane", "sphere" or "capsule".
+    points : (1 or 2, 3) ndarray
+        A point of the plane, the sphere's centre, or the ends of the capsule's axis, m, where the scene puts them.
+    normal : (3,) ndarray
+        Of a plane, unit.
+    radius : float
+        Of a sphere or a capsule, m.
+    moves : bool
+    """
+
+    kind: str
+    points: np.ndarray
+    normal: np.ndarray
+    radius: float
+    moves: bool
+
+    def moved(self, pose: Optional[np.ndarray]) -> Surface:
+        """The surface after a rotation and shift (3, 4), m, from where the scene puts it; None for none."""
+        if pose is None:
+            return self
+        turn, shift = pose[:, :3], pose[:, 3]
+        return Surface(self.kind, self.points @ turn.T + shift, turn @ self.normal, self.radius, self.moves)
+
+
+@dataclasses.dataclass(frozen=True)
+class Outline:
+    """See the file.
+
+    Attributes
+    ----------
+    up : (3,) ndarray
+        Against gravity, unit; +z without gravity.
+    surfaces : dict of str to Surface
+        By the names of the contacts.
+    held : set of str
+        Cables whose pull point is fixed in the world.
+    """
+
+    up: np.ndarray
+    surfaces: dict[str, Surface]
+    held: set[str]
+
+
+def parsed(text: str) -> dict[str, Any]:
+    """A scene's text as dicts and lists of text. Raises tool-missing without PyYAML."""
+    try:
+        import yaml
+    except ImportError:
+        raise Error("tool-missing", "render", "pictures need PyYAML, which is not installed",
+                    "install python3-yaml, or pip install sinew[render]") from None
+    # As text: "1e-3" and "yes" are no number and no truth of YAML 1.1 here.
+    return yaml.load(text, Loader=yaml.BaseLoader)
+
+
+def outline_of(text: str) -> Outline:
+    """Reads the text of Simulation.to_yaml(). Raises tool-missing without PyYAML."""
+    tree = parsed(text)
+    gravity = _vector(tree.get("gravity", "0 0 0"))
+    length = np.linalg.norm(gravity)
+    up = -gravity / length if length > 0.0 else np.array([0.0, 0.0, 1.0])
+    surfaces = {}
+    for name, contact in (tree.get("contacts") or {}).items():
+        if contact.get("surface"):
+            surfaces[name] = _surface(contact["surface"], bool(contact.get("motion")))
+    cables = (tree.get("actuators") or {}).items()
+    held = {name for name, cable in cables if cable["type"] == "cable" and cable.get("pull", "world") == "world"}
+    return Outline(up, surfaces, held)
+
+
+def _surface(described: dict[str, Any], moves: bool) -> Surface:
+    (kind, own), = described.items()
+    own = own or {}
+    if kind == "plane":
+        normal = _direction(own.get("normal", "0 0 1"))
+        return Surface(kind, _vector(own.get("point", "0 0 0"))[None], normal, 0.0, moves)
+    points = [own["centre"]] if kind == "sphere" else own["ends"]
+    return Surface(kind, np.array([_vector(point) for point in points]), np.zeros(3), _core._quantity(own["radius"])[0], moves)
+
+
+def _direction(written: Any) -> np.ndarray:
+    vector = _vector(written)
+    return vector / np.linalg.norm(vector)
+
+
+def _vector(written: Any) -> np.ndarray:
+    """(3,), SI, of "0 0 190 mm" or of a list of numbers."""
+    if not isinstance(written, str):
+        return np.array([_core._quantity(str(number))[0] for number in written])
+    # The unit may stand against the last number.
+    x, y, rest = written.split(None, 2)
+    z, unit = re.fullmatch(r"([-+.\d]+(?:[eE][-+]?\d+)?)\s*(.*)", rest.strip()).groups()
+    return np.array([_core._quantity(f"{number} {unit}".strip())[0] for number in (x, y, z)])
