@@ -136,9 +136,9 @@ class Grasp(ContactTask):
         names += ["cup axis x", "cup axis y"] + [f"finger {k} normal force / 0.5 N" for k in range(gripper.FINGERS)]
         names += [f"finger {k} upward force / 0.2 N" for k in range(gripper.FINGERS)] + ["goal - height / 50 mm"]
         if self.observe == "state":
-            for what in ("/ 50 mm", "velocity {} / 1 m/s"):
-                names += [f"{name} node {k} {what.format(axis) if '{' in what else f'{axis} {what}'}"
-                          for name, body in robot.sim.bodies.items() for k in range(len(body.positions)) for axis in "xyz"]  # fmt: skip
+            nodes = [f"{name} node {k}" for name, body in robot.sim.bodies.items() for k in range(len(body.positions))]
+            names += [f"{node} {axis} / 50 mm" for node in nodes for axis in "xyz"]
+            names += [f"{node} velocity {axis} / 1 m/s" for node in nodes for axis in "xyz"]
         return names
 
     def sense(self, episode: Any, out: np.ndarray) -> None:
