@@ -14,7 +14,7 @@ from ..errors import Error
 from .models import Robot
 from .spaces import Box
 
-__all__ = ["SCENES", "Task", "unknown"]
+__all__ = ["SCENES", "Range", "Task", "range_of", "unknown"]
 
 SCENES = Path(__file__).parent / "scenes"
 
@@ -28,7 +28,7 @@ def unknown(place: str, what: str, name: Any, known: Sequence[str]) -> Error:
     return Error("unknown-name", place, f"there is no {what} {name!r}", f"{remedy}there are: {', '.join(known)}")
 
 
-def _range(item: str, value: Range, least: float, greatest: float, unit: str) -> tuple[float, float]:
+def range_of(item: str, value: Range, least: float, greatest: float, unit: str) -> tuple[float, float]:
     """(low, high) of a number or a pair, within bounds."""
     try:
         low, high = (float(v) for v in (value if np.ndim(value) else (value, value)))
@@ -97,9 +97,9 @@ class Task:
         self.action = self.actions[0] if action is None else action
         if self.action not in self.actions:
             raise unknown("action", f"action of {self.name}", action, self.actions)
-        self.material_scale = _range("material_scale", material_scale, 0.5, 2.0, "")
-        self.payload = _range("payload", payload, 0.0, 0.05, " kg")
-        delay = _range("action_delay", action_delay, 0, 10, " steps")
+        self.material_scale = range_of("material_scale", material_scale, 0.5, 2.0, "")
+        self.payload = range_of("payload", payload, 0.0, 0.05, " kg")
+        delay = range_of("action_delay", action_delay, 0, 10, " steps")
         if delay != (int(delay[0]), int(delay[1])):
             raise Error("wrong-type", "action_delay", f"{action_delay!r} is no number of steps", "give whole numbers")
         self.action_delay = (int(delay[0]), int(delay[1]))
@@ -124,7 +124,7 @@ class Task:
         """A number between two bounds; raises out-of-range and wrong-type."""
         if np.ndim(value):
             raise Error("wrong-type", item, f"{value!r} is no number", "give a number")
-        return _range(item, value, least, greatest, unit)[0]
+        return range_of(item, value, least, greatest, unit)[0]
 
     def bind(self, robot: Robot) -> None:
         """Takes what is the same for all models from the first: time step, limits, spaces."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Optional
 
-from ..task import Range, Task, _range
+from ..task import Range, Task, range_of
 
 __all__ = ["ContactTask"]
 
@@ -22,7 +22,7 @@ class ContactTask(Task):
 
     def __init__(self, *, friction: Optional[Range] = None, **options: Any) -> None:
         super().__init__(**options)
-        self.friction = _range("friction", self.default_friction if friction is None else friction, 0.0, 2.0, "")
+        self.friction = range_of("friction", self.default_friction if friction is None else friction, 0.0, 2.0, "")
 
     @property
     def ranges(self) -> dict[str, tuple[float, float]]:

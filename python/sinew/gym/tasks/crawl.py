@@ -41,7 +41,7 @@ class Crawl(ContactTask):
     """Make a quadruped of silicone with five air chambers crawl forward, along x; 40 ms a step, 6 s an episode.
 
     Two front legs, a trunk and two rear legs stand on a sole that fabric keeps from lengthening: pressure in a chamber bends
-    its part upwards in the middle. 66.5 x 38 x 14 mm, 24 g; dynamic (backward Euler). Episodes begin at rest, with all
+    its part upwards in the middle. 57 x 38 x 14 mm, 15 g, 768 nodes; dynamic (backward Euler). Episodes begin at rest, with all
     chambers empty or with pressures of up to half of the limits, drawn from four states.
 
     Action: change of the pressure in front_left, front_right, trunk, rear_left and rear_right: up to 300 kPa/s within 0 to
@@ -54,9 +54,10 @@ class Crawl(ContactTask):
     terminates.
     Info: `distance` (m, along x since the start), `drift` (m, along y), `heading` (rad), `success` (a distance of 30 mm or more).
     Randomisation: `material_scale` is of the silicone, `payload` is on the sole below the trunk, `friction` is of the floor
-    (default 0.5). With a material_scale below 0.8 the chambers may balloon at their limits, and steps fail.
+    (default 0.5). Below a material_scale of 0.95 chambers that are held at their limits may balloon, and the step then fails;
+    the gait fails at none of 0.85 to 1. 10 g of payload leave 40 % of the gait's distance, 50 g nothing.
 
-    The time step is coarse: with 10 ms the open-loop gait goes 6 % less far.
+    The open-loop gait goes 12.1 mm in a cycle of 2 s. It goes 12.2 mm with steps of 20 ms, and 11.8 mm with 10 ms.
     """
 
     name = "crawl"
