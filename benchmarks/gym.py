@@ -4,7 +4,8 @@
 
 An environment step of trunk-reach is one simulated step of 10 ms of the trunk (709 nodes, eight cables): actions, the step,
 observation, reward and the resets at the ends of episodes. Actions are uniform in [-1, 1]: every cable's tension goes up or
-down by up to 1 N a step, within 0 to 8 N. Rates are environment steps over processor time of all threads (a core's rate
+down by up to 1 N a step, within 0 to 8 N. `--task grasp` and `--task crawl` have contacts and take one step of 20 ms and 40 ms;
+8 environments and 60 steps are enough for them. Rates are environment steps over processor time of all threads (a core's rate
 whatever else the machine does), and over wall time. Python's share is the processor time that is not spent in sim.step().
 """
 
@@ -60,16 +61,10 @@ def python_share(task, envs, steps):
         """A simulation whose steps are timed."""
 
         def __init__(self, sim):
-            self._sim, self.restore, self.report = sim, sim.restore, sim.report
-            self.step_untimed = sim.step
+            self._sim, self.step_untimed = sim, sim.step
 
-        @property
-        def report(self):
-            return self._sim.report
-
-        @report.setter
-        def report(self, value):
-            pass
+        def __getattr__(self, name):
+            return getattr(self._sim, name)
 
         def step(self, n):
             nonlocal spent

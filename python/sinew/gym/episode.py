@@ -31,9 +31,9 @@ class Episode:
         Of the tip.
     steps : int
         Actions since the reset.
-    commands : (actuators,)
+    commands : (actions,)
         Of the last step, in the unit of the task's action.
-    action : (actuators,)
+    action : (actions,)
         The last one that acted, in [-1, 1].
     count : int
         Episodes begun.
@@ -64,7 +64,7 @@ class Episode:
             self.random = np.random.default_rng(seed)
         for name in options:
             if name not in self.task.options:
-                raise unknown("reset(options)", f"option of {self.task.name}", name, self.task.options or ("reset_mask",))
+                raise unknown("reset(options)", f"option of {self.task.name}", name, list(self.task.options) or ["reset_mask"])
         model = self._models[int(self.random.integers(len(self._models)))] if len(self._models) > 1 else self._models[0]
         self._put(model)
         starts = model.starts
@@ -73,12 +73,11 @@ class Episode:
         low, high = self.task.action_delay
         delay = int(self.random.integers(low, high + 1)) if high > low else low
         self.steps, self.count = 0, self.count + 1
-        kind = self.task.kind
-        self.commands = np.array([getattr(actuator, kind) for actuator in robot.actuators])
+        self.commands = self.task.commanded(robot)
         self.action = np.zeros(len(self.commands))
         self._late = deque([None] * delay)
         self.task.begin(self, options)
-        return {} if not self.task.is_randomised else {"material_scale": model.material_scale, "payload": model.payload}
+        return dict(model.drawn) if self.task.is_randomised else {}
 
     def step(self, action: np.ndarray) -> tuple[float, bool, bool, dict[str, Any]]:
         """Takes an action: reward, terminated, truncated, info."""
@@ -88,9 +87,7 @@ class Episode:
         if acting is not None:
             self.action = acting
             self.commands = task.commands(self, acting)
-        kind = task.kind
-        for actuator, value in zip(robot.actuators, self.commands.tolist()):
-            setattr(actuator, kind, value)
+        task.apply(self)
         task.disturb(self)
         self.steps += 1
         try:

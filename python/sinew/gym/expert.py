@@ -1,4 +1,4 @@
-"""The inverse controller as a policy."""
+"""Experts: the inverse controller, or a script, as a policy."""
 
 from __future__ import annotations
 
@@ -10,11 +10,12 @@ from .._core import InverseController
 from ..errors import Error
 from .env import Env
 from .models import Robot
-from .tasks import TrunkFollow, TrunkHold, TrunkReach
+from .tasks import Crawl, Grasp, TrunkFollow, TrunkHold, TrunkReach
 from .vector_env import VectorEnv
 
 __all__ = ["Expert", "expert"]
 
+_CONTROLLED, _SCRIPTED = (TrunkReach, TrunkFollow, TrunkHold), (Grasp, Crawl)
 _CORRECTION = 0.5  # share of what the twin's tip misses that is corrected at each step
 
 
@@ -51,18 +52,35 @@ class _Twin:
         return isinstance(self.episode.task, TrunkFollow)
 
 
-class Expert:
-    """Actions by the inverse controller; made by `expert`.
+class _Script:
+    """What the task would do itself, for one environment."""
 
-    Every environment has a twin: a simulation of its robot without pushes and delays, whose inverse controller steers the
+    def __init__(self, episode: Any) -> None:
+        self.episode = episode
+
+    def action(self) -> np.ndarray:
+        """Task.scripted."""
+        return self.episode.task.scripted(self.episode)
+
+
+class Expert:
+    """Actions by the inverse controller or by a script; made by `expert`.
+
+    **Trunks.** Every environment has a twin: a simulation of its robot without pushes and delays, whose inverse controller steers the
     tip to the goal. The action is the change of tensions that the twin makes. What the environment's tip misses of the
     twin's shifts the twin's target, half of it a step: so pushes are answered, though the twin does not know them.
+
+    **Grasp.** The script pulls every cable in by 8 mm within 0.8 s, then moves the feet by what the cup lacks of its height.
+
+    **Crawl.** The script is the open-loop gait, sinew.gym.tasks.crawl.gait: front legs, trunk and rear legs fill one after the
+    other, and empty in the same order, in 2 s.
     """
 
     def __init__(self, env: Union[Env, VectorEnv]) -> None:
         self._single = isinstance(env, Env)
         episodes = [env.episode] if self._single else env.episodes
-        self._twins = [_Twin(episode) for episode in episodes]
+        kind = _Script if isinstance(env.task, _SCRIPTED) else _Twin
+        self._each = [kind(episode) for episode in episodes]
 
     def __call__(self, observation: Any = None) -> np.ndarray:
         """Actions for the environment as it is now.
@@ -76,17 +94,18 @@ class Expert:
         -------
         (actions,) or (num_envs, actions) float32 in [-1, 1]
         """
-        actions = np.array([twin.action() for twin in self._twins], dtype=np.float32)
+        actions = np.array([each.action() for each in self._each], dtype=np.float32)
         return actions[0] if self._single else actions
 
 
 def expert(env: Union[Env, VectorEnv]) -> Expert:
-    """A policy that solves a task by the inverse controller.
+    """A policy that solves a task by the inverse controller, or by a script.
 
     Parameters
     ----------
     env : Env or VectorEnv
-        Of trunk-reach, trunk-follow or trunk-hold, with the action "tension-increment" and without randomised models.
+        Of trunk-reach, trunk-follow or trunk-hold, with the action "tension-increment" and without randomised models; of grasp
+        or crawl, with the action "displacement-increment" or "pressure-increment".
 
     Returns
     -------
@@ -106,9 +125,11 @@ def expert(env: Union[Env, VectorEnv]) -> Expert:
     """
     env = env.unwrapped
     task = env.task
-    if not isinstance(task, (TrunkReach, TrunkFollow, TrunkHold)):
-        raise Error("bad-argument", "expert(env)", f"there is no expert of {task.name}", "give trunk-reach, trunk-follow or trunk-hold")
-    if task.action != "tension-increment" or task.is_randomised:
+    if not isinstance(task, _CONTROLLED + _SCRIPTED):
+        known = ", ".join(each.name for each in _CONTROLLED + _SCRIPTED)
+        raise Error("bad-argument", "expert(env)", f"there is no expert of {task.name}", f"give one of: {known}")
+    if task.action != task.actions[0] or (task.is_randomised and isinstance(task, _CONTROLLED)):
+        without = " and without ranges of material_scale and payload" if isinstance(task, _CONTROLLED) else ""
         raise Error("bad-argument", "expert(env)", f"the action is {task.action}, randomised models: {task.is_randomised}",
-                    'make it with action="tension-increment" and without ranges of material_scale and payload')
+                    f'make it with action="{task.actions[0]}"{without}')
     return Expert(env)

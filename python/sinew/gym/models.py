@@ -1,15 +1,17 @@
 """The robots of a task: the models that it draws from, and simulations of each.
 
-What domain randomisation changes in a body (the stiffness of its material, its payload) is constant within a model, so a
-task builds a fixed number of models and an episode draws one of them. A simulation of a model is a clone and costs
+What domain randomisation changes (the stiffness of a material, a payload, friction) is constant within a model, so a task
+builds a fixed number of models and an episode draws one of them. A simulation of a model is a clone and costs
 `Simulation.memory` bytes. An episode takes a simulation of its model that is free, or a new clone, and hands it back at its
 end; which one it gets does not matter, as a restored state continues bit for bit.
 """
 
 from __future__ import annotations
 
+import tempfile
 import threading
-from typing import Any
+from pathlib import Path
+from typing import Any, Mapping
 
 from .._core import Simulation, State
 from ..scene import load
@@ -25,14 +27,16 @@ class Robot:
     sim : sinew.Simulation
     actuators : list of sinew.Actuator
         In the order of the actions.
-    tip : sinew.Effector
+    tip : sinew.Effector or None
+        The scene's first.
     body : sinew.Body
+        The scene's first.
     """
 
     def __init__(self, sim: Simulation) -> None:
         self.sim = sim
         self.actuators = list(sim.actuators.values())
-        self.tip = next(iter(sim.effectors.values()))
+        self.tip: Any = next(iter(sim.effectors.values()), None)
         self.body = next(iter(sim.bodies.values()))
 
 
@@ -41,10 +45,8 @@ class Model:
 
     Attributes
     ----------
-    material_scale : float
-        Factor of the stiffness.
-    payload : float
-        kg at the tip.
+    drawn : dict of float
+        The model's values of Task.ranges.
     first : Robot
         Every simulation of the model is a clone of its own.
     starts : list of sinew.State
@@ -53,15 +55,26 @@ class Model:
         What the task keeps of the model at rest (Task.measure_rest).
     """
 
-    def __init__(self, task: Any, material_scale: float, payload: float) -> None:
-        self.material_scale, self.payload = material_scale, payload
-        overrides = {**task.settings, **task.randomised(material_scale, payload), **task.set}
-        self.first = Robot(load(task.scene, set=overrides, threads=1))
+    def __init__(self, task: Any, drawn: Mapping[str, float]) -> None:
+        self.drawn = dict(drawn)
+        overrides = {**task.settings, **task.randomised(**drawn), **task.set}
+        with tempfile.TemporaryDirectory() as folder:
+            self.first = Robot(load(task.described(Path(folder)), set=overrides, threads=1))
         self.starts: list[State] = task.prepare(self.first)
         self.first.sim.restore(self.starts[0])
         self.rest = task.measure_rest(self.first)
         self._free: list[Robot] = []
         self._lock = threading.Lock()
+
+    @property
+    def material_scale(self) -> float:
+        """Factor of the stiffness."""
+        return self.drawn["material_scale"]
+
+    @property
+    def payload(self) -> float:
+        """kg."""
+        return self.drawn["payload"]
 
     def take(self) -> Robot:
         """A free simulation of the model, in any state."""
@@ -78,18 +91,23 @@ class Models:
     """All models of a task.
 
     Without randomisation there is one. With it, model k of K has quantile (k + 1/2) / K of the material scale, log-uniform
-    in its range, and of the payload quantile frac((k + 1/2) golden ratio), uniform in its range: points that fill the plane
-    evenly and that do not depend on any seed.
+    in its range, and of payload and friction the quantiles frac((k + 1/2) golden ratio) and frac((k + 1/2) sqrt(2)), uniform
+    in their ranges: points that fill the space evenly and that do not depend on any seed.
     """
+
+    _STRIDES = (0.6180339887498949, 0.4142135623730951)
 
     def __init__(self, task: Any) -> None:
         count = task.models if task.is_randomised else 1
         self.all = []
         for k in range(count):
-            first, second = (k + 0.5) / count, ((k + 0.5) * 0.6180339887498949) % 1.0
-            low, high = task.material_scale
-            light, heavy = task.payload
-            self.all.append(Model(task, low * (high / low) ** first, light + (heavy - light) * second))
+            drawn: dict[str, float] = {}
+            for (name, (low, high)), stride in zip(task.ranges.items(), (None, *self._STRIDES)):
+                if stride is None:
+                    drawn[name] = low * (high / low) ** ((k + 0.5) / count)
+                else:
+                    drawn[name] = low + (high - low) * (((k + 0.5) * stride) % 1.0)
+            self.all.append(Model(task, drawn))
 
     def __len__(self) -> int:
         return len(self.all)

@@ -14,7 +14,8 @@ from .vector_env import VectorEnv
 __all__ = ["make", "make_vec", "tasks"]
 
 _TASKS: dict[str, type[Task]] = {
-    task.name: task for task in (_tasks.TrunkReach, _tasks.TrunkFollow, _tasks.TrunkHold, _tasks.TrunkDamp, _tasks.ArmSwingUp)
+    task.name: task
+    for task in (_tasks.TrunkReach, _tasks.TrunkFollow, _tasks.TrunkHold, _tasks.TrunkDamp, _tasks.ArmSwingUp, _tasks.Grasp, _tasks.Crawl)
 }
 
 

@@ -15,7 +15,7 @@ from ..errors import Error
 from .models import Robot
 from .spaces import Box
 
-__all__ = ["SCENES", "Task", "unknown"]
+__all__ = ["SCENES", "Range", "Task", "range_of", "unknown"]
 
 SCENES = Path(__file__).parent / "scenes"
 
@@ -29,7 +29,7 @@ def unknown(place: str, what: str, name: Any, known: Sequence[str]) -> Error:
     return Error("unknown-name", place, f"there is no {what} {name!r}", f"{remedy}there are: {', '.join(known)}")
 
 
-def _range(item: str, value: Range, least: float, greatest: float, unit: str) -> tuple[float, float]:
+def range_of(item: str, value: Range, least: float, greatest: float, unit: str) -> tuple[float, float]:
     """(low, high) of a number or a pair, within bounds."""
     try:
         low, high = (float(v) for v in (value if np.ndim(value) else (value, value)))
@@ -55,11 +55,11 @@ class Task:
     action : str, optional
         What actions mean, one of `actions`; by default the first.
     material_scale : float or (low, high)
-        Factor of the stiffness of all material, 0.5 to 2, drawn for each episode.
+        Factor of the stiffness of all material, 0.5 to 2, drawn for each episode. A task may say which material.
     payload : float or (low, high)
         kg fixed to the tip, 0 to 0.05, drawn for each episode.
     models : int
-        How many models are built to draw material and payload from, 1 to 64; 1 without either.
+        How many models are built to draw what is a range of, 1 to 64; 1 without a range.
     action_delay : int or (low, high)
         Steps by which actions act late, 0 to 10, drawn for each episode.
     set : dict, optional
@@ -99,9 +99,9 @@ class Task:
         self.action = self.actions[0] if action is None else action
         if self.action not in self.actions:
             raise unknown("action", f"action of {self.name}", action, self.actions)
-        self.material_scale = _range("material_scale", material_scale, 0.5, 2.0, "")
-        self.payload = _range("payload", payload, 0.0, 0.05, " kg")
-        delay = _range("action_delay", action_delay, 0, 10, " steps")
+        self.material_scale = range_of("material_scale", material_scale, 0.5, 2.0, "")
+        self.payload = range_of("payload", payload, 0.0, 0.05, " kg")
+        delay = range_of("action_delay", action_delay, 0, 10, " steps")
         if delay != (int(delay[0]), int(delay[1])):
             raise Error("wrong-type", "action_delay", f"{action_delay!r} is no number of steps", "give whole numbers")
         self.action_delay = (int(delay[0]), int(delay[1]))
@@ -112,16 +112,21 @@ class Task:
         self._time_limit = self.default_time_limit if time_limit is None else float(time_limit)
 
     @property
+    def ranges(self) -> dict[str, tuple[float, float]]:
+        """What a model has a value of: the arguments of `randomised`, each with (low, high). The first is log-uniform."""
+        return {"material_scale": self.material_scale, "payload": self.payload}
+
+    @property
     def is_randomised(self) -> bool:
         """Whether episodes draw from several models."""
-        return self.material_scale[0] < self.material_scale[1] or self.payload[0] < self.payload[1]
+        return any(low < high for low, high in self.ranges.values())
 
     @staticmethod
     def bounded(item: str, value: float, least: float, greatest: float, unit: str = "") -> float:
         """A number between two bounds; raises out-of-range and wrong-type."""
         if np.ndim(value):
             raise Error("wrong-type", item, f"{value!r} is no number", "give a number")
-        return _range(item, value, least, greatest, unit)[0]
+        return range_of(item, value, least, greatest, unit)[0]
 
     def bind(self, robot: Robot) -> None:
         """Takes what is the same for all models from the first: time step, limits, spaces."""
@@ -131,20 +136,27 @@ class Task:
                         f"give {self.time_step:g} s, the time of a step, or more")
         self.time_limit = self._time_limit
         self.episode_steps = round(self._time_limit / self.time_step)
-        kind = self.action.split("-")[0]
-        limits = [actuator.limits[kind] for actuator in robot.actuators]
-        self.low, self.high = (np.array([getattr(limit, end) for limit in limits]) for end in ("min", "max"))
-        rates = np.array([limit.rate for limit in limits])
+        self.kind, self.is_increment = self.action.split("-")[0], self.action.endswith("-increment")
+        self.low, self.high, rates = self.limits(robot)
         self.increment = np.minimum(rates * self.time_step, self.high - self.low)  # the greatest change in a step
-        self.kind, self.is_increment = kind, self.action.endswith("-increment")
-        self.action_space = Box(low=-1.0, high=1.0, shape=(len(limits),), dtype=np.float32)
+        self.action_space = Box(low=-1.0, high=1.0, shape=self.low.shape, dtype=np.float32)
         self.observation_space = Box(low=-np.inf, high=np.inf, shape=(self.observation_size(robot),), dtype=np.float32)
 
     # What a subclass may define.
 
+    def described(self, folder: Path) -> Union[Path, dict[str, Any]]:
+        """The scene, as sinew.load takes it. A mesh may be written into the folder, which lasts until the scene is loaded."""
+        return self.scene
+
     def randomised(self, material_scale: float, payload: float) -> dict[str, Any]:
         """Values of the scene for a material and a payload (kg)."""
         raise NotImplementedError
+
+    def limits(self, robot: Robot) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Least and greatest commands, and their greatest rates (1/s), (actions,) each; by default those of the actuators."""
+        limits = [actuator.limits[self.kind] for actuator in robot.actuators]
+        least, greatest, rates = (np.array([getattr(limit, part) for limit in limits]) for part in ("min", "max", "rate"))
+        return least, greatest, rates
 
     def prepare(self, robot: Robot) -> list[State]:
         """States that episodes begin with; the simulation is as loaded."""
@@ -165,6 +177,15 @@ class Task:
     def begin(self, episode: Any, options: Mapping[str, Any]) -> None:
         """Draws what is random in an episode, from `episode.random`; the robot is in its start."""
 
+    def commanded(self, robot: Robot) -> np.ndarray:
+        """The commands that a start corresponds to, (actions,); the robot is in it."""
+        return np.array([getattr(actuator, self.kind) for actuator in robot.actuators])
+
+    def apply(self, episode: Any) -> None:
+        """Passes `episode.commands` on to the robot."""
+        for actuator, value in zip(episode.robot.actuators, episode.commands.tolist()):
+            setattr(actuator, self.kind, value)
+
     def disturb(self, episode: Any) -> None:
         """Changes the world just before a step."""
 
@@ -180,8 +201,12 @@ class Task:
         """Reward of the step just taken, whether the task is over, and info."""
         raise NotImplementedError
 
-    #: Names that reset(options=...) takes for an environment.
-    options: tuple[str, ...] = ()
+    #: Names that reset(options=...) takes for an environment, and how many axes a value has.
+    options: Mapping[str, int] = {}
+
+    def scripted(self, episode: Any) -> np.ndarray:
+        """What a scripted expert would do now, (actions,) in [-1, 1], for the task's first action. A task may have none."""
+        raise NotImplementedError
 
     def observation_size(self, robot: Robot) -> int:
         """Numbers of an observation."""

@@ -278,10 +278,10 @@ class VectorEnv(VectorEnvBase):
         return given
 
     def _options_of(self, i: int, options: Mapping[str, Any]) -> dict[str, Any]:
-        """Options of one environment: rows of arrays of two axes, other values as they are."""
+        """Options of one environment: rows of arrays that have one more axis than a value, other values as they are."""
         rows = {}
         for name, value in options.items():
-            if np.ndim(value) == 2:
+            if np.ndim(value) == self.task.options.get(name, np.inf) + 1:
                 if len(value) != self.num_envs:
                     raise Error("wrong-length", "reset(options)", f"{name} has {len(value)} rows for {self.num_envs} environments",
                                 "give a row for each")

@@ -129,6 +129,7 @@ bool EventStepper::is_smooth(double end, double length) {
   if (run_.actuation.drive_numbers() > 0 || !run_.model->guides().empty()) return false;
   if (!world.bodies().can_carry_on() || world.contacts().touches_softly(run_.effort)) return false;
   substep_.read_commands(end, length);
+  world.measure_delta();  // the rows of the present state, not of the last part's end
   return std::ranges::none_of(world.problem().actuators, [&](const step::ActuatorBlock& block) {
     if (block.row < 0) return false;
     if (block.kind == step::CommandKind::motion) return true;

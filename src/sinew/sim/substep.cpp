@@ -16,6 +16,7 @@ void Substep::read_commands(double end, double time_step) {
 
 void Substep::begin(double time_step) {
   run_.keep(run_.before);
+  held_before_ = run_.report.choice_held;
   begin_world(time_step);
 }
 
@@ -49,6 +50,9 @@ bool Substep::reaches_back() const {
 void Substep::solve_afresh(double time_step, bool divisible) {
   run_.go_back();
   run_.last_step = 0.0;
+  // Where the first solution held a controller's choice, its actuators were taken from it.
+  run_.report.choice_held = held_before_;
+  run_.read_commands(run_.now, time_step);
   begin_world(time_step);
   solve_equation(time_step, divisible);
 }

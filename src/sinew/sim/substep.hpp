@@ -35,6 +35,7 @@ class Substep {
 
   Run& run_;
   bool stops_points_ = false;  // of contacts, which moved when the part began
+  bool held_before_ = false;   // a controller's choice, in earlier parts of the step
 };
 
 }  // namespace sinew::sim

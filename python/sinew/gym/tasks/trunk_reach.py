@@ -31,7 +31,7 @@ class TrunkReach(TrunkTask):
     name = "trunk-reach"
     summary = "bring the tip to a random goal"
     default_time_limit = 0.5
-    options = ("goal",)
+    options = {"goal": 1}
 
     def begin(self, episode: Any, options: Mapping[str, Any]) -> None:
         """Draws the goal."""

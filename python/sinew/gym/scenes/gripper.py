@@ -1,0 +1,102 @@
+"""Three soft fingers with a cable each, and a cup that is soft, too: examples/grasp/grasp.py on a coarser mesh."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from . import hexahedra
+
+__all__ = ["CUP_FLOOR", "CUP_HEIGHT", "CUP_MODULUS", "FINGERS", "scene", "write_cup"]
+
+FINGERS = 3
+CUP_RADII, CUP_HEIGHT, CUP_WALL, CUP_FLOOR = (18e-3, 35e-3), 78.6e-3, 4e-3, 5e-3  # m; outer radii at the floor and at the rim
+CUP_MODULUS = 1e6  # Pa, of Young
+QUARTER, LAYERS = 4, 5  # of the cup: cells along a quarter of its circle, layers from the floor to the rim
+APART, ABOVE, HELD = 50e-3, 220e-3, 20e-3  # m: feet from the middle and above the table; how much of a finger is held
+
+
+def disc() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """A square within a ring.
+
+    Returns
+    -------
+    points : (n, 2)
+        Of the unit disc.
+    quadrilaterals : (m, 4) int
+    rim : (4 QUARTER,) int
+        Points of its circle, counter-clockwise.
+    """
+    n, grid = QUARTER, np.linspace(-0.55, 0.55, QUARTER + 1)
+    square = np.stack(np.meshgrid(grid, grid, indexing="ij"), axis=-1).reshape(-1, 2)
+    at = np.arange((n + 1) ** 2).reshape(n + 1, n + 1)
+    cells = np.stack([at[:-1, :-1], at[1:, :-1], at[1:, 1:], at[:-1, 1:]], axis=-1).reshape(-1, 4)
+    edge = np.concatenate([at[:-1, 0], at[-1, :-1], at[:0:-1, -1], at[0, :0:-1]])
+    turn = 2.0 * np.pi * np.arange(4 * n) / (4 * n) - 0.75 * np.pi
+    rim = len(square) + np.arange(4 * n)
+    ring = np.column_stack([edge, rim, np.roll(rim, -1), np.roll(edge, -1)])
+    return np.vstack([square, np.column_stack([np.cos(turn), np.sin(turn)])]), np.vstack([cells, ring]), rim
+
+
+def write_cup(path: Path) -> None:
+    """The cup, one hexahedron through its floor and one through its wall; it stands on z = 0 around the z axis."""
+    plane, cells, rim = disc()
+    heights = np.concatenate([[0.0], np.linspace(CUP_FLOOR, CUP_HEIGHT, LAYERS)])
+    level = len(plane) + len(rim)  # nodes: those of the inside, then those of the outer circle
+    nodes = np.concatenate([np.column_stack([np.vstack([(r - CUP_WALL) * plane, r * plane[rim]]), np.full(level, z)])
+                            for r, z in zip(np.interp(heights, [0.0, CUP_HEIGHT], CUP_RADII), heights)])  # fmt: skip
+    outer = len(plane) + np.arange(len(rim))
+    wall = np.column_stack([rim, outer, np.roll(outer, -1), np.roll(rim, -1)])
+    layers = [np.vstack([cells, wall])] + (LAYERS - 1) * [wall]
+    used, corners = np.unique(np.concatenate([np.hstack([k * level + q, (k + 1) * level + q]) for k, q in enumerate(layers)]),
+                              return_inverse=True)  # fmt: skip
+    hexahedra.write(path, nodes[used], corners.reshape(-1, 8))
+
+
+def scene(folder: Path, friction: float) -> dict[str, Any]:
+    """The scene; the mesh of the cup is written into the folder.
+
+    Bodies: cup, finger_0 to finger_2, around the cup a third of a turn apart, and cable_0 to cable_2 on their inner sides.
+    Contacts: table, and grip_0 to grip_2 between a finger (first) and the cup.
+
+    Parameters
+    ----------
+    folder : Path
+        It must last while the scene is loaded.
+    friction : float
+        Coefficient of all contacts.
+    """
+    write_cup(folder / "cup.vtk")
+    bodies: dict[str, Any] = {
+        "cup": {
+            "type": "fem", "mesh": {"file": str(folder / "cup.vtk")}, "density": "1070 kg/m^3",
+            "material": {"model": "neo-hookean", "young_modulus": CUP_MODULUS, "poisson_ratio": 0.45},
+        }
+    }  # fmt: skip
+    contacts: dict[str, Any] = {"table": {"body": "cup", "surface": {"plane": {}}, "friction": friction}}
+    cables = {}
+    depth = np.append(0.0, np.linspace(21e-3, 190e-3, 20))  # of a cable's points below the foot
+    inwards = np.interp(depth, depth[[1, -1]], [10e-3, 3.5e-3])  # from the finger's axis to the cable
+    for k in range(FINGERS):
+        turn = 2.0 * np.pi * k / FINGERS
+        outwards = np.array([np.cos(turn), np.sin(turn), 0.0])
+        route = (APART - inwards)[:, None] * outwards + (ABOVE - depth)[:, None] * [0.0, 0.0, 1.0]
+        bodies[f"finger_{k}"] = {
+            "type": "fem", "mesh": {"shape": "trunk", "element_size": "10 mm"}, "element": "tet4-patch", "mass": "42 g",
+            "material": {"model": "neo-hookean", "young_modulus": "600 kPa", "poisson_ratio": 0.45},
+            "position": (APART * outwards + [0.0, 0.0, ABOVE]).tolist(),
+            "rotation": [np.pi * np.cos(turn / 2), np.pi * np.sin(turn / 2), 0.0],  # upside down, then about z
+            "fixed": {"box": [-0.2, -0.2, ABOVE - HELD - 1e-6, 0.2, 0.2, ABOVE + 1e-6]},
+        }  # fmt: skip
+        cables[f"cable_{k}"] = {
+            "type": "cable", "body": f"finger_{k}", "pull": "body", "points": route.tolist(),
+            "limits": {"displacement": {"min": "0 mm", "max": "10 mm", "rate": "20 mm/s"}, "tension": {"min": "0 N"}},
+            "command": {"displacement": "0 mm"},
+        }  # fmt: skip
+        contacts[f"grip_{k}"] = {"between": [f"finger_{k}", "cup"], "friction": friction}
+    return {
+        "sinew": 1, "gravity": "0 0 -9.81 m/s^2", "integrator": "backward-euler", "time_step": "20 ms",
+        "bodies": bodies, "actuators": cables, "contacts": contacts,
+    }  # fmt: skip
