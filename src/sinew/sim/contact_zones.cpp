@@ -20,6 +20,8 @@ constexpr double kRelaxation = 0.7, kLess = 0.5, kGrows = 1.1;
 // a, of the distance of neighbouring points. Larger ones make neighbours too alike.
 constexpr double kSpread = 0.2;
 constexpr int kSweeps = 10;
+// Weights, and gaps in parts of a zone, that differ by less are the same: rounding decides nothing.
+constexpr double kAlike = 1e-6;
 
 }  // namespace
 
@@ -95,9 +97,14 @@ void ContactZones::measure_spacing(const Points& at) {
 int ContactZones::zone_of(std::size_t point, const mechanics::RowValues& rows) const {
   if (!contact_.is_found_anew()) return zone_of_place_[point];
   const mechanics::Patch& patch = rows.patch[contact_.entry(point)];
-  Eigen::Index most = 0;
-  patch.weights.maxCoeff(&most);
-  return zone_of_place_[static_cast<std::size_t>(patch.nodes[static_cast<std::size_t>(most)])];
+  const double most = patch.weights.maxCoeff() - kAlike;
+  NodeId first = -1;
+  for (std::size_t k = 0; k < patch.nodes.size(); ++k) {
+    const NodeId node = patch.nodes[k];
+    if (patch.weights[static_cast<Eigen::Index>(k)] < most) continue;
+    if (first < 0 || node < first) first = node;
+  }
+  return zone_of_place_[static_cast<std::size_t>(first)];
 }
 
 double ContactZones::normal_effort(std::size_t point, std::span<const double> effort) const {
@@ -117,14 +124,14 @@ void ContactZones::begin(std::span<const double> effort, std::span<const double>
     Zone& zone = zones_[static_cast<std::size_t>(zone_of(k, rows))];
     weight_[k] = normal_effort(k, effort);
     zone.force += weight_[k];
-    if (arrivals[k] >= zone.nearest) continue;
-    zone.nearest = arrivals[k];
-    zone.nearest_point = static_cast<int>(k);
+    zone.nearest = std::min(zone.nearest, arrivals[k]);
   }
-  for (Zone& zone : zones_) {
-    zone.touched = zone.force > 0.0;
-    if (zone.touched || zone.nearest_point < 0 || zone.nearest > near) continue;
-    weight_[static_cast<std::size_t>(zone.nearest_point)] = 1.0;
+  for (Zone& zone : zones_) zone.touched = zone.force > 0.0;
+  for (std::size_t k = 0; k < contact_.size(); ++k) {
+    if (contact_.idle(k, rows)) continue;
+    const Zone& zone = zones_[static_cast<std::size_t>(zone_of(k, rows))];
+    if (zone.touched || zone.nearest > near) continue;
+    if (arrivals[k] <= zone.nearest + kAlike * size_) weight_[k] = 1.0;
   }
   group(rows);
 }

@@ -72,8 +72,7 @@ class ContactZones {
     double nearest = 0.0;  // m
     double overlap = 0.0;  // m, the largest
     double overlap_before = 0.0;
-    double relaxation = 0.0;  // w
-    int nearest_point = -1;
+    double relaxation = 0.0;    // w
     int begin = -1;             // of its points that have a force or overlap
     int first = -1, last = -1;  // rows of its group
   };
