@@ -75,6 +75,15 @@ TEST_P(RandomScenes, RunAndReproduce) {
 }
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomScenes, ::testing::Range(0, kRandomBlocks));
 
+// Of thousands that were tried: controllers beside a contact that stops a point under
+// generalized-alpha, which crashed, and a limited cable under event-driven integration, which went
+// on differently from a saved state.
+TEST(Combination, ScenesThatFailedOnce) {
+  for (const std::uint64_t seed : {92224, 93068, 94417}) {
+    expect_sound(random_selection(seed), seed);
+  }
+}
+
 TEST(Combination, StatesAreRefusedWhereTheyWouldGoOnDifferently) {
   for (std::uint64_t seed = 0; seed < kChangedScenes; ++seed) {
     EXPECT_EQ(try_changed_number(random_selection(seed), seed), "") << seed;
