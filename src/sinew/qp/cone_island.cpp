@@ -11,6 +11,7 @@ namespace {
 constexpr double kConeProximal = 1e-12;    // of the diagonal
 constexpr double kNewtonShare = 0.3;       // of the cost of a step of Newton's
 constexpr double kOffsetRounding = 1e-14;  // of the largest offset
+constexpr Eigen::Index kLarge = 600;       // rows, see ConeSettings::usable
 // Efforts that are larger, times what the free motion asks of one block alone, measure nothing:
 // they grow without limit where no motion can obey all blocks.
 constexpr double kMaxEffort = 1e4;
@@ -65,12 +66,18 @@ ConeStatus ConeIsland::solve(const ConePart& part, std::span<double> start) {
       result_.status = ConeStatus::solved;
       break;
     }
+    if (is_good_enough(part)) break;
     sweeps = std::min(result_.sweeps, settings_.max_sweeps - result_.sweeps);
   }
   judge(part);
   classify(part);
   std::copy_n(x_.data(), x_.size(), start.begin());
   return result_.status;
+}
+
+bool ConeIsland::is_good_enough(const ConePart& part) const {
+  return part.blocks == nullptr && x_.size() > kLarge && newton_tries_ >= kNewtonWays &&
+         result_.residual <= settings_.usable;
 }
 
 // One of Newton's steps costs about (2/3) n^3 for n unknowns, a sweep 2 n of the problem's rows:

@@ -72,7 +72,9 @@ class ConeIsland {
   void project_and_update(const ConeProblem& problem);
 
   // Newton (cone_newton.cpp).
+  static constexpr std::size_t kNewtonWays = 4;
   bool newton_pays(const ConePart& part) const;
+  bool is_good_enough(const ConePart& part) const;
   bool newton(const ConePart& part);
   bool newton_step(const ConePart& part, double proximal);
   bool newton_steps(const ConePart& part, int max_steps, double tolerance, auto&& proximal);

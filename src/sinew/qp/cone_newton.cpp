@@ -50,6 +50,7 @@ double proximal_term(double own, double row_scale, double proximal) {
 }  // namespace
 
 bool ConeIsland::newton(const ConePart& part) {
+  static_assert(std::size(kProximal) == kNewtonWays);
   const std::size_t tries = newton_tries_++;
   const double tolerance = settings_.tolerance;
   if (tries == 0 && x_.size() <= kPlainRows) {

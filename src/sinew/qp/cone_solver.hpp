@@ -65,6 +65,10 @@ struct ConeSettings {
   /// Gauss-Seidel, which surfaces that touch all over on fine meshes can make crawl. 6000 take
   /// 290 MB and some seconds a step.
   int newton_limit = 6000;
+  /// Of dense problems with more than 600 rows: where the residual is no more than this after
+  /// Newton's method was tried in its four ways, the solver stops (iteration-limit). What is left
+  /// is mostly which of redundant contacts slide, and costs as much again for each further try.
+  double usable = 0.0;
   ConeMeasure measure = ConeMeasure::per_block;
   const Poll* poll = nullptr;  ///< called in every sweep and step of Newton's; outlives the solver
 };

@@ -8,11 +8,19 @@
 
 namespace sinew::sim {
 
+namespace {
+
+constexpr double kUsableContacts = 1e-7;  // see qp::ConeSettings::usable
+
+}  // namespace
+
 Run::Run(std::shared_ptr<const Model> shared_model, int threads)
     : model(std::move(shared_model)),
       pool(threads),
       world(model, pool),
-      solver(qp::ConeSettings{.tolerance = model->step().contact_tolerance, .poll = &watch.poll()}),
+      solver(qp::ConeSettings{.tolerance = model->step().contact_tolerance,
+                              .usable = kUsableContacts,
+                              .poll = &watch.poll()}),
       actuation(*model),
       surroundings(*model, world.bodies()),
       effort(static_cast<std::size_t>(model->rows().rows()), 0.0) {
