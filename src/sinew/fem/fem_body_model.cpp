@@ -112,6 +112,7 @@ void FemBodyModel::finish(int body, const mechanics::RowPattern& rows,
   body_ = body;
   world_rows_ = rows;
   loads_ = std::make_unique<const LoadSet>(std::move(added_loads_), mesh().nodes);
+  linalg::check_settings(settings);  // plans are made later
   factorisation_ = settings;
   rows_.clear();
   for (int row = 0; row < rows.rows(); ++row) {

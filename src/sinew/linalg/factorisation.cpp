@@ -125,16 +125,19 @@ std::shared_ptr<const FactorisationPlan> analyse(const BlockPattern& pattern,
                                                  const FactorisationSettings& settings) {
   check_block_pattern(pattern);
   check_border_pattern(border, pattern.nodes);
+  check_settings(settings);
+  PlansInUse& plans = plans_in_use();
+  if (auto plan = plans.find(pattern, border, settings)) return plan;
+  const auto backend = std::ranges::find(kBackends, settings.backend, &Backend::name);
+  return plans.add(pattern, border, settings, backend->make(pattern, border, settings));
+}
+
+void check_settings(const FactorisationSettings& settings) {
   if (settings.threads < 1) {
     fail(ErrorKind::out_of_range, "threads",
          "the number of threads is " + std::to_string(settings.threads), "give at least 1");
   }
-  for (const Backend& backend : kBackends) {
-    if (backend.name != settings.backend) continue;
-    PlansInUse& plans = plans_in_use();
-    if (auto plan = plans.find(pattern, border, settings)) return plan;
-    return plans.add(pattern, border, settings, backend.make(pattern, border, settings));
-  }
+  if (std::ranges::find(kBackends, settings.backend, &Backend::name) != kBackends.end()) return;
   const std::string near = nearest_word(settings.backend, backends());
   fail(ErrorKind::unknown_choice, "backend", "unknown backend '" + settings.backend + "'",
        near.empty() ? "choose block, eigen-ldlt or eigen-llt" : "did you mean '" + near + "'?");

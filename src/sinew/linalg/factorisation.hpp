@@ -96,6 +96,10 @@ std::shared_ptr<const FactorisationPlan> analyse(const BlockPattern& pattern,
                                                  const BorderPattern& border,
                                                  const FactorisationSettings& settings = {});
 
+/// Throws what analyse() throws of its settings: Error: unknown-choice (backend), out-of-range
+/// (threads).
+void check_settings(const FactorisationSettings& settings);
+
 /// The names that `FactorisationSettings::backend` takes.
 std::vector<std::string> backends();
 
