@@ -327,7 +327,9 @@ def test_models_of_domain_randomisation():
     first = {id(episode.robot.sim) for episode in envs.episodes}
     for _ in range(12):
         envs.step(np.zeros((6, 8)))
-    assert len(first) == 6 and sum(len(model._free) for model in envs.episodes[0]._models.all) <= 6
+    # How many clones a model has depends on how the threads' resets interleave: as many as environments at most.
+    own = [len(model._free) + sum(episode.model is model for episode in envs.episodes) for model in envs.episodes[0]._models.all]
+    assert len(first) == 6 and all(count <= 6 for count in own)
 
 
 def test_a_simulation_that_others_have_used_is_as_new():
