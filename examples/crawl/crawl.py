@@ -16,6 +16,7 @@ from pathlib import Path
 import meshio
 import numpy as np
 import sinew
+from sinew.gym.scenes import hexahedra
 
 CELL = np.array([2.5, 5.0, 3.0]) * 1e-3  # m: a hexahedron
 BELLOWS, PITCH = 3, 5  # of a chamber; cells from one bellow to the next
@@ -43,10 +44,8 @@ def cells():
 
 def write_mesh(path):
     solid = cells()
-    corners = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]])
-    at = (np.argwhere(solid)[:, None, :] + corners).reshape(-1, 3)
-    nodes, hexahedra = np.unique(at, axis=0, return_inverse=True)
-    meshio.write(path, meshio.Mesh(nodes * CELL, [("hexahedron", hexahedra.reshape(-1, 8))]))
+    nodes, cubes, _ = hexahedra.voxels(solid, [np.arange(count + 1) * edge for count, edge in zip(solid.shape, CELL)])
+    meshio.write(path, meshio.Mesh(nodes, [("hexahedron", cubes)]))
 
 
 def inside(chamber):

@@ -17,6 +17,8 @@ from pathlib import Path
 import meshio
 import numpy as np
 import sinew
+from sinew.gym.scenes import hexahedra
+from sinew.render.geometry import boundary_of
 
 QUARTER, LAYERS = 5, 9  # of the cup: cells along a quarter of its circle, layers from the floor to the rim
 TAPERED, STRAIGHT = (18e-3, 35e-3), (26e-3, 26e-3)  # m: outer radii at the floor and at the rim
@@ -31,32 +33,10 @@ PULLS = (4.0, 6.0, 7.0, 8.0, 9.0, 10.0)  # mm
 GRAVITY = 9.81
 
 
-def disc():
-    """A square within a ring: points (n, 2) of a unit disc, its quadrilaterals, the points of its rim in order."""
-    n, grid = QUARTER, np.linspace(-0.55, 0.55, QUARTER + 1)
-    square = np.stack(np.meshgrid(grid, grid, indexing="ij"), axis=-1).reshape(-1, 2)
-    at = np.arange((n + 1) ** 2).reshape(n + 1, n + 1)
-    cells = np.stack([at[:-1, :-1], at[1:, :-1], at[1:, 1:], at[:-1, 1:]], axis=-1).reshape(-1, 4)
-    edge = np.concatenate([at[:-1, 0], at[-1, :-1], at[:0:-1, -1], at[0, :0:-1]])  # counter-clockwise
-    turn = 2.0 * np.pi * np.arange(4 * n) / (4 * n) - 0.75 * np.pi
-    rim = len(square) + np.arange(4 * n)
-    ring = np.column_stack([edge, rim, np.roll(rim, -1), np.roll(edge, -1)])
-    return np.vstack([square, np.column_stack([np.cos(turn), np.sin(turn)])]), np.vstack([cells, ring]), rim
-
-
 def write_cup(path, radii=TAPERED):
     """The cup as hexahedra, one through the floor and one through the wall."""
-    plane, cells, rim = disc()
-    heights = np.concatenate([[0.0], np.linspace(FLOOR, HEIGHT, LAYERS)])
-    level = len(plane) + len(rim)  # nodes: those of the inside, then those of the outer circle
-    nodes = np.concatenate([np.column_stack([np.vstack([(r - WALL) * plane, r * plane[rim]]), np.full(level, z)])
-                            for r, z in zip(np.interp(heights, [0.0, HEIGHT], radii), heights)])  # fmt: skip
-    outer = len(plane) + np.arange(len(rim))
-    wall = np.column_stack([rim, outer, np.roll(outer, -1), np.roll(rim, -1)])
-    layers = [np.vstack([cells, wall])] + (LAYERS - 1) * [wall]
-    hexahedra = np.concatenate([np.hstack([k * level + q, (k + 1) * level + q]) for k, q in enumerate(layers)])
-    used, hexahedra = np.unique(hexahedra, return_inverse=True)
-    meshio.write(path, meshio.Mesh(nodes[used], [("hexahedron", hexahedra.reshape(-1, 8))]))
+    nodes, cells = hexahedra.cup(QUARTER, LAYERS, radii, HEIGHT, WALL, FLOOR)
+    meshio.write(path, meshio.Mesh(nodes, [("hexahedron", cells)]))
 
 
 def scene(cup, friction=SHOWN, pull=PULL):
@@ -211,19 +191,6 @@ def lift(**changes):
     return held(sim)
 
 
-def boundary(body):
-    """(m, 3): the triangles of the body's surface, counter-clockwise seen from outside."""
-    if len(body.hexahedra):
-        cells = body.hexahedra
-        sides = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]]
-    else:
-        cells, sides = body.tetrahedra, [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]
-    faces = cells[:, sides].reshape(-1, len(sides[0]))
-    _, first, count = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
-    faces = faces[first[count == 1]]
-    return faces if faces.shape[1] == 3 else np.vstack([faces[:, [0, 1, 2]], faces[:, [0, 2, 3]]])
-
-
 def paint(axes, bodies, positions, arrows=(), elevation=20.0, azimuth=60.0):
     """The surfaces of the bodies as seen from one side, lit from above, with their shadow; arrows in mm."""
     from matplotlib.colors import to_rgb
@@ -235,7 +202,7 @@ def paint(axes, bodies, positions, arrows=(), elevation=20.0, azimuth=60.0):
 
     light, corners, colours = direction(azimuth + 50.0, 45.0), [], []
     for name, body in bodies.items():
-        triangles, points = boundary(body), 1e3 * positions[name]
+        (triangles, _), points = boundary_of(body), 1e3 * positions[name]
         at = points[triangles]
         normal = np.cross(at[:, 1] - at[:, 0], at[:, 2] - at[:, 0])
         seen = normal @ direction(azimuth, elevation) > 0.0  # matplotlib sorts triangles, and hides none of them

@@ -9,7 +9,9 @@
 SI units everywhere. docs/python.md is the guide.
 """
 
-from . import collision, errors, fields, mesh, pcc, qp, render
+import importlib as _importlib
+
+from . import collision, errors, fields, mesh, pcc, qp
 from ._core import (
     Actuator,
     Body,
@@ -92,11 +94,24 @@ __all__ = [
     "view",
 ]
 
-# A notebook shows a picture.
-Simulation._repr_png_ = render._repr_png_
+
+def __getattr__(name):
+    # Pictures are imported when they are first asked for: most programs draw none.
+    if name == "render":
+        return _importlib.import_module(".render", __name__)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def _repr_png_(sim):
+    from .render import _repr_png_
+
+    return _repr_png_(sim)
+
+
+Simulation._repr_png_ = _repr_png_  # a notebook shows a picture
 
 # Names by which users know them, whatever module compiled them.
 for _name in __all__:
-    if isinstance(globals()[_name], type) and globals()[_name].__module__ == "sinew._core":
+    if isinstance(globals().get(_name), type) and globals()[_name].__module__ == "sinew._core":
         globals()[_name].__module__ = "sinew"
 del _name

@@ -283,6 +283,14 @@ looked at, such as the dent round a point load.
           "them.");
 }
 
+// (m, k) of k nodes each.
+template <std::size_t k>
+auto numbers_view(const Body& self, const std::vector<std::array<NodeId, k>>& list) {
+  return view<NodeId>(list.empty() ? nullptr : list.front().data(),
+                      static_cast<py::ssize_t>(list.size()), static_cast<py::ssize_t>(k),
+                      py::cast(self.session));
+}
+
 void bind_mesh_of(py::class_<Body>& type) {
   type.def_property_readonly(
           "rest_positions",
@@ -290,37 +298,21 @@ void bind_mesh_of(py::class_<Body>& type) {
           "(n, 3) ndarray: positions of all nodes at rest (m). Read-only.")
       .def_property_readonly(
           "tetrahedra",
-          [](const Body& self) {
-            const auto& list = body(self).model().mesh().tetrahedra;
-            return view<NodeId>(list.empty() ? nullptr : list.front().data(),
-                                static_cast<py::ssize_t>(list.size()), 4, py::cast(self.session));
-          },
+          [](const Body& self) { return numbers_view(self, body(self).model().mesh().tetrahedra); },
           "(m, 4) ndarray of int32: the nodes of every tetrahedron, positively oriented. "
           "Read-only.")
       .def_property_readonly(
           "quadratic_tetrahedra",
-          [](const Body& self) {
-            const auto& list = body(self).model().mesh().quadratic;
-            return view<NodeId>(list.empty() ? nullptr : list.front().data(),
-                                static_cast<py::ssize_t>(list.size()), 10, py::cast(self.session));
-          },
+          [](const Body& self) { return numbers_view(self, body(self).model().mesh().quadratic); },
           "(m, 10) ndarray of int32: corners and middle nodes of quadratic tetrahedra, in VTK's "
           "order; `tetrahedra` has their corners. Read-only.")
       .def_property_readonly(
           "hexahedra",
-          [](const Body& self) {
-            const auto& list = body(self).model().mesh().hexahedra;
-            return view<NodeId>(list.empty() ? nullptr : list.front().data(),
-                                static_cast<py::ssize_t>(list.size()), 8, py::cast(self.session));
-          },
+          [](const Body& self) { return numbers_view(self, body(self).model().mesh().hexahedra); },
           "(m, 8) ndarray of int32: the nodes of every hexahedron, in VTK's order. Read-only.")
       .def_property_readonly(
           "triangles",
-          [](const Body& self) {
-            const auto& list = body(self).model().mesh().triangles;
-            return view<NodeId>(list.empty() ? nullptr : list.front().data(),
-                                static_cast<py::ssize_t>(list.size()), 3, py::cast(self.session));
-          },
+          [](const Body& self) { return numbers_view(self, body(self).model().mesh().triangles); },
           "(m, 3) ndarray of int32: nodes of the triangles of its mesh, if it has any: the whole "
           "surface of a rigid body that a file describes. Read-only.")
       .def_property_readonly(

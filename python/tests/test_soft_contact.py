@@ -200,17 +200,22 @@ def test_a_part_of_a_surface_is_refused():
     assert error.value.kind == "conflicting-keys"
 
 
+def halves(edges, poisson_ratio):
+    """One block in two halves that lie on each other, the upper one moved down by 1 mm in 0.3 s."""
+    def half(edge, height, face):
+        return {"type": "fem", "element": "hex8", "density": "1000 kg/m^3", "position": f"0 0 {height} mm", "fixed": {"set": face},
+                "material": {"model": "neo-hookean", "young_modulus": "100 kPa", "poisson_ratio": poisson_ratio},
+                "mesh": {"shape": "block", "length": "20 mm", "width": "20 mm", "height": "10 mm", "element_size": edge}}
+
+    return {"low": half(edges[0], 0, "z_min"),
+            "up": {**half(edges[1], 10, "z_max"), "base": {"z": {"ramp": {"to": "-1 mm", "duration": "0.3 s"}}}}}
+
+
 @pytest.mark.parametrize("edges", [("5 mm", "5 mm"), ("5 mm", "4 mm")])
 def test_flush_blocks_press_on_each_other_at_their_rims_and_corners(edges):
     """One block in two halves, whose rims lie on each other at the start, is as stiff as in one piece."""
-    def half(edge, height, face, moved=None):
-        body = {"type": "fem", "element": "hex8", "density": "1000 kg/m^3", "position": f"0 0 {height} mm", "fixed": {"set": face},
-                "material": {"model": "neo-hookean", "young_modulus": "100 kPa", "poisson_ratio": 0.0},
-                "mesh": {"shape": "block", "length": "20 mm", "width": "20 mm", "height": "10 mm", "element_size": edge}}
-        return body if moved is None else {**body, "base": {"z": {"ramp": {"to": moved, "duration": "0.3 s"}}}}
-
     sim = sinew.load({"sinew": 1, "time_step": "0.1 s", "gravity": "0 0 0 m/s^2", "solver": {"tolerance": 1e-10},
-                      "bodies": {"low": half(edges[0], 0, "z_min"), "up": half(edges[1], 10, "z_max", "-1 mm")},
+                      "bodies": halves(edges, 0.0),
                       "contacts": {"cut": {"between": ["low", "up"]}}})
     sim.step(5)
     stretch = 0.95
@@ -226,15 +231,9 @@ def test_flush_blocks_press_on_each_other_at_their_rims_and_corners(edges):
 @pytest.mark.parametrize("friction", [0.0, 0.3])
 def test_flush_blocks_with_fine_meshes_are_solved(friction):
     """Most of their 758 points are crossing edges, which wait: the law of all of them has 2274 rows of rank 843."""
-    def half(edge, height, face, moved=None):
-        body = {"type": "fem", "element": "hex8", "density": "1000 kg/m^3", "position": f"0 0 {height} mm", "fixed": {"set": face},
-                "material": {"model": "neo-hookean", "young_modulus": "100 kPa", "poisson_ratio": 0.3},
-                "mesh": {"shape": "block", "length": "20 mm", "width": "20 mm", "height": "10 mm", "element_size": edge}}
-        return body if moved is None else {**body, "base": {"z": {"ramp": {"to": moved, "duration": "0.3 s"}}}}
-
     def pressed(edges):
         sim = sinew.load({"sinew": 1, "time_step": "0.1 s", "gravity": "0 0 0 m/s^2",
-                          "bodies": {"low": half(edges[0], 0, "z_min"), "up": half(edges[1], 10, "z_max", "-1 mm")},
+                          "bodies": halves(edges, 0.3),
                           "contacts": {"cut": {"between": ["low", "up"], "friction": friction}}})
         sim.step(3)
         return sim

@@ -30,7 +30,7 @@ struct FemSystem {
   std::shared_ptr<const FemModel> elements;
   linalg::BorderPattern border;  ///< of the rows that are always there
   std::vector<Scatter> scatter;
-  std::shared_ptr<const linalg::FactorisationPlan> plan;  ///< made at first use
+  std::shared_ptr<const linalg::FactorisationPlan> plan;
 };
 
 class FemBodyModel final : public mechanics::BodyModel,

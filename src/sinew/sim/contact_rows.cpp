@@ -143,7 +143,7 @@ void ContactRows::choose_active(std::span<const double> effort, double time_step
         set_active(row, false);
         continue;
       }
-      const bool waits = surfaces(i) != nullptr && surfaces(i)->waits(k);
+      const bool waits = surfaces_[i] != nullptr && surfaces_[i]->waits(k);
       const bool active = always || effort[static_cast<std::size_t>(row)] > 0.0 ||
                           (!waits && arrival(contact, k, time_step) <= near);
       set_active(row, active);
@@ -197,13 +197,11 @@ bool ContactRows::correct(const step::StepProblem& problem, const RowNumbering& 
   }
   if (found) planes_.end_round();
   bool spread = false;
-  auto touching = planes_.surfaces().begin();
   for (std::size_t i = 0; i < planes_.contacts().size(); ++i) {
-    TouchingSurfaces* const surfaces = planes_.shape(i) == nullptr ? (touching++)->get() : nullptr;
     if (zones_[i]) {
-      spread = correct_zones(*zones_[i], surfaces, problem, numbering, effort) || spread;
-    } else if (surfaces != nullptr) {
-      found = correct_surfaces(*surfaces) || found;
+      spread = correct_zones(*zones_[i], surfaces_[i], problem, numbering, effort) || spread;
+    } else if (surfaces_[i] != nullptr) {
+      found = correct_surfaces(*surfaces_[i]) || found;
     }
   }
   if (spread) --zone_rounds_left_;
@@ -376,7 +374,7 @@ double ContactRows::max_penetration_left_out() const {
     for (std::size_t k = 0; k < contact.size(); ++k) {
       const int row = contact.row(k);
       if (rows_.active[static_cast<std::size_t>(row)] != 0) continue;
-      const double slack = surfaces(i) != nullptr ? surfaces(i)->slack(k) : 0.0;
+      const double slack = surfaces_[i] != nullptr ? surfaces_[i]->slack(k) : 0.0;
       deepest = std::max(deepest, -rows_.delta[row] - slack);
     }
   }

@@ -110,8 +110,6 @@ class ContactRows {
   Vector3 proposed_position(const constraint::ShapeContact& contact, std::size_t point) const;
   double arrival(const constraint::Contact& contact, std::size_t point, double time_step) const;
   bool has_zones() const;
-  // Of a contact between surfaces, else null.
-  const TouchingSurfaces* surfaces(std::size_t contact) const { return surfaces_[contact]; }
   double fastest_node() const;
   template <class Gap>
   void measure_gaps(const constraint::Contact& contact, Gap&& gap);
@@ -122,7 +120,7 @@ class ContactRows {
   mechanics::RowValues& rows_;
   ContactPlanes planes_;
   std::vector<std::unique_ptr<ContactZones>> zones_;  // (contacts,) null: single points
-  std::vector<const TouchingSurfaces*> surfaces_;     // (contacts,) null: with a shape
+  std::vector<TouchingSurfaces*> surfaces_;           // (contacts,) null: with a shape
   bool left_out_ = false;                             // some point
   int rounds_left_ = 0;        // of a step, in which overlapping surfaces get points
   std::vector<double> gaps_;   // (points,) m, of one contact

@@ -219,9 +219,7 @@ double TouchingSurfaces::height(const collision::SurfaceImpact& impact, const Po
   };
   const auto over = [&](const Points& own, NodeId vertex, const Points& nodes,
                         const collision::Triangle& face) {
-    const Vector3 corner = at(nodes, face[0]);
-    const Vector3 normal = (at(nodes, face[1]) - corner).cross(at(nodes, face[2]) - corner);
-    return normal.normalized().dot(at(own, vertex) - corner);
+    return normal_of(nodes, face).dot(at(own, vertex) - at(nodes, face[0]));
   };
   const auto i = static_cast<std::size_t>(impact.first),
              j = static_cast<std::size_t>(impact.second);

@@ -18,41 +18,9 @@ QUARTER, LAYERS = 4, 5  # of the cup: cells along a quarter of its circle, layer
 APART, ABOVE, HELD = 50e-3, 220e-3, 20e-3  # m: feet from the middle and above the table; how much of a finger is held
 
 
-def disc() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """A square within a ring.
-
-    Returns
-    -------
-    points : (n, 2)
-        Of the unit disc.
-    quadrilaterals : (m, 4) int
-    rim : (4 QUARTER,) int
-        Points of its circle, counter-clockwise.
-    """
-    n, grid = QUARTER, np.linspace(-0.55, 0.55, QUARTER + 1)
-    square = np.stack(np.meshgrid(grid, grid, indexing="ij"), axis=-1).reshape(-1, 2)
-    at = np.arange((n + 1) ** 2).reshape(n + 1, n + 1)
-    cells = np.stack([at[:-1, :-1], at[1:, :-1], at[1:, 1:], at[:-1, 1:]], axis=-1).reshape(-1, 4)
-    edge = np.concatenate([at[:-1, 0], at[-1, :-1], at[:0:-1, -1], at[0, :0:-1]])
-    turn = 2.0 * np.pi * np.arange(4 * n) / (4 * n) - 0.75 * np.pi
-    rim = len(square) + np.arange(4 * n)
-    ring = np.column_stack([edge, rim, np.roll(rim, -1), np.roll(edge, -1)])
-    return np.vstack([square, np.column_stack([np.cos(turn), np.sin(turn)])]), np.vstack([cells, ring]), rim
-
-
 def write_cup(path: Path) -> None:
     """The cup, one hexahedron through its floor and one through its wall; it stands on z = 0 around the z axis."""
-    plane, cells, rim = disc()
-    heights = np.concatenate([[0.0], np.linspace(CUP_FLOOR, CUP_HEIGHT, LAYERS)])
-    level = len(plane) + len(rim)  # nodes: those of the inside, then those of the outer circle
-    nodes = np.concatenate([np.column_stack([np.vstack([(r - CUP_WALL) * plane, r * plane[rim]]), np.full(level, z)])
-                            for r, z in zip(np.interp(heights, [0.0, CUP_HEIGHT], CUP_RADII), heights)])  # fmt: skip
-    outer = len(plane) + np.arange(len(rim))
-    wall = np.column_stack([rim, outer, np.roll(outer, -1), np.roll(rim, -1)])
-    layers = [np.vstack([cells, wall])] + (LAYERS - 1) * [wall]
-    used, corners = np.unique(np.concatenate([np.hstack([k * level + q, (k + 1) * level + q]) for k, q in enumerate(layers)]),
-                              return_inverse=True)  # fmt: skip
-    hexahedra.write(path, nodes[used], corners.reshape(-1, 8))
+    hexahedra.write(path, *hexahedra.cup(QUARTER, LAYERS, CUP_RADII, CUP_HEIGHT, CUP_WALL, CUP_FLOOR))
 
 
 def scene(folder: Path, friction: float) -> dict[str, Any]:
