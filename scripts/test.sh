@@ -28,7 +28,7 @@ GTEST_OUTPUT=xml:$results/gtest/ $fixed_addresses ctest --test-dir "$build" --pa
   --output-on-failure --output-junit "$results/ctest.xml" || status=1
 
 if [ -d "$build/python/sinew" ] && [ -d python/tests ]; then
-  PYTHONPATH=$build/python MPLBACKEND=Agg "$python" -m pytest -q -p no:cacheprovider \
+  PYTHONPATH=$build/python MPLBACKEND=Agg "$python" -m pytest -q -p no:cacheprovider --numprocesses "$jobs" --dist loadfile \
     --junitxml="$results/pytest.xml" python/tests || status=1
 fi
 

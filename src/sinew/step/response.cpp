@@ -12,6 +12,8 @@ namespace {
 
 // Friction of a cable within this part of the tension of its limit is at it.
 constexpr double kSlides = 1e-7;
+// Of what two rows' own compliances allow: where others are held, less is rounding.
+constexpr double kCoupled = 1e-10;
 
 }  // namespace
 
@@ -230,6 +232,20 @@ void Response::solve(const StepProblem& problem, std::span<const double> effort)
     free_ += scale_[i] * solved_(i, 0) * column;
     for (Eigen::Index k = 0; k < inputs; ++k) {
       compliance_.col(k) += scale_[i] * solved_(i, 1 + k) * column;
+    }
+  }
+  clear_rounding(problem);
+}
+
+// The motor of a joint at its stop moves nothing, nor does a torque against cables that stick. A
+// choice of efforts must see zeros there, or rounding chooses.
+void Response::clear_rounding(const StepProblem& problem) {
+  scale_ = problem.compliance.diagonal().cwiseAbs().cwiseSqrt();
+  for (Eigen::Index k = 0; k < compliance_.cols(); ++k) {
+    const double least = kCoupled * scale_[controlled_rows_[static_cast<std::size_t>(k)]];
+    for (Eigen::Index row = 0; row < scale_.size(); ++row) {
+      double& own = compliance_(row, k);
+      if (std::abs(own) <= least * scale_[row]) own = 0.0;
     }
   }
 }

@@ -65,6 +65,7 @@ class Response {
   void end_equation(int unknown, double constant);
   void form_equations(const StepProblem& problem, std::span<const double> effort);
   void solve(const StepProblem& problem, std::span<const double> effort);
+  void clear_rounding(const StepProblem& problem);
 
   std::vector<int> controlled_;
   std::vector<int> controlled_rows_;

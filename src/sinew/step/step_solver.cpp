@@ -85,15 +85,26 @@ void StepSolver::measure_motion(const StepProblem& problem, std::span<const doub
   }
 }
 
-double StepSolver::try_efforts(const StepProblem& problem, const Controller& controller,
-                               std::span<const double> own, std::span<double> effort) {
+StepSolver::Trial StepSolver::try_efforts(const StepProblem& problem, const Controller& controller,
+                                          std::span<const double> own, std::span<double> effort) {
+  Trial trial;
   for (std::size_t k = 0; k < own.size(); ++k) {
     const auto index = static_cast<std::size_t>(response_.controlled()[k]);
-    effort[static_cast<std::size_t>(problem.actuators[index].row)] = own[k];
+    const int row = problem.actuators[index].row;
+    effort[static_cast<std::size_t>(row)] = own[k];
+    trial.strain += problem.compliance(row, row) * own[k] * own[k];
   }
-  if (direct_.solve(problem, effort) == LawStatus::failed) return kInfinity;
+  if (direct_.solve(problem, effort) == LawStatus::failed) return trial;
   measure_motion(problem, effort);
-  return controller.miss(problem, motion_);
+  trial.miss = controller.miss(problem, motion_);
+  return trial;
+}
+
+// Between misses that are the same but for rounding (a motor pushes a joint against its stop) the
+// lesser effort decides.
+bool StepSolver::is_better(const Controller& controller, const Trial& one, const Trial& other) {
+  const bool same = std::abs(one.miss - other.miss) <= controller.negligible_miss();
+  return same ? one.strain <= other.strain : one.miss < other.miss;
 }
 
 void StepSolver::search(const StepProblem& problem, const Controller& controller,
@@ -107,26 +118,26 @@ void StepSolver::search(const StepProblem& problem, const Controller& controller
   };
   const double golden = 0.5 * (std::sqrt(5.0) - 1.0);
   double from = 0.0, to = 1.0, left = 1.0 - golden, right = golden;
-  double left_miss = at(left), right_miss = at(right);
+  Trial at_left = at(left), at_right = at(right);
   for (int k = 0; k < kSearches; ++k) {
-    if (left_miss <= right_miss) {
+    if (is_better(controller, at_left, at_right)) {
       to = right;
       right = left;
-      right_miss = left_miss;
+      at_right = at_left;
       left = from + (1.0 - golden) * (to - from);
-      left_miss = at(left);
+      at_left = at(left);
     } else {
       from = left;
       left = right;
-      left_miss = right_miss;
+      at_left = at_right;
       right = from + golden * (to - from);
-      right_miss = at(right);
+      at_right = at(right);
     }
   }
-  const double found = at(left_miss <= right_miss ? left : right);
+  const double found = at(is_better(controller, at_left, at_right) ? left : right).miss;
   chosen_.swap(trial_);
   efforts_before(problem, response_, trial_);
-  const double before = try_efforts(problem, controller, trial_, effort);
+  const double before = try_efforts(problem, controller, trial_, effort).miss;
   if (before - found <= controller.negligible_miss()) {
     chosen_.swap(trial_);
   } else {

@@ -20,10 +20,11 @@ class Controller;
 ///
 /// Rounds that go back and forth have an optimum between them where a block is about to change its
 /// state: a point that just touches. It is looked for between the last two choices, by golden
-/// section on what the robot really does there; and the last step's efforts stay where nothing
-/// better is found, so that a robot held back by a wall comes to rest. (A nearer place along the
-/// kink, where the point goes on just touching, is not looked for.) Every block but the
-/// controller's objective is obeyed exactly, whatever the rounds did.
+/// section on what the robot really does there, with the least effort among equals (a motor that
+/// pushes a joint against its stop); and the last step's efforts stay where nothing better is found,
+/// so that a robot held back by a wall comes to rest. (A nearer place along the kink, where the
+/// point goes on just touching, is not looked for.) Every block but the controller's objective is
+/// obeyed exactly, whatever the rounds did.
 class StepSolver {
  public:
   explicit StepSolver(const qp::ConeSettings& settings = {}) : direct_(settings) {}
@@ -39,9 +40,14 @@ class StepSolver {
   /// The controller's choice, put into `effort`; the largest change that this makes, relative.
   LawStatus choose(const StepProblem& problem, Controller& controller, std::span<double> effort,
                    double& change);
-  /// Efforts of the controlled actuators, all others by the direct solver; the miss.
-  double try_efforts(const StepProblem& problem, const Controller& controller,
-                     std::span<const double> own, std::span<double> effort);
+  struct Trial {
+    double miss = kInfinity;  // m
+    double strain = 0.0;      // J, sum of W_kk lambda_k^2
+  };
+  /// Efforts of the controlled actuators, all others by the direct solver.
+  Trial try_efforts(const StepProblem& problem, const Controller& controller,
+                    std::span<const double> own, std::span<double> effort);
+  static bool is_better(const Controller& controller, const Trial& one, const Trial& other);
   void search(const StepProblem& problem, const Controller& controller, std::span<double> effort);
   void measure_motion(const StepProblem& problem, std::span<const double> effort);
 
