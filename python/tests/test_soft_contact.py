@@ -228,6 +228,31 @@ def test_flush_blocks_press_on_each_other_at_their_rims_and_corners(edges):
         assert np.abs(body.positions[touching, 2] - z).max() < (1e-6 if edges[0] == edges[1] else 1.2e-5)
 
 
+@pytest.mark.parametrize("element", ["hex8", "tet4", "tet10"])
+@pytest.mark.parametrize("steps", [2, 4, 8])
+def test_flush_corners_hold_each_other_while_bodies_slide_a_little(element, steps):
+    """Where both corners stand beside the other face by a micrometre, the crossing of their rims is all that holds them.
+
+    With four steps and linear tetrahedra, corners passed each other by 1.1 mm, for faces that tilt by 1e-4.
+    """
+    def half(height, face):
+        return {"type": "fem", "element": element, "density": 1000.0, "position": [0, 0, height], "fixed": {"set": face},
+                "material": {"model": "saint-venant-kirchhoff", "young_modulus": 100e3, "poisson_ratio": 0.0},
+                "mesh": {"shape": "block", "length": 0.04, "width": 0.04, "height": 0.02, "element_size": 0.01}}
+
+    sim = sinew.load({"sinew": 1, "time_step": 1.0 / steps, "gravity": [0, 0, 0], "solver": {"tolerance": 1e-10},
+                      "bodies": {"low": half(0.0, "z_min"), "up": {**half(0.02, "z_max"), "base": {"z": {"ramp": {"to": -4e-3, "duration": 1.0}}}}},
+                      "contacts": {"cut": {"between": ["low", "up"]}}})
+    sim.step(steps)
+    low, up = sim.body("low"), sim.body("up")
+    for corner in ([x, y, 0.02] for x in (0.0, 0.04) for y in (0.0, 0.04)):
+        below, above = (body.positions[np.argmin(np.abs(body.rest_positions - corner).sum(axis=1))] for body in (low, up))
+        assert below[2] - above[2] < 1e-6 * 0.04
+        assert below[2] == pytest.approx(0.018, abs=1e-5)
+    stretch = 0.9
+    assert sim.contact("cut").normal_force == pytest.approx(0.04**2 * 100e3 * stretch * (1.0 - stretch**2) / 2.0, rel=1e-4)
+
+
 @pytest.mark.parametrize("friction", [0.0, 0.3])
 def test_flush_blocks_with_fine_meshes_are_solved(friction):
     """Most of their 758 points are crossing edges, which wait: the law of all of them has 2274 rows of rank 843."""

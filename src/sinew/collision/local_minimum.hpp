@@ -50,9 +50,15 @@ class LocalMinimum {
   /// TVCG 11, 2005, 243).
   Vector3 face_normal(int triangle) const;
   Vector3 edge_normal(int edge) const;
+  /// Whether a surface turns at an edge by more than 30 degrees, or ends there.
+  /// @param edge_normal (3,) as above.
+  static bool is_ridge(const Vector3& edge_normal) { return edge_normal.squaredNorm() < kRidge; }
   Vector3 vertex_normal(NodeId node) const;
 
  private:
+  // Of a sum of two unit vectors 30 degrees apart: 2 + sqrt(3).
+  static constexpr double kRidge = 3.7320508075688772;
+
   bool is_within_slack(const Vector3& way, const Vector3& away) const;
 
   const SurfaceTree& surface_;

@@ -177,9 +177,13 @@ class PairSearch {
     const Vector3 normal =
         signed_normal(c.normalized() * (side < 0.0 ? -1.0 : 1.0), inward, outward);
     if (!is_pair(p, q, normal)) return;
-    if (!first_edges_.edge_is_nearest(e, p.point, q.point, -normal)) return;
-    if (!second_edges_.edge_is_nearest(f, q.point, p.point, normal)) return;
-    if (is_seen(inward, outward, normal)) keep(p, q, normal);
+    const bool e_is_ridge = LocalMinimum::is_ridge(inward),
+               f_is_ridge = LocalMinimum::is_ridge(outward), ridges = e_is_ridge && f_is_ridge;
+    const LocalMinimum &first = ridges ? first_ : first_edges_,
+                       &second = ridges ? second_ : second_edges_;
+    if (!first.edge_is_nearest(e, p.point, q.point, -normal)) return;
+    if (!second.edge_is_nearest(f, q.point, p.point, normal)) return;
+    if (is_seen(inward, outward, normal)) keep(p, q, normal, !e_is_ridge && !f_is_ridge);
   }
 
   // Of features that have passed each other, the way between them is turned round.
@@ -222,10 +226,11 @@ class PairSearch {
     return !settings_.facing || (normal.dot(inward) >= 0.0 && normal.dot(outward) >= 0.0);
   }
 
-  void keep(const SurfacePoint& p, const SurfacePoint& q, const Vector3& normal) {
+  void keep(const SurfacePoint& p, const SurfacePoint& q, const Vector3& normal,
+            bool between_flat = false) {
     const double distance = distance_along(normal, p, q);
     if (distance < 0.0 && !leads_out(p, q, -distance)) return;
-    found_.push_back({p, q, normal, distance});
+    found_.push_back({p, q, normal, distance, between_flat});
   }
 
   // Whether features that have passed each other went no shorter way: beside an edge of a body one

@@ -31,6 +31,8 @@ struct ProximityPair {
   Vector3 normal = Vector3::UnitZ();  ///< (3,) unit length, from the second surface to the first
   /// m: first.point - second.point = distance normal. Negative where the surfaces overlap.
   double distance = 0.0;
+  /// Whether it is two edges that cross where both surfaces are nearly flat.
+  bool between_flat = false;
 };
 
 /// What is looked for.
@@ -42,7 +44,10 @@ struct ProximitySettings {
   /// Sine of the angle by which a neighbour of the nearest point may lie nearer: 0, local minima
   /// alone; 1, every vertex over a face or an edge and all edges that cross.
   double slack = 0.0;
-  std::optional<double> edge_slack;  ///< of edges that cross; none: the same
+  /// Of edges that cross, but for ridges of both surfaces; none: the same. Around a crossing of two
+  /// flat parts there are many as near; at the corner of two blocks one crossing is all that there
+  /// is, however little the faces tilt.
+  std::optional<double> edge_slack;
   /// Only points that see each other from outside, by the normals of their features. Without, a
   /// thin body's sides see each other through it, and open surfaces have two sides.
   bool facing = true;

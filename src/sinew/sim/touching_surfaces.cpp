@@ -14,29 +14,19 @@ namespace sinew::sim {
 namespace {
 
 // Vertices on slopes up to this sine towards the other surface are points: they come to touch where
-// bodies flatten on each other. Of edges the nearest ones alone, but for rounding: the neighbours
-// of one in a flat part are as near.
+// bodies flatten on each other. So are crossings of ridges. Of other edges the nearest ones alone,
+// but for rounding: the neighbours of one in a flat part are as near.
 constexpr double kSlack = 0.5, kEdgeSlack = 1e-9;
 // Overlaps up to this many separations, 1e-6 of the larger body, are left to the next step: where
 // flat meshes lie on each other their edges cross, and overlap at second order in the motion.
 constexpr double kOverlap = 10.0;
 constexpr std::size_t kKeyMemory = 3;
-// Cosine of the angle by which a surface that is nearly flat turns at an edge: 30 degrees.
-constexpr double kNearlyFlat = 0.866;
 
 Vector3 normal_of(const Points& nodes, const collision::Triangle& triangle) {
   const Vector3 corner = nodes.row(triangle[0]).transpose();
   const Vector3 one = nodes.row(triangle[1]).transpose() - corner;
   const Vector3 other = nodes.row(triangle[2]).transpose() - corner;
   return one.cross(other).normalized();
-}
-
-bool nearly_flat(const collision::SurfaceTopology& surface, const Points& nodes, int edge) {
-  const auto faces = surface.triangles_of_edge(edge);
-  if (faces.size() != 2) return false;
-  const auto& triangles = surface.triangles();
-  return normal_of(nodes, triangles[static_cast<std::size_t>(faces[0])])
-             .dot(normal_of(nodes, triangles[static_cast<std::size_t>(faces[1])])) > kNearlyFlat;
 }
 
 }  // namespace
@@ -77,7 +67,7 @@ void TouchingSurfaces::find(double reach) {
   found_.clear();
   for (const collision::ProximityPair& pair : pairs) {
     const bool held = contact_.first().holds(pair.first) && contact_.second().holds(pair.second);
-    if (!held) found_.push_back({name(pair), pair, crosses_flat_parts(pair)});
+    if (!held) found_.push_back({name(pair), pair, pair.between_flat});
   }
   const auto order = [](const Named& a, const Named& b) {
     if (a.key != b.key) return a.key < b.key;
@@ -113,16 +103,6 @@ void TouchingSurfaces::begin_step(double reach, std::span<double> effort) {
   }
   clear_rest();
   pass_forces_on(effort);
-}
-
-// Where the trees are.
-bool TouchingSurfaces::crosses_flat_parts(const collision::ProximityPair& pair) const {
-  using enum collision::FeatureKind;
-  if (pair.first.kind != edge || pair.second.kind != edge) return false;
-  const Points& first = first_.positions();
-  const Points& second = contact_.is_within() ? first : second_.positions();
-  return nearly_flat(*contact_.first().surface, first, pair.first.number) &&
-         nearly_flat(*contact_.second().surface, second, pair.second.number);
 }
 
 double TouchingSurfaces::slack(std::size_t point) const {

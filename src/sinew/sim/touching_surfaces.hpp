@@ -93,7 +93,6 @@ class TouchingSurfaces {
   double height(const collision::SurfaceImpact& impact, const Points& first,
                 const Points& second) const;
   bool has_passed(const collision::SurfaceImpact& impact) const;
-  bool crosses_flat_parts(const collision::ProximityPair& pair) const;
   void clear_rest();
   void keep_forces(std::span<double> effort);
   void pass_forces_on(std::span<double> effort) const;
