@@ -9,15 +9,18 @@ from reference import shapes
 from suite import plots
 from suite.robots import SOLVER
 
-TITLE = "Contact patch test: uniform pressure under a rigid plate"
+TITLE = "Contact patch test: uniform pressure under a rigid plate, and between two blocks"
 SETUP = """A block of 40 x 40 x 20 mm of 5 x 5 x 3 distorted cells stands on rollers; a rigid surface presses it from
 above, without friction: a plane that moves down by 2 mm, then a rigid plate on a slider that a motor presses with 20 N.
 The Saint Venant-Kirchhoff law, E = 100 kPa, nu = 0.3, gives uniform stress: F = A E l (l^2 - 1)/2, l the stretch. The
 forces of nodes ought to be the loads that belong to a uniform pressure on the faces of the elements, a third of a
-triangle's area to each corner (tet4) or each mid-edge (tet10, nothing to its corners)."""
+triangle's area to each corner (tet4) or each mid-edge (tet10, nothing to its corners).
+Two blocks of 40 x 40 x 20 mm lie on each other, nu = 0, mu = 0.3; the upper one's top moves down by 4 mm. Their contact
+faces have 4 x 4 cells each, or 4 x 4 and 5 x 5, or 6 x 6 and 7 x 7, which match nowhere. Displacements ought to be linear."""
 SOURCES = {"patch": "uniform stress; consistent loads of a pressure: O. C. Zienkiewicz, R. L. Taylor, The Finite Element Method, 6th ed. 2005, "
                     "sec. 3.3; R. L. Taylor, P. Papadopoulos, On a patch test for contact problems, 1991"}
-COST = 4
+COST = 12
+POINTS = "forces act at points: corners of facets and crossings of their edges, not in the element's own shape functions"
 SIZE, CELLS, YOUNG = np.array([0.04, 0.04, 0.02]), (5, 5, 3), 1e5
 
 
@@ -126,14 +129,51 @@ def under_a_plate(case, element, force=20.0):
     case.bound(f"{element}: unevenness of the face under the plate, over its way", uneven / way, 1e-8, source="patch")
 
 
+def half(element, cells, height, face, **more):
+    return {"type": "fem", "element": element, "density": 1000.0, "position": [0, 0, height], "fixed": {"set": face}, **more,
+            "mesh": {"shape": "block", "length": SIZE[0], "width": SIZE[1], "height": SIZE[2], "element_size": SIZE[0] / cells},
+            "material": {"model": "saint-venant-kirchhoff", "young_modulus": YOUNG, "poisson_ratio": 0.0}}
+
+
+def between_blocks(case, element):
+    """The errors of the displacement, over the way of the top, on meshes that do not match."""
+    way, errors = 0.2 * SIZE[2], []
+    for cells in ((4, 4), (4, 5), (6, 7)):
+        sim = sinew.load({
+            "sinew": 1, "time_step": 0.25, "solver": {**SOLVER, "tolerance": 1e-10},
+            "bodies": {"low": half(element, cells[0], 0.0, "z_min"),
+                       "up": half(element, cells[1], SIZE[2], "z_max", base={"z": {"ramp": {"to": -way, "duration": 1.0}}})},
+            "contacts": {"cut": {"between": ["low", "up"], "friction": 0.3}}})
+        sim.step(4)
+        displaced, spread = 0.0, 0.0
+        for name in ("low", "up"):
+            body = sim.body(name)
+            rest = np.asarray(body.rest_positions)
+            displaced = max(displaced, np.abs(body.positions[:, 2] - 0.9 * rest[:, 2]).max() / way)
+            stress = np.asarray(body.element_field("von_mises_stress"))
+            spread = max(spread, np.abs(stress / stress.mean() - 1.0).max())
+        known = "" if element == "tet4" or cells == (4, 4) else POINTS
+        name = f"{element}, {cells[0]} x {cells[0]} on {cells[1]} x {cells[1]} cells"
+        case.bound(f"{name}: error of the displacement, over the way", displaced, 1e-6, source="patch", known_miss=known)
+        case.bound(f"{name}: spread of the stress, of its mean", spread, 1e-6, source="patch", known_miss=known)
+        case.identity(f"{name}: force, over the closed form less 1", abs(sim.contact("cut").normal_force / force_of(0.9) - 1.0), 2e-6,
+                      source="patch", known_miss=known)
+        errors.append(displaced)
+    return errors
+
+
 def run(case):
-    figure, axis = plots.axes()
+    figure, (axis, blocks) = plots.axes(2)
     for element, color in (("hex8", plots.OURS), ("tet10", plots.SECOND), ("tet4", plots.THIRD)):
         share, forces = under_a_plane(case, element)
         under_a_plate(case, element)
         axis.plot(1e6 * share, forces, "o", ms=3, color=color, label=element)
+        blocks.semilogy(range(3), between_blocks(case, element), "o-", ms=4, color=color, label=element)
     area = np.linspace(0.0, 1.1 * share.max(), 2)
     axis.plot(1e6 * area, area * force_of(0.9) / (SIZE[0] * SIZE[1]), color=plots.REFERENCE, lw=1, label="uniform pressure")
     axis.set(xlabel="area that belongs to a node (mm^2)", ylabel="its force (N)")
     axis.legend()
-    case.figure(figure, "Forces of nodes under a plane over their areas.")
+    blocks.axhline(1e-6, color=plots.REFERENCE, lw=1, label="asked")
+    blocks.set(xticks=range(3), xticklabels=("4 on 4", "4 on 5", "6 on 7"), xlabel="cells along a side", ylabel="error of the displacement, over the way")
+    blocks.legend()
+    case.figure(figure, "Left: forces of nodes under a plane over their areas. Right: blocks on each other.")
