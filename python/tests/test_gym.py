@@ -535,3 +535,30 @@ def test_equal_to_gymnasiums_vector_environment(mode):
     ours = sinew.gym.make_vec("trunk-hold", 3, threads=2, time_limit=SHORT, autoreset_mode=mode)
     theirs = vector.SyncVectorEnv([lambda: sinew.gym.make("trunk-hold", time_limit=SHORT)] * 3, autoreset_mode=vector.AutoresetMode[mode])
     assert same(trajectory(ours, 3, 12), trajectory(theirs, 3, 12))
+
+
+def test_a_task_of_ones_own_may_bring_a_script():
+    from sinew.gym.tasks.trunk_damp import TrunkDamp
+
+    class Lazy(TrunkDamp):
+        """Does nothing."""
+
+        def scripted(self, episode):
+            return np.full(8, -1.0)
+
+    env = sinew.gym.make(Lazy(time_limit=0.05))
+    env.reset(seed=1)
+    np.testing.assert_array_equal(sinew.gym.expert(env)(), np.full(8, -1.0, dtype=np.float32))
+
+
+def test_experts_are_judged():
+    import importlib.util
+    from pathlib import Path
+
+    path = Path(__file__).parents[2] / "examples" / "gym" / "judge.py"
+    spec = importlib.util.spec_from_file_location("judge", path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    returns, succeeded = module.judge("trunk-reach", 2, time_limit=0.5)
+    assert returns.shape == (2,) and (returns < 0.0).all()
+    assert succeeded.all()

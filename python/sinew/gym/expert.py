@@ -10,13 +10,19 @@ from .._core import InverseController
 from ..errors import Error
 from .env import Env
 from .models import Robot
-from .tasks import Crawl, Grasp, TrunkFollow, TrunkHold, TrunkReach
+from .registry import _TASKS
+from .task import Task
+from .tasks import TrunkFollow, TrunkHold, TrunkReach
 from .vector_env import VectorEnv
 
 __all__ = ["Expert", "expert"]
 
-_CONTROLLED, _SCRIPTED = (TrunkReach, TrunkFollow, TrunkHold), (Grasp, Crawl)
+_CONTROLLED = (TrunkReach, TrunkFollow, TrunkHold)
 _CORRECTION = 0.5  # share of what the twin's tip misses that is corrected at each step
+
+
+def _has_script(task: Task) -> bool:
+    return type(task).scripted is not Task.scripted
 
 
 class _Twin:
@@ -79,7 +85,7 @@ class Expert:
     def __init__(self, env: Union[Env, VectorEnv]) -> None:
         self._single = isinstance(env, Env)
         episodes = [env.episode] if self._single else env.episodes
-        kind = _Script if isinstance(env.task, _SCRIPTED) else _Twin
+        kind = _Script if _has_script(env.task) else _Twin
         self._each = [kind(episode) for episode in episodes]
 
     def __call__(self, observation: Any = None) -> np.ndarray:
@@ -104,8 +110,8 @@ def expert(env: Union[Env, VectorEnv]) -> Expert:
     Parameters
     ----------
     env : Env or VectorEnv
-        Of trunk-reach, trunk-follow or trunk-hold, with the action "tension-increment" and without randomised models; of grasp
-        or crawl, with the action "displacement-increment" or "pressure-increment".
+        Of trunk-reach, trunk-follow or trunk-hold, with the action "tension-increment" and without randomised models; of grasp,
+        crawl or any task that overrides Task.scripted, with the first of its actions.
 
     Returns
     -------
@@ -125,9 +131,10 @@ def expert(env: Union[Env, VectorEnv]) -> Expert:
     """
     env = env.unwrapped
     task = env.task
-    if not isinstance(task, _CONTROLLED + _SCRIPTED):
-        known = ", ".join(each.name for each in _CONTROLLED + _SCRIPTED)
-        raise Error("bad-argument", "expert(env)", f"there is no expert of {task.name}", f"give one of: {known}")
+    if not isinstance(task, _CONTROLLED) and not _has_script(task):
+        known = ", ".join(each.name for each in _TASKS.values() if issubclass(each, _CONTROLLED) or each.scripted is not Task.scripted)
+        raise Error("bad-argument", "expert(env)", f"there is no expert of {task.name}",
+                    f"give one of: {known}; or a task of your own that has scripted()")
     if task.action != task.actions[0] or (task.is_randomised and isinstance(task, _CONTROLLED)):
         without = " and without ranges of material_scale and payload" if isinstance(task, _CONTROLLED) else ""
         raise Error("bad-argument", "expert(env)", f"the action is {task.action}, randomised models: {task.is_randomised}",
