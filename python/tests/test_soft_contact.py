@@ -174,7 +174,7 @@ def test_a_body_closes_on_itself(tmp_path):
     for _ in range(130):
         sim.step()
         assert not sim.report.flagged
-        assert sim.contact("self").gap > -1e-9
+        assert sim.contact("self").gap > -6e-9  # crossing edges wait until they have used up the separation, 1e-7 of the size
     assert sim.contact("self").bodies == ["shoe", "shoe"]
     # The legs, bent by the cable, push back by a little.
     assert 0.75 < sim.contact("self").normal_force < 0.8
@@ -224,8 +224,7 @@ def test_flush_blocks_press_on_each_other_at_their_rims_and_corners(edges):
     for name, z in (("low", 9.5e-3), ("up", 9.5e-3)):
         body = sim.body(name)
         touching = np.isclose(body.rest_positions[:, 2], 0.01)
-        # Point forces cannot be uniform on both of two meshes that do not match.
-        assert np.abs(body.positions[touching, 2] - z).max() < (1e-6 if edges[0] == edges[1] else 1.2e-5)
+        assert np.abs(body.positions[touching, 2] - z).max() < 1e-6
 
 
 @pytest.mark.parametrize("element", ["hex8", "tet4", "tet10"])

@@ -6,6 +6,7 @@
 #include "sinew/collision/principal_frame.hpp"
 #include "sinew/collision/surface_topology.hpp"
 #include "sinew/constraint/configuration.hpp"
+#include "sinew/mechanics/surface_trace.hpp"
 
 namespace sinew::constraint {
 
@@ -29,7 +30,7 @@ std::size_t most_points(const SurfaceContact::Side& first, const SurfaceContact:
 }  // namespace
 
 bool SurfaceContact::Side::holds(const collision::SurfacePoint& place) const {
-  return std::ranges::all_of(place.nodes, [&](NodeId node) {
+  return std::ranges::all_of(trace->at(place).nodes, [&](NodeId node) {
     return node < 0 || held[static_cast<std::size_t>(node)] != 0;
   });
 }
@@ -55,16 +56,29 @@ void SurfaceContact::put(std::size_t point, const collision::ProximityPair& pair
                          const Points& first_nodes, const Points& second_nodes,
                          mechanics::RowValues& values) const {
   const Matrix3 frame = collision::tangent_frame(pair.normal);
+  put_patches(point, pair, frame, values);
+  const Vector3 start = frame.transpose() * relative(first_nodes, second_nodes, point, values);
+  values.offset.segment<3>(row(point)) = Vector3(-separation(), -start[1], -start[2]);
+  values.reference.segment<3>(row(point)) = Vector3(start[0] - separation(), 0.0, 0.0);
+}
+
+void SurfaceContact::put_patches(std::size_t point, const collision::ProximityPair& pair,
+                                 const Matrix3& frame, mechanics::RowValues& values) const {
+  const mechanics::Patch one = first_.trace->at(pair.first), other = second_.trace->at(pair.second);
   for (int j = 0; j < 3; ++j) {
     const std::size_t at = entry(point, j);
     values.direction[at] = frame.col(j);
     values.direction[at + 1] = -frame.col(j);
-    values.patch[at] = {pair.first.nodes, pair.first.weights};
-    values.patch[at + 1] = {pair.second.nodes, pair.second.weights};
+    values.patch[at] = one;
+    values.patch[at + 1] = other;
   }
-  const Vector3 start = frame.transpose() * relative(first_nodes, second_nodes, point, values);
-  values.offset.segment<3>(row(point)) = Vector3(-separation(), -start[1], -start[2]);
-  values.reference.segment<3>(row(point)) = Vector3(start[0] - separation(), 0.0, 0.0);
+}
+
+double SurfaceContact::gap_of(const collision::ProximityPair& pair, const Points& first_nodes,
+                              const Points& second_nodes) const {
+  const Vector3 between = first_.trace->at(pair.first).mean(first_nodes) -
+                          second_.trace->at(pair.second).mean(second_nodes);
+  return pair.normal.dot(between) - separation();
 }
 
 void SurfaceContact::clear(std::size_t point, mechanics::RowValues& values) const {
@@ -138,30 +152,28 @@ double SurfaceContact::gap_now(const Configuration& configuration, const Eigen::
                              : linear_gap(configuration, point, values);
 }
 
-void SurfaceContact::save(std::size_t point, const mechanics::RowValues& values, double* to) const {
+void SurfaceContact::save(std::size_t point, const collision::ProximityPair& pair,
+                          const mechanics::RowValues& values, double* to) const {
   to = std::copy_n(frame(point, values).data(), 9, to);
-  for (const std::size_t at : {entry(point), entry(point) + 1}) {
-    const mechanics::Patch& patch = values.patch[at];
-    for (const NodeId node : patch.nodes) *to++ = static_cast<double>(node);
-    to = std::copy_n(patch.weights.data(), 3, to);
+  for (const collision::SurfacePoint* place : {&pair.first, &pair.second}) {
+    for (const NodeId node : place->nodes) *to++ = static_cast<double>(node);
+    to = std::copy_n(place->weights.data(), 3, to);
   }
 }
 
-void SurfaceContact::load(std::size_t point, const double* from,
-                          mechanics::RowValues& values) const {
+collision::ProximityPair SurfaceContact::load(std::size_t point, const double* from,
+                                              mechanics::RowValues& values) const {
   const Eigen::Map<const Matrix3> frame(from);
   from += 9;
-  for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
-    mechanics::Patch patch;
-    for (NodeId& node : patch.nodes) node = static_cast<NodeId>(*from++);
-    patch.weights = Eigen::Map<const Vector3>(from);
+  collision::ProximityPair pair;
+  for (collision::SurfacePoint* place : {&pair.first, &pair.second}) {
+    for (NodeId& node : place->nodes) node = static_cast<NodeId>(*from++);
+    place->weights = Eigen::Map<const Vector3>(from);
     from += 3;
-    for (int j = 0; j < 3; ++j) {
-      values.patch[entry(point, j) + side] = patch;
-      values.direction[entry(point, j) + side] = (side == 0 ? 1.0 : -1.0) * frame.col(j);
-    }
   }
+  put_patches(point, pair, frame, values);
   values.offset.segment<3>(row(point)) = Vector3(-separation(), 0.0, 0.0);
+  return pair;
 }
 
 void SurfaceContact::add_to(ValueHash& hash) const {

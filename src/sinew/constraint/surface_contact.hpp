@@ -10,6 +10,10 @@
 #include "sinew/constraint/contact.hpp"
 #include "sinew/mechanics/site.hpp"
 
+namespace sinew::mechanics {
+class SurfaceTrace;
+}
+
 namespace sinew::constraint {
 
 /// Its points are pairs of places on two surfaces, local minima of their distance, which are found
@@ -23,6 +27,7 @@ class SurfaceContact : public Contact {
   struct Side {
     mechanics::SurfaceSite site;
     std::shared_ptr<const collision::SurfaceTopology> surface;
+    std::shared_ptr<const mechanics::SurfaceTrace> trace;
     std::vector<char> held;  ///< (nodes,) 1: no force moves it
     /// Whether no force moves a place.
     bool holds(const collision::SurfacePoint& place) const;
@@ -69,6 +74,10 @@ class SurfaceContact : public Contact {
   /// @param values gets directions, offset, reference, patches.
   void put(std::size_t point, const collision::ProximityPair& pair, const Points& first_nodes,
            const Points& second_nodes, mechanics::RowValues& values) const;
+  /// m: that of a pair, less the separation. @param pair of the two surfaces.
+  /// @param first_nodes,second_nodes (n, 3) m.
+  double gap_of(const collision::ProximityPair& pair, const Points& first_nodes,
+                const Points& second_nodes) const;
   /// Writes delta of a point. @param configuration now. @param point not idle().
   /// @param values of the step.
   void measure(const Configuration& configuration, std::size_t point,
@@ -81,12 +90,17 @@ class SurfaceContact : public Contact {
   void clear(std::size_t point, mechanics::RowValues& values) const;
   /// What a state remembers of a point.
   static constexpr std::size_t kMemory = 21;
-  /// Writes that, for load(). @param point not idle(). @param values of the step.
-  /// @param to kMemory numbers.
-  void save(std::size_t point, const mechanics::RowValues& values, double* to) const;
-  void load(std::size_t point, const double* from, mechanics::RowValues& values) const;
+  /// Writes that, for load(). @param point not idle(). @param pair that was put there.
+  /// @param values of the step. @param to kMemory numbers.
+  void save(std::size_t point, const collision::ProximityPair& pair,
+            const mechanics::RowValues& values, double* to) const;
+  /// Reads it. @return the places of the pair.
+  collision::ProximityPair load(std::size_t point, const double* from,
+                                mechanics::RowValues& values) const;
 
  private:
+  void put_patches(std::size_t point, const collision::ProximityPair& pair, const Matrix3& frame,
+                   mechanics::RowValues& values) const;
   Vector3 relative(const Points& first, const Points& second, std::size_t point,
                    const mechanics::RowValues& values) const;
 

@@ -44,9 +44,7 @@ void BodyRows::each_node(std::int32_t entry, const mechanics::RowValues& rows, V
   };
   if (site.number == model_.surface_site()) {
     const mechanics::Patch& patch = rows.patch[static_cast<std::size_t>(entry)];
-    for (std::size_t k = 0; k < 3; ++k) {
-      see(patch.nodes[k], patch.weights[static_cast<Eigen::Index>(k)]);
-    }
+    for (std::size_t k = 0; k < patch.nodes.size(); ++k) see(patch.nodes[k], patch.weights[k]);
     return;
   }
   const Attachment& at = model_.attachment(site.number);

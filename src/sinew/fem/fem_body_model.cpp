@@ -11,6 +11,7 @@
 #include "sinew/collision/surface_topology.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/fem/fem_body.hpp"
+#include "sinew/mechanics/surface_trace.hpp"
 
 namespace sinew::fem {
 
@@ -88,6 +89,8 @@ int FemBodyModel::attach_surface() {
   if (surface_site_ >= 0) return surface_site_;
   surface_ = std::make_shared<const collision::SurfaceTopology>(
       mesh::boundary_surface(mesh()).triangles, static_cast<int>(mesh().nodes.rows()));
+  surface_trace_ = std::make_shared<const mechanics::SurfaceTrace>(
+      mesh::boundary_faces(mesh()), static_cast<int>(mesh().nodes.rows()));
   surface_site_ = attach_nodes({}, {});
   return surface_site_;
 }

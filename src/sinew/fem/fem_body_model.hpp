@@ -51,6 +51,9 @@ class FemBodyModel final : public mechanics::BodyModel,
   int attach_nodes(std::span<const NodeId> nodes, std::span<const double> weights) override;
   int attach_surface() override;
   std::shared_ptr<const collision::SurfaceTopology> surface() const override { return surface_; }
+  std::shared_ptr<const mechanics::SurfaceTrace> surface_trace() const override {
+    return surface_trace_;
+  }
   const Points& rest_surface_nodes() const override { return mesh().nodes; }
   bool holds(NodeId node) const override {
     return elements().free_index()[static_cast<std::size_t>(node)] < 0;
@@ -106,7 +109,9 @@ class FemBodyModel final : public mechanics::BodyModel,
   std::unique_ptr<mesh::Embedder> embedder_;
   std::vector<Attachment> attachments_;
   int surface_site_ = -1;
-  std::shared_ptr<const collision::SurfaceTopology> surface_;  // from attach_surface() on
+  // From attach_surface() on.
+  std::shared_ptr<const collision::SurfaceTopology> surface_;
+  std::shared_ptr<const mechanics::SurfaceTrace> surface_trace_;
   std::vector<int> mass_points_;
   std::vector<Load> added_loads_;  // until finish()
   std::unique_ptr<const LoadSet> loads_;

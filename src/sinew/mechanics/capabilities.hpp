@@ -24,6 +24,8 @@ enum class Outside;
 
 namespace sinew::mechanics {
 
+class SurfaceTrace;
+
 /// A capability of a Body or BodyModel; null where it has not got it.
 template <class Capability, class Owner>
 Capability* as(Owner& owner) {
@@ -115,6 +117,8 @@ class HasSurface {
   /// Its triangles, outwards; those of quadratic faces are split at the middles of their edges.
   /// After attach_surface().
   virtual std::shared_ptr<const collision::SurfaceTopology> surface() const = 0;
+  /// How its nodes move the points of these triangles. After attach_surface().
+  virtual std::shared_ptr<const SurfaceTrace> surface_trace() const = 0;
   /// (n, 3) m, of its nodes at rest. After attach_surface().
   virtual const Points& rest_surface_nodes() const = 0;
   /// Whether no force moves a node: its motion is given.

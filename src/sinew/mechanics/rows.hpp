@@ -45,14 +45,14 @@ struct RowCurvature {
 
 /// A point of a surface that is found anew in every step, by the nodes of its body's mesh.
 struct Patch {
-  std::array<NodeId, 3> nodes{-1, -1, -1};  ///< one, two or three; the rest -1
-  Vector3 weights = Vector3::Zero();        ///< (3,) of them, sum 1
+  std::array<NodeId, 4> nodes{-1, -1, -1, -1};  ///< one to four; the rest -1
+  std::array<double, 4> weights{};              ///< of them, sum 1
 
   /// (3,) of something that nodes have, such as positions. @param of (n, 3).
   Vector3 mean(const Points& of) const {
     Vector3 sum = Vector3::Zero();
-    for (std::size_t k = 0; k < 3 && nodes[k] >= 0; ++k) {
-      sum += weights[static_cast<Eigen::Index>(k)] * of.row(nodes[k]).transpose();
+    for (std::size_t k = 0; k < nodes.size() && nodes[k] >= 0; ++k) {
+      sum += weights[k] * of.row(nodes[k]).transpose();
     }
     return sum;
   }

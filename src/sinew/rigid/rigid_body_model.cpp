@@ -11,6 +11,7 @@
 #include "sinew/core/rotation.hpp"
 #include "sinew/core/thread_pool.hpp"
 #include "sinew/linalg/dense.hpp"
+#include "sinew/mechanics/surface_trace.hpp"
 #include "sinew/mesh/embedding.hpp"
 #include "sinew/rigid/rigid_body.hpp"
 
@@ -174,6 +175,12 @@ mechanics::TouchingPart RigidBodyModel::touching_part() const {
   const auto* solid = std::get_if<Solid>(&settings_.shape);
   if (solid == nullptr) return shape;
   return solid->hull != nullptr ? hull : surface;
+}
+
+// Of flat triangles.
+std::shared_ptr<const mechanics::SurfaceTrace> RigidBodyModel::surface_trace() const {
+  static const auto linear = std::make_shared<const mechanics::SurfaceTrace>();
+  return linear;
 }
 
 int RigidBodyModel::attach_surface() {

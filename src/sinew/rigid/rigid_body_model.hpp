@@ -40,6 +40,7 @@ class RigidBodyModel final : public mechanics::BodyModel,
                          const std::string& what) override;
   int attach_surface() override;
   std::shared_ptr<const collision::SurfaceTopology> surface() const override { return touching_; }
+  std::shared_ptr<const mechanics::SurfaceTrace> surface_trace() const override;
   const Points& rest_surface_nodes() const override { return touching_nodes_; }
   bool holds(NodeId) const override { return settings_.fixed; }
   Vector3 rest_position(int point) const override;

@@ -97,11 +97,11 @@ void ContactZones::measure_spacing(const Points& at) {
 int ContactZones::zone_of(std::size_t point, const mechanics::RowValues& rows) const {
   if (!contact_.is_found_anew()) return zone_of_place_[point];
   const mechanics::Patch& patch = rows.patch[contact_.entry(point)];
-  const double most = patch.weights.maxCoeff() - kAlike;
+  const double most = *std::ranges::max_element(patch.weights) - kAlike;
   NodeId first = -1;
   for (std::size_t k = 0; k < patch.nodes.size(); ++k) {
     const NodeId node = patch.nodes[k];
-    if (patch.weights[static_cast<Eigen::Index>(k)] < most) continue;
+    if (node < 0 || patch.weights[k] < most) continue;
     if (first < 0 || node < first) first = node;
   }
   return zone_of_place_[static_cast<std::size_t>(first)];

@@ -110,7 +110,8 @@ std::unique_ptr<constraint::Contact> make_surface_contact(ModelData& data,
     for (std::size_t node = 0; node < held.size(); ++node) {
       held[node] = surface->holds(static_cast<NodeId>(node)) ? 1 : 0;
     }
-    return constraint::SurfaceContact::Side{site, surface->surface(), std::move(held)};
+    return constraint::SurfaceContact::Side{site, surface->surface(), surface->surface_trace(),
+                                            std::move(held)};
   };
   const auto first = attach(settings.body), second = attach(*settings.touched);
   ThreadPool pool(1);

@@ -95,10 +95,12 @@ void TouchingSurfaces::begin_step(double reach, std::span<double> effort) {
   keep_forces(effort);
   reach_ = reach;
   keys_.clear();
+  pairs_.clear();
   waits_.clear();
   for (const Named& one : found_) {
     contact_.put(keys_.size(), one.pair, first_start_, second_start_, rows_);
     keys_.push_back(one.key);
+    pairs_.push_back(one.pair);
     waits_.push_back(one.waits ? 1 : 0);
   }
   clear_rest();
@@ -164,6 +166,7 @@ bool TouchingSurfaces::add_overlaps() {
     contact_.put(keys_.size(), one.pair, first_start_, second_start_, rows_);
     contact_.measure(configuration_, keys_.size(), rows_);
     keys_.push_back(one.key);
+    pairs_.push_back(one.pair);
     waits_.push_back(0);
   }
   return keys_.size() > points;
@@ -225,13 +228,15 @@ bool TouchingSurfaces::has_passed(const collision::SurfaceImpact& impact) const 
 
 void TouchingSurfaces::restart() {
   keys_.clear();
+  pairs_.clear();
   waits_.clear();
   clear_rest();
 }
 
 double TouchingSurfaces::drift(std::span<const double> effort) {
-  move_trees(configuration_.surface_nodes(contact_.body()),
-             configuration_.surface_nodes(contact_.other_body()));
+  const Points& first = configuration_.surface_nodes(contact_.body());
+  const Points& second = configuration_.surface_nodes(contact_.other_body());
+  move_trees(first, second);
   find(1e3 * contact_.separation());
   double worst = 0.0;
   for (std::size_t k = 0; k < keys_.size(); ++k) {
@@ -240,7 +245,7 @@ double TouchingSurfaces::drift(std::span<const double> effort) {
     double nearest = kInfinity;
     for (const Named& one : found_) {
       if (one.key != keys_[k]) continue;
-      const double off = std::abs(one.pair.distance - contact_.separation() - gap);
+      const double off = std::abs(contact_.gap_of(one.pair, first, second) - gap);
       nearest = std::min(nearest, off);
     }
     worst = std::max(worst, nearest);
@@ -256,7 +261,7 @@ void TouchingSurfaces::save(std::vector<double>& to) const {
       to.push_back(static_cast<double>(part));
     }
     to.resize(to.size() + constraint::SurfaceContact::kMemory);
-    contact_.save(k, rows_, to.data() + to.size() - constraint::SurfaceContact::kMemory);
+    contact_.save(k, pairs_[k], rows_, to.data() + to.size() - constraint::SurfaceContact::kMemory);
   }
 }
 
@@ -272,12 +277,13 @@ std::span<const double> TouchingSurfaces::load(std::span<const double> from) {
   const auto count = static_cast<std::size_t>(told);
   reach_ = from[1];
   keys_.resize(count);
+  pairs_.resize(count);
   waits_.assign(count, 0);  // until the next step, which says so
   clear_rest();
   const double* at = from.data() + kHead;
   for (std::size_t k = 0; k < count; ++k, at += kEach) {
     keys_[k] = {static_cast<int>(at[0]), static_cast<int>(at[1]), static_cast<int>(at[2])};
-    contact_.load(k, at + kKeyMemory, rows_);
+    pairs_[k] = contact_.load(k, at + kKeyMemory, rows_);
   }
   return from.subspan(kHead + count * kEach);
 }

@@ -103,14 +103,15 @@ class TouchingSurfaces {
   ThreadPool& pool_;
   collision::Proximity proximity_;
   collision::SurfaceImpacts impacts_;
-  collision::SurfaceTree first_, second_;  // the second one stands still within one surface
-  std::vector<Named> found_;               // by name
-  std::vector<Key> keys_;                  // of the points
-  std::vector<char> waits_;                // (points,)
-  double reach_ = 0.0;                     // m, of the step
-  std::vector<Force> before_;              // of the last step, by name
-  Points first_start_, second_start_;      // m, when the step began
-  Points first_end_, second_end_;          // m, where a motion leads
+  collision::SurfaceTree first_, second_;        // the second one stands still within one surface
+  std::vector<Named> found_;                     // by name
+  std::vector<Key> keys_;                        // of the points
+  std::vector<collision::ProximityPair> pairs_;  // of the points
+  std::vector<char> waits_;                      // (points,)
+  double reach_ = 0.0;                           // m, of the step
+  std::vector<Force> before_;                    // of the last step, by name
+  Points first_start_, second_start_;            // m, when the step began
+  Points first_end_, second_end_;                // m, where a motion leads
 };
 
 }  // namespace sinew::sim
