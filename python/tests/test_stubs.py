@@ -96,7 +96,7 @@ def methods():
                     yield f"{name}.{node.name}", node, getattr(getattr(_core, name), node.name)
 
 
-@pytest.mark.parametrize("name,node,function", methods(), ids=lambda value: str(value)[:40])
+@pytest.mark.parametrize("name,node,function", [pytest.param(*each, id=each[0]) for each in methods()])
 def test_the_same_parameters(name, node, function):
     assert parameters(node) == runtime_parameters(function)
 
