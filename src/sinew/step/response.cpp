@@ -17,7 +17,9 @@ constexpr double kCoupled = 1e-10;
 
 }  // namespace
 
-void Response::form(const StepProblem& problem, std::span<const double> effort) {
+void Response::form(const StepProblem& problem, std::span<const double> effort, bool release) {
+  release_ = release;
+  decided_ = false;
   states_.swap(states_before_);
   states_.clear();
   controlled_.clear();
@@ -86,9 +88,29 @@ void Response::collect_actuator(const StepProblem& problem, int index,
   if (!motion && effort == block.value) return give('=');
   if (effort <= block.effort_min) return give('<');
   if (effort >= block.effort_max) return give('>');
+  if (decides(problem, block.row)) {
+    decided_ = true;
+    if (release_) {
+      const double least = motion ? 0.0 : block.value;
+      const double left = std::clamp(least, block.effort_min, block.effort_max);
+      if (left != 0.0) free_ += left * problem.compliance.col(block.row);
+      return states_.push_back('r');
+    }
+  }
   add_held(block.row, motion                   ? block.value
                       : (effort < block.value) ? block.motion_max
                                                : block.motion_min);
+}
+
+// Whether the motion of a row is that of a controlled one: |W_ij|^2 = W_ii W_jj.
+bool Response::decides(const StepProblem& problem, int row) {
+  const double own = problem.compliance(row, row);
+  return std::ranges::any_of(problem.actuators, [&](const ActuatorBlock& block) {
+    if (!block.owned || block.row < 0) return false;
+    const double both = problem.compliance(row, block.row);
+    return both * both >= (1.0 - kCoupled) * own * problem.compliance(block.row, block.row) &&
+           both != 0.0;
+  });
 }
 
 void Response::collect_capstans(const StepProblem& problem, std::span<const double> effort) {

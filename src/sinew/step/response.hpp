@@ -24,8 +24,9 @@ namespace sinew::step {
 class Response {
  public:
   /// @param problem of the step. @param effort (rows,) N: efforts and with them the states of all
-  /// blocks, see DirectSolver.
-  void form(const StepProblem& problem, std::span<const double> effort);
+  /// blocks, see DirectSolver. @param release lets go of actuators that hold the very motion of a
+  /// controlled one, as if that had taken their place: see decides().
+  void form(const StepProblem& problem, std::span<const double> effort, bool release = false);
 
   /// Positions in problem.actuators of the controlled ones, ascending.
   const std::vector<int>& controlled() const { return controlled_; }
@@ -36,6 +37,9 @@ class Response {
   /// Whether it is a tangent alone: a drive's curve, or the direction in which a point slides,
   /// bends away from it.
   bool bends() const { return bends_; }
+  /// Whether an actuator holds the very motion of a controlled one (a commanded cable on the same
+  /// line, the stop of a motor's joint), whose effort then moves nothing.
+  bool has_decided() const { return decided_; }
   /// Whether there are other efforts that follow.
   bool has_unknowns() const { return !equations_.empty(); }
   /// Whether the controlled rows' part of `compliance` may be unsymmetric.
@@ -61,6 +65,7 @@ class Response {
   void collect_capstans(const StepProblem& problem, std::span<const double> effort);
   void collect_contact(const StepProblem& problem, const ContactBlock& block,
                        std::span<const double> effort);
+  static bool decides(const StepProblem& problem, int row);
   void add_held(int row, double motion, double compliance = 0.0);
   void end_equation(int unknown, double constant);
   void form_equations(const StepProblem& problem, std::span<const double> effort);
@@ -74,6 +79,7 @@ class Response {
   std::vector<char> states_, states_before_;
   std::vector<int> unknown_of_, controlled_of_;  // (rows,) position or -1
   bool holds_for_all_ = true, unsymmetric_ = false, bends_ = false;
+  bool release_ = false, decided_ = false;
   MatrixX compliance_, system_, right_, solved_;
   VectorX free_, scale_;
   linalg::LuFactor factor_;

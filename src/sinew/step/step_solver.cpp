@@ -12,6 +12,9 @@ namespace {
 constexpr int kMaxRounds = 6;
 // Of the largest effort: changes below it end the rounds.
 constexpr double kSettled = 1e-6;
+// Of a negligible miss: misses that differ by less are the same. More would be felt at a minimum,
+// which is flat.
+constexpr double kSame = 1e-6;
 // Points that are tried between two choices.
 constexpr int kSearches = 16;
 
@@ -42,20 +45,56 @@ LawStatus StepSolver::steer(const StepProblem& problem, Controller& controller,
     response_.form(problem, effort);
   }
   LawStatus status = LawStatus::solved;
-  bool settled = alone;
+  if (alone) {
+    double change = 0.0;
+    status = choose(problem, controller, effort, change);
+    if (status == LawStatus::failed) return status;
+    if (direct_.solve(problem, effort) == LawStatus::failed) return LawStatus::failed;
+  } else {
+    status = settle(problem, controller, effort);
+    if (status == LawStatus::failed) return status;
+    if (response_.has_decided()) status = take_over(problem, controller, effort);
+    if (status == LawStatus::failed) return status;
+  }
+  measure_motion(problem, effort);
+  controller.accept(problem, response_, motion_, chosen_);
+  return status;
+}
+
+LawStatus StepSolver::settle(const StepProblem& problem, Controller& controller,
+                             std::span<double> effort) {
+  LawStatus status = LawStatus::solved;
   for (int round = 0; round < kMaxRounds; ++round) {
     double change = 0.0;
     status = choose(problem, controller, effort, change);
     if (status == LawStatus::failed) return status;
     if (direct_.solve(problem, effort) == LawStatus::failed) return LawStatus::failed;
-    if (alone) break;
     response_.form(problem, effort);
-    settled = response_.same_states() && (!response_.bends() || change <= kSettled);
-    if (settled) break;
+    if (response_.same_states() && (!response_.bends() || change <= kSettled)) return status;
   }
-  if (!settled) search(problem, controller, effort);
+  search(problem, controller, effort);
+  return status;
+}
+
+LawStatus StepSolver::take_over(const StepProblem& problem, Controller& controller,
+                                std::span<double> effort) {
+  held_ = chosen_;
   measure_motion(problem, effort);
-  controller.accept(problem, response_, motion_, chosen_);
+  const double miss = controller.miss(problem, motion_);
+  if (miss <= controller.negligible_miss()) return LawStatus::solved;
+  double change = 0.0;
+  response_.form(problem, effort, true);
+  LawStatus status = choose(problem, controller, effort, change);
+  if (status == LawStatus::failed) return status;
+  const double tried = try_efforts(problem, controller, chosen_, effort).miss;
+  response_.form(problem, effort);
+  if (tried < miss - controller.negligible_miss()) return settle(problem, controller, effort);
+  // As it was, with the controller's program for it.
+  try_efforts(problem, controller, held_, effort);
+  response_.form(problem, effort);
+  status = choose(problem, controller, effort, change);
+  chosen_ = held_;
+  try_efforts(problem, controller, chosen_, effort);
   return status;
 }
 
@@ -103,7 +142,7 @@ StepSolver::Trial StepSolver::try_efforts(const StepProblem& problem, const Cont
 // Between misses that are the same but for rounding (a motor pushes a joint against its stop) the
 // lesser effort decides.
 bool StepSolver::is_better(const Controller& controller, const Trial& one, const Trial& other) {
-  const bool same = std::abs(one.miss - other.miss) <= controller.negligible_miss();
+  const bool same = std::abs(one.miss - other.miss) <= kSame * controller.negligible_miss();
   return same ? one.strain <= other.strain : one.miss < other.miss;
 }
 

@@ -21,10 +21,12 @@ class Controller;
 /// Rounds that go back and forth have an optimum between them where a block is about to change its
 /// state: a point that just touches. It is looked for between the last two choices, by golden
 /// section on what the robot really does there, with the least effort among equals (a motor that
-/// pushes a joint against its stop); and the last step's efforts stay where nothing better is found,
-/// so that a robot held back by a wall comes to rest. (A nearer place along the kink, where the
-/// point goes on just touching, is not looked for.) Every block but the controller's objective is
-/// obeyed exactly, whatever the rounds did.
+/// pushes a joint against its stop); and the last step's efforts stay where nothing better is
+/// found, so that a robot held back by a wall comes to rest. Where an actuator holds the very
+/// motion of a controlled one (a commanded cable on the same line), the controller may take over
+/// its load: that is tried as well, and kept where it comes nearer to the goal. (A nearer place
+/// along the kink, where the point goes on just touching, is not looked for.) Every block but the
+/// controller's objective is obeyed exactly, whatever the rounds did.
 class StepSolver {
  public:
   explicit StepSolver(const qp::ConeSettings& settings = {}) : direct_(settings) {}
@@ -49,11 +51,16 @@ class StepSolver {
                     std::span<const double> own, std::span<double> effort);
   static bool is_better(const Controller& controller, const Trial& one, const Trial& other);
   void search(const StepProblem& problem, const Controller& controller, std::span<double> effort);
+  /// Rounds until states and efforts agree.
+  LawStatus settle(const StepProblem& problem, Controller& controller, std::span<double> effort);
+  /// Tries to take the place of what holds the motion of a controlled actuator.
+  LawStatus take_over(const StepProblem& problem, Controller& controller, std::span<double> effort);
   void measure_motion(const StepProblem& problem, std::span<const double> effort);
 
   DirectSolver direct_;
   Response response_;
   std::vector<double> chosen_, chosen_before_, trial_;  // (controlled,) N, of the last two rounds
+  std::vector<double> held_;                            // (controlled,) N, without taking over
   VectorX motion_;                                      // (rows,) m
 };
 
