@@ -1,5 +1,6 @@
 """Learning environments: Gymnasium's rules restated, the same bits however many run, and tasks that can be solved."""
 
+import importlib.util
 import subprocess
 import sys
 import textwrap
@@ -11,6 +12,7 @@ import sinew
 import sinew.gym
 from sinew.gym import spaces
 from sinew.gym.models import Models
+from sinew.gym.tasks.trunk_damp import TrunkDamp
 
 NAMES = list(sinew.gym.tasks())
 SHORT = 0.05  # s: five steps of a trunk
@@ -538,8 +540,6 @@ def test_equal_to_gymnasiums_vector_environment(mode):
 
 
 def test_a_task_of_ones_own_may_bring_a_script():
-    from sinew.gym.tasks.trunk_damp import TrunkDamp
-
     class Lazy(TrunkDamp):
         """Does nothing."""
 
@@ -552,9 +552,6 @@ def test_a_task_of_ones_own_may_bring_a_script():
 
 
 def test_experts_are_judged():
-    import importlib.util
-    from pathlib import Path
-
     path = Path(__file__).parents[2] / "examples" / "gym" / "judge.py"
     spec = importlib.util.spec_from_file_location("judge", path)
     module = importlib.util.module_from_spec(spec)

@@ -21,8 +21,8 @@ _CONTROLLED = (TrunkReach, TrunkFollow, TrunkHold)
 _CORRECTION = 0.5  # share of what the twin's tip misses that is corrected at each step
 
 
-def _has_script(task: Task) -> bool:
-    return type(task).scripted is not Task.scripted
+def _has_script(task: type[Task]) -> bool:
+    return task.scripted is not Task.scripted
 
 
 class _Twin:
@@ -85,7 +85,7 @@ class Expert:
     def __init__(self, env: Union[Env, VectorEnv]) -> None:
         self._single = isinstance(env, Env)
         episodes = [env.episode] if self._single else env.episodes
-        kind = _Script if _has_script(env.task) else _Twin
+        kind = _Script if _has_script(type(env.task)) else _Twin
         self._each = [kind(episode) for episode in episodes]
 
     def __call__(self, observation: Any = None) -> np.ndarray:
@@ -131,8 +131,8 @@ def expert(env: Union[Env, VectorEnv]) -> Expert:
     """
     env = env.unwrapped
     task = env.task
-    if not isinstance(task, _CONTROLLED) and not _has_script(task):
-        known = ", ".join(each.name for each in _TASKS.values() if issubclass(each, _CONTROLLED) or each.scripted is not Task.scripted)
+    if not isinstance(task, _CONTROLLED) and not _has_script(type(task)):
+        known = ", ".join(each.name for each in _TASKS.values() if issubclass(each, _CONTROLLED) or _has_script(each))
         raise Error("bad-argument", "expert(env)", f"there is no expert of {task.name}",
                     f"give one of: {known}; or a task of your own that has scripted()")
     if task.action != task.actions[0] or (task.is_randomised and isinstance(task, _CONTROLLED)):

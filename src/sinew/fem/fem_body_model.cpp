@@ -87,10 +87,10 @@ int FemBodyModel::attach_nodes(std::span<const NodeId> nodes, std::span<const do
 
 int FemBodyModel::attach_surface() {
   if (surface_site_ >= 0) return surface_site_;
-  surface_ = std::make_shared<const collision::SurfaceTopology>(
-      mesh::boundary_surface(mesh()).triangles, static_cast<int>(mesh().nodes.rows()));
-  surface_trace_ = std::make_shared<const mechanics::SurfaceTrace>(
-      mesh::boundary_faces(mesh()), static_cast<int>(mesh().nodes.rows()));
+  const std::vector<mesh::Face> faces = mesh::boundary_faces(mesh());
+  const int nodes = static_cast<int>(mesh().nodes.rows());
+  surface_ = std::make_shared<const collision::SurfaceTopology>(mesh::triangles_of(faces), nodes);
+  surface_trace_ = std::make_shared<const mechanics::SurfaceTrace>(faces, nodes);
   surface_site_ = attach_nodes({}, {});
   return surface_site_;
 }

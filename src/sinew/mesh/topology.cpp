@@ -154,21 +154,25 @@ std::array<Triangle, 4> quarters(const Face& face) {
   return {{{n[0], m[0], m[2]}, {m[0], n[1], m[1]}, {m[2], m[1], n[2]}, {m[0], m[1], m[2]}}};
 }
 
-Surface boundary_surface(const Mesh& mesh) {
-  Surface surface{.name = mesh.name, .nodes = mesh.nodes, .triangles = {}};
-  for (Face face : boundary_faces(mesh)) {
-    auto& n = face.node;
+std::vector<Triangle> triangles_of(std::span<const Face> faces) {
+  std::vector<Triangle> triangles;
+  for (const Face& face : faces) {
     if (face.is_quadratic()) {
-      std::ranges::copy(quarters(face), std::back_inserter(surface.triangles));
+      std::ranges::copy(quarters(face), std::back_inserter(triangles));
       continue;
     }
+    auto n = face.node;
     if (face.corners() == 4) {  // split at the lowest node
       std::rotate(n.begin(), std::min_element(n.begin(), n.end()), n.end());
-      surface.triangles.push_back({n[0], n[2], n[3]});
+      triangles.push_back({n[0], n[2], n[3]});
     }
-    surface.triangles.push_back({n[0], n[1], n[2]});
+    triangles.push_back({n[0], n[1], n[2]});
   }
-  return surface;
+  return triangles;
+}
+
+Surface boundary_surface(const Mesh& mesh) {
+  return {.name = mesh.name, .nodes = mesh.nodes, .triangles = triangles_of(boundary_faces(mesh))};
 }
 
 double longest_edge(const Surface& surface) {

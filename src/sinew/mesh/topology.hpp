@@ -50,7 +50,10 @@ std::vector<Face> boundary_faces(const Mesh& mesh);
 /// The nodes of boundary_faces(), ascending; middles of quadratic faces included.
 std::vector<NodeId> outer_nodes(const Mesh& mesh);
 
-/// The surface of the volume elements: boundary_faces() with quadrilaterals split in two. Nodes are
+/// The triangles that stand for faces: quarters of quadratic ones, quadrilaterals split in two.
+std::vector<Triangle> triangles_of(std::span<const Face> faces);
+
+/// The surface of the volume elements: triangles_of() boundary_faces(). Nodes are
 /// those of the mesh, in its numbering, unused ones included.
 Surface boundary_surface(const Mesh& mesh);
 

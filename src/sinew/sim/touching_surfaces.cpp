@@ -67,7 +67,7 @@ void TouchingSurfaces::find(double reach) {
   found_.clear();
   for (const collision::ProximityPair& pair : pairs) {
     const bool held = contact_.first().holds(pair.first) && contact_.second().holds(pair.second);
-    if (!held) found_.push_back({name(pair), pair, pair.between_flat});
+    if (!held) found_.push_back({name(pair), pair});
   }
   const auto order = [](const Named& a, const Named& b) {
     if (a.key != b.key) return a.key < b.key;
@@ -76,7 +76,7 @@ void TouchingSurfaces::find(double reach) {
   };
   if (found_.size() > contact_.size()) {
     const auto nearer = [&](const Named& a, const Named& b) {
-      if (a.waits != b.waits) return b.waits;
+      if (a.pair.between_flat != b.pair.between_flat) return b.pair.between_flat;
       if (a.pair.distance != b.pair.distance) return a.pair.distance < b.pair.distance;
       return order(a, b);
     };
@@ -96,15 +96,15 @@ void TouchingSurfaces::begin_step(double reach, std::span<double> effort) {
   reach_ = reach;
   keys_.clear();
   pairs_.clear();
-  waits_.clear();
-  for (const Named& one : found_) {
-    contact_.put(keys_.size(), one.pair, first_start_, second_start_, rows_);
-    keys_.push_back(one.key);
-    pairs_.push_back(one.pair);
-    waits_.push_back(one.waits ? 1 : 0);
-  }
+  for (const Named& one : found_) add_point(one);
   clear_rest();
   pass_forces_on(effort);
+}
+
+void TouchingSurfaces::add_point(const Named& one) {
+  contact_.put(keys_.size(), one.pair, first_start_, second_start_, rows_);
+  keys_.push_back(one.key);
+  pairs_.push_back(one.pair);
 }
 
 double TouchingSurfaces::slack(std::size_t point) const {
@@ -163,11 +163,9 @@ bool TouchingSurfaces::add_overlaps() {
   for (const Named& one : found_) {
     if (one.pair.distance >= -allowed || keys_.size() == contact_.size()) continue;
     if (std::ranges::find(keys_, one.key) != keys_.end()) continue;
-    contact_.put(keys_.size(), one.pair, first_start_, second_start_, rows_);
-    contact_.measure(configuration_, keys_.size(), rows_);
-    keys_.push_back(one.key);
-    pairs_.push_back(one.pair);
-    waits_.push_back(0);
+    add_point(one);
+    pairs_.back().between_flat = false;  // a motion leads into it: it waits no more
+    contact_.measure(configuration_, keys_.size() - 1, rows_);
   }
   return keys_.size() > points;
 }
@@ -229,7 +227,6 @@ bool TouchingSurfaces::has_passed(const collision::SurfaceImpact& impact) const 
 void TouchingSurfaces::restart() {
   keys_.clear();
   pairs_.clear();
-  waits_.clear();
   clear_rest();
 }
 
@@ -277,8 +274,7 @@ std::span<const double> TouchingSurfaces::load(std::span<const double> from) {
   const auto count = static_cast<std::size_t>(told);
   reach_ = from[1];
   keys_.resize(count);
-  pairs_.resize(count);
-  waits_.assign(count, 0);  // until the next step, which says so
+  pairs_.resize(count);  // none waits until the next step, which says so
   clear_rest();
   const double* at = from.data() + kHead;
   for (std::size_t k = 0; k < count; ++k, at += kEach) {

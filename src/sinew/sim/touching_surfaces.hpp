@@ -55,7 +55,9 @@ class TouchingSurfaces {
   /// Whether a point waits until a motion leads into it: edges that cross where both surfaces are
   /// nearly flat. Vertices keep such parts apart, all but for overlaps at second order. Flat meshes
   /// on each other have more crossings than vertices, and forces of all would not be unique.
-  bool waits(std::size_t point) const { return point < waits_.size() && waits_[point] != 0; }
+  bool waits(std::size_t point) const {
+    return point < pairs_.size() && pairs_[point].between_flat;
+  }
   /// m: how far the gap of a point may be below zero before it is one. Surfaces rest at the
   /// separation, so that edges which wait do not overlap before they have used it up.
   double slack(std::size_t point) const;
@@ -79,7 +81,6 @@ class TouchingSurfaces {
   struct Named {
     Key key;
     collision::ProximityPair pair;
-    bool waits = false;
   };
   struct Force {
     Key key;
@@ -88,6 +89,7 @@ class TouchingSurfaces {
   };
   static Key name(const collision::ProximityPair& pair);
   void find(double reach);
+  void add_point(const Named& one);
   void move_trees(const Points& first, const Points& second);
   double farthest_way() const;
   double height(const collision::SurfaceImpact& impact, const Points& first,
@@ -106,8 +108,7 @@ class TouchingSurfaces {
   collision::SurfaceTree first_, second_;        // the second one stands still within one surface
   std::vector<Named> found_;                     // by name
   std::vector<Key> keys_;                        // of the points
-  std::vector<collision::ProximityPair> pairs_;  // of the points
-  std::vector<char> waits_;                      // (points,)
+  std::vector<collision::ProximityPair> pairs_;  // of the points; of those that wait between_flat
   double reach_ = 0.0;                           // m, of the step
   std::vector<Force> before_;                    // of the last step, by name
   Points first_start_, second_start_;            // m, when the step began

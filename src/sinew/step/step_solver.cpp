@@ -86,9 +86,11 @@ LawStatus StepSolver::take_over(const StepProblem& problem, Controller& controll
   response_.form(problem, effort, true);
   LawStatus status = choose(problem, controller, effort, change);
   if (status == LawStatus::failed) return status;
-  const double tried = try_efforts(problem, controller, chosen_, effort).miss;
-  response_.form(problem, effort);
-  if (tried < miss - controller.negligible_miss()) return settle(problem, controller, effort);
+  if (try_efforts(problem, controller, chosen_, effort).miss <
+      miss - controller.negligible_miss()) {
+    response_.form(problem, effort);
+    return settle(problem, controller, effort);
+  }
   // As it was, with the controller's program for it.
   try_efforts(problem, controller, held_, effort);
   response_.form(problem, effort);
