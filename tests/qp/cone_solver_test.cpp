@@ -312,11 +312,10 @@ TEST(ConeSolver, SolvesStiffBodies) {
 
 // Two flat surfaces all over each other: what a point does is felt by all, and Gauss-Seidel crawls
 // (a residual of 5e-3 after 2000 sweeps). 529 points are 1587 unknowns with friction.
-TEST(ConeSolver, SolvesSurfacesThatTouchAllOver) {
-  constexpr int kSide = 23;
-  const int points = kSide * kSide;
-  const auto at = [](int k) -> Eigen::Vector2d {
-    return Eigen::Vector2d(k % kSide, k / kSide) / (kSide - 1.0);
+Contacts touching_all_over(int side) {
+  const int points = side * side;
+  const auto at = [&](int k) -> Eigen::Vector2d {
+    return Eigen::Vector2d(k % side, k / side) / (side - 1.0);
   };
   Contacts contacts;
   contacts.matrix.setZero(3 * points, 3 * points);
@@ -326,6 +325,13 @@ TEST(ConeSolver, SolvesSurfacesThatTouchAllOver) {
           std::exp(-(at(i) - at(j)).norm()) * Vector3(1.0, 0.7, 0.7).asDiagonal();
     }
   }
+  contacts.offset.setZero(3 * points);
+  return contacts;
+}
+
+TEST(ConeSolver, SolvesSurfacesThatTouchAllOver) {
+  Contacts contacts = touching_all_over(23);
+  const auto points = static_cast<int>(contacts.offset.size()) / 3;
   for (const double friction : {0.3, 0.0}) {
     const Vector3 each(1.0, friction > 0.0 ? 0.2 : 0.0, friction > 0.0 ? 0.1 : 0.0);
     const VectorX expected = each.replicate(points, 1);
@@ -334,10 +340,50 @@ TEST(ConeSolver, SolvesSurfacesThatTouchAllOver) {
     for (int i = 0; i < points; ++i) contacts.cones.push_back({3 * i, friction});
     ConeSolver solver({.tolerance = 1e-10});
     VectorX x = VectorX::Zero(3 * points);
-    const auto& result =
-        solver.solve(contacts.problem(), {x.data(), static_cast<std::size_t>(x.size())});
+    const auto& result = solver.solve(contacts.problem(), span_of(x));
     EXPECT_EQ(result.status, ConeStatus::solved) << friction << ": " << result.residual;
     EXPECT_LT((x - expected).cwiseAbs().maxCoeff(), 1e-5) << friction;  // condition 2e4
+    expect_laws(contacts, x, 1e-8);
+  }
+}
+
+// The same surfaces slide over each other, each point its own way: far, so that its direction is as
+// good as given, or so little that it may as well stick; some stick, and some are open.
+TEST(ConeSolver, SolvesSurfacesThatSlideAllOver) {
+  constexpr double kFriction = 0.4;
+  Contacts contacts = touching_all_over(17);
+  const auto points = static_cast<int>(contacts.offset.size()) / 3;
+  for (const double fastest : {1e-2, 1.0, 1e3}) {
+    Random random(5);
+    VectorX expected = VectorX::Zero(3 * points), motion = VectorX::Zero(3 * points);
+    contacts.cones.clear();
+    for (int i = 0; i < points; ++i) {
+      contacts.cones.push_back({3 * i, kFriction});
+      if (random.chance(0.1)) {
+        motion[3 * i] = random.uniform(0.0, 0.1);
+        continue;
+      }
+      expected[3 * i] = random.uniform(0.5, 1.5);
+      const double angle = random.uniform(-0.4, 0.4);
+      const Eigen::Vector2d way(std::cos(angle), std::sin(angle));
+      const bool sticks = random.chance(0.2);
+      const double held = sticks ? random.uniform(0.1, 0.9) : 1.0;
+      expected.segment<2>(3 * i + 1) = -held * kFriction * expected[3 * i] * way;
+      if (!sticks) motion.segment<2>(3 * i + 1) = fastest * random.uniform(0.01, 1.0) * way;
+    }
+    contacts.offset = motion - contacts.matrix * expected;
+    ConeSolver solver({.tolerance = 1e-10});
+    VectorX x = VectorX::Zero(3 * points);
+    const auto& cold = solver.solve(contacts.problem(), span_of(x));
+    EXPECT_EQ(cold.status, ConeStatus::solved) << fastest << ": " << cold.residual;
+    EXPECT_LT((x - expected).cwiseAbs().maxCoeff(), 1e-5) << fastest;
+    expect_laws(contacts, x, 1e-8);
+    // The next step's problem is near.
+    contacts.offset *= 1.0 + 1e-6;
+    const auto& warm = solver.solve(contacts.problem(), span_of(x));
+    EXPECT_EQ(warm.status, ConeStatus::solved) << fastest << ": " << warm.residual;
+    EXPECT_EQ(warm.sweeps, 0) << fastest;
+    EXPECT_LE(warm.newton_steps, 3) << fastest;
     expect_laws(contacts, x, 1e-8);
   }
 }

@@ -10,8 +10,15 @@ namespace {
 
 constexpr double kConeProximal = 1e-12;    // of the diagonal
 constexpr double kNewtonShare = 0.3;       // of the cost of a step of Newton's
+constexpr double kSymmetricCost = 0.6;     // of unknowns whose matrix is symmetric
 constexpr double kOffsetRounding = 1e-14;  // of the largest offset
-constexpr Eigen::Index kLarge = 600;       // rows, see ConeSettings::usable
+// Rows up to which Newton's steps cost little; slips of more hold their directions up to this
+// share.
+constexpr Eigen::Index kSmall = 96;
+constexpr double kHeldShare = 0.3;
+constexpr std::size_t kEnoughWays = 2;  // of Newton's, see ConeSettings::usable
+constexpr double kNearStart = 0.1;      // residual of a start that Newton may go on from
+constexpr Eigen::Index kLarge = 600;    // rows, see ConeSettings::usable
 // Efforts that are larger, times what the free motion asks of one block alone, measure nothing:
 // they grow without limit where no motion can obey all blocks.
 constexpr double kMaxEffort = 1e4;
@@ -47,26 +54,27 @@ ConeStatus ConeIsland::solve(const ConePart& part, std::span<double> start) {
   result_.sweeps = result_.newton_steps = 0;
   newton_tries_ = 0;
   shift_ = 0.0;
+  held_share_ = x_.size() > kSmall ? kHeldShare : 0.0;
   result_.states.assign(part.problem.cones.size(), ContactState::open);
   x_ = Eigen::Map<const VectorX>(start.data(), x_.size());
   if (!x_.allFinite()) x_.setZero();
   prepare(part);
   settle_into_blocks(part.problem);
   measure_motion(part);
-  const bool towering = part.blocks != nullptr && alternate(part);
-  result_.status = towering ? ConeStatus::solved : ConeStatus::iteration_limit;
+  const bool near = part.blocks != nullptr ? alternate(part) : start_with_newton(part);
+  result_.status = near ? ConeStatus::solved : ConeStatus::iteration_limit;
   int sweeps = settings_.first_sweeps;
-  while (!towering && result_.sweeps < settings_.max_sweeps) {
+  while (!near && result_.sweeps < settings_.max_sweeps) {
     for (int k = 0; k < sweeps; ++k, ++result_.sweeps) {
       poll();
       sweep(part);
     }
     measure_motion(part);
-    if (judge(part) <= settings_.tolerance || (newton_pays(part) && newton(part))) {
+    if (judge(part) <= settings_.tolerance || newton_if_it_pays(part)) {
       result_.status = ConeStatus::solved;
       break;
     }
-    if (is_good_enough(part)) break;
+    if (newton_tries_ >= kEnoughWays && is_usable(part)) break;
     sweeps = std::min(result_.sweeps, settings_.max_sweeps - result_.sweeps);
   }
   judge(part);
@@ -75,23 +83,45 @@ ConeStatus ConeIsland::solve(const ConePart& part, std::span<double> start) {
   return result_.status;
 }
 
-bool ConeIsland::is_good_enough(const ConePart& part) const {
-  return part.blocks == nullptr && x_.size() > kLarge && newton_tries_ >= kNewtonWays &&
-         result_.residual <= settings_.usable;
+bool ConeIsland::is_usable(const ConePart& part) const {
+  return part.blocks == nullptr && x_.size() > kLarge && result_.residual <= settings_.usable;
 }
 
-// One of Newton's steps costs about (2/3) n^3 for n unknowns, a sweep 2 n of the problem's rows:
-// Newton gets its turn when the sweeps so far cost as much as a few of its steps. A sparse
-// factorisation costs little more than a sweep.
-bool ConeIsland::newton_pays(const ConePart& part) const {
-  if (part.blocks != nullptr) return true;
-  double count = static_cast<double>(part.problem.boxes.size());
-  for (const ConeBlock& cone : part.problem.cones) {
-    if (x_[cone.row] > 0.0) count += unknowns_of(part, cone);
-  }
+// What the last step's efforts start is often a step of Newton's away from its solution.
+bool ConeIsland::start_with_newton(const ConePart& part) {
+  if (x_.size() <= kSmall || x_.isZero(0.0) || !(judge(part) <= kNearStart)) return false;
+  return unknowns(part).solved <= settings_.newton_limit && newton_early(part);
+}
+
+// One of Newton's steps costs about (2/3) n^3 for n unknowns, a sweep 2 n of the problem's rows, a
+// fourth of the speed: Newton gets its turn when the sweeps so far cost as much as a few of its
+// steps. Where most cones hold their directions it is cheap long before the sweeps have told which
+// of them are open: it may then try and give up soon. A sparse factorisation costs little more than
+// a sweep.
+bool ConeIsland::newton_if_it_pays(const ConePart& part) {
+  if (part.blocks != nullptr) return newton(part);
+  const Unknowns count = unknowns(part);
   const double rows = static_cast<double>(x_.size());
-  return count <= settings_.newton_limit &&
-         result_.sweeps * 3.0 * rows >= kNewtonShare * count * count;
+  if (count.solved > settings_.newton_limit) return false;
+  const double swept = result_.sweeps * 3.0 * rows;
+  if (swept >= kNewtonShare * count.all * count.all) return newton(part);
+  return swept >= kNewtonShare * count.solved * count.solved && newton_early(part);
+}
+
+ConeIsland::Unknowns ConeIsland::unknowns(const ConePart& part) const {
+  Unknowns count;
+  bool symmetric = true;
+  count.all = count.solved = static_cast<double>(part.problem.boxes.size());
+  for (std::size_t k = 0; k < part.problem.cones.size(); ++k) {
+    const ConeBlock& cone = part.problem.cones[k];
+    if (!(x_[cone.row] > 0.0)) continue;
+    count.all += cone.friction > 0.0 ? 3.0 : 1.0;
+    const Branch own = branch(part, k);
+    count.solved += own.unknowns();
+    symmetric = symmetric && (!own.slips || cone.friction == 0.0);
+  }
+  if (symmetric) count.solved *= kSymmetricCost;
+  return count;
 }
 
 void ConeIsland::prepare(const ConePart& part) {

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "sinew/linalg/gmres.hpp"
 #include "sinew/linalg/scratch.hpp"
 #include "sinew/qp/block_lu.hpp"
 #include "sinew/qp/block_matrix.hpp"
@@ -73,38 +74,56 @@ class ConeIsland {
 
   // Newton (cone_newton.cpp).
   static constexpr std::size_t kNewtonWays = 4;
-  bool newton_pays(const ConePart& part) const;
-  bool is_good_enough(const ConePart& part) const;
+  static constexpr int kMaxTurnSteps = 15;
+  static constexpr double kTurnTolerance = 1e-4;
+  struct Unknowns {
+    double all = 0.0, solved = 0.0;  // of a dense system; the latter without what holds
+  };
+  Unknowns unknowns(const ConePart& part) const;
+  bool start_with_newton(const ConePart& part);
+  bool newton_if_it_pays(const ConePart& part);
+  bool is_usable(const ConePart& part) const;
   bool newton(const ConePart& part);
+  bool newton_early(const ConePart& part);
   bool newton_step(const ConePart& part, double proximal);
-  bool newton_steps(const ConePart& part, int max_steps, double tolerance, auto&& proximal);
+  // How many steps, in all and one after the other without a lesser residual.
+  struct Patience {
+    int steps, vain;
+  };
+  bool newton_steps(const ConePart& part, Patience patience, double tolerance, auto&& proximal);
   bool follow_regularised(const ConePart& part);
   void add_shifted(const ConePart& part);
   int choose_unknowns(const ConePart& part);
-  bool solve_dense(const ConePart& part, int count, double proximal);
-  bool solve_sparse(const ConePart& part, int count, double proximal);
   void form_right(const ConePart& part);
-  void move_unknowns(int count);
+  void move_unknowns(const ConePart& part, int count);
+
+  // Its linear systems (cone_linear.cpp).
+  bool solve_dense(const ConePart& part, int count, double proximal);
+  bool fill_dense(const ConePart& part, int count, double proximal);
+  void turn_slips(const ConePart& part, int count);
+  bool solve_sparse(const ConePart& part, int count, double proximal);
+  // What is added to a diagonal entry. @param row_scale 1/sqrt(w).
+  static double proximal_term(double own, double row_scale, double proximal);
 
   bool usable(std::size_t cone) const { return scale_[cone] > 0.0; }
-  // Of a cone among Newton's unknowns. Without friction its tangential efforts are zero; the
-  // pattern of a sparse matrix keeps them.
-  static int unknowns_of(const ConePart& part, const ConeBlock& cone) {
-    return part.blocks == nullptr && cone.friction == 0.0 ? 1 : 3;
-  }
-
-  /// The equations of a cone that is not open, linearised: A du + B dr = right.
+  /// The equations of a cone that is not open, linearised: A du + B dr = right; with `holds` as
+  /// cone_linear.cpp has them.
   struct Branch {
     Eigen::Matrix2d across;     // (mu s_n/|s_t|)(I - e e^T)
     Eigen::Vector2d direction;  // e
     double weight = 0.0;
     double friction = 0.0;
+    double share = 0.0;      // mu s_n/|s_t|
+    Eigen::Vector2d effort;  // r_t
     Vector3 right, motion;                 // motion: u, where it is linearised
     bool slips = false;                    // else A = 1, B = 0
+    bool holds = false;                    // its direction: the normal effort is all that is unknown
+    int unknowns() const { return holds ? 1 : 3; }
+    Eigen::Vector2d along() const { return friction * direction; }  // tangential by normal effort
     Vector3 act(const Vector3& du) const;  // A du
     Matrix3 own() const;                   // B
   };
-  Branch branch(const ConeProblem& problem, std::size_t number) const;
+  Branch branch(const ConePart& part, std::size_t number) const;
 
   ConeSettings settings_;
   ConeResult result_;
@@ -117,6 +136,10 @@ class ConeIsland {
   double rounding_ = 0.0;
 
   DenseLu lu_{0};
+  linalg::Gmres gmres_{kMaxTurnSteps, kTurnTolerance};
+  double held_share_ = 0.0;  // up to which slips hold their directions
+  std::vector<int> turning_;  // cones that hold them
+  linalg::ScratchMatrix effort_, moved_, answer_, turns_;
   std::vector<Branch> branches_;  // (cones,)
   std::size_t newton_tries_ = 0;
   VectorX right_;                 // (unknowns,) and more

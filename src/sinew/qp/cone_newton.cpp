@@ -20,7 +20,7 @@ namespace sinew::qp {
 
 namespace {
 
-constexpr int kMaxNewtonSteps = 30, kMaxVainSteps = 20;  // in all, and without a lesser residual
+constexpr int kMaxNewtonSteps = 30, kMaxVainSteps = 20, kMaxEarlyVain = 3, kMaxUsableVain = 4;
 // The proximal term, in parts of the diagonal: a share of the relative residual, and at least so
 // much that what redundant contacts leave undetermined does not grow out of rounding. More of it
 // takes more steps and fails less often. Where W is regular but stiff, next to nothing is best.
@@ -33,19 +33,11 @@ constexpr Proximal kProximal[] = {
     {0.1, 1e-6, 1e-2}, {1.0, 1e-6, 0.1}, {10.0, 1e-6, 0.1}, {1.0, kMinSmoothing, 0.1}};  // in turn
 // Up to so many rows, so many steps with the least are tried first: they are cheap.
 constexpr int kPlainRows = 96, kPlainSteps = 12;
-// Rows whose diagonal is under this part of w take the proximal term from w.
-constexpr double kStiff = 1e-12;
 // Regularised problems: the term, from this part of the diagonal on, goes down to kLastShift by
 // kNextShift each, less where Newton does not follow. What each may miss, in parts of it.
 constexpr double kLastShift = 1e-12, kNextShift = 0.1, kMaxFactor = 0.8;
 constexpr double kShiftTolerance = 1e-3;
 constexpr int kMaxShiftedSteps = 20;
-
-// What is added to a diagonal entry. @param row_scale 1/sqrt(w).
-double proximal_term(double own, double row_scale, double proximal) {
-  const double square = row_scale * row_scale;
-  return own * square > kStiff ? own * proximal : proximal / square;
-}
 
 }  // namespace
 
@@ -54,12 +46,19 @@ bool ConeIsland::newton(const ConePart& part) {
   const std::size_t tries = newton_tries_++;
   const double tolerance = settings_.tolerance;
   if (tries == 0 && x_.size() <= kPlainRows) {
-    if (newton_steps(part, kPlainSteps, tolerance, [](double) { return kMinSmoothing; })) {
+    if (newton_steps(part, {kPlainSteps, kMaxVainSteps}, tolerance,
+                     [](double) { return kMinSmoothing; })) {
       return true;
     }
   }
   if (tries == std::size(kProximal)) return follow_regularised(part);
-  return newton_steps(part, kMaxNewtonSteps, tolerance, kProximal[tries % std::size(kProximal)]);
+  return newton_steps(part, {kMaxNewtonSteps, kMaxVainSteps}, tolerance,
+                      kProximal[tries % std::size(kProximal)]);
+}
+
+// While its steps are cheap or the start is near: it ends where they do not gain.
+bool ConeIsland::newton_early(const ConePart& part) {
+  return newton_steps(part, {kMaxNewtonSteps, kMaxEarlyVain}, settings_.tolerance, kProximal[0]);
 }
 
 // Tikhonov's way: the problems with W + a D have one solution each, which Newton finds from that
@@ -77,7 +76,8 @@ bool ConeIsland::follow_regularised(const ConePart& part) {
     measure_motion(part);
     judge(part);
     const double tolerance = std::max(settings_.tolerance, kShiftTolerance * shift_);
-    if (!newton_steps(part, kMaxShiftedSteps, tolerance, [&](double) { return shift_; })) {
+    if (!newton_steps(part, {kMaxShiftedSteps, kMaxVainSteps}, tolerance,
+                      [&](double) { return shift_; })) {
       factor = std::sqrt(factor);
       continue;
     }
@@ -122,18 +122,20 @@ void ConeIsland::add_shifted(const ConePart& part) {
 
 // At most so many steps; without success the iterate is the best of them. @param proximal its size
 // for a relative residual.
-bool ConeIsland::newton_steps(const ConePart& part, int max_steps, double tolerance,
+bool ConeIsland::newton_steps(const ConePart& part, Patience patience, double tolerance,
                               auto&& proximal) {
   const auto keep = [&] { std::copy_n(x_.data(), x_.size(), best_.data()); };
   keep();
   double least = result_.residual;
-  for (int step = 0, vain = 0; step < max_steps && vain < kMaxVainSteps; ++step, ++vain) {
+  bool usable = is_usable(part);
+  for (int step = 0, vain = 0; step < patience.steps && vain < patience.vain; ++step, ++vain) {
     poll();
     const double relative = miss_.distance / std::max(miss_.effort, 1e-300);
     if (!newton_step(part, proximal(relative))) break;
     const double residual = judge(part);
     if (residual < least) {
       least = residual;
+      usable = is_usable(part);
       vain = 0;
       keep();
     }
@@ -143,6 +145,7 @@ bool ConeIsland::newton_steps(const ConePart& part, int max_steps, double tolera
       if (judge(part) <= tolerance) return true;
     }
     if (!std::isfinite(residual)) break;
+    if (usable && vain >= kMaxUsableVain) break;
   }
   std::copy_n(best_.data(), x_.size(), x_.data());
   settle_into_blocks(part.problem);
@@ -163,7 +166,7 @@ bool ConeIsland::newton_step(const ConePart& part, double proximal) {
     if (!solved) return false;
   }
   ++result_.newton_steps;
-  move_unknowns(count);
+  move_unknowns(part, count);
   measure_motion(part);
   return true;
 }
@@ -190,9 +193,9 @@ int ConeIsland::choose_unknowns(const ConePart& part) {
     cone_at_[k] = -1;
     if (!usable(k) || x_[row] - motion_[row] / scale_[k] <= 0.0) continue;
     cone_at_[k] = count;
-    branches_[k] = branch(problem, k);
-    const int own = unknowns_of(part, problem.cones[k]);
-    if (own == 1) x_.segment<2>(row + 1).setZero();
+    branches_[k] = branch(part, k);
+    const int own = branches_[k].unknowns();
+    if (own == 1) x_.segment<2>(row + 1) = x_[row] * branches_[k].along();
     row_scale_.segment(count, own).setConstant(1.0 / std::sqrt(scale_[k]));
     for (int c = 0; c < own; ++c) unknown_row_[static_cast<std::size_t>(count++)] = row + c;
   }
@@ -204,9 +207,10 @@ int ConeIsland::choose_unknowns(const ConePart& part) {
 
 // d(r_t - mu s_n e) = dr_t - mu e ds_n - (mu s_n/|s_t|)(I - e e^T) ds_t, e = s_t/|s_t|,
 // ds = dr - du/w; times w, so that all rows are motions.
-ConeIsland::Branch ConeIsland::branch(const ConeProblem& problem, std::size_t number) const {
-  const int row = problem.cones[number].row;
-  const double mu = problem.cones[number].friction, w = scale_[number];
+// Its last part is small where a cone slides far: the direction is then held for a step.
+ConeIsland::Branch ConeIsland::branch(const ConePart& part, std::size_t number) const {
+  const int row = part.problem.cones[number].row;
+  const double mu = part.problem.cones[number].friction, w = scale_[number];
   const Vector3 r = x_.segment<3>(row), u = motion_.segment<3>(row);
   const Vector3 s = r - u / w;
   Branch result;
@@ -221,6 +225,9 @@ ConeIsland::Branch ConeIsland::branch(const ConeProblem& problem, std::size_t nu
   const double share = far > 0.0 ? mu * s[0] / far : 0.0;
   result.friction = mu;
   result.direction = e;
+  result.share = share;
+  result.holds = part.blocks == nullptr && share <= held_share_;
+  result.effort = r.tail<2>();
   result.across = share * (Eigen::Matrix2d::Identity() - e * e.transpose());
   result.right.tail<2>() = -w * (r.tail<2>() - mu * s[0] * e);
   return result;
@@ -249,7 +256,7 @@ void ConeIsland::form_right(const ConePart& part) {
   for (std::size_t k = 0; k < problem.cones.size(); ++k) {
     if (cone_at_[k] < 0) continue;
     const Branch& own = branches_[k];
-    if (unknowns_of(part, problem.cones[k]) == 1) {
+    if (own.holds) {
       right_[cone_at_[k]] = -motion_[problem.cones[k].row];
       continue;
     }
@@ -258,76 +265,15 @@ void ConeIsland::form_right(const ConePart& part) {
   }
 }
 
-bool ConeIsland::solve_dense(const ConePart& part, int count, double proximal) {
-  lu_.reserve(count);
-  auto system = lu_.matrix(count);
+void ConeIsland::move_unknowns(const ConePart& part, int count) {
   for (int j = 0; j < count; ++j) {
-    const auto column = part.problem.matrix.col(unknown_row_[static_cast<std::size_t>(j)]);
-    for (int i = 0; i < count; ++i) {
-      system(i, j) = column[unknown_row_[static_cast<std::size_t>(i)]];
-    }
-    system(j, j) += proximal_term(system(j, j), row_scale_[j], proximal);
+    x_[unknown_row_[static_cast<std::size_t>(j)]] += row_scale_[j] * right_[j];
   }
   for (std::size_t k = 0; k < part.problem.cones.size(); ++k) {
     const int at = cone_at_[k];
-    if (at < 0 || !branches_[k].slips || unknowns_of(part, part.problem.cones[k]) == 1) continue;
-    for (int j = 0; j < count; ++j) {
-      system.block<3, 1>(at, j) = branches_[k].act(system.block<3, 1>(at, j));
-    }
-    system.block<3, 3>(at, at) += branches_[k].own();
-  }
-  for (int j = 0; j < count; ++j) {
-    system.col(j).array() *= row_scale_[j] * row_scale_.head(count).array();
-  }
-  if (!lu_.factorise(count)) return false;
-  lu_.solve(right_.head(count));
-  return true;
-}
-
-// The rows of blocks with a given x are those of the unit matrix, so that the pattern stays.
-bool ConeIsland::solve_sparse(const ConePart& part, int count, double proximal) {
-  const BlockMatrix& w = *part.blocks;
-  const std::size_t boxes = part.problem.boxes.size();
-  const auto place = [&](std::size_t node) {
-    return node < boxes ? box_at_[node] : cone_at_[node - boxes];
-  };
-  for (int j = 0; j < w.nodes(); ++j) {
-    const int column = place(static_cast<std::size_t>(j));
-    for (int e = w.starts()[static_cast<std::size_t>(j)];
-         e < w.starts()[static_cast<std::size_t>(j) + 1]; ++e) {
-      const auto i = static_cast<std::size_t>(w.rows()[static_cast<std::size_t>(e)]);
-      const int row = place(i);
-      Eigen::Map<Matrix3> block(part.lu->block(e));
-      if (row < 0 || column < 0) {
-        block.setZero();
-        if (static_cast<int>(i) == j) block.setIdentity();
-        continue;
-      }
-      block = w.block(e);
-      const bool own = static_cast<int>(i) == j;
-      const double scale = row_scale_[row] * row_scale_[column];
-      for (int c = 0; own && c < 3; ++c) {
-        block(c, c) += proximal_term(block(c, c), row_scale_[row], proximal);
-      }
-      if (i >= boxes && branches_[i - boxes].slips) {
-        for (int c = 0; c < 3; ++c) block.col(c) = branches_[i - boxes].act(block.col(c));
-        if (own) block += branches_[i - boxes].own();
-      }
-      block *= scale;
-    }
-  }
-  if (!part.lu->factorise()) return false;
-  auto step = step_.head(x_.size());
-  step.setZero();
-  for (int k = 0; k < count; ++k) step[unknown_row_[static_cast<std::size_t>(k)]] = right_[k];
-  part.lu->solve(step);
-  for (int k = 0; k < count; ++k) right_[k] = step[unknown_row_[static_cast<std::size_t>(k)]];
-  return true;
-}
-
-void ConeIsland::move_unknowns(int count) {
-  for (int j = 0; j < count; ++j) {
-    x_[unknown_row_[static_cast<std::size_t>(j)]] += row_scale_[j] * right_[j];
+    if (at < 0 || !branches_[k].holds) continue;
+    x_.segment<2>(part.problem.cones[k].row + 1) +=
+        row_scale_[at] * right_[at] * branches_[k].along();
   }
 }
 

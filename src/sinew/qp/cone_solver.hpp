@@ -66,7 +66,7 @@ struct ConeSettings {
   /// 290 MB and some seconds a step.
   int newton_limit = 6000;
   /// Of dense problems with more than 600 rows: where the residual is no more than this after
-  /// Newton's method was tried in its four ways, the solver stops (iteration-limit). What is left
+  /// Newton's method was tried in two of its ways, the solver stops (iteration-limit). What is left
   /// is mostly which of redundant contacts slide, and costs as much again for each further try.
   double usable = 0.0;
   ConeMeasure measure = ConeMeasure::per_block;

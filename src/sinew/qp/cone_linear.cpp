@@ -1,0 +1,208 @@
+// The linear systems of Newton's method. Of a cone that slides far, only the direction e of the
+// friction changes, and little: with share = mu s_n/|s_t| (cone_newton.cpp) and p normal to e, the
+// linearised laws are
+//   du_n = -u_n,   r_t = mu r_n e + g p,   g = -share/(1 - share) p.(r_t + du_t/w)
+// with r_t before the step. The normal effort is its one unknown of the dense system, and the turns
+// g solve (I - K) g = g_0, K of the size of the shares, by a few products with W.
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+#include "sinew/qp/cone_island.hpp"
+
+namespace sinew::qp {
+
+namespace {
+
+// Rows whose diagonal is under this part of w take the proximal term from w.
+constexpr double kStiff = 1e-12;
+// Up to so many unknowns a factorisation costs so little that symmetry gains nothing.
+constexpr int kFewUnknowns = 96;
+// Turns that are found no better than this are not to be had: less share is left to them.
+constexpr double kUsableTurns = 0.1;
+
+Eigen::Vector2d normal_to(const Eigen::Vector2d& direction) {
+  return {-direction[1], direction[0]};
+}
+
+}  // namespace
+
+double ConeIsland::proximal_term(double own, double row_scale, double proximal) {
+  const double square = row_scale * row_scale;
+  return own * square > kStiff ? own * proximal : proximal / square;
+}
+
+bool ConeIsland::solve_dense(const ConePart& part, int count, double proximal) {
+  lu_.reserve(count);
+  const bool symmetric = fill_dense(part, count, proximal);
+  bool solved = false;
+  if (symmetric && count > kFewUnknowns) {
+    auto system = lu_.matrix(count);
+    Eigen::Ref<MatrixX> own(system);
+    const Eigen::LLT<Eigen::Ref<MatrixX>> factor(own);
+    solved = factor.info() == Eigen::Success;
+    if (solved) factor.solveInPlace(right_.head(count));
+    if (!solved) fill_dense(part, count, proximal);
+  }
+  if (solved) return true;
+  if (!lu_.factorise(count)) return false;
+  turn_slips(part, count);
+  lu_.solve(right_.head(count));
+  return true;
+}
+
+// Returns whether the matrix is symmetric: no cone slides, but for those without friction.
+bool ConeIsland::fill_dense(const ConePart& part, int count, double proximal) {
+  auto system = lu_.matrix(count);
+  for (int j = 0; j < count; ++j) {
+    const auto column = part.problem.matrix.col(unknown_row_[static_cast<std::size_t>(j)]);
+    for (int i = 0; i < count; ++i) {
+      system(i, j) = column[unknown_row_[static_cast<std::size_t>(i)]];
+    }
+    system(j, j) += proximal_term(system(j, j), row_scale_[j], proximal);
+  }
+  bool symmetric = true;
+  turning_.clear();
+  for (std::size_t k = 0; k < part.problem.cones.size(); ++k) {
+    const int at = cone_at_[k], row = part.problem.cones[k].row;
+    if (at < 0 || !branches_[k].slips) continue;
+    if (!branches_[k].holds) {
+      symmetric = false;
+      continue;
+    }
+    const Eigen::Vector2d along = branches_[k].along();
+    if (along.isZero(0.0)) continue;
+    symmetric = false;
+    turning_.push_back(static_cast<int>(k));
+    const auto first = part.problem.matrix.col(row + 1), second = part.problem.matrix.col(row + 2);
+    for (int i = 0; i < count; ++i) {
+      const int other = unknown_row_[static_cast<std::size_t>(i)];
+      system(i, at) += along[0] * first[other] + along[1] * second[other];
+    }
+  }
+  for (std::size_t k = 0; k < part.problem.cones.size(); ++k) {
+    const int at = cone_at_[k];
+    if (at < 0 || !branches_[k].slips || branches_[k].holds) continue;
+    for (int j = 0; j < count; ++j) {
+      system.block<3, 1>(at, j) = branches_[k].act(system.block<3, 1>(at, j));
+    }
+    system.block<3, 3>(at, at) += branches_[k].own();
+  }
+  for (int j = 0; j < count; ++j) {
+    system.col(j).array() *= row_scale_[j] * row_scale_.head(count).array();
+  }
+  return symmetric;
+}
+
+// The turns of the cones that hold their directions: x takes their efforts, and the right side
+// loses their motion. With the factors at hand.
+void ConeIsland::turn_slips(const ConePart& part, int count) {
+  if (turning_.empty()) return;
+  const auto turns = static_cast<Eigen::Index>(turning_.size());
+  const auto each = [&](auto&& act) {
+    for (Eigen::Index i = 0; i < turns; ++i) {
+      const auto k = static_cast<std::size_t>(turning_[static_cast<std::size_t>(i)]);
+      act(i, k, part.problem.cones[k].row + 1, normal_to(branches_[k].direction));
+    }
+  };
+  auto effort = effort_.shape(x_.size(), 1).col(0);
+  auto moved = moved_.shape(x_.size(), 1).col(0);
+  auto answer = answer_.shape(count, 1).col(0);
+  // The efforts of turns g, their motion, and its right side.
+  const auto take_turns = [&](const Eigen::Ref<const VectorX>& g) {
+    effort.setZero();
+    each([&](Eigen::Index i, std::size_t, int row, const Eigen::Vector2d& p) {
+      effort.segment<2>(row) = g[i] * p;
+    });
+    moved.noalias() = part.problem.matrix * effort;
+    for (int j = 0; j < count; ++j) {
+      answer[j] = -moved[unknown_row_[static_cast<std::size_t>(j)]];
+    }
+    for (std::size_t k = 0; k < part.problem.cones.size(); ++k) {
+      if (cone_at_[k] < 0 || !branches_[k].slips || branches_[k].holds) continue;
+      answer.segment<3>(cone_at_[k]) = branches_[k].act(answer.segment<3>(cone_at_[k]));
+    }
+    answer.array() *= row_scale_.head(count).array();
+  };
+  // The motion of the answer and of the turns that it belongs to.
+  const auto answer_them = [&] {
+    lu_.solve(answer);
+    for (int j = 0; j < count; ++j) {
+      effort[unknown_row_[static_cast<std::size_t>(j)]] = row_scale_[j] * answer[j];
+    }
+    each([&](Eigen::Index, std::size_t k, int row, const Eigen::Vector2d&) {
+      effort.segment<2>(row) += effort[row - 1] * branches_[k].along();
+    });
+    moved.noalias() = part.problem.matrix * effort;
+  };
+  const auto gain = [&](std::size_t k) { return branches_[k].share / (1.0 - branches_[k].share); };
+
+  auto g = turns_.shape(turns, 1).col(0);
+  effort.setZero();
+  answer = right_.head(count);
+  answer_them();
+  each([&](Eigen::Index i, std::size_t k, int row, const Eigen::Vector2d& p) {
+    const Eigen::Vector2d by =
+        motion_.segment<2>(row) + moved.segment<2>(row) - branches_[k].motion.tail<2>();
+    g[i] = -gain(k) * p.dot(branches_[k].effort + by / scale_[k]);
+  });
+  const double left = gmres_.solve(
+      [&](const Eigen::Ref<const VectorX>& direction, Eigen::Ref<VectorX> product) {
+        take_turns(direction);
+        answer_them();
+        product = direction;
+        each([&](Eigen::Index i, std::size_t k, int row, const Eigen::Vector2d& p) {
+          product[i] += gain(k) * p.dot(moved.segment<2>(row)) / scale_[k];
+        });
+      },
+      g);
+  if (!(left <= kUsableTurns)) held_share_ *= 0.1;
+  take_turns(g);
+  right_.head(count) += answer;
+  each([&](Eigen::Index i, std::size_t, int row, const Eigen::Vector2d& p) {
+    x_.segment<2>(row) += g[i] * p;
+  });
+}
+
+// The rows of blocks with a given x are those of the unit matrix, so that the pattern stays.
+bool ConeIsland::solve_sparse(const ConePart& part, int count, double proximal) {
+  const BlockMatrix& w = *part.blocks;
+  const std::size_t boxes = part.problem.boxes.size();
+  const auto place = [&](std::size_t node) {
+    return node < boxes ? box_at_[node] : cone_at_[node - boxes];
+  };
+  for (int j = 0; j < w.nodes(); ++j) {
+    const int column = place(static_cast<std::size_t>(j));
+    for (int e = w.starts()[static_cast<std::size_t>(j)];
+         e < w.starts()[static_cast<std::size_t>(j) + 1]; ++e) {
+      const auto i = static_cast<std::size_t>(w.rows()[static_cast<std::size_t>(e)]);
+      const int row = place(i);
+      Eigen::Map<Matrix3> block(part.lu->block(e));
+      if (row < 0 || column < 0) {
+        block.setZero();
+        if (static_cast<int>(i) == j) block.setIdentity();
+        continue;
+      }
+      block = w.block(e);
+      const bool own = static_cast<int>(i) == j;
+      const double scale = row_scale_[row] * row_scale_[column];
+      for (int c = 0; own && c < 3; ++c) {
+        block(c, c) += proximal_term(block(c, c), row_scale_[row], proximal);
+      }
+      if (i >= boxes && branches_[i - boxes].slips) {
+        for (int c = 0; c < 3; ++c) block.col(c) = branches_[i - boxes].act(block.col(c));
+        if (own) block += branches_[i - boxes].own();
+      }
+      block *= scale;
+    }
+  }
+  if (!part.lu->factorise()) return false;
+  auto step = step_.head(x_.size());
+  step.setZero();
+  for (int k = 0; k < count; ++k) step[unknown_row_[static_cast<std::size_t>(k)]] = right_[k];
+  part.lu->solve(step);
+  for (int k = 0; k < count; ++k) right_[k] = step[unknown_row_[static_cast<std::size_t>(k)]];
+  return true;
+}
+
+}  // namespace sinew::qp
