@@ -95,9 +95,25 @@ void append_parts(const ElementBatches& elements, std::span<const Region> region
   }
 }
 
+/// Sorts parts by their blocks, and those of a block by `before`: a block has few, so that counting
+/// first costs less than one sort of all.
+template <class P>
+void sort_by_block(std::vector<P>& parts, int blocks, auto&& before) {
+  std::vector<std::size_t> start(static_cast<std::size_t>(blocks) + 1, 0);
+  for (const P& part : parts) ++start[static_cast<std::size_t>(part.visit) + 1];
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  std::vector<P> sorted(parts.size());
+  std::vector<std::size_t> cursor = start;
+  for (const P& part : parts) sorted[cursor[static_cast<std::size_t>(part.visit)]++] = part;
+  for (std::size_t block = 0; block < cursor.size() - 1; ++block) {
+    std::ranges::sort(sorted.begin() + static_cast<std::ptrdiff_t>(start[block]),
+                      sorted.begin() + static_cast<std::ptrdiff_t>(start[block + 1]), before);
+  }
+  parts.swap(sorted);
+}
+
 void write_blocks(std::vector<Part>& parts, int blocks, GatherLists& lists) {
-  std::ranges::sort(parts, [](const Part& p, const Part& q) {
-    if (p.visit != q.visit) return p.visit < q.visit;
+  sort_by_block(parts, blocks, [](const Part& p, const Part& q) {
     return p.ratio != q.ratio ? p.ratio < q.ratio : p.code < q.code;
   });
   lists.contributions.reserve(parts.size());
@@ -172,9 +188,8 @@ void append_patches(const ElementPatches& patches, std::span<const NodeId> free_
 
 void write_patches(std::vector<PatchPart>& parts, int blocks, GatherLists& lists) {
   if (parts.empty()) return;
-  std::ranges::sort(parts, [](const PatchPart& p, const PatchPart& q) {
-    return p.visit != q.visit ? p.visit < q.visit : p.rows < q.rows;
-  });
+  sort_by_block(parts, blocks,
+                [](const PatchPart& p, const PatchPart& q) { return p.rows < q.rows; });
   lists.patch_start.assign(static_cast<std::size_t>(blocks) + 1, 0);
   lists.patch_pairs.reserve(parts.size());
   for (const PatchPart& part : parts) {
@@ -215,9 +230,8 @@ void append_solids(const SolidGroup& group, std::span<const NodeId> free_index,
 
 void write_solids(std::vector<SolidPart>& parts, int blocks, GatherLists& lists) {
   if (parts.empty()) return;
-  std::ranges::sort(parts, [](const SolidPart& p, const SolidPart& q) {
-    return p.visit != q.visit ? p.visit < q.visit : p.code < q.code;
-  });
+  sort_by_block(parts, blocks,
+                [](const SolidPart& p, const SolidPart& q) { return p.code < q.code; });
   lists.solid_start.assign(static_cast<std::size_t>(blocks) + 1, 0);
   lists.solid_parts.reserve(parts.size());
   for (const SolidPart& part : parts) {
