@@ -1,8 +1,5 @@
 // Tries combinations of features by the thousand, each in a process of its own so that a crash is
 // counted as one.
-//   combinations [--from SEED] [--count N]     random selections (300)
-//   combinations --pairs [--from K] [--count N] the cover of all pairs of levels
-//   combinations [--pairs] --print SEED        the scene of a seed
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
@@ -20,6 +17,11 @@
 namespace {
 
 using namespace sinew::combine;
+
+constexpr const char* kUsage =
+    "combinations [--from SEED] [--count N]       random selections (300)\n"
+    "combinations --pairs [--from K] [--count N]  the cover of all pairs of levels\n"
+    "combinations [--pairs] --print SEED          the scene of a seed\n";
 
 // In a child process; a crash is an outcome, too.
 std::string try_apart(const Selection& selection, std::uint64_t seed) {
@@ -50,20 +52,30 @@ std::string try_apart(const Selection& selection, std::uint64_t seed) {
 }  // namespace
 
 int main(int count, char** words) {
-  std::uint64_t from = 0;
+  std::uint64_t from = 0, printed = 0;
   int number = 300;
-  bool pairs = false;
+  bool pairs = false, prints = false;
   for (int k = 1; k < count; ++k) {
     const std::string word = words[k];
-    if (word == "--pairs") pairs = true;
-    if (word == "--from" && k + 1 < count) from = std::stoull(words[++k]);
-    if (word == "--count" && k + 1 < count) number = std::stoi(words[++k]);
-    if (word == "--print" && k + 1 < count) {
-      const std::uint64_t seed = std::stoull(words[++k]);
-      std::cout << write_scene(
-          draft_scene(pairs ? pairwise_cover().at(seed) : random_selection(seed), seed));
-      return 0;
+    const bool has_value = k + 1 < count;
+    if (word == "--pairs") {
+      pairs = true;
+    } else if (word == "--from" && has_value) {
+      from = std::stoull(words[++k]);
+    } else if (word == "--count" && has_value) {
+      number = std::stoi(words[++k]);
+    } else if (word == "--print" && has_value) {
+      prints = true;
+      printed = std::stoull(words[++k]);
+    } else {
+      (word == "--help" ? std::cout : std::cerr) << kUsage;
+      return word == "--help" ? 0 : 2;
     }
+  }
+  if (prints) {
+    const Selection selection = pairs ? pairwise_cover().at(printed) : random_selection(printed);
+    std::cout << write_scene(draft_scene(selection, printed));
+    return 0;
   }
   const std::vector<Selection> cover = pairs ? pairwise_cover() : std::vector<Selection>{};
   if (pairs)

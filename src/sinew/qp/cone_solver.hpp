@@ -111,6 +111,10 @@ struct ConeResult {
 /// other with a from 0.1 to nothing (Tikhonov & Arsenin 1977), each from the last one's solution:
 /// many more steps, and the solution of least size whatever the order of the contacts.
 ///
+/// **Many contacts.** From 96 rows on, Newton's method is tried at once where x is near (a residual
+/// of 0.1), and gives up as soon as a few steps gain nothing. In a dense matrix a contact that
+/// slides far has one unknown instead of three, see cone_linear.cpp.
+///
 /// **Sparse matrices.** From 96 rows on, what has no block of W in common is solved apart, and a
 /// part with few blocks by sparse factorisations (BlockLu), first for a few iterations by
 /// alternating directions (cone_admm.cpp), which is all that a tower needs.

@@ -15,7 +15,7 @@ constexpr double kRedundancy = 1e-12;
 constexpr double kMotionTolerance = 1e-12;
 // A solution of contacts that misses the tolerance by rounding or slow convergence is one up to
 // here.
-constexpr double kUsable = 1e-6;
+constexpr double kUsableResidual = 1e-6;
 
 // Of a row's own compliance: what is less is rounding.
 constexpr double kDecided = 1e-10;
@@ -307,7 +307,7 @@ LawStatus DirectSolver::solve_cones(const Eigen::Map<const MatrixX>& compliance)
       cone_solver_.solve({compliance, motion.col(0), cone_boxes_, cones_}, x_);
   const bool usable =
       result.status == qp::ConeStatus::solved ||
-      (result.status == qp::ConeStatus::iteration_limit && result.residual <= kUsable);
+      (result.status == qp::ConeStatus::iteration_limit && result.residual <= kUsableResidual);
   return usable ? LawStatus::solved : LawStatus::failed;
 }
 
