@@ -26,17 +26,17 @@ TASKS = {  # episodes of a generation, their time limit (s), action of zero weig
 
 
 def features(task, observations):
-    """What is seen from each of the four sides of the trunk, (environments, 4, features); the last one is 1."""
+    """What is seen from each of the four sides of the trunk, (environments, 4, features); the last one is constant."""
     sides = []
     for k in range(4):
         if task == "trunk-reach":  # from tip to goal: outwards, along the turn, down
             c, s = np.cos((k + 1) * np.pi / 2), np.sin((k + 1) * np.pi / 2)
             x, y, z = observations[:, 19:22].T
-            seen = [x * c + y * s, y * c - x * s, z]
+            seen, constant = [x * c + y * s, y * c - x * s, z], 0.1
         else:  # rates of bending, from opposite cables: outwards and along the turn, of long and of short cables
             rates = np.roll(observations[:, 19:27].reshape(-1, 2, 4), -k, axis=2)
-            seen = (rates[:, :, :2] - rates[:, :, 2:]).reshape(-1, 4).T
-        sides.append(np.column_stack([*seen, np.ones(len(observations))]))
+            seen, constant = (rates[:, :, :2] - rates[:, :, 2:]).reshape(-1, 4).T, 1.0
+        sides.append(np.column_stack([*seen, np.full(len(observations), constant)]))
     return np.stack(sides, axis=1)
 
 
