@@ -95,32 +95,34 @@ TEST(Allocation, NeverHappensInElasticSolve) {
 }
 
 TEST(Allocation, HappensInConeSolveOnlyForLargerProblems) {
-  Random random(9);
-  constexpr int kCones = 20, kBoxes = 3, kRows = 3 * kCones + kBoxes;
-  ConeSolver solver;
-  std::vector<ConeBlock> cones;
-  std::vector<BoxBlock> boxes;
-  for (int i = 0; i < kCones; ++i) cones.push_back({kBoxes + 3 * i, 0.4});
-  for (int i = 0; i < kBoxes; ++i) boxes.push_back({i, 0.0, 1.0, 0.1});
-  std::vector<MatrixX> matrices;
-  std::vector<VectorX> offsets;
-  for (int trial = 0; trial < 20; ++trial) {
-    matrices.push_back(random_hessian(kRows, 1e4, random));
-    offsets.push_back(random.vector(kRows));
-  }
-  std::vector<double> x(kRows, 0.0);
-  int newton_steps = 0;
-  const auto solve_all = [&] {
-    std::ranges::fill(x, 0.0);
-    for (std::size_t k = 0; k < matrices.size(); ++k) {
-      newton_steps += solver.solve({matrices[k], offsets[k], boxes, cones}, x).newton_steps;
+  for (const auto& [count, friction] : {std::pair{20, 0.4}, {60, 0.4}, {210, 0.05}, {150, 1e3}}) {
+    Random random(9);
+    const int limited = 3, rows = 3 * count + limited;
+    ConeSolver solver;
+    std::vector<ConeBlock> cones;
+    std::vector<BoxBlock> boxes;
+    for (int i = 0; i < count; ++i) cones.push_back({limited + 3 * i, friction});
+    for (int i = 0; i < limited; ++i) boxes.push_back({i, 0.0, 1.0, 0.1});
+    std::vector<MatrixX> matrices;
+    std::vector<VectorX> offsets;
+    for (int trial = 0; trial < (count > 20 ? 2 : 20); ++trial) {
+      matrices.push_back(random_hessian(rows, 1e4, random));
+      offsets.push_back(random.vector(rows));
     }
-  };
-  solve_all();  // memory grows to what these problems need
-  const long before = allocations;
-  solve_all();
-  EXPECT_EQ(allocations, before);
-  EXPECT_GT(newton_steps, 0);
+    std::vector<double> x(static_cast<std::size_t>(rows), 0.0);
+    int newton_steps = 0;
+    const auto solve_all = [&] {
+      std::ranges::fill(x, 0.0);
+      for (std::size_t k = 0; k < matrices.size(); ++k) {
+        newton_steps += solver.solve({matrices[k], offsets[k], boxes, cones}, x).newton_steps;
+      }
+    };
+    solve_all();  // memory grows to what these problems need
+    const long before = allocations;
+    solve_all();
+    EXPECT_EQ(allocations, before) << count << " cones, friction " << friction;
+    EXPECT_GT(newton_steps, 0) << count << " cones, friction " << friction;
+  }
 }
 
 // Parts, of which some are sparse: a tower and a heap of bodies that do not touch it.

@@ -21,7 +21,8 @@ class Gmres {
   Gmres(int max_directions, double tolerance)
       : max_directions_(max_directions), tolerance_(tolerance) {}
 
-  /// x <- the vector of least |A x - b| among those of the directions taken. @param x (n,) in: b.
+  /// x <- the vector of least |A x - b| among those of the directions taken.
+  /// @param multiply with A. @param x (n,) in: b.
   /// @return |A x - b|/|b|; 0 where b is zero, NaN where b is not finite.
   double solve(const Operator& multiply, Eigen::Ref<VectorX> x);
 

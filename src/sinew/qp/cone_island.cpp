@@ -12,10 +12,9 @@ constexpr double kConeProximal = 1e-12;    // of the diagonal
 constexpr double kNewtonShare = 0.3;       // of the cost of a step of Newton's
 constexpr double kSymmetricCost = 0.6;     // of unknowns whose matrix is symmetric
 constexpr double kOffsetRounding = 1e-14;  // of the largest offset
-// Rows up to which Newton's steps cost little; slips of more hold their directions up to this
-// share.
-constexpr Eigen::Index kSmall = 96;
-constexpr double kHeldShare = 0.3;
+// Unknowns up to which sweeps find the solution soon.
+constexpr double kFew = 96;
+constexpr double kHeldShare = 0.3;      // up to which slips of large problems hold their directions
 constexpr std::size_t kEnoughWays = 2;  // of Newton's, see ConeSettings::usable
 constexpr double kNearStart = 0.1;      // residual of a start that Newton may go on from
 constexpr Eigen::Index kLarge = 600;    // rows, see ConeSettings::usable
@@ -54,7 +53,7 @@ ConeStatus ConeIsland::solve(const ConePart& part, std::span<double> start) {
   result_.sweeps = result_.newton_steps = 0;
   newton_tries_ = 0;
   shift_ = 0.0;
-  held_share_ = x_.size() > kSmall ? kHeldShare : 0.0;
+  held_share_ = x_.size() > kLarge ? kHeldShare : 0.0;
   result_.states.assign(part.problem.cones.size(), ContactState::open);
   x_ = Eigen::Map<const VectorX>(start.data(), x_.size());
   if (!x_.allFinite()) x_.setZero();
@@ -89,8 +88,9 @@ bool ConeIsland::is_usable(const ConePart& part) const {
 
 // What the last step's efforts start is often a step of Newton's away from its solution.
 bool ConeIsland::start_with_newton(const ConePart& part) {
-  if (x_.size() <= kSmall || x_.isZero(0.0) || !(judge(part) <= kNearStart)) return false;
-  return unknowns(part).solved <= settings_.newton_limit && newton_early(part);
+  const Unknowns count = unknowns(part);
+  if (count.all <= kFew || count.solved > settings_.newton_limit) return false;
+  return judge(part) <= kNearStart && newton_early(part);
 }
 
 // One of Newton's steps costs about (2/3) n^3 for n unknowns, a sweep 2 n of the problem's rows, a
@@ -105,7 +105,8 @@ bool ConeIsland::newton_if_it_pays(const ConePart& part) {
   if (count.solved > settings_.newton_limit) return false;
   const double swept = result_.sweeps * 3.0 * rows;
   if (swept >= kNewtonShare * count.all * count.all) return newton(part);
-  return swept >= kNewtonShare * count.solved * count.solved && newton_early(part);
+  const bool cheap = swept >= kNewtonShare * count.solved * count.solved;
+  return x_.size() > kLarge && cheap && newton_early(part);
 }
 
 ConeIsland::Unknowns ConeIsland::unknowns(const ConePart& part) const {

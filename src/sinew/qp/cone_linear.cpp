@@ -5,6 +5,7 @@
 // with r_t before the step. The normal effort is its one unknown of the dense system, and the turns
 // g solve (I - K) g = g_0, K of the size of the shares, by a few products with W.
 #include <cmath>
+#include <functional>
 
 #include <Eigen/Cholesky>
 
@@ -146,16 +147,16 @@ void ConeIsland::turn_slips(const ConePart& part, int count) {
         motion_.segment<2>(row) + moved.segment<2>(row) - branches_[k].motion.tail<2>();
     g[i] = -gain(k) * p.dot(branches_[k].effort + by / scale_[k]);
   });
-  const double left = gmres_.solve(
-      [&](const Eigen::Ref<const VectorX>& direction, Eigen::Ref<VectorX> product) {
-        take_turns(direction);
-        answer_them();
-        product = direction;
-        each([&](Eigen::Index i, std::size_t k, int row, const Eigen::Vector2d& p) {
-          product[i] += gain(k) * p.dot(moved.segment<2>(row)) / scale_[k];
-        });
-      },
-      g);
+  const auto without_share = [&](const Eigen::Ref<const VectorX>& direction,
+                                 Eigen::Ref<VectorX> product) {
+    take_turns(direction);
+    answer_them();
+    product = direction;
+    each([&](Eigen::Index i, std::size_t k, int row, const Eigen::Vector2d& p) {
+      product[i] += gain(k) * p.dot(moved.segment<2>(row)) / scale_[k];
+    });
+  };
+  const double left = gmres_.solve(std::cref(without_share), g);  // a copy would allocate
   if (!(left <= kUsableTurns)) held_share_ *= 0.1;
   take_turns(g);
   right_.head(count) += answer;
