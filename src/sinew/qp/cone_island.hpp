@@ -115,13 +115,13 @@ class ConeIsland {
     double friction = 0.0;
     double share = 0.0;      // mu s_n/|s_t|
     Eigen::Vector2d effort;  // r_t
-    Vector3 right, motion;                 // motion: u, where it is linearised
-    bool slips = false;                    // else A = 1, B = 0
-    bool holds = false;                    // its direction: the normal effort is all that is unknown
+    Vector3 right, motion;   // motion: u, where it is linearised
+    bool slips = false;      // else A = 1, B = 0
+    bool holds = false;      // its direction: the normal effort is all that is unknown
     int unknowns() const { return holds ? 1 : 3; }
     Eigen::Vector2d along() const { return friction * direction; }  // tangential by normal effort
-    Vector3 act(const Vector3& du) const;  // A du
-    Matrix3 own() const;                   // B
+    Vector3 act(const Vector3& du) const;                           // A du
+    Matrix3 own() const;                                            // B
   };
   Branch branch(const ConePart& part, std::size_t number) const;
 
@@ -137,7 +137,7 @@ class ConeIsland {
 
   DenseLu lu_{0};
   linalg::Gmres gmres_{kMaxTurnSteps, kTurnTolerance};
-  double held_share_ = 0.0;  // up to which slips hold their directions
+  double held_share_ = 0.0;   // up to which slips hold their directions
   std::vector<int> turning_;  // cones that hold them
   linalg::ScratchMatrix effort_, moved_, answer_, turns_;
   std::vector<Branch> branches_;  // (cones,)
