@@ -67,11 +67,11 @@ def scene(mesh, friction):
     }  # fmt: skip
 
 
-def pressure(chamber, cycles, lag=LAG):
+def pressure(chamber, cycles, lag=LAG, period=PERIOD, full=PRESSURE):
     """(n, 2): times (s) and pressures (Pa) of the chamber that comes as number `chamber`."""
-    starts = (np.arange(cycles) + lag * chamber) * PERIOD
+    starts = (np.arange(cycles) + lag * chamber) * period
     phases = np.array([[0.0, 0.0], [RISE, 1.0], [RISE + HOLD, 1.0], [2 * RISE + HOLD, 0.0]])
-    table = np.vstack([phases * [PERIOD, PRESSURE] + [start, 0.0] for start in starts])
+    table = np.vstack([phases * [period, full] + [start, 0.0] for start in starts])
     return table if chamber == 0 else np.vstack([[[0.0, 0.0]], table])  # a table begins at 0 s
 
 

@@ -15,10 +15,10 @@ from pathlib import Path
 import meshio
 import numpy as np
 import sinew
+from crawl import pressure
 
 CHAMBERS = {"rear_left": 0, "rear_right": 0, "center": 1, "front_left": 2, "front_right": 2}  # place in the gait
 PRESSURE, PERIOD, STEP = 26e3, 3.0, 0.02  # Pa, s, s
-RISE, HOLD, LAG = 0.2, 0.4, 0.1  # of the period: filling or emptying, full, between two groups of chambers
 SPACING = 10.0  # mm: between points of the sole that can touch the floor
 FRICTION = (0.2, 0.5, 0.7, 1.0)
 
@@ -63,20 +63,12 @@ def scene(data, folder, friction):
     }  # fmt: skip
 
 
-def pressure(place, cycles):
-    """(n, 2): times (s) and pressures (Pa) of the chambers at a place in the gait."""
-    starts = (np.arange(cycles) + LAG * place) * PERIOD
-    phases = np.array([[0.0, 0.0], [RISE, 1.0], [RISE + HOLD, 1.0], [2 * RISE + HOLD, 0.0]])
-    table = np.vstack([phases * [PERIOD, PRESSURE] + [start, 0.0] for start in starts])
-    return table if place == 0 else np.vstack([[[0.0, 0.0]], table])  # a table begins at 0 s
-
-
 def crawl(data, friction, cycles=1, log=None):
     """(steps, 3): time (s), mean x (m) towards the front, greatest height (m)."""
     with tempfile.TemporaryDirectory() as folder:
         sim = sinew.load(scene(data, Path(folder), friction))
     for name, place in CHAMBERS.items():
-        sim.actuator(name).pressure = pressure(place, cycles)
+        sim.actuator(name).pressure = pressure(place, cycles, period=PERIOD, full=PRESSURE)
     robot = sim.body("robot")
     rows = [(0.0, 0.0, robot.positions[:, 2].max())]
     start = robot.positions[:, 0].mean()

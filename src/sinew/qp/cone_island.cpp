@@ -88,6 +88,7 @@ bool ConeIsland::is_usable(const ConePart& part) const {
 
 // What the last step's efforts start is often a step of Newton's away from its solution.
 bool ConeIsland::start_with_newton(const ConePart& part) {
+  if (static_cast<double>(x_.size()) <= kFew) return false;
   const Unknowns count = unknowns(part);
   if (count.all <= kFew || count.solved > settings_.newton_limit) return false;
   return judge(part) <= kNearStart && newton_early(part);
