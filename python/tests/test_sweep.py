@@ -1,11 +1,17 @@
 """Sweeps: samples, workers, tables, what goes wrong, sensitivity. Clusters are real ones of two processes."""
 
+import contextlib
 import os
+import pathlib
 import pickle
+import re
+import shutil
 import signal
 import socket
 import subprocess
 import sys
+import tempfile
+import textwrap
 import threading
 import time
 
@@ -20,9 +26,10 @@ pytest.importorskip("h5py")
 pytest.importorskip("scipy")
 
 import sinew.sweep  # noqa: E402
-from sinew.sweep import engine, samples, store, worker  # noqa: E402
+from sinew.sweep import engine, progress, samples, store, worker  # noqa: E402
 
 MODULUS, PULL = "bodies.finger.material.young_modulus", "actuators.east.command.displacement"
+ROOT = pathlib.Path(__file__).parents[2]
 ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
 
 
@@ -161,18 +168,18 @@ def test_batches_take_about_half_a_second_and_shrink_at_the_end():
 
 
 def test_a_killed_worker_costs_no_sample_and_changes_no_bit(scene, cluster, client, tmp_path):
-    vary = {MODULUS: "300kPa:600kPa:20", PULL: "0mm:6mm:20"}
+    vary = {MODULUS: "300kPa:600kPa:25", PULL: "0mm:6mm:20"}
     killed = []
 
     def kill(rows, _):
-        if rows > 100 and not killed:
+        if rows > 200 and not killed:
             killed.append(next(iter(client.run(os.getpid).values())))
             os.kill(killed[0], signal.SIGKILL)
 
     table = sinew.sweep.run(scene, vary=vary, measure=["tip.position", "finger.strain_energy"], out=tmp_path,
                             scheduler=cluster.scheduler_address, progress=kill)
     assert killed
-    assert list(table.index) == list(range(400))
+    assert list(table.index) == list(range(500))
     assert set(table["status"]) == {"done"}
     expected = plain(scene, vary, ["tip.position", "finger.strain_energy"])
     assert np.array_equal(table[[f"tip.position.{axis}" for axis in "xyz"]], [row["tip.position"] for row in expected])
@@ -205,6 +212,61 @@ def test_a_function_loads_the_scene_with_its_values(scene, cluster, tmp_path):
     sim = sinew.load(scene, set=[f"{MODULUS}=500kPa", f"{PULL}=4mm"])
     sim.solve_static()
     assert np.array_equal(table[["tip.x", "tip.y", "tip.z"]].iloc[3], sim.effector("tip").position)
+
+
+def meshed(sample):
+    """A cantilever that Gmsh meshes with elements of the sample's size, under its weight."""
+    with tempfile.TemporaryDirectory() as folder:
+        shape, mesh = pathlib.Path(folder, "beam.geo"), pathlib.Path(folder, "beam.msh")
+        size = 1e3 * sample["size"]  # mm
+        shape.write_text('SetFactory("OpenCASCADE");\nBox(1) = {0, 0, 0, 60, 10, 10};\n'
+                         f"Mesh.MeshSizeMin = {size};\nMesh.MeshSizeMax = {size};\n")
+        subprocess.run(["gmsh", "-3", "-v", "0", "-format", "msh41", "-o", str(mesh), str(shape)], check=True)
+        sim = sinew.load({
+            "sinew": 1, "time_step": 0.01, "gravity": [0.0, 0.0, -9.81],
+            "bodies": {"beam": {"type": "fem", "mesh": {"file": str(mesh), "unit": "mm"}, "density": 1000.0,
+                                "material": {"model": "neo-hookean", "young_modulus": 200e3, "poisson_ratio": 0.45},
+                                "fixed": {"box": [-1e-6, -1.0, -1.0, 1e-6, 1.0, 1.0]}}},
+            "effectors": {"end": {"body": "beam", "point": [0.06, 0.005, 0.005]}}})
+        sim.solve_static()
+    beam = sim.body("beam")
+    return {"volume": beam.volume, "nodes": len(beam.positions), "sag": 0.005 - sim.effector("end").position[2]}
+
+
+@pytest.mark.skipif(shutil.which("gmsh") is None, reason="Gmsh is not installed")
+def test_samples_mesh_with_gmsh_and_one_that_takes_too_long_is_ended_with_it(cluster, tmp_path):
+    table = sinew.sweep.run(function=meshed, vary={"size": [10e-3, 3e-3, 0.05e-3]}, out=tmp_path, timeout=6.0,
+                            scheduler=cluster.scheduler_address)
+    assert list(table["status"]) == ["done", "done", "failed"], table["error"].iloc[0]  # the last mesh would have 5e8 elements
+    assert "more than 6 s" in table["error"].iloc[2]
+    running = subprocess.run(["ps", "-eo", "args"], capture_output=True, text=True, check=True).stdout
+    assert "beam.msh" not in running
+    done = table.iloc[:2]
+    assert done["volume"].to_numpy() == pytest.approx(6e-6, rel=1e-9) and done["nodes"].iloc[1] > 3 * done["nodes"].iloc[0]
+    # Euler and Bernoulli: rho g A L^4 / (8 E I), small deflections. A sixth of the length is 2 % less; 2 % more for the mesh.
+    slender = 1000.0 * 9.81 * 1e-4 * 0.06**4 / (8.0 * 200e3 * 0.01**4 / 12.0)
+    assert done["sag"].to_numpy() == pytest.approx(slender, rel=0.04)
+
+
+def controlled(sample):
+    """The tip is brought to a goal by inverse control."""
+    sim = sample.load(set={MODULUS: sample[MODULUS]})
+    goal = sim.effector("tip").position + [sample["x"], sample["y"], -3e-3]
+    controller = sinew.InverseController(sim, targets={"tip": goal}, actuators=["east", "north", "west", "south"])
+    controller.step(40)
+    return {"missed": np.linalg.norm(sim.effector("tip").position - goal), "efforts": controller.efforts,
+            "on_target": controller.status == "on-target"}
+
+
+def test_a_sample_may_have_a_controller(scene, cluster, tmp_path):
+    table = sinew.sweep.run(scene, function=controlled, vary={MODULUS: [300e3, 600e3], "x": [-4e-3, 4e-3], "y": ["0 mm", "3 mm"]},
+                            out=tmp_path, scheduler=cluster.scheduler_address)
+    assert set(table["status"]) == {"done"}, table["error"].iloc[0]
+    assert table["on_target"].all() and table["missed"].max() < 1e-5
+    efforts = sinew.sweep.arrays(tmp_path, "efforts")
+    # Without weight all forces are proportional to the modulus; the solver stops at 1e-8 of them. East pulls towards +x.
+    assert efforts[4:] == pytest.approx(2.0 * efforts[:4], rel=1e-6, abs=1e-6)
+    assert (efforts[[2, 3], 0] > efforts[[0, 1], 0] + 1.0).all()
 
 
 def broken(sample):
@@ -249,10 +311,14 @@ def test_a_sample_that_hangs_or_crashes_is_ended_with_what_it_started(cluster, t
     assert "sleep 1000" not in running
 
 
-def test_a_scheduler_that_goes_leaves_its_rows_and_a_local_cluster_goes_on(tmp_path):
+def free_port():
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
-        address = f"tcp://127.0.0.1:{free.getsockname()[1]}"
+        return free.getsockname()[1]
+
+
+def test_a_scheduler_that_goes_leaves_its_rows_and_a_local_cluster_goes_on(tmp_path):
+    address = f"tcp://127.0.0.1:{free_port()}"
     quiet = {"env": ENVIRONMENT, "stderr": subprocess.DEVNULL, "stdout": subprocess.DEVNULL}
     scheduler = subprocess.Popen([sys.executable, "-m", "distributed.cli.dask_scheduler", "--host", "127.0.0.1",
                                   "--port", address.rpartition(":")[2], "--no-dashboard"], **quiet)
@@ -277,6 +343,33 @@ def test_a_scheduler_that_goes_leaves_its_rows_and_a_local_cluster_goes_on(tmp_p
     assert list(table.index) == list(range(300))
     assert np.array_equal(table["double"], 2.0 * table["x"])
     assert there.equals(table.loc[there.index])  # what was there was not run again
+
+
+@pytest.mark.skipif(shutil.which("dask-scheduler") is None, reason="Dask's programs are not installed")
+def test_a_cluster_started_by_hand_as_the_guide_says(tmp_path):
+    """The commands of docs/sweeps.md, with another port and another folder."""
+    guide = (ROOT / "docs" / "sweeps.md").read_text(encoding="utf-8")
+    lines = guide[guide.index("    dask-scheduler"):].split("\n\n")[0]
+    lines = lines.replace("8786", str(free_port())).replace("out/mass", str(tmp_path / "out"))
+    assert lines.count("dask-worker tcp://127.0.0.1") == 2 and "sinew sweep examples/trunk/trunk.yaml" in lines
+    program = tmp_path / "sinew"  # what the program does with `sweep`
+    program.write_text(f'#!/bin/sh\nshift\nexec {sys.executable} -m sinew.sweep "$@"\n')
+    program.chmod(0o755)
+    environment = {**ENVIRONMENT, "PATH": f"{tmp_path}{os.pathsep}{os.environ['PATH']}", "DASK_TEMPORARY_DIRECTORY": str(tmp_path)}
+    with open(tmp_path / "told", "w", encoding="utf-8") as told:
+        shell = subprocess.Popen(["bash", "-e"], stdin=subprocess.PIPE, stdout=told, stderr=told, text=True, cwd=ROOT, env=environment,
+                                 start_new_session=True)
+        try:
+            shell.communicate(textwrap.dedent(lines), timeout=60)
+        finally:
+            os.killpg(shell.pid, signal.SIGTERM)  # scheduler and workers, too
+    assert shell.returncode == 0, (tmp_path / "told").read_text(encoding="utf-8")[-2000:]
+    table = sinew.sweep.load(tmp_path / "out")
+    assert len(table) == 50 and set(table["status"]) == {"done"} and table["worker"].nunique() == 2
+    for row in (0, 49):
+        sim = sinew.load(ROOT / "examples" / "trunk" / "trunk.yaml", set=["bodies.trunk.mass=" + ("30 g" if row == 0 else "60 g")])
+        sim.run(0.5)
+        assert np.array_equal(table[[f"tip.position.{axis}" for axis in "xyz"]].iloc[row], sim.effector("tip").position)
 
 
 def test_an_interrupt_keeps_the_rows_and_other_samples_follow(cluster, tmp_path):
@@ -501,6 +594,54 @@ def test_the_command_writes_a_table_and_counts_its_samples(scene, cluster, tmp_p
     assert np.array_equal(last, sim.effector("tip").position)
     refused = command(*words)
     assert refused.returncode == 2 and "sinew: error:" in refused.stderr and "--resume" in refused.stderr
+
+
+LINE = re.compile(r"\[([#.]{30})\] +(\d+) %  (\d+) of (\d+), ([\d.e+]+)/s, (\d+) workers(?:, (\d+):(\d\d) left)?(?:, (\d+) failed)?")
+
+
+def test_the_line_of_progress_has_rate_and_time_left(monkeypatch, capsys):
+    now = [1000.0]
+    monkeypatch.setattr(progress.time, "monotonic", lambda: now[0])
+    shown = progress.Progress(total=240, there=40, shown=True)  # 40 rows of an earlier sweep count for the share, not for the rate
+    shown.draw(2)
+    for second, rows, failed in ((1.0, 10, 0), (1.05, 5, 0), (10.0, 85, 3)):
+        now[0] = 1000.0 + second
+        shown.add(rows, failed)
+        shown.draw(2)
+    shown.end()
+    lines = capsys.readouterr().err.split("\r\033[K")[1:]
+    # 1.05 s is within a tenth of a second of the line before.
+    assert lines == ["[#####.........................]  17 %  40 of 240, 0/s, 2 workers",
+                     "[######........................]  21 %  50 of 240, 10/s, 2 workers, 0:19 left",
+                     "[#################.............]  58 %  140 of 240, 10/s, 2 workers, 0:10 left, 3 failed", ""]
+    assert progress.clock(3723.4) == "1:02:03"
+
+
+def test_the_command_shows_its_progress_on_a_terminal(scene, cluster, client, tmp_path):
+    client.wait_for_workers(2)  # one that another test has killed may not be back yet
+    reader, terminal = os.openpty()
+    begin = time.monotonic()
+    process = subprocess.Popen([sys.executable, "-m", "sinew.sweep", str(scene), "--vary", f"{MODULUS}=300kPa:600kPa:300", "--measure",
+                                "tip.position", "--out", str(tmp_path), "--scheduler", cluster.scheduler_address],
+                               env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=terminal)
+    os.close(terminal)
+    told = b""
+    with contextlib.suppress(OSError):  # EIO is the end of a terminal
+        while piece := os.read(reader, 4096):
+            told += piece
+    os.close(reader)
+    assert process.wait(timeout=30) == 0
+    lines = [LINE.fullmatch(line) for line in told.decode().split("\r\033[K") if line]
+    assert len(lines) > 2 and all(lines), told
+    wall = time.monotonic() - begin
+    for line in lines:
+        done, total, rate = int(line[3]), int(line[4]), float(line[5])
+        assert total == 300 and line[1].count("#") == done // 10 and int(line[2]) == round(done / 3)
+        assert line[6] == "2" and rate * wall >= 0.99 * done  # the rate counts no more time than there was
+        if done:
+            left = 60 * int(line[7]) + int(line[8])
+            assert left == pytest.approx((total - done) / rate, rel=0.01, abs=0.51)
+    assert int(lines[-1][3]) > int(lines[0][3])
 
 
 def test_the_command_ends_cleanly_on_an_interrupt(scene, tmp_path):
