@@ -391,6 +391,25 @@ def test_an_interrupt_keeps_the_rows_and_other_samples_follow(cluster, tmp_path)
     assert list(table.index) == list(range(200))
 
 
+def test_an_interrupt_is_not_lost_where_python_ignores_exceptions():
+    class Future:
+        def __del__(self):  # Dask's futures have a destructor, too
+            signal.raise_signal(signal.SIGINT)
+
+    with engine.held_interrupts() as act:
+        act()
+        Future()
+        with pytest.raises(KeyboardInterrupt):
+            act()
+        act()
+        signal.raise_signal(signal.SIGINT)
+        with pytest.raises(KeyboardInterrupt):  # who presses Ctrl-C again does not want to wait
+            signal.raise_signal(signal.SIGINT)
+        with pytest.raises(KeyboardInterrupt):
+            act()
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
 def test_a_changed_scene_or_mesh_is_not_resumed(scene, cluster, tmp_path):
     (tmp_path / "finger.vtu").write_text("one")
     before = sinew.sweep.sweep._scene_hash(f"mesh:\n  file: {tmp_path / 'finger.vtu'}\n")

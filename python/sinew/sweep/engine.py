@@ -7,10 +7,11 @@ import hashlib
 import logging
 import queue
 import signal
+import sys
 import threading
 import time
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from multiprocessing import resource_tracker
 from typing import Any, Optional
 
@@ -59,6 +60,7 @@ def connect(scheduler: Any, workers: Optional[int]) -> Iterator[Any]:
         tool-missing without Dask; bad-argument where nobody answers at the address.
     """
     try:
+        import dask
         import distributed
     except ImportError as missing:
         raise Error("tool-missing", "sinew.sweep", f"sweeps need Dask: {missing}", "apt-get install python3-distributed") from None
@@ -68,7 +70,9 @@ def connect(scheduler: Any, workers: Optional[int]) -> Iterator[Any]:
     with contextlib.ExitStack() as stack:
         stack.enter_context(_quiet())
         if scheduler is None:
-            with _without_interrupts():
+            # A process that starts tells of folders that killed ones have left, before it can be told to be silent.
+            silent = dask.config.set({"distributed.nanny.pre-spawn-environ.DASK_LOGGING__DISTRIBUTED": "critical"})
+            with _without_interrupts(), silent:
                 cluster = distributed.LocalCluster(n_workers=workers, threads_per_worker=1, processes=True, dashboard_address="127.0.0.1:0",
                                                    silence_logs=logging.CRITICAL)
                 stack.callback(_close, cluster, 5)
@@ -108,6 +112,39 @@ def _without_interrupts() -> Iterator[None]:
         signal.signal(signal.SIGINT, before)
         if waiting:
             signal.raise_signal(signal.SIGINT)
+
+
+@contextlib.contextmanager
+def held_interrupts() -> Iterator[Callable[[], None]]:
+    """Ctrl-C, and other signals with handlers, wait for the function that this gives; a second one acts at once.
+
+    A handler that raises is lost where Python ignores exceptions, as in the destructors of Dask's futures: the sweep would
+    go on. In another thread than the main one, which gets no signals, the function does nothing.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield lambda: None
+        return
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    before = {number: handler for number, handler in before.items() if callable(handler)}
+    waiting: list[int] = []
+
+    def hold(number: int, frame: Any) -> None:
+        waiting.append(number)
+        if len(waiting) > 1:
+            before[number](number, frame)
+
+    def act() -> None:
+        while waiting:
+            number = waiting.pop()
+            before[number](number, sys._getframe())
+
+    for number in before:
+        signal.signal(number, hold)
+    try:
+        yield act
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 @contextlib.contextmanager
@@ -160,22 +197,25 @@ class Engine:
         Error
             Where the workers cannot run samples at all.
         """
-        self._await_workers()
-        try:
-            while self._left or self._flying:
-                self._fill()
-                try:
-                    self._take(self._done.get(timeout=_POLL))
-                except queue.Empty:
-                    self._check_scheduler()
-                self._progress.draw(self._workers)
-        finally:
-            if self._flying and self._client.status == "running":
-                self._client.cancel(list(self._flying), force=True)
+        with held_interrupts() as act:
+            self._await_workers(act)
+            try:
+                while self._left or self._flying:
+                    self._fill()
+                    try:
+                        self._take(self._done.get(timeout=_POLL))
+                    except queue.Empty:
+                        self._check_scheduler()
+                    self._progress.draw(self._workers)
+                    act()
+            finally:
+                if self._flying and self._client.status == "running":
+                    self._client.cancel(list(self._flying), force=True)
 
-    def _await_workers(self) -> None:
+    def _await_workers(self, act: Callable[[], None]) -> None:
         begin = time.monotonic()
         while self._count_workers() == 0:
+            act()
             if time.monotonic() - begin > _FIRST_WORKER:
                 raise RunError("scheduler-lost", "sweep(scheduler)", f"the scheduler had no worker for {_FIRST_WORKER:g} s",
                                "start workers: dask-worker ADDRESS --nthreads 1")
