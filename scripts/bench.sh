@@ -1,6 +1,6 @@
 #!/bin/sh
 # The benchmarks of the release build: the whole step of an inverse controller, stage by stage, beside
-# Eigen's factorisation of the same matrix; then the kernels.
+# Eigen's factorisation of the same matrix; then the kernels, and contact from Python.
 #   scripts/bench.sh [--steps-only]
 # Published meshes are used where they are: SINEW_DATA=FOLDER, else ../shared/data. Figures go to
 # build/bench/*.json, each run's own table to build/bench/*.txt. Run it on an idle machine: threads that
@@ -47,7 +47,43 @@ for kernel in build/release/bin/*_benchmark; do
   "$kernel" "$@"
 done
 
+failed=""
+contact() {  # SCRIPT NEEDED_FILE ARGUMENT...: skipped where the file, if one is needed, is absent
+  script=$1; needed=$2
+  shift 2
+  if [ -n "$needed" ] && [ ! -e "$needed" ]; then
+    echo "== $script.py: skipped, there is no $needed"
+    return
+  fi
+  echo "== $script.py"
+  PYTHONPATH=build/release/python "${PYTHON:-/usr/bin/python3}" "benchmarks/$script.py" "$@" \
+    >"$out/$script.txt" || failed="$failed $script.py"
+  cat "$out/$script.txt"
+}
+
+for kind in vertex-face edge-edge; do
+  queries=$data/ccd/$(echo "$kind" | tr - _).csv.gz
+  if [ ! -e "$queries" ]; then
+    echo "== impact_queries $kind: skipped, there is no $queries"
+    continue
+  fi
+  echo "== impact_queries $kind"
+  gzip -dc "$queries" | build/release/bin/impact_queries "$kind" || failed="$failed impact_queries"
+done
+contact fclib "$data/fclib" "$data/fclib"
+contact law "" "$data"
+contact lean "$data/trunk/trunk.vtk" "$data"
+contact grasp "$data/grasp/cup.vtk" "$data"
+contact flush_blocks ""
+contact detection ""
+contact heaps "" --heaps 4
+contact bodies ""
+
 if [ -e web/node_modules/playwright-core ] && [ -x "${SINEW_CHROMIUM:-/usr/bin/chromium}" ]; then
   echo "== the view, in a browser"
   node benchmarks/view.mjs | tee "$out/view.txt"
 fi
+[ -z "$failed" ] || {
+  echo "bench: ended with an error:$failed" >&2
+  exit 1
+}
