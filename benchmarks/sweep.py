@@ -4,10 +4,12 @@
     /usr/bin/python3 benchmarks/sweep.py [--workers N] [--seconds S]
 
 Samples of 1 ms and 50 ms of processor time without a scene (sleeping would hide contention), then runs of the trunk.
-The start of the cluster is measured apart. Prints a table.
+The start of the cluster is measured apart. Prints a table. Its last columns are a control: the plain loop in so many
+processes at once, each with an equal share of the samples. No scheduler is in it: what it lacks of 100 %, the machine lacks.
 """
 
 import argparse
+import multiprocessing
 import os
 import pathlib
 import sys
@@ -37,8 +39,8 @@ def work(sample):
     return {"y": busy(sample["cost"])}
 
 
-def plain(vary, sample, scene, options):
-    """Seconds of the same samples in a loop here."""
+def plain(vary, sample, scene, options, share=(0, 1), ready=None):
+    """Seconds of the same samples, or of each n-th of them, in a loop here."""
     design = samples.design(vary, sample)
     if scene is None:
         job = worker.Job(scene="", axes=tuple(design.axes), function=work)
@@ -47,14 +49,34 @@ def plain(vary, sample, scene, options):
         job = worker.Job(scene=sim.to_yaml(), axes=tuple(design.axes), measures=("tip.position",),
                          shapes=worker.check_measures(sim, ["tip.position"], False), **options)
     runner = worker.Runner(job)
+    if ready is not None:
+        ready.wait()
     begin = time.perf_counter()
-    for k in range(design.size):
+    for k in range(share[0], design.size, share[1]):
         runner.row(k, design.values(k))
     return time.perf_counter() - begin
 
 
+def _plain_apart(taken, *words):
+    taken.put(plain(*words))
+
+
+def at_once(workers, *words):
+    """Seconds until the last of several processes has its share of the samples in a plain loop; all begin together."""
+    context = multiprocessing.get_context("spawn")
+    ready, taken = context.Barrier(workers), context.Queue()
+    processes = [context.Process(target=_plain_apart, args=(taken, *words, (k, workers), ready)) for k in range(workers)]
+    for process in processes:
+        process.start()
+    seconds = max(taken.get() for _ in processes)
+    for process in processes:
+        process.join()
+    return seconds
+
+
 def measure(name, client, workers, vary, sample=None, scene=None, **options):
     alone = plain(vary, sample, scene, options)
+    control = at_once(workers, vary, sample, scene, options)
     if scene is None:
         options = {"function": work}
     else:
@@ -63,7 +85,8 @@ def measure(name, client, workers, vary, sample=None, scene=None, **options):
         begin = time.perf_counter()
         table = sinew.sweep.run(scene, vary=vary, sample=sample, scheduler=client, out=folder, progress=False, **options)
         wall = time.perf_counter() - begin
-    print(f"{name:<16}{len(table):>8}{1e3 * alone / len(table):>12.2f}{alone:>10.2f}{wall:>10.2f}{100 * alone / (workers * wall):>12.1f}")
+    print(f"{name:<16}{len(table):>8}{1e3 * alone / len(table):>12.2f}{alone:>10.2f}{wall:>10.2f}{100 * alone / (workers * wall):>14.1f}"
+          f"{control:>14.2f}{100 * alone / (workers * control):>12.1f}{100 * control / wall:>14.1f}", flush=True)
 
 
 def main():
@@ -82,7 +105,8 @@ def main():
         with distributed.Client(cluster) as client:
             client.run(__import__, "sinew.sweep")
             print(f"{options.workers} processes, started in {time.perf_counter() - begin:.2f} s; load {os.getloadavg()[0]:.2f}\n")
-            print(f"{'sample':<16}{'count':>8}{'mean (ms)':>12}{'loop (s)':>10}{'wall (s)':>10}{'efficiency %':>12}")
+            print(f"{'sample':<16}{'count':>8}{'mean (ms)':>12}{'loop (s)':>10}{'wall (s)':>10}{'efficiency %':>14}"
+                  f"{'control (s)':>14}{'ceiling %':>12}{'of ceiling %':>14}")
             for cost in (0.001, 0.050):
                 count = max(8, int(options.seconds / cost))
                 # Iterations, not seconds: the rate of this process goes with the function's values.
