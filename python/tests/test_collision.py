@@ -1,5 +1,11 @@
-"""Geometry of surfaces against solutions by NumPy and SciPy."""
+"""Geometry of surfaces against solutions by NumPy and SciPy.
 
+Continuous queries with exact answers (Wang et al., ACM TOG 40(5), 2021) are looked for in $SINEW_SHARED_DATA/ccd, else in
+../shared/data/ccd beside the repository; their test is skipped where there are none.
+"""
+
+import os
+import pathlib
 from concurrent.futures import ThreadPoolExecutor
 from itertools import combinations
 
@@ -7,6 +13,9 @@ import numpy as np
 import pytest
 from sinew import Error
 from sinew import collision as col
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+COLLECTION = pathlib.Path(os.environ.get("SINEW_SHARED_DATA") or ROOT.parent / "shared" / "data") / "ccd"
 
 optimize = pytest.importorskip("scipy.optimize")
 spatial = pytest.importorskip("scipy.spatial")
@@ -283,6 +292,24 @@ def test_impact_queries(query, expected):
     both = hit & np.isfinite(truth)
     assert np.all(time[both] <= truth[both] + 1e-9) and np.all(time[both] > truth[both] - 1e-6)
     assert np.all(np.isinf(time[~hit]))
+
+
+@pytest.mark.parametrize("query,name", [
+    (col.vertex_face_impacts, "vertex_face"),
+    (col.edge_edge_impacts, "edge_edge"),
+])  # fmt: skip
+def test_impact_queries_with_exact_answers(query, name):
+    path = COLLECTION / f"{name}.csv.gz"
+    if not path.exists():
+        pytest.skip(f"there are no queries with exact answers in {COLLECTION}")
+    # Numerator and denominator of x, y and z, and the answer; numbers that are doubles without rounding.
+    rows = np.loadtxt(path, delimiter=",").reshape(-1, 8, 7)
+    queries, meet = rows[:, :, 0:6:2] / rows[:, :, 1:6:2], rows[:, 0, 6] == 1
+    assert 100 < meet.sum() < len(meet) / 2
+    hit, time = query(queries)
+    assert hit[meet].all()
+    assert hit[~meet].mean() <= 0.02
+    assert np.all((time[hit] >= 0.0) & (time[hit] <= 1.0))
 
 
 def test_impact_separation():

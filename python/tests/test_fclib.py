@@ -1,4 +1,12 @@
-"""Contacts of a step as a problem by themselves, and FCLIB files of them."""
+"""Contacts of a step as a problem by themselves, and FCLIB files of them.
+
+Problems of other simulators are looked for in $SINEW_SHARED_DATA/fclib, else in ../shared/data/fclib beside the repository;
+their tests are skipped where there are none.
+"""
+
+import importlib.util
+import os
+import pathlib
 
 import numpy as np
 import pytest
@@ -7,6 +15,9 @@ import sinew
 sparse = pytest.importorskip("scipy.sparse")
 h5py = pytest.importorskip("h5py")
 
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+COLLECTION = pathlib.Path(os.environ.get("SINEW_SHARED_DATA") or ROOT.parent / "shared" / "data") / "fclib"
+COLLECTED = sorted(path for path in COLLECTION.glob("*") if path.suffix in (".dat", ".hdf5"))
 INCLINE = "examples/contact/incline.yaml"
 SQUEEZE = "examples/contact/squeeze.yaml"
 
@@ -139,3 +150,27 @@ def test_what_is_wrong(tmp_path):
     assert kind(sinew.qp.read_fclib, path) == "not-in-this-version"
     assert kind(sinew.qp.write_fclib, path, np.eye(3), [0.0, 0.0], [0.5]) == "wrong-shape"
     assert kind(sinew.qp.write_fclib, path, np.eye(3), [0.0, 0.0, np.nan], [0.5]) == "not-finite"
+
+
+@pytest.fixture(scope="module")
+def benchmark():
+    """benchmarks/fclib.py, which reads the collection's text files and measures the error by NumPy."""
+    spec = importlib.util.spec_from_file_location("fclib_benchmark", ROOT / "benchmarks" / "fclib.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.mark.skipif(not COLLECTED, reason=f"there are no problems of other simulators in {COLLECTION}")
+@pytest.mark.parametrize("path", COLLECTED, ids=[path.stem for path in COLLECTED])
+@pytest.mark.parametrize("form", ["sparse", "dense"])
+def test_problems_of_others(benchmark, path, form):
+    W, q, friction = benchmark.read(path)
+    solution = sinew.qp.solve_cones(W if form == "sparse" else W.toarray(), q, friction, 1e-8)
+    assert solution.status == "solved"
+    # The sum W r is rounded in another order here.
+    assert benchmark.natural_map(W, q, friction, solution.x) <= 1e-8 * (1.0 + 1e-4)
+    # The laws themselves, by contact: no force pulls, friction stays within the cone.
+    r = solution.x.reshape(-1, 3)
+    assert r[:, 0].min() >= 0.0
+    assert np.all(np.hypot(r[:, 1], r[:, 2]) <= friction * r[:, 0] * (1.0 + 1e-12))
