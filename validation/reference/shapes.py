@@ -151,3 +151,47 @@ def split_into_tetrahedra(path: pathlib.Path, source: pathlib.Path) -> pathlib.P
             tetrahedra += [(first, third, second, count + i), (first, fourth, third, count + i)]
     sets = {name: np.concatenate([mask > 0, np.zeros(len(hexahedra), bool)]) for name, mask in mesh.point_data.items()}
     return write_tetrahedra(path, points, tetrahedra, sets)
+
+
+def rounded(path: pathlib.Path, source: pathlib.Path, radius: float, *, turned: bool = False) -> pathlib.Path:
+    """The half ball, or half disc, of this radius from half_ball() or half_disc() as the lower half of a ball or cylinder: its
+    plane face becomes the round one, its round border ('far') the plane through the centre. The pole is at the origin, with the
+    body below it, or above it if `turned` (x and y then change places in a ball, y is reflected in a cylinder).
+
+    With w = rho + i z, rho the distance from the axis, w -> R (w + i R)/(R + i w) turns the lens between both faces by 90
+    degrees about its edge, rho = R. It is conformal, so that cells keep their angles, and doubles lengths at the pole.
+    """
+    mesh = meshio.read(source)
+    points, cells = mesh.points.copy(), mesh.cells[0].data
+    flat = np.ptp(points[:, 1]) < 0.5 * radius  # a half disc
+    distance = points[:, 0] if flat else np.hypot(points[:, 0], points[:, 1])
+    place = distance + 1j * points[:, 2]
+    place = radius * (place + 1j * radius) / (radius + 1j * place)
+    grown = np.where(distance > 0.0, place.real / np.where(distance > 0.0, distance, 1.0), 0.0)
+    points[:, 0] *= grown
+    if not flat:
+        points[:, 1] *= grown
+    points[:, 2] = place.imag - radius
+    pole = np.abs(points).max(axis=1) < 1e-12 * radius
+    points[pole, 2] = 0.0  # without it, rounding makes bodies overlap
+    if turned:
+        points = points * [1.0, 1.0, -1.0] if flat else points[:, [1, 0, 2]] * [1.0, 1.0, -1.0]
+        if flat:
+            cells = cells[:, [4, 5, 6, 7, 0, 1, 2, 3]]
+    return write_hexahedra(path, points, cells, {name: mask > 0 for name, mask in mesh.point_data.items()})
+
+
+def completed(path: pathlib.Path, source: pathlib.Path) -> pathlib.Path:
+    """A quarter of a body, x >= 0 and y >= 0, with its mirror images: the whole body. Sets stay."""
+    mesh = meshio.read(source)
+    quarter, count = mesh.cells[0].data, len(mesh.points)
+    points, cells = [], []
+    for k, (x, y) in enumerate(((1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0))):
+        points.append(mesh.points * [x, y, 1.0])
+        image = quarter + k * count
+        cells.append(image if x * y > 0.0 else image[:, [0, 3, 2, 1, 4, 7, 6, 5]])
+    whole = np.vstack(points)
+    close = 1e-9 * np.ptp(whole)
+    _, first, number = np.unique(np.rint(whole / close).astype(np.int64), axis=0, return_index=True, return_inverse=True)
+    sets = {name: np.tile(mask > 0, 4)[first] for name, mask in mesh.point_data.items()}
+    return write_hexahedra(path, whole[first], number.reshape(-1)[np.vstack(cells)], sets)
