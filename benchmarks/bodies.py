@@ -7,7 +7,7 @@
 - balls, all: rigid ones of 20 mm that settle in layers between four walls, `between: all`;
 - soft blocks: 40 x 40 x 20 mm, 100 points each on a plane, dragged by a slanting gravity.
 Backward Euler, 2 ms, mu = 0.5. Times are medians over the second half of the steps: processor time with one thread, wall time with
-more. `--points 5000 --bodies 100` is the whole table (gigabytes, minutes).
+more. Points are those of the last step's law. `--points 5000 --bodies 100` is the whole table (gigabytes, minutes).
 """
 
 import argparse
@@ -67,13 +67,13 @@ def measure(name, parts, gravity, threads):
                       "contacts": contacts}, threads=threads)  # fmt: skip
     load = time.process_time() - begin
     clock = time.process_time if threads == 1 else time.perf_counter
-    taken, points = [], 0
+    taken = []
     started = time.monotonic()
     while len(taken) < 4 or (len(taken) < STEPS and time.monotonic() - started < MOST_SECONDS):
         start = clock()
         sim.step()
         taken.append(1e3 * (clock() - start))
-        points = max(points, len(sim.contact_problem().q) // 3)
+    points = len(sim.contact_problem().q) // 3  # copies all of W: not between steps
     moving = sum(body.get("fixed") is not True for body in bodies.values())
     print(f"| {name} | {moving} | {len(sim.contacts)} | {points} | {threads} | {load:.2f} | {taken[0]:.0f} | "
           f"{np.median(taken[len(taken) // 2 :]):.1f} | {sim.memory / 1e6:.0f} |", flush=True)  # fmt: skip
