@@ -17,8 +17,8 @@ from harmonic functions (reference/half_space.py): d is 1.4 % smaller for the sa
 pressure at a node is its force over the deformed area nearest to it; the contact radius follows from the second moment
 of the forces, 2/5 F a^2. Then a cylinder, R = 100 mm, on half a disc in plane strain, by its force per length: a^2 = 4
 F R/(pi E*), p0 = 2 F/(pi a), second moment 1/4 F a^2; its depth depends on the border and is not compared. The same
-with the load of NAFEMS CB1, 35 kN/mm on R = 50 mm: both bodies are elastic there (210 and 70 GPa, nu = 0.3), which
-Sinew cannot have touch yet, so that the block alone has the E* of both. The half ball is also split into tetrahedra,
+with the load of NAFEMS CB1, 35 kN/mm on R = 50 mm: both bodies are elastic there (210 and 70 GPa, nu = 0.3); here the
+block alone has the E* of both, and the case nafems_cb1 has the two of them. The half ball is also split into tetrahedra,
 twelve a cell; tet10 carries no pressure at its corners, so that force and radius are compared. At larger a/R the
 theory, a parabola on a plane at small strain, departs from a ball on rubber; that is plotted."""
 SOURCES = {"Hertz": "H. Hertz, Ueber die Beruehrung fester elastischer Koerper, J. reine angew. Math. 92 (1882) 156-171; K. L. Johnson, Contact "

@@ -195,3 +195,21 @@ def completed(path: pathlib.Path, source: pathlib.Path) -> pathlib.Path:
     _, first, number = np.unique(np.rint(whole / close).astype(np.int64), axis=0, return_index=True, return_inverse=True)
     sets = {name: np.tile(mask > 0, 4)[first] for name, mask in mesh.point_data.items()}
     return write_hexahedra(path, whole[first], number.reshape(-1)[np.vstack(cells)], sets)
+
+
+def graded_plate(path: pathlib.Path, core: float, cells: int, size: tuple[float, float, float], growth: float = 1.15) -> pathlib.Path:
+    """A block 0 <= x <= size[0], 0 <= y <= size[1], -size[2] <= z <= 0 of one cell along y: `cells` even ones out to `core` from the
+    origin along x and z, and then ones that grow. Set 'far': z = -size[2]. Lengths in m."""
+
+    def lines(end: float) -> np.ndarray:
+        layers = np.log(1.0 + (end - core) * cells / core * (1.0 - 1.0 / growth)) / np.log(growth)
+        widths = core / cells * growth ** np.arange(1, 1 + int(np.ceil(layers)))
+        outer = np.cumsum(widths) / widths.sum() * (end - core)
+        return np.concatenate([np.linspace(0.0, core, cells + 1), core + outer])
+
+    x, z = lines(size[0]), -lines(size[2])[::-1]
+    points = np.array([(a, b, c) for a in x for b in (0.0, size[1]) for c in z])
+    number = np.arange(len(points)).reshape(len(x), 2, len(z))
+    cells_of = [[number[i + a, b, k + c] for c in (0, 1) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1))]
+                for i in range(len(x) - 1) for k in range(len(z) - 1)]
+    return write_hexahedra(path, points, cells_of, {"far": points[:, 2] < -size[2] * (1.0 - 1e-9)})
