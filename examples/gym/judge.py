@@ -1,10 +1,13 @@
 #!/usr/bin/env python3
 """What an expert reaches: returns and successes over many episodes of a task.
 
-    PYTHONPATH=build/release/python /usr/bin/python3 examples/gym/judge.py TASK [--episodes 50] [--seed 0] [--set NAME=VALUE ...]
+    PYTHONPATH=build/release/python /usr/bin/python3 examples/gym/judge.py TASK [--episodes 50] [--seed 0] [--passive]
+                                                                              [--set NAME=VALUE ...]
 
-TASK is one of those with an expert: trunk-reach, trunk-follow, trunk-hold, grasp, crawl. `--set friction=0.2` and the like go to
-the task. Episode k has the seed --seed + k. The table has a row for each episode that does not succeed, and the sums.
+TASK is any of sinew.gym.tasks(). `--set friction=0.2` and the like go to the task. Episode k has the seed --seed + k. The table has
+a row for each episode that does not succeed, and the sums. The last step of an episode says whether it was a success. trunk-damp
+does not: there it is a success to lose at most half of what the passive trunk loses in the same episode. `--passive` leaves all
+actuators as near to zero as they go, in place of the expert.
 """
 
 import argparse
@@ -13,19 +16,33 @@ import numpy as np
 import sinew.gym
 
 
-def judge(task, episodes, seed=0, **options):
-    """Sum of rewards of each episode, and whether its last step was a success."""
+def passive(task):
+    """The action that leaves the actuators at zero, or as near as their limits allow."""
+    zero = np.clip(0.0, task.low, task.high)
+    return np.zeros(len(zero)) if task.is_increment else 2.0 * (zero - task.low) / (task.high - task.low) - 1.0
+
+
+def episode_of(env, policy, seed):
+    """Sum of rewards, and the last info."""
+    observation, info = env.reset(seed=seed)
+    total, over = 0.0, False
+    while not over:
+        observation, reward, terminated, truncated, info = env.step(policy(observation))
+        total += reward
+        over = terminated or truncated
+    return total, info
+
+
+def judge(task, episodes, seed=0, without_expert=False, **options):
+    """Sum of rewards of each episode, and whether it was a success."""
     env = sinew.gym.make(task, **options)
-    policy = sinew.gym.expert(env)
+    nothing = passive(env.task)
+    at_rest = lambda _: nothing  # noqa: E731
+    policy = at_rest if without_expert else sinew.gym.expert(env)
     returns, succeeded = np.zeros(episodes), np.zeros(episodes, dtype=bool)
     for k in range(episodes):
-        observation, info = env.reset(seed=seed + k)
-        over = False
-        while not over:
-            observation, reward, terminated, truncated, info = env.step(policy(observation))
-            returns[k] += reward
-            over = terminated or truncated
-        succeeded[k] = info["success"]
+        returns[k], info = episode_of(env, policy, seed + k)
+        succeeded[k] = info["success"] if "success" in info else returns[k] >= 0.5 * episode_of(env, at_rest, seed + k)[0]
     env.close()
     return returns, succeeded
 
@@ -40,9 +57,10 @@ def main():
     parser.add_argument("task")
     parser.add_argument("--episodes", type=int, default=50)
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--passive", action="store_true")
     parser.add_argument("--set", type=option, nargs="*", default=[], metavar="NAME=VALUE")
     arguments = parser.parse_args()
-    returns, succeeded = judge(arguments.task, arguments.episodes, arguments.seed, **dict(arguments.set))
+    returns, succeeded = judge(arguments.task, arguments.episodes, arguments.seed, arguments.passive, **dict(arguments.set))
     for k in np.flatnonzero(~succeeded):
         print(f"seed {arguments.seed + k}: return {returns[k]:.2f}, no success")
     print(f"{arguments.task}: {succeeded.sum()} of {len(returns)} succeed, return {returns.mean():.1f} on average, "

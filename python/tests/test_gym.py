@@ -12,6 +12,7 @@ import sinew
 import sinew.gym
 from sinew.gym import spaces
 from sinew.gym.models import Models
+from sinew.gym.task import Task
 from sinew.gym.tasks.trunk_damp import TrunkDamp
 
 NAMES = list(sinew.gym.tasks())
@@ -406,6 +407,12 @@ def test_pictures():
 # Errors
 
 
+class WithoutScript(TrunkDamp):
+    """A task that nobody has written an expert of."""
+
+    scripted = Task.scripted
+
+
 @pytest.mark.parametrize("make,kind,words", [
     (lambda: sinew.gym.make("trunk-raech"), "unknown-name", "did you mean 'trunk-reach'"),
     (lambda: sinew.gym.make("trunk-reach", materialscale=1.0), "unknown-name", "did you mean 'material_scale'"),
@@ -423,7 +430,7 @@ def test_pictures():
     (lambda: sinew.gym.make_vec("trunk-reach", 0), "out-of-range", "1 or more"),
     (lambda: sinew.gym.make_vec("trunk-reach", 2, threads=0), "out-of-range", "threads"),
     (lambda: sinew.gym.make_vec("trunk-reach", 2, autoreset_mode="later"), "unknown-name", "NEXT_STEP, SAME_STEP, DISABLED"),
-    (lambda: sinew.gym.expert(sinew.gym.make("trunk-damp")), "bad-argument", "no expert of trunk-damp"),
+    (lambda: sinew.gym.expert(sinew.gym.make(WithoutScript())), "bad-argument", "no expert of trunk-damp"),
     (lambda: sinew.gym.expert(sinew.gym.make("trunk-reach", action="tension")), "bad-argument", "tension-increment"),
 ])  # fmt: skip
 def test_errors_of_making(make, kind, words):
@@ -551,11 +558,33 @@ def test_a_task_of_ones_own_may_bring_a_script():
     np.testing.assert_array_equal(sinew.gym.expert(env)(), np.full(8, -1.0, dtype=np.float32))
 
 
-def test_experts_are_judged():
+@pytest.fixture(scope="module")
+def judge():
     path = Path(__file__).parents[2] / "examples" / "gym" / "judge.py"
     spec = importlib.util.spec_from_file_location("judge", path)
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    returns, succeeded = module.judge("trunk-reach", 2, time_limit=0.5)
+    return module.judge
+
+
+def test_experts_are_judged(judge):
+    returns, succeeded = judge("trunk-reach", 2, time_limit=0.5)
     assert returns.shape == (2,) and (returns < 0.0).all()
     assert succeeded.all()
+    assert not judge("trunk-reach", 1, without_expert=True)[1].any()
+
+
+def test_the_expert_damps(judge):
+    returns, succeeded = judge("trunk-damp", 2, seed=20, time_limit=0.4)
+    passive, neither = judge("trunk-damp", 2, seed=20, without_expert=True, time_limit=0.4)
+    assert succeeded.all() and not neither.any()
+    assert (returns > 0.35 * passive).all() and (passive < -100.0).all()  # mJ in 10 ms steps: a struck trunk has 10 mJ and more
+
+
+def test_the_expert_swings_up_beyond_what_torques_hold(judge):
+    returns, succeeded = judge("arm-swing-up", 2, seed=23)
+    env = sinew.gym.make("arm-swing-up")
+    env.reset(seed=23)
+    still = sum(env.step(np.ones(3))[1] for _ in range(env.task.episode_steps))
+    assert succeeded.all() and (returns > 1.5 * still).all()
+    assert not judge("arm-swing-up", 1, seed=23, without_expert=True)[1].any()

@@ -80,6 +80,10 @@ class Expert:
 
     **Crawl.** The script is the open-loop gait, sinew.gym.tasks.crawl.gait: front legs, trunk and rear legs fill one after the
     other, and empty in the same order, in 2 s.
+
+    **Damp.** The script pulls a cable while it grows longer, in proportion to its rate.
+
+    **Swing-up.** The script turns all torques with the rate of the whole arm, so that each swing gains energy.
     """
 
     def __init__(self, env: Union[Env, VectorEnv]) -> None:
@@ -110,8 +114,8 @@ def expert(env: Union[Env, VectorEnv]) -> Expert:
     Parameters
     ----------
     env : Env or VectorEnv
-        Of trunk-reach, trunk-follow or trunk-hold, with the action "tension-increment" and without randomised models; of grasp,
-        crawl or any task that overrides Task.scripted, with the first of its actions.
+        Of trunk-reach, trunk-follow or trunk-hold, with the action "tension-increment" and without randomised models; of trunk-damp,
+        arm-swing-up, grasp, crawl or any task that overrides Task.scripted, with the first of its actions.
 
     Returns
     -------

@@ -124,8 +124,9 @@ class TrunkTask(Task):
         """
         now = np.array([actuator.displacement for actuator in episode.robot.actuators])
         last = episode.memory.get("displacements")
-        episode.memory["displacements"] = now
-        return np.zeros(len(now)) if last is None else (now - last) / (self.time_step * _RATE)
+        rates = np.zeros(len(now)) if last is None else (now - last) / (self.time_step * _RATE)
+        episode.memory.update(displacements=now, rates=rates)
+        return rates
 
     def toward_goal(self, episode: Any) -> np.ndarray:
         """From the tip to the goal, over 0.1 m, (3,)."""

@@ -31,6 +31,7 @@ class TrunkDamp(TrunkTask):
     settings = {"integrator": {"type": "generalized-alpha", "spectral_radius": 0.8}, "solver": {"tolerance": 1e-4},
                 "bodies.trunk.damping": {"stiffness": 0.002}}  # fmt: skip
     BLOW = 0.06  # s
+    RATE, GAIN = 0.1, 15.0  # m/s, that observed rates are divided by; N s/m, of the scripted expert
 
     def begin(self, episode: Any, options: Mapping[str, Any]) -> None:
         """Draws the blow."""
@@ -43,6 +44,17 @@ class TrunkDamp(TrunkTask):
         """Ends the blow."""
         if episode.steps == round(self.BLOW / self.time_step):
             self.push(episode, np.zeros(3))
+
+    def scripted(self, episode: Any) -> np.ndarray:
+        """Tensions that resist the motion: GAIN times the rate at which a cable grows longer, less that of its opposite.
+
+        A tension T takes the power T dl/dt out of the trunk, l the length of the cable in it: a cable damps while it grows longer, and
+        gives energy back while it becomes shorter. So it pulls in the one case and is slack in the other. The difference leaves out what
+        lengthens both.
+        """
+        rates = self.RATE * episode.memory["rates"].reshape(2, 4)  # m/s, positive where a cable becomes shorter; long, then short
+        tensions = self.GAIN * np.maximum(np.roll(rates, 2, axis=1) - rates, 0.0).ravel()
+        return np.clip(2.0 * (tensions - self.low) / (self.high - self.low) - 1.0, -1.0, 1.0)
 
     def further_names(self, cables: list[str]) -> list[str]:
         """Rates of the cables."""
