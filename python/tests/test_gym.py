@@ -1,9 +1,11 @@
 """Learning environments: Gymnasium's rules restated, the same bits however many run, and tasks that can be solved."""
 
+import functools
 import importlib.util
 import subprocess
 import sys
 import textwrap
+import urllib.request
 from pathlib import Path
 
 import numpy as np
@@ -387,6 +389,78 @@ def test_the_expert_follows_and_holds(name, close):
     assert np.mean(with_expert) < close and np.mean(with_expert) < 0.4 * np.mean(passive)
 
 
+class SeenView:
+    """In place of the live view: what is asked of it."""
+
+    def __init__(self, opened):
+        self.opened = opened
+
+    def __call__(self, sim, block):
+        assert block is False
+        self.opened.append([sim])
+        self.calls = self.opened[-1]
+        return self
+
+    def __enter__(self):
+        self.calls.append("enter")
+        return self
+
+    def update(self):
+        self.calls.append("update")
+
+    def __exit__(self, *_):
+        self.calls.append("exit")
+
+
+@pytest.mark.parametrize("many", [False, True])
+def test_the_view_shows_environment_0_after_every_step(monkeypatch, many):
+    opened = []
+    monkeypatch.setattr(sinew._core, "view", SeenView(opened))
+    options = dict(render_mode="human", time_limit=0.02)
+    env = sinew.gym.make_vec("trunk-reach", 2, **options) if many else sinew.gym.make("trunk-reach", **options)
+    assert env.render_mode == "human" and not opened
+    env.reset(seed=0)
+    first = (env.episodes[0] if many else env.episode).robot.sim
+    actions = np.zeros(env.action_space.shape)
+    for _ in range(2):
+        env.step(actions)
+    assert env.render() is None
+    env.reset()
+    assert opened == [[first, "enter", "update", "update", "update", "update"]]  # one view, kept from episode to episode
+    env.close()
+    env.close()
+    assert opened[0][-1] == "exit" and opened[0].count("exit") == 1 and len(opened) == 1
+
+
+def test_the_view_opens_anew_where_an_episode_has_another_robot(monkeypatch):
+    opened = []
+    monkeypatch.setattr(sinew._core, "view", SeenView(opened))
+    env = sinew.gym.make("trunk-reach", render_mode="human", time_limit=0.01, material_scale=(0.8, 1.25), models=2)
+    env.reset(seed=0)
+    shown = [env.episode.robot.sim]
+    while len(shown) < 2:
+        env.step(np.zeros(8))
+        env.reset()
+        if env.episode.robot.sim is not shown[-1]:
+            shown.append(env.episode.robot.sim)
+    assert [calls[0] for calls in opened] == shown and opened[0][-1] == "exit" and opened[1][-1] == "update"
+    env.close()
+
+
+def test_the_real_view_serves_its_page_until_the_environment_is_closed(monkeypatch):
+    real = sinew._core.view
+    monkeypatch.setattr(sinew._core, "view", lambda sim, block: real(sim, block=block, open_browser=False))
+    env = sinew.gym.make("trunk-reach", render_mode="human")
+    env.reset(seed=0)
+    address = env._picture._view.url
+    with urllib.request.urlopen(address, timeout=10) as page:
+        assert page.status == 200 and page.headers["Content-Type"].startswith("text/html")
+    env.step(np.ones(8))
+    env.close()
+    with pytest.raises(OSError):
+        urllib.request.urlopen(address, timeout=2)
+
+
 def test_pictures():
     pytest.importorskip("moderngl")
     for name in ("trunk-reach", "arm-swing-up"):
@@ -538,12 +612,88 @@ def test_gymnasiums_own_checker(name):
     checker.check_env(sinew.gym.make(name, time_limit=SHORT), skip_render_check=True)
 
 
-@pytest.mark.parametrize("mode", ["NEXT_STEP", "SAME_STEP"])
-def test_equal_to_gymnasiums_vector_environment(mode):
+MODES = ["NEXT_STEP", "SAME_STEP", "DISABLED"]
+OF_TASK = {"arm-swing-up": 0.1, "grasp": 0.06, "crawl": 0.08}  # s of an episode: two to five steps, as SHORT for trunks
+
+
+def course(envs, seed, steps, mode):
+    """What comes out of steps over the ends of episodes; with DISABLED, of a reset of one environment in the midst, and of the ended."""
+    out = [envs.reset(seed=seed)]
+    for k, actions in enumerate(actions_of(envs, steps)):
+        out.append(envs.step(actions))
+        if mode == "DISABLED":
+            mask = out[-1][2] | out[-1][3]
+            mask[0] |= k == 0
+            if mask.any():
+                out.append(envs.reset(options={"reset_mask": mask}))
+    return out
+
+
+class OneByOne:
+    """Single environments stepped in a loop, by Gymnasium's rules of the modes (docs: API, Vector, Autoreset Mode)."""
+
+    def __init__(self, envs, mode):
+        self.envs, self.mode, self.num_envs, self.single_action_space = envs, mode, len(envs), envs[0].action_space
+        self.seen, self.ended = [None] * len(envs), np.zeros(len(envs), dtype=bool)
+
+    def reset(self, seed=None, options=None):
+        mask = (options or {}).get("reset_mask", np.ones(self.num_envs, dtype=bool))
+        infos = [{} for _ in self.envs]
+        for i in np.flatnonzero(mask):
+            self.seen[i], infos[i] = self.envs[i].reset(seed=None if seed is None else seed + int(i))
+        self.ended[mask] = False
+        return np.stack(self.seen), infos
+
+    def step(self, actions):
+        rows = []
+        for i, env in enumerate(self.envs):
+            if self.mode == "NEXT_STEP" and self.ended[i]:
+                self.seen[i], info = env.reset()
+                row = (0.0, False, False, info)
+            else:
+                self.seen[i], *row = env.step(actions[i])
+                if self.mode == "SAME_STEP" and (row[1] or row[2]):
+                    last = {"final_obs": self.seen[i], "final_info": row[3]}
+                    self.seen[i], info = env.reset()
+                    row[3] = {**info, **last}
+            self.ended[i] = row[1] or row[2]
+            rows.append(row)
+        rewards, terminations, truncations, infos = zip(*rows)
+        return np.stack(self.seen), np.array(rewards), np.array(terminations), np.array(truncations), list(infos)
+
+
+def info_of(infos, i):
+    """What infos of many environments, with their masks, say of one."""
+    return {key: info_of(value, i) if isinstance(value, dict) else value[i]
+            for key, value in infos.items() if not key.startswith("_") and infos[f"_{key}"][i]}  # fmt: skip
+
+
+@functools.lru_cache(maxsize=None)
+def pair_of(name, limit):
+    """Two single environments: a reset with a seed makes them as new, so that modes share them."""
+    return [sinew.gym.make(name, time_limit=limit) for _ in range(2)]
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("name", NAMES)
+def test_equal_to_single_environments_in_a_loop(name, mode):
+    limit = OF_TASK.get(name, 0.03)
+    ours = course(sinew.gym.make_vec(name, 2, threads=2, time_limit=limit, autoreset_mode=mode), 3, 6, mode)
+    loop = course(OneByOne(pair_of(name, limit), mode), 3, 6, mode)
+    assert len(ours) == len(loop) > 6 and sum(part[3].any() for part in ours if len(part) == 5) >= 1
+    for one, other in zip(ours, loop):
+        assert same(tuple(one[:-1]), tuple(other[:-1]))
+        assert same([info_of(one[-1], i) for i in range(2)], other[-1])
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("name", NAMES)
+def test_equal_to_gymnasiums_vector_environment(name, mode):
     vector = pytest.importorskip("gymnasium.vector", reason="Gymnasium is not installed: its modes are checked by hand above")
-    ours = sinew.gym.make_vec("trunk-hold", 3, threads=2, time_limit=SHORT, autoreset_mode=mode)
-    theirs = vector.SyncVectorEnv([lambda: sinew.gym.make("trunk-hold", time_limit=SHORT)] * 3, autoreset_mode=vector.AutoresetMode[mode])
-    assert same(trajectory(ours, 3, 12), trajectory(theirs, 3, 12))
+    limit = OF_TASK.get(name, SHORT)
+    ours = sinew.gym.make_vec(name, 3, threads=2, time_limit=limit, autoreset_mode=mode)
+    theirs = vector.SyncVectorEnv([lambda: sinew.gym.make(name, time_limit=limit)] * 3, autoreset_mode=vector.AutoresetMode[mode])
+    assert same(course(ours, 3, 12, mode), course(theirs, 3, 12, mode))
 
 
 def test_a_task_of_ones_own_may_bring_a_script():
