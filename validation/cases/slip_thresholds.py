@@ -147,16 +147,16 @@ def turntables(case, axis):
         slipped = [turned(1.01, step, given) for step in steps]
         ends = np.array([way[-1] for way in slipped])
         theory = point_on_turntable(1.01, [TIME])[0]
-        case.check(f"turntable, {name}: way out in 0.4 s at r w^2 = 1.01 mu g, step to 0", 2.0 * ends[-1] - ends[-2], theory, 5e-3, source="turntable",
-                   unit="m")
+        case.check(f"turntable, {name}: way out in 0.4 s at r w^2 = 1.01 mu g, step to 0", 2.0 * ends[-1] - ends[-2], theory, 5e-3,
+                   source="turntable", unit="m")
         case.check(f"turntable, {name}: order of the way out", observed_order(steps, ends - theory), 1.0, 0.1, source="turntable", relative=False)
     times = np.linspace(0.0, TIME, 81)
-    axis.plot(times, 1e3 * point_on_turntable(1.01, times), color=plots.REFERENCE, lw=1, label="point, ratio 1.01")
+    axis.plot(times, 1e3 * point_on_turntable(1.01, times), color=plots.REFERENCE, lw=1, label="point, 1.01")
     for step, way in zip(steps, slipped):
-        axis.plot(step * np.arange(1, len(way) + 1), 1e3 * way, "--", label=f"Sinew, ratio 1.01, {1e3 * step:g} ms")
+        axis.plot(step * np.arange(1, len(way) + 1), 1e3 * way, "--", label=f"box, 1.01, {1e3 * step:g} ms")
     way = turned(0.99, steps[-1])
-    axis.plot(steps[-1] * np.arange(1, len(way) + 1), 1e3 * way, color=plots.THIRD, label="Sinew, ratio 0.99")
-    axis.set(xlabel="time (s)", ylabel="way out (mm) on a turntable, ratio r w^2/(mu g)")
+    axis.plot(steps[-1] * np.arange(1, len(way) + 1), 1e3 * way, color=plots.THIRD, label="box, 0.99")
+    axis.set(xlabel="time (s)", ylabel="way out on a turntable (mm)")
     axis.legend(fontsize=8)
 
 
