@@ -1,0 +1,201 @@
+"""Semicircular arches of rigid stones: which stand and which fall."""
+
+import numpy as np
+import sinew
+from scipy.optimize import linprog
+
+from suite import plots
+
+TITLE = "Arches of 25 stones: thickness and friction at which they fall"
+SETUP = """A semicircular arch of 25 stones, R = 250 mm to the middle of the ring, 2300 kg/m^3, stands on a fixed plate. Stones
+are hulls of triangles with flat faces and radial joints. Steps are 10 ms of backward Euler. Stones at even places are 4 %
+thicker and wider than their neighbours, with the same weight per volume and width, so that corners lie inside faces; t
+is the thickness of the others. Do forces exist that balance every stone, press each joint within its height and stay in
+the cone of friction? That is a linear program in three forces a joint. Where there are none, the arch must fall. Where there are
+some and joints are not about to slip, it stands: Heyman's safe theorem. The program gives the least t/R for these stones, and
+for many equal ones it tends to Milankovitch's 0.1075; 25 stones need a little less, as hinges open at joints only. To stand is
+to creep by less than 1e-6 R from 0.1 s to ten seconds, to fall is to move by 0.05 R in that time. The least friction of a thick
+arch is bracketed, too. Coulomb's friction is not associated, so there only the fall below it is certain. Stones that are
+all equal stand for two seconds and, with mu = 0.2, fall for 30 ms, watched for overlap."""
+SOURCES = {"Milankovitch": "M. Milankovitch, Theorie der Druckkurven, Z. Math. Phys. 55 (1907) 1-27: t/R = 0.1075",
+           "limit analysis": "J. Heyman, The stone skeleton, Int. J. Solids Struct. 2 (1966) 249-279; R. K. Livesley, Limit analysis of "
+                             "structures formed from rigid blocks, Int. J. Numer. Meth. Eng. 12 (1978) 1853-1871: the linear program",
+           "Coulomb": "contact with friction: no creep at rest, no overlap"}
+COST = 20
+G, RADIUS, COUNT, DEPTH, DENSITY = 9.81, 0.25, 25, 0.05, 2300.0
+GROW = 0.04
+RIMS = "corners lie on edges of the neighbour; their contacts take normals that are tilted, and stones that slip sink in"
+
+
+def corners(k, count, thickness):
+    """(4, 2) m, x and z of a stone, counter-clockwise for who looks along y."""
+    angles = np.pi * np.array([k, k + 1]) / count
+    ray = np.column_stack([np.cos(angles), np.sin(angles)])
+    inner, outer = RADIUS - 0.5 * thickness, RADIUS + 0.5 * thickness
+    return np.array([inner * ray[0], outer * ray[0], outer * ray[1], inner * ray[1]])
+
+
+def area_and_centre(points):
+    following = np.roll(points, -1, axis=0)
+    cross = points[:, 0] * following[:, 1] - following[:, 0] * points[:, 1]
+    return 0.5 * cross.sum(), ((points + following) * cross[:, None]).sum(axis=0) / (3.0 * cross.sum())
+
+
+def factor(k, grow):
+    return 1.0 if k % 2 else 1.0 + grow
+
+
+def admissible(thickness, friction, count=COUNT, grow=GROW):
+    """Whether forces exist that balance all stones. Unknowns of a joint: pressure at its inner and outer end, shear."""
+    joints = count + 1
+    balance, weight = np.zeros((3 * count, 3 * joints)), np.zeros(3 * count)
+    for k in range(count):
+        area, centre = area_and_centre(corners(k, count, thickness * factor(k, grow)))
+        weight[3 * k + 1] = area
+        for joint, sense in ((k, 1.0), (k + 1, -1.0)):
+            angle = np.pi * joint / count
+            ray, along = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
+            # The thinner neighbour bounds a joint; the first and the last have one.
+            half = 0.5 * thickness * (1.0 if 0 < joint < count else factor(0 if joint == 0 else count - 1, grow))
+            for column, at, force in ((0, (RADIUS - half) * ray, along), (1, (RADIUS + half) * ray, along), (2, RADIUS * ray, ray)):
+                lever = at - centre
+                balance[3 * k:3 * k + 3, 3 * joint + column] += sense * np.array([*force, lever[0] * force[1] - lever[1] * force[0]])
+    cone = np.zeros((2 * joints, 3 * joints))
+    for row in range(2 * joints):
+        at = 3 * (row // 2)
+        cone[row, at:at + 3] = [-friction, -friction, 1.0 if row % 2 else -1.0]
+    scale = weight.max()
+    return linprog(np.zeros(3 * joints), A_ub=cone, b_ub=np.zeros(2 * joints), A_eq=balance, b_eq=weight / scale,
+                   bounds=[(0, None), (0, None), (None, None)] * joints, method="highs").status == 0
+
+
+def least(stands, low, high):
+    for _ in range(25):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if stands(middle) else (middle, high)
+    return high
+
+
+def write_stone(path, points, depth):
+    """A prism over (4, 2) points, as OBJ."""
+    nodes = [(x, y, z) for y in (-0.5 * depth, 0.5 * depth) for x, z in points]
+    triangles = [(0, 1, 2), (0, 2, 3), (4, 6, 5), (4, 7, 6)]
+    for k in range(4):
+        after = (k + 1) % 4
+        triangles += [(k, 4 + k, 4 + after), (k, 4 + after, after)]
+    path.write_text("".join(f"v {x!r} {y!r} {z!r}\n" for x, y, z in np.array(nodes).tolist())
+                    + "".join(f"f {a + 1} {b + 1} {c + 1}\n" for a, b, c in triangles))
+    return str(path)
+
+
+class Arch:
+    def __init__(self, folder, thickness, friction, step=1e-2, grow=GROW):
+        self.shapes = [corners(k, COUNT, thickness * factor(k, grow)) for k in range(COUNT)]
+        self.names = [f"stone_{k}" for k in range(COUNT)]
+        bodies = {name: {"type": "rigid", "density": DENSITY / factor(k, grow),
+                         "mesh": {"file": write_stone(folder / f"{name}.obj", self.shapes[k], DEPTH * factor(k, grow)), "use": "convex"}}
+                  for k, name in enumerate(self.names)}
+        bodies["plate"] = {"type": "rigid", "shape": {"box": [4 * RADIUS, 4 * RADIUS, 0.1]}, "fixed": True, "pose": {"position": [0, 0, -0.05]}}
+        row = ["plate", *self.names, "plate"]
+        self.sim = sinew.load({"sinew": 1, "integrator": "backward-euler", "time_step": step, "gravity": [0.0, 0.0, -G], "bodies": bodies,
+                               "contacts": {f"joint_{k}": {"between": [row[k], row[k + 1]], "friction": friction} for k in range(COUNT + 1)}})
+        self.first = self.places()
+
+    def places(self):
+        return np.array([self.sim.body(name).centre_of_mass for name in self.names])
+
+    def watch(self, duration):
+        """Creep since 0.1 s, and the way since the start; both over R. Ends early where the arch falls."""
+        settled, crept, moved = None, 0.0, 0.0
+        while self.sim.time < duration - 1e-6 and moved < 0.05:
+            self.sim.run(duration=0.1)
+            now = self.places()
+            settled = now if settled is None else settled
+            crept = max(crept, np.abs(now - settled).max() / RADIUS)
+            moved = np.abs(now - self.first).max() / RADIUS
+        return float(crept), float(moved)
+
+    def outlines(self):
+        """(4, 2) corners of every stone, as they are."""
+        drawn = []
+        for name, shape in zip(self.names, self.shapes):
+            body = self.sim.body(name)
+            w, x, y, z = body.rotation
+            turn = np.array([[1 - 2 * (y * y + z * z), 2 * (x * z + w * y)], [2 * (x * z - w * y), 1 - 2 * (x * x + y * y)]])
+            drawn.append(shape @ turn.T + np.array(body.position)[[0, 2]])
+        return drawn
+
+    def overlap(self):
+        """Of neighbours, over R: how deep a corner of one is inside the plane of the other's joint, within its height."""
+        outlines, deepest = self.outlines(), 0.0
+        for one, following in zip(outlines, outlines[1:]):
+            for stone, face, points in ((one, one[[2, 3]], following[[0, 1]]), (following, following[[0, 1]], one[[2, 3]])):
+                along = (face[1] - face[0]) / np.linalg.norm(face[1] - face[0])
+                inwards = np.array([along[1], -along[0]])
+                inwards *= np.sign((stone.mean(axis=0) - face[0]) @ inwards)
+                for place in points - face[0]:
+                    if 0.0 <= place @ along <= np.linalg.norm(face[1] - face[0]):
+                        deepest = max(deepest, float(place @ inwards))
+        return deepest / RADIUS
+
+
+def draw(axis, arch, color, label):
+    for k, outline in enumerate(arch.outlines()):
+        axis.plot(*np.vstack([outline, outline[:1]]).T, color=color, lw=1, label=label if k == 0 else None)
+
+
+def thicknesses(case, axis):
+    for count, tolerance in ((25, None), (101, 1e-3), (401, 1e-3)):
+        theory = least(lambda t: admissible(t * RADIUS, 0.5, count, 0.0), 0.05, 0.3)
+        if tolerance is None:
+            case.report(f"linear program, {count} equal stones: least t/R", theory, source="limit analysis", reference=0.1075)
+        else:
+            case.check(f"linear program, {count} equal stones: least t/R", theory, 0.1075, tolerance, source="Milankovitch")
+    bound = least(lambda t: admissible(t * RADIUS, 0.5), 0.05, 0.3)
+    case.report("linear program, these 25 stones: least t/R", bound, source="limit analysis", reference=0.1075)
+    for share in (1.01, 1.03):
+        crept, _ = Arch(case.scratch, share * bound * RADIUS, 0.5).watch(10.0)
+        case.bound(f"{share:g} of the least thickness: creep in ten seconds over R", crept, 1e-6, source="limit analysis")
+    for share, color in ((0.99, plots.SECOND), (0.97, plots.THIRD)):
+        arch = Arch(case.scratch, share * bound * RADIUS, 0.5)
+        case.agree(f"{share:g} of the least thickness: it falls", arch.watch(10.0)[1] >= 0.05, True, source="limit analysis")
+        if share == 0.99:
+            draw(axis, arch, color, f"0.99 of the least thickness, {arch.sim.time:.1f} s")
+    axis.set(xlabel="x (m)", ylabel="z (m)", aspect="equal")
+
+
+def frictions(case, axis, thickness=0.2 * RADIUS):
+    bound = least(lambda mu: admissible(thickness, mu), 0.1, 0.6)
+    case.report("linear program, t = 0.2 R: least friction", bound, source="limit analysis")
+    arch = Arch(case.scratch, thickness, 0.5)
+    case.bound("t = 0.2 R, mu = 0.5: creep in ten seconds over R", arch.watch(10.0)[0], 1e-6, source="Coulomb")
+    draw(axis, arch, plots.OURS, "t = 0.2 R, mu = 0.5, ten seconds")
+    crept, _ = Arch(case.scratch, thickness, 1.01 * bound).watch(10.0)
+    case.bound("t = 0.2 R, 1.01 of the least friction: creep in ten seconds over R", crept, 1e-6, source="limit analysis")
+    _, moved = Arch(case.scratch, thickness, 0.99 * bound).watch(10.0)
+    case.agree("t = 0.2 R, 0.99 of the least friction: it falls", moved >= 0.05, True, source="limit analysis")
+    arch = Arch(case.scratch, thickness, 0.2)
+    case.agree("t = 0.2 R, mu = 0.2: it falls", arch.watch(10.0)[1] >= 0.05, True, source="limit analysis")
+    draw(axis, arch, plots.SECOND, f"t = 0.2 R, mu = 0.2, {arch.sim.time:.1f} s")
+    axis.set(xlabel="x (m)", ylabel="z (m)", aspect="equal")
+
+
+def equal_stones(case, thickness=0.2 * RADIUS):
+    crept, _ = Arch(case.scratch, thickness, 0.5, grow=0.0).watch(2.0)
+    case.bound("equal stones, t = 0.2 R, mu = 0.5: creep in 2 s over R", crept, 1e-6, source="Coulomb")
+    for name, grow, known in (("stones as above", GROW, ""), ("equal stones", 0.0, RIMS)):
+        arch, deepest = Arch(case.scratch, thickness, 0.2, step=1e-3, grow=grow), 0.0
+        for _ in range(30):
+            arch.sim.step()
+            deepest = max(deepest, arch.overlap())
+        case.bound(f"{name}, t = 0.2 R, mu = 0.2: largest overlap in 30 ms of fall over R", deepest, 1e-6, source="Coulomb", known_miss=known)
+
+
+def run(case):
+    figure, (left, right) = plots.axes(2)
+    thicknesses(case, left)
+    frictions(case, right)
+    equal_stones(case)
+    for axis in (left, right):
+        axis.legend(fontsize=7, loc="lower center")
+    case.figure(figure, "Left: an arch that is 1 % too thin, as it falls. Right: a thick arch with enough friction and with too little.")
