@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Mapping
+from typing import Any, Mapping, Sequence
 
 import numpy as np
 
@@ -19,7 +19,7 @@ _RATE = 0.1  # m/s, that rates of cables are divided by
 _SPEED = 1.0  # m/s, that nodes' velocities are divided by
 
 
-def surface(across: np.ndarray) -> np.ndarray:
+def surface(across: Sequence[float]) -> np.ndarray:
     """The point of the tip's surface at a place across the axis.
 
     The tip of the trunk moves near a cap, z = 187 mm - 7.00 r^2/m + 177.5 r^4/m^3, fitted to 400 equilibria under random
@@ -27,7 +27,7 @@ def surface(across: np.ndarray) -> np.ndarray:
 
     Parameters
     ----------
-    across : (2,) m
+    across : two numbers, m
         x and y, up to 0.07 m from the axis.
 
     Returns
