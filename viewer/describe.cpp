@@ -245,7 +245,7 @@ Json contact_json(const sim::Observables& observables, int index) {
   return {{"name", contact.name()},
           {"body", model.body(body).name()},
           {"surface", surface_json(contact)},
-          {"friction", contact.friction()},
+          {"friction", contact.friction().sticking},
           {"points", contact.size()},
           {"signals", keys_of(observables, sim::ObservableKind::contact, contact.name())}};
 }

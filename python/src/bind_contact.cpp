@@ -113,8 +113,16 @@ void bind_contact(py::module_& module) {
           "of the world has no name.")
       .def_property_readonly(
           "friction",
-          [](const Contact& self) { return self.session->model().contact(self.index).friction(); },
-          "float: Coulomb's coefficient.");
+          [](const Contact& self) {
+            return self.session->model().contact(self.index).friction().sticking;
+          },
+          "float: Coulomb's coefficient of static friction.")
+      .def_property_readonly(
+          "kinetic_friction",
+          [](const Contact& self) {
+            return self.session->model().contact(self.index).friction().sliding;
+          },
+          "float: that of points that slide; as a rule the same.");
   bind_sums(type);
   bind_points(type);
   type.def("__repr__", [](const Contact& self) {

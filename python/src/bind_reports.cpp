@@ -41,6 +41,17 @@ void bind_step_report(py::module_& module) {
                     "float: residual over the sum of the forces' norms.")
       .def_readonly("violation", &StepReport::violation,
                     "float: how far the actuators are from their law at the end (m).")
+      .def_readonly("contact_residual", &StepReport::contact_residual,
+                    "float: largest distance of a contact point from the laws of Signorini and "
+                    "Coulomb, over the largest contact force; 0 without contacts.")
+      .def_readonly("contact_signorini", &StepReport::contact_signorini,
+                    "float: largest penetration of a point, or gap across which a force acts, that "
+                    "the solution of the contact laws left (m).")
+      .def_readonly("contact_coulomb", &StepReport::contact_coulomb,
+                    "float: largest motion along a surface that friction should have prevented, or "
+                    "that is not against its friction (m).")
+      .def_readonly("contact_complementarity", &StepReport::contact_complementarity,
+                    "float: largest product of a point's gap and normal force (J).")
       .def_readonly("iterations", &StepReport::iterations, "int: linear solutions in the step.")
       .def_readonly("substeps", &StepReport::substeps,
                     "int: parts that the step was made in; more than 1 where the whole found no "

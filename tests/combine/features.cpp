@@ -162,6 +162,7 @@ std::vector<Feature> list_features() {
       {"regularisation", words(map_of(controller, "regularisation"), "of")},
       {"membrane", switched},
       {"contact_zones", switched},
+      {"kinetic_friction", switched},
   };
 }
 

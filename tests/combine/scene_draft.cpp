@@ -580,6 +580,7 @@ class Drafter {
                                        : fmt::format("body: <{}>, surface: {{{}}}", on.id, surface);
     if (!on.fem || (of("contact") != "soft" && of("contact") != "self")) text += tip_points(on);
     if (has("contact_friction")) text += ", friction: 0.5";
+    if (has("contact_friction") && has("kinetic_friction")) text += ", kinetic_friction: 0.3";
     if (has("contact_zones") && on.fem) text += ", aggregate: 12 mm";
     if (has("contact_motion") && !surface.empty()) {
       text += fmt::format(", motion: {{{}: {{ramp: {{to: {:.3g} mm, duration: 60 ms}}}}}}",

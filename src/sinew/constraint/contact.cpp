@@ -6,14 +6,29 @@
 #include <fmt/format.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/qp/friction_cone.hpp"
 
 namespace sinew::constraint {
 
-Contact::Contact(std::string name, std::size_t count, double friction, std::size_t stride)
+bool Friction::slides(const Vector3& effort) const {
+  if (qp::slides(effort, sticking)) return true;
+  return sliding < sticking && qp::slides(effort, sliding) && qp::at_most(effort, sliding);
+}
+
+Contact::Contact(std::string name, std::size_t count, Friction friction, std::size_t stride)
     : Constraint(std::move(name)), count_(count), friction_(friction), stride_(stride) {
-  if (!(friction >= 0.0) || !std::isfinite(friction)) {
+  if (!(friction.sticking >= 0.0) || !std::isfinite(friction.sticking)) {
     throw Error(ErrorKind::out_of_range, {},
-                fmt::format("the friction coefficient is {:g}", friction), "give zero or more");
+                fmt::format("the friction coefficient is {:g}", friction.sticking),
+                "give zero or more");
+  }
+  const bool differs = friction.sliding != friction.sticking;
+  if (differs && !(friction.sliding > 0.0 && friction.sliding < friction.sticking)) {
+    throw Error(ErrorKind::out_of_range, {},
+                fmt::format("the coefficient of kinetic friction is {:g}, that of static friction "
+                            "{:g}",
+                            friction.sliding, friction.sticking),
+                "give a kinetic one above zero and no greater than the static one");
   }
   if (count == 0) {
     throw Error(ErrorKind::too_few_points, {}, "no point can touch the surface",

@@ -11,6 +11,20 @@
 
 namespace sinew::constraint {
 
+/// Coulomb's coefficients: friction at its limit is at most `sticking` times the normal force where
+/// a point stays, and `sliding` times where it slides.
+struct Friction {
+  double sticking = 0.0;  ///< >= 0
+  double sliding = 0.0;   ///< the same, or less and > 0
+
+  Friction(double both = 0.0) : sticking(both), sliding(both) {}
+  Friction(double at_rest, double kinetic) : sticking(at_rest), sliding(kinetic) {}
+  /// Whether a point with this effort slid: friction is at one of the limits, see qp::slides(). (A
+  /// point that stays by just what it would slide with is taken to slide.)
+  /// @param effort (3,) N, normal first, > 0.
+  bool slides(const Vector3& effort) const;
+};
+
 /// Three rows per point: gap (m, negative inside) and two tangential motions relative to what it
 /// may touch since the step began (m). Efforts (N): the normal force, >= 0, along the outward
 /// normal on the body, and friction along the tangents. In a step, rows are linear in the motion:
@@ -18,7 +32,7 @@ namespace sinew::constraint {
 class Contact : public Constraint {
  public:
   std::size_t size() const { return count_; }  ///< how many points there may be
-  double friction() const { return friction_; }
+  const Friction& friction() const { return friction_; }
   /// That the points belong to.
   virtual int body() const = 0;
   /// That they may touch; -1: a surface of the world.
@@ -56,15 +70,15 @@ class Contact : public Constraint {
   Matrix3 frame(std::size_t point, const mechanics::RowValues& values) const;
 
  protected:
-  /// @param name for messages. @param count of points. @param friction Coulomb's coefficient, >= 0.
+  /// @param name for messages. @param count of points. @param friction see there.
   /// @param stride entries of a row. Throws Error: out-of-range, too-few-points.
-  Contact(std::string name, std::size_t count, double friction, std::size_t stride);
+  Contact(std::string name, std::size_t count, Friction friction, std::size_t stride);
 
   int first_entry_ = -1;
 
  private:
   std::size_t count_;
-  double friction_;
+  Friction friction_;
   std::size_t stride_;
 };
 

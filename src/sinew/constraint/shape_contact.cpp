@@ -23,7 +23,7 @@ constexpr double kIdle = 1e6;
 
 // Entries of a row: the point, or a body's centre and turn; then the carrier's.
 ShapeContact::ShapeContact(std::string name, std::vector<mechanics::MaterialPoint> points,
-                           collision::Shape surface, double friction,
+                           collision::Shape surface, Friction friction,
                            std::optional<RigidSide> carrier)
     : Contact(std::move(name), points.size(), friction, carrier ? 3 : 1),
       points_(std::move(points)),
@@ -31,7 +31,7 @@ ShapeContact::ShapeContact(std::string name, std::vector<mechanics::MaterialPoin
       carrier_(std::move(carrier)) {}
 
 ShapeContact::ShapeContact(std::string name, RigidSide own, collision::Shape surface,
-                           double friction, std::optional<RigidSide> carrier)
+                           Friction friction, std::optional<RigidSide> carrier)
     : Contact(std::move(name), collision::TouchingPoints::kMax, friction, carrier ? 4 : 2),
       own_(std::move(own)),
       surface_(checked(std::move(surface))),
@@ -321,7 +321,7 @@ void hash_shape(const collision::Shape& shape, ValueHash& hash) {
 }  // namespace
 
 void ShapeContact::add_to(ValueHash& hash) const {
-  hash.add(friction());
+  hash.add(friction().sticking, friction().sliding);
   hash_shape(surface_, hash);
   if (own_) hash_shape(own_->shape, hash);
 }

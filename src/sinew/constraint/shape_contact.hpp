@@ -38,13 +38,13 @@ namespace sinew::constraint {
 class ShapeContact : public Contact {
  public:
   /// @param name for messages. @param points that may touch. @param surface checked() is applied.
-  /// @param friction Coulomb's coefficient, >= 0. @param carrier none: the surface's poses are
+  /// @param friction see there. @param carrier none: the surface's poses are
   /// given; else `surface` is its shape. Throws Error: out-of-range, too-few-points.
   ShapeContact(std::string name, std::vector<mechanics::MaterialPoint> points,
-               collision::Shape surface, double friction, std::optional<RigidSide> carrier = {});
+               collision::Shape surface, Friction friction, std::optional<RigidSide> carrier = {});
   /// @param own the rigid body whose shape touches the surface.
   /// @param name,surface,friction,carrier as above.
-  ShapeContact(std::string name, RigidSide own, collision::Shape surface, double friction,
+  ShapeContact(std::string name, RigidSide own, collision::Shape surface, Friction friction,
                std::optional<RigidSide> carrier = {});
 
   void declare(mechanics::RowPattern& rows,

@@ -177,7 +177,7 @@ collision::ProximityPair SurfaceContact::load(std::size_t point, const double* f
 }
 
 void SurfaceContact::add_to(ValueHash& hash) const {
-  hash.add(friction(), settings_.separation, settings_.depth);
+  hash.add(friction().sticking, friction().sliding, settings_.separation, settings_.depth);
   hash.add(is_within());
 }
 

@@ -33,7 +33,7 @@ class SurfaceContact : public Contact {
     bool holds(const collision::SurfacePoint& place) const;
   };
   struct Settings {
-    double friction = 0.0;    ///< Coulomb's coefficient, >= 0
+    Friction friction;        ///< see there
     double separation = 0.0;  ///< m, >= 0: the distance of surfaces that touch
     double depth = 0.0;       ///< m, >= 0: overlaps up to this are undone
   };

@@ -33,6 +33,10 @@ bool slides(const Vector3& effort, double friction) {
   return effort.tail<2>().norm() >= (1.0 - kAtLimit) * friction * effort[0];
 }
 
+bool at_most(const Vector3& effort, double friction) {
+  return effort.tail<2>().norm() <= (1.0 + kAtLimit) * friction * effort[0];
+}
+
 Vector3 project_on_cone(const Vector3& r, double friction) {
   const double across = r.tail<2>().norm();
   if (r[0] >= 0.0 && across <= friction * r[0]) return r;

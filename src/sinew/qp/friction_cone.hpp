@@ -20,6 +20,10 @@ const char* contact_state_name(ContactState state);
 /// @param effort (3,), normal first. @param friction >= 0.
 bool slides(const Vector3& effort, double friction);
 
+/// Whether friction is at this limit or below it, to within 1e-7 of it.
+/// @param effort (3,), normal first. @param friction >= 0.
+bool at_most(const Vector3& effort, double friction);
+
 /// The nearest point of K = {r : |r_t| <= friction r_n} (Euclidean).
 /// @param r (3,). @param friction >= 0.
 Vector3 project_on_cone(const Vector3& r, double friction);

@@ -91,6 +91,7 @@ std::optional<Notice> add_contact(sim::ModelBuilder& builder, const ContactDescr
   settings.points = contact.points.points;
   settings.outside = contact.outside;
   settings.friction = contact.friction;
+  settings.kinetic_friction = contact.kinetic_friction;
   settings.restitution = contact.restitution;
   settings.aggregate = contact.aggregate;
   settings.motion = contact.motion;

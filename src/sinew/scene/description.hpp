@@ -308,10 +308,11 @@ struct ContactDescription {
   std::optional<FixedRegion> nodes;  ///< of the outside; none, and no points: all of it
   PointList points;
   mesh::Outside outside = mesh::Outside::error;
-  double friction = 0.0;                  ///< Coulomb's coefficient, >= 0
-  std::optional<double> restitution;      ///< 0 to 1; none: the integrator's
-  double aggregate = 0.0;                 ///< m, of zones; 0: single points
-  std::optional<sim::BaseMotion> motion;  ///< of the surface
+  double friction = 0.0;                   ///< Coulomb's coefficient, >= 0
+  std::optional<double> kinetic_friction;  ///< of points that slide; none: the same
+  std::optional<double> restitution;       ///< 0 to 1; none: the integrator's
+  double aggregate = 0.0;                  ///< m, of zones; 0: single points
+  std::optional<sim::BaseMotion> motion;   ///< of the surface
 };
 
 /// What holds two bodies together, or a body to the world.

@@ -124,6 +124,13 @@ Form contact_form() {
                           .default_text = "0",
                           .description = "Coulomb friction coefficient. Coated against rigid 0.05 "
                                          "to 0.2, silicone on steel 0.6 to 0.9."});
+  contact.keys.push_back({.name = "kinetic_friction",
+                          .forms = {quantity(plain_number(), positive())},
+                          .example = "0.4",
+                          .description = "Coefficient of points that slide, no greater than "
+                                         "`friction`, which then is that of points at rest. A "
+                                         "point counts as sliding where it slid in the step "
+                                         "before. Without: the same."});
   contact.keys.push_back({.name = "restitution",
                           .forms = {quantity(plain_number(), {.min = 0.0, .max = 1.0})},
                           .example = "0.8",

@@ -86,6 +86,9 @@ ContactDescription read_contact(const Node::Entry& entry, const ReadContext& con
   fields.read_choice("outside", contact.outside,
                      {{"error", mesh::Outside::error}, {"nearest", mesh::Outside::nearest}});
   fields.read("friction", contact.friction);
+  if (fields.find("kinetic_friction") != nullptr) {
+    fields.read("kinetic_friction", contact.kinetic_friction.emplace());
+  }
   if (fields.find("restitution") != nullptr)
     fields.read("restitution", contact.restitution.emplace());
   fields.read("aggregate", contact.aggregate);

@@ -114,10 +114,10 @@ std::unique_ptr<constraint::ShapeContact> make_contact(ModelData& data, mechanic
   if (whole) {
     return std::make_unique<constraint::ShapeContact>(settings.name,
                                                       attach_side(data, settings.body, settings),
-                                                      surface, settings.friction, carrier);
+                                                      surface, settings.coefficients(), carrier);
   }
   return std::make_unique<constraint::ShapeContact>(
-      settings.name, attach_points(data, on, settings), surface, settings.friction, carrier);
+      settings.name, attach_points(data, on, settings), surface, settings.coefficients(), carrier);
 }
 
 // Whether impacts are events of the integrator: those of rigid bodies. Deformable ones rebound by

@@ -43,6 +43,8 @@ ContactPlanes::~ContactPlanes() = default;
 void ContactPlanes::place(double from, double to) {
   turns_left_ = kMaxTurns;
   curved_ = false;
+  carried_.clear();
+  time_step_ = to - from;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     if (shapes_[i] == nullptr) continue;
     const constraint::ShapeContact& contact = *shapes_[i];
@@ -50,7 +52,21 @@ void ContactPlanes::place(double from, double to) {
     poses_[i] = pose_now(i, to);
     const Eigen::Isometry3d start = contact.carrier() ? poses_[i] : model_.contacts()[i].pose(from);
     contact.begin_step(configuration_, start, poses_[i], to - from, rows_);
+    if (!start.isApprox(poses_[i], 0.0)) {
+      carried_.push_back({&contact, start * poses_[i].inverse()});
+    }
   }
+}
+
+Vector3 ContactPlanes::velocity_beside(const constraint::Contact& contact,
+                                       std::size_t point) const {
+  Vector3 velocity = contact.velocity_beside(configuration_, point, rows_);
+  for (const Carried& surface : carried_) {
+    if (surface.contact != &contact) continue;
+    const Vector3 at = contact.position_now(configuration_, point, rows_);
+    velocity += (surface.from_end * at - at) / time_step_;
+  }
+  return velocity;
 }
 
 void ContactPlanes::find_points(double reach, std::span<double> effort) {

@@ -71,6 +71,10 @@ class ContactPlanes {
   /// Of the surface now. @param contact of contacts(). @param time s.
   Eigen::Isometry3d pose_now(std::size_t contact, double time) const;
 
+  /// (3,) m/s: how fast a point slides or leaves, also where the surface moves of itself.
+  /// @param contact of contacts(). @param point below its size().
+  Vector3 velocity_beside(const constraint::Contact& contact, std::size_t point) const;
+
   /// Planes turn in a bounded number of rounds a step, after which they stay as they are.
   bool may_turn() const { return turns_left_ > 0; }
   void end_round() { --turns_left_; }
@@ -120,6 +124,12 @@ class ContactPlanes {
   VectorX curvature_;
   bool curved_ = false;
   std::vector<Eigen::Isometry3d> poses_;  // (contacts,)
+  struct Carried {
+    const constraint::Contact* contact;
+    Eigen::Isometry3d from_end;  // to where it was when the step began
+  };
+  std::vector<Carried> carried_;  // surfaces of the world that move
+  double time_step_ = 0.0;        // s
   int turns_left_ = 0;
 };
 

@@ -35,7 +35,7 @@ ContactPoint ContactReader::point(int contact, std::size_t point,
   result.friction_force = run_.effort[row + 1] * frame.col(1) + run_.effort[row + 2] * frame.col(2);
   if (!(result.normal_force > 0.0)) return result;
   const Eigen::Map<const Vector3> force(&run_.effort[row]);
-  const bool slips = qp::slides(force, touching.friction());
+  const bool slips = touching.friction().slides(force);
   result.state = slips ? qp::ContactState::slip : qp::ContactState::stick;
   return result;
 }

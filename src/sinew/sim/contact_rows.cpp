@@ -27,6 +27,8 @@ constexpr double kAhead = 3.0;
 // A point that a step holds moved at its start where it was faster than this part of the fastest
 // point, and than this part of the size in a step.
 constexpr double kStill = 1e-3, kNoMotion = 1e-9;
+// Of the fastest point: friction is static at points that are slower.
+constexpr double kStays = 1e-6;
 // Rounds of a step in which overlapping surfaces get points, and zones spread their forces anew.
 constexpr int kMaxRounds = 20;
 
@@ -51,17 +53,21 @@ ContactRows::ContactRows(const Model& model, const constraint::Configuration& co
       rows_(rows),
       planes_(model, configuration, rows, pool),
       touched_(static_cast<std::size_t>(model.rows().rows()), 0),
+      slides_(touched_),
       closed_(touched_) {
   auto touching = planes_.surfaces().begin();
   for (std::size_t i = 0; i < model.contacts().size(); ++i) {
     const ContactModel& contact = model.contacts()[i];
     strikes_.push_back(contact.strikes ? 1 : 0);
+    const constraint::Friction& friction = planes_.contacts()[i]->friction();
+    has_kinetic_ |= friction.sliding < friction.sticking;
     surfaces_.push_back(planes_.shape(i) == nullptr ? (touching++)->get() : nullptr);
     auto& zones = zones_.emplace_back();
     if (contact.aggregate == 0.0) continue;
     zones =
         std::make_unique<ContactZones>(*planes_.contacts()[i], contact.aggregate, configuration);
   }
+  if (has_kinetic_) along_.resize(slides_.size(), Vector3::Zero());
 }
 
 bool ContactRows::has_zones() const {
@@ -151,6 +157,56 @@ void ContactRows::choose_active(std::span<const double> effort, double time_step
     }
   }
   std::ranges::transform(effort, touched_.begin(), [](double r) { return r > 0.0 ? 1 : 0; });
+  judge_sliding(effort, time_step);
+}
+
+double ContactRows::friction(const constraint::Contact& contact, std::size_t point) const {
+  const bool slides = slides_[static_cast<std::size_t>(contact.row(point))] != 0;
+  return slides ? contact.friction().sliding : contact.friction().sticking;
+}
+
+// By velocity and force, of which either may mislead: redundant points that stay share their
+// friction as they like, up to their limits; and a ball that rolls from frame to frame has a little
+// velocity. In quasi-statics by force alone.
+void ContactRows::judge_sliding(std::span<const double> effort, double time_step) {
+  if (!has_kinetic_) return;
+  still_ = std::isfinite(time_step)
+               ? std::max(kStays * fastest_node(), kNoMotion * model_.size() / time_step)
+               : kInfinity;
+  for_each_point([&](const constraint::Contact& contact, std::size_t k) {
+    judge_sliding(contact, k, effort);
+  });
+}
+
+void ContactRows::judge_sliding(const constraint::Contact& contact, std::size_t point,
+                                std::span<const double> effort) {
+  const auto row = static_cast<std::size_t>(contact.row(point));
+  slides_[row] = 0;
+  const bool pressed = !effort.empty() && effort[row] > 0.0;
+  if (!pressed && (still_ == kInfinity || contact.idle(point, rows_))) return;
+  const auto tangents = contact.frame(point, rows_).rightCols<2>().eval();
+  const Vector3 force = pressed ? Vector3::Map(&effort[row]) : Vector3(Vector3::Zero());
+  const Eigen::Vector2d velocity = tangents.transpose() * planes_.velocity_beside(contact, point);
+  const bool moves = still_ == kInfinity || velocity.norm() > still_;
+  slides_[row] = moves && (!pressed || contact.friction().slides(force)) ? 1 : 0;
+  along_[row] = tangents * (pressed ? Eigen::Vector2d(-force.tail<2>()) : velocity);
+}
+
+// Friction is against the motion: along the way that a point went before, where it turned back.
+bool ContactRows::hold_reversed(const RowNumbering& numbering,
+                                const linalg::AlignedNumbers& effort) {
+  bool found = false;
+  for_each_point([&](const constraint::Contact& contact, std::size_t k) {
+    const int row = contact.row(k), problem_row = numbering.problem_row_of(row);
+    char& slides = slides_[static_cast<std::size_t>(row)];
+    if (slides == 0 || problem_row < 0) return;
+    const Eigen::Map<const Vector3> force(&effort[static_cast<std::size_t>(problem_row)]);
+    const Vector3 friction = contact.frame(k, rows_).rightCols<2>() * force.tail<2>();
+    if (!(friction.dot(along_[static_cast<std::size_t>(row)]) > 0.0)) return;
+    slides = 0;
+    found = true;
+  });
+  return found;
 }
 
 void ContactRows::spread_forces(std::span<double> effort) const {
@@ -173,6 +229,10 @@ void ContactRows::take_closed() {
   for_each_point([&](const constraint::Contact& contact, std::size_t k) {
     set_active(contact.row(k), is_closed(contact.row(k)));
   });
+  if (!has_kinetic_) return;
+  still_ = kStays * fastest_node();
+  for_each_point(
+      [&](const constraint::Contact& contact, std::size_t k) { judge_sliding(contact, k, {}); });
 }
 
 void ContactRows::set_active(int row, bool active) {
@@ -184,7 +244,7 @@ void ContactRows::list(const RowNumbering& numbering,
   for_each_point([&](const constraint::Contact& contact, std::size_t k) {
     const int row = contact.row(k), problem_row = numbering.problem_row_of(row);
     if (problem_row < 0 || !rows_.groups.leads(row)) return;
-    blocks.push_back({problem_row, contact.friction()});
+    blocks.push_back({problem_row, friction(contact, k)});
   });
 }
 
@@ -205,6 +265,7 @@ bool ContactRows::correct(const step::StepProblem& problem, const RowNumbering& 
     }
   }
   if (spread) --zone_rounds_left_;
+  if (has_kinetic_) found = hold_reversed(numbering, effort) || found;
   return found || spread;
 }
 
@@ -289,6 +350,7 @@ bool ContactRows::correct_surfaces(TouchingSurfaces& touching) {
     for (std::size_t k = known; k < touching.count(); ++k) {
       set_active(touching.contact().row(k), true);
       planes_.begin_point(touching.contact().row(k));
+      if (has_kinetic_) judge_sliding(touching.contact(), k, {});
     }
     found = true;
   }
@@ -316,8 +378,8 @@ bool ContactRows::stops_points(std::span<const double> effort, double time_step)
       const Eigen::Map<const Vector3> force(effort.data() + contact->row(k));
       if (!(force[0] > 0.0)) continue;
       const Vector3 velocity =
-          contact->frame(k, rows_).transpose() * contact->velocity_beside(configuration_, k, rows_);
-      const bool sticks = contact->friction() > 0.0 && !qp::slides(force, contact->friction());
+          contact->frame(k, rows_).transpose() * planes_.velocity_beside(*contact, k);
+      const bool sticks = contact->friction().sticking > 0.0 && !contact->friction().slides(force);
       if (std::abs(velocity[0]) > still || (sticks && velocity.tail<2>().norm() > still)) {
         return true;
       }
@@ -326,13 +388,44 @@ bool ContactRows::stops_points(std::span<const double> effort, double time_step)
   return false;
 }
 
+bool ContactRows::breaks_loose(std::span<const double> effort) const {
+  if (!has_kinetic_) return false;
+  bool found = false;
+  for_each_point([&](const constraint::Contact& contact, std::size_t k) {
+    const constraint::Friction& friction = contact.friction();
+    const Vector3 force = Vector3::Map(effort.data() + contact.row(k));
+    found |= friction.sliding < friction.sticking && force[0] > 0.0 &&
+             qp::slides(force, friction.sticking);
+  });
+  return found;
+}
+
+bool ContactRows::turns_back(const step::StepProblem& problem, const RowNumbering& numbering,
+                             const linalg::AlignedNumbers& effort, double time_step) const {
+  if (!has_kinetic_) return false;
+  const Eigen::Map<const VectorX, Eigen::AlignedMax> lambda(
+      effort.data(), static_cast<Eigen::Index>(effort.size()));
+  bool found = false;
+  for_each_point([&](const constraint::Contact& contact, std::size_t k) {
+    const int row = contact.row(k), problem_row = numbering.problem_row_of(row);
+    if (problem_row < 0 || slides_[static_cast<std::size_t>(row)] == 0) return;
+    if (!(lambda[problem_row] > 0.0)) return;
+    const Vector3 velocity =
+        contact.frame(k, rows_).transpose() * planes_.velocity_beside(contact, k);
+    const Eigen::Vector2d way = problem.delta_free.segment<2>(problem_row + 1) +
+                                problem.compliance.middleRows<2>(problem_row + 1) * lambda;
+    found |= way.dot(velocity.tail<2>()) < 0.5 * time_step * velocity.tail<2>().squaredNorm();
+  });
+  return found;
+}
+
 // m/s, of all bodies that touch.
 double ContactRows::fastest_node() const {
   double fastest = 0.0;
   for (const constraint::Contact* contact : planes_.contacts()) {
     for (std::size_t k = 0; k < contact->size(); ++k) {
       if (contact->idle(k, rows_)) continue;
-      fastest = std::max(fastest, contact->velocity_beside(configuration_, k, rows_).norm());
+      fastest = std::max(fastest, planes_.velocity_beside(*contact, k).norm());
     }
   }
   return fastest;

@@ -45,6 +45,9 @@ class ContactRows {
   /// @param effort (rows,) N of the last step: points with a force are near, whatever their gap.
   /// @param time_step s. @param reach m: points that are nearer than this are near, too.
   void choose_active(std::span<const double> effort, double time_step, double reach);
+  /// Coulomb's coefficient of a point in the step: the kinetic one of what slid in the last step,
+  /// or comes sliding. @param contact of planes().contacts(). @param point below its size().
+  double friction(const constraint::Contact& contact, std::size_t point) const;
   /// For a look at the present state: every point that a step has a use for takes part.
   void take_all();
   /// For an impact at the present state: the closed points of contacts that strike.
@@ -60,13 +63,16 @@ class ContactRows {
   /// - A point that is pushed by the tangent plane of a curved surface gets the plane of the way
   ///   that it would go without its own force (constraint::Contact), if that is another one: where
   ///   that way misses the surface it is pushed no more.
+  /// - A point with kinetic friction that turns back has come to rest on the way: static friction
+  ///   may hold it there.
   /// Whether there was anything to mend; rows, and who takes part, are then new.
   /// @param problem,numbering of the step. @param effort (rows of the problem,) N, its solution.
   bool correct(const step::StepProblem& problem, const RowNumbering& numbering,
                const linalg::AlignedNumbers& effort);
   /// Whether correct() could find anything.
   bool are_guessed() const {
-    return left_out_ || planes_.curved() || !planes_.surfaces().empty() || has_zones();
+    return left_out_ || has_kinetic_ || planes_.curved() || !planes_.surfaces().empty() ||
+           has_zones();
   }
   bool leave_points_out() const { return left_out_; }
 
@@ -85,6 +91,15 @@ class ContactRows {
   /// that slid and sticks. Before bodies' velocities follow. @param effort (rows,) N.
   /// @param time_step s.
   bool stops_points(std::span<const double> effort, double time_step) const;
+  /// Whether a point with a kinetic coefficient has friction at its static limit: its force jumps
+  /// in the next step. @param effort (rows,) N.
+  bool breaks_loose(std::span<const double> effort) const;
+  /// Whether a point with kinetic friction has come to rest within the step: it goes less than half
+  /// of the way v_0 h that it began, so that, slowed down evenly, it ends the step on its way back.
+  /// Before bodies' velocities follow. @param problem,numbering of the step.
+  /// @param effort (rows of the problem,) N. @param time_step h, s.
+  bool turns_back(const step::StepProblem& problem, const RowNumbering& numbering,
+                  const linalg::AlignedNumbers& effort, double time_step) const;
   /// Whether surfaces have passed through each other in the step.
   bool passed() const;
   /// m, >= 0: how deep a point without a normal force is in its surface's tangent plane, at most.
@@ -111,6 +126,10 @@ class ContactRows {
   double arrival(const constraint::Contact& contact, std::size_t point, double time_step) const;
   bool has_zones() const;
   double fastest_node() const;
+  void judge_sliding(std::span<const double> effort, double time_step);
+  void judge_sliding(const constraint::Contact& contact, std::size_t point,
+                     std::span<const double> effort);
+  bool hold_reversed(const RowNumbering& numbering, const linalg::AlignedNumbers& effort);
   template <class Gap>
   void measure_gaps(const constraint::Contact& contact, Gap&& gap);
 
@@ -126,6 +145,11 @@ class ContactRows {
   std::vector<double> gaps_;   // (points,) m, of one contact
   int zone_rounds_left_ = 0;   // of a step, in which zones spread their forces anew
   std::vector<char> touched_;  // (rows,) normal rows with a force when the step began
+  bool has_kinetic_ = false;   // some contact has two coefficients
+  double still_ = 0.0;         // m/s: what is slower stays
+  std::vector<char> slides_;   // (rows,) normal rows whose friction is kinetic
+  std::vector<Vector3>
+      along_;  // (rows,) where those slide to, of any length; empty: no such contact
   std::vector<char> strikes_;  // (contacts,)
   std::vector<char> closed_;   // (rows,) normal rows of contacts that strike
 };

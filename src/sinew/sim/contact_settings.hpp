@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sinew/collision/shape.hpp"
+#include "sinew/constraint/contact.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/core/types.hpp"
 #include "sinew/mesh/embedding.hpp"
@@ -20,6 +21,10 @@ namespace sinew::sim {
 
 /// Points of a body that may touch a surface.
 struct ContactSettings {
+  constraint::Friction coefficients() const {
+    return {friction, kinetic_friction.value_or(friction)};
+  }
+
   std::string name;
   Location place;
   int body = 0;
@@ -30,8 +35,9 @@ struct ContactSettings {
   std::vector<NodeId> nodes;  ///< of the body's mesh; fixed ones are left out
   Points points;  ///< (n, 3) m, at rest; beside the nodes. Neither: a rigid body's shape
   mesh::Outside outside = mesh::Outside::error;
-  double friction = 0.0;             ///< Coulomb's coefficient, >= 0
-  std::optional<BaseMotion> motion;  ///< of the surface
+  double friction = 0.0;                   ///< Coulomb's coefficient, >= 0
+  std::optional<double> kinetic_friction;  ///< of points that slide; none: the same
+  std::optional<BaseMotion> motion;        ///< of the surface
   /// Newton's, 0 to 1; none: StepSettings::restitution. Of rigid bodies in event-driven
   /// integration.
   std::optional<double> restitution;

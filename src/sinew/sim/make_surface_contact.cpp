@@ -131,7 +131,7 @@ std::unique_ptr<constraint::Contact> make_surface_contact(ModelData& data,
   return std::make_unique<constraint::SurfaceContact>(
       settings.name, first, second,
       constraint::SurfaceContact::Settings{
-          .friction = settings.friction,
+          .friction = settings.coefficients(),
           .separation = kSeparation * std::max(one.size, other.size),
           .depth = kDepth * wall});
 }

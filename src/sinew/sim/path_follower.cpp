@@ -26,7 +26,7 @@ void PathFollower::check() const {
   const ContactPlanes& planes = run_.world.contacts().planes();
   for (std::size_t i = 0; i < planes.contacts().size(); ++i) {
     const constraint::ShapeContact* contact = planes.shape(i);
-    if (contact == nullptr || !contact->curved() || contact->friction() == 0.0) continue;
+    if (contact == nullptr || !contact->curved() || contact->friction().sticking == 0.0) continue;
     throw Error(ErrorKind::not_in_this_version,
                 {.item = fmt::format("contact '{}'", contact->name())},
                 "paths along curved surfaces with friction are not followed yet",

@@ -344,12 +344,18 @@ void add_report(Observables& list) {
        {"relative_residual", "iterations", "substeps", "scale", "smallest_volume_ratio"}) {
     parts.push_back(number(ObservableKind::report, name));
   }
+  const bool touches = !simulation.model().contacts().empty();
+  if (touches) {
+    parts.push_back(number(ObservableKind::report, "contact_residual"));
+    parts.push_back(number(ObservableKind::report, "contact_signorini", "m"));
+    parts.push_back(number(ObservableKind::report, "contact_coulomb", "m"));
+  }
   parts.push_back(number(ObservableKind::status, "status"));
   parts.back().words = {{kStart, "start"}};
   for (int code = 0; code <= static_cast<int>(StepStatus::gaining_energy); ++code) {
     parts.back().words.push_back({code, step_status_name(static_cast<StepStatus>(code))});
   }
-  list.add(std::move(parts), [&simulation](std::span<double> all) {
+  list.add(std::move(parts), [&simulation, touches](std::span<double> all) {
     const StepReport& report = simulation.report();
     Numbers to(all);
     to.put(report.residual);
@@ -358,6 +364,11 @@ void add_report(Observables& list) {
     to.put(report.substeps);
     to.put(report.scale);
     to.put(report.smallest_volume_ratio);
+    if (touches) {
+      to.put(report.contact_residual);
+      to.put(report.contact_signorini);
+      to.put(report.contact_coulomb);
+    }
     to.put(simulation.steps() > 0 ? static_cast<int>(report.status) : kStart);
   });
 }

@@ -1,8 +1,14 @@
 #include "sinew/sim/step_failure.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
 #include <fmt/format.h>
 
+#include "sinew/constraint/contact.hpp"
 #include "sinew/mechanics/body_model.hpp"
+#include "sinew/sim/contact_reader.hpp"
 #include "sinew/sim/run.hpp"
 
 namespace sinew::sim {
@@ -11,6 +17,42 @@ namespace {
 
 // More points than this are beyond the solver's Newton method, and slow.
 constexpr std::size_t kManyPoints = static_cast<std::size_t>(qp::ConeSettings{}.newton_limit) / 3;
+
+// Which contact is farthest from its laws, with its bodies and where: "; the worst is contact
+// 'grip' of 'palm' and 'box' at (0.01, 0, 0.2) m". By what the solver tried last.
+std::string describe_worst(const Run& run) {
+  const step::ContactProblem tried = run.solver.direct().contact_problem();
+  const VectorX motion = tried.compliance * tried.effort + tried.motion;
+  double most = 0.0;
+  std::size_t worst = 0;
+  for (std::size_t k = 0; k < tried.friction.size(); ++k) {
+    const auto at = static_cast<Eigen::Index>(3 * k);
+    const double scale = tried.compliance.block<3, 3>(at, at).trace() / 3.0;
+    if (!(scale > 0.0)) continue;
+    const double distance =
+        std::sqrt(scale) * qp::cone_residual(tried.effort.segment<3>(at), motion.segment<3>(at),
+                                             tried.friction[k], scale);
+    if (distance > most) worst = k;
+    most = std::max(most, distance);
+  }
+  const auto& blocks = run.world.problem().contacts;
+  if (!(most > 0.0) || worst >= blocks.size()) return "";
+  const int row = run.world.numbering().model_row_of(blocks[worst].row);
+  for (std::size_t i = 0; i < run.model->contacts().size(); ++i) {
+    const constraint::Contact& contact = run.model->contact(static_cast<int>(i));
+    const int point = (row - contact.row(0)) / 3;
+    if (row < contact.row(0) || std::cmp_greater_equal(point, contact.size())) continue;
+    std::string bodies;
+    for (const std::string& name : touching_bodies(*run.model, static_cast<int>(i))) {
+      bodies += (bodies.empty() ? "'" : " and '") + name + "'";
+    }
+    const Vector3 at = contact.position_now(run.world.configuration(),
+                                            static_cast<std::size_t>(point), run.world.rows());
+    return fmt::format("; the worst is contact '{}' of {} at ({:.3g}, {:.3g}, {:.3g}) m",
+                       contact.name(), bodies, at[0], at[1], at[2]);
+  }
+  return "";
+}
 
 }  // namespace
 
@@ -42,6 +84,10 @@ void fail_law(Run& run) {
          "linearisation leads nowhere",
          "use solver: newton with tangent: exact, smaller time steps, or inertia");
   }
+  if (result.status == qp::ConeStatus::not_finite) {
+    fail(run, ErrorKind::not_converged, "the motion of this step has no end: it is not a number",
+         "take a smaller time step");
+  }
   if (result.status == qp::ConeStatus::solved) {
     fail(run, ErrorKind::not_converged,
          "no efforts obey the laws of this step's actuators, joints and contacts together",
@@ -49,8 +95,8 @@ void fail_law(Run& run) {
   }
   fail(run, ErrorKind::not_converged,
        fmt::format("no contact forces obey this step: residual {:.3g} after {} sweeps, with {} "
-                   "points near their surfaces",
-                   result.residual, result.sweeps, points),
+                   "points near their surfaces{}",
+                   result.residual, result.sweeps, points, describe_worst(run)),
        points > kManyPoints
            ? fmt::format("let points share their rows (`aggregate` of the contact), or let fewer "
                          "touch (`nodes` or `points`): up to {} are solved best; or take a smaller "

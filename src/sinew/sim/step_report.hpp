@@ -26,7 +26,11 @@ struct StepReport {
   double scale = 1.0;  ///< of the motion; < 1 when it was cut back to keep elements from inverting
   double energy_gained = 0.0;  ///< J, since the start: energy beyond what was put in, if > 0
   double smallest_volume_ratio = 1.0;  ///< min det F at the end of the step
-  double contact_residual = 0.0;       ///< relative, see qp::ConeResult; 0 without contacts
+  /// How far contact forces are from their laws, see qp::ConeResult; 0 without contacts.
+  double contact_residual = 0.0;         ///< relative, of all laws
+  double contact_signorini = 0.0;        ///< m
+  double contact_coulomb = 0.0;          ///< m
+  double contact_complementarity = 0.0;  ///< J, of gap times normal force
   /// Whether a controller's choice did not settle and was held as it was: another one, that serves
   /// about as well, may have been found from other rounding.
   bool choice_held = false;

@@ -117,9 +117,9 @@ void StrikingPoints::forget_rest() { std::ranges::fill(rests_, 0); }
 
 bool StrikingPoints::caught(std::span<const double> effort) const {
   return std::ranges::any_of(points_, [&](const Point& point) {
-    if (!world_.contacts().is_closed(point.row) || point.friction == 0.0) return false;
+    if (!world_.contacts().is_closed(point.row) || point.friction.sticking == 0.0) return false;
     const Eigen::Map<const Vector3> force(effort.data() + point.row);
-    const bool sticks = force[0] > 0.0 && !qp::slides(force, point.friction);
+    const bool sticks = force[0] > 0.0 && !point.friction.slides(force);
     return sticks && point.slip > std::max(still_, kRolls * point.speed);
   });
 }

@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "sinew/constraint/contact.hpp"
+
 namespace sinew::sim {
 
 class Model;
@@ -43,7 +45,7 @@ class StrikingPoints {
  private:
   struct Point {
     int row = -1;  // of its normal
-    double friction = 0.0;
+    constraint::Friction friction;
     double gap = 0.0;       // m
     double velocity = 0.0;  // m/s, of the gap
     double slip = 0.0;      // m/s

@@ -30,7 +30,7 @@ void Substep::solve(double time_step, bool divisible) {
   try {
     solve_equation(time_step, divisible);
     if (!reaches_back()) return;
-    stops_points_ = run_.world.contacts().stops_points(run_.effort, time_step);
+    stops_points_ = stops_points(time_step);
     if (stops_points_ && run_.last_step > 0.0) solve_afresh(time_step, divisible);
   } catch (...) {  // failures have gone back already; what a watcher throws has not
     run_.go_back();
@@ -39,14 +39,23 @@ void Substep::solve(double time_step, bool divisible) {
 }
 
 bool Substep::reaches_back() const {
-  return run_.model->step().integrator == mechanics::Integrator::generalized_alpha &&
-         !run_.model->contacts().empty();
+  const auto integrator = run_.model->step().integrator;
+  return !run_.model->contacts().empty() &&
+         (integrator == mechanics::Integrator::generalized_alpha ||
+          integrator == mechanics::Integrator::bdf2);
+}
+
+bool Substep::stops_points(double time_step) const {
+  const bool alpha = run_.model->step().integrator == mechanics::Integrator::generalized_alpha;
+  return run_.world.turns_back(time_step) ||
+         (alpha && run_.world.contacts().stops_points(run_.effort, time_step));
 }
 
 // Generalized-alpha carries on from the acceleration of the step before. Where a point is stopped
 // there is none, but an impulse, and the point would rebound with twice the energy. Such a step is
 // made again by backward Euler, v = d/h, and so is the next one, whose acceleration is the first to
-// go on from.
+// go on from. So is a step of any formula that reaches back, in which a point with kinetic friction
+// comes to rest: its velocity would be on the way back before static friction can hold it.
 void Substep::solve_afresh(double time_step, bool divisible) {
   run_.go_back();
   run_.last_step = 0.0;
@@ -70,15 +79,21 @@ void Substep::solve_equation(double time_step, bool divisible) {
   }
   const qp::ConeResult& contacts = run_.solver.direct().contact_result();
   run_.report.contact_residual = contacts.residual;
+  run_.report.contact_signorini = contacts.signorini;
+  run_.report.contact_coulomb = contacts.coulomb;
+  run_.report.contact_complementarity = contacts.complementarity;
   run_.report.contact_sweeps = contacts.sweeps;
 }
 
 double Substep::end(double time_step) {
   const double error = run_.world.bodies().end_step(run_.step_weights(time_step));
   // A gap that closes stops its point at once. A multistep formula that reaches back over such a
-  // jump would have the point rebound, and gain energy: it starts afresh behind it.
-  const bool stops = stops_points_ || run_.world.contacts().gap_closed(run_.effort);
-  run_.last_step = stops ? 0.0 : time_step;
+  // jump would have the point rebound, and gain energy: it starts afresh behind it. So it does
+  // where friction falls from its static limit to the kinetic one.
+  const ContactRows& contacts = run_.world.contacts();
+  const bool jumps =
+      stops_points_ || contacts.gap_closed(run_.effort) || contacts.breaks_loose(run_.effort);
+  run_.last_step = jumps ? 0.0 : time_step;
   count();
   return error;
 }

@@ -31,6 +31,7 @@ class Substep {
   void solve_equation(double time_step, bool divisible);
   void solve_afresh(double time_step, bool divisible);
   bool reaches_back() const;
+  bool stops_points(double time_step) const;
   void count();
 
   Run& run_;

@@ -78,6 +78,10 @@ class World {
   /// capstans' grip, joints, contacts and all numbers of rows are the world's.
   step::StepProblem& problem() { return problem_; }
   const step::StepProblem& problem() const { return problem_; }
+  /// Of the step that was solved last, see ContactRows. @param time_step s.
+  bool turns_back(double time_step) const {
+    return contacts_.turns_back(problem_, numbering_, problem_effort_, time_step);
+  }
   const RowNumbering& numbering() const { return numbering_; }
   /// From where cables stick to their guides in this step, and joints to their friction.
   void hold_friction();
