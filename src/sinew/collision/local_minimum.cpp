@@ -7,6 +7,14 @@
 
 namespace sinew::collision {
 
+namespace {
+
+// Cosine of the angle beyond which normals look the same way: those of a square corner do not. And
+// of a triangle's size, how near to its plane a point lies in it.
+constexpr double kSameWay = 0.1, kInPlane = 1e-6;
+
+}  // namespace
+
 // Compiled once: inlined copies might round differently.
 [[gnu::noinline]] Vector3 LocalMinimum::weights(int triangle, const Vector3& point) const {
   const Corners x = surface_.corners(triangle);
@@ -26,18 +34,29 @@ namespace sinew::collision {
   return length2 > 0.0 ? way.dot(point - from) / length2 : 0.0;
 }
 
-bool LocalMinimum::over_edge(int edge, const Vector3& point) const {
+bool LocalMinimum::flush(int triangle, const Vector3& point, const Vector3& inward) const {
+  const Vector3 normal = face_normal(triangle);
+  const double area2 = normal.norm();
+  if (normal.dot(inward) >= -kSameWay * area2 * inward.norm()) return false;
+  const double height = normal.dot(point - surface_.corners(triangle)[0]) / area2;
+  return std::abs(height) <= kInPlane * std::sqrt(area2);
+}
+
+bool LocalMinimum::over_edge(int edge, const Vector3& point, const Vector3& inward) const {
   const SurfaceTopology& topology = surface_.topology();
   return std::ranges::none_of(topology.triangles_of_edge(edge), [&](int triangle) {
+    if (flush(triangle, point, inward)) return false;
     const auto& own = topology.edges_of(triangle);
     const Eigen::Index opposite = own[0] == edge ? 2 : own[1] == edge ? 0 : 1;
     return weights(triangle, point)[opposite] > kBorder;
   });
 }
 
-bool LocalMinimum::over_vertex(NodeId node, const Vector3& point) const {
+bool LocalMinimum::over_vertex(NodeId node, const Vector3& point, const Vector3& inward) const {
   const SurfaceTopology& topology = surface_.topology();
   for (const int edge : topology.edges_of_node(node)) {
+    const auto triangles = topology.triangles_of_edge(edge);
+    if (std::ranges::all_of(triangles, [&](int t) { return flush(t, point, inward); })) continue;
     const bool first = topology.edges()[static_cast<std::size_t>(edge)][0] == node;
     const double along = share(edge, point);
     if (first ? along > kBorder : along < 1.0 - kBorder) return false;

@@ -32,9 +32,17 @@ class LocalMinimum {
     return share * scale > kBorder && (1.0 - share) * scale > kBorder;
   }
   /// Whether, over all triangles of an edge, it lies on the edge: their insides are farther.
-  bool over_edge(int edge, const Vector3& point) const;
-  /// Whether, over all edges of a node, it is the node.
-  bool over_vertex(NodeId node, const Vector3& point) const;
+  /// @param edge its number. @param point (3,) m. @param inward (3,) of any length, from the point
+  ///   into the body that it belongs to: triangles that are flush() with it do not count. Zero: all
+  ///   count.
+  bool over_edge(int edge, const Vector3& point, const Vector3& inward = Vector3::Zero()) const;
+  /// Whether, over all edges of a node, it is the node. @param node,point,inward as above.
+  bool over_vertex(NodeId node, const Vector3& point,
+                   const Vector3& inward = Vector3::Zero()) const;
+  /// Whether a point lies in the plane of a triangle that looks the same way as it does, as on the
+  /// sides of two flush blocks: nothing touches there, and no way leads out. @param triangle its
+  /// number. @param point,inward as above.
+  bool flush(int triangle, const Vector3& point, const Vector3& inward) const;
 
   /// Whether a node is, up to the slack, the nearest point of its neighbourhood.
   /// @param node of the surface.

@@ -113,10 +113,11 @@ class PairSearch {
   void over_edge(const LocalMinimum& own, NodeId node, const Vector3& x, const LocalMinimum& other,
                  int edge, bool swapped) {
     const double share = other.share(edge, x);
-    if (!LocalMinimum::inside_edge(share, 1.0) || !other.over_edge(edge, x)) return;
+    if (!LocalMinimum::inside_edge(share, 1.0)) return;
+    const Vector3 outward = other.edge_normal(edge), inward = -own.vertex_normal(node);
+    if (!other.over_edge(edge, x, can_touch(inward))) return;
     const SurfacePoint p = on_vertex(own.surface(), node);
     const SurfacePoint q = on_edge(other.surface(), edge, share);
-    const Vector3 outward = other.edge_normal(edge), inward = -own.vertex_normal(node);
     consider({own, node}, p, q, outward, direction(x - q.point, inward, outward), swapped);
   }
 
@@ -134,9 +135,9 @@ class PairSearch {
     if (!own.of.vertex_is_nearest(own.node, q.point, -normal)) return;
     if (!is_seen(inward, outward, normal)) return;
     if (swapped) {
-      keep(q, p, -normal);
+      keep({q, -outward}, {p, -inward}, -normal);
     } else {
-      keep(p, q, normal);
+      keep({p, inward}, {q, outward}, normal);
     }
   }
 
@@ -147,10 +148,11 @@ class PairSearch {
     const Vector3 away = direction(p.point - q.point, inward, outward);
     const Vector3 normal = signed_normal(away, inward, outward);
     if (!is_pair(p, q, normal)) return;
-    const bool nearest =
-        (second_.over_vertex(w, p.point) && first_.vertex_is_nearest(v, q.point, -normal)) ||
-        (first_.over_vertex(v, q.point) && second_.vertex_is_nearest(w, p.point, normal));
-    if (nearest && is_seen(inward, outward, normal)) keep(p, q, normal);
+    const bool nearest = (second_.over_vertex(w, p.point, can_touch(inward)) &&
+                          first_.vertex_is_nearest(v, q.point, -normal)) ||
+                         (first_.over_vertex(v, q.point, can_touch(-outward)) &&
+                          second_.vertex_is_nearest(w, p.point, normal));
+    if (nearest && is_seen(inward, outward, normal)) keep({p, inward}, {q, outward}, normal);
   }
 
   // The common perpendicular c of two lines a(s) and b(t): s = ((b0 - a0) x v).c / c.c, and t.
@@ -183,7 +185,9 @@ class PairSearch {
                        &second = ridges ? second_ : second_edges_;
     if (!first.edge_is_nearest(e, p.point, q.point, -normal)) return;
     if (!second.edge_is_nearest(f, q.point, p.point, normal)) return;
-    if (is_seen(inward, outward, normal)) keep(p, q, normal, !e_is_ridge && !f_is_ridge);
+    if (is_seen(inward, outward, normal)) {
+      keep({p, inward}, {q, outward}, normal, !e_is_ridge && !f_is_ridge);
+    }
   }
 
   // Of features that have passed each other, the way between them is turned round.
@@ -226,29 +230,45 @@ class PairSearch {
     return !settings_.facing || (normal.dot(inward) >= 0.0 && normal.dot(outward) >= 0.0);
   }
 
-  void keep(const SurfacePoint& p, const SurfacePoint& q, const Vector3& normal,
-            bool between_flat = false) {
-    const double distance = distance_along(normal, p, q);
+  // From which flush triangles do not count. Where nothing may have passed, or sides do not matter,
+  // all do.
+  Vector3 can_touch(const Vector3& inward) const {
+    return settings_.facing && settings_.depth > 0.0 ? inward : Vector3(Vector3::Zero());
+  }
+
+  // A point, and a direction (3,) of any length: of the first surface into its body, of the second
+  // one out of it.
+  struct Placed {
+    const SurfacePoint& point;
+    Vector3 direction;
+  };
+  void keep(const Placed& p, const Placed& q, const Vector3& normal, bool between_flat = false) {
+    const double distance = distance_along(normal, p.point, q.point);
     if (distance < 0.0 && !leads_out(p, q, -distance)) return;
-    found_.push_back({p, q, normal, distance, between_flat});
+    found_.push_back({p.point, q.point, normal, distance, between_flat});
   }
 
   // Whether features that have passed each other went no shorter way: beside an edge of a body one
   // of its faces is near, and the other one is a way through much of it. From below ridges, their
   // faces are nearer than they are.
-  bool leads_out(const SurfacePoint& p, const SurfacePoint& q, double depth) const {
-    const bool p_stands = p.kind == FeatureKind::vertex && q.kind != FeatureKind::vertex;
-    const bool q_stands = q.kind == FeatureKind::vertex && p.kind != FeatureKind::vertex;
+  bool leads_out(const Placed& p, const Placed& q, double depth) const {
+    const bool p_is_vertex = p.point.kind == FeatureKind::vertex,
+               q_is_vertex = q.point.kind == FeatureKind::vertex;
+    const bool p_stands = p_is_vertex && !q_is_vertex, q_stands = q_is_vertex && !p_is_vertex;
     const double shorter = depth * (p_stands || q_stands ? kSameWay : kBelowRidge);
-    return (q_stands || !has_shorter_way(p, q, second_, shorter)) &&
-           (p_stands || !has_shorter_way(q, p, first_, shorter));
+    return (q_stands ||
+            !has_shorter_way(p.point, q.point, second_, can_touch(p.direction), shorter)) &&
+           (p_stands ||
+            !has_shorter_way(q.point, p.point, first_, can_touch(-q.direction), shorter));
   }
 
   // The faces of the edge that a point has passed are none: on a ridge they may pass through it.
+  // Nor are those that are flush with the point.
   bool has_shorter_way(const SurfacePoint& point, const SurfacePoint& passed,
-                       const LocalMinimum& of, double reach) const {
+                       const LocalMinimum& of, const Vector3& inward, double reach) const {
     const auto& triangles = of.surface().topology().triangles();
     const auto skips = [&](int number) {
+      if (of.flush(number, point.point, inward)) return true;
       const Triangle& own = triangles[static_cast<std::size_t>(number)];
       const auto has = [&](NodeId node) { return std::ranges::find(own, node) != own.end(); };
       const bool at_edge =
