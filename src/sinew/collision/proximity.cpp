@@ -231,9 +231,9 @@ class PairSearch {
   }
 
   // From which flush triangles do not count. Where nothing may have passed, or sides do not matter,
-  // all do.
+  // all do; and on one surface, whose flat parts are flush with themselves.
   Vector3 can_touch(const Vector3& inward) const {
-    return settings_.facing && settings_.depth > 0.0 ? inward : Vector3(Vector3::Zero());
+    return settings_.facing && settings_.depth > 0.0 && !same_ ? inward : Vector3(Vector3::Zero());
   }
 
   // A point, and a direction (3,) of any length: of the first surface into its body, of the second
