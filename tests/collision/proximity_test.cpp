@@ -414,6 +414,33 @@ TEST(Proximity, OverlapsGoOnFromGaps) {
   for (const auto& [name, pair] : through) EXPECT_NEAR(pair.distance, -1e-3, 1e-12);
 }
 
+// Boxes whose sides are flush touch with their faces alone, at a distance, at one place, and where
+// one was pushed into the other: not along the sides, in whose planes the rims lie.
+TEST(Proximity, FlushBoxesMeetAcrossTheirFaces) {
+  const TestSurface box = unit_box(2);
+  for (const double offset : {0.0, 0.3}) {
+    std::set<Name> before;
+    for (const double height : {1e-3, 1e-9, 0.0, -1e-9, -1e-3}) {
+      TwoSurfaces bodies(box, box);
+      bodies.place(placed(box.nodes, Matrix3::Identity(), {offset, 0.0, 1.0 + height}), box.nodes);
+      const auto found =
+          bodies.pairs({.distance = 0.05, .depth = 0.05, .slack = 0.5, .edge_slack = 1e-9});
+      expect_once(found);
+      std::set<Name> vertices;
+      for (const ProximityPair& pair : found) {
+        EXPECT_NEAR(pair.distance, height, 1e-12) << offset << " " << height;
+        EXPECT_LE((pair.normal - Vector3::UnitZ()).norm(), 1e-6) << offset << " " << height;
+        if (pair.first.kind == kVertex || pair.second.kind == kVertex) {
+          vertices.insert(name_of(pair));
+        }
+      }
+      EXPECT_GE(vertices.size(), 9U) << offset << " " << height;
+      if (before.empty()) before = vertices;
+      EXPECT_EQ(vertices, before) << offset << " " << height;
+    }
+  }
+}
+
 // Ridges that cross: a pair of edges, on either side of touching.
 TEST(Proximity, CrossingRidgesPassEachOther) {
   const auto ridge = [](const Vector3& axis, double height) {

@@ -44,24 +44,29 @@ bool LocalMinimum::flush(int triangle, const Vector3& point, const Vector3& inwa
 
 bool LocalMinimum::over_edge(int edge, const Vector3& point, const Vector3& inward) const {
   const SurfaceTopology& topology = surface_.topology();
-  return std::ranges::none_of(topology.triangles_of_edge(edge), [&](int triangle) {
-    if (flush(triangle, point, inward)) return false;
+  bool any = false;
+  for (const int triangle : topology.triangles_of_edge(edge)) {
+    if (flush(triangle, point, inward)) continue;
+    any = true;
     const auto& own = topology.edges_of(triangle);
     const Eigen::Index opposite = own[0] == edge ? 2 : own[1] == edge ? 0 : 1;
-    return weights(triangle, point)[opposite] > kBorder;
-  });
+    if (weights(triangle, point)[opposite] > kBorder) return false;
+  }
+  return any;
 }
 
 bool LocalMinimum::over_vertex(NodeId node, const Vector3& point, const Vector3& inward) const {
   const SurfaceTopology& topology = surface_.topology();
+  bool any = false;
   for (const int edge : topology.edges_of_node(node)) {
     const auto triangles = topology.triangles_of_edge(edge);
     if (std::ranges::all_of(triangles, [&](int t) { return flush(t, point, inward); })) continue;
+    any = true;
     const bool first = topology.edges()[static_cast<std::size_t>(edge)][0] == node;
     const double along = share(edge, point);
     if (first ? along > kBorder : along < 1.0 - kBorder) return false;
   }
-  return true;
+  return any;
 }
 
 bool LocalMinimum::is_within_slack(const Vector3& way, const Vector3& away) const {

@@ -20,6 +20,8 @@ constexpr double kBelowRidge = 0.3;
 // Of how far pairs are looked for: points this near to each other are at one place. Of unit normals
 // whose sum is shorter, neither says which way is out.
 constexpr double kSamePlace = 1e-6, kOpposite = 1e-6;
+// Sine of the angle up to which something lies in a plane.
+constexpr double kParallel = 1e-6;
 
 SurfacePoint on_vertex(const SurfaceTree& surface, NodeId node) {
   return {FeatureKind::vertex, node, {node, -1, -1}, {1.0, 0.0, 0.0}, surface.at(node)};
@@ -52,6 +54,41 @@ bool share_node(const SurfacePoint& a, const SurfacePoint& b) {
   return std::ranges::any_of(a.nodes, [&](NodeId node) {
     return node >= 0 && std::ranges::find(b.nodes, node) != b.nodes.end();
   });
+}
+
+// Triangles at a vertex or edge.
+std::span<const int> triangles_at(const SurfaceTopology& topology, const SurfacePoint& place) {
+  return place.kind == FeatureKind::vertex ? topology.triangles_of_node(place.number)
+                                           : topology.triangles_of_edge(place.number);
+}
+
+// Whether a plane through a point has what is around it of its surface below it.
+bool is_below(const SurfaceTree& surface, const SurfacePoint& place, const Vector3& normal) {
+  const SurfaceTopology& topology = surface.topology();
+  return std::ranges::all_of(triangles_at(topology, place), [&](int number) {
+    const Triangle& nodes = topology.triangles()[static_cast<std::size_t>(number)];
+    return std::ranges::all_of(nodes, [&](NodeId node) {
+      const Vector3 way = surface.at(node) - place.point;
+      return normal.dot(way) <= kParallel * way.norm();
+    });
+  });
+}
+
+// Of two points at one place: the sum of the normals of faces between which both surfaces find room
+// there, out of the second one. Zero where there are none.
+Vector3 dividing_normal(const SurfaceTree& first, const SurfacePoint& p, const SurfaceTree& second,
+                        const SurfacePoint& q) {
+  Vector3 sum = Vector3::Zero();
+  const auto add = [&](const Vector3& normal) {
+    if (is_below(second, q, normal) && is_below(first, p, -normal)) sum += normal;
+  };
+  const auto normal_of = [](const SurfaceTree& surface, int triangle) -> Vector3 {
+    const Corners x = surface.corners(triangle);
+    return (x[1] - x[0]).cross(x[2] - x[0]).normalized();
+  };
+  for (const int t : triangles_at(second.topology(), q)) add(normal_of(second, t));
+  for (const int t : triangles_at(first.topology(), p)) add(-normal_of(first, t));
+  return sum;
 }
 
 // Looks at the features that two triangles own.
@@ -118,7 +155,10 @@ class PairSearch {
     if (!other.over_edge(edge, x, can_touch(inward))) return;
     const SurfacePoint p = on_vertex(own.surface(), node);
     const SurfacePoint q = on_edge(other.surface(), edge, share);
-    consider({own, node}, p, q, outward, direction(x - q.point, inward, outward), swapped);
+    const Vector3 away = direction(x - q.point, inward, outward, [&] {
+      return dividing_normal(own.surface(), p, other.surface(), q);
+    });
+    consider({own, node}, p, q, outward, away, swapped);
   }
 
   // A vertex over a face or an edge. @param away (3,) from the nearest point to it.
@@ -145,7 +185,9 @@ class PairSearch {
     const SurfacePoint p = on_vertex(first_.surface(), v), q = on_vertex(second_.surface(), w);
     if (!is_near(p, q)) return;
     const Vector3 outward = second_.vertex_normal(w), inward = -first_.vertex_normal(v);
-    const Vector3 away = direction(p.point - q.point, inward, outward);
+    const Vector3 away = direction(p.point - q.point, inward, outward, [&] {
+      return dividing_normal(first_.surface(), p, second_.surface(), q);
+    });
     const Vector3 normal = signed_normal(away, inward, outward);
     if (!is_pair(p, q, normal)) return;
     const bool nearest = (second_.over_vertex(w, p.point, can_touch(inward)) &&
@@ -185,7 +227,11 @@ class PairSearch {
                        &second = ridges ? second_ : second_edges_;
     if (!first.edge_is_nearest(e, p.point, q.point, -normal)) return;
     if (!second.edge_is_nearest(f, q.point, p.point, normal)) return;
-    if (is_seen(inward, outward, normal)) {
+    // Edges that lie in a face and cross at a right angle to it, where one body is in the other by
+    // next to nothing, have nothing across them.
+    const double faces = normal.dot(inward) + normal.dot(outward);
+    const bool across = !settings_.facing || faces > kParallel;
+    if (across && is_seen(inward, outward, normal)) {
       keep({p, inward}, {q, outward}, normal, !e_is_ridge && !f_is_ridge);
     }
   }
@@ -213,12 +259,16 @@ class PairSearch {
            !(same_ && share_node(p, q));
   }
 
-  // From a point to another one; of points at one place, half-way between what both surfaces call
-  // outwards: where the rims of two blocks lie on each other, across their faces and not along.
-  Vector3 direction(const Vector3& gap, const Vector3& inward, const Vector3& outward) const {
+  // From a point to another one. Of points at one place, across the faces that divide the surfaces
+  // there: where the rims of two blocks lie on each other, across these and not along. Without such
+  // faces, half-way between what both surfaces call outwards.
+  template <class Divide>
+  Vector3 direction(const Vector3& gap, const Vector3& inward, const Vector3& outward,
+                    Divide&& divide) const {
     const double length = gap.norm();
-    return length > kSamePlace * reach(settings_) ? (gap / length).eval()
-                                                  : between(inward, outward);
+    if (length > kSamePlace * reach(settings_)) return gap / length;
+    const Vector3 across = divide();
+    return across.norm() > kOpposite ? across.normalized() : between(inward, outward);
   }
   static Vector3 between(const Vector3& inward, const Vector3& outward) {
     const Vector3 sum = inward.normalized() + outward.normalized();

@@ -15,6 +15,11 @@ bool Friction::slides(const Vector3& effort) const {
   return sliding < sticking && qp::slides(effort, sliding) && qp::at_most(effort, sliding);
 }
 
+void Friction::add_to(ValueHash& hash) const {
+  hash.add(sticking);
+  if (sliding != sticking) hash.add(sliding);
+}
+
 Contact::Contact(std::string name, std::size_t count, Friction friction, std::size_t stride)
     : Constraint(std::move(name)), count_(count), friction_(friction), stride_(stride) {
   if (!(friction.sticking >= 0.0) || !std::isfinite(friction.sticking)) {

@@ -23,6 +23,8 @@ struct Friction {
   /// point that stays by just what it would slide with is taken to slide.)
   /// @param effort (3,) N, normal first, > 0.
   bool slides(const Vector3& effort) const;
+  /// One number where both are the same. @param hash of what changes a motion.
+  void add_to(ValueHash& hash) const;
 };
 
 /// Three rows per point: gap (m, negative inside) and two tangential motions relative to what it

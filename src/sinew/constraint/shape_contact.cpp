@@ -321,7 +321,7 @@ void hash_shape(const collision::Shape& shape, ValueHash& hash) {
 }  // namespace
 
 void ShapeContact::add_to(ValueHash& hash) const {
-  hash.add(friction().sticking, friction().sliding);
+  friction().add_to(hash);
   hash_shape(surface_, hash);
   if (own_) hash_shape(own_->shape, hash);
 }

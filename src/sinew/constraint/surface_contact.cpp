@@ -177,7 +177,8 @@ collision::ProximityPair SurfaceContact::load(std::size_t point, const double* f
 }
 
 void SurfaceContact::add_to(ValueHash& hash) const {
-  hash.add(friction().sticking, friction().sliding, settings_.separation, settings_.depth);
+  friction().add_to(hash);
+  hash.add(settings_.separation, settings_.depth);
   hash.add(is_within());
 }
 
