@@ -22,7 +22,6 @@ SOURCES = {"statics": "balance of forces: a contact carries what is above; rest 
 COST = 40
 G, EDGE, MASS = 9.81, 0.02, 0.05
 INTEGRATORS = ("backward-euler", "bdf2", "generalized-alpha")
-TILTED = "where sides are in one plane, corners lie on edges of the other surface, and their contacts take normals that are tilted"
 
 
 def load(bodies, contacts, step=5e-3, integrator="backward-euler", **more):
@@ -76,17 +75,16 @@ class Tower:
 
 def stands(case, axis):
     hull = write_cube(case.scratch / "cube.obj")
-    runs = [(f"boxes, {name}, {1e3 * step:g} ms", Tower([MASS] * 10, step, name), "")
+    runs = [(f"boxes, {name}, {1e3 * step:g} ms", Tower([MASS] * 10, step, name))
             for name, step in (("backward-euler", 2e-3), ("backward-euler", 5e-3), ("backward-euler", 1e-2), ("bdf2", 5e-3),
                                ("generalized-alpha", 5e-3))]
-    runs.append(("hulls", Tower([MASS] * 10, shape=hull), ""))
-    runs.append(("hulls displaced by turns", Tower([MASS] * 10, shape=hull, offset=1e-3), TILTED))
-    for name, tower, known in runs:
+    runs.append(("hulls", Tower([MASS] * 10, shape=hull)))
+    runs.append(("hulls displaced by turns", Tower([MASS] * 10, shape=hull, offset=1e-3)))
+    for name, tower in runs:
         times, crept = tower.watch(10.0)
         case.bound(f"tower of ten, {name}: creep in ten seconds over the edge", float(crept[-1]), 1e-6, source="Coulomb")
-        case.bound(f"tower of ten, {name}: largest error of a normal force, relative", tower.forces(), 1e-6, source="statics", known_miss=known)
-        if not known:
-            axis.semilogy(times, np.maximum(crept, 1e-16), label=name)
+        case.bound(f"tower of ten, {name}: largest error of a normal force, relative", tower.forces(), 1e-6, source="statics")
+        axis.semilogy(times, np.maximum(crept, 1e-16), label=name)
     axis.axhline(1e-6, color=plots.REFERENCE, ls="--", lw=1)
     axis.set(xlabel="time (s)", ylabel="creep of the tower over its edge", ylim=(1e-13, 1e-4))
     axis.legend(fontsize=7)
