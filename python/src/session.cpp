@@ -149,12 +149,19 @@ void Session::reset() {
 
 SavedState Session::state() const {
   const Use use(*this);
-  return {sim::format_state(simulation_)};
+  auto state = std::make_shared<const sim::State>(simulation_.state());
+  const sim::Model& model = simulation_.model();
+  std::string bytes = sim::format_state(*state, model);
+  return {std::move(bytes), std::move(state), model.fingerprint()};
 }
 
 void Session::restore(const SavedState& state) {
   const Use use(*this);
-  sim::parse_state(simulation_, state.bytes, "state");
+  if (state.state != nullptr && state.fingerprint == simulation_.model().fingerprint()) {
+    simulation_.restore(*state.state);
+  } else {
+    sim::parse_state(simulation_, state.bytes, "state");
+  }
   steps_ = simulation_.steps();
 }
 

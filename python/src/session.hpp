@@ -43,6 +43,10 @@ mechanics::Tangent to_tangent(const std::string& word, const std::string& argume
 /// A state as bytes, see sim/state_io.hpp.
 struct SavedState {
   std::string bytes;
+  /// What the bytes say, where they were made in this process, and the fingerprint of the model;
+  /// null: they have to be read.
+  std::shared_ptr<const sim::State> state = nullptr;
+  std::uint64_t fingerprint = 0;
 
   /// Throws Error(state-corrupt), Error(state-version).
   std::int64_t steps() const { return sim::read_state_header(bytes, "state").steps; }

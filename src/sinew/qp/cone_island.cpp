@@ -91,7 +91,8 @@ bool ConeIsland::start_with_newton(const ConePart& part) {
   if (static_cast<double>(x_.size()) <= kFew) return false;
   const Unknowns count = unknowns(part);
   if (count.all <= kFew || count.solved > settings_.newton_limit) return false;
-  return judge(part) <= kNearStart && newton_early(part);
+  const double residual = judge(part);
+  return residual <= settings_.tolerance || (residual <= kNearStart && newton_early(part));
 }
 
 // One of Newton's steps costs about (2/3) n^3 for n unknowns, a sweep 2 n of the problem's rows, a

@@ -46,7 +46,8 @@ struct RecordSettings {
 /// set from Python), `dissipation` (damping, drag, friction of cables) and `numerical_loss` (work
 /// less dissipation less what the energies gained: the integrator's, and what moved a base), all
 /// `[J]`; `residual [N]`, `relative_residual`, `iterations`, `substeps`, `scale` (of the motion, <
-/// 1 when a step was cut back), `smallest_volume_ratio`, and in words `status` and, where the list
+/// 1 when a step was cut back), `smallest_volume_ratio`, with contacts `contact_residual`,
+/// `contact_signorini [m]` and `contact_coulomb [m]`, and in words `status` and, where the list
 /// has one, `controller`. The row at t = 0 is the start, before any step, whose statuses are
 /// `start`.
 ///

@@ -26,7 +26,28 @@ std::string_view Observable::word(double number) const {
 }
 
 Observables::Observables(Simulation& simulation) : simulation_(&simulation) {
+  gathering_ = true;
   list_standard_observables(*this);
+  gathering_ = false;
+  sort();
+}
+
+// By kind, and as they were added within one. At once: of many contacts there are thousands, and
+// each in its place would move all behind it.
+void Observables::sort() {
+  std::vector<std::size_t> order(list_.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t k) { return list_[k].kind; });
+  std::vector<Observable> list;
+  std::vector<Entry> entries;
+  list.reserve(order.size());
+  entries.reserve(order.size());
+  for (const std::size_t k : order) {
+    list.push_back(std::move(list_[k]));
+    entries.push_back(std::move(entries_[k]));
+  }
+  list_ = std::move(list);
+  entries_ = std::move(entries);
 }
 
 void Observables::add(std::vector<Observable> parts, Fill fill) {
@@ -43,7 +64,9 @@ void Observables::add_view(std::vector<Observable> parts, Read read) {
   sources_.push_back({std::move(read), {}, false});
   Entry entry{sources_.size() - 1, 0, {}};
   for (Observable& part : parts) {
-    const auto behind = std::ranges::upper_bound(list_, part.kind, {}, &Observable::kind);
+    const auto behind = gathering_
+                            ? list_.end()
+                            : std::ranges::upper_bound(list_, part.kind, {}, &Observable::kind);
     const auto at = behind - list_.begin();
     const std::size_t size = part.size();
     list_.insert(behind, std::move(part));

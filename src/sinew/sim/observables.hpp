@@ -92,7 +92,8 @@ class Observables {
   /// m (see JointLoad), `NAME.gap` m, `NAME.angle` rad and `NAME.displacement` m where it has them;
   /// `strain_energy`, `kinetic_energy`, `gravity_energy`, `actuator_work`, `outside_work`,
   /// `dissipation`, `numerical_loss` J; the report's `residual` N, `relative_residual`,
-  /// `iterations`, `substeps`, `scale`, `smallest_volume_ratio`; `status`; `time.step` and the
+  /// `iterations`, `substeps`, `scale`, `smallest_volume_ratio`, with contacts `contact_residual`,
+  /// `contact_signorini` and `contact_coulomb` m; `status`; `time.step` and the
   /// stages' times, s.
   /// @param simulation must outlive the list.
   explicit Observables(Simulation& simulation);
@@ -143,7 +144,10 @@ class Observables {
     std::vector<double> held;  // empty: as the simulation says
   };
 
+  void sort();
+
   Simulation* simulation_;
+  bool gathering_ = false;  // the list is sorted later
   std::vector<Observable> list_;
   std::vector<Entry> entries_;  // of each observable
   std::vector<Source> sources_;
