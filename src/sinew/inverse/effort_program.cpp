@@ -22,6 +22,16 @@ constexpr double kEvenly = 1e-6;
 // A limit holds effectors back where it resists this part of what the gap could pull with.
 constexpr double kHolds = 1e-3;
 
+// 1/2 x^T A x by A's lower triangle, which is all of a program's Hessian that counts.
+double half_square(const MatrixX& a, const VectorX& x) {
+  double sum = 0.0;
+  for (Eigen::Index j = 0; j < x.size(); ++j) {
+    sum += 0.5 * a(j, j) * x[j] * x[j];
+    for (Eigen::Index i = j + 1; i < x.size(); ++i) sum += a(i, j) * x[i] * x[j];
+  }
+  return sum;
+}
+
 double infinity_norm(const MatrixX& matrix) { return matrix.cwiseAbs().rowwise().sum().maxCoeff(); }
 
 }  // namespace
@@ -39,6 +49,8 @@ EffortProgram::EffortProgram(std::vector<int> rows, VectorX weights, int actuato
       weighted_(MatrixX::Zero(weights_.size(), actuators)),
       scale_(VectorX::Ones(actuators)),
       scaled_effort_(VectorX::Zero(actuators)),
+      pull_hessian_(MatrixX::Zero(actuators, actuators)),
+      pull_gradient_(VectorX::Zero(actuators)),
       program_(qp::QuadraticProgram::sized(actuators, actuators)),
       solver_(actuators, actuators),
       elastic_(actuators, actuators),
@@ -56,39 +68,54 @@ void EffortProgram::form_scales(const StepProblem& problem, const Response& resp
   }
 }
 
-void EffortProgram::form(const StepProblem& problem, const Response& response,
-                         const VectorX& residual, const EffortPull& pull) {
+void EffortProgram::begin(const StepProblem& problem, const Response& response,
+                          const EffortPull& pull) {
+  controlled_ = response.controlled();
   form_scales(problem, response);
+  form_rows(problem, response);
+  regularise(problem, response, pull);
+}
+
+void EffortProgram::form_rows(const StepProblem& problem, const Response& response) {
   const Eigen::Index count = scale_.size();
   for (Eigen::Index j = 0; j < count; ++j) {
     for (Eigen::Index i = 0; i < count; ++i) {
       const int row = controlled_block(problem, response, i).row;
       program_.rows(i, j) = scale_[j] * response.compliance()(row, j);
     }
-    for (Eigen::Index k = 0; k < residual.size(); ++k) {
+    for (Eigen::Index k = 0; k < weights_.size(); ++k) {
       const int row = rows_[static_cast<std::size_t>(k)];
       jacobian_(k, j) = scale_[j] * response.compliance()(row, j);
       weighted_(k, j) = weights_[k] * jacobian_(k, j);
     }
   }
+}
+
+void EffortProgram::form(const StepProblem& problem, const Response& response,
+                         const VectorX& residual) {
+  form_rows(problem, response);
   program_.hessian.noalias() = jacobian_.transpose() * weighted_;
+  program_.hessian += pull_hessian_;
   program_.gradient.noalias() = weighted_.transpose() * residual;
-  regularise(problem, response, pull);
+  program_.gradient += pull_gradient_;
+  left_ = 0.5 * residual.dot(weights_.cwiseProduct(residual));
 }
 
 // Where friction slides R would be unsymmetric, and keeps its diagonal alone.
 void EffortProgram::regularise(const StepProblem& problem, const Response& response,
                                const EffortPull& pull) {
-  const Eigen::Index count = program_.gradient.size();
+  const Eigen::Index count = scale_.size();
   double norm = 0.0;
   for (Eigen::Index i = 0; i < count; ++i) {
     norm = std::max(norm, std::abs(scale_[i]) * program_.rows.row(i).cwiseAbs().sum());
   }
   if (!(norm > 0.0)) norm = 1.0;
+  program_.hessian.noalias() = jacobian_.transpose() * weighted_;
   const double asked = infinity_norm(program_.hessian);
   const double eps = pull.epsilon * (asked > 0.0 ? asked : norm) / norm;
   const double keep = pull.damping - pull.to_zero;
   const double stay = pull.damping_within - 1.0;
+  pull_gradient_.setZero();
   for (Eigen::Index j = 0; j < count; ++j) {
     const int row = controlled_block(problem, response, j).row;
     const double before = problem.effort_before[static_cast<std::size_t>(row)] / scale_[j];
@@ -97,32 +124,88 @@ void EffortProgram::regularise(const StepProblem& problem, const Response& respo
       // What moves nothing is held by others: a drive, or the clamp.
       if (i == j) weight = weight > 0.0 ? (1.0 + kEvenly) * weight : eps * norm;
       if (i != j && response.is_unsymmetric()) weight = 0.0;
-      program_.hessian(i, j) += (pull.damping + stay) * weight;
-      program_.gradient[i] -= weight * (keep * before + stay * pull.last_choice[j] / scale_[j]);
+      pull_hessian_(i, j) = (pull.damping + stay) * weight;
+      pull_gradient_[i] -= weight * (keep * before + stay * pull.last_choice[j] / scale_[j]);
     }
   }
 }
 
-void EffortProgram::form_limits(const StepProblem& problem, const Response& response) {
+double EffortProgram::pull_value(std::span<const double> effort) const {
+  scaled_trial_ = Eigen::Map<const VectorX>(effort.data(), scale_.size()).cwiseQuotient(scale_);
+  return pull_gradient_.dot(scaled_trial_) + half_square(pull_hessian_, scaled_trial_);
+}
+
+double EffortProgram::excess(const StepProblem& problem, const VectorX& motion,
+                             std::span<const double> effort) const {
+  double farthest = 0.0;
+  for (std::size_t k = 0; k < controlled_.size(); ++k) {
+    const ActuatorBlock& own = problem.actuators[static_cast<std::size_t>(controlled_[k])];
+    const double scale = std::abs(scale_[static_cast<Eigen::Index>(k)]);
+    const double delta = own.motion_scale * motion[own.row] / problem.size;
+    const double least = own.motion_scale * own.motion_min / problem.size;
+    const double most = own.motion_scale * own.motion_max / problem.size;
+    farthest = std::max({farthest, (own.effort_min - effort[k]) / scale,
+                         (effort[k] - own.effort_max) / scale, least - delta, delta - most});
+  }
+  return farthest;
+}
+
+void EffortProgram::form_limits(const StepProblem& problem, const Response& response,
+                                qp::QuadraticProgram& program) const {
   for (Eigen::Index k = 0; k < scale_.size(); ++k) {
     const ActuatorBlock& own = controlled_block(problem, response, k);
     const double free = response.free()[own.row];
-    program_.lower[k] = own.effort_min / scale_[k];
-    program_.upper[k] = own.effort_max / scale_[k];
-    program_.row_lower[k] = own.motion_min - free;
-    program_.row_upper[k] = own.motion_max - free;
+    program.lower[k] = own.effort_min / scale_[k];
+    program.upper[k] = own.effort_max / scale_[k];
+    program.row_lower[k] = own.motion_min - free;
+    program.row_upper[k] = own.motion_max - free;
   }
+}
+
+// Rows for guards are made for more than there are: others are empty.
+LawStatus EffortProgram::solve_guarded(const StepProblem& problem, const Response& response,
+                                       std::span<double> effort) {
+  const Eigen::Index count = scale_.size();
+  const auto guards = static_cast<Eigen::Index>(response.guards().size());
+  if (guarded_.rows.rows() < count + guards || guarded_.gradient.size() != count) {
+    const int rows = static_cast<int>(count + guards + guards / 2 + 16);
+    guarded_ = qp::QuadraticProgram::sized(static_cast<int>(count), rows);
+    guarded_solver_ = qp::QpSolver(static_cast<int>(count), rows);
+  }
+  guarded_.hessian = program_.hessian;
+  guarded_.gradient = program_.gradient;
+  guarded_.rows.topRows(count) = program_.rows;
+  form_limits(problem, response, guarded_);
+  guarded_.rows.bottomRows(guarded_.rows.rows() - count).setZero();
+  guarded_.row_lower.tail(guarded_.rows.rows() - count).setConstant(-kInfinity);
+  for (Eigen::Index g = 0; g < guards; ++g) {
+    const auto number = static_cast<std::size_t>(g);
+    guarded_.rows.row(count + g) = response.guard_slope(number).cwiseProduct(scale_).transpose();
+    guarded_.row_lower[count + g] = -response.guards()[number].offset;
+  }
+  const qp::QpResult& result = guarded_solver_.solve(guarded_);
+  if (result.status != qp::QpStatus::optimal) return LawStatus::failed;
+  keep(result);
+  const double* first = result.row_multiplier.data() + count;
+  guard_multipliers_.assign(first, first + guards);
+  write(effort);
+  return LawStatus::solved;
+}
+
+void EffortProgram::keep(const qp::QpResult& result) {
+  scaled_effort_ = result.x;
+  bound_multiplier_ = result.bound_multiplier;
+  row_multiplier_ = result.row_multiplier.head(scale_.size());
+  foreseen_ = left_ + program_.gradient.dot(result.x) + half_square(program_.hessian, result.x);
 }
 
 LawStatus EffortProgram::solve(const sim::Model& model, const StepProblem& problem,
                                const Response& response, std::span<double> effort) {
   conflict_.clear();
-  form_limits(problem, response);
+  form_limits(problem, response, program_);
   const qp::QpResult& result = solver_.solve(program_);
   if (result.status == qp::QpStatus::optimal) {
-    scaled_effort_ = result.x;
-    bound_multiplier_ = result.bound_multiplier;
-    row_multiplier_ = result.row_multiplier;
+    keep(result);
     write(effort);
     return LawStatus::solved;
   }
@@ -132,6 +215,7 @@ LawStatus EffortProgram::solve(const sim::Model& model, const StepProblem& probl
       nearest.status == qp::ElasticStatus::optimal || nearest.status == qp::ElasticStatus::relaxed;
   if (!usable) return LawStatus::failed;
   scaled_effort_ = nearest.qp.x;
+  foreseen_ = kInfinity;
   write(effort);
   conflict_ = describe_conflict(model, response, program_, scale_, nearest);
   return LawStatus::limits_conflict;
@@ -156,6 +240,7 @@ bool EffortProgram::limit_holds(double gap) const {
 
 void EffortProgram::reset() {
   solver_.reset();
+  guarded_solver_.reset();
   elastic_.reset();
 }
 

@@ -50,14 +50,32 @@ class EffortProgram {
   ///   the controller has.
   EffortProgram(std::vector<int> rows, VectorX weights, int actuators);
 
+  /// What efforts are drawn to, the same in all programs until the next call.
+  /// @param problem of the step. @param response of the robot to start from. @param pull see there.
+  void begin(const step::StepProblem& problem, const step::Response& response,
+             const EffortPull& pull);
   /// The objective. @param problem,response of the step. @param residual (rows,) motion without
-  ///   efforts, less the one that is asked. @param pull what efforts are drawn to.
+  ///   efforts, less the one that is asked.
   void form(const step::StepProblem& problem, const step::Response& response,
-            const VectorX& residual, const EffortPull& pull);
+            const VectorX& residual);
   /// After form(), within the limits. @param model of the robot. @param problem,response as there.
   ///   @param effort (controlled,) N, gets the solution, unless it failed.
   step::LawStatus solve(const sim::Model& model, const step::StepProblem& problem,
                         const step::Response& response, std::span<double> effort);
+  /// The same within the response's guards, too. Failed where nothing is.
+  step::LawStatus solve_guarded(const step::StepProblem& problem, const step::Response& response,
+                                std::span<double> effort);
+
+  /// Of the last solution: the objective, half of the weighted squares of what is left included.
+  double foreseen() const { return foreseen_; }
+  /// (guards,) of the last solve_guarded().
+  std::span<const double> guard_multipliers() const { return guard_multipliers_; }
+  /// What the pull adds to the objective. @param effort (controlled,) N.
+  double pull_value(std::span<const double> effort) const;
+  /// How far efforts and motions are beyond the limits, the farthest, of a limit's size.
+  /// @param problem of the step. @param motion (rows,) m. @param effort (controlled,) N.
+  double excess(const step::StepProblem& problem, const VectorX& motion,
+                std::span<const double> effort) const;
 
   /// Which limits of which actuators contradict each other in the last solve(); else empty.
   const std::string& conflict() const { return conflict_; }
@@ -72,9 +90,12 @@ class EffortProgram {
 
  private:
   void form_scales(const step::StepProblem& problem, const step::Response& response);
+  void form_rows(const step::StepProblem& problem, const step::Response& response);
   void regularise(const step::StepProblem& problem, const step::Response& response,
                   const EffortPull& pull);
-  void form_limits(const step::StepProblem& problem, const step::Response& response);
+  void form_limits(const step::StepProblem& problem, const step::Response& response,
+                   qp::QuadraticProgram& program) const;
+  void keep(const qp::QpResult& result);
   void write(std::span<double> effort) const;
 
   std::vector<int> rows_;
@@ -83,8 +104,17 @@ class EffortProgram {
   MatrixX weighted_;  // Q W_ea
   VectorX scale_;     // (controlled,) of each effort
   VectorX scaled_effort_;
+  mutable VectorX scaled_trial_;  // of pull_value()
+  std::vector<int> controlled_;   // of the response
+  MatrixX pull_hessian_;          // (controlled, controlled)
+  VectorX pull_gradient_;         // (controlled,)
+  double left_ = 0.0;             // the objective without efforts
+  double foreseen_ = 0.0;
   qp::QuadraticProgram program_;
   qp::QpSolver solver_;
+  qp::QuadraticProgram guarded_;  // with rows for guards, some of them empty
+  qp::QpSolver guarded_solver_;
+  std::vector<double> guard_multipliers_;
   qp::ElasticSolver elastic_{0, 0};            // for steps in which limits contradict each other
   VectorX bound_multiplier_, row_multiplier_;  // of the program
   std::string conflict_;

@@ -155,31 +155,36 @@ void InverseController::form_residual(const StepProblem& problem, const Response
   }
 }
 
-LawStatus InverseController::choose(const StepProblem& problem, const Response& response,
-                                    std::span<double> effort) {
+void InverseController::begin_choices(const StepProblem& problem, const Response& response) {
   look_back(problem);
   form_residual(problem, response);
   const bool change = settings_.regularisation == Regularisation::change;
-  program_.form(problem, response, residual_,
-                {.epsilon = settings_.epsilon,
-                 .to_zero = change ? settings_.relaxation : 1.0,
-                 .damping = damping_.value(),
-                 .damping_within = inner_damping_.value(),
-                 .last_choice = last_choice_});
-  return program_.solve(simulation_.model(), problem, response, effort);
+  program_.begin(problem, response,
+                 {.epsilon = settings_.epsilon,
+                  .to_zero = change ? settings_.relaxation : 1.0,
+                  .damping = damping_.value(),
+                  .damping_within = inner_damping_.value(),
+                  .last_choice = last_choice_});
 }
 
-double InverseController::miss(const StepProblem& problem, const VectorX& motion) const {
+LawStatus InverseController::choose(const StepProblem& problem, const Response& response,
+                                    bool guarded, std::span<double> effort) {
+  form_residual(problem, response);
+  program_.form(problem, response, residual_);
+  return guarded ? program_.solve_guarded(problem, response, effort)
+                 : program_.solve(simulation_.model(), problem, response, effort);
+}
+
+step::Controller::Merit InverseController::merit(const StepProblem& problem, const VectorX& motion,
+                                                 std::span<const double> effort) const {
   double sum = 0.0;
   for (Eigen::Index k = 0; k < gap_.size(); ++k) {
     const int row = effector_rows_[static_cast<std::size_t>(k)];
     const double left = motion[row] - problem.delta[row] - (gap_[k] - for_later_[k]);
     sum += row_weights_[k] * left * left;
   }
-  return std::sqrt(sum / row_weights_.maxCoeff());
+  return {program_.excess(problem, motion, effort), 0.5 * sum + program_.pull_value(effort)};
 }
-
-double InverseController::negligible_miss() const { return kStill * settings_.tolerance; }
 
 void InverseController::accept(const StepProblem& problem, const Response& response,
                                const VectorX& motion, std::span<const double> effort) {

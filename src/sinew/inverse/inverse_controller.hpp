@@ -58,10 +58,16 @@ class InverseController : public step::Controller {
   /// With limits-conflict: which limits of which actuators contradict each other. Else empty.
   const std::string& conflict() const { return program_.conflict(); }
 
+  void begin_choices(const step::StepProblem& problem, const step::Response& response) override;
   step::LawStatus choose(const step::StepProblem& problem, const step::Response& response,
-                         std::span<double> effort) override;
-  double miss(const step::StepProblem& problem, const VectorX& motion) const override;
-  double negligible_miss() const override;
+                         bool guarded, std::span<double> effort) override;
+  double foreseen() const override { return program_.foreseen(); }
+  std::span<const double> guard_multipliers() const override {
+    return program_.guard_multipliers();
+  }
+  Merit merit(const step::StepProblem& problem, const VectorX& motion,
+              std::span<const double> effort) const override;
+  double negligible_gain() const override { return negligible_objective(); }
   void accept(const step::StepProblem& problem, const step::Response& response,
               const VectorX& motion, std::span<const double> effort) override;
   void begin_step() override;

@@ -16,16 +16,33 @@ struct StepProblem;
 class Controller {
  public:
   virtual ~Controller() = default;
+  /// How well efforts serve what the controller wants. First the limits of its actuators count,
+  /// then its objective.
+  struct Merit {
+    double excess = 0.0;  ///< the farthest beyond a limit, of its size; 0 within all
+    double value = 0.0;   ///< the objective
+  };
+
+  /// Called when the law of a step is about to be solved: what is asked is the same in all choices
+  /// until the next call. @param problem of the step. @param response of the robot to start from.
+  virtual void begin_choices(const StepProblem& problem, const Response& response) = 0;
   /// @param problem of the step. @param response of the robot to the efforts to choose.
+  /// @param guarded whether the response's guards hold the choice.
   /// @param effort (controlled,) N, in the order of response.controlled(): problem.effort_before's
-  ///   on entry, the chosen ones on return.
-  virtual LawStatus choose(const StepProblem& problem, const Response& response,
+  ///   on entry, the chosen ones on return. Failed: there are none within all guards and limits.
+  virtual LawStatus choose(const StepProblem& problem, const Response& response, bool guarded,
                            std::span<double> effort) = 0;
-  /// How far the motions at the end of the step are from what the controller wants, m.
-  /// @param problem of the step. @param motion (rows,) delta.
-  virtual double miss(const StepProblem& problem, const VectorX& motion) const = 0;
-  /// A lesser miss is not worth a change of efforts, m.
-  virtual double negligible_miss() const { return 0.0; }
+  /// Of the last choose(): the objective that it foresees.
+  virtual double foreseen() const = 0;
+  /// (guards,) >= 0, of the last choose() with guards: how much the objective would fall for each
+  /// unit that a guard gave way.
+  virtual std::span<const double> guard_multipliers() const = 0;
+  /// @param problem of the step. @param motion (rows,) delta at the end of the step.
+  /// @param effort (controlled,) N.
+  virtual Merit merit(const StepProblem& problem, const VectorX& motion,
+                      std::span<const double> effort) const = 0;
+  /// A lesser gain of Merit::value is not worth a change of efforts.
+  virtual double negligible_gain() const { return 0.0; }
   /// What came of choose(). @param motion (rows,) delta, as everything on the robot obeys its law.
   /// @param problem,response,effort as for choose(); efforts may differ from those chosen.
   virtual void accept(const StepProblem& problem, const Response& response, const VectorX& motion,

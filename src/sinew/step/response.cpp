@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 #include "sinew/linalg/dense.hpp"
 #include "sinew/qp/friction_cone.hpp"
 
@@ -14,11 +16,26 @@ namespace {
 constexpr double kSlides = 1e-7;
 // Of what two rows' own compliances allow: where others are held, less is rounding.
 constexpr double kCoupled = 1e-10;
+// Around a cone: they lie outside it by up to 8 %, and the law says where it really slips.
+constexpr int kPlanes = 8;
 
 }  // namespace
 
 void Response::form(const StepProblem& problem, std::span<const double> effort, bool release) {
   release_ = release;
+  keeps_ = false;
+  form_pieces(problem, effort);
+}
+
+void Response::form_as(const StepProblem& problem, std::span<const double> effort,
+                       std::span<const BlockState> states) {
+  release_ = false;
+  keeps_ = true;
+  kept_.assign(states.begin(), states.end());
+  form_pieces(problem, effort);
+}
+
+void Response::form_pieces(const StepProblem& problem, std::span<const double> effort) {
   decided_ = false;
   states_.swap(states_before_);
   states_.clear();
@@ -27,25 +44,29 @@ void Response::form(const StepProblem& problem, std::span<const double> effort, 
   equations_.clear();
   effort_terms_.clear();
   motion_terms_.clear();
+  guards_.clear();
+  guard_ends_.clear();
+  guard_efforts_.clear();
+  guard_motions_.clear();
   holds_for_all_ = true;
   unsymmetric_ = bends_ = false;
   free_ = problem.delta_free;
-  collect(problem, effort);
+  effort_.assign(effort.begin(), effort.end());
+  collect(problem);
   const auto count = static_cast<Eigen::Index>(controlled_rows_.size());
   compliance_.resize(free_.size(), count);
   for (Eigen::Index k = 0; k < count; ++k) {
     compliance_.col(k) = problem.compliance.col(controlled_rows_[static_cast<std::size_t>(k)]);
   }
-  if (!equations_.empty()) solve(problem, effort);
+  solve(problem);
+  form_guards();
 }
 
-void Response::collect(const StepProblem& problem, std::span<const double> effort) {
+void Response::collect(const StepProblem& problem) {
   for (std::size_t i = 0; i < problem.actuators.size(); ++i) {
-    const int row = problem.actuators[i].row;
-    if (row < 0) continue;
-    collect_actuator(problem, static_cast<int>(i), effort);
+    if (problem.actuators[i].row >= 0) collect_actuator(problem, static_cast<int>(i));
   }
-  collect_capstans(problem, effort);
+  collect_capstans(problem);
   for (const BilateralBlock& block : problem.bilaterals) {
     if (problem.compliance(block.row, block.row) != 0.0) add_held(block.row, block.motion);
   }
@@ -53,53 +74,119 @@ void Response::collect(const StepProblem& problem, std::span<const double> effor
     if (block.stiffness == 0.0) continue;
     add_held(block.row, problem.delta[block.row], 1.0 / block.stiffness);
   }
-  for (const ContactBlock& block : problem.contacts) collect_contact(problem, block, effort);
+  for (const ContactBlock& block : problem.contacts) collect_contact(problem, block);
 }
 
-void Response::collect_actuator(const StepProblem& problem, int index,
-                                std::span<const double> efforts) {
+// The state of the block that comes next: the one that is given, or the one that was read.
+BlockState Response::next_state(BlockState read) {
+  const BlockState state = keeps_ ? kept_[states_.size()] : read;
+  states_.push_back(state);
+  return state;
+}
+
+double Response::motion_of(const StepProblem& problem, int row) const {
+  const Eigen::Map<const VectorX> all(effort_.data(), static_cast<Eigen::Index>(effort_.size()));
+  return problem.delta_free[row] + problem.compliance.row(row).dot(all);
+}
+
+void Response::collect_actuator(const StepProblem& problem, int index) {
   const ActuatorBlock& block = problem.actuators[static_cast<std::size_t>(index)];
-  const Eigen::Map<const VectorX> all(efforts.data(), static_cast<Eigen::Index>(efforts.size()));
-  const double effort = all[block.row];
   if (block.owned) {
     controlled_.push_back(index);
     controlled_rows_.push_back(block.row);
     return;
   }
-  const auto give = [&](char state) {
-    states_.push_back(state);
-    if (effort != 0.0) free_ += effort * problem.compliance.col(block.row);
-  };
-  if (problem.compliance(block.row, block.row) == 0.0) return give('-');
+  double& effort = effort_[static_cast<std::size_t>(block.row)];
+  const BlockState state = next_state(actuator_state(problem, block));
+  guard_actuator(problem, block, state);
+  switch (state) {
+    using enum BlockState;
+    case curve: {
+      // The tangent where the efforts have taken it.
+      const double motion = motion_of(problem, block.row);
+      const auto at = block.drive->respond(block.drive_step, motion);
+      const double compliance = -1.0 / at.slope;
+      return add_held(block.row, motion + compliance * at.effort, compliance);
+    }
+    case holds:
+      return add_held(block.row, block.value);
+    case at_stop_max:
+      return add_held(block.row, block.motion_max);
+    case at_stop_min:
+      return add_held(block.row, block.motion_min);
+    case commanded:
+      effort = block.value;
+      break;
+    case at_min:
+      effort = block.effort_min;
+      break;
+    case at_max:
+      effort = block.effort_max;
+      break;
+    case released: {
+      const double least = block.kind == CommandKind::motion ? 0.0 : block.value;
+      effort = std::clamp(least, block.effort_min, block.effort_max);
+      break;
+    }
+    default:
+      break;
+  }
+  if (effort != 0.0) free_ += effort * problem.compliance.col(block.row);
+}
+
+// By its effort.
+BlockState Response::actuator_state(const StepProblem& problem, const ActuatorBlock& block) {
+  using enum BlockState;
+  const double effort = effort_[static_cast<std::size_t>(block.row)];
+  if (problem.compliance(block.row, block.row) == 0.0) return given;
   if (block.drive != nullptr) {
-    // The tangent where the efforts have taken it.
-    const double motion =
-        problem.delta_free[block.row] + problem.compliance.row(block.row).dot(all);
-    const auto at = block.drive->respond(block.drive_step, motion);
     holds_for_all_ = false;
-    if (!(at.slope < 0.0)) return give('-');
+    const auto at = block.drive->respond(block.drive_step, motion_of(problem, block.row));
+    if (!(at.slope < 0.0)) return given;
     bends_ = true;
-    const double compliance = -1.0 / at.slope;
-    return add_held(block.row, motion + compliance * at.effort, compliance);
+    return curve;
   }
   const bool motion = block.kind == CommandKind::motion;
-  if (!motion && std::isinf(block.motion_min) && std::isinf(block.motion_max)) return give('-');
+  if (!motion && std::isinf(block.motion_min) && std::isinf(block.motion_max)) return given;
   holds_for_all_ = false;
-  if (!motion && effort == block.value) return give('=');
-  if (effort <= block.effort_min) return give('<');
-  if (effort >= block.effort_max) return give('>');
+  if (!motion && effort == block.value) return commanded;
+  if (effort <= block.effort_min) return at_min;
+  if (effort >= block.effort_max) return at_max;
   if (decides(problem, block.row)) {
     decided_ = true;
-    if (release_) {
-      const double least = motion ? 0.0 : block.value;
-      const double left = std::clamp(least, block.effort_min, block.effort_max);
-      if (left != 0.0) free_ += left * problem.compliance.col(block.row);
-      return states_.push_back('r');
-    }
+    if (release_) return released;
   }
-  add_held(block.row, motion                   ? block.value
-                      : (effort < block.value) ? block.motion_max
-                                               : block.motion_min);
+  if (motion) return holds;
+  return effort < block.value ? at_stop_max : at_stop_min;
+}
+
+void Response::guard_actuator(const StepProblem& problem, const ActuatorBlock& block,
+                              BlockState state) {
+  using enum BlockState;
+  const int row = block.row;
+  const bool motion = block.kind == CommandKind::motion;
+  switch (state) {
+    case commanded:
+      guard_motion(problem, row, -1.0, block.motion_max, at_stop_max);
+      return guard_motion(problem, row, 1.0, block.motion_min, at_stop_min);
+    case at_stop_max:
+      guard_effort(problem, row, -1.0, block.value, commanded);
+      return guard_effort(problem, row, 1.0, block.effort_min, at_min);
+    case at_stop_min:
+      guard_effort(problem, row, 1.0, block.value, commanded);
+      return guard_effort(problem, row, -1.0, block.effort_max, at_max);
+    case at_min:
+      return guard_motion(problem, row, 1.0, motion ? block.value : block.motion_max,
+                          motion ? holds : at_stop_max);
+    case at_max:
+      return guard_motion(problem, row, -1.0, motion ? block.value : block.motion_min,
+                          motion ? holds : at_stop_min);
+    case holds:
+      guard_effort(problem, row, 1.0, block.effort_min, at_min);
+      return guard_effort(problem, row, -1.0, block.effort_max, at_max);
+    default:
+      return;
+  }
 }
 
 // Whether the motion of a row is that of a controlled one: |W_ij|^2 = W_ii W_jj.
@@ -113,73 +200,181 @@ bool Response::decides(const StepProblem& problem, int row) {
   });
 }
 
-void Response::collect_capstans(const StepProblem& problem, std::span<const double> effort) {
-  for_each_guide(problem, effort, [&](const CapstanBlock& block, const GuideTension& tension) {
+void Response::collect_capstans(const StepProblem& problem) {
+  using enum BlockState;
+  for_each_guide(problem, effort_, [&](const CapstanBlock& block, const GuideTension& tension) {
     // Before the guide: the cable's effort less what was lost so far.
     if (tension.first) {
       tension_.assign(1, {problem.actuators[static_cast<std::size_t>(block.cable)].row, 1.0});
     }
     holds_for_all_ = false;
-    const double lost = effort[static_cast<std::size_t>(block.row)];
+    const double lost = effort_[static_cast<std::size_t>(block.row)];
     const double blur = kSlides * tension.largest();
-    const bool at_upper = lost >= tension.upper(block) - blur;
-    if (at_upper || lost <= tension.lower(block) + blur) {
+    const BlockState state = next_state(lost >= tension.upper(block) - blur   ? slides_high
+                                        : lost <= tension.lower(block) + blur ? slides_low
+                                                                              : holds);
+    if (state == holds) {
+      // -grip behind <= lost <= grip before, behind = before - lost.
+      const double scale = std::sqrt(problem.compliance(block.row, block.row));
+      const auto add = [&](double own, double before, BlockState beyond) {
+        guard_efforts_.push_back({block.row, scale * own});
+        for (const Term& term : tension_) {
+          guard_efforts_.push_back({term.row, scale * before * term.factor});
+        }
+        end_guard(beyond, 0.0);
+      };
+      add(-1.0, block.grip, slides_high);
+      add(1.0 - block.grip, block.grip, slides_low);
+      add_held(block.row, block.held);
+    } else {
+      const bool high = state == slides_high;
+      guard_motion(problem, block.row, high ? -1.0 : 1.0, block.held, holds);
       // lost = grip tension, or -grip behind = -grip/(1 - grip) tension.
-      const double factor = at_upper ? block.grip : -block.grip / (1.0 - block.grip);
+      const double factor = high ? block.grip : -block.grip / (1.0 - block.grip);
       for (const Term& term : tension_) {
         effort_terms_.push_back({term.row, -factor * term.factor});
       }
       effort_terms_.push_back({block.row, 1.0});
       end_equation(block.row, 0.0);
-      states_.push_back(at_upper ? '>' : '<');
       unsymmetric_ = true;
-    } else {
-      add_held(block.row, block.held);
     }
     tension_.push_back({block.row, -1.0});
   });
 }
 
-void Response::collect_contact(const StepProblem& problem, const ContactBlock& block,
-                               std::span<const double> effort) {
+// A point that slips obeys, with e the direction of its slip s = |u_t| and mu its coefficient,
+//   mu r_n + e.r_t = 0,   s (r_t across e) + mu r_n (u_t across e) = 0,
+// the second of which turns friction with the slip.
+void Response::collect_contact(const StepProblem& problem, const ContactBlock& block) {
+  using enum BlockState;
   holds_for_all_ = false;
   const int row = block.row;
-  const double* force = effort.data() + row;
-  if (!(force[0] > 0.0)) return states_.push_back('o');
+  const Vector3 force = Vector3::Map(effort_.data() + row);
+  const double limit = block.friction * std::max(force[0], 0.0);
+  BlockState read = open;
+  Eigen::Vector2d slip = Eigen::Vector2d::Zero();
+  const bool may_slip = keeps_ || (force[0] > 0.0 && qp::slides(force, block.friction));
+  if (may_slip) slip = {motion_of(problem, row + 1), motion_of(problem, row + 2)};
+  if (force[0] > 0.0) {
+    const bool slipping = block.friction == 0.0 || (may_slip && slip.squaredNorm() > 0.0);
+    read = slipping ? slips : sticks;
+  }
+  const BlockState state = next_state(read);
+  const double across = force.tail<2>().norm(), travel = slip.norm();
+  Eigen::Vector2d along(1.0, 0.0);
+  if (limit > 0.0 && across > 0.0) {
+    along = -force.tail<2>() / across;
+  } else if (block.friction > 0.0 && travel > 0.0) {
+    along = slip / travel;
+  }
+  guard_contact(problem, block, state, along);
+  if (state == open) return;
   add_held(row, 0.0);
-  const double across = std::hypot(force[1], force[2]), limit = block.friction * force[0];
-  double travel = 0.0;
-  if (qp::slides(Eigen::Map<const Vector3>(force), block.friction)) {
-    const Eigen::Map<const VectorX> all(effort.data(), static_cast<Eigen::Index>(effort.size()));
-    for (int c = 1; c < 3; ++c) {
-      travel = std::hypot(travel,
-                          problem.delta_free[row + c] + problem.compliance.row(row + c).dot(all));
+  if (state == sticks) {
+    add_held(row + 1, 0.0);
+    return add_held(row + 2, 0.0);
+  }
+  effort_terms_.insert(effort_terms_.end(),
+                       {{row, block.friction}, {row + 1, along[0]}, {row + 2, along[1]}});
+  end_equation(row + 1, 0.0);
+  const bool turns = limit > 0.0;
+  if (travel > 0.0 || !turns) {
+    effort_terms_.insert(effort_terms_.end(), {{row + 1, -along[1]}, {row + 2, along[0]}});
+  }
+  const double turn = !turns ? 0.0 : travel > 0.0 ? limit / travel : 1.0;
+  if (turns) {
+    motion_terms_.insert(motion_terms_.end(),
+                         {{row + 1, -turn * along[1]}, {row + 2, turn * along[0]}});
+  }
+  end_equation(row + 2, 0.0);
+  unsymmetric_ = true;
+  if (turns) bends_ = true;
+}
+
+// A point that sticks is kept in the cone by planes around it, one of which touches the cone where
+// its force is next to it.
+void Response::guard_contact(const StepProblem& problem, const ContactBlock& block,
+                             BlockState state, const Eigen::Vector2d& along) {
+  using enum BlockState;
+  const int row = block.row;
+  const BlockState pressed = block.friction > 0.0 ? sticks : slips;
+  if (state == open) return guard_motion(problem, row, 1.0, 0.0, pressed);
+  const double scale = std::sqrt(problem.compliance(row, row));
+  if (state == slips) {
+    guard_effort(problem, row, 1.0, 0.0, open);
+    if (!(block.friction > 0.0)) return;
+    for (int c = 0; c < 2; ++c) guard_motions_.push_back({row + 1 + c, along[c] / scale});
+    return end_guard(sticks, 0.0);
+  }
+  for (int k = 0; k < kPlanes; ++k) {
+    const Eigen::Rotation2Dd turn(2.0 * M_PI * k / kPlanes);
+    const Eigen::Vector2d out = turn * Eigen::Vector2d(-along);
+    guard_efforts_.push_back({row, scale * block.friction});
+    for (int c = 0; c < 2; ++c) guard_efforts_.push_back({row + 1 + c, -scale * out[c]});
+    const bool loaded = effort_[static_cast<std::size_t>(row)] > 0.0;
+    end_guard(loaded ? slips : open, 0.0);
+  }
+}
+
+// Of a block's own row: sense (delta - limit) >= 0.
+void Response::guard_motion(const StepProblem& problem, int row, double sense, double limit,
+                            BlockState beyond) {
+  const double own = problem.compliance(row, row);
+  if (std::isinf(limit) || !(own > 0.0)) return;
+  const double factor = sense / std::sqrt(own);
+  guard_motions_.push_back({row, factor});
+  end_guard(beyond, -factor * limit);
+}
+
+// The same of the effort.
+void Response::guard_effort(const StepProblem& problem, int row, double sense, double limit,
+                            BlockState beyond) {
+  const double own = problem.compliance(row, row);
+  if (std::isinf(limit) || !(own > 0.0)) return;
+  const double factor = sense * std::sqrt(own);
+  guard_efforts_.push_back({row, factor});
+  end_guard(beyond, -factor * limit);
+}
+
+void Response::end_guard(BlockState beyond, double constant) {
+  guards_.push_back({static_cast<int>(states_.size()) - 1, beyond, constant});
+  guard_ends_.push_back(
+      {static_cast<int>(guard_efforts_.size()), static_cast<int>(guard_motions_.size())});
+}
+
+// Their terms over the controlled efforts.
+void Response::form_guards() {
+  const std::size_t count = controlled_rows_.size();
+  slopes_.assign(guards_.size() * count, 0.0);
+  auto effort_term = guard_efforts_.begin();
+  auto motion_term = guard_motions_.begin();
+  for (std::size_t g = 0; g < guards_.size(); ++g) {
+    Guard& guard = guards_[g];
+    Eigen::Map<VectorX> slope(slopes_.data() + g * count, static_cast<Eigen::Index>(count));
+    for (; effort_term != guard_efforts_.begin() + guard_ends_[g].efforts; ++effort_term) {
+      const auto row = static_cast<std::size_t>(effort_term->row);
+      const int unknown = unknown_of_[row], input = controlled_of_[row];
+      if (unknown >= 0) {
+        const double factor = effort_term->factor * scale_[unknown];
+        guard.offset += factor * solved_(unknown, 0);
+        slope += factor * solved_.row(unknown).tail(static_cast<Eigen::Index>(count)).transpose();
+      } else if (input >= 0) {
+        slope[input] += effort_term->factor;
+      } else {
+        guard.offset += effort_term->factor * effort_[row];
+      }
+    }
+    for (; motion_term != guard_motions_.begin() + guard_ends_[g].motions; ++motion_term) {
+      guard.offset += motion_term->factor * free_[motion_term->row];
+      slope += motion_term->factor * compliance_.row(motion_term->row).transpose();
     }
   }
-  if (!(travel > 0.0)) {
-    add_held(row + 1, 0.0);
-    add_held(row + 2, 0.0);
-    return;
-  }
-  const double e[2] = {limit > 0.0 ? -force[1] / across : 1.0,
-                       limit > 0.0 ? -force[2] / across : 0.0};
-  effort_terms_.insert(effort_terms_.end(),
-                       {{row, block.friction}, {row + 1, e[0]}, {row + 2, e[1]}});
-  end_equation(row + 1, 0.0);
-  const double turn = limit / travel;
-  effort_terms_.insert(effort_terms_.end(), {{row + 1, -e[1]}, {row + 2, e[0]}});
-  motion_terms_.insert(motion_terms_.end(), {{row + 1, -turn * e[1]}, {row + 2, turn * e[0]}});
-  end_equation(row + 2, 0.0);
-  states_.push_back('s');
-  unsymmetric_ = true;
-  if (limit > 0.0) bends_ = true;
 }
 
 void Response::add_held(int row, double motion, double compliance) {
   motion_terms_.push_back({row, 1.0});
   if (compliance != 0.0) effort_terms_.push_back({row, compliance});
   end_equation(row, motion);
-  states_.push_back('h');
 }
 
 void Response::end_equation(int unknown, double constant) {
@@ -189,7 +384,7 @@ void Response::end_equation(int unknown, double constant) {
 
 // system_ (unknown efforts over scale_), right_ (1, lambda_c): rows are scaled to a largest entry
 // of one, columns by 1/sqrt(W), so that efforts of different units compare.
-void Response::form_equations(const StepProblem& problem, std::span<const double> effort) {
+void Response::form_equations(const StepProblem& problem) {
   const auto count = static_cast<Eigen::Index>(equations_.size());
   const auto inputs = static_cast<Eigen::Index>(controlled_rows_.size());
   const auto rows = static_cast<std::size_t>(free_.size());
@@ -218,7 +413,7 @@ void Response::form_equations(const StepProblem& problem, std::span<const double
       const int unknown = unknown_of_[row], input = controlled_of_[row];
       if (unknown >= 0) system_(i, unknown) += effort_term->factor * scale_[unknown];
       if (input >= 0) right_(i, 1 + input) -= effort_term->factor;
-      if (unknown < 0 && input < 0) right_(i, 0) -= effort_term->factor * effort[row];
+      if (unknown < 0 && input < 0) right_(i, 0) -= effort_term->factor * effort_[row];
     }
     for (; motion_term != motion_terms_.begin() + equation.motions_end; ++motion_term) {
       for (Eigen::Index j = 0; j < count; ++j) {
@@ -239,8 +434,9 @@ void Response::form_equations(const StepProblem& problem, std::span<const double
 }
 
 // Where rows repeat each other, the efforts of least norm are taken.
-void Response::solve(const StepProblem& problem, std::span<const double> effort) {
-  form_equations(problem, effort);
+void Response::solve(const StepProblem& problem) {
+  form_equations(problem);
+  if (equations_.empty()) return;
   const Eigen::Index count = system_.rows(), inputs = right_.cols() - 1;
   factor_.compute(system_);
   if (factor_.is_singular()) {
@@ -262,12 +458,12 @@ void Response::solve(const StepProblem& problem, std::span<const double> effort)
 // The motor of a joint at its stop moves nothing, nor does a torque against cables that stick. A
 // choice of efforts must see zeros there, or rounding chooses.
 void Response::clear_rounding(const StepProblem& problem) {
-  scale_ = problem.compliance.diagonal().cwiseAbs().cwiseSqrt();
+  row_scale_ = problem.compliance.diagonal().cwiseAbs().cwiseSqrt();
   for (Eigen::Index k = 0; k < compliance_.cols(); ++k) {
-    const double least = kCoupled * scale_[controlled_rows_[static_cast<std::size_t>(k)]];
-    for (Eigen::Index row = 0; row < scale_.size(); ++row) {
+    const double least = kCoupled * row_scale_[controlled_rows_[static_cast<std::size_t>(k)]];
+    for (Eigen::Index row = 0; row < row_scale_.size(); ++row) {
       double& own = compliance_(row, k);
-      if (std::abs(own) <= least * scale_[row]) own = 0.0;
+      if (std::abs(own) <= least * row_scale_[row]) own = 0.0;
     }
   }
 }

@@ -11,6 +11,32 @@
 
 namespace sinew::step {
 
+/// What a block does, and with it the equation that its effort obeys.
+enum class BlockState : char {
+  given,        ///< an effort that nothing changes
+  commanded,    ///< the commanded effort, the motion within its limits
+  at_min,       ///< the least effort
+  at_max,       ///< the largest one
+  holds,        ///< a commanded motion, or that of a cable which sticks at a guide
+  at_stop_min,  ///< a commanded effort that the least motion holds
+  at_stop_max,  ///< one that the largest motion holds
+  released,     ///< what held a controlled actuator's motion, and lets go of it
+  curve,        ///< on a drive's curve
+  slides_low,   ///< a cable at a guide, the effort at its lower limit
+  slides_high,  ///< and at its upper one
+  open,         ///< a contact without a force
+  sticks,
+  slips,
+};
+
+/// Where a block leaves its state: slack = offset + slope . lambda_c >= 0 as long as it has it, and
+/// beyond that it is in another one.
+struct Guard {
+  int block = -1;  ///< position in Response::states()
+  BlockState beyond = BlockState::given;
+  double offset = 0.0;  ///< sqrt(N m): motions over sqrt(W_ii), efforts times that
+};
+
 /// delta = free + compliance lambda_c over the efforts lambda_c that a controller chooses, as long
 /// as every other block keeps the state that it has: a held row stays held, a slack cable slack, a
 /// drive on the tangent of its curve; of contacts the open ones stay open, sticking ones stick, and
@@ -27,6 +53,10 @@ class Response {
   /// blocks, see DirectSolver. @param release lets go of actuators that hold the very motion of a
   /// controlled one, as if that had taken their place: see decides().
   void form(const StepProblem& problem, std::span<const double> effort, bool release = false);
+  /// The same with states that are given, from `effort` on, which is on the border of them.
+  /// @param problem,effort as above. @param states (blocks,) of all that have one.
+  void form_as(const StepProblem& problem, std::span<const double> effort,
+               std::span<const BlockState> states);
 
   /// Positions in problem.actuators of the controlled ones, ascending.
   const std::vector<int>& controlled() const { return controlled_; }
@@ -46,6 +76,15 @@ class Response {
   bool is_unsymmetric() const { return unsymmetric_; }
   /// Whether the last two calls of form() found the same states of all blocks.
   bool same_states() const { return states_ == states_before_; }
+  /// Of all blocks that have one: actuators that are not controlled, capstans, contacts.
+  std::span<const BlockState> states() const { return states_; }
+  /// Where blocks leave their states.
+  std::span<const Guard> guards() const { return guards_; }
+  /// (controlled,) sqrt(N m)/N: how the slack of a guard follows the controlled efforts.
+  Eigen::Map<const VectorX> guard_slope(std::size_t guard) const {
+    const auto count = static_cast<std::size_t>(controlled_.size());
+    return {slopes_.data() + guard * count, static_cast<Eigen::Index>(count)};
+  }
 
  private:
   struct Term {
@@ -60,28 +99,50 @@ class Response {
     int efforts_end = 0, motions_end = 0;  // in the lists of terms
   };
 
-  void collect(const StepProblem& problem, std::span<const double> effort);
-  void collect_actuator(const StepProblem& problem, int index, std::span<const double> efforts);
-  void collect_capstans(const StepProblem& problem, std::span<const double> effort);
-  void collect_contact(const StepProblem& problem, const ContactBlock& block,
-                       std::span<const double> effort);
+  void form_pieces(const StepProblem& problem, std::span<const double> effort);
+  void collect(const StepProblem& problem);
+  void collect_actuator(const StepProblem& problem, int index);
+  BlockState actuator_state(const StepProblem& problem, const ActuatorBlock& block);
+  void guard_actuator(const StepProblem& problem, const ActuatorBlock& block, BlockState state);
+  void collect_capstans(const StepProblem& problem);
+  void collect_contact(const StepProblem& problem, const ContactBlock& block);
+  void guard_contact(const StepProblem& problem, const ContactBlock& block, BlockState state,
+                     const Eigen::Vector2d& along);
+  BlockState next_state(BlockState read);
+  double motion_of(const StepProblem& problem, int row) const;
   static bool decides(const StepProblem& problem, int row);
   void add_held(int row, double motion, double compliance = 0.0);
   void end_equation(int unknown, double constant);
-  void form_equations(const StepProblem& problem, std::span<const double> effort);
-  void solve(const StepProblem& problem, std::span<const double> effort);
+  void guard_motion(const StepProblem& problem, int row, double sense, double limit,
+                    BlockState beyond);
+  void guard_effort(const StepProblem& problem, int row, double sense, double limit,
+                    BlockState beyond);
+  void end_guard(BlockState beyond, double constant);
+  void form_guards();
+  void form_equations(const StepProblem& problem);
+  void solve(const StepProblem& problem);
   void clear_rounding(const StepProblem& problem);
 
   std::vector<int> controlled_;
   std::vector<int> controlled_rows_;
   std::vector<Equation> equations_;
   std::vector<Term> effort_terms_, motion_terms_, tension_;
-  std::vector<char> states_, states_before_;
+  std::vector<BlockState> states_, states_before_;
+  std::vector<BlockState> kept_;  // given ones, of form_as()
+  bool keeps_ = false;
+  std::vector<double> effort_;  // (rows,) N: where it is formed
+  struct GuardEnd {
+    int efforts = 0, motions = 0;
+  };
+  std::vector<Guard> guards_;
+  std::vector<GuardEnd> guard_ends_;
+  std::vector<Term> guard_efforts_, guard_motions_;
+  std::vector<double> slopes_;                   // (guards, controlled) row by row
   std::vector<int> unknown_of_, controlled_of_;  // (rows,) position or -1
   bool holds_for_all_ = true, unsymmetric_ = false, bends_ = false;
   bool release_ = false, decided_ = false;
   MatrixX compliance_, system_, right_, solved_;
-  VectorX free_, scale_;
+  VectorX free_, scale_, row_scale_;
   linalg::LuFactor factor_;
 };
 

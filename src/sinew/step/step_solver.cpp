@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include "sinew/step/controller.hpp"
+#include <functional>
 
 namespace sinew::step {
 
@@ -12,11 +11,13 @@ namespace {
 constexpr int kMaxRounds = 6;
 // Of the largest effort: changes below it end the rounds.
 constexpr double kSettled = 1e-6;
-// Of a negligible miss: misses that differ by less are the same. More would be felt at a minimum,
-// which is flat.
-constexpr double kSame = 1e-6;
-// Points that are tried between two choices.
-constexpr int kSearches = 16;
+// Of a limit's size: what is beyond it by less is within.
+constexpr double kWithin = 1e-9;
+// Of the objective: rounding.
+constexpr double kOfValue = 1e-10;
+// Places on the way to an optimum between states, and how often a step along a bent piece is
+// halved.
+constexpr int kMaxPlaces = 40, kMaxHalvings = 6;
 
 // (controlled,) N: what the controlled actuators did before.
 void efforts_before(const StepProblem& problem, const Response& response,
@@ -25,6 +26,16 @@ void efforts_before(const StepProblem& problem, const Response& response,
   for (const int index : response.controlled()) {
     const int row = problem.actuators[static_cast<std::size_t>(index)].row;
     efforts.push_back(problem.effort_before[static_cast<std::size_t>(row)]);
+  }
+}
+
+// (controlled,) N: what they do in `effort`, (rows,) N.
+void own_efforts(const StepProblem& problem, const Response& response,
+                 std::span<const double> effort, std::vector<double>& own) {
+  own.clear();
+  for (const int index : response.controlled()) {
+    const int row = problem.actuators[static_cast<std::size_t>(index)].row;
+    own.push_back(effort[static_cast<std::size_t>(row)]);
   }
 }
 
@@ -44,6 +55,7 @@ LawStatus StepSolver::steer(const StepProblem& problem, Controller& controller,
     if (direct_.solve(problem, effort) == LawStatus::failed) return LawStatus::failed;
     response_.form(problem, effort);
   }
+  controller.begin_choices(problem, response_);
   LawStatus status = LawStatus::solved;
   if (alone) {
     double change = 0.0;
@@ -61,8 +73,12 @@ LawStatus StepSolver::steer(const StepProblem& problem, Controller& controller,
   return status;
 }
 
+// From a solution on, as a rule that at the last step's efforts.
 LawStatus StepSolver::settle(const StepProblem& problem, Controller& controller,
                              std::span<double> effort) {
+  own_efforts(problem, response_, effort, chosen_);
+  measure_motion(problem, effort);
+  keep_place(controller.merit(problem, motion_, chosen_), effort);
   LawStatus status = LawStatus::solved;
   for (int round = 0; round < kMaxRounds; ++round) {
     double change = 0.0;
@@ -70,24 +86,102 @@ LawStatus StepSolver::settle(const StepProblem& problem, Controller& controller,
     if (status == LawStatus::failed) return status;
     if (direct_.solve(problem, effort) == LawStatus::failed) return LawStatus::failed;
     response_.form(problem, effort);
-    if (response_.same_states() && (!response_.bends() || change <= kSettled)) return status;
+    const bool settled = response_.same_states() && (!response_.bends() || change <= kSettled);
+    if (!settled && round + 1 < kMaxRounds) continue;
+    measure_motion(problem, effort);
+    const Merit reached = controller.merit(problem, motion_, chosen_);
+    if (settled && !is_better(controller, merit_, reached)) return status;
+    if (is_better(controller, reached, merit_)) keep_place(reached, effort);
+    if (settled) break;
   }
-  search(problem, controller, effort);
-  return status;
+  const LawStatus descended = descend(problem, controller, effort);
+  return descended == LawStatus::failed ? descended : status;
+}
+
+void StepSolver::keep_place(const Merit& merit, std::span<const double> effort) {
+  merit_ = merit;
+  place_.assign(effort.begin(), effort.end());
+}
+
+LawStatus StepSolver::descend(const StepProblem& problem, Controller& controller,
+                              std::span<double> effort) {
+  std::ranges::copy(place_, effort.begin());
+  response_.form(problem, effort);
+  for (int place = 0; place < kMaxPlaces; ++place) {
+    if (!advance(problem, controller, response_, effort) &&
+        !cross_guards(problem, controller, effort)) {
+      break;
+    }
+    response_.form(problem, effort);
+  }
+  own_efforts(problem, response_, effort, chosen_);
+  return LawStatus::solved;
+}
+
+// Towards the optimum of a piece, from the place so far. Where that does not lead on, `effort` is
+// the place's again.
+bool StepSolver::advance(const StepProblem& problem, Controller& controller,
+                         const Response& response, std::span<double> effort) {
+  efforts_before(problem, response, trial_);
+  if (controller.choose(problem, response, true, trial_) == LawStatus::failed) return false;
+  const Merit foreseen{0.0, controller.foreseen()};
+  if (merit_.excess <= kWithin && !is_better(controller, foreseen, merit_)) return false;
+  double share = 1.0;
+  for (int halving = 0; halving <= kMaxHalvings; ++halving, share *= 0.5) {
+    middle_.resize(trial_.size());
+    for (std::size_t k = 0; k < trial_.size(); ++k) {
+      const auto index = static_cast<std::size_t>(response.controlled()[k]);
+      const int row = problem.actuators[index].row;
+      middle_[k] = std::lerp(place_[static_cast<std::size_t>(row)], trial_[k], share);
+    }
+    const Merit reached = try_efforts(problem, controller, middle_, effort);
+    if (is_better(controller, reached, merit_)) {
+      keep_place(reached, effort);
+      return true;
+    }
+    std::ranges::copy(place_, effort.begin());
+    if (!response.bends()) break;
+  }
+  return false;
+}
+
+// Where guards hold the choice: into the piece beyond one of them, or beyond all.
+bool StepSolver::cross_guards(const StepProblem& problem, Controller& controller,
+                              std::span<double> effort) {
+  efforts_before(problem, response_, trial_);
+  if (controller.choose(problem, response_, true, trial_) == LawStatus::failed) return false;
+  pushing_.clear();
+  const std::span<const double> multipliers = controller.guard_multipliers();
+  for (std::size_t g = 0; g < multipliers.size(); ++g) {
+    if (multipliers[g] > 0.0) pushing_.push_back({multipliers[g], static_cast<int>(g)});
+  }
+  std::ranges::stable_sort(pushing_, std::ranges::greater{}, &Push::multiplier);
+  const auto cross = [&](std::span<const Push> guards) {
+    const auto now = response_.states();
+    states_.assign(now.begin(), now.end());
+    for (const Push& push : guards) {
+      const Guard& guard = response_.guards()[static_cast<std::size_t>(push.guard)];
+      states_[static_cast<std::size_t>(guard.block)] = guard.beyond;
+    }
+    beyond_.form_as(problem, place_, states_);
+    return advance(problem, controller, beyond_, effort);
+  };
+  for (const Push& push : pushing_) {
+    if (cross({&push, 1})) return true;
+  }
+  return pushing_.size() > 1 && cross(pushing_);
 }
 
 LawStatus StepSolver::take_over(const StepProblem& problem, Controller& controller,
                                 std::span<double> effort) {
   held_ = chosen_;
   measure_motion(problem, effort);
-  const double miss = controller.miss(problem, motion_);
-  if (miss <= controller.negligible_miss()) return LawStatus::solved;
+  const Merit held = controller.merit(problem, motion_, held_);
   double change = 0.0;
   response_.form(problem, effort, true);
   LawStatus status = choose(problem, controller, effort, change);
   if (status == LawStatus::failed) return status;
-  if (try_efforts(problem, controller, chosen_, effort).miss <
-      miss - controller.negligible_miss()) {
+  if (is_better(controller, try_efforts(problem, controller, chosen_, effort), held)) {
     response_.form(problem, effort);
     return settle(problem, controller, effort);
   }
@@ -102,9 +196,8 @@ LawStatus StepSolver::take_over(const StepProblem& problem, Controller& controll
 
 LawStatus StepSolver::choose(const StepProblem& problem, Controller& controller,
                              std::span<double> effort, double& change) {
-  chosen_before_.swap(chosen_);
   efforts_before(problem, response_, chosen_);
-  const LawStatus status = controller.choose(problem, response_, chosen_);
+  const LawStatus status = controller.choose(problem, response_, false, chosen_);
   if (status == LawStatus::failed) return status;
   double largest = 0.0, moved = 0.0;
   for (std::size_t k = 0; k < chosen_.size(); ++k) {
@@ -126,64 +219,21 @@ void StepSolver::measure_motion(const StepProblem& problem, std::span<const doub
   }
 }
 
-StepSolver::Trial StepSolver::try_efforts(const StepProblem& problem, const Controller& controller,
+StepSolver::Merit StepSolver::try_efforts(const StepProblem& problem, const Controller& controller,
                                           std::span<const double> own, std::span<double> effort) {
-  Trial trial;
   for (std::size_t k = 0; k < own.size(); ++k) {
     const auto index = static_cast<std::size_t>(response_.controlled()[k]);
-    const int row = problem.actuators[index].row;
-    effort[static_cast<std::size_t>(row)] = own[k];
-    trial.strain += problem.compliance(row, row) * own[k] * own[k];
+    effort[static_cast<std::size_t>(problem.actuators[index].row)] = own[k];
   }
-  if (direct_.solve(problem, effort) == LawStatus::failed) return trial;
+  if (direct_.solve(problem, effort) == LawStatus::failed) return {kInfinity, kInfinity};
   measure_motion(problem, effort);
-  trial.miss = controller.miss(problem, motion_);
-  return trial;
+  return controller.merit(problem, motion_, own);
 }
 
-// Between misses that are the same but for rounding (a motor pushes a joint against its stop) the
-// lesser effort decides.
-bool StepSolver::is_better(const Controller& controller, const Trial& one, const Trial& other) {
-  const bool same = std::abs(one.miss - other.miss) <= kSame * controller.negligible_miss();
-  return same ? one.strain <= other.strain : one.miss < other.miss;
-}
-
-void StepSolver::search(const StepProblem& problem, const Controller& controller,
-                        std::span<double> effort) {
-  const auto at = [&](double share) {
-    trial_.resize(chosen_.size());
-    for (std::size_t k = 0; k < trial_.size(); ++k) {
-      trial_[k] = std::lerp(chosen_before_[k], chosen_[k], share);
-    }
-    return try_efforts(problem, controller, trial_, effort);
-  };
-  const double golden = 0.5 * (std::sqrt(5.0) - 1.0);
-  double from = 0.0, to = 1.0, left = 1.0 - golden, right = golden;
-  Trial at_left = at(left), at_right = at(right);
-  for (int k = 0; k < kSearches; ++k) {
-    if (is_better(controller, at_left, at_right)) {
-      to = right;
-      right = left;
-      at_right = at_left;
-      left = from + (1.0 - golden) * (to - from);
-      at_left = at(left);
-    } else {
-      from = left;
-      left = right;
-      at_left = at_right;
-      right = from + golden * (to - from);
-      at_right = at(right);
-    }
-  }
-  const double found = at(is_better(controller, at_left, at_right) ? left : right).miss;
-  chosen_.swap(trial_);
-  efforts_before(problem, response_, trial_);
-  const double before = try_efforts(problem, controller, trial_, effort).miss;
-  if (before - found <= controller.negligible_miss()) {
-    chosen_.swap(trial_);
-  } else {
-    try_efforts(problem, controller, chosen_, effort);
-  }
+bool StepSolver::is_better(const Controller& controller, const Merit& one, const Merit& other) {
+  if (one.excess < other.excess - kWithin) return true;
+  if (one.excess > other.excess + kWithin) return false;
+  return one.value < other.value - controller.negligible_gain() - kOfValue * std::abs(other.value);
 }
 
 }  // namespace sinew::step
