@@ -666,7 +666,7 @@ class InverseController:
     def __init__(
         self,
         sim: Simulation,
-        targets: Mapping[str, _Goal],
+        targets: Mapping[str, _Goal] = ...,
         *,
         actuators: Optional[Iterable[str]] = None,
         weights: Optional[Mapping[str, Union[float, ArrayLike]]] = None,
@@ -674,7 +674,11 @@ class InverseController:
         epsilon: Optional[float] = None,
         tolerance: Optional[float] = None,
         largest_step: Optional[float] = None,
+        contacts: Optional[Mapping[str, Mapping[str, Any]]] = None,
+        priorities: Optional[Mapping[str, int]] = None,
     ) -> None: ...
+    @property
+    def force_errors(self) -> dict[str, float]: ...
     def step(self, n: int = 1) -> str: ...
     def detach(self) -> None: ...
     def __enter__(self) -> InverseController: ...

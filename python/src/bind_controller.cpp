@@ -86,6 +86,65 @@ std::vector<Task> to_tasks(const sim::Model& model, const py::handle& targets,
   return tasks;
 }
 
+inverse::ContactTask to_contact_task(const sim::Model& model, const std::string& name,
+                                     const py::handle& value) {
+  inverse::ContactTask task;
+  task.contact = model.contact_index(name);
+  const std::string place = fmt::format("contacts['{}']", name);
+  bool may_slip = true;
+  for (const auto& [key, given] : to_dict(value, place.c_str())) {
+    const std::string word = text_key(key, place.c_str());
+    if (word == "normal_force" && py::isinstance<py::dict>(given)) {
+      for (const auto& [end, force] : py::reinterpret_borrow<py::dict>(given)) {
+        const std::string limit = text_key(end, place.c_str());
+        if (limit != "min" && limit != "max") {
+          throw Error(ErrorKind::unknown_key, {.item = place},
+                      fmt::format("normal_force has no '{}'", limit), "give min, max or both");
+        }
+        (limit == "min" ? task.normal_min : task.normal_max) = to_number(force, place, "N");
+      }
+    } else if (word == "normal_force") {
+      task.normal_min = task.normal_max = to_number(given, place, "N");
+    } else if (word == "slip") {
+      may_slip = py::cast<bool>(given);
+      if (!may_slip && !task.reserve) task.reserve = 0.0;
+    } else if (word == "reserve") {
+      task.reserve = to_number(given, place, "no unit");
+    } else {
+      throw Error(ErrorKind::unknown_key, {.item = place}, fmt::format("there is no '{}'", word),
+                  "give normal_force, slip or reserve");
+    }
+  }
+  return task;
+}
+
+std::vector<inverse::ContactTask> to_contact_tasks(const sim::Model& model,
+                                                   const py::object& contacts) {
+  std::vector<inverse::ContactTask> tasks;
+  if (contacts.is_none()) return tasks;
+  for (const auto& [key, value] : to_dict(contacts, "InverseController(contacts)")) {
+    const std::string name = text_key(key, "InverseController(contacts)");
+    tasks.push_back(to_contact_task(model, name, value));
+  }
+  return tasks;
+}
+
+void set_priorities(const sim::Model& model, const py::object& priorities,
+                    std::vector<Task>& tasks) {
+  if (priorities.is_none()) return;
+  for (const auto& [key, value] : to_dict(priorities, "InverseController(priorities)")) {
+    const int effector = model.effector_index(text_key(key, "InverseController(priorities)"));
+    const auto found = std::ranges::find(tasks, effector, &Task::effector);
+    if (found == tasks.end()) {
+      throw Error(ErrorKind::unknown_name, {.item = "InverseController(priorities)"},
+                  fmt::format("'{}' has a priority but no target", std::string(py::str(key))),
+                  "add it to targets");
+    }
+    found->priority =
+        static_cast<int>(to_count(py::reinterpret_borrow<py::object>(value), "priorities"));
+  }
+}
+
 std::vector<int> to_actuators(const sim::Model& model, const py::object& names) {
   std::vector<int> actuators;
   if (names.is_none()) return actuators;
@@ -114,9 +173,12 @@ inverse::Regularisation to_regularisation(const std::string& word) {
 Controller make(const std::shared_ptr<Session>& session, const py::object& targets,
                 const py::object& actuators, const py::object& weights,
                 const std::string& regularisation, const py::object& epsilon,
-                const py::object& tolerance, const py::object& largest_step) {
+                const py::object& tolerance, const py::object& largest_step,
+                const py::object& contacts, const py::object& priorities) {
   InverseSettings settings;
   settings.tasks = to_tasks(session->model(), targets, weights);
+  settings.contacts = to_contact_tasks(session->model(), contacts);
+  set_priorities(session->model(), priorities, settings.tasks);
   settings.actuators = to_actuators(session->model(), actuators);
   settings.regularisation = to_regularisation(regularisation);
   const auto read = [](const py::object& value, const char* place, const char* unit, double& to) {
@@ -190,7 +252,7 @@ void bind_mapping(py::module_& module) {
 }
 
 constexpr const char* kControllerDoc =
-    R"(InverseController(sim, targets, *, actuators=None, weights=None, regularisation='change', epsilon=None, tolerance=None, largest_step=None)
+    R"(InverseController(sim, targets={}, *, actuators=None, weights=None, regularisation='change', epsilon=None, tolerance=None, largest_step=None, contacts=None, priorities=None)
 --
 
 Finds the efforts that bring effectors to their targets, in every step.
@@ -219,6 +281,13 @@ tolerance : float, optional
     m (or rad): an effector this near is on target.
 largest_step : float, optional
     Targets farther than this part of the robot's size are approached in such steps.
+contacts : dict, optional
+    Names of contacts to what is asked of their forces, before targets: `normal_force`, a number (N)
+    or {'min': N, 'max': N}, the sum over the contact's points; `slip`, False keeps the resultant
+    within the friction cone; `reserve`, within the cone less this part of it.
+priorities : dict, optional
+    Effector names to 1 (first, the default) to 3. An effector moves one of the priority before by
+    about 1e-4 of what it lacks itself.
 
 Raises
 ------
@@ -229,10 +298,11 @@ Error
 )";
 
 void bind_methods(py::class_<Controller>& type) {
-  type.def(py::init(&make), py::arg("sim"), py::arg("targets"), py::kw_only(),
+  type.def(py::init(&make), py::arg("sim"), py::arg("targets") = py::dict(), py::kw_only(),
            py::arg("actuators") = py::none(), py::arg("weights") = py::none(),
            py::arg("regularisation") = "change", py::arg("epsilon") = py::none(),
-           py::arg("tolerance") = py::none(), py::arg("largest_step") = py::none())
+           py::arg("tolerance") = py::none(), py::arg("largest_step") = py::none(),
+           py::arg("contacts") = py::none(), py::arg("priorities") = py::none())
       .def(
           "step",
           [](const Controller& self, const py::object& n) {
@@ -304,6 +374,18 @@ void bind_results(py::class_<Controller>& type) {
           "whose weight is not zero, the "
           "largest one (m or rad); measured, before the first step too.")
       .def_property_readonly("errors", &errors, "dict: `error` of every effector.")
+      .def_property_readonly("force_errors", guarded([](const InverseController& law) {
+                               py::dict errors;
+                               const auto& tasks = law.settings().contacts;
+                               for (std::size_t k = 0; k < tasks.size(); ++k) {
+                                 const auto& model = law.simulation().model();
+                                 errors[py::str(model.contact(tasks[k].contact).name())] =
+                                     law.force_error(static_cast<int>(k));
+                               }
+                               return errors;
+                             }),
+                             "dict: of every contact in `contacts`, by how much its forces are "
+                             "beyond what is asked (N); NaN before a step.")
       .def_property_readonly("predicted_error", guarded([](const InverseController& law) {
                                return law.predicted_error();
                              }),

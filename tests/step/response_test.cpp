@@ -108,11 +108,12 @@ class Nearest : public Controller {
   }
   double foreseen() const override { return foreseen_; }
   std::span<const double> guard_multipliers() const override { return multipliers_; }
-  Merit merit(const StepProblem&, const VectorX& motion, std::span<const double>) const override {
+  Merit merit(const StepProblem&, const VectorX& motion, std::span<const double>,
+              std::span<const double>) const override {
     return {0.0, 0.5 * (motion.tail(goal_.size()) - goal_).squaredNorm()};
   }
   double negligible_gain() const override { return 1e-16; }
-  void accept(const StepProblem&, const Response&, const VectorX& motion,
+  void accept(const StepProblem&, const Response&, const VectorX& motion, std::span<const double>,
               std::span<const double>) override {
     accepted = motion;
   }
@@ -175,7 +176,7 @@ TEST(StepSolver, EndsWhereNoNeighbouringPieceServesBetter) {
     solver.begin_step();
     std::vector<double> effort(static_cast<std::size_t>(robot.problem.delta_free.size()), 0.0);
     ASSERT_EQ(solver.solve(robot.problem, &controller, effort), LawStatus::solved);
-    const double found = controller.merit(robot.problem, robot.motion(effort), {}).value;
+    const double found = controller.merit(robot.problem, robot.motion(effort), {}, effort).value;
     Response piece;
     piece.form(robot.problem, effort);
     const std::vector<BlockState> own(piece.states().begin(), piece.states().end());

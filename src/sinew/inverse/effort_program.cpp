@@ -42,20 +42,25 @@ const ActuatorBlock& controlled_block(const StepProblem& problem, const Response
   return problem.actuators[static_cast<std::size_t>(index)];
 }
 
-EffortProgram::EffortProgram(std::vector<int> rows, VectorX weights, int actuators)
+EffortProgram::EffortProgram(std::vector<int> rows, VectorX weights, int actuators,
+                             ForceRows forces)
     : rows_(std::move(rows)),
       weights_(std::move(weights)),
       jacobian_(MatrixX::Zero(weights_.size(), actuators)),
       weighted_(MatrixX::Zero(weights_.size(), actuators)),
       scale_(VectorX::Ones(actuators)),
       scaled_effort_(VectorX::Zero(actuators)),
+      forces_(std::move(forces)),
+      count_(actuators),
       pull_hessian_(MatrixX::Zero(actuators, actuators)),
       pull_gradient_(VectorX::Zero(actuators)),
-      program_(qp::QuadraticProgram::sized(actuators, actuators)),
-      solver_(actuators, actuators),
-      elastic_(actuators, actuators),
       bound_multiplier_(VectorX::Zero(actuators)),
-      row_multiplier_(VectorX::Zero(actuators)) {}
+      row_multiplier_(VectorX::Zero(actuators)) {
+  const int all = actuators + static_cast<int>(forces_.count());
+  program_ = qp::QuadraticProgram::sized(all, all);
+  solver_ = qp::QpSolver(all, all);
+  elastic_ = qp::ElasticSolver(all, all);
+}
 
 void EffortProgram::form_scales(const StepProblem& problem, const Response& response) {
   for (Eigen::Index k = 0; k < scale_.size(); ++k) {
@@ -69,15 +74,17 @@ void EffortProgram::form_scales(const StepProblem& problem, const Response& resp
 }
 
 void EffortProgram::begin(const StepProblem& problem, const Response& response,
-                          const EffortPull& pull) {
+                          const EffortPull& pull, double largest) {
   controlled_ = response.controlled();
+  forces_.begin(problem, largest);
   form_scales(problem, response);
   form_rows(problem, response);
   regularise(problem, response, pull);
 }
 
 void EffortProgram::form_rows(const StepProblem& problem, const Response& response) {
-  const Eigen::Index count = scale_.size();
+  const Eigen::Index count = count_;
+  forces_.form(problem, response);
   for (Eigen::Index j = 0; j < count; ++j) {
     for (Eigen::Index i = 0; i < count; ++i) {
       const int row = controlled_block(problem, response, i).row;
@@ -89,29 +96,43 @@ void EffortProgram::form_rows(const StepProblem& problem, const Response& respon
       weighted_(k, j) = weights_[k] * jacobian_(k, j);
     }
   }
+  for (Eigen::Index f = 0; f < forces_.count(); ++f) {
+    program_.rows.row(count + f).head(count) =
+        forces_.slope().row(f).cwiseProduct(scale_.transpose());
+    program_.rows(count + f, count + f) = problem.size;
+  }
 }
 
 void EffortProgram::form(const StepProblem& problem, const Response& response,
                          const VectorX& residual) {
   form_rows(problem, response);
-  program_.hessian.noalias() = jacobian_.transpose() * weighted_;
-  program_.hessian += pull_hessian_;
-  program_.gradient.noalias() = weighted_.transpose() * residual;
-  program_.gradient += pull_gradient_;
+  auto hessian = program_.hessian.topLeftCorner(count_, count_);
+  hessian.noalias() = jacobian_.transpose() * weighted_;
+  hessian += pull_hessian_;
+  auto gradient = program_.gradient.head(count_);
+  gradient.noalias() = weighted_.transpose() * residual;
+  gradient += pull_gradient_;
+  for (Eigen::Index f = count_; f < program_.gradient.size(); ++f) {
+    program_.hessian(f, f) = forces_.weight() * problem.size * problem.size;
+  }
   left_ = 0.5 * residual.dot(weights_.cwiseProduct(residual));
 }
 
 // Where friction slides R would be unsymmetric, and keeps its diagonal alone.
 void EffortProgram::regularise(const StepProblem& problem, const Response& response,
                                const EffortPull& pull) {
-  const Eigen::Index count = scale_.size();
+  const Eigen::Index count = count_;
   double norm = 0.0;
   for (Eigen::Index i = 0; i < count; ++i) {
     norm = std::max(norm, std::abs(scale_[i]) * program_.rows.row(i).cwiseAbs().sum());
   }
   if (!(norm > 0.0)) norm = 1.0;
-  program_.hessian.noalias() = jacobian_.transpose() * weighted_;
-  const double asked = infinity_norm(program_.hessian);
+  pull_hessian_.noalias() = jacobian_.transpose() * weighted_;
+  double asked = infinity_norm(pull_hessian_);
+  if (!(asked > 0.0) && forces_.count() > 0) {
+    const auto slope = program_.rows.bottomLeftCorner(forces_.count(), count);
+    asked = forces_.weight() * slope.squaredNorm();
+  }
   const double eps = pull.epsilon * (asked > 0.0 ? asked : norm) / norm;
   const double keep = pull.damping - pull.to_zero;
   const double stay = pull.damping_within - 1.0;
@@ -152,7 +173,8 @@ double EffortProgram::excess(const StepProblem& problem, const VectorX& motion,
 
 void EffortProgram::form_limits(const StepProblem& problem, const Response& response,
                                 qp::QuadraticProgram& program) const {
-  for (Eigen::Index k = 0; k < scale_.size(); ++k) {
+  form_forces(program);
+  for (Eigen::Index k = 0; k < count_; ++k) {
     const ActuatorBlock& own = controlled_block(problem, response, k);
     const double free = response.free()[own.row];
     program.lower[k] = own.effort_min / scale_[k];
@@ -162,10 +184,16 @@ void EffortProgram::form_limits(const StepProblem& problem, const Response& resp
   }
 }
 
+void EffortProgram::form_forces(qp::QuadraticProgram& program) const {
+  const Eigen::Index rows = forces_.count();
+  program.row_lower.segment(count_, rows) = forces_.lower() - forces_.offset();
+  program.row_upper.segment(count_, rows) = forces_.upper() - forces_.offset();
+}
+
 // Rows for guards are made for more than there are: others are empty.
 LawStatus EffortProgram::solve_guarded(const StepProblem& problem, const Response& response,
                                        std::span<double> effort) {
-  const Eigen::Index count = scale_.size();
+  const Eigen::Index count = program_.gradient.size();
   const auto guards = static_cast<Eigen::Index>(response.guards().size());
   if (guarded_.rows.rows() < count + guards || guarded_.gradient.size() != count) {
     const int rows = static_cast<int>(count + guards + guards / 2 + 16);
@@ -180,7 +208,8 @@ LawStatus EffortProgram::solve_guarded(const StepProblem& problem, const Respons
   guarded_.row_lower.tail(guarded_.rows.rows() - count).setConstant(-kInfinity);
   for (Eigen::Index g = 0; g < guards; ++g) {
     const auto number = static_cast<std::size_t>(g);
-    guarded_.rows.row(count + g) = response.guard_slope(number).cwiseProduct(scale_).transpose();
+    guarded_.rows.row(count + g).head(count_) =
+        response.guard_slope(number).cwiseProduct(scale_).transpose();
     guarded_.row_lower[count + g] = -response.guards()[number].offset;
   }
   const qp::QpResult& result = guarded_solver_.solve(guarded_);
@@ -195,7 +224,7 @@ LawStatus EffortProgram::solve_guarded(const StepProblem& problem, const Respons
 void EffortProgram::keep(const qp::QpResult& result) {
   scaled_effort_ = result.x;
   bound_multiplier_ = result.bound_multiplier;
-  row_multiplier_ = result.row_multiplier.head(scale_.size());
+  row_multiplier_ = result.row_multiplier.head(count_);
   foreseen_ = left_ + program_.gradient.dot(result.x) + half_square(program_.hessian, result.x);
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sinew/core/types.hpp"
+#include "sinew/inverse/force_rows.hpp"
 #include "sinew/qp/elastic.hpp"
 #include "sinew/qp/quadratic_program.hpp"
 #include "sinew/step/law_status.hpp"
@@ -42,18 +43,20 @@ struct EffortPull {
   const VectorX& last_choice;   ///< lambda_1, (controlled,)
 };
 
-/// The program of InverseController, in efforts over a scale of each.
+/// The program of InverseController, in efforts over a scale of each. After the efforts come what
+/// rows of contact forces lack to their limits, over the robot's size.
 class EffortProgram {
  public:
   EffortProgram() = default;
   /// @param rows of H, those of all effectors. @param weights Q, as many. @param actuators how many
-  ///   the controller has.
-  EffortProgram(std::vector<int> rows, VectorX weights, int actuators);
+  ///   the controller has. @param forces what is asked of contacts.
+  EffortProgram(std::vector<int> rows, VectorX weights, int actuators, ForceRows forces = {});
 
   /// What efforts are drawn to, the same in all programs until the next call.
   /// @param problem of the step. @param response of the robot to start from. @param pull see there.
+  /// @param largest m, see ForceRows::begin().
   void begin(const step::StepProblem& problem, const step::Response& response,
-             const EffortPull& pull);
+             const EffortPull& pull, double largest);
   /// The objective. @param problem,response of the step. @param residual (rows,) motion without
   ///   efforts, less the one that is asked.
   void form(const step::StepProblem& problem, const step::Response& response,
@@ -77,6 +80,8 @@ class EffortProgram {
   double excess(const step::StepProblem& problem, const VectorX& motion,
                 std::span<const double> effort) const;
 
+  const ForceRows& forces() const { return forces_; }
+
   /// Which limits of which actuators contradict each other in the last solve(); else empty.
   const std::string& conflict() const { return conflict_; }
   /// Whether a limit resists, by the multipliers of the last solve(). @param gap what is left of
@@ -95,6 +100,7 @@ class EffortProgram {
                   const EffortPull& pull);
   void form_limits(const step::StepProblem& problem, const step::Response& response,
                    qp::QuadraticProgram& program) const;
+  void form_forces(qp::QuadraticProgram& program) const;
   void keep(const qp::QpResult& result);
   void write(std::span<double> effort) const;
 
@@ -106,9 +112,11 @@ class EffortProgram {
   VectorX scaled_effort_;
   mutable VectorX scaled_trial_;  // of pull_value()
   std::vector<int> controlled_;   // of the response
-  MatrixX pull_hessian_;          // (controlled, controlled)
-  VectorX pull_gradient_;         // (controlled,)
-  double left_ = 0.0;             // the objective without efforts
+  ForceRows forces_;
+  Eigen::Index count_ = 0;  // of efforts
+  MatrixX pull_hessian_;    // (controlled, controlled)
+  VectorX pull_gradient_;   // (controlled,)
+  double left_ = 0.0;       // the objective without efforts
   double foreseen_ = 0.0;
   qp::QuadraticProgram program_;
   qp::QpSolver solver_;

@@ -29,6 +29,8 @@ constexpr double kActive = 1e-9;
 constexpr double kStill = 2e-4;
 // And forces balance to this part of their size.
 constexpr double kBalanced = 1e-3;
+// Of a contact force that is asked for: one this near is as asked.
+constexpr double kForceTolerance = 1e-2;
 
 bool near(double value, double limit) {
   return std::isfinite(limit) && std::abs(value - limit) <= kActive * (1.0 + std::abs(limit));
@@ -45,7 +47,7 @@ InverseController::InverseController(sim::Simulation& simulation, InverseSetting
     const auto& effector = model.effector(task.effector);
     for (int k = 0; k < effector.row_count(); ++k) {
       effector_rows_.push_back(effector.first_row() + k);
-      weights.push_back(task.weight(k));
+      weights.push_back(task.weight(k) * std::pow(Task::kLaterPriority, task.priority - 1));
     }
   }
   const auto rows = static_cast<Eigen::Index>(effector_rows_.size());
@@ -57,11 +59,16 @@ InverseController::InverseController(sim::Simulation& simulation, InverseSetting
   for_later_.setZero(rows);
   foreseen_.setZero(rows);
   asked_.assign(settings_.tasks.size(), Vector3::Zero());
-  program_ = EffortProgram(effector_rows_, row_weights_, static_cast<int>(count));
+  const double largest = rows > 0 ? row_weights_.maxCoeff() : 0.0;
+  program_ = EffortProgram(effector_rows_, row_weights_, static_cast<int>(count),
+                           ForceRows(settings_.contacts, largest > 0.0 ? largest : 1.0));
+  force_errors_.assign(settings_.contacts.size(), std::numeric_limits<double>::quiet_NaN());
   efforts_.setZero(count);
   last_choice_.setZero(count);
   gap_linearised_.setZero(rows);
-  simulation_.attach(*this, settings_.actuators);
+  std::vector<int> contacts;
+  for (const ContactTask& task : settings_.contacts) contacts.push_back(task.contact);
+  simulation_.attach(*this, settings_.actuators, contacts);
   attached_ = true;
 }
 
@@ -136,7 +143,8 @@ double InverseController::objective(const VectorX& gap) const {
 
 double InverseController::negligible_objective() const {
   const double still = kStill * settings_.tolerance;
-  return 0.5 * row_weights_.maxCoeff() * still * still;
+  const double weight = row_weights_.size() > 0 ? row_weights_.maxCoeff() : 1.0;
+  return 0.5 * weight * still * still;
 }
 
 // However often the step is linearised, its goal stays: the part of the gap at its start that one
@@ -147,7 +155,7 @@ void InverseController::form_residual(const StepProblem& problem, const Response
   for (Eigen::Index k = 0; k < gap_.size(); ++k) {
     if (row_weights_[k] > 0.0) to_go = std::hypot(to_go, gap_before_[k]);
   }
-  const double most = settings_.largest_step * problem.size;
+  const double most = largest_step(problem);
   for_later_ = (1.0 - (to_go > most ? most / to_go : 1.0)) * gap_before_;
   for (Eigen::Index k = 0; k < residual_.size(); ++k) {
     const int row = effector_rows_[static_cast<std::size_t>(k)];
@@ -164,7 +172,8 @@ void InverseController::begin_choices(const StepProblem& problem, const Response
                   .to_zero = change ? settings_.relaxation : 1.0,
                   .damping = damping_.value(),
                   .damping_within = inner_damping_.value(),
-                  .last_choice = last_choice_});
+                  .last_choice = last_choice_},
+                 largest_step(problem));
 }
 
 LawStatus InverseController::choose(const StepProblem& problem, const Response& response,
@@ -175,7 +184,12 @@ LawStatus InverseController::choose(const StepProblem& problem, const Response& 
                  : program_.solve(simulation_.model(), problem, response, effort);
 }
 
+double InverseController::largest_step(const StepProblem& problem) const {
+  return settings_.largest_step * problem.size;
+}
+
 step::Controller::Merit InverseController::merit(const StepProblem& problem, const VectorX& motion,
+                                                 std::span<const double> own,
                                                  std::span<const double> effort) const {
   double sum = 0.0;
   for (Eigen::Index k = 0; k < gap_.size(); ++k) {
@@ -183,20 +197,40 @@ step::Controller::Merit InverseController::merit(const StepProblem& problem, con
     const double left = motion[row] - problem.delta[row] - (gap_[k] - for_later_[k]);
     sum += row_weights_[k] * left * left;
   }
-  return {program_.excess(problem, motion, effort), 0.5 * sum + program_.pull_value(effort)};
+  return {program_.excess(problem, motion, own),
+          0.5 * sum + program_.pull_value(own) + program_.forces().cost(problem, motion, effort)};
 }
 
 void InverseController::accept(const StepProblem& problem, const Response& response,
-                               const VectorX& motion, std::span<const double> effort) {
+                               const VectorX& motion, std::span<const double> own,
+                               std::span<const double> effort) {
   tried_ = true;
-  last_choice_ = Eigen::Map<const VectorX>(effort.data(), std::ssize(effort));
-  for (std::size_t k = 0; k < effort.size(); ++k) {
+  last_choice_ = Eigen::Map<const VectorX>(own.data(), std::ssize(own));
+  for (std::size_t k = 0; k < own.size(); ++k) {
     const auto place = std::ranges::find(settings_.actuators, response.controlled()[k]);
-    efforts_[place - settings_.actuators.begin()] = effort[k];
+    efforts_[place - settings_.actuators.begin()] = own[k];
   }
+  measure_forces(problem, motion, effort);
   const double moved = foresee(problem, response, motion);
-  status_ = conflict().empty() ? judge(problem, response, motion, effort, moved)
+  status_ = conflict().empty() ? judge(problem, response, motion, own, moved)
                                : InverseStatus::limits_conflict;
+}
+
+void InverseController::measure_forces(const StepProblem& problem, const VectorX& motion,
+                                       std::span<const double> effort) {
+  for (std::size_t k = 0; k < force_errors_.size(); ++k) {
+    force_errors_[k] = program_.forces().miss(k, problem, motion, effort);
+  }
+}
+
+bool InverseController::forces_hold() const {
+  for (std::size_t k = 0; k < force_errors_.size(); ++k) {
+    const ContactTask& task = settings_.contacts[k];
+    const double asked = task.normal_min > 0.0 ? task.normal_min : task.normal_max;
+    if (std::isfinite(asked) && force_errors_[k] > kForceTolerance * asked) return false;
+    if (!std::isfinite(asked) && force_errors_[k] > 0.0) return false;
+  }
+  return true;
 }
 
 // What the linearisation says of the step's end: the gaps that stay, and the farthest that an
@@ -223,7 +257,7 @@ double InverseController::foresee(const StepProblem& problem, const Response& re
 InverseStatus InverseController::judge(const StepProblem& problem, const Response& response,
                                        const VectorX& motion, std::span<const double> effort,
                                        double moved) const {
-  if (predicted_error_ <= settings_.tolerance) {
+  if (predicted_error_ <= settings_.tolerance && forces_hold()) {
     return surprise_ <= settings_.tolerance ? InverseStatus::on_target : InverseStatus::moving;
   }
   if (rate_binds(problem, response, motion, effort)) return InverseStatus::rate_limited;

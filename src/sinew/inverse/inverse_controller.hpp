@@ -21,6 +21,7 @@ namespace sinew::inverse {
 /// with e the rows of effectors, a those of actuators, Q the weights and |x|_Q^2 = x^T Q x,
 ///   min  1/2 |W_ea lambda + delta_e - target|_Q^2 + eps/2 |lambda - lambda_0|_R^2
 ///   s.t. limits on lambda, and on delta_a = delta_free + W_aa lambda, rates folded in,
+/// and those of contact forces (ForceRows), which come first,
 /// where lambda_0 is the last step's effort (Regularisation::change) or zero, and R is W_aa with a
 /// millionth of its diagonal added: cables on one path, which W_aa cannot tell apart, share their
 /// changes evenly. StepDamping adds a term that keeps lambda near the last step's where the robot
@@ -45,6 +46,7 @@ class InverseController : public step::Controller {
   void set_target(int task, Target target);
 
   const InverseSettings& settings() const { return settings_; }
+  const sim::Simulation& simulation() const { return simulation_; }
   InverseStatus status() const { return status_; }
   /// Efforts (actuators,) N that the controller chose last, in the order of settings().actuators.
   const VectorX& efforts() const { return efforts_; }
@@ -53,6 +55,9 @@ class InverseController : public step::Controller {
   double error(int task) const;
   /// The largest error() of all tasks.
   double error() const;
+  /// N: by how much the forces of a contact are beyond what is asked of them, by the last step's
+  /// linearisation; NaN before a step. @param task position in settings().contacts.
+  double force_error(int task) const { return force_errors_.at(static_cast<std::size_t>(task)); }
   /// What the last step's linearisation left, m or rad, all tasks together; NaN before a step.
   double predicted_error() const { return predicted_error_; }
   /// With limits-conflict: which limits of which actuators contradict each other. Else empty.
@@ -65,11 +70,12 @@ class InverseController : public step::Controller {
   std::span<const double> guard_multipliers() const override {
     return program_.guard_multipliers();
   }
-  Merit merit(const step::StepProblem& problem, const VectorX& motion,
+  Merit merit(const step::StepProblem& problem, const VectorX& motion, std::span<const double> own,
               std::span<const double> effort) const override;
   double negligible_gain() const override { return negligible_objective(); }
   void accept(const step::StepProblem& problem, const step::Response& response,
-              const VectorX& motion, std::span<const double> effort) override;
+              const VectorX& motion, std::span<const double> own,
+              std::span<const double> effort) override;
   void begin_step() override;
   std::size_t memory_size() const override;
   void save_memory(std::span<double> memory) const override;
@@ -89,6 +95,10 @@ class InverseController : public step::Controller {
                  const VectorX& motion);
   bool rate_binds(const step::StepProblem& problem, const step::Response& response,
                   const VectorX& motion, std::span<const double> effort) const;
+  void measure_forces(const step::StepProblem& problem, const VectorX& motion,
+                      std::span<const double> effort);
+  bool forces_hold() const;
+  double largest_step(const step::StepProblem& problem) const;
   InverseStatus judge(const step::StepProblem& problem, const step::Response& response,
                       const VectorX& motion, std::span<const double> effort, double moved) const;
 
@@ -108,6 +118,7 @@ class InverseController : public step::Controller {
   EffortProgram program_;
   VectorX efforts_;
   double predicted_error_ = std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> force_errors_;  // (contacts,)
   InverseStatus status_ = InverseStatus::not_started;
 
   double time_ = -std::numeric_limits<double>::infinity();  // the end of the step at hand, s

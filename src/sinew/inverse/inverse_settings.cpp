@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "sinew/constraint/contact.hpp"
 #include "sinew/constraint/effector.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/sim/model.hpp"
@@ -15,6 +16,48 @@ namespace {
 
 // In sizes of the robot.
 constexpr double kFarthest = 100.0;
+// Later ones would drown in rounding.
+constexpr int kLastPriority = 3;
+
+void check_contact(const sim::Model& model, const ContactTask& task) {
+  const auto& contact = model.contact(task.contact);
+  const Location place{.item = "contact '" + contact.name() + "'"};
+  if (!(task.normal_min >= 0.0) || !std::isfinite(task.normal_min)) {
+    throw Error(ErrorKind::out_of_range, place,
+                fmt::format("a normal force of {:g} N is asked for: contacts push and do not pull",
+                            task.normal_min),
+                "give 0 N or more");
+  }
+  if (!(task.normal_max >= task.normal_min) || !(task.normal_max > 0.0)) {
+    throw Error(ErrorKind::out_of_range, place,
+                fmt::format("the largest normal force asked for, {:g} N, is not above the least, "
+                            "{:g} N, and above 0 N",
+                            task.normal_max, task.normal_min),
+                "give min below max; both the same ask for one force");
+  }
+  if (!task.reserve) return;
+  if (!(*task.reserve >= 0.0) || !(*task.reserve < 1.0)) {
+    throw Error(ErrorKind::out_of_range, place,
+                fmt::format("a reserve of {:g} of the friction is asked for", *task.reserve),
+                "give a number from 0 to below 1");
+  }
+  if (contact.friction().sticking > 0.0) return;
+  throw Error(ErrorKind::out_of_range, place,
+              "it is not to slip, and has no friction that would hold it",
+              "give the contact a friction coefficient, or let it slip");
+}
+
+void check_contacts(const sim::Model& model, const std::vector<ContactTask>& tasks) {
+  for (std::size_t k = 0; k < tasks.size(); ++k) {
+    check_contact(model, tasks[k]);
+    for (std::size_t j = 0; j < k; ++j) {
+      if (tasks[j].contact != tasks[k].contact) continue;
+      const std::string& name = model.contact(tasks[k].contact).name();
+      throw Error(ErrorKind::duplicate_key, {.item = "contact '" + name + "'"},
+                  "its force is asked for twice", "name each contact once");
+    }
+  }
+}
 
 }  // namespace
 
@@ -34,10 +77,11 @@ void check_target(const sim::Simulation& simulation, int effector, const Target&
 
 void check_settings(const sim::Simulation& simulation, InverseSettings& settings) {
   const sim::Model& model = simulation.model();
-  if (settings.tasks.empty()) {
+  if (settings.tasks.empty() && settings.contacts.empty()) {
     throw Error(ErrorKind::no_effectors, {.item = "controller"}, "there is no effector to steer",
-                "name at least one effector and its target");
+                "name at least one effector and its target, or a contact and its force");
   }
+  check_contacts(model, settings.contacts);
   if (settings.actuators.empty()) {
     for (std::size_t i = 0; i < model.actuators().size(); ++i) {
       if (model.actuators()[i].controllable()) settings.actuators.push_back(static_cast<int>(i));
@@ -70,6 +114,11 @@ void check_settings(const sim::Simulation& simulation, InverseSettings& settings
       throw Error(ErrorKind::wrong_length, {.item = "weights of '" + effector.name() + "'"},
                   fmt::format("{} weights for {} directions", given, effector.row_count()),
                   "give one weight, or one for each direction");
+    }
+    if (task.priority < 1 || task.priority > kLastPriority) {
+      throw Error(ErrorKind::out_of_range, {.item = "priority of '" + effector.name() + "'"},
+                  fmt::format("it is {}", task.priority),
+                  fmt::format("give 1 (first) to {}", kLastPriority));
     }
     for (const double weight : task.weights) {
       if (!(weight >= 0.0) || !std::isfinite(weight)) {

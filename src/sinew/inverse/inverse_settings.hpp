@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "sinew/inverse/contact_task.hpp"
 #include "sinew/inverse/target.hpp"
 
 namespace sinew::sim {
@@ -24,8 +25,14 @@ struct Task {
   Target target;
   /// One for all rows of the effector, or one each; >= 0. Squared distances are multiplied by it.
   std::vector<double> weights = {1.0};
+  /// 1 comes first. Squared distances of each later one weigh kLaterPriority of those before: what
+  /// it lacks moves a target of the one before by about that part of it, times how much farther it
+  /// moves than that.
+  int priority = 1;
 
-  /// Of a row of the effector.
+  static constexpr double kLaterPriority = 1e-4;
+
+  /// Of a row of the effector, within its priority.
   double weight(Eigen::Index row) const {
     return weights[weights.size() == 1 ? 0 : static_cast<std::size_t>(row)];
   }
@@ -33,6 +40,7 @@ struct Task {
 
 struct InverseSettings {
   std::vector<Task> tasks;
+  std::vector<ContactTask> contacts;
   std::vector<int> actuators;  ///< that the controller owns; empty: all
   Regularisation regularisation = Regularisation::change;
   /// eps = epsilon |W_ea^T Q W_ea|_inf / |W_aa|_inf weighs the regularisation (Coevoet, Escande and
@@ -49,8 +57,8 @@ struct InverseSettings {
 };
 
 /// Names all actuators that a controller may own where the settings name none, and checks the rest.
-/// Throws Error: no-effectors, no-actuators, wrong-actuator-type, wrong-length (weights),
-/// out-of-range, suspicious-unit.
+/// Throws Error: no-effectors (and no contacts), no-actuators, wrong-actuator-type, wrong-length
+/// (weights), out-of-range, duplicate-key (a contact twice), suspicious-unit.
 void check_settings(const sim::Simulation& simulation, InverseSettings& settings);
 
 /// Throws Error(suspicious-unit) for a position farther from the effector than a hundred sizes of

@@ -21,7 +21,12 @@ SceneController controller_of(const ControllerDescription& description, const si
   SceneController controller{description.name, {}};
   auto& settings = controller.settings;
   for (const TaskDescription& task : description.tasks) {
-    settings.tasks.push_back({model.effector_index(task.effector), task.target, task.weights});
+    settings.tasks.push_back(
+        {model.effector_index(task.effector), task.target, task.weights, task.priority});
+  }
+  for (const ContactTaskDescription& task : description.contacts) {
+    settings.contacts.push_back(task.asked);
+    settings.contacts.back().contact = model.contact_index(task.contact);
   }
   for (const std::string& name : description.actuators) {
     settings.actuators.push_back(model.actuator_index(name));

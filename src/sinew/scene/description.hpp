@@ -343,6 +343,14 @@ struct TaskDescription {
   Location place;
   inverse::Target target;               ///< m; for an orientation effector a rotation vector (rad)
   std::vector<double> weights = {1.0};  ///< one for all, or one per direction of the effector; >= 0
+  int priority = 1;
+};
+
+/// What a controller asks of the forces of one contact.
+struct ContactTaskDescription {
+  std::string contact;
+  Location place;
+  inverse::ContactTask asked;  ///< its contact's number is not known yet
 };
 
 struct ControllerDescription {
@@ -351,6 +359,7 @@ struct ControllerDescription {
   std::vector<std::string> actuators;  ///< empty: all
   std::vector<Location> actuator_places;
   std::vector<TaskDescription> tasks;
+  std::vector<ContactTaskDescription> contacts;
   Regularisation regularisation = Regularisation::change;
   std::optional<double> epsilon;  ///< relative weight of the regularisation; none: the engine's
 };

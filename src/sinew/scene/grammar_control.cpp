@@ -176,8 +176,50 @@ Form task_form() {
                  .example = "1 1 0.1",
                  .default_text = "1",
                  .description =
-                     "Weight of its error: one number, or one for each of its directions."}},
+                     "Weight of its error: one number, or one for each of its directions."},
+                {.name = "priority",
+                 .forms = {integer(1, 3)},
+                 .example = "2",
+                 .default_text = "1",
+                 .description = "1 comes first. What an effector lacks moves one of the priority "
+                                "before by about 1e-4 of it."}},
        .alternatives = {{{"target", "rotation"}, true}}}));
+}
+
+std::shared_ptr<const KeyTable> normal_force_table() {
+  return make_table({.name = "normal force of a contact",
+                     .description = "Limits of the sum over the contact's points.",
+                     .keys = {{.name = "min",
+                               .forms = {quantity(force(), non_negative())},
+                               .example = "1 N",
+                               .default_text = "0 N",
+                               .description = "The least."},
+                              {.name = "max",
+                               .forms = {quantity(force(), positive())},
+                               .example = "3 N",
+                               .description = "The largest. Without: none."}}});
+}
+
+Form contact_task_form() {
+  return table(make_table(
+      {.name = "forces asked of a contact",
+       .description = "Forces of all points of one contact together. They come before targets.",
+       .keys = {{.name = "normal_force",
+                 .forms = {quantity(force(), positive()), table(normal_force_table())},
+                 .example = "{min: 1 N, max: 3 N}",
+                 .description = "The normal force, or its limits."},
+                {.name = "slip",
+                 .forms = {boolean()},
+                 .example = "false",
+                 .default_text = "true",
+                 .description =
+                     "Whether the contact may slip. If not, its resultant stays in its cone."},
+                {.name = "reserve",
+                 .forms = {quantity(plain_number(), non_negative())},
+                 .example = "0.2",
+                 .default_text = "0",
+                 .description = "Part of the friction cone that is left: |F_t| <= (1 - reserve) "
+                                "mu F_n. Less than 1."}}}));
 }
 
 std::shared_ptr<const KeyTable> regularisation_table() {
@@ -239,8 +281,11 @@ Form controller_form() {
                   .keys = {{.name = "effectors",
                             .forms = {names(task_form(), 1, "effectors")},
                             .example = "{tip: {target: 0 0 190 mm}}",
-                            .description = "Target of each effector, by name.",
-                            .required = true},
+                            .description = "Target of each effector, by name."},
+                           {.name = "contacts",
+                            .forms = {names(contact_task_form(), 1, "contacts")},
+                            .example = "{grip: {normal_force: {min: 1 N, max: 3 N}}}",
+                            .description = "What is asked of the forces of contacts, by name."},
                            {.name = "actuators",
                             .forms = {list({reference("actuators")})},
                             .example = "[long_0, long_1]",

@@ -84,6 +84,7 @@ TaskDescription read_task(const Node::Entry& entry, const Form& form, const Read
   const char* key = target_key(fields, *effector);
   task.target = read_target(fields, key, context);
   fields.read_numbers("weight", task.weights);
+  fields.read("priority", task.priority);
   const auto directions = static_cast<std::size_t>(effector->directions.rows());
   if (task.weights.size() != 1 && task.weights.size() != directions) {
     throw Error(ErrorKind::wrong_length, fields.place("weight"),
@@ -91,6 +92,40 @@ TaskDescription read_task(const Node::Entry& entry, const Form& form, const Read
                             directions, directions == 1 ? "" : "s", effector->name),
                 "give one weight, or one for each direction");
   }
+  return task;
+}
+
+ContactTaskDescription read_contact_task(const Node::Entry& entry, const Form& form) {
+  ContactTaskDescription task;
+  task.contact = entry.key;
+  task.place = entry.key_place;
+  const Fields fields(entry.value, form);
+  inverse::ContactTask& asked = task.asked;
+  if (const Node* force = fields.find("normal_force")) {
+    if (fields.form("normal_force").shape == Shape::quantity) {
+      fields.read("normal_force", asked.normal_min);
+      asked.normal_max = asked.normal_min;
+    } else {
+      const Fields limits = fields.below("normal_force");
+      limits.read("min", asked.normal_min);
+      limits.read("max", asked.normal_max);
+      if (asked.normal_max < asked.normal_min) {
+        throw Error(
+            ErrorKind::contradictory_limits, force->place(),
+            fmt::format("min, {:g} N, is above max, {:g} N", asked.normal_min, asked.normal_max),
+            "swap them");
+      }
+    }
+  }
+  bool slip = true;
+  double reserve = 0.0;
+  fields.read("slip", slip);
+  const bool reserved = fields.read("reserve", reserve);
+  if (reserved && !(reserve < 1.0)) {
+    throw Error(ErrorKind::out_of_range, fields.place("reserve"),
+                fmt::format("{:g} leaves no friction", reserve), "give a number below 1");
+  }
+  if (reserved || !slip) asked.reserve = reserve;
   return task;
 }
 
@@ -127,9 +162,22 @@ ControllerDescription read_controller(const Node::Entry& entry, const ReadContex
   const Fields fields(entry.value, form);
   read_driven(fields, controller);
   read_regularisation(fields, controller);
-  const Form& tasks = fields.form("effectors");
-  for (const Node::Entry& task : fields.find("effectors")->entries()) {
-    controller.tasks.push_back(read_task(task, tasks.items.front(), context, scene));
+  if (const Node* effectors = fields.find("effectors")) {
+    const Form& tasks = fields.form("effectors").items.front();
+    for (const Node::Entry& task : effectors->entries()) {
+      controller.tasks.push_back(read_task(task, tasks, context, scene));
+    }
+  }
+  if (const Node* contacts = fields.find("contacts")) {
+    const Form& tasks = fields.form("contacts").items.front();
+    for (const Node::Entry& task : contacts->entries()) {
+      controller.contacts.push_back(read_contact_task(task, tasks));
+    }
+  }
+  if (controller.tasks.empty() && controller.contacts.empty()) {
+    throw Error(ErrorKind::missing_key, controller.place,
+                fmt::format("the controller '{}' steers nothing", controller.name),
+                "give it effectors and their targets, or contacts and their forces");
   }
   return controller;
 }

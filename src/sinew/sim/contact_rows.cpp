@@ -59,6 +59,7 @@ ContactRows::ContactRows(const Model& model, const constraint::Configuration& co
   for (std::size_t i = 0; i < model.contacts().size(); ++i) {
     const ContactModel& contact = model.contacts()[i];
     strikes_.push_back(contact.strikes ? 1 : 0);
+    wanted_.push_back(0);
     const constraint::Friction& friction = planes_.contacts()[i]->friction();
     has_kinetic_ |= friction.sliding < friction.sticking;
     surfaces_.push_back(planes_.shape(i) == nullptr ? (touching++)->get() : nullptr);
@@ -143,6 +144,8 @@ void ContactRows::choose_active(std::span<const double> effort, double time_step
       continue;
     }
     const bool always = !model_.body(contact.body()).leaves_rows_out();
+    const int wanted =
+        surfaces_[i] == nullptr && wanted_[i] != 0 ? nearest(contact, time_step) : -1;
     for (std::size_t k = 0; k < contact.size(); ++k) {
       const int row = contact.row(k);
       if (contact.idle(k, rows_)) {
@@ -150,7 +153,8 @@ void ContactRows::choose_active(std::span<const double> effort, double time_step
         continue;
       }
       const bool waits = surfaces_[i] != nullptr && surfaces_[i]->waits(k);
-      const bool active = always || effort[static_cast<std::size_t>(row)] > 0.0 ||
+      const bool active = always || static_cast<int>(k) == wanted ||
+                          effort[static_cast<std::size_t>(row)] > 0.0 ||
                           (!waits && arrival(contact, k, time_step) <= near);
       set_active(row, active);
       left_out_ |= !active;
@@ -158,6 +162,24 @@ void ContactRows::choose_active(std::span<const double> effort, double time_step
   }
   std::ranges::transform(effort, touched_.begin(), [](double r) { return r > 0.0 ? 1 : 0; });
   judge_sliding(effort, time_step);
+}
+
+void ContactRows::want(std::span<const int> contacts) {
+  std::ranges::fill(wanted_, 0);
+  for (const int contact : contacts) wanted_[static_cast<std::size_t>(contact)] = 1;
+}
+
+int ContactRows::nearest(const constraint::Contact& contact, double time_step) const {
+  int found = -1;
+  double least = kInfinity;
+  for (std::size_t k = 0; k < contact.size(); ++k) {
+    if (contact.idle(k, rows_)) continue;
+    const double gap = arrival(contact, k, time_step);
+    if (gap >= least) continue;
+    least = gap;
+    found = static_cast<int>(k);
+  }
+  return found;
 }
 
 double ContactRows::friction(const constraint::Contact& contact, std::size_t point) const {
@@ -241,11 +263,15 @@ void ContactRows::set_active(int row, bool active) {
 
 void ContactRows::list(const RowNumbering& numbering,
                        std::vector<step::ContactBlock>& blocks) const {
-  for_each_point([&](const constraint::Contact& contact, std::size_t k) {
-    const int row = contact.row(k), problem_row = numbering.problem_row_of(row);
-    if (problem_row < 0 || !rows_.groups.leads(row)) return;
-    blocks.push_back({problem_row, friction(contact, k)});
-  });
+  for (std::size_t i = 0; i < planes_.contacts().size(); ++i) {
+    const constraint::Contact& contact = *planes_.contacts()[i];
+    for (std::size_t k = 0; k < contact.size(); ++k) {
+      const int row = contact.row(k), problem_row = numbering.problem_row_of(row);
+      if (problem_row < 0 || !rows_.groups.leads(row)) continue;
+      blocks.push_back(
+          {problem_row, friction(contact, k), static_cast<int>(i), contact.frame(k, rows_)});
+    }
+  }
 }
 
 bool ContactRows::correct(const step::StepProblem& problem, const RowNumbering& numbering,

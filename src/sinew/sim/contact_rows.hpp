@@ -48,6 +48,9 @@ class ContactRows {
   /// Coulomb's coefficient of a point in the step: the kinetic one of what slid in the last step,
   /// or comes sliding. @param contact of planes().contacts(). @param point below its size().
   double friction(const constraint::Contact& contact, std::size_t point) const;
+  /// Of contacts with a shape the nearest point takes part, however far it is: a controller asks
+  /// for their forces. @param contacts positions in planes().contacts().
+  void want(std::span<const int> contacts);
   /// For a look at the present state: every point that a step has a use for takes part.
   void take_all();
   /// For an impact at the present state: the closed points of contacts that strike.
@@ -123,6 +126,7 @@ class ContactRows {
                      const step::StepProblem& problem, const RowNumbering& numbering,
                      const linalg::AlignedNumbers& effort);
   Vector3 proposed_position(const constraint::ShapeContact& contact, std::size_t point) const;
+  int nearest(const constraint::Contact& contact, double time_step) const;
   double arrival(const constraint::Contact& contact, std::size_t point, double time_step) const;
   bool has_zones() const;
   double fastest_node() const;
@@ -151,6 +155,7 @@ class ContactRows {
   std::vector<Vector3>
       along_;  // (rows,) where those slide to, of any length; empty: no such contact
   std::vector<char> strikes_;  // (contacts,)
+  std::vector<char> wanted_;   // (contacts,)
   std::vector<char> closed_;   // (rows,) normal rows of contacts that strike
 };
 

@@ -170,7 +170,28 @@ NewtonReport NewtonStep::stay(double time_step) {
   NewtonReport result = run_.newton(nullptr, settings(time_step));
   if (!converged(result)) result = approach(time_step);
   if (!converged(result)) result = descend(time_step, kMaxDescents);
+  if (goes_on(result) && !is_usable(result)) result = remain(time_step, result.iterations);
   run_.controller->load_memory(memory);
+  return result;
+}
+
+// The robot at the end of the last step, which was about to buckle and from where Newton leads
+// nowhere: as near to equilibrium as it was then.
+NewtonReport NewtonStep::remain(double time_step, int iterations) {
+  run_.restore(run_.before);
+  run_.begin_world(time_step);
+  World& world = run_.world;
+  const NewtonSettings how = settings(time_step);
+  world.linearise(how.request);
+  world.form_rows(run_.effort, how.geometric);
+  NewtonReport result;
+  result.status = NewtonStatus::stalled;
+  result.iterations = iterations;
+  result.residual = world.bodies().residual(run_.effort);
+  result.relative_residual = result.residual / (world.bodies().force_scale() + 1e-300);
+  result.violation = world.violation(run_.effort, result.law);
+  result.motion.finite = true;
+  result.motion.volume.ratio = run_.volume_ratio;
   return result;
 }
 

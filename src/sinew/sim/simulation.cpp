@@ -82,7 +82,8 @@ std::vector<double> Simulation::probe_values(int index) const {
 
 ContactReader Simulation::contacts() const { return ContactReader(*run_); }
 
-void Simulation::attach(step::Controller& controller, std::span<const int> actuators) {
+void Simulation::attach(step::Controller& controller, std::span<const int> actuators,
+                        std::span<const int> contacts) {
   if (model().step().event_driven()) {
     throw Error(ErrorKind::not_in_this_version, {.item = "controller"},
                 "event-driven integration makes parts of a step several times, which a controller "
@@ -95,12 +96,14 @@ void Simulation::attach(step::Controller& controller, std::span<const int> actua
   }
   run_->controller = &controller;
   run_->actuation.own(&controller, actuators);
+  run_->world.contacts().want(contacts);
 }
 
 void Simulation::detach(const step::Controller& controller) {
   if (run_->controller != &controller) return;
   run_->controller = nullptr;
   run_->actuation.release(&controller);
+  run_->world.contacts().want({});
 }
 
 const step::Controller* Simulation::attached_controller() const { return run_->controller; }

@@ -120,7 +120,9 @@ class Simulation {
   /// Gives a controller the actuators that it chooses efforts for, in every step until it is
   /// detached. One controller at a time. Throws Error(actuator-owned); Error(not-in-this-version)
   /// with event-driven integration.
-  void attach(step::Controller& controller, std::span<const int> actuators);
+  /// @param contacts whose forces it asks for, see ContactRows::want().
+  void attach(step::Controller& controller, std::span<const int> actuators,
+              std::span<const int> contacts = {});
   void detach(const step::Controller& controller);
   const step::Controller* attached_controller() const;
 

@@ -38,15 +38,16 @@ class Controller {
   /// unit that a guard gave way.
   virtual std::span<const double> guard_multipliers() const = 0;
   /// @param problem of the step. @param motion (rows,) delta at the end of the step.
-  /// @param effort (controlled,) N.
+  /// @param own (controlled,) N. @param effort (rows,) N, those among them.
   virtual Merit merit(const StepProblem& problem, const VectorX& motion,
-                      std::span<const double> effort) const = 0;
+                      std::span<const double> own, std::span<const double> effort) const = 0;
   /// A lesser gain of Merit::value is not worth a change of efforts.
   virtual double negligible_gain() const { return 0.0; }
   /// What came of choose(). @param motion (rows,) delta, as everything on the robot obeys its law.
-  /// @param problem,response,effort as for choose(); efforts may differ from those chosen.
+  /// @param problem,response as for choose(). @param own,effort as for merit(); they may differ
+  /// from those chosen.
   virtual void accept(const StepProblem& problem, const Response& response, const VectorX& motion,
-                      std::span<const double> effort) = 0;
+                      std::span<const double> own, std::span<const double> effort) = 0;
   /// Called before each step: what helped to solve the last one is forgotten, so that a step
   /// follows from state and inputs alone.
   virtual void begin_step() = 0;

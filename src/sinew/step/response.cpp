@@ -371,6 +371,19 @@ void Response::form_guards() {
   }
 }
 
+void Response::add_effort(int row, double factor, double& offset,
+                          Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> slope) const {
+  const auto at = static_cast<std::size_t>(row);
+  if (!follows(row)) {
+    offset += factor * effort_[at];
+    return;
+  }
+  const int unknown = unknown_of_[at];
+  const double unit = factor * scale_[unknown];
+  offset += unit * solved_(unknown, 0);
+  slope += unit * solved_.row(unknown).tail(slope.size());
+}
+
 void Response::add_held(int row, double motion, double compliance) {
   motion_terms_.push_back({row, 1.0});
   if (compliance != 0.0) effort_terms_.push_back({row, compliance});

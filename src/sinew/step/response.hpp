@@ -78,6 +78,15 @@ class Response {
   bool same_states() const { return states_ == states_before_; }
   /// Of all blocks that have one: actuators that are not controlled, capstans, contacts.
   std::span<const BlockState> states() const { return states_; }
+  /// Whether the effort of a row follows those of the controlled ones. @param row of the problem.
+  bool follows(int row) const {
+    return !unknown_of_.empty() && unknown_of_[static_cast<std::size_t>(row)] >= 0;
+  }
+  /// Adds a multiple of a row's effort, which is offset + slope . lambda_c.
+  /// @param row of the problem. @param factor of the effort. @param offset N. @param slope
+  /// (controlled,) 1.
+  void add_effort(int row, double factor, double& offset,
+                  Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> slope) const;
   /// Where blocks leave their states.
   std::span<const Guard> guards() const { return guards_; }
   /// (controlled,) sqrt(N m)/N: how the slack of a guard follows the controlled efforts.

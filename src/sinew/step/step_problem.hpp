@@ -74,7 +74,9 @@ struct GuideTension {
 /// quasi-static step that of incremental friction.
 struct ContactBlock {
   int row = -1;
-  double friction = 0.0;  ///< Coulomb's coefficient, >= 0
+  double friction = 0.0;                ///< Coulomb's coefficient, >= 0
+  int contact = -1;                     ///< which contact of the robot the point is of
+  Matrix3 frame = Matrix3::Identity();  ///< normal and tangents, columns, in the world's axes
 };
 
 /// A row that holds its motion whatever effort that takes: part of a joint or a tie.

@@ -69,7 +69,7 @@ LawStatus StepSolver::steer(const StepProblem& problem, Controller& controller,
     if (status == LawStatus::failed) return status;
   }
   measure_motion(problem, effort);
-  controller.accept(problem, response_, motion_, chosen_);
+  controller.accept(problem, response_, motion_, chosen_, effort);
   return status;
 }
 
@@ -78,7 +78,7 @@ LawStatus StepSolver::settle(const StepProblem& problem, Controller& controller,
                              std::span<double> effort) {
   own_efforts(problem, response_, effort, chosen_);
   measure_motion(problem, effort);
-  keep_place(controller.merit(problem, motion_, chosen_), effort);
+  keep_place(controller.merit(problem, motion_, chosen_, effort), effort);
   LawStatus status = LawStatus::solved;
   for (int round = 0; round < kMaxRounds; ++round) {
     double change = 0.0;
@@ -89,7 +89,7 @@ LawStatus StepSolver::settle(const StepProblem& problem, Controller& controller,
     const bool settled = response_.same_states() && (!response_.bends() || change <= kSettled);
     if (!settled && round + 1 < kMaxRounds) continue;
     measure_motion(problem, effort);
-    const Merit reached = controller.merit(problem, motion_, chosen_);
+    const Merit reached = controller.merit(problem, motion_, chosen_, effort);
     if (settled && !is_better(controller, merit_, reached)) return status;
     if (is_better(controller, reached, merit_)) keep_place(reached, effort);
     if (settled) break;
@@ -176,7 +176,7 @@ LawStatus StepSolver::take_over(const StepProblem& problem, Controller& controll
                                 std::span<double> effort) {
   held_ = chosen_;
   measure_motion(problem, effort);
-  const Merit held = controller.merit(problem, motion_, held_);
+  const Merit held = controller.merit(problem, motion_, held_, effort);
   double change = 0.0;
   response_.form(problem, effort, true);
   LawStatus status = choose(problem, controller, effort, change);
@@ -227,7 +227,7 @@ StepSolver::Merit StepSolver::try_efforts(const StepProblem& problem, const Cont
   }
   if (direct_.solve(problem, effort) == LawStatus::failed) return {kInfinity, kInfinity};
   measure_motion(problem, effort);
-  return controller.merit(problem, motion_, own);
+  return controller.merit(problem, motion_, own, effort);
 }
 
 bool StepSolver::is_better(const Controller& controller, const Merit& one, const Merit& other) {

@@ -1,0 +1,168 @@
+"""What controllers ask of contact forces, and the order of their targets."""
+
+import copy
+
+import numpy as np
+import pytest
+import sinew
+import yaml
+
+WALL = {"body": "finger", "friction": 0.4, "surface": {"plane": {"point": "12 0 0 mm", "normal": "-1 0 0"}}}
+
+
+@pytest.fixture
+def beside_a_wall(scene):
+    """The finger as a dict, a wall 2 mm beside it."""
+    tree = yaml.safe_load(scene.read_text())
+    tree["contacts"] = {"wall": dict(WALL)}
+    return tree
+
+
+def steer(tree, steps=60, **asked):
+    sim = sinew.load(tree)
+    ik = sinew.InverseController(sim, **asked)
+    ik.step(steps)
+    return sim, ik
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.4])
+@pytest.mark.parametrize(
+    "asked, least, most",
+    [(0.3, 0.3, 0.3), ({"min": 0.2, "max": 0.25}, 0.2, 0.25), ({"min": 0.4}, 0.4, 5.0), ({"max": 0.1}, 0.1, 0.1)],
+)
+def test_a_normal_force_is_as_asked(beside_a_wall, friction, asked, least, most):
+    beside_a_wall["contacts"]["wall"]["friction"] = friction
+    # The target alone would press with a force of its own.
+    target = {"tip": [0.0 if asked == {"min": 0.4} else 0.0035, 0.0, 0.079]}
+    sim, ik = steer(beside_a_wall, targets=target, contacts={"wall": {"normal_force": asked}})
+    found = sim.contact("wall").normal_force
+    assert least - 1e-5 <= found <= most + 1e-5
+    assert ik.force_errors["wall"] == pytest.approx(0.0, abs=1e-5)
+    # The same tensions without a controller: the law gives the same force.
+    efforts = dict(zip(ik.actuators, ik.efforts))
+    ik.detach()
+    for name, effort in efforts.items():
+        if name == "push":
+            sim.actuator(name).force = effort
+        else:
+            sim.actuator(name).tension = effort
+    sim.step(10)
+    assert sim.contact("wall").normal_force == pytest.approx(found, abs=1e-6)
+
+
+@pytest.mark.parametrize("x, least, most", [(0.0035, 0.5, 50.0), (0.0, 0.0, 0.0)])
+def test_without_a_task_the_force_is_another(beside_a_wall, x, least, most):
+    sim, _ = steer(beside_a_wall, targets={"tip": [x, 0.0, 0.079]})
+    assert least <= sim.contact("wall").normal_force <= most
+
+
+def test_a_force_is_asked_without_targets(beside_a_wall):
+    sim, ik = steer(beside_a_wall, contacts={"wall": {"normal_force": 0.2}})
+    assert sim.contact("wall").normal_force == pytest.approx(0.2, abs=1e-5)
+    assert ik.status == "on-target"
+
+
+def worst_share(tree, reserve):
+    """The largest |F_t| / (mu F_n) while the target moves along the wall under a grip of 0.3 N."""
+    sim = sinew.load(tree)
+    contacts = {"wall": {"normal_force": {"min": 0.3}}}
+    if reserve is not None:
+        contacts["wall"]["reserve"] = reserve
+    ik = sinew.InverseController(sim, targets={"tip": [0.003, 0.0, 0.079]}, contacts=contacts)
+    ik.step(40)
+    worst = 0.0
+    for step in range(40):
+        ik.targets["tip"] = [0.003, 0.0001 * step, 0.079]
+        ik.step()
+        contact = sim.contact("wall")
+        worst = max(worst, np.linalg.norm(contact.force[1:]) / (0.4 * contact.normal_force))
+    return worst
+
+
+def test_a_reserve_keeps_the_resultant_inside_its_cone(beside_a_wall):
+    assert worst_share(beside_a_wall, None) > 0.95
+    for reserve in (0.1, 0.3, 0.6):
+        # The octagon's corners lie on the cone that is asked for, its sides 8 % inside.
+        assert 0.5 * (1 - reserve) < worst_share(beside_a_wall, reserve) < (1 - reserve) * (1 + 1e-3)
+
+
+def test_scene_and_python_ask_the_same(beside_a_wall):
+    asked = {"normal_force": {"min": 0.2, "max": 0.3}, "slip": False, "reserve": 0.2}
+    _, from_python = steer(beside_a_wall, targets={"tip": [0.003, 0.001, 0.079]}, contacts={"wall": asked})
+    tree = copy.deepcopy(beside_a_wall)
+    tree["controllers"] = {
+        "hold": {
+            "type": "inverse",
+            "effectors": {"tip": {"target": "3 1 79 mm", "priority": 1}},
+            "contacts": {"wall": {"normal_force": {"min": "200 mN", "max": "0.3 N"}, "slip": False, "reserve": 0.2}},
+        }
+    }
+    sim = sinew.load(tree)
+    sim.step(60)
+    assert np.array_equal(sim.controller.efforts, from_python.efforts)
+    assert sim.controller.force_errors.keys() == {"wall"}
+
+
+def test_states_clones_and_threads_give_the_same_bits(beside_a_wall):
+    asked = dict(targets={"tip": [0.003, 0.001, 0.079]}, contacts={"wall": {"normal_force": 0.3, "reserve": 0.2}})
+    sim, _ = steer(beside_a_wall, steps=15, **asked)
+    state = sim.state()
+    sim.step(20)
+    after = sim.state_hash
+    sim.restore(state)
+    other = sim.clone()
+    sim.step(20)
+    other.step(20)
+    assert sim.state_hash == after == other.state_hash
+    again, _ = steer({**beside_a_wall, "solver": {**beside_a_wall.get("solver", {}), "threads": 2}}, steps=35, **asked)
+    assert np.array_equal(again.body("finger").positions, sim.body("finger").positions)
+
+
+def test_a_later_priority_gives_way(beside_a_wall):
+    tree = beside_a_wall
+    del tree["contacts"]
+    tree["effectors"]["middle"] = {"body": "finger", "point": "0 0 40 mm"}
+    targets = {"tip": [0.004, 0.0, 0.079], "middle": [-0.003, 0.0, 0.04]}
+    errors = {}
+    for name, order in {"none": None, "tip": {"middle": 2}, "middle": {"tip": 2}}.items():
+        _, ik = steer(tree, steps=600, targets=targets, priorities=order)
+        errors[name] = ik.errors
+    assert errors["none"]["tip"] > 1e-4 and errors["none"]["middle"] > 1e-3
+    # Least squares with weights 1 and 1e-4: the errors' ratio falls by that, times that of the errors that give way.
+    assert errors["tip"]["tip"] < 1e-2 * errors["none"]["tip"]
+    assert errors["middle"]["middle"] < 0.1 * errors["none"]["middle"]
+
+
+@pytest.mark.parametrize(
+    "asked, kind",
+    [
+        ({"wall": {"normal_force": -1.0}}, "out-of-range"),
+        ({"wall": {"normal_force": {"min": 2.0, "max": 1.0}}}, "out-of-range"),
+        ({"wall": {"normal_force": {"least": 2.0}}}, "unknown-key"),
+        ({"wall": {"reserve": 1.0}}, "out-of-range"),
+        ({"wall": {"grip": 1.0}}, "unknown-key"),
+        ({"floor": {"normal_force": 1.0}}, "unknown-name"),
+        ({"wall": {"normal_force": float("nan")}}, "not-finite"),
+    ],
+)
+def test_bad_tasks_are_named(beside_a_wall, asked, kind):
+    sim = sinew.load(beside_a_wall)
+    with pytest.raises(sinew.Error) as caught:
+        sinew.InverseController(sim, contacts=asked)
+    assert caught.value.kind == kind
+
+
+def test_no_friction_cannot_keep_from_slipping(beside_a_wall):
+    beside_a_wall["contacts"]["wall"]["friction"] = 0
+    with pytest.raises(sinew.Error, match="no friction"):
+        sinew.InverseController(sinew.load(beside_a_wall), contacts={"wall": {"slip": False}})
+
+
+def test_a_controller_that_steers_nothing_says_so(beside_a_wall):
+    with pytest.raises(sinew.Error) as caught:
+        sinew.InverseController(sinew.load(beside_a_wall), targets={})
+    assert caught.value.kind == "no-effectors"
+    beside_a_wall["controllers"] = {"hold": {"type": "inverse"}}
+    with pytest.raises(sinew.Error) as caught:
+        sinew.load(beside_a_wall)
+    assert caught.value.kind == "missing-key"

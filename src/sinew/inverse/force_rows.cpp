@@ -1,0 +1,166 @@
+#include "sinew/inverse/force_rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "sinew/step/response.hpp"
+#include "sinew/step/step_problem.hpp"
+
+namespace sinew::inverse {
+
+namespace {
+
+using step::BlockState;
+using step::ContactBlock;
+using step::Response;
+using step::StepProblem;
+
+// Of the largest weight of a target: a target that lacks 1 mm moves a force by what moves its
+// point by 0.1 um.
+constexpr double kForceWeight = 1e4;
+constexpr int kSides = 8;  // of the polygon in a friction cone
+
+double beyond(double value, double lower, double upper) {
+  return std::max({0.0, lower - value, value - upper});
+}
+
+}  // namespace
+
+ForceRows::ForceRows(std::vector<ContactTask> tasks, double weight)
+    : tasks_(std::move(tasks)), references_(tasks_.size()), weight_(kForceWeight * weight) {
+  Eigen::Index rows = 0;
+  for (const ContactTask& task : tasks_) {
+    first_.push_back(rows);
+    rows += 1 + (task.reserve ? kSides : 0);
+  }
+  offset_.setZero(rows);
+  lower_.setConstant(rows, -kInfinity);
+  upper_.setConstant(rows, kInfinity);
+}
+
+// The point that carries most, or the nearest.
+void ForceRows::choose_reference(const StepProblem& problem, std::size_t task) {
+  Reference& reference = references_[task];
+  reference = {};
+  double best = -kInfinity;
+  for (const ContactBlock& block : problem.contacts) {
+    const double own = problem.compliance(block.row, block.row);
+    if (block.contact != tasks_[task].contact || !(own > 0.0)) continue;
+    const double force = problem.effort_before[static_cast<std::size_t>(block.row)];
+    const double pressed = force > 0.0 ? force : -std::max(0.0, problem.delta[block.row]) / own;
+    if (reference.row >= 0 && pressed <= best) continue;
+    best = pressed;
+    reference = {block.row, own, block.friction, block.frame};
+  }
+}
+
+void ForceRows::begin(const StepProblem& problem, double largest) {
+  for (std::size_t task = 0; task < tasks_.size(); ++task) {
+    choose_reference(problem, task);
+    const Reference& reference = references_[task];
+    const Eigen::Index first = first_[task];
+    if (tasks_[task].reserve) upper_.segment(first + 1, kSides).setConstant(0.0);
+    if (reference.row < 0) continue;
+    const double now =
+        reference.compliance * normal_force(task, problem, problem.delta, problem.effort_before);
+    lower_[first] = std::min(reference.compliance * tasks_[task].normal_min, now + largest);
+    upper_[first] = std::max(reference.compliance * tasks_[task].normal_max, now - largest);
+    // Nobody pulls at an open contact that is asked for nothing.
+    if (!(tasks_[task].normal_min > 0.0)) lower_[first] = -kInfinity;
+  }
+}
+
+// An outward normal of a side of the cone: what it gives with a force is to be negative.
+Vector3 ForceRows::cone_side(std::size_t task, int side) const {
+  const Reference& reference = references_[task];
+  const double angle = 2.0 * std::numbers::pi * side / kSides;
+  const double grip = (1.0 - tasks_[task].reserve.value_or(0.0)) * reference.friction *
+                      std::cos(std::numbers::pi / kSides);
+  return std::cos(angle) * reference.frame.col(1) + std::sin(angle) * reference.frame.col(2) -
+         grip * reference.frame.col(0);
+}
+
+void ForceRows::form(const StepProblem& problem, const Response& response) {
+  slope_.setZero(count(), response.compliance().cols());
+  offset_.setZero();
+  for (std::size_t task = 0; task < tasks_.size(); ++task) {
+    const Reference& reference = references_[task];
+    if (reference.row < 0) continue;
+    const Eigen::Index first = first_[task];
+    bool closed = false;
+    for (const ContactBlock& block : problem.contacts) {
+      if (block.contact != tasks_[task].contact || !response.follows(block.row)) continue;
+      closed = true;
+      response.add_effort(block.row, reference.compliance, offset_[first], slope_.row(first));
+      if (!tasks_[task].reserve) continue;
+      for (int side = 0; side < kSides; ++side) {
+        const Vector3 along =
+            reference.compliance * block.frame.transpose() * cone_side(task, side);
+        for (int k = 0; k < 3; ++k) {
+          response.add_effort(block.row + k, along[k], offset_[first + 1 + side],
+                              slope_.row(first + 1 + side));
+        }
+      }
+    }
+    if (closed) continue;
+    offset_[first] = -response.free()[reference.row];
+    slope_.row(first) = -response.compliance().row(reference.row);
+  }
+}
+
+double ForceRows::normal_force(std::size_t task, const StepProblem& problem, const VectorX& motion,
+                               std::span<const double> effort) const {
+  double sum = 0.0;
+  for (const ContactBlock& block : problem.contacts) {
+    if (block.contact != tasks_[task].contact) continue;
+    sum += effort[static_cast<std::size_t>(block.row)];
+  }
+  const Reference& reference = references_[task];
+  return sum > 0.0 || reference.row < 0 ? sum : -motion[reference.row] / reference.compliance;
+}
+
+Vector3 ForceRows::resultant(std::size_t task, const StepProblem& problem,
+                             std::span<const double> effort) const {
+  Vector3 sum = Vector3::Zero();
+  for (const ContactBlock& block : problem.contacts) {
+    if (block.contact != tasks_[task].contact) continue;
+    sum += block.frame * Eigen::Map<const Vector3>(&effort[static_cast<std::size_t>(block.row)]);
+  }
+  return sum;
+}
+
+double ForceRows::cost(const StepProblem& problem, const VectorX& motion,
+                       std::span<const double> effort) const {
+  double sum = 0.0;
+  for (std::size_t task = 0; task < tasks_.size(); ++task) {
+    const double yields = references_[task].compliance;
+    if (references_[task].row < 0) continue;
+    const Eigen::Index first = first_[task];
+    const double normal = yields * normal_force(task, problem, motion, effort);
+    const double off = beyond(normal, lower_[first], upper_[first]);
+    sum += off * off;
+    if (!tasks_[task].reserve) continue;
+    const Vector3 force = resultant(task, problem, effort);
+    for (int side = 0; side < kSides; ++side) {
+      const double over = std::max(0.0, yields * cone_side(task, side).dot(force));
+      sum += over * over;
+    }
+  }
+  return 0.5 * weight_ * sum;
+}
+
+double ForceRows::miss(std::size_t task, const StepProblem& problem, const VectorX& motion,
+                       std::span<const double> effort) const {
+  const ContactTask& asked = tasks_[task];
+  const double normal = std::max(0.0, normal_force(task, problem, motion, effort));
+  double off = beyond(normal, asked.normal_min, asked.normal_max);
+  if (!asked.reserve || references_[task].row < 0) return off;
+  const Reference& reference = references_[task];
+  const Vector3 force = reference.frame.transpose() * resultant(task, problem, effort);
+  return std::max(off,
+                  force.tail<2>().norm() - (1.0 - *asked.reserve) * reference.friction * force[0]);
+}
+
+}  // namespace sinew::inverse
