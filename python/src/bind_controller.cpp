@@ -174,8 +174,9 @@ Controller make(const std::shared_ptr<Session>& session, const py::object& targe
                 const py::object& actuators, const py::object& weights,
                 const std::string& regularisation, const py::object& epsilon,
                 const py::object& tolerance, const py::object& largest_step,
-                const py::object& contacts, const py::object& priorities) {
+                const py::object& contacts, const py::object& priorities, bool certify) {
   InverseSettings settings;
+  settings.certify = certify;
   settings.tasks = to_tasks(session->model(), targets, weights);
   settings.contacts = to_contact_tasks(session->model(), contacts);
   set_priorities(session->model(), priorities, settings.tasks);
@@ -252,7 +253,7 @@ void bind_mapping(py::module_& module) {
 }
 
 constexpr const char* kControllerDoc =
-    R"(InverseController(sim, targets={}, *, actuators=None, weights=None, regularisation='change', epsilon=None, tolerance=None, largest_step=None, contacts=None, priorities=None)
+    R"(InverseController(sim, targets={}, *, actuators=None, weights=None, regularisation='change', epsilon=None, tolerance=None, largest_step=None, contacts=None, priorities=None, certify=False)
 --
 
 Finds the efforts that bring effectors to their targets, in every step.
@@ -288,6 +289,8 @@ contacts : dict, optional
 priorities : dict, optional
     Effector names to 1 (first, the default) to 3. An effector moves one of the priority before by
     about 1e-4 of what it lacks itself.
+certify : bool, optional
+    Whether to find out more of every choice, see `certificate`. Takes longer than the choice.
 
 Raises
 ------
@@ -302,7 +305,8 @@ void bind_methods(py::class_<Controller>& type) {
            py::arg("actuators") = py::none(), py::arg("weights") = py::none(),
            py::arg("regularisation") = "change", py::arg("epsilon") = py::none(),
            py::arg("tolerance") = py::none(), py::arg("largest_step") = py::none(),
-           py::arg("contacts") = py::none(), py::arg("priorities") = py::none())
+           py::arg("contacts") = py::none(), py::arg("priorities") = py::none(),
+           py::arg("certify") = false)
       .def(
           "step",
           [](const Controller& self, const py::object& n) {
@@ -386,6 +390,27 @@ void bind_results(py::class_<Controller>& type) {
                              }),
                              "dict: of every contact in `contacts`, by how much its forces are "
                              "beyond what is asked (N); NaN before a step.")
+      .def_property_readonly(
+          "certificate", guarded([](const InverseController& law) -> py::object {
+            const auto& found = law.certificate();
+            if (!found) return py::none();
+            py::dict all;
+            all["violation"] = found->violation;
+            all["stays"] = found->stays;
+            all["cold"] = found->cold;
+            all["between"] = found->between;
+            all["pieces"] = found->pieces;
+            all["stationarity"] = std::string(step::stationarity_name(found->stationarity));
+            all["best_nearby"] = found->best_nearby;
+            return all;
+          }),
+          "dict or None: with `certify`, what is known of the last choice, by its linearisation: "
+          "`violation` (m) of all laws; `stays` and `cold` (m), by how much the direct law, "
+          "started "
+          "there and started without forces, changes any motion; `between`, how many contacts, "
+          "cables or drives are at the limits of two states; `stationarity`, 'S', 'M', 'C', 'W' or "
+          "'none', by the multipliers on these; `best_nearby`, whether no piece that meets there "
+          "leads on: by 'S', or since all `pieces` (2^between) were compared.")
       .def_property_readonly("predicted_error", guarded([](const InverseController& law) {
                                return law.predicted_error();
                              }),

@@ -166,3 +166,22 @@ def test_a_controller_that_steers_nothing_says_so(beside_a_wall):
     with pytest.raises(sinew.Error) as caught:
         sinew.load(beside_a_wall)
     assert caught.value.kind == "missing-key"
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.4])
+def test_every_choice_has_a_certificate(beside_a_wall, friction):
+    beside_a_wall["contacts"]["wall"]["friction"] = friction
+    sim = sinew.load(beside_a_wall)
+    ik = sinew.InverseController(sim, targets={"tip": [0.0035, 0.0005, 0.079]}, certify=True)
+    assert ik.certificate is None
+    for _ in range(60):
+        ik.step()
+        found = ik.certificate
+        assert found["violation"] < 1e-8 and found["stays"] < 1e-8
+        if friction == 0.0:
+            assert found["cold"] < 1e-8
+    assert sim.contact("wall").normal_force > 0.1
+    assert found["best_nearby"] and found["stationarity"] == "S"
+    plain = sinew.load(beside_a_wall)
+    sinew.InverseController(plain, targets={"tip": [0.0035, 0.0005, 0.079]}).step(60)
+    assert plain.state_hash == sim.state_hash

@@ -1,8 +1,11 @@
 #include "sinew/step/response.hpp"
 
+#include <array>
+
 #include <gtest/gtest.h>
 
 #include "sinew/qp/quadratic_program.hpp"
+#include "sinew/step/certificate.hpp"
 #include "sinew/step/controller.hpp"
 #include "sinew/step/direct_solver.hpp"
 #include "sinew/step/step_solver.hpp"
@@ -47,7 +50,7 @@ TEST(Response, IsTheDerivativeOfTheDirectSolution) {
   Random random(11);
   constexpr double kStep = 1e-6;
   int compared = 0, skipped = 0;
-  for (int trial = 0; trial < 400; ++trial) {
+  for (int trial = 0; trial < 2000; ++trial) {
     const RandomProblem robot = random_problem(counts_beside_a_controller(random), random);
     std::vector<double> start(static_cast<std::size_t>(robot.problem.delta_free.size()), 0.0);
     for (int k = 0; k < kOwned; ++k) start[static_cast<std::size_t>(k)] = random.uniform(0.2, 1.0);
@@ -84,11 +87,11 @@ class Nearest : public Controller {
  public:
   explicit Nearest(VectorX goal) : goal_(std::move(goal)) {}
   void begin_choices(const StepProblem&, const Response&) override {}
-  LawStatus choose(const StepProblem&, const Response& response, bool guarded,
+  LawStatus choose(const StepProblem&, const Response& response, Guards guarded,
                    std::span<double> effort) override {
     const MatrixX rows = response.compliance().bottomRows(goal_.size());
     const VectorX gap = response.free().tail(goal_.size()) - goal_;
-    const auto guards = guarded ? static_cast<int>(response.guards().size()) : 0;
+    const auto guards = guarded != Guards::none ? static_cast<int>(response.guards().size()) : 0;
     auto program = qp::QuadraticProgram::sized(kOwned, guards);
     program.hessian = rows.transpose() * rows;
     program.gradient = rows.transpose() * gap;
@@ -96,6 +99,9 @@ class Nearest : public Controller {
       const auto number = static_cast<std::size_t>(g);
       program.rows.row(g) = response.guard_slope(number).transpose();
       program.row_lower[g] = -response.guards()[number].offset;
+      if (guarded == Guards::tight && response.guards()[number].tight) {
+        program.row_upper[g] = program.row_lower[g];
+      }
     }
     qp::QpSolver solver(kOwned, guards);
     const qp::QpResult& result = solver.solve(program);
@@ -160,13 +166,14 @@ TEST(StepSolver, AControllerReachesItsGoalThroughAnyBlocks) {
 // place, as a rule at that optimum.
 TEST(StepSolver, EndsWhereNoNeighbouringPieceServesBetter) {
   Random random(14);
-  constexpr int kTrials = 1000;
-  int global = 0, between = 0;
+  constexpr int kTrials = 1020;  // of which 20 have twelve contacts
+  int global = 0, between = 0, at_limits = 0;
+  std::array<int, 5> kinds{};
   double largest_loss = 0.0;
   for (int trial = 0; trial < kTrials; ++trial) {
     BlockCounts counts;
     counts.owned = kOwned;
-    counts.contacts = random.integer(1, 4);
+    counts.contacts = trial < 1000 ? random.integer(1, 4) : 12;
     counts.effectors = 2;
     RandomProblem robot = random_problem(counts, random);
     for (ContactBlock& contact : robot.problem.contacts) contact.friction = 0.0;
@@ -180,7 +187,9 @@ TEST(StepSolver, EndsWhereNoNeighbouringPieceServesBetter) {
     Response piece;
     piece.form(robot.problem, effort);
     const std::vector<BlockState> own(piece.states().begin(), piece.states().end());
-    double best = found, neighbour = found;
+    const Certificate certificate =
+        certify(robot.problem, controller, effort, {.tolerance = 1e-12});
+    double best = found, neighbour = found, nearby = found;
     std::vector<double> choice(kOwned);
     for (unsigned bits = 0; bits < 1U << own.size(); ++bits) {
       std::vector<BlockState> states(own.size());
@@ -190,7 +199,8 @@ TEST(StepSolver, EndsWhereNoNeighbouringPieceServesBetter) {
         changed += states[k] != own[k] ? 1 : 0;
       }
       piece.form_as(robot.problem, effort, states);
-      if (controller.choose(robot.problem, piece, true, choice) != LawStatus::solved) continue;
+      if (controller.choose(robot.problem, piece, Guards::kept, choice) != LawStatus::solved)
+        continue;
       best = std::min(best, controller.foreseen());
       // Of neighbours, those that begin where the solver ended.
       const bool begins_here = std::ranges::all_of(piece.guards(), [&](const Guard& guard) {
@@ -198,17 +208,97 @@ TEST(StepSolver, EndsWhereNoNeighbouringPieceServesBetter) {
         const VectorX at = Eigen::Map<const VectorX>(effort.data(), kOwned);
         return guard.offset + piece.guard_slope(number).dot(at) >= -1e-9;
       });
+      if (begins_here) nearby = std::min(nearby, controller.foreseen());
       if (begins_here && changed <= 1) neighbour = std::min(neighbour, controller.foreseen());
     }
     EXPECT_GE(neighbour, found - 1e-9 * (1.0 + found)) << trial;
+    EXPECT_LT(certificate.violation, 1e-8) << trial;
+    EXPECT_LT(certificate.stays, 1e-8) << trial;
+    EXPECT_LT(certificate.cold, 1e-8) << trial;  // a definite W without friction
+    ASSERT_NE(certificate.stationarity, Stationarity::none) << trial;
+    EXPECT_EQ(certificate.best_nearby, nearby >= found - 1e-8 * (1.0 + found)) << trial;
+    ++kinds[static_cast<std::size_t>(certificate.stationarity)];
+    if (certificate.between > 0) ++at_limits;
     if (best >= found - 1e-9 * (1.0 + found)) ++global;
     largest_loss = std::max(largest_loss, std::sqrt(2.0 * found) - std::sqrt(2.0 * best));
     if (controller.calls > 7) ++between;
   }
-  RecordProperty("global_of_1000", global);
+  RecordProperty("global_of_1020", global);
+
   RecordProperty("largest_loss", std::to_string(largest_loss));
   EXPECT_GE(global, kTrials * 95 / 100);
   EXPECT_GT(between, 20);
+  EXPECT_GT(at_limits, 20);
+  EXPECT_EQ(kinds.back(), kTrials);  // strongly stationary
+}
+
+// At the best place where no contact has a gap or a force, whatever kind of optimum that is: what
+// is said of pieces that meet there agrees with the pieces themselves.
+TEST(Certificate, NamesTheStationarityOfAnyPlace) {
+  Random random(15);
+  std::array<int, 5> kinds{};
+  for (int trial = 0; trial < 2000; ++trial) {
+    BlockCounts counts;
+    counts.owned = kOwned;
+    counts.contacts = random.integer(1, 2);
+    counts.effectors = 3;
+    RandomProblem robot = random_problem(counts, random);
+    for (ContactBlock& contact : robot.problem.contacts) contact.friction = 0.0;
+    Nearest controller(3.0 * random.vector(3));
+    std::vector<double> effort(static_cast<std::size_t>(robot.problem.delta_free.size()), 0.0);
+    std::vector<double> choice(kOwned);
+    Response piece;
+    const std::vector<BlockState> open(robot.problem.contacts.size(), BlockState::open);
+    piece.form_as(robot.problem, effort, open);
+    piece.tighten(choice, 1e30);
+    ASSERT_EQ(controller.choose(robot.problem, piece, Guards::tight, choice), LawStatus::solved);
+    for (int k = 0; k < kOwned; ++k) {
+      const int row = robot.problem.actuators[static_cast<std::size_t>(piece.controlled()[k])].row;
+      effort[static_cast<std::size_t>(row)] = choice[static_cast<std::size_t>(k)];
+    }
+    DirectSolver direct({.tolerance = 1e-12});
+    direct.begin_step();
+    ASSERT_EQ(direct.solve(robot.problem, effort), LawStatus::solved);
+    const Certificate found = certify(robot.problem, controller, effort, {.tolerance = 1e-12});
+    ASSERT_EQ(found.between, counts.contacts) << trial;
+    ASSERT_NE(found.stationarity, Stationarity::none) << trial;
+    ++kinds[static_cast<std::size_t>(found.stationarity)];
+    const double value = controller.merit(robot.problem, robot.motion(effort), {}, effort).value;
+    double best = value;
+    for (unsigned bits = 0; bits < 1U << open.size(); ++bits) {
+      std::vector<BlockState> states = open;
+      for (std::size_t k = 0; k < states.size(); ++k) {
+        if ((bits >> k & 1U) != 0) states[k] = BlockState::slips;
+      }
+      piece.form_as(robot.problem, effort, states);
+      if (controller.choose(robot.problem, piece, Guards::kept, choice) != LawStatus::solved)
+        continue;
+      best = std::min(best, controller.foreseen());
+    }
+    EXPECT_EQ(found.best_nearby, best >= value - 1e-8 * (1.0 + value)) << trial;
+    if (found.stationarity == Stationarity::strong) {
+      EXPECT_GE(best, value - 1e-8 * (1.0 + value));
+    }
+  }
+  for (const int count : kinds) RecordProperty("count", count);
+  EXPECT_GT(kinds[static_cast<std::size_t>(Stationarity::strong)], 20);
+  EXPECT_GT(kinds[static_cast<std::size_t>(Stationarity::weak)], 20);
+  EXPECT_GT(kinds[static_cast<std::size_t>(Stationarity::clarke)], 20);
+
+  // A place that is no optimum of any piece.
+  BlockCounts counts;
+  counts.owned = kOwned;
+  counts.contacts = 2;
+  counts.effectors = 2;
+  RandomProblem robot = random_problem(counts, random);
+  Nearest controller(3.0 * random.vector(2));
+  std::vector<double> effort(static_cast<std::size_t>(robot.problem.delta_free.size()), 0.0);
+  DirectSolver direct({.tolerance = 1e-12});
+  direct.begin_step();
+  ASSERT_EQ(direct.solve(robot.problem, effort), LawStatus::solved);
+  const Certificate found = certify(robot.problem, controller, effort, {});
+  EXPECT_EQ(found.stationarity, Stationarity::none);
+  EXPECT_FALSE(found.best_nearby);
 }
 
 TEST(StepSolver, AControllerAloneChoosesOnce) {

@@ -192,7 +192,7 @@ void EffortProgram::form_forces(qp::QuadraticProgram& program) const {
 
 // Rows for guards are made for more than there are: others are empty.
 LawStatus EffortProgram::solve_guarded(const StepProblem& problem, const Response& response,
-                                       std::span<double> effort) {
+                                       bool tight, std::span<double> effort) {
   const Eigen::Index count = program_.gradient.size();
   const auto guards = static_cast<Eigen::Index>(response.guards().size());
   if (guarded_.rows.rows() < count + guards || guarded_.gradient.size() != count) {
@@ -206,11 +206,14 @@ LawStatus EffortProgram::solve_guarded(const StepProblem& problem, const Respons
   form_limits(problem, response, guarded_);
   guarded_.rows.bottomRows(guarded_.rows.rows() - count).setZero();
   guarded_.row_lower.tail(guarded_.rows.rows() - count).setConstant(-kInfinity);
+  guarded_.row_upper.tail(guarded_.rows.rows() - count).setConstant(kInfinity);
   for (Eigen::Index g = 0; g < guards; ++g) {
     const auto number = static_cast<std::size_t>(g);
     guarded_.rows.row(count + g).head(count_) =
         response.guard_slope(number).cwiseProduct(scale_).transpose();
-    guarded_.row_lower[count + g] = -response.guards()[number].offset;
+    const step::Guard& guard = response.guards()[number];
+    guarded_.row_lower[count + g] = -guard.offset;
+    if (tight && guard.tight) guarded_.row_upper[count + g] = -guard.offset;
   }
   const qp::QpResult& result = guarded_solver_.solve(guarded_);
   if (result.status != qp::QpStatus::optimal) return LawStatus::failed;

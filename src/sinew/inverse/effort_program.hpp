@@ -66,8 +66,9 @@ class EffortProgram {
   step::LawStatus solve(const sim::Model& model, const step::StepProblem& problem,
                         const step::Response& response, std::span<double> effort);
   /// The same within the response's guards, too. Failed where nothing is.
+  /// @param tight whether those that are tight have no slack.
   step::LawStatus solve_guarded(const step::StepProblem& problem, const step::Response& response,
-                                std::span<double> effort);
+                                bool tight, std::span<double> effort);
 
   /// Of the last solution: the objective, half of the weighted squares of what is left included.
   double foreseen() const { return foreseen_; }

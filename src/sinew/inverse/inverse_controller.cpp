@@ -177,11 +177,13 @@ void InverseController::begin_choices(const StepProblem& problem, const Response
 }
 
 LawStatus InverseController::choose(const StepProblem& problem, const Response& response,
-                                    bool guarded, std::span<double> effort) {
+                                    step::Guards guards, std::span<double> effort) {
   form_residual(problem, response);
   program_.form(problem, response, residual_);
-  return guarded ? program_.solve_guarded(problem, response, effort)
-                 : program_.solve(simulation_.model(), problem, response, effort);
+  if (guards == step::Guards::none) {
+    return program_.solve(simulation_.model(), problem, response, effort);
+  }
+  return program_.solve_guarded(problem, response, guards == step::Guards::tight, effort);
 }
 
 double InverseController::largest_step(const StepProblem& problem) const {

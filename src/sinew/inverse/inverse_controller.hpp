@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "sinew/inverse/inverse_settings.hpp"
 #include "sinew/inverse/inverse_status.hpp"
 #include "sinew/inverse/step_damping.hpp"
+#include "sinew/step/certificate.hpp"
 #include "sinew/step/controller.hpp"
 
 namespace sinew::inverse {
@@ -58,6 +60,8 @@ class InverseController : public step::Controller {
   /// N: by how much the forces of a contact are beyond what is asked of them, by the last step's
   /// linearisation; NaN before a step. @param task position in settings().contacts.
   double force_error(int task) const { return force_errors_.at(static_cast<std::size_t>(task)); }
+  /// With settings().certify, of the last step's linearisation; none before a step.
+  const std::optional<step::Certificate>& certificate() const { return certificate_; }
   /// What the last step's linearisation left, m or rad, all tasks together; NaN before a step.
   double predicted_error() const { return predicted_error_; }
   /// With limits-conflict: which limits of which actuators contradict each other. Else empty.
@@ -65,7 +69,7 @@ class InverseController : public step::Controller {
 
   void begin_choices(const step::StepProblem& problem, const step::Response& response) override;
   step::LawStatus choose(const step::StepProblem& problem, const step::Response& response,
-                         bool guarded, std::span<double> effort) override;
+                         step::Guards guards, std::span<double> effort) override;
   double foreseen() const override { return program_.foreseen(); }
   std::span<const double> guard_multipliers() const override {
     return program_.guard_multipliers();
@@ -76,6 +80,10 @@ class InverseController : public step::Controller {
   void accept(const step::StepProblem& problem, const step::Response& response,
               const VectorX& motion, std::span<const double> own,
               std::span<const double> effort) override;
+  bool certifies() const override { return settings_.certify; }
+  void take_certificate(const step::Certificate& certificate) override {
+    certificate_ = certificate;
+  }
   void begin_step() override;
   std::size_t memory_size() const override;
   void save_memory(std::span<double> memory) const override;
@@ -119,6 +127,7 @@ class InverseController : public step::Controller {
   VectorX efforts_;
   double predicted_error_ = std::numeric_limits<double>::quiet_NaN();
   std::vector<double> force_errors_;  // (contacts,)
+  std::optional<step::Certificate> certificate_;
   InverseStatus status_ = InverseStatus::not_started;
 
   double time_ = -std::numeric_limits<double>::infinity();  // the end of the step at hand, s

@@ -54,6 +54,8 @@ struct InverseSettings {
   double largest_step = 0.02;
   /// m (or rad): an effector this near to its target is on target.
   double tolerance = 1e-4;
+  /// Whether every choice gets a certificate, which takes longer than the choice.
+  bool certify = false;
 };
 
 /// Names all actuators that a controller may own where the settings name none, and checks the rest.

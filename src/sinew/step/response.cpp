@@ -371,6 +371,13 @@ void Response::form_guards() {
   }
 }
 
+void Response::tighten(std::span<const double> own, double slack) {
+  const Eigen::Map<const VectorX> given(own.data(), std::ssize(own));
+  for (std::size_t g = 0; g < guards_.size(); ++g) {
+    guards_[g].tight = guards_[g].offset + guard_slope(g).dot(given) <= slack;
+  }
+}
+
 void Response::add_effort(int row, double factor, double& offset,
                           Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> slope) const {
   const auto at = static_cast<std::size_t>(row);

@@ -35,6 +35,7 @@ struct Guard {
   int block = -1;  ///< position in Response::states()
   BlockState beyond = BlockState::given;
   double offset = 0.0;  ///< sqrt(N m): motions over sqrt(W_ii), efforts times that
+  bool tight = false;   ///< see Response::tighten()
 };
 
 /// delta = free + compliance lambda_c over the efforts lambda_c that a controller chooses, as long
@@ -89,6 +90,9 @@ class Response {
                   Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> slope) const;
   /// Where blocks leave their states.
   std::span<const Guard> guards() const { return guards_; }
+  /// Marks the guards that are reached. @param own (controlled,) N. @param slack sqrt(N m), less of
+  /// it is none.
+  void tighten(std::span<const double> own, double slack);
   /// (controlled,) sqrt(N m)/N: how the slack of a guard follows the controlled efforts.
   Eigen::Map<const VectorX> guard_slope(std::size_t guard) const {
     const auto count = static_cast<std::size_t>(controlled_.size());

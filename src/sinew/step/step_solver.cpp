@@ -4,6 +4,8 @@
 #include <cmath>
 #include <functional>
 
+#include "sinew/step/certificate.hpp"
+
 namespace sinew::step {
 
 namespace {
@@ -70,6 +72,9 @@ LawStatus StepSolver::steer(const StepProblem& problem, Controller& controller,
   }
   measure_motion(problem, effort);
   controller.accept(problem, response_, motion_, chosen_, effort);
+  if (controller.certifies()) {
+    controller.take_certificate(certify(problem, controller, effort, cone_settings_));
+  }
   return status;
 }
 
@@ -123,7 +128,7 @@ LawStatus StepSolver::descend(const StepProblem& problem, Controller& controller
 bool StepSolver::advance(const StepProblem& problem, Controller& controller,
                          const Response& response, std::span<double> effort) {
   efforts_before(problem, response, trial_);
-  if (controller.choose(problem, response, true, trial_) == LawStatus::failed) return false;
+  if (controller.choose(problem, response, Guards::kept, trial_) == LawStatus::failed) return false;
   const Merit foreseen{0.0, controller.foreseen()};
   if (merit_.excess <= kWithin && !is_better(controller, foreseen, merit_)) return false;
   double share = 1.0;
@@ -149,7 +154,8 @@ bool StepSolver::advance(const StepProblem& problem, Controller& controller,
 bool StepSolver::cross_guards(const StepProblem& problem, Controller& controller,
                               std::span<double> effort) {
   efforts_before(problem, response_, trial_);
-  if (controller.choose(problem, response_, true, trial_) == LawStatus::failed) return false;
+  if (controller.choose(problem, response_, Guards::kept, trial_) == LawStatus::failed)
+    return false;
   pushing_.clear();
   const std::span<const double> multipliers = controller.guard_multipliers();
   for (std::size_t g = 0; g < multipliers.size(); ++g) {
@@ -197,7 +203,7 @@ LawStatus StepSolver::take_over(const StepProblem& problem, Controller& controll
 LawStatus StepSolver::choose(const StepProblem& problem, Controller& controller,
                              std::span<double> effort, double& change) {
   efforts_before(problem, response_, chosen_);
-  const LawStatus status = controller.choose(problem, response_, false, chosen_);
+  const LawStatus status = controller.choose(problem, response_, Guards::none, chosen_);
   if (status == LawStatus::failed) return status;
   double largest = 0.0, moved = 0.0;
   for (std::size_t k = 0; k < chosen_.size(); ++k) {

@@ -37,7 +37,8 @@ namespace sinew::step {
 /// was chosen.
 class StepSolver {
  public:
-  explicit StepSolver(const qp::ConeSettings& settings = {}) : direct_(settings) {}
+  explicit StepSolver(const qp::ConeSettings& settings = {})
+      : cone_settings_(settings), direct_(settings) {}
 
   void begin_step() { direct_.begin_step(); }
   /// @param problem of the step. @param controller of the owned actuators; null where there are
@@ -67,6 +68,7 @@ class StepSolver {
   LawStatus take_over(const StepProblem& problem, Controller& controller, std::span<double> effort);
   void measure_motion(const StepProblem& problem, std::span<const double> effort);
 
+  qp::ConeSettings cone_settings_;
   DirectSolver direct_;
   Response response_, beyond_;
   std::vector<double> chosen_;          // (controlled,) N
