@@ -22,6 +22,8 @@ namespace {
 // points nearer than the second part take part in a step at once. The others are looked at when a
 // motion is proposed: too many rows at once cost more than another solution (docs/performance.md).
 constexpr double kNear = 0.01, kTaken = 0.002;
+// From so far a controller closes contacts between surfaces.
+constexpr double kWanted = 0.1;
 // Of this many times what the fastest node moves in a step, surfaces of bodies have points.
 constexpr double kAhead = 3.0;
 // A point that a step holds moved at its start where it was faster than this part of the fastest
@@ -144,8 +146,7 @@ void ContactRows::choose_active(std::span<const double> effort, double time_step
       continue;
     }
     const bool always = !model_.body(contact.body()).leaves_rows_out();
-    const int wanted =
-        surfaces_[i] == nullptr && wanted_[i] != 0 ? nearest(contact, time_step) : -1;
+    const int wanted = wanted_[i] != 0 ? nearest(contact, time_step) : -1;
     for (std::size_t k = 0; k < contact.size(); ++k) {
       const int row = contact.row(k);
       if (contact.idle(k, rows_)) {
@@ -167,6 +168,19 @@ void ContactRows::choose_active(std::span<const double> effort, double time_step
 void ContactRows::want(std::span<const int> contacts) {
   std::ranges::fill(wanted_, 0);
   for (const int contact : contacts) wanted_[static_cast<std::size_t>(contact)] = 1;
+}
+
+double ContactRows::wanted_reach(std::span<const double> effort) const {
+  for (std::size_t i = 0; i < wanted_.size(); ++i) {
+    if (wanted_[i] == 0 || surfaces_[i] == nullptr) continue;
+    const constraint::Contact& contact = *planes_.contacts()[i];
+    bool pressed = false;
+    for (std::size_t k = 0; k < contact.size() && !pressed; ++k) {
+      pressed = effort[static_cast<std::size_t>(contact.row(k))] > 0.0;
+    }
+    if (!pressed) return kWanted * model_.size();
+  }
+  return 0.0;
 }
 
 int ContactRows::nearest(const constraint::Contact& contact, double time_step) const {

@@ -48,9 +48,12 @@ class ContactRows {
   /// Coulomb's coefficient of a point in the step: the kinetic one of what slid in the last step,
   /// or comes sliding. @param contact of planes().contacts(). @param point below its size().
   double friction(const constraint::Contact& contact, std::size_t point) const;
-  /// Of contacts with a shape the nearest point takes part, however far it is: a controller asks
-  /// for their forces. @param contacts positions in planes().contacts().
+  /// Of these contacts the nearest point takes part, though it is far: a controller asks for their
+  /// forces. @param contacts positions in planes().contacts().
   void want(std::span<const int> contacts);
+  /// m: how far surfaces are searched for that point; 0 where each of them has a force.
+  /// @param effort (rows,) N of the last step.
+  double wanted_reach(std::span<const double> effort) const;
   /// For a look at the present state: every point that a step has a use for takes part.
   void take_all();
   /// For an impact at the present state: the closed points of contacts that strike.

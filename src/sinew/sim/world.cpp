@@ -35,7 +35,8 @@ void World::place_contacts(double from, double to) {
 
 void World::begin_step(double from, double to, std::span<double> effort, double reach) {
   if (!contacts_.empty()) {
-    contacts_.planes().find_points(contacts_.reach(to - from, reach), effort);
+    const double far = std::max(reach, contacts_.wanted_reach(effort));
+    contacts_.planes().find_points(contacts_.reach(to - from, far), effort);
     place_contacts(from, to);
     contacts_.choose_active(effort, to - from, reach);
     number_rows();
