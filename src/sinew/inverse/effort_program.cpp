@@ -99,7 +99,7 @@ void EffortProgram::form_rows(const StepProblem& problem, const Response& respon
   for (Eigen::Index f = 0; f < forces_.count(); ++f) {
     program_.rows.row(count + f).head(count) =
         forces_.slope().row(f).cwiseProduct(scale_.transpose());
-    program_.rows(count + f, count + f) = problem.size;
+    program_.rows(count + f, count + f) = slack_scale_;
   }
 }
 
@@ -113,7 +113,7 @@ void EffortProgram::form(const StepProblem& problem, const Response& response,
   gradient.noalias() = weighted_.transpose() * residual;
   gradient += pull_gradient_;
   for (Eigen::Index f = count_; f < program_.gradient.size(); ++f) {
-    program_.hessian(f, f) = forces_.weight() * problem.size * problem.size;
+    program_.hessian(f, f) = forces_.weight() * slack_scale_ * slack_scale_;
   }
   left_ = 0.5 * residual.dot(weights_.cwiseProduct(residual));
 }
@@ -133,6 +133,8 @@ void EffortProgram::regularise(const StepProblem& problem, const Response& respo
     const auto slope = program_.rows.bottomLeftCorner(forces_.count(), count);
     asked = forces_.weight() * slope.squaredNorm();
   }
+  // So that curvatures along efforts and along what forces lack compare.
+  if (asked > 0.0 && forces_.count() > 0) slack_scale_ = std::sqrt(asked / forces_.weight());
   const double eps = pull.epsilon * (asked > 0.0 ? asked : norm) / norm;
   const double keep = pull.damping - pull.to_zero;
   const double stay = pull.damping_within - 1.0;
@@ -243,8 +245,10 @@ LawStatus EffortProgram::solve(const sim::Model& model, const StepProblem& probl
   }
   if (result.status != qp::QpStatus::infeasible) return LawStatus::failed;
   const qp::ElasticResult& nearest = elastic_.solve(program_);
-  const bool usable =
-      nearest.status == qp::ElasticStatus::optimal || nearest.status == qp::ElasticStatus::relaxed;
+  // One that was not finished keeps the efforts' limits.
+  const bool usable = nearest.status == qp::ElasticStatus::optimal ||
+                      nearest.status == qp::ElasticStatus::relaxed ||
+                      nearest.status == qp::ElasticStatus::iteration_limit;
   if (!usable) return LawStatus::failed;
   scaled_effort_ = nearest.qp.x;
   foreseen_ = kInfinity;

@@ -44,7 +44,7 @@ struct EffortPull {
 };
 
 /// The program of InverseController, in efforts over a scale of each. After the efforts come what
-/// rows of contact forces lack to their limits, over the robot's size.
+/// rows of contact forces lack to their limits, over a scale, too.
 class EffortProgram {
  public:
   EffortProgram() = default;
@@ -114,10 +114,11 @@ class EffortProgram {
   mutable VectorX scaled_trial_;  // of pull_value()
   std::vector<int> controlled_;   // of the response
   ForceRows forces_;
-  Eigen::Index count_ = 0;  // of efforts
-  MatrixX pull_hessian_;    // (controlled, controlled)
-  VectorX pull_gradient_;   // (controlled,)
-  double left_ = 0.0;       // the objective without efforts
+  Eigen::Index count_ = 0;    // of efforts
+  double slack_scale_ = 1.0;  // m, of what rows of forces lack
+  MatrixX pull_hessian_;      // (controlled, controlled)
+  VectorX pull_gradient_;     // (controlled,)
+  double left_ = 0.0;         // the objective without efforts
   double foreseen_ = 0.0;
   qp::QuadraticProgram program_;
   qp::QpSolver solver_;

@@ -89,7 +89,8 @@ LawStatus StepSolver::settle(const StepProblem& problem, Controller& controller,
     double change = 0.0;
     status = choose(problem, controller, effort, change);
     if (status == LawStatus::failed) return status;
-    if (direct_.solve(problem, effort) == LawStatus::failed) return LawStatus::failed;
+    // A choice far off may be one that the direct solver does not find an answer to.
+    if (direct_.solve(problem, effort) == LawStatus::failed) break;
     response_.form(problem, effort);
     const bool settled = response_.same_states() && (!response_.bends() || change <= kSettled);
     if (!settled && round + 1 < kMaxRounds) continue;
