@@ -242,35 +242,31 @@ def test_rotations_are_those_of_scipy():
 
 
 def test_the_estimator_finds_the_error_of_a_jacobian():
-    """Of 200 random robots it is as far off as it says: chi squared of the entries has their number as its mean."""
+    """Of 200 random robots it is as far off as it says: chi squared of left^T (E - found) right has the mean 1."""
     rng = np.random.default_rng(11)
-    rows, commands, noise, squares = 2, 3, 1e-4, []
+    noise, squares = np.array([1e-4, 3e-4]), []
     for _ in range(200):
-        model = rng.normal(size=(rows, commands))
-        scale = np.linalg.norm(model, axis=0)
-        scale = 1.0 / np.maximum(scale, 0.1 * scale.max())
-        error = 0.3 * rng.normal(size=(rows, commands)) / scale
-        estimator = control.JacobianEstimator(rows, commands, spread=0.3, noise=noise, forgetting=1.0)
+        error = 0.3 * rng.normal(size=(2, 2))
+        estimator = control.JacobianEstimator(noise, spread=0.3, forgetting=1.0)
         for _ in range(10):
-            command = 1e-3 * rng.normal(size=commands)
-            estimator.update(model, command, error @ command + np.sqrt(2.0) * noise * rng.normal(size=rows))
-        found, covariance = estimator.error(model)
-        squares += [(row @ np.linalg.solve(covariance, row)) for row in found - error]
-    # 400 values of chi squared with three degrees of freedom: mean 3, its standard deviation sqrt(6/400) = 0.12.
-    assert np.mean(squares) == pytest.approx(commands, abs=4 * 0.12)
+            modelled = 1e-3 * rng.normal(size=2)
+            estimator.update(modelled, modelled + error @ modelled + np.sqrt(2.0) * noise * rng.normal(size=2))
+        left, right = rng.normal(size=(2, 2))
+        squares.append((left @ (estimator.error() - error) @ right / estimator.std(left, right)) ** 2)
+    # Its variance is 2: the mean of 200 has a standard deviation of 0.1.
+    assert np.mean(squares) == pytest.approx(1.0, abs=0.4)
 
 
 def test_the_estimator_forgets_towards_its_prior():
-    estimator = control.JacobianEstimator(1, 1, spread=0.3, noise=1e-6, forgetting=0.9)
+    estimator = control.JacobianEstimator([1e-6], spread=0.3, forgetting=0.9)
     for _ in range(50):
-        estimator.update(np.array([[2.0]]), np.array([1e-3]), np.array([0.4e-3]))
-    assert estimator.error(np.array([[2.0]]))[0] == pytest.approx(0.4, abs=1e-3)
+        estimator.update(np.array([1e-3]), np.array([1.2e-3]))
+    assert estimator.error() == pytest.approx(0.2, abs=1e-3)
     for _ in range(500):
-        estimator.update(np.array([[2.0]]), np.array([0.0]), np.array([0.0]))
-    error, covariance = estimator.error(np.array([[2.0]]))
-    assert abs(error[0, 0]) < 1e-3
-    assert covariance[0, 0] == pytest.approx((0.3 * 2.0) ** 2, rel=1e-3)
-    for wrong in ({"spread": 0.0}, {"noise": -1.0}, {"forgetting": 1.1}, {"window": 0}):
+        estimator.update(np.zeros(1), np.zeros(1))
+    assert abs(estimator.error()[0, 0]) < 1e-3
+    assert estimator.std(np.ones(1), np.ones(1)) == pytest.approx(0.3, rel=1e-3)
+    for noise, wrong in (([1.0], {"spread": 0.0}), ([-1.0], {}), ([1.0], {"forgetting": 1.1}), ([np.inf], {})):
         with pytest.raises(sinew.Error) as caught:
-            control.JacobianEstimator(1, 1, **wrong)
+            control.JacobianEstimator(noise, **wrong)
         assert caught.value.kind == "out-of-range"

@@ -71,7 +71,9 @@ class ClosedLoop(Loop):
         The J_real of `least_eigenvalue`: estimated from measured motions (JacobianEstimator); that of the model; or a
         function without arguments that returns it, (rows, actuators), as control.jacobian() does for a plant.
     estimator : dict, optional
-        Arguments for JacobianEstimator.
+        Of JacobianEstimator: `noise` (1e-4 m) and `noise_rotation` (1e-3 rad), standard deviations of measurements; `spread`
+        (0.3), of the relative error of the model's Jacobian; `forgetting` (0.98); `window` (5), samples from one measured
+        difference to the next.
 
     Raises
     ------

@@ -1,8 +1,9 @@
-"""The error of a model's Jacobian, estimated from commands and measured motions."""
+"""The error of a model's Jacobian, estimated from measured motions."""
 
 from __future__ import annotations
 
 import math
+from typing import Sequence
 
 import numpy as np
 
@@ -12,96 +13,91 @@ __all__ = ["JacobianEstimator"]
 
 
 class JacobianEstimator:
-    """Recursive least squares for D = J_real - J_model, with a prior and with forgetting towards it.
+    """Recursive least squares for E in J_real = (I + E) J_model, with a prior and with forgetting towards it.
 
-    A measured motion dx differs from the one that the model makes at the same commands by D dc + noise. With c scaled
-    so that J_model's columns have length `size`, D has independent entries of standard deviation spread * size before
-    anything is measured, and every row of D the same information matrix Lambda and its own vector b:
+    A motion dx that the model makes is measured as (I + E) dx + noise. Before anything is measured, the entries of E are
+    independent with standard deviation `spread`. Row i of E has the information matrix Lambda_i and the vector b_i:
 
-        Lambda <- phi Lambda + (1 - phi) Lambda_0 + dc dc^T/r,    b <- phi b + dc (dx - dx_model)^T/r,    D^T = Lambda^-1 b,
+        S <- phi S + dx dx^T,   Lambda_i = S/r_i + I/spread^2,   b_i <- phi b_i + dx (dy - dx)_i/r_i,   E_i = Lambda_i^-1 b_i,
 
-    Lambda_0 = I/(spread size)^2, r = 2 noise^2 (a difference of two measurements). Forgetting goes to the prior and not
-    to no knowledge at all, so that Lambda stays bounded while commands rest (stabilised forgetting: Kulhavy & Zarrop, Int.
-    J. Control 58 (1993) 905-924). The memory lasts 1/(1 - phi) updates.
+    r_i = 2 noise_i^2 (dy is a difference of two measurements). Forgetting goes to the prior and not to no knowledge at all,
+    so that Lambda_i stays bounded while the robot rests (stabilised forgetting: Kulhavy & Zarrop, Int. J. Control 58 (1993)
+    905-924). The memory lasts 1/(1 - phi) updates.
+
+    Only what the robot does shows: E is known in the directions in which it moves, by much more than noise.
 
     Parameters
     ----------
-    rows, commands : int
+    noise : (rows,) array_like
+        m or rad, standard deviation of a measurement.
     spread : float
-        Standard deviation of the error of the model's Jacobian, relative to its size.
-    noise : float
-        m, standard deviation of a measurement.
+        Standard deviation of the relative error of the model's Jacobian.
     forgetting : float
         phi, above 0, at most 1.
-    window : int
-        Samples from one measured difference to the next: they share no measurement but its ends.
+
+    Raises
+    ------
+    Error
+        out-of-range.
     """
 
-    def __init__(self, rows: int, commands: int, *, spread: float = 0.3, noise: float = 1e-4, forgetting: float = 0.98,
-                 window: int = 5) -> None:
-        for name, value, good in (("spread", spread, spread > 0.0), ("noise", noise, noise > 0.0),
-                                  ("forgetting", forgetting, 0.0 < forgetting <= 1.0), ("window", window, window >= 1)):
-            if not (good and math.isfinite(value)):
+    def __init__(self, noise: Sequence[float], *, spread: float = 0.3, forgetting: float = 0.98) -> None:
+        self.noise = np.array(noise, dtype=float)
+        for name, value, good in (("noise", self.noise, (self.noise > 0.0).all()), ("spread", spread, spread > 0.0),
+                                  ("forgetting", forgetting, 0.0 < forgetting <= 1.0)):
+            if not (good and np.isfinite(value).all()):
                 raise Error("out-of-range", f"JacobianEstimator({name})", f"it is {value}",
-                            "give spread and noise above 0, forgetting in (0, 1], window 1 or more")
-        self.spread, self.noise, self.forgetting, self.window = spread, noise, forgetting, int(window)
+                            "give finite noise and spread above 0, forgetting in (0, 1]")
+        self.spread, self.forgetting = float(spread), float(forgetting)
         self.updates = 0
-        self._information = np.zeros((commands, commands))  # without the prior's
-        self._weighted = np.zeros((commands, rows))
-        self._scale = np.zeros(commands)  # of the commands; set by the first Jacobian
+        count = len(self.noise)
+        self._squares = np.zeros((count, count))  # S
+        self._weighted = np.zeros((count, count))  # b_i r_i, a column each
 
     def clone(self) -> "JacobianEstimator":
         """Another one that has learned the same."""
-        other = JacobianEstimator(self._weighted.shape[1], len(self._scale), spread=self.spread, noise=self.noise,
-                                  forgetting=self.forgetting, window=self.window)
+        other = JacobianEstimator(self.noise, spread=self.spread, forgetting=self.forgetting)
         other.restore(self.state())
         return other
 
     def state(self) -> tuple:
         """What it has learned, as a value."""
-        return self.updates, self._information.copy(), self._weighted.copy(), self._scale.copy()
+        return self.updates, self._squares.copy(), self._weighted.copy()
 
     def restore(self, state: tuple) -> None:
         """Takes up a state()."""
-        self.updates = state[0]
-        self._information, self._weighted, self._scale = (each.copy() for each in state[1:])
+        self.updates, self._squares, self._weighted = state[0], state[1].copy(), state[2].copy()
 
-    def _prior(self, model: np.ndarray) -> float:
-        """Of a scaled entry of D, 1/m^2. The scale of each command is that of the first model seen."""
-        columns = np.linalg.norm(model, axis=0)
-        size = max(columns.max(initial=0.0), np.finfo(float).tiny)
-        if not self._scale.any():
-            self._scale = 1.0 / np.maximum(columns, 0.1 * size)
-        return 1.0 / self.spread**2
-
-    def update(self, model: np.ndarray, command: np.ndarray, unexplained: np.ndarray) -> None:
-        """Learns from a difference of two measurements.
+    def update(self, modelled: np.ndarray, measured: np.ndarray) -> None:
+        """Learns from a motion.
 
         Parameters
         ----------
-        model : (rows, commands)
-            J_model.
-        command : (commands,)
-            Difference of the commands that caused it.
-        unexplained : (rows,) m or rad
-            Measured difference less that of the model.
+        modelled, measured : (rows,) m or rad
+            What the model did and what the robot was measured to do at the same commands.
         """
-        self._prior(model)
-        scaled = command / self._scale
-        weight = 1.0 / (2.0 * self.noise**2)
-        self._information = self.forgetting * self._information + weight * np.outer(scaled, scaled)
-        self._weighted = self.forgetting * self._weighted + weight * np.outer(scaled, unexplained)
+        self._squares = self.forgetting * self._squares + np.outer(modelled, modelled)
+        self._weighted = self.forgetting * self._weighted + np.outer(modelled, measured - modelled)
         self.updates += 1
 
-    def error(self, model: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """D (rows, commands), and the covariance (commands, commands) that each of its rows has.
+    def error(self) -> np.ndarray:
+        """E (rows, rows), the most likely one."""
+        rows = []
+        for row, noise in enumerate(self.noise):
+            rows.append(np.linalg.solve(self._information(noise), self._weighted[:, row] / (2.0 * noise**2)))
+        return np.array(rows)
+
+    def std(self, left: np.ndarray, right: np.ndarray) -> float:
+        """Standard deviation of left^T E right.
 
         Parameters
         ----------
-        model : (rows, commands)
-            J_model.
+        left, right : (rows,)
         """
-        prior = self._prior(model)
-        covariance = np.linalg.inv(self._information + prior * np.eye(len(self._scale)))
-        error = (covariance @ self._weighted).T
-        return error / self._scale, covariance / np.outer(self._scale, self._scale)
+        variance = sum(float(part**2 * (right @ np.linalg.solve(self._information(noise), right)))
+                       for part, noise in zip(left, self.noise))
+        return math.sqrt(max(variance, 0.0))
+
+    def _information(self, noise: float) -> np.ndarray:
+        """Lambda_i."""
+        return self._squares / (2.0 * noise**2) + np.eye(len(self.noise)) / self.spread**2

@@ -18,6 +18,7 @@ __all__ = ["Loop", "Memory"]
 
 _TRACKED, _HOLDING, _OPEN = "tracked", "holding", "open-loop"
 _JACOBIANS = ("estimate", "model")
+_TINY = np.finfo(float).tiny
 
 
 class Memory(NamedTuple):
@@ -76,8 +77,7 @@ class Loop:
             raise Error("unknown-choice", f"{place}(real_jacobian)", f"there is no {real_jacobian!r}",
                         "use 'estimate', 'model' or a function that returns it")
         self._real_jacobian = real_jacobian
-        rows = len(self._row_weights)
-        self._estimator = JacobianEstimator(rows, len(self._robot.actuators), **(estimator or {}))
+        self._window, self._estimator = self._to_estimator(**(estimator or {}))
         self._status, self._time = "not-started", -math.inf
         self._lost_since: Optional[float] = None
         self._offsets = {name: np.zeros(3) for name in effectors}  # measured less modelled
@@ -129,8 +129,9 @@ class Loop:
 
     @property
     def least_eigenvalue(self) -> float:
-        """Least eigenvalue of the symmetric part of J_real J_model^+ in the last step, over the directions whose weight
-        is not 0; NaN before a step, and while measurements stay away. Above 0 errors fall (docs/closed_loop.md)."""
+        """Least eigenvalue of the symmetric part of J_real J_model^+ in the last step, in weighted errors, over the
+        directions in which the actuators can move the effectors; NaN before a step, and while measurements stay away. Above
+        0 errors fall (docs/closed_loop.md)."""
         return self._least
 
     @property
@@ -247,7 +248,7 @@ class Loop:
         self._errors = self._distances(self._differences(found, time))
         robot, answer = self._robot, self._robot.response()
         if mode == _TRACKED:
-            self._learn(answer, found)
+            self._learn(found)
         standing = Standing(robot.efforts, robot.motions, self._commands, robot.slack)
         choice = self._choose(answer, standing, found)
         self._judge(answer, choice, mode)
@@ -301,6 +302,16 @@ class Loop:
         if not (np.isfinite(found).all() and (found >= 0.0).all() and found.any()):
             raise Error("out-of-range", place, f"they are {found}", "give finite weights of 0 or more, one above 0")
         return found
+
+    def _to_estimator(self, noise: float = 1e-4, noise_rotation: float = 1e-3, spread: float = 0.3,
+                      forgetting: float = 0.98, window: int = 5) -> tuple[int, JacobianEstimator]:
+        """Of weighted errors."""
+        if not (isinstance(window, int) and window >= 1):
+            raise Error("out-of-range", f"{self._place}(estimator)['window']", f"it is {window!r}", "give 1 sample or more")
+        noises = [noise_rotation if effector.unit == "rad" else noise for effector in self._robot.effectors.values()]
+        every = np.repeat(noises, [len(directions) for directions in self._robot.directions])
+        scaled = np.sqrt(self._row_weights) * every
+        return window, JacobianEstimator(scaled[self._row_weights > 0.0], spread=spread, forgetting=forgetting)
 
     def _read(self, measured: Optional[Mapping[str, Any]], time: float, taken: Optional[float]) -> dict[str, Any]:
         """Of each effector the measurement, None where it stays away."""
@@ -375,41 +386,46 @@ class Loop:
             first += len(directions)
         return result
 
-    def _learn(self, answer: Answer, found: Mapping[str, np.ndarray]) -> None:
-        """The estimator learns from measurements a window apart, and from the commands that they answer to."""
-        window, delay = self._estimator.window, self._samples()
+    def _learn(self, found: Mapping[str, np.ndarray]) -> None:
+        """The estimator learns from measurements a window apart, and from what the model did in the same time."""
+        window, delay = self._window, self._samples()
         steps = len(self._memory)
         if self._real_jacobian != "estimate" or steps % window or steps < window + delay:
             return
-        before = self._memory[steps - window]
-        if before.measured is None:
+        before = self._memory[steps - window].measured
+        if before is None:
             return
-        now = self._memory[steps - delay] if delay else Memory(self._robot.positions(), self._commands, None)
-        then = self._memory[steps - window - delay]
-        unexplained = {
-            name: self._robot.difference(name, value, before.measured[name])
-            - self._robot.difference(name, now.positions[name], then.positions[name]) for name, value in found.items()
-        }
-        self._estimator.update(answer.jacobian, now.commands - then.commands, self._robot.rows(unexplained))
+        robot = self._robot
+        now = self._memory[steps - delay].positions if delay else robot.positions()
+        then = self._memory[steps - window - delay].positions
+        root = np.sqrt(self._row_weights)
+        modelled = robot.rows({name: robot.difference(name, now[name], then[name]) for name in found})
+        measured = robot.rows({name: robot.difference(name, value, before[name]) for name, value in found.items()})
+        self._estimator.update((root * modelled)[root > 0.0], (root * measured)[root > 0.0])
 
     def _judge(self, answer: Answer, choice: Choice, mode: str) -> None:
         """The condition of convergence, and the status."""
-        by_command = self._by_command(answer, choice.sensitivity)
+        # In weighted errors, e' = Q^1/2 e, along the directions in which some effort moves the effectors.
         counts = self._row_weights > 0.0
-        real, covariance = answer.jacobian, np.zeros((len(by_command), len(by_command)))
+        root = np.sqrt(self._row_weights[counts])[:, None]
+        energy = np.sqrt(np.abs(np.diag(answer.w_aa)) + _TINY)
+        left, sizes, _ = np.linalg.svd(root * answer.w_ea[counts] / energy, full_matrices=False)
+        basis = left[:, sizes > 1e-9 * sizes.max()]
+        into = self._by_command(answer, choice.sensitivity)[:, counts] / root.T @ basis
+        modelled = root * answer.jacobian[counts] @ into
         if callable(self._real_jacobian):
             real = np.array(self._real_jacobian(), dtype=float)
             if real.shape != answer.jacobian.shape:
                 raise Error("wrong-shape", f"{self._place}(real_jacobian)", f"it returned shape {real.shape}",
                             f"return {answer.jacobian.shape}: rows of the effectors, actuators")
-        elif self._real_jacobian == "estimate":
-            error, covariance = self._estimator.error(answer.jacobian)
-            real = real + error
-        product = (real @ by_command)[np.ix_(counts, counts)]
+            product = basis.T @ (root * real[counts] @ into)
+        else:
+            product = basis.T @ (modelled + self._estimator.error() @ modelled)
         values, vectors = np.linalg.eigh(0.5 * (product + product.T))
-        along = by_command[:, counts] @ vectors[:, 0]
         self._least = float(values[0])
-        self._least_std = math.sqrt(max(float(along @ covariance @ along), 0.0))
+        self._least_std = 0.0
+        if self._real_jacobian == "estimate":
+            self._least_std = self._estimator.std(basis @ vectors[:, 0], modelled @ vectors[:, 0])
         violated = self._least + 2.0 * self._least_std <= 0.0
         if mode == _OPEN:
             self._status = _OPEN
@@ -439,9 +455,9 @@ class Loop:
     def _advance(self, measured: Optional[dict[str, np.ndarray]], before: np.ndarray) -> None:
         """Remembers this step, whose effectors follow from the commands `before` it, and moves the model to the next."""
         self._memory.append(Memory(self._robot.positions(), before, measured))
-        keep = max(2 * (self._samples() + self._estimator.window) + 2, 4)
+        keep = max(2 * (self._samples() + self._window) + 2, 4)
         if len(self._memory) > 2 * keep:
             # Whole windows go, so that their phase stays.
-            del self._memory[:keep // self._estimator.window * self._estimator.window]
+            del self._memory[:keep // self._window * self._window]
         self._robot.send(self.model, self.commands)
         self.model.step()
