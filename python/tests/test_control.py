@@ -250,7 +250,8 @@ def test_the_estimator_finds_the_error_of_a_jacobian():
         estimator = control.JacobianEstimator(noise, spread=0.3, forgetting=1.0)
         for _ in range(10):
             modelled = 1e-3 * rng.normal(size=2)
-            estimator.update(modelled, modelled + error @ modelled + np.sqrt(2.0) * noise * rng.normal(size=2))
+            varied = 0.3 * np.linalg.norm(modelled) * rng.normal(size=2)
+            estimator.update(modelled, modelled + error @ modelled + varied + np.sqrt(2.0) * noise * rng.normal(size=2))
         left, right = rng.normal(size=(2, 2))
         squares.append((left @ (estimator.error() - error) @ right / estimator.std(left, right)) ** 2)
     # Its variance is 2: the mean of 200 has a standard deviation of 0.1.
@@ -259,9 +260,11 @@ def test_the_estimator_finds_the_error_of_a_jacobian():
 
 def test_the_estimator_forgets_towards_its_prior():
     estimator = control.JacobianEstimator([1e-6], spread=0.3, forgetting=0.9)
-    for _ in range(50):
+    for _ in range(100):
         estimator.update(np.array([1e-3]), np.array([1.2e-3]))
-    assert estimator.error() == pytest.approx(0.2, abs=1e-3)
+    # Ten motions in memory, each as good as the prior: 10/11 of the way, and 1/sqrt(11) of its spread.
+    assert estimator.error() == pytest.approx(0.2 * 10.0 / 11.0, rel=1e-4)
+    assert estimator.std(np.ones(1), np.ones(1)) == pytest.approx(0.3 / np.sqrt(11.0), rel=1e-4)
     for _ in range(500):
         estimator.update(np.zeros(1), np.zeros(1))
     assert abs(estimator.error()[0, 0]) < 1e-3

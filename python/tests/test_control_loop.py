@@ -1,5 +1,6 @@
 """Closed loops: a plant and a model that are two simulations."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -145,7 +146,7 @@ def test_the_least_eigenvalue_in_a_twin(scene):
         found[real] = loop
     assert found["exact"].least_eigenvalue == pytest.approx(1.0 / 1.3, abs=0.03)
     assert found["exact"].least_eigenvalue_std == 0.0
-    assert 0.0 < found["estimate"].least_eigenvalue_std < 0.1
+    assert 0.0 < found["estimate"].least_eigenvalue_std < 0.2
     assert found["estimate"].least_eigenvalue == pytest.approx(found["exact"].least_eigenvalue,
                                                                abs=3.0 * found["estimate"].least_eigenvalue_std)
 
@@ -164,7 +165,7 @@ def test_an_integral_follows_ramps_and_does_not_wind_up(scene):
         left[gains] = loop.error
     assert left[5.0, 0.0] == pytest.approx(2e-3 / 5.0, rel=0.1)
     assert left[5.0, 6.25] < 0.05 * left[5.0, 0.0]
-    # Out of reach by 0.2 m for two seconds. An integral that went on, 0.4 m s, would leave 4 mm three seconds later.
+    # Out of reach by 0.2 m for two seconds. An integral that went on would still be 33 mm off three seconds later.
     plant, model = twins(scene)
     loop = control.ClosedLoop(model, {"tip": [0.2, 0.0, 0.06]}, CABLES, gains=(5.0, 6.25))
     _, statuses = drive(loop, plant, 200)
@@ -405,3 +406,16 @@ def test_bad_measurements_have_names(sim):
     with pytest.raises(sinew.Error) as caught:
         good.set_target("top", GOAL)
     assert caught.value.kind == "unknown-name"
+
+
+def test_the_guide(monkeypatch):
+    """The code of docs/closed_loop.md."""
+    root = EXAMPLES.parent
+    monkeypatch.chdir(root)
+    text = (root / "docs" / "closed_loop.md").read_text(encoding="utf-8")
+    blocks = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+    names = {}
+    for block in blocks:
+        exec(compile(block, "docs/closed_loop.md", "exec"), names)
+    assert names["loop"].status == "on-target"
+    assert 0.5 < names["loop"].least_eigenvalue < 2.0

@@ -72,7 +72,7 @@ class ClosedLoop(Loop):
         function without arguments that returns it, (rows, actuators), as control.jacobian() does for a plant.
     estimator : dict, optional
         Of JacobianEstimator: `noise` (1e-4 m) and `noise_rotation` (1e-3 rad), standard deviations of measurements; `spread`
-        (0.3), of the relative error of the model's Jacobian; `forgetting` (0.98); `window` (5), samples from one measured
+        (0.3), of the relative error of the model's Jacobian; `forgetting` (0.9); `window` (5), samples from one measured
         difference to the next.
 
     Raises

@@ -304,7 +304,7 @@ class Loop:
         return found
 
     def _to_estimator(self, noise: float = 1e-4, noise_rotation: float = 1e-3, spread: float = 0.3,
-                      forgetting: float = 0.98, window: int = 5) -> tuple[int, JacobianEstimator]:
+                      forgetting: float = 0.9, window: int = 5) -> tuple[int, JacobianEstimator]:
         """Of weighted errors."""
         if not (isinstance(window, int) and window >= 1):
             raise Error("out-of-range", f"{self._place}(estimator)['window']", f"it is {window!r}", "give 1 sample or more")

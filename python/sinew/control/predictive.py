@@ -60,7 +60,7 @@ class PredictiveController(Loop):
         horizon: int = 10,
         change: float = 1e-2,
         relaxation: float = 1e-5,
-        observer: float = 0.1,
+        observer: float = 0.2,
         command: Union[str, Mapping[str, str], None] = None,
         weights: Optional[Mapping[str, Any]] = None,
         delay: float = 0.0,
