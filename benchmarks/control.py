@@ -2,11 +2,11 @@
 
     PYTHONPATH=build/release/python /usr/bin/python3 benchmarks/control.py [--steps 200] [--repeat 3]
 
-Plant and model are the trunk of examples/trunk (703 nodes, 2592 tetrahedra), hanging under gravity; the tip follows a circle of 30 mm
-radius in 3 s. A step of the loop is what a robot's computer would do in each sample: the response W at the model's state, the
-quadratic program (8 efforts; over a horizon of 10 steps 80, with limits of tension, length and rate in each), the condition of
-convergence, and the model's own step. Processor time of one thread over the steps after the first twenty; of several runs the lowest
-median. The plant's own steps are not counted. Rate: one over the median.
+Plant and model are the trunk of examples/trunk (703 nodes, 2592 tetrahedra), hanging under gravity; the tip follows a
+circle of 30 mm radius in 3 s. A step of the loop is what a robot's computer would do in each sample: the response W at
+the model's state, the quadratic program (8 efforts; over a horizon of 10 steps 80, with limits of tension, length and
+rate in each), the condition of convergence, and the model's own step. Processor time of one thread over the steps after
+the first twenty; of several runs the lowest median. The plant's own steps are not counted. Rate: one over the median.
 """
 
 import argparse

@@ -3,8 +3,8 @@
 
     PYTHONPATH=build/release/python /usr/bin/python3 examples/python/closed_loop.py [closed_loop.png]
 
-The robot is a second simulation with another mesh, 30 % softer, with friction in its cables and a load of 20 g at its tip. A camera sees
-the tip 20 ms late and with 0.1 mm of noise.
+The robot is a second simulation with another mesh, 30 % softer, with friction in its cables and a load of 20 g at its
+tip. A camera sees the tip 20 ms late and with 0.1 mm of noise.
 """
 
 import sys
@@ -66,7 +66,8 @@ def drive(loop, plant, camera, duration, closed=True):
         plant.step()
         camera.move(plant.effector("tip").position)
         target = loop.targets["tip"]
-        errors.append(np.linalg.norm(plant.effector("tip").position - (target if len(np.shape(target)) else target.at(plant.time))))
+        target = target.at(plant.time) if isinstance(target, sinew.Target) else target
+        errors.append(np.linalg.norm(plant.effector("tip").position - target))
     return np.array(errors)
 
 
@@ -83,9 +84,9 @@ def main():
     print("mean distance of the tip from its target in the last second, tensions commanded (mm)")
     for kind in ("open", "resolved rate", "predictive"):
         plant, loop = trunk(**DIFFERENT), make(kind, "effort")
-        shown[kind] = errors = drive(loop, plant, Camera(plant.effector("tip").position), 2.0, closed=kind != "open")
-        said = "" if kind == "open" else f", least eigenvalue {loop.least_eigenvalue:.2f} +- {loop.least_eigenvalue_std:.2f}"
-        print(f"  {kind:14} {1e3 * errors[-100:].mean():6.3f}  {loop.status}{said}")
+        shown[kind] = errors = drive(loop, plant, Camera(plant.effector("tip").position), 1.6, closed=kind != "open")
+        least = f"{loop.least_eigenvalue:.2f} +- {loop.least_eigenvalue_std:.2f}"  # nan where nothing is measured
+        print(f"  {kind:14} {1e3 * errors[-100:].mean():6.3f}  {loop.status}, least eigenvalue {least}")
     if len(sys.argv) > 1:
         import matplotlib.pyplot as plt
 

@@ -29,8 +29,8 @@ class ClosedLoop(Loop):
 
     The errors fall where the symmetric part of J_real J_model^+ is positive definite (Zhang, Dequidt, Kruszewski,
     Largilliere & Duriez, IROS 2016; Zhang et al., IEEE Robotics and Automation Letters 3 (2018) 1529-1536): then
-    d|e|^2/dt = -2 rate e^T J_real J_model^+ e < 0. `least_eigenvalue` reports it in each step, with the limits that are
-    active. docs/closed_loop.md derives both, and the largest gain for a delay.
+    d|e|^2/dt = -2 rate e^T J_real J_model^+ e < 0. `least_eigenvalue` reports it in each step, with the limits that
+    are active. docs/closed_loop.md derives both, and the largest gain for a delay.
 
     While an integral acts, what limits keep from the effectors is taken off it (back-calculation).
 
@@ -40,11 +40,11 @@ class ClosedLoop(Loop):
     Parameters
     ----------
     model : Simulation
-        Of the robot, quasi-static as a rule, in the state and with the commands that the robot has. The loop commands it
-        and steps it, once in each step(): its time step is the loop's.
+        Of the robot, quasi-static as a rule, in the state and with the commands that the robot has. The loop commands
+        it and steps it, once in each step(): its time step is the loop's.
     effectors : dict
-        Names to targets: (3,) array_like (m; for an orientation effector the rotation vector, rad), or a Circle, Polyline
-        or Trajectory over the time given to step().
+        Names to targets: (3,) array_like (m; for an orientation effector the rotation vector, rad), or a Circle,
+        Polyline or Trajectory over the time given to step().
     actuators : list of str, optional
         Which it may use; all that take commands by default. The model's others keep their commands.
     gains : Gains, Schedule or float
@@ -54,11 +54,11 @@ class ClosedLoop(Loop):
     weights : dict, optional
         Effectors to one weight, or one for each of its directions; >= 0.
     compensate : bool
-        Whether the known `delay` is made up for by the model (Smith, Chem. Eng. Prog. 53 (1957) 217): the error is that of
-        the model now, corrected by what was measured less what the model had then.
+        Whether the known `delay` is made up for by the model (Smith, Chem. Eng. Prog. 53 (1957) 217): the error is
+        that of the model now, corrected by what was measured less what the model had then.
     delay : float
-        s, from when a measurement is taken until step() gets it. Used by `compensate`, and to pair measured motions with
-        the commands that made them.
+        s, from when a measurement is taken until step() gets it. Used by `compensate`, and to pair measured motions
+        with the commands that made them.
     tolerance : float
         m (or rad): an effector measured this near is on target.
     change, relaxation : float
@@ -71,9 +71,9 @@ class ClosedLoop(Loop):
         The J_real of `least_eigenvalue`: estimated from measured motions (JacobianEstimator); that of the model; or a
         function without arguments that returns it, (rows, actuators), as control.jacobian() does for a plant.
     estimator : dict, optional
-        Of JacobianEstimator: `noise` (1e-4 m) and `noise_rotation` (1e-3 rad), standard deviations of measurements; `spread`
-        (0.3), of the relative error of the model's Jacobian; `forgetting` (0.9); `window` (5), samples from one measured
-        difference to the next.
+        Of JacobianEstimator: `noise` (1e-4 m) and `noise_rotation` (1e-3 rad), standard deviations of measurements;
+        `spread` (0.3), of the relative error of the model's Jacobian; `forgetting` (0.9); `window` (5), samples from
+        one measured difference to the next.
 
     Raises
     ------
@@ -122,16 +122,17 @@ class ClosedLoop(Loop):
         elif isinstance(gains, tuple) and len(gains) == 2:
             self._gains = Gains(*gains).check("gains")
         else:
-            raise Error("wrong-type", f"{self._place}(gains)", f"{gains!r} are no gains", "give Gains, a Schedule or a rate")
+            raise Error("wrong-type", f"{self._place}(gains)", f"{gains!r} are no gains",
+                        "give Gains, a Schedule or a rate")
 
     def _choose(self, answer: Answer, standing: Standing, found: Mapping[str, Any]) -> Choice:
         robot, time_step, time = self._robot, self.model.time_step, self._time
         gains = self._gains.at(self._gains.variable(self)) if isinstance(self._gains, Schedule) else self._gains
         predicted: Mapping[str, Any] = {name: None for name in found}
         error = robot.rows(self._differences(predicted if self._compensate else found, time))
-        ahead = robot.rows({
-            name: robot.difference(name, self._target(name, time + time_step), self._target(name, time)) for name in found
-        })
+        next_targets = {name: self._target(name, time + time_step) for name in found}
+        ahead = robot.rows({name: robot.difference(name, target, self._target(name, time))
+                            for name, target in next_targets.items()})
         velocity = ahead / time_step + gains.rate * error + gains.integral * self._integral
         choice = choose(robot, answer, standing, time_step * velocity[None, :], self._weights, time_step)
         if gains.integral > 0.0:

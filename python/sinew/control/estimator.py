@@ -15,17 +15,18 @@ __all__ = ["JacobianEstimator"]
 class JacobianEstimator:
     """Recursive least squares for E in J_real = (I + E) J_model, with a prior and with forgetting towards it.
 
-    A motion dx that the model makes is measured as dy = (I + E) dx + noise. Before anything is measured, the entries of E
-    are independent with standard deviation `spread`. Row i of E has the information matrix Lambda_i = A_i + I/spread^2 and
-    the vector b_i,
+    A motion dx that the model makes is measured as dy = (I + E) dx + noise. Before anything is measured, the entries
+    of E are independent with standard deviation `spread`. Row i of E has the information matrix Lambda_i = A_i +
+    I/spread^2 and the vector b_i,
 
         A_i <- phi A_i + dx dx^T/r_i,    b_i <- phi b_i + dx (dy - dx)_i/r_i,    E_i = Lambda_i^-1 b_i,
         r_i = 2 noise_i^2 + (spread |dx|)^2.
 
-    The first part of r_i is that dy is a difference of two measurements; the second that E changes along the way, since
-    model and robot bend in different places: one motion, however long, says no more than the prior did.
+    The first part of r_i is that dy is a difference of two measurements; the second that E changes along the way,
+    since model and robot bend in different places: one motion, however long, says no more than the prior did.
     Forgetting goes to the prior and not to no knowledge at all, so that Lambda_i stays bounded while the robot rests
-    (stabilised forgetting: Kulhavy & Zarrop, Int. J. Control 58 (1993) 905-924). The memory lasts 1/(1 - phi) updates.
+    (stabilised forgetting: Kulhavy & Zarrop, Int. J. Control 58 (1993) 905-924). The memory lasts 1/(1 - phi)
+    updates.
 
     Only what the robot does shows: E is known in the directions in which it moves, by much more than noise.
 

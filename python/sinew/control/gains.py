@@ -13,16 +13,16 @@ __all__ = ["Gains", "Schedule", "delay_limit"]
 
 
 class Gains(NamedTuple):
-    """The effectors are asked for the velocity v = dr/dt + rate e + integral (time integral of e), with the target r and
-    the measured error e.
+    """The effectors are asked for the velocity v = dr/dt + rate e + integral (time integral of e), with the target r
+    and the measured error e.
 
     Attributes
     ----------
     rate : float
         1/s, above 0: the error of a loop without delay falls as exp(-rate t).
     integral : float
-        1/s^2, 0 or more. Without it a disturbance that grows by d m/s leaves the error d/rate; with it none. The loop is
-        critically damped at rate^2/4.
+        1/s^2, 0 or more. Without it a disturbance that grows by d m/s leaves the error d/rate; with it none. The loop
+        is critically damped at rate^2/4.
     """
 
     rate: float = 5.0
@@ -36,7 +36,8 @@ class Gains(NamedTuple):
         Error
             out-of-range: not finite, a rate of 0 or less, an integral gain below 0.
         """
-        for name, value, good in (("rate", self.rate, self.rate > 0.0), ("integral", self.integral, self.integral >= 0.0)):
+        checks = (("rate", self.rate, self.rate > 0.0), ("integral", self.integral, self.integral >= 0.0))
+        for name, value, good in checks:
             if not (good and math.isfinite(value)):
                 raise Error("out-of-range", f"{place}.{name}", f"it is {value}",
                             "give a finite rate above 0 and an integral gain of 0 or more")
@@ -46,8 +47,8 @@ class Gains(NamedTuple):
 class Schedule:
     """Gains by table over a scheduling variable: linear between the entries, constant beyond them.
 
-    Gains that change slowly against the loop keep the loop as stable as each of them is (Shamma & Athans, Automatica 27
-    (1991) 559-564); a variable that follows the motion itself at the loop's own rate has no such guarantee.
+    Gains that change slowly against the loop keep the loop as stable as each of them is (Shamma & Athans, Automatica
+    27 (1991) 559-564); a variable that follows the motion itself at the loop's own rate has no such guarantee.
 
     Parameters
     ----------

@@ -48,8 +48,8 @@ def jacobian(
 ) -> np.ndarray:
     """How effectors of a simulation follow from commands to its actuators at equilibrium, near its present state.
 
-    Inertia has no part in it (Simulation.response(statics=True)). Contact points and cables at guides keep sticking or
-    sliding. In a twin test this is the exact Jacobian of the plant.
+    Inertia has no part in it (Simulation.response(statics=True)). Contact points and cables at guides keep sticking
+    or sliding. In a twin test this is the exact Jacobian of the plant.
 
     Parameters
     ----------

@@ -11,7 +11,7 @@ import numpy as np
 from .. import _core
 from ..errors import Error
 from .estimator import JacobianEstimator
-from .program import Choice, Standing, Weights
+from .program import Choice, Standing
 from .robot import Answer, Robot
 
 __all__ = ["Loop", "Memory"]
@@ -42,7 +42,8 @@ def _vector(value: Any, place: str, unit: str) -> np.ndarray:
 def _positive(value: float, place: str, *, zero: bool = False) -> float:
     if isinstance(value, (int, float)) and math.isfinite(value) and (value > 0.0 or (zero and value == 0.0)):
         return float(value)
-    raise Error("out-of-range", place, f"it is {value!r}", f"give a finite number {'of 0 or more' if zero else 'above 0'}")
+    remedy = f"give a finite number {'of 0 or more' if zero else 'above 0'}"
+    raise Error("out-of-range", place, f"it is {value!r}", remedy)
 
 
 class Loop:
@@ -112,7 +113,8 @@ class Loop:
         - 'condition-violated': no limit is active, and the symmetric part of J_real J_model^+ is not positive definite
           (`least_eigenvalue` is at most 0, by more than twice its standard deviation where it is estimated)
         - 'holding': a measurement stays away; all commands are kept
-        - 'open-loop': it stayed away for longer than `hold`; the model stands in for it, corrected by the last difference
+        - 'open-loop': it stayed away for longer than `hold`; the model stands in for it, corrected by the last
+          difference
         """
         return self._status
 
@@ -130,8 +132,8 @@ class Loop:
     @property
     def least_eigenvalue(self) -> float:
         """Least eigenvalue of the symmetric part of J_real J_model^+ in the last step, in weighted errors, over the
-        directions in which the actuators can move the effectors; NaN before a step, and while measurements stay away. Above
-        0 errors fall (docs/closed_loop.md)."""
+        directions in which the actuators can move the effectors; NaN before a step, and while measurements stay away.
+        Above 0 errors fall (docs/closed_loop.md)."""
         return self._least
 
     @property
@@ -183,8 +185,8 @@ class Loop:
         Raises
         ------
         Error
-            unknown-name, wrong-type, wrong-shape, not-finite; suspicious-unit: farther than a hundred times the distance
-            of the effector from the origin, with 1 m for one nearer.
+            unknown-name, wrong-type, wrong-shape, not-finite; suspicious-unit: farther than a hundred times the
+            distance of the effector from the origin, with 1 m for one nearer.
         """
         item = f"targets['{name}']"
         if name not in self._robot.effectors:
@@ -210,7 +212,9 @@ class Loop:
         """
         self._robot.send(sim, commands)
 
-    def step(self, measured: Optional[Mapping[str, Any]], time: float, taken: Optional[float] = None) -> dict[str, float]:
+    def step(
+        self, measured: Optional[Mapping[str, Any]], time: float, taken: Optional[float] = None
+    ) -> dict[str, float]:
         """One step of the loop, once every time step of the model.
 
         Parameters
@@ -307,7 +311,8 @@ class Loop:
                       forgetting: float = 0.9, window: int = 5) -> tuple[int, JacobianEstimator]:
         """Of weighted errors."""
         if not (isinstance(window, int) and window >= 1):
-            raise Error("out-of-range", f"{self._place}(estimator)['window']", f"it is {window!r}", "give 1 sample or more")
+            raise Error("out-of-range", f"{self._place}(estimator)['window']", f"it is {window!r}",
+                        "give 1 sample or more")
         noises = [noise_rotation if effector.unit == "rad" else noise for effector in self._robot.effectors.values()]
         every = np.repeat(noises, [len(directions) for directions in self._robot.directions])
         scaled = np.sqrt(self._row_weights) * every
@@ -324,7 +329,8 @@ class Loop:
             raise Error("non-monotonic-time", "step(taken)", f"{taken:g} s is later than now, {time:g} s",
                         "give the time at which the measurement was taken")
         if measured is not None and not isinstance(measured, Mapping):
-            raise Error("wrong-type", "step(measured)", f"{measured!r} is no dict", "give a dict from effectors to (3,) arrays")
+            raise Error("wrong-type", "step(measured)", f"{measured!r} is no dict",
+                        "give a dict from effectors to (3,) arrays")
         measured = measured or {}
         for name in measured:
             if name not in self._robot.effectors:
@@ -371,8 +377,8 @@ class Loop:
     def _differences(self, found: Mapping[str, Any], time: float) -> dict[str, np.ndarray]:
         """(3,) of each effector from where it was measured, or else must be, to its target at a time."""
         predicted = self.positions
-        return {name: self._robot.difference(name, self._target(name, time), predicted[name] if value is None else value)
-                for name, value in found.items()}
+        now = {name: predicted[name] if value is None else value for name, value in found.items()}
+        return {name: self._robot.difference(name, self._target(name, time), value) for name, value in now.items()}
 
     def _target(self, name: str, time: float) -> np.ndarray:
         target = self._targets[name]
@@ -453,7 +459,7 @@ class Loop:
         self._commands = np.clip(np.clip(wanted, self._commands - reach, self._commands + reach), limits[0], limits[1])
 
     def _advance(self, measured: Optional[dict[str, np.ndarray]], before: np.ndarray) -> None:
-        """Remembers this step, whose effectors follow from the commands `before` it, and moves the model to the next."""
+        """Remembers this step, whose effectors follow from the commands `before` it, and moves the model on."""
         self._memory.append(Memory(self._robot.positions(), before, measured))
         keep = max(2 * (self._samples() + self._window) + 2, 4)
         if len(self._memory) > 2 * keep:

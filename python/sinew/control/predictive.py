@@ -21,15 +21,16 @@ class PredictiveController(Loop):
 
         sum_j |x + b + W_ea z_j - r_j|^2_Q + s change |z_j - z_(j-1)|^2_W_aa + s relaxation |lambda + z_j|^2_W_aa
 
-    within the limits of efforts, motions and their rates in all steps; z_1 is taken, and the next step begins anew. x are
-    the effectors of the model, which obeys the same commands beside the robot, r_j the targets at the ends of the steps, so
-    that moving ones are seen coming, and b what is measured less what the model had when it was measured, filtered:
-    b <- b + observer (y - x(t - delay) - b). A robot and a model that differ by a constant leave no error at rest (dynamic
-    matrix control: Cutler & Ramaker, Joint Automatic Control Conf. 1980; offset-free by the disturbance b: Muske &
-    Badgwell, J. Process Control 12 (2002) 617-632). Steps are those of equilibrium: inertia has no part in them.
+    within the limits of efforts, motions and their rates in all steps; z_1 is taken, and the next step begins anew. x
+    are the effectors of the model, which obeys the same commands beside the robot, r_j the targets at the ends of the
+    steps, so that moving ones are seen coming, and b what is measured less what the model had when it was measured,
+    filtered: b <- b + observer (y - x(t - delay) - b). A robot and a model that differ by a constant leave no error
+    at rest (dynamic matrix control: Cutler & Ramaker, Joint Automatic Control Conf. 1980; offset-free by the
+    disturbance b: Muske & Badgwell, J. Process Control 12 (2002) 617-632). Steps are those of equilibrium: inertia
+    has no part in them.
 
-    The delay is in the prediction and sets no limit of its own; errors of the model do. b follows from the loop
-    y - x = (J_real - J_model) J_model^+ ..., whence a smaller `observer` bears more delay and more error, and less noise
+    The delay is in the prediction and sets no limit of its own; errors of the model do. b follows from the loop y - x
+    = (J_real - J_model) J_model^+ ..., whence a smaller `observer` bears more delay and more error, and less noise
     passes through.
 
     Parameters
@@ -75,7 +76,8 @@ class PredictiveController(Loop):
         if not (isinstance(horizon, int) and 1 <= horizon <= 100):
             raise Error("out-of-range", f"{self._place}(horizon)", f"it is {horizon!r}", "give 1 to 100 steps")
         if not 0.0 < observer <= 1.0:
-            raise Error("out-of-range", f"{self._place}(observer)", f"it is {observer!r}", "give a number above 0, at most 1")
+            raise Error("out-of-range", f"{self._place}(observer)", f"it is {observer!r}",
+                        "give a number above 0, at most 1")
         self.horizon, self._observer = horizon, float(observer)
         self._weights = Weights.checked(self._row_weights, change, relaxation, self._place)
 

@@ -41,8 +41,8 @@ class Weights(NamedTuple):
     change : float
         Of changes of efforts from one step to the next, |du|^2 in W_aa.
     relaxation : float
-        Of the efforts themselves, |lambda|^2 in W_aa: among efforts that move the effectors equally, they slowly become
-        the least.
+        Of the efforts themselves, |lambda|^2 in W_aa: among efforts that move the effectors equally, they slowly
+        become the least.
     """
 
     rows: np.ndarray
@@ -98,8 +98,8 @@ def choose(robot: Robot, answer: Answer, standing: Standing, wanted: np.ndarray,
 
         sum_j |W_ea z_j - w_j|^2_Q + s change |z_j - z_(j-1)|^2_W_aa + s relaxation |lambda + z_j|^2_W_aa
 
-    within limits of efforts, motions m + W_aa z_j and rates; s makes the weights numbers: the mean over the actuators of
-    what their efforts, each scaled to the same energy, move the effectors.
+    within limits of efforts, motions m + W_aa z_j and rates; s makes the weights numbers: the mean over the actuators
+    of what their efforts, each scaled to the same energy, move the effectors.
 
     Parameters
     ----------
@@ -165,10 +165,12 @@ def _motion_rows(robot: Robot, answer: Answer, standing: Standing, steps: int,
     reach = robot.motion_limits[2] * time_step
     first_lower, lowest = (np.where(standing.slack, -np.inf, each) for each in (first_lower, lowest))
     later = steps - 1
-    rows = np.vstack([np.kron(np.eye(steps), answer.w_aa), np.kron(np.eye(steps) - np.eye(steps, k=-1), answer.w_aa)[count:]])
+    changes = np.kron(np.eye(steps) - np.eye(steps, k=-1), answer.w_aa)[count:]
+    rows = np.vstack([np.kron(np.eye(steps), answer.w_aa), changes])
     least = np.where(standing.slack, -np.inf, -reach)
-    lower = np.concatenate([first_lower - standing.motions, np.tile(lowest - standing.motions, later), np.tile(least, later)])
-    upper = np.concatenate([first_upper - standing.motions, np.tile(highest - standing.motions, later), np.tile(reach, later)])
+    lower = np.concatenate([first_lower, np.tile(lowest, later)]) - np.tile(standing.motions, steps)
+    upper = np.concatenate([first_upper, np.tile(highest, later)]) - np.tile(standing.motions, steps)
+    lower, upper = np.append(lower, np.tile(least, later)), np.append(upper, np.tile(reach, later))
     finite = np.isfinite(lower) | np.isfinite(upper)
     return rows[finite], lower[finite], upper[finite]
 

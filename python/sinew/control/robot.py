@@ -51,7 +51,8 @@ class Robot:
         self.effectors = {name: sim.effector(name) for name in effectors}
         names = [n for n, a in sim.actuators.items() if a.type != "spring"] if actuators is None else list(actuators)
         if isinstance(actuators, str):
-            raise Error("wrong-type", f"{place}(actuators)", f"{actuators!r} is no list of names", "give a list of names")
+            raise Error("wrong-type", f"{place}(actuators)", f"{actuators!r} is no list of names",
+                        "give a list of names")
         if not names:
             raise Error("no-actuators", f"{place}(actuators)", "there are none", "name at least one")
         if len(set(names)) < len(names):
@@ -59,8 +60,8 @@ class Robot:
         self.actuators = {name: sim.actuator(name) for name in names}
         for name, actuator in self.actuators.items():
             if actuator.type == "spring":
-                raise Error("wrong-actuator-type", f"{place}(actuators)", f"'{name}' is a spring, which takes no command",
-                            "name actuators that can be commanded")
+                raise Error("wrong-actuator-type", f"{place}(actuators)",
+                            f"'{name}' is a spring, which takes no command", "name actuators that can be commanded")
         self.by_motion = np.array([kind == "motion" for kind in self._kinds(command, place)])
         # limits: {effort's name: Limits, motion's name: Limits}
         limits = [tuple(actuator.limits.items()) for actuator in self.actuators.values()]
