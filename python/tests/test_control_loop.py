@@ -111,6 +111,36 @@ def test_the_largest_gain_is_that_of_an_integrator_with_a_delay(scene, delay):
         assert growth(1.5, compensate=True, delay=delay * model.time_step) < 1.0
 
 
+def test_vibrations_limit_the_rate():
+    """x'' + 2 zeta w x' + w^2 x = w^2 s with s' = rate (r - x) is stable for rate < 2 zeta w (Routh)."""
+    def arm(integrator):
+        return sinew.load({
+            "sinew": 1, "time_step": "10 ms", "integrator": integrator, "gravity": "0 0 0 m/s^2",
+            "bodies": {"arm": {"type": "pcc", "segments": [{"length": "200 mm", "mass": "200 g", "stiffness": "5e-3 N m",
+                                                            "damping": "3.125e-4 N m s"}]}},
+            "actuators": {"bend": {"type": "torque", "body": "arm", "segment": 0}},
+            "effectors": {"tip": {"body": "arm", "point": "0 0 -200 mm"}}})
+
+    rest = arm("quasi-static")
+    inertia = rest.body("arm").arm.mass_matrix(np.zeros(1))[0, 0]
+    limit = 3.125e-4 / inertia  # 2 zeta w = b/H
+    assert np.sqrt(5e-3 / inertia) == pytest.approx(6.3, abs=0.1) and limit == pytest.approx(2.5)
+
+    def growth(rate):
+        plant = arm({"type": "generalized-alpha", "spectral_radius": 1.0})
+        loop = control.ClosedLoop(arm("quasi-static"), {"tip": plant.effector("tip").position + [1e-4, 0.0, 0.0]}, gains=rate,
+                                  command="effort", weights={"tip": [1, 0, 0]}, change=0.0, relaxation=0.0, real_jacobian="model")
+        errors = []
+        for _ in range(1200):
+            loop.send(plant, loop.step({"tip": plant.effector("tip").position}, plant.time))
+            plant.step()
+            errors.append(loop.error)
+        return max(errors[800:]) / max(errors[400:800])
+
+    # The samples of 10 ms and the hold of commands take some of the damping: w T/2 = 3 % of a radian.
+    assert growth(0.85 * limit) < 1.0 < growth(1.1 * limit)
+
+
 def test_a_plant_that_is_wired_wrongly_violates_the_condition(scene):
     """East and west swapped: the tip runs away along x, and the loop says so from the exact Jacobian and from an
     estimate alike."""

@@ -16,14 +16,14 @@ and all at once; a camera sees the tip with 0.1 mm of white noise on each coordi
 (true, not measured) from its target in the last of 2.5 s, mean; open loop (the model alone), resolved rate (6/s) and
 model predictive control over 10 steps, cables commanded by tension or by length. (ii) The finger of the tests with four
 taut cables: the largest gain at which a step of 20 um dies out, by bisection to 0.5 %, for delays of 0 to 8 samples,
-with an exact model and with one that is 1.3 times too stiff,
-whose plant moves more by the eigenvalues of J_real J_model^+."""
+with an exact model and with one that is 1.3 times too stiff, whose plant moves more by the eigenvalue of
+J_real J_model^+."""
 SOURCES = {
     "aim": "what the project asks of itself: 0.2 mm with 0.1 mm of noise at the marker, where the open loop is 5 to 10 mm off",
     "root locus": "largest root of z^(d+1) - z^d + k = 0 on the unit circle: k = 2 sin(pi/(2 (2 d + 1))) (Levin & May, Theoretical "
                   "Population Biology 9 (1976) 178-187)",
 }
-COST = 80
+COST = 180
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 FINE = "{shape: trunk, element_size: 5 mm}"
 ALONE = {"nothing": {}, "mesh": {"mesh": FINE}, "30 % stiffer": {"stiffness": 1.3}, "30 % softer": {"stiffness": 0.7},
@@ -111,7 +111,8 @@ def dies_out(plant, model, gain, delay):
         errors.append(abs(past[-1][0] - start[0] - step))
         if errors[-1] > 100 * step:
             return False
-    return max(errors[80:]) < max(errors[40:80])
+    # What grows ends in a cycle between limits, many steps wide.
+    return max(errors[80:]) < min(2 * step, max(errors[40:80]))
 
 
 def largest_gain(plant, model, delay, expected):
