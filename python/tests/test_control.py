@@ -151,7 +151,16 @@ def test_the_response_keeps_contacts(friction):
     sim.step(30)
     touching = sum(state != "open" for state in sim.contact("floor").states)
     assert touching > 0 and sim.contact("floor").states.count("stick") == (touching if friction else 0)
-    found = sim.response()
+    watched = sim.clone()
+    before = watched.state()
+    found = watched.response()
+    assert watched.state() == before
+    for each in (sim, watched):  # it goes on as if nobody had asked
+        each.actuator("lift").force = 0.01
+        each.step(5)
+    assert watched.state() == sim.state()
+    sim.restore(before)
+    sim.actuator("lift").force = 0.0
     columns = []
     for name, value in (("lift", 0.0), ("shift", 0.0)):
         ends = []

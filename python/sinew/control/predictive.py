@@ -29,9 +29,8 @@ class PredictiveController(Loop):
     disturbance b: Muske & Badgwell, J. Process Control 12 (2002) 617-632). Steps are those of equilibrium: inertia
     has no part in them.
 
-    The delay is in the prediction and sets no limit of its own; errors of the model do. b follows from the loop y - x
-    = (J_real - J_model) J_model^+ ..., whence a smaller `observer` bears more delay and more error, and less noise
-    passes through.
+    The delay is part of the prediction and sets no limit of its own while the model is exact: b then does not answer to
+    commands. Errors of the model make it answer; a smaller `observer` bears more of them, and passes less noise.
 
     Parameters
     ----------

@@ -32,7 +32,9 @@ void write_blocks(Simulation& simulation, const State& state, std::span<const in
                         std::span(blocks).first(model.actuators().size()));
 }
 
-void condense(Simulation& simulation, const LinearisationChoice& choice) {
+// Points that touch nothing have no effort and no part in it. @param effort (rows,) N, in and out.
+void condense(Simulation& simulation, const LinearisationChoice& choice,
+              std::vector<double>& effort) {
   const Model& model = simulation.model();
   const std::vector<int> geometric =
       choice.geometric_stiffness ? model.geometric_stiffness().all : std::vector<int>{};
@@ -40,9 +42,10 @@ void condense(Simulation& simulation, const LinearisationChoice& choice) {
       choice.of_statics ? mechanics::StepWeights{}
                         : mechanics::step_weights(model.step().integrator, model.step().time_step);
   World& world = simulation.world();
-  world.begin_query(simulation.time());
+  world.begin_step(simulation.time(), simulation.time(), effort);
+  world.bodies().begin_query();  // no base moves
   world.linearise({weights, choice.tangent, !geometric.empty(), false});
-  world.form_rows(simulation.efforts(), geometric);
+  world.form_rows(effort, geometric);
   if (world.condense() != linalg::FactorStatus::singular) return;
   throw Error(ErrorKind::singular_matrix, {.item = "response()"},
               "the stiffness matrix is singular at this state",
@@ -54,10 +57,11 @@ ControlledResponse respond(Simulation& simulation, const State& state,
                            std::span<const int> controlled, const LinearisationChoice& choice) {
   const Model& model = simulation.model();
   World& world = simulation.world();
-  condense(simulation, choice);
+  std::vector<double> all(simulation.efforts().begin(), simulation.efforts().end());
+  condense(simulation, choice, all);
   write_blocks(simulation, state, controlled);
   linalg::AlignedNumbers effort;
-  world.numbering().gather_efforts(simulation.efforts(), effort);
+  world.numbering().gather_efforts(all, effort);
   step::Response response;
   response.form(world.problem(), effort);
 
