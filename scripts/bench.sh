@@ -78,6 +78,7 @@ contact flush_blocks ""
 contact detection ""
 contact heaps "" --heaps 4
 contact bodies ""
+contact control ""
 
 if [ -e web/node_modules/playwright-core ] && [ -x "${SINEW_CHROMIUM:-/usr/bin/chromium}" ]; then
   echo "== the view, in a browser"

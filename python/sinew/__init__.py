@@ -28,6 +28,7 @@ from ._core import (
     Polyline,
     Probe,
     Ramp,
+    Response,
     Samples,
     Signal,
     Simulation,
@@ -66,6 +67,7 @@ __all__ = [
     "Polyline",
     "Probe",
     "Ramp",
+    "Response",
     "RunError",
     "Samples",
     "Signal",
@@ -81,6 +83,7 @@ __all__ = [
     "View",
     "__version__",
     "collision",
+    "control",
     "errors",
     "fields",
     "load",
@@ -96,9 +99,9 @@ __all__ = [
 
 
 def __getattr__(name):
-    # Pictures are imported when they are first asked for: most programs draw none.
-    if name == "render":
-        return _importlib.import_module(".render", __name__)
+    # Pictures and loops are imported when they are first asked for: most programs have none.
+    if name in ("control", "render"):
+        return _importlib.import_module(f".{name}", __name__)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 

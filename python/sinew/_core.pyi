@@ -148,6 +148,14 @@ class Linearisation:
     @property
     def negative_pivots(self) -> int: ...
 
+class Response:
+    @property
+    def actuators(self) -> list[str]: ...
+    @property
+    def W_ea(self) -> dict[str, _Floats]: ...
+    @property
+    def W_aa(self) -> _Floats: ...
+
 class Mesh:
     @property
     def name(self) -> str: ...
@@ -523,6 +531,14 @@ class Simulation:
         geometric_stiffness: bool = True,
         statics: bool = True,
     ) -> _Floats: ...
+    def response(
+        self,
+        actuators: Optional[Sequence[str]] = None,
+        *,
+        tangent: _Tangent = "exact",
+        geometric_stiffness: bool = True,
+        statics: bool = True,
+    ) -> Response: ...
     @property
     def controller(self) -> Optional[InverseController]: ...
     def detach(self) -> None: ...
@@ -1233,6 +1249,28 @@ def solve_cones(
     tolerance: float = 1e-8,
     start: Optional[ArrayLike] = None,
 ) -> ConeSolution: ...
+
+class QuadraticSolution:
+    @property
+    def x(self) -> _Floats: ...
+    @property
+    def status(self) -> str: ...
+    @property
+    def bound_multiplier(self) -> _Floats: ...
+    @property
+    def row_multiplier(self) -> _Floats: ...
+    @property
+    def iterations(self) -> int: ...
+
+def solve_quadratic(
+    G: ArrayLike,
+    g: ArrayLike,
+    lower: Optional[ArrayLike] = None,
+    upper: Optional[ArrayLike] = None,
+    C: Optional[ArrayLike] = None,
+    row_lower: Optional[ArrayLike] = None,
+    row_upper: Optional[ArrayLike] = None,
+) -> QuadraticSolution: ...
 
 class ContactProblem:
     @property

@@ -1,4 +1,7 @@
-"""Complementarity problems by themselves: contacts with Coulomb friction.
+"""Quadratic programs, and complementarity problems by themselves: contacts with Coulomb friction.
+
+    found = sinew.qp.solve_quadratic(G, g, lower, upper, C, row_lower, row_upper)
+    found.x, found.status
 
     solution = sinew.qp.solve_cones(W, q, friction)
     solution.x, solution.status, solution.residual
@@ -7,9 +10,26 @@
     sinew.qp.write_fclib("step.hdf5", problem.W, problem.q, problem.friction, problem.r)
 """
 
-from ._core import ConeSolution, ContactProblem, read_fclib, solve_cones, write_fclib
+from ._core import (
+    ConeSolution,
+    ContactProblem,
+    QuadraticSolution,
+    read_fclib,
+    solve_cones,
+    solve_quadratic,
+    write_fclib,
+)
 
-__all__ = ["ConeSolution", "ContactProblem", "read_fclib", "solve_cones", "write_fclib"]
+__all__ = [
+    "ConeSolution",
+    "ContactProblem",
+    "QuadraticSolution",
+    "read_fclib",
+    "solve_cones",
+    "solve_quadratic",
+    "write_fclib",
+]
 
 ConeSolution.__module__ = "sinew.qp"
 ContactProblem.__module__ = "sinew.qp"
+QuadraticSolution.__module__ = "sinew.qp"

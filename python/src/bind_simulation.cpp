@@ -92,6 +92,7 @@ simulation (others get an Error of kind 'simulation-busy'); several simulations 
   bind_simulation_state(type);
   bind_simulation_reports(type);
   bind_simulation_linearisation(type);
+  bind_simulation_response(type);
   bind_control(type);
   bind_contact_problem(module, type);
   type.def("__repr__", [](const Session& self) {

@@ -52,6 +52,8 @@ void bind_brace(py::module_& module);
 void bind_plan_drive(py::module_& module);
 void bind_drive(py::module_& module);
 void bind_qp(py::module_& module);
+void bind_quadratic(py::module_& module);
+void bind_response(py::module_& module);
 void bind_quantity(py::module_& module);
 void bind_collision(py::module_& module);
 void bind_collision_pairs(py::module_& module);

@@ -31,6 +31,7 @@ PYBIND11_MODULE(_core, module) {
   python::bind_contact(module);
   python::bind_joint(module);
   python::bind_body(module);
+  python::bind_response(module);
   python::bind_simulation(module);
   python::bind_controller(module);
   python::bind_view(module);
@@ -40,6 +41,7 @@ PYBIND11_MODULE(_core, module) {
   python::bind_bending_fit(module);
   python::bind_drive(module);
   python::bind_qp(module);
+  python::bind_quadratic(module);
   python::bind_quantity(module);
   python::bind_collision(module);
 #ifdef SINEW_HAS_PLAN

@@ -23,6 +23,8 @@ void bind_simulation_reports(SimulationType& type);
 void bind_simulation_stepping(SimulationType& type);
 /// How motions follow from efforts.
 void bind_simulation_linearisation(SimulationType& type);
+/// How effectors follow from the efforts of controlled actuators.
+void bind_simulation_response(SimulationType& type);
 /// Problems of contacts by themselves: their files, and Simulation.contact_problem().
 /// @param module,type where they go.
 void bind_contact_problem(py::module_& module, SimulationType& type);

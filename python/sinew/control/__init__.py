@@ -1,0 +1,18 @@
+"""Closed loops: commands for a robot from measured effectors and a model that runs beside it.
+
+    loop = sinew.control.ClosedLoop(model, {"tip": [0.03, 0.0, 0.18]})
+    commands = loop.step({"tip": measured}, time)      # {"long_0": 0.012, ...}: loop.quantities names what they are
+    loop.send(plant, commands)                         # or to the motors of a robot
+    loop.status, loop.errors, loop.least_eigenvalue
+
+`PredictiveController` has the same interface and looks ahead. docs/closed_loop.md has the equations, the condition of
+convergence and what is measured. SI units everywhere.
+"""
+
+from .closed_loop import ClosedLoop
+from .estimator import JacobianEstimator
+from .gains import Gains, Schedule, delay_limit
+from .jacobian import jacobian
+from .predictive import PredictiveController
+
+__all__ = ["ClosedLoop", "Gains", "JacobianEstimator", "PredictiveController", "Schedule", "delay_limit", "jacobian"]

@@ -1,0 +1,108 @@
+"""Gains of a loop, constant or by table, and the limit that a delay sets to them."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Callable, NamedTuple, Sequence
+
+import numpy as np
+
+from ..errors import Error
+
+__all__ = ["Gains", "Schedule", "delay_limit"]
+
+
+class Gains(NamedTuple):
+    """The effectors are asked for the velocity v = dr/dt + rate e + integral (time integral of e), with the target r
+    and the measured error e.
+
+    Attributes
+    ----------
+    rate : float
+        1/s, above 0: the error of a loop without delay falls as exp(-rate t).
+    integral : float
+        1/s^2, 0 or more. Without it a disturbance that grows by d m/s leaves the error d/rate; with it none. The loop
+        is critically damped at rate^2/4.
+    """
+
+    rate: float = 5.0
+    integral: float = 0.0
+
+    def check(self, place: str) -> "Gains":
+        """Itself.
+
+        Raises
+        ------
+        Error
+            out-of-range: not finite, a rate of 0 or less, an integral gain below 0.
+        """
+        checks = (("rate", self.rate, self.rate > 0.0), ("integral", self.integral, self.integral >= 0.0))
+        for name, value, good in checks:
+            if not (good and math.isfinite(value)):
+                raise Error("out-of-range", f"{place}.{name}", f"it is {value}",
+                            "give a finite rate above 0 and an integral gain of 0 or more")
+        return self
+
+
+class Schedule:
+    """Gains by table over a scheduling variable: linear between the entries, constant beyond them.
+
+    Gains that change slowly against the loop keep the loop as stable as each of them is (Shamma & Athans, Automatica
+    27 (1991) 559-564); a variable that follows the motion itself at the loop's own rate has no such guarantee.
+
+    Parameters
+    ----------
+    variable : callable
+        Takes the loop before its step, returns a float: loop.positions["tip"][2], loop.time, ...
+    points : (n,) array_like
+        Where gains are given, ascending.
+    gains : list of Gains
+        As many.
+
+    Raises
+    ------
+    Error
+        wrong-type, wrong-length, not-finite, non-monotonic-time: points that do not ascend.
+    """
+
+    def __init__(self, variable: Callable[[Any], float], points: Sequence[float], gains: Sequence[Gains]) -> None:
+        if not callable(variable):
+            raise Error("wrong-type", "Schedule(variable)", f"{variable!r} cannot be called",
+                        "give a function of the loop, such as lambda loop: loop.positions['tip'][2]")
+        self.variable = variable
+        self.points = np.array(points, dtype=float)
+        self.gains = [Gains(*each).check(f"Schedule(gains)[{k}]") for k, each in enumerate(gains)]
+        if self.points.ndim != 1 or len(self.points) != len(self.gains) or not len(self.gains):
+            raise Error("wrong-length", "Schedule(gains)", f"{len(self.gains)} gains for {self.points.size} points",
+                        "give gains for each point")
+        if not np.isfinite(self.points).all() or (np.diff(self.points) <= 0.0).any():
+            raise Error("non-monotonic-time", "Schedule(points)", f"{list(self.points)} do not ascend",
+                        "give finite, ascending numbers")
+
+    def at(self, value: float) -> Gains:
+        """Gains at a value of the variable."""
+        if not math.isfinite(value):
+            raise Error("not-finite", "Schedule(variable)", f"it returned {value}", "return a finite number")
+        return Gains(*(float(np.interp(value, self.points, [each[k] for each in self.gains])) for k in range(2)))
+
+
+def delay_limit(delay: int) -> float:
+    """The largest rate times sample time, rate * T, at which a resolved-rate loop with an exact Jacobian is stable.
+
+    The loop is an integrator with a delay, x[n+1] = x[n] - k x[n-d], whose characteristic polynomial
+    z^(d+1) - z^d + k has its largest root on the unit circle, at z = exp(i pi/(2 d + 1)), for
+
+        k = 2 sin(pi/(2 (2 d + 1))):
+
+    2 without delay, 1 with one sample, 0.618 with two; for long delays k -> pi/(2 d), that of continuous time,
+    rate < pi/(2 tau) (Levin & May, Theoretical Population Biology 9 (1976) 178-187). With a Jacobian that is off,
+    eigenvalues mu of J_real J_model^+ that are real and positive divide the limit by the largest of them.
+
+    Parameters
+    ----------
+    delay : int
+        d, samples between a command's effect and the measurement that the loop sees, >= 0.
+    """
+    if delay < 0:
+        raise Error("out-of-range", "delay_limit(delay)", f"it is {delay}", "give samples, 0 or more")
+    return 2.0 * math.sin(math.pi / (2.0 * (2 * delay + 1)))

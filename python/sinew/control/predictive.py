@@ -1,0 +1,88 @@
+"""Model predictive control of measured effectors."""
+
+from __future__ import annotations
+
+from typing import Any, Callable, Mapping, Optional, Sequence, Union
+
+import numpy as np
+
+from ..errors import Error
+from .loop import Loop
+from .program import Choice, Standing, Weights, choose
+from .robot import Answer
+
+__all__ = ["PredictiveController"]
+
+
+class PredictiveController(Loop):
+    """Brings measured effectors to their targets over a short horizon of linearised steps, within all limits.
+
+    In each step the changes z_1 .. z_N of efforts after the next N steps minimise
+
+        sum_j |x + b + W_ea z_j - r_j|^2_Q + s change |z_j - z_(j-1)|^2_W_aa + s relaxation |lambda + z_j|^2_W_aa
+
+    within the limits of efforts, motions and their rates in all steps; z_1 is taken, and the next step begins anew. x
+    are the effectors of the model, which obeys the same commands beside the robot, r_j the targets at the ends of the
+    steps, so that moving ones are seen coming, and b what is measured less what the model had when it was measured,
+    filtered: b <- b + observer (y - x(t - delay) - b). A robot and a model that differ by a constant leave no error
+    at rest (dynamic matrix control: Cutler & Ramaker, Joint Automatic Control Conf. 1980; offset-free by the
+    disturbance b: Muske & Badgwell, J. Process Control 12 (2002) 617-632). Steps are those of equilibrium: inertia
+    has no part in them.
+
+    The delay is part of the prediction and sets no limit of its own while the model is exact: b then does not answer to
+    commands. Errors of the model make it answer; a smaller `observer` bears more of them, and passes less noise.
+
+    Parameters
+    ----------
+    model, effectors, actuators, command, weights, delay, tolerance, hold, max_age, real_jacobian, estimator
+        See ClosedLoop.
+    horizon : int
+        N, steps.
+    change : float
+        Weight of changes of efforts between steps: how hard it moves.
+    relaxation : float
+        Weight of efforts themselves.
+    observer : float
+        Above 0, at most 1.
+
+    Raises
+    ------
+    Error
+        As ClosedLoop.
+    """
+
+    def __init__(
+        self,
+        model: Any,
+        effectors: Mapping[str, Any],
+        actuators: Optional[Sequence[str]] = None,
+        *,
+        horizon: int = 10,
+        change: float = 1e-2,
+        relaxation: float = 1e-5,
+        observer: float = 0.2,
+        command: Union[str, Mapping[str, str], None] = None,
+        weights: Optional[Mapping[str, Any]] = None,
+        delay: float = 0.0,
+        tolerance: float = 5e-4,
+        hold: float = 0.1,
+        max_age: Optional[float] = None,
+        real_jacobian: Union[str, Callable[[], np.ndarray]] = "estimate",
+        estimator: Optional[Mapping[str, Any]] = None,
+    ) -> None:
+        super().__init__(model, effectors, actuators, command, weights, tolerance, delay, hold, max_age, real_jacobian,
+                         estimator)
+        if not (isinstance(horizon, int) and 1 <= horizon <= 100):
+            raise Error("out-of-range", f"{self._place}(horizon)", f"it is {horizon!r}", "give 1 to 100 steps")
+        if not 0.0 < observer <= 1.0:
+            raise Error("out-of-range", f"{self._place}(observer)", f"it is {observer!r}",
+                        "give a number above 0, at most 1")
+        self.horizon, self._observer = horizon, float(observer)
+        self._weights = Weights.checked(self._row_weights, change, relaxation, self._place)
+
+    def _choose(self, answer: Answer, standing: Standing, found: Mapping[str, Any]) -> Choice:
+        time_step = self.model.time_step
+        predicted: Mapping[str, Any] = {name: None for name in found}
+        wanted = np.array([self._robot.rows(self._differences(predicted, self._time + (step + 1) * time_step))
+                           for step in range(self.horizon)])
+        return choose(self._robot, answer, standing, wanted, self._weights, time_step)

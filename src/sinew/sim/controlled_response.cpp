@@ -1,0 +1,102 @@
+#include "sinew/sim/controlled_response.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "sinew/constraint/effector.hpp"
+#include "sinew/core/error.hpp"
+#include "sinew/core/types.hpp"
+#include "sinew/linalg/scratch.hpp"
+#include "sinew/sim/actuation.hpp"
+#include "sinew/sim/inputs.hpp"
+#include "sinew/sim/model.hpp"
+#include "sinew/sim/row_numbering.hpp"
+#include "sinew/sim/simulation.hpp"
+#include "sinew/sim/state.hpp"
+#include "sinew/sim/world.hpp"
+#include "sinew/step/response.hpp"
+
+namespace sinew::sim {
+
+namespace {
+
+// What every actuator is told now, without limits on rates; the controlled ones obey nobody.
+void write_blocks(Simulation& simulation, const State& state, std::span<const int> controlled) {
+  const Model& model = simulation.model();
+  Actuation actuation(model);
+  actuation.load(state);
+  actuation.set_commands(simulation.inputs().commands);
+  actuation.own(&actuation, controlled);
+  auto& blocks = simulation.world().problem().actuators;
+  actuation.form_blocks(simulation.time(), kInfinity,
+                        std::span(blocks).first(model.actuators().size()));
+}
+
+// Points that touch nothing have no effort and no part in it. @param effort (rows,) N, in and out.
+void condense(Simulation& simulation, const LinearisationChoice& choice,
+              std::vector<double>& effort) {
+  const Model& model = simulation.model();
+  const std::vector<int> geometric =
+      choice.geometric_stiffness ? model.geometric_stiffness().all : std::vector<int>{};
+  const auto weights =
+      choice.of_statics ? mechanics::StepWeights{}
+                        : mechanics::step_weights(model.step().integrator, model.step().time_step);
+  World& world = simulation.world();
+  world.begin_step(simulation.time(), simulation.time(), effort);
+  world.bodies().begin_query();  // no base moves
+  world.linearise({weights, choice.tangent, !geometric.empty(), false});
+  world.form_rows(effort, geometric);
+  if (world.condense() != linalg::FactorStatus::singular) return;
+  throw Error(ErrorKind::singular_matrix, {.item = "response()"},
+              "the stiffness matrix is singular at this state",
+              "fix a region of every body, or try tangent='rotated'");
+}
+
+// Leaves the simulation's state changed.
+ControlledResponse respond(Simulation& simulation, const State& state,
+                           std::span<const int> controlled, const LinearisationChoice& choice) {
+  const Model& model = simulation.model();
+  World& world = simulation.world();
+  std::vector<double> all(simulation.efforts().begin(), simulation.efforts().end());
+  condense(simulation, choice, all);
+  write_blocks(simulation, state, controlled);
+  linalg::AlignedNumbers effort;
+  world.numbering().gather_efforts(all, effort);
+  step::Response response;
+  response.form(world.problem(), effort);
+
+  // The response has the controlled rows in the order of the actuators.
+  std::vector<int> columns, own;
+  for (const int actuator : controlled) {
+    const auto place = std::ranges::lower_bound(response.controlled(), actuator);
+    columns.push_back(static_cast<int>(place - response.controlled().begin()));
+    own.push_back(model.actuators()[static_cast<std::size_t>(actuator)].row);
+  }
+  ControlledResponse result;
+  for (std::size_t i = 0; i < model.effectors().size(); ++i) {
+    const constraint::Effector& effector = model.effector(static_cast<int>(i));
+    const int first = world.numbering().problem_row_of(effector.first_row());
+    result.effectors.emplace_back(
+        response.compliance()(Eigen::seqN(first, effector.row_count()), columns));
+  }
+  result.actuators = response.compliance()(own, columns);
+  return result;
+}
+
+}  // namespace
+
+// No destructor puts the state back: restore() may throw.
+ControlledResponse controlled_response(Simulation& simulation, std::span<const int> controlled,
+                                       const LinearisationChoice& choice) {
+  const State state = simulation.state();
+  try {
+    ControlledResponse result = respond(simulation, state, controlled, choice);
+    simulation.restore(state);
+    return result;
+  } catch (...) {
+    simulation.restore(state);
+    throw;
+  }
+}
+
+}  // namespace sinew::sim
