@@ -92,10 +92,15 @@ def _estimate(options: argparse.Namespace) -> int:
     else:
         table = _over_time(options, twin, record, commanded)
     out.mkdir(parents=True, exist_ok=True)
-    write_table(out / "estimate.csv", table)
+    write_table(out / "estimate.csv", {_heading(name, twin): values for name, values in table.items()})
     if not options.quiet:
         _print(options, table, out)
     return 0
+
+
+def _heading(name: str, twin: Twin) -> str:
+    forces = {component for unknown in twin.unknowns if isinstance(unknown, Force) for component in unknown.components}
+    return f"{name} [N]" if name.removesuffix(".std") in forces else name
 
 
 def _over_time(options: argparse.Namespace, twin: Twin, record, commanded) -> dict[str, np.ndarray]:

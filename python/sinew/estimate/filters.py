@@ -97,7 +97,7 @@ class Filter:
     start : ((n,) ndarray, (n, n) ndarray), optional
         Mean and covariance at the beginning in place of the model's.
     memory : float
-        s of steps that are kept for late readings.
+        s of steps that are kept for late readings; 0: none can come, and no state is saved.
     silence : float
         A sensor without a reading for this many of its periods (of steps without a rate) counts as lost.
 
@@ -126,6 +126,7 @@ class Filter:
         mean, covariance = model.start() if start is None else start
         self._past = [_Instant(time, mean, covariance, model.save(), [])]
         self._last = dict.fromkeys(range(len(model.sensors)), time)
+        self._at = self._past[0]  # where the model is
         self.dropped = 0
 
     @property
@@ -217,9 +218,11 @@ class Filter:
 
     def _predict(self, step: float) -> None:
         last = self._past[-1]
-        self.model.restore(last.kept)
+        if self._at is not last or getattr(self.model, "reading_moves", True):
+            self.model.restore(last.kept)
         mean, covariance = self.predict(last.mean, last.covariance, last.time, step)
-        self._past.append(_Instant(last.time + step, mean, covariance, self.model.save(), []))
+        self._past.append(_Instant(last.time + step, mean, covariance, self.model.save() if self.memory > 0.0 else None, []))
+        self._at = self._past[-1]
 
     def _correct(self, readings: list[Reading]) -> None:
         now = self._past[-1]
@@ -227,7 +230,8 @@ class Filter:
             return
         mean, covariance = self.correct(now.mean, now.covariance, readings)
         now.mean, now.covariance, now.readings = mean, covariance, now.readings + readings
-        now.kept = self.model.save()
+        if getattr(self.model, "reading_moves", True):
+            now.kept = self.model.save()
 
     # What a filter is
 
@@ -245,6 +249,17 @@ class Filter:
         return numbers, variances, which
 
 
+    def _answers(self, x: np.ndarray, which) -> tuple[np.ndarray, np.ndarray]:
+        """What is seen at x, and its derivative."""
+        seen = np.concatenate([mask for _, mask in which])
+        if hasattr(self.model, "answers"):
+            answer, sensitivity = self.model.answers(x, [k for k, _ in which])
+        else:
+            answer = np.concatenate([self.model.read(x, k) for k, _ in which])
+            sensitivity = np.concatenate([self.model.sensitivity(x, k) for k, _ in which])
+        return answer[seen], sensitivity[seen]
+
+
 class ExtendedKalman(Filter):
     """The extended Kalman filter (Simon, Optimal State Estimation, Wiley 2006, sec. 13.2).
 
@@ -258,8 +273,7 @@ class ExtendedKalman(Filter):
 
     def correct(self, mean, covariance, readings):
         numbers, variances, which = self._seen(readings)
-        answer = np.concatenate([self.model.read(mean, k)[seen] for k, seen in which])
-        sensitivity = np.concatenate([self.model.sensitivity(mean, k)[seen] for k, seen in which])
+        answer, sensitivity = self._answers(mean, which)
         gain = np.linalg.solve(sensitivity @ covariance @ sensitivity.T + np.diag(variances), sensitivity @ covariance).T
         left = np.eye(len(mean)) - gain @ sensitivity
         return mean + gain @ (numbers - answer), left @ covariance @ left.T + (gain * variances) @ gain.T
@@ -322,7 +336,7 @@ class MovingHorizon(ExtendedKalman):
                  memory: float = 0.5, silence: float = 5.0) -> None:
         if horizon < 1:
             raise Error("out-of-range", "MovingHorizon(horizon)", f"{horizon} instants", "give 1 or more")
-        super().__init__(model, step, start=start, time=time, memory=max(memory, horizon * step), silence=silence)
+        super().__init__(model, step, start=start, time=time, memory=max(memory, (horizon + 1) * step), silence=silence)
         self.horizon, self.iterations = horizon, iterations
         count = len(self.mean)
         self.lower = np.full(count, -math.inf) if lower is None else np.asarray(lower, float)
@@ -372,8 +386,7 @@ class MovingHorizon(ExtendedKalman):
 
     def _correct_about(self, about, mean, covariance, readings):
         numbers, variances, which = self._seen(readings)
-        answer = np.concatenate([self.model.read(about, k)[seen] for k, seen in which])
-        sensitivity = np.concatenate([self.model.sensitivity(about, k)[seen] for k, seen in which])
+        answer, sensitivity = self._answers(about, which)
         gain = np.linalg.solve(sensitivity @ covariance @ sensitivity.T + np.diag(variances), sensitivity @ covariance).T
         left = np.eye(len(mean)) - gain @ sensitivity
         return (mean + gain @ (numbers - answer - sensitivity @ (mean - about)),

@@ -10,6 +10,7 @@ import numpy as np
 from .. import _core
 from ..errors import Error
 from .quantities import Measured, Parameter
+from .static import Estimate
 from .twin import Twin
 
 __all__ = ["ArmModel", "SteppedModel", "TwinModel"]
@@ -38,6 +39,7 @@ class TwinModel:
     """
 
     walks = True  # the derivative of advance() is the same everywhere
+    reading_moves = True  # read() leaves the simulation elsewhere
 
     def __init__(self, twin: Twin, commands: Optional[Callable[[float], Mapping[str, float]]] = None) -> None:
         if any(isinstance(u, Parameter) for u in twin.unknowns):
@@ -46,7 +48,7 @@ class TwinModel:
         self.twin, self.commands = twin, commands
         self.names = twin.inputs
         self.sensors = list({o.name: o for o in twin.sensors}.values())
-        self._rows = [[k for k, o in enumerate(twin.sensors) if o.name == s.name] for s in self.sensors]
+        self.rows = [[k for k, o in enumerate(twin.sensors) if o.name == s.name] for s in self.sensors]
         self._mean, self._std = twin.prior()
         self._commanded = self._mean[twin.asked:].copy()
         self._walk = twin.walk()
@@ -95,11 +97,23 @@ class TwinModel:
         self._answers[key] = answer, slope
         return answer, slope
 
+    def answers(self, x, sensors):
+        """(m,) readings of several sensors and their derivative (m, n)."""
+        which = [row for sensor in sensors for row in self.rows[sensor]]
+        answer, slope = self._answer(x, True)
+        return answer[which], slope[which]
+
+    def state_of(self, estimate: Estimate) -> tuple[np.ndarray, np.ndarray]:
+        """Mean and covariance that a filter starts with, from an estimate of this twin at rest."""
+        mean = estimate.unknowns.copy()
+        mean[self.twin.asked:] -= self._commanded
+        return mean, estimate.covariance.copy()
+
     def read(self, x, sensor):
-        return self._answer(x, False)[0][self._rows[sensor]]
+        return self._answer(x, False)[0][self.rows[sensor]]
 
     def sensitivity(self, x, sensor):
-        return self._answer(x, True)[1][self._rows[sensor]]
+        return self._answer(x, True)[1][self.rows[sensor]]
 
     def save(self):
         return self.twin.sim.state(), self._commanded
@@ -115,8 +129,11 @@ class SteppedModel(TwinModel):
 
     One step of the scene per advance(), with the unknowns as they were estimated last; readings answer by the step's own
     linearisation, y = y_step + S (x - x_step), so that an estimate costs one step and no more. Needs readings that are
-    rows, and unknowns that are forces, efforts and motions.
+    rows, and unknowns that are forces, efforts and motions; begin from an estimate at rest (state_of()), since a step
+    follows the last one.
     """
+
+    reading_moves = False
 
     def __init__(self, twin: Twin, commands: Optional[Callable[[float], Mapping[str, float]]] = None) -> None:
         super().__init__(twin, commands)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import re
+from typing import NamedTuple, Optional
 
 import numpy as np
 
@@ -43,23 +45,21 @@ class Response:
         In equilibrium.
     linear : sinew.Linearisation
         Of it.
+    actuators : list of Drive, optional
+        Of the simulation, where they are known already.
     """
 
-    def __init__(self, sim: _core.Simulation, linear: _core.Linearisation) -> None:
+    def __init__(self, sim: _core.Simulation, linear: _core.Linearisation, actuators: Optional[list["Drive"]] = None) -> None:
         self.linear = linear
         self.rows = {name: k for k, name in enumerate(linear.rows)}
         self._compliance, self._effort = linear.W, linear.effort
         self.held: list[int] = []
         self._basis: list[np.ndarray] = []
         self._scale = np.abs(self._effort).max(initial=0.0)
-        self._hold_actuators(sim)
+        self._hold_actuators(drives(sim) if actuators is None else actuators)
         self._hold_contacts(sim)
         basis = np.array(self._basis).reshape(-1, len(linear.rows)).T
-        own = self._compliance[self.held] @ basis
-        size = 1.0 / np.sqrt(np.maximum(np.abs(np.diag(own)), 1e-300))
-        # Cables on one path repeat each other: the efforts of least norm.
-        inverse = size[:, None] * np.linalg.pinv(size[:, None] * own * size, rcond=1e-12) * size
-        self._efforts = basis @ inverse  # (rows, held): efforts of all rows for held motions
+        self._efforts = basis @ _inverse(self._compliance[self.held] @ basis)  # (rows, held): of all rows for held motions
         self._motions = self._compliance @ self._efforts  # (rows, held): their motions
 
     def _hold(self, row: int, efforts: dict[int, float]) -> None:
@@ -69,19 +69,17 @@ class Response:
         self.held.append(row)
         self._basis.append(direction)
 
-    def _hold_actuators(self, sim: _core.Simulation) -> None:
-        for name, actuator in sim.actuators.items():
-            row, (kind, _) = self.rows[name], actuator.command
-            if kind not in _MOTIONS:
-                continue
-            effort = next((limit for quantity, limit in actuator.limits.items() if quantity not in _MOTIONS), None)
-            free = _CLOSED * max(self._scale, 1e-12)
-            low = actuator.type == "cable" and self._effort[row] <= free
-            high = effort is not None and np.isfinite(effort.max) and self._effort[row] >= effort.max - free
-            if not (low or high):
+    def _hold_actuators(self, actuators: list["Drive"]) -> None:
+        least = _CLOSED * max(self._scale, 1e-12)
+        for drive in actuators:
+            row = self.rows[drive.name]
+            slack = drive.is_cable and self._effort[row] <= least
+            if drive.holds_motion and not slack and self._effort[row] < drive.most - least:
                 self._hold(row, {row: 1.0})
 
     def _hold_contacts(self, sim: _core.Simulation) -> None:
+        if len(self.rows) == sum(" " not in name for name in self.rows):
+            return
         friction = {name: contact.friction for name, contact in sim.contacts.items()}
         for name, row in self.rows.items():
             match = _CONTACT.match(name)
@@ -113,15 +111,48 @@ class Response:
         held = columns[self.held]
         return columns - self._motions @ held, -self._efforts @ held
 
-    def to_effort(self, row: int) -> tuple[np.ndarray, np.ndarray]:
-        """(rows,) motions and efforts of all rows for a unit effort of a row that is given."""
-        motions, efforts = self.to_columns(self._compliance[:, [row]])
-        efforts[row] += 1.0
-        return motions[:, 0], efforts[:, 0]
+    def to_efforts(self, rows: list[int]) -> tuple[np.ndarray, np.ndarray]:
+        """(rows, k) motions and efforts of all rows for unit efforts of k rows that are given."""
+        motions, efforts = self.to_columns(self._compliance[:, rows])
+        efforts[rows, np.arange(len(rows))] += 1.0
+        return motions, efforts
 
-    def to_motion(self, row: int) -> tuple[np.ndarray, np.ndarray]:
-        """The same for a unit motion of a row whose motion is commanded; zero where it is slack or stalled."""
-        if row not in self.held:
-            return np.zeros(len(self.rows)), np.zeros(len(self.rows))
-        at = self.held.index(row)
-        return self._motions[:, at], self._efforts[:, at]
+    def to_motions(self, rows: list[int]) -> tuple[np.ndarray, np.ndarray]:
+        """The same for unit motions of rows whose motions are commanded; zero for those that are slack or stalled."""
+        count = len(self.linear.effort)
+        motions, efforts = np.zeros((count, len(rows))), np.zeros((count, len(rows)))
+        for k, row in enumerate(rows):
+            if row in self.held:
+                at = self.held.index(row)
+                motions[:, k], efforts[:, k] = self._motions[:, at], self._efforts[:, at]
+        return motions, efforts
+
+
+class Drive(NamedTuple):
+    """An actuator as Response sees it."""
+
+    name: str
+    is_cable: bool
+    holds_motion: bool  # commanded in motion
+    most: float  # N, of its effort
+
+
+def drives(sim: _core.Simulation) -> list[Drive]:
+    """Of all actuators, as commanded now."""
+    found = []
+    for name, actuator in sim.actuators.items():
+        most = next((limit.max for quantity, limit in actuator.limits.items() if quantity not in _MOTIONS), math.inf)
+        found.append(Drive(name, actuator.type == "cable", actuator.command[0] in _MOTIONS, most))
+    return found
+
+
+def _inverse(matrix: np.ndarray) -> np.ndarray:
+    """Where rows repeat each other, as cables on one path do, that which gives efforts of least norm."""
+    size = 1.0 / np.sqrt(np.maximum(np.abs(matrix.diagonal()), 1e-300))
+    scaled = size[:, None] * matrix * size
+    try:
+        if len(matrix) == 0 or np.linalg.cholesky(scaled).diagonal().min() > 1e-5:
+            return size[:, None] * np.linalg.inv(scaled) * size
+    except np.linalg.LinAlgError:
+        pass
+    return size[:, None] * np.linalg.pinv(scaled, rcond=1e-12) * size

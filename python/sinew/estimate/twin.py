@@ -13,7 +13,7 @@ from .. import _core
 from ..errors import Error, RunError
 from ..scene import load
 from .quantities import Effort, Force, Measured, Motion, NodalForce, Parameter, Unknown, names_of, prior_of
-from .response import Response, has_rows_alone
+from .response import Response, drives, has_rows_alone
 
 __all__ = ["Twin"]
 
@@ -137,6 +137,7 @@ class Twin:
             raise Error("no-sensors", "Twin(measured)", "nothing is measured but commands", "give a marker, or the effort of a cable")
         self._from_rows = has_rows_alone(self.sim) and all(o.kind != "observable" for o in self._outputs)
         self._fields = any(isinstance(u, NodalForce) for u in self.unknowns)
+        self._drives = drives(self.sim)
 
     def _check_actuators(self) -> None:
         for unknown in self.unknowns:
@@ -363,16 +364,18 @@ class Twin:
         """(outputs,) what the sensors would read now, without noise."""
         observed = [o.of.name for o in self._outputs if o.kind == "observable"]
         values = self._observed(list(dict.fromkeys(observed))) if observed else {}
+        owners: dict[str, Any] = {}
         found = []
         for output in self._outputs:
-            owner = output.name.rpartition(".")[0]
+            owner, _, quantity = output.name.rpartition(".")
             if output.kind == "observable":
                 value = values[output.of.name]
                 found.append(float(value) if output.component < 0 else float(value[output.component]))
-            elif owner in self.sim.effectors:
-                found.append(self.sim.effector(owner).value[output.component])
-            else:
-                found.append(getattr(self.sim.actuator(owner), output.name.rpartition(".")[2]))
+                continue
+            if owner not in owners:
+                is_effector = quantity in "xyz"
+                owners[owner] = self.sim.effector(owner).value if is_effector else self.sim.actuator(owner)
+            found.append(owners[owner][output.component] if quantity in "xyz" else getattr(owners[owner], quantity))
         return np.array(found, float)
 
     def sensitivity(self, values: Optional[Sequence[float]] = None) -> np.ndarray:
@@ -409,22 +412,33 @@ class Twin:
             raise Error("bad-argument", "of_step()", "a step tells derivatives by efforts and motions of rows alone",
                         "measure rows, or use a filter of equilibria")
         result = np.empty((len(self._outputs), len(self._inputs)))
-        self._fill(Response(self.sim, self.sim.last_linearisation()), result)
+        self._fill(Response(self.sim, self.sim.last_linearisation(), self._drives), result)
         return result
 
     def _fill(self, response: Response, result: np.ndarray) -> None:
+        by_effort, by_motion, by_nodes = [], [], []
         for k, one in enumerate(self._inputs):
-            if not isinstance(one.unknown, Parameter):
-                result[:, k] = self.rows_to_outputs(*self.column(response, one.unknown, one.component), response)
+            if isinstance(one.unknown, NodalForce):
+                by_nodes.append(k)
+            elif isinstance(one.unknown, Motion):
+                by_motion.append((k, response.rows[one.unknown.actuator]))
+            elif not isinstance(one.unknown, Parameter):
+                by_effort.append((k, response.rows[_row_name(one)]))
+        for found, answer in ((by_effort, response.to_efforts), (by_motion, response.to_motions)):
+            if found:
+                result[:, [k for k, _ in found]] = self.rows_to_outputs(*answer([row for _, row in found]), response)
+        for k in by_nodes:
+            result[:, k] = self.rows_to_outputs(*self.column(response, self._inputs[k].unknown, self._inputs[k].component), response)
 
     def column(self, response: Response, unknown: Unknown, component: int) -> tuple[np.ndarray, np.ndarray]:
         """(rows,) motions and efforts of all rows for a unit of one component of an unknown."""
-        if isinstance(unknown, Force):
-            return response.to_effort(response.rows[unknown.actuators[component]])
-        if isinstance(unknown, Effort):
-            return response.to_effort(response.rows[unknown.actuator])
         if isinstance(unknown, Motion):
-            return response.to_motion(response.rows[unknown.actuator])
+            motions, efforts = response.to_motions([response.rows[unknown.actuator]])
+            return motions[:, 0], efforts[:, 0]
+        if not isinstance(unknown, NodalForce):
+            row = unknown.actuators[component] if isinstance(unknown, Force) else unknown.actuator
+            motions, efforts = response.to_efforts([response.rows[row]])
+            return motions[:, 0], efforts[:, 0]
         columns = self.nodal_columns(response, unknown.body)[:, np.asarray(unknown.nodes)]
         alone = np.einsum("rnc,n,c->r", columns, np.asarray(unknown.weights, float), unknown.axes[component])
         motions, efforts = response.to_columns(alone[:, None])
@@ -440,14 +454,15 @@ class Twin:
     def rows_to_outputs(self, motions: np.ndarray, efforts: np.ndarray, response: Response) -> np.ndarray:
         """(outputs, ...) of (rows, ...) motions and efforts."""
         result = np.empty((len(self._outputs), *motions.shape[1:]))
+        for kind, values in (("motion", motions), ("effort", efforts)):
+            which = [k for k, o in enumerate(self._outputs) if o.kind == kind]
+            result[which] = values[[response.rows[self._outputs[k].row] for k in which]]
         for k, output in enumerate(self._outputs):
             if output.kind == "rotation":
                 owner = output.name.rpartition(".")[0]
                 turns = motions[[response.rows[f"{owner}.{axis}"] for axis in "xyz"]]
                 rate = _rotation_rate(np.asarray(self.sim.effector(owner).value))[output.component]
                 result[k] = np.tensordot(rate, turns, 1)
-            else:
-                result[k] = (efforts if output.kind == "effort" else motions)[response.rows[output.row]]
         return result
 
     def _differentiate(self, values: np.ndarray, which: list[int], result: np.ndarray) -> None:
@@ -476,6 +491,10 @@ class Twin:
                 raise Error("bad-argument", "with_unknowns()", f"'{unknown.name}' needs rows of its own", "make a new Twin")
         other._prepare()
         return other
+
+
+def _row_name(one: _Input) -> str:
+    return one.unknown.actuators[one.component] if isinstance(one.unknown, Force) else one.unknown.actuator
 
 
 def _rotation_rate(vector: np.ndarray) -> np.ndarray:
