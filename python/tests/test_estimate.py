@@ -149,7 +149,7 @@ def test_errors_are_as_the_covariance_says(scene):
 
 def test_shape_deviation_is_that_of_sigma_points(scene):
     small = estimate.Force("hand", "finger", (0, 0, 0.08), prior=0.005)  # so that the answer is linear
-    twin = made(scene, (small,), [estimate.Measured("tip.z", 1.0)])
+    twin = made(scene, (small,), [estimate.Measured("tip.z", 1.0)], commanded="tension")  # cables at rest are about to be taut
     found = estimate.solve(twin, {"tip.z": 0.08})
     ours = estimate.shape_std(twin, found, "finger")
     shapes = []
