@@ -257,3 +257,13 @@ def test_stepped_model_wants_rows(scene):
     assert caught.value.kind == "bad-argument"
     with pytest.raises(sinew.Error):
         estimate.TwinModel(made(scene, (HAND, estimate.Parameter("bodies.finger.material.young_modulus", 4e5))))
+
+
+def test_rows_that_stay_give_what_differences_give(scene):
+    twin = made(scene)
+    values = np.concatenate([[0.3, -0.2, 0.1], PULL])
+    twin.predict(values)
+    numbers, slope = twin.of_step()
+    np.testing.assert_allclose(numbers, twin.read(), rtol=1e-12, atol=1e-15)
+    reference = twin.sensitivity()
+    np.testing.assert_allclose(slope, reference, rtol=1e-6, atol=1e-9 * np.abs(reference).max())

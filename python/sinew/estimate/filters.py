@@ -127,6 +127,7 @@ class Filter:
         self._past = [_Instant(time, mean, covariance, model.save(), [])]
         self._last = dict.fromkeys(range(len(model.sensors)), time)
         self._at = self._past[0]  # where the model is
+        self._variances: dict[tuple[int, ...], np.ndarray] = {}
         self.dropped = 0
 
     @property
@@ -182,15 +183,18 @@ class Filter:
             if reading.time > time + _TOGETHER:
                 raise Error("non-monotonic-time", "Filter.update(readings)", f"a reading of {reading.time:g} s at {time:g} s",
                             "give the instant that it is of")
-            if not np.isfinite(reading.values).any():
+            if np.isnan(reading.values).all():
                 continue
             if reading.time < self._past[0].time - _TOGETHER:
                 self.dropped += 1
                 continue
             fresh.append(reading)
             self._last[reading.sensor] = max(self._last[reading.sensor], reading.time)
-        pending = self._return_to(min([r.time for r in fresh], default=math.inf)) + fresh
-        self._go(time, sorted(pending, key=lambda r: (r.time, r.sensor)))
+        fresh.sort(key=lambda r: (r.time, r.sensor))
+        pending = self._return_to(fresh[0].time) + fresh if fresh else []
+        if len(pending) > len(fresh):
+            pending.sort(key=lambda r: (r.time, r.sensor))
+        self._go(time, pending)
         self._forget()
 
     def _return_to(self, time: float) -> list[Reading]:
@@ -241,23 +245,35 @@ class Filter:
     def correct(self, mean: np.ndarray, covariance: np.ndarray, readings: list[Reading]) -> tuple[np.ndarray, np.ndarray]:
         raise NotImplementedError
 
-    def _seen(self, readings: list[Reading]) -> tuple[np.ndarray, np.ndarray, list[tuple[int, np.ndarray]]]:
-        """Numbers that are seen, their variances, and which of each sensor."""
-        which = [(r.sensor, np.isfinite(r.values)) for r in readings]
-        numbers = np.concatenate([r.values[seen] for r, (_, seen) in zip(readings, which)])
-        variances = np.concatenate([np.full(seen.sum(), self.model.sensors[k].std**2) for k, seen in which])
-        return numbers, variances, which
+    def _seen(self, readings: list[Reading]) -> tuple[np.ndarray, np.ndarray, tuple[int, ...], np.ndarray]:
+        """Numbers that are seen, their variances, the sensors, and which of all their numbers are seen."""
+        sensors = tuple(r.sensor for r in readings)
+        numbers = np.concatenate([r.values for r in readings])
+        if sensors not in self._variances:
+            self._variances[sensors] = np.concatenate([np.full(len(r.values), self.model.sensors[r.sensor].std**2) for r in readings])
+        mask = np.isfinite(numbers)
+        return numbers[mask], self._variances[sensors][mask], sensors, mask
 
-
-    def _answers(self, x: np.ndarray, which) -> tuple[np.ndarray, np.ndarray]:
+    def _answers(self, x: np.ndarray, sensors: tuple[int, ...], mask: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """What is seen at x, and its derivative."""
-        seen = np.concatenate([mask for _, mask in which])
         if hasattr(self.model, "answers"):
-            answer, sensitivity = self.model.answers(x, [k for k, _ in which])
+            answer, sensitivity = self.model.answers(x, sensors)
         else:
-            answer = np.concatenate([self.model.read(x, k) for k, _ in which])
-            sensitivity = np.concatenate([self.model.sensitivity(x, k) for k, _ in which])
-        return answer[seen], sensitivity[seen]
+            answer = np.concatenate([self.model.read(x, k) for k in sensors])
+            sensitivity = np.concatenate([self.model.sensitivity(x, k) for k in sensors])
+        return answer[mask], sensitivity[mask]
+
+
+def _corrected(mean, covariance, innovation, sensitivity, variances):
+    """Mean and covariance by the gain K = P H^T (H P H^T + R)^-1, the covariance in Joseph's form."""
+    spread = sensitivity @ covariance
+    own = spread @ sensitivity.T
+    own.flat[::len(own) + 1] += variances
+    gain = np.linalg.solve(own, spread).T
+    left = gain @ sensitivity
+    left *= -1.0
+    left.flat[::len(left) + 1] += 1.0
+    return mean + gain @ innovation, left @ covariance @ left.T + (gain * variances) @ gain.T
 
 
 class ExtendedKalman(Filter):
@@ -272,11 +288,9 @@ class ExtendedKalman(Filter):
         return self.model.advance(mean, time, step), transition @ covariance @ transition.T + self.model.noise(step)
 
     def correct(self, mean, covariance, readings):
-        numbers, variances, which = self._seen(readings)
-        answer, sensitivity = self._answers(mean, which)
-        gain = np.linalg.solve(sensitivity @ covariance @ sensitivity.T + np.diag(variances), sensitivity @ covariance).T
-        left = np.eye(len(mean)) - gain @ sensitivity
-        return mean + gain @ (numbers - answer), left @ covariance @ left.T + (gain * variances) @ gain.T
+        numbers, variances, sensors, mask = self._seen(readings)
+        answer, sensitivity = self._answers(mean, sensors, mask)
+        return _corrected(mean, covariance, numbers - answer, sensitivity, variances)
 
 
 class UnscentedKalman(Filter):
@@ -299,9 +313,9 @@ class UnscentedKalman(Filter):
         return centre, (moved - centre).T @ (moved - centre) / len(moved) + self.model.noise(step)
 
     def correct(self, mean, covariance, readings):
-        numbers, variances, which = self._seen(readings)
+        numbers, variances, sensors, mask = self._seen(readings)
         points = self._points(mean, covariance)
-        answers = np.array([np.concatenate([self.model.read(p, k)[seen] for k, seen in which]) for p in points])
+        answers = np.array([np.concatenate([self.model.read(p, k) for k in sensors])[mask] for p in points])
         centre = answers.mean(axis=0)
         cross = (points - mean).T @ (answers - centre) / len(points)
         own = (answers - centre).T @ (answers - centre) / len(points) + np.diag(variances)
@@ -385,9 +399,6 @@ class MovingHorizon(ExtendedKalman):
         return [np.clip(x, self.lower, self.upper) for x in smoothed], covariances
 
     def _correct_about(self, about, mean, covariance, readings):
-        numbers, variances, which = self._seen(readings)
-        answer, sensitivity = self._answers(about, which)
-        gain = np.linalg.solve(sensitivity @ covariance @ sensitivity.T + np.diag(variances), sensitivity @ covariance).T
-        left = np.eye(len(mean)) - gain @ sensitivity
-        return (mean + gain @ (numbers - answer - sensitivity @ (mean - about)),
-                left @ covariance @ left.T + (gain * variances) @ gain.T)
+        numbers, variances, sensors, mask = self._seen(readings)
+        answer, sensitivity = self._answers(about, sensors, mask)
+        return _corrected(mean, covariance, numbers - answer - sensitivity @ (mean - about), sensitivity, variances)

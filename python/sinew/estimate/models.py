@@ -53,6 +53,7 @@ class TwinModel:
         self._commanded = self._mean[twin.asked:].copy()
         self._walk = twin.walk()
         self._answers: dict[bytes, tuple[np.ndarray, Optional[np.ndarray]]] = {}
+        self._which: dict[tuple[int, ...], np.ndarray] = {}
 
     def start(self):
         mean = self._mean.copy()
@@ -99,7 +100,9 @@ class TwinModel:
 
     def answers(self, x, sensors):
         """(m,) readings of several sensors and their derivative (m, n)."""
-        which = [row for sensor in sensors for row in self.rows[sensor]]
+        if sensors not in self._which:
+            self._which[sensors] = np.array([row for sensor in sensors for row in self.rows[sensor]])
+        which = self._which[sensors]
         answer, slope = self._answer(x, True)
         return answer[which], slope[which]
 
@@ -139,21 +142,23 @@ class SteppedModel(TwinModel):
         super().__init__(twin, commands)
         self._x = self.start()[0]
         self._now: Optional[tuple[np.ndarray, np.ndarray]] = None
+        self._handles = twin.handles()
 
     def advance(self, x, time, step):
         if abs(step - self.twin.sim.time_step) > 1e-9:
             raise Error("out-of-range", "SteppedModel", f"a step of {step:g} s, where the scene's is {self.twin.sim.time_step:g} s",
                         "filter with the scene's time_step, and readings at its multiples")
         self._x = super().advance(x, time, step)
-        self.twin.set(self.values(self._x))
+        for (actuator, quantity), value in zip(self._handles, self.values(self._x).tolist()):
+            setattr(actuator, quantity, value)
         self.twin.sim.step()
-        self._now = self.twin.read(), self.twin.of_step()
+        self._now = self.twin.of_step()
         return self._x.copy()
 
     def _answer(self, x, derivative):
         if self._now is None:
             self.twin.predict(self.values(self._x))
-            self._now = self.twin.read(), self.twin.of_step()
+            self._now = self.twin.of_step()
         answer, slope = self._now
         return answer + slope @ (x - self._x), slope
 

@@ -16,6 +16,7 @@ _CONTACT = re.compile(r"(?P<name>.+) point (?P<point>\d+) normal$")
 _MOTIONS = {"displacement", "angle", "volume_growth"}
 _ROW_TYPES = {"cable", "force", "pressure"}
 _CLOSED = 1e-9  # of the largest effort: a contact or a cable below it has no force
+_LARGEST = 1e10  # of an inverse whose matrix has a diagonal of one: beyond it rows repeat each other
 _SLIDES = 1e-6  # of friction's limit: nearer to it a point slides
 
 
@@ -148,11 +149,64 @@ def drives(sim: _core.Simulation) -> list[Drive]:
 
 def _inverse(matrix: np.ndarray) -> np.ndarray:
     """Where rows repeat each other, as cables on one path do, that which gives efforts of least norm."""
+    if len(matrix) == 0:
+        return matrix
     size = 1.0 / np.sqrt(np.maximum(np.abs(matrix.diagonal()), 1e-300))
     scaled = size[:, None] * matrix * size
     try:
-        if len(matrix) == 0 or np.linalg.cholesky(scaled).diagonal().min() > 1e-5:
-            return size[:, None] * np.linalg.inv(scaled) * size
+        inverse = np.linalg.inv(scaled)
+        if np.abs(inverse).max() < _LARGEST:
+            return size[:, None] * inverse * size
     except np.linalg.LinAlgError:
         pass
-    return size[:, None] * np.linalg.pinv(scaled, rcond=1e-12) * size
+    return size[:, None] * np.linalg.pinv(scaled, rcond=1.0 / _LARGEST) * size
+
+
+class StandingRows:
+    """The same derivatives for a robot without contacts, whose rows and laws stay: what a filter asks in every step.
+
+    Parameters
+    ----------
+    rows : list of str
+        Of the simulation.
+    actuators : list of Drive
+    by_effort, by_motion : list of (int, str)
+        Numbers of the inputs with the rows whose effort or motion they are.
+    motions, efforts : list of (int, str)
+        Numbers of the outputs with the rows whose motion or effort they are.
+    """
+
+    def __init__(self, rows: list[str], actuators: list[Drive], by_effort, by_motion, motions, efforts) -> None:
+        at = {name: k for k, name in enumerate(rows)}
+        self._holds = np.array([at[d.name] for d in actuators if d.holds_motion], int)
+        self._cables = np.array([d.is_cable for d in actuators if d.holds_motion], bool)
+        self._most = np.array([d.most for d in actuators if d.holds_motion], float)
+        self._effort_inputs, self._effort_rows = [k for k, _ in by_effort], np.array([at[r] for _, r in by_effort], int)
+        self._motion_inputs = np.array([k for k, _ in by_motion], int)
+        place = {row: k for k, row in enumerate(self._holds.tolist())}
+        self._motion_places = np.array([place[at[r]] for _, r in by_motion], int)
+        self._motion_outputs, self._motion_rows = [k for k, _ in motions], np.array([at[r] for _, r in motions], int)
+        self._effort_outputs, self._told_rows = [k for k, _ in efforts], np.array([at[r] for _, r in efforts], int)
+        self._inputs, self._outputs, self._rows = len(by_effort) + len(by_motion), len(motions) + len(efforts), len(rows)
+
+    def __call__(self, linear: _core.Linearisation) -> tuple[np.ndarray, np.ndarray]:
+        """(outputs,) readings without noise and (outputs, inputs) their derivative."""
+        compliance, effort, delta = linear.W, linear.effort, linear.delta
+        own = effort[self._holds]
+        least = _CLOSED * max(np.abs(effort).max(), 1e-12)
+        is_held = (own < self._most - least) & ~(self._cables & (own <= least))
+        held = self._holds[is_held]
+        right = np.zeros((len(self._holds), self._inputs))
+        right[:, self._effort_inputs] = -compliance[self._holds[:, None], self._effort_rows]
+        right[self._motion_places, self._motion_inputs] = 1.0
+        to_held = compliance[:, held]
+        answer = _inverse(to_held[held]) @ right[is_held]
+        efforts = np.zeros((self._rows, self._inputs))
+        efforts[held] = answer
+        efforts[self._effort_rows, self._effort_inputs] += 1.0
+        moved = to_held[self._motion_rows] @ answer
+        moved[:, self._effort_inputs] += compliance[self._motion_rows[:, None], self._effort_rows]
+        slope, numbers = np.empty((self._outputs, self._inputs)), np.empty(self._outputs)
+        slope[self._motion_outputs], slope[self._effort_outputs] = moved, efforts[self._told_rows]
+        numbers[self._motion_outputs], numbers[self._effort_outputs] = delta[self._motion_rows], effort[self._told_rows]
+        return numbers, slope

@@ -13,7 +13,7 @@ from .. import _core
 from ..errors import Error, RunError
 from ..scene import load
 from .quantities import Effort, Force, Measured, Motion, NodalForce, Parameter, Unknown, names_of, prior_of
-from .response import Response, drives, has_rows_alone
+from .response import Response, StandingRows, drives, has_rows_alone
 
 __all__ = ["Twin"]
 
@@ -138,6 +138,7 @@ class Twin:
         self._from_rows = has_rows_alone(self.sim) and all(o.kind != "observable" for o in self._outputs)
         self._fields = any(isinstance(u, NodalForce) for u in self.unknowns)
         self._drives = drives(self.sim)
+        self._standing: Optional[StandingRows] = None
 
     def _check_actuators(self) -> None:
         for unknown in self.unknowns:
@@ -330,6 +331,17 @@ class Twin:
             direction = value * unknown.axes[one.component]
             np.add.at(nodal[unknown.body], np.asarray(unknown.nodes), np.outer(unknown.weights, direction))
 
+    def handles(self) -> list[tuple[_core.Actuator, str]]:
+        """Of each input the actuator and what of it is set. Raises Error (bad-argument) for inputs that are none's."""
+        found = []
+        for one in self._inputs:
+            if isinstance(one.unknown, (NodalForce, Parameter)):
+                raise Error("bad-argument", f"'{one.name}'", "it is no actuator's, and a step tells nothing of it",
+                            "use TwinModel, or a Force at a point")
+            actuator = self.sim.actuator(_row_name(one))
+            found.append((actuator, actuator.command[0]))
+        return found
+
     # The scene with other numbers, the same commands.
     def _build(self, logarithms: list[float]) -> None:
         if not logarithms or tuple(logarithms) == self._parameters:
@@ -400,8 +412,9 @@ class Twin:
             self._differentiate(np.asarray(values, float), by_differences, result)
         return result
 
-    def of_step(self) -> np.ndarray:
-        """(outputs, inputs) the same from the last step's own linearisation, which costs nothing more.
+    def of_step(self) -> tuple[np.ndarray, np.ndarray]:
+        """(outputs,) readings and (outputs, inputs) their derivative after a step, from its own linearisation, which costs
+        nothing more.
 
         Raises
         ------
@@ -411,9 +424,21 @@ class Twin:
         if not self._from_rows or self._fields or any(isinstance(i.unknown, Parameter) for i in self._inputs):
             raise Error("bad-argument", "of_step()", "a step tells derivatives by efforts and motions of rows alone",
                         "measure rows, or use a filter of equilibria")
-        result = np.empty((len(self._outputs), len(self._inputs)))
-        self._fill(Response(self.sim, self.sim.last_linearisation(), self._drives), result)
-        return result
+        linear = self.sim.last_linearisation()
+        if self.sim.contacts or any(o.kind == "rotation" for o in self._outputs):
+            result = np.empty((len(self._outputs), len(self._inputs)))
+            self._fill(Response(self.sim, linear, self._drives), result)
+            return self.read(), result
+        if self._standing is None:
+            self._standing = self._stand(linear.rows)
+        return self._standing(linear)
+
+    def _stand(self, rows: list[str]) -> StandingRows:
+        inputs = [(k, _row_name(one), isinstance(one.unknown, Motion)) for k, one in enumerate(self._inputs)]
+        outputs = [(k, o.row, o.kind == "effort") for k, o in enumerate(self._outputs)]
+        return StandingRows(rows, self._drives, [(k, r) for k, r, motion in inputs if not motion],
+                            [(k, r) for k, r, motion in inputs if motion], [(k, r) for k, r, told in outputs if not told],
+                            [(k, r) for k, r, told in outputs if told])
 
     def _fill(self, response: Response, result: np.ndarray) -> None:
         by_effort, by_motion, by_nodes = [], [], []
