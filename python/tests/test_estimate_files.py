@@ -24,7 +24,8 @@ def write(folder, text):
 
 
 def test_units_missing_readings_and_gaps(tmp_path):
-    path = write(tmp_path, "time [s],tip.x [mm],east.tension,status\n0,1.5,2,good\n0.1,,3,good\n0.2,nan,-,bad\n1.2,-2,4,good\n1.3,0,1,good\n")
+    path = write(tmp_path, "time [s],tip.x [mm],east.tension,status\n0,1.5,2,good\n0.1,,3,good\n0.2,nan,-,bad\n"
+                           "1.2,-2,4,good\n1.3,0,1,good\n")
     record = files.read_readings(path)
     assert set(record.columns) == {"tip.x", "east.tension"}
     np.testing.assert_allclose(record.columns["tip.x"], [1.5e-3, np.nan, np.nan, -2e-3, 0.0])
@@ -64,7 +65,8 @@ def test_columns_that_are_wanted_hold_numbers(tmp_path):
 
 def test_columns_become_commands_and_sensors(tmp_path):
     path = write(tmp_path, "time,tip.x,tip.y,east.tension,east.displacement,west.tension\n0,1,1,1,1,1\n")
-    sensors, commanded = replay.measured_of(files.read_readings(path), {"tip.position": 1e-4, "*.tension": 0.1, "east.tension": 0.2}, ["east", "west"])
+    stds = {"tip.position": 1e-4, "*.tension": 0.1, "east.tension": 0.2}
+    sensors, commanded = replay.measured_of(files.read_readings(path), stds, ["east", "west"])
     assert {s.name: s.std for s in sensors} == {"tip.x": 1e-4, "tip.y": 1e-4, "east.tension": 0.2, "west.tension": 0.1}
     assert commanded == {"east": "displacement", "west": "tension"}
     with pytest.raises(sinew.Error) as caught:
@@ -95,8 +97,8 @@ def recorded(scene, tmp_path):
 @pytest.mark.parametrize("method", ["settled", "extended", "unscented", "horizon"])
 def test_command_line_estimates_a_force(scene, recorded, tmp_path, method):
     out = tmp_path / "out"
-    done = command(scene, "--measured", recorded, "--std", "tip.*=0.05mm", "--std", "east.tension=10mN", "--force", "hand=finger:0 0 80 mm:0.5N",
-                   "--method", method, "--out", out)
+    done = command(scene, "--measured", recorded, "--std", "tip.*=0.05mm", "--std", "east.tension=10mN",
+                   "--force", "hand=finger:0 0 80 mm:0.5N", "--method", method, "--out", out)
     assert done.returncode == 0, done.stderr
     assert "3 of 16 readings are missing" in done.stderr
     table = np.genfromtxt(out / "estimate.csv", delimiter=",", names=True, deletechars="", dtype=None, encoding="utf-8")
@@ -109,8 +111,8 @@ def test_command_line_estimates_a_force(scene, recorded, tmp_path, method):
 
 def test_command_line_estimates_a_modulus(scene, recorded, tmp_path):
     out = tmp_path / "out"
-    done = command(scene, "--measured", recorded, "--std", "east.tension=10mN", "--parameter", "bodies.finger.material.young_modulus=300kPa:0.5",
-                   "--out", out)
+    done = command(scene, "--measured", recorded, "--std", "east.tension=10mN",
+                   "--parameter", "bodies.finger.material.young_modulus=300kPa:0.5", "--out", out)
     assert done.returncode == 0, done.stderr
     table = np.genfromtxt(out / "estimate.csv", delimiter=",", names=True, deletechars="", dtype=None, encoding="utf-8")
     assert table["bodies.finger.material.young_modulus"][0] == pytest.approx(400e3, rel=0.05)

@@ -160,7 +160,8 @@ def arm_run(kind, push=np.array([0.08, 0.0, 0.03]), seconds=1.6):
     def torque(time):
         return np.array([0.06, -0.03]) * np.sin(4.0 * time)
     model = estimate.ArmModel(arm, torque, {"tip": (1, 1.0), "middle": (0, 1.0)},
-                              [estimate.Measured("tip.position", 1e-3, rate=25.0, delay=0.04), estimate.Measured("middle.position", 1e-3, rate=50.0)],
+                              [estimate.Measured("tip.position", 1e-3, rate=25.0, delay=0.04),
+                               estimate.Measured("middle.position", 1e-3, rate=50.0)],
                               push=(1, 1.0, 0.2, 0.02), force_noise=0.3)
     run = KINDS[kind](model, 0.01)
     theta, rate = arm.equilibrium(torque(0.0)) + 0.1, np.zeros(2)

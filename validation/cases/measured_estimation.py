@@ -24,7 +24,8 @@ of decay_200g."""
 SOURCES = {
     "measured beam": "M. Dubied et al., IEEE Robot. Autom. Lett. 7 (2022) 5015-5022; data: srl-ethz/diffPD_sim2real",
     "measured trunk": "StanfordASL/trunk-stack, motion capture of drive_0g, drive_200g, decay_200g",
-    "quadratic map": "positions as a quadratic polynomial of the six motor angles, fitted to drive_0g: 10.4 mm there, 17.0 mm with 200 g",
+    "quadratic map": "positions as a quadratic polynomial of the six motor angles, fitted to drive_0g: 10.4 mm there, "
+                     "17.0 mm with 200 g",
 }
 COST = 60
 MOTORS_DISK = [1, 2, 0, 2, 0, 1]  # the disk that each motor pulls
@@ -171,7 +172,8 @@ def trunk_of(x, gravity):
 def derivative(x, gravity, trunk, theta, angles, slopes):
     """(9 n, parameters) of places at equilibrium, by the implicit function theorem."""
     start, imbalance = trunk.places(theta).reshape(len(theta), 9), trunk.imbalance(theta, angles)
-    by_theta = np.stack([(trunk.places(theta + 1e-6 * np.eye(6)[k]).reshape(len(theta), 9) - start) / 1e-6 for k in range(6)], axis=2)
+    turned = [trunk.places(theta + 1e-6 * np.eye(6)[k]).reshape(len(theta), 9) for k in range(6)]
+    by_theta = np.stack([(places - start) / 1e-6 for places in turned], axis=2)
     columns = []
     for k in range(len(x)):
         other = trunk_of(x + 1e-6 * np.eye(len(x))[k], gravity)
@@ -235,8 +237,8 @@ def trunk_case(case, folder):
     for gravity in (9.81, 2.0, 0.5):
         x, jacobian = fit(angles[few], places[few], gravity, x)
         fits[gravity] = trunk_of(x, gravity), jacobian
-        case.report(f"trunk: tip on drive_0g, weight over stiffness {gravity / 9.81:.2g} of the first fit", error(fits[gravity][0], angles[more], places[more]),
-                    unit="mm", reference=10.4, source="quadratic map", remark="fitted to it")
+        case.report(f"trunk: tip on drive_0g, weight over stiffness {gravity / 9.81:.2g} of the first fit",
+                    error(fits[gravity][0], angles[more], places[more]), unit="mm", reference=10.4, source="quadratic map", remark="fitted to it")
     seen = estimate.observability(jacobian, np.ones(len(jacobian)), np.ones(len(x)), names_of_prior(), len(x))
     case.report("trunk: directions of parameters that drive_0g does not tell", len(seen.unobservable), source="measured trunk",
                 remark="the least: " + "; ".join(seen.unobservable[-2:]) + "; beside them the weight over the stiffness")
@@ -248,10 +250,11 @@ def trunk_case(case, folder):
     case.report("trunk: slowest mode with 200 g, by the scale chosen", frequency(trunk, TRUNK_MASS), unit="Hz", reference=DECAY,
                 source="measured trunk", remark=f"a trunk of {TRUNK_MASS:g} kg; by the first fit {tried[9.81]:.2g} Hz")
     ours = error(trunk, loaded_angles[more], loaded[more], PAYLOAD / TRUNK_MASS)
-    case.bound("trunk: tip on drive_200g, payload known", ours, 17.0, unit="mm", source="quadratic map", remark="17.0 mm of the quadratic map")
+    case.bound("trunk: tip on drive_200g, payload known", ours, 17.0, unit="mm", source="quadratic map",
+               remark="17.0 mm of the quadratic map")
     case.bound("trunk: the same, aim", ours, 12.0, unit="mm", source="measured trunk",
-               known_miss="no payload at all gives {:.1f} mm, and the best that any payload gives is beside; dry friction leaves 5 to 7 mm"
-                          .format(error(trunk, loaded_angles[more], loaded[more])))
+               known_miss="no payload at all gives {:.1f} mm, and the payload that fits best is beside; dry friction leaves "
+                          "5 to 7 mm".format(error(trunk, loaded_angles[more], loaded[more])))
     best = scipy.optimize.minimize_scalar(lambda m: error(trunk, loaded_angles[few], loaded[few], m / TRUNK_MASS), bounds=(0.0, 1.0),
                                           method="bounded", options={"xatol": 5e-3})
     case.check("trunk: payload estimated from drive_200g", best.x, PAYLOAD, 0.15, unit="kg", source="measured trunk",

@@ -55,7 +55,8 @@ def _pair(option: str, text: str, parts: int) -> tuple[str, list[str]]:
     name, separator, rest = text.partition("=")
     found = [part.strip() for part in rest.split(":")]
     if not separator or not name or len(found) != parts:
-        raise Error("bad-argument", option, f"'{text}' is not of the form NAME={':'.join(['...'] * parts)}", "see `sinew estimate --help`")
+        form = ":".join(["..."] * parts)
+        raise Error("bad-argument", option, f"'{text}' is not of the form NAME={form}", "see `sinew estimate --help`")
     return name.strip(), found
 
 

@@ -147,6 +147,7 @@ def write_table(path: Any, columns: Mapping[str, np.ndarray]) -> None:
         with open(path, "w", newline="", encoding="utf-8") as file:
             writer = csv.writer(file, lineterminator="\n")
             writer.writerow(columns)
-            writer.writerows(zip(*[[repr(float(v)) if not isinstance(v, str) else v for v in values] for values in columns.values()]))
+            cells = [[v if isinstance(v, str) else repr(float(v)) for v in values] for values in columns.values()]
+            writer.writerows(zip(*cells))
     except OSError as error:
         raise Error("file-unwritable", Location(str(path)), error.strerror or "cannot be written", "name another place") from None

@@ -118,7 +118,8 @@ class Filter:
         for sensor in model.sensors:
             if sensor.rate is not None and sensor.rate * step > 1.0 + 1e-9:
                 raise Error("out-of-range", f"Measured({sensor.name!r}).rate",
-                            f"{sensor.rate:g} Hz is faster than the filter's step of {step:g} s", "take a shorter step, or thin the readings out")
+                            f"{sensor.rate:g} Hz is faster than the filter's step of {step:g} s",
+                            "take a shorter step, or thin the readings out")
             if sensor.delay > memory:
                 raise Error("out-of-range", f"Measured({sensor.name!r}).delay",
                             f"{sensor.delay:g} s is longer than the filter's memory of {memory:g} s", "give a longer memory")
@@ -250,7 +251,8 @@ class Filter:
         sensors = tuple(r.sensor for r in readings)
         numbers = np.concatenate([r.values for r in readings])
         if sensors not in self._variances:
-            self._variances[sensors] = np.concatenate([np.full(len(r.values), self.model.sensors[r.sensor].std**2) for r in readings])
+            of_each = [np.full(len(r.values), self.model.sensors[r.sensor].std**2) for r in readings]
+            self._variances[sensors] = np.concatenate(of_each)
         mask = np.isfinite(numbers)
         return numbers[mask], self._variances[sensors][mask], sensors, mask
 

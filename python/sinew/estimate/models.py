@@ -199,7 +199,8 @@ class ArmModel:
 
     def __init__(self, arm: Any, torque: Callable[[float], Sequence[float]], points: Mapping[str, tuple[int, float]],
                  measured: Sequence[Measured], *, prior: Optional[tuple[Sequence[float], Sequence[float]]] = None,
-                 unknowns: Optional[Mapping[str, tuple[float, float, float]]] = None, push: Optional[tuple[int, float, float, float]] = None, force_noise: Any = 1.0) -> None:
+                 unknowns: Optional[Mapping[str, tuple[float, float, float]]] = None,
+                 push: Optional[tuple[int, float, float, float]] = None, force_noise: Any = 1.0) -> None:
         self._unknowns, self._push = dict(unknowns or {}), push
         self._constants = len(self._unknowns)
         if push is not None:

@@ -76,7 +76,8 @@ def surface(sim: _core.Simulation, body: str) -> np.ndarray:
                 if faces.pop(key, None) is None:
                     faces[key] = face
     if not faces:
-        raise Error("wrong-type", f"body('{body}')", "it has no solid finite elements, and no surface to search", "name another body")
+        raise Error("wrong-type", f"body('{body}')", "it has no solid finite elements, and no surface to search",
+                    "name another body")
     found = np.array([[face[0], face[k], face[k + 1]] for face in faces.values() for k in range(1, len(face) - 1)])
     return found[~np.asarray(shown.fixed)[found].any(axis=1)]
 
@@ -101,7 +102,8 @@ def patches(sim: _core.Simulation, body: str, count: int = 48) -> list[Patch]:
     """
     triangles, rest = surface(sim, body), np.array(sim.body(body).rest_positions)
     if not 2 <= count <= len(triangles):
-        raise Error("out-of-range", "patches(count)", f"{count} patches of {len(triangles)} triangles", f"give 2 to {len(triangles)}")
+        raise Error("out-of-range", "patches(count)", f"{count} patches of {len(triangles)} triangles",
+                    f"give 2 to {len(triangles)}")
     corners = rest[triangles]
     normals = 0.5 * np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     areas, centres = np.linalg.norm(normals, axis=1), corners.mean(axis=1)
@@ -118,7 +120,8 @@ def patches(sim: _core.Simulation, body: str, count: int = 48) -> list[Patch]:
         own = np.flatnonzero(shares)
         normal = normals[group].sum(axis=0)
         made.append(Patch(body, np.average(centres[group], axis=0, weights=areas[group]), normal / np.linalg.norm(normal),
-                          triangles[group], areas[group] / areas[group].sum(), own, shares[own] / shares.sum(), float(areas[group].sum()),
+                          triangles[group], areas[group] / areas[group].sum(), own, shares[own] / shares.sum(),
+                          float(areas[group].sum()),
                           tuple(j for j in range(count) if j != k and nodes[j] & nodes[k])))
     return made
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Optional, Union
+from typing import Any, Optional
 
 import numpy as np
 
@@ -134,7 +134,8 @@ class Twin:
         if len(names) != len({*names}):
             raise Error("duplicate-name", "Twin(unknowns)", f"two unknowns have one name among {', '.join(names)}", "rename one")
         if not self._outputs:
-            raise Error("no-sensors", "Twin(measured)", "nothing is measured but commands", "give a marker, or the effort of a cable")
+            raise Error("no-sensors", "Twin(measured)", "nothing is measured but commands",
+                        "give a marker, or the effort of a cable")
         self._from_rows = has_rows_alone(self.sim) and all(o.kind != "observable" for o in self._outputs)
         self._fields = any(isinstance(u, NodalForce) for u in self.unknowns)
         self._drives = drives(self.sim)
@@ -367,7 +368,8 @@ class Twin:
         """
         if self._start is not None:
             self.sim.restore(self._start)
-        report = self.sim.solve_static(max_iterations=_ITERATIONS, max_load_steps=_LOAD_STEPS, max_relaxation_steps=_RELAXATION_STEPS)
+        report = self.sim.solve_static(max_iterations=_ITERATIONS, max_load_steps=_LOAD_STEPS,
+                                       max_relaxation_steps=_RELAXATION_STEPS)
         if report.status != "converged":
             raise RunError("not-converged", "Twin", f"the equilibrium was not found: {report.status}",
                            "take a nearer start, or a tighter prior")
@@ -531,6 +533,3 @@ def _rotation_rate(vector: np.ndarray) -> np.ndarray:
         return np.eye(3) - 0.5 * skew + skew @ skew / 12.0
     factor = 1.0 / angle**2 - (1.0 + math.cos(angle)) / (2.0 * angle * math.sin(angle))
     return np.eye(3) - 0.5 * skew + factor * skew @ skew
-
-
-Readings = Mapping[str, Union[float, Sequence[float]]]
