@@ -242,13 +242,21 @@ def trunk_case(case, folder):
     seen = estimate.observability(jacobian, np.ones(len(jacobian)), np.ones(len(x)), names_of_prior(), len(x))
     case.report("trunk: directions of parameters that drive_0g does not tell", len(seen.unobservable), source="measured trunk",
                 remark="the least: " + "; ".join(seen.unobservable[-2:]) + "; beside them the weight over the stiffness")
-    tried = {gravity: frequency(trunk, TRUNK_MASS) for gravity, (trunk, _) in fits.items()}
-    logs = np.log([[gravity, hertz] for gravity, hertz in tried.items()])
-    wanted = float(np.exp(np.interp(np.log(DECAY), logs[:, 1], logs[:, 0])))
-    x, _ = fit(angles[few], places[few], wanted, x)
-    trunk = trunk_of(x, wanted)
+
+    def scaled(mass):
+        """The fit whose slowest mode is that of the decay, for a trunk of this mass (kg)."""
+        logs = np.log([[gravity, frequency(trunk, mass)] for gravity, (trunk, _) in fits.items()])
+        wanted = float(np.exp(np.interp(np.log(DECAY), logs[:, 1], logs[:, 0])))
+        return trunk_of(fit(angles[few], places[few], wanted, x)[0], wanted)
+    trunk = scaled(TRUNK_MASS)
     case.report("trunk: slowest mode with 200 g, by the scale chosen", frequency(trunk, TRUNK_MASS), unit="Hz", reference=DECAY,
-                source="measured trunk", remark=f"a trunk of {TRUNK_MASS:g} kg; by the first fit {tried[9.81]:.2g} Hz")
+                source="measured trunk",
+                remark=f"a trunk of {TRUNK_MASS:g} kg; by the first fit {frequency(fits[9.81][0], TRUNK_MASS):.2g} Hz")
+    for mass in (0.1, 0.4):
+        other = scaled(mass)
+        case.report(f"trunk: tip on drive_200g, payload known, a trunk of {mass:g} kg",
+                    error(other, loaded_angles[more], loaded[more], PAYLOAD / mass), unit="mm", source="measured trunk",
+                    remark=f"slowest mode {frequency(other, mass):.2g} Hz")
     ours = error(trunk, loaded_angles[more], loaded[more], PAYLOAD / TRUNK_MASS)
     case.bound("trunk: tip on drive_200g, payload known", ours, 17.0, unit="mm", source="quadratic map",
                remark="17.0 mm of the quadratic map")
