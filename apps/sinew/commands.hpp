@@ -24,6 +24,7 @@ void add_brace(CommandLine& line);
 void add_identify(CommandLine& line);
 void add_plot(CommandLine& line);
 void add_sweep(CommandLine& line);
+void add_estimate(CommandLine& line);
 /// @}
 
 }  // namespace sinew::cli

@@ -59,6 +59,7 @@ int run(int argc, const char* const* argv) {
   cli::add_brace(line);
   cli::add_plot(line);
   cli::add_sweep(line);
+  cli::add_estimate(line);
   cli::add_schema(line);
   return line.run(argc, argv);
 }

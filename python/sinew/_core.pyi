@@ -147,6 +147,8 @@ class Linearisation:
     def residual(self) -> float: ...
     @property
     def negative_pivots(self) -> int: ...
+    @property
+    def fields(self) -> list[_Floats]: ...
 
 class Response:
     @property
@@ -523,7 +525,9 @@ class Simulation:
         tangent: _Tangent = "exact",
         geometric_stiffness: bool = True,
         statics: bool = True,
+        fields: bool = False,
     ) -> Linearisation: ...
+    def last_linearisation(self) -> Linearisation: ...
     def compliance(
         self,
         *,

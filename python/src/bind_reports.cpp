@@ -109,6 +109,21 @@ void bind_static_report(py::module_& module) {
       });
 }
 
+py::list to_arrays(const std::vector<std::vector<Points>>& fields) {
+  py::list result;
+  for (const std::vector<Points>& rows : fields) {
+    const auto count = static_cast<py::ssize_t>(rows.size());
+    const py::ssize_t nodes = rows.empty() ? 0 : rows.front().rows();
+    Array array({count, nodes, py::ssize_t{3}});
+    for (py::ssize_t row = 0; row < count; ++row) {
+      const Points& points = rows[static_cast<std::size_t>(row)];
+      std::copy_n(points.data(), points.size(), array.mutable_data(row, 0, 0));
+    }
+    result.append(array);
+  }
+  return result;
+}
+
 void bind_linearisation(py::module_& module) {
   py::class_<sim::Linearisation>(
       module, "Linearisation",
@@ -130,7 +145,12 @@ void bind_linearisation(py::module_& module) {
       .def_readonly("residual", &sim::Linearisation::residual,
                     "float: norm of the imbalance of forces at this state (N).")
       .def_readonly("negative_pivots", &sim::Linearisation::negative_pivots,
-                    "int: negative eigenvalues of the matrix; 0 where the equilibrium is stable.");
+                    "int: negative eigenvalues of the matrix; 0 where the equilibrium is stable.")
+      .def_property_readonly(
+          "fields", [](const sim::Linearisation& self) { return to_arrays(self.fields); },
+          "list of (rows, n, 3) ndarray, one for each body: motion of all nodes for a unit effort "
+          "of each row, m/N; by reciprocity also the row's motion for a unit force on each node. "
+          "Of bodies without finite elements (0, 0, 3). Empty unless asked for.");
 }
 
 }  // namespace

@@ -10,9 +10,9 @@ namespace sinew::python {
 
 namespace {
 
-sim::LinearisationChoice choice(const std::string& tangent, bool geometric_stiffness,
-                                bool statics) {
-  return {to_tangent(tangent, "linearise(tangent)"), geometric_stiffness, statics};
+sim::LinearisationChoice choice(const std::string& tangent, bool geometric_stiffness, bool statics,
+                                bool fields) {
+  return {to_tangent(tangent, "linearise(tangent)"), geometric_stiffness, statics, fields};
 }
 
 }  // namespace
@@ -24,12 +24,13 @@ void bind_simulation_linearisation(SimulationType& type) {
           "'tip.x', contacts as 'floor point 3 normal'. Joints have none: they are taken out.")
       .def(
           "linearise",
-          [](Session& self, const std::string& tangent, bool geometric_stiffness, bool statics) {
-            return self.linearise(choice(tangent, geometric_stiffness, statics));
+          [](Session& self, const std::string& tangent, bool geometric_stiffness, bool statics,
+             bool fields) {
+            return self.linearise(choice(tangent, geometric_stiffness, statics, fields));
           },
           py::kw_only(), py::arg("tangent") = "exact", py::arg("geometric_stiffness") = true,
-          py::arg("statics") = true,
-          R"(linearise($self, *, tangent='exact', geometric_stiffness=True, statics=True)
+          py::arg("statics") = true, py::arg("fields") = false,
+          R"(linearise($self, *, tangent='exact', geometric_stiffness=True, statics=True, fields=False)
 --
 
 How motions follow from efforts near the present state, which is not changed.
@@ -43,11 +44,14 @@ geometric_stiffness : bool
     Whether loaded cables add theirs.
 statics : bool
     W of equilibrium, H K^-1 H^T; False: of the scene's integrator and time step.
+fields : bool
+    Whether the motions of all nodes are computed too, K^-1 H^T, with the same factorisation: the
+    compliance between the rows and forces at any place on a body, see Linearisation.fields.
 
 Returns
 -------
 Linearisation
-    `W`, `delta`, `delta_free`, `effort`, `rows`, `residual`, `negative_pivots`.
+    `W`, `delta`, `delta_free`, `effort`, `rows`, `residual`, `negative_pivots`, `fields`.
 
 Raises
 ------
@@ -55,9 +59,30 @@ RunError
     singular-matrix.
 )")
       .def(
+          "last_linearisation", [](Session& self) { return self.last_linearisation(); },
+          R"(last_linearisation($self)
+--
+
+W and delta_free as the last step had them, without a factorisation: for filters and fast loops.
+
+Those of the last substep's last linearisation, of the scene's integrator and time step; after
+solve_static() those of the equilibrium. `delta` and `effort` are those of now, `residual` is NaN and
+there are no fields. It is no part of the state: restore() leaves it as it was.
+
+Returns
+-------
+Linearisation
+
+Raises
+------
+Error
+    bad-argument before the first step.
+)")
+      .def(
           "compliance",
           [](Session& self, const std::string& tangent, bool geometric_stiffness, bool statics) {
-            return copy(self.linearise(choice(tangent, geometric_stiffness, statics)).compliance);
+            return copy(
+                self.linearise(choice(tangent, geometric_stiffness, statics, false)).compliance);
           },
           py::kw_only(), py::arg("tangent") = "exact", py::arg("geometric_stiffness") = true,
           py::arg("statics") = true,

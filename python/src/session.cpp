@@ -183,6 +183,11 @@ sim::Linearisation Session::linearise(const sim::LinearisationChoice& choice) {
   return sim::linearise(simulation_, choice);
 }
 
+sim::Linearisation Session::last_linearisation() {
+  const Use use(*this);
+  return sim::last_linearisation(simulation_);
+}
+
 std::shared_ptr<AttachedController> Session::attach(inverse::InverseSettings settings,
                                                     std::string name) {
   const Use use(*this);

@@ -106,6 +106,7 @@ class Session {
   void save_state(const std::filesystem::path& path) const;
 
   sim::Linearisation linearise(const sim::LinearisationChoice& choice);
+  sim::Linearisation last_linearisation();
 
   /// Null when there is none.
   const std::shared_ptr<AttachedController>& controller() const { return controller_; }

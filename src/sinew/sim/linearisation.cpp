@@ -1,5 +1,8 @@
 #include "sinew/sim/linearisation.hpp"
 
+#include <limits>
+#include <numeric>
+
 #include <fmt/format.h>
 
 #include "sinew/constraint/constraint.hpp"
@@ -7,6 +10,7 @@
 #include "sinew/constraint/effector.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/linalg/dense_factor.hpp"
+#include "sinew/mechanics/capabilities.hpp"
 #include "sinew/sim/model.hpp"
 #include "sinew/sim/row_numbering.hpp"
 #include "sinew/sim/simulation.hpp"
@@ -25,8 +29,14 @@ std::string direction_name(const Vector3& direction, int index) {
   return fmt::format("[{}]", index);
 }
 
+// Rows of the problem that joints leave.
+struct FreeRows {
+  std::vector<int> rows;
+  step::Followers joints;  // what their efforts add to the joints'
+};
+
 // Leaves the rows of the robot as its joints hold it together.
-void take_joints_out(const step::StepProblem& problem, Linearisation& result) {
+FreeRows take_joints_out(const step::StepProblem& problem, Linearisation& result) {
   std::vector<step::HeldRow> held;
   step::append_joints(problem, held);
   if (!held.empty()) {
@@ -34,7 +44,8 @@ void take_joints_out(const step::StepProblem& problem, Linearisation& result) {
     const int negative = linalg::spectral_inverse(own.matrix).negative;
     result.negative_pivots = step::negative_directions(result.negative_pivots, negative, held);
   }
-  step::Followers joints;
+  FreeRows left;
+  step::Followers& joints = left.joints;
   std::vector<char> is_joint(static_cast<std::size_t>(problem.delta.size()), 0);
   for (const step::HeldRow& row : held) {
     const double motion = row.compliance == 0.0 ? 0.0 : problem.delta[row.row];
@@ -42,7 +53,7 @@ void take_joints_out(const step::StepProblem& problem, Linearisation& result) {
     is_joint[static_cast<std::size_t>(row.row)] = 1;
   }
   for (const auto& block : problem.stiffness) is_joint[static_cast<std::size_t>(block.row)] = 1;
-  std::vector<int> others;
+  std::vector<int>& others = left.rows;
   for (std::size_t row = 0; row < is_joint.size(); ++row) {
     if (is_joint[row] == 0) others.push_back(static_cast<int>(row));
   }
@@ -59,6 +70,7 @@ void take_joints_out(const step::StepProblem& problem, Linearisation& result) {
   result.delta = std::move(delta);
   result.delta_free = std::move(free);
   result.effort = std::move(effort);
+  return left;
 }
 
 // Of all rows; those that joints hold have none.
@@ -110,6 +122,83 @@ std::vector<std::string> row_names(const Model& model) {
 
 namespace {
 
+// Rows, delta and effort as they are now; W and delta_free as the world has them.
+FreeRows gather(Simulation& simulation, Linearisation& result) {
+  const Model& model = simulation.model();
+  World& world = simulation.world();
+  const step::StepProblem& problem = world.problem();
+  result.compliance = problem.compliance;
+  result.delta_free = problem.delta_free;
+  const RowNumbering& numbering = world.numbering();
+  const std::vector<std::string> names = all_names(model);
+  const auto count = result.delta_free.size();
+  result.delta.resize(count);
+  result.effort.resize(count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const auto row = static_cast<std::size_t>(numbering.model_row_of(static_cast<int>(k)));
+    result.delta[k] = world.delta()[static_cast<Eigen::Index>(row)];
+    result.effort[k] = simulation.efforts()[row];
+    if (!names[row].empty()) result.rows.push_back(names[row]);
+  }
+  result.negative_pivots = world.inertia().negative_pivots;
+  if (!problem.bilaterals.empty() || !problem.stiffness.empty()) {
+    return take_joints_out(problem, result);
+  }
+  FreeRows all;
+  all.rows.resize(static_cast<std::size_t>(count));
+  std::iota(all.rows.begin(), all.rows.end(), 0);
+  return all;
+}
+
+// A unit effort of one row, and what the joints answer to it without any other cause.
+void unit_effort(const World& world, FreeRows& free, int row, std::vector<double>& effort) {
+  const step::StepProblem& problem = world.problem();
+  const auto rows = static_cast<std::size_t>(problem.delta_free.size());
+  linalg::AlignedNumbers own(rows, 0.0);
+  own[static_cast<std::size_t>(row)] = 1.0;
+  const VectorX none = VectorX::Zero(problem.delta_free.size());
+  free.joints.close(problem, none, free.rows, own);
+  world.numbering().scatter_efforts(own, effort);
+}
+
+// The joints' law without motions of their own, so that their efforts are linear in the others'.
+void forget_motions(const World& world, FreeRows& free) {
+  const step::StepProblem& problem = world.problem();
+  std::vector<step::HeldRow> held;
+  step::append_joints(problem, held);
+  free.joints.clear();
+  for (const step::HeldRow& row : held) free.joints.add_held(row.row, 0.0, row.compliance);
+  const auto count = static_cast<Eigen::Index>(free.rows.size());
+  MatrixX compliance(count, count);
+  VectorX motion(count);
+  free.joints.take_out(problem, VectorX::Zero(problem.delta_free.size()), free.rows, compliance,
+                       motion);
+}
+
+void find_fields(World& world, FreeRows& free, Linearisation& result) {
+  Bodies& bodies = world.bodies();
+  forget_motions(world, free);
+  std::vector<double> effort(static_cast<std::size_t>(world.delta().size()), 0.0);
+  VectorX without(static_cast<Eigen::Index>(bodies.size()));
+  bodies.imbalance(effort, without);
+  VectorX force(without.size()), motion(without.size());
+  result.fields.resize(bodies.all().size());
+  for (const int row : free.rows) {
+    unit_effort(world, free, row, effort);
+    bodies.imbalance(effort, force);
+    force -= without;
+    bodies.solve(force, motion);
+    bodies.propose_motion(motion);
+    for (std::size_t b = 0; b < result.fields.size(); ++b) {
+      const mechanics::Body& body = *bodies.all()[b];
+      if (mechanics::as<const mechanics::TakesForces>(body) == nullptr) continue;
+      Points nodes = Points::Zero(body.positions().rows(), 3);
+      body.system().add_proposed_motion(nodes);
+      result.fields[b].push_back(std::move(nodes));
+    }
+  }
+}
+
 // Leaves the simulation's state changed.
 Linearisation linearise_here(Simulation& simulation, const LinearisationChoice& choice) {
   const Model& model = simulation.model();
@@ -129,22 +218,8 @@ Linearisation linearise_here(Simulation& simulation, const LinearisationChoice& 
                 "the stiffness matrix is singular at this state",
                 "fix a region of every body, or try tangent='rotated'");
   }
-  result.compliance = world.problem().compliance;
-  result.delta_free = world.problem().delta_free;
-  const RowNumbering& numbering = world.numbering();
-  const std::vector<std::string> names = all_names(model);
-  const auto count = result.delta_free.size();
-  result.delta.resize(count);
-  result.effort.resize(count);
-  for (Eigen::Index k = 0; k < count; ++k) {
-    const auto row = static_cast<std::size_t>(numbering.model_row_of(static_cast<int>(k)));
-    result.delta[k] = world.delta()[static_cast<Eigen::Index>(row)];
-    result.effort[k] = simulation.efforts()[row];
-    if (!names[row].empty()) result.rows.push_back(names[row]);
-  }
-  result.negative_pivots = world.inertia().negative_pivots;
-  const step::StepProblem& problem = world.problem();
-  if (!problem.bilaterals.empty() || !problem.stiffness.empty()) take_joints_out(problem, result);
+  FreeRows free = gather(simulation, result);
+  if (choice.fields) find_fields(world, free, result);
   return result;
 }
 
@@ -161,6 +236,17 @@ Linearisation linearise(Simulation& simulation, const LinearisationChoice& choic
     simulation.restore(state);
     throw;
   }
+}
+
+Linearisation last_linearisation(Simulation& simulation) {
+  if (simulation.world().problem().compliance.size() == 0) {
+    throw Error(ErrorKind::bad_argument, {.item = "last_linearisation()"},
+                "no step has been solved yet", "call it after step() or solve_static()");
+  }
+  Linearisation result;
+  result.residual = std::numeric_limits<double>::quiet_NaN();
+  gather(simulation, result);
+  return result;
 }
 
 }  // namespace sinew::sim

@@ -27,6 +27,10 @@ struct Linearisation {
   VectorX effort;           ///< (rows,) N, now
   double residual = 0.0;    ///< N, |p - f + H^T lambda|
   int negative_pivots = 0;  ///< of A, with joints held; 0: the equilibrium is stable
+  /// [body][row], (n, 3) m/N: how all nodes of a body of finite elements move for a unit effort of
+  /// the row, N A^-1 H^T. By reciprocity (Betti) it is also how the row moves for a unit force on
+  /// any node. Empty unless asked for, and of bodies without elements.
+  std::vector<std::vector<Points>> fields;
 };
 
 /// What linearise() is asked for.
@@ -34,10 +38,17 @@ struct LinearisationChoice {
   mechanics::Tangent tangent = mechanics::Tangent::exact;
   bool geometric_stiffness = true;  ///< of all loaded cables
   bool of_statics = true;           ///< false: of the scene's integrator and time step
+  bool fields = false;              ///< whether Linearisation::fields are computed
 };
 
 /// Of the present state, which stays as it is bit for bit; every point of a contact takes part.
 /// Throws Error(singular-matrix).
 Linearisation linearise(Simulation& simulation, const LinearisationChoice& choice = {});
+
+/// W and delta_free as the last step (its last substep's last linearisation) or solve had them,
+/// delta and effort as they are now: what a filter needs of a step, without a factorisation. No
+/// part of the state. Has no fields, and NaN for the residual. Throws Error(bad-argument) before
+/// the first step.
+Linearisation last_linearisation(Simulation& simulation);
 
 }  // namespace sinew::sim

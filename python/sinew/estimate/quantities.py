@@ -1,0 +1,251 @@
+"""What is measured, and what is not known."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Optional, Union
+
+import numpy as np
+
+from ..errors import Error
+
+__all__ = ["Effort", "Force", "Measured", "Motion", "NodalForce", "Parameter", "Unknown"]
+
+_AXES = "xyz"
+
+
+def _positive(value: float, place: str, unit: str) -> float:
+    number = float(value)
+    if not (math.isfinite(number) and number > 0.0):
+        raise Error("out-of-range", place, f"{value!r} is no positive number of {unit}", "give a standard deviation > 0")
+    return number
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A quantity that a sensor reads: the true value plus independent Gaussian noise.
+
+    Parameters
+    ----------
+    name : str
+        As observables of a run are named: "tip.position" (its three coordinates), "tip.x", "long_0.tension",
+        "long_0.displacement", "chamber.volume_growth"; an effector of an orientation has "imu.rotation"; a probe its name.
+    std : float
+        Standard deviation of the noise in the quantity's SI unit, > 0.
+    rate : float, optional
+        Hz; None: at every step of a filter.
+    delay : float
+        s, from the instant that a reading is of to its arrival, >= 0.
+
+    Raises
+    ------
+    Error
+        out-of-range.
+    """
+
+    name: str
+    std: float
+    rate: Optional[float] = None
+    delay: float = 0.0
+
+    def __post_init__(self) -> None:
+        place = f"Measured({self.name!r})"
+        _positive(self.std, f"{place}.std", "the quantity's unit")
+        if self.rate is not None:
+            _positive(self.rate, f"{place}.rate", "Hz")
+        if not (math.isfinite(self.delay) and self.delay >= 0.0):
+            raise Error("out-of-range", f"{place}.delay", f"{self.delay!r} is no delay", "give s, >= 0")
+
+
+@dataclass(frozen=True)
+class Force:
+    """A dead force of unknown size and direction on a point of a body.
+
+    Its prior is Gaussian: independent components along `directions`.
+
+    Parameters
+    ----------
+    name : str
+        Of the force; its components are `name.x`, `name.y`, `name.z`, with own directions `name.0` and so on.
+    body : str
+    point : (3,) array_like
+        m, at rest; carried by the nearest element where it lies outside of the mesh.
+    prior : float or (k,) array_like
+        Standard deviation of each component before anything is measured, N.
+    mean : float or (k,) array_like
+        N.
+    directions : (k, 3) array_like, optional
+        World directions of the components, 1 to 3; by default x, y and z.
+    walk : float
+        N/sqrt(s): how fast a filter takes the force to wander, the standard deviation after one second.
+    """
+
+    name: str
+    body: str
+    point: Sequence[float]
+    prior: Union[float, Sequence[float]] = 1.0
+    mean: Union[float, Sequence[float]] = 0.0
+    directions: Optional[Sequence[Sequence[float]]] = None
+    walk: float = 1.0
+
+    @property
+    def axes(self) -> np.ndarray:
+        """(k, 3) unit directions."""
+        if self.directions is None:
+            return np.eye(3)
+        axes = np.atleast_2d(np.asarray(self.directions, float))
+        return axes / np.linalg.norm(axes, axis=1)[:, None]
+
+    @property
+    def components(self) -> list[str]:
+        return [f"{self.name}.{_AXES[k] if self.directions is None else k}" for k in range(len(self.axes))]
+
+    @property
+    def actuators(self) -> list[str]:
+        """Of the model: one force actuator for each component."""
+        return [component.replace(".", "_") for component in self.components]
+
+    def overrides(self) -> dict[str, dict]:
+        """What a scene needs for it: names of actuators to their description."""
+        return {f"actuators.{actuator}": {"type": "force", "body": self.body, "point": [float(x) for x in self.point],
+                                          "direction": axis.tolist(), "outside": "nearest", "command": {"force": 0.0}}
+                for actuator, axis in zip(self.actuators, self.axes)}
+
+
+@dataclass(frozen=True)
+class NodalForce:
+    """A dead force of unknown size and direction that is spread over nodes of a body of finite elements.
+
+    Parameters
+    ----------
+    name : str
+    body : str
+    nodes : (n,) array_like of int
+    weights : (n,) array_like
+        Share of each node, sum 1.
+    prior, mean, directions, walk
+        As of Force.
+    """
+
+    name: str
+    body: str
+    nodes: Sequence[int]
+    weights: Sequence[float]
+    prior: Union[float, Sequence[float]] = 1.0
+    mean: Union[float, Sequence[float]] = 0.0
+    directions: Optional[Sequence[Sequence[float]]] = None
+    walk: float = 1.0
+
+    axes = Force.axes
+    components = Force.components
+
+
+@dataclass(frozen=True)
+class Effort:
+    """An effort of an actuator that nothing measures: a cable's tension, a chamber's pressure, a motor's torque.
+
+    Parameters
+    ----------
+    actuator : str
+        Is commanded in effort.
+    prior : float
+        Standard deviation, N, Pa or N m.
+    mean : float
+        The same unit.
+    walk : float
+        The same unit over sqrt(s).
+    """
+
+    actuator: str
+    prior: float
+    mean: float = 0.0
+    walk: float = 0.0
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A motion of an actuator that is known to a standard deviation only: a cable's length by its encoder.
+
+    Readings of a commanded motion become such an unknown by themselves.
+
+    Parameters
+    ----------
+    actuator : str
+        Is commanded in motion.
+    prior : float
+        Standard deviation, m, m^3 or rad.
+    mean : float
+        The same unit.
+    walk : float
+        The same unit over sqrt(s).
+    """
+
+    actuator: str
+    prior: float
+    mean: float = 0.0
+    walk: float = 0.0
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A number of the scene: Young's modulus, a coefficient of friction, a mass.
+
+    Estimated as its logarithm, log(value/start), whose prior is Gaussian: it stays positive, and `prior` is the relative
+    standard deviation. Each change builds the model anew, and its derivative is a central difference.
+
+    Parameters
+    ----------
+    path : str
+        "bodies.trunk.material.young_modulus".
+    start : float
+        SI, > 0: the median before anything is measured.
+    prior : float
+        Standard deviation of log(value), about the relative one.
+    also : dict of str to float
+        More numbers of the scene with their starts, which change by the same factor.
+    walk : float
+        1/sqrt(s), of the logarithm.
+    """
+
+    path: str
+    start: float
+    prior: float = 0.3
+    also: Mapping[str, float] = field(default_factory=dict)
+    walk: float = 0.0
+
+    def overrides(self, logarithm: float) -> dict[str, float]:
+        """Values of the scene at one value of the unknown."""
+        factor = math.exp(logarithm)
+        return {path: start * factor for path, start in {self.path: self.start, **self.also}.items()}
+
+
+Unknown = Union[Force, NodalForce, Effort, Motion, Parameter]
+
+
+def names_of(unknown: Unknown) -> list[str]:
+    """Of the unknown's components."""
+    if isinstance(unknown, (Force, NodalForce)):
+        return unknown.components
+    if isinstance(unknown, Parameter):
+        return [unknown.path]
+    quantity = "effort" if isinstance(unknown, Effort) else "motion"
+    return [f"{unknown.actuator}.{quantity}"]
+
+
+def _spread(value, count: int, place: str) -> np.ndarray:
+    array = np.asarray(value, float)
+    if array.shape not in ((), (count,)) or not np.isfinite(array).all():
+        raise Error("wrong-shape", place, f"{value!r} is no number, nor {count} of them", f"give one number or {count}")
+    return np.broadcast_to(array, (count,)).copy()
+
+
+def prior_of(unknown: Unknown) -> tuple[np.ndarray, np.ndarray]:
+    """Mean and standard deviation of the unknown's components."""
+    names = names_of(unknown)
+    mean = 0.0 if isinstance(unknown, Parameter) else unknown.mean
+    std = _spread(unknown.prior, len(names), f"{names[0]}: prior")
+    for value in std:
+        _positive(value, f"{names[0]}: prior", "the unknown's unit")
+    return _spread(mean, len(names), f"{names[0]}: mean"), std

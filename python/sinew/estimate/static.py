@@ -1,0 +1,307 @@
+"""Unknowns from readings of a robot at rest: the nonlinear maximum a posteriori, its covariance, and what cannot be seen."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Optional
+
+import numpy as np
+import scipy.stats
+
+from ..errors import Error, RunError
+from .quantities import Parameter
+from .response import Response
+from .twin import Twin
+
+__all__ = ["Estimate", "Observability", "observability", "solve"]
+
+_SEEN = 1.0  # singular value from which readings tell more of a direction than the prior does
+
+
+@dataclass(frozen=True)
+class Observability:
+    """What readings tell of the unknowns, beside their prior.
+
+    The singular values are those of the whitened sensitivity S = R^(-1/2) J P_0^(1/2), R the covariance of noise and of
+    measured commands, P_0 the prior's. Readings reduce the standard deviation along a direction of singular value s from the
+    prior's to 1/sqrt(1 + s^2) of it: s = 0 is not observable, at s < 1 the prior says more than the readings do.
+
+    Attributes
+    ----------
+    singular_values : (k,) ndarray
+        Descending.
+    directions : (k, k) ndarray
+        Rows: unit vectors of unknowns in units of their prior's standard deviation.
+    names : list of str
+        Of the unknowns.
+    """
+
+    singular_values: np.ndarray
+    directions: np.ndarray
+    names: list[str]
+
+    @property
+    def unobservable(self) -> list[str]:
+        """Directions of singular value below 1, in words: "0.98 hand.y + 0.2 hand.z (0.03)"."""
+        return [f"{self._spell(direction)} (singular value {value:.2g})"
+                for value, direction in zip(self.singular_values, self.directions) if value < _SEEN]
+
+    def _spell(self, direction: np.ndarray) -> str:
+        order = [k for k in np.argsort(-np.abs(direction), kind="stable") if abs(direction[k]) > 0.1]
+        return " ".join(f"{'-' if direction[k] < 0 else '+'} {abs(direction[k]):.2f} {self.names[k]}" for k in order).lstrip("+ ")
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """Unknowns of a robot at rest.
+
+    Attributes
+    ----------
+    values, std : dict of str to float
+        Of each unknown, SI; of a Parameter the value itself, and its standard deviation to first order.
+    names : list of str
+        Order of `covariance`; measured commands, which are estimated too, come last.
+    covariance : (inputs, inputs) ndarray
+        (P_0^-1 + J^T R^-1 J)^-1 at the estimate, SI; of a Parameter that of its logarithm.
+    unknowns : (inputs,) ndarray
+        Values in that order; of a Parameter log(value/start).
+    observability : Observability
+        Of the unknowns that were asked for.
+    predicted, residuals : dict of str to float
+        Readings that the model makes of the estimate, and readings less these, in units of each sensor's std.
+    chi_squared : float
+        Of residuals and of the distance from the prior together; of `degrees` degrees of freedom where the model is right.
+    degrees : int
+    probability : float
+        That chi squared is as large as this or larger.
+    log_evidence : float
+        log p(readings | model), by Laplace's approximation about the estimate.
+    iterations : int
+    status : str
+        "converged" or "iteration-limit".
+    positions : dict of str to (n, 3) ndarray
+        Nodes of all bodies, m.
+    """
+
+    values: dict[str, float]
+    std: dict[str, float]
+    names: list[str]
+    covariance: np.ndarray
+    unknowns: np.ndarray
+    observability: Observability
+    predicted: dict[str, float]
+    residuals: dict[str, float]
+    chi_squared: float
+    degrees: int
+    probability: float
+    log_evidence: float
+    iterations: int
+    status: str
+    positions: dict[str, np.ndarray]
+
+    def holds(self, truth: Sequence[float], share: float = 0.9) -> bool:
+        """Whether the ellipsoid that holds the truth with a given probability does.
+
+        Parameters
+        ----------
+        truth : (k,) array_like
+            Of the first k of `names`.
+        share : float
+        """
+        error = np.asarray(truth, float) - self.unknowns[:len(truth)]
+        own = self.covariance[:len(truth), :len(truth)]
+        return bool(error @ np.linalg.solve(own, error) <= scipy.stats.chi2.ppf(share, len(truth)))
+
+    def __str__(self) -> str:
+        lines = [f"{name:<28}{self.values[name]:>12.5g} +- {self.std[name]:.2g}" for name in self.values]
+        lines += [f"chi squared {self.chi_squared:.3g} of {self.degrees}, probability {self.probability:.2g}; {self.status}"]
+        lines += [f"not observable: {text}" for text in self.observability.unobservable]
+        return "\n".join(lines)
+
+
+def observability(sensitivity: np.ndarray, noise: np.ndarray, prior: np.ndarray, names: Sequence[str], asked: int) -> Observability:
+    """Of the first `asked` unknowns; the others add to the noise.
+
+    Parameters
+    ----------
+    sensitivity : (m, k) ndarray
+    noise : (m,) ndarray
+        Standard deviations, or (m, m) a covariance.
+    prior : (k,) ndarray
+        Standard deviations.
+    names : (k,) list of str
+    asked : int
+    """
+    if asked == 0:
+        return Observability(np.empty(0), np.empty((0, 0)), [])
+    covariance = np.diag(noise**2) if noise.ndim == 1 else noise
+    others = sensitivity[:, asked:] * prior[asked:]
+    lower = np.linalg.cholesky(covariance + others @ others.T)
+    whitened = np.linalg.solve(lower, sensitivity[:, :asked] * prior[:asked])
+    _, values, directions = np.linalg.svd(whitened, full_matrices=True)
+    return Observability(np.pad(values, (0, asked - len(values))), directions, list(names[:asked]))
+
+
+class _Problem:
+    """min 1/2 |L^-1 (y - h(u))|^2 + 1/2 |(u - u_0)/sigma|^2 in v = (u - u_0)/sigma."""
+
+    def __init__(self, twin: Twin, readings: Mapping[str, Any], extra: Optional[np.ndarray]) -> None:
+        self.twin = twin
+        numbers, commands = twin.split(readings)
+        self.seen = np.isfinite(numbers)
+        if not self.seen.any():
+            raise Error("no-sensors", "solve(readings)", "no sensor has a reading", f"give some of {', '.join(twin.outputs)}")
+        self.mean, self.std = twin.prior(commands)
+        self.numbers = numbers[self.seen]
+        covariance = np.diag(twin.noise**2)
+        if extra is not None:
+            covariance = covariance + extra
+        self.noise = covariance[np.ix_(self.seen, self.seen)]
+        self.lower = np.linalg.cholesky(self.noise)
+        self.cost = math.inf
+
+    def residual(self, v: np.ndarray) -> np.ndarray:
+        """(seen,) whitened; moves the model."""
+        return np.linalg.solve(self.lower, self.numbers - self.twin.predict(self.mean + self.std * v)[self.seen])
+
+    def jacobian(self, v: np.ndarray) -> np.ndarray:
+        """(seen, k) of L^-1 h by v, where the model is."""
+        return np.linalg.solve(self.lower, self.twin.sensitivity(self.mean + self.std * v)[self.seen] * self.std)
+
+
+def _cost(residual: np.ndarray, v: np.ndarray) -> float:
+    return 0.5 * float(residual @ residual + v @ v)
+
+
+def _descend(problem: _Problem, v: np.ndarray, max_iterations: int, tolerance: float):
+    """Gauss-Newton; steps are halved until the cost falls and the equilibrium is found."""
+    residual = problem.residual(v)
+    cost, status = _cost(residual, v), "iteration-limit"
+    for iteration in range(1, max_iterations + 1):  # noqa: B007
+        jacobian = problem.jacobian(v)
+        step = np.linalg.solve(jacobian.T @ jacobian + np.eye(len(v)), jacobian.T @ residual - v)
+        foreseen = cost - _cost(residual - jacobian @ step, v + step)
+        scale = 1.0
+        while True:
+            try:
+                trial = problem.residual(v + scale * step)
+                if _cost(trial, v + scale * step) <= cost - 1e-4 * scale * foreseen:
+                    break
+            except RunError:
+                trial = None
+            scale *= 0.5
+            if scale < 1e-3:
+                break
+        if scale < 1e-3:  # rounding, or the model cannot go there
+            residual = problem.residual(v)
+            status = "converged" if foreseen < 1e-6 * (1.0 + cost) else "iteration-limit"
+            break
+        v, residual = v + scale * step, trial
+        fell, cost = cost - _cost(residual, v), _cost(residual, v)
+        # The step in units of the estimate's own deviation is sqrt(2 foreseen).
+        if foreseen < 0.5 * tolerance**2 or (scale == 1.0 and fell < 0.5 * tolerance**2):
+            status = "converged"
+            break
+    return v, residual, iteration, status
+
+
+def solve(twin: Twin, readings: Mapping[str, Any], *, start: Optional[Sequence[float]] = None, unobservable: str = "report",
+          max_iterations: int = 30, tolerance: float = 1e-3, extra: Optional[np.ndarray] = None) -> Estimate:
+    """The unknowns that explain readings of a robot at rest best, given their prior.
+
+    Minimises |R^(-1/2) (y - h(u))|^2 + |P_0^(-1/2) (u - u_0)|^2, h the nonlinear equilibrium, by Gauss-Newton's method on the
+    compliance that control uses (Tarantola, Inverse Problem Theory, SIAM 2005, sec. 3.4). The covariance is that of the
+    linearisation at the estimate.
+
+    Parameters
+    ----------
+    twin : Twin
+        Is left at the estimate: `twin.sim` has the shape.
+    readings : dict of str to float or array_like
+        By names of sensors; NaN or missing: a sensor that is lost.
+    start : (inputs,) array_like, optional
+        Where to begin; the prior's mean by default.
+    unobservable : {"report", "refuse"}
+        Whether to raise an error where the readings tell less of a direction than the prior does.
+    max_iterations : int
+    tolerance : float
+        Of the last step, in standard deviations of the estimate.
+    extra : (outputs, outputs) array_like, optional
+        Covariance of what the model does not know beside the sensors' noise.
+
+    Returns
+    -------
+    Estimate
+
+    Raises
+    ------
+    Error
+        unknown-name, wrong-shape, no-sensors of readings; unobservable.
+    RunError
+        not-converged: the model has no equilibrium at the start.
+    """
+    problem = _Problem(twin, readings, extra)
+    v = np.zeros(len(problem.mean)) if start is None else (np.asarray(start, float) - problem.mean) / problem.std
+    v, residual, iterations, status = _descend(problem, v, max_iterations, tolerance)
+    jacobian = problem.jacobian(v)
+    information = jacobian.T @ jacobian + np.eye(len(v))
+    covariance = np.linalg.inv(information) * np.outer(problem.std, problem.std)
+    seen = observability(problem.lower @ jacobian / problem.std, problem.noise, problem.std, twin.inputs, twin.asked)
+    if unobservable == "refuse" and seen.unobservable:
+        raise Error("unobservable", "solve(readings)", f"the readings do not tell {'; '.join(seen.unobservable)}",
+                    "add a sensor, ask for less, or take unobservable='report' and the prior's word for it")
+    cost = _cost(residual, v)
+    evidence = (-cost - 0.5 * np.linalg.slogdet(information)[1] - np.log(np.diag(problem.lower)).sum()
+                - 0.5 * len(residual) * math.log(2.0 * math.pi))
+    return _told(twin, problem, v, residual, covariance, seen, evidence, iterations, status)
+
+
+def _told(twin: Twin, problem: _Problem, v, residual, covariance, seen, evidence, iterations, status) -> Estimate:
+    values, std = {}, {}
+    unknowns, deviations = problem.mean + problem.std * v, np.sqrt(np.diag(covariance))
+    parameters = {u.path: u for u in twin.unknowns if isinstance(u, Parameter)}
+    for name, value, deviation in zip(twin.inputs, unknowns, deviations):
+        if name in parameters:
+            value = parameters[name].start * math.exp(value)
+            deviation = value * deviation
+        values[name], std[name] = float(value), float(deviation)
+    outputs = [name for name, seen_ in zip(twin.outputs, problem.seen) if seen_]
+    chi_squared = 2.0 * _cost(residual, v)
+    degrees = len(residual)  # as many terms as readings and prior give, less one for each unknown
+    return Estimate(values, std, twin.inputs, covariance, unknowns, seen,
+                    dict(zip(outputs, twin.read()[problem.seen])), dict(zip(outputs, residual)), chi_squared, degrees,
+                    float(scipy.stats.chi2.sf(chi_squared, degrees)), float(evidence), iterations, status,
+                    {name: np.array(body.positions) for name, body in twin.sim.bodies.items()})
+
+
+def shape_std(twin: Twin, estimate: Estimate, body: str) -> np.ndarray:
+    """(n, 3) m: standard deviation of the nodes' coordinates of a body of finite elements.
+
+    Parameters
+    ----------
+    twin : Twin
+        At the estimate, without parameters among its unknowns.
+    estimate : Estimate
+        Of it.
+    body : str
+    """
+    response = Response(twin.sim, twin.sim.linearise(fields=True))
+    field = twin.nodal_columns(response, body)
+    by_unknown = []
+    for one in twin._inputs:
+        if isinstance(one.unknown, Parameter):
+            raise Error("bad-argument", "shape_std()", f"'{one.name}' is a number of the scene", "fix it first")
+        by_unknown.append(_field_of(twin, response, field, one))
+    motions = np.array(by_unknown)  # (inputs, n, 3)
+    lower = np.linalg.cholesky(estimate.covariance)
+    return np.sqrt((np.einsum("kij,kl->lij", motions, lower)**2).sum(axis=0))
+
+
+def _field_of(twin: Twin, response: Response, field: np.ndarray, one) -> np.ndarray:
+    _, efforts = twin.column(response, one.unknown, one.component)
+    moved = np.einsum("r,rij->ij", efforts, field)
+    if hasattr(one.unknown, "nodes"):
+        raise Error("bad-argument", "shape_std()", "forces on nodes have no rows", "take a Force at a point")
+    return moved
