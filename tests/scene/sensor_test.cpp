@@ -356,6 +356,18 @@ TEST_F(RecordedSensor, IsReplayedAtItsTimes) {
   EXPECT_GE(truth(*simulation, "s")[0], 0.0);  // of the model
 }
 
+TEST_F(RecordedSensor, SaysNothingBeforeItsFirstSample) {
+  const auto simulation = with("0.025,1\n");
+  const sim::Channel& s = simulation->sensor(0);
+  for (int k = 0; k < 2; ++k) {
+    simulation->step();
+    EXPECT_FALSE(s.has_value() || s.fresh());
+    EXPECT_EQ(s.samples(), 0);
+  }
+  simulation->step();
+  EXPECT_EQ(s.value()[0], 1.0);
+}
+
 TEST_F(RecordedSensor, ReadsColumnsByTheirHeadings) {
   const std::string table =
       "time [s],other,s.measured [mN],s.sample_time [s]\n"

@@ -16,8 +16,10 @@
 #include "sinew/mesh/patch.hpp"
 #include "sinew/mesh/selection.hpp"
 #include "sinew/mesh/topology.hpp"
+#include "sinew/sim/observables.hpp"
 #include "sinew/sim/sensor_settings.hpp"
 
+#include "../support/allocation_guard.hpp"
 #include "robots.hpp"
 
 namespace sinew::sim {
@@ -170,6 +172,35 @@ TEST_F(SensorBlock, MarkersAndOrientationsFollowARigidMotion) {
     EXPECT_NEAR(truth("marker")[k], place[c], 1e-12);
     EXPECT_NEAR(truth("imu")[k], turn[c], 1e-9);
     EXPECT_NEAR(truth("level")[k], up[c], 1e-9);
+  }
+}
+
+TEST_F(SensorBlock, SamplingAndReadingAllocateNothing) {
+  Points frame(3, 3);
+  frame << 0.09, 0.0, 0.0, 0.1, 0.0, 0.0, 0.09, 0.01, 0.0;
+  using What = SensorMotion::What;
+  add("marker", ProbeSpot{0, {}, mesh_->node_sets.at("x_max")});
+  add("spin", SensorMotion{What::gyroscope, 0, frame, {}});
+  add("shake", SensorMotion{What::accelerometer, 0, frame, {}});
+  add("axis", SensorCurvature{0, line(0.0), {0.03, 0.05, 0.08}, 0.04, {}});
+  add("strain", SensorLine{SensorLine::What::stretch, {0, line(0.0), 11}});
+  finish();
+  Observables list(*simulation_);
+  const auto read = [&] {
+    list.refresh();
+    for (std::size_t k = 0; k < list.list().size(); ++k) {
+      if (list.list()[k].kind == ObservableKind::sensor) list.read(k);
+    }
+  };
+  for (int k = 0; k < 3; ++k) simulation_->step();
+  read();
+  const long before = testing::allocations();
+  for (int k = 0; k < 3; ++k) {
+    simulation_->step();
+    read();
+  }
+  if (testing::counts_allocations()) {
+    EXPECT_EQ(testing::allocations(), before);
   }
 }
 

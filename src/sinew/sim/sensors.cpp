@@ -35,6 +35,7 @@ Sensors::Sensors(const Model& model) : signature_(signature_of(model.sensors()))
 void Sensors::sample(const Run& run, Sensor& sensor) {
   if (sensor.model->record) {
     replay(run, sensor);
+    if (!sensor.channel.received()) return;  // nothing has arrived
   } else {
     sensor.model->source->read(run, sensor.memory, sensor.truth);
   }

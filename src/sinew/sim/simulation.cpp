@@ -90,8 +90,12 @@ const Channel& Simulation::sensor(int index) const { return run_->sensors.channe
 
 std::vector<double> Simulation::sensor_truth(int index) const {
   std::vector<double> values(sensor(index).size());
-  run_->sensors.read_true(*run_, index, values);
+  read_sensor_truth(index, values);
   return values;
+}
+
+void Simulation::read_sensor_truth(int index, std::span<double> values) const {
+  run_->sensors.read_true(*run_, index, values);
 }
 
 void Simulation::feed_sensor(int index, double time, std::span<const double> value) {

@@ -119,6 +119,9 @@ class Simulation {
   const Channel& sensor(int index) const;
   /// (size,) what it would say now without errors and delay. @param index of Model::sensors().
   std::vector<double> sensor_truth(int index) const;
+  /// The same into (size,) numbers, which allocates nothing. @param index of Model::sensors().
+  /// @param values replaced.
+  void read_sensor_truth(int index, std::span<double> values) const;
   /// Takes a sample of a real sensor in place of the simulated ones, from now until reset(). Throws
   /// what Channel::receive() does. @param index of Model::sensors(). @param time s, when it was
   /// taken. @param value (size,).

@@ -211,10 +211,10 @@ void add_sensors(Observables& list) {
     list.add(std::move(parts), [&simulation, i](std::span<double> all) {
       const auto index = static_cast<int>(i);
       const Channel& channel = simulation.sensor(index);
-      Numbers to(all);
-      for (const double number : channel.value()) to.put(number);
-      for (const double number : simulation.sensor_truth(index)) to.put(number);
-      to.put(channel.time());
+      const std::size_t size = channel.size();
+      std::ranges::copy(channel.value(), all.begin());
+      simulation.read_sensor_truth(index, all.subspan(size, size));
+      all.back() = channel.time();
     });
   }
 }
