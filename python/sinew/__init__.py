@@ -11,7 +11,7 @@ SI units everywhere. docs/python.md is the guide.
 
 import importlib as _importlib
 
-from . import collision, errors, fields, mesh, pcc, qp
+from . import collision, errors, fields, mesh, pcc, qp, sensors
 from ._core import (
     Actuator,
     Body,
@@ -29,6 +29,7 @@ from ._core import (
     Probe,
     Ramp,
     Samples,
+    Sensor,
     Signal,
     Simulation,
     State,
@@ -68,6 +69,7 @@ __all__ = [
     "Ramp",
     "RunError",
     "Samples",
+    "Sensor",
     "Signal",
     "Simulation",
     "State",
@@ -91,6 +93,7 @@ __all__ = [
     "pcc",
     "qp",
     "render",
+    "sensors",
     "view",
 ]
 
